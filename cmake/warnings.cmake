@@ -1,0 +1,11 @@
+# One interface target carries the warnings of all our own code; third-party headers are SYSTEM.
+add_library(talus_warnings INTERFACE)
+set(_warnings -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual)
+if(TALUS_WERROR)
+  list(APPEND _warnings -Werror)
+endif()
+target_compile_options(talus_warnings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:${_warnings}>)
+if(TALUS_SANITIZE)
+  add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fsanitize=address,undefined> $<$<COMPILE_LANGUAGE:CXX>:-fno-omit-frame-pointer>)
+  add_link_options(-fsanitize=address,undefined)
+endif()

@@ -1,0 +1,39 @@
+// Rasters in memory. Row 0 is the SOUTHERNMOST row, so that row and y grow together; files (north first) are flipped by
+// raster_io. Knows nothing of GDAL.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace talus {
+
+/// A square-celled, axis-aligned metric grid.
+struct MapGrid {
+  int columns = 0;
+  int rows = 0;
+  double west = 0;   // outer edge of column 0 [m]
+  double south = 0;  // outer edge of row 0 [m]
+  double cell = 0;   // [m]
+  std::string crs_wkt;  // WKT2; empty = local metric coordinates
+
+  std::size_t count() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
+  std::size_t index(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
+  }
+  double x(int column) const { return west + (column + 0.5) * cell; }  // centre [m]
+  double y(int row) const { return south + (row + 0.5) * cell; }       // centre [m]
+  double east() const { return west + columns * cell; }
+  double north() const { return south + rows * cell; }
+};
+
+/// Values at cell centres; NaN is nodata.
+struct Raster {
+  MapGrid grid;
+  std::vector<double> values;  // [rows * columns], row-major, row 0 southernmost
+
+  double& at(int column, int row) { return values[grid.index(column, row)]; }
+  double at(int column, int row) const { return values[grid.index(column, row)]; }
+};
+
+}  // namespace talus

@@ -1,0 +1,131 @@
+// Recipes: one TOML file per scene with a table per stage. A stage's options are a plain struct whose
+// describe(Visitor&) names every key once; the reader, the template and the used recipe are visitors of it.
+#pragma once
+
+#include <filesystem>
+#include <initializer_list>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "common/error.hpp"
+
+namespace talus::recipe {
+
+/// Allowed values; a bound is part of the range unless it is open.
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool open_low = false;
+  bool open_high = false;
+};
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+inline constexpr Range any{};
+inline constexpr Range positive{0.0, infinity, true, false};
+inline constexpr Range not_negative{0.0, infinity};
+inline constexpr Range fraction{0.0, 1.0};
+
+/// Walks the keys of a stage's options. A default is the value the member holds before the visit.
+/// Keys carry their unit (density_kg_m3). `help` is one line, shown in the template as a comment.
+class Visitor {
+ public:
+  virtual ~Visitor() = default;
+  virtual void enter(std::string_view table, std::string_view help) = 0;  ///< open sub-table [..table]
+  virtual void leave() = 0;
+  virtual void number(std::string_view key, double& value, Range range, std::string_view help) = 0;
+  virtual void optional_number(std::string_view key, std::optional<double>& value, Range range, std::string_view help) = 0;
+  virtual void integer(std::string_view key, int& value, Range range, std::string_view help) = 0;
+  virtual void flag(std::string_view key, bool& value, std::string_view help) = 0;
+  virtual void text(std::string_view key, std::string& value, std::string_view help) = 0;
+  /// Relative paths in a recipe are relative to the recipe's folder; after reading they are absolute. Empty = not given.
+  /// "${NAME}" inside is replaced by the environment variable NAME (an unset one is a fault).
+  virtual void path(std::string_view key, std::filesystem::path& value, std::string_view help) = 0;
+  virtual void numbers(std::string_view key, std::vector<double>& value, Range range, std::string_view help) = 0;
+  virtual void integers(std::string_view key, std::vector<int>& value, Range range, std::string_view help) = 0;
+  /// One of `names`; index is its place in the list.
+  virtual void one_of(std::string_view key, int& index, const std::vector<std::string_view>& names, std::string_view help) = 0;
+  /// Array of tables [[..key]]: begin_list says how many items there are (reader: in the file; writer: `size`).
+  virtual std::size_t begin_list(std::string_view key, std::size_t size, std::string_view help) = 0;
+  virtual void begin_item(std::size_t item) = 0;
+  virtual void end_item() = 0;
+  virtual void end_list() = 0;
+};
+
+/// An enum by name: choice(v, "shape", shape, {{"linear", Shape::linear}, {"quadratic", Shape::quadratic}}, "...").
+template <class Enum>
+void choice(Visitor& v, std::string_view key, Enum& value,
+            std::initializer_list<std::pair<std::string_view, Enum>> names, std::string_view help) {
+  std::vector<std::string_view> words;
+  std::vector<Enum> values;
+  int index = 0;
+  for (const auto& [word, item] : names) {
+    if (item == value) index = static_cast<int>(words.size());
+    words.push_back(word);
+    values.push_back(item);
+  }
+  v.one_of(key, index, words, help);
+  value = values.at(static_cast<std::size_t>(index));
+}
+
+/// Items of an array of tables; T has describe(Visitor&).
+template <class T>
+void list(Visitor& v, std::string_view key, std::vector<T>& items, std::string_view help) {
+  const std::size_t count = v.begin_list(key, items.size(), help);
+  items.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    v.begin_item(i);
+    items[i].describe(v);
+    v.end_item();
+  }
+  v.end_list();
+}
+
+/// A parsed recipe file. Throws RecipeError when the file is missing or is not TOML (with line and column).
+class Recipe {
+ public:
+  explicit Recipe(const std::filesystem::path& file);
+  ~Recipe();
+  const std::filesystem::path& file() const;
+  std::string scene_name() const;  ///< [scene] name, or the file's stem
+  std::string title() const;       ///< [scene] title, or the name
+
+  /// Read table `stage` into options. All faults at once: unknown keys (with "did you mean"), wrong types, values out
+  /// of range, each with line and column; then what options.check(faults) adds. Throws RecipeError if there is any.
+  /// A top-level table other than scene, preprocess, solve and postprocess is unknown.
+  template <class Options>
+  Options read(std::string_view stage) const {
+    Options options;
+    std::vector<Fault> faults;
+    {
+      auto reader = make_reader(stage, faults);
+      options.describe(*reader);
+    }  // the reader's end reports the keys nobody asked for
+    if (faults.empty()) options.check(faults);
+    if (!faults.empty()) throw RecipeError(std::move(faults));
+    return options;
+  }
+
+ private:
+  std::unique_ptr<Visitor> make_reader(std::string_view stage, std::vector<Fault>& faults) const;
+  struct Parsed;
+  std::unique_ptr<Parsed> parsed_;
+};
+
+/// The options as TOML under [stage]; with_help adds each key's line of help and its range as a comment.
+std::unique_ptr<Visitor> make_writer(std::string_view stage, bool with_help, std::string& text);
+
+template <class Options>
+std::string to_toml(Options options, std::string_view stage, bool with_help) {
+  std::string text;
+  {
+    auto writer = make_writer(stage, with_help, text);
+    options.describe(*writer);
+  }
+  return text;
+}
+
+}  // namespace talus::recipe

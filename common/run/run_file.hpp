@@ -1,0 +1,92 @@
+// run.h5: what talus-solve hands to talus-postprocess. HDF5 stays behind run_file.cpp.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/raster/raster.hpp"
+
+namespace talus {
+
+/// Fields on the map grid, [rows * columns] each, row 0 southernmost. Thickness is vertical and counts released volume
+/// (mass over initial density), so that its integral closes exactly.
+struct RunMaps {
+  MapGrid grid;
+  std::vector<double> terrain;             // bed [m], NaN outside the domain
+  std::vector<double> before;              // surface before the failure [m]
+  std::vector<double> initial_thickness;   // [m]
+  std::vector<double> deposit_thickness;   // at the end [m]
+  std::vector<double> peak_thickness;      // running maximum [m]
+  std::vector<double> peak_speed;          // running maximum of the depth-mean speed [m/s]
+  std::vector<double> peak_pressure;       // running maximum of rho v^2 [kPa]
+  std::vector<double> arrival_time;        // [s], NaN where it never came
+  double threshold = 0;                    // thickness from which speed, pressure and arrival count [m]
+};
+
+/// Thickness maps over time.
+struct RunFrames {
+  std::vector<double> time;                     // [s]
+  std::vector<std::vector<double>> thickness;   // one map per time [m]
+};
+
+/// Columns of equal length, one row per record.
+struct RunHistory {
+  std::vector<std::string> names;                // with unit: "time_s", "kinetic_J", ...
+  std::vector<std::vector<double>> columns;      // [names.size()][records]
+};
+
+/// One number or word each; names as in score.json where they meet.
+struct RunSummary {
+  std::string scene, title, on, precision, version, stop_reason;
+  std::int64_t particles = 0, particles_left = 0, steps = 0;
+  double time_end = 0;           // [s]
+  double wall_time = 0;          // step loop [s]
+  double density = 0;            // [kg/m3]
+  double volume_released = 0;    // [m3]
+  double volume_final = 0;       // [m3]
+  double volume_outflow = 0;     // [m3]
+  std::vector<std::pair<std::string, std::string>> provenance;
+};
+
+/// Points of one frame, for VTKHDF.
+struct PointFrame {
+  double time = 0;                               // [s]
+  std::vector<std::array<double, 3>> position;   // map coordinates [m]
+  std::vector<std::array<float, 3>> velocity;    // [m/s]
+  std::vector<float> volume;                     // [m3]
+  std::vector<float> pressure;                   // mean stress, compression positive [Pa]
+  std::vector<std::int32_t> id, release;
+};
+
+/// Writes run.h5, aside until finish(). Group VTKHDF (UnstructuredGrid of vertices, Steps) holds the points so that
+/// ParaView opens the file as it is; groups maps, frames, history and attributes of / hold the rest.
+/// Every failed HDF5 call (disk full) is a DataError.
+class RunWriter {
+ public:
+  explicit RunWriter(std::filesystem::path file);
+  ~RunWriter();
+  void append(const PointFrame& frame);
+  void append_thickness(double time, const MapGrid& grid, const std::vector<double>& thickness);
+  void finish(const RunMaps& maps, const RunHistory& history, const RunSummary& summary);
+
+ private:
+  struct Open;
+  std::unique_ptr<Open> open_;
+};
+
+struct Run {
+  RunMaps maps;
+  RunFrames frames;
+  RunHistory history;
+  RunSummary summary;
+};
+
+/// Read everything but the points. Throws DataError: missing, truncated, not a run of this program.
+Run read_run(const std::filesystem::path& file);
+
+}  // namespace talus
