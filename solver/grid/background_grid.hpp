@@ -1,0 +1,50 @@
+// The background grid as a kernel sees it: which columns hold storage, where a node lies in it, and the terrain below.
+//
+// Reference coordinates are (x, y, zeta), zeta = z - b(x, y) over the terrain b (terrain-following mapping) or z - datum
+// (Cartesian). Node (i, j, k) stands at the centre of map cell (i, j), k layers up. Storage is given to blocks of 4 x 4
+// columns that hold material, each over its own range of layers; inside a block, layers are the slow index, so that the 16
+// columns of a layer are neighbours in memory.
+//
+// Node -1, which quadratic functions reach from the lowest half layer, is one with node 0: the base node then carries the
+// traction of the bed alone, and no node gets light as a point nears the ground.
+#pragma once
+
+#include <cstdint>
+
+#include "solver/parallel/math.hpp"
+
+namespace talus {
+
+inline constexpr int block_side = 4;                           // columns along a block's side
+inline constexpr int block_columns = block_side * block_side;  // columns of a block
+
+enum class Mapping { terrain_following, cartesian };
+
+/// Where the nodes of a block of columns are stored.
+struct BlockSlot {
+  int offset = -1;     // first node; -1: no storage
+  int first_layer = 0;
+  int layers = 0;
+};
+
+template <class Real>
+struct GridView {
+  int columns = 0, rows = 0;                // nodes in x and y
+  int block_columns_x = 0;                  // blocks in x
+  Real spacing = 0, layer_height = 0;       // [m]
+  Mapping mapping = Mapping::terrain_following;
+  const BlockSlot* slots = nullptr;         // [blocks in y * blocks in x]
+  const Real* terrain = nullptr;            // spline coefficients of the ground at the nodes, from `datum` [m]
+  const Real* slope_x = nullptr;            // slope of the ground at the nodes [-]
+  const Real* slope_y = nullptr;
+  const unsigned char* open = nullptr;      // 1 where a point may be: its whole stencil lies in the domain
+
+  TALUS_HD int column(int i, int j) const { return j * columns + i; }
+  TALUS_HD const BlockSlot& slot(int i, int j) const { return slots[(j >> 2) * block_columns_x + (i >> 2)]; }
+  /// Storage of the column's node in layer k (k >= 0, inside the slot's range).
+  TALUS_HD static int node(const BlockSlot& s, int i, int j, int k) {
+    return s.offset + (k - s.first_layer) * block_columns + ((j & 3) << 2) + (i & 3);
+  }
+};
+
+}  // namespace talus

@@ -1,0 +1,97 @@
+#include <algorithm>
+#include <cmath>
+
+#include "solver/grid/shape_functions.hpp"
+#include "solver/grid/sparse_grid.hpp"
+
+namespace talus {
+namespace {
+
+/// Weights along one direction of the value and slope at a node itself.
+struct NodeWeights {
+  double value[3], slope[3];  // at the nodes before, at and after; slope per cell
+};
+
+NodeWeights node_weights(bool quadratic) {
+  if (quadratic) return {{0.125, 0.75, 0.125}, {-0.5, 0.0, 0.5}};
+  return {{0.0, 1.0, 0.0}, {-0.5, 0.0, 0.5}};  // mean of the slopes of the two cells
+}
+
+}  // namespace
+
+GroundTables make_ground_tables(const GridShape& shape) {
+  GroundTables tables;
+  const auto at = [&](int i, int j) { return static_cast<std::size_t>(j) * static_cast<std::size_t>(shape.columns) + static_cast<std::size_t>(i); };
+  tables.datum = std::numeric_limits<double>::infinity();
+  for (double z : shape.terrain) {
+    if (std::isfinite(z)) tables.datum = std::min(tables.datum, z);
+  }
+  tables.terrain.assign(shape.terrain.size(), 0.0);
+  tables.slope_x = tables.slope_y = tables.terrain;
+  tables.open.assign(shape.terrain.size(), 0);
+  for (std::size_t n = 0; n < shape.terrain.size(); ++n) {
+    if (std::isfinite(shape.terrain[n])) tables.terrain[n] = shape.terrain[n] - tables.datum;
+  }
+  const NodeWeights w = node_weights(shape.quadratic);
+  for (int j = 1; j + 1 < shape.rows; ++j) {
+    for (int i = 1; i + 1 < shape.columns; ++i) {
+      bool inside = true;
+      double sx = 0, sy = 0;
+      for (int b = -1; b <= 1; ++b) {
+        for (int a = -1; a <= 1; ++a) {
+          inside = inside && std::isfinite(shape.terrain[at(i + a, j + b)]);
+          const double z = tables.terrain[at(i + a, j + b)];
+          sx += w.slope[a + 1] * w.value[b + 1] * z;
+          sy += w.value[a + 1] * w.slope[b + 1] * z;
+        }
+      }
+      if (!inside) continue;
+      tables.slope_x[at(i, j)] = sx / shape.spacing;
+      tables.slope_y[at(i, j)] = sy / shape.spacing;
+      tables.open[at(i, j)] = 1;
+    }
+  }
+  // A node beside the domain's edge, which stencils reach but where no slope can be measured, leans as its neighbour does.
+  const auto measured = tables.open;
+  for (int j = 0; j < shape.rows; ++j) {
+    for (int i = 0; i < shape.columns; ++i) {
+      if (measured[at(i, j)]) continue;
+      int count = 0;
+      double sx = 0, sy = 0;
+      for (int b = std::max(j - 1, 0); b <= std::min(j + 1, shape.rows - 1); ++b) {
+        for (int a = std::max(i - 1, 0); a <= std::min(i + 1, shape.columns - 1); ++a) {
+          if (!measured[at(a, b)]) continue;
+          sx += tables.slope_x[at(a, b)];
+          sy += tables.slope_y[at(a, b)];
+          ++count;
+        }
+      }
+      if (count > 0) {
+        tables.slope_x[at(i, j)] = sx / count;
+        tables.slope_y[at(i, j)] = sy / count;
+      }
+    }
+  }
+  return tables;
+}
+
+double ground_at(const GridShape& shape, const GroundTables& ground, double xi, double eta) {
+  const auto sample = [&](auto kind) {
+    using Shape = decltype(kind);
+    double wx[3], wy[3], unused[3];
+    const double ci = std::floor(xi + 0.5), cj = std::floor(eta + 0.5);
+    const int i = static_cast<int>(ci) + Shape::weigh(xi - ci, wx, unused);
+    const int j = static_cast<int>(cj) + Shape::weigh(eta - cj, wy, unused);
+    double z = 0;
+    for (int b = 0; b < Shape::width; ++b) {
+      for (int a = 0; a < Shape::width; ++a) {
+        const int ii = std::clamp(i + a, 0, shape.columns - 1), jj = std::clamp(j + b, 0, shape.rows - 1);
+        z += wx[a] * wy[b] * ground.terrain[static_cast<std::size_t>(jj) * static_cast<std::size_t>(shape.columns) + static_cast<std::size_t>(ii)];
+      }
+    }
+    return z;
+  };
+  return shape.quadratic ? sample(Quadratic{}) : sample(Linear{});
+}
+
+}  // namespace talus

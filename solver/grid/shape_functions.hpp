@@ -1,0 +1,40 @@
+// Weights of a material point on the nodes around it, one direction at a time. The offset is the distance from the nearest
+// node in cells, -0.5 <= offset < 0.5; node `first` cells away from the nearest one carries weight[0].
+#pragma once
+
+#include "solver/parallel/macros.hpp"
+
+namespace talus {
+
+/// Linear hat functions: two nodes.
+struct Linear {
+  static constexpr int width = 2;
+  template <class Real>
+  TALUS_HD static int weigh(Real offset, Real weight[2], Real slope[2]) {
+    const int first = offset < Real(0) ? -1 : 0;
+    const Real s = offset - Real(first);
+    weight[0] = Real(1) - s;
+    weight[1] = s;
+    slope[0] = Real(-1);
+    slope[1] = Real(1);
+    return first;
+  }
+};
+
+/// Quadratic B-splines (Steffen, Kirby & Berzins 2008): three nodes, gradients continuous across cells.
+struct Quadratic {
+  static constexpr int width = 3;
+  template <class Real>
+  TALUS_HD static int weigh(Real offset, Real weight[3], Real slope[3]) {
+    const Real below = Real(0.5) - offset, above = Real(0.5) + offset;
+    weight[0] = Real(0.5) * below * below;
+    weight[1] = Real(0.75) - offset * offset;
+    weight[2] = Real(0.5) * above * above;
+    slope[0] = -below;
+    slope[1] = Real(-2) * offset;
+    slope[2] = above;
+    return -1;
+  }
+};
+
+}  // namespace talus

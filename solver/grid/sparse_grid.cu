@@ -1,0 +1,177 @@
+#include "solver/grid/sparse_grid.hpp"
+
+#include "solver/parallel/algorithms.hpp"
+
+namespace talus {
+namespace {
+
+constexpr int no_layer_low = 0x7fffffff;
+constexpr int no_layer_high = -1;
+
+template <class Real>
+struct MakeKeys {
+  ParticleView<Real> points;
+  int blocks_x;
+  std::uint64_t* keys;
+  TALUS_HD void operator()(int p) const {
+    keys[p] = points.cell_x[p] < 0 ? ~std::uint64_t{0}
+                                   : home_key(blocks_x, points.cell_x[p], points.cell_y[p], points.cell_z[p]);
+  }
+};
+
+struct ForgetExtents {
+  int* lowest;
+  int* highest;
+  TALUS_HD void operator()(int b) const {
+    lowest[b] = no_layer_low;
+    highest[b] = no_layer_high;
+  }
+};
+
+/// A point reaches two columns and two layers away: one for its stencil, one for the way it may go before the next sort.
+template <class Real>
+struct MeasureExtents {
+  ParticleView<Real> points;
+  int columns, rows, blocks_x;
+  int* lowest;
+  int* highest;
+  TALUS_HD void operator()(int p) const {
+    constexpr int reach = 2;
+    const int i = points.cell_x[p], j = points.cell_y[p], k = points.cell_z[p];
+    const int i0 = i > reach ? i - reach : 0, i1 = i + reach < columns ? i + reach : columns - 1;
+    const int j0 = j > reach ? j - reach : 0, j1 = j + reach < rows ? j + reach : rows - 1;
+    const int k0 = k > reach ? k - reach : 0;
+    for (int bj = j0 >> 2; bj <= j1 >> 2; ++bj) {
+      for (int bi = i0 >> 2; bi <= i1 >> 2; ++bi) {
+        atomic_min(&lowest[bj * blocks_x + bi], k0);
+        atomic_max(&highest[bj * blocks_x + bi], k + reach);
+      }
+    }
+  }
+};
+
+/// Nodes a block needs, and whether it is in use.
+struct CountNodes {
+  const int* lowest;
+  const int* highest;
+  int* sizes;
+  int* in_use;
+  TALUS_HD void operator()(int b) const {
+    const bool used = highest[b] >= lowest[b];
+    sizes[b] = used ? (highest[b] - lowest[b] + 1) * block_columns : 0;
+    in_use[b] = used ? 1 : 0;
+  }
+};
+
+struct GiveStorage {
+  const int* lowest;
+  const int* highest;
+  const int* offsets;
+  const int* places;
+  BlockSlot* slots;
+  int* active;
+  TALUS_HD void operator()(int b) const {
+    if (highest[b] < lowest[b]) {
+      slots[b] = BlockSlot{};
+      return;
+    }
+    slots[b] = BlockSlot{offsets[b], lowest[b], highest[b] - lowest[b] + 1};
+    active[places[b]] = b;
+  }
+};
+
+template <class Real, class Place>
+void upload_as(Buffer<Real, Place>& to, const std::vector<double>& from) {
+  to.upload(std::vector<Real>(from.begin(), from.end()));
+}
+
+}  // namespace
+
+template <class Real, class Place>
+SparseGrid<Real, Place>::SparseGrid(const GridShape& shape) : shape_(shape), ground_(make_ground_tables(shape)) {
+  blocks_x_ = (shape.columns + block_side - 1) / block_side;
+  blocks_y_ = (shape.rows + block_side - 1) / block_side;
+  upload_as(terrain_, ground_.terrain);
+  upload_as(slope_x_, ground_.slope_x);
+  upload_as(slope_y_, ground_.slope_y);
+  open_.upload(ground_.open);
+  const auto blocks = static_cast<std::size_t>(blocks_x_) * static_cast<std::size_t>(blocks_y_);
+  for (auto* buffer : {&lowest_, &highest_, &sizes_, &places_, &active_list_}) buffer->resize(blocks);
+  slots_.resize(blocks);
+}
+
+template <class Real, class Place>
+GridView<Real> SparseGrid<Real, Place>::view() const {
+  GridView<Real> v;
+  v.columns = shape_.columns;
+  v.rows = shape_.rows;
+  v.block_columns_x = blocks_x_;
+  v.spacing = static_cast<Real>(shape_.spacing);
+  v.layer_height = static_cast<Real>(shape_.layer_height);
+  v.mapping = shape_.mapping;
+  v.slots = slots_.data();
+  v.terrain = terrain_.data();
+  v.slope_x = slope_x_.data();
+  v.slope_y = slope_y_.data();
+  v.open = open_.data();
+  return v;
+}
+
+template <class Real, class Place>
+void SparseGrid<Real, Place>::fit(Particles<Real, Place>& points, int gone) {
+  keys_.resize(static_cast<std::size_t>(points.count()));
+  for_each(Place{}, points.count(), MakeKeys<Real>{points.view(), blocks_x_, keys_.data()});
+  sort_order(Place{}, keys_, order_);
+  points.reorder(order_, points.count() - gone);
+  measure_extents(points);
+  give_storage();
+  group_points(points.count());
+}
+
+template <class Real, class Place>
+void SparseGrid<Real, Place>::measure_extents(Particles<Real, Place>& points) {
+  for_each(Place{}, static_cast<int>(lowest_.size()), ForgetExtents{lowest_.data(), highest_.data()});
+  for_each(Place{}, points.count(), MeasureExtents<Real>{points.view(), shape_.columns, shape_.rows, blocks_x_, lowest_.data(),
+                                                         highest_.data()});
+}
+
+template <class Real, class Place>
+void SparseGrid<Real, Place>::give_storage() {
+  const int blocks = static_cast<int>(lowest_.size());
+  for_each(Place{}, blocks, CountNodes{lowest_.data(), highest_.data(), sizes_.data(), places_.data()});
+  nodes_ = exclusive_sum(Place{}, sizes_.data(), sizes_.data(), blocks);
+  active_ = exclusive_sum(Place{}, places_.data(), places_.data(), blocks);
+  for_each(Place{}, blocks, GiveStorage{lowest_.data(), highest_.data(), sizes_.data(), places_.data(), slots_.data(),
+                                        active_list_.data()});
+}
+
+template <class Real, class Place>
+void SparseGrid<Real, Place>::group_points(int count) {
+  if constexpr (!Place::is_gpu) {
+    for (auto& ranges : groups_.ranges) ranges.clear();
+    for (int begin = 0; begin < count;) {
+      const auto block = keys_.data()[begin] >> 32;
+      int end = begin + 1;
+      while (end < count && keys_.data()[end] >> 32 == block) ++end;
+      const auto width = static_cast<std::uint64_t>(blocks_x_);
+      const std::uint64_t colour = (block % width & 1) + 2 * (block / width & 1);
+      groups_.ranges[colour].emplace_back(begin, end);
+      begin = end;
+    }
+  }
+}
+
+template <class Real, class Place>
+std::size_t SparseGrid<Real, Place>::bytes() const {
+  return terrain_.bytes() + slope_x_.bytes() + slope_y_.bytes() + open_.bytes() + slots_.bytes() + lowest_.bytes() +
+         highest_.bytes() + sizes_.bytes() + places_.bytes() + active_list_.bytes() + order_.bytes() + keys_.bytes();
+}
+
+template class SparseGrid<float, OnCpu>;
+template class SparseGrid<double, OnCpu>;
+#if defined(__CUDACC__)
+template class SparseGrid<float, OnGpu>;
+template class SparseGrid<double, OnGpu>;
+#endif
+
+}  // namespace talus

@@ -1,0 +1,74 @@
+// Owner of the background grid: terrain, storage of the columns that hold material, points sorted by column block.
+#pragma once
+
+#include <vector>
+
+#include "solver/grid/background_grid.hpp"
+#include "solver/particles/particles.hpp"
+
+namespace talus {
+
+/// What the grid is made of, on the host.
+struct GridShape {
+  int columns = 0, rows = 0;
+  double spacing = 0, layer_height = 0;       // [m]
+  Mapping mapping = Mapping::terrain_following;
+  bool quadratic = true;
+  std::vector<double> terrain;                // ground at the nodes [m], NaN outside the domain; [rows * columns]
+};
+
+/// Terrain as the kernels use it, from a GridShape: coefficients, slopes at the nodes, where points may be.
+struct GroundTables {
+  double datum = 0;                           // lowest ground [m]; heights below are from here
+  std::vector<double> terrain, slope_x, slope_y;
+  std::vector<unsigned char> open;
+};
+GroundTables make_ground_tables(const GridShape& shape);
+
+/// Ground elevation at (xi, eta), in cells from node (0, 0), as the grid's own functions interpolate it [m above datum].
+double ground_at(const GridShape& shape, const GroundTables& ground, double xi, double eta);
+
+/// A point's sorting key: block in the high word, then column within the block, then layer.
+TALUS_HD std::uint64_t home_key(int block_columns_x, int i, int j, int k) {
+  const std::uint64_t block = static_cast<std::uint64_t>((j >> 2) * block_columns_x + (i >> 2));
+  const std::uint64_t inside = static_cast<std::uint64_t>(((j & 3) << 2) + (i & 3));
+  const std::uint64_t layer = static_cast<std::uint64_t>(k > 0xffffff ? 0xffffff : k);
+  return (block << 32) | (inside << 24) | layer;
+}
+
+template <class Real, class Place>
+class SparseGrid {
+ public:
+  explicit SparseGrid(const GridShape& shape);
+
+  /// Sort the points by home cell, drop those that left (the `gone` last ones after sorting), and give storage to every
+  /// column and layer they reach until they are a cell away from home.
+  void fit(Particles<Real, Place>& points, int gone);
+
+  GridView<Real> view() const;
+  const GroundTables& ground() const { return ground_; }
+  const GridShape& shape() const { return shape_; }
+  const std::uint64_t* home() const { return keys_.data(); }
+  const PointGroups& groups() const { return groups_; }
+  int nodes() const { return nodes_; }
+  int active_blocks() const { return active_; }
+  const int* active_list() const { return active_list_.data(); }
+  std::size_t bytes() const;
+
+ private:
+  void measure_extents(Particles<Real, Place>& points);
+  void give_storage();
+  void group_points(int count);
+
+  GridShape shape_;
+  GroundTables ground_;
+  int blocks_x_ = 0, blocks_y_ = 0, nodes_ = 0, active_ = 0;
+  Buffer<Real, Place> terrain_, slope_x_, slope_y_;
+  Buffer<unsigned char, Place> open_;
+  Buffer<BlockSlot, Place> slots_;
+  Buffer<int, Place> lowest_, highest_, sizes_, places_, active_list_, order_;
+  Buffer<std::uint64_t, Place> keys_;
+  PointGroups groups_;
+};
+
+}  // namespace talus

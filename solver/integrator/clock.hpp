@@ -1,0 +1,65 @@
+// Time, step and alarms, kept where the kernels run so that a batch of steps needs no word from the host.
+#pragma once
+
+#include <cstdint>
+
+#include "solver/parallel/atomics.hpp"
+
+namespace talus {
+
+/// Why a batch stopped before its last step.
+enum Halt : int {
+  running = 0,
+  at_event = 1,     // time has reached next_event
+  wants_sort = 2,   // a point has left its home cell's neighbourhood, or enough steps have passed
+  failed = 3        // a point's state is not a number
+};
+
+struct Clock {
+  double time = 0;                 // at the end of the step under way [s]
+  double step_size = 0;            // [s]
+  double next_event = 0;           // never stepped over [s]
+  double courant = 0;              // step_size = courant / rate
+  double largest_step = 0;         // upper bound of step_size [s]
+  double outflow_volume = 0;       // since the last sort [m3]
+  std::int64_t step = 0;
+  std::uint32_t rate_bits = 0;     // largest (wave speed + speed) over cell of any point, as float bits [1/s]
+  std::uint32_t speed_bits = 0;    // largest speed of any point [m/s]
+  int halt = running;              // read by kernels: do nothing when set
+  int request = running;           // set by kernels, becomes halt at the next step's begin
+  int steps_since_sort = 0;
+  int steps_between_sorts = 32;
+  int outflow_count = 0;           // since the last sort
+  int failed_point = -1;           // id of a point that failed
+
+  /// Opens the next step: settles its size, or halts. One thread.
+  TALUS_HD void begin_step() {
+    if (halt != running) return;
+    if (request == failed) {
+      halt = failed;
+    } else if (request != running || steps_since_sort >= steps_between_sorts) {
+      halt = wants_sort;
+    } else if (time >= next_event) {
+      halt = at_event;
+    }
+    if (halt != running) return;
+    const double rate = positive_from_bits(rate_bits);
+    double wanted = rate > 0 ? courant / rate : largest_step;
+    if (wanted > largest_step) wanted = largest_step;
+    const double remaining = next_event - time;
+    if (wanted >= remaining) {
+      step_size = remaining;
+      time = next_event;
+    } else {
+      // Two even steps rather than a full one and a sliver.
+      step_size = remaining < 2 * wanted ? 0.5 * remaining : wanted;
+      time += step_size;
+    }
+    rate_bits = 0;
+    speed_bits = 0;
+    ++step;
+    ++steps_since_sort;
+  }
+};
+
+}  // namespace talus

@@ -1,0 +1,69 @@
+// The explicit integrator behind one interface for both places and both precisions.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/stage/stage.hpp"
+#include "solver/integrator/clock.hpp"
+#include "solver/scene.hpp"
+
+namespace talus::solver {
+
+/// Running maxima on the map grid, [rows * columns] each.
+struct MapFields {
+  std::vector<double> peak_thickness, peak_speed, peak_pressure, arrival;  // [m], [m/s], [Pa], [s] (negative: never)
+};
+
+/// Sums over the points.
+struct Energies {
+  double kinetic = 0, potential = 0, elastic = 0;  // [J]; potential from the lowest ground
+  double volume = 0;                               // initial volume of the points present [m3]
+  Vec3<double> momentum;                           // [kg m/s]
+};
+
+/// State that a checkpoint keeps.
+struct SolverState {
+  ParticleState points;
+  Clock clock;
+  MapFields maps;
+};
+
+/// What a batch of steps ended with.
+struct BatchReport {
+  Clock clock;
+  bool sorted = false;              // the points have just been sorted: a checkpoint may be taken here
+  double outflow_volume = 0;        // left the domain in this batch [m3]
+  int outflow_count = 0;
+};
+
+class ExplicitSolver {
+ public:
+  virtual ~ExplicitSolver() = default;
+  /// Steps until the next event, the next sort or a failure, at most a batch.
+  virtual BatchReport advance() = 0;
+  /// Time not to step over [s].
+  virtual void set_next_event(double time) = 0;
+  virtual Clock clock() const = 0;
+  virtual SolverState state() const = 0;
+  virtual Energies energies() = 0;
+  /// Vertical thickness, initial volume over cell area, [rows * columns] [m]; its sum times the cell area is the volume of
+  /// the points to rounding.
+  virtual std::vector<double> thickness() = 0;
+  virtual const GroundTables& ground() const = 0;
+  virtual std::size_t bytes() const = 0;
+  virtual int particle_count() const = 0;
+};
+
+/// From a scene at the start. `on` must be cpu or gpu.
+std::unique_ptr<ExplicitSolver> make_explicit_solver(const Scene& scene, const SolveOptions& options, On on);
+
+/// From a checkpoint; the scene gives the grid only.
+std::unique_ptr<ExplicitSolver> resume_explicit_solver(const Scene& scene, const SolveOptions& options, On on,
+                                                       const SolverState& state);
+
+/// cpu or gpu for automatic; throws RecipeError when a GPU is asked for and there is none.
+On choose_place(On wanted);
+
+}  // namespace talus::solver

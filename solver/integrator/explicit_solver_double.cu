@@ -1,0 +1,8 @@
+// The explicit solver in double precision.
+#include "solver/integrator/explicit_solver_impl.hpp"
+
+namespace talus::solver {
+
+template std::unique_ptr<ExplicitSolver> make_solver_of<double>(const Scene&, const SolveOptions&, On, const SolverState&);
+
+}  // namespace talus::solver

@@ -1,0 +1,8 @@
+// The explicit solver in single precision.
+#include "solver/integrator/explicit_solver_impl.hpp"
+
+namespace talus::solver {
+
+template std::unique_ptr<ExplicitSolver> make_solver_of<float>(const Scene&, const SolveOptions&, On, const SolverState&);
+
+}  // namespace talus::solver

@@ -1,0 +1,76 @@
+// Kernels that measure the points: energies, and thickness on the map.
+#pragma once
+
+#include "solver/material/material.hpp"
+#include "solver/transfer/stencil.hpp"
+
+namespace talus::solver {
+
+/// One thread: one point. Its energies, volume and momentum into rows of `out` (kinetic, potential, elastic, volume, px, py, pz).
+template <class Real, class Shape>
+struct MeasureEnergies {
+  static constexpr int rows = 7;
+  GridView<Real> grid;
+  ParticleView<Real> points;
+  Material<Real> material;
+  Vec3<double> gravity;
+  bool dilatant;
+  double* out;
+
+  TALUS_HD void operator()(int p) const {
+    const double volume = static_cast<double>(points.volume[p]);
+    const double mass = volume * static_cast<double>(material.density);
+    const Vec3<Real> v = points.velocity_of(p);
+    const double vx = static_cast<double>(v.x), vy = static_cast<double>(v.y), vz = static_cast<double>(v.z);
+    const MaterialState<Real> state{points.elastic_of(p), points.log_volume[p],
+                                    dilatant ? points.plastic_log_volume[p] : Real(0)};
+    const double x = (points.cell_x[p] + static_cast<double>(points.offset_x[p])) * grid.spacing;
+    const double y = (points.cell_y[p] + static_cast<double>(points.offset_y[p])) * grid.spacing;
+    const double z = height(p);
+    const double values[rows] = {0.5 * mass * (vx * vx + vy * vy + vz * vz),
+                                 -mass * (gravity.x * x + gravity.y * y + gravity.z * z),
+                                 volume * static_cast<double>(elastic_energy(material, state)),
+                                 volume,
+                                 mass * vx,
+                                 mass * vy,
+                                 mass * vz};
+    for (int r = 0; r < rows; ++r) out[static_cast<std::size_t>(r) * static_cast<std::size_t>(points.count) + static_cast<std::size_t>(p)] = values[r];
+  }
+
+ private:
+  /// Above the lowest ground [m].
+  TALUS_HD double height(int p) const {
+    const double zeta = (points.cell_z[p] + static_cast<double>(points.offset_z[p])) * grid.layer_height;
+    if (grid.mapping == Mapping::cartesian) return zeta;
+    const Stencil<Real, Shape> s(grid, points, p);
+    double ground = 0;
+    for (int b = 0; b < Shape::width; ++b) {
+      for (int a = 0; a < Shape::width; ++a) {
+        ground += static_cast<double>(s.wx[a] * s.wy[b]) * static_cast<double>(grid.terrain[grid.column(s.i + a, s.j + b)]);
+      }
+    }
+    return zeta + ground;
+  }
+};
+
+/// One thread: one point. Its initial volume over the columns around it [m3]; weights in double, so that they sum to one.
+template <class Real, class Shape>
+struct ScatterThickness {
+  ParticleView<Real> points;
+  int columns;
+  double* volume;
+
+  TALUS_HD void operator()(int p) const {
+    if (points.cell_x[p] < 0) return;
+    double wx[3], wy[3], unused[3];
+    const int i = points.cell_x[p] + Shape::weigh(static_cast<double>(points.offset_x[p]), wx, unused);
+    const int j = points.cell_y[p] + Shape::weigh(static_cast<double>(points.offset_y[p]), wy, unused);
+    for (int b = 0; b < Shape::width; ++b) {
+      for (int a = 0; a < Shape::width; ++a) {
+        scatter_add(&volume[(j + b) * columns + i + a], wx[a] * wy[b] * static_cast<double>(points.volume[p]));
+      }
+    }
+  }
+};
+
+}  // namespace talus::solver

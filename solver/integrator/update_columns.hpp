@@ -1,0 +1,111 @@
+// The grid's part of an explicit step: new velocities from momentum, force and gravity, damping, the bed, and the maps.
+#pragma once
+
+#include "solver/contact/base_friction.hpp"
+#include "solver/grid/background_grid.hpp"
+#include "solver/integrator/clock.hpp"
+#include "solver/output/map_fields.hpp"
+
+namespace talus {
+
+/// What the nodes hold when a column is updated.
+enum class NodeContent {
+  impulse,  // momentum with the internal force's impulse in it
+  force,    // momentum and internal force apart
+  remapped  // momentum of the points' new velocities (MUSL): no forces, no friction, the ground alone
+};
+
+/// One thread: one column of a block, from its lowest to its highest stored layer. Mass stays, momentum becomes velocity.
+template <class Real, NodeContent content>
+struct UpdateColumns {
+  GridView<Real> grid;
+  const int* active;
+  const Clock* clock;
+  Vec4<Real>* nodes;
+  Vec4<Real>* forces;        // in: internal force; out: velocity change of the step (FLIP)
+  Vec3<Real> gravity;        // [m/s2]
+  BaseFriction<Real> friction;
+  Real damping;              // Cundall's local factor [-]
+  Real density;              // [kg/m3]
+  MapView maps;
+
+  TALUS_HD void operator()(int c) const {
+    if (clock->halt != running) return;
+    const int block = active[c / block_columns];
+    const int inside = c % block_columns;
+    const int i = (block % grid.block_columns_x) * block_side + (inside & 3);
+    const int j = (block / grid.block_columns_x) * block_side + (inside >> 2);
+    if (i >= grid.columns || j >= grid.rows) return;
+    const BlockSlot slot = grid.slots[block];
+    const int column = grid.column(i, j);
+    const int top_contact = contact_layer(column);
+    Real mass = 0;
+    Vec3<Real> momentum{};
+    for (int k = slot.first_layer; k < slot.first_layer + slot.layers; ++k) {
+      const int n = GridView<Real>::node(slot, i, j, k);
+      Vec4<Real>& node = nodes[n];
+      if (!(node.w > Real(0))) continue;
+      const Vec3<Real> v = update(n, node, k <= top_contact, column);
+      node.x = v.x;
+      node.y = v.y;
+      node.z = v.z;
+      mass += node.w;
+      momentum += v * node.w;
+    }
+    if constexpr (content != NodeContent::remapped) {
+      if (mass > Real(0)) record(column, static_cast<double>(mass), static_cast<double>(length(momentum)));
+    }
+  }
+
+ private:
+  /// Highest layer that touches the ground: the base layer, or on a Cartesian grid the last one not above the terrain.
+  TALUS_HD int contact_layer(int column) const {
+    if (grid.mapping == Mapping::terrain_following) return 0;
+    return static_cast<int>(floor(grid.terrain[column] / grid.layer_height + Real(1e-4)));
+  }
+
+  TALUS_HD Vec3<Real> update(int n, const Vec4<Real>& node, bool on_ground, int column) const {
+    const Real dt = Real(clock->step_size);
+    const Vec3<Real> before{node.x / node.w, node.y / node.w, node.z / node.w};
+    Vec3<Real> v = before;
+    if constexpr (content == NodeContent::impulse) v += gravity * dt;
+    if constexpr (content == NodeContent::force) {
+      const Vec4<Real> f = forces[n];
+      Vec3<Real> pull = Vec3<Real>{f.x, f.y, f.z} * (Real(1) / node.w) + gravity;
+      if (damping > Real(0)) {
+        pull = {damped(pull.x, before.x), damped(pull.y, before.y), damped(pull.z, before.z)};
+      }
+      v += pull * dt;
+    }
+    if (on_ground) {
+      BaseFriction<Real> law = friction;
+      if (content == NodeContent::remapped && law.law != FrictionLaw::stick) law.law = FrictionLaw::none;
+      v = meet_ground(law, v, grid.slope_x[column], grid.slope_y[column]);
+    }
+    if constexpr (content == NodeContent::force) {
+      const Vec3<Real> change = v - before;
+      forces[n] = {Real(0), change.x, change.y, change.z};
+    }
+    return v;
+  }
+
+  /// Local non-viscous damping (Cundall 1987): a share of the unbalanced force against the velocity.
+  TALUS_HD Real damped(Real pull, Real velocity) const {
+    if (velocity == Real(0)) return pull;
+    return pull - damping * (velocity > Real(0) ? fabs(pull) : -fabs(pull));
+  }
+
+  TALUS_HD void record(int column, double mass, double momentum) const {
+    const double thickness = mass / (static_cast<double>(density) * grid.spacing * grid.spacing);
+    if (thickness > maps.peak_thickness[column]) maps.peak_thickness[column] = thickness;
+    if (thickness < maps.threshold) return;
+    const double speed = momentum / mass;
+    if (speed > maps.peak_speed[column]) {
+      maps.peak_speed[column] = speed;
+      maps.peak_pressure[column] = static_cast<double>(density) * speed * speed;
+    }
+    if (maps.arrival[column] < 0) maps.arrival[column] = clock->time;
+  }
+};
+
+}  // namespace talus

@@ -1,0 +1,76 @@
+// talus-solve: domain.vdb -> run.h5.
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "common/stage/stage.hpp"
+#include "common/volume/domain.hpp"
+#include "solver/run.hpp"
+
+namespace {
+
+using namespace talus;
+using namespace talus::solver;
+
+const char* const examples =
+    "  talus-solve recipe.toml --out out/valley            # as the recipe says, on a GPU where there is one\n"
+    "  talus-solve recipe.toml --out out/valley --on cpu   # on the processor\n"
+    "  talus-solve recipe.toml --out out/valley --restart  # go on after Ctrl-C\n"
+    "  talus-solve recipe.toml --out out/valley --check    # say what would be done";
+
+Stage stage() {
+  Stage s;
+  s.name = "talus-solve";
+  s.table = "solve";
+  s.summary = "Simulate the slide in three dimensions with the material point method: domain.vdb -> run.h5.";
+  s.examples = examples;
+  s.has_on = true;
+  s.has_restart = true;
+  s.template_toml = [] { return recipe::to_toml(SolveOptions{}, "solve", true); };
+  return s;
+}
+
+/// One sentence on what will run: points, cells, first step.
+void log_plan(const Domain& domain, const SolveOptions& o, On on) {
+  const Scene scene = make_scene(domain, o);
+  const GroundTables ground = make_ground_tables(scene.grid);
+  const double wave_speed = make_material<double>(o.material).wave_speed;
+  const double step = std::min(o.courant / first_rate(scene.grid, ground, scene.points, wave_speed, 0), o.largest_step);
+  const double volume = std::accumulate(scene.points.volume.begin(), scene.points.volume.end(), 0.0);
+  log_info(fmt::format("{} material points, {:.0f} m3; grid {} x {} columns of {:g} m, layers of {:g} m", scene.points.size(),
+                       volume, scene.grid.columns, scene.grid.rows, scene.grid.spacing, scene.grid.layer_height));
+  log_info(fmt::format("wave speed {:.0f} m/s, first step {:.3g} s, about {:.0f} steps, on the {}", wave_speed, step,
+                       o.end_time / step, on == On::gpu ? "GPU" : "CPU"));
+}
+
+void solve(StageContext& context) {
+  const auto options = context.recipe.read<SolveOptions>("solve");
+  const On on = choose_place(context.on);
+  const auto domain_file = options.domain.empty() ? context.out / "domain.vdb" : options.domain;
+  const Domain domain = read_domain(domain_file);
+  log_plan(domain, options, on);
+  if (context.check_only) return;
+
+  const std::string settings = recipe::to_toml(options, "solve", false);
+  const std::string fingerprint = sha256(domain_file) + "\n" + settings;
+  const RunPaths paths(context.out);
+  ExplicitRun run(domain, options, on, paths, fingerprint);
+  if (context.restart) run.resume(context.restart->empty() ? paths.checkpoint : *context.restart);
+  const RunSummary summary = run.run(context.recipe.scene_name(), context.recipe.title());
+  log_info(fmt::format("{} at t = {:.2f} s after {} steps in {:.1f} s", summary.stop_reason, summary.time_end, summary.steps,
+                       summary.wall_time));
+  context.results.push_back(paths.run);
+  write_used_recipe(context, stage(), settings, {context.recipe.file(), domain_file},
+                    {{"on", summary.on},
+                     {"wall_time_s", fmt::format("{:.3f}", summary.wall_time)},
+                     {"steps", fmt::format("{}", summary.steps)},
+                     {"stop_reason", summary.stop_reason}});
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Stage s = stage();
+  s.run = solve;
+  return run_stage(argc, argv, s);
+}

@@ -1,0 +1,74 @@
+// Logarithmic (Hencky) strain: to and from the left Cauchy-Green tensor's deviation B = b - I, and its update over a step.
+#pragma once
+
+#include "solver/parallel/math.hpp"
+
+namespace talus {
+
+/// Below this size of the largest component the series converge to rounding of what they are used for (relative 1e-9).
+template <class Real>
+TALUS_HD bool is_small(const Sym3<Real>& s, Real limit) {
+  return fabs(s.xx) < limit && fabs(s.yy) < limit && fabs(s.zz) < limit && fabs(s.xy) < limit && fabs(s.yz) < limit &&
+         fabs(s.xz) < limit;
+}
+
+/// exp(2 strain) - I, without cancellation for small strain.
+template <class Real>
+TALUS_HD Sym3<Real> stretch_deviation(const Sym3<Real>& strain) {
+  if (is_small(strain, Real(0.005))) {
+    const Sym3<Real> a = strain * Real(2);
+    const Sym3<Real> a2 = commuting_product(a, a), a3 = commuting_product(a2, a), a4 = commuting_product(a2, a2);
+    const Sym3<Real> a5 = commuting_product(a4, a);
+    return a + a2 * Real(1.0 / 2) + a3 * Real(1.0 / 6) + a4 * Real(1.0 / 24) + a5 * Real(1.0 / 120);
+  }
+  Real values[3];
+  Mat3<Real> directions;
+  eigen_symmetric(strain, values, directions);
+  for (Real& value : values) value = expm1(Real(2) * value);
+  return compose(values, directions);
+}
+
+/// ln(I + deviation) / 2.
+template <class Real>
+TALUS_HD Sym3<Real> hencky_strain(const Sym3<Real>& deviation) {
+  if (is_small(deviation, Real(0.01))) {
+    const Sym3<Real>& b = deviation;
+    const Sym3<Real> b2 = commuting_product(b, b), b3 = commuting_product(b2, b), b4 = commuting_product(b2, b2);
+    const Sym3<Real> b5 = commuting_product(b4, b);
+    return b * Real(0.5) + b2 * Real(-1.0 / 4) + b3 * Real(1.0 / 6) + b4 * Real(-1.0 / 8) + b5 * Real(1.0 / 10);
+  }
+  Real values[3];
+  Mat3<Real> directions;
+  eigen_symmetric(deviation, values, directions);
+  for (Real& value : values) value = Real(0.5) * log1p(value);
+  return compose(values, directions);
+}
+
+/// Strain after the displacement gradient `g` of the step: b' = (I + g) b (I + g)^T, written for deviations so that single
+/// precision keeps strains of 1e-6 (Simo 1992, trial state).
+template <class Real>
+TALUS_HD Sym3<Real> advance_strain(const Sym3<Real>& strain, const Mat3<Real>& g) {
+  const Sym3<Real> d = stretch_deviation(strain);
+  // h = g + g d, then b' - I = d + h + h^T + g (I + d) g^T
+  const Vec3<Real> ga = g.a, gb = g.b, gc = g.c;  // columns of g
+  const Vec3<Real> ha = ga + g * Vec3<Real>{d.xx, d.xy, d.xz};
+  const Vec3<Real> hb = gb + g * Vec3<Real>{d.xy, d.yy, d.yz};
+  const Vec3<Real> hc = gc + g * Vec3<Real>{d.xz, d.yz, d.zz};
+  Sym3<Real> out;
+  out.xx = d.xx + Real(2) * ha.x + ha.x * ga.x + hb.x * gb.x + hc.x * gc.x;
+  out.yy = d.yy + Real(2) * hb.y + ha.y * ga.y + hb.y * gb.y + hc.y * gc.y;
+  out.zz = d.zz + Real(2) * hc.z + ha.z * ga.z + hb.z * gb.z + hc.z * gc.z;
+  out.xy = d.xy + ha.y + hb.x + ha.x * ga.y + hb.x * gb.y + hc.x * gc.y;
+  out.yz = d.yz + hb.z + hc.y + ha.y * ga.z + hb.y * gb.z + hc.y * gc.z;
+  out.xz = d.xz + ha.z + hc.x + ha.x * ga.z + hb.x * gb.z + hc.x * gc.z;
+  return hencky_strain(out);
+}
+
+/// ln det(I + g), exact for small g.
+template <class Real>
+TALUS_HD Real log_volume_change(const Mat3<Real>& g) {
+  const Real minors = g.a.x * g.b.y - g.b.x * g.a.y + g.a.x * g.c.z - g.c.x * g.a.z + g.b.y * g.c.z - g.c.y * g.b.z;
+  return log1p(g.a.x + g.b.y + g.c.z + minors + determinant(g));
+}
+
+}  // namespace talus

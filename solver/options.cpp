@@ -1,0 +1,157 @@
+#include "solver/options.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+namespace talus::solver {
+namespace {
+
+constexpr double radians_per_degree = std::numbers::pi / 180;
+
+struct ConeFit {
+  double slope, cohesion;  // sqrt(J2) = slope p + cohesion
+};
+
+ConeFit fit_cone(Cone cone, double angle, double cohesion) {
+  const double s = std::sin(angle), c = std::cos(angle), t = std::tan(angle);
+  switch (cone) {
+    case Cone::compression:
+      return {6 * s / (std::sqrt(3.0) * (3 - s)), 6 * cohesion * c / (std::sqrt(3.0) * (3 - s))};
+    case Cone::extension:
+      return {6 * s / (std::sqrt(3.0) * (3 + s)), 6 * cohesion * c / (std::sqrt(3.0) * (3 + s))};
+    default:
+      return {3 * t / std::sqrt(9 + 12 * t * t), 3 * cohesion / std::sqrt(9 + 12 * t * t)};
+  }
+}
+
+}  // namespace
+
+void MaterialOptions::describe(recipe::Visitor& v) {
+  using recipe::Range;
+  recipe::choice(v, "model", model,
+                 {{"drucker-prager", MaterialModel::drucker_prager},
+                  {"hencky", MaterialModel::hencky},
+                  {"linear-elastic", MaterialModel::linear_elastic}},
+                 "constitutive law");
+  v.number("density_kg_m3", density, recipe::positive, "bulk density of the released mass");
+  v.number("youngs_modulus_Pa", youngs_modulus, recipe::positive, "stiffness; sets the step size, see docs/user-guide.md");
+  v.number("poisson_ratio", poisson_ratio, Range{-1, 0.5, true, true}, "Poisson's ratio");
+  v.number("friction_angle_deg", friction_angle, Range{0, 90, false, true}, "internal friction angle");
+  v.number("cohesion_Pa", cohesion, recipe::not_negative, "cohesion");
+  v.number("dilatancy_angle_deg", dilatancy_angle, Range{0, 90, false, true}, "dilatancy angle");
+  v.number("tension_cutoff_Pa", tension_cutoff, recipe::not_negative, "largest mean tension carried");
+  recipe::choice(v, "cone", cone,
+                 {{"compression", Cone::compression}, {"extension", Cone::extension}, {"plane-strain", Cone::plane_strain}},
+                 "how the cone meets Mohr-Coulomb");
+}
+
+void BaseOptions::describe(recipe::Visitor& v) {
+  recipe::choice(v, "law", law,
+                 {{"coulomb", FrictionLaw::coulomb},
+                  {"velocity-weakening", FrictionLaw::velocity_weakening},
+                  {"none", FrictionLaw::none},
+                  {"stick", FrictionLaw::stick}},
+                 "friction between the mass and its bed");
+  v.number("friction_angle_deg", friction_angle, recipe::Range{0, 90, false, true}, "coulomb: friction angle of the bed");
+  v.number("peak_coefficient", peak_coefficient, recipe::not_negative, "velocity-weakening: coefficient at rest");
+  v.number("steady_coefficient", steady_coefficient, recipe::not_negative, "velocity-weakening: coefficient at high speed");
+  v.number("characteristic_speed_m_s", characteristic_speed, recipe::positive, "velocity-weakening: speed of half the drop");
+}
+
+void SolveOptions::describe(recipe::Visitor& v) {
+  v.path("domain", domain, "domain of talus-preprocess; empty: domain.vdb in the output folder");
+  v.number("end_time_s", end_time, recipe::positive, "simulated time");
+  v.number("stop_kinetic_fraction", stop_kinetic_fraction, recipe::Range{0, 1, false, true},
+           "stop once the kinetic energy falls below this part of its peak; 0: run to the end");
+  recipe::choice(v, "precision", precision, {{"double", Precision::double_}, {"single", Precision::single_}},
+                 "numbers the state is kept in");
+  recipe::choice(v, "mapping", mapping,
+                 {{"terrain-following", Mapping::terrain_following}, {"cartesian", Mapping::cartesian}},
+                 "background grid: layers follow the ground, or lie level");
+  recipe::choice(v, "shape", shape, {{"quadratic", ShapeKind::quadratic}, {"linear", ShapeKind::linear}},
+                 "shape functions of the grid");
+  recipe::choice(v, "transfer", transfer, {{"apic", Transfer::apic}, {"flip", Transfer::flip}},
+                 "how velocity passes between points and grid");
+  v.number("flip_fraction", flip_fraction, recipe::fraction, "flip: share of FLIP, the rest is PIC");
+  recipe::choice(v, "stress_update", stress_update, {{"usl", StressUpdate::last}, {"musl", StressUpdate::modified}},
+                 "stress from the grid's new velocity (usl), or from the points' mapped back (musl)");
+  v.number("damping", damping, recipe::Range{0, 1, false, true}, "local non-viscous damping factor (Cundall)");
+  v.number("cfl", courant, recipe::Range{0, 0.8, true, false}, "step size over the CFL step");
+  v.number("largest_step_s", largest_step, recipe::positive, "upper bound of the step size");
+  v.numbers("gravity_m_s2", gravity, recipe::any, "gravity: east, north, up");
+  v.numbers("initial_velocity_m_s", initial_velocity, recipe::any, "velocity of the whole mass at the start: east, north, up");
+  v.number("frame_interval_s", frame_interval, recipe::positive, "time between frames");
+  v.number("history_interval_s", history_interval, recipe::positive, "time between records of energy and mass");
+  v.number("checkpoint_interval_s", checkpoint_interval, recipe::not_negative,
+           "simulated time between checkpoints; 0: only when interrupted");
+  v.number("map_threshold_m", map_threshold, recipe::positive, "thickness from which speed, pressure and arrival count");
+  v.flag("point_frames", point_frames, "write the material points of each frame into run.h5");
+  v.flag("vdb_frames", vdb_frames, "write the material points of each frame as frames/*.vdb as well");
+  v.enter("material", "the sliding mass");
+  material.describe(v);
+  v.leave();
+  v.enter("base", "the bed under it");
+  base.describe(v);
+  v.leave();
+}
+
+void SolveOptions::check(std::vector<Fault>& faults) const {
+  const auto three = [&](const char* key, const std::vector<double>& values) {
+    if (values.size() == 3) return;
+    faults.push_back({fmt::format("[solve] {} has {} numbers", key, values.size()), "it is a vector: east, north, up",
+                      fmt::format("Give three: {} = [0.0, 0.0, 0.0]", key)});
+  };
+  three("gravity_m_s2", gravity);
+  three("initial_velocity_m_s", initial_velocity);
+  if (material.dilatancy_angle > material.friction_angle) {
+    faults.push_back({fmt::format("[solve.material] dilatancy_angle_deg = {} is above friction_angle_deg = {}",
+                                  material.dilatancy_angle, material.friction_angle),
+                      "the material would make energy as it shears", "Lower dilatancy_angle_deg; 0 is usual for run-out"});
+  }
+  if (base.law == FrictionLaw::velocity_weakening && base.peak_coefficient < base.steady_coefficient) {
+    faults.push_back({fmt::format("[solve.base] peak_coefficient = {} is below steady_coefficient = {}",
+                                  base.peak_coefficient, base.steady_coefficient),
+                      "friction would grow with speed", "Swap the two"});
+  }
+}
+
+template <class Real>
+Material<Real> make_material(const MaterialOptions& o) {
+  const double shear = o.youngs_modulus / (2 * (1 + o.poisson_ratio));
+  const double bulk = o.youngs_modulus / (3 * (1 - 2 * o.poisson_ratio));
+  const ConeFit cone = fit_cone(o.cone, o.friction_angle * radians_per_degree, o.cohesion);
+  const ConeFit flow = fit_cone(o.cone, o.dilatancy_angle * radians_per_degree, 0);
+  // The cone's own tip bounds the tension; a frictionless cone has none.
+  const double tip = cone.slope > 0 ? cone.cohesion / cone.slope : o.tension_cutoff;
+  Material<Real> m;
+  m.model = o.model;
+  m.density = static_cast<Real>(o.density);
+  m.shear_modulus = static_cast<Real>(shear);
+  m.bulk_modulus = static_cast<Real>(bulk);
+  m.wave_speed = static_cast<Real>(std::sqrt((bulk + 4 * shear / 3) / o.density));
+  m.friction = static_cast<Real>(cone.slope);
+  m.dilatancy = static_cast<Real>(flow.slope);
+  m.shear_cohesion = static_cast<Real>(cone.cohesion);
+  m.tension = static_cast<Real>(std::min(tip, o.tension_cutoff));
+  return m;
+}
+
+template <class Real>
+BaseFriction<Real> make_base_friction(const BaseOptions& o) {
+  BaseFriction<Real> f;
+  f.law = o.law;
+  f.coefficient = static_cast<Real>(o.law == FrictionLaw::coulomb ? std::tan(o.friction_angle * radians_per_degree)
+                                                                  : o.steady_coefficient);
+  f.peak = static_cast<Real>(o.peak_coefficient);
+  f.characteristic_speed = static_cast<Real>(o.characteristic_speed);
+  return f;
+}
+
+template Material<float> make_material(const MaterialOptions&);
+template Material<double> make_material(const MaterialOptions&);
+template BaseFriction<float> make_base_friction(const BaseOptions&);
+template BaseFriction<double> make_base_friction(const BaseOptions&);
+
+}  // namespace talus::solver

@@ -1,0 +1,77 @@
+// What a recipe's [solve] table says. Every key, its default and its help stand in describe() and nowhere else.
+#pragma once
+
+#include <vector>
+
+#include "common/recipe/recipe.hpp"
+#include "solver/contact/base_friction.hpp"
+#include "solver/grid/background_grid.hpp"
+#include "solver/material/material.hpp"
+
+namespace talus::solver {
+
+enum class Precision { single_, double_ };
+enum class ShapeKind { linear, quadratic };
+enum class Transfer { apic, flip };
+enum class StressUpdate { last, modified };  // USL, MUSL
+enum class Cone { compression, extension, plane_strain };
+
+struct MaterialOptions {
+  MaterialModel model = MaterialModel::drucker_prager;
+  double density = 2000;             // [kg/m3]
+  double youngs_modulus = 1e7;       // [Pa]
+  double poisson_ratio = 0.25;       // [-]
+  double friction_angle = 30;        // [deg]
+  double cohesion = 0;               // [Pa]
+  double dilatancy_angle = 0;        // [deg]
+  double tension_cutoff = 0;         // [Pa]
+  Cone cone = Cone::compression;
+  void describe(recipe::Visitor& v);
+};
+
+struct BaseOptions {
+  FrictionLaw law = FrictionLaw::coulomb;
+  double friction_angle = 20;        // [deg]
+  double peak_coefficient = 0.7;
+  double steady_coefficient = 0.23;
+  double characteristic_speed = 1;   // [m/s]
+  void describe(recipe::Visitor& v);
+};
+
+struct SolveOptions {
+  std::filesystem::path domain;      // empty: OUT/domain.vdb
+  double end_time = 60;              // [s]
+  double stop_kinetic_fraction = 0;  // of its peak; 0: never
+  Precision precision = Precision::double_;
+  Mapping mapping = Mapping::terrain_following;
+  ShapeKind shape = ShapeKind::quadratic;
+  Transfer transfer = Transfer::apic;
+  double flip_fraction = 0.99;
+  StressUpdate stress_update = StressUpdate::last;
+  double damping = 0;                // Cundall's local factor
+  double courant = 0.5;
+  double largest_step = 1;           // [s]
+  std::vector<double> gravity = {0, 0, -9.81};          // [m/s2]
+  std::vector<double> initial_velocity = {0, 0, 0};     // [m/s]
+  double frame_interval = 10;        // [s]
+  double history_interval = 0.5;     // [s]
+  double checkpoint_interval = 0;    // simulated [s]; 0: only when interrupted
+  double map_threshold = 0.1;        // [m]
+  bool point_frames = true;
+  bool vdb_frames = false;
+  MaterialOptions material;
+  BaseOptions base;
+
+  void describe(recipe::Visitor& v);
+  void check(std::vector<Fault>& faults) const;
+};
+
+/// Moduli, wave speed and cone from a recipe's words. Cone fitted to Mohr-Coulomb in triaxial compression or extension, or
+/// plane strain (Drucker & Prager 1952; Chen & Mizuno 1990, table 4.1).
+template <class Real>
+Material<Real> make_material(const MaterialOptions& options);
+
+template <class Real>
+BaseFriction<Real> make_base_friction(const BaseOptions& options);
+
+}  // namespace talus::solver

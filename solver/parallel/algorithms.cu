@@ -1,0 +1,48 @@
+#include <stdexcept>
+
+#include "solver/parallel/algorithms.hpp"
+
+#if defined(__CUDACC__)
+#include <thrust/device_ptr.h>
+#include <thrust/execution_policy.h>
+#include <thrust/reduce.h>
+#include <thrust/scan.h>
+#include <thrust/sequence.h>
+#include <thrust/sort.h>
+
+namespace talus {
+
+void sort_order(OnGpu, Buffer<std::uint64_t, OnGpu>& keys, Buffer<int, OnGpu>& order) {
+  order.resize(keys.size());
+  const thrust::device_ptr<std::uint64_t> k(keys.data());
+  const thrust::device_ptr<int> o(order.data());
+  thrust::sequence(thrust::device, o, o + static_cast<std::ptrdiff_t>(order.size()));
+  thrust::stable_sort_by_key(thrust::device, k, k + static_cast<std::ptrdiff_t>(keys.size()), o);
+}
+
+int exclusive_sum(OnGpu, const int* values, int* sums, int count) {
+  if (count == 0) return 0;
+  int last_value = 0, last_sum = 0;
+  detail::gpu_download(&last_value, values + count - 1, sizeof(int));
+  thrust::exclusive_scan(thrust::device, thrust::device_ptr<const int>(values),
+                         thrust::device_ptr<const int>(values) + count, thrust::device_ptr<int>(sums));
+  detail::gpu_download(&last_sum, sums + count - 1, sizeof(int));
+  return last_value + last_sum;
+}
+
+double sum(OnGpu, const double* values, int count) {
+  const thrust::device_ptr<const double> v(values);
+  return thrust::reduce(thrust::device, v, v + count, 0.0);
+}
+
+}  // namespace talus
+
+#else
+
+namespace talus {
+void sort_order(OnGpu, Buffer<std::uint64_t, OnGpu>&, Buffer<int, OnGpu>&) { throw std::logic_error("no CUDA"); }
+int exclusive_sum(OnGpu, const int*, int*, int) { throw std::logic_error("no CUDA"); }
+double sum(OnGpu, const double*, int) { throw std::logic_error("no CUDA"); }
+}  // namespace talus
+
+#endif

@@ -1,0 +1,35 @@
+#include <tbb/parallel_sort.h>
+
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "solver/parallel/algorithms.hpp"
+
+namespace talus {
+
+void sort_order(OnCpu, Buffer<std::uint64_t, OnCpu>& keys, Buffer<int, OnCpu>& order) {
+  const int count = static_cast<int>(keys.size());
+  order.resize(keys.size());
+  std::vector<std::pair<std::uint64_t, int>> pairs(keys.size());
+  for (int i = 0; i < count; ++i) pairs[static_cast<std::size_t>(i)] = {keys.data()[i], i};
+  tbb::parallel_sort(pairs);  // the index makes every pair distinct, so the order is that of a stable sort
+  for (int i = 0; i < count; ++i) {
+    keys.data()[i] = pairs[static_cast<std::size_t>(i)].first;
+    order.data()[i] = pairs[static_cast<std::size_t>(i)].second;
+  }
+}
+
+int exclusive_sum(OnCpu, const int* values, int* sums, int count) {
+  int total = 0;
+  for (int i = 0; i < count; ++i) {
+    const int value = values[i];
+    sums[i] = total;
+    total += value;
+  }
+  return total;
+}
+
+double sum(OnCpu, const double* values, int count) { return std::accumulate(values, values + count, 0.0); }
+
+}  // namespace talus

@@ -1,0 +1,88 @@
+// Atomic updates of one memory location from many threads, in either place.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <cstring>
+
+#include "solver/parallel/macros.hpp"
+
+namespace talus {
+
+/// Largest of the values seen, for floats >= 0: their bit patterns order as the numbers do.
+TALUS_HD void atomic_max_positive(std::uint32_t* bits, float value) {
+#if defined(__CUDA_ARCH__)
+  const std::uint32_t mine = __float_as_uint(value);
+  if (mine > *bits) atomicMax(bits, mine);  // the read spares nearly all atomics
+#else
+  std::uint32_t mine;
+  std::memcpy(&mine, &value, sizeof mine);
+  std::atomic_ref<std::uint32_t> target(*bits);
+  std::uint32_t seen = target.load(std::memory_order_relaxed);
+  while (mine > seen && !target.compare_exchange_weak(seen, mine, std::memory_order_relaxed)) {
+  }
+#endif
+}
+
+TALUS_HD float positive_from_bits(std::uint32_t bits) {
+#if defined(__CUDA_ARCH__)
+  return __uint_as_float(bits);
+#else
+  float value;
+  std::memcpy(&value, &bits, sizeof value);
+  return value;
+#endif
+}
+
+TALUS_HD void atomic_min(int* target, int value) {
+#if defined(__CUDA_ARCH__)
+  if (value < *target) atomicMin(target, value);
+#else
+  std::atomic_ref<int> a(*target);
+  int seen = a.load(std::memory_order_relaxed);
+  while (value < seen && !a.compare_exchange_weak(seen, value, std::memory_order_relaxed)) {
+  }
+#endif
+}
+
+TALUS_HD void atomic_max(int* target, int value) {
+#if defined(__CUDA_ARCH__)
+  if (value > *target) atomicMax(target, value);
+#else
+  std::atomic_ref<int> a(*target);
+  int seen = a.load(std::memory_order_relaxed);
+  while (value > seen && !a.compare_exchange_weak(seen, value, std::memory_order_relaxed)) {
+  }
+#endif
+}
+
+TALUS_HD void atomic_add(double* target, double value) {
+#if defined(__CUDA_ARCH__)
+  atomicAdd(target, value);
+#else
+  std::atomic_ref<double> a(*target);
+  a.fetch_add(value, std::memory_order_relaxed);
+#endif
+}
+
+/// Plain store of a flag that several threads may set to the same meaning.
+TALUS_HD void raise_flag(int* flag, int value) {
+#if defined(__CUDA_ARCH__)
+  atomicExch(flag, value);
+#else
+  std::atomic_ref<int>(*flag).store(value, std::memory_order_relaxed);
+#endif
+}
+
+/// Adding to a grid node while points are scattered. On the CPU the scatter runs by colours of column blocks that share no
+/// node (for_each_grouped), so a plain sum is enough and its order is always the same; on the GPU the sum is atomic.
+template <class Real>
+TALUS_HD void scatter_add(Real* target, Real value) {
+#if defined(__CUDA_ARCH__)
+  atomicAdd(target, value);
+#else
+  *target += value;
+#endif
+}
+
+}  // namespace talus

@@ -1,0 +1,94 @@
+// Device memory and error handling. Without a CUDA compiler this file says that there is no GPU.
+#include <stdexcept>
+#include <string>
+
+#include "common/error.hpp"
+#include "solver/parallel/place.hpp"
+
+#if defined(__CUDACC__)
+#include <cuda_runtime.h>
+
+namespace talus {
+namespace {
+
+void check(cudaError_t code, const char* what) {
+  if (code == cudaSuccess) return;
+  if (code == cudaErrorMemoryAllocation) {
+    throw NumericalError({std::string("GPU memory: ") + what + " failed", "the scene does not fit on this device",
+                          "Use precision = \"single\", fewer points_per_cell, a larger spacing_m, or --on cpu"});
+  }
+  throw std::runtime_error(std::string("CUDA: ") + what + ": " + cudaGetErrorString(code));
+}
+
+__global__ void probe() {}
+
+}  // namespace
+
+bool gpu_available() {
+  static const bool available = [] {
+    int count = 0;
+    if (cudaGetDeviceCount(&count) != cudaSuccess || count == 0) {
+      (void)cudaGetLastError();
+      return false;
+    }
+    cudaFuncAttributes attributes;  // fails on a device older than every compiled architecture
+    const bool loads = cudaFuncGetAttributes(&attributes, probe) == cudaSuccess;
+    (void)cudaGetLastError();
+    return loads;
+  }();
+  return available;
+}
+
+std::string gpu_name() {
+  cudaDeviceProp properties;
+  if (!gpu_available() || cudaGetDeviceProperties(&properties, 0) != cudaSuccess) return {};
+  return properties.name;
+}
+
+namespace detail {
+
+void* gpu_allocate(std::size_t bytes) {
+  void* memory = nullptr;
+  check(cudaMalloc(&memory, bytes), "cudaMalloc");
+  return memory;
+}
+void gpu_free(void* memory) { (void)cudaFree(memory); }
+void gpu_upload(void* device, const void* host, std::size_t bytes) {
+  check(cudaMemcpy(device, host, bytes, cudaMemcpyHostToDevice), "upload");
+}
+void gpu_download(void* host, const void* device, std::size_t bytes) {
+  check(cudaMemcpy(host, device, bytes, cudaMemcpyDeviceToHost), "download");
+}
+void gpu_copy(void* to, const void* from, std::size_t bytes) {
+  check(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToDevice), "copy");
+}
+void gpu_fill_zero(void* device, std::size_t bytes) { check(cudaMemsetAsync(device, 0, bytes), "fill"); }
+void gpu_synchronise() { check(cudaDeviceSynchronize(), "kernel"); }
+void gpu_check_launch(const char* where) { check(cudaGetLastError(), where); }
+
+}  // namespace detail
+}  // namespace talus
+
+#else
+
+namespace talus {
+
+bool gpu_available() { return false; }
+std::string gpu_name() { return {}; }
+
+namespace detail {
+namespace {
+[[noreturn]] void absent() { throw std::logic_error("this binary was built without CUDA"); }
+}  // namespace
+void* gpu_allocate(std::size_t) { absent(); }
+void gpu_free(void*) {}
+void gpu_upload(void*, const void*, std::size_t) { absent(); }
+void gpu_download(void*, const void*, std::size_t) { absent(); }
+void gpu_copy(void*, const void*, std::size_t) { absent(); }
+void gpu_fill_zero(void*, std::size_t) { absent(); }
+void gpu_synchronise() {}
+void gpu_check_launch(const char*) {}
+}  // namespace detail
+}  // namespace talus
+
+#endif

@@ -1,0 +1,133 @@
+// Vectors and matrices of three, small enough to live in registers; the same in both places.
+#pragma once
+
+#include <cmath>
+
+#include "solver/parallel/macros.hpp"
+
+namespace talus {
+
+template <class Real>
+struct Vec3 {
+  Real x{}, y{}, z{};
+  TALUS_HD Vec3 operator+(const Vec3& o) const { return {x + o.x, y + o.y, z + o.z}; }
+  TALUS_HD Vec3 operator-(const Vec3& o) const { return {x - o.x, y - o.y, z - o.z}; }
+  TALUS_HD Vec3 operator*(Real s) const { return {x * s, y * s, z * s}; }
+  TALUS_HD Vec3& operator+=(const Vec3& o) {
+    x += o.x;
+    y += o.y;
+    z += o.z;
+    return *this;
+  }
+};
+
+template <class Real>
+TALUS_HD Real dot(const Vec3<Real>& a, const Vec3<Real>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <class Real>
+TALUS_HD Real length(const Vec3<Real>& a) {
+  return sqrt(dot(a, a));
+}
+
+/// Four numbers loaded and stored at once: a node's mass and momentum.
+template <class Real>
+struct alignas(4 * sizeof(Real)) Vec4 {
+  Real w{}, x{}, y{}, z{};
+};
+
+/// Full matrix; columns are vectors, so that column b of a gradient is the derivative along b.
+template <class Real>
+struct Mat3 {
+  Vec3<Real> a, b, c;
+  TALUS_HD Vec3<Real> operator*(const Vec3<Real>& v) const { return a * v.x + b * v.y + c * v.z; }
+};
+
+template <class Real>
+TALUS_HD Real determinant(const Mat3<Real>& m) {
+  return m.a.x * (m.b.y * m.c.z - m.b.z * m.c.y) - m.b.x * (m.a.y * m.c.z - m.a.z * m.c.y) +
+         m.c.x * (m.a.y * m.b.z - m.a.z * m.b.y);
+}
+
+/// Symmetric matrix.
+template <class Real>
+struct Sym3 {
+  Real xx{}, yy{}, zz{}, xy{}, yz{}, xz{};
+  TALUS_HD Sym3 operator+(const Sym3& o) const {
+    return {xx + o.xx, yy + o.yy, zz + o.zz, xy + o.xy, yz + o.yz, xz + o.xz};
+  }
+  TALUS_HD Sym3 operator*(Real s) const { return {xx * s, yy * s, zz * s, xy * s, yz * s, xz * s}; }
+  TALUS_HD Sym3 plus_identity(Real s) const { return {xx + s, yy + s, zz + s, xy, yz, xz}; }
+  TALUS_HD Vec3<Real> operator*(const Vec3<Real>& v) const {
+    return {xx * v.x + xy * v.y + xz * v.z, xy * v.x + yy * v.y + yz * v.z, xz * v.x + yz * v.y + zz * v.z};
+  }
+};
+
+template <class Real>
+TALUS_HD Real trace(const Sym3<Real>& s) {
+  return s.xx + s.yy + s.zz;
+}
+template <class Real>
+TALUS_HD Sym3<Real> deviator(const Sym3<Real>& s) {
+  return s.plus_identity(-trace(s) / Real(3));
+}
+/// s : s
+template <class Real>
+TALUS_HD Real norm_squared(const Sym3<Real>& s) {
+  return s.xx * s.xx + s.yy * s.yy + s.zz * s.zz + Real(2) * (s.xy * s.xy + s.yz * s.yz + s.xz * s.xz);
+}
+/// Product of two symmetric matrices that commute (powers of one matrix), which is symmetric.
+template <class Real>
+TALUS_HD Sym3<Real> commuting_product(const Sym3<Real>& s, const Sym3<Real>& t) {
+  return {s.xx * t.xx + s.xy * t.xy + s.xz * t.xz, s.xy * t.xy + s.yy * t.yy + s.yz * t.yz,
+          s.xz * t.xz + s.yz * t.yz + s.zz * t.zz, s.xx * t.xy + s.xy * t.yy + s.xz * t.yz,
+          s.xy * t.xz + s.yy * t.yz + s.yz * t.zz, s.xx * t.xz + s.xy * t.yz + s.xz * t.zz};
+}
+
+/// Eigenvalues of s, and its eigenvectors as the columns of `vectors`, by cyclic Jacobi rotations: slow, but accurate for
+/// nearly equal eigenvalues too (Golub & Van Loan 2013, section 8.5).
+template <class Real>
+TALUS_HD void eigen_symmetric(const Sym3<Real>& s, Real values[3], Mat3<Real>& vectors) {
+  Real m[3][3] = {{s.xx, s.xy, s.xz}, {s.xy, s.yy, s.yz}, {s.xz, s.yz, s.zz}};
+  Real v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (int sweep = 0; sweep < 12; ++sweep) {
+    const Real off = m[0][1] * m[0][1] + m[0][2] * m[0][2] + m[1][2] * m[1][2];
+    const Real all = m[0][0] * m[0][0] + m[1][1] * m[1][1] + m[2][2] * m[2][2];
+    if (off <= all * Real(sizeof(Real) == 8 ? 1e-33 : 1e-15) || off == Real(0)) break;
+    for (int p = 0; p < 2; ++p) {
+      for (int q = p + 1; q < 3; ++q) {
+        if (m[p][q] == Real(0)) continue;
+        const Real theta = (m[q][q] - m[p][p]) / (Real(2) * m[p][q]);
+        const Real t = (theta >= 0 ? Real(1) : Real(-1)) / (fabs(theta) + sqrt(theta * theta + Real(1)));
+        const Real c = Real(1) / sqrt(t * t + Real(1));
+        const Real sn = t * c;
+        for (int k = 0; k < 3; ++k) {
+          const Real kp = m[k][p], kq = m[k][q];
+          m[k][p] = c * kp - sn * kq;
+          m[k][q] = sn * kp + c * kq;
+        }
+        for (int k = 0; k < 3; ++k) {
+          const Real pk = m[p][k], qk = m[q][k];
+          m[p][k] = c * pk - sn * qk;
+          m[q][k] = sn * pk + c * qk;
+          const Real vp = v[k][p], vq = v[k][q];
+          v[k][p] = c * vp - sn * vq;
+          v[k][q] = sn * vp + c * vq;
+        }
+      }
+    }
+  }
+  for (int k = 0; k < 3; ++k) values[k] = m[k][k];
+  vectors = {{v[0][0], v[1][0], v[2][0]}, {v[0][1], v[1][1], v[2][1]}, {v[0][2], v[1][2], v[2][2]}};
+}
+
+/// Sum of values[k] n_k n_k^T over the columns n_k of `vectors`.
+template <class Real>
+TALUS_HD Sym3<Real> compose(const Real values[3], const Mat3<Real>& n) {
+  const auto outer = [](const Vec3<Real>& u, Real s) {
+    return Sym3<Real>{u.x * u.x * s, u.y * u.y * s, u.z * u.z * s, u.x * u.y * s, u.y * u.z * s, u.x * u.z * s};
+  };
+  return outer(n.a, values[0]) + outer(n.b, values[1]) + outer(n.c, values[2]);
+}
+
+}  // namespace talus

@@ -1,0 +1,190 @@
+// The two places a kernel runs: OnCpu (oneTBB) and OnGpu (CUDA), both in one binary, chosen at run time. A kernel is a plain
+// struct of pointers and numbers with operator()(int index) const.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "solver/parallel/atomics.hpp"
+#include "solver/parallel/macros.hpp"
+
+namespace talus {
+
+struct OnCpu {
+  static constexpr bool is_gpu = false;
+};
+struct OnGpu {
+  static constexpr bool is_gpu = true;
+};
+
+/// True when this binary holds GPU kernels and the machine has a device they run on.
+bool gpu_available();
+/// Name of the device: "NVIDIA H200"; empty without one.
+std::string gpu_name();
+
+namespace detail {
+void* cpu_allocate(std::size_t bytes);
+void cpu_free(void* memory);
+void cpu_parallel(int count, int grain, void (*body)(const void* kernel, int begin, int end), const void* kernel);
+void* gpu_allocate(std::size_t bytes);
+void gpu_free(void* memory);
+void gpu_upload(void* device, const void* host, std::size_t bytes);
+void gpu_download(void* host, const void* device, std::size_t bytes);
+void gpu_copy(void* to, const void* from, std::size_t bytes);
+void gpu_fill_zero(void* device, std::size_t bytes);
+void gpu_synchronise();
+void gpu_check_launch(const char* where);
+}  // namespace detail
+
+/// Owned memory in a place. Grows, never shrinks; contents are lost on growth unless kept by resize_keep.
+template <class T, class Place>
+class Buffer {
+ public:
+  Buffer() = default;
+  explicit Buffer(std::size_t size) { resize(size); }
+  Buffer(Buffer&& other) noexcept { swap(other); }
+  Buffer& operator=(Buffer&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+  Buffer(const Buffer&) = delete;
+  Buffer& operator=(const Buffer&) = delete;
+  ~Buffer() { release(); }
+
+  T* data() { return data_; }
+  const T* data() const { return data_; }
+  std::size_t size() const { return size_; }
+  std::size_t bytes() const { return capacity_ * sizeof(T); }
+
+  /// New size; contents undefined.
+  void resize(std::size_t size) {
+    if (size > capacity_) {
+      release();
+      const std::size_t wanted = size + size / 8;
+      if constexpr (Place::is_gpu) {
+        data_ = static_cast<T*>(detail::gpu_allocate(wanted * sizeof(T)));
+      } else {
+        data_ = static_cast<T*>(detail::cpu_allocate(wanted * sizeof(T)));
+      }
+      capacity_ = wanted;
+    }
+    size_ = size;
+  }
+  void upload(const std::vector<T>& values) {
+    resize(values.size());
+    if (values.empty()) return;
+    if constexpr (Place::is_gpu) {
+      detail::gpu_upload(data_, values.data(), values.size() * sizeof(T));
+    } else {
+      std::memcpy(data_, values.data(), values.size() * sizeof(T));
+    }
+  }
+  std::vector<T> download() const {
+    std::vector<T> values(size_);
+    if (values.empty()) return values;
+    if constexpr (Place::is_gpu) {
+      detail::gpu_download(values.data(), data_, size_ * sizeof(T));
+    } else {
+      std::memcpy(values.data(), data_, size_ * sizeof(T));
+    }
+    return values;
+  }
+  void fill_zero() {
+    if (size_ == 0) return;
+    if constexpr (Place::is_gpu) {
+      detail::gpu_fill_zero(data_, size_ * sizeof(T));
+    } else {
+      std::memset(static_cast<void*>(data_), 0, size_ * sizeof(T));
+    }
+  }
+  void swap(Buffer& other) noexcept {
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+    std::swap(capacity_, other.capacity_);
+  }
+
+ private:
+  void release() {
+    if (!data_) return;
+    if constexpr (Place::is_gpu) {
+      detail::gpu_free(data_);
+    } else {
+      detail::cpu_free(data_);
+    }
+    data_ = nullptr;
+    capacity_ = 0;
+  }
+  T* data_ = nullptr;
+  std::size_t size_ = 0, capacity_ = 0;
+};
+
+/// Runs kernel(i) for i in [0, count), in any order.
+template <class Kernel>
+void for_each(OnCpu, int count, const Kernel& kernel) {
+  detail::cpu_parallel(
+      count, 256,
+      [](const void* k, int begin, int end) {
+        const Kernel local = *static_cast<const Kernel*>(k);
+        for (int i = begin; i < end; ++i) local(i);
+      },
+      &kernel);
+}
+
+/// Ranges of points, one per occupied column block, in four colours: blocks of one colour share no grid node.
+struct PointGroups {
+  std::vector<std::pair<int, int>> ranges[4];  // [begin, end) into the points
+};
+
+/// Runs kernel(p) over all points such that scatter_add never meets itself. CPU: colour by colour, each block in order, so
+/// sums are the same on every run. GPU: all at once, with atomics.
+template <class Kernel>
+void for_each_grouped(OnCpu, int, const PointGroups& groups, const Kernel& kernel) {
+  for (const auto& ranges : groups.ranges) {
+    struct Body {
+      const Kernel* kernel;
+      const std::pair<int, int>* ranges;
+    } body{&kernel, ranges.data()};
+    detail::cpu_parallel(
+        static_cast<int>(ranges.size()), 1,
+        [](const void* b, int begin, int end) {
+          const Body* data = static_cast<const Body*>(b);
+          const Kernel local = *data->kernel;
+          for (int r = begin; r < end; ++r) {
+            for (int p = data->ranges[r].first; p < data->ranges[r].second; ++p) local(p);
+          }
+        },
+        &body);
+  }
+}
+
+inline void synchronise(OnCpu) {}
+inline void synchronise(OnGpu) { detail::gpu_synchronise(); }
+
+#if defined(__CUDACC__)
+namespace detail {
+template <class Kernel>
+__global__ void run_kernel(int count, Kernel kernel) {
+  const int i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  if (i < count) kernel(i);
+}
+}  // namespace detail
+
+template <class Kernel>
+void for_each(OnGpu, int count, const Kernel& kernel) {
+  if (count <= 0) return;
+  constexpr int threads = 128;
+  detail::run_kernel<<<(count + threads - 1) / threads, threads>>>(count, kernel);
+  detail::gpu_check_launch(__PRETTY_FUNCTION__);
+}
+
+template <class Kernel>
+void for_each_grouped(OnGpu place, int count, const PointGroups&, const Kernel& kernel) {
+  for_each(place, count, kernel);
+}
+#endif
+
+}  // namespace talus

@@ -1,0 +1,124 @@
+#include "solver/particles/particles.hpp"
+
+namespace talus {
+namespace {
+
+template <class T>
+struct Gather {
+  const int* order;
+  const T* from;
+  T* to;
+  TALUS_HD void operator()(int p) const { to[p] = from[order[p]]; }
+};
+
+template <class Real, class Place>
+void upload_as(Buffer<Real, Place>& to, const std::vector<double>& from) {
+  to.upload(std::vector<Real>(from.begin(), from.end()));
+}
+
+template <class Real, class Place>
+std::vector<double> download_as(const Buffer<Real, Place>& from) {
+  const std::vector<Real> values = from.download();
+  return {values.begin(), values.end()};
+}
+
+}  // namespace
+
+template <class Real, class Place>
+bool Particles<Real, Place>::in_use(int slot) const {
+  if (slot >= move_slot) return fields_.move;
+  if (slot >= affine_slot) return fields_.affine;
+  return slot != plastic_slot || fields_.plastic_volume;
+}
+
+template <class Real, class Place>
+void Particles<Real, Place>::upload(const ParticleState& state) {
+  count_ = static_cast<int>(state.size());
+  for (int a = 0; a < 3; ++a) {
+    ints_[a].upload(state.cell[a]);
+    upload_as(reals_[offset_slot + a], state.offset[a]);
+    upload_as(reals_[velocity_slot + a], state.velocity[a]);
+    if (fields_.move) reals_[move_slot + a].resize(state.size());
+  }
+  ints_[3].upload(state.id);
+  ints_[4].upload(state.release);
+  for (int a = 0; a < 6; ++a) upload_as(reals_[elastic_slot + a], state.elastic[a]);
+  for (int a = 0; fields_.affine && a < 9; ++a) upload_as(reals_[affine_slot + a], state.affine[a]);
+  upload_as(reals_[log_slot], state.log_volume);
+  upload_as(reals_[volume_slot], state.volume);
+  if (fields_.plastic_volume) upload_as(reals_[plastic_slot], state.plastic_log_volume);
+}
+
+template <class Real, class Place>
+ParticleState Particles<Real, Place>::download() const {
+  ParticleState state;
+  const auto zeros = std::vector<double>(static_cast<std::size_t>(count_), 0.0);
+  for (int a = 0; a < 3; ++a) {
+    state.cell[a] = ints_[a].download();
+    state.offset[a] = download_as(reals_[offset_slot + a]);
+    state.velocity[a] = download_as(reals_[velocity_slot + a]);
+  }
+  state.id = ints_[3].download();
+  state.release = ints_[4].download();
+  for (int a = 0; a < 6; ++a) state.elastic[a] = download_as(reals_[elastic_slot + a]);
+  for (int a = 0; a < 9; ++a) state.affine[a] = fields_.affine ? download_as(reals_[affine_slot + a]) : zeros;
+  state.log_volume = download_as(reals_[log_slot]);
+  state.volume = download_as(reals_[volume_slot]);
+  state.plastic_log_volume = fields_.plastic_volume ? download_as(reals_[plastic_slot]) : zeros;
+  return state;
+}
+
+template <class Real, class Place>
+ParticleView<Real> Particles<Real, Place>::view() {
+  ParticleView<Real> v;
+  v.count = count_;
+  v.cell_x = ints_[0].data();
+  v.cell_y = ints_[1].data();
+  v.cell_z = ints_[2].data();
+  v.id = ints_[3].data();
+  v.release = ints_[4].data();
+  v.offset_x = reals_[offset_slot].data();
+  v.offset_y = reals_[offset_slot + 1].data();
+  v.offset_z = reals_[offset_slot + 2].data();
+  for (int a = 0; a < 3; ++a) v.velocity[a] = reals_[velocity_slot + a].data();
+  for (int a = 0; a < 3; ++a) v.move[a] = reals_[move_slot + a].data();
+  for (int a = 0; a < 6; ++a) v.elastic[a] = reals_[elastic_slot + a].data();
+  for (int a = 0; a < 9; ++a) v.affine[a] = reals_[affine_slot + a].data();
+  v.log_volume = reals_[log_slot].data();
+  v.plastic_log_volume = reals_[plastic_slot].data();
+  v.volume = reals_[volume_slot].data();
+  return v;
+}
+
+template <class Real, class Place>
+std::size_t Particles<Real, Place>::bytes() const {
+  std::size_t total = real_scratch_.bytes() + int_scratch_.bytes();
+  for (const auto& array : reals_) total += array.bytes();
+  for (const auto& array : ints_) total += array.bytes();
+  return total;
+}
+
+template <class Real, class Place>
+void Particles<Real, Place>::reorder(const Buffer<int, Place>& order, int count) {
+  for (int slot = 0; slot < real_slots; ++slot) {
+    if (!in_use(slot) || slot >= move_slot) continue;  // the displacement lives within one step only
+    real_scratch_.resize(static_cast<std::size_t>(count));
+    for_each(Place{}, count, Gather<Real>{order.data(), reals_[slot].data(), real_scratch_.data()});
+    reals_[slot].swap(real_scratch_);
+  }
+  for (auto& array : ints_) {
+    int_scratch_.resize(static_cast<std::size_t>(count));
+    for_each(Place{}, count, Gather<int>{order.data(), array.data(), int_scratch_.data()});
+    array.swap(int_scratch_);
+  }
+  count_ = count;
+}
+
+template class Particles<float, OnCpu>;
+template class Particles<double, OnCpu>;
+#if defined(__CUDACC__)
+template class Particles<float, OnGpu>;
+template class Particles<double, OnGpu>;
+#endif
+
+}  // namespace talus

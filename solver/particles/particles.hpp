@@ -1,0 +1,82 @@
+// The material points: arrays of their state, owned (Particles) and as a kernel sees them (ParticleView).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "solver/parallel/math.hpp"
+#include "solver/parallel/place.hpp"
+
+namespace talus {
+
+/// Positions are the nearest node and the offset from it in cells, so that single precision keeps 1e-8 of a cell anywhere.
+/// A point whose cell_x is negative has left the domain.
+template <class Real>
+struct ParticleView {
+  int count = 0;
+  int *cell_x, *cell_y, *cell_z;          // nearest node
+  Real *offset_x, *offset_y, *offset_z;   // from it, in cells [-0.5, 0.5)
+  Real* velocity[3];                      // [m/s]
+  Real* affine[9];                        // velocity change per cell, columns x, y, zeta [m/s]; null without APIC
+  Real* elastic[6];                       // what the material keeps: xx yy zz xy yz xz (see material.hpp)
+  Real* log_volume;                       // ln(volume / initial volume) [-]
+  Real* plastic_log_volume;               // the part of it that is plastic dilation; null when there is none
+  Real* volume;                           // initial [m3]; mass is volume times the density of the scene
+  Real* move[3];                          // displacement of this step in cells; null unless MUSL
+  int* id;                                // order of seeding
+  int* release;                           // which release it belongs to
+
+  TALUS_HD Vec3<Real> velocity_of(int p) const { return {velocity[0][p], velocity[1][p], velocity[2][p]}; }
+  TALUS_HD Sym3<Real> elastic_of(int p) const {
+    return {elastic[0][p], elastic[1][p], elastic[2][p], elastic[3][p], elastic[4][p], elastic[5][p]};
+  }
+  TALUS_HD void set_elastic(int p, const Sym3<Real>& s) const {
+    elastic[0][p] = s.xx;
+    elastic[1][p] = s.yy;
+    elastic[2][p] = s.zz;
+    elastic[3][p] = s.xy;
+    elastic[4][p] = s.yz;
+    elastic[5][p] = s.xz;
+  }
+};
+
+/// Host copy of the whole state, in double.
+struct ParticleState {
+  std::vector<int> cell[3], id, release;
+  std::vector<double> offset[3], velocity[3], affine[9], elastic[6], log_volume, plastic_log_volume, volume;
+  std::size_t size() const { return id.size(); }
+};
+
+/// Which optional arrays a scene needs.
+struct ParticleFields {
+  bool affine = false, plastic_volume = false, move = false;
+};
+
+template <class Real, class Place>
+class Particles {
+ public:
+  explicit Particles(ParticleFields fields) : fields_(fields) {}
+
+  void upload(const ParticleState& state);
+  ParticleState download() const;
+  ParticleView<Real> view();
+  int count() const { return count_; }
+  std::size_t bytes() const;
+  const Buffer<Real, Place>& volume() const { return reals_[volume_slot]; }
+
+  /// New order: point order[p] becomes point p; only the first `count` are kept.
+  void reorder(const Buffer<int, Place>& order, int count);
+
+ private:
+  static constexpr int offset_slot = 0, velocity_slot = 3, elastic_slot = 6, log_slot = 12, volume_slot = 13,
+                       plastic_slot = 14, affine_slot = 15, move_slot = 24, real_slots = 27;
+  bool in_use(int slot) const;
+  ParticleFields fields_;
+  int count_ = 0;
+  Buffer<Real, Place> reals_[real_slots];
+  Buffer<int, Place> ints_[5];  // cell x y z, id, release
+  Buffer<Real, Place> real_scratch_;
+  Buffer<int, Place> int_scratch_;
+};
+
+}  // namespace talus

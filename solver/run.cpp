@@ -1,0 +1,262 @@
+#include "solver/run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "solver/parallel/place.hpp"
+
+namespace talus::solver {
+namespace {
+
+const std::vector<std::string> history_names = {"time_s",     "step",       "step_size_s",    "kinetic_J",
+                                                "potential_J", "elastic_J", "volume_m3",      "outflow_m3",
+                                                "speed_max_m_s", "momentum_x_kg_m_s", "momentum_y_kg_m_s", "momentum_z_kg_m_s"};
+
+std::string duration(double seconds) {
+  if (seconds < 100) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 6000) return fmt::format("{:.0f} min", seconds / 60);
+  return fmt::format("{:.1f} h", seconds / 3600);
+}
+
+}  // namespace
+
+ExplicitRun::ExplicitRun(const Domain& domain, const SolveOptions& options, On on, RunPaths paths, std::string fingerprint)
+    : domain_(domain),
+      options_(options),
+      on_(on),
+      paths_(std::move(paths)),
+      fingerprint_(std::move(fingerprint)),
+      scene_(make_scene(domain, options)),
+      frames_(paths_.frames) {
+  released_ = std::accumulate(scene_.points.volume.begin(), scene_.points.volume.end(), 0.0);
+}
+
+void ExplicitRun::resume(const std::filesystem::path& file) {
+  Checkpoint checkpoint = read_checkpoint(file, fingerprint_);
+  solver_ = resume_explicit_solver(scene_, options_, on_, checkpoint.state);
+  memory_ = std::move(checkpoint.memory);
+  time_ = checkpoint.state.clock.time;
+  wall_before_ = memory_.wall_time;
+  log_info(fmt::format("going on from {} at t = {:.3f} s, step {}", file.string(), time_, checkpoint.state.clock.step));
+}
+
+void ExplicitRun::start() {
+  frames_.clear();
+  std::error_code ignored;
+  for (const auto& stale : {paths_.run, paths_.checkpoint}) std::filesystem::remove(stale, ignored);
+  solver_ = make_explicit_solver(scene_, options_, on_);
+  memory_.history.names = history_names;
+  memory_.history.columns.resize(history_names.size());
+  memory_.initial_thickness = solver_->thickness();
+}
+
+double ExplicitRun::next_event() const {
+  const double frame = static_cast<double>(memory_.frames) * options_.frame_interval;
+  const double record = static_cast<double>(memory_.records) * options_.history_interval;
+  return std::min({frame, record, options_.end_time});
+}
+
+void ExplicitRun::pass_events(double time) {
+  if (time >= static_cast<double>(memory_.records) * options_.history_interval || time >= options_.end_time) {
+    record(time);
+    ++memory_.records;
+  }
+  if (time >= static_cast<double>(memory_.frames) * options_.frame_interval) {
+    put_frame(time);
+    ++memory_.frames;
+  }
+}
+
+void ExplicitRun::record(double time) {
+  const Energies e = solver_->energies();
+  const Clock clock = solver_->clock();
+  kinetic_ = e.kinetic;
+  memory_.peak_kinetic = std::max(memory_.peak_kinetic, e.kinetic);
+  const double row[] = {time,
+                        static_cast<double>(clock.step),
+                        clock.step_size,
+                        e.kinetic,
+                        e.potential,
+                        e.elastic,
+                        e.volume,
+                        memory_.outflow_volume,
+                        static_cast<double>(positive_from_bits(clock.speed_bits)),
+                        e.momentum.x,
+                        e.momentum.y,
+                        e.momentum.z};
+  for (std::size_t c = 0; c < memory_.history.columns.size(); ++c) memory_.history.columns[c].push_back(row[c]);
+}
+
+PointFrame ExplicitRun::point_frame(double time) const {
+  const ParticleState s = solver_->state().points;
+  const auto material = make_material<double>(options_.material);
+  PointFrame frame;
+  frame.time = time;
+  frame.position = positions(scene_.map, scene_.grid, solver_->ground(), s);
+  for (std::size_t p = 0; p < s.size(); ++p) {
+    frame.velocity.push_back({static_cast<float>(s.velocity[0][p]), static_cast<float>(s.velocity[1][p]),
+                              static_cast<float>(s.velocity[2][p])});
+    frame.volume.push_back(static_cast<float>(s.volume[p]));
+    const MaterialState<double> state{
+        {s.elastic[0][p], s.elastic[1][p], s.elastic[2][p], s.elastic[3][p], s.elastic[4][p], s.elastic[5][p]},
+        s.log_volume[p],
+        s.plastic_log_volume[p]};
+    frame.pressure.push_back(static_cast<float>(-trace(kirchhoff_stress(material, state)) / 3));
+  }
+  frame.id = s.id;
+  frame.release = s.release;
+  return frame;
+}
+
+void ExplicitRun::put_frame(double time) {
+  PointFrame frame;
+  frame.time = time;
+  if (options_.point_frames || options_.vdb_frames) frame = point_frame(time);
+  if (options_.vdb_frames) {
+    write_points_vdb(paths_.vdb_frames / fmt::format("points_{:05}.vdb", memory_.frames), frame, scene_.map.cell);
+  }
+  if (!options_.point_frames) {
+    frame = {};
+    frame.time = time;
+  }
+  frames_.put(memory_.frames, frame, scene_.map, solver_->thickness());
+}
+
+bool ExplicitRun::checkpoint_due(double time) const {
+  if (options_.checkpoint_interval <= 0) return false;
+  return time >= static_cast<double>(memory_.checkpoints + 1) * options_.checkpoint_interval;
+}
+
+void ExplicitRun::save_checkpoint() {
+  memory_.wall_time = wall_time();
+  write_checkpoint(paths_.checkpoint, {fingerprint_, solver_->state(), memory_});
+}
+
+bool ExplicitRun::calm() const {
+  return options_.stop_kinetic_fraction > 0 && kinetic_ < options_.stop_kinetic_fraction * memory_.peak_kinetic;
+}
+
+double ExplicitRun::wall_time() const {
+  return wall_before_ + std::chrono::duration<double>(WallClock::now() - started_).count();
+}
+
+void ExplicitRun::report(Progress& progress, const Clock& clock) const {
+  if (!progress.due()) return;
+  const double done = clock.time / options_.end_time;
+  const double balance = (memory_.history.columns.empty() || memory_.history.columns[6].empty())
+                             ? 0
+                             : (memory_.history.columns[6].back() + memory_.history.columns[7].back()) / released_ - 1;
+  progress.update(fmt::format("t {:.2f}/{:g} s  step {}  dt {:.3g} s  v_max {:.1f} m/s  mass error {:.1e}  eta {}", clock.time,
+                              options_.end_time, clock.step, clock.step_size, positive_from_bits(clock.speed_bits), balance,
+                              done > 0 ? duration(wall_time() * (1 - done) / done) : "?"));
+}
+
+void ExplicitRun::fail(const Clock& clock) const {
+  const ParticleState s = solver_->state().points;
+  std::string where = "unknown place";
+  const auto found = std::find(s.id.begin(), s.id.end(), clock.failed_point);
+  if (found != s.id.end()) {
+    const auto p = static_cast<std::size_t>(found - s.id.begin());
+    where = fmt::format("({:.1f}, {:.1f})", scene_.map.x(s.cell[0][p]), scene_.map.y(s.cell[1][p]));
+  }
+  throw NumericalError({fmt::format("step {}, t = {:.4f} s: material point {} near {} lost its state (not a number, or faster "
+                                    "than 1000 km/s)",
+                                    clock.step, clock.time, clock.failed_point, where),
+                        fmt::format("the step of {:.3g} s is too long for it", clock.step_size),
+                        fmt::format("Lower cfl (now {:g}), or use shape = \"quadratic\" with transfer = \"apic\"",
+                                    options_.courant)});
+}
+
+RunSummary ExplicitRun::run(const std::string& scene, const std::string& title) {
+  started_ = WallClock::now();
+  RunSummary summary;
+  summary.scene = scene;
+  summary.title = title;
+  const bool fresh = solver_ == nullptr;
+  if (fresh) start();
+  started_ = WallClock::now();
+  if (fresh) pass_events(0.0);
+  Progress progress;
+  summary.stop_reason = "end of the simulated time";
+  while (time_ < options_.end_time) {
+    solver_->set_next_event(next_event());
+    const BatchReport batch = solver_->advance();
+    time_ = batch.clock.time;
+    memory_.outflow_volume += batch.outflow_volume;
+    memory_.outflow_count += batch.outflow_count;
+    if (batch.clock.halt == failed) fail(batch.clock);
+    if (batch.sorted && (interrupted() || checkpoint_due(time_))) {
+      if (checkpoint_due(time_)) ++memory_.checkpoints;
+      save_checkpoint();
+    }
+    if (batch.sorted && interrupted()) {
+      throw Interrupted({fmt::format("stopped at t = {:.3f} s, step {}", time_, batch.clock.step), "interrupted",
+                         fmt::format("Go on with --restart; {} holds the state", paths_.checkpoint.string())});
+    }
+    if (batch.clock.halt == at_event) pass_events(time_);
+    report(progress, batch.clock);
+    if (calm()) {
+      summary.stop_reason = fmt::format("kinetic energy below {:g} of its peak", options_.stop_kinetic_fraction);
+      break;
+    }
+    if (solver_->particle_count() == 0) {
+      summary.stop_reason = "all material left the domain";
+      break;
+    }
+  }
+  if (time_ > static_cast<double>(memory_.frames - 1) * options_.frame_interval) {
+    put_frame(time_);  // the end, between two frames
+    ++memory_.frames;
+  }
+  finish(summary);
+  return summary;
+}
+
+RunMaps ExplicitRun::final_maps() const {
+  const MapFields fields = solver_->state().maps;
+  RunMaps maps;
+  maps.grid = scene_.map;
+  maps.terrain = domain_.terrain.values;
+  maps.before = domain_.before.values;
+  maps.initial_thickness = memory_.initial_thickness;
+  maps.deposit_thickness = solver_->thickness();
+  maps.peak_thickness = fields.peak_thickness;
+  maps.peak_speed = fields.peak_speed;
+  maps.peak_pressure = fields.peak_pressure;
+  for (double& value : maps.peak_pressure) value /= 1000;  // Pa to kPa
+  maps.arrival_time = fields.arrival;
+  for (double& value : maps.arrival_time) {
+    if (value < 0) value = std::numeric_limits<double>::quiet_NaN();
+  }
+  maps.threshold = options_.map_threshold;
+  return maps;
+}
+
+void ExplicitRun::finish(RunSummary& summary) {
+  const SolverState state = solver_->state();
+  memory_.wall_time = wall_time();
+  summary.on = on_ == On::gpu ? gpu_name() : hardware();
+  summary.precision = options_.precision == Precision::double_ ? "double" : "single";
+  summary.version = version();
+  summary.particles = static_cast<std::int64_t>(scene_.points.size());
+  summary.particles_left = memory_.outflow_count;
+  summary.steps = state.clock.step;
+  summary.time_end = time_;
+  summary.wall_time = memory_.wall_time;
+  summary.density = options_.material.density;
+  summary.volume_released = released_;
+  summary.volume_final = std::accumulate(state.points.volume.begin(), state.points.volume.end(), 0.0);
+  summary.volume_outflow = memory_.outflow_volume;
+  summary.provenance = domain_.provenance;
+  RunWriter writer(paths_.run);
+  frames_.append_to(writer, memory_.frames, scene_.map);
+  writer.finish(final_maps(), memory_.history, summary);
+  frames_.clear();
+  std::error_code ignored;
+  std::filesystem::remove(paths_.checkpoint, ignored);  // the run is whole: nothing is left to go on with
+}
+
+}  // namespace talus::solver

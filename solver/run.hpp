@@ -1,0 +1,64 @@
+// A run from domain to run.h5: events in time, records, frames, checkpoints, the end.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+
+#include "common/stage/stage.hpp"
+#include "solver/output/checkpoint.hpp"
+#include "solver/output/frames.hpp"
+#include "solver/scene.hpp"
+
+namespace talus::solver {
+
+struct RunPaths {
+  std::filesystem::path run, checkpoint, frames, vdb_frames;
+  explicit RunPaths(const std::filesystem::path& out)
+      : run(out / "run.h5"), checkpoint(out / "checkpoint.h5"), frames(out / ".frames"), vdb_frames(out / "frames") {}
+};
+
+class ExplicitRun {
+ public:
+  ExplicitRun(const Domain& domain, const SolveOptions& options, On on, RunPaths paths, std::string fingerprint);
+
+  /// Go on from checkpoint.h5 instead of the start.
+  void resume(const std::filesystem::path& checkpoint);
+
+  /// Step to the end. Throws NumericalError, DataError, Interrupted (checkpoint left).
+  RunSummary run(const std::string& scene, const std::string& title);
+
+ private:
+  using WallClock = std::chrono::steady_clock;
+  void start();
+  void pass_events(double time);
+  double next_event() const;
+  void record(double time);
+  void put_frame(double time);
+  void save_checkpoint();
+  bool checkpoint_due(double time) const;
+  bool calm() const;
+  void report(Progress& progress, const Clock& clock) const;
+  [[noreturn]] void fail(const Clock& clock) const;
+  void finish(RunSummary& summary);
+  RunMaps final_maps() const;
+  double wall_time() const;
+  PointFrame point_frame(double time) const;
+
+  const Domain& domain_;
+  SolveOptions options_;
+  On on_;
+  RunPaths paths_;
+  std::string fingerprint_;
+  Scene scene_;
+  std::unique_ptr<ExplicitSolver> solver_;
+  FrameStore frames_;
+  RunMemory memory_;
+  double released_ = 0;  // [m3]
+  double kinetic_ = 0;   // last recorded [J]
+  double time_ = 0;      // [s]
+  WallClock::time_point started_;
+  double wall_before_ = 0;
+};
+
+}  // namespace talus::solver

@@ -1,0 +1,95 @@
+#include "solver/scene.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace talus::solver {
+namespace {
+
+/// Nearest node and offset from it of a position in cells.
+void place(double position, int& cell, double& offset) {
+  const double nearest = std::floor(position + 0.5);
+  cell = static_cast<int>(nearest);
+  offset = position - nearest;
+}
+
+void size_state(ParticleState& s, std::size_t count) {
+  for (auto* list : {&s.cell[0], &s.cell[1], &s.cell[2], &s.id, &s.release}) list->assign(count, 0);
+  for (auto& list : s.offset) list.assign(count, 0);
+  for (auto& list : s.velocity) list.assign(count, 0);
+  for (auto& list : s.affine) list.assign(count, 0);
+  for (auto& list : s.elastic) list.assign(count, 0);
+  for (auto* list : {&s.log_volume, &s.plastic_log_volume, &s.volume}) list->assign(count, 0);
+}
+
+}  // namespace
+
+Scene make_scene(const Domain& domain, const SolveOptions& options) {
+  Scene scene;
+  scene.map = domain.grid;
+  GridShape& shape = scene.grid;
+  shape.columns = domain.grid.columns;
+  shape.rows = domain.grid.rows;
+  shape.spacing = domain.grid.cell;
+  shape.layer_height = domain.layer_height;
+  shape.mapping = options.mapping;
+  shape.quadratic = options.shape == ShapeKind::quadratic;
+  shape.terrain = domain.terrain.values;
+  const GroundTables ground = make_ground_tables(shape);
+
+  ParticleState& s = scene.points;
+  const std::size_t count = domain.points.size();
+  size_state(s, count);
+  for (std::size_t p = 0; p < count; ++p) {
+    const double xi = (domain.points.x[p] - domain.grid.west) / shape.spacing - 0.5;
+    const double eta = (domain.points.y[p] - domain.grid.south) / shape.spacing - 0.5;
+    place(xi, s.cell[0][p], s.offset[0][p]);
+    place(eta, s.cell[1][p], s.offset[1][p]);
+    const int i = s.cell[0][p], j = s.cell[1][p];
+    const bool inside = i >= 0 && j >= 0 && i < shape.columns && j < shape.rows;
+    if (!inside || !ground.open[domain.grid.index(i, j)]) {
+      throw DataError({fmt::format("domain.vdb: point {} at ({:.2f}, {:.2f}) stands outside the ground or at its edge", p,
+                                   domain.points.x[p], domain.points.y[p]),
+                       "a point needs known ground one cell around it",
+                       "Give a larger elevation model, or a smaller source, and run talus-preprocess again"});
+    }
+    double height = domain.points.height[p];
+    if (shape.mapping == Mapping::cartesian) height += ground_at(shape, ground, xi, eta);
+    place(height / shape.layer_height, s.cell[2][p], s.offset[2][p]);
+    for (int a = 0; a < 3; ++a) s.velocity[a][p] = options.initial_velocity[static_cast<std::size_t>(a)];
+    s.volume[p] = domain.points.volume[p];
+    s.id[p] = static_cast<int>(p);
+    s.release[p] = domain.points.release[p];
+  }
+  return scene;
+}
+
+std::vector<std::array<double, 3>> positions(const MapGrid& map, const GridShape& shape, const GroundTables& ground,
+                                             const ParticleState& s) {
+  std::vector<std::array<double, 3>> result(s.size());
+  for (std::size_t p = 0; p < s.size(); ++p) {
+    const double xi = s.cell[0][p] + s.offset[0][p], eta = s.cell[1][p] + s.offset[1][p];
+    double z = ground.datum + (s.cell[2][p] + s.offset[2][p]) * shape.layer_height;
+    if (shape.mapping == Mapping::terrain_following) z += ground_at(shape, ground, xi, eta);
+    result[p] = {map.west + (xi + 0.5) * shape.spacing, map.south + (eta + 0.5) * shape.spacing, z};
+  }
+  return result;
+}
+
+double first_rate(const GridShape& shape, const GroundTables& ground, const ParticleState& points, double wave_speed,
+                  double speed) {
+  double steepest = 0;
+  if (shape.mapping == Mapping::terrain_following) {
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      const auto n = static_cast<std::size_t>(points.cell[1][p]) * static_cast<std::size_t>(shape.columns) +
+                     static_cast<std::size_t>(points.cell[0][p]);
+      steepest = std::max(steepest, ground.slope_x[n] * ground.slope_x[n] + ground.slope_y[n] * ground.slope_y[n]);
+    }
+  }
+  const double hx = 1 / shape.spacing, hz = 1 / shape.layer_height;
+  return wave_speed * std::sqrt(2 * hx * hx + (1 + steepest) * hz * hz) +
+         speed * (2 * hx + hz * std::sqrt(1 + steepest));
+}
+
+}  // namespace talus::solver

@@ -1,0 +1,216 @@
+// Grid to particle (G2P): velocity, its gradient, the move and the new stress of the points.
+#pragma once
+
+#include "solver/integrator/clock.hpp"
+#include "solver/material/material.hpp"
+#include "solver/transfer/stencil.hpp"
+
+namespace talus {
+
+/// Which part of the gather a kernel does.
+enum class Gather {
+  all,           // USL: everything at once
+  motion,        // MUSL, first half: velocity and displacement, kept in points.move
+  deformation    // MUSL, second half: gradient from the remapped momentum, stress, and the kept displacement
+};
+
+/// One thread: one point. nodes[] holds mass and new velocity; changes[] the velocity change of the step (FLIP).
+template <class Real, class Shape, Gather part>
+struct GridToParticle {
+  GridView<Real> grid;
+  ParticleView<Real> points;
+  Material<Real> material;
+  Clock* clock;
+  const Vec4<Real>* nodes;
+  const Vec4<Real>* changes;
+  const std::uint64_t* home;  // key of the cell the point was sorted by (see sparse_grid.hpp)
+  Real flip;                  // share of FLIP in the velocity; 0 with APIC
+  bool affine;
+  bool dilatant;
+
+  struct Sums {
+    Vec3<Real> velocity, change;     // [m/s]
+    Mat3<Real> gradient;             // by reference coordinates, per cell
+    Mat3<Real> moment;               // of velocity about the point, in cells
+    Real climb = 0;                  // rate of zeta [m/s]
+  };
+
+  TALUS_HD void operator()(int p) const {
+    if (clock->halt != running || points.cell_x[p] < 0) return;
+    const Stencil<Real, Shape> s(grid, points, p);
+    const Sums sums = gather(s);
+    const Real dt = Real(clock->step_size);
+    if constexpr (part != Gather::deformation) move_with(p, sums, dt);
+    if constexpr (part != Gather::motion) {
+      deform(p, s, sums, dt);
+      settle(p, s, sums);
+    }
+  }
+
+ private:
+  TALUS_HD Sums gather(const Stencil<Real, Shape>& s) const {
+    Sums sums;
+    const bool follows = grid.mapping == Mapping::terrain_following;
+    for (int b = 0; b < Shape::width; ++b) {
+      for (int a = 0; a < Shape::width; ++a) {
+        const int i = s.i + a, j = s.j + b;
+        const BlockSlot& slot = grid.slot(i, j);
+        Real nx = 0, ny = 0;
+        if (follows) {
+          nx = grid.slope_x[grid.column(i, j)];
+          ny = grid.slope_y[grid.column(i, j)];
+        }
+        // Sums up the column, then weighs them once.
+        Vec3<Real> mean{}, rise{}, lever{}, change{};
+        Real climb = 0, above = 0, base = 0;
+        for (int c = 0; c < Shape::width; ++c) {
+          const int layer = s.k + c > 0 ? s.k + c : 0;
+          const int n = GridView<Real>::node(slot, i, j, layer);
+          const Vec4<Real> node = nodes[n];
+          const Vec3<Real> v{node.x, node.y, node.z};
+          mean += v * s.wz[c];
+          rise += v * s.gz[c];
+          if (affine) lever += v * (s.wz[c] * (s.near_z + Real(c)));
+          if (flip > Real(0)) {
+            const Vec4<Real> d = changes[n];
+            change += Vec3<Real>{d.x, d.y, d.z} * s.wz[c];
+          }
+          const Real w = v.z - nx * v.x - ny * v.y;
+          climb += w * s.wz[c];
+          if (c == 1) base = w;
+          if (c == 2) above = w;
+        }
+        // Below the ground the climb goes on in a straight line, so that it is exactly the base node's on the ground.
+        if (s.k < 0 && above < base) climb += s.wz[0] * (base - above);
+        const Real w = s.wx[a] * s.wy[b];
+        sums.velocity += mean * w;
+        sums.change += change * w;
+        sums.climb += climb * w;
+        sums.gradient.a += mean * (s.gx[a] * s.wy[b]);
+        sums.gradient.b += mean * (s.wx[a] * s.gy[b]);
+        sums.gradient.c += rise * w;
+        if (affine) {
+          sums.moment.a += mean * (w * (s.near_x + Real(a)));
+          sums.moment.b += mean * (w * (s.near_y + Real(b)));
+          sums.moment.c += lever * w;
+        }
+      }
+    }
+    return sums;
+  }
+
+  TALUS_HD void move_with(int p, const Sums& sums, Real dt) const {
+    Vec3<Real> v = sums.velocity;
+    if (flip > Real(0)) v = (points.velocity_of(p) + sums.change) * flip + v * (Real(1) - flip);
+    points.velocity[0][p] = v.x;
+    points.velocity[1][p] = v.y;
+    points.velocity[2][p] = v.z;
+    if (affine) store_affine(p, sums);
+    const Vec3<Real> move{sums.velocity.x * dt / grid.spacing, sums.velocity.y * dt / grid.spacing,
+                          sums.climb * dt / grid.layer_height};
+    if constexpr (part == Gather::motion) {
+      points.move[0][p] = move.x;
+      points.move[1][p] = move.y;
+      points.move[2][p] = move.z;
+    } else {
+      advance(p, move);
+    }
+  }
+
+  /// APIC (Jiang et al. 2015): moment times the inverse of the weights' second moment, 4 per cell for quadratic B-splines;
+  /// for linear functions it equals the gradient.
+  TALUS_HD void store_affine(int p, const Sums& sums) const {
+    const bool spline = Shape::width == 3;
+    const Mat3<Real>& m = spline ? sums.moment : sums.gradient;
+    const Real scale = spline ? Real(4) : Real(1);
+    const Real values[9] = {m.a.x, m.a.y, m.a.z, m.b.x, m.b.y, m.b.z, m.c.x, m.c.y, m.c.z};
+    for (int q = 0; q < 9; ++q) points.affine[q][p] = values[q] * scale;
+  }
+
+  TALUS_HD void deform(int p, const Stencil<Real, Shape>& s, const Sums& sums, Real dt) const {
+    const Real across = dt / grid.spacing, up = dt / grid.layer_height;
+    const Vec3<Real> c = sums.gradient.c * up;
+    const Mat3<Real> g{sums.gradient.a * across - c * s.slope_x, sums.gradient.b * across - c * s.slope_y, c};
+    MaterialState<Real> state{points.elastic_of(p), points.log_volume[p],
+                              dilatant ? points.plastic_log_volume[p] : Real(0)};
+    advance_material(material, g, state);
+    points.set_elastic(p, state.elastic);
+    points.log_volume[p] = state.log_volume;
+    if (dilatant) points.plastic_log_volume[p] = state.plastic_log_volume;
+    if constexpr (part == Gather::deformation) {
+      advance(p, Vec3<Real>{points.move[0][p], points.move[1][p], points.move[2][p]});
+    }
+  }
+
+  /// New cell and offset after a move in cells.
+  TALUS_HD void advance(int p, const Vec3<Real>& move) const {
+    shift(points.cell_x[p], points.offset_x[p], move.x);
+    shift(points.cell_y[p], points.offset_y[p], move.y);
+    shift(points.cell_z[p], points.offset_z[p], move.z);
+    if (points.cell_z[p] < 0 || (points.cell_z[p] == 0 && points.offset_z[p] < Real(0))) {
+      points.cell_z[p] = 0;  // on the ground
+      points.offset_z[p] = Real(0);
+    }
+  }
+  TALUS_HD static void shift(int& cell, Real& offset, Real move) {
+    offset += move;
+    const Real whole = floor(offset + Real(0.5));
+    if (whole == Real(0)) return;
+    if (!(fabs(whole) < Real(1000000))) return;  // lost: settle() reports the point
+    offset -= whole;
+    cell += static_cast<int>(whole);
+  }
+
+  /// Alarms of the clock: not a number, left the domain, left the home cell's neighbourhood; step size of the next step.
+  TALUS_HD void settle(int p, const Stencil<Real, Shape>& s, const Sums& sums) const {
+    const Vec3<Real> v = points.velocity_of(p);
+    const Real speed = length(v);
+    // A point that crossed a cell in one step, or whose state is no number, has left the equations.
+    if (!(speed < Real(1e6)) || !(fabs(points.log_volume[p]) < Real(1e3)) || !(fabs(points.offset_z[p]) <= Real(1))) {
+      raise_flag(&clock->failed_point, points.id[p]);
+      raise_flag(&clock->request, failed);
+      return;
+    }
+    const int i = points.cell_x[p], j = points.cell_y[p], k = points.cell_z[p];
+    if (i < 0 || j < 0 || i >= grid.columns || j >= grid.rows || !grid.open[grid.column(i, j)]) {
+      points.cell_x[p] = -1;
+      atomic_add(&clock->outflow_volume, static_cast<double>(points.volume[p]));
+      count_outflow();
+      return;
+    }
+    const Real steep = Real(1) + s.slope_x * s.slope_x + s.slope_y * s.slope_y;
+    const Real hx = Real(1) / grid.spacing, hz = Real(1) / grid.layer_height;
+    const Real waves = material.wave_speed * sqrt(Real(2) * hx * hx + steep * hz * hz);
+    const Real flow = fabs(v.x) * hx + fabs(v.y) * hx + fabs(sums.climb) * hz;
+    atomic_max_positive(&clock->rate_bits, static_cast<float>(waves + flow));
+    atomic_max_positive(&clock->speed_bits, static_cast<float>(speed));
+    if (strayed(home[p], i, j, k)) request_sort();
+  }
+
+  TALUS_HD bool strayed(std::uint64_t key, int i, int j, int k) const {
+    const int block = static_cast<int>(key >> 32);
+    const int inside = static_cast<int>((key >> 24) & 0xff);
+    const int i0 = (block % grid.block_columns_x) * block_side + (inside & 3);
+    const int j0 = (block / grid.block_columns_x) * block_side + (inside >> 2);
+    const int k0 = static_cast<int>(key & 0xffffff);
+    return i - i0 > 1 || i0 - i > 1 || j - j0 > 1 || j0 - j > 1 || k - k0 > 1 || k0 - k > 1;
+  }
+  TALUS_HD void request_sort() const {
+#if defined(__CUDA_ARCH__)
+    atomicCAS(&clock->request, running, wants_sort);
+#else
+    int expected = running;
+    std::atomic_ref<int>(clock->request).compare_exchange_strong(expected, wants_sort);
+#endif
+  }
+  TALUS_HD void count_outflow() const {
+#if defined(__CUDA_ARCH__)
+    atomicAdd(&clock->outflow_count, 1);
+#else
+    std::atomic_ref<int>(clock->outflow_count).fetch_add(1);
+#endif
+    request_sort();
+  }
+};
+
+}  // namespace talus

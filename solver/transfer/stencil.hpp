@@ -1,0 +1,49 @@
+// A point's weights on the nodes around it, and the slope of the terrain under it from the same weights.
+#pragma once
+
+#include "solver/grid/background_grid.hpp"
+#include "solver/grid/shape_functions.hpp"
+#include "solver/particles/particles.hpp"
+
+namespace talus {
+
+template <class Real, class Shape>
+struct Stencil {
+  static constexpr int width = Shape::width;
+  int i, j, k;                                     // first node; k may be -1 (see background_grid.hpp)
+  Real wx[width], wy[width], wz[width];            // weights
+  Real gx[width], gy[width], gz[width];            // their slopes, per cell
+  Real near_x, near_y, near_z;                     // first node minus point, in cells
+  Real slope_x = 0, slope_y = 0;                   // of the terrain at the point
+
+  TALUS_HD Stencil(const GridView<Real>& grid, const ParticleView<Real>& points, int p) {
+    const Real fx = points.offset_x[p], fy = points.offset_y[p], fz = points.offset_z[p];
+    const int ax = Shape::weigh(fx, wx, gx), ay = Shape::weigh(fy, wy, gy), az = Shape::weigh(fz, wz, gz);
+    i = points.cell_x[p] + ax;
+    j = points.cell_y[p] + ay;
+    k = points.cell_z[p] + az;
+    near_x = Real(ax) - fx;
+    near_y = Real(ay) - fy;
+    near_z = Real(az) - fz;
+    if (grid.mapping == Mapping::terrain_following) measure_slope(grid);
+  }
+
+ private:
+  TALUS_HD void measure_slope(const GridView<Real>& grid) {
+    Real sx = 0, sy = 0;
+    for (int b = 0; b < width; ++b) {
+      Real along = 0, value = 0;
+      for (int a = 0; a < width; ++a) {
+        const Real t = grid.terrain[grid.column(i + a, j + b)];
+        along += gx[a] * t;
+        value += wx[a] * t;
+      }
+      sx += wy[b] * along;
+      sy += gy[b] * value;
+    }
+    slope_x = sx / grid.spacing;
+    slope_y = sy / grid.spacing;
+  }
+};
+
+}  // namespace talus

@@ -1,0 +1,103 @@
+// Small scenes for the solver's tests, and the places they run in.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <vector>
+
+#include "solver/integrator/explicit_solver.hpp"
+#include "solver/parallel/place.hpp"
+
+namespace talus::solver::testing {
+
+/// A flat or tilted ground under columns x rows cells.
+inline Domain ground(int columns, int rows, double cell, double layer_height,
+                     const std::function<double(double, double)>& elevation) {
+  Domain d;
+  d.grid = {columns, rows, 0, 0, cell, ""};
+  d.layer_height = layer_height;
+  d.terrain = d.before = d.release_thickness = {d.grid, std::vector<double>(d.grid.count(), 0.0)};
+  for (int j = 0; j < rows; ++j) {
+    for (int i = 0; i < columns; ++i) d.terrain.at(i, j) = d.before.at(i, j) = elevation(d.grid.x(i), d.grid.y(j));
+  }
+  d.release_names = {"body"};
+  return d;
+}
+
+struct Box {
+  double x0, x1, y0, y1, bottom, top;  // [m]; bottom and top above the ground
+};
+
+/// Points on a regular lattice, `across` per cell in x and y and `up` per layer, filling a box.
+inline void fill(Domain& d, const Box& box, int across = 2, int up = 2) {
+  const double dx = d.grid.cell / across, dz = d.layer_height / up;
+  for (double h = box.bottom + dz / 2; h < box.top; h += dz) {
+    for (double y = box.y0 + dx / 2; y < box.y1; y += dx) {
+      for (double x = box.x0 + dx / 2; x < box.x1; x += dx) {
+        d.points.x.push_back(x);
+        d.points.y.push_back(y);
+        d.points.height.push_back(h);
+        d.points.volume.push_back(dx * dx * dz);
+        d.points.release.push_back(0);
+      }
+    }
+  }
+}
+
+/// Where a test runs. A GPU that is not there skips aloud, and fails where one was promised.
+class InEachPlace : public ::testing::TestWithParam<On> {
+ protected:
+  void SetUp() override {
+    if (GetParam() != On::gpu || gpu_available()) return;
+    if (std::getenv("TALUS_REQUIRE_GPU") != nullptr) FAIL() << "TALUS_REQUIRE_GPU is set, but no GPU can be used";
+    GTEST_SKIP() << "no GPU on this machine: the same test ran on the CPU";
+  }
+};
+
+inline std::string place_name(const ::testing::TestParamInfo<On>& info) { return info.param == On::gpu ? "gpu" : "cpu"; }
+
+#define TALUS_IN_EACH_PLACE(suite) \
+  INSTANTIATE_TEST_SUITE_P(places, suite, ::testing::Values(On::cpu, On::gpu), place_name)
+
+/// Step to a time; returns the number of sorts on the way.
+inline int run_to(ExplicitSolver& solver, double time) {
+  int sorts = 0;
+  solver.set_next_event(time);
+  for (;;) {
+    const BatchReport batch = solver.advance();
+    sorts += batch.sorted ? 1 : 0;
+    if (batch.clock.halt == failed) {
+      ADD_FAILURE() << "point " << batch.clock.failed_point << " failed at t = " << batch.clock.time;
+      return sorts;
+    }
+    if (batch.clock.halt == at_event) return sorts;
+  }
+}
+
+struct Centre {
+  double x = 0, y = 0, z = 0, speed = 0;
+};
+
+/// Volume-weighted centre and mean speed of the points.
+inline Centre centre(const ExplicitSolver& solver, const Scene& scene) {
+  const ParticleState s = solver.state().points;
+  const auto x = positions(scene.map, scene.grid, solver.ground(), s);
+  Centre c;
+  double volume = 0, vx = 0, vy = 0, vz = 0;
+  for (std::size_t p = 0; p < s.size(); ++p) {
+    const double v = s.volume[p];
+    volume += v;
+    c.x += v * x[p][0];
+    c.y += v * x[p][1];
+    c.z += v * x[p][2];
+    vx += v * s.velocity[0][p];
+    vy += v * s.velocity[1][p];
+    vz += v * s.velocity[2][p];
+  }
+  return {c.x / volume, c.y / volume, c.z / volume, std::sqrt(vx * vx + vy * vy + vz * vz) / volume};
+}
+
+}  // namespace talus::solver::testing
