@@ -242,7 +242,7 @@ void ExplicitRun::finish(RunSummary& summary) {
   summary.precision = options_.precision == Precision::double_ ? "double" : "single";
   summary.version = version();
   summary.particles = static_cast<std::int64_t>(scene_.points.size());
-  summary.particles_left = memory_.outflow_count;
+  summary.particles_outflow = memory_.outflow_count;
   summary.steps = state.clock.step;
   summary.time_end = time_;
   summary.wall_time = memory_.wall_time;

@@ -12,9 +12,9 @@ namespace talus {
 struct MapGrid {
   int columns = 0;
   int rows = 0;
-  double west = 0;   // outer edge of column 0 [m]
-  double south = 0;  // outer edge of row 0 [m]
-  double cell = 0;   // [m]
+  double west = 0;      // outer edge of column 0 [m]
+  double south = 0;     // outer edge of row 0 [m]
+  double cell = 0;      // [m]
   std::string crs_wkt;  // WKT2; empty = local metric coordinates
 
   std::size_t count() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }

@@ -1,5 +1,5 @@
-// Rasters and polygons in and out through GDAL. The only header of the project that stands for GDAL; the solver does not
-// link it.
+// Rasters and polygons in and out through GDAL. The only header of the project that stands for GDAL; the solver does
+// not link it.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@
 namespace talus {
 
 /// Read band 1 of any GDAL raster; scale and offset applied, nodata (declared, or NaN) becomes NaN, +-inf a DataError.
-/// Refused with the command that mends it (DataError): missing or unreadable file, geographic CRS (degrees), CRS in feet,
-/// rotated or non-square cells, no valid cell at all. A file without CRS is taken as local metric coordinates.
+/// Refused with the command that mends it (DataError): missing or unreadable file, geographic CRS (degrees), CRS in
+/// feet, rotated or non-square cells, no valid cell at all. A file without CRS is taken as local metric coordinates.
 Raster read_raster(const std::filesystem::path& file);
 
 /// True when both name the same CRS (an empty one is local and equals only an empty one).
@@ -24,12 +24,12 @@ bool same_crs(const std::string& wkt_a, const std::string& wkt_b);
 /// Short name of a CRS for messages: "EPSG:32149", or the WKT's name, or "local metric coordinates".
 std::string crs_name(const std::string& wkt);
 
-/// Warp onto `grid` (another CRS, extent, registration or cell size). Elevations: bilinear where the target is finer, area mean
-/// where it is coarser; NaN where the source has no data.
+/// Warp onto `grid` (another CRS, extent, registration or cell size). Elevations: bilinear where the target is finer,
+/// area mean where it is coarser; NaN where the source has no data.
 Raster resample_elevation(const Raster& source, const MapGrid& grid);
 
-/// Bring a thickness onto `grid` by exact area weights (same CRS only), so that the volume inside both extents is kept to
-/// rounding. NaN counts as zero thickness but cells wholly outside the source are NaN.
+/// Bring a thickness onto `grid` by exact area weights (same CRS only), so that the volume inside both extents is kept
+/// to rounding. NaN counts as zero thickness but cells wholly outside the source are NaN.
 Raster resample_thickness(const Raster& source, const MapGrid& grid);
 
 /// A polygon with holes: rings of (x, y) [m], the first the outer one, each without the repeated closing point.
@@ -49,8 +49,8 @@ struct RasterTags {
   std::vector<std::pair<std::string, std::string>> metadata;
 };
 
-/// Write a cloud-optimised GeoTIFF (COG driver, deflate, overviews, nodata -9999, Float64 so that volumes close to 1e-9),
-/// aside and renamed. Throws DataError when anything fails on the way (disk full).
+/// Write a cloud-optimised GeoTIFF (COG driver, deflate, overviews, nodata -9999, Float64 so that volumes close to
+/// 1e-9), aside and renamed. Throws DataError when anything fails on the way (disk full).
 void write_cog(const std::filesystem::path& file, const Raster& raster, const RasterTags& tags);
 
 /// Write a plain GeoTIFF (not COG), same conventions: for samples and intermediates.

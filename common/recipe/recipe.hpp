@@ -37,17 +37,20 @@ class Visitor {
   virtual void enter(std::string_view table, std::string_view help) = 0;  ///< open sub-table [..table]
   virtual void leave() = 0;
   virtual void number(std::string_view key, double& value, Range range, std::string_view help) = 0;
-  virtual void optional_number(std::string_view key, std::optional<double>& value, Range range, std::string_view help) = 0;
+  virtual void optional_number(std::string_view key, std::optional<double>& value, Range range,
+                               std::string_view help) = 0;
   virtual void integer(std::string_view key, int& value, Range range, std::string_view help) = 0;
   virtual void flag(std::string_view key, bool& value, std::string_view help) = 0;
   virtual void text(std::string_view key, std::string& value, std::string_view help) = 0;
-  /// Relative paths in a recipe are relative to the recipe's folder; after reading they are absolute. Empty = not given.
+  /// Relative paths in a recipe are relative to the recipe's folder; after reading they are absolute. Empty = not
+  /// given.
   /// "${NAME}" inside is replaced by the environment variable NAME (an unset one is a fault).
   virtual void path(std::string_view key, std::filesystem::path& value, std::string_view help) = 0;
   virtual void numbers(std::string_view key, std::vector<double>& value, Range range, std::string_view help) = 0;
   virtual void integers(std::string_view key, std::vector<int>& value, Range range, std::string_view help) = 0;
   /// One of `names`; index is its place in the list.
-  virtual void one_of(std::string_view key, int& index, const std::vector<std::string_view>& names, std::string_view help) = 0;
+  virtual void one_of(std::string_view key, int& index, const std::vector<std::string_view>& names,
+                      std::string_view help) = 0;
   /// Array of tables [[..key]]: begin_list says how many items there are (reader: in the file; writer: `size`).
   virtual std::size_t begin_list(std::string_view key, std::size_t size, std::string_view help) = 0;
   virtual void begin_item(std::size_t item) = 0;

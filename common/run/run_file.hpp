@@ -17,49 +17,49 @@ namespace talus {
 /// (mass over initial density), so that its integral closes exactly.
 struct RunMaps {
   MapGrid grid;
-  std::vector<double> terrain;             // bed [m], NaN outside the domain
-  std::vector<double> before;              // surface before the failure [m]
-  std::vector<double> initial_thickness;   // [m]
-  std::vector<double> deposit_thickness;   // at the end [m]
-  std::vector<double> peak_thickness;      // running maximum [m]
-  std::vector<double> peak_speed;          // running maximum of the depth-mean speed [m/s]
-  std::vector<double> peak_pressure;       // running maximum of rho v^2 [kPa]
-  std::vector<double> arrival_time;        // [s], NaN where it never came
-  double threshold = 0;                    // thickness from which speed, pressure and arrival count [m]
+  std::vector<double> terrain;            // bed [m], NaN outside the domain
+  std::vector<double> before;             // surface before the failure [m]
+  std::vector<double> initial_thickness;  // [m]
+  std::vector<double> deposit_thickness;  // at the end [m]
+  std::vector<double> peak_thickness;     // running maximum [m]
+  std::vector<double> peak_speed;         // running maximum of the depth-mean speed [m/s]
+  std::vector<double> peak_pressure;      // running maximum of rho v^2 [kPa]
+  std::vector<double> arrival_time;       // [s], NaN where it never came
+  double threshold = 0;                   // thickness from which speed, pressure and arrival count [m]
 };
 
 /// Thickness maps over time.
 struct RunFrames {
-  std::vector<double> time;                     // [s]
-  std::vector<std::vector<double>> thickness;   // one map per time [m]
+  std::vector<double> time;                    // [s]
+  std::vector<std::vector<double>> thickness;  // one map per time [m]
 };
 
 /// Columns of equal length, one row per record.
 struct RunHistory {
-  std::vector<std::string> names;                // with unit: "time_s", "kinetic_J", ...
-  std::vector<std::vector<double>> columns;      // [names.size()][records]
+  std::vector<std::string> names;            // with unit: "time_s", "kinetic_J", ...
+  std::vector<std::vector<double>> columns;  // [names.size()][records]
 };
 
 /// One number or word each; names as in score.json where they meet.
 struct RunSummary {
   std::string scene, title, on, precision, version, stop_reason;
-  std::int64_t particles = 0, particles_left = 0, steps = 0;
-  double time_end = 0;           // [s]
-  double wall_time = 0;          // step loop [s]
-  double density = 0;            // [kg/m3]
-  double volume_released = 0;    // [m3]
-  double volume_final = 0;       // [m3]
-  double volume_outflow = 0;     // [m3]
+  std::int64_t particles = 0, particles_outflow = 0, steps = 0;
+  double time_end = 0;         // [s]
+  double wall_time = 0;        // step loop [s]
+  double density = 0;          // [kg/m3]
+  double volume_released = 0;  // [m3]
+  double volume_final = 0;     // [m3]
+  double volume_outflow = 0;   // [m3]
   std::vector<std::pair<std::string, std::string>> provenance;
 };
 
 /// Points of one frame, for VTKHDF.
 struct PointFrame {
-  double time = 0;                               // [s]
-  std::vector<std::array<double, 3>> position;   // map coordinates [m]
-  std::vector<std::array<float, 3>> velocity;    // [m/s]
-  std::vector<float> volume;                     // [m3]
-  std::vector<float> pressure;                   // mean stress, compression positive [Pa]
+  double time = 0;                              // [s]
+  std::vector<std::array<double, 3>> position;  // map coordinates [m]
+  std::vector<std::array<float, 3>> velocity;   // [m/s]
+  std::vector<float> volume;                    // [m3]
+  std::vector<float> pressure;                  // mean stress, compression positive [Pa]
   std::vector<std::int32_t> id, release;
 };
 

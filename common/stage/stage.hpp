@@ -19,27 +19,28 @@ enum class On { automatic, cpu, gpu };
 /// What the command line asked for, and what the stage made.
 struct StageContext {
   recipe::Recipe recipe;
-  std::filesystem::path out;                      ///< exists and is writable unless check_only
+  std::filesystem::path out;  ///< exists and is writable unless check_only
   On on = On::automatic;
-  bool check_only = false;                        ///< --check: read and test everything cheap, compute and write nothing
-  std::optional<std::filesystem::path> restart;   ///< talus-solve --restart [FILE]; empty path = OUT/checkpoint.h5
+  bool check_only = false;                       ///< --check: read and test everything cheap, compute and write nothing
+  std::optional<std::filesystem::path> restart;  ///< talus-solve --restart [FILE]; empty path = OUT/checkpoint.h5
   std::string command_line;
-  std::vector<std::filesystem::path> results;     ///< printed on stdout, one a line, at the end
+  std::vector<std::filesystem::path> results;  ///< printed on stdout, one a line, at the end
 };
 
 struct Stage {
-  std::string name;      ///< "talus-solve"
-  std::string table;     ///< its recipe table: "solve"
-  std::string summary;   ///< one line
-  std::string examples;  ///< shown under --help
-  bool has_on = false;       ///< takes --on auto|cpu|gpu
-  bool has_restart = false;  ///< takes --restart
+  std::string name;                            ///< "talus-solve"
+  std::string table;                           ///< its recipe table: "solve"
+  std::string summary;                         ///< one line
+  std::string examples;                        ///< shown under --help
+  bool has_on = false;                         ///< takes --on auto|cpu|gpu
+  bool has_restart = false;                    ///< takes --restart
   std::function<std::string()> template_toml;  ///< for --template
   std::function<void(StageContext&)> run;
 };
 
 /// Parses the command line, runs the stage, prints faults on stderr and result paths on stdout. Returns the exit code.
-/// Options: recipe.toml, --out DIR (default: the recipe's folder / "out"), --check, --template, --on, --restart, -v, -q,
+/// Options: recipe.toml, --out DIR (default: the recipe's folder / "out"), --check, --template, --on, --restart, -v,
+/// -q,
 /// --help (exit codes and examples included), --version (with the commit).
 int run_stage(int argc, char** argv, const Stage& stage);
 
@@ -71,8 +72,8 @@ void write_text(const std::filesystem::path& path, const std::string& text);
 /// SHA-256 of a file, in hex. Throws DataError.
 std::string sha256(const std::filesystem::path& path);
 
-/// `OUT/<stage>.used.toml`: the options with defaults filled in, and above them as comments version, command, inputs with
-/// their checksums, CRS, hardware, wall time (pairs of `facts`).
+/// `OUT/<stage>.used.toml`: the options with defaults filled in, and above them as comments version, command, inputs
+/// with their checksums, CRS, hardware, wall time (pairs of `facts`).
 void write_used_recipe(StageContext& context, const Stage& stage, const std::string& options_toml,
                        const std::vector<std::filesystem::path>& inputs,
                        const std::vector<std::pair<std::string, std::string>>& facts);
@@ -84,8 +85,8 @@ std::string hardware();
 class Progress {
  public:
   Progress();
-  ~Progress();  ///< ends the line
-  bool due() const;                      ///< true when an update would be seen: make the text only then
+  ~Progress();       ///< ends the line
+  bool due() const;  ///< true when an update would be seen: make the text only then
   void update(const std::string& text);
 
  private:

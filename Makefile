@@ -1,0 +1,56 @@
+# The commands of the project; 'make' alone lists them. Everything is built by CMake (see CMakePresets.json).
+SHELL  := /bin/bash
+PRESET ?= default
+BUILD  ?= $(if $(filter cpu check,$(PRESET)),build-$(PRESET),build)
+JOBS   ?= $(shell nproc)
+TEST_JOBS ?= 2
+SETUP  ?= yes
+OUT    ?= pipelines/out
+
+programs := talus-preprocess talus-solve talus-postprocess talus-make-terrain
+launcher := $(if $(shell command -v ccache),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_CUDA_COMPILER_LAUNCHER=ccache)
+
+.PHONY: help setup configure build demo test bundle bundle-solver clean
+
+help: ## this list
+	@echo "make TARGET [PRESET=default|cpu|gpu|check] [JOBS=n]"
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-14s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
+
+setup: ## install what is missing through apt (Debian 12, Ubuntu 24.04); SETUP=no leaves this out
+ifneq ($(SETUP),no)
+	@tools/install-dependencies.sh
+endif
+
+$(BUILD)/build.ninja: CMakePresets.json | setup
+	cmake --preset $(PRESET) -B $(BUILD) $(launcher)
+	@touch $@
+
+build: setup $(BUILD)/build.ninja ## the programs, in build/bin/
+	@cmake --build $(BUILD) -j $(JOBS) --target $(programs)
+
+demo: build ## the synthetic valley from its two elevation models to a scored map
+	@start=$$(mktemp); results=$(abspath $(OUT))/synthetic-valley; \
+	  $(MAKE) --no-print-directory -C pipelines synthetic-valley OUT=$(abspath $(OUT)) BIN=$(abspath $(BUILD))/bin && \
+	  { [[ $$results/score.txt -nt $$start ]] || cat $$results/score.txt; }; code=$$?; rm -f $$start; \
+	  [[ $$code -eq 0 ]] || exit $$code; \
+	  echo; echo "Results in $$results:"; \
+	  echo "  map.png                      the map as a picture"; \
+	  echo "  maps/*.tif, maps/results.nc  the fields, for a GIS"; \
+	  echo "  score.json, score.txt        the numbers above"; \
+	  echo "  run.h5                       the points over time, for ParaView"
+
+test: setup $(BUILD)/build.ninja ## everything built, every test run
+	@cmake --build $(BUILD) -j $(JOBS)
+	@TALUS_REQUIRE_TOOLS=$(if $(filter no,$(SETUP)),,1) \
+	  ctest --test-dir $(BUILD) --output-on-failure --no-tests=error -j $(TEST_JOBS)
+
+bundle: setup $(BUILD)/build.ninja ## programs and tests with the shared libraries they need: build/bundle, build/talus-bundle.tar.xz
+	@cmake --build $(BUILD) -j $(JOBS)
+	@tools/make-bundle.sh $(BUILD)
+
+bundle-solver: setup $(BUILD)/build.ninja ## the solver and its tests alone: build/bundle-solver, build/talus-bundle-solver.tar.xz
+	@cmake --build $(BUILD) -j $(JOBS)
+	@tools/make-bundle.sh $(BUILD) --solver
+
+clean: ## remove the build folder and the pipelines' results
+	rm -rf $(BUILD) pipelines/out

@@ -1,0 +1,28 @@
+// A recipe file as toml++ holds it, and the reader's stand on it. Only the recipe's own .cpp files see this header.
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <filesystem>
+
+#include "common/recipe/recipe.hpp"
+
+namespace talus::recipe {
+
+struct Recipe::Parsed {
+  std::filesystem::path file;  ///< absolute
+  std::string shown;           ///< as the user wrote it, for messages
+  toml::table root;
+};
+
+/// The tables a recipe may hold.
+inline constexpr std::string_view known_tables[] = {"scene", "preprocess", "solve", "postprocess"};
+
+/// "recipe.toml:12:3"
+std::string place(const std::string& file, const toml::source_region& source);
+
+/// Reads `stage` from `root`; the faults, in the order of the file, are added to `faults` when it ends.
+std::unique_ptr<Visitor> make_table_reader(const toml::table& root, std::string shown, std::filesystem::path folder,
+                                           std::string_view stage, std::vector<Fault>& faults);
+
+}  // namespace talus::recipe

@@ -1,0 +1,105 @@
+#include "common/recipe/recipe.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "common/recipe/parsed.hpp"
+#include "common/recipe/suggest.hpp"
+
+namespace talus::recipe {
+namespace fs = std::filesystem;
+namespace {
+
+std::string read_whole(const fs::path& file) {
+  const auto refuse = [&](const std::string& reason) {
+    throw RecipeError(Fault{file.string() + ": the recipe cannot be read", reason, "Check the path"});
+  };
+  if (fs::is_directory(file)) refuse("it is a folder");
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  std::string text(std::istreambuf_iterator<char>(stream), {});
+  if (!stream) refuse(std::generic_category().message(errno));
+  return text;
+}
+
+toml::table parse(const fs::path& file) {
+  try {
+    return toml::parse(read_whole(file), file.string());
+  } catch (const toml::parse_error& error) {
+    throw RecipeError(Fault{place(file.string(), error.source()) + ": this is not TOML",
+                            std::string(error.description()),
+                            "Mend the line; the format is described on https://toml.io"});
+  }
+}
+
+/// [scene] has a name and a title; the name becomes part of file names.
+struct Scene {
+  std::string name, title;
+  void describe(Visitor& v) {
+    v.text("name", name, "short name, part of file names");
+    v.text("title", title, "what the map is called");
+  }
+};
+
+Scene scene_of(const toml::table& root) {
+  return {root["scene"]["name"].value_or(std::string{}), root["scene"]["title"].value_or(std::string{})};
+}
+
+bool fit_for_a_file_name(const std::string& name) {
+  return std::all_of(name.begin(), name.end(),
+                     [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_' || c == '.'; });
+}
+
+}  // namespace
+
+std::string place(const std::string& file, const toml::source_region& source) {
+  return fmt::format("{}:{}:{}", file, source.begin.line, source.begin.column);
+}
+
+Recipe::Recipe(const fs::path& file) : parsed_(std::make_unique<Parsed>()) {
+  parsed_->root = parse(file);
+  parsed_->file = fs::absolute(file).lexically_normal();
+  parsed_->shown = file.string();
+}
+
+Recipe::~Recipe() = default;
+
+const fs::path& Recipe::file() const { return parsed_->file; }
+
+std::string Recipe::scene_name() const {
+  const std::string name = scene_of(parsed_->root).name;
+  return name.empty() ? parsed_->file.stem().string() : name;
+}
+
+std::string Recipe::title() const {
+  const std::string title = scene_of(parsed_->root).title;
+  return title.empty() ? scene_name() : title;
+}
+
+std::unique_ptr<Visitor> Recipe::make_reader(std::string_view stage, std::vector<Fault>& faults) const {
+  const std::vector<std::string> tables(std::begin(known_tables), std::end(known_tables));
+  for (const auto& [key, node] : parsed_->root) {
+    if (std::find(tables.begin(), tables.end(), key.str()) != tables.end()) continue;
+    const std::string kind = node.is_table() ? "table" : "key";
+    faults.push_back(
+        {fmt::format("{}: unknown top-level {} \"{}\"", place(parsed_->shown, key.source()), kind, key.str()), "",
+         did_you_mean(key.str(), tables)});
+  }
+  const fs::path folder = parsed_->file.parent_path();
+  Scene scene;
+  scene.describe(*make_table_reader(parsed_->root, parsed_->shown, folder, "scene", faults));
+  if (!fit_for_a_file_name(scene.name))
+    faults.push_back({fmt::format("{}: [scene] name = \"{}\"",
+                                  place(parsed_->shown, parsed_->root["scene"]["name"].node()->source()), scene.name),
+                      "it becomes part of file names",
+                      "Use letters, digits, '-', '_' and '.' only; put the rest into title"});
+  return make_table_reader(parsed_->root, parsed_->shown, folder, stage, faults);
+}
+
+}  // namespace talus::recipe

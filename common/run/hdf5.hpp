@@ -1,0 +1,115 @@
+// A thin layer over the HDF5 C API: every call is checked, every failure is a DataError that names the file and the
+// system's reason. Objects are named by their path in the file ("/maps/terrain"), so no handle leaves this header.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <hdf5.h>
+
+namespace talus::h5 {
+
+using Dims = std::vector<hsize_t>;
+
+template <class T>
+hid_t native_type();
+template <>
+inline hid_t native_type<double>() {
+  return H5T_NATIVE_DOUBLE;
+}
+template <>
+inline hid_t native_type<float>() {
+  return H5T_NATIVE_FLOAT;
+}
+template <>
+inline hid_t native_type<std::int32_t>() {
+  return H5T_NATIVE_INT32;
+}
+template <>
+inline hid_t native_type<std::int64_t>() {
+  return H5T_NATIVE_INT64;
+}
+template <>
+inline hid_t native_type<std::uint8_t>() {
+  return H5T_NATIVE_UINT8;
+}
+
+/// What messages say of a file: its name as the user knows it, and how to mend it where it cannot be read.
+struct Naming {
+  std::filesystem::path shown;
+  std::string mend;
+};
+
+/// An open HDF5 file. Not thread-safe, as HDF5 is not.
+class File {
+ public:
+  /// Create (truncate) `path`.
+  static File create(const std::filesystem::path& path, Naming naming);
+  /// Open for reading. Missing, truncated or not HDF5: DataError.
+  static File open(const std::filesystem::path& path, Naming naming);
+  File(File&& other) noexcept;
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+  ~File();  ///< closes without looking at errors: call close() where they matter
+
+  /// Flush and close. Throws DataError when bytes could not be written (disk full).
+  void close();
+
+  void make_group(const std::string& path);
+  bool exists(const std::string& path) const;
+  bool has_attribute(const std::string& object, const std::string& name) const;
+  std::vector<std::string> children(const std::string& group) const;          ///< in order of creation
+  std::vector<std::string> attribute_names(const std::string& object) const;  ///< in order of creation
+
+  void set_text(const std::string& object, const std::string& name, const std::string& value);
+  void set_number(const std::string& object, const std::string& name, double value);
+  void set_integers(const std::string& object, const std::string& name, std::span<const std::int64_t> values);
+  void set_integer(const std::string& object, const std::string& name, std::int64_t value) {
+    set_integers(object, name, std::span(&value, 1));
+  }
+  std::string text(const std::string& object, const std::string& name) const;
+  double number(const std::string& object, const std::string& name) const;
+  std::int64_t integer(const std::string& object, const std::string& name) const;
+
+  /// Write a whole dataset, compressed where that pays.
+  template <class T>
+  void write(const std::string& path, const Dims& dims, std::span<const T> values) {
+    write_raw(path, dims, native_type<T>(), values.data(), values.size());
+  }
+  /// Add `rows` rows of shape `row` (empty: scalars) to an extendible dataset, made on the first call.
+  template <class T>
+  void append(const std::string& path, hsize_t rows, const Dims& row, std::span<const T> values) {
+    append_raw(path, rows, row, native_type<T>(), values.data(), values.size());
+  }
+  Dims dims(const std::string& path) const;
+  /// Read a whole dataset whose shape must be `expected`.
+  template <class T>
+  std::vector<T> read(const std::string& path, const Dims& expected) const {
+    std::vector<T> values(checked_count(path, expected));
+    read_raw(path, native_type<T>(), values.data());
+    return values;
+  }
+
+  /// Throws the DataError of this file: "FILE: `problem` (reason HDF5 gives). mend", or where it is being written, what
+  /// write_fault() says of it.
+  [[noreturn]] void fail(const std::string& problem) const;
+
+ private:
+  File(hid_t id, Naming naming, bool writing) : id_(id), naming_(std::move(naming)), writing_(writing) {}
+  void write_raw(const std::string& path, const Dims& dims, hid_t type, const void* data, std::size_t count);
+  void append_raw(const std::string& path, hsize_t rows, const Dims& row, hid_t type, const void* data,
+                  std::size_t count);
+  void create_extendible(const std::string& path, const Dims& row, hid_t type);
+  std::size_t checked_count(const std::string& path, const Dims& expected) const;
+  void read_raw(const std::string& path, hid_t type, void* data) const;
+
+  hid_t id_;
+  Naming naming_;
+  bool writing_;
+};
+
+}  // namespace talus::h5

@@ -1,0 +1,109 @@
+// Writing run.h5. Layout: attributes of / = summary; /VTKHDF = points (vtkhdf.hpp); /maps, /frames, /history,
+// /provenance.
+#include "common/run/run_file.hpp"
+
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "common/run/hdf5.hpp"
+#include "common/run/run_layout.hpp"
+#include "common/run/vtkhdf.hpp"
+#include "common/stage/stage.hpp"
+
+namespace talus {
+namespace {
+
+void write_grid(h5::File& file, const MapGrid& grid) {
+  file.set_integer("/maps", "columns", grid.columns);
+  file.set_integer("/maps", "rows", grid.rows);
+  file.set_number("/maps", "west_m", grid.west);
+  file.set_number("/maps", "south_m", grid.south);
+  file.set_number("/maps", "cell_m", grid.cell);
+  file.set_text("/maps", "crs_wkt", grid.crs_wkt);
+  file.set_text("/maps", "row_order", "row 0 is the southernmost");
+}
+
+void write_maps(h5::File& file, const RunMaps& maps) {
+  file.make_group("/maps");
+  write_grid(file, maps.grid);
+  file.set_number("/maps", "threshold_m", maps.threshold);
+  const h5::Dims shape{static_cast<hsize_t>(maps.grid.rows), static_cast<hsize_t>(maps.grid.columns)};
+  for (const auto& field : run_layout::map_fields) {
+    const auto path = std::string("/maps/") + field.name;
+    file.write<double>(path, shape, maps.*(field.values));
+    file.set_text(path, "unit", field.unit);
+    file.set_text(path, "long_name", field.long_name);
+  }
+}
+
+void write_history(h5::File& file, const RunHistory& history) {
+  file.make_group("/history");
+  if (history.names.size() != history.columns.size())
+    throw std::logic_error("RunHistory: names and columns differ in number");
+  for (std::size_t i = 0; i < history.names.size(); ++i) {
+    if (history.columns[i].size() != history.columns[0].size())
+      throw std::logic_error("RunHistory: columns of different lengths");
+    file.write<double>("/history/" + history.names[i], {history.columns[i].size()}, history.columns[i]);
+  }
+}
+
+void write_summary(h5::File& file, const RunSummary& summary) {
+  for (const auto& item : run_layout::summary_texts) file.set_text("/", item.name, summary.*(item.value));
+  for (const auto& item : run_layout::summary_integers) file.set_integer("/", item.name, summary.*(item.value));
+  for (const auto& item : run_layout::summary_numbers) file.set_number("/", item.name, summary.*(item.value));
+  file.make_group("/provenance");
+  for (std::size_t i = 0; i < summary.provenance.size(); ++i) {
+    // Numbered groups: keys may repeat, and values (a whole CRS) may be longer than an attribute's name allows.
+    const auto group = fmt::format("/provenance/{:03}", i);
+    file.make_group(group);
+    file.set_text(group, "key", summary.provenance[i].first);
+    file.set_text(group, "value", summary.provenance[i].second);
+  }
+}
+
+}  // namespace
+
+/// The order matters: the file is closed before the pending name is removed.
+struct RunWriter::Open {
+  PendingFile pending;
+  h5::File file;
+  VtkHdfPoints points;
+  std::optional<MapGrid> frame_grid;
+
+  explicit Open(std::filesystem::path path)
+      : pending(std::move(path)), file(h5::File::create(pending.path(), {pending.final_path(), ""})), points(file) {
+    file.set_text("/", "format", run_layout::format);
+    file.set_integer("/", "format_version", run_layout::format_version);
+    file.make_group("/frames");
+  }
+};
+
+RunWriter::RunWriter(std::filesystem::path file) : open_(std::make_unique<Open>(std::move(file))) {}
+RunWriter::~RunWriter() = default;
+
+void RunWriter::append(const PointFrame& frame) { open_->points.append(frame); }
+
+void RunWriter::append_thickness(double time, const MapGrid& grid, const std::vector<double>& thickness) {
+  if (!open_->frame_grid) open_->frame_grid = grid;
+  if (open_->frame_grid->columns != grid.columns || open_->frame_grid->rows != grid.rows) {
+    throw std::logic_error("RunWriter: thickness frames on different grids");
+  }
+  const h5::Dims shape{static_cast<hsize_t>(grid.rows), static_cast<hsize_t>(grid.columns)};
+  open_->file.append<double>("/frames/time", 1, {}, std::span<const double>(&time, 1));
+  open_->file.append<double>("/frames/thickness", 1, shape, thickness);
+}
+
+void RunWriter::finish(const RunMaps& maps, const RunHistory& history, const RunSummary& summary) {
+  open_->points.finish();
+  write_maps(open_->file, maps);
+  write_history(open_->file, history);
+  write_summary(open_->file, summary);
+  open_->file.close();
+  open_->pending.commit();
+}
+
+}  // namespace talus

@@ -1,0 +1,35 @@
+// What may stand on the command line of a stage.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "common/stage/console.hpp"
+#include "common/stage/stage.hpp"
+
+namespace talus {
+
+struct CommandLine {
+  std::filesystem::path recipe;  ///< empty: none given
+  std::filesystem::path out;     ///< empty: beside the recipe
+  On on = On::automatic;
+  bool check_only = false;
+  bool print_template = false;
+  std::optional<std::filesystem::path> restart;
+  Verbosity verbosity = Verbosity::normal;
+};
+
+/// Text for stdout, asked for by --help or --version.
+struct Answer {
+  std::string text;
+};
+
+/// Throws RecipeError when an option is unknown or wrong.
+std::variant<CommandLine, Answer> parse_command_line(int argc, char** argv, const Stage& stage);
+
+/// "Usage: talus-solve recipe.toml [--out DIR] ..."
+std::string usage(const Stage& stage);
+
+}  // namespace talus

@@ -1,0 +1,20 @@
+// How much is said on stderr, and the progress line that log lines must not run into. Shared by log, progress and
+// runner.
+#pragma once
+
+#include <string>
+
+namespace talus {
+
+enum class Verbosity { quiet, normal, verbose };
+
+void set_verbosity(Verbosity verbosity);
+Verbosity verbosity();
+
+/// Take a drawn progress line off the terminal, so that the next output starts on a clean line.
+void clear_progress_line();
+
+/// An error line on stderr, shown even under -q.
+void log_error(const std::string& text);
+
+}  // namespace talus

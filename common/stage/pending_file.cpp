@@ -1,0 +1,75 @@
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <fstream>
+#include <system_error>
+
+#include "common/stage/stage.hpp"
+#include "common/stage/write_fault.hpp"
+
+namespace talus {
+namespace fs = std::filesystem;
+namespace {
+
+std::string reason_of(int code) { return std::generic_category().message(code); }
+
+/// Force a file or folder to the disk; returns errno, or 0. Late write errors (quota, network disks) show up here.
+int sync_to_disk(const fs::path& path, int flags) {
+  const int descriptor = ::open(path.c_str(), flags | O_CLOEXEC);
+  if (descriptor < 0) return errno;
+  const int synced = ::fsync(descriptor) == 0 ? 0 : errno;
+  const int closed = ::close(descriptor) == 0 ? 0 : errno;
+  return synced != 0 ? synced : closed;
+}
+
+}  // namespace
+
+Fault write_fault(const fs::path& path, const std::string& reason) {
+  constexpr std::uintmax_t nearly_nothing = 64 * 1024;  // file systems keep a few blocks back
+  std::error_code ignored;
+  const fs::space_info space = fs::space(path.has_parent_path() ? path.parent_path() : fs::path("."), ignored);
+  const bool full = !ignored && space.available < nearly_nothing;
+  Fault fault{path.string() + ": cannot be written", reason, ""};
+  if (full) {
+    fault.why = "the disk is full" + (reason.empty() ? "" : ": " + reason);
+    fault.mend = "Free some space, or write elsewhere with --out DIR";
+  } else {
+    fault.mend = "Check the folder's permissions and free space, or write elsewhere with --out DIR";
+  }
+  return fault;
+}
+
+PendingFile::PendingFile(fs::path final_path)
+    : final_(std::move(final_path)), partial_(final_.parent_path() / ("." + final_.filename().string() + ".partial")) {
+  std::error_code ignored;
+  fs::remove(partial_, ignored);  // left by a run that was killed
+}
+
+PendingFile::~PendingFile() {
+  if (committed_) return;
+  std::error_code ignored;
+  fs::remove(partial_, ignored);
+}
+
+void PendingFile::commit() {
+  if (const int code = sync_to_disk(partial_, O_RDONLY); code != 0)
+    throw DataError(write_fault(final_, reason_of(code)));
+  if (::rename(partial_.c_str(), final_.c_str()) != 0) throw DataError(write_fault(final_, reason_of(errno)));
+  committed_ = true;
+  // The rename itself lives in the folder; some file systems refuse to sync folders, and then there is no more to do.
+  sync_to_disk(final_.has_parent_path() ? final_.parent_path() : fs::path("."), O_RDONLY | O_DIRECTORY);
+}
+
+void write_text(const fs::path& path, const std::string& text) {
+  PendingFile pending(path);
+  errno = 0;
+  std::ofstream stream(pending.path(), std::ios::binary);
+  stream << text;
+  stream.close();
+  if (!stream) throw DataError(write_fault(path, errno != 0 ? reason_of(errno) : "the system gave no reason"));
+  pending.commit();
+}
+
+}  // namespace talus

@@ -1,0 +1,56 @@
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "common/stage/console.hpp"
+#include "common/stage/stage.hpp"
+
+namespace talus {
+namespace {
+
+bool line_on_terminal = false;  // a progress line stands on the terminal, without its newline
+
+std::size_t terminal_width() {
+  winsize size{};
+  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col - 1u : 79u;
+}
+
+}  // namespace
+
+void clear_progress_line() {
+  if (!line_on_terminal) return;
+  std::fputs("\r\033[K", stderr);
+  line_on_terminal = false;
+}
+
+Progress::Progress() : terminal_(::isatty(STDERR_FILENO) == 1), quiet_(verbosity() == Verbosity::quiet) {
+  last_ = std::chrono::steady_clock::now();
+}
+
+Progress::~Progress() {
+  if (!drawn_ || !line_on_terminal) return;
+  std::fputc('\n', stderr);
+  line_on_terminal = false;
+}
+
+bool Progress::due() const {
+  using namespace std::chrono_literals;
+  const auto since = std::chrono::steady_clock::now() - last_;
+  return !quiet_ && (terminal_ ? since >= 200ms : since >= 10s);
+}
+
+void Progress::update(const std::string& text) {
+  if (quiet_) return;
+  last_ = std::chrono::steady_clock::now();
+  if (terminal_) {
+    std::fprintf(stderr, "\r%s\033[K",
+                 text.substr(0, terminal_width()).c_str());  // a wrapped line could not be redrawn
+    line_on_terminal = drawn_ = true;
+  } else {
+    std::fprintf(stderr, "%s\n", text.c_str());
+  }
+  std::fflush(stderr);
+}
+
+}  // namespace talus

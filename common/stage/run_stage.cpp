@@ -1,0 +1,117 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <fstream>
+#include <new>
+#include <system_error>
+
+#include "common/stage/command_line.hpp"
+#include "common/stage/console.hpp"
+#include "common/stage/interrupt.hpp"
+#include "common/stage/stage.hpp"
+
+namespace talus {
+namespace fs = std::filesystem;
+namespace {
+
+[[noreturn]] void refuse_output_folder(const fs::path& folder, const std::string& reason) {
+  throw DataError(
+      {folder.string() + ": the output folder cannot be written to", reason, "Name another one with --out DIR"});
+}
+
+/// --check writes nothing, so it asks for the permissions of the nearest folder that is there.
+void check_output_folder(const fs::path& folder) {
+  fs::path nearest = folder;
+  while (!fs::exists(nearest) && nearest.has_relative_path()) nearest = nearest.parent_path();
+  errno = fs::is_directory(nearest) ? 0 : ENOTDIR;
+  if (errno != 0 || ::access(nearest.c_str(), W_OK | X_OK) != 0)
+    refuse_output_folder(folder, std::generic_category().message(errno));
+}
+
+/// Long work must not end in "permission denied": make the folder and write a few bytes there first.
+void prepare_output_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) refuse_output_folder(folder, error.message());
+  const fs::path probe = folder / ".writable.partial";
+  errno = 0;
+  std::ofstream stream(probe);
+  stream << "probe\n";
+  stream.close();
+  const int reason = errno;
+  const bool written = !stream.fail();
+  fs::remove(probe, error);
+  if (!written) refuse_output_folder(folder, std::generic_category().message(reason));
+}
+
+std::string joined(int argc, char** argv) {
+  std::string text;
+  for (int i = 0; i < argc; ++i) {
+    const std::string word = argv[i];
+    const bool quote = word.empty() || word.find_first_of(" \t\n'\"$*?;&|<>()") != std::string::npos;
+    text += (i == 0 ? "" : " ") + (quote ? "'" + word + "'" : word);
+  }
+  return text;
+}
+
+void run(const CommandLine& line, const std::string& command, const Stage& stage) {
+  if (line.print_template) {
+    fmt::print(
+        "# {} {}, written by --template: every key with its default.\n"
+        "# A recipe holds [scene] and the tables of all stages:\n"
+        "# [scene]\n# name = \"my-scene\"\n# title = \"What the map is called\"\n\n{}",
+        stage.name, version(), stage.template_toml());
+    return;
+  }
+  if (line.recipe.empty()) throw RecipeError(Fault{"no recipe was given", "", usage(stage)});
+  StageContext context{recipe::Recipe(line.recipe), {}, line.on, line.check_only, line.restart, command, {}};
+  const fs::path beside = context.recipe.file().parent_path() / "out";
+  context.out = line.out.empty() ? beside : fs::absolute(line.out).lexically_normal();
+  line.check_only ? check_output_folder(context.out) : prepare_output_folder(context.out);
+  watch_for_interrupts();
+  stage.run(context);
+  clear_progress_line();
+  for (const auto& path : context.results) fmt::print("{}\n", path.string());
+}
+
+int report(const Stage& stage, const Error& error) {
+  for (const Fault& fault : error.faults()) log_error(stage.name + ": " + to_string(fault));
+  return static_cast<int>(error.code());
+}
+
+int guarded(int argc, char** argv, const Stage& stage) {
+  const auto parsed = parse_command_line(argc, argv, stage);
+  if (const auto* answer = std::get_if<Answer>(&parsed)) {
+    fmt::print("{}", answer->text);
+  } else {
+    const auto& line = std::get<CommandLine>(parsed);
+    set_verbosity(line.verbosity);
+    run(line, joined(argc, argv), stage);
+  }
+  errno = 0;
+  if (std::fflush(stdout) != 0)
+    throw DataError({"stdout: cannot be written", std::generic_category().message(errno),
+                     "The results themselves are in the output folder"});
+  return static_cast<int>(ExitCode::success);
+}
+
+}  // namespace
+
+int run_stage(int argc, char** argv, const Stage& stage) {
+  try {
+    return guarded(argc, argv, stage);
+  } catch (const Error& error) {
+    return report(stage, error);
+  } catch (const std::bad_alloc&) {
+    return report(stage, DataError({"the scene does not fit into memory", "an allocation failed",
+                                    "Take a larger spacing, fewer points per cell or a smaller extent"}));
+  } catch (const std::exception& error) {
+    log_error(fmt::format("{}: {} (this is a bug). Please report it, with the recipe and the version: {}", stage.name,
+                          error.what(), version()));
+  }
+  return static_cast<int>(ExitCode::bug);
+}
+
+}  // namespace talus

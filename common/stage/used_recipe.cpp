@@ -1,0 +1,43 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/recipe/values.hpp"
+#include "common/stage/stage.hpp"
+
+namespace talus {
+namespace {
+
+/// One comment line; a value with line breaks must not slip out of its comment.
+std::string comment(const std::string& name, std::string value) {
+  std::replace_if(
+      value.begin(), value.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  return fmt::format("# {}: {}\n", name, value);
+}
+
+std::string checksum(const std::filesystem::path& path) {
+  return std::filesystem::is_regular_file(path) ? "sha256 " + sha256(path) : "not a plain file, no checksum";
+}
+
+}  // namespace
+
+void write_used_recipe(StageContext& context, const Stage& stage, const std::string& options_toml,
+                       const std::vector<std::filesystem::path>& inputs,
+                       const std::vector<std::pair<std::string, std::string>>& facts) {
+  std::string text = "# What was used, defaults filled in. This file is itself a recipe.\n";
+  text += comment("program", stage.name + " " + version());
+  text += comment("command", context.command_line);
+  text += comment("recipe", context.recipe.file().string() + "  " + checksum(context.recipe.file()));
+  for (const auto& input : inputs)
+    if (!input.empty()) text += comment("input", input.string() + "  " + checksum(input));
+  const auto tells_hardware = [](const auto& fact) { return fact.first == "hardware"; };
+  if (std::none_of(facts.begin(), facts.end(), tells_hardware)) text += comment("hardware", hardware());
+  for (const auto& [name, value] : facts) text += comment(name, value);
+  text += fmt::format("\n[scene]\nname = {}\ntitle = {}\n\n{}", recipe::toml_text(context.recipe.scene_name()),
+                      recipe::toml_text(context.recipe.title()), options_toml);
+  const auto path = context.out / (stage.table + ".used.toml");
+  write_text(path, text);
+  context.results.push_back(path);
+}
+
+}  // namespace talus

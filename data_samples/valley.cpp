@@ -1,0 +1,161 @@
+#include <algorithm>
+#include <cmath>
+
+#include "data_samples/terrains.hpp"
+
+namespace talus::samples {
+
+namespace {
+
+constexpr double width = 960, height = 680;
+
+// The valley is described along its own axes and laid obliquely across the map, at an angle to the light of a hillshade
+// (from the north-west).
+constexpr double turn_angle = -30 * M_PI / 180;
+
+struct Place {
+  double x, y;
+};
+
+/// From the map (counted from its corner) to the valley's axes, x from the ridge down to the river. A mirror and a turn
+/// about the middle undo themselves, so it is its own inverse.
+Place turned(double x, double y) {
+  const double c = std::cos(turn_angle), s = std::sin(turn_angle), dx = x - width / 2, dy = y - height / 2;
+  return {width / 2 - c * dx + s * dy, height / 2 + s * dx + c * dy};
+}
+
+std::array<double, 2> on_map(double x, double y) {
+  const Place p = turned(x, y);
+  return {west + p.x, south + p.y};
+}
+
+struct Ellipse {
+  double x, y;                        // centre, from the corner [m]
+  double west_axis, east_axis, side;  // half axes [m]
+  /// 0 in the centre, 1 on the rim.
+  double radius(double px, double py) const {
+    return std::hypot((px - x) / (px < x ? west_axis : east_axis), (py - y) / side);
+  }
+  /// Half the width at x; 0 outside.
+  double half_width(double px) const {
+    const double part = (px - x) / (px < x ? west_axis : east_axis);
+    return side * std::sqrt(std::max(0.0, 1 - part * part));
+  }
+};
+
+constexpr Ellipse scar{300, 345, 85, 85, 75};
+constexpr Ellipse lobe{628, 318, 165, 100, 115};
+constexpr double scar_depth = 22;  // [m]
+
+double river(double y) { return 690 + 28 * std::sin(2 * M_PI * y / 560 + 0.7) + 9 * std::sin(2 * M_PI * y / 210); }
+
+double smooth(double t) {
+  t = std::clamp(t, 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+/// Integral of smooth() from 0 to t.
+double smooth_integral(double t) {
+  const double c = std::clamp(t, 0.0, 1.0);
+  return c * c * c - c * c * c * c / 2 + std::max(0.0, t - 1);
+}
+
+/// Height of a flank at a distance from its foot: its slope grows from `foot` to `steep` over `reach`, and past `crest`
+/// falls off again to round the ridge.
+struct Flank {
+  double foot, steep, reach, crest;
+  double operator()(double s) const {
+    if (s <= 0) return 0;
+    return foot * s + (steep - foot) * reach * smooth_integral(s / reach) -
+           (steep + 0.1) * 190 * smooth_integral((s - crest) / 190);
+  }
+};
+
+/// Undulation with gullies that run down the flank: shorter across than along it, sharp at the bottom.
+double roughness(double x, double y) {
+  const double warp = 30 * noise(x / 230, y / 190, 11);
+  const double gullies = -std::abs(noise((x + warp) / 420, (y + warp) / 118, 3)) + 0.3;
+  return 24 * gullies + 14 * noise(x / 260, y / 210, 5) + 6 * noise(x / 95, y / 88, 7) + 2.6 * noise(x / 43, y / 41, 9);
+}
+
+double before(double x, double y) {
+  const double away = x - river(y), half_floor = 52;
+  const double s = std::abs(away) - half_floor;
+  const Flank western{0.10, 0.80, 250, 455}, eastern{0.08, 0.62, 130, 190};
+  const double flank = away < 0 ? western(s) : eastern(s);
+  const double on_flank = 0.06 + 0.94 * smooth((s + 10) / 190);
+  const double quiet = 1 - 0.55 * std::exp(-2 * std::pow(scar.radius(x, y), 4));  // the failing slope is smoother
+  const double channel = -3.2 * std::exp(-away * away / (2 * 11 * 11));
+  return 860 + 0.035 * y + flank + roughness(x, y) * on_flank * quiet + channel;
+}
+
+/// A spoon, deeper towards its head.
+double scar_at(double x, double y) {
+  const double r = scar.radius(x, y);
+  return r < 1 ? scar_depth * (1 - r * r) * (1 - 0.25 * (x - scar.x) / scar.east_axis) : 0.0;
+}
+
+/// A hummocky lobe with a blunt front, before it is given its volume.
+double lobe_shape(double x, double y) {
+  const double r = lobe.radius(x, y) * (1 + 0.10 * noise(x / 70, y / 70, 21));
+  return r < 1 ? std::pow(1 - r * r, 0.8) * (1 + 0.35 * noise(x / 55, y / 55, 23)) : 0.0;
+}
+
+double volume_ratio() {
+  double scar_volume = 0, lobe_volume = 0;
+  for (double y = 1; y < height; y += 2) {
+    for (double x = 1; x < width; x += 2) {
+      scar_volume += scar_at(x, y);
+      lobe_volume += lobe_shape(x, y);
+    }
+  }
+  return scar_volume / lobe_volume;
+}
+
+Outline scar_outline() {
+  Outline outline;
+  const int corners = 40;
+  for (int i = 0; i < corners; ++i) {
+    const double a = 2 * M_PI * i / corners;
+    outline.push_back(on_map(scar.x + scar.east_axis * std::cos(a), scar.y + scar.side * std::sin(a)));
+  }
+  return outline;
+}
+
+/// Scar, track and lobe in one outline: for every x how far it reaches to either side of a middle line.
+Outline affected_outline() {
+  const double start = scar.x - scar.west_axis, end = lobe.x + lobe.east_axis;
+  const int steps = 48;
+  Outline lower, upper;
+  for (int i = 0; i <= steps; ++i) {
+    const double x = start + (end - start) * (1 - std::cos(M_PI * i / steps)) / 2;
+    const double along = smooth((x - scar.x) / (lobe.x - scar.x));
+    const double middle = std::lerp(scar.y, lobe.y, along);
+    const double track = x > scar.x && x < lobe.x ? std::lerp(62.0, 80.0, along) : 0.0;
+    const double half = std::max({scar.half_width(x), lobe.half_width(x), track});
+    lower.push_back(on_map(x, middle - half));
+    if (half > 0) upper.push_back(on_map(x, middle + half));
+  }
+  lower.insert(lower.end(), upper.rbegin(), upper.rend());
+  return lower;
+}
+
+}  // namespace
+
+Sample valley(double cell) {
+  const double ratio = volume_ratio();
+  Sample sample;
+  sample.rasters.emplace_back("before_dem", raster_of(width, height, cell, [](double x, double y) {
+                                const Place p = turned(x, y);
+                                return before(p.x, p.y);
+                              }));
+  sample.rasters.emplace_back("after_dem", raster_of(width, height, cell, [&](double x, double y) {
+                                const Place p = turned(x, y);
+                                return before(p.x, p.y) - scar_at(p.x, p.y) + ratio * lobe_shape(p.x, p.y);
+                              }));
+  sample.outlines.emplace_back("source", std::vector{Feature{"source", -1, scar_outline()}});
+  sample.outlines.emplace_back("surveyed_outline", std::vector{Feature{"surveyed", -1, affected_outline()}});
+  return sample;
+}
+
+}  // namespace talus::samples

@@ -1,0 +1,21 @@
+// What CF wants to know of a projected CRS, taken from its WKT2.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace talus::postprocess {
+
+/// Attributes of a CF grid_mapping variable (CF-1.8, appendix F).
+struct CfProjection {
+  std::string grid_mapping_name;  ///< empty: a projection CF has no name for
+  std::vector<std::pair<std::string, std::vector<double>>>
+      numbers;  ///< parameters, angles in degrees, lengths in metres
+};
+
+/// Read METHOD, PARAMETER, ELLIPSOID and PRIMEM of a WKT2 text. Projections not in CF's appendix give an empty name:
+/// readers then go by crs_wkt, which is written in every case.
+CfProjection cf_projection(const std::string& wkt2);
+
+}  // namespace talus::postprocess

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "common/run/run_file.hpp"
+
+namespace talus::postprocess {
+
+struct NetcdfNotes {
+  std::string institution;   ///< empty: "not stated"
+  std::string command_line;  ///< for history
+};
+
+/// Write `file` (aside, renamed): NetCDF-4 after CF-1.8, dimensions (time, y, x), y rising with row (south first).
+/// Variables: the product fields, bed elevation, thickness at the start and over time, grid mapping `crs` where the run
+/// has a CRS. All double with _FillValue -9999 and deflate. Throws DataError (disk full).
+void write_netcdf(const std::filesystem::path& file, const Run& run, const NetcdfNotes& notes);
+
+}  // namespace talus::postprocess

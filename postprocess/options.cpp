@@ -1,0 +1,57 @@
+#include "postprocess/options.hpp"
+
+#include <algorithm>
+#include <functional>
+
+namespace talus::postprocess {
+
+void SurveyOptions::describe(recipe::Visitor& v) {
+  v.text("name", name, "how map and table call it: a survey, or another model's name");
+  v.path("thickness", thickness, "raster of the deposit's thickness, vertical [m]");
+  v.path("peak_thickness", peak_thickness, "raster of the peak thickness, vertical [m]; gives the footprint");
+  v.path("after_dem", after_dem, "elevations after the event: deposit where they lie above those before");
+  v.path("before_dem", before_dem,
+         "elevations before the event, with after_dem; empty: the surface the run started from");
+  v.path("polygon", polygon, "outline of the affected area (any vector format); gives the footprint");
+  v.flag("nodata_is_zero", nodata_is_zero,
+         "thickness rasters: no data means no deposit (otherwise: not surveyed, left out)");
+}
+
+void Options::describe(recipe::Visitor& v) {
+  v.path("run", run, "run.h5 of talus-solve; empty: the one in the output folder");
+  v.number("footprint_threshold_m", footprint_threshold, recipe::positive, "footprint: peak thickness above this");
+  v.number("deposit_threshold_m", deposit_threshold, recipe::positive, "deposit: final thickness above this");
+  v.numbers(
+      "classes_m", classes, recipe::positive,
+      "lower limits of the map's thickness classes, rising; empty: 0.1 5 10 25 50 100, or 0.1 0.5 1 2 5 10 where the "
+      "deposit is thinner than 12 m");
+  v.text("institution", institution, "who made this, for the NetCDF file");
+  v.enter("survey", "what the run is scored against: thickness, or after_dem, or polygon; all empty: no scores");
+  survey.describe(v);
+  v.leave();
+}
+
+void Options::check(std::vector<Fault>& faults) const {
+  if (std::adjacent_find(classes.begin(), classes.end(), std::greater_equal<>()) != classes.end()) {
+    faults.push_back({"[postprocess] classes_m does not rise", "classes are given by their lower limits",
+                      "Sort the limits, each once"});
+  }
+  if (classes.size() > 9) {
+    faults.push_back({"[postprocess] classes_m has " + std::to_string(classes.size()) + " classes",
+                      "nobody tells more than 9 shades apart on a map", "Give 9 limits or fewer"});
+  }
+  if (!survey.thickness.empty() && !survey.after_dem.empty()) {
+    faults.push_back({"[postprocess.survey] gives thickness and after_dem", "one deposit can be scored at a time",
+                      "Leave one of them out"});
+  }
+  if (!survey.peak_thickness.empty() && !survey.polygon.empty()) {
+    faults.push_back({"[postprocess.survey] gives peak_thickness and polygon", "both say what the footprint is",
+                      "Leave one of them out"});
+  }
+  if (!survey.before_dem.empty() && survey.after_dem.empty()) {
+    faults.push_back(
+        {"[postprocess.survey] gives before_dem alone", "a change needs two surfaces", "Give after_dem as well"});
+  }
+}
+
+}  // namespace talus::postprocess

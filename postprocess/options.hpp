@@ -1,0 +1,38 @@
+// Table [postprocess] of a recipe.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/recipe/recipe.hpp"
+
+namespace talus::postprocess {
+
+/// What the simulation is scored against. Nothing given: no score against a survey.
+struct SurveyOptions {
+  std::string name = "survey";           // how the map and the table call it
+  std::filesystem::path thickness;       // raster of deposit thickness, vertical [m]
+  std::filesystem::path peak_thickness;  // raster of peak thickness, vertical [m]: the footprint
+  std::filesystem::path before_dem;      // with after_dem: surveyed change; empty = the run's own surface before
+  std::filesystem::path after_dem;
+  std::filesystem::path polygon;  // outline of the affected area
+  bool nodata_is_zero = false;    // thickness rasters: no data means no deposit
+
+  bool given() const { return !(thickness.empty() && peak_thickness.empty() && after_dem.empty() && polygon.empty()); }
+  void describe(recipe::Visitor& v);
+};
+
+struct Options {
+  std::filesystem::path run;         // empty = OUT/run.h5
+  double footprint_threshold = 1.0;  // [m]
+  double deposit_threshold = 1.0;    // [m]
+  std::vector<double> classes;       // lower limits of the thickness classes [m]; empty = by the deposit's thickness
+  std::string institution;
+  SurveyOptions survey;
+
+  void describe(recipe::Visitor& v);
+  void check(std::vector<Fault>& faults) const;
+};
+
+}  // namespace talus::postprocess

@@ -1,0 +1,142 @@
+#include "postprocess/picture/canvas.hpp"
+
+#include <cairo.h>
+
+#include <algorithm>
+#include <cstring>
+#include <stdexcept>
+
+namespace talus::postprocess {
+namespace {
+
+constexpr const char* font = "DejaVu Sans";
+
+void set_colour(cairo_t* cairo, const Colour& c, double opacity = 1) {
+  cairo_set_source_rgba(cairo, c.r, c.g, c.b, opacity);
+}
+
+void trace(cairo_t* cairo, const Pixels& points) {
+  cairo_new_path(cairo);
+  for (const auto& [x, y] : points) cairo_line_to(cairo, x, y);
+  if (points.size() > 2 && points.front() == points.back()) cairo_close_path(cairo);
+}
+
+void stroke(cairo_t* cairo, const Pen& pen) {
+  set_colour(cairo, pen.colour, pen.opacity);
+  cairo_set_line_width(cairo, pen.width);
+  cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
+  cairo_set_dash(cairo, pen.dashes.data(), static_cast<int>(pen.dashes.size()), 0);
+  cairo_stroke(cairo);
+}
+
+void set_font(cairo_t* cairo, const TextStyle& style) {
+  cairo_select_font_face(cairo, font, CAIRO_FONT_SLANT_NORMAL,
+                         style.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_set_font_size(cairo, style.size);
+}
+
+}  // namespace
+
+struct Canvas::Handles {
+  cairo_surface_t* surface;
+  cairo_t* cairo;
+};
+
+Canvas::Canvas(int width, int height) : handles_(std::make_unique<Handles>()) {
+  handles_->surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
+  handles_->cairo = cairo_create(handles_->surface);
+  set_colour(handles_->cairo, {1, 1, 1});
+  cairo_paint(handles_->cairo);
+}
+
+Canvas::~Canvas() {
+  cairo_destroy(handles_->cairo);
+  cairo_surface_destroy(handles_->surface);
+}
+
+void Canvas::line(const Pixels& points, const Pen& pen) {
+  trace(handles_->cairo, points);
+  stroke(handles_->cairo, pen);
+}
+
+void Canvas::fill(const Pixels& points, const Colour& colour) {
+  trace(handles_->cairo, points);
+  set_colour(handles_->cairo, colour);
+  cairo_fill(handles_->cairo);
+}
+
+void Canvas::fill(const Box& box, const Colour& colour) {
+  cairo_rectangle(handles_->cairo, box.x, box.y, box.width, box.height);
+  set_colour(handles_->cairo, colour);
+  cairo_fill(handles_->cairo);
+}
+
+void Canvas::frame(const Box& box, const Pen& pen) {
+  cairo_rectangle(handles_->cairo, box.x, box.y, box.width, box.height);
+  stroke(handles_->cairo, pen);
+}
+
+double Canvas::text_width(const std::string& words, const TextStyle& style) {
+  set_font(handles_->cairo, style);
+  cairo_text_extents_t extents;
+  cairo_text_extents(handles_->cairo, words.c_str(), &extents);
+  return extents.x_advance;
+}
+
+double Canvas::text(const std::string& words, double x, double y, const TextStyle& style) {
+  auto* cairo = handles_->cairo;
+  const double width = text_width(words, style);
+  const double shift = style.align == Align::left ? 0 : style.align == Align::centre ? -0.5 * width : -width;
+  cairo_save(cairo);
+  cairo_translate(cairo, x, y);
+  cairo_rotate(cairo, -style.angle);
+  cairo_new_path(cairo);
+  cairo_move_to(cairo, shift, 0);
+  cairo_text_path(cairo, words.c_str());
+  if (style.halo > 0) {
+    set_colour(cairo, {1, 1, 1}, 0.85);
+    cairo_set_line_width(cairo, 2 * style.halo);
+    cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
+    cairo_set_dash(cairo, nullptr, 0, 0);
+    cairo_stroke_preserve(cairo);
+  }
+  set_colour(cairo, style.colour);
+  cairo_fill(cairo);
+  cairo_restore(cairo);
+  return width;
+}
+
+void Canvas::image(int x, int y, int width, int height, const std::vector<std::uint32_t>& pixels) {
+  auto* part = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
+  const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(part));
+  unsigned char* data = cairo_image_surface_get_data(part);
+  for (std::size_t row = 0; data != nullptr && row < static_cast<std::size_t>(height); ++row) {
+    std::memcpy(data + row * stride, pixels.data() + row * static_cast<std::size_t>(width),
+                static_cast<std::size_t>(width) * 4);
+  }
+  cairo_surface_mark_dirty(part);
+  cairo_set_source_surface(handles_->cairo, part, x, y);
+  cairo_paint(handles_->cairo);
+  cairo_surface_destroy(part);
+}
+
+void Canvas::clip(const Box& box) {
+  cairo_save(handles_->cairo);
+  cairo_rectangle(handles_->cairo, box.x, box.y, box.width, box.height);
+  cairo_clip(handles_->cairo);
+}
+
+void Canvas::unclip() { cairo_restore(handles_->cairo); }
+
+std::string Canvas::png() {
+  std::string bytes;
+  const auto write = [](void* closure, const unsigned char* data, unsigned length) {
+    static_cast<std::string*>(closure)->append(reinterpret_cast<const char*>(data), length);
+    return CAIRO_STATUS_SUCCESS;
+  };
+  const auto status = cairo_surface_write_to_png_stream(handles_->surface, write, &bytes);
+  if (status != CAIRO_STATUS_SUCCESS) throw std::runtime_error(std::string("Cairo: ") + cairo_status_to_string(status));
+  return bytes;
+}
+
+}  // namespace talus::postprocess

@@ -1,0 +1,61 @@
+// A picture in memory, drawn with Cairo. Coordinates are pixels, y downwards. Cairo stays behind canvas.cpp.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "postprocess/picture/classes.hpp"
+
+namespace talus::postprocess {
+
+using Pixels = std::vector<std::array<double, 2>>;
+
+struct Pen {
+  Colour colour;
+  double width = 1;
+  std::vector<double> dashes;  // lengths on and off; empty = solid
+  double opacity = 1;
+};
+
+enum class Align { left, centre, right };
+
+struct TextStyle {
+  double size = 24;
+  bool bold = false;
+  Colour colour;
+  Align align = Align::left;
+  double angle = 0;  // [rad], counter-clockwise
+  double halo = 0;   // width of a white rim
+};
+
+struct Box {
+  double x = 0, y = 0, width = 0, height = 0;
+};
+
+class Canvas {
+ public:
+  Canvas(int width, int height);  ///< white
+  ~Canvas();
+  void line(const Pixels& points, const Pen& pen);
+  void fill(const Pixels& points, const Colour& colour);
+  void fill(const Box& box, const Colour& colour);
+  void frame(const Box& box, const Pen& pen);
+  /// Baseline at (x, y). Returns the width drawn.
+  double text(const std::string& words, double x, double y, const TextStyle& style);
+  double text_width(const std::string& words, const TextStyle& style);
+  /// Pixels 0xRRGGBB, row by row from the top, at (x, y).
+  void image(int x, int y, int width, int height, const std::vector<std::uint32_t>& pixels);
+  void clip(const Box& box);
+  void unclip();
+  /// The picture as a PNG file's bytes.
+  std::string png();
+
+ private:
+  struct Handles;
+  std::unique_ptr<Handles> handles_;
+};
+
+}  // namespace talus::postprocess

@@ -1,0 +1,228 @@
+#include "postprocess/picture/furniture.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "common/raster/raster_io.hpp"
+
+namespace talus::postprocess {
+namespace {
+
+constexpr Colour ink{0.10, 0.11, 0.13};
+constexpr Colour soft_ink{0.38, 0.40, 0.43};
+
+/// Thousands set apart by thin spaces: 361 200.
+std::string grouped(double value) {
+  auto text = fmt::format("{:.0f}", std::abs(value) < 0.5 ? 0.0 : value);
+  for (auto place = text.size(); place > (text[0] == '-' ? 4U : 3U);) {
+    place -= 3;
+    text.insert(place, "\u2009");
+  }
+  return text;
+}
+
+/// Shrink a text's size until it fits.
+TextStyle fitting(Canvas& canvas, const std::string& words, TextStyle style, double width) {
+  while (style.size > 16 && canvas.text_width(words, style) > width) style.size -= 1;
+  return style;
+}
+
+std::string key_numbers(const PictureInput& input) {
+  const auto& score = input.score;
+  auto words = volume_words(input.run.summary.volume_released) + " released";
+  const auto add = [&](const std::string& more) { words += "  \u00b7  " + more; };
+  if (const auto runout = score.number("runout_m")) {
+    add(fmt::format("run-out {} m (H/L {:.2f})", grouped(*runout), score.number("h_over_l").value_or(0)));
+  }
+  const auto deposit = score.number("deposit_csi"), footprint = score.number("footprint_csi"),
+             rmse = score.number("thickness_rmse_m");
+  if (deposit && footprint)
+    add(fmt::format("CSI deposit {:.2f}, footprint {:.2f}", *deposit, *footprint));
+  else if (deposit)
+    add(fmt::format("CSI deposit {:.2f}", *deposit));
+  else if (footprint)
+    add(fmt::format("CSI footprint {:.2f}", *footprint));
+  if (rmse) add(fmt::format("RMSE {:.1f} m", *rmse));
+  return words;
+}
+
+void draw_style(Canvas& canvas, const LineStyle& style, double x, double y, double width) {
+  if (style.casing.width > 0) canvas.line({{x, y}, {x + width, y}}, style.casing);
+  canvas.line({{x, y}, {x + width, y}}, style.pen);
+}
+
+/// Writes one thing below the other.
+class Column {
+ public:
+  Column(Canvas& canvas, const Box& box) : canvas_(canvas), box_(box), y_(box.y) {}
+
+  void heading(const std::string& words) {
+    y_ += 26;
+    canvas_.text(words, box_.x, y_, fitting(canvas_, words, {.size = 26, .bold = true, .colour = ink}, box_.width));
+    y_ += 16;
+  }
+  void swatch(const Colour& colour, const std::string& words) {
+    canvas_.fill(Box{box_.x, y_, 64, 36}, colour);
+    canvas_.frame({box_.x, y_, 64, 36}, {{0.25, 0.25, 0.27}, 1, {}, 1});
+    canvas_.text(words, box_.x + 84, y_ + 27, {.size = 24, .colour = ink});
+    y_ += 36;
+  }
+  void line(const LineStyle& style, const std::string& words) {
+    draw_style(canvas_, style, box_.x, y_ + 16, 64);
+    canvas_.text(words, box_.x + 84, y_ + 24, fitting(canvas_, words, {.size = 23, .colour = ink}, box_.width - 84));
+    y_ += 38;
+  }
+  void pair(const std::string& words, const std::string& value) {
+    y_ += 31;
+    canvas_.text(words, box_.x, y_, {.size = 22, .colour = soft_ink});
+    canvas_.text(value, box_.x + box_.width, y_, {.size = 22, .colour = ink, .align = Align::right});
+  }
+  void space(double height) { y_ += height; }
+  double y() const { return y_; }
+
+ private:
+  Canvas& canvas_;
+  Box box_;
+  double y_;
+};
+
+void draw_legend(Column& column, const PictureInput& input, const std::vector<double>& limits, double interval) {
+  column.heading("Deposit thickness, vertical [m]");
+  for (auto i = limits.size(); i-- > 0;) column.swatch(class_colour(i, limits.size()), class_label(i, limits));
+  column.space(22);
+  const auto& options = input.options;
+  if (input.survey) {
+    const auto& survey = *input.survey;
+    const auto what = !survey.deposit.empty()    ? fmt::format("deposit > {:g} m", options.deposit_threshold)
+                      : !survey.polygons.empty() ? std::string("outline")
+                                                 : fmt::format("footprint > {:g} m", survey.footprint_threshold);
+    column.line(survey_style(), fmt::format("{}: {}", survey.name, what));
+  }
+  column.line(footprint_style(), fmt::format("Footprint, peak > {:g} m", options.footprint_threshold));
+  column.line(release_style(), "Release");
+  if (interval > 0) column.line({{{}, 0, {}, 1}, contour_pen(true)}, fmt::format("Contours every {:g} m", interval));
+}
+
+void draw_numbers(Column& column, const PictureInput& input) {
+  const auto& score = input.score;
+  const auto row = [&](const char* key, const char* words, const char* unit, int decimals) {
+    const auto value = score.number(key);
+    if (!value) return;
+    auto text = decimals == 0 ? grouped(*value) : fmt::format("{:.{}f}", *value, decimals);
+    if (text.starts_with('-')) text.replace(0, 1, "\u2212");
+    column.pair(words, text + unit);
+  };
+  column.heading("Simulation");
+  column.pair("Released", volume_words(input.run.summary.volume_released));
+  if (input.run.summary.volume_outflow > 0) column.pair("Left the map", volume_words(input.run.summary.volume_outflow));
+  if (const auto area = score.number("affected_area_m2")) {
+    column.pair("Footprint",
+                *area >= 1e6 ? fmt::format("{:.2f} km\u00b2", *area / 1e6) : fmt::format("{:.1f} ha", *area / 1e4));
+  }
+  row("runout_m", "Run-out L", "\u2009m", 0);
+  row("drop_m", "Drop H", "\u2009m", 0);
+  row("fahrboeschung_deg", "Angle of reach", "\u00b0", 1);
+  row("max_deposit_thickness_m", "Thickest deposit", "\u2009m", 1);
+  row("max_peak_speed_m_s", "Peak speed", "\u2009m/s", 0);
+  column.pair("Time simulated", fmt::format("{:.0f}\u2009s", input.run.summary.time_end));
+  if (!input.survey) return;
+  column.space(36);
+  column.heading("Against " + input.survey->name);
+  row("footprint_csi", "Footprint CSI", "", 2);
+  row("deposit_csi", "Deposit CSI", "", 2);
+  row("thickness_rmse_m", "Thickness RMSE", "\u2009m", 2);
+  row("thickness_bias_m", "Thickness bias", "\u2009m", 2);
+  row("runout_difference_m", "Run-out difference", "\u2009m", 0);
+}
+
+void draw_north_arrow(Canvas& canvas, double x, double y) {
+  canvas.fill(Pixels{{x, y}, {x - 17, y + 58}, {x, y + 45}}, ink);
+  canvas.fill(Pixels{{x, y}, {x + 17, y + 58}, {x, y + 45}}, {0.72, 0.73, 0.75});
+  canvas.line({{x, y}, {x - 17, y + 58}, {x, y + 45}, {x + 17, y + 58}, {x, y}}, {ink, 1.5, {}, 1});
+  canvas.text("N", x, y + 86, {.size = 24, .bold = true, .colour = ink, .align = Align::centre});
+}
+
+void draw_scale_bar(Canvas& canvas, const View& view, double x, double y, double room) {
+  const double length = round_below(room / view.scale()), width = length * view.scale();
+  for (int i = 0; i < 4; ++i) {
+    canvas.fill(Box{x + 0.25 * i * width, y, 0.25 * width, 13}, i % 2 == 0 ? ink : Colour{1, 1, 1});
+  }
+  canvas.frame({x, y, width, 13}, {ink, 1.5, {}, 1});
+  const bool kilometres = length >= 2000;
+  const auto words = [&](double metres) { return fmt::format("{:g}", kilometres ? metres / 1000 : metres); };
+  const TextStyle style{.size = 21, .colour = ink, .align = Align::centre};
+  canvas.text("0", x, y + 38, style);
+  canvas.text(words(0.5 * length), x + 0.5 * width, y + 38, style);
+  canvas.text(words(length) + (kilometres ? " km" : " m"), x + width, y + 38, style);
+}
+
+/// Multiples of a round step inside [low, high], about five.
+std::vector<double> ticks(double low, double high, double pixels) {
+  const double step = round_below((high - low) * std::max(300 / pixels, 0.14));
+  std::vector<double> places;
+  for (double k = std::ceil(low / step); k * step <= high; ++k) places.push_back(k * step);
+  return places;
+}
+
+}  // namespace
+
+std::string volume_words(double volume) {
+  if (volume >= 999'500)
+    return fmt::format("{:.{}f} million m\u00b3", volume / 1e6, volume < 99.95e6 ? (volume < 9.995e6 ? 2 : 1) : 0);
+  const double unit = std::pow(10, std::max(0.0, std::floor(std::log10(std::max(volume, 1.0))) - 2));
+  return grouped(std::round(volume / unit) * unit) + " m\u00b3";
+}
+
+void draw_title(Canvas& canvas, const PictureInput& input, double x, double y, double width) {
+  const auto& title = input.run.summary.title;
+  const auto words = key_numbers(input);
+  canvas.text(title, x, y + 48, fitting(canvas, title, {.size = 46, .bold = true, .colour = ink}, width));
+  canvas.text(words, x, y + 100, fitting(canvas, words, {.size = 28, .colour = soft_ink}, width));
+}
+
+void draw_coordinates(Canvas& canvas, const View& view) {
+  const Pen tick{ink, 2, {}, 1};
+  TextStyle style{.size = 20, .colour = ink, .align = Align::centre};
+  const auto& box = view.box;
+  for (const double x : ticks(view.window.west, view.window.east, box.width)) {
+    const double px = view.pixel(x, view.window.south)[0], foot = box.y + box.height;
+    canvas.line({{px, foot}, {px, foot + 10}}, tick);
+    canvas.line({{px, box.y}, {px, box.y - 10}}, tick);
+    canvas.text(grouped(x), px, foot + 34, style);
+  }
+  style.angle = std::numbers::pi / 2;
+  for (const double y : ticks(view.window.south, view.window.north, box.height)) {
+    const double py = view.pixel(view.window.west, y)[1];
+    canvas.line({{box.x, py}, {box.x - 10, py}}, tick);
+    canvas.line({{box.x + box.width, py}, {box.x + box.width + 10, py}}, tick);
+    canvas.text(grouped(y), box.x - 20, py, style);
+  }
+}
+
+void draw_sidebar(Canvas& canvas, const PictureInput& input, const View& view, const std::vector<double>& limits,
+                  double interval, const Box& box) {
+  Column column(canvas, box);
+  draw_legend(column, input, limits, interval);
+  column.space(18);
+  draw_scale_bar(canvas, view, box.x + 8, column.y() + 30, box.width - 170);
+  draw_north_arrow(canvas, box.x + box.width - 40, column.y() - 4);
+  column.space(112);
+  draw_numbers(column, input);
+}
+
+void draw_footer(Canvas& canvas, const PictureInput& input, double x, double y) {
+  const auto& s = input.run.summary;
+  const auto words = fmt::format(
+      "{} [m]  \u00b7  map cell {:g} m  \u00b7  shading and contours: surface before  \u00b7  {} material points  "
+      "\u00b7  Talus {}",
+      crs_name(input.run.maps.grid.crs_wkt), input.run.maps.grid.cell, grouped(static_cast<double>(s.particles)),
+      s.version);
+  canvas.text(words, x, y, {.size = 19, .colour = soft_ink});
+}
+
+}  // namespace talus::postprocess

@@ -1,0 +1,179 @@
+#include "postprocess/picture/layers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "postprocess/picture/hillshade.hpp"
+#include "postprocess/picture/isolines.hpp"
+
+namespace talus::postprocess {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr Colour white{1, 1, 1};
+constexpr Colour beyond_domain{0.93, 0.94, 0.95};
+
+std::uint32_t packed(const Colour& c) {
+  const auto byte = [](double v) { return static_cast<std::uint32_t>(std::lround(255 * std::clamp(v, 0.0, 1.0))); };
+  return byte(c.r) << 16U | byte(c.g) << 8U | byte(c.b);
+}
+
+Colour scaled(const Colour& c, double factor) { return {c.r * factor, c.g * factor, c.b * factor}; }
+
+Pixels on_canvas(const View& view, const Polyline& line) {
+  Pixels points;
+  for (const auto& [x, y] : line) points.push_back(view.pixel(x, y));
+  return points;
+}
+
+double length(const Pixels& points) {
+  double sum = 0;
+  for (std::size_t i = 1; i < points.size(); ++i)
+    sum += std::hypot(points[i][0] - points[i - 1][0], points[i][1] - points[i - 1][1]);
+  return sum;
+}
+
+void draw(Canvas& canvas, const View& view, const std::vector<Polyline>& lines, const LineStyle& style) {
+  for (const auto& pen : {style.casing, style.pen}) {
+    for (const auto& line : lines) {
+      const auto points = on_canvas(view, line);
+      auto solid = pen;
+      solid.dashes.clear();  // a ring of two dashes or fewer is a crumb, not an outline
+      if (pen.width > 0) canvas.line(points, length(points) < 90 ? solid : pen);
+    }
+  }
+}
+
+std::vector<Polyline> rings(const std::vector<MapPolygon>& polygons) {
+  std::vector<Polyline> lines;
+  for (const auto& polygon : polygons) {
+    for (auto ring : polygon.rings) {
+      if (!ring.empty()) ring.push_back(ring.front());
+      lines.push_back(std::move(ring));
+    }
+  }
+  return lines;
+}
+
+/// The elevation along a contour, upright, where the line is straightest within the frame.
+void label_contour(Canvas& canvas, const View& view, const Polyline& line, double level) {
+  const auto points = on_canvas(view, line);
+  TextStyle style{.size = 17, .colour = {0.3, 0.32, 0.34}, .align = Align::centre, .halo = 2.5};
+  const auto words = fmt::format("{:g}", level);
+  const double half = 0.5 * canvas.text_width(words, style) + 6;
+  double best = std::numeric_limits<double>::infinity(), x = nan, y = nan, angle = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto [px, py] = points[i];
+    const bool inside = px > view.box.x + 60 && px < view.box.x + view.box.width - 60 && py > view.box.y + 60 &&
+                        py < view.box.y + view.box.height - 60;
+    std::size_t from = i, to = i;
+    while (from > 0 && std::hypot(points[from][0] - px, points[from][1] - py) < half) --from;
+    while (to + 1 < points.size() && std::hypot(points[to][0] - px, points[to][1] - py) < half) ++to;
+    const double dx = points[to][0] - points[from][0], dy = points[to][1] - points[from][1], chord = std::hypot(dx, dy);
+    if (!inside || chord < 2 * half * 0.98) continue;
+    double bend = 0;
+    for (std::size_t k = from; k <= to; ++k) {
+      bend = std::max(bend,
+                      std::abs((points[k][0] - points[from][0]) * dy - (points[k][1] - points[from][1]) * dx) / chord);
+    }
+    if (bend >= best) continue;
+    best = bend;
+    x = 0.5 * (points[from][0] + points[to][0]);
+    y = 0.5 * (points[from][1] + points[to][1]);
+    angle = std::atan2(-dy, dx);
+  }
+  if (best > 6) return;
+  if (std::abs(angle) > std::numbers::pi / 2) angle -= std::copysign(std::numbers::pi, angle);
+  style.angle = angle;
+  canvas.text(words, x + 6 * std::sin(angle), y + 6 * std::cos(angle), style);
+}
+
+/// Lowest and highest elevation inside the frame.
+std::pair<double, double> relief(const View& view, const RunMaps& maps) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  const auto& grid = maps.grid;
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      const double x = grid.x(column), y = grid.y(row), z = maps.before[grid.index(column, row)];
+      if (std::isnan(z) || x < view.window.west || x > view.window.east || y < view.window.south ||
+          y > view.window.north)
+        continue;
+      low = std::min(low, z);
+      high = std::max(high, z);
+    }
+  }
+  return {low, high};
+}
+
+}  // namespace
+
+LineStyle survey_style() { return {{white, 7, {}, 0.9}, {{0.0, 0.30, 0.70}, 4, {15, 9}, 1}}; }
+LineStyle footprint_style() { return {{white, 3.6, {}, 0.6}, {{0.12, 0.12, 0.14}, 1.7, {}, 1}}; }
+LineStyle release_style() { return {{white, 6, {}, 0.85}, {{0.0, 0.45, 0.36}, 3.2, {}, 1}}; }
+Pen contour_pen(bool is_index) { return {{0.33, 0.36, 0.40}, is_index ? 1.5 : 0.9, {}, is_index ? 0.55 : 0.38}; }
+
+void draw_ground(Canvas& canvas, const View& view, const RunMaps& maps, const std::vector<double>& limits) {
+  const auto shades = hillshade(maps.grid, maps.before);
+  std::vector<Colour> colours;
+  for (std::size_t i = 0; i < limits.size(); ++i) colours.push_back(class_colour(i, limits.size()));
+  const int width = static_cast<int>(view.box.width), height = static_cast<int>(view.box.height);
+  std::vector<std::uint32_t> pixels;
+  pixels.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  for (int row = 0; row < height; ++row) {
+    const double y = view.window.north - (row + 0.5) / view.scale();
+    for (int column = 0; column < width; ++column) {
+      const double x = view.window.west + (column + 0.5) / view.scale();
+      const double shade = sample(maps.grid, shades, x, y, nan);
+      const int place = class_of(sample(maps.grid, maps.deposit_thickness, x, y, 0), limits);
+      const double bright = std::isnan(shade) ? 0.5 : shade;
+      if (place >= 0)
+        pixels.push_back(packed(scaled(colours[static_cast<std::size_t>(place)], 0.87 + 0.18 * bright)));
+      else if (std::isnan(shade))
+        pixels.push_back(packed(beyond_domain));
+      else
+        pixels.push_back(packed(scaled({0.985, 0.99, 1.0}, 0.64 + 0.34 * bright)));
+    }
+  }
+  canvas.image(static_cast<int>(view.box.x), static_cast<int>(view.box.y), width, height, pixels);
+}
+
+void draw_contours(Canvas& canvas, const View& view, const RunMaps& maps, double interval) {
+  if (interval <= 0) return;
+  const auto [least, most] = relief(view, maps);
+  for (long k = std::lround(std::ceil(least / interval)); static_cast<double>(k) * interval <= most; ++k) {
+    const double level = static_cast<double>(k) * interval;
+    const auto lines = isolines(maps.grid, maps.before, level, AtEdge::end);
+    for (const auto& line : lines) canvas.line(on_canvas(view, line), contour_pen(k % 5 == 0));
+    if (k % 5 != 0 || lines.empty()) continue;
+    const auto longest =
+        std::max_element(lines.begin(), lines.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
+    label_contour(canvas, view, *longest, level);
+  }
+}
+
+void draw_outlines(Canvas& canvas, const View& view, const RunMaps& maps, const PictureInput& input) {
+  const auto& options = input.options;
+  draw(canvas, view, isolines(maps.grid, maps.peak_thickness, options.footprint_threshold, AtEdge::close),
+       footprint_style());
+  draw(canvas, view, isolines(maps.grid, maps.initial_thickness, options.deposit_threshold, AtEdge::close),
+       release_style());
+  if (!input.survey) return;
+  const auto& survey = *input.survey;
+  const auto lines =
+      !survey.deposit.empty()    ? isolines(survey.grid, survey.deposit, options.deposit_threshold, AtEdge::close)
+      : !survey.polygons.empty() ? rings(survey.polygons)
+                                 : isolines(survey.grid, survey.footprint, survey.footprint_threshold, AtEdge::close);
+  draw(canvas, view, lines, survey_style());
+}
+
+double contour_interval(const View& view, const RunMaps& maps) {
+  const auto [low, high] = relief(view, maps);
+  return high - low > 0 ? round_below((high - low) / 10) : 0;
+}
+
+}  // namespace talus::postprocess

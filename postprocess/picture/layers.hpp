@@ -1,0 +1,34 @@
+// What lies inside the map's frame.
+#pragma once
+
+#include <vector>
+
+#include "postprocess/picture/canvas.hpp"
+#include "postprocess/picture/map_picture.hpp"
+#include "postprocess/picture/view.hpp"
+
+namespace talus::postprocess {
+
+/// Line styles, shared by map and legend.
+struct LineStyle {
+  Pen casing;  // drawn first; width 0 = none
+  Pen pen;
+};
+LineStyle survey_style();
+LineStyle footprint_style();
+LineStyle release_style();
+Pen contour_pen(bool is_index);
+
+/// Hillshade and thickness classes, pixel by pixel.
+void draw_ground(Canvas& canvas, const View& view, const RunMaps& maps, const std::vector<double>& limits);
+
+/// Contours at multiples of `interval`, every fifth heavier and labelled.
+void draw_contours(Canvas& canvas, const View& view, const RunMaps& maps, double interval);
+
+/// Outlines: release, footprint, and the survey's deposit (its footprint where it has no deposit).
+void draw_outlines(Canvas& canvas, const View& view, const RunMaps& maps, const PictureInput& input);
+
+/// Interval of about a dozen contours over the relief shown; 0 on a plain.
+double contour_interval(const View& view, const RunMaps& maps);
+
+}  // namespace talus::postprocess

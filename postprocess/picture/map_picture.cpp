@@ -1,0 +1,57 @@
+#include "postprocess/picture/map_picture.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "postprocess/picture/classes.hpp"
+#include "postprocess/picture/furniture.hpp"
+#include "postprocess/picture/layers.hpp"
+
+namespace talus::postprocess {
+namespace {
+
+// All in pixels at 200 dpi.
+constexpr double left = 120, top = 172, right = 40, bottom = 118;
+constexpr double gap = 36, sidebar = 470;
+constexpr double largest_width = 1560, largest_height = 1420, least_height = 1130;
+
+Box map_box(const Window& window) {
+  const double scale = std::min(largest_width / window.width(), largest_height / window.height());
+  return {left, top, std::round(window.width() * scale), std::round(window.height() * scale)};
+}
+
+double thickest(const std::vector<double>& thickness) {
+  double most = 0;
+  for (const double h : thickness) {
+    if (h > most) most = h;
+  }
+  return most;
+}
+
+}  // namespace
+
+std::string map_picture(const PictureInput& input) {
+  const auto window = affected_window(input.run.maps, input.options, input.survey);
+  const View view{window, map_box(window)};
+  const auto limits = class_limits(input.options.classes, thickest(input.run.maps.deposit_thickness));
+  const auto maps = cropped(input.run.maps, window);
+  const double interval = contour_interval(view, maps);
+  const double width = left + view.box.width + gap + sidebar + right;
+  const double height = top + std::max(view.box.height, least_height) + bottom;
+
+  Canvas canvas(static_cast<int>(width), static_cast<int>(height));
+  canvas.clip(view.box);
+  draw_ground(canvas, view, maps, limits);
+  draw_contours(canvas, view, maps, interval);
+  draw_outlines(canvas, view, maps, input);
+  canvas.unclip();
+  canvas.frame(view.box, {{0.1, 0.1, 0.12}, 2.5, {}, 1});
+  draw_coordinates(canvas, view);
+  draw_title(canvas, input, left, 30, width - left - right);
+  draw_sidebar(canvas, input, view, limits, interval,
+               {left + view.box.width + gap, top, sidebar, height - top - bottom});
+  draw_footer(canvas, input, left, height - 26);
+  return canvas.png();
+}
+
+}  // namespace talus::postprocess

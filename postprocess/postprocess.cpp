@@ -1,0 +1,94 @@
+#include "postprocess/postprocess.hpp"
+
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "common/raster/raster_io.hpp"
+#include "common/run/run_file.hpp"
+#include "postprocess/maps/fields.hpp"
+#include "postprocess/maps/geotiff.hpp"
+#include "postprocess/maps/netcdf.hpp"
+#include "postprocess/options.hpp"
+#include "postprocess/picture/map_picture.hpp"
+#include "postprocess/score/score.hpp"
+
+namespace talus::postprocess {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The map must hold the volume of the points: 1e-9 of it where the run was in double precision. A hundredth off is no
+/// rounding but a broken run.
+void check_volume(const fs::path& file, const Run& run) {
+  const double on_map = volume_under(run.maps.deposit_thickness, run.maps.grid.cell), points = run.summary.volume_final;
+  const double error = std::abs(on_map - points) / std::max(run.summary.volume_released, 1e-300);
+  const auto what =
+      fmt::format("{}: {:.6g} m3 under the deposit map, {:.6g} m3 in the points", file.string(), on_map, points);
+  if (!(error < 1e-2))
+    throw DataError({what, fmt::format("they differ by {:.1e} of the release", error), "Run talus-solve again"});
+  if (error > 1e-9)
+    log_warning(fmt::format("{} ({:.1e} of the release; 1e-9 is expected in double precision)", what, error));
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error)
+    throw DataError({folder.string() + ": cannot be made", error.message(), "Choose another folder with --out"});
+}
+
+void write_results(StageContext& context, const Run& run, const Options& options, const std::optional<Survey>& survey) {
+  const auto score = make_score(run, options, survey);
+  const auto table = to_table(score);
+  const auto folder = context.out / "maps";
+  make_folder(folder);
+  context.results = write_geotiffs(folder, run);
+  context.results.push_back(folder / "results.nc");
+  write_netcdf(context.results.back(), run, {options.institution, context.command_line});
+  const auto write = [&](const char* name, const std::string& bytes) {
+    context.results.push_back(context.out / name);
+    write_text(context.results.back(), bytes);
+  };
+  write("map.png", map_picture({run, options, survey, score}));
+  write("score.json", to_json(score));
+  write("score.txt", table);
+  log_info("\n" + table);
+}
+
+}  // namespace
+
+void run(StageContext& context) {
+  const auto options = context.recipe.read<Options>("postprocess");
+  const auto file = options.run.empty() ? context.out / "run.h5" : options.run;
+  const auto run = read_run(file);
+  check_volume(file, run);
+  const auto survey = read_survey(options.survey, run.maps, options.footprint_threshold);
+  log_info(fmt::format("{}: {} x {} cells of {:g} m, {} frames; {}", file.string(), run.maps.grid.columns,
+                       run.maps.grid.rows, run.maps.grid.cell, run.frames.time.size(),
+                       survey ? "scored against " + survey->name : std::string("no survey to score against")));
+  if (context.check_only) return;
+  write_results(context, run, options, survey);
+  auto inputs = survey ? survey->inputs : std::vector<fs::path>{};
+  inputs.insert(inputs.begin(), file);
+  write_used_recipe(context, stage(), recipe::to_toml(options, "postprocess", false), inputs,
+                    {{"CRS", crs_name(run.maps.grid.crs_wkt)}});
+}
+
+Stage stage() {
+  Stage stage;
+  stage.name = "talus-postprocess";
+  stage.table = "postprocess";
+  stage.summary = "Write maps, NetCDF, picture and scores of a run (run.h5 of talus-solve)";
+  stage.examples =
+      "  talus-postprocess scene.toml --out out/scene    maps/*.tif, maps/results.nc, map.png, score.json, score.txt\n"
+      "  talus-postprocess scene.toml --out out/scene --check    read run and survey, write nothing\n"
+      "  talus-postprocess --template >> scene.toml    all keys with their defaults\n";
+  stage.template_toml = [] { return recipe::to_toml(Options{}, "postprocess", true); };
+  stage.run = run;
+  return stage;
+}
+
+}  // namespace talus::postprocess

@@ -1,0 +1,55 @@
+#include "postprocess/score/contingency.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace talus::postprocess {
+namespace {
+
+double ratio(double part, double whole) { return whole > 0 ? part / whole : std::numeric_limits<double>::quiet_NaN(); }
+
+}  // namespace
+
+double Contingency::csi() const { return ratio(true_positive, true_positive + false_positive + false_negative); }
+double Contingency::hit_rate() const { return ratio(true_positive, true_positive + false_negative); }
+double Contingency::false_alarm_ratio() const { return ratio(false_positive, true_positive + false_positive); }
+double Contingency::foc() const { return ratio(true_positive + false_positive, true_positive + false_negative); }
+
+double Contingency::hss() const {
+  const double tp = true_positive, fp = false_positive, fn = false_negative, tn = true_negative;
+  return ratio(2 * (tp * tn - fp * fn), (tp + fn) * (fn + tn) + (tp + fp) * (fp + tn));
+}
+
+double Contingency::d2pc() const {
+  return std::hypot(1 - hit_rate(), ratio(false_positive, false_positive + true_negative));
+}
+
+Contingency compare(const std::vector<double>& simulated, double simulated_threshold,
+                    const std::vector<double>& surveyed, double surveyed_threshold, double cell_area) {
+  Contingency areas;
+  for (std::size_t i = 0; i < simulated.size(); ++i) {
+    if (std::isnan(simulated[i]) || std::isnan(surveyed[i])) continue;
+    const bool here = simulated[i] > simulated_threshold, there = surveyed[i] > surveyed_threshold;
+    double& area = here ? (there ? areas.true_positive : areas.false_positive)
+                        : (there ? areas.false_negative : areas.true_negative);
+    area += cell_area;
+  }
+  return areas;
+}
+
+ThicknessError thickness_error(const std::vector<double>& simulated, const std::vector<double>& surveyed,
+                               double threshold) {
+  double square = 0, sum = 0, absolute = 0, count = 0;
+  for (std::size_t i = 0; i < simulated.size(); ++i) {
+    // NaN in either makes both comparisons or the difference fail: not surveyed, not counted.
+    const double difference = simulated[i] - surveyed[i];
+    if (std::isnan(difference) || !(simulated[i] > threshold || surveyed[i] > threshold)) continue;
+    square += difference * difference;
+    sum += difference;
+    absolute += std::abs(difference);
+    ++count;
+  }
+  return {std::sqrt(ratio(square, count)), ratio(sum, count), ratio(absolute, count)};
+}
+
+}  // namespace talus::postprocess

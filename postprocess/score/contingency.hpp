@@ -1,0 +1,41 @@
+// Agreement of two maps of yes and no.
+#pragma once
+
+#include <vector>
+
+namespace talus::postprocess {
+
+/// Areas [m2] where simulation and survey say yes or no. Cells with NaN in either are not compared.
+struct Contingency {
+  double true_positive = 0;   ///< both yes
+  double false_positive = 0;  ///< simulation only
+  double false_negative = 0;  ///< survey only
+  double true_negative = 0;   ///< both no
+
+  /// Critical success index (threat score, intersection over union): TP / (TP + FP + FN). NaN where neither says yes.
+  double csi() const;
+  /// Share of the surveyed area that was hit: TP / (TP + FN).
+  double hit_rate() const;
+  /// Share of the simulated area that is false: FP / (TP + FP).
+  double false_alarm_ratio() const;
+  /// Heidke skill score: agreement beyond chance, 1 = perfect, 0 = chance (Heidke 1926).
+  double hss() const;
+  /// Distance to perfect classification: sqrt((1 - TPR)^2 + FPR^2), 0 = perfect (Formetta et al. 2016; r.avaflow's
+  /// D2PC).
+  double d2pc() const;
+  /// Factor of conservativeness: simulated over surveyed area, (TP + FP) / (TP + FN) (r.avaflow's FoC).
+  double foc() const;
+};
+
+/// Yes is a value above the threshold. Both vectors on the same grid; `cell_area` in m2.
+Contingency compare(const std::vector<double>& simulated, double simulated_threshold,
+                    const std::vector<double>& surveyed, double surveyed_threshold, double cell_area);
+
+/// Difference simulated - surveyed over the union of both above the threshold (cells where either exceeds it).
+struct ThicknessError {
+  double rmse = 0, bias = 0, mean_absolute = 0;  // [m]; NaN where no cell exceeds the threshold
+};
+ThicknessError thickness_error(const std::vector<double>& simulated, const std::vector<double>& surveyed,
+                               double threshold);
+
+}  // namespace talus::postprocess

@@ -1,0 +1,62 @@
+#include "postprocess/score/mobility.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus::postprocess {
+
+std::optional<Place> crown(const RunMaps& maps, double threshold) {
+  double thickest = 0;
+  for (const double h : maps.initial_thickness) {
+    if (h > thickest) thickest = h;
+  }
+  const double limit = std::min(threshold, 0.1 * thickest);
+  std::optional<Place> highest;
+  for (int row = 0; row < maps.grid.rows; ++row) {
+    for (int column = 0; column < maps.grid.columns; ++column) {
+      const auto i = maps.grid.index(column, row);
+      if (!(maps.initial_thickness[i] > limit) || std::isnan(maps.before[i])) continue;
+      if (!highest || maps.before[i] > highest->z)
+        highest = Place{maps.grid.x(column), maps.grid.y(row), maps.before[i]};
+    }
+  }
+  return highest;
+}
+
+std::optional<Place> farthest(const MapGrid& grid, const std::vector<double>& values, double threshold,
+                              const Place& from, const std::vector<double>& surface) {
+  std::optional<Place> place;
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      const auto i = grid.index(column, row);
+      if (!(values[i] > threshold)) continue;
+      const Place here{grid.x(column), grid.y(row), surface.empty() ? 0 : surface[i]};
+      if (!place || plan_distance(here, from) > plan_distance(*place, from)) place = here;
+    }
+  }
+  return place;
+}
+
+double plan_distance(const Place& a, const Place& b) { return std::hypot(a.x - b.x, a.y - b.y); }
+
+std::optional<Place> centre_of_mass(const MapGrid& grid, const std::vector<double>& thickness,
+                                    const std::vector<double>& bed) {
+  Place sum;
+  double mass = 0;
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      const auto i = grid.index(column, row);
+      const double h = thickness[i];
+      const double z = bed.empty() ? 0 : bed[i] + 0.5 * h;
+      if (!(h > 0) || std::isnan(z)) continue;
+      sum.x += h * grid.x(column);
+      sum.y += h * grid.y(row);
+      sum.z += h * z;
+      mass += h;
+    }
+  }
+  if (!(mass > 0)) return std::nullopt;
+  return Place{sum.x / mass, sum.y / mass, sum.z / mass};
+}
+
+}  // namespace talus::postprocess

@@ -1,0 +1,61 @@
+// The numbers of a run, and how well it agrees with a survey.
+//
+// Definitions (the same words stand under score.txt):
+// - footprint: peak thickness above footprint_threshold_m; the survey's is its peak thickness above the same threshold,
+// or
+//   the inside of its polygon, or |after - before| above the threshold.
+// - deposit: final thickness above deposit_threshold_m. Against a surveyed change (after - before), both sides are the
+// rise of
+//   the surface: max(0, after - before) and max(0, final - initial thickness), because in the source area the slide's
+//   own scar is not deposit.
+// - CSI: intersection over union of the areas, TP / (TP + FP + FN).
+// - thickness RMSE and bias: of simulated minus surveyed over the union of both deposits.
+// - run-out L: distance in plan, straight, from the crown (highest cell of the release) to the farthest deposit cell;
+//   H: drop of the surface before the failure between the two; H/L is the tangent of the Fahrboeschung.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "common/run/run_file.hpp"
+#include "postprocess/options.hpp"
+#include "postprocess/score/survey.hpp"
+
+namespace talus::postprocess {
+
+struct ScoreEntry {
+  std::string key;    ///< as in score.json, with unit
+  std::string label;  ///< as in score.txt
+  std::string unit;
+  std::variant<double, std::int64_t, std::string> value;
+  int decimals = 0;  ///< in score.txt
+};
+
+struct ScoreSection {
+  std::string title;
+  std::vector<ScoreEntry> entries;
+};
+
+struct Score {
+  std::string title;
+  std::vector<ScoreSection> sections;
+  std::vector<std::pair<std::string, std::string>> not_scored;  ///< key, why it has no value
+  std::vector<std::string> notes;                               ///< definitions, warnings
+
+  /// The number under a key; empty where it is absent.
+  std::optional<double> number(const std::string& key) const;
+};
+
+Score make_score(const Run& run, const Options& options, const std::optional<Survey>& survey);
+
+/// One flat object: key -> value; a value that does not exist is absent, and `not_scored` says why.
+std::string to_json(const Score& score);
+
+/// The same as an aligned table with the definitions below it.
+std::string to_table(const Score& score);
+
+}  // namespace talus::postprocess

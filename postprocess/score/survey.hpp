@@ -1,0 +1,44 @@
+// The survey a run is scored against, and the one place where survey and simulation are brought to one grid.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/raster/raster_io.hpp"
+#include "common/run/run_file.hpp"
+#include "postprocess/options.hpp"
+
+namespace talus::postprocess {
+
+/// A survey on its own grid. Empty vectors: not given. NaN: not surveyed.
+struct Survey {
+  std::string name;
+  MapGrid grid;                 ///< the grid everything is compared on: the survey's, or the run's for a bare polygon
+  std::vector<double> deposit;  ///< [m] thickness, or max(0, after - before)
+  bool deposit_is_change = false;  ///< deposit is a change of the surface: compared with the simulated change
+  std::vector<double> footprint;   ///< peak thickness or |change| [m], or 1 inside and 0 outside a polygon
+  double footprint_threshold = 0;  ///< footprint where above this
+  std::vector<MapPolygon> polygons;
+  std::vector<std::filesystem::path> inputs;
+};
+
+/// The simulation on the survey's grid; NaN where it has nothing to compare with.
+struct OnSurveyGrid {
+  std::vector<double> deposit;  ///< final thickness, or max(0, final - initial thickness) for a surveyed change [m]
+  std::vector<double> peak;     ///< peak thickness [m]
+  double deposit_left_out = 0;  ///< volume of simulated deposit on cells that were not surveyed [m3]
+};
+
+/// Read what the options name. Throws DataError: unreadable, other CRS, no overlap with the run. Empty if nothing is
+/// given.
+std::optional<Survey> read_survey(const SurveyOptions& options, const RunMaps& maps, double footprint_threshold);
+
+/// Area-weighted, so that volume is kept; where the run's map ends but the survey goes on, nothing arrived: 0.
+OnSurveyGrid bring_to_survey_grid(const RunMaps& maps, const Survey& survey);
+
+/// 1 where the cell centre lies inside any polygon (holes counted out), else 0.
+std::vector<double> rasterize(const std::vector<MapPolygon>& polygons, const MapGrid& grid);
+
+}  // namespace talus::postprocess

@@ -1,0 +1,96 @@
+// talus-preprocess: from elevation models to domain.vdb.
+#include <fmt/format.h>
+
+#include "common/raster/raster_io.hpp"
+#include "common/stage/stage.hpp"
+#include "preprocess/prepare.hpp"
+#include "preprocess/sum.hpp"
+
+namespace {
+
+using namespace talus;
+using Facts = std::vector<std::pair<std::string, std::string>>;
+
+constexpr double bytes_per_point =
+    400;  // state of one material point in the solver, double precision, with its sorting
+
+Facts facts_of(const preprocess::Prepared& prepared) {
+  const Domain& domain = prepared.domain;
+  const MapGrid& grid = domain.grid;
+  Facts facts{{"crs", crs_name(grid.crs_wkt)},
+              {"grid", fmt::format("{} x {} cells of {:g} m, west {:.10g}, south {:.10g}", grid.columns, grid.rows,
+                                   grid.cell, grid.west, grid.south)},
+              {"layer_height_m", fmt::format("{:g}", domain.layer_height)},
+              {"material_points", std::to_string(prepared.point_count)}};
+  for (auto& fact : preprocess::as_facts(prepared.total)) facts.push_back(std::move(fact));
+  if (prepared.by_release.size() < 2) return facts;
+  for (const auto& [name, volumes] : prepared.by_release) {
+    for (auto& [key, value] : preprocess::as_facts(volumes)) facts.emplace_back(name + "." + key, std::move(value));
+  }
+  return facts;
+}
+
+void report(const preprocess::Prepared& prepared) {
+  const MapGrid& grid = prepared.domain.grid;
+  log_info(fmt::format("working grid: {} x {} cells of {:g} m, layers of {:g} m, {}", grid.columns, grid.rows,
+                       grid.cell, prepared.domain.layer_height, crs_name(grid.crs_wkt)));
+  if (prepared.by_release.size() > 1) {
+    for (const auto& [name, volumes] : prepared.by_release) {
+      for (const std::string& line : preprocess::as_lines(name, volumes)) log_info(line);
+    }
+  }
+  const std::string whole = prepared.by_release.size() == 1 ? prepared.by_release.front().first : "all releases";
+  for (const std::string& line : preprocess::as_lines(whole, prepared.total)) log_info(line);
+  const double count = static_cast<double>(prepared.point_count);
+  log_info(fmt::format("material points: {} (the solver needs about {:.0f} MB for them)", preprocess::grouped(count),
+                       std::max(1.0, count * bytes_per_point * 1e-6)));
+}
+
+Facts provenance_of(const StageContext& context, const preprocess::Prepared& prepared, const Facts& facts) {
+  Facts provenance{{"scene", context.recipe.scene_name()},
+                   {"title", context.recipe.title()},
+                   {"version", version()},
+                   {"command", context.command_line},
+                   {"hardware", hardware()}};
+  for (const auto& file : prepared.inputs) {
+    const std::string sum =
+        std::filesystem::is_regular_file(file) ? " sha256 " + sha256(file) : "";  // some formats are folders
+    provenance.emplace_back("input " + file.filename().string(), file.string() + sum);
+  }
+  provenance.insert(provenance.end(), facts.begin(), facts.end());
+  return provenance;
+}
+
+Stage stage();
+
+void run(StageContext& context) {
+  const auto options = context.recipe.read<preprocess::Options>("preprocess");
+  auto prepared =
+      preprocess::prepare(options, context.check_only ? preprocess::Points::counted : preprocess::Points::seeded);
+  report(prepared);
+  if (context.check_only) return;
+  const Facts facts = facts_of(prepared);
+  prepared.domain.provenance = provenance_of(context, prepared, facts);
+  const auto file = context.out / "domain.vdb";
+  write_domain(file, prepared.domain);
+  context.results.push_back(file);
+  write_used_recipe(context, stage(), recipe::to_toml(options, "preprocess", false), prepared.inputs, facts);
+}
+
+Stage stage() {
+  Stage stage;
+  stage.name = "talus-preprocess";
+  stage.table = "preprocess";
+  stage.summary = "From elevation models to the domain that talus-solve computes on (OUT/domain.vdb).";
+  stage.examples =
+      "  talus-preprocess recipe.toml --out out/scene    read, align, seed the material points, write domain.vdb\n"
+      "  talus-preprocess recipe.toml --check            say volumes and counts, write nothing\n"
+      "  talus-preprocess --template > recipe.toml       every key with its meaning and range";
+  stage.template_toml = [] { return recipe::to_toml(preprocess::Options{}, "preprocess", true); };
+  stage.run = run;
+  return stage;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) { return talus::run_stage(argc, argv, stage()); }

@@ -1,0 +1,170 @@
+#include "preprocess/options.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <set>
+
+namespace talus::preprocess {
+
+void ReleaseOptions::describe(recipe::Visitor& v) {
+  v.text("name", name, "name of this release; empty = release-1, release-2, ...");
+  v.path("thickness_raster", thickness_raster, "raster of thickness [m]; or polygons, below");
+  v.path("polygons", polygons, "vector file of polygons");
+  v.text("attribute", attribute, "the polygons' attribute that holds the thickness [m]");
+  v.number("thickness_m", thickness_m, recipe::not_negative,
+           "one thickness for all polygons; 0 = that of the attribute");
+  recipe::choice(v, "direction", direction,
+                 {{"vertical", Direction::vertical}, {"slope-normal", Direction::slope_normal}},
+                 "which way the thickness is measured");
+}
+
+void SourceOptions::describe(recipe::Visitor& v) {
+  v.path("polygon", polygon, "outline of the source; empty = found as the connected region of lowering");
+  v.number("threshold_m", threshold_m, recipe::not_negative, "lowering beyond which a cell belongs to such a region");
+  v.optional_number("seed_x_m", seed_x_m, recipe::any,
+                    "take the region that holds this point (its easting); else the largest by volume");
+  v.optional_number("seed_y_m", seed_y_m, recipe::any, "its northing");
+}
+
+void GridOptions::describe(recipe::Visitor& v) {
+  v.number("spacing_m", spacing_m, recipe::not_negative,
+           "horizontal spacing h of the grid; 0 = the cell of the first DEM");
+  v.number("layer_height_m", layer_height_m, recipe::not_negative,
+           "vertical spacing h_z of the grid; 0 = the horizontal one");
+  v.integers("points_per_cell", points_per_cell, recipe::Range{1, 64}, "material points along x, y and height");
+  v.number("minimum_thickness_m", minimum_thickness_m, recipe::not_negative,
+           "columns thinner than this get one point (of the same volume) instead of points_per_cell");
+  v.number("jitter", jitter, recipe::Range{0, 0.5}, "random shift of the points, as a part of their spacing");
+  v.integer("jitter_seed", jitter_seed, recipe::not_negative, "seed of that shift");
+  v.optional_number("west_m", west_m, recipe::any, "western edge of the working grid; none = where all DEMs overlap");
+  v.optional_number("south_m", south_m, recipe::any, "southern edge");
+  v.optional_number("east_m", east_m, recipe::any, "eastern edge");
+  v.optional_number("north_m", north_m, recipe::any, "northern edge");
+  recipe::choice(
+      v, "edge_nodata", edge_nodata, {{"refuse", EdgeNodata::refuse}, {"outside", EdgeNodata::outside}},
+      "cells without elevation that reach the edge of the grid: refuse them, or leave them outside the domain");
+}
+
+void Options::describe(recipe::Visitor& v) {
+  v.path("before_dem", before_dem, "surface before the slide (1: with after_dem, 2: with sliding_surface)");
+  v.path("after_dem", after_dem, "surface after it; only the lowering inside the source is taken out");
+  v.path("sliding_surface", sliding_surface, "surface it slides on; no data = no sliding surface there");
+  v.path("base_dem", base_dem, "ground under the releases (3: with [[preprocess.release]])");
+  v.text("working_crs", working_crs, "metric CRS to work in, \"EPSG:32149\"; empty = that of the first DEM");
+  v.enter("source", "what fails, for (1) and (2)");
+  source.describe(v);
+  v.leave();
+  v.enter("grid", "background grid and material points");
+  grid.describe(v);
+  v.leave();
+  recipe::list(v, "release", release, "what is released onto base_dem; may be repeated");
+}
+
+namespace {
+
+Fault fault(std::string what, std::string why, std::string mend) {
+  return {"[preprocess]: " + std::move(what), std::move(why), std::move(mend)};
+}
+
+void check_way(const Options& o, std::vector<Fault>& faults) {
+  const std::string mend =
+      "Give exactly one of: before_dem and after_dem; before_dem and sliding_surface; base_dem and "
+      "[[preprocess.release]]";
+  const bool before = !o.before_dem.empty(), after = !o.after_dem.empty(), sliding = !o.sliding_surface.empty();
+  const bool base = !o.base_dem.empty(), releases = !o.release.empty();
+  if (!before && !base) {
+    faults.push_back(fault("neither before_dem nor base_dem is given", "nothing says what fails", mend));
+  } else if (before && base) {
+    faults.push_back(fault("before_dem and base_dem are both given", "they belong to different ways", mend));
+  } else if (before && after == sliding) {
+    faults.push_back(fault(after ? "after_dem and sliding_surface are both given" : "before_dem stands alone",
+                           "nothing says clearly what lies under the failing mass", mend));
+  } else if (before && releases) {
+    faults.push_back(
+        fault("before_dem and [[preprocess.release]] are both given", "they belong to different ways", mend));
+  } else if (base && (after || sliding)) {
+    faults.push_back(fault("base_dem goes with releases only, but after_dem or sliding_surface is given",
+                           "they belong to different ways", mend));
+  } else if (base && !releases) {
+    faults.push_back(fault("base_dem is given without a release", "nothing would move", mend));
+  }
+}
+
+void check_release(const ReleaseOptions& r, std::size_t item, std::vector<Fault>& faults) {
+  const std::string place = fmt::format("release {}", item + 1);
+  if (r.thickness_raster.empty() == r.polygons.empty()) {
+    faults.push_back(fault(place + (r.polygons.empty() ? ": neither thickness_raster nor polygons is given"
+                                                       : ": thickness_raster and polygons are both given"),
+                           "a release is one or the other",
+                           "Give one; several releases are several [[preprocess.release]]"));
+  }
+  if (!r.thickness_raster.empty() && r.thickness_m > 0) {
+    faults.push_back(fault(fmt::format("{}: thickness_m = {} beside thickness_raster", place, r.thickness_m),
+                           "the raster holds the thickness", "Leave one out"));
+  }
+  if (!r.polygons.empty() && r.thickness_m == 0 && r.attribute.empty()) {
+    faults.push_back(fault(place + ": polygons without thickness", "attribute is empty and thickness_m is 0",
+                           "Name the attribute that holds the thickness, or give thickness_m"));
+  }
+}
+
+void check_grid(const GridOptions& g, std::vector<Fault>& faults) {
+  if (!(g.spacing_m >= 0) || !std::isfinite(g.spacing_m)) {
+    faults.push_back(fault(fmt::format("grid.spacing_m = {}", g.spacing_m), "it must be positive",
+                           "Give a length in metres, or 0 for the cell of the first DEM"));
+  }
+  if (!(g.layer_height_m >= 0) || !std::isfinite(g.layer_height_m)) {
+    faults.push_back(fault(fmt::format("grid.layer_height_m = {}", g.layer_height_m), "it must be positive",
+                           "Give a length in metres, or 0 for the horizontal spacing"));
+  }
+  bool three_positive = g.points_per_cell.size() == 3;
+  for (int n : g.points_per_cell) three_positive = three_positive && n > 0;
+  if (!three_positive) {
+    faults.push_back(fault(fmt::format("grid.points_per_cell = [{}]", fmt::join(g.points_per_cell, ", ")),
+                           "it must be three positive integers: along x, y and height", "The usual is [2, 2, 2]"));
+  }
+  if (g.west_m && g.east_m && *g.west_m >= *g.east_m) {
+    faults.push_back(fault(fmt::format("grid.west_m = {}, east_m = {}", *g.west_m, *g.east_m),
+                           "west must lie west of east", "Swap them"));
+  }
+  if (g.south_m && g.north_m && *g.south_m >= *g.north_m) {
+    faults.push_back(fault(fmt::format("grid.south_m = {}, north_m = {}", *g.south_m, *g.north_m),
+                           "south must lie south of north", "Swap them"));
+  }
+}
+
+}  // namespace
+
+void Options::check(std::vector<Fault>& faults) const {
+  check_way(*this, faults);
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < release.size(); ++i) {
+    check_release(release[i], i, faults);
+    if (!release[i].name.empty() && !names.insert(release[i].name).second) {
+      faults.push_back(fault(fmt::format("release {}: name \"{}\" is taken", i + 1, release[i].name),
+                             "results are told apart by name", "Name it otherwise"));
+    }
+  }
+  check_grid(grid, faults);
+  if (source.seed_x_m.has_value() != source.seed_y_m.has_value()) {
+    faults.push_back(
+        fault("only one of source.seed_x_m and seed_y_m is given", "a point has both", "Give both or none"));
+  }
+  if (source.seed_x_m && !source.polygon.empty()) {
+    faults.push_back(fault("source.polygon and a seed point are both given",
+                           "the polygon already says what the source is", "Leave one out"));
+  }
+  if (!base_dem.empty() && !source.polygon.empty()) {
+    faults.push_back(fault("source.polygon is given with base_dem", "the releases say what fails there",
+                           "Use polygons = ... in [[preprocess.release]]"));
+  }
+}
+
+Way Options::way() const {
+  if (!base_dem.empty()) return Way::base_and_releases;
+  return after_dem.empty() ? Way::before_and_sliding_surface : Way::before_and_after;
+}
+
+}  // namespace talus::preprocess

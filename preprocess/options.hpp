@@ -1,0 +1,70 @@
+// What [preprocess] of a recipe holds. Every key is named once, in describe().
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/recipe/recipe.hpp"
+
+namespace talus::preprocess {
+
+/// Which way a thickness is measured.
+enum class Direction { vertical, slope_normal };
+
+/// What becomes of cells without elevation.
+enum class EdgeNodata { refuse, outside };
+
+/// One [[preprocess.release]]: a raster of thickness, or polygons with a thickness.
+struct ReleaseOptions {
+  std::string name;
+  std::filesystem::path thickness_raster;
+  std::filesystem::path polygons;
+  std::string attribute = "thickness";
+  double thickness_m = 0;  // one thickness for all polygons; 0 = that of the attribute
+  Direction direction = Direction::vertical;
+
+  void describe(recipe::Visitor& v);
+};
+
+struct SourceOptions {
+  std::filesystem::path polygon;
+  double threshold_m = 0.5;
+  std::optional<double> seed_x_m, seed_y_m;
+
+  void describe(recipe::Visitor& v);
+};
+
+struct GridOptions {
+  double spacing_m = 0;       // 0 = the cell of the first DEM
+  double layer_height_m = 0;  // 0 = spacing
+  std::vector<int> points_per_cell{2, 2, 2};
+  double minimum_thickness_m = 0;
+  double jitter = 0;
+  int jitter_seed = 1;
+  std::optional<double> west_m, south_m, east_m, north_m;
+  EdgeNodata edge_nodata = EdgeNodata::refuse;
+
+  void describe(recipe::Visitor& v);
+};
+
+/// The three ways of saying what fails.
+enum class Way { before_and_after, before_and_sliding_surface, base_and_releases };
+
+struct Options {
+  std::filesystem::path before_dem, after_dem, sliding_surface, base_dem;
+  std::string working_crs;
+  SourceOptions source;
+  GridOptions grid;
+  std::vector<ReleaseOptions> release;
+
+  void describe(recipe::Visitor& v);
+  /// What the ranges of single keys cannot say: which keys go together.
+  void check(std::vector<Fault>& faults) const;
+  Way way() const;  ///< only after check() found nothing
+  /// The DEM that gives the working grid its CRS, registration and cell.
+  const std::filesystem::path& first_dem() const { return base_dem.empty() ? before_dem : base_dem; }
+};
+
+}  // namespace talus::preprocess

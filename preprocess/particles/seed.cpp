@@ -1,0 +1,104 @@
+#include "preprocess/particles/seed.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace talus::preprocess {
+
+namespace {
+
+struct Counts {
+  int x, y, z;
+  std::size_t all() const {
+    return static_cast<std::size_t>(x) * static_cast<std::size_t>(y) * static_cast<std::size_t>(z);
+  }
+};
+
+Counts counts_for(double thickness, const Seeding& s) {
+  if (thickness < s.minimum_thickness) return {1, 1, 1};
+  const double layers = std::round(thickness / s.layer_height * s.in_height);
+  return {s.along_x, s.along_y, static_cast<int>(std::max(1.0, layers))};
+}
+
+/// -1..1, the same on every machine (the standard's distributions are not).
+class Shift {
+ public:
+  explicit Shift(const Seeding& s) : size_(s.jitter), random_(s.jitter_seed) {}
+  double operator()() { return size_ == 0 ? 0.0 : size_ * (2 * (static_cast<double>(random_() >> 11) * 0x1p-53) - 1); }
+
+ private:
+  double size_;
+  std::mt19937_64 random_;
+};
+
+struct Column {
+  double west, south, side;  // of the cell [m]
+  double foot, thickness;    // above the bed [m]
+  int release;
+};
+
+void seed_column(const Column& column, const Seeding& s, Shift& shift, SeedPoints& points) {
+  const Counts n = counts_for(column.thickness, s);
+  const double volume = column.thickness * column.side * column.side / static_cast<double>(n.all());
+  for (int k = 0; k < n.z; ++k) {
+    for (int j = 0; j < n.y; ++j) {
+      for (int i = 0; i < n.x; ++i) {
+        points.x.push_back(column.west + (i + 0.5 + shift()) * column.side / n.x);
+        points.y.push_back(column.south + (j + 0.5 + shift()) * column.side / n.y);
+        points.height.push_back(column.foot + (k + 0.5 + shift()) * column.thickness / n.z);
+        points.volume.push_back(volume);
+        points.release.push_back(column.release);
+      }
+    }
+  }
+}
+
+void reserve(SeedPoints& points, std::size_t count) {
+  for (auto* values : {&points.x, &points.y, &points.height, &points.volume}) values->reserve(count);
+  points.release.reserve(count);
+}
+
+}  // namespace
+
+Seeding seeding_of(const GridOptions& options, double spacing) {
+  return {options.points_per_cell.at(0),
+          options.points_per_cell.at(1),
+          options.points_per_cell.at(2),
+          options.layer_height_m > 0 ? options.layer_height_m : spacing,
+          options.minimum_thickness_m,
+          options.jitter,
+          static_cast<std::uint64_t>(options.jitter_seed)};
+}
+
+std::size_t count_points(const std::vector<Release>& releases, const Seeding& seeding) {
+  std::size_t count = 0;
+  for (const Release& release : releases) {
+    for (double t : release.thickness.values) count += t > 0 ? counts_for(t, seeding).all() : 0;
+  }
+  return count;
+}
+
+SeedPoints seed_points(const std::vector<Release>& releases, const Seeding& seeding) {
+  SeedPoints points;
+  reserve(points, count_points(releases, seeding));
+  if (releases.empty()) return points;
+  const MapGrid& grid = releases.front().thickness.grid;
+  Shift shift(seeding);
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      double foot = 0;
+      for (std::size_t r = 0; r < releases.size(); ++r) {
+        const double t = releases[r].thickness.at(column, row);
+        if (!(t > 0)) continue;
+        seed_column(
+            {grid.west + column * grid.cell, grid.south + row * grid.cell, grid.cell, foot, t, static_cast<int>(r)},
+            seeding, shift, points);
+        foot += t;
+      }
+    }
+  }
+  return points;
+}
+
+}  // namespace talus::preprocess

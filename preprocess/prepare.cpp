@@ -1,0 +1,165 @@
+#include "preprocess/prepare.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <limits>
+
+#include "common/error.hpp"
+#include "common/stage/stage.hpp"
+#include "preprocess/particles/seed.hpp"
+#include "preprocess/release/releases.hpp"
+#include "preprocess/release/source.hpp"
+#include "preprocess/terrain/elevation.hpp"
+#include "preprocess/terrain/slope.hpp"
+#include "preprocess/terrain/surfaces.hpp"
+
+namespace talus::preprocess {
+
+namespace {
+
+struct Scene {
+  Raster before, bed;
+  std::vector<Release> releases;
+};
+
+Scene from_source(Raster before, Source source) {
+  Scene scene{std::move(before), std::move(source.bed), {}};
+  scene.releases.push_back({"source", std::move(source.thickness)});
+  return scene;
+}
+
+Scene from_before_and_after(const Options& options) {
+  Elevation before = read_elevation("before_dem", options.before_dem);
+  Elevation after = read_elevation("after_dem", options.after_dem);
+  share_crs({&before, &after}, options.working_crs);
+  std::vector<Raster> surfaces = align({&before, &after}, options);
+  Source source = find_source({surfaces[0], surfaces[1], options.after_dem}, options.source);
+  return from_source(std::move(surfaces[0]), std::move(source));
+}
+
+Scene from_sliding_surface(const Options& options) {
+  Elevation before = read_elevation("before_dem", options.before_dem);
+  Elevation sliding = read_elevation("sliding_surface", options.sliding_surface);
+  share_crs({&before, &sliding}, options.working_crs);
+  require_comparable_crs(sliding.crs_wkt(), sliding.file, before.crs_wkt(), before.file.string());
+  std::vector<Raster> surfaces = align({&before}, options);
+  const Raster under = onto_grid(sliding, surfaces[0].grid);
+  require_data(under, sliding.file);
+  Source source = find_source({surfaces[0], under, options.sliding_surface, true}, options.source);
+  return from_source(std::move(surfaces[0]), std::move(source));
+}
+
+void warn_of_overlap(const std::vector<Release>& releases) {
+  for (std::size_t a = 0; a < releases.size(); ++a) {
+    for (std::size_t b = a + 1; b < releases.size(); ++b) {
+      std::size_t shared = 0;
+      for (std::size_t i = 0; i < releases[a].thickness.values.size(); ++i) {
+        shared += releases[a].thickness.values[i] > 0 && releases[b].thickness.values[i] > 0;
+      }
+      if (shared > 0) {
+        log_warning(fmt::format("releases {} and {} share {} cells; there the second lies on the first",
+                                releases[a].name, releases[b].name, shared));
+      }
+    }
+  }
+}
+
+Scene from_releases(const Options& options) {
+  Elevation base = read_elevation("base_dem", options.base_dem);
+  share_crs({&base}, options.working_crs);
+  Raster bed = align({&base}, options).front();
+  Scene scene{bed, std::move(bed), {}};
+  for (std::size_t i = 0; i < options.release.size(); ++i) {
+    Release release = read_release(options.release[i], i, scene.bed);
+    for (std::size_t c = 0; c < scene.before.values.size(); ++c) scene.before.values[c] += release.thickness.values[c];
+    scene.releases.push_back(std::move(release));
+  }
+  warn_of_overlap(scene.releases);
+  return scene;
+}
+
+Scene read_scene(const Options& options) {
+  switch (options.way()) {
+    case Way::before_and_after: return from_before_and_after(options);
+    case Way::before_and_sliding_surface: return from_sliding_surface(options);
+    case Way::base_and_releases: break;
+  }
+  return from_releases(options);
+}
+
+Raster total_thickness(const Scene& scene) {
+  Raster total{scene.bed.grid, std::vector<double>(scene.bed.grid.count(), 0.0)};
+  for (const Release& release : scene.releases) {
+    for (std::size_t i = 0; i < total.values.size(); ++i) total.values[i] += release.thickness.values[i];
+  }
+  return total;
+}
+
+void warn_at_edge(const Raster& thickness) {
+  const MapGrid& grid = thickness.grid;
+  for (std::size_t i = 0; i < thickness.values.size(); ++i) {
+    const int column = static_cast<int>(i % static_cast<std::size_t>(grid.columns)),
+              row = static_cast<int>(i / static_cast<std::size_t>(grid.columns));
+    const bool edge = column == 0 || row == 0 || column == grid.columns - 1 || row == grid.rows - 1;
+    if (!edge || !(thickness.values[i] > 0)) continue;
+    log_warning("the release reaches the edge of the working grid, at " + place_of(grid, i) +
+                ": part of it may lie beyond");
+    return;
+  }
+}
+
+void require_countable(std::size_t count, const GridOptions& grid) {
+  if (count <= static_cast<std::size_t>(std::numeric_limits<int>::max())) return;
+  throw RecipeError(Fault{fmt::format("[preprocess.grid]: {} material points", count), "points are numbered in 32 bits",
+                          fmt::format("Take a larger layer_height_m or spacing_m, or fewer points_per_cell than [{}]",
+                                      fmt::join(grid.points_per_cell, ", "))});
+}
+
+std::vector<std::filesystem::path> inputs_of(const Options& options) {
+  std::vector<std::filesystem::path> inputs;
+  const auto add = [&](const std::filesystem::path& file) {
+    if (!file.empty()) inputs.push_back(file);
+  };
+  for (const auto& file :
+       {options.before_dem, options.after_dem, options.sliding_surface, options.base_dem, options.source.polygon})
+    add(file);
+  for (const ReleaseOptions& release : options.release) {
+    add(release.thickness_raster);
+    add(release.polygons);
+  }
+  return inputs;
+}
+
+}  // namespace
+
+Prepared prepare(const Options& options, Points points) {
+  std::vector<Fault> faults;
+  options.check(faults);
+  if (!faults.empty()) throw RecipeError(std::move(faults));
+  Scene scene = read_scene(options);
+  const Seeding seeding = seeding_of(options.grid, scene.bed.grid.cell);
+  Prepared prepared;
+  prepared.inputs = inputs_of(options);
+  prepared.point_count = count_points(scene.releases, seeding);
+  require_countable(prepared.point_count, options.grid);
+
+  Domain& domain = prepared.domain;
+  domain.grid = scene.bed.grid;
+  domain.layer_height = seeding.layer_height;
+  domain.release_thickness = total_thickness(scene);
+  warn_at_edge(domain.release_thickness);
+  const std::vector<double> cosine = slope_cosine(scene.bed);
+  prepared.total = volumes_of(domain.release_thickness, cosine);
+  for (const Release& release : scene.releases) {
+    domain.release_names.push_back(release.name);
+    prepared.by_release.emplace_back(release.name, volumes_of(release.thickness, cosine));
+  }
+  if (points == Points::seeded) domain.points = seed_points(scene.releases, seeding);
+  domain.terrain = std::move(scene.bed);
+  domain.before = std::move(scene.before);
+  return prepared;
+}
+
+}  // namespace talus::preprocess

@@ -1,0 +1,30 @@
+// From options to the domain: what talus-preprocess does between reading its recipe and writing its file.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/volume/domain.hpp"
+#include "preprocess/options.hpp"
+#include "preprocess/release/volumes.hpp"
+
+namespace talus::preprocess {
+
+struct Prepared {
+  Domain domain;  // without points where only counted; provenance is left to the caller
+  std::size_t point_count = 0;
+  Volumes total;
+  std::vector<std::pair<std::string, Volumes>> by_release;
+  std::vector<std::filesystem::path> inputs;
+};
+
+enum class Points { seeded, counted };
+
+/// Reads the files, aligns them, finds or reads the release and seeds its points. Throws RecipeError and DataError.
+/// Bed: under the released mass the sliding surface, min(before, after), or the base DEM itself (snow lies on it, so
+/// the surface before is base + thickness); elsewhere the ground as it is.
+Prepared prepare(const Options& options, Points points);
+
+}  // namespace talus::preprocess

@@ -1,0 +1,25 @@
+// How much of each cell a polygon covers, exactly.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "common/raster/raster.hpp"
+#include "common/raster/raster_io.hpp"
+
+namespace talus::preprocess {
+
+/// Refuse (DataError, with the place) polygons whose rings cross themselves or one another, have fewer than three
+/// corners or no area, or whose holes lie outside; and turn the rings (outer counter-clockwise, holes clockwise).
+/// CGAL's exact predicates decide.
+void check_polygons(std::vector<MapPolygon>& polygons, const std::filesystem::path& file);
+
+/// Area without the holes [m2]; rings turned as check_polygons() does.
+double area_of(const MapPolygon& polygon);
+
+/// Covered part of every cell, 0..1 [rows * columns]; sum * cell^2 = area_of() to rounding. From Green's theorem: each
+/// piece of an edge within one cell adds its signed area to that cell and its height to the cells west of it. Throws
+/// DataError (naming `file`) when the polygon reaches beyond the grid.
+std::vector<double> coverage(const MapGrid& grid, const MapPolygon& polygon, const std::filesystem::path& file);
+
+}  // namespace talus::preprocess

@@ -1,0 +1,111 @@
+#include "preprocess/release/releases.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "common/error.hpp"
+#include "common/raster/raster_io.hpp"
+#include "common/stage/stage.hpp"
+#include "preprocess/release/polygon_cover.hpp"
+#include "preprocess/terrain/elevation.hpp"
+#include "preprocess/terrain/slope.hpp"
+#include "preprocess/terrain/surfaces.hpp"
+
+namespace talus::preprocess {
+
+namespace {
+
+void refuse_negative(const Raster& thickness, const std::filesystem::path& file) {
+  std::vector<char> negative(thickness.values.size());
+  double worst = 0;
+  for (std::size_t i = 0; i < negative.size(); ++i) {
+    negative[i] = thickness.values[i] < 0;  // false for nodata
+    worst = std::min(worst, negative[i] ? thickness.values[i] : 0.0);
+  }
+  refuse_cells(
+      thickness.grid, negative,
+      {file, fmt::format("cells of negative thickness (down to {:g} m)", worst), "a release has none",
+       fmt::format("Is it an elevation difference, after - before? Then: gdal_calc.py -A {} --calc \"maximum(-A,0)\" "
+                   "--outfile out.tif",
+                   file.string())});
+}
+
+Raster from_raster(const ReleaseOptions& options, const MapGrid& grid) {
+  const Raster thickness = read_raster(options.thickness_raster);
+  refuse_negative(thickness, options.thickness_raster);
+  return thickness_onto_grid(thickness, grid, options.thickness_raster);
+}
+
+double thickness_of(const MapPolygon& polygon, std::size_t number, const ReleaseOptions& options) {
+  if (options.thickness_m > 0) return options.thickness_m;
+  const std::string place = fmt::format("{}: polygon {}", options.polygons.string(), number);
+  std::string others;
+  for (const auto& [name, value] : polygon.numbers) {
+    if (name != options.attribute) {
+      others += (others.empty() ? "" : ", ") + name;
+    } else if (value >= 0 && std::isfinite(value)) {
+      return value;
+    } else {
+      throw DataError(Fault{fmt::format("{}: {} = {:g}", place, name, value),
+                            "a thickness is a number and not negative",
+                            "Mend the attribute, or give thickness_m in the recipe"});
+    }
+  }
+  throw DataError(Fault{fmt::format("{}: no number \"{}\" among its attributes ({})", place, options.attribute,
+                                    others.empty() ? "it has none" : others),
+                        "its thickness is not known",
+                        "Name the attribute in the recipe (attribute = ...), or give thickness_m"});
+}
+
+Raster from_polygons(const ReleaseOptions& options, const MapGrid& grid) {
+  std::vector<MapPolygon> polygons = read_polygons(options.polygons, grid.crs_wkt);
+  check_polygons(polygons, options.polygons);
+  Raster thickness{grid, std::vector<double>(grid.count(), 0.0)};
+  std::vector<double> covered(grid.count(), 0.0);
+  bool overlap = false;
+  for (std::size_t p = 0; p < polygons.size(); ++p) {
+    const double height = thickness_of(polygons[p], p + 1, options);
+    const std::vector<double> part = coverage(grid, polygons[p], options.polygons);
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      thickness.values[i] += part[i] * height;
+      covered[i] += part[i];
+      overlap = overlap || covered[i] > 1 + 1e-9;
+    }
+  }
+  if (overlap) log_warning(options.polygons.string() + ": its polygons overlap; their thicknesses add up there");
+  return thickness;
+}
+
+void refuse_nothing(const Raster& thickness, const std::filesystem::path& file) {
+  if (std::any_of(thickness.values.begin(), thickness.values.end(), [](double t) { return t > 0; })) return;
+  throw DataError(Fault{file.string() + ": its thickness is 0 everywhere", "the source is empty",
+                        "Check the values with gdalinfo -stats or ogrinfo -al"});
+}
+
+void refuse_release_on_nodata(const Raster& thickness, const Raster& bed, const std::filesystem::path& file) {
+  std::vector<char> bad(bed.values.size());
+  for (std::size_t i = 0; i < bad.size(); ++i) bad[i] = thickness.values[i] > 0 && std::isnan(bed.values[i]);
+  refuse_cells(bed.grid, bad,
+               {file, "cells of release where the DEM has no elevation", "nothing holds it up there",
+                "Fill the DEM, or cut the release"});
+}
+
+}  // namespace
+
+Release read_release(const ReleaseOptions& options, std::size_t item, const Raster& bed) {
+  const auto& file = options.polygons.empty() ? options.thickness_raster : options.polygons;
+  Release release{options.name.empty() ? fmt::format("release-{}", item + 1) : options.name,
+                  options.polygons.empty() ? from_raster(options, bed.grid) : from_polygons(options, bed.grid)};
+  refuse_nothing(release.thickness, file);
+  refuse_release_on_nodata(release.thickness, bed, file);
+  if (options.direction == Direction::slope_normal) {
+    const std::vector<double> cosine = slope_cosine(bed);
+    for (std::size_t i = 0; i < cosine.size(); ++i) release.thickness.values[i] /= cosine[i];
+  }
+  return release;
+}
+
+}  // namespace talus::preprocess

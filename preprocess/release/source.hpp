@@ -1,0 +1,31 @@
+// Which cells fail, when two surfaces are given: a polygon, or a connected region of lowering.
+#pragma once
+
+#include <filesystem>
+
+#include "common/raster/raster.hpp"
+#include "preprocess/options.hpp"
+
+namespace talus::preprocess {
+
+/// What fails, and what it slides on.
+struct Source {
+  Raster thickness;  // vertical [m], 0 outside the source
+  Raster bed;        // [m]
+};
+
+/// Two surfaces on the working grid; `under` may be nodata where there is no sliding surface.
+struct SurfacePair {
+  const Raster& before;
+  const Raster& under;
+  std::filesystem::path under_file;
+  bool is_sliding_surface = false;
+};
+
+/// The source by its polygon (cells on the outline count by their covered part), by its seed point, or the largest
+/// region by volume; under a sliding surface a region goes on to where the surface meets the ground (1 mm). Within it
+/// the bed is min(before, under), elsewhere before; so what was raised is no part of the bed. Throws DataError: no
+/// lowering, nodata within the source, a sliding surface more than 0.1 m above the surface before within the polygon.
+Source find_source(const SurfacePair& surfaces, const SourceOptions& options);
+
+}  // namespace talus::preprocess

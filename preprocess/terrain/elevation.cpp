@@ -1,0 +1,121 @@
+#include "preprocess/terrain/elevation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/error.hpp"
+#include "common/raster/raster_io.hpp"
+#include "common/stage/stage.hpp"
+#include "preprocess/sum.hpp"
+#include "preprocess/terrain/scattered.hpp"
+#include "preprocess/terrain/working_grid.hpp"
+
+namespace talus::preprocess {
+
+namespace {
+
+/// The raster's values on a grid of the same lattice; NaN outside the raster.
+Raster window(const Raster& raster, const MapGrid& grid) {
+  const int shift_column = static_cast<int>(std::lround((grid.west - raster.grid.west) / grid.cell));
+  const int shift_row = static_cast<int>(std::lround((grid.south - raster.grid.south) / grid.cell));
+  Raster result{grid, std::vector<double>(grid.count(), std::numeric_limits<double>::quiet_NaN())};
+  for (int row = std::max(0, -shift_row); row < std::min(grid.rows, raster.grid.rows - shift_row); ++row) {
+    for (int column = std::max(0, -shift_column); column < std::min(grid.columns, raster.grid.columns - shift_column);
+         ++column) {
+      result.at(column, row) = raster.at(column + shift_column, row + shift_row);
+    }
+  }
+  return result;
+}
+
+double volume_of(const Raster& thickness) {
+  Sum sum;
+  for (double t : thickness.values) {
+    if (!std::isnan(t)) sum.add(t);
+  }
+  return sum.value() * thickness.grid.cell * thickness.grid.cell;
+}
+
+void require_same_crs(const Raster& thickness, const MapGrid& grid, const std::filesystem::path& file) {
+  require_comparable_crs(thickness.grid.crs_wkt, file, grid.crs_wkt, "the working grid");
+  if (same_crs(thickness.grid.crs_wkt, grid.crs_wkt)) return;
+  const std::string wanted = crs_name(grid.crs_wkt);
+  throw DataError(Fault{
+      fmt::format("{}: CRS is {}, the working grid's is {}", file.string(), crs_name(thickness.grid.crs_wkt), wanted),
+      "a thickness is resampled within one CRS only, to keep its volume",
+      fmt::format("Reproject: gdalwarp -t_srs {} -r average {} out.tif", wanted, file.string())});
+}
+
+}  // namespace
+
+Extent Elevation::extent() const {
+  if (scattered) return points.extent();
+  return {raster.grid.west, raster.grid.south, raster.grid.east(), raster.grid.north()};
+}
+
+Elevation read_elevation(std::string key, const std::filesystem::path& file) {
+  Elevation elevation{std::move(key), file, is_point_file(file), {}, {}};
+  if (elevation.scattered) {
+    elevation.points = read_points(file);
+  } else {
+    elevation.raster = read_raster(file);
+  }
+  return elevation;
+}
+
+Raster onto_grid(const Elevation& elevation, const MapGrid& grid) {
+  const bool one_crs = same_crs(elevation.crs_wkt(), grid.crs_wkt);
+  if (elevation.scattered) {
+    log_info(fmt::format("{}: {} points triangulated onto the working grid", elevation.file.string(),
+                         elevation.points.x.size()));
+    return interpolate_scattered(one_crs ? elevation.points : transform_points(elevation.points, grid.crs_wkt), grid,
+                                 elevation.file);
+  }
+  if (one_crs && same_lattice(elevation.raster.grid, grid)) return window(elevation.raster, grid);
+  log_info(fmt::format("{}: {:g} m cells in {}{} resampled onto the working grid", elevation.file.string(),
+                       elevation.cell(), crs_name(elevation.crs_wkt()),
+                       one_crs && elevation.cell() == grid.cell ? ", registered otherwise," : ""));
+  return resample_elevation(elevation.raster, grid);
+}
+
+Raster thickness_onto_grid(const Raster& thickness, const MapGrid& grid, const std::filesystem::path& file) {
+  require_same_crs(thickness, grid, file);
+  Raster result = same_lattice(thickness.grid, grid) ? window(thickness, grid) : resample_thickness(thickness, grid);
+  const auto has_data = [](double t) { return !std::isnan(t); };
+  const bool overlaps = std::any_of(result.values.begin(), result.values.end(), has_data);
+  for (double& t : result.values) t = std::isnan(t) ? 0.0 : t;
+  const double whole = volume_of(thickness), kept = volume_of(result);
+  if (!overlaps || kept < whole * (1 - 1e-9)) {
+    throw DataError(Fault{fmt::format("{}: {} of {} m3 lie outside the working grid", file.string(),
+                                      grouped(whole - kept), grouped(whole)),
+                          "the release must lie on the DEM",
+                          "Give a DEM that reaches further, or widen the crop in [preprocess.grid]"});
+  }
+  return result;
+}
+
+void share_crs(const std::vector<Elevation*>& dems, const std::string& working_crs) {
+  std::string shared = working_crs.empty() ? "" : metric_crs(working_crs);
+  for (const Elevation* dem : dems) shared = shared.empty() ? dem->crs_wkt() : shared;
+  if (shared.empty()) return;
+  for (Elevation* dem : dems) {
+    if (!dem->scattered || !dem->points.crs_wkt.empty()) continue;
+    dem->points.crs_wkt = shared;
+    log_info(fmt::format("{}: names no CRS, taken as {}", dem->file.string(), crs_name(shared)));
+  }
+}
+
+void require_comparable_crs(const std::string& crs, const std::filesystem::path& file, const std::string& other_crs,
+                            const std::string& other_file) {
+  if (crs.empty() == other_crs.empty()) return;
+  const std::string bare = crs.empty() ? file.string() : other_file, named = crs.empty() ? other_file : file.string();
+  const std::string name = crs_name(crs.empty() ? other_crs : crs);
+  throw DataError(Fault{fmt::format("{}: has no CRS, while that of {} is {}", bare, named, name),
+                        "they cannot be laid over one another",
+                        fmt::format("If it is the same, say so: gdal_edit.py -a_srs {} {}", name, bare)});
+}
+
+}  // namespace talus::preprocess

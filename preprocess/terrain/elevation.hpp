@@ -1,0 +1,44 @@
+// Elevation models as they were read, and brought onto the working grid.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/raster/raster.hpp"
+#include "preprocess/terrain/geo_input.hpp"
+
+namespace talus::preprocess {
+
+/// A raster, or scattered points, of elevations [m].
+struct Elevation {
+  std::string key;  // its key in the recipe: "after_dem"
+  std::filesystem::path file;
+  bool scattered = false;
+  Raster raster;
+  ScatteredPoints points;
+
+  const std::string& crs_wkt() const { return scattered ? points.crs_wkt : raster.grid.crs_wkt; }
+  Extent extent() const;
+  double cell() const { return scattered ? 0.0 : raster.grid.cell; }  // 0 = has none
+};
+
+/// Read a raster by any GDAL format, or points (see is_point_file). Throws DataError.
+Elevation read_elevation(std::string key, const std::filesystem::path& file);
+
+/// Copied where its cells are the grid's cells, resampled or triangulated otherwise; NaN where it has no data.
+Raster onto_grid(const Elevation& elevation, const MapGrid& grid);
+
+/// Thickness onto the grid, conserving volume (see resample_thickness); 0 where it has no data. Throws DataError when
+/// CRS differ, when there is no overlap, or when more than 1e-9 of the volume lies outside the grid.
+Raster thickness_onto_grid(const Raster& thickness, const MapGrid& grid, const std::filesystem::path& file);
+
+/// Points without a CRS (a text file cannot name one) are taken to be in `working_crs` (a name; may be empty), else in the
+/// CRS of the first other DEM that has one; the log says so.
+void share_crs(const std::vector<Elevation*>& dems, const std::string& working_crs);
+
+/// Throws DataError when one of two files has a CRS and the other has none.
+void require_comparable_crs(const std::string& crs, const std::filesystem::path& file, const std::string& other_crs,
+                            const std::string& other_file);
+
+}  // namespace talus::preprocess

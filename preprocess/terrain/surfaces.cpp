@@ -1,0 +1,157 @@
+#include "preprocess/terrain/surfaces.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "common/raster/raster_io.hpp"
+#include "common/stage/stage.hpp"
+#include "preprocess/sum.hpp"
+#include "preprocess/terrain/working_grid.hpp"
+
+namespace talus::preprocess {
+
+namespace {
+
+std::vector<char> empty_cells(const Raster& raster) {
+  std::vector<char> empty(raster.values.size());
+  for (std::size_t i = 0; i < empty.size(); ++i) empty[i] = std::isnan(raster.values[i]);
+  return empty;
+}
+
+void mark_too(std::vector<char>& marked, const std::vector<char>& more) {
+  for (std::size_t i = 0; i < marked.size(); ++i) marked[i] = marked[i] || more[i];
+}
+
+/// Data that were reprojected or triangulated end in ragged or slanting lines.
+bool ends_ragged(const Elevation& dem, const MapGrid& grid) {
+  return dem.scattered || !same_crs(dem.crs_wkt(), grid.crs_wkt);
+}
+
+/// Cut off border rows and columns where a DEM is wholly empty; and, unless `ragged_edges` may stay, those where a
+/// reprojected or triangulated one is empty in part.
+void trim(const std::vector<const Elevation*>& dems, std::vector<Raster>& rasters, bool ragged_edges) {
+  const MapGrid grid = rasters.front().grid;
+  for (const bool in_part : {false, true}) {
+    std::vector<char> empty(rasters.front().grid.count(), 0);
+    for (std::size_t i = 0; i < dems.size(); ++i) {
+      if (!in_part || (!ragged_edges && ends_ragged(*dems[i], grid))) mark_too(empty, empty_cells(rasters[i]));
+    }
+    const Window window = trimmed(rasters.front().grid, empty, in_part ? 0.0 : 1.0 - 1e-9);
+    if (window.columns < 1 || window.rows < 1) {
+      throw DataError(Fault{fmt::format("{}: has no data where the DEMs overlap", dems.back()->file.string()),
+                            "nothing is left of the working grid", "Check its coordinates and CRS with gdalinfo"});
+    }
+    for (Raster& raster : rasters) raster = cut(raster, window);
+  }
+  const MapGrid& left = rasters.front().grid;
+  if (left.count() < grid.count()) {
+    log_info(fmt::format("working grid trimmed from {} x {} to {} x {} cells, to where all DEMs have data",
+                         grid.columns, grid.rows, left.columns, left.rows));
+  }
+}
+
+void leave_edges_outside(std::vector<Raster>& rasters) {
+  const MapGrid grid = rasters.front().grid;
+  std::vector<char> empty(grid.count(), 0);
+  for (const Raster& raster : rasters) mark_too(empty, empty_cells(raster));
+  const std::vector<char> outside = reaching_edge(grid, empty);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < outside.size(); ++i) {
+    if (!outside[i]) continue;
+    ++count;
+    for (Raster& raster : rasters) raster.values[i] = std::numeric_limits<double>::quiet_NaN();
+  }
+  if (count > 0)
+    log_warning(fmt::format("{} cells without elevation reach the edge of the grid and lie outside the domain", count));
+}
+
+void refuse_empty_cells(const Elevation& dem, const Raster& raster, EdgeNodata edge) {
+  std::vector<char> empty = empty_cells(raster);
+  if (edge == EdgeNodata::outside) {
+    const std::vector<char> outside = reaching_edge(raster.grid, empty);
+    for (std::size_t i = 0; i < empty.size(); ++i) empty[i] = empty[i] && !outside[i];
+  }
+  std::string mend = "Fill them (gdal_fillnodata.py " + dem.file.string() + " out.tif)";
+  if (edge == EdgeNodata::refuse) {
+    mend +=
+        ", crop the working grid (west_m, south_m, east_m, north_m in [preprocess.grid]), or, where they reach its "
+        "edge, "
+        "leave them outside the domain: edge_nodata = \"outside\"";
+  }
+  refuse_cells(raster.grid, empty,
+               {dem.file, "cells without elevation", "nodata or NaN inside the working area", mend});
+}
+
+}  // namespace
+
+std::string place_of(const MapGrid& grid, std::size_t cell) {
+  const auto columns = static_cast<std::size_t>(grid.columns);
+  return fmt::format("x {:.1f}, y {:.1f}", grid.x(static_cast<int>(cell % columns)),
+                     grid.y(static_cast<int>(cell / columns)));
+}
+
+std::vector<char> reaching_edge(const MapGrid& grid, const std::vector<char>& marked) {
+  std::vector<char> reached(marked.size(), 0);
+  std::vector<std::pair<int, int>> todo;
+  const auto visit = [&](int column, int row) {
+    if (column < 0 || row < 0 || column >= grid.columns || row >= grid.rows) return;
+    const std::size_t i = grid.index(column, row);
+    if (!marked[i] || reached[i]) return;
+    reached[i] = 1;
+    todo.emplace_back(column, row);
+  };
+  for (int column = 0; column < grid.columns; ++column) visit(column, 0), visit(column, grid.rows - 1);
+  for (int row = 0; row < grid.rows; ++row) visit(0, row), visit(grid.columns - 1, row);
+  while (!todo.empty()) {
+    const auto [column, row] = todo.back();
+    todo.pop_back();
+    for (int dr = -1; dr <= 1; ++dr) {
+      for (int dc = -1; dc <= 1; ++dc) visit(column + dc, row + dr);
+    }
+  }
+  return reached;
+}
+
+void refuse_cells(const MapGrid& grid, const std::vector<char>& bad, const CellFault& fault) {
+  std::size_t count = 0;
+  std::optional<std::size_t> first;
+  for (int row = grid.rows - 1; row >= 0; --row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      if (!bad[grid.index(column, row)]) continue;
+      ++count;
+      if (!first) first = grid.index(column, row);
+    }
+  }
+  if (!first) return;
+  const std::string place = (count == 1 ? "at " : "the first at ") + place_of(grid, *first);
+  throw DataError(
+      Fault{fmt::format("{}: {} {}, {}", fault.file.string(), grouped(static_cast<double>(count)), fault.what, place),
+            fault.why, fault.mend});
+}
+
+void require_data(const Raster& raster, const std::filesystem::path& file) {
+  const std::vector<char> empty = empty_cells(raster);
+  if (std::find(empty.begin(), empty.end(), 0) != empty.end()) return;
+  throw DataError(Fault{file.string() + ": has no data at all in the working grid", "all its cells there are nodata",
+                        "Check its coordinates and nodata value with gdalinfo"});
+}
+
+std::vector<Raster> align(const std::vector<const Elevation*>& dems, const Options& options) {
+  const MapGrid grid = working_grid(dems, options);
+  std::vector<Raster> rasters;
+  for (const Elevation* dem : dems) {
+    rasters.push_back(onto_grid(*dem, grid));
+    require_data(rasters.back(), dem->file);
+  }
+  const EdgeNodata edge = options.grid.edge_nodata;
+  trim(dems, rasters, edge == EdgeNodata::outside);
+  for (std::size_t i = 0; i < dems.size(); ++i) refuse_empty_cells(*dems[i], rasters[i], edge);
+  if (edge == EdgeNodata::outside) leave_edges_outside(rasters);
+  return rasters;
+}
+
+}  // namespace talus::preprocess

@@ -1,0 +1,39 @@
+// Elevation models aligned on the working grid, with their nodata accounted for.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/raster/raster.hpp"
+#include "preprocess/options.hpp"
+#include "preprocess/terrain/elevation.hpp"
+
+namespace talus::preprocess {
+
+/// "x 361265.6, y 71238.4": the centre of a cell.
+std::string place_of(const MapGrid& grid, std::size_t cell);
+
+/// Of the marked cells [rows * columns], those that hang together (8-connected) with one on the grid's edge.
+std::vector<char> reaching_edge(const MapGrid& grid, const std::vector<char>& marked);
+
+/// What to say of the cells that are marked in `bad` and matter; count and first place are in the text.
+struct CellFault {
+  std::filesystem::path file;
+  std::string what;  // "cells without elevation"
+  std::string why, mend;
+};
+/// Throws DataError when any cell is marked: "FILE: 12 cells without elevation, the first at x .., y .. (why). mend".
+/// The first is the northernmost, and of these the westernmost.
+void refuse_cells(const MapGrid& grid, const std::vector<char>& bad, const CellFault& fault);
+
+/// Throws DataError when a raster that was brought to the working grid holds nothing but nodata.
+void require_data(const Raster& raster, const std::filesystem::path& file);
+
+/// Bring DEMs onto the working grid (the first gives CRS, registration and cell). Where one was reprojected or
+/// triangulated, the grid is trimmed to where it has data. Other cells without data are refused by name and place; with
+/// edge_nodata = "outside" those that reach the edge become nodata in every raster returned. All are on one grid, in
+/// the order of `dems`.
+std::vector<Raster> align(const std::vector<const Elevation*>& dems, const Options& options);
+
+}  // namespace talus::preprocess

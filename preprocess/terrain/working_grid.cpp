@@ -1,0 +1,156 @@
+#include "preprocess/terrain/working_grid.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/error.hpp"
+#include "common/raster/raster_io.hpp"
+
+namespace talus::preprocess {
+
+namespace {
+
+constexpr double lattice_tolerance = 1e-4;  // of a cell: coordinates in files carry their own rounding
+
+bool is_whole(double value) { return std::abs(value - std::round(value)) < lattice_tolerance; }
+
+Extent intersection(const Extent& a, const Extent& b) {
+  return {std::max(a.west, b.west), std::max(a.south, b.south), std::min(a.east, b.east), std::min(a.north, b.north)};
+}
+
+std::string text(const Extent& e) {
+  return fmt::format("x {:.0f}..{:.0f}, y {:.0f}..{:.0f}", e.west, e.east, e.south, e.north);
+}
+
+Extent extent_in(const Elevation& dem, const std::string& crs) {
+  return same_crs(dem.crs_wkt(), crs) ? dem.extent() : transform_extent(dem.extent(), dem.crs_wkt(), crs);
+}
+
+double spacing_of(const Elevation& first, const Options& options) {
+  if (options.grid.spacing_m > 0) return options.grid.spacing_m;
+  if (!first.scattered) return first.cell();
+  throw RecipeError(Fault{"[preprocess.grid]: spacing_m is not given",
+                          first.file.string() + " holds points, which have no cell size",
+                          "Give spacing_m, about the distance between the points"});
+}
+
+/// Cells of the lattice through (west, south) that lie wholly inside the extent.
+MapGrid cells_inside(const Extent& extent, double west, double south, double cell) {
+  MapGrid grid;
+  grid.cell = cell;
+  const double first_column = std::ceil((extent.west - west) / cell - lattice_tolerance);
+  const double first_row = std::ceil((extent.south - south) / cell - lattice_tolerance);
+  grid.west = west + first_column * cell;
+  grid.south = south + first_row * cell;
+  grid.columns = static_cast<int>(std::floor((extent.east - grid.west) / cell + lattice_tolerance));
+  grid.rows = static_cast<int>(std::floor((extent.north - grid.south) / cell + lattice_tolerance));
+  return grid;
+}
+
+Extent crop_of(const GridOptions& g) {
+  const double far = std::numeric_limits<double>::max();
+  return {g.west_m.value_or(-far), g.south_m.value_or(-far), g.east_m.value_or(far), g.north_m.value_or(far)};
+}
+
+Extent overlap_of(const std::vector<const Elevation*>& dems, const std::string& crs) {
+  const Elevation& first = *dems.front();
+  Extent overlap = extent_in(first, crs);
+  for (const Elevation* dem : dems) {
+    require_comparable_crs(dem->crs_wkt(), dem->file, first.crs_wkt(), first.file.string());
+    const Extent extent = extent_in(*dem, crs);
+    const Extent smaller = intersection(overlap, extent);
+    if (smaller.empty()) {
+      throw DataError(Fault{fmt::format("{}: covers {}, while {} covers {}", dem->file.string(), text(extent),
+                                        first.file.string(), text(overlap)),
+                            "they do not overlap", "Check the coordinates and the CRS of both with gdalinfo"});
+    }
+    overlap = smaller;
+  }
+  return overlap;
+}
+
+/// How many of a border's cells are empty; borders: west, east, south, north.
+struct Border {
+  int empty = 0, length = 1;
+  double part() const { return static_cast<double>(empty) / length; }
+};
+
+std::array<Border, 4> borders(const MapGrid& grid, const std::vector<char>& empty, const Window& w) {
+  std::array<Border, 4> b{Border{0, w.rows}, Border{0, w.rows}, Border{0, w.columns}, Border{0, w.columns}};
+  for (int row = w.row; row < w.row + w.rows; ++row) {
+    b[0].empty += empty[grid.index(w.column, row)];
+    b[1].empty += empty[grid.index(w.column + w.columns - 1, row)];
+  }
+  for (int column = w.column; column < w.column + w.columns; ++column) {
+    b[2].empty += empty[grid.index(column, w.row)];
+    b[3].empty += empty[grid.index(column, w.row + w.rows - 1)];
+  }
+  return b;
+}
+
+}  // namespace
+
+bool same_lattice(const MapGrid& a, const MapGrid& b) {
+  const double cells = std::max({a.columns, a.rows, b.columns, b.rows});
+  return std::abs(a.cell / b.cell - 1) * cells < lattice_tolerance && is_whole((a.west - b.west) / a.cell) &&
+         is_whole((a.south - b.south) / a.cell);
+}
+
+MapGrid working_grid(const std::vector<const Elevation*>& dems, const Options& options) {
+  const Elevation& first = *dems.front();
+  const std::string crs = options.working_crs.empty() ? first.crs_wkt() : metric_crs(options.working_crs);
+  require_comparable_crs(first.crs_wkt(), first.file, crs, "working_crs");
+  const double cell = spacing_of(first, options);
+  const Extent overlap = overlap_of(dems, crs), wanted = intersection(overlap, crop_of(options.grid));
+  const bool registered = !first.scattered && same_crs(first.crs_wkt(), crs);
+  MapGrid grid = wanted.empty() ? MapGrid{}
+                                : cells_inside(wanted, registered ? first.extent().west : 0,
+                                               registered ? first.extent().south : 0, cell);
+  if (grid.columns < 1 || grid.rows < 1) {
+    throw DataError(Fault{
+        fmt::format("the DEMs overlap in {}, which holds no cell of {:g} m inside the crop", text(overlap), cell),
+        "the working grid is empty", "Check west_m, south_m, east_m, north_m and spacing_m in [preprocess.grid]"});
+  }
+  grid.crs_wkt = crs;
+  return grid;
+}
+
+Window trimmed(const MapGrid& grid, const std::vector<char>& empty, double allowed) {
+  Window w{0, 0, grid.columns, grid.rows};
+  while (w.columns > 0 && w.rows > 0) {
+    const auto b = borders(grid, empty, w);
+    const auto worst =
+        std::max_element(b.begin(), b.end(), [](const Border& l, const Border& r) { return l.part() < r.part(); });
+    if (worst->part() <= allowed) break;
+    const auto side = worst - b.begin();
+    if (side == 0) ++w.column;
+    if (side == 2) ++w.row;
+    --(side < 2 ? w.columns : w.rows);
+  }
+  return w;
+}
+
+MapGrid cut(const MapGrid& grid, const Window& window) {
+  MapGrid part = grid;
+  part.west = grid.west + window.column * grid.cell;
+  part.south = grid.south + window.row * grid.cell;
+  part.columns = window.columns;
+  part.rows = window.rows;
+  return part;
+}
+
+Raster cut(const Raster& raster, const Window& window) {
+  Raster part{cut(raster.grid, window), {}};
+  part.values.reserve(part.grid.count());
+  for (int row = 0; row < window.rows; ++row) {
+    for (int column = 0; column < window.columns; ++column) {
+      part.values.push_back(raster.at(window.column + column, window.row + row));
+    }
+  }
+  return part;
+}
+
+}  // namespace talus::preprocess

@@ -1,0 +1,37 @@
+// The one metric grid that everything is brought to.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/raster/raster.hpp"
+#include "preprocess/options.hpp"
+#include "preprocess/terrain/elevation.hpp"
+
+namespace talus::preprocess {
+
+/// True when the cells of one grid are cells of the other: same size, corners a whole number of cells apart (to 1e-4 of
+/// one).
+bool same_lattice(const MapGrid& a, const MapGrid& b);
+
+/// The working grid: CRS `working_crs` or that of the first DEM, cell `spacing_m` or that of the first DEM, registered
+/// to the first DEM's south-west corner (to multiples of the spacing where that DEM is points or in another CRS); all
+/// cells that lie wholly inside every DEM and inside the crop. Throws RecipeError (no spacing for points) and DataError
+/// (no overlap; one file with and one without CRS).
+MapGrid working_grid(const std::vector<const Elevation*>& dems, const Options& options);
+
+/// A part of a grid, by its cells.
+struct Window {
+  int column = 0, row = 0, columns = 0, rows = 0;
+};
+
+/// Drops border rows and columns of which more than `allowed` (0..1) is marked in `empty` [rows * columns], the
+/// emptiest first. Below 1 - 1e-9 it drops wholly empty ones; 0 leaves a rectangle without empty cells on its border,
+/// as DEMs need that were reprojected or triangulated and whose data do not end along the grid's lines.
+Window trimmed(const MapGrid& grid, const std::vector<char>& empty, double allowed);
+
+/// The part of a raster or grid in the window.
+MapGrid cut(const MapGrid& grid, const Window& window);
+Raster cut(const Raster& raster, const Window& window);
+
+}  // namespace talus::preprocess

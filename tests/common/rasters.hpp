@@ -1,0 +1,55 @@
+// Rasters for tests, and CRS texts by EPSG code.
+#pragma once
+
+#include <ogr_spatialref.h>
+
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "common/raster/raster.hpp"
+
+namespace talus::test {
+
+/// WKT2 of an EPSG code, written as read_raster writes it.
+inline std::string epsg(int code) {
+  OGRSpatialReference srs;
+  if (srs.importFromEPSG(code) != OGRERR_NONE)
+    throw std::runtime_error("PROJ does not know EPSG:" + std::to_string(code));
+  const char* const options[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
+  char* wkt = nullptr;
+  srs.exportToWkt(&wkt, options);
+  const std::string text = wkt;
+  CPLFree(wkt);
+  return text;
+}
+
+/// Values between 0 and 50, from a seed.
+inline Raster random_raster(const MapGrid& grid, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> value(0, 50);
+  Raster raster{grid, std::vector<double>(grid.count())};
+  for (double& cell : raster.values) cell = value(random);
+  return raster;
+}
+
+inline Raster small_raster(const MapGrid& grid, std::vector<double> values) { return {grid, std::move(values)}; }
+
+inline double volume(const Raster& raster) {
+  double sum = 0;
+  for (const double value : raster.values)
+    if (!std::isnan(value)) sum += value;
+  return sum * raster.grid.cell * raster.grid.cell;
+}
+
+/// Same cells, same bits; NaN equals NaN.
+inline bool identical(const Raster& a, const Raster& b) {
+  const bool same_grid = a.grid.columns == b.grid.columns && a.grid.rows == b.grid.rows && a.grid.west == b.grid.west &&
+                         a.grid.south == b.grid.south && a.grid.cell == b.grid.cell;
+  if (!same_grid || a.values.size() != b.values.size()) return false;
+  for (std::size_t i = 0; i < a.values.size(); ++i)
+    if (a.values[i] != b.values[i] && !(std::isnan(a.values[i]) && std::isnan(b.values[i]))) return false;
+  return true;
+}
+
+}  // namespace talus::test

@@ -1,0 +1,218 @@
+#include "common/recipe/recipe.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "common/recipe/suggest.hpp"
+#include "tests/common/sample_options.hpp"
+#include "tests/common/scratch.hpp"
+
+namespace talus {
+namespace {
+
+using recipe::Recipe;
+using test::fault_of;
+using test::SampleOptions;
+using test::Scratch;
+using test::Shape;
+
+struct RecipeFile : testing::Test {
+  Scratch scratch;
+  SampleOptions read(const std::string& text) {
+    return Recipe(scratch.write("r.toml", text)).read<SampleOptions>("solve");
+  }
+  /// Faults of a recipe, with the folder taken out: "r.toml:1:1: ...".
+  std::string faults(const std::string& text) {
+    std::string found = fault_of<RecipeError>([&] { read(text); });
+    const std::string folder = scratch.folder().string() + "/";
+    for (std::size_t at; (at = found.find(folder)) != std::string::npos;) found.erase(at, folder.size());
+    return found;
+  }
+};
+
+TEST_F(RecipeFile, reads_every_kind_of_key) {
+  const SampleOptions options = read(R"(
+[scene]
+name = "frank-slide"
+title = "Frank Slide 1903"
+[solve]
+density_kg_m3 = 2650
+seed_x_m = -3.5
+steps = 7
+verbose = true
+label = "x"
+terrain = "dem/before.tif"
+times_s = [1, 2.5]
+points_per_cell = [1, 2, 3]
+shape = "linear"
+[solve.material]
+friction_angle_deg = 0
+tension_pa = inf
+[[solve.release]]
+name = "A"
+thickness_m = 2
+[[solve.release]]
+name = "B"
+polygons = "/data/b.gpkg"
+[postprocess]
+anything = "is another stage's business"
+)");
+  EXPECT_EQ(options.density, 2650);
+  EXPECT_EQ(options.seed_x, -3.5);
+  EXPECT_EQ(options.steps, 7);
+  EXPECT_TRUE(options.verbose);
+  EXPECT_EQ(options.label, "x");
+  EXPECT_EQ(options.terrain, scratch / "dem/before.tif");
+  EXPECT_EQ(options.times, (std::vector<double>{1, 2.5}));
+  EXPECT_EQ(options.points_per_cell, (std::vector<int>{1, 2, 3}));
+  EXPECT_EQ(options.shape, Shape::linear);
+  EXPECT_EQ(options.friction, 0);
+  EXPECT_EQ(options.tension, recipe::infinity);
+  ASSERT_EQ(options.releases.size(), 2u);
+  EXPECT_EQ(options.releases[0].name, "A");
+  EXPECT_EQ(options.releases[0].thickness, 2);
+  EXPECT_EQ(options.releases[1].polygons, "/data/b.gpkg");
+}
+
+TEST_F(RecipeFile, an_empty_recipe_gives_the_defaults) { EXPECT_EQ(read(""), SampleOptions{}); }
+
+TEST_F(RecipeFile, names_the_scene_by_its_table_or_by_its_file) {
+  const Recipe named(scratch.write("named.toml", "[scene]\nname = \"frank\"\ntitle = \"Frank Slide\""));
+  EXPECT_EQ(named.scene_name(), "frank");
+  EXPECT_EQ(named.title(), "Frank Slide");
+  const Recipe bare(scratch.write("valley.toml", ""));
+  EXPECT_EQ(bare.scene_name(), "valley");
+  EXPECT_EQ(bare.title(), "valley");
+  EXPECT_EQ(bare.file(), scratch / "valley.toml");
+}
+
+TEST_F(RecipeFile, reports_all_faults_at_once_in_the_order_of_the_file) {
+  EXPECT_EQ(
+      faults("[solve]\nshape = \"cubik\"\ndensty_kg_m3 = 1\nsteps = 0\n[solve.material]\nfriction_angle_deg = 90\n"),
+      "r.toml:2:9: [solve] shape = \"cubik\" (no such choice). Did you mean \"cubic\"? It must be \"linear\", "
+      "\"quadratic\" or \"cubic\"\n"
+      "r.toml:3:1: unknown key \"densty_kg_m3\" in [solve]. Did you mean \"density_kg_m3\"?\n"
+      "r.toml:4:9: [solve] steps = 0 (out of range). It must be 1 to 1000\n"
+      "r.toml:6:22: [solve.material] friction_angle_deg = 90 (out of range). It must be >= 0 and < 90");
+}
+
+TEST_F(RecipeFile, refuses_wrong_types) {
+  EXPECT_EQ(faults("[solve]\ndensity_kg_m3 = \"heavy\""),
+            "r.toml:2:17: [solve] density_kg_m3 = \"heavy\" (it is text). Give a number");
+  EXPECT_EQ(faults("[solve]\nsteps = 3.0"),
+            "r.toml:2:9: [solve] steps = 3.0 (it is a number with a decimal point). Give an integer, without a decimal "
+            "point");
+  EXPECT_EQ(faults("[solve]\nverbose = 1"), "r.toml:2:11: [solve] verbose = 1 (it is an integer). Give true or false");
+  EXPECT_EQ(faults("[solve]\nlabel = [1]"), "r.toml:2:9: [solve] label (it is a list). Give text in quotes");
+  EXPECT_EQ(faults("[solve]\nterrain = 5"),
+            "r.toml:2:11: [solve] terrain = 5 (it is an integer). Give a path in quotes");
+  EXPECT_EQ(faults("[solve]\nshape = 2"),
+            "r.toml:2:9: [solve] shape = 2 (it is an integer). Give \"linear\", \"quadratic\" or \"cubic\"");
+  EXPECT_EQ(faults("[solve]\ntimes_s = 4"),
+            "r.toml:2:11: [solve] times_s = 4 (a list is wanted). Write times_s = [...]");
+  EXPECT_EQ(faults("[solve]\nseed_x_m = 1979-05-27"),
+            "r.toml:2:12: [solve] seed_x_m (it is a date or time). Give a number");
+}
+
+TEST_F(RecipeFile, refuses_wrong_shapes_of_tables) {
+  EXPECT_EQ(faults("solve = 1"),
+            "r.toml:1:9: solve = 1 (a table is wanted). Write [solve] on a line of its own and the keys below it");
+  EXPECT_EQ(faults("[solve]\nmaterial = 1"),
+            "r.toml:2:12: [solve] material = 1 (a table is wanted). Write [solve.material] on a line of its own and "
+            "the keys below it");
+  EXPECT_EQ(
+      faults("[solve.release]\nname = \"A\""),
+      "r.toml:1:1: [solve] release (a list of tables is wanted). Write [[solve.release]] above the keys of each one");
+  EXPECT_EQ(faults("[[solve.release]]\nnmae = \"A\"\n[[solve.release]]\nthickness_m = -1"),
+            "r.toml:2:1: unknown key \"nmae\" in [[solve.release]]. Did you mean \"name\"?\n"
+            "r.toml:4:15: [[solve.release]] thickness_m = -1 (out of range). It must be >= 0");
+}
+
+TEST_F(RecipeFile, refuses_numbers_that_are_not_finite) {
+  EXPECT_EQ(faults("[solve]\ndensity_kg_m3 = nan"),
+            "r.toml:2:17: [solve] density_kg_m3 = nan (it is not a finite number). Give a number > 0");
+  EXPECT_EQ(faults("[solve]\ndensity_kg_m3 = inf"),
+            "r.toml:2:17: [solve] density_kg_m3 = inf (it is not a finite number). Give a number > 0");
+  EXPECT_EQ(faults("[solve]\nsteps = 5000000000"),
+            "r.toml:2:9: [solve] steps = 5000000000 (out of range). It must be 1 to 1000");
+}
+
+TEST_F(RecipeFile, names_the_item_of_a_list_that_is_wrong) {
+  EXPECT_EQ(faults("[solve]\ntimes_s = [1, -2, \"x\"]\npoints_per_cell = [2, 9, 2]"),
+            "r.toml:2:15: [solve] times_s[1] = -2 (out of range). It must be >= 0\n"
+            "r.toml:2:19: [solve] times_s[2] = \"x\" (it is text). Give a number\n"
+            "r.toml:3:23: [solve] points_per_cell[1] = 9 (out of range). It must be 1 to 8");
+}
+
+TEST_F(RecipeFile, points_at_unknown_keys_and_tables) {
+  EXPECT_EQ(faults("[solv]\n"), "r.toml:1:2: unknown top-level table \"solv\". Did you mean \"solve\"?");
+  EXPECT_EQ(faults("end = 3\n"),
+            "r.toml:1:1: unknown top-level key \"end\". Known here: scene, preprocess, solve, postprocess");
+  EXPECT_EQ(faults("[solve]\ndensity = 3"),
+            "r.toml:2:1: unknown key \"density\" in [solve]. Did you mean \"density_kg_m3\"?");
+  EXPECT_EQ(faults("[solve]\nfriction_angle_deg = 3"),
+            "r.toml:2:1: unknown key \"friction_angle_deg\" in [solve]. It belongs in [solve.material]");
+  EXPECT_EQ(faults("[solve.material]\nzzzzzzzz = 3"),
+            "r.toml:2:1: unknown key \"zzzzzzzz\" in [solve.material]. Known here: friction_angle_deg, tension_pa");
+  EXPECT_EQ(faults("[scene]\ntitel = \"x\""), "r.toml:2:1: unknown key \"titel\" in [scene]. Did you mean \"title\"?");
+}
+
+TEST_F(RecipeFile, refuses_a_scene_name_that_is_no_file_name) {
+  EXPECT_EQ(
+      faults("[scene]\nname = \"a/b\""),
+      "r.toml:2:8: [scene] name = \"a/b\" (it becomes part of file names). Use letters, digits, '-', '_' and '.' only; "
+      "put the rest into title");
+}
+
+TEST_F(RecipeFile, adds_what_the_options_themselves_check) {
+  EXPECT_EQ(faults("[solve]\npoints_per_cell = [2]"),
+            "[solve] points_per_cell (three numbers are wanted). Write [2, 2, 2]");
+}
+
+TEST_F(RecipeFile, says_where_a_file_is_not_toml) {
+  const std::string found = faults("[solve]\nsteps = = 3\n");
+  EXPECT_TRUE(found.starts_with("r.toml:2:9: this is not TOML (")) << found;
+  EXPECT_EQ(faults("[solve]\nsteps = 3\nsteps = 4\n").find("r.toml:3:"), 0u);
+}
+
+TEST_F(RecipeFile, says_that_a_file_is_missing) {
+  const auto missing = scratch / "none.toml";
+  EXPECT_EQ(fault_of<RecipeError>([&] { Recipe r(missing); }),
+            missing.string() + ": the recipe cannot be read (No such file or directory). Check the path");
+  EXPECT_EQ(fault_of<RecipeError>([&] { Recipe r(scratch.folder()); }),
+            scratch.folder().string() + ": the recipe cannot be read (it is a folder). Check the path");
+}
+
+TEST_F(RecipeFile, replaces_environment_variables_in_paths) {
+  ::setenv("TALUS_TEST_DATA", "/data/frank", 1);
+  EXPECT_EQ(read("[solve]\nterrain = \"${TALUS_TEST_DATA}/dem.tif\"").terrain, "/data/frank/dem.tif");
+  ::setenv("TALUS_TEST_DATA", "sub", 1);
+  EXPECT_EQ(read("[solve]\nterrain = \"${TALUS_TEST_DATA}/../dem.tif\"").terrain, scratch / "dem.tif");
+  ::unsetenv("TALUS_TEST_DATA");
+  EXPECT_EQ(
+      faults("[solve]\nterrain = \"${TALUS_TEST_DATA}/dem.tif\""),
+      "r.toml:2:11: [solve] terrain = \"${TALUS_TEST_DATA}/dem.tif\" (the environment variable TALUS_TEST_DATA is not "
+      "set). Set it: export TALUS_TEST_DATA=...");
+}
+
+TEST_F(RecipeFile, leaves_names_of_things_inside_files_alone) {
+  EXPECT_EQ(read("[solve]\nterrain = \"NETCDF:dem.nc:z\"").terrain, "NETCDF:dem.nc:z");
+  EXPECT_EQ(read("[solve]\nterrain = \"\"").terrain, "");
+}
+
+TEST(Suggest, counts_edits) {
+  EXPECT_EQ(recipe::edit_distance("", "abc"), 3u);
+  EXPECT_EQ(recipe::edit_distance("steps", "steps"), 0u);
+  EXPECT_EQ(recipe::edit_distance("setps", "steps"), 1u);  // a swap is one slip
+  EXPECT_EQ(recipe::edit_distance("kitten", "sitting"), 3u);
+}
+
+TEST(Suggest, offers_only_what_is_near) {
+  EXPECT_EQ(recipe::nearest("spacin_m", {"spacing_m", "layer_height_m"}), "spacing_m");
+  EXPECT_EQ(recipe::nearest("colour", {"spacing_m", "layer_height_m"}), "");
+  EXPECT_EQ(recipe::did_you_mean("x", {}), "Remove it");
+}
+
+}  // namespace
+}  // namespace talus

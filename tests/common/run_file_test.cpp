@@ -1,0 +1,205 @@
+// run.h5: what is written comes back, a foreign tool sees VTKHDF in it, and broken files are named as such.
+#include "common/run/run_file.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "common/error.hpp"
+#include "tests/common/scratch.hpp"
+
+namespace fs = std::filesystem;
+
+namespace talus {
+namespace {
+
+class RunFile : public ::testing::Test {
+ protected:
+  test::Scratch scratch_;
+  const fs::path file_ = scratch_ / "run.h5";
+};
+
+PointFrame some_points(double time, std::size_t count) {
+  PointFrame frame;
+  frame.time = time;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto x = static_cast<double>(i);
+    frame.position.push_back({5.0e6 + 0.001 * x, 7.0 * x, time});
+    frame.velocity.push_back({static_cast<float>(x), 0.5F, -1.0F});
+    frame.volume.push_back(2.0F);
+    frame.pressure.push_back(static_cast<float>(100 * i));
+    frame.id.push_back(static_cast<std::int32_t>(i));
+    frame.release.push_back(0);
+  }
+  return frame;
+}
+
+RunMaps some_maps() {
+  RunMaps maps;
+  maps.grid = {
+      .columns = 4, .rows = 3, .west = 500000, .south = 5000000.25, .cell = 2.5, .crs_wkt = "LOCAL_CS[\"h\u00f6he\"]"};
+  for (int i = 0; i < 12; ++i) {
+    maps.terrain.push_back(100 + i);
+    maps.before.push_back(110 + i);
+    maps.initial_thickness.push_back(i % 3);
+    maps.deposit_thickness.push_back(1.0 / (i + 1));
+    maps.peak_thickness.push_back(i);
+    maps.peak_speed.push_back(2 * i);
+    maps.peak_pressure.push_back(0.1 * i);
+    maps.arrival_time.push_back(i == 5 ? std::numeric_limits<double>::quiet_NaN() : i);
+  }
+  maps.threshold = 0.25;
+  return maps;
+}
+
+RunSummary some_summary() {
+  RunSummary summary;
+  summary.scene = "s";
+  summary.title = "A title";
+  summary.version = "0.1.0 (abc)";
+  summary.particles = 1'234'567'890'123;
+  summary.volume_released = 1.0 / 3.0;
+  summary.provenance = {{"input", "before.tif sha256 12"}, {"input", "after.tif sha256 34"}, {"note", ""}};
+  return summary;
+}
+
+const RunHistory some_history{{"time_s", "kinetic_J", "a"}, {{0, 1}, {5, 6}, {7, 8}}};
+
+void write_some_run(const fs::path& file) {
+  RunWriter writer(file);
+  const auto maps = some_maps();
+  writer.append(some_points(0, 5));
+  writer.append_thickness(0, maps.grid, maps.initial_thickness);
+  writer.append(some_points(1.5, 4));
+  writer.append_thickness(1.5, maps.grid, maps.deposit_thickness);
+  writer.finish(maps, some_history, some_summary());
+}
+
+std::string output_of(const std::string& command) {
+  std::string text;
+  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+  char buffer[4096];
+  while (pipe != nullptr && fgets(buffer, sizeof buffer, pipe) != nullptr) text += buffer;
+  if (pipe != nullptr) pclose(pipe);
+  return text;
+}
+
+/// The first fault of reading a file, which must be a DataError.
+Fault fault_of(const fs::path& file) {
+  try {
+    read_run(file);
+  } catch (const DataError& error) {
+    return error.faults().front();
+  }
+  ADD_FAILURE() << file << " was read without complaint";
+  return {};
+}
+
+TEST_F(RunFile, brings_back_maps_frames_history_and_summary) {
+  write_some_run(file_);
+  const auto run = read_run(file_);
+  const auto maps = some_maps();
+  EXPECT_EQ(run.maps.grid.columns, 4);
+  EXPECT_EQ(run.maps.grid.rows, 3);
+  EXPECT_EQ(run.maps.grid.south, maps.grid.south);
+  EXPECT_EQ(run.maps.grid.crs_wkt, maps.grid.crs_wkt);
+  EXPECT_EQ(run.maps.deposit_thickness, maps.deposit_thickness);
+  EXPECT_EQ(run.maps.peak_pressure, maps.peak_pressure);
+  EXPECT_TRUE(std::isnan(run.maps.arrival_time[5]));
+  EXPECT_EQ(run.maps.arrival_time[6], 6);
+  EXPECT_EQ(run.maps.threshold, 0.25);
+  EXPECT_EQ(run.frames.time, (std::vector<double>{0, 1.5}));
+  EXPECT_EQ(run.frames.thickness.at(1), maps.deposit_thickness);
+  EXPECT_EQ(run.history.names, some_history.names);
+  EXPECT_EQ(run.history.columns, some_history.columns);
+  EXPECT_EQ(run.summary.title, "A title");
+  EXPECT_EQ(run.summary.stop_reason, "");
+  EXPECT_EQ(run.summary.particles, 1'234'567'890'123);
+  EXPECT_EQ(run.summary.volume_released, 1.0 / 3.0);
+  EXPECT_EQ(run.summary.provenance, some_summary().provenance);
+}
+
+TEST_F(RunFile, is_not_there_until_it_is_finished) {
+  {
+    RunWriter writer(file_);
+    writer.append(some_points(0, 3));
+    EXPECT_FALSE(fs::exists(file_));
+  }
+  EXPECT_EQ(scratch_.files(), 0U) << "an abandoned run leaves nothing behind";
+}
+
+TEST_F(RunFile, reads_a_run_without_frames_or_points) {
+  RunWriter(file_).finish(some_maps(), {}, {});
+  const auto run = read_run(file_);
+  EXPECT_TRUE(run.frames.time.empty());
+  EXPECT_TRUE(run.history.names.empty());
+}
+
+TEST_F(RunFile, holds_vtkhdf_as_h5dump_sees_it) {
+  ASSERT_EQ(std::system("command -v h5dump > /dev/null"), 0) << "install hdf5-tools";
+  write_some_run(file_);
+  const auto header =
+      output_of("h5dump -a /VTKHDF/Type -a /VTKHDF/Version -a /VTKHDF/Steps/NSteps '" + file_.string() + "'");
+  EXPECT_NE(header.find("UnstructuredGrid"), std::string::npos) << header;
+  EXPECT_NE(header.find("STRSIZE 16"), std::string::npos) << "fixed length\n" << header;
+  EXPECT_NE(header.find("H5T_CSET_ASCII"), std::string::npos) << header;
+  EXPECT_NE(header.find("(0): 2, 0"), std::string::npos) << "version 2.0\n" << header;
+  EXPECT_EQ(header.find("error"), std::string::npos) << header;
+  const auto dump = [&](const std::string& name) {
+    return output_of("h5dump -w 0 -d /VTKHDF/" + name + " '" + file_.string() + "'");
+  };
+  EXPECT_NE(dump("NumberOfPoints").find("(0): 5, 4"), std::string::npos);
+  EXPECT_NE(dump("Steps/Values").find("(0): 0, 1.5"), std::string::npos);
+  EXPECT_NE(dump("Steps/PointOffsets").find("(0): 0, 5"), std::string::npos);
+  EXPECT_NE(dump("Steps/CellOffsets").find("(0): 0, 5"), std::string::npos);
+  EXPECT_NE(dump("Steps/PartOffsets").find("(0): 0, 1"), std::string::npos);
+  EXPECT_NE(dump("Steps/PointDataOffsets/velocity").find("(0): 0, 5"), std::string::npos);
+  EXPECT_NE(dump("Connectivity").find("(0): 0, 1, 2, 3, 4, 0, 1, 2, 3"), std::string::npos);
+  EXPECT_NE(dump("Offsets").find("(0): 0, 1, 2, 3, 4, 5, 0, 1, 2, 3, 4"), std::string::npos);
+  EXPECT_NE(dump("Types").find("(0): 1, 1, 1, 1, 1, 1, 1, 1, 1"), std::string::npos);
+  EXPECT_NE(dump("Points").find("( 9, 3 )"), std::string::npos);
+}
+
+TEST_F(RunFile, names_a_missing_file) { EXPECT_NE(fault_of(file_).what.find("no such file"), std::string::npos); }
+
+TEST_F(RunFile, refuses_a_truncated_file_at_any_length_and_says_how_to_mend_it) {
+  write_some_run(file_);
+  const auto size = fs::file_size(file_);
+  for (const double part : {0.0, 0.001, 0.3, 0.7, 0.99}) {
+    const auto cut = scratch_ / "cut.h5";
+    fs::copy_file(file_, cut, fs::copy_options::overwrite_existing);
+    fs::resize_file(cut, static_cast<std::uintmax_t>(part * static_cast<double>(size)));
+    const auto fault = fault_of(cut);
+    EXPECT_NE(fault.what.find("cut.h5"), std::string::npos) << fault.what;
+    EXPECT_NE(fault.mend.find("talus-solve"), std::string::npos) << fault.mend;
+  }
+}
+
+TEST_F(RunFile, refuses_a_file_that_is_something_else) {
+  std::ofstream(file_) << "these are not the bytes of a run";
+  EXPECT_NE(fault_of(file_).mend.find("talus-solve"), std::string::npos);
+}
+
+TEST_F(RunFile, reports_a_write_that_the_system_refuses) {
+  std::string fault;
+  {
+    const test::SmallFiles limit(4096);
+    fault = test::fault_of<DataError>([&] {
+      RunWriter writer(file_);
+      for (int i = 0; i < 20; ++i) writer.append(some_points(i, 20000));
+      writer.finish(some_maps(), some_history, some_summary());
+    });
+  }
+  EXPECT_NE(fault.find(file_.string() + ": cannot be written"), std::string::npos) << "as the user knows it: " << fault;
+  EXPECT_NE(fault.find("File too large"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("--out"), std::string::npos) << fault;
+  EXPECT_EQ(scratch_.files(), 0U) << "nothing half-written may stay";
+}
+
+}  // namespace
+}  // namespace talus

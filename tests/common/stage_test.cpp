@@ -1,0 +1,311 @@
+#include "common/stage/stage.hpp"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include "tests/common/sample_options.hpp"
+#include "tests/common/scratch.hpp"
+
+namespace talus {
+namespace {
+
+using test::fault_of;
+using test::SampleOptions;
+using test::Scratch;
+using test::text_of;
+
+TEST(Sha256, matches_published_vectors) {
+  const Scratch scratch;
+  EXPECT_EQ(sha256(scratch.write("empty", "")), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(sha256(scratch.write("abc", "abc")), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(sha256(scratch.write("two", "abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq")),
+            "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  EXPECT_EQ(sha256(scratch.write("million", std::string(1000000, 'a'))),
+            "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
+TEST(Sha256, says_what_it_cannot_read) {
+  EXPECT_EQ(fault_of<DataError>([] { sha256("/no/such"); }),
+            "/no/such: cannot be read (No such file or directory). Check the path and its permissions");
+}
+
+TEST(PendingFile, shows_nothing_until_committed) {
+  const Scratch scratch;
+  {
+    PendingFile pending(scratch / "map.tif");
+    std::ofstream(pending.path()) << "half";
+    EXPECT_TRUE(std::filesystem::exists(scratch / ".map.tif.partial"));
+    EXPECT_FALSE(std::filesystem::exists(scratch / "map.tif"));
+  }
+  EXPECT_EQ(scratch.files(), 0u);
+}
+
+TEST(PendingFile, keeps_the_old_file_when_the_new_one_is_given_up) {
+  const Scratch scratch;
+  scratch.write("map.tif", "old");
+  { std::ofstream(PendingFile(scratch / "map.tif").path()) << "half"; }
+  EXPECT_EQ(text_of(scratch / "map.tif"), "old");
+  PendingFile pending(scratch / "map.tif");
+  std::ofstream(pending.path()) << "new";
+  pending.commit();
+  EXPECT_EQ(text_of(scratch / "map.tif"), "new");
+}
+
+TEST(PendingFile, a_commit_without_a_file_is_a_fault) {
+  const Scratch scratch;
+  PendingFile pending(scratch / "map.tif");
+  EXPECT_EQ(fault_of<DataError>([&] { pending.commit(); }),
+            (scratch / "map.tif").string() +
+                ": cannot be written (No such file or directory). Check the folder's permissions "
+                "and free space, or write elsewhere with --out DIR");
+}
+
+TEST(WriteText, leaves_nothing_when_the_disk_fills_up) {
+  const Scratch scratch;
+  scratch.write("score.json", "old");
+  std::string fault;
+  {
+    const test::SmallFiles limit(100000);
+    fault = fault_of<DataError>([&] { write_text(scratch / "score.json", std::string(300000, 'x')); });
+  }
+  EXPECT_TRUE(fault.starts_with((scratch / "score.json").string() + ": cannot be written (File too large)")) << fault;
+  EXPECT_EQ(text_of(scratch / "score.json"), "old");
+  EXPECT_EQ(scratch.files(), 1u);
+}
+
+TEST(WriteText, names_the_reason_of_the_system) {
+  const std::string fault = fault_of<DataError>([] { write_text("/no/such/folder/a.txt", "x"); });
+  EXPECT_TRUE(fault.starts_with("/no/such/folder/a.txt: cannot be written (No such file or directory)")) << fault;
+}
+
+/// A stage that notes what it was given.
+struct RunStage : testing::Test {
+  Scratch scratch;
+  Stage stage{"talus-sample",
+              "solve",
+              "Tries the runner.",
+              "  talus-sample r.toml",
+              true,
+              true,
+              [] { return recipe::to_toml(SampleOptions{}, "solve", true); },
+              [](StageContext&) {}};
+  std::string out, err;
+
+  int run(std::vector<std::string> words) {
+    words.insert(words.begin(), stage.name);
+    std::vector<char*> argv;
+    for (auto& word : words) argv.push_back(word.data());
+    testing::internal::CaptureStdout();
+    testing::internal::CaptureStderr();
+    const int code = run_stage(static_cast<int>(argv.size()), argv.data(), stage);
+    out = testing::internal::GetCapturedStdout();
+    err = testing::internal::GetCapturedStderr();
+    return code;
+  }
+  std::string recipe() { return scratch.write("r.toml", "").string(); }
+};
+
+TEST_F(RunStage, prints_result_paths_alone_on_stdout) {
+  stage.run = [](StageContext& context) {
+    log_info("a fact");
+    write_text(context.out / "a.txt", "x");
+    context.results = {context.out / "a.txt"};
+  };
+  EXPECT_EQ(run({recipe()}), 0);
+  EXPECT_EQ(out, (scratch / "out/a.txt").string() + "\n");
+  EXPECT_EQ(err, "a fact\n");
+}
+
+TEST_F(RunStage, hands_over_what_the_command_line_says) {
+  stage.run = [&](StageContext& context) {
+    EXPECT_EQ(context.out, scratch / "deep/er");
+    EXPECT_TRUE(std::filesystem::is_directory(context.out));
+    EXPECT_TRUE(std::filesystem::is_empty(context.out));
+    EXPECT_EQ(context.on, On::gpu);
+    EXPECT_EQ(context.restart, std::filesystem::path("c.h5"));
+    EXPECT_FALSE(context.check_only);
+    EXPECT_EQ(context.command_line, "talus-sample " + (scratch / "r.toml").string() + " --out " +
+                                        (scratch / "deep/er").string() + " --on gpu --restart c.h5");
+  };
+  EXPECT_EQ(run({recipe(), "--out", (scratch / "deep/er").string(), "--on", "gpu", "--restart", "c.h5"}), 0) << err;
+}
+
+TEST_F(RunStage, restart_without_a_file_is_an_empty_path) {
+  stage.run = [&](StageContext& context) { EXPECT_EQ(context.restart, std::filesystem::path()); };
+  EXPECT_EQ(run({recipe(), "--restart"}), 0) << err;
+  EXPECT_EQ(run({"--restart", recipe()}), 0) << err;
+  stage.run = [&](StageContext& context) { EXPECT_FALSE(context.restart.has_value()); };
+  EXPECT_EQ(run({recipe()}), 0) << err;
+}
+
+TEST_F(RunStage, check_writes_nothing) {
+  stage.run = [&](StageContext& context) { EXPECT_TRUE(context.check_only); };
+  EXPECT_EQ(run({recipe(), "--check", "--out", (scratch / "new").string()}), 0) << err;
+  EXPECT_FALSE(std::filesystem::exists(scratch / "new"));
+}
+
+TEST_F(RunStage, no_recipe_is_a_usage_error) {
+  EXPECT_EQ(run({}), 2);
+  EXPECT_EQ(
+      err,
+      "talus-sample: no recipe was given. Usage: talus-sample recipe.toml [--out DIR] [--check] [--template] [--on "
+      "auto|cpu|gpu] [--restart [FILE]] [-v|-q] (all of it: talus-sample --help)\n");
+  EXPECT_EQ(out, "");
+}
+
+TEST_F(RunStage, unknown_options_and_values_are_usage_errors) {
+  EXPECT_EQ(run({recipe(), "--fast"}), 2);
+  EXPECT_NE(err.find("talus-sample: The following argument was not expected: --fast. Usage: "), std::string::npos)
+      << err;
+  EXPECT_EQ(run({recipe(), "--on", "tpu"}), 2);
+  EXPECT_NE(err.find("talus-sample: --on: tpu not in {auto,cpu,gpu}"), std::string::npos) << err;
+  EXPECT_EQ(run({recipe(), "-v", "-q"}), 2);
+}
+
+TEST_F(RunStage, template_needs_no_recipe_and_reads_back) {
+  EXPECT_EQ(run({"--template"}), 0);
+  const recipe::Recipe back(scratch.write("t.toml", out));
+  EXPECT_EQ(back.read<SampleOptions>("solve"), SampleOptions{});
+}
+
+TEST_F(RunStage, help_names_examples_and_exit_codes) {
+  EXPECT_EQ(run({"--help"}), 0);
+  for (const char* word : {"talus-sample r.toml", "Exit codes: 0 done", "--restart", "--on", "--template", "--check"})
+    EXPECT_NE(out.find(word), std::string::npos) << word << " is not in\n" << out;
+  EXPECT_EQ(err, "");
+}
+
+TEST_F(RunStage, version_names_the_commit) {
+  EXPECT_EQ(run({"--version"}), 0);
+  EXPECT_EQ(out, "talus-sample " + version() + "\n");
+  EXPECT_NE(version().find(" ("), std::string::npos);
+}
+
+TEST_F(RunStage, refuses_an_output_folder_that_cannot_be_written_to) {
+  bool ran = false;
+  stage.run = [&](StageContext&) { ran = true; };
+  const std::string in_the_way = scratch.write("file", "x").string();
+  const std::string text =
+      ": the output folder cannot be written to (Not a directory). Name another one with --out DIR\n";
+  EXPECT_EQ(run({recipe(), "--out", in_the_way + "/sub"}), 3);
+  EXPECT_EQ(err, "talus-sample: " + in_the_way + "/sub" + text);
+  EXPECT_EQ(run({recipe(), "--out", in_the_way}), 3);
+  EXPECT_EQ(err, "talus-sample: " + in_the_way + text);
+  EXPECT_EQ(run({recipe(), "--check", "--out", in_the_way + "/sub"}), 3);
+  EXPECT_EQ(err, "talus-sample: " + in_the_way + "/sub" + text);
+  EXPECT_EQ(run({recipe(), "--out", "/proc/talus"}), 3);
+  EXPECT_FALSE(ran);
+}
+
+TEST_F(RunStage, exit_codes_tell_the_kinds_of_faults_apart) {
+  stage.run = [](StageContext&) { throw RecipeError({{"one", "", ""}, {"two", "", ""}}); };
+  EXPECT_EQ(run({recipe()}), 2);
+  EXPECT_EQ(err, "talus-sample: one\ntalus-sample: two\n");
+  stage.run = [](StageContext&) { throw DataError(Fault{"a.tif: broken", "why", "Mend it"}); };
+  EXPECT_EQ(run({recipe(), "-q"}), 3);
+  EXPECT_EQ(err, "talus-sample: a.tif: broken (why). Mend it\n");
+  stage.run = [](StageContext&) { throw NumericalError(Fault{"step 3", "", ""}); };
+  EXPECT_EQ(run({recipe()}), 4);
+  stage.run = [](StageContext&) { throw std::logic_error("impossible"); };
+  EXPECT_EQ(run({recipe()}), 1);
+  EXPECT_EQ(err, "talus-sample: impossible (this is a bug). Please report it, with the recipe and the version: " +
+                     version() + "\n");
+  stage.run = [](StageContext&) { throw std::bad_alloc(); };
+  EXPECT_EQ(run({recipe()}), 3);
+}
+
+TEST_F(RunStage, prints_no_results_after_a_fault) {
+  stage.run = [](StageContext& context) {
+    context.results = {"a.txt"};
+    throw DataError(Fault{"late", "", ""});
+  };
+  EXPECT_EQ(run({recipe()}), 3);
+  EXPECT_EQ(out, "");
+}
+
+TEST_F(RunStage, quiet_says_nothing_and_verbose_says_more) {
+  stage.run = [](StageContext&) {
+    log_info("info");
+    log_warning("careful");
+    log_detail("detail");
+  };
+  run({recipe(), "-q"});
+  EXPECT_EQ(err, "");
+  run({recipe()});
+  EXPECT_EQ(err, "info\nwarning: careful\n");
+  run({recipe(), "-v"});
+  EXPECT_EQ(err, "info\nwarning: careful\ndetail\n");
+}
+
+TEST_F(RunStage, ctrl_c_is_seen_by_the_stage_and_ends_with_130) {
+  stage.run = [](StageContext&) {
+    if (interrupted()) return;
+    ::raise(SIGINT);
+    if (interrupted()) throw Interrupted({"stopped at step 12", "Ctrl-C", "Go on with --restart"});
+  };
+  const std::string file = recipe();
+  const auto body = [&] {
+    std::vector<std::string> words{stage.name, file};
+    std::vector<char*> argv{words[0].data(), words[1].data()};
+    std::_Exit(run_stage(2, argv.data(), stage));
+  };
+  EXPECT_EXIT(body(), testing::ExitedWithCode(130),
+              "talus-sample: stopped at step 12 \\(Ctrl-C\\). Go on with --restart");
+}
+
+TEST_F(RunStage, a_second_signal_ends_the_process_at_once) {
+  stage.run = [](StageContext&) {
+    ::raise(SIGTERM);
+    ::raise(SIGINT);
+    std::_Exit(99);
+  };
+  const std::string file = recipe();
+  const auto body = [&] {
+    std::vector<std::string> words{stage.name, file};
+    std::vector<char*> argv{words[0].data(), words[1].data()};
+    run_stage(2, argv.data(), stage);
+  };
+  EXPECT_EXIT(body(), testing::ExitedWithCode(130), "");
+}
+
+TEST_F(RunStage, used_recipe_reads_back_and_names_what_went_in) {
+  const auto input = scratch.write("dem.tif", "abc");
+  const auto file = scratch.write(
+      "r.toml",
+      "[scene]\nname = \"a\"\ntitle = \"The \\\"A\\\"\"\n[solve]\nsteps = 5\n[[solve.release]]\nname = \"B\"\n");
+  SampleOptions options;
+  stage.run = [&](StageContext& context) {
+    options = context.recipe.read<SampleOptions>("solve");
+    write_used_recipe(context, stage, recipe::to_toml(options, "solve", false), {input, "", scratch.folder()},
+                      {{"CRS", "EPSG:32149"}, {"wall time", "3 s\n[solve]"}});
+  };
+  ASSERT_EQ(run({file.string()}), 0) << err;
+  const auto used = scratch / "out/solve.used.toml";
+  EXPECT_EQ(out, used.string() + "\n");
+  const recipe::Recipe back(used);
+  EXPECT_EQ(back.read<SampleOptions>("solve"), options);
+  EXPECT_EQ(back.scene_name(), "a");
+  EXPECT_EQ(back.title(), "The \"A\"");
+  const std::string text = text_of(used);
+  for (const std::string& line :
+       {"# program: talus-sample " + version() + "\n", "# command: talus-sample " + file.string() + "\n",
+        "# recipe: " + file.string() + "  sha256 " + sha256(file) + "\n",
+        "# input: " + input.string() + "  sha256 ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad\n",
+        "# input: " + scratch.folder().string() + "  not a plain file, no checksum\n",
+        "# hardware: " + hardware() + "\n", std::string("# CRS: EPSG:32149\n"),
+        std::string("# wall time: 3 s [solve]\n")})
+    EXPECT_NE(text.find(line), std::string::npos) << line << "is not in\n" << text;
+}
+
+TEST(Progress, off_a_terminal_writes_whole_lines_and_seldom) {
+  testing::internal::CaptureStderr();
+  {
+    Progress progress;
+    EXPECT_FALSE(progress.due());
+    progress.update("t 1/2 s");
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "t 1/2 s\n");
+}
+
+}  // namespace
+}  // namespace talus

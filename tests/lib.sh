@@ -1,0 +1,80 @@
+# What the shell tests share. A test script sources this, defines test_NAME() functions and ends with: run_test "$@"
+# CTest sets TALUS_SOURCE (the project), TALUS_BUILD (its build) and TALUS_SCRATCH (an empty folder of this test).
+set -euo pipefail
+export LC_ALL=C
+unset MAKEFLAGS MAKELEVEL MFLAGS   # 'make test' is no part of what a test's own make sees
+
+: "${TALUS_SOURCE:?run through ctest}" "${TALUS_BUILD:?run through ctest}" "${TALUS_SCRATCH:?run through ctest}"
+bin=$TALUS_BUILD/bin
+
+fail() {
+  echo "FAILED: $*" >&2
+  for stream in stdout stderr; do
+    if [[ -s $TALUS_SCRATCH/$stream ]]; then sed "s/^/  $stream: /" "$TALUS_SCRATCH/$stream" | tail -n 40 >&2; fi
+  done
+  exit 1
+}
+
+# Skips aloud; fails where what is missing was promised (make test promises the tools that make setup installs).
+skip() {
+  echo "SKIPPED: $*" >&2
+  exit 77
+}
+need_tool() {
+  command -v "$1" >/dev/null && return
+  [[ -z ${TALUS_REQUIRE_TOOLS:-} ]] || fail "$1 is missing, but TALUS_REQUIRE_TOOLS is set (make setup installs it)"
+  skip "$1 is not installed (make setup installs it)"
+}
+
+# expect_exit CODE COMMAND...: runs it, keeps both streams, and fails unless it ends with CODE.
+expect_exit() {
+  local expected=$1 code=0
+  shift
+  "$@" >"$TALUS_SCRATCH/stdout" 2>"$TALUS_SCRATCH/stderr" </dev/null || code=$?
+  [[ $code -eq $expected ]] || fail "exit code $code instead of $expected: $*"
+}
+
+# expect_error LINE: the last command said exactly this on stderr, as a line of its own.
+expect_error() {
+  grep -qxF -- "$1" "$TALUS_SCRATCH/stderr" || fail "stderr has no line: $1"
+}
+
+# expect_words TEXT...: each of these stands somewhere on stderr.
+expect_words() {
+  local text
+  for text in "$@"; do
+    grep -qF -- "$text" "$TALUS_SCRATCH/stderr" || fail "stderr does not say: $text"
+  done
+}
+
+# expect_stdout_paths: stdout holds nothing but paths of files that exist.
+expect_stdout_paths() {
+  [[ -s $TALUS_SCRATCH/stdout ]] || fail "no result path on stdout"
+  local path
+  while IFS= read -r path; do
+    [[ -f $path ]] || fail "stdout says '$path', which is no file"
+  done <"$TALUS_SCRATCH/stdout"
+}
+
+# expect_no_file DIR [EXCEPT...]: DIR is missing or holds no file, not even a hidden one, but those named.
+expect_no_file() {
+  local folder=$1 file name except
+  shift
+  [[ -d $folder ]] || return 0
+  while IFS= read -r -d '' file; do
+    name=${file#"$folder"/}
+    for except in "$@"; do
+      [[ $name != "$except" ]] || continue 2
+    done
+    fail "$file was left behind"
+  done < <(find "$folder" -type f -print0)
+}
+
+run_test() {
+  local name=${1:?which test?}
+  rm -rf "$TALUS_SCRATCH"
+  mkdir -p "$TALUS_SCRATCH"
+  cd "$TALUS_SCRATCH"
+  "test_$name"
+  echo "passed: $name"
+}

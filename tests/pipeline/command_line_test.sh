@@ -1,0 +1,119 @@
+#!/usr/bin/env bash
+# The command line that the three programs share.
+source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
+programs=(talus-preprocess talus-solve talus-postprocess)
+
+test_help_shows_options_examples_and_exit_codes() {
+  local program word
+  for program in "${programs[@]}"; do
+    expect_exit 0 "$bin/$program" --help
+    for word in --out --check --template --on --version 'Examples:' 'Exit codes:' '130 ended by Ctrl-C' "$program "; do
+      grep -qF -- "$word" stdout || fail "$program --help does not show: $word"
+    done
+  done
+}
+
+test_version_names_the_commit() {
+  local program
+  for program in "${programs[@]}"; do
+    expect_exit 0 "$bin/$program" --version
+    grep -qE "^$program [0-9]+\.[0-9]+\.[0-9]+ \(([0-9a-f]{7,}|unknown)\)$" stdout || fail "$program --version says $(<stdout)"
+  done
+}
+
+test_unknown_option_is_a_usage_error() {
+  local program
+  for program in "${programs[@]}"; do
+    expect_exit 2 "$bin/$program" --ouput here
+    expect_error "Usage: $program recipe.toml"
+  done
+}
+
+test_no_recipe_is_a_usage_error() {
+  local program
+  for program in "${programs[@]}"; do
+    expect_exit 2 "$bin/$program"
+    expect_error "$program: no recipe was given. Usage: $program"
+  done
+}
+
+# A template is a recipe: read back, it is what the used recipe says of an empty one.
+test_templates_are_recipes_with_help() {
+  scene
+  local program
+  for program in "${programs[@]}"; do
+    expect_exit 0 "$bin/$program" --template
+    [[ ! -s stderr ]] || fail "$program --template talks on stderr"
+    grep -qE "^\[${program#talus-}[].]" stdout || fail "$program --template has no table [${program#talus-}]"
+    [[ $(grep -c '#' stdout) -gt 5 ]] || fail "$program --template explains nothing"
+  done
+  # talus-solve's defaults run as they are; the others need files.
+  expect_exit 0 "$bin/talus-solve" --template
+  cp stdout template.toml
+  expect_exit 0 preprocess
+  expect_exit 0 "$bin/talus-solve" template.toml --out out --check
+}
+
+test_check_computes_and_writes_nothing() {
+  scene
+  expect_exit 0 preprocess --check
+  [[ ! -e out ]] || fail "talus-preprocess --check made the output folder"
+  expect_exit 0 preprocess
+  expect_exit 0 solve --check
+  expect_no_file out domain.vdb preprocess.used.toml
+}
+
+test_check_finds_faults() {
+  scene
+  sed -i 's/^layer_height_m/layer_hight_m/' recipe.toml
+  expect_exit 2 preprocess --check
+  expect_error 'Did you mean "layer_height_m"?'
+  sed -i 's/^layer_hight_m/layer_height_m/' recipe.toml
+  rm after.asc
+  expect_exit 3 preprocess --check
+  expect_error "after.asc"
+}
+
+test_stdout_holds_result_paths_only() {
+  scene
+  expect_exit 0 preprocess -v
+  expect_stdout_paths
+  expect_exit 0 solve -v
+  expect_stdout_paths
+  expect_exit 0 postprocess -v
+  expect_stdout_paths
+}
+
+test_quiet_says_nothing() {
+  scene
+  expect_exit 0 preprocess -q
+  [[ ! -s stderr ]] || fail "-q talks"
+  expect_exit 0 solve -q
+  [[ ! -s stderr ]] || fail "-q talks"
+  expect_exit 0 postprocess -q
+  [[ ! -s stderr ]] || fail "-q talks"
+}
+
+# Every used recipe runs again and gives the same result.
+test_used_recipes_are_recipes() {
+  scene
+  expect_exit 0 preprocess
+  expect_exit 0 solve
+  expect_exit 0 postprocess
+  local stage
+  for stage in preprocess solve postprocess; do
+    grep -q 'sha256' out/$stage.used.toml || fail "$stage.used.toml names no checksum"
+    expect_exit 0 "$bin/talus-$stage" out/$stage.used.toml --out out
+  done
+}
+
+test_gpu_that_is_not_there_is_refused() {
+  scene
+  expect_exit 0 preprocess
+  if command -v nvidia-smi >/dev/null && nvidia-smi -L >/dev/null 2>&1; then skip "this machine has a GPU"; fi
+  expect_exit 2 "$bin/talus-solve" recipe.toml --out out --on gpu
+  expect_error "talus-solve: --on gpu (this machine has no GPU that the program can use). Use --on cpu or --on auto"
+  expect_no_file out domain.vdb preprocess.used.toml
+}
+
+run_test "$@"

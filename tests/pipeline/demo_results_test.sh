@@ -1,0 +1,126 @@
+#!/usr/bin/env bash
+# The demo's results, read by tools that are not ours. demo_test.sh has made them.
+source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
+out=$TALUS_BUILD/scratch/demo/synthetic-valley
+
+shows() { grep -qE -- "$1" stdout || fail "not shown: $1"; }
+
+test_second_make_does_nothing() {
+  local before after
+  before=$(find "$out" -type f -printf '%p %T@\n' | sort)
+  expect_exit 0 make -C "$TALUS_SOURCE/pipelines" synthetic-valley OUT="$TALUS_BUILD/scratch/demo" BIN="$bin"
+  after=$(find "$out" -type f -printf '%p %T@\n' | sort)
+  [[ $before == "$after" ]] || fail "files changed: $(diff <(echo "$before") <(echo "$after"))"
+  if grep -q 'talus-' stdout; then fail "a program ran again"; fi
+}
+
+test_gdalinfo_reads_the_maps() {
+  need_tool gdalinfo
+  local name
+  for name in deposit_thickness:m peak_thickness:m 'peak_speed:m s-1' peak_pressure:kPa arrival_time:s; do
+    expect_exit 0 gdalinfo -stats "$out/maps/${name%%:*}.tif"
+    shows 'LAYOUT=COG'
+    shows 'COMPRESSION=DEFLATE'
+    shows 'NoData Value=-9999'
+    shows 'PROJCRS\['
+    shows "Unit Type: ${name#*:}"
+    shows 'STATISTICS_MAXIMUM=[0-9.]*[1-9]'
+  done
+  expect_exit 0 gdalinfo "$out/maps/deposit_thickness.tif"
+  shows 'vertical'
+}
+
+test_maps_pass_gdals_own_cog_validator() {
+  /usr/bin/python3 -c 'import osgeo_utils.samples.validate_cloud_optimized_geotiff' 2>/dev/null || need_tool python3-gdal
+  local map
+  for map in "$out"/maps/*.tif; do
+    expect_exit 0 /usr/bin/python3 -m osgeo_utils.samples.validate_cloud_optimized_geotiff --full-check=yes "$map"
+    shows 'is a valid cloud optimized GeoTIFF'
+    if grep -qi warning stdout stderr; then fail "the validator warns"; fi
+  done
+}
+
+# The volume on the map, summed up by GDAL, against the solver's own count of its points.
+test_map_volume_is_the_volume_of_the_points() {
+  need_tool h5dump
+  /usr/bin/python3 -c 'from osgeo import gdal' 2>/dev/null || need_tool python3-gdal
+  cat >volume.py <<'PYTHON'
+import array, math, re, subprocess, sys
+from osgeo import gdal
+gdal.UseExceptions()
+out = sys.argv[1]
+dumped = subprocess.run(["h5dump", "-m", "%.17g", "-a", "/volume_final_m3", out + "/run.h5"], check=True, capture_output=True, text=True).stdout
+points = float(re.search(r"\(0\): ([0-9.e+-]+)", dumped).group(1))
+file = gdal.Open(out + "/maps/deposit_thickness.tif")
+band = file.GetRasterBand(1)
+values = array.array("d", band.ReadRaster(buf_type=gdal.GDT_Float64))
+_, dx, _, _, _, dy = file.GetGeoTransform()
+volume = math.fsum(v for v in values if v != band.GetNoDataValue()) * dx * -dy
+print(f"map {volume} points {points} relative difference {volume / points - 1:.2e}")
+assert points > 1000 and abs(volume / points - 1) < 1e-9
+PYTHON
+  expect_exit 0 /usr/bin/python3 volume.py "$out"
+  shows 'relative difference'
+}
+
+test_ncdump_reads_the_netcdf() {
+  need_tool ncdump
+  expect_exit 0 ncdump -h "$out/maps/results.nc"
+  shows ':Conventions = "CF-1\.'
+  shows 'double deposit_thickness\(y, x\)'
+  shows 'double thickness\(time, y, x\)'
+  shows 'x:standard_name = "projection_x_coordinate"'
+  shows 'peak_thickness:cell_methods = "time: maximum"'
+  shows 'deposit_thickness:grid_mapping = "crs"'
+  shows 'crs:crs_wkt = "PROJCRS'
+  shows 'time:units = "s"'
+  shows '_FillValue = -9999'
+  expect_exit 0 ncdump -v time "$out/maps/results.nc"
+  shows 'time = 0, [0-9.]+'
+}
+
+test_vdb_print_lists_the_domain() {
+  need_tool vdb_print
+  expect_exit 0 vdb_print -l "$out/domain.vdb"
+  local grid
+  for grid in points terrain before release_thickness active; do shows "$grid"; done
+  shows 'EPSG|PROJCRS'
+}
+
+test_h5dump_reads_the_run() {
+  need_tool h5dump
+  expect_exit 0 h5dump -H "$out/run.h5"
+  local name
+  for name in VTKHDF Steps Points Connectivity Offsets Types NumberOfPoints velocity maps deposit_thickness frames history; do
+    shows "\"$name\""
+  done
+  expect_exit 0 h5dump -a /VTKHDF/Type "$out/run.h5"
+  shows 'UnstructuredGrid'
+  expect_exit 0 h5dump -d /maps/deposit_thickness "$out/run.h5"
+}
+
+test_score_holds_every_promised_number() {
+  cat >score.py <<'PYTHON'
+import json, math, sys
+score = json.load(open(sys.argv[1]))
+promised = """volume_released_m3 volume_final_m3 volume_outflow_m3 footprint_csi deposit_csi thickness_rmse_m thickness_bias_m
+runout_m h_over_l particles steps wall_time_s on""".split()
+for name in promised:
+    assert name in score, f"score.json has no {name}"
+    assert isinstance(score[name], str) or math.isfinite(score[name]), f"{name} = {score[name]}"
+closed = score["volume_final_m3"] + score["volume_outflow_m3"]
+assert abs(closed / score["volume_released_m3"] - 1) < 1e-9, f"released {score['volume_released_m3']}, accounted for {closed}"
+assert 0 < score["deposit_csi"] <= 1 and 0 < score["footprint_csi"] <= 1
+print("all there")
+PYTHON
+  expect_exit 0 python3 score.py "$out/score.json"
+  shows 'all there'
+}
+
+test_picture_is_a_picture() {
+  need_tool gdalinfo
+  expect_exit 0 gdalinfo "$out/map.png"
+  shows 'Driver: PNG'
+}
+
+run_test "$@"

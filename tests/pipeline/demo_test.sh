@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# What 'make demo' does, from the valley's two elevation models to its score.
+source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
+out=$TALUS_BUILD/scratch/demo/synthetic-valley
+
+pipeline() { make -C "$TALUS_SOURCE/pipelines" synthetic-valley OUT="$TALUS_BUILD/scratch/demo" BIN="$bin" ON="${1:-auto}"; }
+
+# Its results stay for the tests of demo_results_test.sh.
+test_valley_runs_to_a_score() {
+  rm -rf "$TALUS_BUILD/scratch/demo"
+  expect_exit 0 pipeline
+  local file
+  for file in domain.vdb preprocess.used.toml run.h5 solve.used.toml postprocess.used.toml score.json score.txt map.png \
+    maps/deposit_thickness.tif maps/peak_thickness.tif maps/peak_speed.tif maps/peak_pressure.tif maps/arrival_time.tif maps/results.nc; do
+    [[ -s $out/$file ]] || fail "$file is missing"
+    grep -qF "$out/$file" stdout || fail "no program named $file on stdout"
+  done
+  [[ -z $(find "$out" -name '*.partial') ]] || fail "a file is still pending: $(find "$out" -name '*.partial')"
+}
+
+test_make_demo_runs_this_pipeline() {
+  expect_exit 0 make -n -C "$TALUS_SOURCE" demo SETUP=no BUILD="$TALUS_BUILD"
+  grep -q 'pipelines synthetic-valley' stdout || fail "make demo does not run the pipeline synthetic-valley"
+  grep -q 'synthetic-valley/score.txt' stdout || fail "make demo does not show the score"
+}
+
+test_ci_runs_make_test() {
+  grep -qx 'make test' "$TALUS_SOURCE/.ci/run" || fail ".ci/run does not call make test"
+  expect_exit 0 make -n -C "$TALUS_SOURCE" test SETUP=no BUILD="$TALUS_BUILD"
+  grep -q 'ctest --test-dir' stdout || fail "make test does not run ctest"
+}
+
+run_test "$@"

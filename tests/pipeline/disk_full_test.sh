@@ -1,0 +1,90 @@
+#!/usr/bin/env bash
+# A full disk while writing: a small tmpfs, mounted where only this test sees it. Whatever its size, a stage either succeeds or says
+# that the disk is full, and every file that carries a final name is whole.
+source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
+
+# on_small_disk STAGE KIB [OPTIONS...]: the stage writes to disk/, which holds what is in out/ already and has KIB left. kept/ is a
+# copy of the disk afterwards.
+on_small_disk() {
+  local stage=$1 kib=$2
+  shift 2
+  cat >small_disk.sh <<SCRIPT
+set -e
+mkdir -p disk kept
+used=\$( (find out -type f -printf '%k\n' 2>/dev/null || true) | awk '{ sum += \$1 } END { print sum + 0 }')
+mount -t tmpfs -o size=\$((used + $kib))k tmpfs disk
+if [[ -d out ]]; then cp -r out/. disk/; fi
+code=0
+"$bin/talus-$stage" recipe.toml --out disk $* || code=\$?
+cp -r disk/. kept/
+exit \$code
+SCRIPT
+  rm -rf disk kept
+  with_mounts bash small_disk.sh
+}
+
+# whole FILE: another program reads all of it.
+whole() {
+  case $1 in
+    *.tif | *.png) expect_exit 0 gdalinfo -checksum "$1" ;;
+    *.nc) expect_exit 0 ncdump "$1" ;;
+    *.h5) expect_exit 0 h5dump "$1" ;;
+    *.vdb) expect_exit 0 "$bin/talus-solve" recipe.toml --out "$(dirname "$1")" --check ;;
+    *.json) expect_exit 0 python3 -m json.tool "$1" ;;
+    *.toml | *.txt) [[ $(tail -c 1 "$1" | wc -l) -eq 1 ]] || fail "$1 ends within a line" ;;
+    *) fail "$1 was left behind" ;;
+  esac
+}
+
+full="^talus-[a-z]+: $TALUS_SCRATCH/disk(/[a-z_/.0-9]+)?: .*cannot (be written|be created|write) ?.*(disk is full|No space left on device).*--out"
+
+# fills STAGE [OPTIONS...]: tries disks of growing size until the stage succeeds.
+fills() {
+  local stage=$1 kib=0 failures=0 code file
+  shift
+  while true; do
+    kib=$((kib + 4 + kib / 16 * 4))   # a page at first, later a quarter more
+    [[ $kib -lt 8192 ]] || fail "it does not succeed on $kib KiB either"
+    code=0
+    on_small_disk "$stage" $kib "$@" >stdout 2>stderr </dev/null || code=$?
+    [[ $code -ne 0 ]] || break
+    [[ $code -eq 3 ]] || fail "exit code $code instead of 3 on a disk of $kib KiB"
+    failures=$((failures + 1))
+    tail -n 1 stderr >>messages
+    tail -n 1 stderr | grep -qE "$full" || fail "it does not say that the disk is full ($kib KiB)"
+    [[ ! -s stdout ]] || fail "it names results on a full disk"
+    [[ -z $(find kept -name '*.partial') ]] || fail "left behind: $(find kept -name '*.partial')"
+    while IFS= read -r file; do whole "$file"; done < <(find kept -type f -not -path 'kept/.frames/*')
+  done
+  [[ $failures -ge 3 ]] || fail "only $failures disks were too small: this test looks at nothing"
+}
+
+need_readers() {
+  need_mounts
+  local tool
+  for tool in gdalinfo ncdump h5dump; do need_tool $tool; done
+}
+
+test_preprocess() {
+  need_readers
+  scene
+  fills preprocess
+}
+
+test_solve() {
+  need_readers
+  scene
+  sed -i 's/^end_time_s.*/end_time_s = 1.0\ncheckpoint_interval_s = 0.5/' recipe.toml
+  expect_exit 0 preprocess
+  fills solve --on cpu
+}
+
+test_postprocess() {
+  need_readers
+  scene
+  expect_exit 0 preprocess
+  expect_exit 0 solve
+  fills postprocess
+}
+
+run_test "$@"

@@ -1,0 +1,134 @@
+#!/usr/bin/env bash
+# Wrong input: the exit code, the whole message, and that nothing is left which looks like a result.
+source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
+
+refused() {
+  expect_exit "$1" preprocess
+  expect_error "$2"
+  [[ ! -s stdout ]] || fail "a refused run names results on stdout"
+  expect_no_file out
+}
+
+test_scene_itself_is_fine() {
+  scene
+  expect_exit 0 preprocess
+  expect_stdout_paths
+}
+
+test_missing_recipe() {
+  expect_exit 2 "$bin/talus-preprocess" nowhere.toml --out out
+  expect_error "talus-preprocess: nowhere.toml: the recipe cannot be read (No such file or directory). Check the path"
+}
+
+test_missing_file() {
+  scene
+  rm after.asc
+  refused 3 "talus-preprocess: $PWD/after.asc: no such file. Check the path in the recipe"
+}
+
+test_geographic_crs() {
+  scene
+  echo 'GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",SPHEROID["WGS_1984",6378137.0,298.257223563]],PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]]' >before.prj
+  refused 3 "talus-preprocess: $PWD/before.asc: CRS is WGS 84, in degrees (this stage needs metres). Reproject: gdalwarp -t_srs EPSG:<a metric one> -r bilinear $PWD/before.asc before_utm.tif"
+}
+
+test_no_overlap() {
+  scene
+  grid after.asc "$bowl - 4 * $in_source" 600000
+  refused 3 "talus-preprocess: $PWD/after.asc: covers x 600000..600200, y 5000000..5000200, while $PWD/before.asc covers x 500000..500200, y 5000000..5000200 (they do not overlap). Check the coordinates and the CRS of both with gdalinfo"
+}
+
+test_all_nodata() {
+  scene
+  grid before.asc -9999
+  refused 3 "talus-preprocess: $PWD/before.asc: no cell holds a value (all 20 x 20 cells are nodata). Check the file and its nodata value: gdalinfo -stats $PWD/before.asc"
+}
+
+test_nan_cells() {
+  scene
+  grid after.asc "i == 11 && j == 5 ? \"nan\" : $bowl - 4 * $in_source"
+  refused 3 "talus-preprocess: $PWD/after.asc: 1 cells without elevation, at x 500115.0, y 5000055.0 (nodata or NaN inside the working area). Fill them (gdal_fillnodata.py $PWD/after.asc out.tif), crop the working grid (west_m, south_m, east_m, north_m in [preprocess.grid]), or, where they reach its edge, leave them outside the domain: edge_nodata = \"outside\""
+}
+
+test_nodata_cells() {
+  scene
+  grid before.asc "i == 11 && j == 5 ? -9999 : $bowl"
+  refused 3 "talus-preprocess: $PWD/before.asc: 1 cells without elevation, at x 500115.0, y 5000055.0 (nodata or NaN inside the working area). Fill them (gdal_fillnodata.py $PWD/before.asc out.tif), crop the working grid (west_m, south_m, east_m, north_m in [preprocess.grid]), or, where they reach its edge, leave them outside the domain: edge_nodata = \"outside\""
+}
+
+test_empty_source() {
+  scene
+  cp before.asc after.asc
+  refused 3 "talus-preprocess: $PWD/after.asc: nowhere lies more than 0.5 m below the surface before (at most 0 m) (the source is empty). Lower threshold_m in [preprocess.source], or give its outline as polygon"
+}
+
+test_negative_thickness() {
+  scene
+  grid release.asc "-3 * $in_source"
+  sed -i '/^after_dem/d; s/^before_dem = "before.asc"/base_dem = "before.asc"/' recipe.toml
+  printf '\n[[preprocess.release]]\nname = "A"\nthickness_raster = "release.asc"\n' >>recipe.toml
+  refused 3 "talus-preprocess: $PWD/release.asc: 16 cells of negative thickness (down to -3 m), the first at x 500035.0, y 5000115.0 (a release has none). Is it an elevation difference, after - before? Then: gdal_calc.py -A $PWD/release.asc --calc \"maximum(-A,0)\" --outfile out.tif"
+}
+
+test_unknown_key() {
+  scene
+  sed -i 's/^layer_height_m/layer_hight_m/' recipe.toml
+  refused 2 "talus-preprocess: recipe.toml:10:1: unknown key \"layer_hight_m\" in [preprocess.grid]. Did you mean \"layer_height_m\"?"
+}
+
+test_value_out_of_range() {
+  scene
+  sed -i 's/^layer_height_m = 2.0/layer_height_m = -2.0/' recipe.toml
+  refused 2 "talus-preprocess: recipe.toml:10:18: [preprocess.grid] layer_height_m = -2.0 (out of range). It must be >= 0"
+}
+
+test_all_faults_are_reported_at_once() {
+  scene
+  sed -i 's/^layer_height_m = 2.0/layer_height_m = "two"\nspacing = 10/; s/^before_dem/befor_dem/' recipe.toml
+  refused 2 "talus-preprocess: recipe.toml:6:1: unknown key \"befor_dem\" in [preprocess]. Did you mean \"before_dem\"?"
+  expect_error "talus-preprocess: recipe.toml:10:18: [preprocess.grid] layer_height_m = \"two\" (it is text). Give a number"
+  expect_error "talus-preprocess: recipe.toml:11:1: unknown key \"spacing\" in [preprocess.grid]. Did you mean \"spacing_m\"?"
+}
+
+test_not_a_recipe() {
+  scene
+  echo '[solve' >>recipe.toml
+  refused 2 "talus-preprocess: recipe.toml:23:7: this is not TOML ("
+}
+
+test_output_folder_below_a_file() {
+  scene
+  touch file
+  expect_exit 3 "$bin/talus-preprocess" recipe.toml --out file/out
+  expect_error "talus-preprocess: $PWD/file/out: the output folder cannot be written to (Not a directory). Name another one with --out DIR"
+}
+
+test_output_folder_not_writable() {
+  need_mounts   # a read-only disk: the super-user may write anywhere else
+  scene
+  cat >read_only.sh <<SCRIPT
+mkdir out && mount -t tmpfs -o size=1m,ro tmpfs out && "$bin/talus-\$1" recipe.toml --out out
+SCRIPT
+  local stage
+  for stage in preprocess solve postprocess; do
+    rm -rf out
+    expect_exit 3 with_mounts bash read_only.sh $stage
+    expect_error "talus-$stage: $PWD/out: the output folder cannot be written to (Read-only file system). Name another one with --out DIR"
+  done
+}
+
+test_solver_without_domain() {
+  scene
+  expect_exit 3 solve
+  expect_error "talus-solve: $PWD/out/domain.vdb: no such file. Run talus-preprocess first, with the same --out"
+  expect_no_file out
+}
+
+test_postprocess_without_run() {
+  scene
+  expect_exit 3 postprocess
+  expect_error "talus-postprocess: $PWD/out/run.h5: no such file. Run talus-solve again"
+  expect_no_file out
+}
+
+run_test "$@"

@@ -1,0 +1,49 @@
+#include "postprocess/score/mobility.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/postprocess/scene.hpp"
+
+namespace talus::postprocess {
+namespace {
+
+TEST(Mobility, finds_the_crown_on_the_surface_before) {
+  const auto run = test::small_run();
+  const auto place = crown(run.maps, 1.0);
+  ASSERT_TRUE(place);
+  EXPECT_EQ(place->x, run.maps.grid.x(3))
+      << "the slope falls to the east: the westernmost release column is the highest";
+  double highest = 0;
+  for (int row = 10; row < 20; ++row) highest = std::max(highest, run.maps.before[run.maps.grid.index(3, row)]);
+  EXPECT_EQ(place->z, highest);
+}
+
+TEST(Mobility, finds_a_thin_release_too) {
+  auto run = test::small_run();
+  for (double& h : run.maps.initial_thickness) h *= 0.05;  // 0.3 m
+  EXPECT_TRUE(crown(run.maps, 1.0));
+}
+
+TEST(Mobility, measures_to_the_farthest_cell_above_the_threshold) {
+  const MapGrid grid{.columns = 5, .rows = 1, .west = 0, .south = 0, .cell = 10, .crs_wkt = ""};
+  const std::vector<double> thickness{0, 3, 2, 0.5, 0}, surface{50, 40, 30, 20, 10};
+  const auto toe = farthest(grid, thickness, 1, {5, 5, 50}, surface);
+  ASSERT_TRUE(toe);
+  EXPECT_EQ(toe->x, 25);
+  EXPECT_EQ(toe->z, 30);
+  EXPECT_EQ(plan_distance({5, 5, 50}, *toe), 20);
+  EXPECT_FALSE(farthest(grid, thickness, 4, {5, 5, 50}, surface));
+}
+
+TEST(Mobility, weighs_the_centre_of_mass_by_thickness) {
+  const MapGrid grid{.columns = 3, .rows = 1, .west = 0, .south = 0, .cell = 10, .crs_wkt = ""};
+  const auto centre = centre_of_mass(grid, {1, test::nan, 3}, {100, 100, 200});
+  ASSERT_TRUE(centre);
+  EXPECT_DOUBLE_EQ(centre->x, (5.0 + 3 * 25) / 4);
+  EXPECT_DOUBLE_EQ(centre->y, 5);
+  EXPECT_DOUBLE_EQ(centre->z, (100.5 + 3 * 201.5) / 4);
+  EXPECT_FALSE(centre_of_mass(grid, {0, 0, 0}, {}));
+}
+
+}  // namespace
+}  // namespace talus::postprocess

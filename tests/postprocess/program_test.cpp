@@ -1,0 +1,122 @@
+// The stage as a whole: recipe and run.h5 in, results out.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "common/raster/raster_io.hpp"
+#include "postprocess/postprocess.hpp"
+#include "tests/postprocess/scene.hpp"
+
+namespace fs = std::filesystem;
+
+namespace talus::postprocess {
+namespace {
+
+class Program : public ::testing::Test {
+ protected:
+  Program() { fs::create_directories(out_); }
+  void run_it(bool check_only = false) {
+    StageContext context{
+        recipe::Recipe(scratch_.write("recipe.toml", recipe_)), out_, On::automatic, check_only, {}, "test", {}};
+    run(context);
+    results_ = context.results;
+  }
+  nlohmann::json score() const { return nlohmann::json::parse(test::text_of(out_ / "score.json")); }
+
+  test::Scratch scratch_;
+  const fs::path out_ = scratch_ / "out";
+  std::string recipe_ = "[scene]\nname = \"small\"\n";
+  std::vector<fs::path> results_;
+};
+
+TEST_F(Program, writes_every_result_and_names_it) {
+  test::write_run(out_ / "run.h5", test::small_run());
+  run_it();
+  for (const auto* name :
+       {"maps/deposit_thickness.tif", "maps/peak_thickness.tif", "maps/peak_speed.tif", "maps/peak_pressure.tif",
+        "maps/arrival_time.tif", "maps/results.nc", "map.png", "score.json", "score.txt"}) {
+    EXPECT_TRUE(fs::exists(out_ / name)) << name;
+    EXPECT_NE(std::find(results_.begin(), results_.end(), out_ / name), results_.end()) << name << " is not announced";
+  }
+  EXPECT_TRUE(fs::exists(out_ / "postprocess.used.toml"));
+  for (const auto& entry : fs::recursive_directory_iterator(out_)) {
+    EXPECT_EQ(entry.path().string().find(".partial"), std::string::npos) << entry.path();
+  }
+}
+
+TEST_F(Program, scores_against_a_thickness_raster_named_in_the_recipe) {
+  const auto run = test::small_run();
+  test::write_run(out_ / "run.h5", run);
+  write_geotiff(scratch_ / "survey.tif", {run.maps.grid, run.maps.deposit_thickness}, {"", "m", {}});
+  recipe_ += "[postprocess.survey]\nthickness = \"survey.tif\"\n";
+  run_it();
+  EXPECT_EQ(score().at("deposit_csi"), 1);
+  EXPECT_FALSE(score().contains("footprint_csi"));
+}
+
+TEST_F(Program, writes_nothing_when_only_checking) {
+  test::write_run(out_ / "run.h5", test::small_run());
+  run_it(true);
+  EXPECT_EQ(std::distance(fs::directory_iterator(out_), {}), 1) << "run.h5 alone";
+}
+
+TEST_F(Program, reads_the_run_named_in_the_recipe) {
+  test::write_run(scratch_ / "elsewhere.h5", test::small_run());
+  recipe_ += "[postprocess]\nrun = \"elsewhere.h5\"\n";
+  run_it();
+  EXPECT_EQ(score().at("title"), "Small slope");
+}
+
+TEST_F(Program, refuses_a_missing_and_a_truncated_run) {
+  EXPECT_NE(test::fault_of<DataError>([&] { run_it(); }).find("run.h5: no such file. Run talus-solve"),
+            std::string::npos);
+  test::write_run(out_ / "run.h5", test::small_run());
+  fs::resize_file(out_ / "run.h5", fs::file_size(out_ / "run.h5") / 2);
+  const auto fault = test::fault_of<DataError>([&] { run_it(); });
+  EXPECT_NE(fault.find("run.h5: cannot be opened as HDF5"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("Run talus-solve again"), std::string::npos) << fault;
+  EXPECT_FALSE(fs::exists(out_ / "maps"));
+}
+
+TEST_F(Program, refuses_a_map_whose_volume_is_not_that_of_the_points) {
+  auto run = test::small_run();
+  run.summary.volume_final *= 1.05;
+  test::write_run(out_ / "run.h5", run);
+  const auto fault = test::fault_of<DataError>([&] { run_it(); });
+  EXPECT_NE(fault.find("24000 m3 under the deposit map, 25200 m3 in the points"), std::string::npos) << fault;
+}
+
+TEST_F(Program, refuses_a_survey_that_does_not_overlap_before_writing_anything) {
+  const auto run = test::small_run();
+  test::write_run(out_ / "run.h5", run);
+  auto grid = run.maps.grid;
+  grid.south += 9000;
+  write_geotiff(scratch_ / "survey.tif", {grid, run.maps.deposit_thickness}, {"", "m", {}});
+  recipe_ += "[postprocess.survey]\nthickness = \"survey.tif\"\n";
+  EXPECT_NE(test::fault_of<DataError>([&] { run_it(); }).find("no surveyed cell lies in the run's area"),
+            std::string::npos);
+  EXPECT_FALSE(fs::exists(out_ / "maps"));
+}
+
+TEST_F(Program, reports_all_faults_of_its_table_at_once) {
+  recipe_ +=
+      "[postprocess]\nclasses_m = [5.0, 1.0]\n[postprocess.survey]\nthickness = \"a.tif\"\nafter_dem = "
+      "\"b.tif\"\npolygon = \"c.gpkg\"\n"
+      "peak_thickness = \"d.tif\"\n";
+  const auto fault = test::fault_of<RecipeError>([&] { run_it(); });
+  for (const auto* words : {"classes_m does not rise", "thickness and after_dem", "peak_thickness and polygon"}) {
+    EXPECT_NE(fault.find(words), std::string::npos) << fault;
+  }
+}
+
+TEST_F(Program, prints_a_template_that_it_accepts) {
+  const auto text = stage().template_toml();
+  EXPECT_NE(text.find("deposit_threshold_m = 1"), std::string::npos) << text;
+  EXPECT_NE(text.find("[postprocess.survey]"), std::string::npos) << text;
+  recipe_ += text;
+  test::write_run(out_ / "run.h5", test::small_run());
+  EXPECT_NO_THROW(run_it(true)) << text;
+}
+
+}  // namespace
+}  // namespace talus::postprocess

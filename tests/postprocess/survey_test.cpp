@@ -1,0 +1,147 @@
+// The survey on disk and the one grid both sides are compared on.
+#include "postprocess/score/survey.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "postprocess/maps/fields.hpp"
+#include "tests/postprocess/scene.hpp"
+
+namespace talus::postprocess {
+namespace {
+
+using test::block;
+using test::small_grid;
+using test::small_run;
+
+/// A square of side 4 with a hole of side 2, as GeoJSON in the run's coordinates.
+std::string square_with_hole(double x, double y, double size, const std::string& crs = "EPSG::32632") {
+  const auto ring = [&](double inset) {
+    const double a = x + inset, b = y + inset, c = x + size - inset, d = y + size - inset;
+    std::string text = "[";
+    for (const auto& [px, py] : {std::pair{a, b}, {c, b}, {c, d}, {a, d}, {a, b}}) {
+      text += "[" + std::to_string(px) + "," + std::to_string(py) + "],";
+    }
+    text.back() = ']';
+    return text;
+  };
+  return R"({"type":"FeatureCollection","crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:)" + crs +
+         R"("}},"features":[{"type":"Feature","properties":{},"geometry":{"type":"Polygon","coordinates":[)" + ring(0) +
+         "," + ring(0.25 * size) + "]}}]}";
+}
+
+class SurveyTest : public ::testing::Test {
+ protected:
+  std::filesystem::path raster(const std::string& name, const MapGrid& grid, const std::vector<double>& values) {
+    write_geotiff(scratch_ / name, {grid, values}, {name, "m", {}});
+    return scratch_ / name;
+  }
+  std::string fault() {
+    return test::fault_of<DataError>([&] { read_survey(options_, run_.maps, 1.0); });
+  }
+  test::Scratch scratch_;
+  talus::Run run_ = small_run();
+  SurveyOptions options_;
+};
+
+TEST_F(SurveyTest, is_empty_when_nothing_is_given) { EXPECT_FALSE(read_survey(options_, run_.maps, 1.0)); }
+
+TEST_F(SurveyTest, compares_on_the_surveys_own_grid_and_keeps_the_volume) {
+  // Coarser, shifted by a part of a cell, covering the whole run.
+  const MapGrid grid{.columns = 20, .rows = 16, .west = 599993, .south = 5099991, .cell = 25, .crs_wkt = test::utm32n};
+  options_.thickness = raster("survey.tif", grid, std::vector<double>(grid.count(), 2.0));
+  const auto survey = read_survey(options_, run_.maps, 1.0);
+  ASSERT_TRUE(survey);
+  EXPECT_EQ(survey->grid.columns, 20);
+  const auto simulated = bring_to_survey_grid(run_.maps, *survey);
+  EXPECT_NEAR(volume_under(simulated.deposit, 25), run_.summary.volume_final, 1e-9 * run_.summary.volume_final);
+  EXPECT_EQ(simulated.deposit_left_out, 0);
+}
+
+TEST_F(SurveyTest, leaves_out_what_was_not_surveyed_and_says_how_much) {
+  auto values = block(small_grid(), 0, 40, 0, 30, 0.5);
+  for (int row = 0; row < 30; ++row) {
+    for (int column = 30; column < 40; ++column) values[small_grid().index(column, row)] = test::nan;
+  }
+  options_.thickness = raster("survey.tif", small_grid(), values);
+  const auto survey = read_survey(options_, run_.maps, 1.0);
+  const auto simulated = bring_to_survey_grid(run_.maps, *survey);
+  EXPECT_DOUBLE_EQ(simulated.deposit_left_out,
+                   (5 * 10 * 1.5 + 6 * 5.0) * 100);  // columns 30-34, and the core's column 30
+  EXPECT_TRUE(std::isnan(simulated.deposit[small_grid().index(32, 15)]));
+  options_.nodata_is_zero = true;
+  EXPECT_EQ(bring_to_survey_grid(run_.maps, *read_survey(options_, run_.maps, 1.0)).deposit_left_out, 0);
+}
+
+TEST_F(SurveyTest, takes_the_rise_of_the_surface_from_two_dems) {
+  auto after = run_.maps.before;
+  const auto& grid = run_.maps.grid;
+  for (std::size_t i = 0; i < after.size(); ++i)
+    after[i] += run_.maps.deposit_thickness[i] - run_.maps.initial_thickness[i];
+  // Part of the slide stays in its own scar: the surface there still falls.
+  const auto scar = grid.index(4, 15);
+  run_.maps.deposit_thickness[scar] = 2;
+  after[scar] += 2;
+  options_.after_dem = raster("after.tif", grid, after);
+  options_.before_dem = raster("before.tif", grid, run_.maps.before);
+  const auto survey = read_survey(options_, run_.maps, 1.0);
+  ASSERT_TRUE(survey && survey->deposit_is_change);
+  EXPECT_EQ(survey->deposit[scar], 0) << "lowered by 4 m: no deposit";
+  EXPECT_NEAR(survey->footprint[scar], 4, 1e-9);
+  const auto simulated = bring_to_survey_grid(run_.maps, *survey);
+  EXPECT_EQ(simulated.deposit[scar], 0) << "the simulated surface fell there too";
+  const auto deposit = grid.index(29, 15);
+  EXPECT_NEAR(survey->deposit[deposit], 6.5, 1e-9);
+  EXPECT_NEAR(simulated.deposit[deposit], 6.5, 1e-9);
+}
+
+TEST_F(SurveyTest, takes_the_runs_own_surface_when_only_the_after_dem_is_given) {
+  auto after = run_.maps.before;
+  for (double& z : after) z += 3;
+  options_.after_dem = raster("after.tif", run_.maps.grid, after);
+  const auto survey = read_survey(options_, run_.maps, 1.0);
+  EXPECT_NEAR(survey->deposit[run_.maps.grid.index(20, 20)], 3, 1e-9);
+  EXPECT_TRUE(std::isnan(survey->deposit[0])) << "outside the run's domain nothing is known";
+}
+
+TEST_F(SurveyTest, fills_polygons_and_leaves_their_holes) {
+  options_.polygon = scratch_.write("outline.geojson", square_with_hole(600000, 5100100, 40));
+  const auto survey = read_survey(options_, run_.maps, 1.0);
+  ASSERT_TRUE(survey);
+  EXPECT_TRUE(survey->deposit.empty());
+  EXPECT_EQ(std::count(survey->footprint.begin(), survey->footprint.end(), 1.0), 16 - 4);
+  EXPECT_EQ(survey->footprint[small_grid().index(0, 10)], 1);
+  EXPECT_EQ(survey->footprint[small_grid().index(1, 11)], 0) << "in the hole";
+  EXPECT_EQ(survey->footprint[small_grid().index(4, 10)], 0);
+}
+
+TEST_F(SurveyTest, refuses_a_survey_elsewhere) {
+  auto grid = small_grid();
+  grid.west += 50000;
+  options_.thickness = raster("elsewhere.tif", grid, std::vector<double>(grid.count(), 1.0));
+  EXPECT_NE(fault().find("elsewhere.tif: no surveyed cell lies in the run's area (survey x 650000.0 to"),
+            std::string::npos)
+      << fault();
+  options_ = {};
+  options_.polygon = scratch_.write("outline.geojson", square_with_hole(650000, 5100100, 40));
+  EXPECT_NE(fault().find("no polygon covers a cell of the run's area"), std::string::npos) << fault();
+}
+
+TEST_F(SurveyTest, refuses_another_crs_with_the_command_that_mends_it) {
+  auto grid = small_grid();
+  grid.crs_wkt.clear();
+  options_.thickness = raster("bare.tif", grid, std::vector<double>(grid.count(), 1.0));
+  EXPECT_NE(fault().find("bare.tif: CRS is local metric coordinates (the run is in EPSG:32632)"), std::string::npos)
+      << fault();
+  EXPECT_NE(fault().find("gdal_edit.py -a_srs EPSG:32632"), std::string::npos) << fault();
+}
+
+TEST_F(SurveyTest, names_a_missing_file) {
+  options_.thickness = scratch_ / "nowhere.tif";
+  EXPECT_NE(fault().find("nowhere.tif: no such file"), std::string::npos) << fault();
+}
+
+}  // namespace
+}  // namespace talus::postprocess

@@ -1,0 +1,126 @@
+#include "preprocess/options.hpp"
+
+#include "tests/preprocess/terrain.hpp"
+
+namespace talus::preprocess {
+namespace {
+
+Options before_and_after() {
+  Options options;
+  options.before_dem = "before.tif";
+  options.after_dem = "after.tif";
+  return options;
+}
+
+std::string faults_of(const Options& options) {
+  std::vector<Fault> faults;
+  options.check(faults);
+  std::string text;
+  for (const Fault& fault : faults) text += to_string(fault) + "\n";
+  return text;
+}
+
+const std::string one_way =
+    " Give exactly one of: before_dem and after_dem; before_dem and sliding_surface; base_dem and "
+    "[[preprocess.release]]\n";
+
+TEST(options, know_the_three_ways) {
+  Options options = before_and_after();
+  EXPECT_EQ(faults_of(options), "");
+  EXPECT_EQ(options.way(), Way::before_and_after);
+  options.after_dem.clear();
+  options.sliding_surface = "surface.tif";
+  EXPECT_EQ(faults_of(options), "");
+  EXPECT_EQ(options.way(), Way::before_and_sliding_surface);
+  Options base;
+  base.base_dem = "dem.tif";
+  base.release.resize(1);
+  base.release[0].thickness_raster = "release.tif";
+  EXPECT_EQ(faults_of(base), "");
+  EXPECT_EQ(base.way(), Way::base_and_releases);
+}
+
+TEST(options, refuse_no_way_and_two_ways) {
+  EXPECT_EQ(faults_of({}),
+            "[preprocess]: neither before_dem nor base_dem is given (nothing says what fails)." + one_way);
+  Options options = before_and_after();
+  options.sliding_surface = "surface.tif";
+  EXPECT_EQ(faults_of(options),
+            "[preprocess]: after_dem and sliding_surface are both given (nothing says clearly what lies under the "
+            "failing mass)." +
+                one_way);
+  options = before_and_after();
+  options.after_dem.clear();
+  EXPECT_EQ(faults_of(options),
+            "[preprocess]: before_dem stands alone (nothing says clearly what lies under the failing mass)." + one_way);
+  options = before_and_after();
+  options.base_dem = "dem.tif";
+  EXPECT_EQ(faults_of(options),
+            "[preprocess]: before_dem and base_dem are both given (they belong to different ways)." + one_way);
+  Options base;
+  base.base_dem = "dem.tif";
+  EXPECT_EQ(faults_of(base), "[preprocess]: base_dem is given without a release (nothing would move)." + one_way);
+}
+
+TEST(options, refuse_spacings_that_are_not_positive) {
+  Options options = before_and_after();
+  options.grid.spacing_m = -10;
+  options.grid.layer_height_m = -2;
+  EXPECT_EQ(faults_of(options),
+            "[preprocess]: grid.spacing_m = -10 (it must be positive). Give a length in metres, or 0 for the cell of "
+            "the first DEM\n"
+            "[preprocess]: grid.layer_height_m = -2 (it must be positive). Give a length in metres, or 0 for the "
+            "horizontal spacing\n");
+}
+
+TEST(options, refuse_points_per_cell_that_are_not_three_positive_numbers) {
+  for (const std::vector<int>& points : {std::vector<int>{2, 2}, {2, 2, 0}, {2, -1, 2}, {}}) {
+    Options options = before_and_after();
+    options.grid.points_per_cell = points;
+    EXPECT_NE(
+        faults_of(options).find("(it must be three positive integers: along x, y and height). The usual is [2, 2, 2]"),
+        std::string::npos);
+  }
+  Options options = before_and_after();
+  options.grid.points_per_cell = {2, 2, 0};
+  EXPECT_EQ(faults_of(options),
+            "[preprocess]: grid.points_per_cell = [2, 2, 0] (it must be three positive integers: along x, y and "
+            "height). The usual is [2, 2, 2]\n");
+}
+
+TEST(options, report_all_faults_of_the_releases) {
+  Options options;
+  options.base_dem = "dem.tif";
+  options.release.resize(3);
+  options.release[0].name = options.release[1].name = "A";
+  options.release[1].thickness_raster = options.release[1].polygons = "x";
+  options.release[2].thickness_raster = "x";
+  options.release[2].thickness_m = 3;
+  EXPECT_EQ(faults_of(options),
+            "[preprocess]: release 1: neither thickness_raster nor polygons is given (a release is one or the other). "
+            "Give one; several "
+            "releases are several [[preprocess.release]]\n"
+            "[preprocess]: release 2: thickness_raster and polygons are both given (a release is one or the other). "
+            "Give one; several "
+            "releases are several [[preprocess.release]]\n"
+            "[preprocess]: release 2: name \"A\" is taken (results are told apart by name). Name it otherwise\n"
+            "[preprocess]: release 3: thickness_m = 3 beside thickness_raster (the raster holds the thickness). Leave "
+            "one out\n");
+}
+
+TEST(options, read_what_they_write) {
+  Options options = before_and_after();
+  options.before_dem = "/data/before.tif";
+  options.after_dem = "/data/after.tif";
+  options.grid.points_per_cell = {3, 2, 1};
+  options.grid.edge_nodata = EdgeNodata::outside;
+  options.source.seed_x_m = 5;
+  options.source.seed_y_m = 7;
+  const std::string text = recipe::to_toml(options, "preprocess", false);
+  test::Scratch scratch;
+  const recipe::Recipe recipe(scratch.write("recipe.toml", text));
+  EXPECT_EQ(recipe::to_toml(recipe.read<Options>("preprocess"), "preprocess", false), text);
+}
+
+}  // namespace
+}  // namespace talus::preprocess

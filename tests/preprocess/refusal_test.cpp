@@ -1,0 +1,244 @@
+// Wrong input, with the message it prints.
+#include "preprocess/terrain/geo_input.hpp"
+#include "tests/preprocess/scene.hpp"
+
+namespace talus::preprocess {
+namespace {
+
+using test::Scene;
+
+TEST(refusal, missing_file) {
+  Scene scene;
+  scene.options.after_dem = scene.scratch / "nowhere.tif";
+  EXPECT_EQ(scene.data_fault().find(scene.path("nowhere.tif") + ": no such file"), 0u) << scene.data_fault();
+}
+
+TEST(refusal, one_file_without_crs) {
+  Scene scene;
+  Raster before = scene.before;
+  before.grid.crs_wkt = metric_crs("EPSG:32633");
+  scene.rewrite_before(before);
+  const std::string after = scene.path("after.tif");
+  EXPECT_EQ(scene.data_fault(),
+            after + ": has no CRS, while that of " + scene.path("before.tif") +
+                " is EPSG:32633 (they cannot be laid over one another). If it is the same, say so: gdal_edit.py "
+                "-a_srs EPSG:32633 " +
+                after);
+}
+
+TEST(refusal, thickness_in_another_crs) {
+  Scene scene;
+  Raster before = scene.before, bowl = scene.bowl;
+  before.grid.crs_wkt = metric_crs("EPSG:32633");
+  bowl.grid.crs_wkt = metric_crs("EPSG:32632");
+  scene.rewrite_before(before);
+  scene.as_release().thickness_raster = test::write(scene.scratch, "release.tif", bowl);
+  const std::string file = scene.path("release.tif");
+  EXPECT_EQ(scene.data_fault(),
+            file +
+                ": CRS is EPSG:32632, the working grid's is EPSG:32633 (a thickness is resampled within one CRS "
+                "only, to keep its volume). Reproject: gdalwarp -t_srs EPSG:32633 -r average " +
+                file + " out.tif");
+}
+
+TEST(refusal, no_overlap) {
+  Scene scene;
+  Raster after = scene.after;
+  after.grid.west += 5000;
+  scene.rewrite_after(after);
+  EXPECT_EQ(scene.data_fault(),
+            scene.path("after.tif") + ": covers x 505000..505400, y 5100000..5100300, while " +
+                scene.path("before.tif") +
+                " covers x 500000..500400, y 5100000..5100300 (they do not overlap). Check the coordinates and the "
+                "CRS of both with gdalinfo");
+}
+
+TEST(refusal, release_that_does_not_overlap) {
+  Scene scene;
+  Raster bowl = scene.bowl;
+  bowl.grid.south += 5000;
+  scene.as_release().thickness_raster = test::write(scene.scratch, "release.tif", bowl);
+  const std::string text = scene.data_fault();
+  EXPECT_NE(text.find("m3 lie outside the working grid (the release must lie on the DEM). Give a DEM that reaches "
+                      "further, or widen "
+                      "the crop in [preprocess.grid]"),
+            std::string::npos)
+      << text;
+}
+
+TEST(refusal, all_nodata) {
+  Scene scene;
+  scene.rewrite_after(test::raster_of(scene.grid, [](double, double) { return std::nan(""); }));
+  EXPECT_EQ(scene.data_fault().find(scene.path("after.tif") + ": no cell holds a value"), 0u) << scene.data_fault();
+}
+
+TEST(refusal, nodata_inside_the_working_area) {
+  Scene scene;
+  Raster after = scene.after;
+  after.at(20, 7) = after.at(21, 7) = after.at(9, 5) = std::nan("");
+  scene.rewrite_after(after);
+  const std::string file = scene.path("after.tif");
+  EXPECT_EQ(scene.data_fault(), file +
+                                    ": 3 cells without elevation, the first at x 500205.0, y 5100075.0 (nodata or NaN "
+                                    "inside the working area). Fill them "
+                                    "(gdal_fillnodata.py " +
+                                    file +
+                                    " out.tif), crop the working grid (west_m, south_m, east_m, north_m in "
+                                    "[preprocess.grid]), or, where they reach its edge, leave them outside the domain: "
+                                    "edge_nodata = \"outside\"");
+  scene.options.grid.edge_nodata = EdgeNodata::outside;
+  EXPECT_EQ(scene.data_fault(),
+            file +
+                ": 3 cells without elevation, the first at x 500205.0, y 5100075.0 (nodata or NaN inside the "
+                "working area). Fill them (gdal_fillnodata.py " +
+                file + " out.tif)");
+}
+
+TEST(refusal, empty_source) {
+  Scene scene;
+  scene.rewrite_after(scene.before);
+  scene.options.source.threshold_m = 0.5;
+  EXPECT_EQ(scene.data_fault(), scene.path("after.tif") +
+                                    ": nowhere lies more than 0.5 m below the surface before (at most 0 m) (the "
+                                    "source is empty). Lower threshold_m in [preprocess.source], or give its "
+                                    "outline as polygon");
+}
+
+TEST(refusal, swapped_files) {
+  Scene scene;
+  scene.rewrite_after(test::raster_of(scene.grid, [&](double, double) { return 3000.0; }));
+  const std::string text = scene.data_fault();
+  EXPECT_NE(text.find(". Are the files swapped? This one stands up to "), std::string::npos) << text;
+}
+
+TEST(refusal, polygon_without_lowering) {
+  Scene scene;
+  scene.rewrite_after(scene.before);
+  scene.options.source.polygon = test::write_polygon(
+      scene.scratch, "source.csv", "POLYGON((500100 5100100,500200 5100100,500200 5100200,500100 5100100))");
+  EXPECT_EQ(
+      scene.data_fault(),
+      scene.path("after.tif") + ": nowhere lies below the surface before within " + scene.path("source.csv") +
+          " (the source is empty). Check that the outline encloses the source, and that the files are not swapped");
+}
+
+TEST(refusal, seed_point_outside_any_region) {
+  Scene scene;
+  scene.options.source.threshold_m = 0.5;
+  scene.options.source.seed_x_m = scene.grid.x(38);
+  scene.options.source.seed_y_m = scene.grid.y(1);
+  const std::string text = scene.recipe_fault();
+  EXPECT_EQ(text.find("[preprocess.source]: seed point x 500385.0, y 5100015.0 (the lowering there is "), 0u) << text;
+  scene.options.source.seed_x_m = 0;
+  EXPECT_EQ(
+      scene.recipe_fault(),
+      "[preprocess.source]: seed point x 0.0, y 5100015.0 (it lies outside the working grid, x "
+      "500000.0..500400.0, y 5100000.0..5100300.0). Give a point inside the source, in the CRS of the working grid");
+}
+
+TEST(refusal, negative_thickness) {
+  Scene scene;
+  Raster thickness = scene.bowl;
+  thickness.at(30, 20) = -0.75;
+  scene.as_release().thickness_raster = test::write(scene.scratch, "release.tif", thickness);
+  const std::string file = scene.path("release.tif");
+  EXPECT_EQ(scene.data_fault(), file +
+                                    ": 1 cells of negative thickness (down to -0.75 m), at x 500305.0, y 5100205.0 (a "
+                                    "release has none). Is it an elevation "
+                                    "difference, after - before? Then: gdal_calc.py -A " +
+                                    file + " --calc \"maximum(-A,0)\" --outfile out.tif");
+}
+
+TEST(refusal, no_thickness) {
+  Scene scene;
+  scene.as_release().thickness_raster =
+      test::write(scene.scratch, "release.tif", test::raster_of(scene.grid, [](double, double) { return 0.0; }));
+  EXPECT_EQ(scene.data_fault(), scene.path("release.tif") +
+                                    ": its thickness is 0 everywhere (the source is empty). Check the values with "
+                                    "gdalinfo -stats or ogrinfo -al");
+}
+
+const std::string square = "POLYGON((500100 5100100,500200 5100100,500200 5100200,500100 5100200,500100 5100100))";
+
+TEST(refusal, polygon_without_the_attribute) {
+  Scene scene;
+  scene.as_release().polygons = test::write_polygon(scene.scratch, "release.csv", square, ",depth", ",3");
+  EXPECT_EQ(scene.data_fault(),
+            scene.path("release.csv") +
+                ": polygon 1: no number \"thickness\" among its attributes (depth) (its thickness "
+                "is not known). Name the attribute in the recipe (attribute = ...), or give thickness_m");
+}
+
+TEST(refusal, polygon_of_negative_thickness) {
+  Scene scene;
+  scene.as_release().polygons = test::write_polygon(scene.scratch, "release.csv", square, ",thickness", ",-3");
+  EXPECT_EQ(scene.data_fault(), scene.path("release.csv") +
+                                    ": polygon 1: thickness = -3 (a thickness is a number and not negative). Mend the "
+                                    "attribute, or give thickness_m in the recipe");
+}
+
+TEST(refusal, polygon_beyond_the_model) {
+  Scene scene;
+  ReleaseOptions& release = scene.as_release();
+  release.thickness_m = 2;
+  release.polygons = test::write_polygon(scene.scratch, "release.csv",
+                                         "POLYGON((499900 5100100,500200 5100100,500200 5100200,499900 5100100))");
+  EXPECT_EQ(scene.data_fault(), scene.path("release.csv") +
+                                    ": polygon reaches x 499900.0, y 5100100.0, outside the working grid (x "
+                                    "500000.0..500400.0, y 5100000.0..5100300.0) (it must lie on the DEM). Check "
+                                    "the CRS of both, give a DEM that reaches further, or clip the polygon");
+}
+
+TEST(refusal, sliding_surface_above_the_ground_within_the_polygon) {
+  Scene scene;
+  Raster surface = scene.before;
+  for (double& z : surface.values) z -= 3;
+  surface.at(15, 15) = scene.before.at(15, 15) + 0.05;  // within the rounding of two surveys
+  scene.options.sliding_surface = test::write(scene.scratch, "surface.tif", surface);
+  scene.options.after_dem.clear();
+  scene.options.source.polygon = test::write_polygon(scene.scratch, "source.csv", square);
+  EXPECT_NEAR(scene.prepare().total.volume, 3 * (100 * 100 - 100), 1e-6);
+  surface.at(16, 15) = scene.before.at(16, 15) + 0.2;
+  test::write(scene.scratch, "surface.tif", surface);
+  EXPECT_EQ(scene.data_fault(), scene.path("surface.tif") +
+                                    ": 1 cells above the surface before, at x 500165.0, y 5100155.0 (a sliding surface "
+                                    "lies below it; 0.1 m are allowed). Check that both have one vertical datum, or "
+                                    "draw the outline " +
+                                    scene.path("source.csv") + " closer");
+}
+
+TEST(refusal, hole_in_a_sliding_surface) {
+  Scene scene;
+  Raster surface = scene.after;
+  surface.at(13, 16) = std::nan("");
+  scene.options.sliding_surface = test::write(scene.scratch, "surface.tif", surface);
+  scene.options.after_dem.clear();
+  const std::string file = scene.path("surface.tif");
+  EXPECT_EQ(scene.data_fault(),
+            file +
+                ": 1 cells without elevation, at x 500135.0, y 5100165.0 (nodata or NaN within the source). Fill them: "
+                "gdal_fillnodata.py " +
+                file + " out.tif");
+}
+
+TEST(refusal, crop_that_leaves_nothing) {
+  Scene scene;
+  scene.options.grid.west_m = 600000;
+  EXPECT_EQ(
+      scene.data_fault(),
+      "the DEMs overlap in x 500000..500400, y 5100000..5100300, which holds no cell of 10 m inside the crop (the "
+      "working grid is empty). Check west_m, south_m, east_m, north_m and spacing_m in [preprocess.grid]");
+}
+
+TEST(refusal, more_points_than_can_be_numbered) {
+  Scene scene;
+  scene.options.grid.layer_height_m = 1e-6;
+  scene.options.grid.points_per_cell = {64, 64, 64};
+  EXPECT_NE(scene.recipe_fault().find(
+                "material points (points are numbered in 32 bits). Take a larger layer_height_m or spacing_m, or "
+                "fewer points_per_cell than [64, 64, 64]"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace talus::preprocess

@@ -1,0 +1,52 @@
+// A small scene on disk: a random terrain before, and after it with a bowl taken out and a heap laid down elsewhere.
+#pragma once
+
+#include "preprocess/prepare.hpp"
+#include "tests/preprocess/terrain.hpp"
+
+namespace talus::test {
+
+struct Scene {
+  Scratch scratch;
+  MapGrid grid = grid_of(40, 30, 10);
+  Raster before, bowl, heap, after;
+  preprocess::Options options;
+
+  explicit Scene(unsigned seed = 1) {
+    std::mt19937 random(seed);
+    before = raster_of(grid, Hills(grid, random));
+    const double x0 = grid.west + 130, y0 = grid.south + 170;
+    const auto cap = [](double dx, double dy, double radius, double height) {
+      return height * std::max(0.0, 1 - (dx * dx + dy * dy) / (radius * radius));
+    };
+    bowl = raster_of(grid, [&](double x, double y) { return cap(x - x0, y - y0, 65, 20); });
+    heap = raster_of(grid, [&](double x, double y) { return cap(x - x0 - 170, y - y0 + 60, 80, 12); });
+    after = before;
+    for (std::size_t i = 0; i < after.values.size(); ++i) after.values[i] += heap.values[i] - bowl.values[i];
+    options.before_dem = write(scratch, "before.tif", before);
+    options.after_dem = write(scratch, "after.tif", after);
+    options.source.threshold_m = 0;
+  }
+
+  /// The scene as base DEM and a release.
+  preprocess::ReleaseOptions& as_release() {
+    options.base_dem = options.before_dem;
+    options.before_dem.clear();
+    options.after_dem.clear();
+    return options.release.emplace_back();
+  }
+
+  void rewrite_after(const Raster& raster) { write(scratch, "after.tif", raster); }
+  void rewrite_before(const Raster& raster) { write(scratch, "before.tif", raster); }
+
+  preprocess::Prepared prepare() const { return preprocess::prepare(options, preprocess::Points::seeded); }
+  std::string data_fault() const {
+    return fault_of<DataError>([&] { prepare(); });
+  }
+  std::string recipe_fault() const {
+    return fault_of<RecipeError>([&] { prepare(); });
+  }
+  std::string path(const std::string& name) const { return (scratch / name).string(); }
+};
+
+}  // namespace talus::test

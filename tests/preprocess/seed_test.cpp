@@ -1,0 +1,122 @@
+#include "preprocess/particles/seed.hpp"
+
+#include <algorithm>
+
+#include "tests/preprocess/terrain.hpp"
+
+namespace talus::preprocess {
+namespace {
+
+Release random_release(const MapGrid& grid, std::mt19937& random) {
+  std::uniform_real_distribution<double> part(0, 1);
+  Raster thickness = test::raster_of(grid, [&](double, double) {
+    const double t = part(random);
+    return t < 0.3 ? 0.0 : 80 * t * t * t * t;  // from millimetres to tens of metres
+  });
+  return {"A", std::move(thickness)};
+}
+
+double volume_of_points(const SeedPoints& points) {
+  Sum sum;
+  for (double v : points.volume) sum.add(v);
+  return sum.value();
+}
+
+Seeding seeding(int x, int y, int z, double layer_height) {
+  Seeding s;
+  s.along_x = x;
+  s.along_y = y;
+  s.in_height = z;
+  s.layer_height = layer_height;
+  return s;
+}
+
+TEST(seed, keeps_the_volume_whatever_the_points_per_cell) {
+  TALUS_SEEDED(seed);
+  std::mt19937 random(seed);
+  const Release release = random_release(test::grid_of(23, 17, 9.7), random);
+  const double volume = test::volume_of(release.thickness);
+  for (int x = 1; x <= 4; ++x) {
+    for (int y = 1; y <= 4; ++y) {
+      for (int z = 1; z <= 5; ++z) {
+        for (const double layer_height : {0.37, 2.0, 9.7, 100.0}) {
+          Seeding s = seeding(x, y, z, layer_height);
+          for (const double minimum : {0.0, 1.3}) {
+            s.minimum_thickness = minimum;
+            const SeedPoints points = seed_points({release}, s);
+            ASSERT_NEAR(volume_of_points(points) / volume, 1, 1e-12)
+                << x << " " << y << " " << z << " " << layer_height;
+            ASSERT_EQ(points.size(), count_points({release}, s));
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(seed, keeps_the_volume_of_every_column) {
+  TALUS_SEEDED(seed);
+  std::mt19937 random(seed);
+  const MapGrid grid = test::grid_of(8, 6, 10);
+  const Release release = random_release(grid, random);
+  Seeding s = seeding(3, 2, 2, 4);
+  s.jitter = 0.5;
+  const SeedPoints points = seed_points({release}, s);
+  std::vector<double> volume(grid.count(), 0.0);
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const int column = static_cast<int>((points.x[p] - grid.west) / grid.cell),
+              row = static_cast<int>((points.y[p] - grid.south) / grid.cell);
+    volume[grid.index(column, row)] += points.volume[p];
+    EXPECT_GE(points.height[p], 0);
+    EXPECT_LE(points.height[p], release.thickness.at(column, row));
+  }
+  for (std::size_t i = 0; i < volume.size(); ++i) EXPECT_NEAR(volume[i], release.thickness.values[i] * 100, 1e-9);
+}
+
+TEST(seed, spaces_points_evenly) {
+  const Release release{"A", test::raster_of(test::grid_of(1, 1, 10, 0, 0), [](double, double) { return 6.0; })};
+  const SeedPoints points = seed_points({release}, seeding(2, 1, 2, 4));  // 6 m / 4 m * 2 = 3 points in height
+  ASSERT_EQ(points.size(), 6u);
+  EXPECT_EQ(points.x, (std::vector<double>{2.5, 7.5, 2.5, 7.5, 2.5, 7.5}));
+  EXPECT_EQ(points.y, std::vector<double>(6, 5.0));
+  EXPECT_EQ(points.height, (std::vector<double>{1, 1, 3, 3, 5, 5}));
+  EXPECT_EQ(points.volume, std::vector<double>(6, 100.0));
+}
+
+TEST(seed, lays_releases_in_one_cell_on_one_another) {
+  const MapGrid grid = test::grid_of(1, 1, 10, 0, 0);
+  const auto uniform = [&](double t) { return test::raster_of(grid, [=](double, double) { return t; }); };
+  const SeedPoints points = seed_points({{"A", uniform(4)}, {"B", uniform(2)}}, seeding(1, 1, 1, 4));
+  EXPECT_EQ(points.height, (std::vector<double>{2, 5}));
+  EXPECT_EQ(points.release, (std::vector<int>{0, 1}));
+}
+
+TEST(seed, gives_thin_columns_one_point) {
+  const Release release{
+      "A", test::raster_of(test::grid_of(2, 1, 10, 0, 0), [](double x, double) { return x < 10 ? 0.2 : 3.0; })};
+  Seeding s = seeding(2, 2, 2, 10);
+  s.minimum_thickness = 0.5;
+  const SeedPoints points = seed_points({release}, s);
+  ASSERT_EQ(points.size(), 5u);
+  EXPECT_DOUBLE_EQ(points.volume[0], 20);
+  EXPECT_DOUBLE_EQ(points.volume[1], 75);
+}
+
+TEST(seed, shifts_points_by_no_more_than_the_jitter_and_by_its_seed) {
+  const Release release{"A", test::raster_of(test::grid_of(20, 20, 10, 0, 0), [](double, double) { return 8.0; })};
+  Seeding s = seeding(2, 2, 2, 4);
+  const SeedPoints regular = seed_points({release}, s);
+  s.jitter = 0.3;
+  const SeedPoints one = seed_points({release}, s), same = seed_points({release}, s);
+  s.jitter_seed = 2;
+  const SeedPoints other = seed_points({release}, s);
+  EXPECT_EQ(one.x, same.x);
+  EXPECT_NE(one.x, other.x);
+  double most = 0;
+  for (std::size_t p = 0; p < one.size(); ++p) most = std::max(most, std::abs(one.x[p] - regular.x[p]));
+  EXPECT_LE(most, 0.3 * 5);
+  EXPECT_GT(most, 0.3 * 5 * 0.9);
+}
+
+}  // namespace
+}  // namespace talus::preprocess

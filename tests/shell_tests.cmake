@@ -1,0 +1,19 @@
+# talus_shell_tests(FILE...): every function test_NAME() of a *_test.sh becomes a CTest test. Exit code 77 is a skip.
+find_program(TALUS_BASH bash REQUIRED)
+
+function(talus_shell_tests)
+  foreach(_file IN LISTS ARGN)
+    set(_path ${CMAKE_CURRENT_SOURCE_DIR}/${_file})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${_path})
+    get_filename_component(_group ${CMAKE_CURRENT_SOURCE_DIR} NAME)
+    string(REGEX REPLACE "_test\\.sh$" "" _subject ${_file})
+    file(STRINGS ${_path} _functions REGEX "^test_[a-z0-9_]+\\(\\)")
+    foreach(_function IN LISTS _functions)
+      string(REGEX REPLACE "^test_([a-z0-9_]+).*" "\\1" _case ${_function})
+      set(_name ${_group}.${_subject}.${_case})
+      add_test(NAME ${_name} COMMAND ${TALUS_BASH} ${_path} ${_case})
+      set_tests_properties(${_name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 300
+        ENVIRONMENT "TALUS_SOURCE=${CMAKE_SOURCE_DIR};TALUS_BUILD=${CMAKE_BINARY_DIR};TALUS_SCRATCH=${CMAKE_BINARY_DIR}/scratch/${_name}")
+    endforeach()
+  endforeach()
+endfunction()

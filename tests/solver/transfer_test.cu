@@ -1,0 +1,237 @@
+// P2G and G2P against a plain reference: dense sums in double, written from the definitions.
+#include <algorithm>
+#include <map>
+#include <random>
+#include <tuple>
+
+#include "scenes.hpp"
+#include "solver/transfer/grid_to_particle.hpp"
+#include "solver/transfer/particle_to_grid.hpp"
+
+namespace talus::solver::testing {
+namespace {
+
+using Node = std::tuple<int, int, int>;
+
+/// One-dimensional weight of node n at position x, from the definition of the functions, and its slope.
+struct Weight {
+  double value, slope;
+};
+Weight weight(bool quadratic, double x, int n) {
+  const double r = x - n, s = std::abs(r), sign = r < 0 ? -1 : 1;
+  if (!quadratic) return s < 1 ? Weight{1 - s, -sign} : Weight{0, 0};
+  if (s < 0.5) return {0.75 - r * r, -2 * r};
+  if (s < 1.5) return {0.5 * (1.5 - s) * (1.5 - s), -sign * (1.5 - s)};
+  return {0, 0};
+}
+
+class Transfers : public InEachPlace {
+ protected:
+  /// Points with random velocity, affine velocity and strain on wavy ground.
+  static Scene scene(ShapeKind shape, Domain& d) {
+    d = ground(14, 12, 2.0, 1.0, [](double x, double y) { return 30 - 0.4 * x + 0.2 * std::sin(y); });
+    fill(d, {8, 16, 8, 16, 0, 4});
+    SolveOptions o;
+    o.shape = shape;
+    Scene s = make_scene(d, o);
+    std::mt19937 engine(11);
+    std::uniform_real_distribution<double> u(-1, 1);
+    for (std::size_t p = 0; p < s.points.size(); ++p) {
+      for (int a = 0; a < 3; ++a) {
+        s.points.velocity[a][p] = u(engine);
+        s.points.offset[a][p] = std::clamp(s.points.offset[a][p] + 0.2 * u(engine), a == 2 && s.points.cell[2][p] == 0 ? 0.0 : -0.5, 0.499);
+      }
+      for (int a = 0; a < 9; ++a) s.points.affine[a][p] = 0.3 * u(engine);
+      for (int a = 0; a < 6; ++a) s.points.elastic[a][p] = 1e-3 * u(engine);
+    }
+    return s;
+  }
+
+  /// Momentum after one scatter, by the definitions: m (v + C (xi - xi_p)) w - dt V tau grad w.
+  static std::map<Node, Vec4<double>> reference(const Scene& s, const Material<double>& m, double dt, bool quadratic) {
+    std::map<Node, Vec4<double>> nodes;
+    const GroundTables ground = make_ground_tables(s.grid);
+    for (std::size_t p = 0; p < s.points.size(); ++p) {
+      double x[3];
+      for (int a = 0; a < 3; ++a) x[a] = s.points.cell[a][p] + s.points.offset[a][p];
+      constexpr double e = 1e-5;
+      const double bx = (ground_at(s.grid, ground, x[0] + e, x[1]) - ground_at(s.grid, ground, x[0] - e, x[1])) / (2 * e * s.grid.spacing);
+      const double by = (ground_at(s.grid, ground, x[0], x[1] + e) - ground_at(s.grid, ground, x[0], x[1] - e)) / (2 * e * s.grid.spacing);
+      MaterialState<double> state;
+      state.elastic = {s.points.elastic[0][p], s.points.elastic[1][p], s.points.elastic[2][p],
+                       s.points.elastic[3][p], s.points.elastic[4][p], s.points.elastic[5][p]};
+      const Sym3<double> tau = kirchhoff_stress(m, state);
+      const double volume = s.points.volume[p], mass = volume * m.density;
+      for (int i = s.points.cell[0][p] - 2; i <= s.points.cell[0][p] + 2; ++i) {
+        for (int j = s.points.cell[1][p] - 2; j <= s.points.cell[1][p] + 2; ++j) {
+          for (int k = s.points.cell[2][p] - 2; k <= s.points.cell[2][p] + 2; ++k) {
+            const Weight wx = weight(quadratic, x[0], i), wy = weight(quadratic, x[1], j), wz = weight(quadratic, x[2], k);
+            const double w = wx.value * wy.value * wz.value;
+            if (w == 0) continue;
+            const double gz = wx.value * wy.value * wz.slope / s.grid.layer_height;
+            const Vec3<double> gradient{wx.slope * wy.value * wz.value / s.grid.spacing - bx * gz,
+                                        wx.value * wy.slope * wz.value / s.grid.spacing - by * gz, gz};
+            const Vec3<double> force = tau * gradient * (-volume * dt);
+            const double r[3] = {i - x[0], j - x[1], k - x[2]};
+            double v[3];
+            for (int a = 0; a < 3; ++a) {
+              v[a] = s.points.velocity[a][p];
+              for (int b = 0; b < 3; ++b) v[a] += s.points.affine[3 * b + a][p] * r[b];
+            }
+            Vec4<double>& node = nodes[{i, j, std::max(k, 0)}];
+            node.w += w * mass;
+            node.x += w * mass * v[0] + force.x;
+            node.y += w * mass * v[1] + force.y;
+            node.z += w * mass * v[2] + force.z;
+          }
+        }
+      }
+    }
+    return nodes;
+  }
+
+  template <class Real, class Place, class Shape>
+  static void compare(double tolerance) {
+    constexpr bool quadratic = Shape::width == 3;
+    Domain d;
+    const Scene s = scene(quadratic ? ShapeKind::quadratic : ShapeKind::linear, d);
+    MaterialOptions mo;
+    mo.model = MaterialModel::hencky;
+    const double dt = 1e-3;
+    const auto expected = reference(s, make_material<double>(mo), dt, quadratic);
+    Particles<Real, Place> points({true, false, false});
+    points.upload(s.points);
+    SparseGrid<Real, Place> grid(s.grid);
+    grid.fit(points, 0);
+    Buffer<Vec4<Real>, Place> nodes;
+    nodes.resize(static_cast<std::size_t>(grid.nodes()));
+    nodes.fill_zero();
+    Clock c;
+    c.step_size = dt;
+    Buffer<Clock, Place> clock;
+    clock.upload({c});
+    for_each_grouped(Place{}, points.count(), grid.groups(),
+                     ParticleToGrid<Real, Shape, Scatter::impulse>{grid.view(), points.view(), make_material<Real>(mo), clock.data(),
+                                                                   nodes.data(), nullptr, true, false});
+    synchronise(Place{});
+    const auto got = nodes.download();
+    const auto slots = slots_of(grid);
+    double scale = 0, worst = 0;
+    for (const auto& [where, node] : expected) scale = std::max(scale, std::abs(node.x));
+    std::size_t found = 0;
+    for (const auto& [where, node] : expected) {
+      const int i = std::get<0>(where), j = std::get<1>(where), k = std::get<2>(where);
+      const auto& slot = slots[static_cast<std::size_t>((j >> 2) * ((s.grid.columns + 3) / 4) + (i >> 2))];
+      const auto& mine = got[static_cast<std::size_t>(GridView<Real>::node(slot, i, j, k))];
+      worst = std::max({worst, std::abs(static_cast<double>(mine.w) - node.w), std::abs(static_cast<double>(mine.x) - node.x),
+                        std::abs(static_cast<double>(mine.y) - node.y), std::abs(static_cast<double>(mine.z) - node.z)});
+      ++found;
+    }
+    EXPECT_GT(found, 100u);
+    EXPECT_LT(worst, tolerance * scale);
+  }
+
+  template <class Real, class Place>
+  static std::vector<BlockSlot> slots_of(const SparseGrid<Real, Place>& grid) {
+    const auto view = grid.view();
+    const auto count = static_cast<std::size_t>(((view.columns + 3) / 4) * ((view.rows + 3) / 4));
+    std::vector<BlockSlot> slots(count);
+    if constexpr (Place::is_gpu) {
+      detail::gpu_download(slots.data(), view.slots, count * sizeof(BlockSlot));
+    } else {
+      std::copy(view.slots, view.slots + count, slots.begin());
+    }
+    return slots;
+  }
+
+  /// Velocity gather of a linear field in reference coordinates, and the climb, by the definitions.
+  template <class Real, class Place, class Shape>
+  static void gather_linear_field(double tolerance) {
+    constexpr bool quadratic = Shape::width == 3;
+    Domain d;
+    const Scene s = scene(quadratic ? ShapeKind::quadratic : ShapeKind::linear, d);
+    Particles<Real, Place> points({true, false, false});
+    points.upload(s.points);
+    SparseGrid<Real, Place> grid(s.grid);
+    grid.fit(points, 0);
+    const double slope[3][3] = {{0.3, -0.1, 0.2}, {0.05, 0.4, -0.3}, {-0.2, 0.1, 0.25}};  // per cell, [component][direction]
+    std::vector<Vec4<Real>> field(static_cast<std::size_t>(grid.nodes()));
+    const auto slots = slots_of(grid);
+    const int blocks_x = (s.grid.columns + 3) / 4;
+    for (int j = 0; j < s.grid.rows; ++j) {
+      for (int i = 0; i < s.grid.columns; ++i) {
+        const auto& slot = slots[static_cast<std::size_t>((j >> 2) * blocks_x + (i >> 2))];
+        for (int k = slot.first_layer; slot.offset >= 0 && k < slot.first_layer + slot.layers; ++k) {
+          auto& node = field[static_cast<std::size_t>(GridView<Real>::node(slot, i, j, k))];
+          const auto value = [&](int a) { return static_cast<Real>(slope[a][0] * i + slope[a][1] * j + slope[a][2] * k); };
+          node = {Real(1), value(0), value(1), value(2)};
+        }
+      }
+    }
+    Buffer<Vec4<Real>, Place> nodes;
+    nodes.upload(field);
+    Clock c;
+    c.step_size = 0;  // nothing moves
+    Buffer<Clock, Place> clock;
+    clock.upload({c});
+    MaterialOptions mo;
+    mo.model = MaterialModel::hencky;
+    for_each(Place{}, points.count(),
+             GridToParticle<Real, Shape, Gather::all>{grid.view(), points.view(), make_material<Real>(mo), clock.data(),
+                                                      nodes.data(), nullptr, grid.home(), Real(0), true, false});
+    synchronise(Place{});
+    const ParticleState got = points.download();
+    double worst = 0;
+    int checked = 0;
+    for (std::size_t p = 0; p < got.size(); ++p) {
+      if (got.cell[2][p] == 0) continue;  // beside the base node's fold the field is no longer linear
+      ++checked;
+      for (int a = 0; a < 3; ++a) {
+        double v = 0;
+        for (int b = 0; b < 3; ++b) {
+          v += slope[a][b] * (got.cell[b][p] + got.offset[b][p]);
+          worst = std::max(worst, std::abs(got.affine[3 * b + a][p] - slope[a][b]));
+        }
+        worst = std::max(worst, std::abs(got.velocity[a][p] - v));
+      }
+    }
+    EXPECT_GT(checked, 100);
+    EXPECT_LT(worst, tolerance);
+  }
+};
+
+// The reference's terrain slopes are central differences, good to 1e-9; single precision rounds 27 terms at 6e-8.
+TEST_P(Transfers, scatters_mass_momentum_and_force_as_defined) {
+#if defined(__CUDACC__)
+  if (GetParam() == On::gpu) {
+    compare<double, OnGpu, Linear>(1e-8);
+    compare<double, OnGpu, Quadratic>(1e-8);
+    compare<float, OnGpu, Linear>(1e-5);
+    compare<float, OnGpu, Quadratic>(1e-5);
+    return;
+  }
+#endif
+  compare<double, OnCpu, Linear>(1e-8);
+  compare<double, OnCpu, Quadratic>(1e-8);
+  compare<float, OnCpu, Linear>(1e-5);
+  compare<float, OnCpu, Quadratic>(1e-5);
+}
+
+TEST_P(Transfers, gathers_a_linear_field_exactly) {
+#if defined(__CUDACC__)
+  if (GetParam() == On::gpu) {
+    gather_linear_field<double, OnGpu, Linear>(1e-12);
+    gather_linear_field<double, OnGpu, Quadratic>(1e-12);
+    gather_linear_field<float, OnGpu, Quadratic>(1e-5);
+    return;
+  }
+#endif
+  gather_linear_field<double, OnCpu, Linear>(1e-12);
+  gather_linear_field<double, OnCpu, Quadratic>(1e-12);
+  gather_linear_field<float, OnCpu, Quadratic>(1e-5);
+}
+
+TALUS_IN_EACH_PLACE(Transfers);
+
+}  // namespace
+}  // namespace talus::solver::testing

@@ -1,0 +1,97 @@
+#!/usr/bin/env bash
+# Documents that drift from the tree: commands, links, packages, paths.
+source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
+
+# The project's text files: what git tracks or would track; outside a git checkout, all but the build folders.
+project_files() {
+  cd "$TALUS_SOURCE"
+  if git rev-parse --is-inside-work-tree >/dev/null 2>&1; then
+    git ls-files --cached --others --exclude-standard
+  else
+    find . -type f -not -path './build*' -not -path './pipelines/out/*' -printf '%P\n'
+  fi | while IFS= read -r file; do
+    if [[ -f $file ]] && { [[ ! -s $file ]] || grep -qI . "$file"; }; then printf '%s\n' "$file"; fi
+  done
+}
+documents() { project_files | grep -E '\.md$'; }
+
+# Lines of code blocks and `inline code`, without prompts.
+code_of() {
+  awk '/^ *```/ { block = !block; next } block { print; next } { n = split($0, part, "`"); for (i = 2; i <= n; i += 2) print part[i] }' "$1"
+}
+
+test_readme_commands_are_makefile_targets() {
+  cd "$TALUS_SOURCE"
+  local found=0 document word
+  for document in README.md CONTRIBUTING.md docs/user-guide.md; do
+    while read -r word; do
+      found=$((found + 1))
+      grep -qE "^$word:" Makefile || fail "$document names 'make $word', which is no target of the Makefile"
+    done < <(code_of "$document" | grep -oE '(^|[ ;&])make +[a-z][a-z-]*' | awk '{ print $NF }' | sort -u)
+  done
+  [[ $found -ge 4 ]] || fail "only $found make commands were found in the documents: this test looks at nothing"
+  for word in demo test; do
+    code_of README.md | grep -qE "^make $word( |$)" || fail "README.md does not show 'make $word'"
+  done
+}
+
+test_pipelines_named_in_documents_exist() {
+  cd "$TALUS_SOURCE"
+  local found=0 document scene
+  while read -r document; do
+    while read -r scene; do
+      found=$((found + 1))
+      [[ $scene =~ ^(help|list|clean)$ || -f pipelines/$scene/recipe.toml ]] || fail "$document names the scene '$scene', which has no recipe"
+    done < <(code_of "$document" | { grep -oE 'make -C pipelines +[a-z][a-z0-9-]*' || true; } | awk '{ print $NF }')
+  done < <(documents)
+  [[ $found -ge 2 ]] || fail "only $found pipeline commands were found in the documents: this test looks at nothing"
+}
+
+test_programs_named_in_readme_are_built() {
+  cd "$TALUS_SOURCE"
+  local program
+  for program in $(grep -ohE '\btalus-[a-z-]*[a-z]' README.md docs/user-guide.md docs/architecture.md docs/formats.md | sort -u); do
+    [[ $program =~ ^talus-(bundle|stage|tests).*$ || -x $bin/$program ]] || fail "the documents name $program, which the build does not make"
+  done
+}
+
+test_relative_links_lead_somewhere() {
+  cd "$TALUS_SOURCE"
+  local found=0 document link
+  while read -r document; do
+    while read -r link; do
+      [[ -n $link && ! $link =~ ^(https?|mailto): && $link != '#'* ]] || continue
+      found=$((found + 1))
+      [[ -e $(dirname "$document")/${link%%#*} ]] || fail "$document links to $link, which does not exist"
+    done < <(awk '/^ *```/ { block = !block } !block' "$document" | { grep -oE '\]\([^) ]+' || true; } | cut -c 3-)
+  done < <(documents)
+  [[ $found -ge 5 ]] || fail "only $found links were found in the documents: this test looks at nothing"
+}
+
+test_install_script_holds_every_package_named_in_cmake() {
+  cd "$TALUS_SOURCE"
+  local package packages
+  packages=$(tools/install-dependencies.sh --list)
+  for package in $(sed -nE 's/.*talus_missing\((".*"|[^ ]*) +"?([^")]*)"?\).*/\2/p' cmake/dependencies.cmake | grep -v package); do
+    grep -qx "$package" <<<"$packages" || fail "cmake/dependencies.cmake asks for $package, which tools/install-dependencies.sh does not install"
+  done
+  grep -qx libgdal-dev <<<"$packages" || fail "no packages were found"
+}
+
+# A path of one person's machine in the sources works nowhere else.
+test_no_file_names_a_machine() {
+  cd "$TALUS_SOURCE"
+  local parent found=""
+  parent=$(dirname "$TALUS_SOURCE")
+  local patterns=(-e '/hom[e]/[a-z]' -e '/roo[t]/' -e '/User[s]/[a-z]' -e "$TALUS_SOURCE/")
+  if [[ $parent != / ]]; then patterns+=(-e "$parent/"); fi
+  found=$(project_files | xargs -d '\n' grep -nE "${patterns[@]}" || true)
+  [[ -z $found ]] || fail "files name a place on one machine:"$'\n'"$found"
+}
+
+test_licence_is_the_gpl_3() {
+  grep -q 'GNU GENERAL PUBLIC LICENSE' "$TALUS_SOURCE/LICENSE" && grep -q 'Version 3, 29 June 2007' "$TALUS_SOURCE/LICENSE" ||
+    fail "LICENSE is not the GNU General Public License, version 3"
+}
+
+run_test "$@"

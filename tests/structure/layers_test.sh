@@ -1,0 +1,74 @@
+#!/usr/bin/env bash
+# Who may include whom, and which library stands where (docs/architecture.md).
+source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
+cd "$TALUS_SOURCE"
+
+# includes FOLDER...: "file: header" of every #include below, tests left out.
+includes() {
+  grep -rHoE --include='*.hpp' --include='*.cpp' --include='*.cu' --include='*.cuh' --include='*.h' \
+    '^[[:space:]]*#[[:space:]]*include[[:space:]]*[<"][^>"]+' "$@" 2>/dev/null | sed -E 's/:.*[<"]/: /' || true
+}
+
+# refuse WHY: fails when stdin holds anything.
+refuse() {
+  local found
+  found=$(cat)
+  [[ -z $found ]] || fail "$1:"$'\n'"$found"
+}
+
+some_includes() { [[ $(includes "$1" | wc -l) -gt 5 ]] || fail "no includes were found in $1: this test looks at nothing"; }
+
+test_stages_include_common_and_never_one_another() {
+  cd "$TALUS_SOURCE"
+  local stage other
+  for stage in preprocess solver postprocess; do
+    some_includes $stage
+    for other in preprocess solver postprocess data_samples tests; do
+      [[ $stage == "$other" ]] || includes $stage | grep -E ": $other/" || true
+    done
+  done | refuse "a stage includes another (they meet only in files)"
+}
+
+test_common_knows_no_stage() {
+  cd "$TALUS_SOURCE"
+  some_includes common
+  includes common | { grep -E ': (preprocess|solver|postprocess|data_samples|tests)/' || true; } | refuse "common/ includes a stage"
+}
+
+# No way round through ../: includes name their file from the project's root.
+test_includes_start_at_the_root() {
+  cd "$TALUS_SOURCE"
+  includes common preprocess solver postprocess | { grep -F '../' || true; } | refuse "an include climbs out of its folder"
+}
+
+test_gdal_stands_behind_raster_io_and_the_outer_stages() {
+  cd "$TALUS_SOURCE"
+  includes common solver | { grep -E ': (gdal|ogr|cpl_)' || true; } | { grep -v '^common/raster/raster_io[a-z_]*\.cpp:' || true; } |
+    refuse "GDAL is included outside raster_io"
+  includes preprocess postprocess | { grep -E '\.hpp: (gdal|ogr|cpl_)' || true; } | refuse "GDAL is included in a header"
+  includes solver | { grep -E ': common/raster/raster_io' || true; } | refuse "the solver includes raster_io, which stands for GDAL"
+}
+
+test_solver_does_not_link_gdal() {
+  [[ -x $bin/talus-solve ]] || fail "$bin/talus-solve is not built"
+  ldd "$bin/talus-solve" >"$TALUS_SCRATCH/stdout"
+  grep -q libopenvdb "$TALUS_SCRATCH/stdout" || fail "ldd shows no OpenVDB in talus-solve: is this the right file?"
+  { grep -E 'libgdal|libproj|libnetcdf' "$TALUS_SCRATCH/stdout" || true; } | refuse "talus-solve links GDAL or what belongs to it"
+}
+
+# OpenVDB's headers do not compile under nvcc, and are slow: sources only, never headers or kernel files.
+test_openvdb_stands_in_sources_only() {
+  cd "$TALUS_SOURCE"
+  includes common preprocess solver postprocess | { grep -E '\.(cu|cuh|hpp|h): openvdb/' || true; } |
+    refuse "OpenVDB is included in a header or a kernel file"
+}
+
+test_only_parallel_names_cuda_tbb_and_thrust() {
+  cd "$TALUS_SOURCE"
+  local words='\b(cuda[A-Z][A-Za-z]*|cub::|tbb::|thrust::|__global__|__device__|__host__|__shared__|__CUDACC__|__CUDA_ARCH__)|<<<|[<"](tbb|oneapi|thrust|cub|cuda)[/_a-z]*\.?h?'
+  grep -rnE --include='*.hpp' --include='*.cpp' --include='*.cu' --include='*.cuh' "$words" solver | sed -E 's#//.*##' |
+    { grep -E "$words" || true; } | { grep -v '^solver/parallel/' || true; } | refuse "CUDA, TBB or Thrust is named outside solver/parallel/"
+  grep -rqE 'tbb::' solver/parallel || fail "solver/parallel/ does not name TBB: this test looks at nothing"
+}
+
+run_test "$@"
