@@ -43,8 +43,8 @@ struct Ellipse {
   }
 };
 
-constexpr Ellipse scar{300, 345, 85, 85, 75};
-constexpr Ellipse lobe{628, 318, 165, 100, 115};
+constexpr Ellipse scar{300, 345, 90, 90, 72};
+constexpr Ellipse lobe{618, 362, 155, 112, 92};
 constexpr double scar_depth = 22;  // [m]
 
 double river(double y) { return 690 + 28 * std::sin(2 * M_PI * y / 560 + 0.7) + 9 * std::sin(2 * M_PI * y / 210); }
@@ -89,9 +89,12 @@ double before(double x, double y) {
   return 860 + 0.035 * y + flank + roughness(x, y) * on_flank * quiet + channel;
 }
 
+/// No scar is an ellipse: how far its rim lies out, by direction.
+double rim(double angle) { return 1 + 0.07 * std::sin(2 * angle + 1.1) + 0.06 * std::sin(3 * angle + 0.4); }
+
 /// A spoon, deeper towards its head.
 double scar_at(double x, double y) {
-  const double r = scar.radius(x, y);
+  const double r = scar.radius(x, y) / rim(std::atan2((y - scar.y) / scar.side, (x - scar.x) / scar.east_axis));
   return r < 1 ? scar_depth * (1 - r * r) * (1 - 0.25 * (x - scar.x) / scar.east_axis) : 0.0;
 }
 
@@ -114,10 +117,11 @@ double volume_ratio() {
 
 Outline scar_outline() {
   Outline outline;
-  const int corners = 40;
+  const int corners = 48;
   for (int i = 0; i < corners; ++i) {
     const double a = 2 * M_PI * i / corners;
-    outline.push_back(on_map(scar.x + scar.east_axis * std::cos(a), scar.y + scar.side * std::sin(a)));
+    outline.push_back(
+        on_map(scar.x + scar.east_axis * rim(a) * std::cos(a), scar.y + scar.side * rim(a) * std::sin(a)));
   }
   return outline;
 }

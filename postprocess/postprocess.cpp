@@ -45,6 +45,11 @@ void write_results(StageContext& context, const Run& run, const Options& options
   const auto table = to_table(score);
   const auto folder = context.out / "maps";
   make_folder(folder);
+  for (const auto* name :
+       {"score.json", "score.txt"}) {  // so that new maps never lie beside the scores of an older run
+    std::error_code none_there;
+    fs::remove(context.out / name, none_there);
+  }
   context.results = write_geotiffs(folder, run);
   context.results.push_back(folder / "results.nc");
   write_netcdf(context.results.back(), run, {options.institution, context.command_line});
@@ -53,8 +58,8 @@ void write_results(StageContext& context, const Run& run, const Options& options
     write_text(context.results.back(), bytes);
   };
   write("map.png", map_picture({run, options, survey, score}));
-  write("score.json", to_json(score));
   write("score.txt", table);
+  write("score.json", to_json(score));  // last: where it lies, everything is there
   log_info("\n" + table);
 }
 

@@ -73,8 +73,8 @@ for program in "$bundle"/bin/*; do
 done
 [[ $strangers -eq 0 ]] || fail "the bundle does not stand alone"
 for program in "${programs[@]}"; do
-  env -i "$bundle/bin/$program" --version >/dev/null || fail "$program --version failed inside the bundle"
-  loaded=$(env -i LD_DEBUG=libs "$bundle/bin/$program" --version 2>&1 >/dev/null | sed -n 's/.*calling init: //p' | sort -u)
+  env -i "$bundle/bin/$program" --help >/dev/null || fail "$program --help failed inside the bundle"
+  loaded=$(env -i LD_DEBUG=libs "$bundle/bin/$program" --help 2>&1 >/dev/null | sed -n 's/.*calling init: //p' | sort -u)
   while read -r path; do
     if [[ $(realpath "$path") != "$(realpath "$bundle")"/* && ! $(basename "$path") =~ $outside ]]; then
       fail "$program loads $path at run time"

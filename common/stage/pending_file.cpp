@@ -30,7 +30,8 @@ Fault write_fault(const fs::path& path, const std::string& reason) {
   constexpr std::uintmax_t nearly_nothing = 64 * 1024;  // file systems keep a few blocks back
   std::error_code ignored;
   const fs::space_info space = fs::space(path.has_parent_path() ? path.parent_path() : fs::path("."), ignored);
-  const bool full = !ignored && space.available < nearly_nothing;
+  const bool full =
+      (!ignored && space.available < nearly_nothing) || reason.find(reason_of(ENOSPC)) != std::string::npos;
   Fault fault{path.string() + ": cannot be written", reason, ""};
   if (full) {
     fault.why = "the disk is full" + (reason.empty() ? "" : ": " + reason);

@@ -1,10 +1,14 @@
 #include "postprocess/maps/netcdf.hpp"
 
 #include <netcdf.h>
+#include <netcdf_mem.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <ctime>
+#include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -21,18 +25,24 @@ namespace {
 
 constexpr double fill = -9999;
 
-/// An open NetCDF file; every call is checked.
+/// A NetCDF file made in memory; every call is checked. In memory, because a full disk leaves the library unable to
+/// close its file, and crashing: the bytes are written by write_text(), which knows what to say.
 class Nc {
  public:
-  Nc(const std::filesystem::path& path, std::filesystem::path shown) : shown_(std::move(shown)) {
-    check(nc_create(path.c_str(), NC_NETCDF4 | NC_CLOBBER, &id_), "it cannot be created");
+  explicit Nc(std::filesystem::path shown) : shown_(std::move(shown)) {
+    check(nc_create_mem(shown_.filename().c_str(), NC_NETCDF4, 0, &id_), "it cannot be created");
   }
   Nc(const Nc&) = delete;
   Nc& operator=(const Nc&) = delete;
   ~Nc() {
     if (id_ >= 0) nc_abort(id_);
   }
-  void close() { check(nc_close(std::exchange(id_, -1)), "the end of the file"); }
+  std::string close() {
+    NC_memio image{};
+    check(nc_close_memio(std::exchange(id_, -1), &image), "closing it");
+    const std::unique_ptr<void, decltype(&std::free)> owner(image.memory, &std::free);
+    return {static_cast<const char*>(image.memory), image.size};
+  }
 
   int dimension(const char* name, std::size_t size) {
     int dimension = 0;
@@ -202,14 +212,12 @@ void fill_in(Nc& nc, const Layout& layout, const Run& run) {
 }  // namespace
 
 void write_netcdf(const std::filesystem::path& file, const Run& run, const NetcdfNotes& notes) {
-  PendingFile pending(file);
-  Nc nc(pending.path(), file);
+  Nc nc(file);
   describe_file(nc, run, notes);
   const auto layout = define(nc, run);
   nc.end_definitions();
   fill_in(nc, layout, run);
-  nc.close();
-  pending.commit();
+  write_text(file, nc.close());
 }
 
 }  // namespace talus::postprocess

@@ -26,10 +26,26 @@ std::string grouped(double value) {
   return text;
 }
 
-/// Shrink a text's size until it fits.
-TextStyle fitting(Canvas& canvas, const std::string& words, TextStyle style, double width) {
-  while (style.size > 16 && canvas.text_width(words, style) > width) style.size -= 1;
-  return style;
+struct FittedText {
+  std::string words;
+  TextStyle style;
+};
+
+/// Shrink a text by a fifth at most until it fits, then cut its end off.
+FittedText fitting(Canvas& canvas, std::string words, TextStyle style, double width) {
+  const double least = 0.8 * style.size;
+  while (style.size > least && canvas.text_width(words, style) > width) style.size -= 0.5;
+  if (canvas.text_width(words, style) <= width) return {words, style};
+  while (!words.empty() && canvas.text_width(words + "\u2026", style) > width) {
+    while (!words.empty() && (static_cast<unsigned char>(words.back()) & 0xC0U) == 0x80U) words.pop_back();  // a whole
+    if (!words.empty()) words.pop_back();  // character
+  }
+  return {words + "\u2026", style};
+}
+
+void draw_fitting(Canvas& canvas, const std::string& words, double x, double y, const TextStyle& style, double width) {
+  const auto fitted = fitting(canvas, words, style, width);
+  canvas.text(fitted.words, x, y, fitted.style);
 }
 
 std::string key_numbers(const PictureInput& input) {
@@ -63,7 +79,7 @@ class Column {
 
   void heading(const std::string& words) {
     y_ += 26;
-    canvas_.text(words, box_.x, y_, fitting(canvas_, words, {.size = 26, .bold = true, .colour = ink}, box_.width));
+    draw_fitting(canvas_, words, box_.x, y_, {.size = 26, .bold = true, .colour = ink}, box_.width);
     y_ += 16;
   }
   void swatch(const Colour& colour, const std::string& words) {
@@ -74,7 +90,7 @@ class Column {
   }
   void line(const LineStyle& style, const std::string& words) {
     draw_style(canvas_, style, box_.x, y_ + 16, 64);
-    canvas_.text(words, box_.x + 84, y_ + 24, fitting(canvas_, words, {.size = 23, .colour = ink}, box_.width - 84));
+    draw_fitting(canvas_, words, box_.x + 84, y_ + 24, {.size = 23, .colour = ink}, box_.width - 84);
     y_ += 38;
   }
   void pair(const std::string& words, const std::string& value) {
@@ -98,12 +114,16 @@ void draw_legend(Column& column, const PictureInput& input, const std::vector<do
   const auto& options = input.options;
   if (input.survey) {
     const auto& survey = *input.survey;
-    const auto what = !survey.deposit.empty()    ? fmt::format("deposit > {:g} m", options.deposit_threshold)
-                      : !survey.polygons.empty() ? std::string("outline")
-                                                 : fmt::format("footprint > {:g} m", survey.footprint_threshold);
-    column.line(survey_style(), fmt::format("{}: {}", survey.name, what));
+    const bool has_deposit = !survey.deposit.empty();
+    if (has_deposit)
+      column.line(survey_style(), fmt::format("{}: deposit > {:g} m", survey.name, options.deposit_threshold));
+    if (!survey.footprint.empty()) {
+      const auto limit = fmt::format(" > {:g} m", survey.footprint_threshold);
+      const auto what = !survey.polygons.empty() ? "" : (survey.footprint_is_change ? ": |change|" : ": peak") + limit;
+      column.line(has_deposit ? survey_footprint_style() : survey_style(), survey.name + what);
+    }
   }
-  column.line(footprint_style(), fmt::format("Footprint, peak > {:g} m", options.footprint_threshold));
+  column.line(footprint_style(), fmt::format("Simulated: peak > {:g} m", options.footprint_threshold));
   column.line(release_style(), "Release");
   if (interval > 0) column.line({{{}, 0, {}, 1}, contour_pen(true)}, fmt::format("Contours every {:g} m", interval));
 }
@@ -114,7 +134,8 @@ void draw_numbers(Column& column, const PictureInput& input) {
     const auto value = score.number(key);
     if (!value) return;
     auto text = decimals == 0 ? grouped(*value) : fmt::format("{:.{}f}", *value, decimals);
-    if (text.starts_with('-')) text.replace(0, 1, "\u2212");
+    const bool zero = text.find_first_of("123456789") == std::string::npos;
+    if (text.starts_with('-')) text.replace(0, 1, zero ? "" : "\u2212");
     column.pair(words, text + unit);
   };
   column.heading("Simulation");
@@ -181,8 +202,8 @@ std::string volume_words(double volume) {
 void draw_title(Canvas& canvas, const PictureInput& input, double x, double y, double width) {
   const auto& title = input.run.summary.title;
   const auto words = key_numbers(input);
-  canvas.text(title, x, y + 48, fitting(canvas, title, {.size = 46, .bold = true, .colour = ink}, width));
-  canvas.text(words, x, y + 100, fitting(canvas, words, {.size = 28, .colour = soft_ink}, width));
+  draw_fitting(canvas, title, x, y + 48, {.size = 46, .bold = true, .colour = ink}, width);
+  draw_fitting(canvas, words, x, y + 100, {.size = 28, .colour = soft_ink}, width);
 }
 
 void draw_coordinates(Canvas& canvas, const View& view) {

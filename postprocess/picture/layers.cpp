@@ -113,6 +113,7 @@ std::pair<double, double> relief(const View& view, const RunMaps& maps) {
 }  // namespace
 
 LineStyle survey_style() { return {{white, 7, {}, 0.9}, {{0.0, 0.30, 0.70}, 4, {15, 9}, 1}}; }
+LineStyle survey_footprint_style() { return {{white, 3.6, {}, 0.6}, {{0.0, 0.30, 0.70}, 1.8, {5, 4}, 1}}; }
 LineStyle footprint_style() { return {{white, 3.6, {}, 0.6}, {{0.12, 0.12, 0.14}, 1.7, {}, 1}}; }
 LineStyle release_style() { return {{white, 6, {}, 0.85}, {{0.0, 0.45, 0.36}, 3.2, {}, 1}}; }
 Pen contour_pen(bool is_index) { return {{0.33, 0.36, 0.40}, is_index ? 1.5 : 0.9, {}, is_index ? 0.55 : 0.38}; }
@@ -160,14 +161,23 @@ void draw_outlines(Canvas& canvas, const View& view, const RunMaps& maps, const 
   const auto& options = input.options;
   draw(canvas, view, isolines(maps.grid, maps.peak_thickness, options.footprint_threshold, AtEdge::close),
        footprint_style());
-  draw(canvas, view, isolines(maps.grid, maps.initial_thickness, options.deposit_threshold, AtEdge::close),
-       release_style());
-  if (!input.survey) return;
+  const auto draw_release = [&] {
+    draw(canvas, view, isolines(maps.grid, maps.initial_thickness, options.deposit_threshold, AtEdge::close),
+         release_style());
+  };
+  if (!input.survey) return draw_release();
   const auto& survey = *input.survey;
-  const auto lines =
-      !survey.deposit.empty()    ? isolines(survey.grid, survey.deposit, options.deposit_threshold, AtEdge::close)
-      : !survey.polygons.empty() ? rings(survey.polygons)
-                                 : isolines(survey.grid, survey.footprint, survey.footprint_threshold, AtEdge::close);
+  const auto footprint = [&] {
+    return !survey.polygons.empty()
+               ? rings(survey.polygons)
+               : isolines(survey.grid, survey.footprint, survey.footprint_threshold, AtEdge::close);
+  };
+  if (!survey.footprint.empty()) {
+    draw(canvas, view, footprint(), survey.deposit.empty() ? survey_style() : survey_footprint_style());
+  }
+  draw_release();
+  if (survey.deposit.empty()) return;
+  const auto lines = isolines(survey.grid, survey.deposit, options.deposit_threshold, AtEdge::close);
   draw(canvas, view, lines, survey_style());
 }
 

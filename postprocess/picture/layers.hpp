@@ -15,6 +15,7 @@ struct LineStyle {
   Pen pen;
 };
 LineStyle survey_style();
+LineStyle survey_footprint_style();
 LineStyle footprint_style();
 LineStyle release_style();
 Pen contour_pen(bool is_index);
@@ -25,7 +26,7 @@ void draw_ground(Canvas& canvas, const View& view, const RunMaps& maps, const st
 /// Contours at multiples of `interval`, every fifth heavier and labelled.
 void draw_contours(Canvas& canvas, const View& view, const RunMaps& maps, double interval);
 
-/// Outlines: release, footprint, and the survey's deposit (its footprint where it has no deposit).
+/// Outlines: release, footprint, and the survey's deposit and footprint, or whichever of the two it has.
 void draw_outlines(Canvas& canvas, const View& view, const RunMaps& maps, const PictureInput& input);
 
 /// Interval of about a dozen contours over the relief shown; 0 on a plain.

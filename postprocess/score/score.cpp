@@ -252,7 +252,7 @@ void Builder::definitions() {
   if (!survey_->footprint.empty()) {
     notes.push_back(!survey_->polygons.empty()
                         ? "Footprint: peak thickness above the threshold against the inside of the polygon."
-                    : survey_->deposit_is_change && options_.survey.peak_thickness.empty()
+                    : survey_->footprint_is_change
                         ? "Footprint: peak thickness above the threshold against |after - before| above it."
                         : "Footprint: peak thickness above the threshold on both sides.");
   }

@@ -74,7 +74,7 @@ void read_change(const SurveyOptions& options, const RunMaps& maps, double footp
     before = resample_elevation(before, after.grid);
   }
   survey.grid = after.grid;
-  survey.deposit_is_change = true;
+  survey.deposit_is_change = survey.footprint_is_change = true;
   survey.footprint_threshold = footprint_threshold;
   for (std::size_t i = 0; i < after.values.size(); ++i) {
     const double change = after.values[i] - before.values[i];
@@ -85,6 +85,7 @@ void read_change(const SurveyOptions& options, const RunMaps& maps, double footp
 
 void read_footprint(const SurveyOptions& options, const RunMaps& maps, double threshold, Survey& survey) {
   const bool has_grid = !survey.deposit.empty();
+  if (!options.peak_thickness.empty() || !options.polygon.empty()) survey.footprint_is_change = false;
   if (!options.peak_thickness.empty()) {
     auto peak = read_thickness(options.peak_thickness, options, maps);
     survey.inputs.push_back(options.peak_thickness);

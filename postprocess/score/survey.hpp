@@ -17,9 +17,10 @@ struct Survey {
   std::string name;
   MapGrid grid;                 ///< the grid everything is compared on: the survey's, or the run's for a bare polygon
   std::vector<double> deposit;  ///< [m] thickness, or max(0, after - before)
-  bool deposit_is_change = false;  ///< deposit is a change of the surface: compared with the simulated change
-  std::vector<double> footprint;   ///< peak thickness or |change| [m], or 1 inside and 0 outside a polygon
-  double footprint_threshold = 0;  ///< footprint where above this
+  bool deposit_is_change = false;    ///< deposit is a change of the surface: compared with the simulated change
+  std::vector<double> footprint;     ///< peak thickness or |change| [m], or 1 inside and 0 outside a polygon
+  bool footprint_is_change = false;  ///< footprint is |after - before|
+  double footprint_threshold = 0;    ///< footprint where above this
   std::vector<MapPolygon> polygons;
   std::vector<std::filesystem::path> inputs;
 };

@@ -31,6 +31,34 @@ Raster window(const Raster& raster, const MapGrid& grid) {
   return result;
 }
 
+/// A mean that does not pass over voids: cells that hold the centre of one are void.
+void keep_voids(const Raster& raster, Raster& result) {
+  const MapGrid &from = raster.grid, &to = result.grid;
+  for (int row = 0; row < from.rows; ++row) {
+    for (int column = 0; column < from.columns; ++column) {
+      if (!std::isnan(raster.at(column, row))) continue;
+      const double c = std::floor((from.x(column) - to.west) / to.cell),
+                   r = std::floor((from.y(row) - to.south) / to.cell);
+      if (c < 0 || r < 0 || c >= to.columns || r >= to.rows) continue;
+      result.at(static_cast<int>(c), static_cast<int>(r)) = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+}
+
+/// The mean of the cells within coarser ones. Where these do not hold whole cells, the mean of cells cut at their edges
+/// would be off by part of a cell, which on a slope is metres of height; so the surface is first read off, bilinearly,
+/// on cells that do fit.
+Raster coarsened(const Raster& raster, const MapGrid& grid) {
+  const int parts = static_cast<int>(std::ceil(grid.cell / raster.grid.cell - 1e-6));
+  MapGrid fine = grid;
+  fine.cell = grid.cell / parts;
+  fine.columns = grid.columns * parts;
+  fine.rows = grid.rows * parts;
+  Raster result = resample_elevation(same_lattice(raster.grid, fine) ? raster : resample_elevation(raster, fine), grid);
+  keep_voids(raster, result);
+  return result;
+}
+
 double volume_of(const Raster& thickness) {
   Sum sum;
   for (double t : thickness.values) {
@@ -78,7 +106,8 @@ Raster onto_grid(const Elevation& elevation, const MapGrid& grid) {
   log_info(fmt::format("{}: {:g} m cells in {}{} resampled onto the working grid", elevation.file.string(),
                        elevation.cell(), crs_name(elevation.crs_wkt()),
                        one_crs && elevation.cell() == grid.cell ? ", registered otherwise," : ""));
-  return resample_elevation(elevation.raster, grid);
+  const bool coarser = grid.cell > elevation.cell() * (1 + 1e-6);
+  return one_crs && coarser ? coarsened(elevation.raster, grid) : resample_elevation(elevation.raster, grid);
 }
 
 Raster thickness_onto_grid(const Raster& thickness, const MapGrid& grid, const std::filesystem::path& file) {

@@ -33,8 +33,8 @@ Raster onto_grid(const Elevation& elevation, const MapGrid& grid);
 /// CRS differ, when there is no overlap, or when more than 1e-9 of the volume lies outside the grid.
 Raster thickness_onto_grid(const Raster& thickness, const MapGrid& grid, const std::filesystem::path& file);
 
-/// Points without a CRS (a text file cannot name one) are taken to be in `working_crs` (a name; may be empty), else in the
-/// CRS of the first other DEM that has one; the log says so.
+/// Points without a CRS (a text file cannot name one) are taken to be in `working_crs` (a name; may be empty), else in
+/// the CRS of the first other DEM that has one; the log says so.
 void share_crs(const std::vector<Elevation*>& dems, const std::string& working_crs);
 
 /// Throws DataError when one of two files has a CRS and the other has none.

@@ -93,6 +93,14 @@ bool is_text(const std::filesystem::path& file) {
   return extension == ".csv" || extension == ".xyz" || extension == ".txt";
 }
 
+/// GDAL takes a table of points for a raster when their distances happen to be multiples of one another.
+bool is_sparse_table(const std::filesystem::path& file, GDALDataset& raster) {
+  if (!EQUAL(raster.GetDriver()->GetDescription(), "XYZ")) return false;
+  const std::size_t cells =
+      static_cast<std::size_t>(raster.GetRasterXSize()) * static_cast<std::size_t>(raster.GetRasterYSize());
+  return read_point_table(file).x.size() < cells;
+}
+
 bool is_point_layer(OGRLayer* layer) {
   if (!layer) return false;
   if (wkbFlatten(layer->GetGeomType()) == wkbPoint) return true;
@@ -137,7 +145,8 @@ Extent transform_extent(const Extent& extent, const std::string& from_wkt, const
 }
 
 bool is_point_file(const std::filesystem::path& file) {
-  if (!std::filesystem::exists(file) || open(file, GDAL_OF_RASTER)) return false;
+  if (!std::filesystem::exists(file)) return false;
+  if (const Dataset raster = open(file, GDAL_OF_RASTER)) return is_text(file) && is_sparse_table(file, *raster);
   if (is_text(file)) return true;
   const Dataset dataset = open(file, GDAL_OF_VECTOR);
   return dataset && dataset->GetLayerCount() > 0 && is_point_layer(dataset->GetLayer(0));

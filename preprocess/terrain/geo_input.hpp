@@ -26,8 +26,8 @@ std::string metric_crs(const std::string& name);
 /// Smallest rectangle in `to_wkt` around `extent` in `from_wkt`.
 Extent transform_extent(const Extent& extent, const std::string& from_wkt, const std::string& to_wkt);
 
-/// True for a text file of x, y, z columns (.csv, .xyz, .txt, unless GDAL reads it as a raster) or a vector file of
-/// points.
+/// True for a vector file of points, or a text file of x, y, z columns (.csv, .xyz, .txt) that is no gapless raster to
+/// GDAL.
 bool is_point_file(const std::filesystem::path& file);
 
 /// Read it. A header line names the columns x, y, z (any order and case; also easting, northing, elevation, height);

@@ -25,7 +25,7 @@ test_unknown_option_is_a_usage_error() {
   local program
   for program in "${programs[@]}"; do
     expect_exit 2 "$bin/$program" --ouput here
-    expect_error "Usage: $program recipe.toml"
+    expect_words "$program: " "Usage: $program recipe.toml"
   done
 }
 
@@ -33,7 +33,7 @@ test_no_recipe_is_a_usage_error() {
   local program
   for program in "${programs[@]}"; do
     expect_exit 2 "$bin/$program"
-    expect_error "$program: no recipe was given. Usage: $program"
+    expect_words "$program: no recipe was given. Usage: $program"
   done
 }
 
@@ -67,11 +67,11 @@ test_check_finds_faults() {
   scene
   sed -i 's/^layer_height_m/layer_hight_m/' recipe.toml
   expect_exit 2 preprocess --check
-  expect_error 'Did you mean "layer_height_m"?'
+  expect_words 'Did you mean "layer_height_m"?'
   sed -i 's/^layer_hight_m/layer_height_m/' recipe.toml
   rm after.asc
   expect_exit 3 preprocess --check
-  expect_error "after.asc"
+  expect_words "after.asc: no such file"
 }
 
 test_stdout_holds_result_paths_only() {

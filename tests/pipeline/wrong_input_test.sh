@@ -93,7 +93,8 @@ test_all_faults_are_reported_at_once() {
 test_not_a_recipe() {
   scene
   echo '[solve' >>recipe.toml
-  refused 2 "talus-preprocess: recipe.toml:23:7: this is not TOML ("
+  expect_exit 2 preprocess
+  expect_words "talus-preprocess: recipe.toml:23:7: this is not TOML (" "the format is described on https://toml.io"
 }
 
 test_output_folder_below_a_file() {

@@ -23,7 +23,9 @@ TEST(Fields, hold_nodata_outside_the_domain_and_zero_inside) {
     EXPECT_TRUE(std::isnan(raster.at(20, 1))) << field.name << " outside";
     const bool arrival = std::string(field.name) == "arrival_time";
     EXPECT_EQ(std::isnan(raster.at(20, 25)), arrival) << field.name << " inside, never reached";
-    if (!arrival) { EXPECT_EQ(raster.values[grid.index(20, 25)], 0); }
+    if (!arrival) {
+      EXPECT_EQ(raster.values[grid.index(20, 25)], 0);
+    }
   }
 }
 

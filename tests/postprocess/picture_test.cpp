@@ -144,21 +144,33 @@ TEST(Picture, shows_the_deposit_in_its_classes) {
   EXPECT_LT(coloured_pixels(bare, 60, 150), 10000) << "no deposit: only the legend is coloured";
 }
 
+int blue_pixels(const talus::Run& run, const std::optional<Survey>& survey) {
+  int count = 0;
+  for (const auto& [colour, times] : colours_of(map_picture({run, {}, survey, make_score(run, {}, survey)}))) {
+    if (static_cast<int>(colour & 0xffU) - static_cast<int>(colour >> 16U) > 120) count += times;
+  }
+  return count;
+}
+
 TEST(Picture, draws_the_surveys_outline_in_blue) {
   const auto run = small_run();
   std::optional<Survey> survey = Survey{};
   survey->name = "survey";
   survey->grid = small_grid();
   survey->deposit = test::block(survey->grid, 27, 37, 10, 20, 2.0);
-  const auto blue = [&](const std::optional<Survey>& given) {
-    int count = 0;
-    for (const auto& [colour, times] : colours_of(map_picture({run, {}, given, make_score(run, {}, given)}))) {
-      if (static_cast<int>(colour & 0xffU) - static_cast<int>(colour >> 16U) > 120) count += times;
-    }
-    return count;
-  };
-  EXPECT_EQ(blue({}), 0);
-  EXPECT_GT(blue(survey), 2000);
+  EXPECT_EQ(blue_pixels(run, {}), 0);
+  EXPECT_GT(blue_pixels(run, survey), 2000);
+}
+
+TEST(Picture, draws_a_bare_polygon_and_shortens_a_long_name) {
+  const auto run = small_run();
+  std::optional<Survey> survey = Survey{};
+  survey->name = "Outline mapped in the field by a commission whose name is longer than any legend";
+  survey->grid = small_grid();
+  survey->footprint_threshold = 0.5;
+  survey->polygons.push_back({{{{600040, 5100080}, {600360, 5100080}, {600360, 5100220}, {600040, 5100220}}}, {}, ""});
+  survey->footprint = rasterize(survey->polygons, survey->grid);
+  EXPECT_GT(blue_pixels(run, survey), 2000);
 }
 
 }  // namespace

@@ -30,21 +30,40 @@ TEST(align, keeps_the_corner_of_the_first_model_at_another_spacing) {
   EXPECT_EQ(domain.layer_height, 15);
 }
 
-TEST(align, resamples_a_model_registered_otherwise) {
+/// A plane stays a plane on any other grid, except where a border cell has no neighbour to weigh with.
+void expect_plane_kept(double cell) {
   Scene scene;
   const auto plane = [&](double x, double y) {
     return 500 + 0.4 * (x - scene.grid.west) - 0.2 * (y - scene.grid.south);
   };
   scene.rewrite_before(test::raster_of(scene.grid, plane));
-  const MapGrid shifted = test::grid_of(60, 50, 7, scene.grid.west + 3, scene.grid.south - 4);
+  const int columns = static_cast<int>(440 / cell), rows = static_cast<int>(340 / cell);
+  const MapGrid shifted = test::grid_of(columns, rows, cell, scene.grid.west - 13, scene.grid.south - 17);
   scene.rewrite_after(test::raster_of(shifted, [&](double x, double y) { return plane(x, y) - 5; }));
   const Prepared prepared = scene.prepare();
-  // A plane stays a plane except where a border cell has no neighbour to weigh with.
-  for (int row = 2; row < prepared.domain.grid.rows - 2; ++row) {
-    for (int column = 2; column < prepared.domain.grid.columns - 2; ++column) {
-      ASSERT_NEAR(prepared.domain.release_thickness.at(column, row), 5, 1e-9);
+  const MapGrid& grid = prepared.domain.grid;
+  for (int row = 2; row < grid.rows - 2; ++row) {
+    for (int column = 2; column < grid.columns - 2; ++column) {
+      ASSERT_NEAR(prepared.domain.release_thickness.at(column, row), 5, 1e-9) << "cells of " << cell;
     }
   }
+}
+
+TEST(align, resamples_a_model_registered_otherwise) { expect_plane_kept(10); }
+TEST(align, resamples_a_coarser_model) { expect_plane_kept(13); }
+TEST(align, resamples_a_finer_model) {
+  for (const double cell : {9.0, 7.0, 5.0, 2.3}) expect_plane_kept(cell);
+}
+
+TEST(align, does_not_average_over_a_void) {
+  Scene scene;
+  MapGrid fine = test::grid_of(160, 120, 2.5);
+  Raster after = test::raster_of(fine, [](double, double) { return 0.0; });
+  after.at(101, 41) = std::nan("");
+  scene.rewrite_after(after);
+  EXPECT_EQ(scene.data_fault().find(scene.path("after.tif") +
+                                    ": 1 cells without elevation, at x 500255.0, y 5100105.0 (nodata or NaN"),
+            0u);
 }
 
 TEST(align, crops_to_whole_cells_inside_the_given_edges) {

@@ -90,7 +90,7 @@ inline std::filesystem::path write(const Scratch& scratch, const std::string& na
 /// A GeoJSON without CRS text of its own would be in degrees, so polygons are written as CSV with WKT, which names
 /// none.
 inline std::filesystem::path write_polygon(const Scratch& scratch, const std::string& name, const std::string& wkt,
-                                           const std::string& columns = "", const std::string& values = "") {
+                                           const std::string& columns = ",id", const std::string& values = ",1") {
   return scratch.write(name, "WKT" + columns + "\n\"" + wkt + "\"" + values + "\n");
 }
 

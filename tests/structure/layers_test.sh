@@ -41,11 +41,20 @@ test_includes_start_at_the_root() {
   includes common preprocess solver postprocess | { grep -F '../' || true; } | refuse "an include climbs out of its folder"
 }
 
+# private_headers PATTERN FOLDER...: headers that include what matches PATTERN may be included by sources of their own folder only.
+private_headers() {
+  local pattern=$1 header
+  shift
+  for header in $(includes "$@" | sed -nE "s#\.(hpp|h|cuh): $pattern.*#.\1#p" | sort -u); do
+    includes common preprocess solver postprocess data_samples | grep -E ": $header$" | grep -vE "^$(dirname "$header")/[a-z_0-9]+\.cpp:" || true
+  done
+}
+
 test_gdal_stands_behind_raster_io_and_the_outer_stages() {
   cd "$TALUS_SOURCE"
-  includes common solver | { grep -E ': (gdal|ogr|cpl_)' || true; } | { grep -v '^common/raster/raster_io[a-z_]*\.cpp:' || true; } |
-    refuse "GDAL is included outside raster_io"
-  includes preprocess postprocess | { grep -E '\.hpp: (gdal|ogr|cpl_)' || true; } | refuse "GDAL is included in a header"
+  local gdal='(gdal|ogr|cpl_|vrt)'
+  includes common solver | { grep -E ": $gdal" || true; } | { grep -v '^common/raster/' || true; } | refuse "GDAL is included outside common/raster"
+  private_headers "$gdal" common preprocess postprocess | refuse "a header that includes GDAL is included outside its folder's sources"
   includes solver | { grep -E ': common/raster/raster_io' || true; } | refuse "the solver includes raster_io, which stands for GDAL"
 }
 
@@ -56,11 +65,11 @@ test_solver_does_not_link_gdal() {
   { grep -E 'libgdal|libproj|libnetcdf' "$TALUS_SCRATCH/stdout" || true; } | refuse "talus-solve links GDAL or what belongs to it"
 }
 
-# OpenVDB's headers do not compile under nvcc, and are slow: sources only, never headers or kernel files.
+# OpenVDB's headers do not compile under nvcc, and are slow.
 test_openvdb_stands_in_sources_only() {
   cd "$TALUS_SOURCE"
-  includes common preprocess solver postprocess | { grep -E '\.(cu|cuh|hpp|h): openvdb/' || true; } |
-    refuse "OpenVDB is included in a header or a kernel file"
+  includes common preprocess solver postprocess | { grep -E '\.(cu|cuh): openvdb/' || true; } | refuse "OpenVDB is included in a kernel file"
+  private_headers 'openvdb/' common preprocess solver postprocess | refuse "a header that includes OpenVDB is included outside its folder's sources"
 }
 
 test_only_parallel_names_cuda_tbb_and_thrust() {

@@ -1,0 +1,73 @@
+// The way through a recipe's tables: where the reader stands, which keys it asked for, and the faults found, by place.
+#pragma once
+
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "common/recipe/parsed.hpp"
+
+namespace talus::recipe {
+
+class Walk {
+ public:
+  Walk(const toml::table& root, std::string shown, std::vector<Fault>& faults);
+
+  void push_table(std::string_view key);
+  void push_item(std::size_t item);  ///< of the innermost list
+  void pop_table();                  ///< notes the keys that nobody asked for
+
+  /// Length of list `key`, or `size` where the file has none.
+  std::size_t push_list(std::string_view key, std::size_t size);
+  void pop_list() { lists_.pop_back(); }
+
+  /// The value of a key in the table at hand, or null; from now on the key is known.
+  const toml::node* find(std::string_view key);
+
+  /// A fault at a value: "recipe.toml:3:8: [solve] steps = 0 (why). mend".
+  void add(const toml::node& node, std::string_view key, const std::string& why, const std::string& mend);
+
+  /// Leave all tables and hand the faults over, in the order of the file.
+  void finish();
+
+ private:
+  /// A table on the way down. `table` is null where the file has none: then every key keeps its default.
+  struct Frame {
+    const toml::table* table = nullptr;
+    std::string name{};                // "[solve.material]"
+    std::string path{};                // "solve.material"
+    std::vector<std::string> known{};  // keys asked for so far
+  };
+  /// `items` is null where the file has no such list.
+  struct List {
+    const toml::array* items = nullptr;
+    std::string path;
+  };
+  struct Placed {
+    toml::source_position at;
+    Fault fault;
+  };
+  struct Unknown {
+    std::string key, table_name;
+    toml::source_region source;
+    std::vector<std::string> known;
+  };
+
+  std::string mend_for(const Unknown& unknown) const;
+  void sort_and_hand_over();
+
+  std::string shown_;
+  std::vector<Fault>& out_;
+  std::vector<Placed> faults_;
+  std::vector<Unknown> unknown_;
+  std::vector<Frame> frames_;
+  std::vector<List> lists_;
+  std::set<std::pair<std::string, std::string>> all_known_;  // (key, table name): "it belongs in ..."
+};
+
+/// "text", "an integer", "a table", ...
+std::string kind_of(const toml::node& node);
+
+}  // namespace talus::recipe
