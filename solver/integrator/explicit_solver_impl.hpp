@@ -62,22 +62,21 @@ class ExplicitSolverOf final : public ExplicitSolver {
     for (int s = 0; s < std::min(left, batch_steps) + 1; ++s) step();
     BatchReport report;
     clock = read_clock();
-    report.outflow_volume = clock.outflow_volume;
-    report.outflow_count = clock.outflow_count;
-    if (clock.halt == wants_sort) {
+    const int halt = clock.halt;
+    // A sort comes before an event of the same time (Clock::begin_step), so that the event's records see who has left.
+    if (halt == wants_sort) {
+      report.outflow_volume = clock.outflow_volume;
+      report.outflow_count = clock.outflow_count;
       sort(clock.outflow_count);
       clock.outflow_volume = 0;
       clock.outflow_count = 0;
       clock.steps_since_sort = 0;
       clock.halt = clock.request = running;
       report.sorted = true;
-    } else if (clock.outflow_count > 0 && clock.halt != failed) {
-      // The event came in the step in which points left; they go at the sort that the next begin asks for.
-      report.outflow_volume = 0;
-      report.outflow_count = 0;
     }
     clock_.upload({clock});
     report.clock = clock;
+    report.clock.halt = halt;
     return report;
   }
 
