@@ -1,5 +1,7 @@
 # What the shell tests share. A test script sources this, defines test_NAME() functions and ends with: run_test "$@"
 # CTest sets TALUS_SOURCE (the project), TALUS_BUILD (its build) and TALUS_SCRATCH (an empty folder of this test).
+# GDAL must not leave statistics (.aux.xml) beside files that another test looks at meanwhile.
+export GDAL_PAM_ENABLED=NO
 set -euo pipefail
 export LC_ALL=C
 unset MAKEFLAGS MAKELEVEL MFLAGS   # 'make test' is no part of what a test's own make sees
