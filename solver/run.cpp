@@ -23,7 +23,7 @@ std::string duration(double seconds) {
 
 }  // namespace
 
-ExplicitRun::ExplicitRun(const Domain& domain, const SolveOptions& options, On on, RunPaths paths, std::string fingerprint)
+Simulation::Simulation(const Domain& domain, const SolveOptions& options, On on, RunPaths paths, std::string fingerprint)
     : domain_(domain),
       options_(options),
       on_(on),
@@ -34,32 +34,32 @@ ExplicitRun::ExplicitRun(const Domain& domain, const SolveOptions& options, On o
   released_ = std::accumulate(scene_.points.volume.begin(), scene_.points.volume.end(), 0.0);
 }
 
-void ExplicitRun::resume(const std::filesystem::path& file) {
+void Simulation::resume(const std::filesystem::path& file) {
   Checkpoint checkpoint = read_checkpoint(file, fingerprint_);
-  solver_ = resume_explicit_solver(scene_, options_, on_, checkpoint.state);
+  solver_ = resume_solver(scene_, options_, on_, checkpoint.state);
   memory_ = std::move(checkpoint.memory);
   time_ = checkpoint.state.clock.time;
   wall_before_ = memory_.wall_time;
   log_info(fmt::format("going on from {} at t = {:.3f} s, step {}", file.string(), time_, checkpoint.state.clock.step));
 }
 
-void ExplicitRun::start() {
+void Simulation::start() {
   frames_.clear();
   std::error_code ignored;
   for (const auto& stale : {paths_.run, paths_.checkpoint}) std::filesystem::remove(stale, ignored);
-  solver_ = make_explicit_solver(scene_, options_, on_);
+  solver_ = make_solver(scene_, options_, on_);
   memory_.history.names = history_names;
   memory_.history.columns.resize(history_names.size());
   memory_.initial_thickness = solver_->thickness();
 }
 
-double ExplicitRun::next_event() const {
+double Simulation::next_event() const {
   const double frame = static_cast<double>(memory_.frames) * options_.frame_interval;
   const double record = static_cast<double>(memory_.records) * options_.history_interval;
   return std::min({frame, record, options_.end_time});
 }
 
-void ExplicitRun::pass_events(double time) {
+void Simulation::pass_events(double time) {
   if (time >= static_cast<double>(memory_.records) * options_.history_interval || time >= options_.end_time) {
     record(time);
     ++memory_.records;
@@ -70,7 +70,7 @@ void ExplicitRun::pass_events(double time) {
   }
 }
 
-void ExplicitRun::record(double time) {
+void Simulation::record(double time) {
   const Energies e = solver_->energies();
   const Clock clock = solver_->clock();
   kinetic_ = e.kinetic;
@@ -90,7 +90,7 @@ void ExplicitRun::record(double time) {
   for (std::size_t c = 0; c < memory_.history.columns.size(); ++c) memory_.history.columns[c].push_back(row[c]);
 }
 
-PointFrame ExplicitRun::point_frame(double time) const {
+PointFrame Simulation::point_frame(double time) const {
   const ParticleState s = solver_->state().points;
   const auto material = make_material<double>(options_.material);
   PointFrame frame;
@@ -111,7 +111,7 @@ PointFrame ExplicitRun::point_frame(double time) const {
   return frame;
 }
 
-void ExplicitRun::put_frame(double time) {
+void Simulation::put_frame(double time) {
   PointFrame frame;
   frame.time = time;
   if (options_.point_frames || options_.vdb_frames) frame = point_frame(time);
@@ -125,25 +125,25 @@ void ExplicitRun::put_frame(double time) {
   frames_.put(memory_.frames, frame, scene_.map, solver_->thickness());
 }
 
-bool ExplicitRun::checkpoint_due(double time) const {
+bool Simulation::checkpoint_due(double time) const {
   if (options_.checkpoint_interval <= 0) return false;
   return time >= static_cast<double>(memory_.checkpoints + 1) * options_.checkpoint_interval;
 }
 
-void ExplicitRun::save_checkpoint() {
+void Simulation::save_checkpoint() {
   memory_.wall_time = wall_time();
   write_checkpoint(paths_.checkpoint, {fingerprint_, solver_->state(), memory_});
 }
 
-bool ExplicitRun::calm() const {
+bool Simulation::calm() const {
   return options_.stop_kinetic_fraction > 0 && kinetic_ < options_.stop_kinetic_fraction * memory_.peak_kinetic;
 }
 
-double ExplicitRun::wall_time() const {
+double Simulation::wall_time() const {
   return wall_before_ + std::chrono::duration<double>(WallClock::now() - started_).count();
 }
 
-void ExplicitRun::report(Progress& progress, const Clock& clock) const {
+void Simulation::report(Progress& progress, const Clock& clock) const {
   if (!progress.due()) return;
   const double done = clock.time / options_.end_time;
   const double balance = (memory_.history.columns.empty() || memory_.history.columns[6].empty())
@@ -154,7 +154,7 @@ void ExplicitRun::report(Progress& progress, const Clock& clock) const {
                               done > 0 ? duration(wall_time() * (1 - done) / done) : "?"));
 }
 
-void ExplicitRun::fail(const Clock& clock) const {
+void Simulation::fail(const Clock& clock) const {
   const ParticleState s = solver_->state().points;
   std::string where = "unknown place";
   const auto found = std::find(s.id.begin(), s.id.end(), clock.failed_point);
@@ -170,7 +170,7 @@ void ExplicitRun::fail(const Clock& clock) const {
                                     options_.courant)});
 }
 
-RunSummary ExplicitRun::run(const std::string& scene, const std::string& title) {
+RunSummary Simulation::run(const std::string& scene, const std::string& title) {
   started_ = WallClock::now();
   RunSummary summary;
   summary.scene = scene;
@@ -215,7 +215,7 @@ RunSummary ExplicitRun::run(const std::string& scene, const std::string& title) 
   return summary;
 }
 
-RunMaps ExplicitRun::final_maps() const {
+RunMaps Simulation::final_maps() const {
   const MapFields fields = solver_->state().maps;
   RunMaps maps;
   maps.grid = scene_.map;
@@ -235,7 +235,7 @@ RunMaps ExplicitRun::final_maps() const {
   return maps;
 }
 
-void ExplicitRun::finish(RunSummary& summary) {
+void Simulation::finish(RunSummary& summary) {
   const SolverState state = solver_->state();
   memory_.wall_time = wall_time();
   summary.on = on_ == On::gpu ? gpu_name() : hardware();

@@ -18,9 +18,9 @@ struct RunPaths {
       : run(out / "run.h5"), checkpoint(out / "checkpoint.h5"), frames(out / ".frames"), vdb_frames(out / "frames") {}
 };
 
-class ExplicitRun {
+class Simulation {
  public:
-  ExplicitRun(const Domain& domain, const SolveOptions& options, On on, RunPaths paths, std::string fingerprint);
+  Simulation(const Domain& domain, const SolveOptions& options, On on, RunPaths paths, std::string fingerprint);
 
   /// Go on from checkpoint.h5 instead of the start.
   void resume(const std::filesystem::path& checkpoint);
@@ -51,7 +51,7 @@ class ExplicitRun {
   RunPaths paths_;
   std::string fingerprint_;
   Scene scene_;
-  std::unique_ptr<ExplicitSolver> solver_;
+  std::unique_ptr<Solver> solver_;
   FrameStore frames_;
   RunMemory memory_;
   double released_ = 0;  // [m3]

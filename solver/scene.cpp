@@ -18,9 +18,30 @@ void size_state(ParticleState& s, std::size_t count) {
   for (auto* list : {&s.cell[0], &s.cell[1], &s.cell[2], &s.id, &s.release}) list->assign(count, 0);
   for (auto& list : s.offset) list.assign(count, 0);
   for (auto& list : s.velocity) list.assign(count, 0);
+  for (auto& list : s.acceleration) list.assign(count, 0);
+  s.load.assign(count, -1);
   for (auto& list : s.affine) list.assign(count, 0);
   for (auto& list : s.elastic) list.assign(count, 0);
   for (auto* list : {&s.log_volume, &s.plastic_log_volume, &s.volume}) list->assign(count, 0);
+}
+
+/// Marks the points that start inside a load's box.
+void attach_loads(const Domain& domain, const SolveOptions& options, Scene& scene) {
+  for (std::size_t l = 0; l < options.loads.size(); ++l) {
+    const auto& b = options.loads[l].box;
+    double volume = 0;
+    for (std::size_t p = 0; p < domain.points.size(); ++p) {
+      const double x = domain.points.x[p], y = domain.points.y[p], z = domain.points.height[p];
+      if (x < b[0] || x > b[1] || y < b[2] || y > b[3] || z < b[4] || z > b[5]) continue;
+      scene.points.load[p] = static_cast<int>(l);
+      volume += domain.points.volume[p];
+    }
+    if (!(volume > 0)) {
+      throw RecipeError({fmt::format("[[solve.load]] number {}: no material point starts inside its box", l + 1),
+                         "the load would pull at nothing", "Widen box_m (west, east, south, north, bottom, top above the ground)"});
+    }
+    scene.load_volumes.push_back(volume);
+  }
 }
 
 }  // namespace
@@ -62,6 +83,7 @@ Scene make_scene(const Domain& domain, const SolveOptions& options) {
     s.id[p] = static_cast<int>(p);
     s.release[p] = domain.points.release[p];
   }
+  attach_loads(domain, options, scene);
   return scene;
 }
 

@@ -53,7 +53,10 @@ struct UpdateColumns {
       momentum += v * node.w;
     }
     if constexpr (content != NodeContent::remapped) {
-      if (mass > Real(0)) record(column, static_cast<double>(mass), static_cast<double>(length(momentum)));
+      if (mass > Real(0)) {
+        record_column(maps, column, static_cast<double>(mass), static_cast<double>(length(momentum)),
+                      static_cast<double>(density), static_cast<double>(grid.spacing), clock->time);
+      }
     }
   }
 
@@ -93,18 +96,6 @@ struct UpdateColumns {
   TALUS_HD Real damped(Real pull, Real velocity) const {
     if (velocity == Real(0)) return pull;
     return pull - damping * (velocity > Real(0) ? fabs(pull) : -fabs(pull));
-  }
-
-  TALUS_HD void record(int column, double mass, double momentum) const {
-    const double thickness = mass / (static_cast<double>(density) * grid.spacing * grid.spacing);
-    if (thickness > maps.peak_thickness[column]) maps.peak_thickness[column] = thickness;
-    if (thickness < maps.threshold) return;
-    const double speed = momentum / mass;
-    if (speed > maps.peak_speed[column]) {
-      maps.peak_speed[column] = speed;
-      maps.peak_pressure[column] = static_cast<double>(density) * speed * speed;
-    }
-    if (maps.arrival[column] < 0) maps.arrival[column] = clock->time;
   }
 };
 

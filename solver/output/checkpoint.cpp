@@ -20,11 +20,13 @@ void visit_points(State& s, Ints&& ints, Reals&& reals) {
     ints(fmt::format("cell_{}", a), s.cell[a]);
     reals(fmt::format("offset_{}", a), s.offset[a]);
     reals(fmt::format("velocity_{}", a), s.velocity[a]);
+    reals(fmt::format("acceleration_{}", a), s.acceleration[a]);
   }
   for (int a = 0; a < 9; ++a) reals(fmt::format("affine_{}", a), s.affine[a]);
   for (int a = 0; a < 6; ++a) reals(fmt::format("elastic_{}", a), s.elastic[a]);
   ints("id", s.id);
   ints("release", s.release);
+  ints("load", s.load);
   reals("log_volume", s.log_volume);
   reals("plastic_log_volume", s.plastic_log_volume);
   reals("volume", s.volume);

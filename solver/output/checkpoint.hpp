@@ -5,7 +5,7 @@
 #include <string>
 
 #include "common/run/run_file.hpp"
-#include "solver/integrator/explicit_solver.hpp"
+#include "solver/integrator/solver.hpp"
 
 namespace talus::solver {
 

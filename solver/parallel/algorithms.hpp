@@ -19,4 +19,12 @@ int exclusive_sum(OnGpu, const int* values, int* sums, int count);
 double sum(OnCpu, const double* values, int count);
 double sum(OnGpu, const double* values, int count);
 
+/// Sum of a[i] * b[i], in a fixed order on the CPU whatever the number of threads.
+double inner_product(OnCpu, const double* a, const double* b, int count);
+double inner_product(OnGpu, const double* a, const double* b, int count);
+
+/// Largest |a[i]|; 0 for none.
+double largest_entry(OnCpu, const double* a, int count);
+double largest_entry(OnGpu, const double* a, int count);
+
 }  // namespace talus

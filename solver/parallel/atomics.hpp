@@ -65,6 +65,14 @@ TALUS_HD void atomic_add(double* target, double value) {
 #endif
 }
 
+TALUS_HD void atomic_increment(int* target) {
+#if defined(__CUDA_ARCH__)
+  atomicAdd(target, 1);
+#else
+  std::atomic_ref<int>(*target).fetch_add(1, std::memory_order_relaxed);
+#endif
+}
+
 /// Plain store of a flag that several threads may set to the same meaning.
 TALUS_HD void raise_flag(int* flag, int value) {
 #if defined(__CUDA_ARCH__)

@@ -1,0 +1,274 @@
+// Node kernels of an implicit step: constraints, contact, the residual, Newmark.
+#pragma once
+
+#include "solver/integrator/implicit_kernels.hpp"
+
+namespace talus::solver {
+
+/// Newmark's numbers; statics is the case without inertia.
+struct TimeScheme {
+  bool dynamic = true;
+  double alpha = 0.25, beta = 0.5;
+  double step = 0;  // [s]
+  TALUS_HD double inertia() const { return dynamic ? 1 / (alpha * step * step) : 0; }
+};
+
+TALUS_HD Sym3<double> whole_space() { return {1, 1, 1, 0, 0, 0}; }
+TALUS_HD Sym3<double> without(const Sym3<double>& projector, const Vec3<double>& n) {
+  return projector + Sym3<double>{-n.x * n.x, -n.y * n.y, -n.z * n.z, -n.x * n.y, -n.y * n.z, -n.x * n.z};
+}
+
+/// What a node is held by besides its contact.
+struct Constraints {
+  Sym3<double>* walls = nullptr;    // directions that rollers and fixed walls leave free
+  Vec3<double>* normal = nullptr;   // of the surface it can touch
+  double* friction = nullptr;       // coefficient there
+};
+
+/// One thread: one column. Velocities from momenta, loads, constraints, first guess of the displacement.
+template <class Real>
+struct PrepareNodes {
+  GridView<Real> grid;
+  const int* active;
+  NodeArrays nodes;
+  Constraints held;
+  Walls<double> walls;
+  BaseFriction<double> base;
+  Vec3<double> gravity;
+  TimeScheme scheme;
+  bool predict;  // start from the displacement of the present velocity
+
+  TALUS_HD void operator()(int c) const {
+    const int block = active[c / block_columns], inside = c % block_columns;
+    const int i = (block % grid.block_columns_x) * block_side + (inside & 3);
+    const int j = (block / grid.block_columns_x) * block_side + (inside >> 2);
+    const BlockSlot slot = grid.slots[block];
+    for (int k = slot.first_layer; k < slot.first_layer + slot.layers; ++k) prepare(GridView<Real>::node(slot, i, j, k), i, j, k);
+  }
+
+ private:
+  TALUS_HD void prepare(int n, int i, int j, int k) const {
+    const double m = nodes.mass[n];
+    nodes.friction[n] = {};
+    nodes.touch[n] = Touch::none;
+    if (!(m > 0) || i >= grid.columns || j >= grid.rows) {
+      nodes.freed[n] = held.walls[n] = Sym3<double>{};
+      nodes.u[n] = {};
+      return;
+    }
+    nodes.velocity[n] = nodes.velocity[n] * (1 / m);
+    if (nodes.acceleration) nodes.acceleration[n] = nodes.acceleration[n] * (1 / m);
+    nodes.external[n] += gravity * m;
+    Vec3<double> u = predict ? nodes.velocity[n] * scheme.step : Vec3<double>{};
+    Sym3<double> freed = whole_space();
+    Vec3<double> normal{};
+    double friction = 0;
+    const bool grounded = touch_ground(i, j, k, normal, friction, freed, u);
+    for (int w = 0; w < walls.count; ++w) meet(walls.list[w], i, j, k, grounded, normal, friction, freed, u);
+    held.walls[n] = freed;
+    held.normal[n] = normal;
+    held.friction[n] = friction;
+    if (dot(normal, normal) > 0) {
+      const bool sticks = friction > 0 && (!scheme.dynamic || at_rest(nodes.velocity[n], normal));
+      nodes.touch[n] = sticks ? Touch::stick : Touch::slip;
+      u = u - normal * dot(u, normal);
+      if (sticks) u = {};
+      freed = sticks ? Sym3<double>{} : without(freed, normal);
+    }
+    nodes.freed[n] = freed;
+    nodes.u[n] = u;
+  }
+
+  TALUS_HD static bool at_rest(const Vec3<double>& v, const Vec3<double>& normal) {
+    const Vec3<double> along = v - normal * dot(v, normal);
+    return dot(along, along) < 1e-20;
+  }
+
+  TALUS_HD bool touch_ground(int i, int j, int k, Vec3<double>& normal, double& friction, Sym3<double>& freed,
+                             Vec3<double>& u) const {
+    const int column = grid.column(i, j);
+    const int top = grid.mapping == Mapping::terrain_following
+                        ? 0
+                        : static_cast<int>(floor(grid.terrain[column] / grid.layer_height + Real(1e-4)));
+    if (k > top) return false;
+    if (base.law == FrictionLaw::stick) {
+      freed = {};
+      u = {};
+      return true;
+    }
+    const double sx = static_cast<double>(grid.slope_x[column]), sy = static_cast<double>(grid.slope_y[column]);
+    const double scale = 1 / sqrt(1 + sx * sx + sy * sy);
+    normal = {-sx * scale, -sy * scale, scale};
+    const Vec3<double> v = nodes.velocity[GridView<Real>::node(grid.slot(i, j), i, j, k)];
+    friction = base.at(length(v - normal * dot(v, normal)));
+    return true;
+  }
+
+  TALUS_HD void meet(const Wall<double>& wall, int i, int j, int k, bool grounded, Vec3<double>& normal, double& friction,
+                     Sym3<double>& freed, Vec3<double>& u) const {
+    if (!wall.holds(i, j, k)) return;
+    Vec3<double> axis{};
+    component(axis, wall.axis) = 1;
+    if (wall.kind == WallKind::fixed) {
+      freed = {};
+      u = axis * (wall.speed * scheme.step);
+      normal = {};
+      return;
+    }
+    if (wall.kind == WallKind::frictional && !grounded) {
+      normal = axis * static_cast<double>(wall.side);
+      friction = wall.friction;
+      return;
+    }
+    freed = without(freed, axis * sqrt(dot(axis, freed * axis) > 0.5 ? 1.0 : 0.0));
+    component(u, wall.axis) = wall.speed * scheme.step;
+  }
+};
+
+/// One thread: one node. Local non-viscous damping (Cundall 1987) against the velocity at the start, from the force at the start.
+struct AddDamping {
+  NodeArrays nodes;
+  double damping;
+  TALUS_HD void operator()(int n) const {
+    const Vec3<double> pull = nodes.external[n] - nodes.internal[n], v = nodes.velocity[n];
+    nodes.external[n] += Vec3<double>{against(pull.x, v.x), against(pull.y, v.y), against(pull.z, v.z)};
+  }
+  TALUS_HD double against(double pull, double v) const { return v == 0 ? 0 : v > 0 ? -damping * fabs(pull) : damping * fabs(pull); }
+};
+
+/// One thread: one node. The unbalanced force for the displacement u; with `decide` the state of its contact as well.
+struct MeasureResidual {
+  NodeArrays nodes;
+  Constraints held;
+  TimeScheme scheme;
+  bool decide;
+  int* changes;
+
+  TALUS_HD void operator()(int n) const {
+    const double m = nodes.mass[n];
+    if (!(m > 0)) {
+      nodes.residual[n] = {};
+      return;
+    }
+    Vec3<double> force = nodes.external[n] - nodes.internal[n];
+    if (scheme.dynamic) {
+      Vec3<double> a = nodes.velocity[n] * (1 / (scheme.alpha * scheme.step)) - nodes.u[n] * scheme.inertia();
+      if (nodes.acceleration) a += nodes.acceleration[n] * (1 / (2 * scheme.alpha) - 1);
+      force += a * m;
+    }
+    if (decide && nodes.touch[n] != Touch::none) settle_contact(n, force);
+    nodes.residual[n] = nodes.freed[n] * (force + nodes.friction[n]);
+  }
+
+ private:
+  TALUS_HD void settle_contact(int n, const Vec3<double>& force) const {
+    const Vec3<double> normal = held.normal[n];
+    const double reaction = -dot(force, normal);
+    Touch touch = nodes.touch[n];
+    const Touch before = touch;
+    Vec3<double> friction{};
+    if (touch == Touch::open) {
+      if (dot(nodes.u[n], normal) < 0) touch = Touch::slip;
+    } else if (reaction < 0) {
+      touch = Touch::open;
+    }
+    if (touch == Touch::slip || touch == Touch::stick) {
+      const double limit = held.friction[n] * (reaction > 0 ? reaction : 0);
+      const Vec3<double> along = held.walls[n] * (force - normal * dot(force, normal));
+      if (touch == Touch::stick && length(along) > limit) {
+        touch = Touch::slip;
+        friction = along * (-limit / length(along));
+      } else if (touch == Touch::slip) {
+        const Vec3<double> way = nodes.u[n] - normal * dot(nodes.u[n], normal);
+        const double size = length(way);
+        if (held.friction[n] > 0 && before == Touch::slip && dot(way, nodes.friction[n]) > 0) {
+          touch = Touch::stick;  // friction would push
+        } else if (size > 0) {
+          friction = way * (-limit / size);
+        } else if (length(along) > 0) {
+          friction = along * (-(limit < length(along) ? limit / length(along) : 1));
+        }
+      }
+    }
+    if (touch != before) atomic_increment(changes);
+    nodes.touch[n] = touch;
+    nodes.friction[n] = friction;
+    if (touch == Touch::stick) {
+      nodes.freed[n] = {};
+      nodes.u[n] = nodes.u[n] - held.walls[n] * nodes.u[n];
+    } else if (touch == Touch::slip) {
+      nodes.freed[n] = without(held.walls[n], normal);
+      nodes.u[n] = nodes.u[n] - normal * dot(nodes.u[n], normal);
+    } else {
+      nodes.freed[n] = held.walls[n];
+    }
+  }
+};
+
+/// One thread: one node. y = freed (y + mass inertia x).
+struct CloseProduct {
+  NodeArrays nodes;
+  double inertia;
+  const Vec3<double>* x;
+  Vec3<double>* y;
+  TALUS_HD void operator()(int n) const { y[n] = nodes.freed[n] * (y[n] + x[n] * (nodes.mass[n] * inertia)); }
+};
+
+/// One thread: one node. Inverse of the diagonal, or of the 3 x 3 block, of the constrained operator.
+struct InvertBlocks {
+  NodeArrays nodes;
+  double inertia;
+  bool whole;  // the block, else its diagonal
+  Sym3<double>* blocks;
+
+  TALUS_HD void operator()(int n) const {
+    const Sym3<double> p = nodes.freed[n];
+    Sym3<double>& b = blocks[n];
+    if (!(trace(p) > 0.5)) {
+      b = {};
+      return;
+    }
+    b = b.plus_identity(nodes.mass[n] * inertia);
+    if (!whole) {
+      b = {safe(b.xx), safe(b.yy), safe(b.zz), 0, 0, 0};
+      return;
+    }
+    // P B P + (I - P) has B's action on the free directions and is regular.
+    const Vec3<double> e[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    Vec3<double> column[3];
+    for (int a = 0; a < 3; ++a) column[a] = p * (b * (p * e[a])) + e[a] - p * e[a];
+    const Mat3<double> inverse = inverted(Mat3<double>{column[0], column[1], column[2]});
+    b = {inverse.a.x, inverse.b.y, inverse.c.z, inverse.b.x, inverse.c.y, inverse.c.x};
+  }
+  TALUS_HD static double safe(double d) { return d > 0 ? 1 / d : 0; }
+};
+
+/// One thread: one node. z = freed inverse r.
+struct ApplyBlocks {
+  NodeArrays nodes;
+  const Sym3<double>* inverse;
+  const Vec3<double>* r;
+  Vec3<double>* z;
+  TALUS_HD void operator()(int n) const { z[n] = nodes.freed[n] * (inverse[n] * r[n]); }
+};
+
+/// One thread: one node. Newmark's velocity and acceleration at the end of the step.
+struct EndOfStep {
+  NodeArrays nodes;
+  TimeScheme scheme;
+  Vec3<double>* velocity;
+  Vec3<double>* acceleration;
+  TALUS_HD void operator()(int n) const {
+    const Vec3<double> v = nodes.velocity[n], u = nodes.u[n];
+    const Vec3<double> a = nodes.acceleration ? nodes.acceleration[n] : Vec3<double>{};
+    const double dt = scheme.step;
+    const Vec3<double> a1 = (u - v * dt) * (1 / (scheme.alpha * dt * dt)) - a * (1 / (2 * scheme.alpha) - 1);
+    const Vec3<double> v1 = v + a * (dt * (1 - scheme.beta)) + a1 * (dt * scheme.beta);
+    // Where a node is held it moves as it is told.
+    const Vec3<double> told = u * (1 / dt);
+    velocity[n] = told + nodes.freed[n] * (v1 - told);
+    acceleration[n] = nodes.freed[n] * a1;
+  }
+};
+
+}  // namespace talus::solver

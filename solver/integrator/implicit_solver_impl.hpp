@@ -1,0 +1,406 @@
+// Implicit steps: Newton on the unbalanced force of the end of the step, shape functions held at its start. Included by the files
+// that instantiate it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "solver/integrator/implicit_nodes.hpp"
+#include "solver/integrator/point_solver.hpp"
+#include "solver/linear/conjugate_gradient.hpp"
+
+namespace talus::solver {
+
+/// One thread: one column. Maps of the end of a step.
+template <class Real>
+struct RecordColumns {
+  GridView<Real> grid;
+  const int* active;
+  const double* mass;
+  const Vec3<double>* velocity;  // null in statics
+  double density, time;
+  MapView maps;
+  TALUS_HD void operator()(int c) const {
+    const int block = active[c / block_columns], inside = c % block_columns;
+    const int i = (block % grid.block_columns_x) * block_side + (inside & 3);
+    const int j = (block / grid.block_columns_x) * block_side + (inside >> 2);
+    if (i >= grid.columns || j >= grid.rows) return;
+    const BlockSlot slot = grid.slots[block];
+    double total = 0;
+    Vec3<double> momentum{};
+    for (int k = slot.first_layer; k < slot.first_layer + slot.layers; ++k) {
+      const int n = GridView<Real>::node(slot, i, j, k);
+      total += mass[n];
+      if (velocity && mass[n] > 0) momentum += velocity[n] * mass[n];
+    }
+    const double spacing = static_cast<double>(grid.spacing);
+    if (total > 0) record_column(maps, grid.column(i, j), total, length(momentum), density, spacing, time);
+  }
+};
+
+/// One thread: one point. Momentum of the points' new velocity back to the nodes (MUSL).
+template <class Real, class Shape>
+struct ScatterVelocity {
+  GridView<Real> grid;
+  ParticleView<Real> points;
+  Real density;
+  Vec3<double>* momentum;
+  TALUS_HD void operator()(int p) const {
+    const PointGradients<Real, Shape> g(grid, points, p);
+    const Vec3<double> v = widen(points.velocity_of(p)) * static_cast<double>(points.volume[p] * density);
+    around(grid, g, [&](int n, int a, int b, int c) { scatter_add(&momentum[n], v * static_cast<double>(g.weight(a, b, c))); });
+  }
+};
+
+/// One thread: one node. Momentum to displacement of the step, held nodes as the solve left them.
+struct RemapDisplacement {
+  NodeArrays nodes;
+  double step;
+  Vec3<double>* momentum;
+  TALUS_HD void operator()(int n) const {
+    if (!(nodes.mass[n] > 0)) return;
+    const Vec3<double> moved = momentum[n] * (step / nodes.mass[n]);
+    momentum[n] = nodes.u[n] + nodes.freed[n] * (moved - nodes.u[n]);
+  }
+};
+
+template <class Real, class Place, class Shape>
+class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
+  using Base = PointSolver<Real, Place, Shape>;
+  using Base::clock_, Base::dilatant_, Base::grid_, Base::material_, Base::options_, Base::points_, Base::read_clock;
+
+ public:
+  ImplicitSolverOf(const Scene& scene, const SolveOptions& options, const SolverState& state)
+      : Base(scene, options, state, fields(options)),
+        affine_(options.transfer == Transfer::apic),
+        dynamic_(options.integrator == Integrator::newmark),
+        friction_(make_base_friction<double>(options.base)),
+        load_volumes_(scene.load_volumes),
+        step_(options.implicit.step) {
+    frame_ = {{scene.map.x(0), scene.map.y(0), this->grid_.ground().datum},
+              {scene.grid.spacing, scene.grid.spacing, scene.grid.layer_height}};
+    changes_.upload({0});
+  }
+
+  BatchReport advance() override {
+    Clock clock = read_clock();
+    clock.halt = clock.request = running;
+    clock.outflow_count = 0;
+    clock.outflow_volume = 0;
+    clock.rate_bits = clock.speed_bits = 0;
+    this->grid_.fit(points_, gone_);
+    gone_ = 0;
+    BatchReport report;
+    double step = next_step(clock);
+    for (int cut = 0;; ++cut) {
+      report.stats = {};
+      report.stats.cuts = cut;
+      if (solve_step(clock.time + step, step, report.stats)) break;
+      if (cut >= options_.implicit.step_cuts) give_up(clock, step, report.stats);
+      step *= 0.5;
+      step_ = step;
+    }
+    report.stats.converged = true;
+    clock.step_size = step;
+    clock.time = clock.next_event - clock.time <= step * (1 + 1e-12) ? clock.next_event : clock.time + step;
+    ++clock.step;
+    clock_.upload({clock});
+    accept(clock, step);
+    if (report.stats.cuts == 0) step_ = std::min(step_ * 1.5, options_.implicit.step);
+    clock = read_clock();
+    gone_ = clock.outflow_count;
+    report.outflow_count = clock.outflow_count;
+    report.outflow_volume = clock.outflow_volume;
+    report.stats.over_cfl = step * static_cast<double>(positive_from_bits(clock.rate_bits));
+    if (clock.request == failed) clock.halt = failed;
+    if (clock.halt != failed && clock.time >= clock.next_event) clock.halt = at_event;
+    if (gone_ > 0) drop_gone();
+    report.sorted = true;
+    report.clock = clock;
+    clock.halt = clock.request = running;
+    clock_.upload({clock});
+    return report;
+  }
+
+  std::size_t bytes() const override {
+    std::size_t total = Base::bytes() + mass_.bytes() + touch_.bytes() + tangents_.bytes() + wall_freed_.bytes() +
+                        contact_friction_.bytes() + freed_.bytes() + blocks_.bytes();
+    for (const auto* v : {&velocity_, &acceleration_, &external_, &internal_, &u_, &residual_, &friction_force_, &normal_,
+                          &velocity_end_, &acceleration_end_, &change_, &saved_u_, &cg_.r, &cg_.z, &cg_.p, &cg_.ap}) {
+      total += v->bytes();
+    }
+    return total;
+  }
+
+ private:
+  static ParticleFields fields(const SolveOptions& o) {
+    ParticleFields f;
+    f.affine = o.transfer == Transfer::apic;
+    f.plastic_volume = Base::needs_plastic_volume(o);
+    f.acceleration = true;
+    f.load = !o.loads.empty();
+    return f;
+  }
+
+  /// The step to try: the stated one, grown back after cuts, never over an event.
+  double next_step(const Clock& clock) const {
+    const double remaining = clock.next_event - clock.time;
+    if (step_ >= remaining * (1 - 1e-9)) return remaining;
+    return remaining < 2 * step_ * (1 - 1e-9) ? 0.5 * remaining : step_;
+  }
+
+  NodeArrays nodes() {
+    NodeArrays n;
+    n.mass = mass_.data();
+    n.velocity = velocity_.data();
+    n.acceleration = dynamic_ ? acceleration_.data() : nullptr;
+    n.external = external_.data();
+    n.internal = internal_.data();
+    n.u = u_.data();
+    n.residual = residual_.data();
+    n.friction = friction_force_.data();
+    n.freed = freed_.data();
+    n.touch = touch_.data();
+    return n;
+  }
+  Constraints held() { return {wall_freed_.data(), normal_.data(), contact_friction_.data()}; }
+
+  void size_nodes() {
+    count_ = this->grid_.nodes();
+    const auto n = static_cast<std::size_t>(count_);
+    mass_.resize(n);
+    mass_.fill_zero();
+    for (auto* v : {&velocity_, &acceleration_, &external_}) {
+      v->resize(n);
+      v->fill_zero();
+    }
+    for (auto* v : {&internal_, &u_, &residual_, &friction_force_, &normal_, &velocity_end_, &acceleration_end_, &change_, &saved_u_}) {
+      v->resize(n);
+    }
+    freed_.resize(n);
+    wall_freed_.resize(n);
+    blocks_.resize(n);
+    contact_friction_.resize(n);
+    touch_.resize(n);
+    tangents_.resize(static_cast<std::size_t>(TangentStore<Real>::numbers) * static_cast<std::size_t>(points_.count()));
+  }
+
+  /// Everything that does not change with the displacement.
+  void prepare(double time, double step) {
+    size_nodes();
+    scheme_ = {dynamic_, options_.implicit.alpha, options_.implicit.beta, step};
+    upload_loads(time);
+    for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
+                     ScatterInertia<Real, Shape>{this->grid_.view(), points_.view(), material_.density, affine_, dynamic_,
+                                                 load_volumes_.empty() ? nullptr : loads_.data(), nodes()});
+    const double ramp = options_.gravity_ramp > 0 ? std::min(1.0, time / options_.gravity_ramp) : 1.0;
+    const Vec3<double> g{options_.gravity[0] * ramp, options_.gravity[1] * ramp, options_.gravity[2] * ramp};
+    const bool predict = dynamic_ && options_.implicit.newton_iterations > 1 && options_.damping == 0;
+    for_each(Place{}, this->grid_.active_blocks() * block_columns,
+             PrepareNodes<Real>{this->grid_.view(), this->grid_.active_list(), nodes(), held(),
+                                make_walls<double>(options_.walls, time, frame_), friction_, g, scheme_, predict});
+    if (options_.damping > 0 && dynamic_) {
+      measure_stress(false);
+      for_each(Place{}, count_, AddDamping{nodes(), options_.damping});
+    }
+  }
+
+  void upload_loads(double time) {
+    if (load_volumes_.empty()) return;
+    std::vector<Vec3<double>> densities;
+    for (std::size_t l = 0; l < load_volumes_.size(); ++l) {
+      const LoadOptions& o = options_.loads[l];
+      double share = time >= o.from && time < o.to ? 1.0 : 0.0;
+      if (o.ramp > 0) share *= std::clamp((time - o.from) / o.ramp, 0.0, 1.0);
+      const double scale = share / load_volumes_[l];
+      densities.push_back({o.force[0] * scale, o.force[1] * scale, o.force[2] * scale});
+    }
+    loads_.upload(densities);
+  }
+
+  TangentStore<Real> tangents() { return {tangents_.data(), points_.count()}; }
+
+  void measure_stress(bool with_tangent) {
+    internal_.fill_zero();
+    TangentStore<Real> store = tangents();
+    if (!with_tangent) store.data = nullptr;
+    for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
+                     ScatterStress<Real, Shape>{this->grid_.view(), points_.view(), material_, dilatant_, store, nodes()});
+  }
+
+  double measure_residual(bool decide) {
+    for_each(Place{}, count_, MeasureResidual{nodes(), held(), scheme_, decide, changes_.data()});
+    return std::sqrt(dot(residual_, residual_));
+  }
+
+  /// What the unbalanced force is measured against: the forces that balance, and rounding of the inertia.
+  double force_size() {
+    return std::sqrt(dot(internal_, internal_) + dot(external_, external_)) + 1e-300;
+  }
+
+  int contact_changes() {
+    const int changes = changes_.download().front();
+    changes_.upload({0});
+    return changes;
+  }
+
+  /// Newton's iterations of one step; true when it converged.
+  bool solve_step(double time, double step, StepStats& stats) {
+    prepare(time, step);
+    const ImplicitOptions& o = options_.implicit;
+    if (o.newton_iterations == 1) return solve_once(stats);
+    for (stats.newton = 0; stats.newton < o.newton_iterations; ++stats.newton) {
+      measure_stress(true);
+      double unbalanced = measure_residual(true);
+      const int changes = contact_changes();
+      if (changes > 0) {  // a contact that closed or opened has moved its node
+        measure_stress(true);
+        unbalanced = measure_residual(false);
+      }
+      stats.residual = unbalanced / force_size();
+      if (!std::isfinite(stats.residual)) return false;
+      if (stats.residual <= o.newton_tolerance && changes == 0) return within_reach();
+      if (!linear_solve(stats)) return false;
+      if (!search(unbalanced)) return false;
+    }
+    return false;
+  }
+
+  /// The reference paper: one solve with the tangent at the start of the step.
+  bool solve_once(StepStats& stats) {
+    measure_stress(true);
+    measure_residual(true);
+    stats.newton = 1;
+    const bool solved = linear_solve(stats);
+    axpby(1.0, change_, 1.0, u_);
+    stats.residual = stats.linear_residual;
+    return solved && within_reach();
+  }
+
+  /// u += s change with the largest s = 1, 1/2, 1/4 ... that lowers the unbalanced force.
+  bool search(double before) {
+    copy(u_, saved_u_);
+    double share = 1;
+    for (int halving = 0; halving < 8; ++halving, share *= 0.5) {
+      axpby(share, change_, 1.0, u_);
+      measure_stress(false);
+      const double after = measure_residual(false);
+      if (std::isfinite(after) && after < before * (1 - 1e-4 * share)) return true;
+      // The change that must be made at the end of convergence is rounding: take it.
+      if (halving == 0 && after <= 1e-11 * force_size()) return true;
+      copy(saved_u_, u_);
+    }
+    return false;
+  }
+
+  bool linear_solve(StepStats& stats) {
+    blocks_.fill_zero();
+    for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
+                     ScatterBlocks<Real, Shape>{this->grid_.view(), points_.view(), tangents(), blocks_.data()});
+    const bool whole = options_.implicit.preconditioner == Preconditioner::block;
+    for_each(Place{}, count_, InvertBlocks{nodes(), scheme_.inertia(), whole, blocks_.data()});
+    const auto apply_tangent = [&](const NodeVector<Place>& x, NodeVector<Place>& y) {
+      y.fill_zero();
+      for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
+                       ApplyTangent<Real, Shape>{this->grid_.view(), points_.view(), tangents(), x.data(), y.data()});
+      for_each(Place{}, count_, CloseProduct{nodes(), scheme_.inertia(), x.data(), y.data()});
+    };
+    const auto precondition = [&](const NodeVector<Place>& r, NodeVector<Place>& z) {
+      for_each(Place{}, count_, ApplyBlocks{nodes(), blocks_.data(), r.data(), z.data()});
+    };
+    const LinearReport report = cg_.solve(residual_, change_, options_.implicit.linear_tolerance,
+                                          options_.implicit.linear_iterations, apply_tangent, precondition);
+    stats.linear += report.iterations;
+    stats.linear_residual = report.residual;
+    stats.indefinite = stats.indefinite || report.indefinite;
+    return report.converged;
+  }
+
+  /// No node may go further than the points' stencils can follow: one cell.
+  bool within_reach() {
+    const double cell = std::min(frame_.cell[0], frame_.cell[2]);
+    const double farthest = largest_entry(Place{}, reinterpret_cast<const double*>(u_.data()), 3 * count_);
+    return farthest <= cell;
+  }
+
+  void accept(const Clock& clock, double step) {
+    for_each(Place{}, count_, EndOfStep{nodes(), scheme_, velocity_end_.data(), acceleration_end_.data()});
+    AcceptStep<Real, Shape> step_kernel{this->grid_.view(), points_.view(), material_, clock_.data(), nodes(),
+                                        dynamic_ ? velocity_end_.data() : nullptr, acceleration_end_.data(), u_.data(),
+                                        affine_ ? 0.0 : options_.flip_fraction, affine_, dilatant_, true, true};
+    const bool musl = dynamic_ && options_.stress_update == StressUpdate::modified;
+    if (musl) {
+      step_kernel.deforms = false;
+      for_each(Place{}, points_.count(), step_kernel);
+      change_.fill_zero();
+      for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
+                       ScatterVelocity<Real, Shape>{this->grid_.view(), points_.view(), material_.density, change_.data()});
+      for_each(Place{}, count_, RemapDisplacement{nodes(), step, change_.data()});
+      step_kernel.strain_displacement = change_.data();
+      step_kernel.deforms = true;
+      step_kernel.speeds = false;
+    }
+    for_each(Place{}, points_.count(), step_kernel);
+    for_each(Place{}, this->grid_.active_blocks() * block_columns,
+             RecordColumns<Real>{this->grid_.view(), this->grid_.active_list(), mass_.data(),
+                                 dynamic_ ? velocity_end_.data() : nullptr, static_cast<double>(material_.density), clock.time,
+                                 this->maps()});
+  }
+
+  void drop_gone() {
+    this->grid_.fit(points_, gone_);
+    gone_ = 0;
+  }
+
+  [[noreturn]] void give_up(const Clock& clock, double step, const StepStats& stats) const {
+    if (!dynamic_ && stats.indefinite) {
+      throw NumericalError({fmt::format("step {}, t = {:.6g} s: the equations of equilibrium are singular or unstable", clock.step + 1,
+                                        clock.time),
+                            "a body without support, or one that must fall, has no equilibrium",
+                            "Hold it with walls or a base law, or use integrator = \"newmark\""});
+    }
+    throw NumericalError({fmt::format("step {}, t = {:.6g} s: no convergence even with a step of {:.3g} s (unbalanced force {:.2g} of "
+                                      "the forces, {} Newton and {} linear iterations)",
+                                      clock.step + 1, clock.time, step, stats.residual, stats.newton, stats.linear),
+                          dynamic_ ? "the step is too long, or the mass tears apart" : "there may be no equilibrium to find",
+                          dynamic_ ? "Lower [solve.implicit] step_s, or allow more step_cuts"
+                                   : "Hold the body with walls, ramp the load more slowly, or use integrator = \"newmark\""});
+  }
+
+  bool affine_, dynamic_;
+  BaseFriction<double> friction_;
+  std::vector<double> load_volumes_;
+  WallFrame frame_{};
+  double step_;
+  int gone_ = 0, count_ = 0;
+  TimeScheme scheme_;
+  Buffer<double, Place> mass_, contact_friction_;
+  NodeVector<Place> velocity_, acceleration_, external_, internal_, u_, residual_, friction_force_, normal_, velocity_end_,
+      acceleration_end_, change_, saved_u_, loads_;
+  Buffer<Sym3<double>, Place> freed_, wall_freed_, blocks_;
+  Buffer<Touch, Place> touch_;
+  Buffer<Real, Place> tangents_;
+  Buffer<int, Place> changes_;
+  ConjugateGradient<Place> cg_;
+};
+
+/// A solver of one precision in the place asked for.
+template <class Real>
+std::unique_ptr<Solver> make_implicit_solver_of(const Scene& scene, const SolveOptions& options, On on, const SolverState& state) {
+  const bool quadratic = options.shape == ShapeKind::quadratic;
+#if defined(__CUDACC__)
+  if (on == On::gpu) {
+    if (quadratic) return std::make_unique<ImplicitSolverOf<Real, OnGpu, Quadratic>>(scene, options, state);
+    return std::make_unique<ImplicitSolverOf<Real, OnGpu, Linear>>(scene, options, state);
+  }
+#else
+  static_cast<void>(on);
+#endif
+  if (quadratic) return std::make_unique<ImplicitSolverOf<Real, OnCpu, Quadratic>>(scene, options, state);
+  return std::make_unique<ImplicitSolverOf<Real, OnCpu, Linear>>(scene, options, state);
+}
+
+}  // namespace talus::solver
