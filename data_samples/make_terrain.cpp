@@ -1,6 +1,8 @@
 // talus-make-terrain KIND --out DIR: writes one of the synthetic terrains; paths go to stdout.
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <map>
+#include <string>
 
 #include "common/error.hpp"
 #include "data_samples/terrains.hpp"

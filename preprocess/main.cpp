@@ -1,6 +1,8 @@
 // talus-preprocess: from elevation models to domain.vdb.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "common/raster/raster_io.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/prepare.hpp"

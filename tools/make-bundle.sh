@@ -2,20 +2,38 @@
 # Copies the programs and tests of a build with the shared libraries they need into one relocatable folder, packs it, and
 # checks that it stands alone. What every Linux machine with GCC's run-time has (glibc, libstdc++, libgcc_s) and NVIDIA's
 # driver stay outside.
-# usage: tools/make-bundle.sh BUILD [--solver]
+# usage: tools/make-bundle.sh BUILD [--solver] [--to DIR] [--no-archive]
 set -euo pipefail
 
-build=${1:?usage: tools/make-bundle.sh BUILD [--solver]}
+usage='usage: tools/make-bundle.sh BUILD [--solver] [--to DIR] [--no-archive]'
+build=${1:?$usage}
+shift
 name=bundle
+folder=$build
+archived=yes
 programs=(talus-preprocess talus-solve talus-postprocess talus-make-terrain)
 tests=("$build"/bin/talus-tests-*)
-if [[ ${2:-} == --solver ]]; then
-  name=bundle-solver
-  programs=(talus-solve)
-  tests=("$build"/bin/talus-tests-solver*)
-fi
-bundle=$build/$name
-archive=$build/talus-$name.tar.xz
+while [[ $# -gt 0 ]]; do
+  case $1 in
+    --solver)
+      name=bundle-solver
+      programs=(talus-solve)
+      tests=("$build"/bin/talus-tests-solver*)
+      ;;
+    --to)
+      folder=${2:?$usage}
+      shift
+      ;;
+    --no-archive) archived=no ;;
+    *)
+      echo "$usage" >&2
+      exit 2
+      ;;
+  esac
+  shift
+done
+bundle=$folder/$name
+archive=$folder/talus-$name.tar.xz
 
 fail() { echo "tools/make-bundle.sh: $*" >&2; exit 1; }
 for tool in patchelf ldd xz; do
@@ -35,10 +53,17 @@ for test in "${tests[@]}"; do
   if [[ -x $test ]]; then cp "$test" "$bundle/bin/"; fi
 done
 strip --strip-debug "$bundle"/bin/*
+for program in "$bundle"/bin/*; do
+  # Only the bundle; DT_RPATH rather than RUNPATH, because it holds for the libraries' own dependencies too.
+  patchelf --force-rpath --set-rpath '$ORIGIN/../lib' "$program"
+done
 
-unresolved=$(ldd "$bundle"/bin/* | grep 'not found' || true)
+# The closure is that of the built files, which know the way to every library on this machine.
+built=$(cd "$bundle/bin" && printf "$build/bin/%s\n" *)
+needed=$(xargs ldd <<<"$built")
+unresolved=$(grep 'not found' <<<"$needed" || true)
 [[ -z $unresolved ]] || fail "libraries not found on this machine: $unresolved"
-ldd "$bundle"/bin/* | awk '$2 == "=>" && $3 ~ /^\// { print $1, $3 }' | sort -u |
+awk '$2 == "=>" && $3 ~ /^\// { print $1, $3 }' <<<"$needed" | sort -u |
   while read -r soname path; do
     if [[ ! $soname =~ $outside ]]; then cp -L "$path" "$bundle/lib/$soname"; fi
   done
@@ -57,6 +82,15 @@ if compgen -G "$bundle/lib/libproj.*" >/dev/null; then
 fi
 if compgen -G "$bundle/lib/libgdal.*" >/dev/null; then
   cp -r "$(gdal-config --datadir)" "$bundle/share/gdal"
+fi
+if compgen -G "$bundle/lib/libfontconfig.*" >/dev/null; then
+  mkdir -p "$bundle"/share/{fonts,fontconfig}
+  cp /usr/share/fonts/truetype/dejavu/DejaVuSans{,-Bold}.ttf "$bundle/share/fonts/"
+  cat >"$bundle/share/fontconfig/fonts.conf" <<XML
+<?xml version="1.0"?>
+<!DOCTYPE fontconfig SYSTEM "fonts.dtd">
+<fontconfig><dir prefix="relative">../fonts</dir><cachedir prefix="xdg">fontconfig</cachedir></fontconfig>
+XML
 fi
 if [[ -f LICENSE ]]; then cp LICENSE "$bundle/"; fi
 
@@ -82,6 +116,9 @@ for program in "${programs[@]}"; do
   done <<<"$loaded"
 done
 
-XZ_OPT=-T0 tar -C "$build" -cJf "$archive" "$name"
-echo "$bundle: $(du -sh "$bundle" | cut -f1) ($(find "$bundle/bin" -type f | wc -l) programs and tests," \
-  "$(find "$bundle/lib" -type f | wc -l) libraries); $archive: $(du -h "$archive" | cut -f1)"
+size="$bundle: $(du -sh "$bundle" | cut -f1), $(find "$bundle/bin" -type f | wc -l) programs and tests, $(find "$bundle/lib" -type f | wc -l) libraries"
+if [[ $archived == yes ]]; then   # last: it is there only if the check has passed
+  XZ_OPT=-T0 tar -C "$folder" -cJf "$archive" "$name"
+  size+="; $archive: $(du -h "$archive" | cut -f1)"
+fi
+echo "$size"

@@ -35,7 +35,6 @@ void start() {
   static std::once_flag once;
   std::call_once(once, [] {
     use_bundled_data();
-    CPLSetConfigOption("GDAL_PAM_ENABLED", "NO");  // no .aux.xml beside the user's files
     GDALAllRegister();
   });
 }
@@ -82,7 +81,7 @@ std::string horizontal_wkt(const OGRSpatialReference* srs) {
   const std::array<const char*, 3> options{"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
   char* wkt = nullptr;
   const bool exported = horizontal.exportToWkt(&wkt, options.data()) == OGRERR_NONE;
-  const std::string text = exported && wkt != nullptr ? wkt : "";
+  std::string text = exported && wkt != nullptr ? wkt : "";
   CPLFree(wkt);
   return text;
 }

@@ -55,6 +55,7 @@ class Writer : public Visitor {
   }
   void numbers(std::string_view key, std::vector<double>& value, Range range, std::string_view help) override {
     std::vector<std::string> words;
+    words.reserve(value.size());
     for (const double item : value) words.push_back(toml_number(item));
     line(key, fmt::format("[{}]", fmt::join(words, ", ")), help, range_text(range));
   }

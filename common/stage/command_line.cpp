@@ -28,7 +28,7 @@ void declare(CLI::App& app, const Stage& stage, CommandLine& line, Words& words)
                  stage.has_on ? "Where to run; auto takes the GPU where there is one"
                               : "This stage runs on the CPU whatever is asked")
       ->type_name("auto|cpu|gpu")
-      ->check(CLI::IsMember({"auto", "cpu", "gpu"}));
+      ->check(CLI::IsMember({"auto", "cpu", "gpu"}).description(""));
   if (stage.has_restart)
     app.add_option("--restart", words.restart, "Go on from a checkpoint (default: checkpoint.h5 in the results)")
         ->type_name("[FILE]")
@@ -63,7 +63,7 @@ std::variant<CommandLine, Answer> parse_command_line(int argc, char** argv, cons
   Words words;
   CLI::App app(stage.summary, stage.name);
   declare(app, stage, line, words);
-  app.footer((stage.examples.empty() ? "" : "Examples:\n" + stage.examples + "\n") + exit_codes);
+  app.footer((stage.examples.empty() ? "" : "Examples:\n" + stage.examples + "\n\n") + exit_codes);
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "common/error.hpp"
 #include "common/raster/raster_io.hpp"

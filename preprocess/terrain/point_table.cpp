@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <initializer_list>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "common/error.hpp"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "common/error.hpp"
 #include "common/raster/raster_io.hpp"

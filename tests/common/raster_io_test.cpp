@@ -146,6 +146,22 @@ TEST_F(RasterFile, single_precision_nodata_is_recognised) {
   EXPECT_TRUE(std::isnan(read_raster(scratch / "d.tif").at(1, 0)));
 }
 
+TEST_F(RasterFile, a_crs_in_the_file_beside_counts) {
+  const auto file = ascii("ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 4\nNODATA_value -1", "5 7\n");
+  shell("gdalsrsinfo -o wkt_esri EPSG:32611 | sed /^$/d > dem.prj");
+  EXPECT_TRUE(same_crs(read_raster(file).grid.crs_wkt, epsg(32611)));
+  shell(
+      "gdal_create -outsize 2 2 -bands 1 -burn 5 -a_srs EPSG:32612 -a_ullr 0 20 20 0 a.tif && gdal_translate -of PNG "
+      "a.tif a.png");
+  EXPECT_TRUE(same_crs(read_raster(scratch / "a.png").grid.crs_wkt, epsg(32612)));
+}
+
+TEST_F(RasterFile, reading_leaves_nothing_beside_the_file) {
+  const auto file = ascii("ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 4\nNODATA_value -1", "5 7\n");
+  read_raster(file);
+  EXPECT_EQ(scratch.files(), 1u);
+}
+
 TEST_F(RasterFile, refuses_a_missing_file) {
   EXPECT_EQ(fault(scratch / "none.tif"),
             (scratch / "none.tif").string() + ": no such file. Check the path in the recipe");

@@ -238,6 +238,7 @@ TEST_F(RunStage, quiet_says_nothing_and_verbose_says_more) {
 }
 
 TEST_F(RunStage, ctrl_c_is_seen_by_the_stage_and_ends_with_130) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
   stage.run = [](StageContext&) {
     if (interrupted()) return;
     ::raise(SIGINT);
@@ -254,6 +255,7 @@ TEST_F(RunStage, ctrl_c_is_seen_by_the_stage_and_ends_with_130) {
 }
 
 TEST_F(RunStage, a_second_signal_ends_the_process_at_once) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
   stage.run = [](StageContext&) {
     ::raise(SIGTERM);
     ::raise(SIGINT);

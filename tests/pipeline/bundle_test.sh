@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# The relocatable bundle: it stands alone, wherever it lies.
+source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
+
+# Every library a program of the bundle names is in the bundle, or belongs to glibc or to GCC's run-time.
+stands_alone() {
+  local program soname path
+  for program in "$1"/bin/*; do
+    while read -r soname path; do
+      [[ $path == "$1"/bin/../lib/* || $soname =~ ^(lib(c|m|mvec|dl|pthread|rt|resolv|util|anl|stdc\+\+|gcc_s|cuda)\.so) ]] ||
+        fail "$program takes $soname from '$path'"
+    done < <(env -i ldd "$program" | awk '$2 == "=>" { print $1, $3 }')
+  done
+}
+
+test_whole_pipeline_runs_from_a_bundle_that_was_moved() {
+  need_tool patchelf
+  scene
+  (cd "$TALUS_SOURCE" && tools/make-bundle.sh "$TALUS_BUILD" --to "$TALUS_SCRATCH" --no-archive) >stdout 2>stderr || fail "make-bundle.sh failed"
+  grep -qE 'bundle: [0-9.]+M, [0-9]+ programs and tests, [0-9]+ libraries' stdout || fail "no sizes were printed"
+  mv bundle moved
+  stands_alone "$PWD/moved"
+  local stage
+  for stage in preprocess solve postprocess; do
+    expect_exit 0 env -i moved/bin/talus-$stage recipe.toml --out out
+  done
+  [[ -s out/score.json && -s out/map.png ]] || fail "no results"
+}
+
+test_solver_bundle_holds_the_solver_without_gdal() {
+  need_tool patchelf
+  (cd "$TALUS_SOURCE" && tools/make-bundle.sh "$TALUS_BUILD" --solver --to "$TALUS_SCRATCH" --no-archive) >stdout 2>stderr || fail "make-bundle.sh failed"
+  stands_alone "$PWD/bundle-solver"
+  [[ -x bundle-solver/bin/talus-solve && ! -e bundle-solver/bin/talus-preprocess ]] || fail "in the bundle: $(ls bundle-solver/bin)"
+  if compgen -G 'bundle-solver/lib/libgdal*' >/dev/null; then fail "the solver's bundle holds GDAL"; fi
+  [[ $(du -sm bundle-solver | cut -f 1) -lt 150 ]] || fail "it is large: $(<stdout)"
+}
+
+run_test "$@"
