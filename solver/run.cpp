@@ -38,6 +38,7 @@ void Simulation::resume(const std::filesystem::path& file) {
   Checkpoint checkpoint = read_checkpoint(file, fingerprint_);
   solver_ = resume_solver(scene_, options_, on_, checkpoint.state);
   memory_ = std::move(checkpoint.memory);
+  frames_.expect(memory_.frames);
   time_ = checkpoint.state.clock.time;
   wall_before_ = memory_.wall_time;
   log_info(fmt::format("going on from {} at t = {:.3f} s, step {}", file.string(), time_, checkpoint.state.clock.step));

@@ -127,9 +127,11 @@ void refuse_cells(const MapGrid& grid, const std::vector<char>& bad, const CellF
     }
   }
   if (!first) return;
+  // Every `what` begins with "cells".
+  const std::string what = count == 1 ? "cell" + fault.what.substr(std::string("cells").size()) : fault.what;
   const std::string place = (count == 1 ? "at " : "the first at ") + place_of(grid, *first);
   throw DataError(
-      Fault{fmt::format("{}: {} {}, {}", fault.file.string(), grouped(static_cast<double>(count)), fault.what, place),
+      Fault{fmt::format("{}: {} {}, {}", fault.file.string(), grouped(static_cast<double>(count)), what, place),
             fault.why, fault.mend});
 }
 

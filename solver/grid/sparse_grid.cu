@@ -169,7 +169,7 @@ std::size_t SparseGrid<Real, Place>::bytes() const {
 
 template class SparseGrid<float, OnCpu>;
 template class SparseGrid<double, OnCpu>;
-#if defined(__CUDACC__)
+#if TALUS_FOR_GPU
 template class SparseGrid<float, OnGpu>;
 template class SparseGrid<double, OnGpu>;
 #endif

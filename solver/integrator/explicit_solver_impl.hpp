@@ -151,7 +151,7 @@ template <class Real>
 std::unique_ptr<Solver> make_explicit_solver_of(const Scene& scene, const SolveOptions& options, On on,
                                                const SolverState& state) {
   const bool quadratic = options.shape == ShapeKind::quadratic;
-#if defined(__CUDACC__)
+#if TALUS_FOR_GPU
   if (on == On::gpu) {
     if (quadratic) return std::make_unique<ExplicitSolverOf<Real, OnGpu, Quadratic>>(scene, options, state);
     return std::make_unique<ExplicitSolverOf<Real, OnGpu, Linear>>(scene, options, state);

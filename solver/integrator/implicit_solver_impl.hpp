@@ -391,7 +391,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 template <class Real>
 std::unique_ptr<Solver> make_implicit_solver_of(const Scene& scene, const SolveOptions& options, On on, const SolverState& state) {
   const bool quadratic = options.shape == ShapeKind::quadratic;
-#if defined(__CUDACC__)
+#if TALUS_FOR_GPU
   if (on == On::gpu) {
     if (quadratic) return std::make_unique<ImplicitSolverOf<Real, OnGpu, Quadratic>>(scene, options, state);
     return std::make_unique<ImplicitSolverOf<Real, OnGpu, Linear>>(scene, options, state);

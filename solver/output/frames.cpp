@@ -53,6 +53,14 @@ void FrameStore::put(std::int64_t number, const PointFrame& f, const MapGrid& gr
   pending.commit();
 }
 
+void FrameStore::expect(std::int64_t count) const {
+  for (std::int64_t n = 0; n < count; ++n) {
+    if (std::filesystem::exists(file(n))) continue;
+    throw DataError({file(n).string() + ": this frame of the broken-off run is missing", "run.h5 would have a gap",
+                     "Run talus-solve again without --restart"});
+  }
+}
+
 void FrameStore::append_to(RunWriter& run, std::int64_t count, const MapGrid& grid) const {
   for (std::int64_t n = 0; n < count; ++n) {
     const h5::File in = h5::File::open(file(n), {file(n), "Run talus-solve again without --restart"});

@@ -13,6 +13,8 @@ class FrameStore {
   explicit FrameStore(std::filesystem::path folder) : folder_(std::move(folder)) {}
   void clear();  ///< forget all frames
   void put(std::int64_t number, const PointFrame& points, const MapGrid& grid, const std::vector<double>& thickness);
+  /// Throws DataError unless frames 0 .. count-1 are there.
+  void expect(std::int64_t count) const;
   /// Hand frames 0 .. count-1 to the run file. Throws DataError when one is missing.
   void append_to(RunWriter& run, std::int64_t count, const MapGrid& grid) const;
 

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "solver/parallel/macros.hpp"
+#include "solver/parallel/math.hpp"
 
 namespace talus {
 
@@ -73,6 +74,15 @@ TALUS_HD void atomic_increment(int* target) {
 #endif
 }
 
+/// Store `value` where `expected` stands, and nowhere else.
+TALUS_HD void replace_if(int* target, int expected, int value) {
+#if defined(__CUDA_ARCH__)
+  atomicCAS(target, expected, value);
+#else
+  std::atomic_ref<int>(*target).compare_exchange_strong(expected, value, std::memory_order_relaxed);
+#endif
+}
+
 /// Plain store of a flag that several threads may set to the same meaning.
 TALUS_HD void raise_flag(int* flag, int value) {
 #if defined(__CUDA_ARCH__)
@@ -91,6 +101,21 @@ TALUS_HD void scatter_add(Real* target, Real value) {
 #else
   *target += value;
 #endif
+}
+
+/// The same for a node's mass and momentum at once.
+template <class Real>
+TALUS_HD void scatter_add(Vec4<Real>* target, Real w, const Vec3<Real>& v) {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
+  if constexpr (sizeof(Real) == 4) {  // one 16-byte atomic instead of four
+    atomicAdd(reinterpret_cast<float4*>(target), make_float4(w, v.x, v.y, v.z));
+    return;
+  }
+#endif
+  scatter_add(&target->w, w);
+  scatter_add(&target->x, v.x);
+  scatter_add(&target->y, v.y);
+  scatter_add(&target->z, v.z);
 }
 
 }  // namespace talus

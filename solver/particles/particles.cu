@@ -125,7 +125,7 @@ void Particles<Real, Place>::reorder(const Buffer<int, Place>& order, int count)
 
 template class Particles<float, OnCpu>;
 template class Particles<double, OnCpu>;
-#if defined(__CUDACC__)
+#if TALUS_FOR_GPU
 template class Particles<float, OnGpu>;
 template class Particles<double, OnGpu>;
 #endif

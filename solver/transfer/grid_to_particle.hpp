@@ -175,7 +175,8 @@ struct GridToParticle {
     if (i < 0 || j < 0 || i >= grid.columns || j >= grid.rows || !grid.open[grid.column(i, j)]) {
       points.cell_x[p] = -1;
       atomic_add(&clock->outflow_volume, static_cast<double>(points.volume[p]));
-      count_outflow();
+      atomic_increment(&clock->outflow_count);
+      request_sort();
       return;
     }
     const Real steep = Real(1) + s.slope_x * s.slope_x + s.slope_y * s.slope_y;
@@ -195,22 +196,7 @@ struct GridToParticle {
     const int k0 = static_cast<int>(key & 0xffffff);
     return i - i0 > 1 || i0 - i > 1 || j - j0 > 1 || j0 - j > 1 || k - k0 > 1 || k0 - k > 1;
   }
-  TALUS_HD void request_sort() const {
-#if defined(__CUDA_ARCH__)
-    atomicCAS(&clock->request, running, wants_sort);
-#else
-    int expected = running;
-    std::atomic_ref<int>(clock->request).compare_exchange_strong(expected, wants_sort);
-#endif
-  }
-  TALUS_HD void count_outflow() const {
-#if defined(__CUDA_ARCH__)
-    atomicAdd(&clock->outflow_count, 1);
-#else
-    std::atomic_ref<int>(clock->outflow_count).fetch_add(1);
-#endif
-    request_sort();
-  }
+  TALUS_HD void request_sort() const { replace_if(&clock->request, running, wants_sort); }
 };
 
 }  // namespace talus

@@ -65,26 +65,13 @@ struct ParticleToGrid {
           Vec3<Real> momentum = (base + turn.c * Real(c)) * share;
           const Vec3<Real> force = sideways * s.wz[c] + pull.c * (w * s.gz[c]);
           if constexpr (what == Scatter::impulse) momentum += force;
-          add(&nodes[n], share, momentum);
-          if constexpr (what == Scatter::force) add(&forces[n], Real(0), force);
+          scatter_add(&nodes[n], share, momentum);
+          if constexpr (what == Scatter::force) scatter_add(&forces[n], Real(0), force);
         }
       }
     }
   }
 
- private:
-  TALUS_HD static void add(Vec4<Real>* node, Real w, const Vec3<Real>& v) {
-#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
-    if constexpr (sizeof(Real) == 4) {  // one 16-byte atomic instead of four
-      atomicAdd(reinterpret_cast<float4*>(node), make_float4(w, v.x, v.y, v.z));
-      return;
-    }
-#endif
-    scatter_add(&node->w, w);
-    scatter_add(&node->x, v.x);
-    scatter_add(&node->y, v.y);
-    scatter_add(&node->z, v.z);
-  }
 };
 
 }  // namespace talus

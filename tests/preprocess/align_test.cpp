@@ -62,7 +62,7 @@ TEST(align, does_not_average_over_a_void) {
   after.at(101, 41) = std::nan("");
   scene.rewrite_after(after);
   EXPECT_EQ(scene.data_fault().find(scene.path("after.tif") +
-                                    ": 1 cells without elevation, at x 500255.0, y 5100105.0 (nodata or NaN"),
+                                    ": 1 cell without elevation, at x 500255.0, y 5100105.0 (nodata or NaN"),
             0u);
 }
 

@@ -143,7 +143,7 @@ TEST(refusal, negative_thickness) {
   scene.as_release().thickness_raster = test::write(scene.scratch, "release.tif", thickness);
   const std::string file = scene.path("release.tif");
   EXPECT_EQ(scene.data_fault(), file +
-                                    ": 1 cells of negative thickness (down to -0.75 m), at x 500305.0, y 5100205.0 (a "
+                                    ": 1 cell of negative thickness (down to -0.75 m), at x 500305.0, y 5100205.0 (a "
                                     "release has none). Is it an elevation "
                                     "difference, after - before? Then: gdal_calc.py -A " +
                                     file + " --calc \"maximum(-A,0)\" --outfile out.tif");
@@ -201,7 +201,7 @@ TEST(refusal, sliding_surface_above_the_ground_within_the_polygon) {
   surface.at(16, 15) = scene.before.at(16, 15) + 0.2;
   test::write(scene.scratch, "surface.tif", surface);
   EXPECT_EQ(scene.data_fault(), scene.path("surface.tif") +
-                                    ": 1 cells above the surface before, at x 500165.0, y 5100155.0 (a sliding surface "
+                                    ": 1 cell above the surface before, at x 500165.0, y 5100155.0 (a sliding surface "
                                     "lies below it; 0.1 m are allowed). Check that both have one vertical datum, or "
                                     "draw the outline " +
                                     scene.path("source.csv") + " closer");
@@ -216,7 +216,7 @@ TEST(refusal, hole_in_a_sliding_surface) {
   const std::string file = scene.path("surface.tif");
   EXPECT_EQ(scene.data_fault(),
             file +
-                ": 1 cells without elevation, at x 500135.0, y 5100165.0 (nodata or NaN within the source). Fill them: "
+                ": 1 cell without elevation, at x 500135.0, y 5100165.0 (nodata or NaN within the source). Fill them: "
                 "gdal_fillnodata.py " +
                 file + " out.tif");
 }

@@ -202,7 +202,7 @@ class Transfers : public InEachPlace {
 
 // The reference's terrain slopes are central differences, good to 1e-9; single precision rounds 27 terms at 6e-8.
 TEST_P(Transfers, scatters_mass_momentum_and_force_as_defined) {
-#if defined(__CUDACC__)
+#if TALUS_FOR_GPU
   if (GetParam() == On::gpu) {
     compare<double, OnGpu, Linear>(1e-8);
     compare<double, OnGpu, Quadratic>(1e-8);
@@ -218,7 +218,7 @@ TEST_P(Transfers, scatters_mass_momentum_and_force_as_defined) {
 }
 
 TEST_P(Transfers, gathers_a_linear_field_exactly) {
-#if defined(__CUDACC__)
+#if TALUS_FOR_GPU
   if (GetParam() == On::gpu) {
     gather_linear_field<double, OnGpu, Linear>(1e-12);
     gather_linear_field<double, OnGpu, Quadratic>(1e-12);
