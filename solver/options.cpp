@@ -33,6 +33,7 @@ void MaterialOptions::describe(recipe::Visitor& v) {
   recipe::choice(v, "model", model,
                  {{"drucker-prager", MaterialModel::drucker_prager},
                   {"hencky", MaterialModel::hencky},
+                  {"corotated", MaterialModel::corotated},
                   {"linear-elastic", MaterialModel::linear_elastic}},
                  "constitutive law");
   v.number("density_kg_m3", density, recipe::positive, "bulk density of the released mass");

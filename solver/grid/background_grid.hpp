@@ -5,8 +5,8 @@
 // columns that hold material, each over its own range of layers; inside a block, layers are the slow index, so that the 16
 // columns of a layer are neighbours in memory.
 //
-// Node -1, which quadratic functions reach from the lowest half layer, is one with node 0: the base node then carries the
-// traction of the bed alone, and no node gets light as a point nears the ground.
+// There is no layer below 0: near the ground, quadratic functions go over into hats (shape_functions.hpp), so that the base node carries
+// the value on the ground and the traction of the bed alone.
 #pragma once
 
 #include <cstdint>

@@ -10,7 +10,7 @@
 namespace talus::solver {
 
 /// Where a node stands with the surface it can touch (ground or a frictional wall).
-enum class Touch : unsigned char { none, open, slip, stick };
+enum class Touch : unsigned char { none, open, closed };
 
 /// Arrays over the stored nodes, double whatever the precision of the points.
 struct NodeArrays {
@@ -21,7 +21,6 @@ struct NodeArrays {
   Vec3<double>* internal = nullptr;      // for the displacement u [N]
   Vec3<double>* u = nullptr;             // displacement of the step [m]
   Vec3<double>* residual = nullptr;      // unbalanced force, freed directions only [N]
-  Vec3<double>* friction = nullptr;      // force of a slipping contact [N]
   Sym3<double>* freed = nullptr;         // projector on the directions a node may move in
   Touch* touch = nullptr;
 };
@@ -220,6 +219,24 @@ struct ScatterBlocks {
   }
 };
 
+/// One thread: one point. How far it goes, in cells, for the displacement u: the largest over all points, as float bits.
+template <class Real, class Shape>
+struct MeasureMotion {
+  GridView<Real> grid;
+  ParticleView<Real> points;
+  const Vec3<double>* u;
+  std::uint32_t* farthest;
+  TALUS_HD void operator()(int p) const {
+    const PointGradients<Real, Shape> g(grid, points, p);
+    Vec3<double> way{};
+    around(grid, g, [&](int n, int a, int b, int c) { way += u[n] * static_cast<double>(g.weight(a, b, c)); });
+    const double across = static_cast<double>(g.across), up = static_cast<double>(g.up);
+    const double rise = way.z - static_cast<double>(g.s.slope_x) * way.x - static_cast<double>(g.s.slope_y) * way.y;
+    const double cells = fmax(fmax(fabs(way.x), fabs(way.y)) * across, fabs(rise) * up);
+    atomic_max_positive(farthest, cells < 1e30 ? static_cast<float>(cells) : 1e30f);
+  }
+};
+
 /// One thread: one point. State, velocity and position at the end of an accepted step.
 template <class Real, class Shape>
 struct AcceptStep {
@@ -290,11 +307,11 @@ struct AcceptStep {
       store(points.velocity, p, v);
       store(points.acceleration, p, a1);
       if (affine) {
-        const bool spline = Shape::width == 3;
-        const Mat3<double>& m = spline ? moment : slope;
-        const double scale = spline ? 4 : 1;
-        const double values[9] = {m.a.x, m.a.y, m.a.z, m.b.x, m.b.y, m.b.z, m.c.x, m.c.y, m.c.z};
-        for (int q = 0; q < 9; ++q) points.affine[q][p] = static_cast<Real>(values[q] * scale);
+        const bool spline = Shape::width == 3, on_base = points.cell_z[p] == 0;
+        const Vec3<double> x = spline ? moment.a * 4.0 : slope.a, y = spline ? moment.b * 4.0 : slope.b;
+        const Vec3<double> z = spline && !on_base ? moment.c * 4.0 : slope.c;
+        const double values[9] = {x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z};
+        for (int q = 0; q < 9; ++q) points.affine[q][p] = static_cast<Real>(values[q]);
       }
     }
     return {u.x, u.y, climb};

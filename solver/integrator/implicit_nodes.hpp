@@ -18,11 +18,26 @@ TALUS_HD Sym3<double> without(const Sym3<double>& projector, const Vec3<double>&
   return projector + Sym3<double>{-n.x * n.x, -n.y * n.y, -n.z * n.z, -n.x * n.y, -n.y * n.z, -n.x * n.z};
 }
 
-/// What a node is held by besides its contact.
+/// What a node is held by.
 struct Constraints {
   Sym3<double>* walls = nullptr;    // directions that rollers and fixed walls leave free
   Vec3<double>* normal = nullptr;   // of the surface it can touch
   double* friction = nullptr;       // coefficient there
+  double* limit = nullptr;          // friction times the reaction found last [N]
+  double slip = 0;                  // slip over which friction grows to its limit [m]
+
+  /// Friction force for the displacement u and, with `stiffness`, minus its derivative: a smoothed Coulomb cone over the
+  /// displacement of the step, its limit held (Tresca), so that it has a potential and its derivative is symmetric.
+  TALUS_HD Vec3<double> friction_force(int n, const Vec3<double>& u, Sym3<double>* stiffness) const {
+    const Vec3<double> along = u - normal[n] * dot(u, normal[n]);
+    const double size = sqrt(dot(along, along) + slip * slip);
+    if (stiffness) {
+      const double k = limit[n] / size, l = k / (size * size);
+      *stiffness = Sym3<double>{k - l * along.x * along.x, k - l * along.y * along.y, k - l * along.z * along.z,
+                                -l * along.x * along.y, -l * along.y * along.z, -l * along.x * along.z};
+    }
+    return along * (-limit[n] / size);
+  }
 };
 
 /// One thread: one column. Velocities from momenta, loads, constraints, first guess of the displacement.
@@ -49,8 +64,8 @@ struct PrepareNodes {
  private:
   TALUS_HD void prepare(int n, int i, int j, int k) const {
     const double m = nodes.mass[n];
-    nodes.friction[n] = {};
     nodes.touch[n] = Touch::none;
+    held.limit[n] = 0;
     if (!(m > 0) || i >= grid.columns || j >= grid.rows) {
       nodes.freed[n] = held.walls[n] = Sym3<double>{};
       nodes.u[n] = {};
@@ -69,19 +84,12 @@ struct PrepareNodes {
     held.normal[n] = normal;
     held.friction[n] = friction;
     if (dot(normal, normal) > 0) {
-      const bool sticks = friction > 0 && (!scheme.dynamic || at_rest(nodes.velocity[n], normal));
-      nodes.touch[n] = sticks ? Touch::stick : Touch::slip;
+      nodes.touch[n] = Touch::closed;
       u = u - normal * dot(u, normal);
-      if (sticks) u = {};
-      freed = sticks ? Sym3<double>{} : without(freed, normal);
+      freed = without(freed, normal);
     }
     nodes.freed[n] = freed;
     nodes.u[n] = u;
-  }
-
-  TALUS_HD static bool at_rest(const Vec3<double>& v, const Vec3<double>& normal) {
-    const Vec3<double> along = v - normal * dot(v, normal);
-    return dot(along, along) < 1e-20;
   }
 
   TALUS_HD bool touch_ground(int i, int j, int k, Vec3<double>& normal, double& friction, Sym3<double>& freed,
@@ -156,67 +164,56 @@ struct MeasureResidual {
       if (nodes.acceleration) a += nodes.acceleration[n] * (1 / (2 * scheme.alpha) - 1);
       force += a * m;
     }
-    if (decide && nodes.touch[n] != Touch::none) settle_contact(n, force);
-    nodes.residual[n] = nodes.freed[n] * (force + nodes.friction[n]);
+    if (nodes.touch[n] != Touch::none) {
+      if (decide) settle_contact(n, force);
+      if (nodes.touch[n] == Touch::closed) force += held.friction_force(n, nodes.u[n], nullptr);
+    }
+    nodes.residual[n] = nodes.freed[n] * force;
   }
 
  private:
+  /// Unilateral contact: it opens when it would have to pull, and closes when the node moves in.
   TALUS_HD void settle_contact(int n, const Vec3<double>& force) const {
     const Vec3<double> normal = held.normal[n];
     const double reaction = -dot(force, normal);
-    Touch touch = nodes.touch[n];
-    const Touch before = touch;
-    Vec3<double> friction{};
-    if (touch == Touch::open) {
-      if (dot(nodes.u[n], normal) < 0) touch = Touch::slip;
-    } else if (reaction < 0) {
-      touch = Touch::open;
-    }
-    if (touch == Touch::slip || touch == Touch::stick) {
-      const double limit = held.friction[n] * (reaction > 0 ? reaction : 0);
-      const Vec3<double> along = held.walls[n] * (force - normal * dot(force, normal));
-      if (touch == Touch::stick && length(along) > limit) {
-        touch = Touch::slip;
-        friction = along * (-limit / length(along));
-      } else if (touch == Touch::slip) {
-        const Vec3<double> way = nodes.u[n] - normal * dot(nodes.u[n], normal);
-        const double size = length(way);
-        if (held.friction[n] > 0 && before == Touch::slip && dot(way, nodes.friction[n]) > 0) {
-          touch = Touch::stick;  // friction would push
-        } else if (size > 0) {
-          friction = way * (-limit / size);
-        } else if (length(along) > 0) {
-          friction = along * (-(limit < length(along) ? limit / length(along) : 1));
-        }
-      }
-    }
-    if (touch != before) atomic_increment(changes);
-    nodes.touch[n] = touch;
-    nodes.friction[n] = friction;
-    if (touch == Touch::stick) {
-      nodes.freed[n] = {};
-      nodes.u[n] = nodes.u[n] - held.walls[n] * nodes.u[n];
-    } else if (touch == Touch::slip) {
+    if (nodes.touch[n] == Touch::closed && reaction < 0) {
+      nodes.touch[n] = Touch::open;
+      nodes.freed[n] = held.walls[n];
+      atomic_increment(changes);
+    } else if (nodes.touch[n] == Touch::open && dot(nodes.u[n], normal) < 0) {
+      nodes.touch[n] = Touch::closed;
       nodes.freed[n] = without(held.walls[n], normal);
       nodes.u[n] = nodes.u[n] - normal * dot(nodes.u[n], normal);
-    } else {
-      nodes.freed[n] = held.walls[n];
+      held.limit[n] = 0;
+      atomic_increment(changes);
+      return;
     }
+    held.limit[n] = reaction > 0 ? held.friction[n] * reaction : 0;
   }
 };
 
-/// One thread: one node. y = freed (y + mass inertia x).
+/// One thread: one node. y = freed (y + mass inertia x + friction's stiffness x).
 struct CloseProduct {
   NodeArrays nodes;
+  Constraints held;
   double inertia;
   const Vec3<double>* x;
   Vec3<double>* y;
-  TALUS_HD void operator()(int n) const { y[n] = nodes.freed[n] * (y[n] + x[n] * (nodes.mass[n] * inertia)); }
+  TALUS_HD void operator()(int n) const {
+    Vec3<double> sum = y[n] + x[n] * (nodes.mass[n] * inertia);
+    if (nodes.touch[n] == Touch::closed && held.limit[n] > 0) {
+      Sym3<double> stiffness;
+      held.friction_force(n, nodes.u[n], &stiffness);
+      sum += stiffness * x[n];
+    }
+    y[n] = nodes.freed[n] * sum;
+  }
 };
 
 /// One thread: one node. Inverse of the diagonal, or of the 3 x 3 block, of the constrained operator.
 struct InvertBlocks {
   NodeArrays nodes;
+  Constraints held;
   double inertia;
   bool whole;  // the block, else its diagonal
   Sym3<double>* blocks;
@@ -229,6 +226,11 @@ struct InvertBlocks {
       return;
     }
     b = b.plus_identity(nodes.mass[n] * inertia);
+    if (nodes.touch[n] == Touch::closed && held.limit[n] > 0) {
+      Sym3<double> stiffness;
+      held.friction_force(n, nodes.u[n], &stiffness);
+      b = b + stiffness;
+    }
     if (!whole) {
       b = {safe(b.xx), safe(b.yy), safe(b.zz), 0, 0, 0};
       return;

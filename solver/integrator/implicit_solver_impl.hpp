@@ -128,7 +128,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   std::size_t bytes() const override {
     std::size_t total = Base::bytes() + mass_.bytes() + touch_.bytes() + tangents_.bytes() + wall_freed_.bytes() +
                         contact_friction_.bytes() + freed_.bytes() + blocks_.bytes();
-    for (const auto* v : {&velocity_, &acceleration_, &external_, &internal_, &u_, &residual_, &friction_force_, &normal_,
+    for (const auto* v : {&velocity_, &acceleration_, &external_, &internal_, &u_, &residual_, &normal_,
                           &velocity_end_, &acceleration_end_, &change_, &saved_u_, &cg_.r, &cg_.z, &cg_.p, &cg_.ap}) {
       total += v->bytes();
     }
@@ -161,12 +161,11 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     n.internal = internal_.data();
     n.u = u_.data();
     n.residual = residual_.data();
-    n.friction = friction_force_.data();
     n.freed = freed_.data();
     n.touch = touch_.data();
     return n;
   }
-  Constraints held() { return {wall_freed_.data(), normal_.data(), contact_friction_.data()}; }
+  Constraints held() { return {wall_freed_.data(), normal_.data(), contact_friction_.data(), friction_limit_.data(), slip_}; }
 
   void size_nodes() {
     count_ = this->grid_.nodes();
@@ -177,13 +176,14 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
       v->resize(n);
       v->fill_zero();
     }
-    for (auto* v : {&internal_, &u_, &residual_, &friction_force_, &normal_, &velocity_end_, &acceleration_end_, &change_, &saved_u_}) {
+    for (auto* v : {&internal_, &u_, &residual_, &normal_, &velocity_end_, &acceleration_end_, &change_, &saved_u_}) {
       v->resize(n);
     }
     freed_.resize(n);
     wall_freed_.resize(n);
     blocks_.resize(n);
     contact_friction_.resize(n);
+    friction_limit_.resize(n);
     touch_.resize(n);
     tangents_.resize(static_cast<std::size_t>(TangentStore<Real>::numbers) * static_cast<std::size_t>(points_.count()));
   }
@@ -192,6 +192,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   void prepare(double time, double step) {
     size_nodes();
     scheme_ = {dynamic_, options_.implicit.alpha, options_.implicit.beta, step};
+    slip_ = smoothing(step);
     upload_loads(time);
     for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
                      ScatterInertia<Real, Shape>{this->grid_.view(), points_.view(), material_.density, affine_, dynamic_,
@@ -206,6 +207,14 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
       measure_stress(false);
       for_each(Place{}, count_, AddDamping{nodes(), options_.damping});
     }
+  }
+
+  /// Slip over which friction grows: a small part of the way that gravity alone would make in a step, so that what rests creeps by no
+  /// more than that.
+  double smoothing(double step) const {
+    constexpr double part = 1e-5;
+    const double g = std::hypot(options_.gravity[0], options_.gravity[1], options_.gravity[2]);
+    return dynamic_ ? part * 0.5 * std::max(g, 1e-3) * step * step : 1e-9 * frame_.cell[0];
   }
 
   void upload_loads(double time) {
@@ -261,6 +270,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
         unbalanced = measure_residual(false);
       }
       stats.residual = unbalanced / force_size();
+      if (getenv("DBG")) fprintf(stderr, "it %d changes %d res %.3e size %.3e lin %d\n", stats.newton, changes, stats.residual, force_size(), stats.linear);
       if (!std::isfinite(stats.residual)) return false;
       if (stats.residual <= o.newton_tolerance && changes == 0) return within_reach();
       if (!linear_solve(stats)) return false;
@@ -301,12 +311,12 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
                      ScatterBlocks<Real, Shape>{this->grid_.view(), points_.view(), tangents(), blocks_.data()});
     const bool whole = options_.implicit.preconditioner == Preconditioner::block;
-    for_each(Place{}, count_, InvertBlocks{nodes(), scheme_.inertia(), whole, blocks_.data()});
+    for_each(Place{}, count_, InvertBlocks{nodes(), held(), scheme_.inertia(), whole, blocks_.data()});
     const auto apply_tangent = [&](const NodeVector<Place>& x, NodeVector<Place>& y) {
       y.fill_zero();
       for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
                        ApplyTangent<Real, Shape>{this->grid_.view(), points_.view(), tangents(), x.data(), y.data()});
-      for_each(Place{}, count_, CloseProduct{nodes(), scheme_.inertia(), x.data(), y.data()});
+      for_each(Place{}, count_, CloseProduct{nodes(), held(), scheme_.inertia(), x.data(), y.data()});
     };
     const auto precondition = [&](const NodeVector<Place>& r, NodeVector<Place>& z) {
       for_each(Place{}, count_, ApplyBlocks{nodes(), blocks_.data(), r.data(), z.data()});
@@ -319,11 +329,11 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     return report.converged;
   }
 
-  /// No node may go further than the points' stencils can follow: one cell.
+  /// No point may go further than a cell in a step: shape functions stand still meanwhile.
   bool within_reach() {
-    const double cell = std::min(frame_.cell[0], frame_.cell[2]);
-    const double farthest = largest_entry(Place{}, reinterpret_cast<const double*>(u_.data()), 3 * count_);
-    return farthest <= cell;
+    farthest_.upload({0});
+    for_each(Place{}, points_.count(), MeasureMotion<Real, Shape>{this->grid_.view(), points_.view(), u_.data(), farthest_.data()});
+    return positive_from_bits(farthest_.download().front()) <= 1.0f;
   }
 
   void accept(const Clock& clock, double step) {
@@ -377,13 +387,15 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   double step_;
   int gone_ = 0, count_ = 0;
   TimeScheme scheme_;
-  Buffer<double, Place> mass_, contact_friction_;
-  NodeVector<Place> velocity_, acceleration_, external_, internal_, u_, residual_, friction_force_, normal_, velocity_end_,
+  Buffer<double, Place> mass_, contact_friction_, friction_limit_;
+  double slip_ = 0;  // [m]
+  NodeVector<Place> velocity_, acceleration_, external_, internal_, u_, residual_, normal_, velocity_end_,
       acceleration_end_, change_, saved_u_, loads_;
   Buffer<Sym3<double>, Place> freed_, wall_freed_, blocks_;
   Buffer<Touch, Place> touch_;
   Buffer<Real, Place> tangents_;
   Buffer<int, Place> changes_;
+  Buffer<std::uint32_t, Place> farthest_;
   ConjugateGradient<Place> cg_;
 };
 

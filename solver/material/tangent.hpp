@@ -83,6 +83,20 @@ TALUS_HD void principal_response(const Material<Real>& m, const Real e[3], Real 
     }
     return;
   }
+  if (m.model == MaterialModel::corotated) {
+    const Real lame = m.bulk_modulus - Real(2.0 / 3) * m.shear_modulus;
+    Real stretch[3], excess[3], volume = 0;
+    for (int a = 0; a < 3; ++a) {
+      excess[a] = expm1(e[a]);
+      stretch[a] = Real(1) + excess[a];
+      volume += excess[a];
+    }
+    for (int a = 0; a < 3; ++a) {
+      tau[a] = stretch[a] * (twice * excess[a] + lame * volume);
+      for (int b = 0; b < 3; ++b) d[3 * a + b] = stretch[a] * stretch[b] * lame + (a == b ? tau[a] + twice * stretch[a] * stretch[a] : Real(0));
+    }
+    return;
+  }
   const Real mean = (e[0] + e[1] + e[2]) / Real(3);
   const Real s[3] = {e[0] - mean, e[1] - mean, e[2] - mean};
   const Real size = sqrt(Real(0.5) * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2]));

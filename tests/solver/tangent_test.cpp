@@ -49,7 +49,8 @@ Material<double> material(MaterialModel model, double friction = 30) {
 
 TEST(Tangent, of_hencky_elasticity_matches_finite_differences) {
   Random random(1);
-  const auto m = material(MaterialModel::hencky);
+  for (const auto model : {MaterialModel::hencky, MaterialModel::corotated}) {
+  const auto m = material(model);
   for (const double size : {1e-6, 1e-3, 0.1}) {
     for (int n = 0; n < 50; ++n) {
       MaterialState<double> start;
@@ -58,6 +59,7 @@ TEST(Tangent, of_hencky_elasticity_matches_finite_differences) {
       const M g = n % 7 == 0 ? M{} : random.matrix(size);
       EXPECT_LT(worst_error(m, start, g, random.matrix(1), 1e-6), 2e-7) << "size " << size;
     }
+  }
   }
 }
 
@@ -71,7 +73,7 @@ TEST(Tangent, of_the_linear_step_is_hookes_law) {
 
 TEST(Tangent, is_symmetric) {
   Random random(3);
-  for (const auto model : {MaterialModel::hencky, MaterialModel::drucker_prager}) {
+  for (const auto model : {MaterialModel::hencky, MaterialModel::corotated, MaterialModel::drucker_prager}) {
     const auto m = material(model);
     for (int n = 0; n < 50; ++n) {
       MaterialState<double> start;
@@ -119,12 +121,12 @@ TEST(Tangent, of_a_yielding_point_is_exact_but_for_the_pressure_in_its_friction)
 
 TEST(NominalStress, is_what_the_stress_update_ends_with) {
   Random random(5);
-  for (const auto model : {MaterialModel::hencky, MaterialModel::drucker_prager}) {
+  for (const auto model : {MaterialModel::hencky, MaterialModel::corotated, MaterialModel::drucker_prager}) {
     const auto m = material(model);
     for (int n = 0; n < 50; ++n) {
       MaterialState<double> start;
       start.elastic = deviator(Sym3<double>{1e-3, -2e-3, 5e-4, 3e-4, -1e-4, 2e-4});
-      start.log_volume = model == MaterialModel::hencky ? 0 : -1e-3;
+      start.log_volume = model == MaterialModel::drucker_prager ? -1e-3 : 0;
       const M g = random.matrix(4e-3);
       const M p = nominal_stress<double>(m, start, g, nullptr);
       MaterialState<double> end = start;

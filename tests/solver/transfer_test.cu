@@ -65,7 +65,10 @@ class Transfers : public InEachPlace {
       for (int i = s.points.cell[0][p] - 2; i <= s.points.cell[0][p] + 2; ++i) {
         for (int j = s.points.cell[1][p] - 2; j <= s.points.cell[1][p] + 2; ++j) {
           for (int k = s.points.cell[2][p] - 2; k <= s.points.cell[2][p] + 2; ++k) {
-            const Weight wx = weight(quadratic, x[0], i), wy = weight(quadratic, x[1], j), wz = weight(quadratic, x[2], k);
+            const Weight wx = weight(quadratic, x[0], i), wy = weight(quadratic, x[1], j);
+            // In the lowest half layer quadratic functions are hats, and their weights stop changing a tenth of a layer above the ground.
+            const bool on_base = quadratic && s.points.cell[2][p] == 0;
+            const Weight wz = on_base ? weight(false, std::max(x[2], lowest_weighed), k) : weight(quadratic, x[2], k);
             const double w = wx.value * wy.value * wz.value;
             if (w == 0) continue;
             const double gz = wx.value * wy.value * wz.slope / s.grid.layer_height;
@@ -78,7 +81,7 @@ class Transfers : public InEachPlace {
               v[a] = s.points.velocity[a][p];
               for (int b = 0; b < 3; ++b) v[a] += s.points.affine[3 * b + a][p] * r[b];
             }
-            Vec4<double>& node = nodes[{i, j, std::max(k, 0)}];
+            Vec4<double>& node = nodes[{i, j, k}];
             node.w += w * mass;
             node.x += w * mass * v[0] + force.x;
             node.y += w * mass * v[1] + force.y;
@@ -184,7 +187,7 @@ class Transfers : public InEachPlace {
     double worst = 0;
     int checked = 0;
     for (std::size_t p = 0; p < got.size(); ++p) {
-      if (got.cell[2][p] == 0) continue;  // beside the base node's fold the field is no longer linear
+      if (got.cell[2][p] == 0 && got.offset[2][p] < lowest_weighed) continue;
       ++checked;
       for (int a = 0; a < 3; ++a) {
         double v = 0;
