@@ -44,7 +44,7 @@ void log_plan(const Domain& domain, const SolveOptions& o, On on) {
 }
 
 void solve(StageContext& context) {
-  const auto options = context.recipe.read<SolveOptions>("solve");
+  const auto options = with_preset(context.recipe.read<SolveOptions>("solve"));
   const On on = choose_place(context.on);
   const auto domain_file = options.domain.empty() ? context.out / "domain.vdb" : options.domain;
   const Domain domain = read_domain(domain_file);

@@ -77,7 +77,6 @@ void ImplicitOptions::describe(recipe::Visitor& v) {
   recipe::choice(v, "preconditioner", preconditioner,
                  {{"block", Preconditioner::block}, {"diagonal", Preconditioner::diagonal}}, "pcg: 3 x 3 blocks, or the diagonal");
   v.integer("step_cuts", step_cuts, recipe::Range{0, 30}, "halvings of a step before the run gives up");
-  v.flag("b_bar", b_bar, "cell-mean dilatation against volumetric locking");
 }
 
 void WallOptions::describe(recipe::Visitor& v) {
@@ -211,6 +210,21 @@ BaseFriction<Real> make_base_friction(const BaseOptions& o) {
   f.peak = static_cast<Real>(o.peak_coefficient);
   f.characteristic_speed = static_cast<Real>(o.characteristic_speed);
   return f;
+}
+
+SolveOptions with_preset(SolveOptions o) {
+  if (o.preset != Preset::reference) return o;
+  if (o.integrator == Integrator::explicit_) o.integrator = Integrator::newmark;
+  o.shape = ShapeKind::linear;
+  o.transfer = Transfer::flip;
+  o.flip_fraction = 1;
+  o.stress_update = StressUpdate::modified;
+  o.implicit.alpha = 0.25;
+  o.implicit.beta = 0.5;
+  o.implicit.newton_iterations = 1;
+  o.implicit.form = Operator::elements;
+  o.implicit.preconditioner = Preconditioner::diagonal;
+  return o;
 }
 
 template <class Real>

@@ -58,7 +58,6 @@ struct ImplicitOptions {
   Operator form = Operator::points;
   Preconditioner preconditioner = Preconditioner::block;
   int step_cuts = 8;                 // halvings before giving up
-  bool b_bar = false;
   void describe(recipe::Visitor& v);
 };
 
@@ -130,6 +129,9 @@ BaseFriction<Real> make_base_friction(const BaseOptions& options);
 struct WallFrame {
   double origin[3], cell[3];
 };
+
+/// The options with `preset` spelt out: preset = "reference" sets what the reference paper states and leaves the rest alone.
+SolveOptions with_preset(SolveOptions options);
 
 /// The walls that stand at a time.
 template <class Real>

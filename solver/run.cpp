@@ -13,7 +13,8 @@ namespace {
 
 const std::vector<std::string> history_names = {"time_s",     "step",       "step_size_s",    "kinetic_J",
                                                 "potential_J", "elastic_J", "volume_m3",      "outflow_m3",
-                                                "speed_max_m_s", "momentum_x_kg_m_s", "momentum_y_kg_m_s", "momentum_z_kg_m_s"};
+                                                "speed_max_m_s", "momentum_x_kg_m_s", "momentum_y_kg_m_s", "momentum_z_kg_m_s",
+                                                "newton_iterations", "linear_iterations", "step_cuts", "step_over_cfl"};
 
 std::string duration(double seconds) {
   if (seconds < 100) return fmt::format("{:.0f} s", seconds);
@@ -25,11 +26,11 @@ std::string duration(double seconds) {
 
 Simulation::Simulation(const Domain& domain, const SolveOptions& options, On on, RunPaths paths, std::string fingerprint)
     : domain_(domain),
-      options_(options),
+      options_(with_preset(options)),
       on_(on),
       paths_(std::move(paths)),
       fingerprint_(std::move(fingerprint)),
-      scene_(make_scene(domain, options)),
+      scene_(make_scene(domain, options_)),
       frames_(paths_.frames) {
   released_ = std::accumulate(scene_.points.volume.begin(), scene_.points.volume.end(), 0.0);
 }
@@ -48,16 +49,62 @@ void Simulation::start() {
   frames_.clear();
   std::error_code ignored;
   for (const auto& stale : {paths_.run, paths_.checkpoint}) std::filesystem::remove(stale, ignored);
+  if (options_.gravity_loading_steps > 0) load_by_gravity();
   solver_ = make_solver(scene_, options_, on_);
   memory_.history.names = history_names;
   memory_.history.columns.resize(history_names.size());
   memory_.initial_thickness = solver_->thickness();
 }
 
+void Simulation::load_by_gravity() {
+  SolveOptions o = options_;
+  o.integrator = Integrator::quasi_static;
+  // Elastic and held at its bed: what is about to slide has no other equilibrium. The first step brings it to its own strength.
+  if (o.material.model == MaterialModel::drucker_prager) o.material.model = MaterialModel::hencky;
+  o.base.law = FrictionLaw::stick;
+  o.gravity_ramp = 1;
+  o.implicit.step = 1.0 / options_.gravity_loading_steps;
+  o.implicit.newton_iterations = std::max(o.implicit.newton_iterations, 20);
+  Scene scene = scene_;
+  for (auto& component : scene.points.velocity) std::fill(component.begin(), component.end(), 0.0);
+  const auto loader = make_solver(scene, o, on_);
+  loader->set_next_event(1);
+  std::int64_t newton = 0, linear = 0;
+  while (loader->clock().time < 1) {
+    const BatchReport batch = loader->advance();
+    newton += batch.stats.newton;
+    linear += batch.stats.linear;
+  }
+  const ParticleState loaded = loader->state().points;
+  ParticleState& start = scene_.points;
+  for (std::size_t q = 0; q < loaded.size(); ++q) {
+    const auto p = static_cast<std::size_t>(loaded.id[q]);
+    double mean = 0;
+    if (options_.material.model == MaterialModel::drucker_prager) {
+      mean = (loaded.elastic[0][q] + loaded.elastic[1][q] + loaded.elastic[2][q]) / 3;
+    }
+    for (std::size_t a = 0; a < 6; ++a) start.elastic[a][p] = loaded.elastic[a][q] - (a < 3 ? mean : 0);
+    start.log_volume[p] = loaded.log_volume[q];
+  }
+  log_info(fmt::format("gravity loading: {} steps, {} Newton and {} linear iterations", loader->clock().step, newton, linear));
+}
+
 double Simulation::next_event() const {
   const double frame = static_cast<double>(memory_.frames) * options_.frame_interval;
   const double record = static_cast<double>(memory_.records) * options_.history_interval;
-  return std::min({frame, record, options_.end_time});
+  double next = std::min({frame, record, options_.end_time});
+  const auto consider = [&](double time) {
+    if (time > time_) next = std::min(next, time);
+  };
+  for (const WallOptions& wall : options_.walls) {
+    consider(wall.from);
+    consider(wall.to);
+  }
+  for (const LoadOptions& load : options_.loads) {
+    consider(load.from);
+    consider(load.to);
+  }
+  return next;
 }
 
 void Simulation::pass_events(double time) {
@@ -87,7 +134,11 @@ void Simulation::record(double time) {
                         static_cast<double>(positive_from_bits(clock.speed_bits)),
                         e.momentum.x,
                         e.momentum.y,
-                        e.momentum.z};
+                        e.momentum.z,
+                        static_cast<double>(memory_.newton),
+                        static_cast<double>(memory_.linear),
+                        static_cast<double>(memory_.cuts),
+                        over_cfl_};
   for (std::size_t c = 0; c < memory_.history.columns.size(); ++c) memory_.history.columns[c].push_back(row[c]);
 }
 
@@ -189,6 +240,7 @@ RunSummary Simulation::run(const std::string& scene, const std::string& title) {
     memory_.outflow_volume += batch.outflow_volume;
     memory_.outflow_count += batch.outflow_count;
     if (batch.clock.halt == failed) fail(batch.clock);
+    count(batch);
     if (batch.sorted && (interrupted() || checkpoint_due(time_))) {
       if (checkpoint_due(time_)) ++memory_.checkpoints;
       save_checkpoint();
@@ -214,6 +266,20 @@ RunSummary Simulation::run(const std::string& scene, const std::string& title) {
   }
   finish(summary);
   return summary;
+}
+
+void Simulation::count(const BatchReport& batch) {
+  if (options_.integrator == Integrator::explicit_) {
+    over_cfl_ = options_.courant;
+    return;
+  }
+  memory_.newton += batch.stats.newton;
+  memory_.linear += batch.stats.linear;
+  memory_.cuts += batch.stats.cuts;
+  over_cfl_ = batch.stats.over_cfl;
+  log_detail(fmt::format("step {}  t {:.6g} s  dt {:.3g} s ({:.3g} CFL)  newton {}  cg {}  unbalanced {:.1e}  cuts {}", batch.clock.step,
+                         batch.clock.time, batch.clock.step_size, over_cfl_, batch.stats.newton, batch.stats.linear,
+                         batch.stats.residual, batch.stats.cuts));
 }
 
 RunMaps Simulation::final_maps() const {

@@ -31,6 +31,8 @@ class Simulation {
  private:
   using WallClock = std::chrono::steady_clock;
   void start();
+  void load_by_gravity();
+  void count(const BatchReport& batch);
   void pass_events(double time);
   double next_event() const;
   void record(double time);
@@ -57,6 +59,7 @@ class Simulation {
   double released_ = 0;  // [m3]
   double kinetic_ = 0;   // last recorded [J]
   double time_ = 0;      // [s]
+  double over_cfl_ = 0;  // step over the CFL step
   WallClock::time_point started_;
   double wall_before_ = 0;
 };

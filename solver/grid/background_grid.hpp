@@ -32,6 +32,7 @@ struct GridView {
   int columns = 0, rows = 0;                // nodes in x and y
   int block_columns_x = 0;                  // blocks in x
   Real spacing = 0, layer_height = 0;       // [m]
+  Real lowest_weighed = 0;                  // height in layers below which weights on the base layers no longer change
   Mapping mapping = Mapping::terrain_following;
   const BlockSlot* slots = nullptr;         // [blocks in y * blocks in x]
   const Real* terrain = nullptr;            // spline coefficients of the ground at the nodes, from `datum` [m]

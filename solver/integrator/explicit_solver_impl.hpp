@@ -50,6 +50,8 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     clock.halt = clock.request = running;
     const int left = clock.steps_between_sorts - clock.steps_since_sort;
     clock_.upload({clock});
+    walls_ = make_walls<Real>(options_.walls, clock.time, this->frame_);
+    loads_now_ = this->upload_loads(clock.time);
     // One more than the steps left: the last one's begin halts the clock at the sort.
     for (int s = 0; s < std::min(left, batch_steps) + 1; ++s) step();
     BatchReport report;
@@ -115,7 +117,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   void scatter() {
     for_each_grouped(Place{}, points_.count(), grid_.groups(),
                      ParticleToGrid<Real, Shape, what>{grid_.view(), points_.view(), material_, clock_.data(), nodes_.data(),
-                                                       forces_.data(), affine_, dilatant_});
+                                                       forces_.data(), loads_now_, affine_, dilatant_});
   }
 
   template <NodeContent content>
@@ -124,6 +126,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
                        static_cast<Real>(options_.gravity[2])};
     for_each(Place{}, grid_.active_blocks() * block_columns,
              UpdateColumns<Real, content>{grid_.view(), grid_.active_list(), clock_.data(), nodes_.data(), forces_.data(), g,
+                                          options_.gravity_ramp, walls_,
                                           friction_, static_cast<Real>(options_.damping), material_.density, this->maps()});
   }
 
@@ -143,6 +146,8 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
   BaseFriction<Real> friction_;
   bool affine_, musl_, forces_apart_;
+  Walls<Real> walls_;
+  const Vec3<double>* loads_now_ = nullptr;
   Buffer<Vec4<Real>, Place> nodes_, forces_;
 };
 

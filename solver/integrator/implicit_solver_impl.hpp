@@ -78,10 +78,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
         affine_(options.transfer == Transfer::apic),
         dynamic_(options.integrator == Integrator::newmark),
         friction_(make_base_friction<double>(options.base)),
-        load_volumes_(scene.load_volumes),
         step_(options.implicit.step) {
-    frame_ = {{scene.map.x(0), scene.map.y(0), this->grid_.ground().datum},
-              {scene.grid.spacing, scene.grid.spacing, scene.grid.layer_height}};
     changes_.upload({0});
   }
 
@@ -98,7 +95,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     for (int cut = 0;; ++cut) {
       report.stats = {};
       report.stats.cuts = cut;
-      if (solve_step(clock.time + step, step, report.stats)) break;
+      if (solve_step(clock.time, step, report.stats)) break;
       if (cut >= options_.implicit.step_cuts) give_up(clock, step, report.stats);
       step *= 0.5;
       step_ = step;
@@ -189,20 +186,21 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   }
 
   /// Everything that does not change with the displacement.
-  void prepare(double time, double step) {
+  void prepare(double start, double step) {
+    const double time = start + step;  // loads are those at the end of the step, walls those that stand at its start
     size_nodes();
     scheme_ = {dynamic_, options_.implicit.alpha, options_.implicit.beta, step};
     slip_ = smoothing(step);
-    upload_loads(time);
+    const Vec3<double>* loads = this->upload_loads(time);
     for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
                      ScatterInertia<Real, Shape>{this->grid_.view(), points_.view(), material_.density, affine_, dynamic_,
-                                                 load_volumes_.empty() ? nullptr : loads_.data(), nodes()});
+                                                 loads, nodes()});
     const double ramp = options_.gravity_ramp > 0 ? std::min(1.0, time / options_.gravity_ramp) : 1.0;
     const Vec3<double> g{options_.gravity[0] * ramp, options_.gravity[1] * ramp, options_.gravity[2] * ramp};
     const bool predict = dynamic_ && options_.implicit.newton_iterations > 1 && options_.damping == 0;
     for_each(Place{}, this->grid_.active_blocks() * block_columns,
              PrepareNodes<Real>{this->grid_.view(), this->grid_.active_list(), nodes(), held(),
-                                make_walls<double>(options_.walls, time, frame_), friction_, g, scheme_, predict});
+                                make_walls<double>(options_.walls, start, this->frame_), friction_, g, scheme_, predict});
     if (options_.damping > 0 && dynamic_) {
       measure_stress(false);
       for_each(Place{}, count_, AddDamping{nodes(), options_.damping});
@@ -214,20 +212,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   double smoothing(double step) const {
     constexpr double part = 1e-5;
     const double g = std::hypot(options_.gravity[0], options_.gravity[1], options_.gravity[2]);
-    return dynamic_ ? part * 0.5 * std::max(g, 1e-3) * step * step : 1e-9 * frame_.cell[0];
-  }
-
-  void upload_loads(double time) {
-    if (load_volumes_.empty()) return;
-    std::vector<Vec3<double>> densities;
-    for (std::size_t l = 0; l < load_volumes_.size(); ++l) {
-      const LoadOptions& o = options_.loads[l];
-      double share = time >= o.from && time < o.to ? 1.0 : 0.0;
-      if (o.ramp > 0) share *= std::clamp((time - o.from) / o.ramp, 0.0, 1.0);
-      const double scale = share / load_volumes_[l];
-      densities.push_back({o.force[0] * scale, o.force[1] * scale, o.force[2] * scale});
-    }
-    loads_.upload(densities);
+    return dynamic_ ? part * 0.5 * std::max(g, 1e-3) * step * step : 1e-9 * this->frame_.cell[0];
   }
 
   TangentStore<Real> tangents() { return {tangents_.data(), points_.count()}; }
@@ -257,8 +242,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   }
 
   /// Newton's iterations of one step; true when it converged.
-  bool solve_step(double time, double step, StepStats& stats) {
-    prepare(time, step);
+  bool solve_step(double start, double step, StepStats& stats) {
+    prepare(start, step);
     const ImplicitOptions& o = options_.implicit;
     if (o.newton_iterations == 1) return solve_once(stats);
     for (stats.newton = 0; stats.newton < o.newton_iterations; ++stats.newton) {
@@ -270,7 +255,6 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
         unbalanced = measure_residual(false);
       }
       stats.residual = unbalanced / force_size();
-      if (getenv("DBG")) fprintf(stderr, "it %d changes %d res %.3e size %.3e lin %d\n", stats.newton, changes, stats.residual, force_size(), stats.linear);
       if (!std::isfinite(stats.residual)) return false;
       if (stats.residual <= o.newton_tolerance && changes == 0) return within_reach();
       if (!linear_solve(stats)) return false;
@@ -382,15 +366,13 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
   bool affine_, dynamic_;
   BaseFriction<double> friction_;
-  std::vector<double> load_volumes_;
-  WallFrame frame_{};
   double step_;
   int gone_ = 0, count_ = 0;
   TimeScheme scheme_;
   Buffer<double, Place> mass_, contact_friction_, friction_limit_;
   double slip_ = 0;  // [m]
   NodeVector<Place> velocity_, acceleration_, external_, internal_, u_, residual_, normal_, velocity_end_,
-      acceleration_end_, change_, saved_u_, loads_;
+      acceleration_end_, change_, saved_u_;
   Buffer<Sym3<double>, Place> freed_, wall_freed_, blocks_;
   Buffer<Touch, Place> touch_;
   Buffer<Real, Place> tangents_;

@@ -1,6 +1,8 @@
 // What every integrator has: the points, the grid, the clock and the maps, and how they are read.
 #pragma once
 
+#include <algorithm>
+
 #include "solver/integrator/point_sums.hpp"
 #include "solver/integrator/solver.hpp"
 #include "solver/output/map_fields.hpp"
@@ -16,7 +18,10 @@ class PointSolver : public Solver {
         material_(make_material<Real>(options.material)),
         dilatant_(fields.plastic_volume),
         points_(fields),
-        grid_(scene.grid) {
+        grid_(scene.grid),
+        frame_{{scene.map.x(0), scene.map.y(0), grid_.ground().datum},
+               {scene.grid.spacing, scene.grid.spacing, scene.grid.layer_height}},
+        load_volumes_(scene.load_volumes) {
     points_.upload(state.points);
     clock_.upload({state.clock});
     peak_thickness_.upload(state.maps.peak_thickness);
@@ -80,11 +85,29 @@ class PointSolver : public Solver {
     return {peak_thickness_.data(), peak_speed_.data(), peak_pressure_.data(), arrival_.data(), options_.map_threshold};
   }
 
+  /// Force per volume of every load at a time; null when there are none.
+  const Vec3<double>* upload_loads(double time) {
+    if (load_volumes_.empty()) return nullptr;
+    std::vector<Vec3<double>> densities;
+    for (std::size_t l = 0; l < load_volumes_.size(); ++l) {
+      const LoadOptions& o = options_.loads[l];
+      double share = time >= o.from && time < o.to ? 1.0 : 0.0;
+      if (o.ramp > 0) share *= std::clamp((time - o.from) / o.ramp, 0.0, 1.0);
+      const double scale = share / load_volumes_[l];
+      densities.push_back({o.force[0] * scale, o.force[1] * scale, o.force[2] * scale});
+    }
+    loads_.upload(densities);
+    return loads_.data();
+  }
+
   SolveOptions options_;
   Material<Real> material_;
   bool dilatant_;
   Particles<Real, Place> points_;
   SparseGrid<Real, Place> grid_;
+  WallFrame frame_;
+  std::vector<double> load_volumes_;  // [m3]
+  Buffer<Vec3<double>, Place> loads_;
   Buffer<Clock, Place> clock_;
   Buffer<double, Place> peak_thickness_, peak_speed_, peak_pressure_, arrival_, sums_, thickness_;
 };

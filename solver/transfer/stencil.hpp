@@ -22,7 +22,7 @@ struct Stencil {
     i = points.cell_x[p] + ax;
     j = points.cell_y[p] + ay;
     k = points.cell_z[p] + az;
-    if (points.cell_z[p] == 0) Shape::weigh_base(fz, wz, gz);
+    if (points.cell_z[p] == 0) Shape::weigh_base(fz, grid.lowest_weighed, wz, gz);
     near_x = Real(ax) - fx;
     near_y = Real(ay) - fy;
     near_z = Real(az) - fz;

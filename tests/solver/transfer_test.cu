@@ -68,7 +68,7 @@ class Transfers : public InEachPlace {
             const Weight wx = weight(quadratic, x[0], i), wy = weight(quadratic, x[1], j);
             // In the lowest half layer quadratic functions are hats, and their weights stop changing a tenth of a layer above the ground.
             const bool on_base = quadratic && s.points.cell[2][p] == 0;
-            const Weight wz = on_base ? weight(false, std::max(x[2], lowest_weighed), k) : weight(quadratic, x[2], k);
+            const Weight wz = on_base ? weight(false, std::max(x[2], s.grid.lowest_weighed), k) : weight(quadratic, x[2], k);
             const double w = wx.value * wy.value * wz.value;
             if (w == 0) continue;
             const double gz = wx.value * wy.value * wz.slope / s.grid.layer_height;
@@ -115,7 +115,7 @@ class Transfers : public InEachPlace {
     clock.upload({c});
     for_each_grouped(Place{}, points.count(), grid.groups(),
                      ParticleToGrid<Real, Shape, Scatter::impulse>{grid.view(), points.view(), make_material<Real>(mo), clock.data(),
-                                                                   nodes.data(), nullptr, true, false});
+                                                                   nodes.data(), nullptr, nullptr, true, false});
     synchronise(Place{});
     const auto got = nodes.download();
     const auto slots = slots_of(grid);
@@ -187,7 +187,7 @@ class Transfers : public InEachPlace {
     double worst = 0;
     int checked = 0;
     for (std::size_t p = 0; p < got.size(); ++p) {
-      if (got.cell[2][p] == 0 && got.offset[2][p] < lowest_weighed) continue;
+      if (got.cell[2][p] == 0 && got.offset[2][p] < s.grid.lowest_weighed) continue;
       ++checked;
       for (int a = 0; a < 3; ++a) {
         double v = 0;
