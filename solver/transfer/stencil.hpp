@@ -22,10 +22,9 @@ struct Stencil {
     i = points.cell_x[p] + ax;
     j = points.cell_y[p] + ay;
     k = points.cell_z[p] + az;
-    if (points.cell_z[p] == 0) Shape::weigh_base(fz, grid.lowest_weighed, wz, gz);
+    near_z = Real(az) - (points.cell_z[p] == 0 ? Shape::weigh_base(fz, grid.lowest_weighed, wz, gz) : fz);
     near_x = Real(ax) - fx;
     near_y = Real(ay) - fy;
-    near_z = Real(az) - fz;
     if (grid.mapping == Mapping::terrain_following) measure_slope(grid);
   }
 

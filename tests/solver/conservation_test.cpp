@@ -177,6 +177,28 @@ TEST_P(Conservation, deforms_uniformly_under_a_linear_velocity) {
   }
 }
 
+TEST_P(Conservation, keeps_horizontal_momentum_on_smooth_ground) {
+  // A thin sheet collapsing on frictionless ground, points down to the very ground.
+  for (const auto transfer : {Transfer::apic, Transfer::flip}) {
+    Domain d = ground(30, 30, 1.0, 1.0, [](double, double) { return 0.0; });
+    fill(d, {10, 18, 10, 18, 0, 2}, 2, 3);
+    for (std::size_t p = 0; p < d.points.size(); p += 5) d.points.height[p] = 0.01;
+    SolveOptions o;
+    o.transfer = transfer;
+    o.base.law = FrictionLaw::none;
+    o.initial_velocity = {2, -1, 0};
+    o.material.youngs_modulus = 1e6;
+    const Scene scene = make_scene(d, o);
+    const auto solver = make_solver(scene, o, GetParam());
+    const Energies start = solver->energies();
+    run_to(*solver, 1.0);
+    const Energies end = solver->energies();
+    EXPECT_NEAR(end.momentum.x / start.momentum.x, 1, 1e-12);
+    EXPECT_NEAR(end.momentum.y / start.momentum.y, 1, 1e-12);
+    EXPECT_LT(end.kinetic + end.potential + end.elastic, 1.001 * (start.kinetic + start.potential + start.elastic));
+  }
+}
+
 TEST_P(Conservation, counts_what_leaves) {
   Domain d = ground(16, 12, 1.0, 1.0, [](double, double) { return 0.0; });
   fill(d, {3, 7, 4, 8, 0, 2});

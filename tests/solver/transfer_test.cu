@@ -75,7 +75,7 @@ class Transfers : public InEachPlace {
             const Vec3<double> gradient{wx.slope * wy.value * wz.value / s.grid.spacing - bx * gz,
                                         wx.value * wy.slope * wz.value / s.grid.spacing - by * gz, gz};
             const Vec3<double> force = tau * gradient * (-volume * dt);
-            const double r[3] = {i - x[0], j - x[1], k - x[2]};
+            const double r[3] = {i - x[0], j - x[1], k - (on_base ? std::max(x[2], s.grid.lowest_weighed) : x[2])};
             double v[3];
             for (int a = 0; a < 3; ++a) {
               v[a] = s.points.velocity[a][p];
