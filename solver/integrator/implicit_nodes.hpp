@@ -210,6 +210,17 @@ struct CloseProduct {
   }
 };
 
+/// One thread: one node. Stiffness of its friction, for an assembled matrix.
+struct FrictionStiffness {
+  NodeArrays nodes;
+  Constraints held;
+  Sym3<double>* stiffness;
+  TALUS_HD void operator()(int n) const {
+    stiffness[n] = {};
+    if (nodes.touch[n] == Touch::closed && held.limit[n] > 0) held.friction_force(n, nodes.u[n], &stiffness[n]);
+  }
+};
+
 /// One thread: one node. Inverse of the diagonal, or of the 3 x 3 block, of the constrained operator.
 struct InvertBlocks {
   NodeArrays nodes;

@@ -10,7 +10,9 @@
 
 #include "solver/integrator/implicit_nodes.hpp"
 #include "solver/integrator/point_solver.hpp"
+#include "solver/linear/cholesky_solver.hpp"
 #include "solver/linear/conjugate_gradient.hpp"
+#include "solver/linear/tangent_operator.hpp"
 
 namespace talus::solver {
 
@@ -78,7 +80,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
         affine_(options.transfer == Transfer::apic),
         dynamic_(options.integrator == Integrator::newmark),
         friction_(make_base_friction<double>(options.base)),
-        step_(options.implicit.step) {
+        step_(options.implicit.step),
+        operator_(options.implicit.form) {
     changes_.upload({0});
   }
 
@@ -124,7 +127,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
   std::size_t bytes() const override {
     std::size_t total = Base::bytes() + mass_.bytes() + touch_.bytes() + tangents_.bytes() + wall_freed_.bytes() +
-                        contact_friction_.bytes() + freed_.bytes() + blocks_.bytes();
+                        contact_friction_.bytes() + freed_.bytes() + blocks_.bytes() + stiffness_.bytes() + operator_.bytes() +
+                        cholesky_.bytes();
     for (const auto* v : {&velocity_, &acceleration_, &external_, &internal_, &u_, &residual_, &normal_,
                           &velocity_end_, &acceleration_end_, &change_, &saved_u_, &cg_.r, &cg_.z, &cg_.p, &cg_.ap}) {
       total += v->bytes();
@@ -241,9 +245,19 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     return changes;
   }
 
+  /// Elements and neighbours of the points as they stand.
+  void group_elements() {
+    if (options_.implicit.linear_solver == LinearSolver::cholesky) {
+      cholesky_.begin_step(this->grid_.view(), points_.view());
+    } else {
+      operator_.begin_step(this->grid_.view(), points_.view(), count_);
+    }
+  }
+
   /// Newton's iterations of one step; true when it converged.
   bool solve_step(double start, double step, StepStats& stats) {
     prepare(start, step);
+    group_elements();
     const ImplicitOptions& o = options_.implicit;
     if (o.newton_iterations == 1) return solve_once(stats);
     for (stats.newton = 0; stats.newton < o.newton_iterations; ++stats.newton) {
@@ -291,26 +305,40 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   }
 
   bool linear_solve(StepStats& stats) {
+    const bool direct = options_.implicit.linear_solver == LinearSolver::cholesky;
+    const LinearReport report = direct ? factorise() : iterate();
+    stats.linear += report.iterations;
+    stats.linear_residual = report.residual;
+    stats.indefinite = stats.indefinite || report.indefinite;
+    return report.converged;
+  }
+
+  PointTangents<Real> point_tangents() { return {this->grid_.view(), points_.view(), tangents()}; }
+
+  LinearReport factorise() {
+    stiffness_.resize(static_cast<std::size_t>(count_));
+    for_each(Place{}, count_, FrictionStiffness{nodes(), held(), stiffness_.data()});
+    return cholesky_.solve(point_tangents(), {count_, mass_.data(), freed_.data(), scheme_.inertia(), stiffness_.data()}, residual_,
+                           change_);
+  }
+
+  LinearReport iterate() {
     blocks_.fill_zero();
     for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
                      ScatterBlocks<Real, Shape>{this->grid_.view(), points_.view(), tangents(), blocks_.data()});
     const bool whole = options_.implicit.preconditioner == Preconditioner::block;
     for_each(Place{}, count_, InvertBlocks{nodes(), held(), scheme_.inertia(), whole, blocks_.data()});
+    operator_.refresh(point_tangents(), this->grid_.groups());
     const auto apply_tangent = [&](const NodeVector<Place>& x, NodeVector<Place>& y) {
       y.fill_zero();
-      for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
-                       ApplyTangent<Real, Shape>{this->grid_.view(), points_.view(), tangents(), x.data(), y.data()});
+      operator_.apply(x, y);
       for_each(Place{}, count_, CloseProduct{nodes(), held(), scheme_.inertia(), x.data(), y.data()});
     };
     const auto precondition = [&](const NodeVector<Place>& r, NodeVector<Place>& z) {
       for_each(Place{}, count_, ApplyBlocks{nodes(), blocks_.data(), r.data(), z.data()});
     };
-    const LinearReport report = cg_.solve(residual_, change_, options_.implicit.linear_tolerance,
-                                          options_.implicit.linear_iterations, apply_tangent, precondition);
-    stats.linear += report.iterations;
-    stats.linear_residual = report.residual;
-    stats.indefinite = stats.indefinite || report.indefinite;
-    return report.converged;
+    return cg_.solve(residual_, change_, options_.implicit.linear_tolerance, options_.implicit.linear_iterations, apply_tangent,
+                     precondition);
   }
 
   /// No point may go further than a cell in a step: shape functions stand still meanwhile.
@@ -373,12 +401,14 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   double slip_ = 0;  // [m]
   NodeVector<Place> velocity_, acceleration_, external_, internal_, u_, residual_, normal_, velocity_end_,
       acceleration_end_, change_, saved_u_;
-  Buffer<Sym3<double>, Place> freed_, wall_freed_, blocks_;
+  Buffer<Sym3<double>, Place> freed_, wall_freed_, blocks_, stiffness_;
   Buffer<Touch, Place> touch_;
   Buffer<Real, Place> tangents_;
   Buffer<int, Place> changes_;
   Buffer<std::uint32_t, Place> farthest_;
   ConjugateGradient<Place> cg_;
+  TangentOperator<Real, Place, Shape> operator_;
+  CholeskySolver<Real, Place, Shape> cholesky_;
 };
 
 /// A solver of one precision in the place asked for.

@@ -5,9 +5,11 @@
 #if defined(__CUDACC__)
 #include <thrust/device_ptr.h>
 #include <thrust/execution_policy.h>
+#include <thrust/gather.h>
 #include <thrust/inner_product.h>
 #include <thrust/reduce.h>
 #include <thrust/scan.h>
+#include <thrust/scatter.h>
 #include <thrust/sequence.h>
 #include <thrust/sort.h>
 #include <thrust/transform_reduce.h>
@@ -56,6 +58,22 @@ double largest_entry(OnGpu, const double* a, int count) {
   return thrust::transform_reduce(thrust::device, x, x + count, Magnitude{}, 0.0, Larger{});
 }
 
+void gather(OnGpu, const double* from, const int* order, double* to, int count) {
+  const thrust::device_ptr<const int> o(order);
+  thrust::gather(thrust::device, o, o + count, thrust::device_ptr<const double>(from), thrust::device_ptr<double>(to));
+}
+
+void scatter(OnGpu, const double* from, const int* order, double* to, int count) {
+  const thrust::device_ptr<const double> f(from);
+  thrust::scatter(thrust::device, f, f + count, thrust::device_ptr<const int>(order), thrust::device_ptr<double>(to));
+}
+
+double free_memory(OnGpu) {
+  std::size_t free = 0, total = 0;
+  if (cudaMemGetInfo(&free, &total) != cudaSuccess) throw std::runtime_error("CUDA: cudaMemGetInfo failed");
+  return static_cast<double>(free);
+}
+
 }  // namespace talus
 
 #else
@@ -66,6 +84,9 @@ int exclusive_sum(OnGpu, const int*, int*, int) { throw std::logic_error("no CUD
 double largest_entry(OnGpu, const double*, int) { throw std::logic_error("no CUDA"); }
 double inner_product(OnGpu, const double*, const double*, int) { throw std::logic_error("no CUDA"); }
 double sum(OnGpu, const double*, int) { throw std::logic_error("no CUDA"); }
+void gather(OnGpu, const double*, const int*, double*, int) { throw std::logic_error("no CUDA"); }
+void scatter(OnGpu, const double*, const int*, double*, int) { throw std::logic_error("no CUDA"); }
+double free_memory(OnGpu) { throw std::logic_error("no CUDA"); }
 }  // namespace talus
 
 #endif

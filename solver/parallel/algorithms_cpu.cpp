@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <limits>
 #include <numeric>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -51,5 +54,24 @@ double largest_entry(OnCpu, const double* a, int count) {
 }
 
 double sum(OnCpu, const double* values, int count) { return std::accumulate(values, values + count, 0.0); }
+
+void gather(OnCpu, const double* from, const int* order, double* to, int count) {
+  for (int i = 0; i < count; ++i) to[i] = from[order[i]];
+}
+
+void scatter(OnCpu, const double* from, const int* order, double* to, int count) {
+  for (int i = 0; i < count; ++i) to[order[i]] = from[i];
+}
+
+double free_memory(OnCpu) {
+  std::ifstream file("/proc/meminfo");
+  std::string name, unit;
+  double kilobytes = 0;
+  while (file >> name >> kilobytes) {
+    std::getline(file, unit);
+    if (name == "MemAvailable:") return kilobytes * 1024;
+  }
+  return std::numeric_limits<double>::infinity();  // a system that does not say
+}
 
 }  // namespace talus

@@ -160,6 +160,75 @@ TEST_P(Implicit, swings_a_bar_at_its_own_period) {
   EXPECT_GT(least / start, 0.97);
 }
 
+TEST_P(Implicit, gives_the_same_displacement_by_every_linear_solver) {
+  // Half of the column's load in one step, on a wavy ground that the body stands on.
+  Domain d = ground(14, 12, 1.0, 1.0, [](double x, double y) { return 0.2 * std::sin(x) + 0.1 * y; });
+  fill(d, {4, 8, 4, 7, 0, 4});
+  for (const auto shape : {ShapeKind::linear, ShapeKind::quadratic}) {
+    std::vector<double> reference;
+    for (int kind = 0; kind < 4; ++kind) {
+      SolveOptions o;
+      o.integrator = Integrator::quasi_static;
+      o.shape = shape;
+      o.material.model = MaterialModel::hencky;
+      o.material.youngs_modulus = 1e6;
+      o.base.law = FrictionLaw::stick;
+      o.implicit.step = 1;
+      o.implicit.newton_tolerance = 1e-10;
+      o.implicit.linear_tolerance = 1e-11;
+      o.implicit.linear_solver = kind == 0 ? LinearSolver::cholesky : LinearSolver::pcg;
+      o.implicit.form = kind <= 1 ? Operator::points : kind == 2 ? Operator::elements : Operator::stencil;
+      const Scene scene = make_scene(d, o);
+      const auto solver = make_solver(scene, o, GetParam());
+      StepStats stats;
+      steps_to(*solver, 1.0, &stats);
+      ParticleState s = solver->state().points;
+      std::vector<double> z(s.size());
+      for (std::size_t p = 0; p < s.size(); ++p) {
+        z[static_cast<std::size_t>(s.id[p])] = positions(scene.map, scene.grid, solver->ground(), s)[p][2];
+      }
+      if (kind == 0) {
+        reference = z;
+        EXPECT_EQ(stats.linear, stats.newton) << "one factorisation an iteration";
+        continue;
+      }
+      double worst = 0;
+      for (std::size_t p = 0; p < z.size(); ++p) worst = std::max(worst, std::abs(z[p] - reference[p]));
+      EXPECT_LT(worst, 1e-8);
+    }
+  }
+}
+
+TEST_P(Implicit, takes_the_reference_papers_steps) {
+  // validation.md A1 by preset = "reference": Newmark at 1e-2 s with damping, PCG against Cholesky.
+  const Domain d = column(10, 1);
+  std::vector<double> tops;
+  for (const auto linear : {LinearSolver::pcg, LinearSolver::cholesky}) {
+    SolveOptions o = column_options();
+    o.preset = Preset::reference;
+    o = with_preset(o);
+    o.integrator = Integrator::newmark;
+    o.material.model = MaterialModel::linear_elastic;
+    o.material.youngs_modulus = 1e6;
+    o.material.density = 80;
+    o.gravity = {0, 0, -2.5};
+    o.gravity_ramp = 2;
+    o.damping = 0.05;
+    o.implicit.step = 1e-3;
+    o.implicit.linear_solver = linear;
+    o.implicit.linear_tolerance = 1e-12;
+    const Scene scene = make_scene(d, o);
+    const auto solver = make_solver(scene, o, GetParam());
+    steps_to(*solver, 2.0);
+    const ColumnResult r = measure_column(*solver, scene, d, o, 200, 10);
+    tops.push_back(r.top);
+    const double exact = 200 / 1e6 * (10 * r.top_height - 0.5 * r.top_height * r.top_height);
+    std::printf("  reference preset: top displacement error %.3f %%\n", 100 * (r.top / exact - 1));
+    EXPECT_NEAR(r.top / exact, 1, 0.02);
+  }
+  EXPECT_NEAR(tops[0] / tops[1], 1, 1e-8);
+}
+
 TEST_P(Implicit, tells_a_body_without_support_from_equilibrium) {
   Domain d = ground(12, 12, 1.0, 1.0, [](double, double) { return 0.0; });
   fill(d, {4, 7, 4, 7, 3, 6});

@@ -1,0 +1,82 @@
+#include "tests/validation/recipe_text.hpp"
+
+#include <toml++/toml.h>
+
+#include <sstream>
+#include <stdexcept>
+#include <string_view>
+
+namespace talus::validation {
+namespace {
+
+struct Step {
+  std::string key;
+  int item = -1;  // of an array of tables
+};
+
+std::vector<Step> steps_of(const std::string& path) {
+  std::vector<Step> steps;
+  std::istringstream parts(path);
+  for (std::string part; std::getline(parts, part, '.');) {
+    const auto bracket = part.find('[');
+    if (bracket == std::string::npos) {
+      steps.push_back({part});
+    } else {
+      steps.push_back({part.substr(0, bracket), std::stoi(part.substr(bracket + 1))});
+    }
+  }
+  return steps;
+}
+
+toml::table& descend(toml::table& from, const Step& step, const std::string& path) {
+  const auto refuse = [&](const char* why) { throw std::runtime_error("recipe key " + path + ": " + why); };
+  if (step.item < 0) {
+    auto* table = from.insert(step.key, toml::table{}).first->second.as_table();
+    if (table == nullptr) refuse("not a table");
+    return *table;
+  }
+  auto* array = from.insert(step.key, toml::array{}).first->second.as_array();
+  if (array == nullptr) refuse("not an array of tables");
+  const auto item = static_cast<std::size_t>(step.item);
+  if (item == array->size()) array->push_back(toml::table{});
+  auto* table = item < array->size() ? (*array)[item].as_table() : nullptr;
+  if (table == nullptr) refuse("no such item");
+  return *table;
+}
+
+struct Assign {
+  toml::table& table;
+  const std::string& key;
+  template <class T>
+  void operator()(const T& value) const {
+    table.insert_or_assign(key, value);
+  }
+  template <class T>
+  void operator()(const std::vector<T>& values) const {
+    toml::array array;
+    for (const T& value : values) array.push_back(value);
+    table.insert_or_assign(key, array);
+  }
+};
+
+}  // namespace
+
+std::string recipe_with(const std::filesystem::path& base, const Overrides& overrides) {
+  toml::table recipe = toml::parse_file(base.string());
+  for (const auto& [path, value] : overrides) {
+    const auto steps = steps_of(path);
+    toml::table* table = &recipe;
+    for (std::size_t s = 0; s + 1 < steps.size(); ++s) table = &descend(*table, steps[s], path);
+    std::visit(Assign{*table, steps.back().key}, value);
+  }
+  std::ostringstream text;
+  text << recipe << '\n';
+  return text.str();
+}
+
+Overrides operator+(Overrides a, const Overrides& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+}  // namespace talus::validation
