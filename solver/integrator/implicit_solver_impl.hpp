@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-
-#include <fmt/format.h>
 
 #include "solver/integrator/implicit_nodes.hpp"
 #include "solver/integrator/point_solver.hpp"
+#include "solver/integrator/step_failure.hpp"
 #include "solver/linear/cholesky_solver.hpp"
 #include "solver/linear/conjugate_gradient.hpp"
 #include "solver/linear/tangent_operator.hpp"
@@ -99,7 +97,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
       report.stats = {};
       report.stats.cuts = cut;
       if (solve_step(clock.time, step, report.stats)) break;
-      if (cut >= options_.implicit.step_cuts) give_up(clock, step, report.stats);
+      if (cut >= options_.implicit.step_cuts) refuse_step(clock, step, report.stats, dynamic_);
       step *= 0.5;
       step_ = step;
     }
@@ -375,21 +373,6 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   void drop_gone() {
     this->grid_.fit(points_, gone_);
     gone_ = 0;
-  }
-
-  [[noreturn]] void give_up(const Clock& clock, double step, const StepStats& stats) const {
-    if (!dynamic_ && stats.indefinite) {
-      throw NumericalError({fmt::format("step {}, t = {:.6g} s: the equations of equilibrium are singular or unstable", clock.step + 1,
-                                        clock.time),
-                            "a body without support, or one that must fall, has no equilibrium",
-                            "Hold it with walls or a base law, or use integrator = \"newmark\""});
-    }
-    throw NumericalError({fmt::format("step {}, t = {:.6g} s: no convergence even with a step of {:.3g} s (unbalanced force {:.2g} of "
-                                      "the forces, {} Newton and {} linear iterations)",
-                                      clock.step + 1, clock.time, step, stats.residual, stats.newton, stats.linear),
-                          dynamic_ ? "the step is too long, or the mass tears apart" : "there may be no equilibrium to find",
-                          dynamic_ ? "Lower [solve.implicit] step_s, or allow more step_cuts"
-                                   : "Hold the body with walls, ramp the load more slowly, or use integrator = \"newmark\""});
   }
 
   bool affine_, dynamic_;

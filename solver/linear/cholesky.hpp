@@ -1,5 +1,5 @@
-// Sparse Cholesky factorisation: CHOLMOD on the CPU (Chen, Davis, Hager & Rajamanickam 2008; Eigen's where it was not found),
-// cuSOLVER on the GPU. Ordering and symbolic factor are kept while the matrix keeps its pattern.
+// Sparse Cholesky factorisation: CHOLMOD on the CPU (Chen, Davis, Hager & Rajamanickam 2008; Eigen's where it was not
+// found), cuSOLVER on the GPU. Ordering and symbolic factor are kept while the matrix keeps its pattern.
 #pragma once
 
 #include <memory>
@@ -17,13 +17,13 @@ class Cholesky {
  public:
   virtual ~Cholesky() = default;
 
-  /// Solves A x = b. False when A is not positive definite; x is then undefined. Throws NumericalError when the factor would not
-  /// fit, before it is made, and when a GPU has no cuSOLVER.
+  /// Solves A x = b. False when A is not positive definite; x is then undefined. Throws NumericalError when the factor
+  /// would not fit, before it is made, and when a GPU has no cuSOLVER.
   virtual bool solve(const CsrMatrix<Place>& a, const Buffer<double, Place>& b, Buffer<double, Place>& x) = 0;
 
-  virtual int analyses() const = 0;          // orderings and symbolic factorisations so far
-  virtual double factor_bytes() const = 0;   // of the present factor
-  virtual const char* name() const = 0;      // of the library
+  virtual int analyses() const = 0;         // orderings and symbolic factorisations so far
+  virtual double factor_bytes() const = 0;  // of the present factor
+  virtual const char* name() const = 0;     // of the library
 };
 
 /// The factor may take `memory_limit` bytes; 0: what is free where it will stand.

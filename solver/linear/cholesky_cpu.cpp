@@ -98,13 +98,14 @@ class CpuCholesky final : public Cholesky<OnCpu> {
 #else
 
 /// Eigen's up-looking factor, for builds without CHOLMOD.
-class CpuCholesky final : public Cholesky<OnCpu>, private Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Upper> {
+class CpuCholesky final : public Cholesky<OnCpu>,
+                          private Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Upper> {
  public:
   explicit CpuCholesky(double memory_limit) : limit_(memory_limit) {}
 
   bool solve(const CsrMatrix<OnCpu>& a, const Buffer<double, OnCpu>& b, Buffer<double, OnCpu>& x) override {
-    const MatrixType matrix = Eigen::Map<const MatrixType>(a.rows, a.rows, a.entries(), a.starts.data(), a.columns.data(),
-                                                           a.values.data());
+    const MatrixType matrix =
+        Eigen::Map<const MatrixType>(a.rows, a.rows, a.entries(), a.starts.data(), a.columns.data(), a.values.data());
     try {
       if (pattern_ != a.pattern) analyse(matrix);
       pattern_ = a.pattern;
@@ -114,7 +115,8 @@ class CpuCholesky final : public Cholesky<OnCpu>, private Eigen::SimplicialLLT<E
     }
     if (info() != Eigen::Success) return false;
     x.resize(static_cast<std::size_t>(a.rows));
-    Eigen::Map<Eigen::VectorXd>(x.data(), a.rows) = SimplicialLLT::solve(Eigen::Map<const Eigen::VectorXd>(b.data(), a.rows));
+    Eigen::Map<Eigen::VectorXd>(x.data(), a.rows) =
+        SimplicialLLT::solve(Eigen::Map<const Eigen::VectorXd>(b.data(), a.rows));
     return true;
   }
 
@@ -140,6 +142,8 @@ class CpuCholesky final : public Cholesky<OnCpu>, private Eigen::SimplicialLLT<E
 
 }  // namespace
 
-std::unique_ptr<Cholesky<OnCpu>> make_cholesky(OnCpu, double memory_limit) { return std::make_unique<CpuCholesky>(memory_limit); }
+std::unique_ptr<Cholesky<OnCpu>> make_cholesky(OnCpu, double memory_limit) {
+  return std::make_unique<CpuCholesky>(memory_limit);
+}
 
 }  // namespace talus

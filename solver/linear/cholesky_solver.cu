@@ -8,7 +8,8 @@ template <class Real, class Place, class Shape>
 void CholeskySolver<Real, Place, Shape>::check_memory(int nodes) const {
   const double wanted = assembly_bytes<Real, Shape>(list_.count(), nodes);
   const double free = limit_ > 0 ? limit_ : free_memory(Place{}) + static_cast<double>(bytes());
-  if (wanted > free || !assembly_countable<Real, Shape>(list_.count(), nodes)) refuse_matrix("the triples and the matrix would take", wanted, free, Place::is_gpu);
+  if (wanted > free || !assembly_countable<Real, Shape>(list_.count(), nodes))
+    refuse_matrix("the triples and the matrix would take", wanted, free, Place::is_gpu);
 }
 
 template <class Real, class Place, class Shape>
@@ -33,8 +34,9 @@ LinearReport CholeskySolver<Real, Place, Shape>::solve(const PointTangents<Real>
     return report;
   }
   left_over_.resize(right_.size());
-  for_each(Place{}, a.rows, detail::CsrResidual{a.starts.data(), a.columns.data(), a.values.data(), right_.data(), solution_.data(),
-                                                left_over_.data()});
+  for_each(Place{}, a.rows,
+           detail::CsrResidual{a.starts.data(), a.columns.data(), a.values.data(), right_.data(), solution_.data(),
+                               left_over_.data()});
   const double size = inner_product(Place{}, right_.data(), right_.data(), a.rows);
   const double left = inner_product(Place{}, left_over_.data(), left_over_.data(), a.rows);
   report.residual = size > 0 ? std::sqrt(left / size) : 0;

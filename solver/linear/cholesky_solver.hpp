@@ -1,4 +1,5 @@
-// The reference paper's case 1: the tangent assembled and factorised. Between steps: begin_step(); for each Newton iteration: solve().
+// The reference paper's case 1: the tangent assembled and factorised. Between steps: begin_step(); for each Newton
+// iteration: solve().
 #pragma once
 
 #include "solver/linear/cholesky.hpp"
@@ -11,15 +12,17 @@ template <class Real, class Place, class Shape>
 class CholeskySolver {
  public:
   /// `memory_limit` [bytes] stands for what is free in the place; 0: ask.
-  explicit CholeskySolver(double memory_limit = 0) : limit_(memory_limit), cholesky_(make_cholesky(Place{}, memory_limit)) {}
+  explicit CholeskySolver(double memory_limit = 0)
+      : limit_(memory_limit), cholesky_(make_cholesky(Place{}, memory_limit)) {}
 
   /// The points have moved, or have been sorted.
   void begin_step(const GridView<Real>& grid, const ParticleView<Real>& points) { list_.build(grid, points); }
 
-  /// Solves freed (K + mass inertia + stiffness) freed x = freed b; x is 0 on held nodes. One iteration, residual |b - A x| / |b|;
-  /// `indefinite` when the matrix is not positive definite to working precision, and x is then 0. Throws NumericalError, before it allocates, when the
-  /// matrix or its factor would not fit.
-  LinearReport solve(const PointTangents<Real>& from, const HeldNodes& nodes, const NodeVector<Place>& b, NodeVector<Place>& x);
+  /// Solves freed (K + mass inertia + stiffness) freed x = freed b; x is 0 on held nodes. One iteration, residual |b -
+  /// A x| / |b|; `indefinite` when the matrix is not positive definite to working precision, and x is then 0. Throws
+  /// NumericalError, before it allocates, when the matrix or its factor would not fit.
+  LinearReport solve(const PointTangents<Real>& from, const HeldNodes& nodes, const NodeVector<Place>& b,
+                     NodeVector<Place>& x);
 
   const Cholesky<Place>& factor() const { return *cholesky_; }
   const CsrAssembly<Real, Place, Shape>& assembly() const { return assembly_; }

@@ -1,20 +1,13 @@
-// From element matrices to CSR as the reference paper does it: active nodes to degrees of freedom, (row, column, value) triples,
-// sort by key, reduce by key. A triple here stands for the 3 x 3 block of two nodes: a ninth of the keys to sort, the same sums.
+// From element matrices to CSR as the reference paper does it: active nodes to degrees of freedom, (row, column, value)
+// triples, sort by key, reduce by key. A triple here stands for the 3 x 3 block of two nodes: a ninth of the keys to
+// sort, the same sums.
 #pragma once
 
 #include "solver/linear/csr_matrix.hpp"
+#include "solver/linear/held_nodes.hpp"
 #include "solver/linear/stored_elements.hpp"
 
 namespace talus::solver {
-
-/// What the nodes add to the tangent: mass times inertia on the diagonal, and the directions they may move in.
-struct HeldNodes {
-  int count = 0;
-  const double* mass = nullptr;          // [kg]
-  const Sym3<double>* freed = nullptr;   // projector on the free directions; zero: held, and no unknown
-  double inertia = 0;                    // [1/s2]; 0 in statics
-  const Sym3<double>* stiffness = nullptr;  // of what else holds a node, friction say [N/m]; null: nothing
-};
 
 /// Memory the triples, the element matrices and the CSR form take [bytes]: known before any of them is made.
 template <class Real, class Shape>
@@ -30,13 +23,16 @@ class CsrAssembly {
   /// Finds the unknowns: nodes with mass and a free direction. Returns their number; three degrees of freedom each.
   int number_nodes(const HeldNodes& nodes);
 
-  /// Freed degrees of freedom only: P (K + mass inertia + stiffness) P, and on the diagonal blocks (I - P) times their own size, so that held
-  /// directions of a node that moves stand alone. Sorting is left out while elements and unknowns are the same.
-  void assemble(const ElementList<Real, Place, Shape>& list, StoredElements<Real, Place, Shape>& stored, const HeldNodes& nodes);
+  /// Freed degrees of freedom only: P (K + mass inertia + stiffness) P, and on the diagonal blocks (I - P) times their
+  /// own size, so that held directions of a node that moves stand alone. Sorting is left out while elements and
+  /// unknowns are the same.
+  void assemble(const ElementList<Real, Place, Shape>& list, StoredElements<Real, Place, Shape>& stored,
+                const HeldNodes& nodes);
 
   const CsrMatrix<Place>& matrix() const { return matrix_; }
   int unknown_nodes() const { return unknown_; }
-  /// Vector over the nodes to one over the degrees of freedom, and back (0 where there is none), through the projectors.
+  /// Vector over the nodes to one over the degrees of freedom, and back (0 where there is none), through the
+  /// projectors.
   void to_unknowns(const HeldNodes& nodes, const NodeVector<Place>& from, Buffer<double, Place>& to);
   void to_nodes(const HeldNodes& nodes, const Buffer<double, Place>& from, NodeVector<Place>& to);
   int sorts() const { return sorts_; }

@@ -10,13 +10,15 @@ namespace talus {
 namespace {
 
 [[noreturn]] void missing(const std::string& why) {
-  throw NumericalError({"[solve.implicit] linear_solver = \"cholesky\" on a GPU: cuSOLVER cannot be used", why,
-                        "Install NVIDIA's libcusolver (part of the CUDA Toolkit), or use linear_solver = \"pcg\", or --on cpu"});
+  throw NumericalError(
+      {"[solve.implicit] linear_solver = \"cholesky\" on a GPU: cuSOLVER cannot be used", why,
+       "Install NVIDIA's libcusolver (part of the CUDA Toolkit), or use linear_solver = \"pcg\", or --on cpu"});
 }
 
 void* open_library() {
   std::string why;
-  for (const char* name : {"libcusolver.so.12", "libcusolver.so.11", "libcusolver.so", "/usr/local/cuda/lib64/libcusolver.so"}) {
+  for (const char* name :
+       {"libcusolver.so.12", "libcusolver.so.11", "libcusolver.so", "/usr/local/cuda/lib64/libcusolver.so"}) {
     if (void* library = dlopen(name, RTLD_NOW | RTLD_LOCAL)) return library;
     if (why.empty()) why = dlerror();
   }

@@ -13,7 +13,8 @@ void check(int status, const char* what) {
     const double free = free_memory(OnGpu{});
     refuse_matrix(std::string(what) + " needs more than", free, free, true);
   }
-  if (status != 0) throw std::runtime_error(std::string("cuSOLVER: ") + what + " failed with status " + std::to_string(status));
+  if (status != 0)
+    throw std::runtime_error(std::string("cuSOLVER: ") + what + " failed with status " + std::to_string(status));
 }
 
 /// cuSOLVER's factor of the matrix renumbered by nested dissection.
@@ -35,7 +36,8 @@ class GpuCholesky final : public Cholesky<OnGpu> {
     if (!factorise(a)) return false;
     for (auto* v : {&right_, &solution_, &x}) v->resize(static_cast<std::size_t>(a.rows));
     gather(OnGpu{}, b.data(), order_.data(), right_.data(), a.rows);
-    check(cusolver().solve(handle_, a.rows, right_.data(), solution_.data(), info_, workspace_.data()), "cusolverSpDcsrcholSolve");
+    check(cusolver().solve(handle_, a.rows, right_.data(), solution_.data(), info_, workspace_.data()),
+          "cusolverSpDcsrcholSolve");
     scatter(OnGpu{}, solution_.data(), order_.data(), x.data(), a.rows);
     return true;
   }
@@ -62,7 +64,8 @@ class GpuCholesky final : public Cholesky<OnGpu> {
     const int* starts = graph.starts.data();
     const int* columns = graph.columns.data();
     if (c.order_by_dissection(handle_, nodes, entries, descriptor_, starts, columns, nullptr, found.data()) != 0) {
-      check(c.order_by_degree(handle_, nodes, entries, descriptor_, starts, columns, found.data()), "cusolverSpXcsrsymamdHost");
+      check(c.order_by_degree(handle_, nodes, entries, descriptor_, starts, columns, found.data()),
+            "cusolverSpXcsrsymamdHost");
     }
     return found;
   }
@@ -84,9 +87,11 @@ class GpuCholesky final : public Cholesky<OnGpu> {
     renumber_matrix(a);
     const Cusolver& c = cusolver();
     check(c.create_info(&info_), "cusolverSpCreateCsrcholInfo");
-    check(c.analyse(handle_, a.rows, a.entries(), descriptor_, starts_.data(), columns_.data(), info_), "cusolverSpXcsrcholAnalysis");
+    check(c.analyse(handle_, a.rows, a.entries(), descriptor_, starts_.data(), columns_.data(), info_),
+          "cusolverSpXcsrcholAnalysis");
     std::size_t internal = 0, scratch = 0;
-    check(c.sizes(handle_, a.rows, a.entries(), descriptor_, values_.data(), starts_.data(), columns_.data(), info_, &internal, &scratch),
+    check(c.sizes(handle_, a.rows, a.entries(), descriptor_, values_.data(), starts_.data(), columns_.data(), info_,
+                  &internal, &scratch),
           "cusolverSpDcsrcholBufferInfo");
     held_ = static_cast<double>(internal) + static_cast<double>(scratch);
     const double free = limit_ > 0 ? limit_ : free_memory(OnGpu{}) + static_cast<double>(workspace_.bytes());
@@ -98,8 +103,8 @@ class GpuCholesky final : public Cholesky<OnGpu> {
   bool factorise(const CsrMatrix<OnGpu>& a) {
     fill_values(a);
     const Cusolver& c = cusolver();
-    const int status = c.factorise(handle_, a.rows, a.entries(), descriptor_, values_.data(), starts_.data(), columns_.data(), info_,
-                                   workspace_.data());
+    const int status = c.factorise(handle_, a.rows, a.entries(), descriptor_, values_.data(), starts_.data(),
+                                   columns_.data(), info_, workspace_.data());
     if (status == Cusolver::out_of_memory) refuse(free_memory(OnGpu{}));
     check(status, "cusolverSpDcsrcholFactor");
     int pivot = -1;
@@ -107,7 +112,9 @@ class GpuCholesky final : public Cholesky<OnGpu> {
     return pivot < 0;
   }
 
-  void fill_values(const CsrMatrix<OnGpu>& a) { gather(OnGpu{}, a.values.data(), source_.data(), values_.data(), a.entries()); }
+  void fill_values(const CsrMatrix<OnGpu>& a) {
+    gather(OnGpu{}, a.values.data(), source_.data(), values_.data(), a.entries());
+  }
 
   [[noreturn]] void refuse(double free) {
     const double wanted = held_;
@@ -128,6 +135,8 @@ class GpuCholesky final : public Cholesky<OnGpu> {
 
 }  // namespace
 
-std::unique_ptr<Cholesky<OnGpu>> make_cholesky(OnGpu, double memory_limit) { return std::make_unique<GpuCholesky>(memory_limit); }
+std::unique_ptr<Cholesky<OnGpu>> make_cholesky(OnGpu, double memory_limit) {
+  return std::make_unique<GpuCholesky>(memory_limit);
+}
 
 }  // namespace talus

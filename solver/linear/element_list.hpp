@@ -1,7 +1,8 @@
 // Elements: the points whose stencils start at the same node, with the W^3 nodes they share (W = Shape::width).
 //
-// Elements are sorted by the column block of their first node. Their nodes lie in that block and the next one along x and y, so
-// elements of every other block share none: for_each_grouped(..., groups(), ...) runs them race-free on the CPU, in one order.
+// Elements are sorted by the column block of their first node. Their nodes lie in that block and the next one along x
+// and y, so elements of every other block share none: for_each_grouped(..., groups(), ...) runs them race-free on the
+// CPU, in one order.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +13,13 @@
 
 namespace talus::solver {
 
-/// Local nodes are numbered as around() visits them: layer fastest, then x, then y. Where layer -1 is folded onto layer 0, local
-/// nodes (a, b, 0) and (a, b, 1) are one and the same.
+/// Local nodes are numbered as around() visits them: layer fastest, then x, then y. Where layer -1 is folded onto layer
+/// 0, local nodes (a, b, 0) and (a, b, 1) are one and the same.
 struct ElementView {
   int count = 0;
   const int* starts = nullptr;  // element e holds points order[starts[e]] ... order[starts[e + 1] - 1]
   const int* order = nullptr;
-  const int* nodes = nullptr;   // [element * W^3 + local node]
+  const int* nodes = nullptr;  // [element * W^3 + local node]
 };
 
 template <class Real, class Place, class Shape>

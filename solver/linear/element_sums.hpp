@@ -1,5 +1,5 @@
-// The tangent of an element, summed over its points: K_ab = sum_p V_p grad N_a . C_p . grad N_b, a 3 x 3 block for every pair of
-// its nodes. Whoever stores the blocks is handed them one by one.
+// The tangent of an element, summed over its points: K_ab = sum_p V_p grad N_a . C_p . grad N_b, a 3 x 3 block for
+// every pair of its nodes. Whoever stores the blocks is handed them one by one.
 #pragma once
 
 #include "solver/integrator/implicit_kernels.hpp"
@@ -15,8 +15,8 @@ struct PointTangents {
   TangentStore<Real> tangents;
 };
 
-/// One thread: a tile of `columns` x `rows` node pairs of one element. On the CPU the tile is the element, so that a point is
-/// visited once; on the GPU it is one column node by a slice of row nodes, so that the sums stay in registers.
+/// One thread: a tile of `columns` x `rows` node pairs of one element. On the CPU the tile is the element, so that a
+/// point is visited once; on the GPU it is one column node by a slice of row nodes, so that the sums stay in registers.
 template <class Real, class Shape, int columns, int rows, class Sink>
 struct SumElements {
   static constexpr int w = Shape::width, nodes = w * w * w;
@@ -28,9 +28,11 @@ struct SumElements {
   Sink sink;  // sink.put(e, a, b, block): row-major block of local nodes (a, b), called once per pair
 
   TALUS_HD void operator()(int index) const {
-    const int e = index / tiles, first_column = index / row_tiles % column_tiles * columns, first_row = index % row_tiles * rows;
+    const int e = index / tiles, first_column = index / row_tiles % column_tiles * columns,
+              first_row = index % row_tiles * rows;
     Real sum[columns * rows][9] = {};
-    for (int s = elements.starts[e]; s < elements.starts[e + 1]; ++s) add_point(elements.order[s], first_column, first_row, sum);
+    for (int s = elements.starts[e]; s < elements.starts[e + 1]; ++s)
+      add_point(elements.order[s], first_column, first_row, sum);
     for (int q = 0; q < columns; ++q) {
       for (int r = 0; r < rows; ++r) sink.put(e, first_row + r, first_column + q, sum[q * rows + r]);
     }

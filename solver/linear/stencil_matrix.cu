@@ -48,7 +48,8 @@ struct MeetNeighbours {
     const bool folded = mine[0] == mine[1];
     for (int a = 0; a < nodes; ++a) {
       const int row = matrix.row_of[mine[a]];
-      for (int b = 0; b < nodes; ++b) raise_flag(&matrix.table[matrix.table_at(row, neighbour_of<Shape>(a, b, folded))], mine[b]);
+      for (int b = 0; b < nodes; ++b)
+        raise_flag(&matrix.table[matrix.table_at(row, neighbour_of<Shape>(a, b, folded))], mine[b]);
     }
   }
 };
@@ -132,7 +133,8 @@ void StencilMatrix<Real, Place, Shape>::build(const ElementList<Real, Place, Sha
 }
 
 template <class Real, class Place, class Shape>
-void StencilMatrix<Real, Place, Shape>::assemble(const ElementList<Real, Place, Shape>& list, const PointTangents<Real>& from) {
+void StencilMatrix<Real, Place, Shape>::assemble(const ElementList<Real, Place, Shape>& list,
+                                                 const PointTangents<Real>& from) {
   blocks_.resize(static_cast<std::size_t>(rows_) * View::neighbours * 9);
   blocks_.fill_zero();
   sum_elements<Real, Place, Shape>(list, from, AddToStencil<Real, Place, Shape>{view(), list.view()});

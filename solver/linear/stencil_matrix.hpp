@@ -1,6 +1,6 @@
-// The tangent assembled on the sparse nodes: for every node that an element touches, 3 x 3 blocks to the (2 W - 1)^3 nodes around
-// it (27 for hats, 125 for quadratic functions), stored in full with one table of neighbours instead of column indices.
-// Rows only gather, so y += K x has no race and the same sums on every run, in either place.
+// The tangent assembled on the sparse nodes: for every node that an element touches, 3 x 3 blocks to the (2 W - 1)^3
+// nodes around it (27 for hats, 125 for quadratic functions), stored in full with one table of neighbours instead of
+// column indices. Rows only gather, so y += K x has no race and the same sums on every run, in either place.
 #pragma once
 
 #include "solver/linear/element_sums.hpp"
@@ -19,7 +19,8 @@ struct StencilView {
   Real* blocks = nullptr;
 
   TALUS_HD std::size_t table_at(int row, int q) const {
-    if constexpr (Place::is_gpu) return static_cast<std::size_t>(q) * static_cast<std::size_t>(rows) + static_cast<std::size_t>(row);
+    if constexpr (Place::is_gpu)
+      return static_cast<std::size_t>(q) * static_cast<std::size_t>(rows) + static_cast<std::size_t>(row);
     return static_cast<std::size_t>(row) * neighbours + static_cast<std::size_t>(q);
   }
   /// Component i of the row's node against component j of neighbour q.

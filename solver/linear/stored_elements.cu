@@ -57,7 +57,8 @@ struct ApplyElementRow {
 }  // namespace
 
 template <class Real, class Place, class Shape>
-void StoredElements<Real, Place, Shape>::assemble(const ElementList<Real, Place, Shape>& list, const PointTangents<Real>& from) {
+void StoredElements<Real, Place, Shape>::assemble(const ElementList<Real, Place, Shape>& list,
+                                                  const PointTangents<Real>& from) {
   rows_ = static_cast<std::size_t>(list.count()) * Matrices::size;
   values_.resize(rows_ * Matrices::size);
   sum_elements<Real, Place, Shape>(list, from, view());
@@ -67,7 +68,8 @@ template <class Real, class Place, class Shape>
 void StoredElements<Real, Place, Shape>::apply(const ElementList<Real, Place, Shape>& list, const NodeVector<Place>& x,
                                                NodeVector<Place>& y) {
   if constexpr (Place::is_gpu) {
-    for_each(Place{}, list.count() * Matrices::size, ApplyElementRow<Real, Place, Shape>{view(), list.view(), x.data(), y.data()});
+    for_each(Place{}, list.count() * Matrices::size,
+             ApplyElementRow<Real, Place, Shape>{view(), list.view(), x.data(), y.data()});
   } else {
     for_each_grouped(Place{}, list.count(), list.groups(),
                      ApplyElement<Real, Place, Shape>{view(), list.view(), x.data(), y.data()});

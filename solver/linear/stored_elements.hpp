@@ -6,8 +6,8 @@
 
 namespace talus::solver {
 
-/// Element matrices as kernels see them: 3 W^3 rows and columns each. Row by row on the CPU; entry by entry on the GPU, so that
-/// the threads of neighbouring rows read neighbouring numbers.
+/// Element matrices as kernels see them: 3 W^3 rows and columns each. Row by row on the CPU; entry by entry on the GPU,
+/// so that the threads of neighbouring rows read neighbouring numbers.
 template <class Real, class Place, class Shape>
 struct ElementMatrices {
   static constexpr int nodes = Shape::width * Shape::width * Shape::width;

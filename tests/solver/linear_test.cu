@@ -1,4 +1,6 @@
-// The tangent's three forms against one another, and Cholesky against conjugate gradients, on random points, states and constraints.
+// The tangent's three forms against one another, and Cholesky against conjugate gradients, on random points, states and
+// constraints.
+#include <array>
 #include <random>
 #include <set>
 
@@ -59,7 +61,9 @@ double difference(const std::vector<Vec3<double>>& a, const std::vector<Vec3<dou
   return norm(d) / norm(b);
 }
 
-Sym3<double> plane(const Vec3<double>& n) { return {1 - n.x * n.x, 1 - n.y * n.y, 1 - n.z * n.z, -n.x * n.y, -n.y * n.z, -n.x * n.z}; }
+Sym3<double> plane(const Vec3<double>& n) {
+  return {1 - n.x * n.x, 1 - n.y * n.y, 1 - n.z * n.z, -n.x * n.y, -n.y * n.z, -n.x * n.z};
+}
 
 /// y = freed (y + (mass inertia + stiffness) x)
 struct CloseSystem {
@@ -135,8 +139,9 @@ struct Bench {
     mass.resize(n);
     mass.fill_zero();
     tangents.resize(static_cast<std::size_t>(TangentStore<Real>::numbers) * static_cast<std::size_t>(points.count()));
-    for_each_grouped(Place{}, points.count(), grid.groups(),
-                     ScatterInertia<Real, Shape>{grid.view(), points.view(), material.density, false, false, nullptr, nodes()});
+    for_each_grouped(
+        Place{}, points.count(), grid.groups(),
+        ScatterInertia<Real, Shape>{grid.view(), points.view(), material.density, false, false, nullptr, nodes()});
     for_each_grouped(Place{}, points.count(), grid.groups(),
                      ScatterStress<Real, Shape>{grid.view(), points.view(), material, false, store(), nodes()});
     synchronise(Place{});
@@ -221,11 +226,14 @@ struct Bench {
 };
 
 #if TALUS_FOR_GPU
-#define TALUS_RUN(function, ...)                                                                     \
-  (GetParam() == On::gpu ? function<double, OnGpu, Linear>(__VA_ARGS__) : function<double, OnCpu, Linear>(__VA_ARGS__), \
-   GetParam() == On::gpu ? function<double, OnGpu, Quadratic>(__VA_ARGS__) : function<double, OnCpu, Quadratic>(__VA_ARGS__))
+#define TALUS_RUN(function, ...)                                           \
+  (GetParam() == On::gpu ? function<double, OnGpu, Linear>(__VA_ARGS__)    \
+                         : function<double, OnCpu, Linear>(__VA_ARGS__),   \
+   GetParam() == On::gpu ? function<double, OnGpu, Quadratic>(__VA_ARGS__) \
+                         : function<double, OnCpu, Quadratic>(__VA_ARGS__))
 #else
-#define TALUS_RUN(function, ...) (function<double, OnCpu, Linear>(__VA_ARGS__), function<double, OnCpu, Quadratic>(__VA_ARGS__))
+#define TALUS_RUN(function, ...) \
+  (function<double, OnCpu, Linear>(__VA_ARGS__), function<double, OnCpu, Quadratic>(__VA_ARGS__))
 #endif
 
 template <class Shape>
@@ -453,6 +461,51 @@ TEST(Elements, hold_every_point_once_and_share_no_node_within_a_colour) {
   check_elements<Quadratic>();
 }
 
+/// Column, row and layer of every stored node.
+template <class Shape>
+std::vector<std::array<int, 3>> node_places(const Bench<double, OnCpu, Shape>& bench) {
+  const auto grid = bench.grid.view();
+  std::vector<std::array<int, 3>> places(static_cast<std::size_t>(bench.count));
+  for (int j = 0; j < grid.rows; ++j) {
+    for (int i = 0; i < grid.columns; ++i) {
+      const BlockSlot& slot = grid.slot(i, j);
+      for (int k = slot.first_layer; slot.offset >= 0 && k < slot.first_layer + slot.layers; ++k) {
+        places[static_cast<std::size_t>(grid.node(slot, i, j, k))] = {i, j, k};
+      }
+    }
+  }
+  return places;
+}
+
+template <class Shape>
+void check_neighbours() {
+  constexpr int reach = Shape::width - 1, side = 2 * reach + 1;
+  Bench<double, OnCpu, Shape> bench({is_quadratic<Shape>});
+  ElementList<double, OnCpu, Shape> list;
+  StencilMatrix<double, OnCpu, Shape> matrix;
+  list.build(bench.grid.view(), bench.points.view());
+  matrix.build(list, bench.count);
+  const auto places = node_places(bench);
+  const auto view = matrix.view();
+  EXPECT_GT(view.rows, 50);
+  for (int row = 0; row < view.rows; ++row) {
+    const auto& mine = places[static_cast<std::size_t>(view.node_of[row])];
+    EXPECT_EQ(view.row_of[view.node_of[row]], row);
+    for (int q = 0; q < side * side * side; ++q) {
+      const int n = view.table[view.table_at(row, q)];
+      if (n < 0) continue;
+      const std::array<int, 3> expected{mine[0] + q / side % side - reach, mine[1] + q / (side * side) - reach,
+                                        mine[2] + q % side - reach};
+      EXPECT_EQ(places[static_cast<std::size_t>(n)], expected) << "row " << row << ", neighbour " << q;
+    }
+  }
+}
+
+TEST(Stencil, finds_each_neighbour_where_it_stands) {
+  check_neighbours<Linear>();
+  check_neighbours<Quadratic>();
+}
+
 /// Keeps the blocks it is handed.
 template <int nodes>
 struct Keep {
@@ -518,7 +571,8 @@ TEST(EliminationOrder, renumbers_rows_and_columns_alike) {
   EXPECT_EQ(r.order, (std::vector<int>{6, 7, 8, 0, 1, 2, 3, 4, 5}));
   ASSERT_EQ(r.source.size(), values.size());
   for (std::size_t row = 0; row < 9; ++row) {
-    for (auto k = static_cast<std::size_t>(r.pattern.starts[row]); k < static_cast<std::size_t>(r.pattern.starts[row + 1]); ++k) {
+    for (auto k = static_cast<std::size_t>(r.pattern.starts[row]);
+         k < static_cast<std::size_t>(r.pattern.starts[row + 1]); ++k) {
       const auto column = static_cast<std::size_t>(r.pattern.columns[k]);
       EXPECT_EQ(values[static_cast<std::size_t>(r.source[k])], value(r.order[row], r.order[column]));
       if (k > static_cast<std::size_t>(r.pattern.starts[row])) {

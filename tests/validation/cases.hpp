@@ -8,7 +8,8 @@
 
 namespace talus::validation {
 
-/// One way of solving the linear systems. A1 and A2 run with each of them.
+/// One way of solving the linear systems. A1 runs with each of them and compares; the studies of A2 take the last, the systems of slender
+/// bodies being hard on iterations.
 struct LinearScheme {
   std::string name;
   Overrides overrides;
@@ -16,7 +17,8 @@ struct LinearScheme {
 
 /// What there is to compare, in one place.
 inline std::vector<LinearScheme> linear_schemes() {
-  return {{"pcg", {{"solve.implicit.linear_solver", words("pcg")}}}};
+  return {{"pcg", {{"solve.implicit.linear_solver", words("pcg")}}},
+          {"cholesky", {{"solve.implicit.linear_solver", words("cholesky")}}}};
 }
 
 struct Case {

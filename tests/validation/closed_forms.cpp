@@ -41,7 +41,7 @@ struct Section {
         const double y = depth * ((s + 0.5 + 0.5 * gauss_at[g]) / strips - 0.5);
         const double w = 0.5 * gauss_weight[g] * depth / strips;
         const double l = 1 + e + c * y, n = piola_of_stretch(law, l);
-        const double slope = law == Law::hencky ? (1 - std::log(l)) / (l * l) : 1 / l;
+        const double slope = law == Law::hencky ? (1 - std::log(l)) / (l * l) : 1;
         f.normal += w * n;
         f.moment += w * n * y;
         f.normal_by_e += w * slope;
@@ -118,18 +118,17 @@ Tip beam(const Section& section, double k, AxisPoint* axis, int points) {
 }  // namespace
 
 double piola_of_stretch(Law law, double stretch) {
-  return law == Law::hencky ? std::log(stretch) / stretch : std::log(stretch);
+  return law == Law::hencky ? std::log(stretch) / stretch : stretch - 1;
 }
 
 double stretch_of_piola(Law law, double piola) {
-  if (law == Law::rate) return std::exp(piola);
+  if (law == Law::corotated) return 1 + piola;
   return root_of([&](double l) { return piola_of_stretch(law, l) - piola; }, 1e-6, std::exp(1.0));
 }
 
 double piola_of_kirchhoff(Law law, double kirchhoff) {
   if (law == Law::hencky) return kirchhoff / std::exp(kirchhoff);
-  const double stretch = root_of([&](double l) { return l * std::log(l) - kirchhoff; }, std::exp(-1.0), 100);
-  return std::log(stretch);
+  return 0.5 * (std::sqrt(1 + 4 * kirchhoff) - 1);  // stretch (stretch - 1), the branch near 1
 }
 
 double Column::settlement(double x) const {
@@ -144,7 +143,7 @@ double Column::settlement(double x) const {
   return sum;
 }
 
-Tip elastica(double k) { return beam({1, 1, 1, 0, true, Law::rate}, k, nullptr, 0); }
+Tip elastica(double k) { return beam({1, 1, 1, 0, true, Law::corotated}, k, nullptr, 0); }
 
 Tip solid_beam(double k, double depth, Law law, AxisPoint* axis, int points) {
   const double shear = 5.0 / 6 * 0.5 * depth;  // G = E / 2

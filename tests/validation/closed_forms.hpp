@@ -4,9 +4,9 @@
 namespace talus::validation {
 
 /// How the uniaxial stress of a material without lateral strain follows its stretch (nu = 0).
-///   hencky  Kirchhoff stress E ln(stretch)     [solve.material] model = "hencky"
-///   rate    Cauchy stress E ln(stretch)        "linear-elastic": Hooke's law summed up over the strain increments
-enum class Law { hencky, rate };
+///   corotated  first Piola stress E (stretch - 1): the paper's columns and the beams of the tables
+///   hencky     Kirchhoff stress E ln(stretch)
+enum class Law { corotated, hencky };
 
 /// First Piola stress over E. The lateral stretch is one, so this is the Cauchy stress too.
 double piola_of_stretch(Law law, double stretch);

@@ -1,7 +1,9 @@
 #include "tests/validation/recipe_text.hpp"
 
+#include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
@@ -59,6 +61,20 @@ struct Assign {
   }
 };
 
+/// Numbers as people write them: 0.0225 for 0.022499999999999999. The value stays the same.
+std::string with_short_numbers(const std::string& text) {
+  static const std::regex number(R"(-?\d+\.\d{8,}(e[-+]?\d+)?)");
+  std::string result;
+  auto from = text.begin();
+  for (std::sregex_iterator match(text.begin(), text.end(), number), end; match != end; ++match) {
+    result.append(from, (*match)[0].first);
+    const std::string shortest = fmt::format("{}", std::stod(match->str()));
+    result += shortest.find_first_of(".e") == std::string::npos ? shortest + ".0" : shortest;
+    from = (*match)[0].second;
+  }
+  return result.append(from, text.end());
+}
+
 }  // namespace
 
 std::string recipe_with(const std::filesystem::path& base, const Overrides& overrides) {
@@ -71,7 +87,7 @@ std::string recipe_with(const std::filesystem::path& base, const Overrides& over
   }
   std::ostringstream text;
   text << recipe << '\n';
-  return text.str();
+  return with_short_numbers(text.str());
 }
 
 Overrides operator+(Overrides a, const Overrides& b) {

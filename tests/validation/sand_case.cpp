@@ -63,45 +63,52 @@ double top_of(const Points& points, const Sand& s) {
   return top + 0.5 * s.point_spacing();
 }
 
-/// Highest point of every strip one cell wide.
-Series outline_of(const Points& points, const Sand& s, const std::string& name, int colour) {
-  std::vector<double> top;
-  for (const auto& p : points.position) {
-    if (!std::isfinite(p[0])) continue;
-    const auto strip = static_cast<std::size_t>(std::max(0.0, p[0] / s.h));
-    if (strip >= top.size()) top.resize(strip + 1, 0.0);
-    top[strip] = std::max(top[strip], p[2] + 0.5 * s.point_spacing());
+/// Thickness over x from the map of a frame, all rows of the slice together. What the functions spread behind the wall at x = 0 is
+/// folded back; the mean of three columns, for the strings of points of a stretched lattice lie further apart than a cell.
+Series outline_of(const Outcome& o, std::size_t frame, const Sand& s, int colour) {
+  const MapGrid& grid = o.run.maps.grid;
+  const auto column_at = [&](int column) {
+    double sum = 0;
+    for (int row = 0; column >= 0 && row < grid.rows; ++row) {
+      const double t = o.run.frames.thickness.at(frame)[grid.index(column, row)];
+      if (std::isfinite(t)) sum += t;
+    }
+    return sum;
+  };
+  const int wall = static_cast<int>(std::lround(-grid.west / s.h - 0.5));
+  const auto thickness = [&](int column) {
+    column = std::abs(column - wall) + wall;
+    return column_at(column) + column_at(2 * wall - column);
+  };
+  Series outline{"", {}, {}, colour};
+  for (int column = wall; column + 1 < grid.columns; ++column) {
+    outline.x.push_back(grid.x(column));
+    outline.y.push_back((thickness(column - 1) + thickness(column) + thickness(column + 1)) / 3);
+    if (outline.y.back() == 0) break;
   }
-  Series outline{name, {0}, {top.empty() ? 0.0 : top.front()}, colour};
-  for (std::size_t i = 0; i < top.size(); ++i) {
-    outline.x.push_back((static_cast<double>(i) + 0.5) * s.h);
-    outline.y.push_back(top[i]);
-  }
-  outline.x.push_back(static_cast<double>(top.size()) * s.h);
-  outline.y.push_back(0);
   return outline;
 }
 
-const Points& frame_at(const Outcome& o, double time) {
+std::size_t frame_at(const Outcome& o, double time) {
   const auto nearest = std::min_element(o.frames.begin(), o.frames.end(), [&](const Points& a, const Points& b) {
     return std::abs(a.time - time) < std::abs(b.time - time);
   });
-  return *nearest;
+  return static_cast<std::size_t>(nearest - o.frames.begin());
 }
 
 /// The column before the gate goes and at the times of the paper's Fig. 12, one panel each.
 std::string outlines(const Outcome& o, const Sand& s, const std::string& title) {
   std::vector<Chart> panels;
   for (const double time : {0.0, 0.15, 0.3, 0.6, 1.2}) {
-    const Points& frame = frame_at(o, gate_opens + time);
+    const std::size_t frame = frame_at(o, gate_opens + time);
     Chart panel;
     panel.title = time == 0 ? title : "";
     panel.y_label = "z [m]";
     panel.equal_scales = true;
     panel.x = Limits{-0.02, 1.0};
-    panel.y = Limits{0, time == 0 ? 0.67 : time < 0.2 ? 0.56 : 0.32};
+    panel.y = Limits{0, time == 0 ? 0.67 : time < 0.2 ? 0.58 : time < 0.4 ? 0.42 : 0.25};
     Series points{time == 0 ? "as the gate goes" : fmt::format("{:g} s later", time), {}, {}, 5};
-    for (const auto& p : frame.position) {
+    for (const auto& p : o.frames.at(frame).position) {
       points.x.push_back(p[0]);
       points.y.push_back(p[2]);
     }
@@ -109,7 +116,7 @@ std::string outlines(const Outcome& o, const Sand& s, const std::string& title) 
     points.marks = true;
     points.mark_size = std::clamp(400 * s.point_spacing(), 1.2, 5.0);
     panel.series.push_back(points);
-    panel.series.push_back(outline_of(frame, s, "", 2));
+    panel.series.push_back(outline_of(o, frame, s, 2));
     if (time > 1) {
       panel.x_label = "x [m]";
       Series lube{"Lube et al. 2005: height, run-out", {0, s.width * (1 + lube_run_out(s.height / s.width))},
