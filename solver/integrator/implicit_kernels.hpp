@@ -154,6 +154,7 @@ struct ScatterStress {
   ParticleView<Real> points;
   Material<Real> material;
   bool dilatant;
+  bool definite;  // without the part of the tangent that compression makes negative
   TangentStore<Real> tangents;
   NodeArrays nodes;
 
@@ -162,6 +163,7 @@ struct ScatterStress {
     PointTangent<Real> tangent;
     const Mat3<Real> stress = nominal_stress(material, state_of(points, p, dilatant), displacement_gradient(grid, g, nodes.u),
                                              tangents.data ? &tangent : nullptr);
+    if (tangents.data && definite) make_definite(tangent);
     if (tangents.data) tangents.put(p, tangent);
     const Real volume = points.volume[p];
     around(grid, g, [&](int n, int a, int b, int c) {

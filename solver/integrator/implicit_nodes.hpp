@@ -133,6 +133,15 @@ struct PrepareNodes {
   }
 };
 
+/// One thread: one node. Acceleration with which a run begins: that of the forces at its start.
+struct FirstAcceleration {
+  NodeArrays nodes;
+  TALUS_HD void operator()(int n) const {
+    const double m = nodes.mass[n];
+    nodes.acceleration[n] = m > 0 ? nodes.freed[n] * ((nodes.external[n] - nodes.internal[n]) * (1 / m)) : Vec3<double>{};
+  }
+};
+
 /// One thread: one node. Local non-viscous damping (Cundall 1987) against the velocity at the start, from the force at the start.
 struct AddDamping {
   NodeArrays nodes;

@@ -14,6 +14,10 @@
 
 namespace talus::solver {
 
+/// Statics on few points per cell leaves modes of the splines that no point's gradient sees: the share of the diagonal that holds them in a
+/// factorisation. The change it makes to a step is undone by the next Newton iteration.
+inline constexpr double static_shift = 1e-12;
+
 /// One thread: one column. Maps of the end of a step.
 template <class Real>
 struct RecordColumns {
@@ -79,6 +83,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
         dynamic_(options.integrator == Integrator::newmark),
         friction_(make_base_friction<double>(options.base)),
         step_(options.implicit.step),
+        first_(state.clock.step == 0),
         operator_(options.implicit.form) {
     changes_.upload({0});
   }
@@ -102,6 +107,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
       step_ = step;
     }
     report.stats.converged = true;
+    first_ = false;
     clock.step_size = step;
     clock.time = clock.next_event - clock.time <= step * (1 + 1e-12) ? clock.next_event : clock.time + step;
     ++clock.step;
@@ -203,6 +209,13 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     for_each(Place{}, this->grid_.active_blocks() * block_columns,
              PrepareNodes<Real>{this->grid_.view(), this->grid_.active_list(), nodes(), held(),
                                 make_walls<double>(options_.walls, start, this->frame_), friction_, g, scheme_, predict});
+    if (dynamic_ && first_) {
+      copy(u_, saved_u_);
+      u_.fill_zero();
+      measure_stress(false);
+      for_each(Place{}, count_, FirstAcceleration{nodes()});
+      copy(saved_u_, u_);
+    }
     if (options_.damping > 0 && dynamic_) {
       measure_stress(false);
       for_each(Place{}, count_, AddDamping{nodes(), options_.damping});
@@ -219,12 +232,12 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
   TangentStore<Real> tangents() { return {tangents_.data(), points_.count()}; }
 
-  void measure_stress(bool with_tangent) {
+  void measure_stress(bool with_tangent, bool definite = false) {
     internal_.fill_zero();
     TangentStore<Real> store = tangents();
     if (!with_tangent) store.data = nullptr;
     for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
-                     ScatterStress<Real, Shape>{this->grid_.view(), points_.view(), material_, dilatant_, store, nodes()});
+                     ScatterStress<Real, Shape>{this->grid_.view(), points_.view(), material_, dilatant_, definite, store, nodes()});
   }
 
   double measure_residual(bool decide) {
@@ -286,15 +299,18 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     return solved && within_reach();
   }
 
-  /// u += s change with the largest s = 1, 1/2, 1/4 ... that lowers the unbalanced force.
+  /// u += s change with the largest s = 1, 1/2, 1/4 ... after which less force is unbalanced, or less of it along the change: a
+  /// sheet that must turn passes through larger forces on its way, but downhill in energy.
   bool search(double before) {
     copy(u_, saved_u_);
+    const double downhill = std::abs(dot(residual_, change_));
     double share = 1;
-    for (int halving = 0; halving < 8; ++halving, share *= 0.5) {
+    for (int halving = 0; halving < 10; ++halving, share *= 0.5) {
       axpby(share, change_, 1.0, u_);
       measure_stress(false);
       const double after = measure_residual(false);
-      if (std::isfinite(after) && after < before * (1 - 1e-4 * share)) return true;
+      const double along = std::abs(dot(residual_, change_));
+      if (std::isfinite(after) && (after < before * (1 - 1e-4 * share) || along < 0.8 * downhill)) return true;
       // The change that must be made at the end of convergence is rounding: take it.
       if (halving == 0 && after <= 1e-11 * force_size()) return true;
       copy(saved_u_, u_);
@@ -304,8 +320,15 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
   bool linear_solve(StepStats& stats) {
     const bool direct = options_.implicit.linear_solver == LinearSolver::cholesky;
-    const LinearReport report = direct ? factorise() : iterate();
+    LinearReport report = direct ? factorise() : iterate();
     stats.linear += report.iterations;
+    if (report.indefinite) {
+      // Compression makes the tangent of a sparsely filled cell indefinite; without that part it is one of a convex energy, slower but
+      // sure to lead downhill.
+      measure_stress(true, true);
+      report = direct ? factorise() : iterate();
+      stats.linear += report.iterations;
+    }
     stats.linear_residual = report.residual;
     stats.indefinite = stats.indefinite || report.indefinite;
     return report.converged;
@@ -316,7 +339,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   LinearReport factorise() {
     stiffness_.resize(static_cast<std::size_t>(count_));
     for_each(Place{}, count_, FrictionStiffness{nodes(), held(), stiffness_.data()});
-    return cholesky_.solve(point_tangents(), {count_, mass_.data(), freed_.data(), scheme_.inertia(), stiffness_.data()}, residual_,
+    return cholesky_.solve(point_tangents(), {count_, mass_.data(), freed_.data(), scheme_.inertia(), dynamic_ ? 0 : static_shift, stiffness_.data()}, residual_,
                            change_);
   }
 
@@ -379,6 +402,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   BaseFriction<double> friction_;
   double step_;
   int gone_ = 0, count_ = 0;
+  bool first_;  // no acceleration is known yet
   TimeScheme scheme_;
   Buffer<double, Place> mass_, contact_friction_, friction_limit_;
   double slip_ = 0;  // [m]

@@ -136,6 +136,9 @@ struct ReduceTriples {
     k.a += Vec3<double>{own.xx, own.xy, own.xz};
     k.b += Vec3<double>{own.xy, own.yy, own.yz};
     k.c += Vec3<double>{own.xz, own.yz, own.zz};
+    k.a.x *= 1 + nodes.shift;
+    k.b.y *= 1 + nodes.shift;
+    k.c.z *= 1 + nodes.shift;
   }
 };
 

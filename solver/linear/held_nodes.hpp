@@ -12,6 +12,7 @@ struct HeldNodes {
   const double* mass = nullptr;             // [kg]
   const Sym3<double>* freed = nullptr;      // projector on the free directions; zero: held, and no unknown
   double inertia = 0;                       // [1/s2]; 0 in statics
+  double shift = 0;                      // share by which the diagonal is raised: statics on few points has modes no point sees
   const Sym3<double>* stiffness = nullptr;  // of what else holds a node, friction say [N/m]; null: nothing
 };
 

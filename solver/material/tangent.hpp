@@ -47,6 +47,20 @@ TALUS_HD Mat3<Real> apply(const PointTangent<Real>& t, const Mat3<Real>& dg) {
           column(t.pull[2], t.pull[5], t.pull[8])};
 }
 
+/// Takes from each off-diagonal pair what makes it indefinite: |s l_a - tau_a| <= sqrt(s l_a s l_b).
+template <class Real>
+TALUS_HD void make_definite(PointTangent<Real>& t) {
+  for (int q = 0; q < 3; ++q) {
+    Real& forth = t.pairs[3 * q];
+    Real& back = t.pairs[3 * q + 1];
+    forth = forth > Real(0) ? forth : Real(0);
+    back = back > Real(0) ? back : Real(0);
+    const Real bound = sqrt(forth * back);
+    Real& cross = t.pairs[3 * q + 2];
+    cross = cross > bound ? bound : cross < -bound ? -bound : cross;
+  }
+}
+
 /// The paper's linear step: stress at the start plus Hooke's law on the strain of the step, over the volume at the start.
 template <class Real>
 TALUS_HD Mat3<Real> linear_stress(const Material<Real>& m, const MaterialState<Real>& start, const Mat3<Real>& g,

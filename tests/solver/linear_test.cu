@@ -127,7 +127,7 @@ struct Bench {
   }
   TangentStore<Real> store() { return {tangents.data(), points.count()}; }
   PointTangents<Real> from() { return {grid.view(), points.view(), store()}; }
-  HeldNodes held() const { return {count, mass.data(), freed.data(), inertia, stiffness.data()}; }
+  HeldNodes held() const { return {count, mass.data(), freed.data(), inertia, 0.0, stiffness.data()}; }
 
   void refresh() {
     const auto n = static_cast<std::size_t>(count);
@@ -143,7 +143,7 @@ struct Bench {
         Place{}, points.count(), grid.groups(),
         ScatterInertia<Real, Shape>{grid.view(), points.view(), material.density, false, false, nullptr, nodes()});
     for_each_grouped(Place{}, points.count(), grid.groups(),
-                     ScatterStress<Real, Shape>{grid.view(), points.view(), material, false, store(), nodes()});
+                     ScatterStress<Real, Shape>{grid.view(), points.view(), material, false, false, store(), nodes()});
     synchronise(Place{});
   }
 

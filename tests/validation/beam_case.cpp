@@ -79,7 +79,8 @@ struct Bent {
 };
 
 /// Runs a beam and adds its rows: against the elastica (the goal of validation.md), and against a beam that shears and
-/// stretches, which is what the solid itself converges to; at this depth the two differ by up to 0.7 %.
+/// stretches, which is what the solid itself converges to; at this depth it bends 0.6 % (k = 1)
+/// to 1.4 % (k = 10) further.
 Bent bend(Bench& bench, const Beam& b, const LinearScheme& scheme, double tolerance) {
   Bent bent{bench.run(name_of(b, scheme.name), overrides_of(b) + scheme.overrides), 0};
   bent.deflection = tip_deflection(bent.outcome, b);
@@ -99,7 +100,7 @@ void add_shape(Chart& chart, const Bent& bent, const Beam& b, int colour) {
     exact.y.push_back(-a.w * b.arm());
   }
   exact.width = 2;
-  chart.series.push_back(exact);
+  chart.series.insert(chart.series.begin(), exact);
   if (!bent.outcome.ok()) return;
   Series points{fmt::format("k = {:g}", b.k), {}, {}, colour};
   for (std::size_t p = 0; p < bent.outcome.last().size(); ++p) {
@@ -109,7 +110,7 @@ void add_shape(Chart& chart, const Bent& bent, const Beam& b, int colour) {
   points.line = false;
   points.marks = true;
   points.mark_size = 2.2;
-  chart.series.insert(chart.series.end() - 1, points);  // under the axis
+  chart.series.push_back(points);
 }
 
 Chart deflection_chart() {

@@ -78,7 +78,8 @@ Chart stress_chart(const Column& column, const std::string& title) {
 
 constexpr Column self_weight{Law::corotated, 1e6, 200, 50};
 
-/// The paper's dynamic set-up: linear functions, the body force grows over 20 steps, local damping 0.05, 4 s.
+/// The paper's dynamic set-up: linear functions, local damping 0.05, 4 s. The body force grows over the first 2 s, ten periods: grown
+/// "in 20 time steps" of 1e-4 s it is a blow, of which this damping leaves a tenth after 4 s.
 Overrides paper_dynamics(const char* integrator, double step) {
   return {{"solve.integrator", words(integrator)},
           {"solve.shape", words("linear")},
@@ -89,7 +90,7 @@ Overrides paper_dynamics(const char* integrator, double step) {
           {"solve.largest_step_s", step},
           {"solve.cfl", 0.8},
           {"solve.damping", 0.05},
-          {"solve.gravity_ramp_s", 20 * step},
+          {"solve.gravity_ramp_s", 2.0},
           {"solve.end_time_s", 4.0},
           {"solve.frame_interval_s", 4.0},
           {"solve.history_interval_s", 0.05}};
@@ -141,7 +142,7 @@ void paper_table(Bench& bench, Chart& profile) {
     study("reference, " + scheme.name, "newmark", scheme.overrides + Overrides{{"solve.preset", words("reference")}},
           {{1e-4, scheme.name == "pcg" ? 0.018 : 0.014}, {1e-3, 0.018}}, scheme.name == "pcg" ? 1 : 3);
   }
-  study("explicit", "explicit", {}, {{2e-6, 0.012}, {1e-5, 0.227}, {1e-4, 0.227}}, 2);
+  study("explicit", "explicit", {}, {{1e-4, 0.227}, {1e-5, 0.227}, {2e-6, 0.012}}, 2);
   bench.picture("A1-step-size", png_of(steps));
 }
 

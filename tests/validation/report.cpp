@@ -29,7 +29,7 @@ Cells cells_of(const Row& r) {
           number(r.computed),
           number(r.reference),
           number(r.error, "{:.2e}"),
-          number(r.tolerance, "{:.0e}"),
+          number(r.tolerance, "{:.2g}"),
           r.pass ? "yes" : "NO",
           number(r.wall_time, "{:.2f}"),
           number(r.particles, "{:.0f}"),
