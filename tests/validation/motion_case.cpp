@@ -89,9 +89,10 @@ void free_fall(Bench& bench) {
         }
       }
     }
-    bench.measure(o, "momentum of the fall", worst, 1e-9);
-    // The trapezoid is exact; an explicit step moves with the velocity of its end, so it is half a step ahead.
+    // The trapezoid is exact but for the linear solver's 1e-8; an explicit step keeps momentum to rounding, and moves with the
+    // velocity of its end, so it is half a step ahead.
     const bool exact = std::string(integrator) == "newmark";
+    bench.measure(o, "momentum of the fall", worst, exact ? 1e-8 : 1e-9);
     const double steps = o.ok() ? static_cast<double>(o.run.summary.steps) : 1;
     bench.measure(o, "way of the fall [m]", way, exact ? 1e-6 : 0.5 * 9.81 * time * time / steps * 1.01);
   }
