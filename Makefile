@@ -6,11 +6,14 @@ JOBS   ?= $(shell nproc)
 TEST_JOBS ?= 2
 SETUP  ?= yes
 OUT    ?= pipelines/out
+ON     ?= auto
+LONG   ?=
+CASES  ?=
 
 programs := talus-preprocess talus-solve talus-postprocess talus-make-terrain
 launcher := $(if $(shell command -v ccache),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_CUDA_COMPILER_LAUNCHER=ccache)
 
-.PHONY: help setup configure build demo test bundle bundle-solver clean
+.PHONY: help setup configure build demo test validate bundle bundle-solver clean
 
 help: ## this list
 	@echo "make TARGET [PRESET=default|cpu|gpu|check] [JOBS=n]"
@@ -43,6 +46,10 @@ test: setup $(BUILD)/build.ninja ## everything built, every test run
 	@cmake --build $(BUILD) -j $(JOBS)
 	@TALUS_REQUIRE_TOOLS=$(if $(filter no,$(SETUP)),,1) \
 	  ctest --test-dir $(BUILD) --output-on-failure --no-tests=error -j $(TEST_JOBS)
+
+validate: setup $(BUILD)/build.ninja ## error beside tolerance for every case of docs/validation.md [LONG=1] [ON=cpu|gpu] [CASES="A1 B2"]
+	@cmake --build $(BUILD) -j $(JOBS) --target $(programs) talus-validate
+	@$(BUILD)/bin/talus-validate --on $(ON) $(if $(filter-out 0 no,$(LONG)),--long) $(CASES)
 
 bundle: setup $(BUILD)/build.ninja ## programs and tests with the shared libraries they need: build/bundle, build/talus-bundle.tar.xz
 	@cmake --build $(BUILD) -j $(JOBS)

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include "preprocess/laboratory.hpp"
+
 namespace talus::preprocess {
 
 void ReleaseOptions::describe(recipe::Visitor& v) {
@@ -47,6 +49,26 @@ void GridOptions::describe(recipe::Visitor& v) {
       "cells without elevation that reach the edge of the grid: refuse them, or leave them outside the domain");
 }
 
+void LaboratoryOptions::describe(recipe::Visitor& v) {
+  v.integer("columns", columns, recipe::not_negative, "cells from west to east; 0 = no laboratory");
+  v.integer("rows", rows, recipe::not_negative, "cells from south to north");
+  v.number("west_m", west_m, recipe::any, "western edge");
+  v.number("south_m", south_m, recipe::any, "southern edge");
+  v.number("ground_m", ground_m, recipe::any, "elevation of the ground at the south-western corner");
+  v.number("slope_x", slope_x, recipe::any, "rise of the ground per metre towards the east");
+  v.number("slope_y", slope_y, recipe::any, "rise of the ground per metre towards the north");
+}
+
+void BoxOptions::describe(recipe::Visitor& v) {
+  v.text("name", name, "name of this box; empty = box-1, box-2, ...");
+  v.number("west_m", west_m, recipe::any, "western side");
+  v.number("east_m", east_m, recipe::any, "eastern side; a multiple of the points' spacing away");
+  v.number("south_m", south_m, recipe::any, "southern side");
+  v.number("north_m", north_m, recipe::any, "northern side");
+  v.number("bottom_m", bottom_m, recipe::not_negative, "lower side, above the ground");
+  v.number("top_m", top_m, recipe::not_negative, "upper side, above the ground");
+}
+
 void Options::describe(recipe::Visitor& v) {
   v.path("before_dem", before_dem, "surface before the slide (1: with after_dem, 2: with sliding_surface)");
   v.path("after_dem", after_dem, "surface after it; only the lowering inside the source is taken out");
@@ -60,6 +82,10 @@ void Options::describe(recipe::Visitor& v) {
   grid.describe(v);
   v.leave();
   recipe::list(v, "release", release, "what is released onto base_dem; may be repeated");
+  v.enter("laboratory", "(4) a plane instead of elevation models, with [[preprocess.box]]");
+  laboratory.describe(v);
+  v.leave();
+  recipe::list(v, "box", box, "a block of material on or above that plane; may be repeated");
 }
 
 namespace {
@@ -71,7 +97,7 @@ Fault fault(std::string what, std::string why, std::string mend) {
 void check_way(const Options& o, std::vector<Fault>& faults) {
   const std::string mend =
       "Give exactly one of: before_dem and after_dem; before_dem and sliding_surface; base_dem and "
-      "[[preprocess.release]]";
+      "[[preprocess.release]]; [preprocess.laboratory] and [[preprocess.box]]";
   const bool before = !o.before_dem.empty(), after = !o.after_dem.empty(), sliding = !o.sliding_surface.empty();
   const bool base = !o.base_dem.empty(), releases = !o.release.empty();
   if (!before && !base) {
@@ -138,6 +164,11 @@ void check_grid(const GridOptions& g, std::vector<Fault>& faults) {
 }  // namespace
 
 void Options::check(std::vector<Fault>& faults) const {
+  if (laboratory.given() || !box.empty()) {
+    check_grid(grid, faults);
+    if (faults.empty()) check_laboratory(*this, faults);
+    return;
+  }
   check_way(*this, faults);
   std::set<std::string> names;
   for (std::size_t i = 0; i < release.size(); ++i) {
@@ -163,6 +194,7 @@ void Options::check(std::vector<Fault>& faults) const {
 }
 
 Way Options::way() const {
+  if (laboratory.given()) return Way::laboratory;
   if (!base_dem.empty()) return Way::base_and_releases;
   return after_dem.empty() ? Way::before_and_sliding_surface : Way::before_and_after;
 }

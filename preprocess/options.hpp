@@ -49,8 +49,27 @@ struct GridOptions {
   void describe(recipe::Visitor& v);
 };
 
-/// The three ways of saying what fails.
-enum class Way { before_and_after, before_and_sliding_surface, base_and_releases };
+/// A scene without elevation models: a level or tilted plane, its cells as wide as grid.spacing_m.
+struct LaboratoryOptions {
+  int columns = 0, rows = 0;  // 0 = no laboratory
+  double west_m = 0, south_m = 0;
+  double ground_m = 0;  // elevation of the south-western corner
+  double slope_x = 0, slope_y = 0;
+
+  bool given() const { return columns > 0 || rows > 0; }
+  void describe(recipe::Visitor& v);
+};
+
+/// One [[preprocess.box]]: a block of material; heights count from the ground.
+struct BoxOptions {
+  std::string name;
+  double west_m = 0, east_m = 0, south_m = 0, north_m = 0, bottom_m = 0, top_m = 0;
+
+  void describe(recipe::Visitor& v);
+};
+
+/// The four ways of saying what fails.
+enum class Way { before_and_after, before_and_sliding_surface, base_and_releases, laboratory };
 
 struct Options {
   std::filesystem::path before_dem, after_dem, sliding_surface, base_dem;
@@ -58,6 +77,8 @@ struct Options {
   SourceOptions source;
   GridOptions grid;
   std::vector<ReleaseOptions> release;
+  LaboratoryOptions laboratory;
+  std::vector<BoxOptions> box;
 
   void describe(recipe::Visitor& v);
   /// What the ranges of single keys cannot say: which keys go together.

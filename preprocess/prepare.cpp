@@ -8,6 +8,7 @@
 
 #include "common/error.hpp"
 #include "common/stage/stage.hpp"
+#include "preprocess/laboratory.hpp"
 #include "preprocess/particles/seed.hpp"
 #include "preprocess/release/releases.hpp"
 #include "preprocess/release/source.hpp"
@@ -80,10 +81,18 @@ Scene from_releases(const Options& options) {
   return scene;
 }
 
+Scene from_laboratory(const Options& options) {
+  Raster ground = laboratory_ground(options);
+  Scene scene{box_surface(options, ground), std::move(ground), {}};
+  for (std::size_t b = 0; b < options.box.size(); ++b) scene.releases.push_back(box_release(options, b));
+  return scene;
+}
+
 Scene read_scene(const Options& options) {
   switch (options.way()) {
     case Way::before_and_after: return from_before_and_after(options);
     case Way::before_and_sliding_surface: return from_sliding_surface(options);
+    case Way::laboratory: return from_laboratory(options);
     case Way::base_and_releases: break;
   }
   return from_releases(options);
@@ -142,7 +151,8 @@ Prepared prepare(const Options& options, Points points) {
   const Seeding seeding = seeding_of(options.grid, scene.bed.grid.cell);
   Prepared prepared;
   prepared.inputs = inputs_of(options);
-  prepared.point_count = count_points(scene.releases, seeding);
+  const bool laboratory = options.way() == Way::laboratory;
+  prepared.point_count = laboratory ? count_box_points(options) : count_points(scene.releases, seeding);
   require_countable(prepared.point_count, options.grid);
 
   Domain& domain = prepared.domain;
@@ -156,7 +166,9 @@ Prepared prepare(const Options& options, Points points) {
     domain.release_names.push_back(release.name);
     prepared.by_release.emplace_back(release.name, volumes_of(release.thickness, cosine));
   }
-  if (points == Points::seeded) domain.points = seed_points(scene.releases, seeding);
+  if (points == Points::seeded) {
+    domain.points = laboratory ? seed_boxes(options) : seed_points(scene.releases, seeding);
+  }
   domain.terrain = std::move(scene.bed);
   domain.before = std::move(scene.before);
   return prepared;

@@ -44,7 +44,7 @@ void log_plan(const Domain& domain, const SolveOptions& o, On on) {
 }
 
 void solve(StageContext& context) {
-  const auto options = context.recipe.read<SolveOptions>("solve");
+  const auto options = with_preset(context.recipe.read<SolveOptions>("solve"));
   const On on = choose_place(context.on);
   const auto domain_file = options.domain.empty() ? context.out / "domain.vdb" : options.domain;
   const Domain domain = read_domain(domain_file);
@@ -54,9 +54,9 @@ void solve(StageContext& context) {
   const std::string settings = recipe::to_toml(options, "solve", false);
   const std::string fingerprint = sha256(domain_file) + "\n" + settings;
   const RunPaths paths(context.out);
-  ExplicitRun run(domain, options, on, paths, fingerprint);
-  if (context.restart) run.resume(context.restart->empty() ? paths.checkpoint : *context.restart);
-  const RunSummary summary = run.run(context.recipe.scene_name(), context.recipe.title());
+  Simulation simulation(domain, options, on, paths, fingerprint);
+  if (context.restart) simulation.resume(context.restart->empty() ? paths.checkpoint : *context.restart);
+  const RunSummary summary = simulation.run(context.recipe.scene_name(), context.recipe.title());
   log_info(fmt::format("{} at t = {:.2f} s after {} steps in {:.1f} s", summary.stop_reason, summary.time_end, summary.steps,
                        summary.wall_time));
   context.results.push_back(paths.run);

@@ -33,6 +33,7 @@ void MaterialOptions::describe(recipe::Visitor& v) {
   recipe::choice(v, "model", model,
                  {{"drucker-prager", MaterialModel::drucker_prager},
                   {"hencky", MaterialModel::hencky},
+                  {"corotated", MaterialModel::corotated},
                   {"linear-elastic", MaterialModel::linear_elastic}},
                  "constitutive law");
   v.number("density_kg_m3", density, recipe::positive, "bulk density of the released mass");
@@ -60,7 +61,55 @@ void BaseOptions::describe(recipe::Visitor& v) {
   v.number("characteristic_speed_m_s", characteristic_speed, recipe::positive, "velocity-weakening: speed of half the drop");
 }
 
+void ImplicitOptions::describe(recipe::Visitor& v) {
+  v.number("step_s", step, recipe::positive, "step size; cut where a step does not converge, grown again after");
+  v.number("newmark_alpha", alpha, recipe::Range{0, 1, true, false}, "newmark: alpha (0.25: trapezoid)");
+  v.number("newmark_beta", beta, recipe::fraction, "newmark: beta (0.5: trapezoid; more damps)");
+  v.integer("newton_iterations", newton_iterations, recipe::Range{1, 1000}, "most Newton iterations a step; 1: one linear solve");
+  v.number("newton_tolerance", newton_tolerance, recipe::Range{0, 1, true, true}, "unbalanced force over the forces' size");
+  recipe::choice(v, "linear_solver", linear_solver, {{"pcg", LinearSolver::pcg}, {"cholesky", LinearSolver::cholesky}},
+                 "conjugate gradients, never assembled; or sparse Cholesky");
+  v.number("linear_tolerance", linear_tolerance, recipe::Range{0, 1, true, true}, "pcg: residual over right-hand side");
+  v.integer("linear_iterations", linear_iterations, recipe::Range{1, 1e9}, "pcg: most iterations");
+  recipe::choice(v, "operator", form,
+                 {{"points", Operator::points}, {"elements", Operator::elements}, {"stencil", Operator::stencil}},
+                 "pcg: the tangent's product point by point, by stored elements, or by assembled blocks");
+  recipe::choice(v, "preconditioner", preconditioner,
+                 {{"block", Preconditioner::block}, {"diagonal", Preconditioner::diagonal}}, "pcg: 3 x 3 blocks, or the diagonal");
+  v.integer("step_cuts", step_cuts, recipe::Range{0, 30}, "halvings of a step before the run gives up");
+}
+
+void WallOptions::describe(recipe::Visitor& v) {
+  recipe::choice(v, "axis", axis, {{"x", Axis::x}, {"y", Axis::y}, {"z", Axis::z}}, "normal of the wall");
+  v.number("position_m", position, recipe::any, "map coordinate, or elevation");
+  recipe::choice(v, "material_is", side, {{"above", Side::above}, {"below", Side::below}},
+                 "where the material lies: at larger (above) or smaller (below) coordinates");
+  recipe::choice(v, "kind", kind,
+                 {{"roller", WallKind::roller}, {"fixed", WallKind::fixed}, {"frictional", WallKind::frictional}},
+                 "roller: no motion along the axis; fixed: none at all; frictional: one-sided, with friction");
+  v.number("friction_angle_deg", friction_angle, recipe::Range{0, 90, false, true}, "frictional: friction angle");
+  v.number("speed_m_s", speed, recipe::any, "velocity of the wall along its axis");
+  v.number("from_s", from, recipe::not_negative, "the wall is there from this time");
+  v.number("to_s", to, recipe::not_negative, "and goes at this time (a gate)");
+}
+
+void LoadOptions::describe(recipe::Visitor& v) {
+  v.numbers("box_m", box, recipe::any, "west, east, south, north, bottom, top (the last two above the ground): points starting there");
+  v.numbers("force_N", force, recipe::any, "force on them in all: east, north, up");
+  v.number("ramp_s", ramp, recipe::not_negative, "time over which it grows to its full size");
+  v.number("from_s", from, recipe::not_negative, "it pulls from this time");
+  v.number("to_s", to, recipe::not_negative, "to this time");
+}
+
 void SolveOptions::describe(recipe::Visitor& v) {
+  recipe::choice(v, "preset", preset, {{"none", Preset::none}, {"reference", Preset::reference}},
+                 "reference: the implicit scheme of the reference paper as it stands (docs/theory.md)");
+  recipe::choice(v, "integrator", integrator,
+                 {{"explicit", Integrator::explicit_}, {"newmark", Integrator::newmark}, {"quasi-static", Integrator::quasi_static}},
+                 "time integration");
+  v.number("gravity_ramp_s", gravity_ramp, recipe::not_negative, "time over which gravity grows to its full size");
+  v.integer("gravity_loading_steps", gravity_loading_steps, recipe::Range{0, 100000},
+            "quasi-static steps that bring the mass to equilibrium before the start; 0: start from zero stress");
   v.path("domain", domain, "domain of talus-preprocess; empty: domain.vdb in the output folder");
   v.number("end_time_s", end_time, recipe::positive, "simulated time");
   v.number("stop_kinetic_fraction", stop_kinetic_fraction, recipe::Range{0, 1, false, true},
@@ -89,6 +138,11 @@ void SolveOptions::describe(recipe::Visitor& v) {
   v.number("map_threshold_m", map_threshold, recipe::positive, "thickness from which speed, pressure and arrival count");
   v.flag("point_frames", point_frames, "write the material points of each frame into run.h5");
   v.flag("vdb_frames", vdb_frames, "write the material points of each frame as frames/*.vdb as well");
+  v.enter("implicit", "implicit steps");
+  implicit.describe(v);
+  v.leave();
+  recipe::list(v, "wall", walls, "plane walls, gates");
+  recipe::list(v, "load", loads, "forces on parts of the mass");
   v.enter("material", "the sliding mass");
   material.describe(v);
   v.leave();
@@ -105,6 +159,15 @@ void SolveOptions::check(std::vector<Fault>& faults) const {
   };
   three("gravity_m_s2", gravity);
   three("initial_velocity_m_s", initial_velocity);
+  for (const LoadOptions& load : loads) {
+    if (load.box.size() == 6 && load.force.size() == 3) continue;
+    faults.push_back({"[[solve.load]] box_m or force_N has the wrong number of values", "a box has six, a force three",
+                      "Give box_m = [west, east, south, north, bottom, top] and force_N = [east, north, up]"});
+  }
+  if (walls.size() > most_walls) {
+    faults.push_back({fmt::format("[[solve.wall]] is given {} times", walls.size()), fmt::format("at most {} walls fit", most_walls),
+                      "Leave some out"});
+  }
   if (material.dilatancy_angle > material.friction_angle) {
     faults.push_back({fmt::format("[solve.material] dilatancy_angle_deg = {} is above friction_angle_deg = {}",
                                   material.dilatancy_angle, material.friction_angle),
@@ -149,6 +212,41 @@ BaseFriction<Real> make_base_friction(const BaseOptions& o) {
   return f;
 }
 
+SolveOptions with_preset(SolveOptions o) {
+  if (o.preset != Preset::reference) return o;
+  if (o.integrator == Integrator::explicit_) o.integrator = Integrator::newmark;
+  o.shape = ShapeKind::linear;
+  o.transfer = Transfer::flip;
+  o.flip_fraction = 1;
+  o.stress_update = StressUpdate::modified;
+  o.implicit.alpha = 0.25;
+  o.implicit.beta = 0.5;
+  o.implicit.newton_iterations = 1;
+  o.implicit.form = Operator::elements;
+  o.implicit.preconditioner = Preconditioner::diagonal;
+  return o;
+}
+
+template <class Real>
+Walls<Real> make_walls(const std::vector<WallOptions>& options, double time, const WallFrame& frame) {
+  Walls<Real> walls;
+  for (const WallOptions& o : options) {
+    if (time < o.from || time >= o.to) continue;
+    Wall<Real>& wall = walls.list[walls.count++];
+    wall.axis = static_cast<int>(o.axis);
+    wall.side = o.side == Side::above ? 1 : -1;
+    const double position = o.position + o.speed * (time - o.from);
+    const int a = wall.axis;
+    wall.position = static_cast<Real>((position - frame.origin[a]) / frame.cell[a]);
+    wall.kind = o.kind;
+    wall.friction = static_cast<Real>(std::tan(o.friction_angle * radians_per_degree));
+    wall.speed = static_cast<Real>(o.speed);
+  }
+  return walls;
+}
+
+template Walls<float> make_walls(const std::vector<WallOptions>&, double, const WallFrame&);
+template Walls<double> make_walls(const std::vector<WallOptions>&, double, const WallFrame&);
 template Material<float> make_material(const MaterialOptions&);
 template Material<double> make_material(const MaterialOptions&);
 template BaseFriction<float> make_base_friction(const BaseOptions&);

@@ -5,6 +5,7 @@
 
 #include "common/recipe/recipe.hpp"
 #include "solver/contact/base_friction.hpp"
+#include "solver/contact/walls.hpp"
 #include "solver/grid/background_grid.hpp"
 #include "solver/material/material.hpp"
 
@@ -14,6 +15,13 @@ enum class Precision { single_, double_ };
 enum class ShapeKind { linear, quadratic };
 enum class Transfer { apic, flip };
 enum class StressUpdate { last, modified };  // USL, MUSL
+enum class Integrator { explicit_, newmark, quasi_static };
+enum class Preset { none, reference };
+enum class LinearSolver { pcg, cholesky };
+enum class Operator { points, elements, stencil };
+enum class Preconditioner { diagonal, block };
+enum class Axis { x, y, z };
+enum class Side { below, above };
 enum class Cone { compression, extension, plane_strain };
 
 struct MaterialOptions {
@@ -38,7 +46,50 @@ struct BaseOptions {
   void describe(recipe::Visitor& v);
 };
 
+/// How an implicit step is taken.
+struct ImplicitOptions {
+  double step = 0.01;                // [s]
+  double alpha = 0.25, beta = 0.5;   // Newmark
+  int newton_iterations = 30;        // 1: the single linear solve of the reference paper
+  double newton_tolerance = 1e-6;    // unbalanced force over the forces' size
+  LinearSolver linear_solver = LinearSolver::pcg;
+  double linear_tolerance = 1e-8;
+  int linear_iterations = 5000;
+  Operator form = Operator::points;
+  Preconditioner preconditioner = Preconditioner::block;
+  int step_cuts = 8;                 // halvings before giving up
+  void describe(recipe::Visitor& v);
+};
+
+/// A plane wall, present from one time to another.
+struct WallOptions {
+  Axis axis = Axis::x;
+  double position = 0;               // map coordinate, or elevation [m]
+  Side side = Side::above;           // where the material is
+  WallKind kind = WallKind::roller;
+  double friction_angle = 0;         // [deg]
+  double speed = 0;                  // along the axis [m/s]
+  double from = 0, to = 1e30;        // [s]
+  void describe(recipe::Visitor& v);
+};
+
+/// A force on the points that start inside a box.
+struct LoadOptions {
+  std::vector<double> box = {0, 0, 0, 0, 0, 0};  // west, east, south, north [m], bottom, top above the ground [m]
+  std::vector<double> force = {0, 0, 0};         // in all [N]
+  double ramp = 0;                               // time over which it grows [s]
+  double from = 0, to = 1e30;                    // [s]
+  void describe(recipe::Visitor& v);
+};
+
 struct SolveOptions {
+  Preset preset = Preset::none;
+  Integrator integrator = Integrator::explicit_;
+  ImplicitOptions implicit;
+  std::vector<WallOptions> walls;
+  std::vector<LoadOptions> loads;
+  double gravity_ramp = 0;           // [s]
+  int gravity_loading_steps = 0;     // quasi-static steps before the start
   std::filesystem::path domain;      // empty: OUT/domain.vdb
   double end_time = 60;              // [s]
   double stop_kinetic_fraction = 0;  // of its peak; 0: never
@@ -73,5 +124,17 @@ Material<Real> make_material(const MaterialOptions& options);
 
 template <class Real>
 BaseFriction<Real> make_base_friction(const BaseOptions& options);
+
+/// Map coordinates of node (0, 0, 0) and the spacing along each axis [m].
+struct WallFrame {
+  double origin[3], cell[3];
+};
+
+/// The options with `preset` spelt out: preset = "reference" sets what the reference paper states and leaves the rest alone.
+SolveOptions with_preset(SolveOptions options);
+
+/// The walls that stand at a time.
+template <class Real>
+Walls<Real> make_walls(const std::vector<WallOptions>& options, double time, const WallFrame& frame);
 
 }  // namespace talus::solver

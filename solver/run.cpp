@@ -13,7 +13,8 @@ namespace {
 
 const std::vector<std::string> history_names = {"time_s",     "step",       "step_size_s",    "kinetic_J",
                                                 "potential_J", "elastic_J", "volume_m3",      "outflow_m3",
-                                                "speed_max_m_s", "momentum_x_kg_m_s", "momentum_y_kg_m_s", "momentum_z_kg_m_s"};
+                                                "speed_max_m_s", "momentum_x_kg_m_s", "momentum_y_kg_m_s", "momentum_z_kg_m_s",
+                                                "newton_iterations", "linear_iterations", "step_cuts", "step_over_cfl"};
 
 std::string duration(double seconds) {
   if (seconds < 100) return fmt::format("{:.0f} s", seconds);
@@ -23,20 +24,20 @@ std::string duration(double seconds) {
 
 }  // namespace
 
-ExplicitRun::ExplicitRun(const Domain& domain, const SolveOptions& options, On on, RunPaths paths, std::string fingerprint)
+Simulation::Simulation(const Domain& domain, const SolveOptions& options, On on, RunPaths paths, std::string fingerprint)
     : domain_(domain),
-      options_(options),
+      options_(with_preset(options)),
       on_(on),
       paths_(std::move(paths)),
       fingerprint_(std::move(fingerprint)),
-      scene_(make_scene(domain, options)),
+      scene_(make_scene(domain, options_)),
       frames_(paths_.frames) {
   released_ = std::accumulate(scene_.points.volume.begin(), scene_.points.volume.end(), 0.0);
 }
 
-void ExplicitRun::resume(const std::filesystem::path& file) {
+void Simulation::resume(const std::filesystem::path& file) {
   Checkpoint checkpoint = read_checkpoint(file, fingerprint_);
-  solver_ = resume_explicit_solver(scene_, options_, on_, checkpoint.state);
+  solver_ = resume_solver(scene_, options_, on_, checkpoint.state);
   memory_ = std::move(checkpoint.memory);
   frames_.expect(memory_.frames);
   time_ = checkpoint.state.clock.time;
@@ -44,23 +45,69 @@ void ExplicitRun::resume(const std::filesystem::path& file) {
   log_info(fmt::format("going on from {} at t = {:.3f} s, step {}", file.string(), time_, checkpoint.state.clock.step));
 }
 
-void ExplicitRun::start() {
+void Simulation::start() {
   frames_.clear();
   std::error_code ignored;
   for (const auto& stale : {paths_.run, paths_.checkpoint}) std::filesystem::remove(stale, ignored);
-  solver_ = make_explicit_solver(scene_, options_, on_);
+  if (options_.gravity_loading_steps > 0) load_by_gravity();
+  solver_ = make_solver(scene_, options_, on_);
   memory_.history.names = history_names;
   memory_.history.columns.resize(history_names.size());
   memory_.initial_thickness = solver_->thickness();
 }
 
-double ExplicitRun::next_event() const {
-  const double frame = static_cast<double>(memory_.frames) * options_.frame_interval;
-  const double record = static_cast<double>(memory_.records) * options_.history_interval;
-  return std::min({frame, record, options_.end_time});
+void Simulation::load_by_gravity() {
+  SolveOptions o = options_;
+  o.integrator = Integrator::quasi_static;
+  // Elastic and held at its bed: what is about to slide has no other equilibrium. The first step brings it to its own strength.
+  if (o.material.model == MaterialModel::drucker_prager) o.material.model = MaterialModel::hencky;
+  o.base.law = FrictionLaw::stick;
+  o.gravity_ramp = 1;
+  o.implicit.step = 1.0 / options_.gravity_loading_steps;
+  o.implicit.newton_iterations = std::max(o.implicit.newton_iterations, 20);
+  Scene scene = scene_;
+  for (auto& component : scene.points.velocity) std::fill(component.begin(), component.end(), 0.0);
+  const auto loader = make_solver(scene, o, on_);
+  loader->set_next_event(1);
+  std::int64_t newton = 0, linear = 0;
+  while (loader->clock().time < 1) {
+    const BatchReport batch = loader->advance();
+    newton += batch.stats.newton;
+    linear += batch.stats.linear;
+  }
+  const ParticleState loaded = loader->state().points;
+  ParticleState& start = scene_.points;
+  for (std::size_t q = 0; q < loaded.size(); ++q) {
+    const auto p = static_cast<std::size_t>(loaded.id[q]);
+    double mean = 0;
+    if (options_.material.model == MaterialModel::drucker_prager) {
+      mean = (loaded.elastic[0][q] + loaded.elastic[1][q] + loaded.elastic[2][q]) / 3;
+    }
+    for (std::size_t a = 0; a < 6; ++a) start.elastic[a][p] = loaded.elastic[a][q] - (a < 3 ? mean : 0);
+    start.log_volume[p] = loaded.log_volume[q];
+  }
+  log_info(fmt::format("gravity loading: {} steps, {} Newton and {} linear iterations", loader->clock().step, newton, linear));
 }
 
-void ExplicitRun::pass_events(double time) {
+double Simulation::next_event() const {
+  const double frame = static_cast<double>(memory_.frames) * options_.frame_interval;
+  const double record = static_cast<double>(memory_.records) * options_.history_interval;
+  double next = std::min({frame, record, options_.end_time});
+  const auto consider = [&](double time) {
+    if (time > time_) next = std::min(next, time);
+  };
+  for (const WallOptions& wall : options_.walls) {
+    consider(wall.from);
+    consider(wall.to);
+  }
+  for (const LoadOptions& load : options_.loads) {
+    consider(load.from);
+    consider(load.to);
+  }
+  return next;
+}
+
+void Simulation::pass_events(double time) {
   if (time >= static_cast<double>(memory_.records) * options_.history_interval || time >= options_.end_time) {
     record(time);
     ++memory_.records;
@@ -71,7 +118,7 @@ void ExplicitRun::pass_events(double time) {
   }
 }
 
-void ExplicitRun::record(double time) {
+void Simulation::record(double time) {
   const Energies e = solver_->energies();
   const Clock clock = solver_->clock();
   kinetic_ = e.kinetic;
@@ -87,11 +134,15 @@ void ExplicitRun::record(double time) {
                         static_cast<double>(positive_from_bits(clock.speed_bits)),
                         e.momentum.x,
                         e.momentum.y,
-                        e.momentum.z};
+                        e.momentum.z,
+                        static_cast<double>(memory_.newton),
+                        static_cast<double>(memory_.linear),
+                        static_cast<double>(memory_.cuts),
+                        over_cfl_};
   for (std::size_t c = 0; c < memory_.history.columns.size(); ++c) memory_.history.columns[c].push_back(row[c]);
 }
 
-PointFrame ExplicitRun::point_frame(double time) const {
+PointFrame Simulation::point_frame(double time) const {
   const ParticleState s = solver_->state().points;
   const auto material = make_material<double>(options_.material);
   PointFrame frame;
@@ -112,7 +163,7 @@ PointFrame ExplicitRun::point_frame(double time) const {
   return frame;
 }
 
-void ExplicitRun::put_frame(double time) {
+void Simulation::put_frame(double time) {
   PointFrame frame;
   frame.time = time;
   if (options_.point_frames || options_.vdb_frames) frame = point_frame(time);
@@ -126,25 +177,25 @@ void ExplicitRun::put_frame(double time) {
   frames_.put(memory_.frames, frame, scene_.map, solver_->thickness());
 }
 
-bool ExplicitRun::checkpoint_due(double time) const {
+bool Simulation::checkpoint_due(double time) const {
   if (options_.checkpoint_interval <= 0) return false;
   return time >= static_cast<double>(memory_.checkpoints + 1) * options_.checkpoint_interval;
 }
 
-void ExplicitRun::save_checkpoint() {
+void Simulation::save_checkpoint() {
   memory_.wall_time = wall_time();
   write_checkpoint(paths_.checkpoint, {fingerprint_, solver_->state(), memory_});
 }
 
-bool ExplicitRun::calm() const {
+bool Simulation::calm() const {
   return options_.stop_kinetic_fraction > 0 && kinetic_ < options_.stop_kinetic_fraction * memory_.peak_kinetic;
 }
 
-double ExplicitRun::wall_time() const {
+double Simulation::wall_time() const {
   return wall_before_ + std::chrono::duration<double>(WallClock::now() - started_).count();
 }
 
-void ExplicitRun::report(Progress& progress, const Clock& clock) const {
+void Simulation::report(Progress& progress, const Clock& clock) const {
   if (!progress.due()) return;
   const double done = clock.time / options_.end_time;
   const double balance = (memory_.history.columns.empty() || memory_.history.columns[6].empty())
@@ -155,7 +206,7 @@ void ExplicitRun::report(Progress& progress, const Clock& clock) const {
                               done > 0 ? duration(wall_time() * (1 - done) / done) : "?"));
 }
 
-void ExplicitRun::fail(const Clock& clock) const {
+void Simulation::fail(const Clock& clock) const {
   const ParticleState s = solver_->state().points;
   std::string where = "unknown place";
   const auto found = std::find(s.id.begin(), s.id.end(), clock.failed_point);
@@ -171,7 +222,7 @@ void ExplicitRun::fail(const Clock& clock) const {
                                     options_.courant)});
 }
 
-RunSummary ExplicitRun::run(const std::string& scene, const std::string& title) {
+RunSummary Simulation::run(const std::string& scene, const std::string& title) {
   started_ = WallClock::now();
   RunSummary summary;
   summary.scene = scene;
@@ -189,6 +240,7 @@ RunSummary ExplicitRun::run(const std::string& scene, const std::string& title) 
     memory_.outflow_volume += batch.outflow_volume;
     memory_.outflow_count += batch.outflow_count;
     if (batch.clock.halt == failed) fail(batch.clock);
+    count(batch);
     if (batch.sorted && (interrupted() || checkpoint_due(time_))) {
       if (checkpoint_due(time_)) ++memory_.checkpoints;
       save_checkpoint();
@@ -216,7 +268,21 @@ RunSummary ExplicitRun::run(const std::string& scene, const std::string& title) 
   return summary;
 }
 
-RunMaps ExplicitRun::final_maps() const {
+void Simulation::count(const BatchReport& batch) {
+  if (options_.integrator == Integrator::explicit_) {
+    over_cfl_ = options_.courant;
+    return;
+  }
+  memory_.newton += batch.stats.newton;
+  memory_.linear += batch.stats.linear;
+  memory_.cuts += batch.stats.cuts;
+  over_cfl_ = batch.stats.over_cfl;
+  log_detail(fmt::format("step {}  t {:.6g} s  dt {:.3g} s ({:.3g} CFL)  newton {}  cg {}  unbalanced {:.1e}  cuts {}", batch.clock.step,
+                         batch.clock.time, batch.clock.step_size, over_cfl_, batch.stats.newton, batch.stats.linear,
+                         batch.stats.residual, batch.stats.cuts));
+}
+
+RunMaps Simulation::final_maps() const {
   const MapFields fields = solver_->state().maps;
   RunMaps maps;
   maps.grid = scene_.map;
@@ -236,7 +302,7 @@ RunMaps ExplicitRun::final_maps() const {
   return maps;
 }
 
-void ExplicitRun::finish(RunSummary& summary) {
+void Simulation::finish(RunSummary& summary) {
   const SolverState state = solver_->state();
   memory_.wall_time = wall_time();
   summary.on = on_ == On::gpu ? gpu_name() : hardware();

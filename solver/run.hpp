@@ -18,9 +18,9 @@ struct RunPaths {
       : run(out / "run.h5"), checkpoint(out / "checkpoint.h5"), frames(out / ".frames"), vdb_frames(out / "frames") {}
 };
 
-class ExplicitRun {
+class Simulation {
  public:
-  ExplicitRun(const Domain& domain, const SolveOptions& options, On on, RunPaths paths, std::string fingerprint);
+  Simulation(const Domain& domain, const SolveOptions& options, On on, RunPaths paths, std::string fingerprint);
 
   /// Go on from checkpoint.h5 instead of the start.
   void resume(const std::filesystem::path& checkpoint);
@@ -31,6 +31,8 @@ class ExplicitRun {
  private:
   using WallClock = std::chrono::steady_clock;
   void start();
+  void load_by_gravity();
+  void count(const BatchReport& batch);
   void pass_events(double time);
   double next_event() const;
   void record(double time);
@@ -51,12 +53,13 @@ class ExplicitRun {
   RunPaths paths_;
   std::string fingerprint_;
   Scene scene_;
-  std::unique_ptr<ExplicitSolver> solver_;
+  std::unique_ptr<Solver> solver_;
   FrameStore frames_;
   RunMemory memory_;
   double released_ = 0;  // [m3]
   double kinetic_ = 0;   // last recorded [J]
   double time_ = 0;      // [s]
+  double over_cfl_ = 0;  // step over the CFL step
   WallClock::time_point started_;
   double wall_before_ = 0;
 };

@@ -14,6 +14,7 @@ struct Scene {
   MapGrid map;
   GridShape grid;
   ParticleState points;
+  std::vector<double> load_volumes;  // volume of the points each load pulls at [m3]
 };
 
 /// Places the seeds of a domain on the background grid. Throws DataError when a seed stands outside the ground.

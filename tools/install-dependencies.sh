@@ -7,7 +7,7 @@ packages=(
   # compiler and tools
   g++ make cmake ninja-build pkg-config git ca-certificates xz-utils patchelf
   # libraries, as cmake/dependencies.cmake looks for them
-  libeigen3-dev libtbb-dev libfmt-dev libspdlog-dev libcli11-dev nlohmann-json3-dev libtomlplusplus-dev
+  libeigen3-dev libsuitesparse-dev libopenblas0-serial libtbb-dev libfmt-dev libspdlog-dev libcli11-dev nlohmann-json3-dev libtomlplusplus-dev
   libgdal-dev libhdf5-dev libnetcdf-dev libcgal-dev
   libopenvdb-dev libboost-iostreams-dev libblosc-dev
   libcairo2-dev fonts-dejavu-core

@@ -139,8 +139,8 @@ void drop_undeclared_nodata(const fs::path& file, GDALRasterBand& band, std::vec
   }
   if (dropped > 0)
     log_warning(
-        fmt::format("{}: {} cells hold -9999 or the like, taken as nodata though the file names no nodata value",
-                    file.string(), dropped));
+        fmt::format("{}: {} -9999 or the like, taken as nodata though the file names no nodata value", file.string(),
+                    dropped == 1 ? "1 cell holds" : fmt::format("{} cells hold", dropped)));
 }
 
 void warn_if_degrees(const fs::path& file, const MapGrid& grid) {

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
+
+#include "preprocess/particles/shift.hpp"
 
 namespace talus::preprocess {
 
@@ -20,17 +21,6 @@ Counts counts_for(double thickness, const Seeding& s) {
   const double layers = std::round(thickness / s.layer_height * s.in_height);
   return {s.along_x, s.along_y, static_cast<int>(std::max(1.0, layers))};
 }
-
-/// -1..1, the same on every machine (the standard's distributions are not).
-class Shift {
- public:
-  explicit Shift(const Seeding& s) : size_(s.jitter), random_(s.jitter_seed) {}
-  double operator()() { return size_ == 0 ? 0.0 : size_ * (2 * (static_cast<double>(random_() >> 11) * 0x1p-53) - 1); }
-
- private:
-  double size_;
-  std::mt19937_64 random_;
-};
 
 struct Column {
   double west, south, side;  // of the cell [m]
@@ -84,7 +74,7 @@ SeedPoints seed_points(const std::vector<Release>& releases, const Seeding& seed
   reserve(points, count_points(releases, seeding));
   if (releases.empty()) return points;
   const MapGrid& grid = releases.front().thickness.grid;
-  Shift shift(seeding);
+  Shift shift(seeding.jitter, seeding.jitter_seed);
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
       double foot = 0;

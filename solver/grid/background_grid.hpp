@@ -5,8 +5,8 @@
 // columns that hold material, each over its own range of layers; inside a block, layers are the slow index, so that the 16
 // columns of a layer are neighbours in memory.
 //
-// Node -1, which quadratic functions reach from the lowest half layer, is one with node 0: the base node then carries the
-// traction of the bed alone, and no node gets light as a point nears the ground.
+// There is no layer below 0: near the ground, quadratic functions go over into hats (shape_functions.hpp), so that the base node carries
+// the value on the ground and the traction of the bed alone.
 #pragma once
 
 #include <cstdint>
@@ -32,6 +32,7 @@ struct GridView {
   int columns = 0, rows = 0;                // nodes in x and y
   int block_columns_x = 0;                  // blocks in x
   Real spacing = 0, layer_height = 0;       // [m]
+  Real lowest_weighed = 0;                  // height in layers below which weights on the base layers no longer change
   Mapping mapping = Mapping::terrain_following;
   const BlockSlot* slots = nullptr;         // [blocks in y * blocks in x]
   const Real* terrain = nullptr;            // spline coefficients of the ground at the nodes, from `datum` [m]

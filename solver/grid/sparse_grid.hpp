@@ -14,6 +14,7 @@ struct GridShape {
   double spacing = 0, layer_height = 0;       // [m]
   Mapping mapping = Mapping::terrain_following;
   bool quadratic = true;
+  double lowest_weighed = 0;                  // see GridView
   std::vector<double> terrain;                // ground at the nodes [m], NaN outside the domain; [rows * columns]
 };
 

@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/integrator/explicit_solver.hpp"
-#include "solver/integrator/point_sums.hpp"
+#include "solver/integrator/point_solver.hpp"
 #include "solver/integrator/update_columns.hpp"
 #include "solver/parallel/algorithms.hpp"
 #include "solver/transfer/grid_to_particle.hpp"
@@ -32,24 +31,17 @@ struct BeginStep {
 };
 
 template <class Real, class Place, class Shape>
-class ExplicitSolverOf final : public ExplicitSolver {
+class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
+  using Base = PointSolver<Real, Place, Shape>;
+  using Base::clock_, Base::dilatant_, Base::grid_, Base::material_, Base::options_, Base::points_, Base::read_clock;
+
  public:
   ExplicitSolverOf(const Scene& scene, const SolveOptions& options, const SolverState& state)
-      : options_(options),
-        material_(make_material<Real>(options.material)),
+      : Base(scene, options, state, fields(options)),
         friction_(make_base_friction<Real>(options.base)),
         affine_(options.transfer == Transfer::apic),
         musl_(options.stress_update == StressUpdate::modified),
-        dilatant_(options.material.model == MaterialModel::drucker_prager && options.material.dilatancy_angle > 0),
-        forces_apart_(musl_ || options.damping > 0 || (!affine_ && options.flip_fraction > 0)),
-        points_({affine_, dilatant_, musl_}),
-        grid_(scene.grid) {
-    points_.upload(state.points);
-    clock_.upload({state.clock});
-    peak_thickness_.upload(state.maps.peak_thickness);
-    peak_speed_.upload(state.maps.peak_speed);
-    peak_pressure_.upload(state.maps.peak_pressure);
-    arrival_.upload(state.maps.arrival);
+        forces_apart_(musl_ || options.damping > 0 || (!affine_ && options.flip_fraction > 0)) {
     sort(0);
   }
 
@@ -58,6 +50,8 @@ class ExplicitSolverOf final : public ExplicitSolver {
     clock.halt = clock.request = running;
     const int left = clock.steps_between_sorts - clock.steps_since_sort;
     clock_.upload({clock});
+    walls_ = make_walls<Real>(options_.walls, clock.time, this->frame_);
+    loads_now_ = this->upload_loads(clock.time);
     // One more than the steps left: the last one's begin halts the clock at the sort.
     for (int s = 0; s < std::min(left, batch_steps) + 1; ++s) step();
     BatchReport report;
@@ -80,53 +74,18 @@ class ExplicitSolverOf final : public ExplicitSolver {
     return report;
   }
 
-  void set_next_event(double time) override {
-    Clock clock = read_clock();
-    clock.next_event = time;
-    clock_.upload({clock});
-  }
-
-  Clock clock() const override { return read_clock(); }
-
-  SolverState state() const override {
-    return {points_.download(),
-            read_clock(),
-            {peak_thickness_.download(), peak_speed_.download(), peak_pressure_.download(), arrival_.download()}};
-  }
-
-  Energies energies() override {
-    constexpr int rows = MeasureEnergies<Real, Shape>::rows;
-    const int count = points_.count();
-    sums_.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(count));
-    const Vec3<double> g{options_.gravity[0], options_.gravity[1], options_.gravity[2]};
-    for_each(Place{}, count,
-             MeasureEnergies<Real, Shape>{grid_.view(), points_.view(), material_, g, dilatant_, sums_.data()});
-    double total[rows];
-    for (int r = 0; r < rows; ++r) {
-      total[r] = count > 0 ? sum(Place{}, sums_.data() + static_cast<std::ptrdiff_t>(r) * count, count) : 0;
-    }
-    return {total[0], total[1], total[2], total[3], {total[4], total[5], total[6]}};
-  }
-
-  std::vector<double> thickness() override {
-    const GridShape& shape = grid_.shape();
-    thickness_.resize(static_cast<std::size_t>(shape.columns) * static_cast<std::size_t>(shape.rows));
-    thickness_.fill_zero();
-    for_each_grouped(Place{}, points_.count(), grid_.groups(),
-                     ScatterThickness<Real, Shape>{points_.view(), shape.columns, thickness_.data()});
-    std::vector<double> result = thickness_.download();
-    for (double& value : result) value /= shape.spacing * shape.spacing;
-    return result;
-  }
-
-  const GroundTables& ground() const override { return grid_.ground(); }
-  int particle_count() const override { return points_.count(); }
-  std::size_t bytes() const override {
-    return points_.bytes() + grid_.bytes() + nodes_.bytes() + forces_.bytes() + sums_.bytes() + thickness_.bytes() +
-           peak_thickness_.bytes() + peak_speed_.bytes() + peak_pressure_.bytes() + arrival_.bytes();
-  }
+  std::size_t bytes() const override { return Base::bytes() + nodes_.bytes() + forces_.bytes(); }
 
  private:
+  static ParticleFields fields(const SolveOptions& o) {
+    ParticleFields f;
+    f.affine = o.transfer == Transfer::apic;
+    f.plastic_volume = Base::needs_plastic_volume(o);
+    f.move = o.stress_update == StressUpdate::modified;
+    f.load = !o.loads.empty();
+    return f;
+  }
+
   /// Four verbs: clear, scatter, update, gather. MUSL maps the points' new momentum back before the stress.
   void step() {
     clear(true);
@@ -158,18 +117,17 @@ class ExplicitSolverOf final : public ExplicitSolver {
   void scatter() {
     for_each_grouped(Place{}, points_.count(), grid_.groups(),
                      ParticleToGrid<Real, Shape, what>{grid_.view(), points_.view(), material_, clock_.data(), nodes_.data(),
-                                                       forces_.data(), affine_, dilatant_});
+                                                       forces_.data(), loads_now_, affine_, dilatant_});
   }
 
   template <NodeContent content>
   void update() {
     const Vec3<Real> g{static_cast<Real>(options_.gravity[0]), static_cast<Real>(options_.gravity[1]),
                        static_cast<Real>(options_.gravity[2])};
-    const MapView maps{peak_thickness_.data(), peak_speed_.data(), peak_pressure_.data(), arrival_.data(),
-                       options_.map_threshold};
     for_each(Place{}, grid_.active_blocks() * block_columns,
              UpdateColumns<Real, content>{grid_.view(), grid_.active_list(), clock_.data(), nodes_.data(), forces_.data(), g,
-                                          friction_, static_cast<Real>(options_.damping), material_.density, maps});
+                                          options_.gravity_ramp, walls_,
+                                          friction_, static_cast<Real>(options_.damping), material_.density, this->maps()});
   }
 
   template <Gather part>
@@ -186,22 +144,16 @@ class ExplicitSolverOf final : public ExplicitSolver {
     if (forces_apart_) forces_.resize(static_cast<std::size_t>(grid_.nodes()));
   }
 
-  Clock read_clock() const { return clock_.download().front(); }
-
-  SolveOptions options_;
-  Material<Real> material_;
   BaseFriction<Real> friction_;
-  bool affine_, musl_, dilatant_, forces_apart_;
-  Particles<Real, Place> points_;
-  SparseGrid<Real, Place> grid_;
-  Buffer<Clock, Place> clock_;
+  bool affine_, musl_, forces_apart_;
+  Walls<Real> walls_;
+  const Vec3<double>* loads_now_ = nullptr;
   Buffer<Vec4<Real>, Place> nodes_, forces_;
-  Buffer<double, Place> peak_thickness_, peak_speed_, peak_pressure_, arrival_, sums_, thickness_;
 };
 
 /// A solver of one precision in the place asked for.
 template <class Real>
-std::unique_ptr<ExplicitSolver> make_solver_of(const Scene& scene, const SolveOptions& options, On on,
+std::unique_ptr<Solver> make_explicit_solver_of(const Scene& scene, const SolveOptions& options, On on,
                                                const SolverState& state) {
   const bool quadratic = options.shape == ShapeKind::quadratic;
 #if TALUS_FOR_GPU

@@ -1,7 +1,7 @@
 // The grid's part of an explicit step: new velocities from momentum, force and gravity, damping, the bed, and the maps.
 #pragma once
 
-#include "solver/contact/base_friction.hpp"
+#include "solver/contact/walls.hpp"
 #include "solver/grid/background_grid.hpp"
 #include "solver/integrator/clock.hpp"
 #include "solver/output/map_fields.hpp"
@@ -23,7 +23,9 @@ struct UpdateColumns {
   const Clock* clock;
   Vec4<Real>* nodes;
   Vec4<Real>* forces;        // in: internal force; out: velocity change of the step (FLIP)
-  Vec3<Real> gravity;        // [m/s2]
+  Vec3<Real> gravity;        // full [m/s2]
+  double gravity_ramp;       // time over which it grows [s]
+  Walls<Real> walls;
   BaseFriction<Real> friction;
   Real damping;              // Cundall's local factor [-]
   Real density;              // [kg/m3]
@@ -45,7 +47,7 @@ struct UpdateColumns {
       const int n = GridView<Real>::node(slot, i, j, k);
       Vec4<Real>& node = nodes[n];
       if (!(node.w > Real(0))) continue;
-      const Vec3<Real> v = update(n, node, k <= top_contact, column);
+      const Vec3<Real> v = update(n, node, k <= top_contact, column, i, j, k);
       node.x = v.x;
       node.y = v.y;
       node.z = v.z;
@@ -53,7 +55,10 @@ struct UpdateColumns {
       momentum += v * node.w;
     }
     if constexpr (content != NodeContent::remapped) {
-      if (mass > Real(0)) record(column, static_cast<double>(mass), static_cast<double>(length(momentum)));
+      if (mass > Real(0)) {
+        record_column(maps, column, static_cast<double>(mass), static_cast<double>(length(momentum)),
+                      static_cast<double>(density), static_cast<double>(grid.spacing), clock->time);
+      }
     }
   }
 
@@ -64,14 +69,16 @@ struct UpdateColumns {
     return static_cast<int>(floor(grid.terrain[column] / grid.layer_height + Real(1e-4)));
   }
 
-  TALUS_HD Vec3<Real> update(int n, const Vec4<Real>& node, bool on_ground, int column) const {
+  TALUS_HD Vec3<Real> update(int n, const Vec4<Real>& node, bool on_ground, int column, int i, int j, int k) const {
     const Real dt = Real(clock->step_size);
+    const bool growing = gravity_ramp > 0 && clock->time < gravity_ramp;
+    const Vec3<Real> g = growing ? gravity * Real(clock->time / gravity_ramp) : gravity;
     const Vec3<Real> before{node.x / node.w, node.y / node.w, node.z / node.w};
     Vec3<Real> v = before;
-    if constexpr (content == NodeContent::impulse) v += gravity * dt;
+    if constexpr (content == NodeContent::impulse) v += g * dt;
     if constexpr (content == NodeContent::force) {
       const Vec4<Real> f = forces[n];
-      Vec3<Real> pull = Vec3<Real>{f.x, f.y, f.z} * (Real(1) / node.w) + gravity;
+      Vec3<Real> pull = Vec3<Real>{f.x, f.y, f.z} * (Real(1) / node.w) + g;
       if (damping > Real(0)) {
         pull = {damped(pull.x, before.x), damped(pull.y, before.y), damped(pull.z, before.z)};
       }
@@ -82,6 +89,7 @@ struct UpdateColumns {
       if (content == NodeContent::remapped && law.law != FrictionLaw::stick) law.law = FrictionLaw::none;
       v = meet_ground(law, v, grid.slope_x[column], grid.slope_y[column]);
     }
+    if (walls.count > 0) v = meet_walls(walls, i, j, k, v, content != NodeContent::remapped);
     if constexpr (content == NodeContent::force) {
       const Vec3<Real> change = v - before;
       forces[n] = {Real(0), change.x, change.y, change.z};
@@ -93,18 +101,6 @@ struct UpdateColumns {
   TALUS_HD Real damped(Real pull, Real velocity) const {
     if (velocity == Real(0)) return pull;
     return pull - damping * (velocity > Real(0) ? fabs(pull) : -fabs(pull));
-  }
-
-  TALUS_HD void record(int column, double mass, double momentum) const {
-    const double thickness = mass / (static_cast<double>(density) * grid.spacing * grid.spacing);
-    if (thickness > maps.peak_thickness[column]) maps.peak_thickness[column] = thickness;
-    if (thickness < maps.threshold) return;
-    const double speed = momentum / mass;
-    if (speed > maps.peak_speed[column]) {
-      maps.peak_speed[column] = speed;
-      maps.peak_pressure[column] = static_cast<double>(density) * speed * speed;
-    }
-    if (maps.arrival[column] < 0) maps.arrival[column] = clock->time;
   }
 };
 

@@ -44,12 +44,12 @@ TALUS_HD Sym3<Real> hencky_strain(const Sym3<Real>& deviation) {
   return compose(values, directions);
 }
 
-/// Strain after the displacement gradient `g` of the step: b' = (I + g) b (I + g)^T, written for deviations so that single
-/// precision keeps strains of 1e-6 (Simo 1992, trial state).
+/// Deviation of the left Cauchy-Green tensor after the displacement gradient `g` of the step: b' = (I + g) b (I + g)^T, written
+/// for deviations so that single precision keeps strains of 1e-6 (Simo 1992, trial state).
 template <class Real>
-TALUS_HD Sym3<Real> advance_strain(const Sym3<Real>& strain, const Mat3<Real>& g) {
+TALUS_HD Sym3<Real> advance_deviation(const Sym3<Real>& strain, const Mat3<Real>& g) {
   const Sym3<Real> d = stretch_deviation(strain);
-  // h = g + g d, then b' - I = d + h + h^T + g (I + d) g^T
+  // h = g + g d, then b' - I = d + h + h^T + h g^T
   const Vec3<Real> ga = g.a, gb = g.b, gc = g.c;  // columns of g
   const Vec3<Real> ha = ga + g * Vec3<Real>{d.xx, d.xy, d.xz};
   const Vec3<Real> hb = gb + g * Vec3<Real>{d.xy, d.yy, d.yz};
@@ -61,7 +61,13 @@ TALUS_HD Sym3<Real> advance_strain(const Sym3<Real>& strain, const Mat3<Real>& g
   out.xy = d.xy + ha.y + hb.x + ha.x * ga.y + hb.x * gb.y + hc.x * gc.y;
   out.yz = d.yz + hb.z + hc.y + ha.y * ga.z + hb.y * gb.z + hc.y * gc.z;
   out.xz = d.xz + ha.z + hc.x + ha.x * ga.z + hb.x * gb.z + hc.x * gc.z;
-  return hencky_strain(out);
+  return out;
+}
+
+/// Strain after the displacement gradient `g` of the step.
+template <class Real>
+TALUS_HD Sym3<Real> advance_strain(const Sym3<Real>& strain, const Mat3<Real>& g) {
+  return hencky_strain(advance_deviation(strain, g));
 }
 
 /// ln det(I + g), exact for small g.

@@ -1,6 +1,8 @@
 // Constitutive laws. What a point keeps in `elastic`:
 //   linear-elastic  Cauchy stress [Pa], advanced by Hooke's law and the Jaumann rate (the paper's stress update)
 //   hencky          elastic logarithmic strain; Kirchhoff stress is linear in it (Hencky 1928; de Souza Neto et al. 2008, ch. 13)
+//   corotated       the same strain; the stress is linear in the stretch, P = R (2G (U - I) + lambda tr(U - I) I), so that a bar keeps
+//                   force = E times engineering strain (Chao et al. 2010)
 //   drucker-prager  its deviator; the pressure is a function of the total volume alone, so that a grain that has opened must
 //                   close again before it carries load (cf. Tampubolon et al. 2017, volume correction)
 #pragma once
@@ -9,7 +11,7 @@
 
 namespace talus {
 
-enum class MaterialModel { linear_elastic, hencky, drucker_prager };
+enum class MaterialModel { linear_elastic, hencky, corotated, drucker_prager };
 
 /// Pressure p = -trace(tau)/3 is positive in compression; sqrt(J2) is the shear measure of the cone.
 template <class Real>
@@ -49,6 +51,12 @@ TALUS_HD Sym3<Real> kirchhoff_stress(const Material<Real>& m, const MaterialStat
       const Real lame = m.bulk_modulus - Real(2.0 / 3) * m.shear_modulus;
       return (s.elastic * (Real(2) * m.shear_modulus)).plus_identity(lame * trace(s.elastic));
     }
+    case MaterialModel::corotated: {
+      const Real lame = m.bulk_modulus - Real(2.0 / 3) * m.shear_modulus;
+      const Sym3<Real> d = stretch_deviation(s.elastic * Real(0.5));  // V - I
+      const Sym3<Real> linear = (d * (Real(2) * m.shear_modulus)).plus_identity(lame * trace(d));
+      return linear + commuting_product(d, linear);
+    }
     default:
       return (s.elastic * (Real(2) * m.shear_modulus)).plus_identity(-granular_pressure(m, s));
   }
@@ -66,6 +74,12 @@ TALUS_HD Real elastic_energy(const Material<Real>& m, const MaterialState<Real>&
     case MaterialModel::hencky: {
       const Real volume = trace(s.elastic);
       return m.shear_modulus * norm_squared(deviator(s.elastic)) + Real(0.5) * m.bulk_modulus * volume * volume;
+    }
+    case MaterialModel::corotated: {
+      const Real lame = m.bulk_modulus - Real(2.0 / 3) * m.shear_modulus;
+      const Sym3<Real> d = stretch_deviation(s.elastic * Real(0.5));
+      const Real volume = trace(d);
+      return m.shear_modulus * norm_squared(d) + Real(0.5) * lame * volume * volume;
     }
     default: {
       const Real p = granular_pressure(m, s);
@@ -117,6 +131,7 @@ TALUS_HD void advance_material(const Material<Real>& m, const Mat3<Real>& g, Mat
       advance_linear(m, g, s.elastic);
       break;
     case MaterialModel::hencky:
+    case MaterialModel::corotated:
       s.elastic = advance_strain(s.elastic, g);
       break;
     default:

@@ -20,11 +20,13 @@ void visit_points(State& s, Ints&& ints, Reals&& reals) {
     ints(fmt::format("cell_{}", a), s.cell[a]);
     reals(fmt::format("offset_{}", a), s.offset[a]);
     reals(fmt::format("velocity_{}", a), s.velocity[a]);
+    reals(fmt::format("acceleration_{}", a), s.acceleration[a]);
   }
   for (int a = 0; a < 9; ++a) reals(fmt::format("affine_{}", a), s.affine[a]);
   for (int a = 0; a < 6; ++a) reals(fmt::format("elastic_{}", a), s.elastic[a]);
   ints("id", s.id);
   ints("release", s.release);
+  ints("load", s.load);
   reals("log_volume", s.log_volume);
   reals("plastic_log_volume", s.plastic_log_volume);
   reals("volume", s.volume);
@@ -47,8 +49,8 @@ std::vector<T> read_list(const h5::File& file, const std::string& path) {
 
 void write_memory(h5::File& file, const RunMemory& m) {
   file.make_group("/memory");
-  const std::int64_t counts[] = {m.frames, m.records, m.checkpoints, m.outflow_count};
-  file.write<std::int64_t>("/memory/event_counts", {4}, counts);
+  const std::int64_t counts[] = {m.frames, m.records, m.checkpoints, m.outflow_count, m.newton, m.linear, m.cuts};
+  file.write<std::int64_t>("/memory/event_counts", {7}, counts);
   const double numbers[] = {m.peak_kinetic, m.outflow_volume, m.wall_time};
   file.write<double>("/memory/numbers", {3}, numbers);
   file.write<double>("/memory/initial_thickness", dims_of(m.initial_thickness.size()), m.initial_thickness);
@@ -66,6 +68,9 @@ RunMemory read_memory(const h5::File& file) {
   m.records = counts.at(1);
   m.checkpoints = counts.at(2);
   m.outflow_count = counts.at(3);
+  m.newton = counts.at(4);
+  m.linear = counts.at(5);
+  m.cuts = counts.at(6);
   m.peak_kinetic = numbers[0];
   m.outflow_volume = numbers[1];
   m.wall_time = numbers[2];

@@ -5,10 +5,14 @@
 #if defined(__CUDACC__)
 #include <thrust/device_ptr.h>
 #include <thrust/execution_policy.h>
+#include <thrust/gather.h>
+#include <thrust/inner_product.h>
 #include <thrust/reduce.h>
 #include <thrust/scan.h>
+#include <thrust/scatter.h>
 #include <thrust/sequence.h>
 #include <thrust/sort.h>
+#include <thrust/transform_reduce.h>
 
 namespace talus {
 
@@ -35,6 +39,41 @@ double sum(OnGpu, const double* values, int count) {
   return thrust::reduce(thrust::device, v, v + count, 0.0);
 }
 
+double inner_product(OnGpu, const double* a, const double* b, int count) {
+  const thrust::device_ptr<const double> x(a), y(b);
+  return thrust::inner_product(thrust::device, x, x + count, y, 0.0);
+}
+
+namespace {
+struct Magnitude {
+  __host__ __device__ double operator()(double x) const { return x < 0 ? -x : x; }
+};
+struct Larger {
+  __host__ __device__ double operator()(double x, double y) const { return x > y ? x : y; }
+};
+}  // namespace
+
+double largest_entry(OnGpu, const double* a, int count) {
+  const thrust::device_ptr<const double> x(a);
+  return thrust::transform_reduce(thrust::device, x, x + count, Magnitude{}, 0.0, Larger{});
+}
+
+void gather(OnGpu, const double* from, const int* order, double* to, int count) {
+  const thrust::device_ptr<const int> o(order);
+  thrust::gather(thrust::device, o, o + count, thrust::device_ptr<const double>(from), thrust::device_ptr<double>(to));
+}
+
+void scatter(OnGpu, const double* from, const int* order, double* to, int count) {
+  const thrust::device_ptr<const double> f(from);
+  thrust::scatter(thrust::device, f, f + count, thrust::device_ptr<const int>(order), thrust::device_ptr<double>(to));
+}
+
+double free_memory(OnGpu) {
+  std::size_t free = 0, total = 0;
+  if (cudaMemGetInfo(&free, &total) != cudaSuccess) throw std::runtime_error("CUDA: cudaMemGetInfo failed");
+  return static_cast<double>(free);
+}
+
 }  // namespace talus
 
 #else
@@ -42,7 +81,12 @@ double sum(OnGpu, const double* values, int count) {
 namespace talus {
 void sort_order(OnGpu, Buffer<std::uint64_t, OnGpu>&, Buffer<int, OnGpu>&) { throw std::logic_error("no CUDA"); }
 int exclusive_sum(OnGpu, const int*, int*, int) { throw std::logic_error("no CUDA"); }
+double largest_entry(OnGpu, const double*, int) { throw std::logic_error("no CUDA"); }
+double inner_product(OnGpu, const double*, const double*, int) { throw std::logic_error("no CUDA"); }
 double sum(OnGpu, const double*, int) { throw std::logic_error("no CUDA"); }
+void gather(OnGpu, const double*, const int*, double*, int) { throw std::logic_error("no CUDA"); }
+void scatter(OnGpu, const double*, const int*, double*, int) { throw std::logic_error("no CUDA"); }
+double free_memory(OnGpu) { throw std::logic_error("no CUDA"); }
 }  // namespace talus
 
 #endif

@@ -19,4 +19,29 @@ int exclusive_sum(OnGpu, const int* values, int* sums, int count);
 double sum(OnCpu, const double* values, int count);
 double sum(OnGpu, const double* values, int count);
 
+/// Sum of a[i] * b[i], in a fixed order on the CPU whatever the number of threads.
+double inner_product(OnCpu, const double* a, const double* b, int count);
+double inner_product(OnGpu, const double* a, const double* b, int count);
+
+/// Largest |a[i]|; 0 for none.
+double largest_entry(OnCpu, const double* a, int count);
+double largest_entry(OnGpu, const double* a, int count);
+
+/// to[i] = from[order[i]]
+void gather(OnCpu, const double* from, const int* order, double* to, int count);
+void gather(OnGpu, const double* from, const int* order, double* to, int count);
+/// to[order[i]] = from[i]
+void scatter(OnCpu, const double* from, const int* order, double* to, int count);
+void scatter(OnGpu, const double* from, const int* order, double* to, int count);
+
+/// Memory that can still be taken in a place [bytes].
+double free_memory(OnCpu);
+double free_memory(OnGpu);
+
+/// A few bytes out of a place, and into it.
+inline void copy_to_host(OnCpu, void* host, const void* from, std::size_t bytes) { std::memcpy(host, from, bytes); }
+inline void copy_to_host(OnGpu, void* host, const void* from, std::size_t bytes) { detail::gpu_download(host, from, bytes); }
+inline void copy_from_host(OnCpu, void* to, const void* host, std::size_t bytes) { std::memcpy(to, host, bytes); }
+inline void copy_from_host(OnGpu, void* to, const void* host, std::size_t bytes) { detail::gpu_upload(to, host, bytes); }
+
 }  // namespace talus

@@ -1,6 +1,13 @@
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
 #include <tbb/parallel_sort.h>
 
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
 #include <numeric>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -30,6 +37,41 @@ int exclusive_sum(OnCpu, const int* values, int* sums, int count) {
   return total;
 }
 
+double inner_product(OnCpu, const double* a, const double* b, int count) {
+  return tbb::parallel_deterministic_reduce(
+      tbb::blocked_range<int>(0, count, 4096), 0.0,
+      [=](const tbb::blocked_range<int>& range, double total) {
+        for (int i = range.begin(); i < range.end(); ++i) total += a[i] * b[i];
+        return total;
+      },
+      [](double x, double y) { return x + y; }, tbb::simple_partitioner());
+}
+
+double largest_entry(OnCpu, const double* a, int count) {
+  double largest = 0;
+  for (int i = 0; i < count; ++i) largest = std::max(largest, std::abs(a[i]));
+  return largest;
+}
+
 double sum(OnCpu, const double* values, int count) { return std::accumulate(values, values + count, 0.0); }
+
+void gather(OnCpu, const double* from, const int* order, double* to, int count) {
+  for (int i = 0; i < count; ++i) to[i] = from[order[i]];
+}
+
+void scatter(OnCpu, const double* from, const int* order, double* to, int count) {
+  for (int i = 0; i < count; ++i) to[order[i]] = from[i];
+}
+
+double free_memory(OnCpu) {
+  std::ifstream file("/proc/meminfo");
+  std::string name, unit;
+  double kilobytes = 0;
+  while (file >> name >> kilobytes) {
+    std::getline(file, unit);
+    if (name == "MemAvailable:") return kilobytes * 1024;
+  }
+  return std::numeric_limits<double>::infinity();  // a system that does not say
+}
 
 }  // namespace talus

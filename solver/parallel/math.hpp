@@ -49,6 +49,18 @@ TALUS_HD Real determinant(const Mat3<Real>& m) {
          m.c.x * (m.a.y * m.b.z - m.a.z * m.b.y);
 }
 
+/// Inverse by cofactors.
+template <class Real>
+TALUS_HD Mat3<Real> inverted(const Mat3<Real>& m) {
+  const Real s = Real(1) / determinant(m);
+  const auto cross = [](const Vec3<Real>& u, const Vec3<Real>& v) {
+    return Vec3<Real>{u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+  };
+  // Rows of the inverse are the cross products of the columns.
+  const Vec3<Real> ra = cross(m.b, m.c) * s, rb = cross(m.c, m.a) * s, rc = cross(m.a, m.b) * s;
+  return {{ra.x, rb.x, rc.x}, {ra.y, rb.y, rc.y}, {ra.z, rb.z, rc.z}};
+}
+
 /// Symmetric matrix.
 template <class Real>
 struct Sym3 {

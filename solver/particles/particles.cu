@@ -27,6 +27,7 @@ std::vector<double> download_as(const Buffer<Real, Place>& from) {
 template <class Real, class Place>
 bool Particles<Real, Place>::in_use(int slot) const {
   if (slot >= move_slot) return fields_.move;
+  if (slot >= acceleration_slot) return fields_.acceleration;
   if (slot >= affine_slot) return fields_.affine;
   return slot != plastic_slot || fields_.plastic_volume;
 }
@@ -39,9 +40,11 @@ void Particles<Real, Place>::upload(const ParticleState& state) {
     upload_as(reals_[offset_slot + a], state.offset[a]);
     upload_as(reals_[velocity_slot + a], state.velocity[a]);
     if (fields_.move) reals_[move_slot + a].resize(state.size());
+    if (fields_.acceleration) upload_as(reals_[acceleration_slot + a], state.acceleration[a]);
   }
   ints_[3].upload(state.id);
   ints_[4].upload(state.release);
+  if (fields_.load) ints_[load_slot].upload(state.load);
   for (int a = 0; a < 6; ++a) upload_as(reals_[elastic_slot + a], state.elastic[a]);
   for (int a = 0; fields_.affine && a < 9; ++a) upload_as(reals_[affine_slot + a], state.affine[a]);
   upload_as(reals_[log_slot], state.log_volume);
@@ -57,9 +60,11 @@ ParticleState Particles<Real, Place>::download() const {
     state.cell[a] = ints_[a].download();
     state.offset[a] = download_as(reals_[offset_slot + a]);
     state.velocity[a] = download_as(reals_[velocity_slot + a]);
+    state.acceleration[a] = fields_.acceleration ? download_as(reals_[acceleration_slot + a]) : zeros;
   }
   state.id = ints_[3].download();
   state.release = ints_[4].download();
+  state.load = fields_.load ? ints_[load_slot].download() : std::vector<int>(static_cast<std::size_t>(count_), -1);
   for (int a = 0; a < 6; ++a) state.elastic[a] = download_as(reals_[elastic_slot + a]);
   for (int a = 0; a < 9; ++a) state.affine[a] = fields_.affine ? download_as(reals_[affine_slot + a]) : zeros;
   state.log_volume = download_as(reals_[log_slot]);
@@ -82,6 +87,8 @@ ParticleView<Real> Particles<Real, Place>::view() {
   v.offset_z = reals_[offset_slot + 2].data();
   for (int a = 0; a < 3; ++a) v.velocity[a] = reals_[velocity_slot + a].data();
   for (int a = 0; a < 3; ++a) v.move[a] = reals_[move_slot + a].data();
+  for (int a = 0; a < 3; ++a) v.acceleration[a] = reals_[acceleration_slot + a].data();
+  v.load = ints_[load_slot].data();
   for (int a = 0; a < 6; ++a) v.elastic[a] = reals_[elastic_slot + a].data();
   for (int a = 0; a < 9; ++a) v.affine[a] = reals_[affine_slot + a].data();
   v.log_volume = reals_[log_slot].data();
@@ -106,7 +113,9 @@ void Particles<Real, Place>::reorder(const Buffer<int, Place>& order, int count)
     for_each(Place{}, count, Gather<Real>{order.data(), reals_[slot].data(), real_scratch_.data()});
     reals_[slot].swap(real_scratch_);
   }
-  for (auto& array : ints_) {
+  for (int slot = 0; slot < int_slots; ++slot) {
+    if (slot == load_slot && !fields_.load) continue;
+    auto& array = ints_[slot];
     int_scratch_.resize(static_cast<std::size_t>(count));
     for_each(Place{}, count, Gather<int>{order.data(), array.data(), int_scratch_.data()});
     array.swap(int_scratch_);

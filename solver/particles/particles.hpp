@@ -23,8 +23,10 @@ struct ParticleView {
   Real* plastic_log_volume;               // the part of it that is plastic dilation; null when there is none
   Real* volume;                           // initial [m3]; mass is volume times the density of the scene
   Real* move[3];                          // displacement of this step in cells; null unless MUSL
+  Real* acceleration[3];                  // [m/s2]; null unless Newmark
   int* id;                                // order of seeding
   int* release;                           // which release it belongs to
+  int* load;                              // which load pulls at it, -1: none; null without loads
 
   TALUS_HD Vec3<Real> velocity_of(int p) const { return {velocity[0][p], velocity[1][p], velocity[2][p]}; }
   TALUS_HD Sym3<Real> elastic_of(int p) const {
@@ -42,14 +44,14 @@ struct ParticleView {
 
 /// Host copy of the whole state, in double.
 struct ParticleState {
-  std::vector<int> cell[3], id, release;
-  std::vector<double> offset[3], velocity[3], affine[9], elastic[6], log_volume, plastic_log_volume, volume;
+  std::vector<int> cell[3], id, release, load;
+  std::vector<double> offset[3], velocity[3], acceleration[3], affine[9], elastic[6], log_volume, plastic_log_volume, volume;
   std::size_t size() const { return id.size(); }
 };
 
 /// Which optional arrays a scene needs.
 struct ParticleFields {
-  bool affine = false, plastic_volume = false, move = false;
+  bool affine = false, plastic_volume = false, move = false, acceleration = false, load = false;
 };
 
 template <class Real, class Place>
@@ -69,12 +71,13 @@ class Particles {
 
  private:
   static constexpr int offset_slot = 0, velocity_slot = 3, elastic_slot = 6, log_slot = 12, volume_slot = 13,
-                       plastic_slot = 14, affine_slot = 15, move_slot = 24, real_slots = 27;
+                       plastic_slot = 14, affine_slot = 15, acceleration_slot = 24, move_slot = 27, real_slots = 30;
+  static constexpr int load_slot = 5, int_slots = 6;
   bool in_use(int slot) const;
   ParticleFields fields_;
   int count_ = 0;
   Buffer<Real, Place> reals_[real_slots];
-  Buffer<int, Place> ints_[5];  // cell x y z, id, release
+  Buffer<int, Place> ints_[int_slots];  // cell x y z, id, release, load
   Buffer<Real, Place> real_scratch_;
   Buffer<int, Place> int_scratch_;
 };

@@ -62,7 +62,7 @@ struct GridToParticle {
         }
         // Sums up the column, then weighs them once.
         Vec3<Real> mean{}, rise{}, lever{}, change{};
-        Real climb = 0, above = 0, base = 0;
+        Real climb = 0;
         for (int c = 0; c < Shape::width; ++c) {
           const int layer = s.k + c > 0 ? s.k + c : 0;
           const int n = GridView<Real>::node(slot, i, j, layer);
@@ -75,13 +75,8 @@ struct GridToParticle {
             const Vec4<Real> d = changes[n];
             change += Vec3<Real>{d.x, d.y, d.z} * s.wz[c];
           }
-          const Real w = v.z - nx * v.x - ny * v.y;
-          climb += w * s.wz[c];
-          if (c == 1) base = w;
-          if (c == 2) above = w;
+          climb += (v.z - nx * v.x - ny * v.y) * s.wz[c];
         }
-        // Below the ground the climb goes on in a straight line, so that it is exactly the base node's on the ground.
-        if (s.k < 0 && above < base) climb += s.wz[0] * (base - above);
         const Real w = s.wx[a] * s.wy[b];
         sums.velocity += mean * w;
         sums.change += change * w;
@@ -118,13 +113,14 @@ struct GridToParticle {
   }
 
   /// APIC (Jiang et al. 2015): moment times the inverse of the weights' second moment, 4 per cell for quadratic B-splines;
-  /// for linear functions it equals the gradient.
+  /// for hats, and so in the lowest half layer, it equals the gradient.
   TALUS_HD void store_affine(int p, const Sums& sums) const {
-    const bool spline = Shape::width == 3;
-    const Mat3<Real>& m = spline ? sums.moment : sums.gradient;
-    const Real scale = spline ? Real(4) : Real(1);
-    const Real values[9] = {m.a.x, m.a.y, m.a.z, m.b.x, m.b.y, m.b.z, m.c.x, m.c.y, m.c.z};
-    for (int q = 0; q < 9; ++q) points.affine[q][p] = values[q] * scale;
+    const bool spline = Shape::width == 3, on_base = points.cell_z[p] == 0;
+    const Vec3<Real> x = spline ? sums.moment.a * Real(4) : sums.gradient.a;
+    const Vec3<Real> y = spline ? sums.moment.b * Real(4) : sums.gradient.b;
+    const Vec3<Real> z = spline && !on_base ? sums.moment.c * Real(4) : sums.gradient.c;
+    const Real values[9] = {x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z};
+    for (int q = 0; q < 9; ++q) points.affine[q][p] = values[q];
   }
 
   TALUS_HD void deform(int p, const Stencil<Real, Shape>& s, const Sums& sums, Real dt) const {

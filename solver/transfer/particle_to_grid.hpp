@@ -23,6 +23,7 @@ struct ParticleToGrid {
   const Clock* clock;
   Vec4<Real>* nodes;
   Vec4<Real>* forces;
+  const Vec3<double>* loads;  // force per volume of each load [N/m3]; null without loads
   bool affine;
   bool dilatant;
 
@@ -44,6 +45,14 @@ struct ParticleToGrid {
       pull.c = (Vec3<Real>{tau.xz, tau.yz, tau.zz} - Vec3<Real>{tau.xx, tau.xy, tau.xz} * s.slope_x -
                 Vec3<Real>{tau.xy, tau.yy, tau.yz} * s.slope_y) * up;
     }
+    Vec3<Real> pulled{};  // by its load, in the units of `pull`
+    if constexpr (what != Scatter::momentum) {
+      if (loads && points.load[p] >= 0) {
+        const Vec3<double> f = loads[points.load[p]];
+        const Real dt = what == Scatter::impulse ? Real(clock->step_size) : Real(1);
+        pulled = Vec3<Real>{Real(f.x), Real(f.y), Real(f.z)} * (volume * dt);
+      }
+    }
     Mat3<Real> turn{};
     Vec3<Real> corner = points.velocity_of(p);  // velocity at the first node
     if (affine) {
@@ -63,7 +72,7 @@ struct ParticleToGrid {
           const int n = GridView<Real>::node(slot, s.i + a, s.j + b, layer);
           const Real share = w * s.wz[c] * mass;
           Vec3<Real> momentum = (base + turn.c * Real(c)) * share;
-          const Vec3<Real> force = sideways * s.wz[c] + pull.c * (w * s.gz[c]);
+          const Vec3<Real> force = sideways * s.wz[c] + pull.c * (w * s.gz[c]) + pulled * (w * s.wz[c]);
           if constexpr (what == Scatter::impulse) momentum += force;
           scatter_add(&nodes[n], share, momentum);
           if constexpr (what == Scatter::force) scatter_add(&forces[n], Real(0), force);

@@ -10,7 +10,7 @@ namespace talus {
 template <class Real, class Shape>
 struct Stencil {
   static constexpr int width = Shape::width;
-  int i, j, k;                                     // first node; k may be -1 (see background_grid.hpp)
+  int i, j, k;                                     // first node; k may be -1, with no weight
   Real wx[width], wy[width], wz[width];            // weights
   Real gx[width], gy[width], gz[width];            // their slopes, per cell
   Real near_x, near_y, near_z;                     // first node minus point, in cells
@@ -22,9 +22,9 @@ struct Stencil {
     i = points.cell_x[p] + ax;
     j = points.cell_y[p] + ay;
     k = points.cell_z[p] + az;
+    near_z = Real(az) - (points.cell_z[p] == 0 ? Shape::weigh_base(fz, grid.lowest_weighed, wz, gz) : fz);
     near_x = Real(ax) - fx;
     near_y = Real(ay) - fy;
-    near_z = Real(az) - fz;
     if (grid.mapping == Mapping::terrain_following) measure_slope(grid);
   }
 

@@ -123,7 +123,7 @@ TEST_F(RasterFile, dialects_of_ascii_grids_agree) {
 TEST_F(RasterFile, undeclared_nodata_values_are_dropped_with_a_warning) {
   testing::internal::CaptureStderr();
   const Raster raster = read_raster(ascii("ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 4", "-9999 7\n"));
-  EXPECT_NE(testing::internal::GetCapturedStderr().find("dem.asc: 1 cell hold -9999 or the like"), std::string::npos);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("dem.asc: 1 cell holds -9999 or the like"), std::string::npos);
   EXPECT_TRUE(std::isnan(raster.at(0, 0)));
   EXPECT_EQ(raster.at(1, 0), 7);
 }

@@ -22,9 +22,9 @@ std::string faults_of(const Options& options) {
 
 const std::string one_way =
     " Give exactly one of: before_dem and after_dem; before_dem and sliding_surface; base_dem and "
-    "[[preprocess.release]]\n";
+    "[[preprocess.release]]; [preprocess.laboratory] and [[preprocess.box]]\n";
 
-TEST(options, know_the_three_ways) {
+TEST(options, know_their_ways) {
   Options options = before_and_after();
   EXPECT_EQ(faults_of(options), "");
   EXPECT_EQ(options.way(), Way::before_and_after);
@@ -38,6 +38,12 @@ TEST(options, know_the_three_ways) {
   base.release[0].thickness_raster = "release.tif";
   EXPECT_EQ(faults_of(base), "");
   EXPECT_EQ(base.way(), Way::base_and_releases);
+  Options laboratory;
+  laboratory.grid.spacing_m = 1;
+  laboratory.laboratory.columns = laboratory.laboratory.rows = 8;
+  laboratory.box.push_back({"", 3, 5, 3, 5, 0, 1});
+  EXPECT_EQ(faults_of(laboratory), "");
+  EXPECT_EQ(laboratory.way(), Way::laboratory);
 }
 
 TEST(options, refuse_no_way_and_two_ways) {

@@ -45,7 +45,7 @@ TEST_P(BlockOnIncline, slides_as_coulomb_says) {
     const Domain d = domain(c, 6);
     const SolveOptions o = options(c);
     const Scene scene = make_scene(d, o);
-    const auto solver = make_explicit_solver(scene, o, GetParam());
+    const auto solver = make_solver(scene, o, GetParam());
     const Centre start = centre(*solver, scene);
     constexpr double time = 2;
     run_to(*solver, time);
@@ -67,7 +67,7 @@ TEST_P(BlockOnIncline, stays_below_its_friction_angle) {
   const Domain d = domain(c, 6);
   const SolveOptions o = options(c);
   const Scene scene = make_scene(d, o);
-  const auto solver = make_explicit_solver(scene, o, GetParam());
+  const auto solver = make_solver(scene, o, GetParam());
   run_to(*solver, 1);  // the jolt of sudden gravity
   const Centre start = centre(*solver, scene);
   run_to(*solver, 11);
@@ -87,7 +87,7 @@ TEST_P(BlockOnIncline, weakens_with_speed) {
   o.base.steady_coefficient = 0.2;
   o.base.characteristic_speed = 2;
   const Scene scene = make_scene(d, o);
-  const auto solver = make_explicit_solver(scene, o, GetParam());
+  const auto solver = make_solver(scene, o, GetParam());
   const Centre start = centre(*solver, scene);
   constexpr double time = 2;
   run_to(*solver, time);

@@ -8,7 +8,7 @@
 #include <functional>
 #include <vector>
 
-#include "solver/integrator/explicit_solver.hpp"
+#include "solver/integrator/solver.hpp"
 #include "solver/parallel/place.hpp"
 
 namespace talus::solver::testing {
@@ -63,7 +63,7 @@ inline std::string place_name(const ::testing::TestParamInfo<On>& info) { return
   INSTANTIATE_TEST_SUITE_P(places, suite, ::testing::Values(On::cpu, On::gpu), place_name)
 
 /// Step to a time; returns the number of sorts on the way.
-inline int run_to(ExplicitSolver& solver, double time) {
+inline int run_to(Solver& solver, double time) {
   int sorts = 0;
   solver.set_next_event(time);
   for (;;) {
@@ -82,7 +82,7 @@ struct Centre {
 };
 
 /// Volume-weighted centre and mean speed of the points.
-inline Centre centre(const ExplicitSolver& solver, const Scene& scene) {
+inline Centre centre(const Solver& solver, const Scene& scene) {
   const ParticleState s = solver.state().points;
   const auto x = positions(scene.map, scene.grid, solver.ground(), s);
   Centre c;

@@ -65,20 +65,23 @@ class Transfers : public InEachPlace {
       for (int i = s.points.cell[0][p] - 2; i <= s.points.cell[0][p] + 2; ++i) {
         for (int j = s.points.cell[1][p] - 2; j <= s.points.cell[1][p] + 2; ++j) {
           for (int k = s.points.cell[2][p] - 2; k <= s.points.cell[2][p] + 2; ++k) {
-            const Weight wx = weight(quadratic, x[0], i), wy = weight(quadratic, x[1], j), wz = weight(quadratic, x[2], k);
+            const Weight wx = weight(quadratic, x[0], i), wy = weight(quadratic, x[1], j);
+            // In the lowest half layer quadratic functions are hats, and their weights stop changing a tenth of a layer above the ground.
+            const bool on_base = quadratic && s.points.cell[2][p] == 0;
+            const Weight wz = on_base ? weight(false, std::max(x[2], s.grid.lowest_weighed), k) : weight(quadratic, x[2], k);
             const double w = wx.value * wy.value * wz.value;
             if (w == 0) continue;
             const double gz = wx.value * wy.value * wz.slope / s.grid.layer_height;
             const Vec3<double> gradient{wx.slope * wy.value * wz.value / s.grid.spacing - bx * gz,
                                         wx.value * wy.slope * wz.value / s.grid.spacing - by * gz, gz};
             const Vec3<double> force = tau * gradient * (-volume * dt);
-            const double r[3] = {i - x[0], j - x[1], k - x[2]};
+            const double r[3] = {i - x[0], j - x[1], k - (on_base ? std::max(x[2], s.grid.lowest_weighed) : x[2])};
             double v[3];
             for (int a = 0; a < 3; ++a) {
               v[a] = s.points.velocity[a][p];
               for (int b = 0; b < 3; ++b) v[a] += s.points.affine[3 * b + a][p] * r[b];
             }
-            Vec4<double>& node = nodes[{i, j, std::max(k, 0)}];
+            Vec4<double>& node = nodes[{i, j, k}];
             node.w += w * mass;
             node.x += w * mass * v[0] + force.x;
             node.y += w * mass * v[1] + force.y;
@@ -112,7 +115,7 @@ class Transfers : public InEachPlace {
     clock.upload({c});
     for_each_grouped(Place{}, points.count(), grid.groups(),
                      ParticleToGrid<Real, Shape, Scatter::impulse>{grid.view(), points.view(), make_material<Real>(mo), clock.data(),
-                                                                   nodes.data(), nullptr, true, false});
+                                                                   nodes.data(), nullptr, nullptr, true, false});
     synchronise(Place{});
     const auto got = nodes.download();
     const auto slots = slots_of(grid);
@@ -184,7 +187,7 @@ class Transfers : public InEachPlace {
     double worst = 0;
     int checked = 0;
     for (std::size_t p = 0; p < got.size(); ++p) {
-      if (got.cell[2][p] == 0) continue;  // beside the base node's fold the field is no longer linear
+      if (got.cell[2][p] == 0 && got.offset[2][p] < s.grid.lowest_weighed) continue;
       ++checked;
       for (int a = 0; a < 3; ++a) {
         double v = 0;

@@ -1,4 +1,4 @@
-// The explicit integrator behind one interface for both places and both precisions.
+// The integrators behind one interface, for both places and both precisions.
 #pragma once
 
 #include <memory>
@@ -30,17 +30,26 @@ struct SolverState {
   MapFields maps;
 };
 
+/// What an implicit step took.
+struct StepStats {
+  int newton = 0, linear = 0, cuts = 0;         // iterations; halvings of the step
+  double residual = 0, linear_residual = 0;     // unbalanced force over the forces' size; residual of the last linear solve
+  double over_cfl = 0;                          // step over the CFL step
+  bool converged = false, indefinite = false;
+};
+
 /// What a batch of steps ended with.
 struct BatchReport {
   Clock clock;
   bool sorted = false;              // the points have just been sorted: a checkpoint may be taken here
   double outflow_volume = 0;        // left the domain in this batch [m3]
   int outflow_count = 0;
+  StepStats stats;                  // implicit: of the step
 };
 
-class ExplicitSolver {
+class Solver {
  public:
-  virtual ~ExplicitSolver() = default;
+  virtual ~Solver() = default;
   /// Steps until the next event, the next sort or a failure, at most a batch.
   virtual BatchReport advance() = 0;
   /// Time not to step over [s].
@@ -57,10 +66,10 @@ class ExplicitSolver {
 };
 
 /// From a scene at the start. `on` must be cpu or gpu.
-std::unique_ptr<ExplicitSolver> make_explicit_solver(const Scene& scene, const SolveOptions& options, On on);
+std::unique_ptr<Solver> make_solver(const Scene& scene, const SolveOptions& options, On on);
 
 /// From a checkpoint; the scene gives the grid only.
-std::unique_ptr<ExplicitSolver> resume_explicit_solver(const Scene& scene, const SolveOptions& options, On on,
+std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolveOptions& options, On on,
                                                        const SolverState& state);
 
 /// cpu or gpu for automatic; throws RecipeError when a GPU is asked for and there is none.

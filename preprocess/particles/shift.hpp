@@ -1,0 +1,20 @@
+// The random shift of a seeded point.
+#pragma once
+
+#include <cstdint>
+#include <random>
+
+namespace talus::preprocess {
+
+/// Uniform in -size..size, the same on every machine (the standard's distributions are not).
+class Shift {
+ public:
+  Shift(double size, std::uint64_t seed) : size_(size), random_(seed) {}
+  double operator()() { return size_ == 0 ? 0.0 : size_ * (2 * (static_cast<double>(random_() >> 11) * 0x1p-53) - 1); }
+
+ private:
+  double size_;
+  std::mt19937_64 random_;
+};
+
+}  // namespace talus::preprocess

@@ -1,0 +1,296 @@
+// Node kernels of an implicit step: constraints, contact, the residual, Newmark.
+#pragma once
+
+#include "solver/integrator/implicit_kernels.hpp"
+
+namespace talus::solver {
+
+/// Newmark's numbers; statics is the case without inertia.
+struct TimeScheme {
+  bool dynamic = true;
+  double alpha = 0.25, beta = 0.5;
+  double step = 0;  // [s]
+  TALUS_HD double inertia() const { return dynamic ? 1 / (alpha * step * step) : 0; }
+};
+
+TALUS_HD Sym3<double> whole_space() { return {1, 1, 1, 0, 0, 0}; }
+TALUS_HD Sym3<double> without(const Sym3<double>& projector, const Vec3<double>& n) {
+  return projector + Sym3<double>{-n.x * n.x, -n.y * n.y, -n.z * n.z, -n.x * n.y, -n.y * n.z, -n.x * n.z};
+}
+
+/// What a node is held by.
+struct Constraints {
+  Sym3<double>* walls = nullptr;    // directions that rollers and fixed walls leave free
+  Vec3<double>* normal = nullptr;   // of the surface it can touch
+  double* friction = nullptr;       // coefficient there
+  double* limit = nullptr;          // friction times the reaction found last [N]
+  double slip = 0;                  // slip over which friction grows to its limit [m]
+
+  /// Friction force for the displacement u and, with `stiffness`, minus its derivative: a smoothed Coulomb cone over the
+  /// displacement of the step, its limit held (Tresca), so that it has a potential and its derivative is symmetric.
+  TALUS_HD Vec3<double> friction_force(int n, const Vec3<double>& u, Sym3<double>* stiffness) const {
+    const Vec3<double> along = u - normal[n] * dot(u, normal[n]);
+    const double size = sqrt(dot(along, along) + slip * slip);
+    if (stiffness) {
+      const double k = limit[n] / size, l = k / (size * size);
+      *stiffness = Sym3<double>{k - l * along.x * along.x, k - l * along.y * along.y, k - l * along.z * along.z,
+                                -l * along.x * along.y, -l * along.y * along.z, -l * along.x * along.z};
+    }
+    return along * (-limit[n] / size);
+  }
+};
+
+/// One thread: one column. Velocities from momenta, loads, constraints, first guess of the displacement.
+template <class Real>
+struct PrepareNodes {
+  GridView<Real> grid;
+  const int* active;
+  NodeArrays nodes;
+  Constraints held;
+  Walls<double> walls;
+  BaseFriction<double> base;
+  Vec3<double> gravity;
+  TimeScheme scheme;
+  bool predict;  // start from the displacement of the present velocity
+
+  TALUS_HD void operator()(int c) const {
+    const int block = active[c / block_columns], inside = c % block_columns;
+    const int i = (block % grid.block_columns_x) * block_side + (inside & 3);
+    const int j = (block / grid.block_columns_x) * block_side + (inside >> 2);
+    const BlockSlot slot = grid.slots[block];
+    for (int k = slot.first_layer; k < slot.first_layer + slot.layers; ++k) prepare(GridView<Real>::node(slot, i, j, k), i, j, k);
+  }
+
+ private:
+  TALUS_HD void prepare(int n, int i, int j, int k) const {
+    const double m = nodes.mass[n];
+    nodes.touch[n] = Touch::none;
+    held.limit[n] = 0;
+    if (!(m > 0) || i >= grid.columns || j >= grid.rows) {
+      nodes.freed[n] = held.walls[n] = Sym3<double>{};
+      nodes.u[n] = {};
+      return;
+    }
+    nodes.velocity[n] = nodes.velocity[n] * (1 / m);
+    if (nodes.acceleration) nodes.acceleration[n] = nodes.acceleration[n] * (1 / m);
+    nodes.external[n] += gravity * m;
+    Vec3<double> u = predict ? nodes.velocity[n] * scheme.step : Vec3<double>{};
+    Sym3<double> freed = whole_space();
+    Vec3<double> normal{};
+    double friction = 0;
+    const bool grounded = touch_ground(i, j, k, normal, friction, freed, u);
+    for (int w = 0; w < walls.count; ++w) meet(walls.list[w], i, j, k, grounded, normal, friction, freed, u);
+    held.walls[n] = freed;
+    held.normal[n] = normal;
+    held.friction[n] = friction;
+    if (dot(normal, normal) > 0) {
+      nodes.touch[n] = Touch::closed;
+      u = u - normal * dot(u, normal);
+      freed = without(freed, normal);
+    }
+    nodes.freed[n] = freed;
+    nodes.u[n] = u;
+  }
+
+  TALUS_HD bool touch_ground(int i, int j, int k, Vec3<double>& normal, double& friction, Sym3<double>& freed,
+                             Vec3<double>& u) const {
+    const int column = grid.column(i, j);
+    const int top = grid.mapping == Mapping::terrain_following
+                        ? 0
+                        : static_cast<int>(floor(grid.terrain[column] / grid.layer_height + Real(1e-4)));
+    if (k > top) return false;
+    if (base.law == FrictionLaw::stick) {
+      freed = {};
+      u = {};
+      return true;
+    }
+    const double sx = static_cast<double>(grid.slope_x[column]), sy = static_cast<double>(grid.slope_y[column]);
+    const double scale = 1 / sqrt(1 + sx * sx + sy * sy);
+    normal = {-sx * scale, -sy * scale, scale};
+    const Vec3<double> v = nodes.velocity[GridView<Real>::node(grid.slot(i, j), i, j, k)];
+    friction = base.at(length(v - normal * dot(v, normal)));
+    return true;
+  }
+
+  TALUS_HD void meet(const Wall<double>& wall, int i, int j, int k, bool grounded, Vec3<double>& normal, double& friction,
+                     Sym3<double>& freed, Vec3<double>& u) const {
+    if (!wall.holds(i, j, k)) return;
+    Vec3<double> axis{};
+    component(axis, wall.axis) = 1;
+    if (wall.kind == WallKind::fixed) {
+      freed = {};
+      u = axis * (wall.speed * scheme.step);
+      normal = {};
+      return;
+    }
+    if (wall.kind == WallKind::frictional && !grounded) {
+      normal = axis * static_cast<double>(wall.side);
+      friction = wall.friction;
+      return;
+    }
+    freed = without(freed, axis * sqrt(dot(axis, freed * axis) > 0.5 ? 1.0 : 0.0));
+    component(u, wall.axis) = wall.speed * scheme.step;
+  }
+};
+
+/// One thread: one node. Acceleration with which a run begins: that of the forces at its start.
+struct FirstAcceleration {
+  NodeArrays nodes;
+  TALUS_HD void operator()(int n) const {
+    const double m = nodes.mass[n];
+    nodes.acceleration[n] = m > 0 ? nodes.freed[n] * ((nodes.external[n] - nodes.internal[n]) * (1 / m)) : Vec3<double>{};
+  }
+};
+
+/// One thread: one node. Local non-viscous damping (Cundall 1987) against the velocity at the start, from the force at the start.
+struct AddDamping {
+  NodeArrays nodes;
+  double damping;
+  TALUS_HD void operator()(int n) const {
+    const Vec3<double> pull = nodes.external[n] - nodes.internal[n], v = nodes.velocity[n];
+    nodes.external[n] += Vec3<double>{against(pull.x, v.x), against(pull.y, v.y), against(pull.z, v.z)};
+  }
+  TALUS_HD double against(double pull, double v) const { return v == 0 ? 0 : v > 0 ? -damping * fabs(pull) : damping * fabs(pull); }
+};
+
+/// One thread: one node. The unbalanced force for the displacement u; with `decide` the state of its contact as well.
+struct MeasureResidual {
+  NodeArrays nodes;
+  Constraints held;
+  TimeScheme scheme;
+  bool decide;
+  int* changes;
+
+  TALUS_HD void operator()(int n) const {
+    const double m = nodes.mass[n];
+    if (!(m > 0)) {
+      nodes.residual[n] = {};
+      return;
+    }
+    Vec3<double> force = nodes.external[n] - nodes.internal[n];
+    if (scheme.dynamic) {
+      Vec3<double> a = nodes.velocity[n] * (1 / (scheme.alpha * scheme.step)) - nodes.u[n] * scheme.inertia();
+      if (nodes.acceleration) a += nodes.acceleration[n] * (1 / (2 * scheme.alpha) - 1);
+      force += a * m;
+    }
+    if (nodes.touch[n] != Touch::none) {
+      if (decide) settle_contact(n, force);
+      if (nodes.touch[n] == Touch::closed) force += held.friction_force(n, nodes.u[n], nullptr);
+    }
+    nodes.residual[n] = nodes.freed[n] * force;
+  }
+
+ private:
+  /// Unilateral contact: it opens when it would have to pull, and closes when the node moves in.
+  TALUS_HD void settle_contact(int n, const Vec3<double>& force) const {
+    const Vec3<double> normal = held.normal[n];
+    const double reaction = -dot(force, normal);
+    if (nodes.touch[n] == Touch::closed && reaction < 0) {
+      nodes.touch[n] = Touch::open;
+      nodes.freed[n] = held.walls[n];
+      atomic_increment(changes);
+    } else if (nodes.touch[n] == Touch::open && dot(nodes.u[n], normal) < 0) {
+      nodes.touch[n] = Touch::closed;
+      nodes.freed[n] = without(held.walls[n], normal);
+      nodes.u[n] = nodes.u[n] - normal * dot(nodes.u[n], normal);
+      held.limit[n] = 0;
+      atomic_increment(changes);
+      return;
+    }
+    held.limit[n] = reaction > 0 ? held.friction[n] * reaction : 0;
+  }
+};
+
+/// One thread: one node. y = freed (y + mass inertia x + friction's stiffness x).
+struct CloseProduct {
+  NodeArrays nodes;
+  Constraints held;
+  double inertia;
+  const Vec3<double>* x;
+  Vec3<double>* y;
+  TALUS_HD void operator()(int n) const {
+    Vec3<double> sum = y[n] + x[n] * (nodes.mass[n] * inertia);
+    if (nodes.touch[n] == Touch::closed && held.limit[n] > 0) {
+      Sym3<double> stiffness;
+      held.friction_force(n, nodes.u[n], &stiffness);
+      sum += stiffness * x[n];
+    }
+    y[n] = nodes.freed[n] * sum;
+  }
+};
+
+/// One thread: one node. Stiffness of its friction, for an assembled matrix.
+struct FrictionStiffness {
+  NodeArrays nodes;
+  Constraints held;
+  Sym3<double>* stiffness;
+  TALUS_HD void operator()(int n) const {
+    stiffness[n] = {};
+    if (nodes.touch[n] == Touch::closed && held.limit[n] > 0) held.friction_force(n, nodes.u[n], &stiffness[n]);
+  }
+};
+
+/// One thread: one node. Inverse of the diagonal, or of the 3 x 3 block, of the constrained operator.
+struct InvertBlocks {
+  NodeArrays nodes;
+  Constraints held;
+  double inertia;
+  bool whole;  // the block, else its diagonal
+  Sym3<double>* blocks;
+
+  TALUS_HD void operator()(int n) const {
+    const Sym3<double> p = nodes.freed[n];
+    Sym3<double>& b = blocks[n];
+    if (!(trace(p) > 0.5)) {
+      b = {};
+      return;
+    }
+    b = b.plus_identity(nodes.mass[n] * inertia);
+    if (nodes.touch[n] == Touch::closed && held.limit[n] > 0) {
+      Sym3<double> stiffness;
+      held.friction_force(n, nodes.u[n], &stiffness);
+      b = b + stiffness;
+    }
+    if (!whole) {
+      b = {safe(b.xx), safe(b.yy), safe(b.zz), 0, 0, 0};
+      return;
+    }
+    // P B P + (I - P) has B's action on the free directions and is regular.
+    const Vec3<double> e[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    Vec3<double> column[3];
+    for (int a = 0; a < 3; ++a) column[a] = p * (b * (p * e[a])) + e[a] - p * e[a];
+    const Mat3<double> inverse = inverted(Mat3<double>{column[0], column[1], column[2]});
+    b = {inverse.a.x, inverse.b.y, inverse.c.z, inverse.b.x, inverse.c.y, inverse.c.x};
+  }
+  TALUS_HD static double safe(double d) { return d > 0 ? 1 / d : 0; }
+};
+
+/// One thread: one node. z = freed inverse r.
+struct ApplyBlocks {
+  NodeArrays nodes;
+  const Sym3<double>* inverse;
+  const Vec3<double>* r;
+  Vec3<double>* z;
+  TALUS_HD void operator()(int n) const { z[n] = nodes.freed[n] * (inverse[n] * r[n]); }
+};
+
+/// One thread: one node. Newmark's velocity and acceleration at the end of the step.
+struct EndOfStep {
+  NodeArrays nodes;
+  TimeScheme scheme;
+  Vec3<double>* velocity;
+  Vec3<double>* acceleration;
+  TALUS_HD void operator()(int n) const {
+    const Vec3<double> v = nodes.velocity[n], u = nodes.u[n];
+    const Vec3<double> a = nodes.acceleration ? nodes.acceleration[n] : Vec3<double>{};
+    const double dt = scheme.step;
+    const Vec3<double> a1 = (u - v * dt) * (1 / (scheme.alpha * dt * dt)) - a * (1 / (2 * scheme.alpha) - 1);
+    const Vec3<double> v1 = v + a * (dt * (1 - scheme.beta)) + a1 * (dt * scheme.beta);
+    // Where a node is held it moves as it is told.
+    const Vec3<double> told = u * (1 / dt);
+    velocity[n] = told + nodes.freed[n] * (v1 - told);
+    acceleration[n] = nodes.freed[n] * a1;
+  }
+};
+
+}  // namespace talus::solver

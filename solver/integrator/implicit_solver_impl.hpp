@@ -1,0 +1,437 @@
+// Implicit steps: Newton on the unbalanced force of the end of the step, shape functions held at its start. Included by the files
+// that instantiate it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/integrator/implicit_nodes.hpp"
+#include "solver/integrator/point_solver.hpp"
+#include "solver/integrator/step_failure.hpp"
+#include "solver/linear/cholesky_solver.hpp"
+#include "solver/linear/conjugate_gradient.hpp"
+#include "solver/linear/tangent_operator.hpp"
+
+namespace talus::solver {
+
+/// Statics on few points per cell leaves modes of the splines that no point's gradient sees: the share of the diagonal that holds them in a
+/// factorisation. The change it makes to a step is undone by the next Newton iteration.
+inline constexpr double static_shift = 1e-12;
+
+/// One thread: one column. Maps of the end of a step.
+template <class Real>
+struct RecordColumns {
+  GridView<Real> grid;
+  const int* active;
+  const double* mass;
+  const Vec3<double>* velocity;  // null in statics
+  double density, time;
+  MapView maps;
+  TALUS_HD void operator()(int c) const {
+    const int block = active[c / block_columns], inside = c % block_columns;
+    const int i = (block % grid.block_columns_x) * block_side + (inside & 3);
+    const int j = (block / grid.block_columns_x) * block_side + (inside >> 2);
+    if (i >= grid.columns || j >= grid.rows) return;
+    const BlockSlot slot = grid.slots[block];
+    double total = 0;
+    Vec3<double> momentum{};
+    for (int k = slot.first_layer; k < slot.first_layer + slot.layers; ++k) {
+      const int n = GridView<Real>::node(slot, i, j, k);
+      total += mass[n];
+      if (velocity && mass[n] > 0) momentum += velocity[n] * mass[n];
+    }
+    const double spacing = static_cast<double>(grid.spacing);
+    if (total > 0) record_column(maps, grid.column(i, j), total, length(momentum), density, spacing, time);
+  }
+};
+
+/// One thread: one point. Momentum of the points' new velocity back to the nodes (MUSL).
+template <class Real, class Shape>
+struct ScatterVelocity {
+  GridView<Real> grid;
+  ParticleView<Real> points;
+  Real density;
+  Vec3<double>* momentum;
+  TALUS_HD void operator()(int p) const {
+    const PointGradients<Real, Shape> g(grid, points, p);
+    const Vec3<double> v = widen(points.velocity_of(p)) * static_cast<double>(points.volume[p] * density);
+    around(grid, g, [&](int n, int a, int b, int c) { scatter_add(&momentum[n], v * static_cast<double>(g.weight(a, b, c))); });
+  }
+};
+
+/// One thread: one node. Momentum to displacement of the step, held nodes as the solve left them.
+struct RemapDisplacement {
+  NodeArrays nodes;
+  double step;
+  Vec3<double>* momentum;
+  TALUS_HD void operator()(int n) const {
+    if (!(nodes.mass[n] > 0)) return;
+    const Vec3<double> moved = momentum[n] * (step / nodes.mass[n]);
+    momentum[n] = nodes.u[n] + nodes.freed[n] * (moved - nodes.u[n]);
+  }
+};
+
+template <class Real, class Place, class Shape>
+class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
+  using Base = PointSolver<Real, Place, Shape>;
+  using Base::clock_, Base::dilatant_, Base::grid_, Base::material_, Base::options_, Base::points_, Base::read_clock;
+
+ public:
+  ImplicitSolverOf(const Scene& scene, const SolveOptions& options, const SolverState& state)
+      : Base(scene, options, state, fields(options)),
+        affine_(options.transfer == Transfer::apic),
+        dynamic_(options.integrator == Integrator::newmark),
+        friction_(make_base_friction<double>(options.base)),
+        step_(options.implicit.step),
+        first_(state.clock.step == 0),
+        operator_(options.implicit.form) {
+    changes_.upload({0});
+  }
+
+  BatchReport advance() override {
+    Clock clock = read_clock();
+    clock.halt = clock.request = running;
+    clock.outflow_count = 0;
+    clock.outflow_volume = 0;
+    clock.rate_bits = clock.speed_bits = 0;
+    this->grid_.fit(points_, gone_);
+    gone_ = 0;
+    BatchReport report;
+    double step = next_step(clock);
+    for (int cut = 0;; ++cut) {
+      report.stats = {};
+      report.stats.cuts = cut;
+      if (solve_step(clock.time, step, report.stats)) break;
+      if (cut >= options_.implicit.step_cuts) refuse_step(clock, step, report.stats, dynamic_);
+      step *= 0.5;
+      step_ = step;
+    }
+    report.stats.converged = true;
+    first_ = false;
+    clock.step_size = step;
+    clock.time = clock.next_event - clock.time <= step * (1 + 1e-12) ? clock.next_event : clock.time + step;
+    ++clock.step;
+    clock_.upload({clock});
+    accept(clock, step);
+    if (report.stats.cuts == 0) step_ = std::min(step_ * 1.5, options_.implicit.step);
+    clock = read_clock();
+    gone_ = clock.outflow_count;
+    report.outflow_count = clock.outflow_count;
+    report.outflow_volume = clock.outflow_volume;
+    report.stats.over_cfl = step * static_cast<double>(positive_from_bits(clock.rate_bits));
+    if (clock.request == failed) clock.halt = failed;
+    if (clock.halt != failed && clock.time >= clock.next_event) clock.halt = at_event;
+    if (gone_ > 0) drop_gone();
+    report.sorted = true;
+    report.clock = clock;
+    clock.halt = clock.request = running;
+    clock_.upload({clock});
+    return report;
+  }
+
+  std::size_t bytes() const override {
+    std::size_t total = Base::bytes() + mass_.bytes() + touch_.bytes() + tangents_.bytes() + wall_freed_.bytes() +
+                        contact_friction_.bytes() + freed_.bytes() + blocks_.bytes() + stiffness_.bytes() + operator_.bytes() +
+                        cholesky_.bytes();
+    for (const auto* v : {&velocity_, &acceleration_, &external_, &internal_, &u_, &residual_, &normal_,
+                          &velocity_end_, &acceleration_end_, &change_, &saved_u_, &cg_.r, &cg_.z, &cg_.p, &cg_.ap}) {
+      total += v->bytes();
+    }
+    return total;
+  }
+
+ private:
+  static ParticleFields fields(const SolveOptions& o) {
+    ParticleFields f;
+    f.affine = o.transfer == Transfer::apic;
+    f.plastic_volume = Base::needs_plastic_volume(o);
+    f.acceleration = true;
+    f.load = !o.loads.empty();
+    return f;
+  }
+
+  /// The step to try: the stated one, grown back after cuts, never over an event.
+  double next_step(const Clock& clock) const {
+    const double remaining = clock.next_event - clock.time;
+    if (step_ >= remaining * (1 - 1e-9)) return remaining;
+    return remaining < 2 * step_ * (1 - 1e-9) ? 0.5 * remaining : step_;
+  }
+
+  NodeArrays nodes() {
+    NodeArrays n;
+    n.mass = mass_.data();
+    n.velocity = velocity_.data();
+    n.acceleration = dynamic_ ? acceleration_.data() : nullptr;
+    n.external = external_.data();
+    n.internal = internal_.data();
+    n.u = u_.data();
+    n.residual = residual_.data();
+    n.freed = freed_.data();
+    n.touch = touch_.data();
+    return n;
+  }
+  Constraints held() { return {wall_freed_.data(), normal_.data(), contact_friction_.data(), friction_limit_.data(), slip_}; }
+
+  void size_nodes() {
+    count_ = this->grid_.nodes();
+    const auto n = static_cast<std::size_t>(count_);
+    mass_.resize(n);
+    mass_.fill_zero();
+    for (auto* v : {&velocity_, &acceleration_, &external_}) {
+      v->resize(n);
+      v->fill_zero();
+    }
+    for (auto* v : {&internal_, &u_, &residual_, &normal_, &velocity_end_, &acceleration_end_, &change_, &saved_u_}) {
+      v->resize(n);
+    }
+    freed_.resize(n);
+    wall_freed_.resize(n);
+    blocks_.resize(n);
+    contact_friction_.resize(n);
+    friction_limit_.resize(n);
+    touch_.resize(n);
+    tangents_.resize(static_cast<std::size_t>(TangentStore<Real>::numbers) * static_cast<std::size_t>(points_.count()));
+  }
+
+  /// Everything that does not change with the displacement.
+  void prepare(double start, double step) {
+    const double time = start + step;  // loads are those at the end of the step, walls those that stand at its start
+    size_nodes();
+    scheme_ = {dynamic_, options_.implicit.alpha, options_.implicit.beta, step};
+    slip_ = smoothing(step);
+    const Vec3<double>* loads = this->upload_loads(time);
+    for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
+                     ScatterInertia<Real, Shape>{this->grid_.view(), points_.view(), material_.density, affine_, dynamic_,
+                                                 loads, nodes()});
+    const double ramp = options_.gravity_ramp > 0 ? std::min(1.0, time / options_.gravity_ramp) : 1.0;
+    const Vec3<double> g{options_.gravity[0] * ramp, options_.gravity[1] * ramp, options_.gravity[2] * ramp};
+    const bool predict = dynamic_ && options_.implicit.newton_iterations > 1 && options_.damping == 0;
+    for_each(Place{}, this->grid_.active_blocks() * block_columns,
+             PrepareNodes<Real>{this->grid_.view(), this->grid_.active_list(), nodes(), held(),
+                                make_walls<double>(options_.walls, start, this->frame_), friction_, g, scheme_, predict});
+    if (dynamic_ && first_) {
+      copy(u_, saved_u_);
+      u_.fill_zero();
+      measure_stress(false);
+      for_each(Place{}, count_, FirstAcceleration{nodes()});
+      copy(saved_u_, u_);
+    }
+    if (options_.damping > 0 && dynamic_) {
+      measure_stress(false);
+      for_each(Place{}, count_, AddDamping{nodes(), options_.damping});
+    }
+  }
+
+  /// Slip over which friction grows: a small part of the way that gravity alone would make in a step, so that what rests creeps by no
+  /// more than that.
+  double smoothing(double step) const {
+    constexpr double part = 1e-5;
+    const double g = std::hypot(options_.gravity[0], options_.gravity[1], options_.gravity[2]);
+    return dynamic_ ? part * 0.5 * std::max(g, 1e-3) * step * step : 1e-9 * this->frame_.cell[0];
+  }
+
+  TangentStore<Real> tangents() { return {tangents_.data(), points_.count()}; }
+
+  void measure_stress(bool with_tangent, bool definite = false) {
+    internal_.fill_zero();
+    TangentStore<Real> store = tangents();
+    if (!with_tangent) store.data = nullptr;
+    for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
+                     ScatterStress<Real, Shape>{this->grid_.view(), points_.view(), material_, dilatant_, definite, store, nodes()});
+  }
+
+  double measure_residual(bool decide) {
+    for_each(Place{}, count_, MeasureResidual{nodes(), held(), scheme_, decide, changes_.data()});
+    return std::sqrt(dot(residual_, residual_));
+  }
+
+  /// What the unbalanced force is measured against: the forces that balance, and rounding of the inertia.
+  double force_size() {
+    return std::sqrt(dot(internal_, internal_) + dot(external_, external_)) + 1e-300;
+  }
+
+  int contact_changes() {
+    const int changes = changes_.download().front();
+    changes_.upload({0});
+    return changes;
+  }
+
+  /// Elements and neighbours of the points as they stand.
+  void group_elements() {
+    if (options_.implicit.linear_solver == LinearSolver::cholesky) {
+      cholesky_.begin_step(this->grid_.view(), points_.view());
+    } else {
+      operator_.begin_step(this->grid_.view(), points_.view(), count_);
+    }
+  }
+
+  /// Newton's iterations of one step; true when it converged.
+  bool solve_step(double start, double step, StepStats& stats) {
+    prepare(start, step);
+    group_elements();
+    const ImplicitOptions& o = options_.implicit;
+    if (o.newton_iterations == 1) return solve_once(stats);
+    for (stats.newton = 0; stats.newton < o.newton_iterations; ++stats.newton) {
+      measure_stress(true);
+      double unbalanced = measure_residual(true);
+      const int changes = contact_changes();
+      if (changes > 0) {  // a contact that closed or opened has moved its node
+        measure_stress(true);
+        unbalanced = measure_residual(false);
+      }
+      stats.residual = unbalanced / force_size();
+      if (!std::isfinite(stats.residual)) return false;
+      if (stats.residual <= o.newton_tolerance && changes == 0) return within_reach();
+      if (!linear_solve(stats)) return false;
+      if (!search(unbalanced)) return false;
+    }
+    return false;
+  }
+
+  /// The reference paper: one solve with the tangent at the start of the step.
+  bool solve_once(StepStats& stats) {
+    measure_stress(true);
+    measure_residual(true);
+    stats.newton = 1;
+    const bool solved = linear_solve(stats);
+    axpby(1.0, change_, 1.0, u_);
+    stats.residual = stats.linear_residual;
+    return solved && within_reach();
+  }
+
+  /// u += s change with the largest s = 1, 1/2, 1/4 ... after which less force is unbalanced, or less of it along the change: a
+  /// sheet that must turn passes through larger forces on its way, but downhill in energy.
+  bool search(double before) {
+    copy(u_, saved_u_);
+    const double downhill = std::abs(dot(residual_, change_));
+    double share = 1;
+    for (int halving = 0; halving < 10; ++halving, share *= 0.5) {
+      axpby(share, change_, 1.0, u_);
+      measure_stress(false);
+      const double after = measure_residual(false);
+      const double along = std::abs(dot(residual_, change_));
+      if (std::isfinite(after) && (after < before * (1 - 1e-4 * share) || along < 0.8 * downhill)) return true;
+      // The change that must be made at the end of convergence is rounding: take it.
+      if (halving == 0 && after <= 1e-11 * force_size()) return true;
+      copy(saved_u_, u_);
+    }
+    return false;
+  }
+
+  bool linear_solve(StepStats& stats) {
+    const bool direct = options_.implicit.linear_solver == LinearSolver::cholesky;
+    LinearReport report = direct ? factorise() : iterate();
+    stats.linear += report.iterations;
+    if (report.indefinite) {
+      // Compression makes the tangent of a sparsely filled cell indefinite; without that part it is one of a convex energy, slower but
+      // sure to lead downhill.
+      measure_stress(true, true);
+      report = direct ? factorise() : iterate();
+      stats.linear += report.iterations;
+    }
+    stats.linear_residual = report.residual;
+    stats.indefinite = stats.indefinite || report.indefinite;
+    return report.converged;
+  }
+
+  PointTangents<Real> point_tangents() { return {this->grid_.view(), points_.view(), tangents()}; }
+
+  LinearReport factorise() {
+    stiffness_.resize(static_cast<std::size_t>(count_));
+    for_each(Place{}, count_, FrictionStiffness{nodes(), held(), stiffness_.data()});
+    return cholesky_.solve(point_tangents(), {count_, mass_.data(), freed_.data(), scheme_.inertia(), dynamic_ ? 0 : static_shift, stiffness_.data()}, residual_,
+                           change_);
+  }
+
+  LinearReport iterate() {
+    blocks_.fill_zero();
+    for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
+                     ScatterBlocks<Real, Shape>{this->grid_.view(), points_.view(), tangents(), blocks_.data()});
+    const bool whole = options_.implicit.preconditioner == Preconditioner::block;
+    for_each(Place{}, count_, InvertBlocks{nodes(), held(), scheme_.inertia(), whole, blocks_.data()});
+    operator_.refresh(point_tangents(), this->grid_.groups());
+    const auto apply_tangent = [&](const NodeVector<Place>& x, NodeVector<Place>& y) {
+      y.fill_zero();
+      operator_.apply(x, y);
+      for_each(Place{}, count_, CloseProduct{nodes(), held(), scheme_.inertia(), x.data(), y.data()});
+    };
+    const auto precondition = [&](const NodeVector<Place>& r, NodeVector<Place>& z) {
+      for_each(Place{}, count_, ApplyBlocks{nodes(), blocks_.data(), r.data(), z.data()});
+    };
+    return cg_.solve(residual_, change_, options_.implicit.linear_tolerance, options_.implicit.linear_iterations, apply_tangent,
+                     precondition);
+  }
+
+  /// No point may go further than a cell in a step: shape functions stand still meanwhile.
+  bool within_reach() {
+    farthest_.upload({0});
+    for_each(Place{}, points_.count(), MeasureMotion<Real, Shape>{this->grid_.view(), points_.view(), u_.data(), farthest_.data()});
+    return positive_from_bits(farthest_.download().front()) <= 1.0f;
+  }
+
+  void accept(const Clock& clock, double step) {
+    for_each(Place{}, count_, EndOfStep{nodes(), scheme_, velocity_end_.data(), acceleration_end_.data()});
+    AcceptStep<Real, Shape> step_kernel{this->grid_.view(), points_.view(), material_, clock_.data(), nodes(),
+                                        dynamic_ ? velocity_end_.data() : nullptr, acceleration_end_.data(), u_.data(),
+                                        affine_ ? 0.0 : options_.flip_fraction, affine_, dilatant_, true, true};
+    const bool musl = dynamic_ && options_.stress_update == StressUpdate::modified;
+    if (musl) {
+      step_kernel.deforms = false;
+      for_each(Place{}, points_.count(), step_kernel);
+      change_.fill_zero();
+      for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
+                       ScatterVelocity<Real, Shape>{this->grid_.view(), points_.view(), material_.density, change_.data()});
+      for_each(Place{}, count_, RemapDisplacement{nodes(), step, change_.data()});
+      step_kernel.strain_displacement = change_.data();
+      step_kernel.deforms = true;
+      step_kernel.speeds = false;
+    }
+    for_each(Place{}, points_.count(), step_kernel);
+    for_each(Place{}, this->grid_.active_blocks() * block_columns,
+             RecordColumns<Real>{this->grid_.view(), this->grid_.active_list(), mass_.data(),
+                                 dynamic_ ? velocity_end_.data() : nullptr, static_cast<double>(material_.density), clock.time,
+                                 this->maps()});
+  }
+
+  void drop_gone() {
+    this->grid_.fit(points_, gone_);
+    gone_ = 0;
+  }
+
+  bool affine_, dynamic_;
+  BaseFriction<double> friction_;
+  double step_;
+  int gone_ = 0, count_ = 0;
+  bool first_;  // no acceleration is known yet
+  TimeScheme scheme_;
+  Buffer<double, Place> mass_, contact_friction_, friction_limit_;
+  double slip_ = 0;  // [m]
+  NodeVector<Place> velocity_, acceleration_, external_, internal_, u_, residual_, normal_, velocity_end_,
+      acceleration_end_, change_, saved_u_;
+  Buffer<Sym3<double>, Place> freed_, wall_freed_, blocks_, stiffness_;
+  Buffer<Touch, Place> touch_;
+  Buffer<Real, Place> tangents_;
+  Buffer<int, Place> changes_;
+  Buffer<std::uint32_t, Place> farthest_;
+  ConjugateGradient<Place> cg_;
+  TangentOperator<Real, Place, Shape> operator_;
+  CholeskySolver<Real, Place, Shape> cholesky_;
+};
+
+/// A solver of one precision in the place asked for.
+template <class Real>
+std::unique_ptr<Solver> make_implicit_solver_of(const Scene& scene, const SolveOptions& options, On on, const SolverState& state) {
+  const bool quadratic = options.shape == ShapeKind::quadratic;
+#if TALUS_FOR_GPU
+  if (on == On::gpu) {
+    if (quadratic) return std::make_unique<ImplicitSolverOf<Real, OnGpu, Quadratic>>(scene, options, state);
+    return std::make_unique<ImplicitSolverOf<Real, OnGpu, Linear>>(scene, options, state);
+  }
+#else
+  static_cast<void>(on);
+#endif
+  if (quadratic) return std::make_unique<ImplicitSolverOf<Real, OnCpu, Quadratic>>(scene, options, state);
+  return std::make_unique<ImplicitSolverOf<Real, OnCpu, Linear>>(scene, options, state);
+}
+
+}  // namespace talus::solver

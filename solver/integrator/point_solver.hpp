@@ -1,0 +1,115 @@
+// What every integrator has: the points, the grid, the clock and the maps, and how they are read.
+#pragma once
+
+#include <algorithm>
+
+#include "solver/integrator/point_sums.hpp"
+#include "solver/integrator/solver.hpp"
+#include "solver/output/map_fields.hpp"
+#include "solver/parallel/algorithms.hpp"
+
+namespace talus::solver {
+
+template <class Real, class Place, class Shape>
+class PointSolver : public Solver {
+ public:
+  PointSolver(const Scene& scene, const SolveOptions& options, const SolverState& state, ParticleFields fields)
+      : options_(options),
+        material_(make_material<Real>(options.material)),
+        dilatant_(fields.plastic_volume),
+        points_(fields),
+        grid_(scene.grid),
+        frame_{{scene.map.x(0), scene.map.y(0), grid_.ground().datum},
+               {scene.grid.spacing, scene.grid.spacing, scene.grid.layer_height}},
+        load_volumes_(scene.load_volumes) {
+    points_.upload(state.points);
+    clock_.upload({state.clock});
+    peak_thickness_.upload(state.maps.peak_thickness);
+    peak_speed_.upload(state.maps.peak_speed);
+    peak_pressure_.upload(state.maps.peak_pressure);
+    arrival_.upload(state.maps.arrival);
+  }
+
+  void set_next_event(double time) override {
+    Clock clock = read_clock();
+    clock.next_event = time;
+    clock_.upload({clock});
+  }
+
+  Clock clock() const override { return read_clock(); }
+
+  SolverState state() const override {
+    return {points_.download(),
+            read_clock(),
+            {peak_thickness_.download(), peak_speed_.download(), peak_pressure_.download(), arrival_.download()}};
+  }
+
+  Energies energies() override {
+    constexpr int rows = MeasureEnergies<Real, Shape>::rows;
+    const int count = points_.count();
+    sums_.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(count));
+    const Vec3<double> g{options_.gravity[0], options_.gravity[1], options_.gravity[2]};
+    for_each(Place{}, count,
+             MeasureEnergies<Real, Shape>{grid_.view(), points_.view(), material_, g, dilatant_, sums_.data()});
+    double total[rows];
+    for (int r = 0; r < rows; ++r) {
+      total[r] = count > 0 ? sum(Place{}, sums_.data() + static_cast<std::ptrdiff_t>(r) * count, count) : 0;
+    }
+    return {total[0], total[1], total[2], total[3], {total[4], total[5], total[6]}};
+  }
+
+  std::vector<double> thickness() override {
+    const GridShape& shape = grid_.shape();
+    thickness_.resize(static_cast<std::size_t>(shape.columns) * static_cast<std::size_t>(shape.rows));
+    thickness_.fill_zero();
+    for_each_grouped(Place{}, points_.count(), grid_.groups(),
+                     ScatterThickness<Real, Shape>{points_.view(), shape.columns, thickness_.data()});
+    std::vector<double> result = thickness_.download();
+    for (double& value : result) value /= shape.spacing * shape.spacing;
+    return result;
+  }
+
+  const GroundTables& ground() const override { return grid_.ground(); }
+  int particle_count() const override { return points_.count(); }
+  std::size_t bytes() const override {
+    return points_.bytes() + grid_.bytes() + sums_.bytes() + thickness_.bytes() +
+           peak_thickness_.bytes() + peak_speed_.bytes() + peak_pressure_.bytes() + arrival_.bytes();
+  }
+
+ protected:
+  static bool needs_plastic_volume(const SolveOptions& o) {
+    return o.material.model == MaterialModel::drucker_prager && o.material.dilatancy_angle > 0;
+  }
+  Clock read_clock() const { return clock_.download().front(); }
+  MapView maps() {
+    return {peak_thickness_.data(), peak_speed_.data(), peak_pressure_.data(), arrival_.data(), options_.map_threshold};
+  }
+
+  /// Force per volume of every load at a time; null when there are none.
+  const Vec3<double>* upload_loads(double time) {
+    if (load_volumes_.empty()) return nullptr;
+    std::vector<Vec3<double>> densities;
+    for (std::size_t l = 0; l < load_volumes_.size(); ++l) {
+      const LoadOptions& o = options_.loads[l];
+      double share = time >= o.from && time < o.to ? 1.0 : 0.0;
+      if (o.ramp > 0) share *= std::clamp((time - o.from) / o.ramp, 0.0, 1.0);
+      const double scale = share / load_volumes_[l];
+      densities.push_back({o.force[0] * scale, o.force[1] * scale, o.force[2] * scale});
+    }
+    loads_.upload(densities);
+    return loads_.data();
+  }
+
+  SolveOptions options_;
+  Material<Real> material_;
+  bool dilatant_;
+  Particles<Real, Place> points_;
+  SparseGrid<Real, Place> grid_;
+  WallFrame frame_;
+  std::vector<double> load_volumes_;  // [m3]
+  Buffer<Vec3<double>, Place> loads_;
+  Buffer<Clock, Place> clock_;
+  Buffer<double, Place> peak_thickness_, peak_speed_, peak_pressure_, arrival_, sums_, thickness_;
+};
+
+}  // namespace talus::solver

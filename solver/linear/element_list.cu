@@ -1,0 +1,98 @@
+#include "solver/linear/element_list.hpp"
+
+#include "solver/grid/sparse_grid.hpp"
+#include "solver/linear/runs.hpp"
+
+namespace talus::solver {
+namespace {
+
+constexpr std::uint64_t layer_bits = 0xffffff;
+
+/// One thread: one point. Where its stencil starts; layers count from -1.
+template <class Real, class Shape>
+struct MakeElementKeys {
+  GridView<Real> grid;
+  ParticleView<Real> points;
+  std::uint64_t* keys;
+  TALUS_HD void operator()(int p) const {
+    Real weight[Shape::width], slope[Shape::width];
+    const int i = points.cell_x[p] + Shape::weigh(points.offset_x[p], weight, slope);
+    const int j = points.cell_y[p] + Shape::weigh(points.offset_y[p], weight, slope);
+    const int k = points.cell_z[p] + Shape::weigh(points.offset_z[p], weight, slope);
+    keys[p] = home_key(grid.block_columns_x, i, j, k + 1);
+  }
+};
+
+/// One thread: one element. Its nodes, from its key.
+template <class Real, class Shape>
+struct FindNodes {
+  GridView<Real> grid;
+  const std::uint64_t* keys;
+  const int* starts;
+  int* nodes;
+  TALUS_HD void operator()(int e) const {
+    constexpr int w = Shape::width;
+    const std::uint64_t key = keys[starts[e]];
+    const int block = static_cast<int>(key >> 32), inside = static_cast<int>((key >> 24) & 15);
+    const int i = (block % grid.block_columns_x) * block_side + (inside & 3);
+    const int j = (block / grid.block_columns_x) * block_side + (inside >> 2);
+    const int k = static_cast<int>(key & layer_bits) - 1;
+    int* mine = nodes + static_cast<std::size_t>(e) * (w * w * w);
+    for (int b = 0; b < w; ++b) {
+      for (int a = 0; a < w; ++a) {
+        const BlockSlot& slot = grid.slot(i + a, j + b);
+        for (int c = 0; c < w; ++c) *mine++ = GridView<Real>::node(slot, i + a, j + b, k + c > 0 ? k + c : 0);
+      }
+    }
+  }
+};
+
+}  // namespace
+
+template <class Real, class Place, class Shape>
+void ElementList<Real, Place, Shape>::build(const GridView<Real>& grid, const ParticleView<Real>& points) {
+  ++serial_;
+  keys_.resize(static_cast<std::size_t>(points.count));
+  for_each(Place{}, points.count, MakeElementKeys<Real, Shape>{grid, points, keys_.data()});
+  sort_order(Place{}, keys_, order_);
+  count_ = find_runs(keys_, starts_, scratch_);
+  nodes_.resize(static_cast<std::size_t>(count_) * nodes_each);
+  for_each(Place{}, count_, FindNodes<Real, Shape>{grid, keys_.data(), starts_.data(), nodes_.data()});
+  group_elements(grid.block_columns_x);
+}
+
+template <class Real, class Place, class Shape>
+void ElementList<Real, Place, Shape>::group_elements(int block_columns_x) {
+  if constexpr (!Place::is_gpu) {
+    const auto block_of = [&](int e) { return static_cast<int>(keys_.data()[starts_.data()[e]] >> 32); };
+    for (auto& ranges : groups_.ranges) ranges.clear();
+    for (int begin = 0; begin < count_;) {
+      const int block = block_of(begin);
+      int end = begin + 1;
+      while (end < count_ && block_of(end) == block) ++end;
+      const int colour = (block % block_columns_x & 1) + 2 * (block / block_columns_x & 1);
+      groups_.ranges[colour].emplace_back(begin, end);
+      begin = end;
+    }
+  } else {
+    static_cast<void>(block_columns_x);
+  }
+}
+
+template <class Real, class Place, class Shape>
+std::size_t ElementList<Real, Place, Shape>::bytes() const {
+  return keys_.bytes() + order_.bytes() + starts_.bytes() + nodes_.bytes() + scratch_.bytes();
+}
+
+template class ElementList<float, OnCpu, Linear>;
+template class ElementList<float, OnCpu, Quadratic>;
+template class ElementList<double, OnCpu, Linear>;
+template class ElementList<double, OnCpu, Quadratic>;
+#if TALUS_FOR_GPU
+template class ElementList<float, OnGpu, Linear>;
+template class ElementList<float, OnGpu, Quadratic>;
+template class ElementList<double, OnGpu, Linear>;
+template class ElementList<double, OnGpu, Quadratic>;
+#endif
+
+}  // namespace talus::solver

@@ -1,0 +1,82 @@
+// The tangent of an element, summed over its points: K_ab = sum_p V_p grad N_a . C_p . grad N_b, a 3 x 3 block for
+// every pair of its nodes. Whoever stores the blocks is handed them one by one.
+#pragma once
+
+#include "solver/integrator/implicit_kernels.hpp"
+#include "solver/linear/element_list.hpp"
+
+namespace talus::solver {
+
+/// What the tangent is summed from.
+template <class Real>
+struct PointTangents {
+  GridView<Real> grid;
+  ParticleView<Real> points;
+  TangentStore<Real> tangents;
+};
+
+/// One thread: a tile of `columns` x `rows` node pairs of one element. On the CPU the tile is the element, so that a
+/// point is visited once; on the GPU it is one column node by a slice of row nodes, so that the sums stay in registers.
+template <class Real, class Shape, int columns, int rows, class Sink>
+struct SumElements {
+  static constexpr int w = Shape::width, nodes = w * w * w;
+  static constexpr int column_tiles = nodes / columns, row_tiles = nodes / rows;
+  static constexpr int tiles = column_tiles * row_tiles;  // threads per element
+
+  PointTangents<Real> from;
+  ElementView elements;
+  Sink sink;  // sink.put(e, a, b, block): row-major block of local nodes (a, b), called once per pair
+
+  TALUS_HD void operator()(int index) const {
+    const int e = index / tiles, first_column = index / row_tiles % column_tiles * columns,
+              first_row = index % row_tiles * rows;
+    Real sum[columns * rows][9] = {};
+    for (int s = elements.starts[e]; s < elements.starts[e + 1]; ++s)
+      add_point(elements.order[s], first_column, first_row, sum);
+    for (int q = 0; q < columns; ++q) {
+      for (int r = 0; r < rows; ++r) sink.put(e, first_row + r, first_column + q, sum[q * rows + r]);
+    }
+  }
+
+ private:
+  TALUS_HD static Vec3<Real> gradient(const PointGradients<Real, Shape>& g, int local) {
+    return g.gradient(local / w % w, local / (w * w), local % w);
+  }
+
+  TALUS_HD void add_point(int p, int first_column, int first_row, Real (&sum)[columns * rows][9]) const {
+    const PointGradients<Real, Shape> g(from.grid, from.points, p);
+    const PointTangent<Real> t = from.tangents.get(p);
+    const Real volume = from.points.volume[p];
+    Vec3<Real> row_gradient[rows];
+    for (int r = 0; r < rows; ++r) row_gradient[r] = gradient(g, first_row + r) * volume;
+    for (int q = 0; q < columns; ++q) {
+      const Vec3<Real> at_column = gradient(g, first_column + q);
+      Mat3<Real> change[3];  // of the stress, for a unit displacement of the column's node along each axis
+      for (int d = 0; d < 3; ++d) {
+        Mat3<Real> unit{};
+        add_outer(unit, Vec3<Real>{Real(d == 0), Real(d == 1), Real(d == 2)}, at_column);
+        change[d] = apply(t, unit);
+      }
+      for (int r = 0; r < rows; ++r) {
+        Real* k = sum[q * rows + r];
+        for (int d = 0; d < 3; ++d) {
+          const Vec3<Real> force = change[d] * row_gradient[r];
+          k[d] += force.x;
+          k[3 + d] += force.y;
+          k[6 + d] += force.z;
+        }
+      }
+    }
+  }
+};
+
+/// Runs SumElements over a list with the tile that suits the place. A sink may add to what other elements add to.
+template <class Real, class Place, class Shape, class Sink>
+void sum_elements(const ElementList<Real, Place, Shape>& list, const PointTangents<Real>& from, const Sink& sink) {
+  constexpr int w = Shape::width, nodes = w * w * w;
+  constexpr int columns = Place::is_gpu ? 1 : nodes, rows = Place::is_gpu ? w * w : nodes;
+  using Kernel = SumElements<Real, Shape, columns, rows, Sink>;
+  for_each_grouped(Place{}, list.count() * Kernel::tiles, list.groups(), Kernel{from, list.view(), sink});
+}
+
+}  // namespace talus::solver

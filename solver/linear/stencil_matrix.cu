@@ -1,0 +1,163 @@
+#include "solver/linear/stencil_matrix.hpp"
+
+namespace talus::solver {
+namespace {
+
+/// Offset of local node b from local node a among the neighbours. `folded`: layer -1 of the element is layer 0.
+template <class Shape>
+TALUS_HD int neighbour_of(int a, int b, bool folded) {
+  constexpr int w = Shape::width, reach = w - 1, side = 2 * reach + 1;
+  const auto layer = [&](int local) { return folded && local % w == 0 ? 1 : local % w; };
+  const int dx = b / w % w - a / w % w, dy = b / (w * w) - a / (w * w), dz = layer(b) - layer(a);
+  return ((dy + reach) * side + dx + reach) * side + dz + reach;
+}
+
+/// One thread: one entry of the elements' node table.
+struct FlagNodes {
+  const int* nodes;
+  int* flags;
+  TALUS_HD void operator()(int i) const { raise_flag(&flags[nodes[i]], 1); }
+};
+
+struct NumberRows {
+  int* row_of;  // in: rows before this node; out: its row
+  int* node_of;
+  const int* flags;
+  TALUS_HD void operator()(int n) const {
+    if (flags[n] != 0) {
+      node_of[row_of[n]] = n;
+    } else {
+      row_of[n] = -1;
+    }
+  }
+};
+
+struct Forget {
+  int* table;
+  TALUS_HD void operator()(int i) const { table[i] = -1; }
+};
+
+/// One thread: one element. Tells its nodes of one another.
+template <class Real, class Place, class Shape>
+struct MeetNeighbours {
+  StencilView<Real, Place, Shape> matrix;
+  ElementView elements;
+  TALUS_HD void operator()(int e) const {
+    constexpr int nodes = Shape::width * Shape::width * Shape::width;
+    const int* mine = elements.nodes + static_cast<std::size_t>(e) * nodes;
+    const bool folded = mine[0] == mine[1];
+    for (int a = 0; a < nodes; ++a) {
+      const int row = matrix.row_of[mine[a]];
+      for (int b = 0; b < nodes; ++b)
+        raise_flag(&matrix.table[matrix.table_at(row, neighbour_of<Shape>(a, b, folded))], mine[b]);
+    }
+  }
+};
+
+/// Adds an element's blocks to the rows of its nodes.
+template <class Real, class Place, class Shape>
+struct AddToStencil {
+  StencilView<Real, Place, Shape> matrix;
+  ElementView elements;
+  TALUS_HD void put(int e, int a, int b, const Real* block) const {
+    constexpr int nodes = Shape::width * Shape::width * Shape::width;
+    const int* mine = elements.nodes + static_cast<std::size_t>(e) * nodes;
+    const int row = matrix.row_of[mine[a]], q = neighbour_of<Shape>(a, b, mine[0] == mine[1]);
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) talus::scatter_add(&matrix.blocks[matrix.at(row, i, q, j)], block[3 * i + j]);
+    }
+  }
+};
+
+/// One thread: one row of blocks. y += K x.
+template <class Real, class Place, class Shape>
+struct ApplyBlockRow {
+  StencilView<Real, Place, Shape> matrix;
+  const Vec3<double>* x;
+  Vec3<double>* y;
+  TALUS_HD void operator()(int row) const {
+    constexpr int neighbours = StencilView<Real, Place, Shape>::neighbours;
+    double sum[3] = {};
+    const Real* line = matrix.blocks + matrix.at(row, 0, 0, 0);
+    const int* table = matrix.table + matrix.table_at(row, 0);
+    for (int q = 0; q < neighbours; ++q) {
+      if (table[q] < 0) continue;
+      const Vec3<double> v = x[table[q]];
+      for (int i = 0; i < 3; ++i) {
+        const Real* k = line + i * 3 * neighbours + 3 * q;
+        sum[i] += static_cast<double>(k[0]) * v.x + static_cast<double>(k[1]) * v.y + static_cast<double>(k[2]) * v.z;
+      }
+    }
+    y[matrix.node_of[row]] += Vec3<double>{sum[0], sum[1], sum[2]};
+  }
+};
+
+/// One thread: one scalar row. y += K x.
+template <class Real, class Place, class Shape>
+struct ApplyRow {
+  StencilView<Real, Place, Shape> matrix;
+  const Vec3<double>* x;
+  Vec3<double>* y;
+  TALUS_HD void operator()(int index) const {
+    const int row = index / 3, i = index % 3;
+    double sum = 0;
+    for (int q = 0; q < StencilView<Real, Place, Shape>::neighbours; ++q) {
+      const int n = matrix.table[matrix.table_at(row, q)];
+      if (n < 0) continue;
+      const Vec3<double> v = x[n];
+      sum += static_cast<double>(matrix.blocks[matrix.at(row, i, q, 0)]) * v.x +
+             static_cast<double>(matrix.blocks[matrix.at(row, i, q, 1)]) * v.y +
+             static_cast<double>(matrix.blocks[matrix.at(row, i, q, 2)]) * v.z;
+    }
+    Vec3<double>& to = y[matrix.node_of[row]];
+    (i == 0 ? to.x : i == 1 ? to.y : to.z) += sum;
+  }
+};
+
+}  // namespace
+
+template <class Real, class Place, class Shape>
+void StencilMatrix<Real, Place, Shape>::build(const ElementList<Real, Place, Shape>& list, int nodes) {
+  constexpr int each = ElementList<Real, Place, Shape>::nodes_each;
+  const auto n = static_cast<std::size_t>(nodes);
+  row_of_.resize(n);
+  node_of_.resize(n);
+  table_.resize(n);  // flags first
+  table_.fill_zero();
+  for_each(Place{}, list.count() * each, FlagNodes{list.view().nodes, table_.data()});
+  rows_ = exclusive_sum(Place{}, table_.data(), row_of_.data(), nodes);
+  for_each(Place{}, nodes, NumberRows{row_of_.data(), node_of_.data(), table_.data()});
+  table_.resize(static_cast<std::size_t>(rows_) * View::neighbours);
+  for_each(Place{}, rows_ * View::neighbours, Forget{table_.data()});
+  for_each_grouped(Place{}, list.count(), list.groups(), MeetNeighbours<Real, Place, Shape>{view(), list.view()});
+}
+
+template <class Real, class Place, class Shape>
+void StencilMatrix<Real, Place, Shape>::assemble(const ElementList<Real, Place, Shape>& list,
+                                                 const PointTangents<Real>& from) {
+  blocks_.resize(static_cast<std::size_t>(rows_) * View::neighbours * 9);
+  blocks_.fill_zero();
+  sum_elements<Real, Place, Shape>(list, from, AddToStencil<Real, Place, Shape>{view(), list.view()});
+}
+
+template <class Real, class Place, class Shape>
+void StencilMatrix<Real, Place, Shape>::apply(const NodeVector<Place>& x, NodeVector<Place>& y) {
+  if constexpr (Place::is_gpu) {
+    for_each(Place{}, 3 * rows_, ApplyRow<Real, Place, Shape>{view(), x.data(), y.data()});
+  } else {
+    for_each(Place{}, rows_, ApplyBlockRow<Real, Place, Shape>{view(), x.data(), y.data()});
+  }
+}
+
+template class StencilMatrix<float, OnCpu, Linear>;
+template class StencilMatrix<float, OnCpu, Quadratic>;
+template class StencilMatrix<double, OnCpu, Linear>;
+template class StencilMatrix<double, OnCpu, Quadratic>;
+#if TALUS_FOR_GPU
+template class StencilMatrix<float, OnGpu, Linear>;
+template class StencilMatrix<float, OnGpu, Quadratic>;
+template class StencilMatrix<double, OnGpu, Linear>;
+template class StencilMatrix<double, OnGpu, Quadratic>;
+#endif
+
+}  // namespace talus::solver

@@ -1,0 +1,50 @@
+// y = K x in the three forms of [solve.implicit] operator: per point, stored elements, assembled stencil.
+#pragma once
+
+#include "solver/linear/stencil_matrix.hpp"
+#include "solver/linear/stored_elements.hpp"
+#include "solver/options.hpp"
+
+namespace talus::solver {
+
+template <class Real, class Place, class Shape>
+class TangentOperator {
+ public:
+  explicit TangentOperator(Operator form) : form_(form) {}
+
+  /// The points have moved, or have been sorted: elements and neighbours anew.
+  void begin_step(const GridView<Real>& grid, const ParticleView<Real>& points, int nodes) {
+    if (form_ == Operator::points) return;
+    list_.build(grid, points);
+    if (form_ == Operator::stencil) stencil_.build(list_, nodes);
+  }
+
+  /// The points' tangents have changed. `groups` are the points' (SparseGrid::groups()).
+  void refresh(const PointTangents<Real>& from, const PointGroups& groups) {
+    from_ = from;
+    groups_ = &groups;
+    if (form_ == Operator::elements) stored_.assemble(list_, from);
+    if (form_ == Operator::stencil) stencil_.assemble(list_, from);
+  }
+
+  /// y += K x
+  void apply(const NodeVector<Place>& x, NodeVector<Place>& y) {
+    if (form_ == Operator::elements) return stored_.apply(list_, x, y);
+    if (form_ == Operator::stencil) return stencil_.apply(x, y);
+    for_each_grouped(Place{}, from_.points.count, *groups_,
+                     ApplyTangent<Real, Shape>{from_.grid, from_.points, from_.tangents, x.data(), y.data()});
+  }
+
+  /// What the form stores beside the points and their tangents.
+  std::size_t bytes() const { return list_.bytes() + stored_.bytes() + stencil_.bytes(); }
+
+ private:
+  Operator form_;
+  PointTangents<Real> from_{};
+  const PointGroups* groups_ = nullptr;
+  ElementList<Real, Place, Shape> list_;
+  StoredElements<Real, Place, Shape> stored_;
+  StencilMatrix<Real, Place, Shape> stencil_;
+};
+
+}  // namespace talus::solver

@@ -1,0 +1,44 @@
+// Vectors over the nodes (three doubles each) and the few verbs that Krylov methods are written in.
+#pragma once
+
+#include "solver/parallel/algorithms.hpp"
+#include "solver/parallel/math.hpp"
+
+namespace talus {
+
+template <class Place>
+using NodeVector = Buffer<Vec3<double>, Place>;
+
+namespace detail {
+struct Axpby {  // y = a x + b y
+  double a, b;
+  const Vec3<double>* x;
+  Vec3<double>* y;
+  TALUS_HD void operator()(int n) const { y[n] = x[n] * a + y[n] * b; }
+};
+struct Copy {
+  const Vec3<double>* x;
+  Vec3<double>* y;
+  TALUS_HD void operator()(int n) const { y[n] = x[n]; }
+};
+}  // namespace detail
+
+/// y = a x + b y
+template <class Place>
+void axpby(double a, const NodeVector<Place>& x, double b, NodeVector<Place>& y) {
+  for_each(Place{}, static_cast<int>(y.size()), detail::Axpby{a, b, x.data(), y.data()});
+}
+
+template <class Place>
+void copy(const NodeVector<Place>& x, NodeVector<Place>& y) {
+  y.resize(x.size());
+  for_each(Place{}, static_cast<int>(x.size()), detail::Copy{x.data(), y.data()});
+}
+
+template <class Place>
+double dot(const NodeVector<Place>& x, const NodeVector<Place>& y) {
+  return inner_product(Place{}, reinterpret_cast<const double*>(x.data()), reinterpret_cast<const double*>(y.data()),
+                       3 * static_cast<int>(x.size()));
+}
+
+}  // namespace talus

@@ -1,0 +1,193 @@
+// Trial stress of a point for a displacement of the grid, and its consistent tangent in principal axes.
+//
+// u gives the point the gradient G = sum u_i grad N_i over the configuration at the start of the step, F = I + G. The force on a
+// node is V P grad N with P = tau F^-T. A change dG of G changes it by dP = (d tau - tau dl^T) F^-T, dl = dG F^-1 (Simo 1992;
+// de Souza Neto et al. 2008, section 14.5). In the principal axes n_a of the trial b, dl splits: its diagonal moves the
+// principal stresses through the 3 x 3 matrix D = d tau_a / d eps_b, each pair (a, b) of its off-diagonal through
+//   c_ab = s l_b dl_ab + (s l_a - tau_a) dl_ba,   s = (tau_a - tau_b) / (l_a - l_b),  l_a the eigenvalues of b.
+#pragma once
+
+#include "solver/material/material.hpp"
+
+namespace talus {
+
+/// The tangent of one point, 36 numbers.
+template <class Real>
+struct PointTangent {
+  Real axes[9];      // principal axes n_a, one after the other
+  Real pull[9];      // rows n_a^T F^-T: maps a gradient of the start to principal axes of now
+  Real direct[9];    // D_ab - delta_ab tau_a, row-major
+  Real pairs[9];     // for (0,1), (1,2), (0,2): s l_b, s l_a, s l_a - tau_a
+};
+
+/// dP for dG, both as columns by direction of the gradient.
+template <class Real>
+TALUS_HD Mat3<Real> apply(const PointTangent<Real>& t, const Mat3<Real>& dg) {
+  const auto axis = [&](int a) { return Vec3<Real>{t.axes[3 * a], t.axes[3 * a + 1], t.axes[3 * a + 2]}; };
+  const auto row = [&](int a) { return Vec3<Real>{t.pull[3 * a], t.pull[3 * a + 1], t.pull[3 * a + 2]}; };
+  Real l[3][3];  // n_a . dG . pull_b
+  for (int b = 0; b < 3; ++b) {
+    const Vec3<Real> g = dg * row(b);
+    for (int a = 0; a < 3; ++a) l[a][b] = dot(axis(a), g);
+  }
+  Real c[3][3];
+  for (int a = 0; a < 3; ++a) {
+    c[a][a] = t.direct[3 * a] * l[0][0] + t.direct[3 * a + 1] * l[1][1] + t.direct[3 * a + 2] * l[2][2];
+  }
+  constexpr int first[3] = {0, 1, 0}, second[3] = {1, 2, 2};
+  for (int q = 0; q < 3; ++q) {
+    const int a = first[q], b = second[q];
+    c[a][b] = t.pairs[3 * q] * l[a][b] + t.pairs[3 * q + 2] * l[b][a];
+    c[b][a] = t.pairs[3 * q + 1] * l[b][a] + t.pairs[3 * q + 2] * l[a][b];
+  }
+  Vec3<Real> mapped[3];  // sum_a n_a c_ab
+  for (int b = 0; b < 3; ++b) mapped[b] = axis(0) * c[0][b] + axis(1) * c[1][b] + axis(2) * c[2][b];
+  const auto column = [&](Real p0, Real p1, Real p2) { return mapped[0] * p0 + mapped[1] * p1 + mapped[2] * p2; };
+  return {column(t.pull[0], t.pull[3], t.pull[6]), column(t.pull[1], t.pull[4], t.pull[7]),
+          column(t.pull[2], t.pull[5], t.pull[8])};
+}
+
+/// Takes from each off-diagonal pair what makes it indefinite: |s l_a - tau_a| <= sqrt(s l_a s l_b).
+template <class Real>
+TALUS_HD void make_definite(PointTangent<Real>& t) {
+  for (int q = 0; q < 3; ++q) {
+    Real& forth = t.pairs[3 * q];
+    Real& back = t.pairs[3 * q + 1];
+    forth = forth > Real(0) ? forth : Real(0);
+    back = back > Real(0) ? back : Real(0);
+    const Real bound = sqrt(forth * back);
+    Real& cross = t.pairs[3 * q + 2];
+    cross = cross > bound ? bound : cross < -bound ? -bound : cross;
+  }
+}
+
+/// The paper's linear step: stress at the start plus Hooke's law on the strain of the step, over the volume at the start.
+template <class Real>
+TALUS_HD Mat3<Real> linear_stress(const Material<Real>& m, const MaterialState<Real>& start, const Mat3<Real>& g,
+                                  PointTangent<Real>* tangent) {
+  const Real volume = exp(start.log_volume);
+  const Real lame = m.bulk_modulus - Real(2.0 / 3) * m.shear_modulus;
+  const Sym3<Real> strain{g.a.x, g.b.y, g.c.z, Real(0.5) * (g.a.y + g.b.x), Real(0.5) * (g.b.z + g.c.y),
+                          Real(0.5) * (g.a.z + g.c.x)};
+  const Sym3<Real> s =
+      (start.elastic + (strain * (Real(2) * m.shear_modulus)).plus_identity(lame * trace(strain))) * volume;
+  if (tangent) {
+    for (int q = 0; q < 9; ++q) {
+      const bool diagonal = q % 4 == 0;
+      tangent->axes[q] = tangent->pull[q] = diagonal ? Real(1) : Real(0);
+      tangent->direct[q] = volume * (lame + (diagonal ? Real(2) * m.shear_modulus : Real(0)));
+      tangent->pairs[q] = volume * m.shear_modulus;
+    }
+  }
+  return {{s.xx, s.xy, s.xz}, {s.xy, s.yy, s.yz}, {s.xz, s.yz, s.zz}};
+}
+
+/// Principal Kirchhoff stresses of the trial strains `e` and D_ab = d tau_a / d e_b. `log_volume` is the trial's. The friction
+/// of a yielding point is held at its current pressure in D (frozen yield), which keeps D symmetric.
+template <class Real>
+TALUS_HD void principal_response(const Material<Real>& m, const Real e[3], Real log_volume, Real plastic_log_volume, Real tau[3],
+                                 Real d[9]) {
+  const Real twice = Real(2) * m.shear_modulus;
+  if (m.model == MaterialModel::hencky) {
+    const Real lame = m.bulk_modulus - Real(2.0 / 3) * m.shear_modulus;
+    const Real volume = e[0] + e[1] + e[2];
+    for (int a = 0; a < 3; ++a) {
+      tau[a] = twice * e[a] + lame * volume;
+      for (int b = 0; b < 3; ++b) d[3 * a + b] = lame + (a == b ? twice : Real(0));
+    }
+    return;
+  }
+  if (m.model == MaterialModel::corotated) {
+    const Real lame = m.bulk_modulus - Real(2.0 / 3) * m.shear_modulus;
+    Real stretch[3], excess[3], volume = 0;
+    for (int a = 0; a < 3; ++a) {
+      excess[a] = expm1(e[a]);
+      stretch[a] = Real(1) + excess[a];
+      volume += excess[a];
+    }
+    for (int a = 0; a < 3; ++a) {
+      tau[a] = stretch[a] * (twice * excess[a] + lame * volume);
+      for (int b = 0; b < 3; ++b) d[3 * a + b] = stretch[a] * stretch[b] * lame + (a == b ? tau[a] + twice * stretch[a] * stretch[a] : Real(0));
+    }
+    return;
+  }
+  const Real mean = (e[0] + e[1] + e[2]) / Real(3);
+  const Real s[3] = {e[0] - mean, e[1] - mean, e[2] - mean};
+  const Real size = sqrt(Real(0.5) * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2]));
+  const Real shear = twice * size;
+  Real pressure = -m.bulk_modulus * (log_volume - plastic_log_volume);
+  Real bulk = m.bulk_modulus;
+  const bool open = pressure <= -m.tension;
+  if (open) {
+    pressure = -m.tension;
+    bulk = Real(0);
+  }
+  const Real excess = shear - m.friction * pressure - m.shear_cohesion;
+  Real left = shear, slope = Real(1);  // sqrt(J2) after the return, its derivative by the trial's
+  if (excess > Real(0)) {
+    const Real beta = open ? Real(0) : m.dilatancy;
+    const Real stiff = m.shear_modulus + m.friction * m.bulk_modulus * beta;
+    const Real multiplier = excess / stiff;
+    left = shear - m.shear_modulus * multiplier;
+    slope = m.friction * m.bulk_modulus * beta / stiff;
+    if (left < Real(0)) left = slope = Real(0);
+    pressure += m.bulk_modulus * beta * multiplier;
+  }
+  const Real ratio = shear > Real(0) ? left / shear : Real(1);
+  // d(2G s ratio) = 2G [ratio dev + (slope - ratio) n n^T], n = s / |s|
+  const Real square = Real(2) * size * size;
+  for (int a = 0; a < 3; ++a) {
+    tau[a] = twice * ratio * s[a] - pressure;
+    for (int b = 0; b < 3; ++b) {
+      const Real along = square > Real(0) ? s[a] * s[b] / square : Real(0);
+      d[3 * a + b] = bulk + twice * (ratio * ((a == b ? Real(1) : Real(0)) - Real(1.0 / 3)) + (slope - ratio) * along);
+    }
+  }
+}
+
+/// Nominal stress P of a point whose state at the start of the step is `start`, for the displacement gradient g of the step; with
+/// `tangent` not null also the derivative of P by g.
+template <class Real>
+TALUS_HD Mat3<Real> nominal_stress(const Material<Real>& m, const MaterialState<Real>& start, const Mat3<Real>& g,
+                                   PointTangent<Real>* tangent) {
+  if (m.model == MaterialModel::linear_elastic) return linear_stress(m, start, g, tangent);
+  const Sym3<Real> deviation = advance_deviation(start.elastic, g);
+  Real stretch[3], e[3], tau[3], d[9];
+  Mat3<Real> axes;
+  eigen_symmetric(deviation, stretch, axes);
+  for (int a = 0; a < 3; ++a) e[a] = Real(0.5) * log1p(stretch[a]);
+  principal_response(m, e, start.log_volume + log_volume_change(g), start.plastic_log_volume, tau, d);
+  const Mat3<Real> f{{g.a.x + 1, g.a.y, g.a.z}, {g.b.x, g.b.y + 1, g.b.z}, {g.c.x, g.c.y, g.c.z + 1}};
+  const Mat3<Real> inverse = inverted(f);
+  const Vec3<Real> n[3] = {axes.a, axes.b, axes.c};
+  Vec3<Real> pull[3];  // n^T F^-T = F^-1 n
+  for (int a = 0; a < 3; ++a) pull[a] = inverse * n[a];
+  const auto column = [&](Real p0, Real p1, Real p2) { return n[0] * (tau[0] * p0) + n[1] * (tau[1] * p1) + n[2] * (tau[2] * p2); };
+  if (tangent) {
+    for (int a = 0; a < 3; ++a) {
+      tangent->axes[3 * a] = n[a].x;
+      tangent->axes[3 * a + 1] = n[a].y;
+      tangent->axes[3 * a + 2] = n[a].z;
+      tangent->pull[3 * a] = pull[a].x;
+      tangent->pull[3 * a + 1] = pull[a].y;
+      tangent->pull[3 * a + 2] = pull[a].z;
+      for (int b = 0; b < 3; ++b) tangent->direct[3 * a + b] = d[3 * a + b] - (a == b ? tau[a] : Real(0));
+    }
+    constexpr int first[3] = {0, 1, 0}, second[3] = {1, 2, 2};
+    for (int q = 0; q < 3; ++q) {
+      const int a = first[q], b = second[q];
+      const Real la = Real(1) + stretch[a], lb = Real(1) + stretch[b], gap = stretch[a] - stretch[b];
+      // Nearly equal stretches: the limit, whose error is of the order of the gap squared.
+      const bool close = fabs(gap) < Real(sizeof(Real) == 8 ? 1e-6 : 1e-3) * (la + lb);
+      const Real s = close ? (d[3 * a + a] + d[3 * b + b] - d[3 * a + b] - d[3 * b + a]) / (Real(2) * (la + lb))
+                           : (tau[a] - tau[b]) / gap;
+      tangent->pairs[3 * q] = s * lb;
+      tangent->pairs[3 * q + 1] = s * la;
+      tangent->pairs[3 * q + 2] = Real(0.5) * (s * la - tau[a] + s * lb - tau[b]);
+    }
+  }
+  return {column(pull[0].x, pull[1].x, pull[2].x), column(pull[0].y, pull[1].y, pull[2].y),
+          column(pull[0].z, pull[1].z, pull[2].z)};
+}
+
+}  // namespace talus

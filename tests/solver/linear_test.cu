@@ -1,0 +1,586 @@
+// The tangent's three forms against one another, and Cholesky against conjugate gradients, on random points, states and
+// constraints.
+#include <array>
+#include <random>
+#include <set>
+
+#include "common/error.hpp"
+#include "scenes.hpp"
+#include "solver/linear/cholesky_solver.hpp"
+#include "solver/linear/elimination_order.hpp"
+#include "solver/linear/tangent_operator.hpp"
+
+namespace talus::solver::testing {
+namespace {
+
+struct Setting {
+  bool quadratic;
+  Mapping mapping = Mapping::terrain_following;
+  MaterialModel model = MaterialModel::hencky;
+};
+
+/// Points off their lattice on wavy ground, with random strains, under a random displacement of the grid.
+Scene random_scene(const Setting& setting) {
+  Domain d = ground(14, 12, 2.0, 1.0, [](double x, double y) { return 3 - 0.1 * x + 0.3 * std::sin(y); });
+  fill(d, {8, 14, 8, 14, 0, 3});
+  SolveOptions o;
+  o.shape = setting.quadratic ? ShapeKind::quadratic : ShapeKind::linear;
+  o.mapping = setting.mapping;
+  Scene s = make_scene(d, o);
+  std::mt19937 engine(7);
+  std::uniform_real_distribution<double> u(-1, 1);
+  for (std::size_t p = 0; p < s.points.size(); ++p) {
+    for (int a = 0; a < 3; ++a) {
+      const double lowest = a == 2 && s.points.cell[2][p] == 0 ? 0.0 : -0.5;
+      s.points.offset[a][p] = std::clamp(s.points.offset[a][p] + 0.2 * u(engine), lowest, 0.499);
+    }
+    for (int a = 0; a < 6; ++a) s.points.elastic[a][p] = 0.01 * u(engine);
+    s.points.log_volume[p] = s.points.elastic[0][p] + s.points.elastic[1][p] + s.points.elastic[2][p];
+  }
+  return s;
+}
+
+std::vector<Vec3<double>> random_vectors(int count, double size, unsigned seed) {
+  std::mt19937 engine(seed);
+  std::uniform_real_distribution<double> u(-size, size);
+  std::vector<Vec3<double>> v(static_cast<std::size_t>(count));
+  for (auto& x : v) x = {u(engine), u(engine), u(engine)};
+  return v;
+}
+
+double norm(const std::vector<Vec3<double>>& v) {
+  double sum = 0;
+  for (const auto& x : v) sum += dot(x, x);
+  return std::sqrt(sum);
+}
+
+double difference(const std::vector<Vec3<double>>& a, const std::vector<Vec3<double>>& b) {
+  EXPECT_EQ(a.size(), b.size());
+  std::vector<Vec3<double>> d(a.size());
+  for (std::size_t n = 0; n < a.size(); ++n) d[n] = a[n] - b[n];
+  return norm(d) / norm(b);
+}
+
+Sym3<double> plane(const Vec3<double>& n) {
+  return {1 - n.x * n.x, 1 - n.y * n.y, 1 - n.z * n.z, -n.x * n.y, -n.y * n.z, -n.x * n.z};
+}
+
+/// y = freed (y + (mass inertia + stiffness) x)
+struct CloseSystem {
+  HeldNodes nodes;
+  const Vec3<double>* x;
+  Vec3<double>* y;
+  TALUS_HD void operator()(int n) const {
+    y[n] = nodes.freed[n] * (y[n] + x[n] * (nodes.mass[n] * nodes.inertia) + nodes.stiffness[n] * x[n]);
+  }
+};
+
+/// z = freed B^-1 freed r, B the node's own block.
+struct OwnBlocks {
+  HeldNodes nodes;
+  const Sym3<double>* blocks;
+  const Vec3<double>* r;
+  Vec3<double>* z;
+  TALUS_HD void operator()(int n) const {
+    const Sym3<double> p = nodes.freed[n];
+    const Sym3<double> b = (blocks[n] + nodes.stiffness[n]).plus_identity(nodes.mass[n] * nodes.inertia);
+    const Vec3<double> e[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    Vec3<double> column[3];
+    for (int a = 0; a < 3; ++a) column[a] = p * (b * (p * e[a])) + e[a] - p * e[a];
+    z[n] = p * (inverted(Mat3<double>{column[0], column[1], column[2]}) * (p * r[n]));
+  }
+};
+
+/// Everything a linear solve takes: grid, points, tangents, mass and constraints.
+template <class Real, class Place, class Shape>
+struct Bench {
+  Particles<Real, Place> points{{false, false, false}};
+  SparseGrid<Real, Place> grid;
+  Material<Real> material;
+  int count = 0;
+  Buffer<Real, Place> tangents;
+  Buffer<double, Place> mass;
+  Buffer<Sym3<double>, Place> freed, blocks, stiffness;
+  NodeVector<Place> velocity, internal, u;
+  double inertia = 1e3;
+
+  explicit Bench(const Setting& setting) : Bench(random_scene(setting), setting) {}
+  Bench(const Scene& scene, const Setting& setting) : grid(scene.grid) {
+    points.upload(scene.points);
+    MaterialOptions mo;
+    mo.model = setting.model;
+    material = make_material<Real>(mo);
+    grid.fit(points, 0);
+    count = grid.nodes();
+    refresh();
+    hold();
+  }
+
+  NodeArrays nodes() {
+    NodeArrays n;
+    n.mass = mass.data();
+    n.velocity = velocity.data();
+    n.internal = internal.data();
+    n.u = u.data();
+    n.freed = freed.data();
+    return n;
+  }
+  TangentStore<Real> store() { return {tangents.data(), points.count()}; }
+  PointTangents<Real> from() { return {grid.view(), points.view(), store()}; }
+  HeldNodes held() const { return {count, mass.data(), freed.data(), inertia, 0.0, stiffness.data()}; }
+
+  void refresh() {
+    const auto n = static_cast<std::size_t>(count);
+    u.upload(random_vectors(count, 0.01, 3));
+    for (auto* v : {&velocity, &internal}) {
+      v->resize(n);
+      v->fill_zero();
+    }
+    mass.resize(n);
+    mass.fill_zero();
+    tangents.resize(static_cast<std::size_t>(TangentStore<Real>::numbers) * static_cast<std::size_t>(points.count()));
+    for_each_grouped(
+        Place{}, points.count(), grid.groups(),
+        ScatterInertia<Real, Shape>{grid.view(), points.view(), material.density, false, false, nullptr, nodes()});
+    for_each_grouped(Place{}, points.count(), grid.groups(),
+                     ScatterStress<Real, Shape>{grid.view(), points.view(), material, false, false, store(), nodes()});
+    synchronise(Place{});
+  }
+
+  /// Held, slipping on a tilted plane, sliding along a line, free; some on springs.
+  void hold() {
+    const auto m = mass.download();
+    std::vector<Sym3<double>> p(m.size()), springs(m.size());
+    for (std::size_t n = 0; n < m.size(); n += 5) springs[n] = {2e6, 3e6, 1e6, 5e5, -4e5, 0};
+    stiffness.upload(springs);
+    for (std::size_t n = 0; n < m.size(); ++n) {
+      if (!(m[n] > 0) || n % 11 == 0) continue;
+      p[n] = {1, 1, 1, 0, 0, 0};
+      if (n % 7 == 0) p[n] = plane({-0.36, 0.48, 0.8});
+      if (n % 13 == 0) p[n] = {0.36, 0.64, 0, 0.48, 0, 0};
+    }
+    freed.upload(p);
+  }
+  void free_all() {
+    const auto m = mass.download();
+    std::vector<Sym3<double>> p(m.size());
+    for (std::size_t n = 0; n < m.size(); ++n) p[n] = m[n] > 0 ? Sym3<double>{1, 1, 1, 0, 0, 0} : Sym3<double>{};
+    freed.upload(p);
+    stiffness.fill_zero();
+  }
+
+  /// K x in one form.
+  std::vector<Vec3<double>> product(Operator form) {
+    TangentOperator<Real, Place, Shape> op(form);
+    op.begin_step(grid.view(), points.view(), count);
+    op.refresh(from(), grid.groups());
+    NodeVector<Place> x, y;
+    x.upload(random_vectors(count, 1, 5));
+    y.resize(x.size());
+    y.fill_zero();
+    op.apply(x, y);
+    synchronise(Place{});
+    return y.download();
+  }
+
+  NodeVector<Place> right_side() {
+    NodeVector<Place> b;
+    const auto p = freed.download();
+    auto v = random_vectors(count, 1e4, 9);
+    for (std::size_t n = 0; n < v.size(); ++n) v[n] = p[n] * v[n];
+    b.upload(v);
+    return b;
+  }
+
+  std::vector<Vec3<double>> by_gradients() {
+    NodeVector<Place> x;
+    const NodeVector<Place> b = right_side();
+    blocks.resize(static_cast<std::size_t>(count));
+    blocks.fill_zero();
+    for_each_grouped(Place{}, points.count(), grid.groups(),
+                     ScatterBlocks<Real, Shape>{grid.view(), points.view(), store(), blocks.data()});
+    ConjugateGradient<Place> cg;
+    const auto multiply = [&](const NodeVector<Place>& p, NodeVector<Place>& ap) {
+      ap.fill_zero();
+      for_each_grouped(Place{}, points.count(), grid.groups(),
+                       ApplyTangent<Real, Shape>{grid.view(), points.view(), store(), p.data(), ap.data()});
+      for_each(Place{}, count, CloseSystem{held(), p.data(), ap.data()});
+    };
+    const auto precondition = [&](const NodeVector<Place>& r, NodeVector<Place>& z) {
+      for_each(Place{}, count, OwnBlocks{held(), blocks.data(), r.data(), z.data()});
+    };
+    const LinearReport report = cg.solve(b, x, 1e-12, 5000, multiply, precondition);
+    EXPECT_TRUE(report.converged) << "residual " << report.residual;
+    return x.download();
+  }
+
+  std::vector<Vec3<double>> by_cholesky() {
+    CholeskySolver<Real, Place, Shape> solver;
+    solver.begin_step(grid.view(), points.view());
+    NodeVector<Place> x;
+    const LinearReport report = solver.solve(from(), held(), right_side(), x);
+    EXPECT_TRUE(report.converged) << solver.factor().name() << ": residual " << report.residual;
+    EXPECT_FALSE(report.indefinite);
+    return x.download();
+  }
+};
+
+#if TALUS_FOR_GPU
+#define TALUS_RUN(function, ...)                                           \
+  (GetParam() == On::gpu ? function<double, OnGpu, Linear>(__VA_ARGS__)    \
+                         : function<double, OnCpu, Linear>(__VA_ARGS__),   \
+   GetParam() == On::gpu ? function<double, OnGpu, Quadratic>(__VA_ARGS__) \
+                         : function<double, OnCpu, Quadratic>(__VA_ARGS__))
+#else
+#define TALUS_RUN(function, ...) \
+  (function<double, OnCpu, Linear>(__VA_ARGS__), function<double, OnCpu, Quadratic>(__VA_ARGS__))
+#endif
+
+template <class Shape>
+constexpr bool is_quadratic = Shape::width == 3;
+
+class LinearSystem : public InEachPlace {
+ protected:
+  template <class Real, class Place, class Shape>
+  static void compare_forms(double tolerance) {
+    for (const auto mapping : {Mapping::terrain_following, Mapping::cartesian}) {
+      for (const auto model : {MaterialModel::hencky, MaterialModel::drucker_prager}) {
+        Bench<Real, Place, Shape> bench({is_quadratic<Shape>, mapping, model});
+        const auto expected = bench.product(Operator::points);
+        EXPECT_GT(norm(expected), 0);
+        EXPECT_LT(difference(bench.product(Operator::elements), expected), tolerance);
+        EXPECT_LT(difference(bench.product(Operator::stencil), expected), tolerance);
+      }
+    }
+  }
+
+  template <class Real, class Place, class Shape>
+  static void compare_solvers() {
+    for (const auto mapping : {Mapping::terrain_following, Mapping::cartesian}) {
+      Bench<Real, Place, Shape> bench({is_quadratic<Shape>, mapping});
+      EXPECT_LT(difference(bench.by_cholesky(), bench.by_gradients()), 1e-8);
+    }
+  }
+
+  template <class Real, class Place, class Shape>
+  static void keep_analysis() {
+    Bench<Real, Place, Shape> bench({is_quadratic<Shape>});
+    CholeskySolver<Real, Place, Shape> solver;
+    NodeVector<Place> x;
+    const NodeVector<Place> b = bench.right_side();
+    const auto solve = [&] { EXPECT_TRUE(solver.solve(bench.from(), bench.held(), b, x).converged); };
+    solver.begin_step(bench.grid.view(), bench.points.view());
+    solve();
+    const auto first = x.download();
+    bench.inertia *= 2;  // another matrix of the same pattern, elements and unknowns as they were
+    solve();
+    EXPECT_EQ(solver.factor().analyses(), 1);
+    EXPECT_EQ(solver.assembly().sorts(), 1);
+    EXPECT_GT(difference(x.download(), first), 1e-3);
+    solver.begin_step(bench.grid.view(), bench.points.view());  // a new step in which no point changes its cell
+    solve();
+    EXPECT_EQ(solver.factor().analyses(), 1);
+    EXPECT_EQ(solver.assembly().sorts(), 2);
+    bench.free_all();  // more unknowns
+    solve();
+    EXPECT_EQ(solver.factor().analyses(), 2);
+    ElementList<Real, Place, Shape> list;
+    list.build(bench.grid.view(), bench.points.view());
+    const double foreseen = assembly_bytes<Real, Shape>(list.count(), solver.assembly().unknown_nodes());
+    EXPECT_GT(foreseen, static_cast<double>(solver.bytes()));
+    EXPECT_LT(foreseen, 2 * static_cast<double>(solver.bytes()));
+  }
+
+  template <class Real, class Place, class Shape>
+  static void report_indefinite() {
+    Bench<Real, Place, Shape> bench({is_quadratic<Shape>});
+    CholeskySolver<Real, Place, Shape> solver;
+    NodeVector<Place> x;
+    const NodeVector<Place> b = bench.right_side();
+    solver.begin_step(bench.grid.view(), bench.points.view());
+    bench.inertia = -1e5;
+    const LinearReport report = solver.solve(bench.from(), bench.held(), b, x);
+    EXPECT_TRUE(report.indefinite);
+    EXPECT_FALSE(report.converged);
+    EXPECT_EQ(norm(x.download()), 0);
+    bench.inertia = 1e3;  // the same solver goes on
+    EXPECT_TRUE(solver.solve(bench.from(), bench.held(), b, x).converged);
+  }
+
+  /// A body without support, pulled by a force, has no static equilibrium: its matrix is singular.
+  template <class Real, class Place, class Shape>
+  static void report_singular() {
+    Setting setting{is_quadratic<Shape>};
+    Scene scene = random_scene(setting);
+    for (auto& strain : scene.points.elastic) std::fill(strain.begin(), strain.end(), 0.0);
+    std::fill(scene.points.log_volume.begin(), scene.points.log_volume.end(), 0.0);
+    Bench<Real, Place, Shape> bench(scene, setting);
+    bench.free_all();
+    bench.inertia = 0;
+    CholeskySolver<Real, Place, Shape> solver;
+    NodeVector<Place> b, x;
+    const auto m = bench.mass.download();
+    std::vector<Vec3<double>> weight(m.size());
+    for (std::size_t n = 0; n < m.size(); ++n) weight[n] = {0, 0, -9.81 * m[n]};
+    b.upload(weight);
+    solver.begin_step(bench.grid.view(), bench.points.view());
+    const LinearReport report = solver.solve(bench.from(), bench.held(), b, x);
+    EXPECT_TRUE(report.indefinite) << "residual " << report.residual;
+    EXPECT_FALSE(report.converged);
+  }
+
+  template <class Real, class Place, class Shape>
+  static void refuse(double limit, const std::string& what) {
+    Bench<Real, Place, Shape> bench({is_quadratic<Shape>});
+    CholeskySolver<Real, Place, Shape> solver(limit);
+    NodeVector<Place> x;
+    const NodeVector<Place> b = bench.right_side();
+    solver.begin_step(bench.grid.view(), bench.points.view());
+    const std::size_t before = solver.bytes();
+    try {
+      solver.solve(bench.from(), bench.held(), b, x);
+      ADD_FAILURE() << "a matrix was built in spite of a limit of " << limit << " bytes";
+    } catch (const NumericalError& e) {
+      EXPECT_NE(std::string(e.what()).find(what), std::string::npos) << e.what();
+      EXPECT_NE(std::string(e.what()).find(" MB"), std::string::npos) << e.what();
+      EXPECT_NE(std::string(e.what()).find("linear_solver = \"pcg\""), std::string::npos) << e.what();
+    }
+    EXPECT_LT(solver.bytes(), before + 100000) << "memory was taken first";
+  }
+};
+
+// Rounding only: the sums run over the same terms in another order.
+TEST_P(LinearSystem, products_of_elements_and_stencil_are_those_of_the_points) {
+  TALUS_RUN(compare_forms, 1e-12);
+#if TALUS_FOR_GPU
+  if (GetParam() == On::gpu) {
+    compare_forms<float, OnGpu, Linear>(1e-5);
+    compare_forms<float, OnGpu, Quadratic>(1e-5);
+    return;
+  }
+#endif
+  compare_forms<float, OnCpu, Linear>(1e-5);
+  compare_forms<float, OnCpu, Quadratic>(1e-5);
+}
+
+TEST_P(LinearSystem, cholesky_finds_the_displacement_that_conjugate_gradients_find) { TALUS_RUN(compare_solvers); }
+TEST_P(LinearSystem, cholesky_keeps_its_analysis_while_the_pattern_stands) { TALUS_RUN(keep_analysis); }
+TEST_P(LinearSystem, cholesky_says_that_a_matrix_is_indefinite) { TALUS_RUN(report_indefinite); }
+TEST_P(LinearSystem, cholesky_says_that_a_floating_body_has_no_equilibrium) { TALUS_RUN(report_singular); }
+TEST_P(LinearSystem, cholesky_refuses_a_matrix_that_does_not_fit_before_it_is_built) {
+  TALUS_RUN(refuse, 1e4, "the triples and the matrix would take");
+}
+
+TEST_P(LinearSystem, cholesky_refuses_a_factor_that_does_not_fit) {
+  // A limit between the matrix's need and the factor's: the factorisation alone, on a full matrix.
+  const auto run = [](auto place) {
+    using Place = decltype(place);
+    constexpr int n = 60;
+    CsrMatrix<Place> a;
+    a.rows = n;
+    a.pattern = 1;
+    std::vector<int> starts{0}, columns;
+    std::vector<double> values;
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) {
+        columns.push_back(j);
+        values.push_back(i == j ? 2.0 * n : 1.0);
+      }
+      starts.push_back(static_cast<int>(columns.size()));
+    }
+    a.starts.upload(starts);
+    a.columns.upload(columns);
+    a.values.upload(values);
+    Buffer<double, Place> b, x;
+    b.upload(std::vector<double>(n, 1.0));
+    EXPECT_THROW(make_cholesky(place, 1000.0)->solve(a, b, x), NumericalError);
+    EXPECT_TRUE(make_cholesky(place)->solve(a, b, x));
+    EXPECT_NEAR(x.download().front(), 1.0 / (3 * n - 1), 1e-14);
+  };
+  GetParam() == On::gpu ? run(OnGpu{}) : run(OnCpu{});
+}
+
+TALUS_IN_EACH_PLACE(LinearSystem);
+
+#if TALUS_FOR_GPU
+class BothPlaces : public InEachPlace {
+ protected:
+  template <class Shape>
+  static void compare() {
+    Bench<double, OnCpu, Shape> cpu({is_quadratic<Shape>});
+    Bench<double, OnGpu, Shape> gpu({is_quadratic<Shape>});
+    for (const auto form : {Operator::points, Operator::elements, Operator::stencil}) {
+      EXPECT_LT(difference(gpu.product(form), cpu.product(form)), 1e-11);
+    }
+    EXPECT_LT(difference(gpu.by_cholesky(), cpu.by_cholesky()), 1e-8);
+  }
+};
+TEST_P(BothPlaces, give_the_same_products_and_displacements) {
+  compare<Linear>();
+  compare<Quadratic>();
+}
+INSTANTIATE_TEST_SUITE_P(places, BothPlaces, ::testing::Values(On::gpu), place_name);
+#endif
+
+template <class Shape>
+void check_elements() {
+  Bench<double, OnCpu, Shape> bench({is_quadratic<Shape>});
+  ElementList<double, OnCpu, Shape> list;
+  list.build(bench.grid.view(), bench.points.view());
+  const ElementView v = list.view();
+  constexpr int each = ElementList<double, OnCpu, Shape>::nodes_each;
+  std::vector<int> seen(static_cast<std::size_t>(bench.points.count()));
+  int folded = 0;
+  for (int e = 0; e < v.count; ++e) {
+    EXPECT_LT(v.starts[e], v.starts[e + 1]);
+    folded += v.nodes[e * each] == v.nodes[e * each + 1] ? 1 : 0;
+    for (int s = v.starts[e]; s < v.starts[e + 1]; ++s) {
+      const PointGradients<double, Shape> g(bench.grid.view(), bench.points.view(), v.order[s]);
+      ++seen[static_cast<std::size_t>(v.order[s])];
+      int local = 0;
+      around(bench.grid.view(), g, [&](int n, int, int, int) { EXPECT_EQ(n, v.nodes[e * each + local++]); });
+    }
+  }
+  for (const int times : seen) EXPECT_EQ(times, 1);
+  EXPECT_EQ(folded > 0, is_quadratic<Shape>);
+  int grouped = 0;
+  for (const auto& colour : list.groups().ranges) {
+    std::set<int> taken;  // by earlier ranges of this colour
+    for (const auto& [begin, end] : colour) {
+      std::set<int> mine(v.nodes + begin * each, v.nodes + end * each);
+      for (const int n : mine) EXPECT_EQ(taken.count(n), 0u);
+      taken.insert(mine.begin(), mine.end());
+      grouped += end - begin;
+    }
+  }
+  EXPECT_EQ(grouped, v.count);
+}
+
+TEST(Elements, hold_every_point_once_and_share_no_node_within_a_colour) {
+  check_elements<Linear>();
+  check_elements<Quadratic>();
+}
+
+/// Column, row and layer of every stored node.
+template <class Shape>
+std::vector<std::array<int, 3>> node_places(const Bench<double, OnCpu, Shape>& bench) {
+  const auto grid = bench.grid.view();
+  std::vector<std::array<int, 3>> places(static_cast<std::size_t>(bench.count));
+  for (int j = 0; j < grid.rows; ++j) {
+    for (int i = 0; i < grid.columns; ++i) {
+      const BlockSlot& slot = grid.slot(i, j);
+      for (int k = slot.first_layer; slot.offset >= 0 && k < slot.first_layer + slot.layers; ++k) {
+        places[static_cast<std::size_t>(grid.node(slot, i, j, k))] = {i, j, k};
+      }
+    }
+  }
+  return places;
+}
+
+template <class Shape>
+void check_neighbours() {
+  constexpr int reach = Shape::width - 1, side = 2 * reach + 1;
+  Bench<double, OnCpu, Shape> bench({is_quadratic<Shape>});
+  ElementList<double, OnCpu, Shape> list;
+  StencilMatrix<double, OnCpu, Shape> matrix;
+  list.build(bench.grid.view(), bench.points.view());
+  matrix.build(list, bench.count);
+  const auto places = node_places(bench);
+  const auto view = matrix.view();
+  EXPECT_GT(view.rows, 50);
+  for (int row = 0; row < view.rows; ++row) {
+    const auto& mine = places[static_cast<std::size_t>(view.node_of[row])];
+    EXPECT_EQ(view.row_of[view.node_of[row]], row);
+    for (int q = 0; q < side * side * side; ++q) {
+      const int n = view.table[view.table_at(row, q)];
+      if (n < 0) continue;
+      const std::array<int, 3> expected{mine[0] + q / side % side - reach, mine[1] + q / (side * side) - reach,
+                                        mine[2] + q % side - reach};
+      EXPECT_EQ(places[static_cast<std::size_t>(n)], expected) << "row " << row << ", neighbour " << q;
+    }
+  }
+}
+
+TEST(Stencil, finds_each_neighbour_where_it_stands) {
+  check_neighbours<Linear>();
+  check_neighbours<Quadratic>();
+}
+
+/// Keeps the blocks it is handed.
+template <int nodes>
+struct Keep {
+  double* blocks;
+  void put(int e, int a, int b, const double* block) const {
+    std::copy(block, block + 9, blocks + ((static_cast<std::size_t>(e) * nodes + a) * nodes + b) * 9);
+  }
+};
+
+template <class Shape>
+void check_tiles() {
+  constexpr int w = Shape::width, nodes = w * w * w;
+  Bench<double, OnCpu, Shape> bench({is_quadratic<Shape>});
+  ElementList<double, OnCpu, Shape> list;
+  list.build(bench.grid.view(), bench.points.view());
+  const auto size = static_cast<std::size_t>(list.count()) * nodes * nodes * 9;
+  std::vector<double> whole(size), slices(size);
+  sum_elements<double, OnCpu, Shape>(list, bench.from(), Keep<nodes>{whole.data()});
+  using Slice = SumElements<double, Shape, 1, w * w, Keep<nodes>>;
+  const Slice slice{bench.from(), list.view(), {slices.data()}};
+  for (int i = 0; i < list.count() * Slice::tiles; ++i) slice(i);
+  double worst = 0, largest = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    worst = std::max(worst, std::abs(whole[i] - slices[i]));
+    largest = std::max(largest, std::abs(whole[i]));
+  }
+  EXPECT_LT(worst, 1e-13 * largest);
+}
+
+TEST(Elements, are_the_same_from_the_tiles_of_the_gpu) {
+  check_tiles<Linear>();
+  check_tiles<Quadratic>();
+}
+
+TEST(Elements, sum_the_same_on_every_run) {
+  Bench<double, OnCpu, Quadratic> bench({true});
+  for (const auto form : {Operator::elements, Operator::stencil}) {
+    const auto a = bench.product(form), b = bench.product(form);
+    for (std::size_t n = 0; n < a.size(); ++n) EXPECT_TRUE(a[n].x == b[n].x && a[n].y == b[n].y && a[n].z == b[n].z);
+  }
+}
+
+TEST(EliminationOrder, renumbers_rows_and_columns_alike) {
+  // Nodes 0 - 1 - 2 in a chain, three rows each.
+  const std::vector<std::vector<int>> neighbours{{0, 1}, {0, 1, 2}, {1, 2}};
+  HostPattern a;
+  a.starts.push_back(0);
+  std::vector<double> values;
+  const auto value = [](int row, int column) { return 100.0 * std::min(row, column) + std::max(row, column); };
+  for (int row = 0; row < 9; ++row) {
+    for (const int n : neighbours[static_cast<std::size_t>(row / 3)]) {
+      for (int j = 0; j < 3; ++j) {
+        a.columns.push_back(3 * n + j);
+        values.push_back(value(row, 3 * n + j));
+      }
+    }
+    a.starts.push_back(static_cast<int>(a.columns.size()));
+  }
+  const HostPattern graph = graph_of_nodes(a);
+  EXPECT_EQ(graph.starts, (std::vector<int>{0, 2, 5, 7}));
+  EXPECT_EQ(graph.columns, (std::vector<int>{0, 1, 0, 1, 2, 1, 2}));
+  const Renumbered r = renumber(a, {2, 0, 1});
+  EXPECT_EQ(r.order, (std::vector<int>{6, 7, 8, 0, 1, 2, 3, 4, 5}));
+  ASSERT_EQ(r.source.size(), values.size());
+  for (std::size_t row = 0; row < 9; ++row) {
+    for (auto k = static_cast<std::size_t>(r.pattern.starts[row]);
+         k < static_cast<std::size_t>(r.pattern.starts[row + 1]); ++k) {
+      const auto column = static_cast<std::size_t>(r.pattern.columns[k]);
+      EXPECT_EQ(values[static_cast<std::size_t>(r.source[k])], value(r.order[row], r.order[column]));
+      if (k > static_cast<std::size_t>(r.pattern.starts[row])) {
+        EXPECT_LT(r.pattern.columns[k - 1], r.pattern.columns[k]);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace talus::solver::testing

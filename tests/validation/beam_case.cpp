@@ -1,0 +1,205 @@
+// A2: a cantilever bent far by a load at its tip.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "tests/validation/cases.hpp"
+#include "tests/validation/chart.hpp"
+#include "tests/validation/closed_forms.hpp"
+
+namespace talus::validation {
+namespace {
+
+constexpr double length = 10, depth = 1, lift = 10, modulus = 1e9;
+
+struct Beam {
+  double h = 0.2;       // cells [m]
+  int per_cell = 4;     // points along each side of a cell
+  std::string shape = "quadratic";
+  double k = 3.6;
+  int steps = 20;
+  double point_spacing() const { return h / per_cell; }
+  /// Clamp to the points that are pulled.
+  double arm() const { return length - 0.5 * point_spacing(); }
+  double load() const { return k * modulus * depth * depth * depth * depth / 12 / (arm() * arm()); }
+};
+
+Overrides overrides_of(const Beam& b) {
+  const double s = b.point_spacing();
+  const auto cells = [&](double metres) { return std::lround(metres / b.h); };
+  return {{"preprocess.grid.spacing_m", b.h},
+          {"preprocess.grid.points_per_cell", std::vector<std::int64_t>(3, b.per_cell)},
+          {"preprocess.laboratory.columns", whole(cells(length) + 8)},
+          {"preprocess.laboratory.rows", whole(cells(depth) + 8)},
+          {"preprocess.laboratory.west_m", -3.5 * b.h},
+          {"preprocess.laboratory.south_m", -3.5 * b.h},
+          {"solve.shape", words(b.shape)},
+          {"solve.implicit.step_s", 1.0 / b.steps},
+          {"solve.load[0].box_m", std::vector<double>{length - 0.9 * s, length, 0, depth, lift, lift + depth}},
+          {"solve.load[0].force_N", std::vector<double>{0, 0, -b.load()}}};
+}
+
+/// Points of one cross-section, by their place at the start: mean of their place at the end.
+struct Sections {
+  std::vector<double> start, x, w;  // w: deflection with the load
+};
+
+Sections sections_of(const Outcome& o) {
+  std::map<long, std::array<double, 4>> sums;
+  for (std::size_t p = 0; p < o.first().size(); ++p) {
+    const double at = o.first().position[p][0];
+    auto& s = sums[std::lround(at * 1e4)];
+    s[0] += 1;
+    s[1] += at;
+    s[2] += o.last().position[p][0];
+    s[3] += o.first().position[p][2] - o.last().position[p][2];
+  }
+  Sections result;
+  for (const auto& [key, s] : sums) {
+    result.start.push_back(s[1] / s[0]);
+    result.x.push_back(s[2] / s[0]);
+    result.w.push_back(s[3] / s[0]);
+  }
+  return result;
+}
+
+double tip_deflection(const Outcome& o, const Beam& b) {
+  return o.ok() ? sections_of(o).w.back() / b.arm() : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::string name_of(const Beam& b, const std::string& scheme) {
+  return fmt::format("{}, h = {:g} m, k = {:g}, {}", b.shape, b.h, b.k, scheme);
+}
+
+struct Bent {
+  Outcome outcome;
+  double deflection = 0;  // w/L
+};
+
+/// Runs a beam and adds its rows: against the elastica (the goal of validation.md), and against a beam that shears and
+/// stretches, which is what the solid itself converges to; at this depth it bends 0.6 % (k = 1)
+/// to 1.4 % (k = 10) further.
+Bent bend(Bench& bench, const Beam& b, const LinearScheme& scheme, double tolerance) {
+  Bent bent{bench.run(name_of(b, scheme.name), overrides_of(b) + scheme.overrides), 0};
+  bent.deflection = tip_deflection(bent.outcome, b);
+  bench.compare(bent.outcome, "tip deflection", bent.deflection, elastica(b.k).across, tolerance);
+  bench.compare(bent.outcome, "tip deflection, beam with shear", bent.deflection,
+                solid_beam(b.k, depth / b.arm(), Law::corotated).across, tolerance);
+  return bent;
+}
+
+void add_shape(Chart& chart, const Bent& bent, const Beam& b, int colour) {
+  constexpr int places = 60;
+  AxisPoint axis[places];
+  solid_beam(b.k, depth / b.arm(), Law::corotated, axis, places);
+  Series exact{chart.series.empty() ? "beam with shear and stretch" : "", {}, {}, 0};
+  for (const AxisPoint& a : axis) {
+    exact.x.push_back(a.x * b.arm());
+    exact.y.push_back(-a.w * b.arm());
+  }
+  exact.width = 2;
+  chart.series.insert(chart.series.begin(), exact);
+  if (!bent.outcome.ok()) return;
+  Series points{fmt::format("k = {:g}", b.k), {}, {}, colour};
+  for (std::size_t p = 0; p < bent.outcome.last().size(); ++p) {
+    points.x.push_back(bent.outcome.last().position[p][0]);
+    points.y.push_back(bent.outcome.last().position[p][2] - lift - 0.5 * depth);
+  }
+  points.line = false;
+  points.marks = true;
+  points.mark_size = 2.2;
+  chart.series.push_back(points);
+}
+
+Chart deflection_chart() {
+  Chart chart;
+  chart.title = "A2: tip deflection over load";
+  chart.x_label = "k = P L² / (E I)";
+  chart.y_label = "w / L";
+  chart.x = Limits{0, 10.5};
+  chart.y = Limits{0, 0.9};
+  Series thin{"elastica", {}, {}, 0}, solid{"beam with shear and stretch", {}, {}, 7};
+  solid.dashed = true;
+  for (double k = 0; k <= 10.4; k += 0.2) {
+    thin.x.push_back(k);
+    thin.y.push_back(k == 0 ? 0 : elastica(k).across);
+    solid.x.push_back(k);
+    solid.y.push_back(k == 0 ? 0 : solid_beam(k, depth / length, Law::corotated).across);
+  }
+  chart.series = {thin, solid};
+  return chart;
+}
+
+/// w/L for several loads on one grid, and the deflected beams.
+void load_study(Bench& bench, Beam b, const std::vector<double>& loads, double tolerance, Chart& curve, int colour) {
+  Chart beams;
+  beams.title = fmt::format("A2: deflected beams, {} functions, h = {:g} m, {} load steps", b.shape, b.h, b.steps);
+  beams.x_label = "x [m]";
+  beams.y_label = "z [m]";
+  beams.equal_scales = true;
+  beams.x = Limits{-0.5, 11};
+  beams.y = Limits{-9, 1};
+  Series s{fmt::format("{}, h = {:g} m", b.shape, b.h), {}, {}, colour};
+  s.line = false;
+  s.marks = true;
+  int next = 1;
+  for (const double k : loads) {
+    b.k = k;
+    const Bent bent = bend(bench, b, linear_schemes().back(), tolerance);
+    s.x.push_back(k);
+    s.y.push_back(bent.deflection);
+    add_shape(beams, bent, b, next++);
+  }
+  curve.series.push_back(s);
+  bench.picture(fmt::format("A2-beams-{}-{:g}", b.shape, b.h), png_of_panels({beams}));
+}
+
+/// Error at k = 3.6 over cell size, 2 x 2 x 2 points per cell (the paper's Fig. 10).
+void refinement(Bench& bench, const std::vector<double>& cells) {
+  Chart chart;
+  chart.title = "A2: error of the tip deflection over cell size, k = 3.6, 8 points per cell";
+  chart.x_label = "cell size [m]";
+  chart.y_label = "error against the beam with shear and stretch";
+  chart.log_x = chart.log_y = true;
+  int colour = 1;
+  for (const char* shape : {"quadratic", "linear"}) {
+    std::vector<double> h, error;
+    for (const double size : cells) {
+      Beam b;
+      b.h = size;
+      b.per_cell = 2;
+      b.shape = shape;
+      // Tolerance of the coarse grids: the error of linear functions in bending, (h / depth)^2 / 2, and as much for the clamp.
+      const double tolerance = std::max(0.01, size * size);
+      const Bent bent = bend(bench, b, linear_schemes().back(), tolerance);
+      h.push_back(size);
+      error.push_back(std::abs(bent.deflection / solid_beam(b.k, depth / b.arm(), Law::corotated).across - 1));
+    }
+    chart.series.push_back(convergence(shape, h, error, colour++));
+    if (chart.series.size() == 1) chart.series.push_back(slope_line(2, h, h.front(), error.front()));
+  }
+  bench.picture("A2-convergence", png_of(chart));
+}
+
+}  // namespace
+
+void cantilever(Bench& bench) {
+  refinement(bench, bench.complete() ? std::vector<double>{0.5, 0.25, 0.2, 0.125, 0.1} : std::vector<double>{0.5});
+  if (!bench.complete()) return;
+  Chart curve = deflection_chart();
+  int colour = 1;
+  for (const char* shape : {"quadratic", "linear"}) {
+    for (const double h : {0.2, 0.1}) {
+      Beam b;
+      b.shape = shape;
+      b.h = h;
+      load_study(bench, b, {1, 2, 3, 3.6, 5, 8, 10}, h > 0.15 ? 0.01 : 0.003, curve, colour++);  // validation.md A2
+    }
+  }
+  for (std::size_t s = 0; s + 1 < linear_schemes().size(); ++s) bend(bench, Beam{}, linear_schemes()[s], 0.01);
+  bench.picture("A2-deflection", png_of(curve));
+}
+
+}  // namespace talus::validation

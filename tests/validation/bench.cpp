@@ -1,0 +1,156 @@
+#include "tests/validation/bench.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+#include <stdexcept>
+
+#include "common/stage/stage.hpp"
+
+extern char** environ;
+
+namespace talus::validation {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+/// Runs a program with its stderr in `log`; returns its exit code.
+int call(const std::vector<std::string>& words, const fs::path& log) {
+  std::vector<char*> arguments;
+  for (const auto& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, 2, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  pid_t child = 0;
+  const int failed = posix_spawn(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (failed != 0) throw std::runtime_error(words[0] + ": cannot be started; build the programs first (make build)");
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+std::string last_line(const fs::path& file) {
+  std::ifstream stream(file);
+  std::string line, last;
+  while (std::getline(stream, line)) {
+    if (!line.empty()) last = line;
+  }
+  return last;
+}
+
+/// "quadratic, h = 50 / 4" as a folder: quadratic-h-50-4.
+std::string folder_of(const std::string& variant) {
+  std::string folder;
+  for (const char c : variant) {
+    const bool kept = std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '_';
+    if (kept) folder += c;
+    if (!kept && !folder.empty() && folder.back() != '-') folder += '-';
+  }
+  while (!folder.empty() && folder.back() == '-') folder.pop_back();
+  return folder;
+}
+
+}  // namespace
+
+std::vector<double> Outcome::history(const std::string& name) const {
+  const auto& names = run.history.names;
+  const auto found = std::find(names.begin(), names.end(), name);
+  return found == names.end() ? std::vector<double>{} : run.history.columns[static_cast<std::size_t>(found - names.begin())];
+}
+
+double Outcome::last_of(const std::string& name) const {
+  const auto column = history(name);
+  return column.empty() ? unknown : column.back();
+}
+
+Outcome Bench::run(const std::string& variant, const Overrides& overrides) {
+  const fs::path out = request_.out / name_ / folder_of(variant);
+  fs::remove_all(out);
+  fs::create_directories(out);
+  const fs::path recipe = out / "recipe.toml";
+  write_text(recipe, recipe_with(request_.recipes / name_ / "recipe.toml", overrides));
+  fmt::print(stderr, "{:4} {:44} ", name_, variant);
+  std::fflush(stderr);
+  Outcome outcome;
+  outcome.variant = variant;
+  for (const char* stage : {"talus-preprocess", "talus-solve"}) {
+    const fs::path log = out / (std::string(stage) + ".log");
+    std::vector<std::string> words{(request_.programs / stage).string(), recipe.string(), "--out", out.string(), "-q"};
+    if (stage == std::string("talus-solve")) words.insert(words.end(), {"--on", request_.on});
+    const int code = call(words, log);
+    if (interrupted()) throw Interrupted({"stopped", "interrupted", "Run it again"});
+    if (code == 0) continue;
+    outcome.fault = fmt::format("exit code {}: {}", code, last_line(log));
+    fmt::print(stderr, "{}\n", outcome.fault);
+    return outcome;
+  }
+  outcome.run = read_run(out / "run.h5");
+  outcome.frames = read_points(out / "run.h5");
+  fmt::print(stderr, "{:8.1f} s\n", outcome.run.summary.wall_time);
+  return outcome;
+}
+
+Row Bench::row_of(const Outcome& outcome, const std::string& quantity) const {
+  Row row{};
+  row.name = outcome.variant.empty() ? name_ : name_ + " " + outcome.variant;
+  row.quantity = quantity;
+  row.fault = outcome.fault;
+  row.wall_time = row.particles = row.steps = row.newton = row.cg = row.over_cfl = unknown;
+  if (!outcome.ok() || outcome.frames.empty()) return row;
+  const RunSummary& s = outcome.run.summary;
+  row.wall_time = s.wall_time;
+  row.particles = static_cast<double>(s.particles);
+  row.steps = static_cast<double>(s.steps);
+  row.newton = outcome.last_of("newton_iterations");
+  row.cg = outcome.last_of("linear_iterations");
+  row.over_cfl = outcome.last_of("step_over_cfl");
+  row.place = s.on;
+  return row;
+}
+
+void Bench::judge(Row row) {
+  if (!row.fault.empty()) row.computed = row.error = unknown;
+  row.pass = row.fault.empty() && std::isfinite(row.error) && row.error <= row.tolerance;
+  rows_.push_back(std::move(row));
+}
+
+void Bench::compare(const Outcome& outcome, const std::string& quantity, double computed, double reference,
+                    double tolerance) {
+  Row row = row_of(outcome, quantity);
+  row.computed = computed;
+  row.reference = reference;
+  row.tolerance = tolerance;
+  row.error = reference == 0 ? std::abs(computed) : std::abs(computed / reference - 1);
+  judge(std::move(row));
+}
+
+void Bench::at_least(const Outcome& outcome, const std::string& quantity, double computed, double reference) {
+  Row row = row_of(outcome, quantity);
+  row.computed = computed;
+  row.reference = reference;
+  row.error = std::max(0.0, reference - computed);
+  if (!std::isfinite(computed)) row.error = unknown;
+  judge(std::move(row));
+}
+
+void Bench::picture(const std::string& name, const std::string& png) const {
+  const fs::path path = request_.out / (name + ".png");
+  write_text(path, png);
+  fmt::print(stderr, "     {}\n", path.string());
+}
+
+}  // namespace talus::validation

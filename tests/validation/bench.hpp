@@ -1,0 +1,81 @@
+// Runs variants of a case's recipe through the programs and keeps the rows of the table.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/run/run_file.hpp"
+#include "tests/validation/points.hpp"
+#include "tests/validation/recipe_text.hpp"
+
+namespace talus::validation {
+
+/// What was asked of the driver.
+struct Request {
+  std::filesystem::path programs, recipes, out;  // folders: build/bin, tests/validation, build/validation
+  std::string on = "auto";                       // auto | cpu | gpu
+  bool complete = false;                         // with the long runs
+};
+
+/// A variant that was run. `fault` says why there is no result.
+struct Outcome {
+  std::string variant;
+  std::string fault;
+  Run run;
+  std::vector<Points> frames;
+
+  bool ok() const { return fault.empty(); }
+  const Points& first() const { return frames.front(); }
+  const Points& last() const { return frames.back(); }
+  /// A column of the history; empty where the solver writes none of that name.
+  std::vector<double> history(const std::string& name) const;
+  double last_of(const std::string& name) const;  ///< its last value, NaN where there is none
+};
+
+/// One line of the table.
+struct Row {
+  std::string name, quantity;  // "A1 quasi-static, pcg", "top displacement"
+  double computed, reference, error, tolerance;
+  bool pass = false;
+  double wall_time = 0, particles = 0, steps = 0, newton = 0, cg = 0, over_cfl = 0;  // NaN: the run does not say
+  std::string place, fault;
+};
+
+class Bench {
+ public:
+  Bench(std::string name, const Request& request) : name_(std::move(name)), request_(request) {}
+
+  const std::string& name() const { return name_; }
+  const Request& request() const { return request_; }
+  bool complete() const { return request_.complete; }
+
+  /// Run the case's recipe with these overrides; results lie in OUT/CASE/VARIANT. Says on stderr what it does.
+  Outcome run(const std::string& variant, const Overrides& overrides);
+
+  /// A row whose error is |computed / reference - 1|, or |computed| where the reference is 0. A run without a result is a
+  /// failed row without numbers.
+  void compare(const Outcome& outcome, const std::string& quantity, double computed, double reference, double tolerance);
+  /// A row whose error is `computed` itself: norms, distances between two results.
+  void measure(const Outcome& outcome, const std::string& quantity, double computed, double tolerance) {
+    compare(outcome, quantity, computed, 0, tolerance);
+  }
+  /// A row that `computed` passes from `reference` on; its error is what is missing.
+  void at_least(const Outcome& outcome, const std::string& quantity, double computed, double reference);
+
+  const std::vector<Row>& rows() const { return rows_; }
+
+  /// Write a picture OUT/NAME.png.
+  void picture(const std::string& name, const std::string& png) const;
+
+ private:
+  Row row_of(const Outcome& outcome, const std::string& quantity) const;
+  void judge(Row row);
+
+  std::string name_;
+  const Request& request_;
+  std::vector<Row> rows_;
+};
+
+}  // namespace talus::validation

@@ -1,0 +1,19 @@
+#include "tests/validation/cases.hpp"
+
+namespace talus::validation {
+
+const std::vector<Case>& cases() {
+  static const std::vector<Case> list = {
+      {"A1", "self-weight column", true, self_weight_column},
+      {"A1b", "column compacted to a third", true, large_compaction},
+      {"A2", "cantilever with a load at its tip", true, cantilever},
+      {"A3", "collapse of a sand column", true, sand_column},
+      {"A3b", "sand columns of other aspect ratios", false, sand_column_aspects},
+      {"B1", "block on an incline", true, block_on_incline},
+      {"B2", "block on a bed that weakens with speed", true, velocity_weakening},
+      {"B6", "vibrating bar, free fall, patch test", true, elastic_motion},
+  };
+  return list;
+}
+
+}  // namespace talus::validation

@@ -1,0 +1,42 @@
+// The cases of the validation. Each runs its recipe's variants, adds rows to the table and draws its pictures.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tests/validation/bench.hpp"
+
+namespace talus::validation {
+
+/// One way of solving the linear systems. A1 runs with each of them and compares; the studies of A2 take the last, the systems of slender
+/// bodies being hard on iterations.
+struct LinearScheme {
+  std::string name;
+  Overrides overrides;
+};
+
+/// What there is to compare, in one place.
+inline std::vector<LinearScheme> linear_schemes() {
+  return {{"pcg", {{"solve.implicit.linear_solver", words("pcg")}}},
+          {"cholesky", {{"solve.implicit.linear_solver", words("cholesky")}}}};
+}
+
+struct Case {
+  const char* name;   // of its folder, and of validation.md
+  const char* title;
+  bool quick;         // has rows that need no LONG=1
+  void (*run)(Bench&);
+};
+
+const std::vector<Case>& cases();
+
+void self_weight_column(Bench&);      // A1
+void large_compaction(Bench&);        // A1b
+void cantilever(Bench&);              // A2
+void sand_column(Bench&);             // A3
+void sand_column_aspects(Bench&);     // A3b
+void block_on_incline(Bench&);        // B1
+void velocity_weakening(Bench&);      // B2
+void elastic_motion(Bench&);          // B6
+
+}  // namespace talus::validation

@@ -1,0 +1,51 @@
+// Line charts for the pictures of the validation.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "postprocess/picture/canvas.hpp"
+
+namespace talus::validation {
+
+/// Points of one curve. Colours and marks are numbered; equal numbers look equal.
+struct Series {
+  std::string name;  // empty: not in the legend
+  std::vector<double> x, y;
+  int colour = 0;
+  bool line = true;
+  bool marks = false;
+  bool dashed = false;
+  double width = 3;
+  double mark_size = 7;
+};
+
+struct Limits {
+  double low, high;
+};
+
+struct Chart {
+  std::string title, x_label, y_label;
+  bool log_x = false, log_y = false;
+  bool equal_scales = false;  // one metre is as long across as up
+  std::optional<Limits> x, y; // else what the series span
+  std::vector<Series> series;
+};
+
+/// Draw into a part of a canvas.
+void draw(const Chart& chart, postprocess::Canvas& canvas, const postprocess::Box& area);
+
+/// One chart as a PNG's bytes.
+std::string png_of(const Chart& chart, int width = 1400, int height = 1000);
+
+/// Charts with equal scales below one another, each as high as its limits ask for.
+std::string png_of_panels(const std::vector<Chart>& panels, int width = 1400);
+
+/// "quadratic (order 1.93)": a series of errors over cell sizes with the observed order in its name.
+Series convergence(const std::string& name, const std::vector<double>& h, const std::vector<double>& error, int colour);
+
+/// A dashed line of a given order through the middle of the data, for the eye.
+Series slope_line(double order, const std::vector<double>& h, double at_h, double at_error);
+
+}  // namespace talus::validation

@@ -1,0 +1,190 @@
+#include "tests/validation/closed_forms.hpp"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace talus::validation {
+namespace {
+
+/// Root of a growing function by bisection: as exact as doubles are, and never lost.
+double root_of(const std::function<double(double)>& f, double low, double high) {
+  for (int i = 0; i < 200; ++i) {
+    const double middle = 0.5 * (low + high);
+    (f(middle) < 0 ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+// Gauss-Legendre, five points on [-1, 1].
+constexpr double gauss_at[5] = {-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831, 0.9061798459386640};
+constexpr double gauss_weight[5] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
+                                    0.2369268850561891};
+
+/// A beam of length one, E = 1, width one. Either rigid against stretch and shear, or a section of fibres.
+struct Section {
+  double inertia, area, shear;  // shear: stiffness G A 5/6; infinite when rigid
+  double depth;
+  bool rigid;
+  Law law;
+
+  struct Forces {
+    double normal, moment, normal_by_e, normal_by_c, moment_by_c;
+  };
+
+  /// Of the mean stretch e and the curvature c.
+  Forces forces(double e, double c) const {
+    Forces f{};
+    constexpr int strips = 4;
+    for (int s = 0; s < strips; ++s) {
+      for (int g = 0; g < 5; ++g) {
+        const double y = depth * ((s + 0.5 + 0.5 * gauss_at[g]) / strips - 0.5);
+        const double w = 0.5 * gauss_weight[g] * depth / strips;
+        const double l = 1 + e + c * y, n = piola_of_stretch(law, l);
+        const double slope = law == Law::hencky ? (1 - std::log(l)) / (l * l) : 1;
+        f.normal += w * n;
+        f.moment += w * n * y;
+        f.normal_by_e += w * slope;
+        f.normal_by_c += w * slope * y;
+        f.moment_by_c += w * slope * y * y;
+      }
+    }
+    return f;
+  }
+
+  /// Mean stretch and curvature that carry a normal force and a moment.
+  void solve(double normal, double moment, double& e, double& c) const {
+    if (rigid) {
+      e = 0;
+      c = moment / inertia;
+      return;
+    }
+    for (int i = 0; i < 50; ++i) {
+      const Forces f = forces(e, c);
+      const double rn = normal - f.normal, rm = moment - f.moment;
+      const double det = f.normal_by_e * f.moment_by_c - f.normal_by_c * f.normal_by_c;
+      const double de = (rn * f.moment_by_c - rm * f.normal_by_c) / det, dc = (rm * f.normal_by_e - rn * f.normal_by_c) / det;
+      e += de;
+      c += dc;
+      if (std::abs(de) + depth * std::abs(dc) < 1e-14) break;
+    }
+  }
+};
+
+struct BeamState {
+  double x = 0, w = 0, angle = 0, moment = 0;
+  BeamState after(const BeamState& rate, double h) const {
+    return {x + h * rate.x, w + h * rate.w, angle + h * rate.angle, moment + h * rate.moment};
+  }
+};
+
+/// Axis of the beam for a moment at the clamp; the state at the tip.
+BeamState integrate(const Section& section, double load, double clamp_moment, AxisPoint* axis, int points) {
+  constexpr int steps = 400;
+  double e = 0, c = clamp_moment / section.inertia * 0.9;
+  const auto rate = [&](const BeamState& s) {
+    const double normal = load * std::sin(s.angle), across = load * std::cos(s.angle);
+    section.solve(normal, s.moment, e, c);
+    const double slip = section.rigid ? 0 : across / section.shear;
+    BeamState r;
+    r.x = (1 + e) * std::cos(s.angle) - slip * std::sin(s.angle);
+    r.w = (1 + e) * std::sin(s.angle) + slip * std::cos(s.angle);
+    r.angle = c;
+    r.moment = -load * r.x;
+    return r;
+  };
+  BeamState s;
+  s.moment = clamp_moment;
+  constexpr double h = 1.0 / steps;
+  int put = 0;
+  for (int n = 0; n <= steps; ++n) {
+    while (put < points && put * steps <= n * (points - 1)) axis[put++] = {s.x, s.w};
+    if (n == steps) break;
+    const BeamState a = rate(s), b = rate(s.after(a, h / 2)), d = rate(s.after(b, h / 2)), f = rate(s.after(d, h));
+    s = s.after(a, h / 6).after(b, h / 3).after(d, h / 3).after(f, h / 6);
+  }
+  return s;
+}
+
+Tip beam(const Section& section, double k, AxisPoint* axis, int points) {
+  const double load = k * section.inertia;
+  // The moment at the tip grows with that at the clamp, which no lever longer than the beam can exceed by much.
+  const double moment = root_of(
+      [&](double m) { return integrate(section, load, m, nullptr, 0).moment; }, 0, 1.1 * load);
+  const BeamState tip = integrate(section, load, moment, axis, points);
+  return {tip.w, 1 - tip.x};
+}
+
+}  // namespace
+
+double piola_of_stretch(Law law, double stretch) {
+  return law == Law::hencky ? std::log(stretch) / stretch : stretch - 1;
+}
+
+double stretch_of_piola(Law law, double piola) {
+  if (law == Law::corotated) return 1 + piola;
+  return root_of([&](double l) { return piola_of_stretch(law, l) - piola; }, 1e-6, std::exp(1.0));
+}
+
+double piola_of_kirchhoff(Law law, double kirchhoff) {
+  if (law == Law::hencky) return kirchhoff / std::exp(kirchhoff);
+  return 0.5 * (std::sqrt(1 + 4 * kirchhoff) - 1);  // stretch (stretch - 1), the branch near 1
+}
+
+double Column::settlement(double x) const {
+  constexpr int strips = 64;
+  double sum = 0;
+  for (int s = 0; s < strips; ++s) {
+    for (int g = 0; g < 5; ++g) {
+      const double at = x * (s + 0.5 + 0.5 * gauss_at[g]) / strips;
+      sum += 0.5 * gauss_weight[g] * x / strips * (1 - stretch_of_piola(law, piola(at) / modulus));
+    }
+  }
+  return sum;
+}
+
+Tip elastica(double k) { return beam({1, 1, 1, 0, true, Law::corotated}, k, nullptr, 0); }
+
+Tip solid_beam(double k, double depth, Law law, AxisPoint* axis, int points) {
+  const double shear = 5.0 / 6 * 0.5 * depth;  // G = E / 2
+  return beam({depth * depth * depth / 12, depth, shear, depth, false, law}, k, axis, points);
+}
+
+double SlidingBlock::acceleration(double speed) const {
+  const double mu = steady + (peak - steady) / (1 + speed / characteristic);
+  return gravity * (std::sin(angle) - mu * std::cos(angle));
+}
+
+double SlidingBlock::way(double speed, double time) const {
+  constexpr int steps = 100000;  // midpoint rule
+  const double dt = time / steps;
+  double way = 0;
+  for (int n = 0; n < steps; ++n) {
+    const double middle = speed + 0.5 * dt * acceleration(speed);
+    way += dt * middle;
+    speed += dt * acceleration(middle);
+  }
+  return way;
+}
+
+double lube_run_out(double a) {
+  if (a < 1.8) return 1.6 * a;
+  if (a > 2.8) return 2.2 * std::pow(a, 2.0 / 3);
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+double lube_height(double a) { return a < 1.15 ? a : std::pow(a, 0.4); }
+
+double observed_order(const double* x, const double* y, int count) {
+  double sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (int i = 0; i < count; ++i) {
+    const double lx = std::log(x[i]), ly = std::log(y[i]);
+    sx += lx;
+    sy += ly;
+    sxx += lx * lx;
+    sxy += lx * ly;
+  }
+  return (count * sxy - sx * sy) / (count * sxx - sx * sx);
+}
+
+}  // namespace talus::validation

@@ -1,0 +1,61 @@
+// Solutions that the cases are held against. Nothing here knows the solver.
+#pragma once
+
+namespace talus::validation {
+
+/// How the uniaxial stress of a material without lateral strain follows its stretch (nu = 0).
+///   corotated  first Piola stress E (stretch - 1): the paper's columns and the beams of the tables
+///   hencky     Kirchhoff stress E ln(stretch)
+enum class Law { corotated, hencky };
+
+/// First Piola stress over E. The lateral stretch is one, so this is the Cauchy stress too.
+double piola_of_stretch(Law law, double stretch);
+/// Its inverse, for stress below the law's maximum (hencky: 1/e in tension).
+double stretch_of_piola(Law law, double piola);
+/// First Piola stress over E of a Kirchhoff stress over E (what run.h5 keeps).
+double piola_of_kirchhoff(Law law, double kirchhoff);
+
+/// A column under its own weight, its foot held, its sides on rollers. Reference coordinates count from the foot. The first
+/// Piola stress is -weight (height - X) whatever the law (validation.md A1).
+struct Column {
+  Law law;
+  double modulus;  // E [Pa]
+  double weight;   // body force over reference volume [N/m3]
+  double height;   // [m]
+  double piola(double x) const { return -weight * (height - x); }  // [Pa]
+  double settlement(double x) const;                               // downwards [m]
+};
+
+/// Tip of a cantilever of length one with a dead load across it at the tip.
+struct Tip {
+  double across, along;  // w/L with the load, u/L towards the clamp
+};
+
+/// Inextensible and without shear strain (Bisshopp & Drucker 1945), k = P L^2 / (E I).
+Tip elastica(double k);
+
+/// Of a rectangular section `depth` deep (in lengths) that stretches, shears (coefficient 5/6, nu = 0) and whose fibres
+/// follow `law`: what a fine three-dimensional computation converges to (Reissner 1972). With the deflected axis at
+/// `points` places from clamp to tip where wanted.
+struct AxisPoint {
+  double x, w;
+};
+Tip solid_beam(double k, double depth, Law law, AxisPoint* axis = nullptr, int points = 0);
+
+/// A block on an incline of `angle` [rad]: mu(v) = steady + (peak - steady) / (1 + v / characteristic) (Lucas, Mangeney &
+/// Ampuero 2014); peak = steady is Coulomb.
+struct SlidingBlock {
+  double angle, peak, steady, characteristic = 1, gravity = 9.81;
+  double acceleration(double speed) const;
+  /// Way down the incline after `time`, from a first speed [m].
+  double way(double speed, double time) const;
+};
+
+/// Columns of sand (Lube, Huppert, Sparks & Freundt 2005): aspect ratio height over width.
+double lube_run_out(double aspect);  ///< (d_inf - d_0) / d_0; NaN between 1.8 and 2.8, where the paper gives no law
+double lube_height(double aspect);   ///< h_inf / d_0
+
+/// Slope of the straight line through (ln x, ln y).
+double observed_order(const double* x, const double* y, int count);
+
+}  // namespace talus::validation

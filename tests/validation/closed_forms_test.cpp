@@ -1,0 +1,102 @@
+// The closed forms against values from elsewhere, so that the table leans on something.
+#include "tests/validation/closed_forms.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/validation/recipe_text.hpp"
+#include "tests/common/scratch.hpp"
+
+namespace talus::validation {
+namespace {
+
+TEST(closed_forms, elastica_has_the_tabulated_tips) {
+  // Mattiasson 1981, table 1: k, w/L, u/L.
+  const double table[][3] = {{1, 0.30172, 0.05643}, {2, 0.49346, 0.16064},  {5, 0.71379, 0.38763},
+                             {8, 0.78498, 0.50483}, {10, 0.81061, 0.55500}, {3.6, 0.64684, 0.30128}};
+  for (const auto& [k, w, u] : table) {
+    EXPECT_NEAR(elastica(k).across, w, 1e-5) << "k = " << k;
+    EXPECT_NEAR(elastica(k).along, u, 1e-5) << "k = " << k;
+  }
+}
+
+TEST(closed_forms, solid_beam_is_the_elastica_where_it_is_slender) {
+  for (const Law law : {Law::hencky, Law::corotated}) {
+    EXPECT_NEAR(solid_beam(5, 1e-3, law).across, elastica(5).across, 1e-5);
+  }
+}
+
+TEST(closed_forms, solid_beam_adds_timoshenkos_shear_to_a_small_deflection) {
+  // w = k/3 + P L / (5/6 G A) with P = k E I.
+  constexpr double k = 1e-3, depth = 0.1;
+  EXPECT_NEAR(solid_beam(k, depth, Law::corotated).across / (k / 3 + k * depth * depth / 12 * 12 / 5), 1, 1e-5);
+}
+
+TEST(closed_forms, axis_of_the_beam_runs_from_clamp_to_tip) {
+  AxisPoint axis[11];
+  const Tip tip = solid_beam(4, 0.1, Law::hencky, axis, 11);
+  EXPECT_EQ(axis[0].x, 0);
+  EXPECT_NEAR(axis[10].w, tip.across, 1e-12);
+  EXPECT_NEAR(axis[10].x, 1 - tip.along, 1e-12);
+}
+
+TEST(closed_forms, stress_and_stretch_invert_each_other) {
+  for (const Law law : {Law::hencky, Law::corotated}) {
+    for (const double stretch : {0.2, 0.7, 0.99, 1.01, 1.5}) {
+      const double piola = piola_of_stretch(law, stretch);
+      EXPECT_NEAR(stretch_of_piola(law, piola), stretch, 1e-12);
+      if (stretch > 0.6) {  // where the corotated Kirchhoff stress grows with the stretch
+        EXPECT_NEAR(piola_of_kirchhoff(law, piola * stretch), piola, 1e-12);
+      }
+    }
+  }
+}
+
+TEST(closed_forms, column_settles_as_linear_theory_says_where_it_is_stiff) {
+  // w H^2 / (2 E), with hencky less its largest strain.
+  const Column hencky{Law::hencky, 1e8, 200, 50}, corotated{Law::corotated, 1e8, 200, 50};
+  EXPECT_NEAR(hencky.settlement(50) / 0.0025, 1 - 1e-4, 1e-7);
+  EXPECT_NEAR(corotated.settlement(50) / 0.0025, 1, 1e-12);
+  EXPECT_EQ(hencky.piola(0), -1e4);
+}
+
+TEST(closed_forms, column_has_the_papers_stress_in_current_coordinates) {
+  // sigma(x) = E (sqrt(2 rho b (D - x) / E + 1) - 1), tension positive and b upwards; here the weight presses, so b < 0.
+  const Column c{Law::corotated, 1e6, 200, 50};
+  const double top = 50 - c.settlement(50);
+  for (const double x : {0.0, 10.0, 30.0, 49.0}) {
+    const double now = x - c.settlement(x);
+    EXPECT_NEAR(1e6 * (std::sqrt(-2 * 200 * (top - now) / 1e6 + 1) - 1), c.piola(x), 1e-6);
+  }
+}
+
+TEST(closed_forms, block_slides_as_newton_says) {
+  const SlidingBlock coulomb{0.5, 0.3, 0.3};
+  EXPECT_NEAR(coulomb.way(1, 2), 2 + 0.5 * 9.81 * (std::sin(0.5) - 0.3 * std::cos(0.5)) * 4, 1e-9);
+}
+
+TEST(closed_forms, sand_column_has_lubes_run_out_and_height) {
+  EXPECT_NEAR(0.09 * (1 + lube_run_out(7)), 0.8145, 1e-4);
+  EXPECT_NEAR(0.09 * lube_height(7), 0.196, 1e-4);
+  EXPECT_TRUE(std::isnan(lube_run_out(2)));
+}
+
+TEST(closed_forms, order_is_the_slope_in_logarithms) {
+  const double x[] = {1, 0.5, 0.25}, y[] = {3, 0.75, 0.1875};
+  EXPECT_NEAR(observed_order(x, y, 3), 2, 1e-12);
+}
+
+TEST(recipe_text, overrides_keys_and_adds_tables) {
+  test::Scratch scratch;
+  const auto base = scratch.write("recipe.toml", "[a]\nx = 1.0\n[[b]]\nname = \"one\"\n");
+  const std::string text = recipe_with(base, {{"a.x", 2.5}, {"a.c.y", whole(3)}, {"b[0].name", words("first")},
+                                              {"b[1].name", words("second")}, {"a.list", std::vector<double>{0, 0.5, 0.0225}}});
+  for (const char* part : {"x = 2.5", "y = 3", "name = 'first'", "name = 'second'", "list = [ 0.0, 0.5, 0.0225 ]"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part << " is not in\n" << text;
+  }
+  EXPECT_THROW(recipe_with(base, {{"b[5].name", words("far")}}), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace talus::validation

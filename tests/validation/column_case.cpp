@@ -1,0 +1,202 @@
+// A1 and A1b: columns under their own weight.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/validation/cases.hpp"
+#include "tests/validation/chart.hpp"
+#include "tests/validation/closed_forms.hpp"
+
+namespace talus::validation {
+namespace {
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+/// First Piola stress of the points over their height in the first frame [Pa]. With nu = 0 and no lateral strain the pressure
+/// of the file, minus the mean Kirchhoff stress, is a third of the vertical one.
+std::vector<double> piola_of(const Outcome& o, const Column& column) {
+  std::vector<double> piola;
+  for (const float p : o.last().pressure) {
+    piola.push_back(column.modulus * piola_of_kirchhoff(column.law, -3.0 * static_cast<double>(p) / column.modulus));
+  }
+  return piola;
+}
+
+/// Volume mean of |P - P_exact| over the stress at the foot (Charlton, Coombs & Augarde 2017, eq. 40).
+double stress_error(const Outcome& o, const Column& column) {
+  if (!o.ok()) return nothing;
+  const auto piola = piola_of(o, column);
+  double sum = 0, volume = 0;
+  for (std::size_t p = 0; p < piola.size(); ++p) {
+    const double v = static_cast<double>(o.first().volume[p]);
+    sum += v * std::abs(piola[p] - column.piola(o.first().position[p][2]));
+    volume += v;
+  }
+  return sum / (volume * -column.piola(0));
+}
+
+struct Top {
+  double computed = nothing, exact = nothing;
+};
+
+/// Mean settlement of the highest layer of points.
+Top top_of(const Outcome& o, const Column& column) {
+  if (!o.ok()) return {nothing, column.settlement(column.height)};
+  double highest = 0, sum = 0;
+  int count = 0;
+  for (const auto& x : o.first().position) highest = std::max(highest, x[2]);
+  for (std::size_t p = 0; p < o.first().size(); ++p) {
+    if (o.first().position[p][2] < highest - 1e-6 * column.height) continue;
+    sum += o.first().position[p][2] - o.last().position[p][2];
+    ++count;
+  }
+  return {sum / count, column.settlement(highest)};
+}
+
+Series stresses(const std::string& name, const Outcome& o, const Column& column, int colour) {
+  Series s{name, {}, {}, colour};
+  if (o.ok()) s.x = piola_of(o, column);
+  for (double& x : s.x) x *= -1e-3;
+  for (std::size_t p = 0; p < s.x.size(); ++p) s.y.push_back(o.first().position[p][2]);
+  s.line = false;
+  s.marks = true;
+  s.mark_size = 5;
+  return s;
+}
+
+Chart stress_chart(const Column& column, const std::string& title) {
+  Chart chart;
+  chart.title = title;
+  chart.x_label = "vertical stress, compression [kPa]";
+  chart.y_label = "height above the foot at the start [m]";
+  chart.series.push_back({"exact", {-1e-3 * column.piola(0), 0}, {0, column.height}, 0});
+  return chart;
+}
+
+// A1 ---------------------------------------------------------------------------------------------------------------
+
+constexpr Column self_weight{Law::corotated, 1e6, 200, 50};
+
+/// The paper's dynamic set-up: linear functions, local damping 0.05, 4 s. The body force grows over the first 2 s, ten periods: grown
+/// "in 20 time steps" of 1e-4 s it is a blow, of which this damping leaves a tenth after 4 s.
+Overrides paper_dynamics(const char* integrator, double step) {
+  return {{"solve.integrator", words(integrator)},
+          {"solve.shape", words("linear")},
+          {"solve.transfer", words("flip")},
+          {"solve.flip_fraction", 1.0},
+          {"solve.stress_update", words("musl")},
+          {"solve.implicit.step_s", step},
+          {"solve.largest_step_s", step},
+          {"solve.cfl", 0.8},
+          {"solve.damping", 0.05},
+          {"solve.gravity_ramp_s", 2.0},
+          {"solve.end_time_s", 4.0},
+          {"solve.frame_interval_s", 4.0},
+          {"solve.history_interval_s", 0.05}};
+}
+
+void add_top(Bench& bench, const Outcome& o, double tolerance) {
+  const Top top = top_of(o, self_weight);
+  bench.compare(o, "top displacement", top.computed, top.exact, tolerance);
+}
+
+/// Twenty load steps with every linear solver, and how far these are from one another.
+void add_statics(Bench& bench, Chart& profile, const char* shape, double top_tolerance, double stress_tolerance, int colour) {
+  std::vector<Outcome> runs;
+  for (const LinearScheme& scheme : linear_schemes()) {
+    runs.push_back(bench.run(fmt::format("quasi-static, {}, {}", shape, scheme.name),
+                             Overrides{{"solve.shape", words(shape)}} + scheme.overrides));
+    add_top(bench, runs.back(), top_tolerance);
+    bench.measure(runs.back(), "stress profile", stress_error(runs.back(), self_weight), stress_tolerance);
+    if (runs.size() == 1) continue;
+    const double difference = top_of(runs.back(), self_weight).computed / top_of(runs[0], self_weight).computed - 1;
+    bench.measure(runs.back(), "top displacement against " + linear_schemes()[0].name, difference, 1e-8);
+  }
+  profile.series.push_back(stresses(fmt::format("quasi-static, 20 steps, {}", shape), runs[0], self_weight, colour));
+}
+
+/// The paper's Table 1 in one run, and its Fig. 6b.
+void paper_table(Bench& bench, Chart& profile) {
+  Chart steps;
+  steps.title = "A1: error of the top displacement over the step (paper's scheme, t = 4 s)";
+  steps.x_label = "step [s]";
+  steps.y_label = "error";
+  steps.log_x = steps.log_y = true;
+  const auto study = [&](const std::string& name, const char* integrator, const Overrides& more,
+                         const std::vector<std::pair<double, double>>& steps_and_tolerances, int colour) {
+    Series s{name, {}, {}, colour};
+    s.marks = true;
+    for (const auto& [step, tolerance] : steps_and_tolerances) {
+      const Outcome o = bench.run(fmt::format("{}, step {:g} s", name, step), paper_dynamics(integrator, step) + more);
+      add_top(bench, o, tolerance);
+      const Top top = top_of(o, self_weight);
+      s.x.push_back(step);
+      s.y.push_back(std::abs(top.computed / top.exact - 1));
+      if (step == 1e-4) profile.series.push_back(stresses(name + ", step 1e-4 s", o, self_weight, colour));
+    }
+    steps.series.push_back(s);
+  };
+  // The tolerances are the paper's own errors.
+  for (const LinearScheme& scheme : linear_schemes()) {
+    study("reference, " + scheme.name, "newmark", scheme.overrides + Overrides{{"solve.preset", words("reference")}},
+          {{1e-4, scheme.name == "pcg" ? 0.018 : 0.014}, {1e-3, 0.018}}, scheme.name == "pcg" ? 1 : 3);
+  }
+  study("explicit", "explicit", {}, {{1e-4, 0.227}, {1e-5, 0.227}, {2e-6, 0.012}}, 2);
+  bench.picture("A1-step-size", png_of(steps));
+}
+
+// A1b --------------------------------------------------------------------------------------------------------------
+
+Overrides refined_column(int level, const char* shape) {
+  const double h = 50 / std::pow(2, level);
+  Overrides o{{"preprocess.grid.spacing_m", h},     {"preprocess.laboratory.west_m", -3.5 * h},
+              {"preprocess.laboratory.south_m", -3.5 * h}, {"preprocess.box[0].east_m", h},
+              {"preprocess.box[0].north_m", h},     {"solve.shape", words(shape)}};
+  o.push_back({"solve.wall[1].position_m", h});
+  o.push_back({"solve.wall[3].position_m", h});
+  return o;
+}
+
+}  // namespace
+
+void self_weight_column(Bench& bench) {
+  Chart profile = stress_chart(self_weight, "A1: stress in a column under its own weight, 1 m grid, 400 points");
+  // validation.md A1 for the solver's own functions. Of the paper's, the tolerance is its best error; there a cell has one stress, so
+  // that points are off by a quarter of its weight.
+  add_statics(bench, profile, "quadratic", 0.002, 0.002, 1);
+  add_statics(bench, profile, "linear", 0.012, 0.006, 3);
+  if (bench.complete()) paper_table(bench, profile);
+  bench.picture("A1-stress", png_of(profile, 1400, 1100));
+}
+
+void large_compaction(Bench& bench) {
+  constexpr Column soft{Law::hencky, 1e4, 800, 50};
+  Chart chart, profile = stress_chart(soft, "A1b: stress in a column compacted to a third (h = 50 m / 2⁵)");
+  chart.title = "A1b: stress error over cell size, 40 load steps";
+  chart.x_label = "cell size [m]";
+  chart.y_label = "error, mean of |P − P exact| over stress at the foot";
+  chart.log_x = chart.log_y = true;
+  const int finest = bench.complete() ? 7 : 5;
+  int colour = 1;
+  for (const char* shape : {"quadratic", "linear"}) {
+    std::vector<double> h, error;
+    Outcome o;
+    for (int level = 2; level <= finest; ++level) {
+      o = bench.run(fmt::format("{}, h = 50 / {}", shape, 1 << level), refined_column(level, shape));
+      h.push_back(50 / std::pow(2, level));
+      error.push_back(stress_error(o, soft));
+      if (level == 5) profile.series.push_back(stresses(shape, o, soft, colour));
+    }
+    if (std::string(shape) == "quadratic") {  // linear functions stall: shown in the picture, promised by nobody
+      o.variant = shape;
+      bench.at_least(o, "order of the stress error", observed_order(h.data(), error.data(), static_cast<int>(h.size())), 1);
+      chart.series.push_back(slope_line(1, h, h[0], error[0]));
+    }
+    chart.series.push_back(convergence(shape, h, error, colour++));
+  }
+  bench.picture("A1b-convergence", png_of(chart));
+  bench.picture("A1b-stress", png_of(profile, 1400, 1100));
+}
+
+}  // namespace talus::validation

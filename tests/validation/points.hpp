@@ -1,0 +1,23 @@
+// Material points of a run, frame by frame.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <vector>
+
+namespace talus::validation {
+
+/// Index = id; a point that left the domain has NaN for a position.
+struct Points {
+  double time = 0;                              // [s]
+  std::vector<std::array<double, 3>> position;  // [m]
+  std::vector<std::array<float, 3>> velocity;   // [m/s]
+  std::vector<float> volume;                    // initial [m3]
+  std::vector<float> pressure;                  // minus the mean Kirchhoff stress [Pa]
+  std::size_t size() const { return position.size(); }
+};
+
+/// From group VTKHDF of run.h5. Throws DataError.
+std::vector<Points> read_points(const std::filesystem::path& run);
+
+}  // namespace talus::validation

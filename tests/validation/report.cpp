@@ -1,0 +1,102 @@
+#include "tests/validation/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace talus::validation {
+namespace {
+
+std::string number(double value, const char* format = "{:.5g}") {
+  return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-";
+}
+
+using Cells = std::array<std::string, 14>;
+
+const Cells header{"case",      "quantity", "computed", "reference", "error",        "tolerance", "pass",
+                   "wall [s]", "points",   "steps",    "Newton",    "CG", "dt/CFL", "place"};
+
+std::string shortened(const std::string& place) {
+  return place.size() <= 28 ? place : place.substr(0, 27) + "~";
+}
+
+Cells cells_of(const Row& r) {
+  return {r.name,
+          r.quantity,
+          number(r.computed),
+          number(r.reference),
+          number(r.error, "{:.2e}"),
+          number(r.tolerance, "{:.2g}"),
+          r.pass ? "yes" : "NO",
+          number(r.wall_time, "{:.2f}"),
+          number(r.particles, "{:.0f}"),
+          number(r.steps, "{:.0f}"),
+          number(r.newton, "{:.0f}"),
+          number(r.cg, "{:.0f}"),
+          number(r.over_cfl, "{:.2g}"),
+          shortened(r.place)};
+}
+
+/// Columns of length in characters, not bytes: hardware names may hold others than ASCII.
+std::string line_of(const Cells& cells, const std::array<std::size_t, 14>& widths) {
+  std::string line;
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    const bool text = c < 2 || c + 1 == cells.size();
+    line += fmt::format(fmt::runtime(text ? "{:<{}}  " : "{:>{}}  "), cells[c], widths[c]);
+  }
+  line.erase(line.find_last_not_of(' ') + 1);
+  return line + "\n";
+}
+
+nlohmann::ordered_json plain(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+}  // namespace
+
+std::string as_table(const std::vector<Row>& rows) {
+  std::vector<Cells> lines{header};
+  for (const Row& row : rows) lines.push_back(cells_of(row));
+  std::array<std::size_t, 14> widths{};
+  for (const Cells& line : lines) {
+    for (std::size_t c = 0; c < line.size(); ++c) widths[c] = std::max(widths[c], line[c].size());
+  }
+  std::string text;
+  for (const Cells& line : lines) text += line_of(line, widths);
+  std::string last;
+  for (const Row& row : rows) {
+    if (row.fault.empty() || row.name == last) continue;
+    last = row.name;
+    text += fmt::format("{}: {}\n", row.name, row.fault);
+  }
+  const auto failed = std::count_if(rows.begin(), rows.end(), [](const Row& r) { return !r.pass; });
+  return text + fmt::format("{} rows, {} failed\n", rows.size(), failed);
+}
+
+std::string as_json(const std::vector<Row>& rows) {
+  auto list = nlohmann::ordered_json::array();
+  for (const Row& r : rows) {
+    nlohmann::ordered_json row{{"case", r.name},
+                               {"quantity", r.quantity},
+                               {"computed", plain(r.computed)},
+                               {"reference", plain(r.reference)},
+                               {"error", plain(r.error)},
+                               {"tolerance", plain(r.tolerance)},
+                               {"pass", r.pass},
+                               {"wall_time_s", plain(r.wall_time)},
+                               {"particles", plain(r.particles)},
+                               {"steps", plain(r.steps)},
+                               {"newton", plain(r.newton)},
+                               {"cg", plain(r.cg)},
+                               {"dt_over_cfl", plain(r.over_cfl)},
+                               {"place", r.place}};
+    if (!r.fault.empty()) row["fault"] = r.fault;
+    list.push_back(std::move(row));
+  }
+  return list.dump(1) + "\n";
+}
+
+}  // namespace talus::validation

@@ -1,0 +1,270 @@
+// A3 and A3b: sand columns that collapse onto a rough floor.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "tests/validation/cases.hpp"
+#include "tests/validation/chart.hpp"
+#include "tests/validation/closed_forms.hpp"
+
+namespace talus::validation {
+namespace {
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double gate_opens = 0.3;  // [s]
+
+struct Sand {
+  double h = 0.01;      // cells [m]
+  int per_cell = 4;     // points along each side of a cell
+  double height = 0.63, width = 0.09;
+  double flow_time = 1.2;  // after the gate [s]
+  double point_spacing() const { return h / per_cell; }
+};
+
+Overrides overrides_of(const Sand& s) {
+  // Room for half as much again as Lube's law says.
+  const double aspect = s.height / s.width, law = lube_run_out(aspect);
+  const double reach = s.width * (1 + 1.5 * (std::isfinite(law) ? law : 1.6 * aspect));
+  return {{"preprocess.grid.spacing_m", s.h},
+          {"preprocess.grid.points_per_cell", std::vector<std::int64_t>(3, s.per_cell)},
+          {"preprocess.laboratory.columns", whole(std::lround(reach / s.h) + 8)},
+          {"preprocess.laboratory.west_m", -3.5 * s.h},
+          {"preprocess.laboratory.south_m", -3.5 * s.h},
+          {"preprocess.box[0].east_m", s.width},
+          {"preprocess.box[0].north_m", s.h},
+          {"preprocess.box[0].top_m", s.height},
+          {"solve.wall[1].position_m", s.width},
+          {"solve.wall[4].position_m", s.h},
+          {"solve.end_time_s", gate_opens + s.flow_time}};
+}
+
+/// Where the deposit ends: the last point before a gap of one cell, and half a point more (single grains roll on).
+double front_of(const Points& points, const Sand& s) {
+  std::vector<double> x;
+  for (const auto& p : points.position) {
+    if (std::isfinite(p[0])) x.push_back(p[0]);
+  }
+  std::sort(x.begin(), x.end());
+  double front = 0;
+  for (const double at : x) {
+    if (at > front + s.h + s.point_spacing()) break;
+    front = at;
+  }
+  return front + 0.5 * s.point_spacing();
+}
+
+double top_of(const Points& points, const Sand& s) {
+  double top = 0;
+  for (const auto& p : points.position) {
+    if (std::isfinite(p[2])) top = std::max(top, p[2]);
+  }
+  return top + 0.5 * s.point_spacing();
+}
+
+/// Thickness over x from the map of a frame, all rows of the slice together. What the functions spread behind the wall at x = 0 is
+/// folded back; the mean of three columns, for the strings of points of a stretched lattice lie further apart than a cell.
+Series outline_of(const Outcome& o, std::size_t frame, const Sand& s, int colour) {
+  const MapGrid& grid = o.run.maps.grid;
+  const auto column_at = [&](int column) {
+    double sum = 0;
+    for (int row = 0; column >= 0 && row < grid.rows; ++row) {
+      const double t = o.run.frames.thickness.at(frame)[grid.index(column, row)];
+      if (std::isfinite(t)) sum += t;
+    }
+    return sum;
+  };
+  const int wall = static_cast<int>(std::lround(-grid.west / s.h - 0.5));
+  const auto thickness = [&](int column) {
+    column = std::abs(column - wall) + wall;
+    return column_at(column) + column_at(2 * wall - column);
+  };
+  Series outline{"", {}, {}, colour};
+  for (int column = wall; column + 1 < grid.columns; ++column) {
+    outline.x.push_back(grid.x(column));
+    outline.y.push_back((thickness(column - 1) + thickness(column) + thickness(column + 1)) / 3);
+    if (outline.y.back() == 0) break;
+  }
+  return outline;
+}
+
+std::size_t frame_at(const Outcome& o, double time) {
+  const auto nearest = std::min_element(o.frames.begin(), o.frames.end(), [&](const Points& a, const Points& b) {
+    return std::abs(a.time - time) < std::abs(b.time - time);
+  });
+  return static_cast<std::size_t>(nearest - o.frames.begin());
+}
+
+/// The column before the gate goes and at the times of the paper's Fig. 12, one panel each.
+std::string outlines(const Outcome& o, const Sand& s, const std::string& title) {
+  std::vector<Chart> panels;
+  for (const double time : {0.0, 0.15, 0.3, 0.6, 1.2}) {
+    const std::size_t frame = frame_at(o, gate_opens + time);
+    Chart panel;
+    panel.title = time == 0 ? title : "";
+    panel.y_label = "z [m]";
+    panel.equal_scales = true;
+    panel.x = Limits{-0.02, 1.0};
+    panel.y = Limits{0, time == 0 ? 0.67 : time < 0.2 ? 0.58 : time < 0.4 ? 0.42 : 0.25};
+    Series points{time == 0 ? "as the gate goes" : fmt::format("{:g} s later", time), {}, {}, 5};
+    for (const auto& p : o.frames.at(frame).position) {
+      points.x.push_back(p[0]);
+      points.y.push_back(p[2]);
+    }
+    points.line = false;
+    points.marks = true;
+    points.mark_size = std::clamp(400 * s.point_spacing(), 1.2, 5.0);
+    panel.series.push_back(points);
+    panel.series.push_back(outline_of(o, frame, s, 2));
+    if (time > 1) {
+      panel.x_label = "x [m]";
+      Series lube{"Lube et al. 2005: height, run-out", {0, s.width * (1 + lube_run_out(s.height / s.width))},
+                  {s.width * lube_height(s.height / s.width), 0}, 1};
+      lube.line = false;
+      lube.marks = true;
+      lube.mark_size = 11;
+      panel.series.push_back(lube);
+    }
+    panels.push_back(panel);
+  }
+  return png_of_panels(panels);
+}
+
+struct Collapse {
+  Outcome outcome;
+  double front = nothing, top = nothing;
+};
+
+struct Goals {
+  double run_out, height;
+};
+
+Collapse collapse(Bench& bench, const std::string& name, const Sand& s, const Overrides& more, const Goals& goals) {
+  Collapse c{bench.run(name, overrides_of(s) + more)};
+  if (c.outcome.ok()) {
+    c.front = front_of(c.outcome.last(), s);
+    c.top = top_of(c.outcome.last(), s);
+  }
+  const double aspect = s.height / s.width;
+  bench.compare(c.outcome, "run-out", c.front, s.width * (1 + lube_run_out(aspect)), goals.run_out);
+  if (goals.height > 0) bench.compare(c.outcome, "height", c.top, s.width * lube_height(aspect), goals.height);
+  return c;
+}
+
+/// Kinetic energy of the last record over the largest one.
+double unrest(const Outcome& o) {
+  const auto kinetic = o.history("kinetic_J");
+  if (kinetic.empty()) return nothing;
+  return kinetic.back() / *std::max_element(kinetic.begin(), kinetic.end());
+}
+
+void refinement(Bench& bench, const std::vector<int>& levels) {
+  Chart chart;
+  chart.title = "A3: error over cell size, 8 points per cell";
+  chart.x_label = "cell size [m]";
+  chart.y_label = "error against Lube et al. 2005";
+  chart.log_x = chart.log_y = true;
+  int colour = 1;
+  for (const char* shape : {"quadratic", "linear"}) {
+    std::vector<double> h, run_out, height;
+    for (const int level : levels) {
+      Sand s;
+      s.h = 0.09 / (1 << level);
+      s.per_cell = 2;
+      // Coarse grids: two cells of run-out, one of height.
+      const Goals goals{std::max(0.01, 2 * s.h / 0.8145), std::max(0.03, s.h / 0.196)};
+      const Collapse c = collapse(bench, fmt::format("{}, h = 0.09 / {}", shape, 1 << level), s, {{"solve.shape", words(shape)}}, goals);
+      h.push_back(s.h);
+      run_out.push_back(std::abs(c.front / 0.8145 - 1));
+      height.push_back(std::abs(c.top / 0.196 - 1));
+      if (level == levels.back() && c.outcome.ok()) {
+        bench.picture(fmt::format("A3-outlines-{}", shape),
+                      outlines(c.outcome, s, fmt::format("A3: sand column, {} functions, h = {:g} m", shape, s.h)));
+      }
+    }
+    chart.series.push_back(convergence(std::string("run-out, ") + shape, h, run_out, colour++));
+    chart.series.push_back(convergence(std::string("height, ") + shape, h, height, colour++));
+  }
+  bench.picture("A3-convergence", png_of(chart));
+}
+
+/// The paper's grid with 64 points per cell, explicit and implicit.
+void paper_grid(Bench& bench) {
+  const Sand s;
+  const Goals goals{0.01, 0.03};  // validation.md A3
+  for (const char* integrator : {"explicit", "newmark"}) {
+    const Collapse c = collapse(bench, fmt::format("{}, h = 0.01 m, 64 per cell", integrator), s,
+                                {{"solve.integrator", words(integrator)}}, goals);
+    bench.measure(c.outcome, "kinetic energy at the end over its peak", unrest(c.outcome), 1e-6);
+    if (c.outcome.ok()) {
+      bench.picture(fmt::format("A3-outlines-{}-0.01", integrator),
+                    outlines(c.outcome, s, fmt::format("A3: sand column, {}, h = 0.01 m", integrator)));
+    }
+  }
+}
+
+/// Run-out over damping and base friction (the paper's Fig. 13a).
+void sensitivity(Bench& bench) {
+  Chart chart;
+  chart.title = "A3: run-out over base friction and damping, h = 0.015 m";
+  chart.x_label = "friction coefficient of the floor";
+  chart.y_label = "run-out [m]";
+  chart.series.push_back({"Lube et al. 2005", {0.3, 0.7}, {0.8145, 0.8145}, 0});
+  int colour = 1;
+  for (const double damping : {0.0, 0.05, 0.1, 0.2}) {
+    Series line{fmt::format("damping {:g}", damping), {}, {}, colour++};
+    line.marks = true;
+    for (const double mu : {0.3, 0.4, 0.5, 0.55, 0.6, 0.7}) {
+      Sand s;
+      s.h = 0.015;
+      s.per_cell = 2;
+      const Outcome o = bench.run(fmt::format("damping {:g}, floor {:g}", damping, mu),
+                                  overrides_of(s) + Overrides{{"solve.damping", damping},
+                                                              {"solve.base.friction_angle_deg", std::atan(mu) * 180 / M_PI}});
+      line.x.push_back(mu);
+      line.y.push_back(o.ok() ? front_of(o.last(), s) : nothing);
+    }
+    chart.series.push_back(line);
+  }
+  bench.picture("A3-sensitivity", png_of(chart));
+}
+
+}  // namespace
+
+void sand_column(Bench& bench) {
+  if (!bench.complete()) {
+    refinement(bench, {1, 2});
+    return;
+  }
+  refinement(bench, {1, 2, 3, 4});
+  paper_grid(bench);
+  sensitivity(bench);
+}
+
+void sand_column_aspects(Bench& bench) {
+  Chart chart;
+  chart.title = "A3b: run-out over aspect ratio, one set of parameters";
+  chart.x_label = "aspect ratio, height over width";
+  chart.y_label = "(d end − d start) / d start";
+  chart.log_x = chart.log_y = true;
+  Series low{"Lube et al. 2005: 1.6 a, 2.2 a²ᐟ³", {}, {}, 0}, high{"", {}, {}, 0};
+  for (double a = 0.4; a < 1.8; a += 0.1) low.x.push_back(a), low.y.push_back(lube_run_out(a));
+  for (double a = 2.81; a < 11; a += 0.5) high.x.push_back(a), high.y.push_back(lube_run_out(a));
+  Series ours{"computed, h = 0.01 m, 8 points per cell", {}, {}, 2};
+  ours.line = false;
+  ours.marks = true;
+  ours.mark_size = 10;
+  for (const double aspect : {0.5, 1.0, 1.5, 3.0, 5.0, 7.0, 9.0}) {
+    Sand s;
+    s.per_cell = 2;
+    s.height = aspect * s.width;
+    const Collapse c = collapse(bench, fmt::format("a = {:g}", aspect), s, {}, {0.1, 0});
+    ours.x.push_back(aspect);
+    ours.y.push_back((c.front - s.width) / s.width);
+  }
+  chart.series = {low, high, ours};
+  bench.picture("A3b-run-out", png_of(chart));
+}
+
+}  // namespace talus::validation
