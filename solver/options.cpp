@@ -231,7 +231,8 @@ template <class Real>
 Walls<Real> make_walls(const std::vector<WallOptions>& options, double time, const WallFrame& frame) {
   Walls<Real> walls;
   for (const WallOptions& o : options) {
-    if (time < o.from || time >= o.to) continue;
+    const double now = time * (1 + 1e-12);  // events a rounding apart are one
+    if (now < o.from || now >= o.to) continue;
     Wall<Real>& wall = walls.list[walls.count++];
     wall.axis = static_cast<int>(o.axis);
     wall.side = o.side == Side::above ? 1 : -1;

@@ -65,6 +65,9 @@ void Simulation::load_by_gravity() {
   o.gravity_ramp = 1;
   o.implicit.step = 1.0 / options_.gravity_loading_steps;
   o.implicit.newton_iterations = std::max(o.implicit.newton_iterations, 20);
+  // The walls of the start stand throughout; loading has a clock of its own.
+  std::erase_if(o.walls, [](const WallOptions& wall) { return wall.from > 0; });
+  for (WallOptions& wall : o.walls) wall.to = 2;
   Scene scene = scene_;
   for (auto& component : scene.points.velocity) std::fill(component.begin(), component.end(), 0.0);
   const auto loader = make_solver(scene, o, on_);
@@ -94,7 +97,7 @@ double Simulation::next_event() const {
   const double record = static_cast<double>(memory_.records) * options_.history_interval;
   double next = std::min({frame, record, options_.end_time});
   const auto consider = [&](double time) {
-    if (time > time_) next = std::min(next, time);
+    if (time > time_ * (1 + 1e-12)) next = std::min(next, time);
   };
   for (const WallOptions& wall : options_.walls) {
     consider(wall.from);
@@ -108,11 +111,13 @@ double Simulation::next_event() const {
 }
 
 void Simulation::pass_events(double time) {
-  if (time >= static_cast<double>(memory_.records) * options_.history_interval || time >= options_.end_time) {
+  // Events a rounding apart are one: no step may be asked to go from one to the other.
+  const double reached = time * (1 + 1e-12);
+  if (reached >= static_cast<double>(memory_.records) * options_.history_interval || time >= options_.end_time) {
     record(time);
     ++memory_.records;
   }
-  if (time >= static_cast<double>(memory_.frames) * options_.frame_interval) {
+  if (reached >= static_cast<double>(memory_.frames) * options_.frame_interval) {
     put_frame(time);
     ++memory_.frames;
   }

@@ -14,7 +14,9 @@ struct TimeScheme {
 };
 
 TALUS_HD Sym3<double> whole_space() { return {1, 1, 1, 0, 0, 0}; }
+/// The projector less direction n, where it is not held already.
 TALUS_HD Sym3<double> without(const Sym3<double>& projector, const Vec3<double>& n) {
+  if (!(dot(n, projector * n) > 0.5)) return projector;
   return projector + Sym3<double>{-n.x * n.x, -n.y * n.y, -n.z * n.z, -n.x * n.y, -n.y * n.z, -n.x * n.z};
 }
 
@@ -128,7 +130,7 @@ struct PrepareNodes {
       friction = wall.friction;
       return;
     }
-    freed = without(freed, axis * sqrt(dot(axis, freed * axis) > 0.5 ? 1.0 : 0.0));
+    freed = without(freed, axis);
     component(u, wall.axis) = wall.speed * scheme.step;
   }
 };

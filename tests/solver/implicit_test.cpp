@@ -229,6 +229,19 @@ TEST_P(Implicit, takes_the_reference_papers_steps) {
   EXPECT_NEAR(tops[0] / tops[1], 1, 1e-8);
 }
 
+TEST_P(Implicit, holds_a_node_once_where_a_roller_meets_the_ground) {
+  const Domain d = column(6, 1);
+  SolveOptions o = column_options();
+  o.base.law = FrictionLaw::coulomb;
+  o.walls.push_back({Axis::z, 0, Side::above, WallKind::roller});
+  o.material.youngs_modulus = 1e6;
+  o.implicit.step = 0.5;
+  const Scene scene = make_scene(d, o);
+  const auto solver = make_solver(scene, o, GetParam());
+  EXPECT_LE(steps_to(*solver, 1.0), 12);
+  EXPECT_EQ(solver->clock().step, 2);
+}
+
 TEST_P(Implicit, tells_a_body_without_support_from_equilibrium) {
   Domain d = ground(12, 12, 1.0, 1.0, [](double, double) { return 0.0; });
   fill(d, {4, 7, 4, 7, 3, 6});
