@@ -77,6 +77,8 @@ void ImplicitOptions::describe(recipe::Visitor& v) {
   recipe::choice(v, "preconditioner", preconditioner,
                  {{"block", Preconditioner::block}, {"diagonal", Preconditioner::diagonal}}, "pcg: 3 x 3 blocks, or the diagonal");
   v.integer("step_cuts", step_cuts, recipe::Range{0, 30}, "halvings of a step before the run gives up");
+  v.number("filler", filler, recipe::Range{0, 1, false, true},
+           "quasi-static: springs against each step's displacement of nearly empty nodes, stiffness over a full cell's");
 }
 
 void WallOptions::describe(recipe::Visitor& v) {

@@ -170,7 +170,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     n.touch = touch_.data();
     return n;
   }
-  Constraints held() { return {wall_freed_.data(), normal_.data(), contact_friction_.data(), friction_limit_.data(), slip_}; }
+  Constraints held() { return {wall_freed_.data(), normal_.data(), contact_friction_.data(), friction_limit_.data(), filler_.data(), slip_}; }
 
   void size_nodes() {
     count_ = this->grid_.nodes();
@@ -189,6 +189,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     blocks_.resize(n);
     contact_friction_.resize(n);
     friction_limit_.resize(n);
+    filler_.resize(n);
     touch_.resize(n);
     tangents_.resize(static_cast<std::size_t>(TangentStore<Real>::numbers) * static_cast<std::size_t>(points_.count()));
   }
@@ -205,10 +206,13 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
                                                  loads, nodes()});
     const double ramp = options_.gravity_ramp > 0 ? std::min(1.0, time / options_.gravity_ramp) : 1.0;
     const Vec3<double> g{options_.gravity[0] * ramp, options_.gravity[1] * ramp, options_.gravity[2] * ramp};
+    const double h = this->frame_.cell[0], hz = this->frame_.cell[2], density = static_cast<double>(material_.density);
+    const double wave = static_cast<double>(material_.wave_speed);
+    const double full = density * h * h * hz, weak = options_.implicit.filler * density * wave * wave * std::min(h, hz);
     const bool predict = dynamic_ && options_.implicit.newton_iterations > 1 && options_.damping == 0;
     for_each(Place{}, this->grid_.active_blocks() * block_columns,
              PrepareNodes<Real>{this->grid_.view(), this->grid_.active_list(), nodes(), held(),
-                                make_walls<double>(options_.walls, start, this->frame_), friction_, g, scheme_, predict});
+                                make_walls<double>(options_.walls, start, this->frame_), friction_, g, scheme_, full, weak, predict});
     if (dynamic_ && first_) {
       copy(u_, saved_u_);
       u_.fill_zero();
@@ -404,7 +408,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   int gone_ = 0, count_ = 0;
   bool first_;  // no acceleration is known yet
   TimeScheme scheme_;
-  Buffer<double, Place> mass_, contact_friction_, friction_limit_;
+  Buffer<double, Place> mass_, contact_friction_, friction_limit_, filler_;
   double slip_ = 0;  // [m]
   NodeVector<Place> velocity_, acceleration_, external_, internal_, u_, residual_, normal_, velocity_end_,
       acceleration_end_, change_, saved_u_;
