@@ -94,6 +94,12 @@ class File {
     return values;
   }
 
+  /// Read a whole dataset of any shape, flat.
+  template <class T>
+  std::vector<T> read(const std::string& path) const {
+    return read<T>(path, dims(path));
+  }
+
   /// Throws the DataError of this file: "FILE: `problem` (reason HDF5 gives). mend", or where it is being written, what
   /// write_fault() says of it.
   [[noreturn]] void fail(const std::string& problem) const;

@@ -80,11 +80,6 @@ struct GiveStorage {
   }
 };
 
-template <class Real, class Place>
-void upload_as(Buffer<Real, Place>& to, const std::vector<double>& from) {
-  to.upload(std::vector<Real>(from.begin(), from.end()));
-}
-
 }  // namespace
 
 template <class Real, class Place>

@@ -94,8 +94,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     clock.outflow_count = 0;
     clock.outflow_volume = 0;
     clock.rate_bits = clock.speed_bits = 0;
-    this->grid_.fit(points_, gone_);
-    gone_ = 0;
+    this->grid_.fit(points_, 0);
+    group_elements();
     BatchReport report;
     double step = next_step(clock);
     for (int cut = 0;; ++cut) {
@@ -106,7 +106,6 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
       step *= 0.5;
       step_ = step;
     }
-    report.stats.converged = true;
     first_ = false;
     clock.step_size = step;
     clock.time = clock.next_event - clock.time <= step * (1 + 1e-12) ? clock.next_event : clock.time + step;
@@ -115,13 +114,12 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     accept(clock, step);
     if (report.stats.cuts == 0) step_ = std::min(step_ * 1.5, options_.implicit.step);
     clock = read_clock();
-    gone_ = clock.outflow_count;
     report.outflow_count = clock.outflow_count;
     report.outflow_volume = clock.outflow_volume;
     report.stats.over_cfl = step * static_cast<double>(positive_from_bits(clock.rate_bits));
     if (clock.request == failed) clock.halt = failed;
     if (clock.halt != failed && clock.time >= clock.next_event) clock.halt = at_event;
-    if (gone_ > 0) drop_gone();
+    if (report.outflow_count > 0) this->grid_.fit(points_, report.outflow_count);
     report.sorted = true;
     report.clock = clock;
     clock.halt = clock.request = running;
@@ -131,7 +129,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
   std::size_t bytes() const override {
     std::size_t total = Base::bytes() + mass_.bytes() + touch_.bytes() + tangents_.bytes() + wall_freed_.bytes() +
-                        contact_friction_.bytes() + freed_.bytes() + blocks_.bytes() + stiffness_.bytes() + operator_.bytes() +
+                        contact_friction_.bytes() + friction_limit_.bytes() + filler_.bytes() + freed_.bytes() + blocks_.bytes() + stiffness_.bytes() + operator_.bytes() +
                         cholesky_.bytes();
     for (const auto* v : {&velocity_, &acceleration_, &external_, &internal_, &u_, &residual_, &normal_,
                           &velocity_end_, &acceleration_end_, &change_, &saved_u_, &cg_.r, &cg_.z, &cg_.p, &cg_.ap}) {
@@ -265,14 +263,13 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     if (options_.implicit.linear_solver == LinearSolver::cholesky) {
       cholesky_.begin_step(this->grid_.view(), points_.view());
     } else {
-      operator_.begin_step(this->grid_.view(), points_.view(), count_);
+      operator_.begin_step(this->grid_.view(), points_.view(), this->grid_.nodes());
     }
   }
 
   /// Newton's iterations of one step; true when it converged.
   bool solve_step(double start, double step, StepStats& stats) {
     prepare(start, step);
-    group_elements();
     const ImplicitOptions& o = options_.implicit;
     if (o.newton_iterations == 1) return solve_once(stats);
     for (stats.newton = 0; stats.newton < o.newton_iterations; ++stats.newton) {
@@ -397,15 +394,10 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
                                  this->maps()});
   }
 
-  void drop_gone() {
-    this->grid_.fit(points_, gone_);
-    gone_ = 0;
-  }
-
   bool affine_, dynamic_;
   BaseFriction<double> friction_;
   double step_;
-  int gone_ = 0, count_ = 0;
+  int count_ = 0;
   bool first_;  // no acceleration is known yet
   TimeScheme scheme_;
   Buffer<double, Place> mass_, contact_friction_, friction_limit_, filler_;

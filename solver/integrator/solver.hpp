@@ -35,7 +35,7 @@ struct StepStats {
   int newton = 0, linear = 0, cuts = 0;         // iterations; halvings of the step
   double residual = 0, linear_residual = 0;     // unbalanced force over the forces' size; residual of the last linear solve
   double over_cfl = 0;                          // step over the CFL step
-  bool converged = false, indefinite = false;
+  bool indefinite = false;
 };
 
 /// What a batch of steps ended with.

@@ -42,11 +42,6 @@ void visit_maps(Maps& m, Reals&& reals) {
 
 h5::Dims dims_of(std::size_t count) { return {static_cast<hsize_t>(count)}; }
 
-template <class T>
-std::vector<T> read_list(const h5::File& file, const std::string& path) {
-  return file.read<T>(path, file.dims(path));
-}
-
 void write_memory(h5::File& file, const RunMemory& m) {
   file.make_group("/memory");
   const std::int64_t counts[] = {m.frames, m.records, m.checkpoints, m.outflow_count, m.newton, m.linear, m.cuts};
@@ -62,7 +57,7 @@ void write_memory(h5::File& file, const RunMemory& m) {
 
 RunMemory read_memory(const h5::File& file) {
   RunMemory m;
-  const auto counts = read_list<std::int64_t>(file, "/memory/event_counts");
+  const auto counts = file.read<std::int64_t>("/memory/event_counts");
   const auto numbers = file.read<double>("/memory/numbers", {3});
   m.frames = counts.at(0);
   m.records = counts.at(1);
@@ -74,10 +69,10 @@ RunMemory read_memory(const h5::File& file) {
   m.peak_kinetic = numbers[0];
   m.outflow_volume = numbers[1];
   m.wall_time = numbers[2];
-  m.initial_thickness = read_list<double>(file, "/memory/initial_thickness");
+  m.initial_thickness = file.read<double>("/memory/initial_thickness");
   for (const auto& name : file.children("/history")) {
     m.history.names.push_back(name);
-    m.history.columns.push_back(read_list<double>(file, "/history/" + name));
+    m.history.columns.push_back(file.read<double>("/history/" + name));
   }
   return m;
 }
@@ -117,10 +112,10 @@ Checkpoint read_checkpoint(const std::filesystem::path& path, const std::string&
                      "Restore the recipe and domain.vdb it was made with, or run talus-solve without --restart"});
   }
   visit_points(
-      c.state.points, [&](const std::string& name, std::vector<int>& v) { v = read_list<std::int32_t>(file, "/points/" + name); },
-      [&](const std::string& name, std::vector<double>& v) { v = read_list<double>(file, "/points/" + name); });
+      c.state.points, [&](const std::string& name, std::vector<int>& v) { v = file.read<std::int32_t>("/points/" + name); },
+      [&](const std::string& name, std::vector<double>& v) { v = file.read<double>("/points/" + name); });
   visit_maps(c.state.maps,
-             [&](const std::string& name, std::vector<double>& v) { v = read_list<double>(file, "/maps/" + name); });
+             [&](const std::string& name, std::vector<double>& v) { v = file.read<double>("/maps/" + name); });
   const auto clock = file.read<std::uint8_t>("/clock", dims_of(sizeof(Clock)));
   std::memcpy(static_cast<void*>(&c.state.clock), clock.data(), sizeof(Clock));
   c.memory = read_memory(file);

@@ -20,11 +20,6 @@ std::vector<std::array<T, 3>> rows_of(const std::vector<T>& values) {
   return rows;
 }
 
-template <class T>
-std::vector<T> read_list(const h5::File& file, const std::string& path) {
-  return file.read<T>(path, file.dims(path));
-}
-
 }  // namespace
 
 void FrameStore::clear() {
@@ -66,14 +61,14 @@ void FrameStore::append_to(RunWriter& run, std::int64_t count, const MapGrid& gr
     const h5::File in = h5::File::open(file(n), {file(n), "Run talus-solve again without --restart"});
     PointFrame f;
     f.time = in.number("/", "time");
-    f.position = rows_of(read_list<double>(in, "/position"));
-    f.velocity = rows_of(read_list<float>(in, "/velocity"));
-    f.volume = read_list<float>(in, "/volume");
-    f.pressure = read_list<float>(in, "/pressure");
-    f.id = read_list<std::int32_t>(in, "/id");
-    f.release = read_list<std::int32_t>(in, "/release");
+    f.position = rows_of(in.read<double>("/position"));
+    f.velocity = rows_of(in.read<float>("/velocity"));
+    f.volume = in.read<float>("/volume");
+    f.pressure = in.read<float>("/pressure");
+    f.id = in.read<std::int32_t>("/id");
+    f.release = in.read<std::int32_t>("/release");
     if (!f.id.empty()) run.append(f);
-    run.append_thickness(f.time, grid, read_list<double>(in, "/thickness"));
+    run.append_thickness(f.time, grid, in.read<double>("/thickness"));
   }
 }
 

@@ -12,7 +12,6 @@
 #include <thrust/scatter.h>
 #include <thrust/sequence.h>
 #include <thrust/sort.h>
-#include <thrust/transform_reduce.h>
 
 namespace talus {
 
@@ -44,20 +43,6 @@ double inner_product(OnGpu, const double* a, const double* b, int count) {
   return thrust::inner_product(thrust::device, x, x + count, y, 0.0);
 }
 
-namespace {
-struct Magnitude {
-  __host__ __device__ double operator()(double x) const { return x < 0 ? -x : x; }
-};
-struct Larger {
-  __host__ __device__ double operator()(double x, double y) const { return x > y ? x : y; }
-};
-}  // namespace
-
-double largest_entry(OnGpu, const double* a, int count) {
-  const thrust::device_ptr<const double> x(a);
-  return thrust::transform_reduce(thrust::device, x, x + count, Magnitude{}, 0.0, Larger{});
-}
-
 void gather(OnGpu, const double* from, const int* order, double* to, int count) {
   const thrust::device_ptr<const int> o(order);
   thrust::gather(thrust::device, o, o + count, thrust::device_ptr<const double>(from), thrust::device_ptr<double>(to));
@@ -81,7 +66,6 @@ double free_memory(OnGpu) {
 namespace talus {
 void sort_order(OnGpu, Buffer<std::uint64_t, OnGpu>&, Buffer<int, OnGpu>&) { throw std::logic_error("no CUDA"); }
 int exclusive_sum(OnGpu, const int*, int*, int) { throw std::logic_error("no CUDA"); }
-double largest_entry(OnGpu, const double*, int) { throw std::logic_error("no CUDA"); }
 double inner_product(OnGpu, const double*, const double*, int) { throw std::logic_error("no CUDA"); }
 double sum(OnGpu, const double*, int) { throw std::logic_error("no CUDA"); }
 void gather(OnGpu, const double*, const int*, double*, int) { throw std::logic_error("no CUDA"); }

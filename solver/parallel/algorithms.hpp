@@ -23,10 +23,6 @@ double sum(OnGpu, const double* values, int count);
 double inner_product(OnCpu, const double* a, const double* b, int count);
 double inner_product(OnGpu, const double* a, const double* b, int count);
 
-/// Largest |a[i]|; 0 for none.
-double largest_entry(OnCpu, const double* a, int count);
-double largest_entry(OnGpu, const double* a, int count);
-
 /// to[i] = from[order[i]]
 void gather(OnCpu, const double* from, const int* order, double* to, int count);
 void gather(OnGpu, const double* from, const int* order, double* to, int count);

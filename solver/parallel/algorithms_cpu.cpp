@@ -47,12 +47,6 @@ double inner_product(OnCpu, const double* a, const double* b, int count) {
       [](double x, double y) { return x + y; }, tbb::simple_partitioner());
 }
 
-double largest_entry(OnCpu, const double* a, int count) {
-  double largest = 0;
-  for (int i = 0; i < count; ++i) largest = std::max(largest, std::abs(a[i]));
-  return largest;
-}
-
 double sum(OnCpu, const double* values, int count) { return std::accumulate(values, values + count, 0.0); }
 
 void gather(OnCpu, const double* from, const int* order, double* to, int count) {

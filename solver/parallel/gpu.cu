@@ -59,9 +59,6 @@ void gpu_upload(void* device, const void* host, std::size_t bytes) {
 void gpu_download(void* host, const void* device, std::size_t bytes) {
   check(cudaMemcpy(host, device, bytes, cudaMemcpyDeviceToHost), "download");
 }
-void gpu_copy(void* to, const void* from, std::size_t bytes) {
-  check(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToDevice), "copy");
-}
 void gpu_fill_zero(void* device, std::size_t bytes) { check(cudaMemsetAsync(device, 0, bytes), "fill"); }
 void gpu_synchronise() { check(cudaDeviceSynchronize(), "kernel"); }
 void gpu_check_launch(const char* where) { check(cudaGetLastError(), where); }
@@ -84,7 +81,6 @@ void* gpu_allocate(std::size_t) { absent(); }
 void gpu_free(void*) {}
 void gpu_upload(void*, const void*, std::size_t) { absent(); }
 void gpu_download(void*, const void*, std::size_t) { absent(); }
-void gpu_copy(void*, const void*, std::size_t) { absent(); }
 void gpu_fill_zero(void*, std::size_t) { absent(); }
 void gpu_synchronise() {}
 void gpu_check_launch(const char*) {}

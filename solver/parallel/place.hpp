@@ -34,7 +34,6 @@ void* gpu_allocate(std::size_t bytes);
 void gpu_free(void* memory);
 void gpu_upload(void* device, const void* host, std::size_t bytes);
 void gpu_download(void* host, const void* device, std::size_t bytes);
-void gpu_copy(void* to, const void* from, std::size_t bytes);
 void gpu_fill_zero(void* device, std::size_t bytes);
 void gpu_synchronise();
 void gpu_check_launch(const char* where);
@@ -121,6 +120,12 @@ class Buffer {
   T* data_ = nullptr;
   std::size_t size_ = 0, capacity_ = 0;
 };
+
+/// Upload of values kept in double on the host.
+template <class Real, class Place>
+void upload_as(Buffer<Real, Place>& to, const std::vector<double>& from) {
+  to.upload(std::vector<Real>(from.begin(), from.end()));
+}
 
 /// Runs kernel(i) for i in [0, count), in any order.
 template <class Kernel>

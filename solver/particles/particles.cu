@@ -12,11 +12,6 @@ struct Gather {
 };
 
 template <class Real, class Place>
-void upload_as(Buffer<Real, Place>& to, const std::vector<double>& from) {
-  to.upload(std::vector<Real>(from.begin(), from.end()));
-}
-
-template <class Real, class Place>
 std::vector<double> download_as(const Buffer<Real, Place>& from) {
   const std::vector<Real> values = from.download();
   return {values.begin(), values.end()};
