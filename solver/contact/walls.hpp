@@ -1,7 +1,11 @@
 // Plane walls along the axes of the grid: rollers, fixed and frictional ones, gates that go at a stated time.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "solver/contact/base_friction.hpp"
+#include "solver/grid/background_grid.hpp"
 
 namespace talus {
 
@@ -30,6 +34,25 @@ struct Walls {
   int count = 0;
   Wall<Real> list[most_walls];
 };
+
+/// Where quadratic functions meet the walls as edges: the innermost upright ones that stand still and on nodes.
+template <class Real>
+WallNodes wall_nodes(const Walls<Real>& walls) {
+  WallNodes nodes;
+  for (int w = 0; w < walls.count; ++w) {
+    const Wall<Real>& wall = walls.list[w];
+    const Real node = std::floor(wall.position + Real(0.5));
+    if (wall.axis == 2 || wall.speed != Real(0) || std::fabs(wall.position - node) > Real(1e-4)) continue;
+    int& first = wall.axis == 0 ? nodes.west : nodes.south;
+    int& last = wall.axis == 0 ? nodes.east : nodes.north;
+    if (wall.side > 0) {
+      first = std::max(first, static_cast<int>(node));
+    } else {
+      last = std::min(last, static_cast<int>(node));
+    }
+  }
+  return nodes;
+}
 
 template <class Real>
 TALUS_HD Real& component(Vec3<Real>& v, int axis) {

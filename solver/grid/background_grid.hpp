@@ -6,7 +6,7 @@
 // columns of a layer are neighbours in memory.
 //
 // There is no layer below 0: near the ground, quadratic functions go over into hats (shape_functions.hpp), so that the base node carries
-// the value on the ground and the traction of the bed alone.
+// the value on the ground and the traction of the bed alone. Upright walls that stand on nodes are met in the same way.
 #pragma once
 
 #include <cstdint>
@@ -27,12 +27,19 @@ struct BlockSlot {
   int layers = 0;
 };
 
+/// Nodes on which upright walls stand: material lies between them.
+struct WallNodes {
+  static constexpr int far = 1 << 30;
+  int west = -far, east = far, south = -far, north = far;
+};
+
 template <class Real>
 struct GridView {
   int columns = 0, rows = 0;                // nodes in x and y
   int block_columns_x = 0;                  // blocks in x
   Real spacing = 0, layer_height = 0;       // [m]
-  Real lowest_weighed = 0;                  // height in layers below which weights on the base layers no longer change
+  Real lowest_weighed = 0;                  // cells from the ground or a wall within which weights no longer change
+  WallNodes walls;
   Mapping mapping = Mapping::terrain_following;
   const BlockSlot* slots = nullptr;         // [blocks in y * blocks in x]
   const Real* terrain = nullptr;            // spline coefficients of the ground at the nodes, from `datum` [m]

@@ -10,7 +10,7 @@ namespace talus {
 struct Linear {
   static constexpr int width = 2;
   template <class Real>
-  TALUS_HD static Real weigh_base(Real height, Real, Real[2], Real[2]) { return height; }  // hats end on the ground as they are
+  TALUS_HD static Real weigh_edge(Real offset, int, Real, Real[2], Real[2]) { return offset; }  // hats end at an edge as they are
   template <class Real>
   TALUS_HD static int weigh(Real offset, Real weight[2], Real slope[2]) {
     const int first = offset < Real(0) ? -1 : 0;
@@ -26,20 +26,21 @@ struct Linear {
 /// Quadratic B-splines (Steffen, Kirby & Berzins 2008): three nodes, gradients continuous across cells.
 struct Quadratic {
   static constexpr int width = 3;
-  /// Weights in the lowest half layer, where the function of layer -1 would reach below the ground. The field goes on there in a
-  /// straight line (v_-1 = 2 v_0 - v_1), which leaves hats on layers 0 and 1: slopes stay continuous, linear fields exact, and the value
-  /// on the ground is the base node's. `height` in layers; below `lowest` the weights are those at
-  /// `lowest`. Returns the height they stand for.
+  /// Weights in the half cell beside an edge of the material (the ground, a wall) that stands on the nearest node, where the function of
+  /// the node behind would reach through it. The field goes on there in a straight line (v_-1 = 2 v_0 - v_1), which leaves hats on the
+  /// edge's node and the next: slopes stay continuous, linear fields exact, and the value on the edge is its node's. `inward` is +1 or -1;
+  /// nearer than `lowest` the weights are those at `lowest`. Returns the offset they stand for.
   template <class Real>
-  TALUS_HD static Real weigh_base(Real height, Real lowest, Real weight[3], Real slope[3]) {
-    const Real s = height > lowest ? height : lowest;
-    weight[0] = Real(0);
+  TALUS_HD static Real weigh_edge(Real offset, int inward, Real lowest, Real weight[3], Real slope[3]) {
+    const Real away = offset * Real(inward);
+    const Real s = away > lowest ? away : lowest;
+    weight[1 - inward] = Real(0);
     weight[1] = Real(1) - s;
-    weight[2] = s;
-    slope[0] = Real(0);
-    slope[1] = Real(-1);
-    slope[2] = Real(1);
-    return s;
+    weight[1 + inward] = s;
+    slope[1 - inward] = Real(0);
+    slope[1] = Real(-inward);
+    slope[1 + inward] = Real(inward);
+    return s * Real(inward);
   }
   template <class Real>
   TALUS_HD static int weigh(Real offset, Real weight[3], Real slope[3]) {

@@ -104,6 +104,7 @@ GridView<Real> SparseGrid<Real, Place>::view() const {
   v.spacing = static_cast<Real>(shape_.spacing);
   v.layer_height = static_cast<Real>(shape_.layer_height);
   v.lowest_weighed = static_cast<Real>(shape_.lowest_weighed);
+  v.walls = walls_;
   v.mapping = shape_.mapping;
   v.slots = slots_.data();
   v.terrain = terrain_.data();

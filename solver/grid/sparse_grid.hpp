@@ -47,6 +47,8 @@ class SparseGrid {
   void fit(Particles<Real, Place>& points, int gone);
 
   GridView<Real> view() const;
+  /// From now on material is met at these nodes.
+  void stand_walls(const WallNodes& nodes) { walls_ = nodes; }
   const GroundTables& ground() const { return ground_; }
   const GridShape& shape() const { return shape_; }
   const std::uint64_t* home() const { return keys_.data(); }
@@ -63,6 +65,7 @@ class SparseGrid {
 
   GridShape shape_;
   GroundTables ground_;
+  WallNodes walls_;
   int blocks_x_ = 0, blocks_y_ = 0, nodes_ = 0, active_ = 0;
   Buffer<Real, Place> terrain_, slope_x_, slope_y_;
   Buffer<unsigned char, Place> open_;

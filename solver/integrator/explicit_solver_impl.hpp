@@ -50,7 +50,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     clock.halt = clock.request = running;
     const int left = clock.steps_between_sorts - clock.steps_since_sort;
     clock_.upload({clock});
-    walls_ = make_walls<Real>(options_.walls, clock.time, this->frame_);
+    walls_ = this->template stand_walls<Real>(clock.time);
     loads_now_ = this->upload_loads(clock.time);
     // One more than the steps left: the last one's begin halts the clock at the sort.
     for (int s = 0; s < std::min(left, batch_steps) + 1; ++s) step();

@@ -264,13 +264,8 @@ struct AcceptStep {
     points.set_elastic(p, state.elastic);
     points.log_volume[p] = state.log_volume;
     if (dilatant) points.plastic_log_volume[p] = state.plastic_log_volume;
-    shift(points.cell_x[p], points.offset_x[p], move.x / static_cast<double>(grid.spacing));
-    shift(points.cell_y[p], points.offset_y[p], move.y / static_cast<double>(grid.spacing));
-    shift(points.cell_z[p], points.offset_z[p], move.z / static_cast<double>(grid.layer_height));
-    if (points.cell_z[p] < 0 || (points.cell_z[p] == 0 && points.offset_z[p] < Real(0))) {
-      points.cell_z[p] = 0;
-      points.offset_z[p] = Real(0);
-    }
+    const double across = static_cast<double>(grid.spacing), up = static_cast<double>(grid.layer_height);
+    points.move_by(p, Vec3<double>{move.x / across, move.y / across, move.z / up}, grid.walls);
     settle(p, g);
   }
 
@@ -309,9 +304,10 @@ struct AcceptStep {
       store(points.velocity, p, v);
       store(points.acceleration, p, a1);
       if (affine) {
-        const bool spline = Shape::width == 3, on_base = points.cell_z[p] == 0;
-        const Vec3<double> x = spline ? moment.a * 4.0 : slope.a, y = spline ? moment.b * 4.0 : slope.b;
-        const Vec3<double> z = spline && !on_base ? moment.c * 4.0 : slope.c;
+        const bool spline = Shape::width == 3;
+        const Vec3<double> x = spline && !g.s.edge_x ? moment.a * 4.0 : slope.a;
+        const Vec3<double> y = spline && !g.s.edge_y ? moment.b * 4.0 : slope.b;
+        const Vec3<double> z = spline && !g.s.edge_z ? moment.c * 4.0 : slope.c;
         const double values[9] = {x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z};
         for (int q = 0; q < 9; ++q) points.affine[q][p] = static_cast<Real>(values[q]);
       }
@@ -323,14 +319,6 @@ struct AcceptStep {
     target[0][p] = static_cast<Real>(v.x);
     target[1][p] = static_cast<Real>(v.y);
     target[2][p] = static_cast<Real>(v.z);
-  }
-
-  TALUS_HD static void shift(int& cell, Real& offset, double move) {
-    const double to = static_cast<double>(offset) + move;
-    const double whole = floor(to + 0.5);
-    if (!(fabs(whole) < 1e6)) return;
-    offset = static_cast<Real>(to - whole);
-    cell += static_cast<int>(whole);
   }
 
   TALUS_HD void settle(int p, const PointGradients<Real, Shape>& g) const {

@@ -95,6 +95,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     clock.outflow_volume = 0;
     clock.rate_bits = clock.speed_bits = 0;
     this->grid_.fit(points_, 0);
+    walls_ = this->template stand_walls<double>(clock.time);
     group_elements();
     BatchReport report;
     double step = next_step(clock);
@@ -210,7 +211,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     const bool predict = dynamic_ && options_.implicit.newton_iterations > 1 && options_.damping == 0;
     for_each(Place{}, this->grid_.active_blocks() * block_columns,
              PrepareNodes<Real>{this->grid_.view(), this->grid_.active_list(), nodes(), held(),
-                                make_walls<double>(options_.walls, start, this->frame_), friction_, g, scheme_, full, weak, predict});
+                                walls_, friction_, g, scheme_, full, weak, predict});
     if (dynamic_ && first_) {
       copy(u_, saved_u_);
       u_.fill_zero();
@@ -402,6 +403,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   TimeScheme scheme_;
   Buffer<double, Place> mass_, contact_friction_, friction_limit_, filler_;
   double slip_ = 0;  // [m]
+  Walls<double> walls_;
   NodeVector<Place> velocity_, acceleration_, external_, internal_, u_, residual_, normal_, velocity_end_,
       acceleration_end_, change_, saved_u_;
   Buffer<Sym3<double>, Place> freed_, wall_freed_, blocks_, stiffness_;

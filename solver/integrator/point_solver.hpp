@@ -85,6 +85,14 @@ class PointSolver : public Solver {
     return {peak_thickness_.data(), peak_speed_.data(), peak_pressure_.data(), arrival_.data(), options_.map_threshold};
   }
 
+  /// The walls that stand at a time, as kernels see them; the grid meets them as edges from now on.
+  template <class Number>
+  Walls<Number> stand_walls(double time) {
+    const Walls<Number> walls = make_walls<Number>(options_.walls, time, frame_);
+    grid_.stand_walls(wall_nodes(walls));
+    return walls;
+  }
+
   /// Force per volume of every load at a time; null when there are none.
   const Vec3<double>* upload_loads(double time) {
     if (load_volumes_.empty()) return nullptr;

@@ -42,12 +42,11 @@ struct MeasureEnergies {
   TALUS_HD double height(int p) const {
     const double zeta = (points.cell_z[p] + static_cast<double>(points.offset_z[p])) * grid.layer_height;
     if (grid.mapping == Mapping::cartesian) return zeta;
-    const Stencil<Real, Shape> s(grid, points, p);
-    double ground = 0;
+    double wx[3], wy[3], unused[3], ground = 0;
+    const int i = points.cell_x[p] + Shape::weigh(static_cast<double>(points.offset_x[p]), wx, unused);
+    const int j = points.cell_y[p] + Shape::weigh(static_cast<double>(points.offset_y[p]), wy, unused);
     for (int b = 0; b < Shape::width; ++b) {
-      for (int a = 0; a < Shape::width; ++a) {
-        ground += static_cast<double>(s.wx[a] * s.wy[b]) * static_cast<double>(grid.terrain[grid.column(s.i + a, s.j + b)]);
-      }
+      for (int a = 0; a < Shape::width; ++a) ground += wx[a] * wy[b] * static_cast<double>(grid.terrain[grid.column(i + a, j + b)]);
     }
     return zeta + ground;
   }

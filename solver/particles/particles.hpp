@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "solver/grid/background_grid.hpp"
 #include "solver/parallel/math.hpp"
 #include "solver/parallel/place.hpp"
 
@@ -39,6 +40,32 @@ struct ParticleView {
     elastic[3][p] = s.xy;
     elastic[4][p] = s.yz;
     elastic[5][p] = s.xz;
+  }
+
+  /// New cell and offset after a move in cells: nothing goes below the ground or behind a wall.
+  template <class Move>
+  TALUS_HD void move_by(int p, const Vec3<Move>& way, const WallNodes& walls) const {
+    shift(cell_x[p], offset_x[p], way.x, walls.west, walls.east);
+    shift(cell_y[p], offset_y[p], way.y, walls.south, walls.north);
+    shift(cell_z[p], offset_z[p], way.z, 0, WallNodes::far);
+  }
+
+ private:
+  template <class Move>
+  TALUS_HD static void shift(int& cell, Real& offset, Move move, int first, int last) {
+    const Move to = static_cast<Move>(offset) + move;
+    const Move whole = floor(to + Move(0.5));
+    offset = static_cast<Real>(to);
+    if (!(fabs(whole) < Move(1000000))) return;  // lost: the step's settle() reports the point
+    offset = static_cast<Real>(to - whole);
+    cell += static_cast<int>(whole);
+    if (cell < first || (cell == first && offset < Real(0))) {
+      cell = first;
+      offset = Real(0);
+    } else if (cell > last || (cell == last && offset > Real(0))) {
+      cell = last;
+      offset = Real(0);
+    }
   }
 };
 

@@ -40,7 +40,7 @@ struct GridToParticle {
     const Stencil<Real, Shape> s(grid, points, p);
     const Sums sums = gather(s);
     const Real dt = Real(clock->step_size);
-    if constexpr (part != Gather::deformation) move_with(p, sums, dt);
+    if constexpr (part != Gather::deformation) move_with(p, s, sums, dt);
     if constexpr (part != Gather::motion) {
       deform(p, s, sums, dt);
       settle(p, s, sums);
@@ -94,13 +94,13 @@ struct GridToParticle {
     return sums;
   }
 
-  TALUS_HD void move_with(int p, const Sums& sums, Real dt) const {
+  TALUS_HD void move_with(int p, const Stencil<Real, Shape>& s, const Sums& sums, Real dt) const {
     Vec3<Real> v = sums.velocity;
     if (flip > Real(0)) v = (points.velocity_of(p) + sums.change) * flip + v * (Real(1) - flip);
     points.velocity[0][p] = v.x;
     points.velocity[1][p] = v.y;
     points.velocity[2][p] = v.z;
-    if (affine) store_affine(p, sums);
+    if (affine) store_affine(p, s, sums);
     const Vec3<Real> move{sums.velocity.x * dt / grid.spacing, sums.velocity.y * dt / grid.spacing,
                           sums.climb * dt / grid.layer_height};
     if constexpr (part == Gather::motion) {
@@ -108,17 +108,17 @@ struct GridToParticle {
       points.move[1][p] = move.y;
       points.move[2][p] = move.z;
     } else {
-      advance(p, move);
+      points.move_by(p, move, grid.walls);
     }
   }
 
   /// APIC (Jiang et al. 2015): moment times the inverse of the weights' second moment, 4 per cell for quadratic B-splines;
-  /// for hats, and so in the lowest half layer, it equals the gradient.
-  TALUS_HD void store_affine(int p, const Sums& sums) const {
-    const bool spline = Shape::width == 3, on_base = points.cell_z[p] == 0;
-    const Vec3<Real> x = spline ? sums.moment.a * Real(4) : sums.gradient.a;
-    const Vec3<Real> y = spline ? sums.moment.b * Real(4) : sums.gradient.b;
-    const Vec3<Real> z = spline && !on_base ? sums.moment.c * Real(4) : sums.gradient.c;
+  /// for hats, and so beside the ground and walls, it equals the gradient.
+  TALUS_HD void store_affine(int p, const Stencil<Real, Shape>& s, const Sums& sums) const {
+    const bool spline = Shape::width == 3;
+    const Vec3<Real> x = spline && !s.edge_x ? sums.moment.a * Real(4) : sums.gradient.a;
+    const Vec3<Real> y = spline && !s.edge_y ? sums.moment.b * Real(4) : sums.gradient.b;
+    const Vec3<Real> z = spline && !s.edge_z ? sums.moment.c * Real(4) : sums.gradient.c;
     const Real values[9] = {x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z};
     for (int q = 0; q < 9; ++q) points.affine[q][p] = values[q];
   }
@@ -134,27 +134,8 @@ struct GridToParticle {
     points.log_volume[p] = state.log_volume;
     if (dilatant) points.plastic_log_volume[p] = state.plastic_log_volume;
     if constexpr (part == Gather::deformation) {
-      advance(p, Vec3<Real>{points.move[0][p], points.move[1][p], points.move[2][p]});
+      points.move_by(p, Vec3<Real>{points.move[0][p], points.move[1][p], points.move[2][p]}, grid.walls);
     }
-  }
-
-  /// New cell and offset after a move in cells.
-  TALUS_HD void advance(int p, const Vec3<Real>& move) const {
-    shift(points.cell_x[p], points.offset_x[p], move.x);
-    shift(points.cell_y[p], points.offset_y[p], move.y);
-    shift(points.cell_z[p], points.offset_z[p], move.z);
-    if (points.cell_z[p] < 0 || (points.cell_z[p] == 0 && points.offset_z[p] < Real(0))) {
-      points.cell_z[p] = 0;  // on the ground
-      points.offset_z[p] = Real(0);
-    }
-  }
-  TALUS_HD static void shift(int& cell, Real& offset, Real move) {
-    offset += move;
-    const Real whole = floor(offset + Real(0.5));
-    if (whole == Real(0)) return;
-    if (!(fabs(whole) < Real(1000000))) return;  // lost: settle() reports the point
-    offset -= whole;
-    cell += static_cast<int>(whole);
   }
 
   /// Alarms of the clock: not a number, left the domain, left the home cell's neighbourhood; step size of the next step.

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "scenes.hpp"
+#include "solver/contact/walls.hpp"
 #include "solver/grid/shape_functions.hpp"
 #include "solver/parallel/algorithms.hpp"
 
@@ -35,6 +36,55 @@ TYPED_TEST(Weights, sum_to_one_reproduce_position_and_have_the_right_slopes) {
     EXPECT_NEAR(position, f, 1e-15);
     EXPECT_NEAR(slopes, 0, 1e-15);
   }
+}
+
+TYPED_TEST(Weights, beside_an_edge_are_hats_that_end_on_its_node) {
+  // Mirror images of one another, exact for linear fields; nearer than `lowest` they no longer change.
+  constexpr double lowest = 0.1;
+  for (const double away : {0.0, 0.05, 0.1, 0.2, 0.49}) {
+    for (const int inward : {1, -1}) {
+      double w[3], g[3];
+      const int first = TypeParam::weigh(inward * away, w, g);
+      const double stands_for = TypeParam::weigh_edge(inward * away, inward, lowest, w, g);
+      double one = 0, position = 0, slope = 0;
+      for (int a = 0; a < TypeParam::width; ++a) {
+        one += w[a];
+        position += w[a] * (first + a);
+        slope += g[a] * (first + a);
+        if (TypeParam::width == 3) {
+          EXPECT_TRUE(w[a] == 0 || inward * (first + a) >= 0) << "weight behind the edge";
+        }
+      }
+      const double expected = TypeParam::width == 3 ? std::max(away, lowest) : away;
+      EXPECT_NEAR(one, 1, 1e-15);
+      EXPECT_NEAR(stands_for, inward * expected, 1e-15);
+      EXPECT_NEAR(position, stands_for, 1e-15);
+      EXPECT_NEAR(slope, 1, 1e-15);
+    }
+  }
+}
+
+TEST(WallNodes, are_the_innermost_upright_walls_that_stand_still_on_nodes) {
+  Walls<double> walls;
+  const auto add = [&](int axis, double position, int side, double speed) {
+    Wall<double>& w = walls.list[walls.count++];
+    w.axis = axis;
+    w.position = position;
+    w.side = side;
+    w.speed = speed;
+  };
+  add(0, 3, 1, 0);
+  add(0, 5, 1, 0);      // inside the first
+  add(0, 9.5, -1, 0);   // between nodes
+  add(1, 2, 1, 0.1);    // moves
+  add(1, 20, -1, 0);
+  add(1, 18, -1, 0);
+  add(2, 4, -1, 0);     // level
+  const WallNodes nodes = wall_nodes(walls);
+  EXPECT_EQ(nodes.west, 5);
+  EXPECT_EQ(nodes.east, WallNodes::far);
+  EXPECT_EQ(nodes.south, -WallNodes::far);
+  EXPECT_EQ(nodes.north, 18);
 }
 
 TEST(Sorting, is_stable_and_sums_are_exclusive_on_the_cpu) {
