@@ -5,6 +5,7 @@
 
 #include "common/stage/stage.hpp"
 #include "common/volume/domain.hpp"
+#include "solver/parallel/profile.hpp"
 #include "solver/run.hpp"
 
 namespace {
@@ -26,8 +27,21 @@ Stage stage() {
   s.examples = examples;
   s.has_on = true;
   s.has_restart = true;
+  s.has_profile = true;
   s.template_toml = [] { return recipe::to_toml(SolveOptions{}, "solve", true); };
   return s;
+}
+
+/// Share of each phase in the step loop, and what the state took of memory.
+void log_profile(const RunSummary& summary) {
+  log_info(fmt::format("memory of points, grid and linear solver: {:.1f} MB", summary.memory / 1e6));
+  double named = 0;
+  for (const auto& [name, seconds] : summary.profile) named += seconds;
+  const auto line = [&](const std::string& name, double seconds) {
+    log_info(fmt::format("  {:28} {:9.3f} s {:5.1f} %", name, seconds, 100 * seconds / summary.wall_time));
+  };
+  for (const auto& [name, seconds] : summary.profile) line(name, seconds);
+  line("everything else", summary.wall_time - named);
 }
 
 /// One sentence on what will run: points, cells, first step.
@@ -54,11 +68,13 @@ void solve(StageContext& context) {
   const std::string settings = recipe::to_toml(options, "solve", false);
   const std::string fingerprint = sha256(domain_file) + "\n" + settings;
   const RunPaths paths(context.out);
+  if (context.profile) Profile::of_run().turn_on();
   Simulation simulation(domain, options, on, paths, fingerprint);
   if (context.restart) simulation.resume(context.restart->empty() ? paths.checkpoint : *context.restart);
   const RunSummary summary = simulation.run(context.recipe.scene_name(), context.recipe.title());
   log_info(fmt::format("{} at t = {:.2f} s after {} steps in {:.1f} s", summary.stop_reason, summary.time_end, summary.steps,
                        summary.wall_time));
+  if (context.profile) log_profile(summary);
   context.results.push_back(paths.run);
   write_used_recipe(context, stage(), settings, {context.recipe.file(), domain_file},
                     {{"on", summary.on},

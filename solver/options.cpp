@@ -14,15 +14,21 @@ struct ConeFit {
   double slope, cohesion;  // sqrt(J2) = slope p + cohesion
 };
 
-ConeFit fit_cone(Cone cone, double angle, double cohesion) {
-  const double s = std::sin(angle), c = std::cos(angle), t = std::tan(angle);
+/// Cone through Mohr-Coulomb of this friction angle and cohesion; in plane strain for flow with this dilatancy angle.
+ConeFit fit_cone(Cone cone, double angle, double cohesion, double dilatancy) {
+  const double s = std::sin(angle), c = std::cos(angle), t = std::tan(dilatancy);
   switch (cone) {
     case Cone::compression:
       return {6 * s / (std::sqrt(3.0) * (3 - s)), 6 * cohesion * c / (std::sqrt(3.0) * (3 - s))};
     case Cone::extension:
       return {6 * s / (std::sqrt(3.0) * (3 + s)), 6 * cohesion * c / (std::sqrt(3.0) * (3 + s))};
-    default:
-      return {3 * t / std::sqrt(9 + 12 * t * t), 3 * cohesion / std::sqrt(9 + 12 * t * t)};
+    default: {
+      // No plastic strain across the plane: s_z = -(2/3) beta sqrt(J2), so that the circle in the plane has the radius
+      // sqrt(J2 (1 - beta^2 / 3)) about the pressure p - (beta / 3) sqrt(J2).
+      const double beta = 3 * t / std::sqrt(9 + 12 * t * t);
+      const double share = std::sqrt(1 - beta * beta / 3) + beta / 3 * s;
+      return {s / share, cohesion * c / share};
+    }
   }
 }
 
@@ -186,8 +192,8 @@ template <class Real>
 Material<Real> make_material(const MaterialOptions& o) {
   const double shear = o.youngs_modulus / (2 * (1 + o.poisson_ratio));
   const double bulk = o.youngs_modulus / (3 * (1 - 2 * o.poisson_ratio));
-  const ConeFit cone = fit_cone(o.cone, o.friction_angle * radians_per_degree, o.cohesion);
-  const ConeFit flow = fit_cone(o.cone, o.dilatancy_angle * radians_per_degree, 0);
+  const ConeFit cone = fit_cone(o.cone, o.friction_angle * radians_per_degree, o.cohesion, o.dilatancy_angle * radians_per_degree);
+  const ConeFit flow = fit_cone(o.cone, o.dilatancy_angle * radians_per_degree, 0, o.dilatancy_angle * radians_per_degree);
   // The cone's own tip bounds the tension; a frictionless cone has none.
   const double tip = cone.slope > 0 ? cone.cohesion / cone.slope : o.tension_cutoff;
   Material<Real> m;

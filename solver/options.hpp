@@ -118,8 +118,8 @@ struct SolveOptions {
   void check(std::vector<Fault>& faults) const;
 };
 
-/// Moduli, wave speed and cone from a recipe's words. Cone fitted to Mohr-Coulomb in triaxial compression or extension, or
-/// plane strain (Drucker & Prager 1952; Chen & Mizuno 1990, table 4.1).
+/// Moduli, wave speed and cone from a recipe's words. Cone fitted to Mohr-Coulomb in triaxial compression or extension (Chen & Mizuno
+/// 1990, table 4.1), or in plane strain for the flow its own dilatancy angle gives (the table's fit where that is the friction angle).
 template <class Real>
 Material<Real> make_material(const MaterialOptions& options);
 

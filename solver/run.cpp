@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "solver/parallel/place.hpp"
+#include "solver/parallel/profile.hpp"
 
 namespace talus::solver {
 namespace {
@@ -282,9 +283,10 @@ void Simulation::count(const BatchReport& batch) {
   memory_.linear += batch.stats.linear;
   memory_.cuts += batch.stats.cuts;
   over_cfl_ = batch.stats.over_cfl;
-  log_detail(fmt::format("step {}  t {:.6g} s  dt {:.3g} s ({:.3g} CFL)  newton {}  cg {}  unbalanced {:.1e}  cuts {}", batch.clock.step,
+  log_detail(fmt::format("step {}  t {:.6g} s  dt {:.3g} s ({:.3g} CFL)  newton {}  cg {}  unbalanced {:.1e}  cuts {}{}", batch.clock.step,
                          batch.clock.time, batch.clock.step_size, over_cfl_, batch.stats.newton, batch.stats.linear,
-                         batch.stats.residual, batch.stats.cuts));
+                         batch.stats.residual, batch.stats.cuts,
+                         batch.stats.indefinite ? "  indefinite tangent, convex part taken" : ""));
 }
 
 RunMaps Simulation::final_maps() const {
@@ -318,6 +320,8 @@ void Simulation::finish(RunSummary& summary) {
   summary.steps = state.clock.step;
   summary.time_end = time_;
   summary.wall_time = memory_.wall_time;
+  summary.memory = static_cast<double>(solver_->bytes());
+  for (const Profile::Phase& p : Profile::of_run().phases()) summary.profile.emplace_back(p.name, p.seconds);
   summary.density = options_.material.density;
   summary.volume_released = released_;
   summary.volume_final = std::accumulate(state.points.volume.begin(), state.points.volume.end(), 0.0);

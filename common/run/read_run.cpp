@@ -80,6 +80,9 @@ RunSummary read_summary(const h5::File& file) {
   for (const auto& item : run_layout::summary_texts) summary.*(item.value) = file.text("/", item.name);
   for (const auto& item : run_layout::summary_integers) summary.*(item.value) = file.integer("/", item.name);
   for (const auto& item : run_layout::summary_numbers) summary.*(item.value) = file.number("/", item.name);
+  for (const auto& phase : file.children("/profile")) {
+    summary.profile.emplace_back(phase, file.read<double>("/profile/" + phase, {1}).front());
+  }
   for (const auto& name : file.children("/provenance")) {
     const auto group = "/provenance/" + name;
     summary.provenance.emplace_back(file.text(group, "key"), file.text(group, "value"));

@@ -1,5 +1,5 @@
 // Writing run.h5. Layout: attributes of / = summary; /VTKHDF = points (vtkhdf.hpp); /maps, /frames, /history,
-// /provenance.
+// /profile, /provenance.
 #include "common/run/run_file.hpp"
 
 #include <optional>
@@ -55,6 +55,10 @@ void write_summary(h5::File& file, const RunSummary& summary) {
   for (const auto& item : run_layout::summary_texts) file.set_text("/", item.name, summary.*(item.value));
   for (const auto& item : run_layout::summary_integers) file.set_integer("/", item.name, summary.*(item.value));
   for (const auto& item : run_layout::summary_numbers) file.set_number("/", item.name, summary.*(item.value));
+  file.make_group("/profile");
+  for (const auto& [phase, seconds] : summary.profile) {
+    file.write<double>("/profile/" + phase, {1}, std::vector<double>{seconds});
+  }
   file.make_group("/provenance");
   for (std::size_t i = 0; i < summary.provenance.size(); ++i) {
     // Numbered groups: keys may repeat, and values (a whole CRS) may be longer than an attribute's name allows.

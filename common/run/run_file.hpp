@@ -46,10 +46,12 @@ struct RunSummary {
   std::int64_t particles = 0, particles_outflow = 0, steps = 0;
   double time_end = 0;         // [s]
   double wall_time = 0;        // step loop [s]
+  double memory = 0;           // points, grid and linear solver, at the end [bytes]
   double density = 0;          // [kg/m3]
   double volume_released = 0;  // [m3]
   double volume_final = 0;     // [m3]
   double volume_outflow = 0;   // [m3]
+  std::vector<std::pair<std::string, double>> profile;  // phases of the step loop [s]; empty unless measured
   std::vector<std::pair<std::string, std::string>> provenance;
 };
 

@@ -33,6 +33,7 @@ void declare(CLI::App& app, const Stage& stage, CommandLine& line, Words& words)
     app.add_option("--restart", words.restart, "Go on from a checkpoint (default: checkpoint.h5 in the results)")
         ->type_name("[FILE]")
         ->expected(0, 1);
+  if (stage.has_profile) app.add_flag("--profile", line.profile, "Measure where the time of a step goes, and say it at the end");
   auto* verbose = app.add_flag("-v,--verbose", words.verbose, "Say more");
   app.add_flag("-q,--quiet", words.quiet, "Say nothing but errors")->excludes(verbose);
   app.add_flag("--version", words.version, "Print the version and its commit");
@@ -54,8 +55,8 @@ void untangle_restart(const CLI::App& app, CommandLine& line, Words& words) {
 
 std::string usage(const Stage& stage) {
   return fmt::format(
-      "Usage: {} recipe.toml [--out DIR] [--check] [--template] [--on auto|cpu|gpu]{} [-v|-q] (all of it: {} --help)",
-      stage.name, stage.has_restart ? " [--restart [FILE]]" : "", stage.name);
+      "Usage: {} recipe.toml [--out DIR] [--check] [--template] [--on auto|cpu|gpu]{}{} [-v|-q] (all of it: {} --help)",
+      stage.name, stage.has_restart ? " [--restart [FILE]]" : "", stage.has_profile ? " [--profile]" : "", stage.name);
 }
 
 std::variant<CommandLine, Answer> parse_command_line(int argc, char** argv, const Stage& stage) {

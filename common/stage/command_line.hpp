@@ -17,6 +17,7 @@ struct CommandLine {
   On on = On::automatic;
   bool check_only = false;
   bool print_template = false;
+  bool profile = false;
   std::optional<std::filesystem::path> restart;
   Verbosity verbosity = Verbosity::normal;
 };

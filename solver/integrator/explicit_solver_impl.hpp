@@ -108,6 +108,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   }
 
   void clear(bool opens) {
+    const ProfilePhase<Place> phase("clear the grid");
     const int count = grid_.nodes();
     for_each(Place{}, std::max(count, 1),
              BeginStep<Real>{clock_.data(), nodes_.data(), forces_apart_ && opens ? forces_.data() : nullptr, count, opens});
@@ -115,6 +116,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
   template <Scatter what>
   void scatter() {
+    const ProfilePhase<Place> phase("points to grid");
     for_each_grouped(Place{}, points_.count(), grid_.groups(),
                      ParticleToGrid<Real, Shape, what>{grid_.view(), points_.view(), material_, clock_.data(), nodes_.data(),
                                                        forces_.data(), loads_now_, affine_, dilatant_});
@@ -122,6 +124,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
   template <NodeContent content>
   void update() {
+    const ProfilePhase<Place> phase("grid");
     const Vec3<Real> g{static_cast<Real>(options_.gravity[0]), static_cast<Real>(options_.gravity[1]),
                        static_cast<Real>(options_.gravity[2])};
     for_each(Place{}, grid_.active_blocks() * block_columns,
@@ -132,6 +135,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
   template <Gather part>
   void gather() {
+    const ProfilePhase<Place> phase("grid to points");
     const Real flip = affine_ ? Real(0) : static_cast<Real>(options_.flip_fraction);
     for_each(Place{}, points_.count(),
              GridToParticle<Real, Shape, part>{grid_.view(), points_.view(), material_, clock_.data(), nodes_.data(),
@@ -139,6 +143,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   }
 
   void sort(int gone) {
+    const ProfilePhase<Place> phase("sort and storage");
     grid_.fit(points_, gone);
     nodes_.resize(static_cast<std::size_t>(grid_.nodes()));
     if (forces_apart_) forces_.resize(static_cast<std::size_t>(grid_.nodes()));

@@ -94,9 +94,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     clock.outflow_count = 0;
     clock.outflow_volume = 0;
     clock.rate_bits = clock.speed_bits = 0;
-    this->grid_.fit(points_, 0);
-    walls_ = this->template stand_walls<double>(clock.time);
-    group_elements();
+    fit_grid(clock.time);
     BatchReport report;
     double step = next_step(clock);
     for (int cut = 0;; ++cut) {
@@ -131,7 +129,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   std::size_t bytes() const override {
     std::size_t total = Base::bytes() + mass_.bytes() + touch_.bytes() + tangents_.bytes() + wall_freed_.bytes() +
                         contact_friction_.bytes() + friction_limit_.bytes() + filler_.bytes() + freed_.bytes() + blocks_.bytes() + stiffness_.bytes() + operator_.bytes() +
-                        cholesky_.bytes();
+                        cholesky_.bytes() + static_cast<std::size_t>(cholesky_.factor().factor_bytes());
     for (const auto* v : {&velocity_, &acceleration_, &external_, &internal_, &u_, &residual_, &normal_,
                           &velocity_end_, &acceleration_end_, &change_, &saved_u_, &cg_.r, &cg_.z, &cg_.p, &cg_.ap}) {
       total += v->bytes();
@@ -193,8 +191,16 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     tangents_.resize(static_cast<std::size_t>(TangentStore<Real>::numbers) * static_cast<std::size_t>(points_.count()));
   }
 
+  void fit_grid(double time) {
+    const ProfilePhase<Place> phase("sort and storage");
+    this->grid_.fit(points_, 0);
+    walls_ = this->template stand_walls<double>(time);
+    group_elements();
+  }
+
   /// Everything that does not change with the displacement.
   void prepare(double start, double step) {
+    const ProfilePhase<Place> phase("points to grid");
     const double time = start + step;  // loads are those at the end of the step, walls those that stand at its start
     size_nodes();
     scheme_ = {dynamic_, options_.implicit.alpha, options_.implicit.beta, step};
@@ -236,6 +242,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   TangentStore<Real> tangents() { return {tangents_.data(), points_.count()}; }
 
   void measure_stress(bool with_tangent, bool definite = false) {
+    const ProfilePhase<Place> phase("stress and tangent");
     internal_.fill_zero();
     TangentStore<Real> store = tangents();
     if (!with_tangent) store.data = nullptr;
@@ -244,6 +251,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   }
 
   double measure_residual(bool decide) {
+    const ProfilePhase<Place> phase("residual and contact");
     for_each(Place{}, count_, MeasureResidual{nodes(), held(), scheme_, decide, changes_.data()});
     return std::sqrt(dot(residual_, residual_));
   }
@@ -325,6 +333,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     LinearReport report = direct ? factorise() : iterate();
     stats.linear += report.iterations;
     if (report.indefinite) {
+      stats.indefinite = true;
       // Compression makes the tangent of a sparsely filled cell indefinite; without that part it is one of a convex energy, slower but
       // sure to lead downhill.
       measure_stress(true, true);
@@ -332,7 +341,6 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
       stats.linear += report.iterations;
     }
     stats.linear_residual = report.residual;
-    stats.indefinite = stats.indefinite || report.indefinite;
     return report.converged;
   }
 
@@ -345,13 +353,19 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
                            change_);
   }
 
-  LinearReport iterate() {
+  void refresh_operator() {
+    const ProfilePhase<Place> phase("operator and preconditioner");
     blocks_.fill_zero();
     for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
                      ScatterBlocks<Real, Shape>{this->grid_.view(), points_.view(), tangents(), blocks_.data()});
     const bool whole = options_.implicit.preconditioner == Preconditioner::block;
     for_each(Place{}, count_, InvertBlocks{nodes(), held(), scheme_.inertia(), whole, blocks_.data()});
     operator_.refresh(point_tangents(), this->grid_.groups());
+  }
+
+  LinearReport iterate() {
+    refresh_operator();
+    const ProfilePhase<Place> phase("conjugate gradients");
     const auto apply_tangent = [&](const NodeVector<Place>& x, NodeVector<Place>& y) {
       y.fill_zero();
       operator_.apply(x, y);
@@ -372,6 +386,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   }
 
   void accept(const Clock& clock, double step) {
+    const ProfilePhase<Place> phase("grid to points");
     for_each(Place{}, count_, EndOfStep{nodes(), scheme_, velocity_end_.data(), acceleration_end_.data()});
     AcceptStep<Real, Shape> step_kernel{this->grid_.view(), points_.view(), material_, clock_.data(), nodes(),
                                         dynamic_ ? velocity_end_.data() : nullptr, acceleration_end_.data(), u_.data(),

@@ -7,6 +7,7 @@
 #include "solver/integrator/solver.hpp"
 #include "solver/output/map_fields.hpp"
 #include "solver/parallel/algorithms.hpp"
+#include "solver/parallel/profile.hpp"
 
 namespace talus::solver {
 
@@ -45,6 +46,7 @@ class PointSolver : public Solver {
   }
 
   Energies energies() override {
+    const ProfilePhase<Place> phase("records and frames");
     constexpr int rows = MeasureEnergies<Real, Shape>::rows;
     const int count = points_.count();
     sums_.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(count));
@@ -59,6 +61,7 @@ class PointSolver : public Solver {
   }
 
   std::vector<double> thickness() override {
+    const ProfilePhase<Place> phase("records and frames");
     const GridShape& shape = grid_.shape();
     thickness_.resize(static_cast<std::size_t>(shape.columns) * static_cast<std::size_t>(shape.rows));
     thickness_.fill_zero();

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "solver/parallel/profile.hpp"
+
 namespace talus::solver {
 
 template <class Real, class Place, class Shape>
@@ -24,14 +26,23 @@ LinearReport CholeskySolver<Real, Place, Shape>::solve(const PointTangents<Real>
     return report;
   }
   check_memory(unknowns);
-  stored_.assemble(list_, from);
-  assembly_.assemble(list_, stored_, nodes);
+  {
+    const ProfilePhase<Place> phase("element matrices");
+    stored_.assemble(list_, from);
+  }
+  {
+    const ProfilePhase<Place> phase("sort and reduce to rows");
+    assembly_.assemble(list_, stored_, nodes);
+    assembly_.to_unknowns(nodes, b, right_);
+  }
   const CsrMatrix<Place>& a = assembly_.matrix();
-  assembly_.to_unknowns(nodes, b, right_);
   report.iterations = 1;
-  if (!cholesky_->solve(a, right_, solution_)) {
-    report.indefinite = true;
-    return report;
+  {
+    const ProfilePhase<Place> phase("factorise and solve");
+    if (!cholesky_->solve(a, right_, solution_)) {
+      report.indefinite = true;
+      return report;
+    }
   }
   left_over_.resize(right_.size());
   for_each(Place{}, a.rows,

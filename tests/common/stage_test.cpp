@@ -87,6 +87,7 @@ struct RunStage : testing::Test {
               "  talus-sample r.toml",
               true,
               true,
+              true,
               [] { return recipe::to_toml(SampleOptions{}, "solve", true); },
               [](StageContext&) {}};
   std::string out, err;

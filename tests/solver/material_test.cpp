@@ -182,6 +182,34 @@ TEST(DruckerPrager, meets_mohr_coulomb_in_triaxial_compression) {
   EXPECT_NEAR(tau.zz / tau.xx, (1 + sine) / (1 - sine), 1e-3);
 }
 
+TEST(DruckerPrager, meets_mohr_coulomb_in_plane_strain_for_its_own_flow) {
+  // Sheared in a plane, nothing across it: the circle in the plane must touch the line of 31 degrees whatever the dilatancy is.
+  const double sine = std::sin(31 * std::numbers::pi / 180), cohesion = 2e3;
+  for (const double dilatancy : {0.0, 1.0, 15.0, 31.0}) {
+    MaterialOptions o;
+    o.model = MaterialModel::drucker_prager;
+    o.cone = Cone::plane_strain;
+    o.friction_angle = 31;
+    o.dilatancy_angle = dilatancy;
+    o.cohesion = cohesion;
+    o.tension_cutoff = 1e6;
+    const auto m = make_material<double>(o);
+    MaterialState<double> s;
+    advance_material(m, columns(Matrix(-1e-3 * Matrix::Identity())), s);
+    Matrix g = Matrix::Zero();
+    g(2, 2) = -1e-5;
+    g(0, 0) = 1e-5;
+    const double start = pressure_of(kirchhoff_stress(m, s));
+    for (int n = 0; n < 4000; ++n) {  // it may widen in the plane, so that the pressure stays
+      advance_material(m, columns(g), s);
+      g(0, 0) = 1e-5 + (pressure_of(kirchhoff_stress(m, s)) - start) / m.bulk_modulus;
+    }
+    const auto tau = kirchhoff_stress(m, s);
+    const double radius = 0.5 * (tau.xx - tau.zz), mean = -0.5 * (tau.xx + tau.zz);
+    EXPECT_NEAR(radius / (mean * sine + cohesion * std::sqrt(1 - sine * sine)), 1, 2e-3) << "dilatancy " << dilatancy;
+  }
+}
+
 TEST(DruckerPrager, opened_grain_must_close_before_it_carries_load) {
   const auto m = sand();
   MaterialState<double> s;
