@@ -83,6 +83,7 @@ void ImplicitOptions::describe(recipe::Visitor& v) {
   recipe::choice(v, "preconditioner", preconditioner,
                  {{"block", Preconditioner::block}, {"diagonal", Preconditioner::diagonal}}, "pcg: 3 x 3 blocks, or the diagonal");
   v.integer("step_cuts", step_cuts, recipe::Range{0, 30}, "halvings of a step before the run gives up");
+  v.flag("b_bar", b_bar, "volume change as the mean over a cell: nearly incompressible material does not lock");
   v.number("filler", filler, recipe::Range{0, 1, false, true},
            "quasi-static: springs against each step's displacement of nearly empty nodes, stiffness over a full cell's");
 }
@@ -175,6 +176,15 @@ void SolveOptions::check(std::vector<Fault>& faults) const {
   if (walls.size() > most_walls) {
     faults.push_back({fmt::format("[[solve.wall]] is given {} times", walls.size()), fmt::format("at most {} walls fit", most_walls),
                       "Leave some out"});
+  }
+  const bool splits = material.model == MaterialModel::hencky || material.model == MaterialModel::drucker_prager;
+  if (implicit.b_bar && integrator != Integrator::explicit_ && !splits) {
+    faults.push_back({"[solve.implicit] b_bar = true does not go with this [solve.material] model",
+                      "its pressure does not follow from the volume change alone", "Take model = \"hencky\" or \"drucker-prager\""});
+  }
+  if (implicit.b_bar && integrator == Integrator::explicit_) {
+    faults.push_back({"[solve.implicit] b_bar = true has no effect with integrator = \"explicit\"", "only implicit steps average the volume change",
+                      "Leave it out, or take integrator = \"newmark\" or \"quasi-static\""});
   }
   if (material.dilatancy_angle > material.friction_angle) {
     faults.push_back({fmt::format("[solve.material] dilatancy_angle_deg = {} is above friction_angle_deg = {}",

@@ -58,7 +58,8 @@ struct ImplicitOptions {
   Operator form = Operator::points;
   Preconditioner preconditioner = Preconditioner::block;
   int step_cuts = 8;                 // halvings before giving up
-  double filler = 1e-6;              // stiffness of springs on nearly empty nodes in statics, over that of a full cell
+  bool b_bar = false;                // element means of the volume change
+  double filler = 1e-3;              // stiffness of springs that hold nearly empty nodes in statics, over that of a full cell
   void describe(recipe::Visitor& v);
 };
 

@@ -4,6 +4,7 @@
 
 #include "solver/contact/walls.hpp"
 #include "solver/integrator/clock.hpp"
+#include "solver/linear/mean_dilation.hpp"
 #include "solver/material/tangent.hpp"
 #include "solver/transfer/stencil.hpp"
 
@@ -155,6 +156,7 @@ struct ScatterStress {
   Material<Real> material;
   bool dilatant;
   bool definite;  // without the part of the tangent that compression makes negative
+  MeanDilationView<Real> means;
   TangentStore<Real> tangents;
   NodeArrays nodes;
 
@@ -162,7 +164,7 @@ struct ScatterStress {
     const PointGradients<Real, Shape> g(grid, points, p);
     PointTangent<Real> tangent;
     const Mat3<Real> stress = nominal_stress(material, state_of(points, p, dilatant), displacement_gradient(grid, g, nodes.u),
-                                             tangents.data ? &tangent : nullptr);
+                                             tangents.data ? &tangent : nullptr, means.at_point(p));
     if (tangents.data && definite) make_definite(tangent);
     if (tangents.data) tangents.put(p, tangent);
     const Real volume = points.volume[p];
@@ -253,6 +255,7 @@ struct AcceptStep {
   double flip;                            // share of FLIP; 0 with APIC
   bool affine, dilatant;
   bool speeds, deforms;                   // MUSL takes the velocity first and the rest later
+  MeanDilationView<Real> means;           // of strain_displacement
 
   TALUS_HD void operator()(int p) const {
     const PointGradients<Real, Shape> g(grid, points, p);
@@ -260,7 +263,7 @@ struct AcceptStep {
     if (!deforms) return;
     const Mat3<Real> gradient = displacement_gradient(grid, g, strain_displacement);
     MaterialState<Real> state = state_of(points, p, dilatant);
-    advance_material(material, gradient, state);
+    advance_material(material, gradient, state, means.at_point(p));
     points.set_elastic(p, state.elastic);
     points.log_volume[p] = state.log_volume;
     if (dilatant) points.plastic_log_volume[p] = state.plastic_log_volume;

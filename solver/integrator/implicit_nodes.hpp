@@ -26,8 +26,8 @@ struct Constraints {
   Vec3<double>* normal = nullptr;   // of the surface it can touch
   double* friction = nullptr;       // coefficient there
   double* limit = nullptr;          // friction times the reaction found last [N]
-  double* filler = nullptr;         // weak springs against the displacement of the step, on nearly empty nodes in statics [N/m]
   double slip = 0;                  // slip over which friction grows to its limit [m]
+  double pull = 0;                  // a contact opens when it would have to pull by more than this, or rounding would open it [N]
 
   /// Friction force for the displacement u and, with `stiffness`, minus its derivative: a smoothed Coulomb cone over the
   /// displacement of the step, its limit held (Tresca), so that it has a potential and its derivative is symmetric.
@@ -54,7 +54,6 @@ struct PrepareNodes {
   BaseFriction<double> base;
   Vec3<double> gravity;
   TimeScheme scheme;
-  double full_mass, weak;  // mass of a full node [kg]; stiffness of the filler on an empty one [N/m]
   bool predict;  // start from the displacement of the present velocity
 
   TALUS_HD void operator()(int c) const {
@@ -70,14 +69,11 @@ struct PrepareNodes {
     const double m = nodes.mass[n];
     nodes.touch[n] = Touch::none;
     held.limit[n] = 0;
-    held.filler[n] = 0;
     if (!(m > 0) || i >= grid.columns || j >= grid.rows) {
       nodes.freed[n] = held.walls[n] = Sym3<double>{};
       nodes.u[n] = {};
       return;
     }
-    const double share = m / (0.1 * full_mass);
-    if (!scheme.dynamic && share < 1) held.filler[n] = weak * (1 - share);
     nodes.velocity[n] = nodes.velocity[n] * (1 / m);
     if (nodes.acceleration) nodes.acceleration[n] = nodes.acceleration[n] * (1 / m);
     nodes.external[n] += gravity * m;
@@ -180,7 +176,6 @@ struct MeasureResidual {
       if (nodes.acceleration) a += nodes.acceleration[n] * (1 / (2 * scheme.alpha) - 1);
       force += a * m;
     }
-    force += nodes.u[n] * -held.filler[n];
     if (nodes.touch[n] != Touch::none) {
       if (decide) settle_contact(n, force);
       if (nodes.touch[n] == Touch::closed) force += held.friction_force(n, nodes.u[n], nullptr);
@@ -193,7 +188,7 @@ struct MeasureResidual {
   TALUS_HD void settle_contact(int n, const Vec3<double>& force) const {
     const Vec3<double> normal = held.normal[n];
     const double reaction = -dot(force, normal);
-    if (nodes.touch[n] == Touch::closed && reaction < 0) {
+    if (nodes.touch[n] == Touch::closed && reaction < -held.pull) {
       nodes.touch[n] = Touch::open;
       nodes.freed[n] = held.walls[n];
       atomic_increment(changes);
@@ -217,7 +212,7 @@ struct CloseProduct {
   const Vec3<double>* x;
   Vec3<double>* y;
   TALUS_HD void operator()(int n) const {
-    Vec3<double> sum = y[n] + x[n] * (nodes.mass[n] * inertia + held.filler[n]);
+    Vec3<double> sum = y[n] + x[n] * (nodes.mass[n] * inertia);
     if (nodes.touch[n] == Touch::closed && held.limit[n] > 0) {
       Sym3<double> stiffness;
       held.friction_force(n, nodes.u[n], &stiffness);
@@ -233,12 +228,8 @@ struct FrictionStiffness {
   Constraints held;
   Sym3<double>* stiffness;
   TALUS_HD void operator()(int n) const {
-    stiffness[n] = Sym3<double>{}.plus_identity(held.filler[n]);
-    if (nodes.touch[n] == Touch::closed && held.limit[n] > 0) {
-      Sym3<double> friction;
-      held.friction_force(n, nodes.u[n], &friction);
-      stiffness[n] = stiffness[n] + friction;
-    }
+    stiffness[n] = {};
+    if (nodes.touch[n] == Touch::closed && held.limit[n] > 0) held.friction_force(n, nodes.u[n], &stiffness[n]);
   }
 };
 
@@ -257,7 +248,7 @@ struct InvertBlocks {
       b = {};
       return;
     }
-    b = b.plus_identity(nodes.mass[n] * inertia + held.filler[n]);
+    b = b.plus_identity(nodes.mass[n] * inertia);
     if (nodes.touch[n] == Touch::closed && held.limit[n] > 0) {
       Sym3<double> stiffness;
       held.friction_force(n, nodes.u[n], &stiffness);

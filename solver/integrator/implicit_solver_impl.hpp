@@ -128,8 +128,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
   std::size_t bytes() const override {
     std::size_t total = Base::bytes() + mass_.bytes() + touch_.bytes() + tangents_.bytes() + wall_freed_.bytes() +
-                        contact_friction_.bytes() + friction_limit_.bytes() + filler_.bytes() + freed_.bytes() + blocks_.bytes() + stiffness_.bytes() + operator_.bytes() +
-                        cholesky_.bytes() + static_cast<std::size_t>(cholesky_.factor().factor_bytes());
+                        contact_friction_.bytes() + friction_limit_.bytes() + freed_.bytes() + blocks_.bytes() + stiffness_.bytes() + operator_.bytes() +
+                        cholesky_.bytes() + elements_.bytes() + means_.bytes() + static_cast<std::size_t>(cholesky_.factor().factor_bytes());
     for (const auto* v : {&velocity_, &acceleration_, &external_, &internal_, &u_, &residual_, &normal_,
                           &velocity_end_, &acceleration_end_, &change_, &saved_u_, &cg_.r, &cg_.z, &cg_.p, &cg_.ap}) {
       total += v->bytes();
@@ -167,7 +167,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     n.touch = touch_.data();
     return n;
   }
-  Constraints held() { return {wall_freed_.data(), normal_.data(), contact_friction_.data(), friction_limit_.data(), filler_.data(), slip_}; }
+  Constraints held() { return {wall_freed_.data(), normal_.data(), contact_friction_.data(), friction_limit_.data(), slip_, pull_}; }
 
   void size_nodes() {
     count_ = this->grid_.nodes();
@@ -186,7 +186,6 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     blocks_.resize(n);
     contact_friction_.resize(n);
     friction_limit_.resize(n);
-    filler_.resize(n);
     touch_.resize(n);
     tangents_.resize(static_cast<std::size_t>(TangentStore<Real>::numbers) * static_cast<std::size_t>(points_.count()));
   }
@@ -211,13 +210,10 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
                                                  loads, nodes()});
     const double ramp = options_.gravity_ramp > 0 ? std::min(1.0, time / options_.gravity_ramp) : 1.0;
     const Vec3<double> g{options_.gravity[0] * ramp, options_.gravity[1] * ramp, options_.gravity[2] * ramp};
-    const double h = this->frame_.cell[0], hz = this->frame_.cell[2], density = static_cast<double>(material_.density);
-    const double wave = static_cast<double>(material_.wave_speed);
-    const double full = density * h * h * hz, weak = options_.implicit.filler * density * wave * wave * std::min(h, hz);
     const bool predict = dynamic_ && options_.implicit.newton_iterations > 1 && options_.damping == 0;
     for_each(Place{}, this->grid_.active_blocks() * block_columns,
              PrepareNodes<Real>{this->grid_.view(), this->grid_.active_list(), nodes(), held(),
-                                walls_, friction_, g, scheme_, full, weak, predict});
+                                walls_, friction_, g, scheme_, predict});
     if (dynamic_ && first_) {
       copy(u_, saved_u_);
       u_.fill_zero();
@@ -246,8 +242,25 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     internal_.fill_zero();
     TangentStore<Real> store = tangents();
     if (!with_tangent) store.data = nullptr;
+    average(u_);
     for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
-                     ScatterStress<Real, Shape>{this->grid_.view(), points_.view(), material_, dilatant_, definite, store, nodes()});
+                     ScatterStress<Real, Shape>{this->grid_.view(), points_.view(), material_, dilatant_, definite, means(), store, nodes()});
+    if (springs().on()) apply_springs(elements_, springs(), u_, internal_);
+  }
+
+  MeanDilationView<Real> means() const { return options_.implicit.b_bar ? means_.view() : MeanDilationView<Real>{}; }
+
+  /// B-bar: means over the elements for a displacement.
+  void average(const NodeVector<Place>& u) {
+    if (options_.implicit.b_bar) means_.measure(elements_, this->grid_.view(), points_.view(), material_, dilatant_, u.data());
+  }
+
+  /// On nodes with less than a tenth of a full one's mass, in statics.
+  FillerSprings springs() const {
+    if (dynamic_) return {};
+    const double h = this->frame_.cell[0], hz = this->frame_.cell[2];
+    const double full = static_cast<double>(material_.density) * h * h * hz;
+    return {mass_.data(), 0.1 * full, options_.implicit.filler * 2 * static_cast<double>(material_.shear_modulus) * std::min(h, hz)};
   }
 
   double measure_residual(bool decide) {
@@ -269,10 +282,15 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
   /// Elements and neighbours of the points as they stand.
   void group_elements() {
-    if (options_.implicit.linear_solver == LinearSolver::cholesky) {
-      cholesky_.begin_step(this->grid_.view(), points_.view());
+    const ImplicitOptions& o = options_.implicit;
+    const bool direct = o.linear_solver == LinearSolver::cholesky;
+    if (dynamic_ && !direct && o.form == Operator::points && !o.b_bar) return;  // nothing goes by elements
+    elements_.build(this->grid_.view(), points_.view());
+    if (o.b_bar) means_.begin_step(elements_, points_.count());
+    if (direct) {
+      cholesky_.begin_step(elements_);
     } else {
-      operator_.begin_step(this->grid_.view(), points_.view(), this->grid_.nodes());
+      operator_.begin_step(elements_, this->grid_.nodes());
     }
   }
 
@@ -283,6 +301,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     if (o.newton_iterations == 1) return solve_once(stats);
     for (stats.newton = 0; stats.newton < o.newton_iterations; ++stats.newton) {
       measure_stress(true);
+      pull_ = o.newton_tolerance * force_size() / std::sqrt(static_cast<double>(std::max(count_, 1)));
       double unbalanced = measure_residual(true);
       const int changes = contact_changes();
       if (changes > 0) {  // a contact that closed or opened has moved its node
@@ -344,7 +363,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     return report.converged;
   }
 
-  PointTangents<Real> point_tangents() { return {this->grid_.view(), points_.view(), tangents()}; }
+  PointTangents<Real> point_tangents() { return {this->grid_.view(), points_.view(), tangents(), means(), springs()}; }
 
   LinearReport factorise() {
     stiffness_.resize(static_cast<std::size_t>(count_));
@@ -358,6 +377,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     blocks_.fill_zero();
     for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
                      ScatterBlocks<Real, Shape>{this->grid_.view(), points_.view(), tangents(), blocks_.data()});
+    if (means().on()) add_mean_blocks(elements_, means(), blocks_);
+    if (springs().on()) add_spring_blocks(elements_, springs(), blocks_);
     const bool whole = options_.implicit.preconditioner == Preconditioner::block;
     for_each(Place{}, count_, InvertBlocks{nodes(), held(), scheme_.inertia(), whole, blocks_.data()});
     operator_.refresh(point_tangents(), this->grid_.groups());
@@ -390,7 +411,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     for_each(Place{}, count_, EndOfStep{nodes(), scheme_, velocity_end_.data(), acceleration_end_.data()});
     AcceptStep<Real, Shape> step_kernel{this->grid_.view(), points_.view(), material_, clock_.data(), nodes(),
                                         dynamic_ ? velocity_end_.data() : nullptr, acceleration_end_.data(), u_.data(),
-                                        affine_ ? 0.0 : options_.flip_fraction, affine_, dilatant_, true, true};
+                                        affine_ ? 0.0 : options_.flip_fraction, affine_, dilatant_, true, true, means()};
     const bool musl = dynamic_ && options_.stress_update == StressUpdate::modified;
     if (musl) {
       step_kernel.deforms = false;
@@ -399,9 +420,12 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
       for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
                        ScatterVelocity<Real, Shape>{this->grid_.view(), points_.view(), material_.density, change_.data()});
       for_each(Place{}, count_, RemapDisplacement{nodes(), step, change_.data()});
+      average(change_);
       step_kernel.strain_displacement = change_.data();
       step_kernel.deforms = true;
       step_kernel.speeds = false;
+    } else {
+      average(u_);
     }
     for_each(Place{}, points_.count(), step_kernel);
     for_each(Place{}, this->grid_.active_blocks() * block_columns,
@@ -416,8 +440,11 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   int count_ = 0;
   bool first_;  // no acceleration is known yet
   TimeScheme scheme_;
-  Buffer<double, Place> mass_, contact_friction_, friction_limit_, filler_;
+  Buffer<double, Place> mass_, contact_friction_, friction_limit_;
   double slip_ = 0;  // [m]
+  double pull_ = 0;  // [N]
+  ElementList<Real, Place, Shape> elements_;
+  MeanDilation<Real, Place, Shape> means_;
   Walls<double> walls_;
   NodeVector<Place> velocity_, acceleration_, external_, internal_, u_, residual_, normal_, velocity_end_,
       acceleration_end_, change_, saved_u_;

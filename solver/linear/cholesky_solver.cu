@@ -8,9 +8,9 @@ namespace talus::solver {
 
 template <class Real, class Place, class Shape>
 void CholeskySolver<Real, Place, Shape>::check_memory(int nodes) const {
-  const double wanted = assembly_bytes<Real, Shape>(list_.count(), nodes);
+  const double wanted = assembly_bytes<Real, Shape>(list_->count(), nodes);
   const double free = limit_ > 0 ? limit_ : free_memory(Place{}) + static_cast<double>(bytes());
-  if (wanted > free || !assembly_countable<Real, Shape>(list_.count(), nodes))
+  if (wanted > free || !assembly_countable<Real, Shape>(list_->count(), nodes))
     refuse_matrix("the triples and the matrix would take", wanted, free, Place::is_gpu);
 }
 
@@ -28,11 +28,11 @@ LinearReport CholeskySolver<Real, Place, Shape>::solve(const PointTangents<Real>
   check_memory(unknowns);
   {
     const ProfilePhase<Place> phase("element matrices");
-    stored_.assemble(list_, from);
+    stored_.assemble(*list_, from);
   }
   {
     const ProfilePhase<Place> phase("sort and reduce to rows");
-    assembly_.assemble(list_, stored_, nodes);
+    assembly_.assemble(*list_, stored_, nodes);
     assembly_.to_unknowns(nodes, b, right_);
   }
   const CsrMatrix<Place>& a = assembly_.matrix();
@@ -60,7 +60,7 @@ LinearReport CholeskySolver<Real, Place, Shape>::solve(const PointTangents<Real>
 
 template <class Real, class Place, class Shape>
 std::size_t CholeskySolver<Real, Place, Shape>::bytes() const {
-  return list_.bytes() + stored_.bytes() + assembly_.bytes() + right_.bytes() + solution_.bytes() + left_over_.bytes();
+  return stored_.bytes() + assembly_.bytes() + right_.bytes() + solution_.bytes() + left_over_.bytes();
 }
 
 template class CholeskySolver<float, OnCpu, Linear>;

@@ -15,8 +15,8 @@ class CholeskySolver {
   explicit CholeskySolver(double memory_limit = 0)
       : limit_(memory_limit), cholesky_(make_cholesky(Place{}, memory_limit)) {}
 
-  /// The points have moved, or have been sorted.
-  void begin_step(const GridView<Real>& grid, const ParticleView<Real>& points) { list_.build(grid, points); }
+  /// The points have moved, or have been sorted, and `list` is their elements anew; it must stay until the next call.
+  void begin_step(const ElementList<Real, Place, Shape>& list) { list_ = &list; }
 
   /// Solves freed (K + mass inertia + stiffness) freed x = freed b; x is 0 on held nodes. One iteration, residual |b -
   /// A x| / |b|; `indefinite` when the matrix is not positive definite to working precision, and x is then 0. Throws
@@ -33,7 +33,7 @@ class CholeskySolver {
   void check_memory(int nodes) const;
 
   double limit_;
-  ElementList<Real, Place, Shape> list_;
+  const ElementList<Real, Place, Shape>* list_ = nullptr;
   StoredElements<Real, Place, Shape> stored_;
   CsrAssembly<Real, Place, Shape> assembly_;
   std::unique_ptr<Cholesky<Place>> cholesky_;

@@ -4,6 +4,7 @@
 
 #include "solver/integrator/implicit_kernels.hpp"
 #include "solver/linear/element_list.hpp"
+#include "solver/linear/filler_springs.hpp"
 
 namespace talus::solver {
 
@@ -13,6 +14,8 @@ struct PointTangents {
   GridView<Real> grid;
   ParticleView<Real> points;
   TangentStore<Real> tangents;
+  MeanDilationView<Real> means;  // off: null
+  FillerSprings springs;         // off: null
 };
 
 /// One thread: a tile of `columns` x `rows` node pairs of one element. On the CPU the tile is the element, so that a
@@ -33,12 +36,45 @@ struct SumElements {
     Real sum[columns * rows][9] = {};
     for (int s = elements.starts[e]; s < elements.starts[e + 1]; ++s)
       add_point(elements.order[s], first_column, first_row, sum);
+    if (from.means.on()) add_means(e, first_column, first_row, sum);
+    if (from.springs.on()) add_springs(e, first_column, first_row, sum);
     for (int q = 0; q < columns; ++q) {
       for (int r = 0; r < rows; ++r) sink.put(e, first_row + r, first_column + q, sum[q * rows + r]);
     }
   }
 
  private:
+  TALUS_HD void add_springs(int e, int first_column, int first_row, Real (&sum)[columns * rows][9]) const {
+    const int* mine = elements.nodes + static_cast<std::size_t>(e) * nodes;
+    for (int n = 0; n < nodes; ++n) {
+      const FillerSpring s = from.springs.template at<w>(mine, n);
+      if (!(s.k > 0)) continue;
+      for (int a = 0; a < 3; ++a) {
+        for (int b = 0; b < 3; ++b) {
+          const int r = s.local(a) - first_row, q = s.local(b) - first_column;
+          if (q < 0 || q >= columns || r < 0 || r >= rows) continue;
+          for (int d = 0; d < 9; d += 4) sum[q * rows + r][d] += static_cast<Real>(s.k * s.share(a) * s.share(b));
+        }
+      }
+    }
+  }
+
+  /// kappa V b b^T
+  TALUS_HD void add_means(int e, int first_column, int first_row, Real (&sum)[columns * rows][9]) const {
+    const Vec3<Real>* b = from.means.gradient + static_cast<std::size_t>(e) * nodes;
+    for (int q = 0; q < columns; ++q) {
+      const Vec3<Real> column = b[first_column + q] * from.means.stiffness[e];
+      for (int r = 0; r < rows; ++r) {
+        const Vec3<Real> row = b[first_row + r];
+        Real* k = sum[q * rows + r];
+        const Real x[3] = {row.x, row.y, row.z}, y[3] = {column.x, column.y, column.z};
+        for (int i = 0; i < 3; ++i) {
+          for (int j = 0; j < 3; ++j) k[3 * i + j] += x[i] * y[j];
+        }
+      }
+    }
+  }
+
   TALUS_HD static Vec3<Real> gradient(const PointGradients<Real, Shape>& g, int local) {
     return g.gradient(local / w % w, local / (w * w), local % w);
   }

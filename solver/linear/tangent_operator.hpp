@@ -12,37 +12,39 @@ class TangentOperator {
  public:
   explicit TangentOperator(Operator form) : form_(form) {}
 
-  /// The points have moved, or have been sorted: elements and neighbours anew.
-  void begin_step(const GridView<Real>& grid, const ParticleView<Real>& points, int nodes) {
-    if (form_ == Operator::points) return;
-    list_.build(grid, points);
-    if (form_ == Operator::stencil) stencil_.build(list_, nodes);
+  /// The points have moved, or have been sorted, and `list` is their elements anew; it must stay until the next call. The form `points`
+  /// needs it for what couples the points of an element.
+  void begin_step(const ElementList<Real, Place, Shape>& list, int nodes) {
+    list_ = &list;
+    if (form_ == Operator::stencil) stencil_.build(list, nodes);
   }
 
   /// The points' tangents have changed. `groups` are the points' (SparseGrid::groups()).
   void refresh(const PointTangents<Real>& from, const PointGroups& groups) {
     from_ = from;
     groups_ = &groups;
-    if (form_ == Operator::elements) stored_.assemble(list_, from);
-    if (form_ == Operator::stencil) stencil_.assemble(list_, from);
+    if (form_ == Operator::elements) stored_.assemble(*list_, from);
+    if (form_ == Operator::stencil) stencil_.assemble(*list_, from);
   }
 
   /// y += K x
   void apply(const NodeVector<Place>& x, NodeVector<Place>& y) {
-    if (form_ == Operator::elements) return stored_.apply(list_, x, y);
+    if (form_ == Operator::elements) return stored_.apply(*list_, x, y);
     if (form_ == Operator::stencil) return stencil_.apply(x, y);
     for_each_grouped(Place{}, from_.points.count, *groups_,
                      ApplyTangent<Real, Shape>{from_.grid, from_.points, from_.tangents, x.data(), y.data()});
+    if (from_.means.on()) apply_means(*list_, from_.means, x, y);
+    if (from_.springs.on()) apply_springs(*list_, from_.springs, x, y);
   }
 
   /// What the form stores beside the points and their tangents.
-  std::size_t bytes() const { return list_.bytes() + stored_.bytes() + stencil_.bytes(); }
+  std::size_t bytes() const { return stored_.bytes() + stencil_.bytes(); }
 
  private:
   Operator form_;
   PointTangents<Real> from_{};
   const PointGroups* groups_ = nullptr;
-  ElementList<Real, Place, Shape> list_;
+  const ElementList<Real, Place, Shape>* list_ = nullptr;
   StoredElements<Real, Place, Shape> stored_;
   StencilMatrix<Real, Place, Shape> stencil_;
 };

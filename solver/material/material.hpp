@@ -34,6 +34,14 @@ struct MaterialState {
   Real plastic_log_volume{};  // part of it from dilatancy
 };
 
+/// What B-bar gives a point instead of its own volume change (mean_dilation.hpp).
+template <class Real>
+struct MeanVolume {
+  bool on = false;
+  Real increment{};  // of ln J over the step
+  Real stress{};     // mean Kirchhoff stress of its element [Pa]
+};
+
 /// Pressure of a Drucker-Prager point, tension cut off.
 template <class Real>
 TALUS_HD Real granular_pressure(const Material<Real>& m, const MaterialState<Real>& s) {
@@ -122,10 +130,11 @@ TALUS_HD void return_to_cone(const Material<Real>& m, MaterialState<Real>& s) {
   s.plastic_log_volume += beta * multiplier;
 }
 
-/// Advance the state over a step with displacement gradient g = dt grad v.
+/// Advance the state over a step with displacement gradient g = dt grad v, and the mean volume change where that is on.
 template <class Real>
-TALUS_HD void advance_material(const Material<Real>& m, const Mat3<Real>& g, MaterialState<Real>& s) {
-  s.log_volume += log_volume_change(g);
+TALUS_HD void advance_material(const Material<Real>& m, const Mat3<Real>& g, MaterialState<Real>& s, const MeanVolume<Real>& mean = {}) {
+  const Real own = log_volume_change(g), change = mean.on ? mean.increment : own;
+  s.log_volume += change;
   switch (m.model) {
     case MaterialModel::linear_elastic:
       advance_linear(m, g, s.elastic);
@@ -133,6 +142,7 @@ TALUS_HD void advance_material(const Material<Real>& m, const Mat3<Real>& g, Mat
     case MaterialModel::hencky:
     case MaterialModel::corotated:
       s.elastic = advance_strain(s.elastic, g);
+      if (mean.on) s.elastic = s.elastic.plus_identity((change - own) / Real(3));
       break;
     default:
       s.elastic = deviator(advance_strain(s.elastic, g));

@@ -145,18 +145,57 @@ TALUS_HD void principal_response(const Material<Real>& m, const Real e[3], Real 
   }
 }
 
+/// Stress and stiffness of a point in the principal axes of its trial, `mean` volume change instead of its own where that is on.
+template <class Real>
+struct PrincipalState {
+  Real stretch[3];  // eigenvalues of b, less one
+  Mat3<Real> axes;
+  Real tau[3], d[9];
+
+  TALUS_HD PrincipalState(const Material<Real>& m, const MaterialState<Real>& start, const Mat3<Real>& g, const MeanVolume<Real>& mean) {
+    eigen_symmetric(advance_deviation(start.elastic, g), stretch, axes);
+    const Real own = log_volume_change(g), change = mean.on ? mean.increment : own;
+    Real e[3];
+    for (int a = 0; a < 3; ++a) e[a] = Real(0.5) * log1p(stretch[a]) + (change - own) / Real(3);
+    principal_response(m, e, start.log_volume + change, start.plastic_log_volume, tau, d);
+  }
+  TALUS_HD Real mean_stress() const { return (tau[0] + tau[1] + tau[2]) / Real(3); }
+  /// Of the mean stress by the volume change; the rest of d has rows that sum to zero.
+  TALUS_HD Real bulk() const {
+    Real sum = 0;
+    for (int q = 0; q < 9; ++q) sum += d[q];
+    return sum / Real(9);
+  }
+};
+
+/// Mean Kirchhoff stress of a point [Pa] and its derivative by the volume change, for a mean volume change.
+template <class Real>
+struct VolumeResponse {
+  Real stress, bulk;
+};
+template <class Real>
+TALUS_HD VolumeResponse<Real> volume_response(const Material<Real>& m, const MaterialState<Real>& start, const Mat3<Real>& g, Real increment) {
+  const PrincipalState<Real> state(m, start, g, {true, increment, Real(0)});
+  return {state.mean_stress(), state.bulk()};
+}
+
 /// Nominal stress P of a point whose state at the start of the step is `start`, for the displacement gradient g of the step; with
-/// `tangent` not null also the derivative of P by g.
+/// `tangent` not null also the derivative of P by g. With `mean` on (B-bar) its mean stress is the element's, and the tangent is
+/// without the bulk part, which couples the element's points (mean_dilation.hpp).
 template <class Real>
 TALUS_HD Mat3<Real> nominal_stress(const Material<Real>& m, const MaterialState<Real>& start, const Mat3<Real>& g,
-                                   PointTangent<Real>* tangent) {
+                                   PointTangent<Real>* tangent, const MeanVolume<Real>& mean = {}) {
   if (m.model == MaterialModel::linear_elastic) return linear_stress(m, start, g, tangent);
-  const Sym3<Real> deviation = advance_deviation(start.elastic, g);
-  Real stretch[3], e[3], tau[3], d[9];
-  Mat3<Real> axes;
-  eigen_symmetric(deviation, stretch, axes);
-  for (int a = 0; a < 3; ++a) e[a] = Real(0.5) * log1p(stretch[a]);
-  principal_response(m, e, start.log_volume + log_volume_change(g), start.plastic_log_volume, tau, d);
+  PrincipalState<Real> state(m, start, g, mean);
+  const Real* stretch = state.stretch;
+  Real* tau = state.tau;
+  Real* d = state.d;
+  const Mat3<Real>& axes = state.axes;
+  if (mean.on) {
+    const Real shift = mean.stress - state.mean_stress(), bulk = state.bulk();
+    for (int a = 0; a < 3; ++a) tau[a] += shift;
+    for (int q = 0; q < 9; ++q) d[q] -= bulk;
+  }
   const Mat3<Real> f{{g.a.x + 1, g.a.y, g.a.z}, {g.b.x, g.b.y + 1, g.b.z}, {g.c.x, g.c.y, g.c.z + 1}};
   const Mat3<Real> inverse = inverted(f);
   const Vec3<Real> n[3] = {axes.a, axes.b, axes.c};

@@ -1,240 +1,14 @@
 // The tangent's three forms against one another, and Cholesky against conjugate gradients, on random points, states and
 // constraints.
 #include <array>
-#include <random>
 #include <set>
 
 #include "common/error.hpp"
-#include "scenes.hpp"
-#include "solver/linear/cholesky_solver.hpp"
+#include "linear_bench.hpp"
 #include "solver/linear/elimination_order.hpp"
-#include "solver/linear/tangent_operator.hpp"
 
 namespace talus::solver::testing {
 namespace {
-
-struct Setting {
-  bool quadratic;
-  Mapping mapping = Mapping::terrain_following;
-  MaterialModel model = MaterialModel::hencky;
-};
-
-/// Points off their lattice on wavy ground, with random strains, under a random displacement of the grid.
-Scene random_scene(const Setting& setting) {
-  Domain d = ground(14, 12, 2.0, 1.0, [](double x, double y) { return 3 - 0.1 * x + 0.3 * std::sin(y); });
-  fill(d, {8, 14, 8, 14, 0, 3});
-  SolveOptions o;
-  o.shape = setting.quadratic ? ShapeKind::quadratic : ShapeKind::linear;
-  o.mapping = setting.mapping;
-  Scene s = make_scene(d, o);
-  std::mt19937 engine(7);
-  std::uniform_real_distribution<double> u(-1, 1);
-  for (std::size_t p = 0; p < s.points.size(); ++p) {
-    for (int a = 0; a < 3; ++a) {
-      const double lowest = a == 2 && s.points.cell[2][p] == 0 ? 0.0 : -0.5;
-      s.points.offset[a][p] = std::clamp(s.points.offset[a][p] + 0.2 * u(engine), lowest, 0.499);
-    }
-    for (int a = 0; a < 6; ++a) s.points.elastic[a][p] = 0.01 * u(engine);
-    s.points.log_volume[p] = s.points.elastic[0][p] + s.points.elastic[1][p] + s.points.elastic[2][p];
-  }
-  return s;
-}
-
-std::vector<Vec3<double>> random_vectors(int count, double size, unsigned seed) {
-  std::mt19937 engine(seed);
-  std::uniform_real_distribution<double> u(-size, size);
-  std::vector<Vec3<double>> v(static_cast<std::size_t>(count));
-  for (auto& x : v) x = {u(engine), u(engine), u(engine)};
-  return v;
-}
-
-double norm(const std::vector<Vec3<double>>& v) {
-  double sum = 0;
-  for (const auto& x : v) sum += dot(x, x);
-  return std::sqrt(sum);
-}
-
-double difference(const std::vector<Vec3<double>>& a, const std::vector<Vec3<double>>& b) {
-  EXPECT_EQ(a.size(), b.size());
-  std::vector<Vec3<double>> d(a.size());
-  for (std::size_t n = 0; n < a.size(); ++n) d[n] = a[n] - b[n];
-  return norm(d) / norm(b);
-}
-
-Sym3<double> plane(const Vec3<double>& n) {
-  return {1 - n.x * n.x, 1 - n.y * n.y, 1 - n.z * n.z, -n.x * n.y, -n.y * n.z, -n.x * n.z};
-}
-
-/// y = freed (y + (mass inertia + stiffness) x)
-struct CloseSystem {
-  HeldNodes nodes;
-  const Vec3<double>* x;
-  Vec3<double>* y;
-  TALUS_HD void operator()(int n) const {
-    y[n] = nodes.freed[n] * (y[n] + x[n] * (nodes.mass[n] * nodes.inertia) + nodes.stiffness[n] * x[n]);
-  }
-};
-
-/// z = freed B^-1 freed r, B the node's own block.
-struct OwnBlocks {
-  HeldNodes nodes;
-  const Sym3<double>* blocks;
-  const Vec3<double>* r;
-  Vec3<double>* z;
-  TALUS_HD void operator()(int n) const {
-    const Sym3<double> p = nodes.freed[n];
-    const Sym3<double> b = (blocks[n] + nodes.stiffness[n]).plus_identity(nodes.mass[n] * nodes.inertia);
-    const Vec3<double> e[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    Vec3<double> column[3];
-    for (int a = 0; a < 3; ++a) column[a] = p * (b * (p * e[a])) + e[a] - p * e[a];
-    z[n] = p * (inverted(Mat3<double>{column[0], column[1], column[2]}) * (p * r[n]));
-  }
-};
-
-/// Everything a linear solve takes: grid, points, tangents, mass and constraints.
-template <class Real, class Place, class Shape>
-struct Bench {
-  Particles<Real, Place> points{{false, false, false}};
-  SparseGrid<Real, Place> grid;
-  Material<Real> material;
-  int count = 0;
-  Buffer<Real, Place> tangents;
-  Buffer<double, Place> mass;
-  Buffer<Sym3<double>, Place> freed, blocks, stiffness;
-  NodeVector<Place> velocity, internal, u;
-  double inertia = 1e3;
-
-  explicit Bench(const Setting& setting) : Bench(random_scene(setting), setting) {}
-  Bench(const Scene& scene, const Setting& setting) : grid(scene.grid) {
-    points.upload(scene.points);
-    MaterialOptions mo;
-    mo.model = setting.model;
-    material = make_material<Real>(mo);
-    grid.fit(points, 0);
-    count = grid.nodes();
-    refresh();
-    hold();
-  }
-
-  NodeArrays nodes() {
-    NodeArrays n;
-    n.mass = mass.data();
-    n.velocity = velocity.data();
-    n.internal = internal.data();
-    n.u = u.data();
-    n.freed = freed.data();
-    return n;
-  }
-  TangentStore<Real> store() { return {tangents.data(), points.count()}; }
-  PointTangents<Real> from() { return {grid.view(), points.view(), store()}; }
-  HeldNodes held() const { return {count, mass.data(), freed.data(), inertia, 0.0, stiffness.data()}; }
-
-  void refresh() {
-    const auto n = static_cast<std::size_t>(count);
-    u.upload(random_vectors(count, 0.01, 3));
-    for (auto* v : {&velocity, &internal}) {
-      v->resize(n);
-      v->fill_zero();
-    }
-    mass.resize(n);
-    mass.fill_zero();
-    tangents.resize(static_cast<std::size_t>(TangentStore<Real>::numbers) * static_cast<std::size_t>(points.count()));
-    for_each_grouped(
-        Place{}, points.count(), grid.groups(),
-        ScatterInertia<Real, Shape>{grid.view(), points.view(), material.density, false, false, nullptr, nodes()});
-    for_each_grouped(Place{}, points.count(), grid.groups(),
-                     ScatterStress<Real, Shape>{grid.view(), points.view(), material, false, false, store(), nodes()});
-    synchronise(Place{});
-  }
-
-  /// Held, slipping on a tilted plane, sliding along a line, free; some on springs.
-  void hold() {
-    const auto m = mass.download();
-    std::vector<Sym3<double>> p(m.size()), springs(m.size());
-    for (std::size_t n = 0; n < m.size(); n += 5) springs[n] = {2e6, 3e6, 1e6, 5e5, -4e5, 0};
-    stiffness.upload(springs);
-    for (std::size_t n = 0; n < m.size(); ++n) {
-      if (!(m[n] > 0) || n % 11 == 0) continue;
-      p[n] = {1, 1, 1, 0, 0, 0};
-      if (n % 7 == 0) p[n] = plane({-0.36, 0.48, 0.8});
-      if (n % 13 == 0) p[n] = {0.36, 0.64, 0, 0.48, 0, 0};
-    }
-    freed.upload(p);
-  }
-  void free_all() {
-    const auto m = mass.download();
-    std::vector<Sym3<double>> p(m.size());
-    for (std::size_t n = 0; n < m.size(); ++n) p[n] = m[n] > 0 ? Sym3<double>{1, 1, 1, 0, 0, 0} : Sym3<double>{};
-    freed.upload(p);
-    stiffness.fill_zero();
-  }
-
-  /// K x in one form.
-  std::vector<Vec3<double>> product(Operator form) {
-    TangentOperator<Real, Place, Shape> op(form);
-    op.begin_step(grid.view(), points.view(), count);
-    op.refresh(from(), grid.groups());
-    NodeVector<Place> x, y;
-    x.upload(random_vectors(count, 1, 5));
-    y.resize(x.size());
-    y.fill_zero();
-    op.apply(x, y);
-    synchronise(Place{});
-    return y.download();
-  }
-
-  NodeVector<Place> right_side() {
-    NodeVector<Place> b;
-    const auto p = freed.download();
-    auto v = random_vectors(count, 1e4, 9);
-    for (std::size_t n = 0; n < v.size(); ++n) v[n] = p[n] * v[n];
-    b.upload(v);
-    return b;
-  }
-
-  std::vector<Vec3<double>> by_gradients() {
-    NodeVector<Place> x;
-    const NodeVector<Place> b = right_side();
-    blocks.resize(static_cast<std::size_t>(count));
-    blocks.fill_zero();
-    for_each_grouped(Place{}, points.count(), grid.groups(),
-                     ScatterBlocks<Real, Shape>{grid.view(), points.view(), store(), blocks.data()});
-    ConjugateGradient<Place> cg;
-    const auto multiply = [&](const NodeVector<Place>& p, NodeVector<Place>& ap) {
-      ap.fill_zero();
-      for_each_grouped(Place{}, points.count(), grid.groups(),
-                       ApplyTangent<Real, Shape>{grid.view(), points.view(), store(), p.data(), ap.data()});
-      for_each(Place{}, count, CloseSystem{held(), p.data(), ap.data()});
-    };
-    const auto precondition = [&](const NodeVector<Place>& r, NodeVector<Place>& z) {
-      for_each(Place{}, count, OwnBlocks{held(), blocks.data(), r.data(), z.data()});
-    };
-    const LinearReport report = cg.solve(b, x, 1e-12, 5000, multiply, precondition);
-    EXPECT_TRUE(report.converged) << "residual " << report.residual;
-    return x.download();
-  }
-
-  std::vector<Vec3<double>> by_cholesky() {
-    CholeskySolver<Real, Place, Shape> solver;
-    solver.begin_step(grid.view(), points.view());
-    NodeVector<Place> x;
-    const LinearReport report = solver.solve(from(), held(), right_side(), x);
-    EXPECT_TRUE(report.converged) << solver.factor().name() << ": residual " << report.residual;
-    EXPECT_FALSE(report.indefinite);
-    return x.download();
-  }
-};
-
-#if TALUS_FOR_GPU
-#define TALUS_RUN(function, ...)                                           \
-  (GetParam() == On::gpu ? function<double, OnGpu, Linear>(__VA_ARGS__)    \
-                         : function<double, OnCpu, Linear>(__VA_ARGS__),   \
-   GetParam() == On::gpu ? function<double, OnGpu, Quadratic>(__VA_ARGS__) \
-                         : function<double, OnCpu, Quadratic>(__VA_ARGS__))
-#else
-#define TALUS_RUN(function, ...) \
-  (function<double, OnCpu, Linear>(__VA_ARGS__), function<double, OnCpu, Quadratic>(__VA_ARGS__))
-#endif
 
 template <class Shape>
 constexpr bool is_quadratic = Shape::width == 3;
@@ -245,7 +19,7 @@ class LinearSystem : public InEachPlace {
   static void compare_forms(double tolerance) {
     for (const auto mapping : {Mapping::terrain_following, Mapping::cartesian}) {
       for (const auto model : {MaterialModel::hencky, MaterialModel::drucker_prager}) {
-        Bench<Real, Place, Shape> bench({is_quadratic<Shape>, mapping, model});
+        LinearBench<Real, Place, Shape> bench({is_quadratic<Shape>, mapping, model});
         const auto expected = bench.product(Operator::points);
         EXPECT_GT(norm(expected), 0);
         EXPECT_LT(difference(bench.product(Operator::elements), expected), tolerance);
@@ -257,19 +31,19 @@ class LinearSystem : public InEachPlace {
   template <class Real, class Place, class Shape>
   static void compare_solvers() {
     for (const auto mapping : {Mapping::terrain_following, Mapping::cartesian}) {
-      Bench<Real, Place, Shape> bench({is_quadratic<Shape>, mapping});
+      LinearBench<Real, Place, Shape> bench({is_quadratic<Shape>, mapping});
       EXPECT_LT(difference(bench.by_cholesky(), bench.by_gradients()), 1e-8);
     }
   }
 
   template <class Real, class Place, class Shape>
   static void keep_analysis() {
-    Bench<Real, Place, Shape> bench({is_quadratic<Shape>});
+    LinearBench<Real, Place, Shape> bench({is_quadratic<Shape>});
     CholeskySolver<Real, Place, Shape> solver;
     NodeVector<Place> x;
     const NodeVector<Place> b = bench.right_side();
     const auto solve = [&] { EXPECT_TRUE(solver.solve(bench.from(), bench.held(), b, x).converged); };
-    solver.begin_step(bench.grid.view(), bench.points.view());
+    solver.begin_step(bench.elements);
     solve();
     const auto first = x.download();
     bench.inertia *= 2;  // another matrix of the same pattern, elements and unknowns as they were
@@ -277,7 +51,8 @@ class LinearSystem : public InEachPlace {
     EXPECT_EQ(solver.factor().analyses(), 1);
     EXPECT_EQ(solver.assembly().sorts(), 1);
     EXPECT_GT(difference(x.download(), first), 1e-3);
-    solver.begin_step(bench.grid.view(), bench.points.view());  // a new step in which no point changes its cell
+    bench.elements.build(bench.grid.view(), bench.points.view());
+    solver.begin_step(bench.elements);  // a new step in which no point changes its cell
     solve();
     EXPECT_EQ(solver.factor().analyses(), 1);
     EXPECT_EQ(solver.assembly().sorts(), 2);
@@ -293,11 +68,11 @@ class LinearSystem : public InEachPlace {
 
   template <class Real, class Place, class Shape>
   static void report_indefinite() {
-    Bench<Real, Place, Shape> bench({is_quadratic<Shape>});
+    LinearBench<Real, Place, Shape> bench({is_quadratic<Shape>});
     CholeskySolver<Real, Place, Shape> solver;
     NodeVector<Place> x;
     const NodeVector<Place> b = bench.right_side();
-    solver.begin_step(bench.grid.view(), bench.points.view());
+    solver.begin_step(bench.elements);
     bench.inertia = -1e5;
     const LinearReport report = solver.solve(bench.from(), bench.held(), b, x);
     EXPECT_TRUE(report.indefinite);
@@ -314,7 +89,7 @@ class LinearSystem : public InEachPlace {
     Scene scene = random_scene(setting);
     for (auto& strain : scene.points.elastic) std::fill(strain.begin(), strain.end(), 0.0);
     std::fill(scene.points.log_volume.begin(), scene.points.log_volume.end(), 0.0);
-    Bench<Real, Place, Shape> bench(scene, setting);
+    LinearBench<Real, Place, Shape> bench(scene, setting);
     bench.free_all();
     bench.inertia = 0;
     CholeskySolver<Real, Place, Shape> solver;
@@ -323,7 +98,7 @@ class LinearSystem : public InEachPlace {
     std::vector<Vec3<double>> weight(m.size());
     for (std::size_t n = 0; n < m.size(); ++n) weight[n] = {0, 0, -9.81 * m[n]};
     b.upload(weight);
-    solver.begin_step(bench.grid.view(), bench.points.view());
+    solver.begin_step(bench.elements);
     const LinearReport report = solver.solve(bench.from(), bench.held(), b, x);
     EXPECT_TRUE(report.indefinite) << "residual " << report.residual;
     EXPECT_FALSE(report.converged);
@@ -331,11 +106,11 @@ class LinearSystem : public InEachPlace {
 
   template <class Real, class Place, class Shape>
   static void refuse(double limit, const std::string& what) {
-    Bench<Real, Place, Shape> bench({is_quadratic<Shape>});
+    LinearBench<Real, Place, Shape> bench({is_quadratic<Shape>});
     CholeskySolver<Real, Place, Shape> solver(limit);
     NodeVector<Place> x;
     const NodeVector<Place> b = bench.right_side();
-    solver.begin_step(bench.grid.view(), bench.points.view());
+    solver.begin_step(bench.elements);
     const std::size_t before = solver.bytes();
     try {
       solver.solve(bench.from(), bench.held(), b, x);
@@ -407,8 +182,8 @@ class BothPlaces : public InEachPlace {
  protected:
   template <class Shape>
   static void compare() {
-    Bench<double, OnCpu, Shape> cpu({is_quadratic<Shape>});
-    Bench<double, OnGpu, Shape> gpu({is_quadratic<Shape>});
+    LinearBench<double, OnCpu, Shape> cpu({is_quadratic<Shape>});
+    LinearBench<double, OnGpu, Shape> gpu({is_quadratic<Shape>});
     for (const auto form : {Operator::points, Operator::elements, Operator::stencil}) {
       EXPECT_LT(difference(gpu.product(form), cpu.product(form)), 1e-11);
     }
@@ -424,7 +199,7 @@ INSTANTIATE_TEST_SUITE_P(places, BothPlaces, ::testing::Values(On::gpu), place_n
 
 template <class Shape>
 void check_elements() {
-  Bench<double, OnCpu, Shape> bench({is_quadratic<Shape>});
+  LinearBench<double, OnCpu, Shape> bench({is_quadratic<Shape>});
   ElementList<double, OnCpu, Shape> list;
   list.build(bench.grid.view(), bench.points.view());
   const ElementView v = list.view();
@@ -463,7 +238,7 @@ TEST(Elements, hold_every_point_once_and_share_no_node_within_a_colour) {
 
 /// Column, row and layer of every stored node.
 template <class Shape>
-std::vector<std::array<int, 3>> node_places(const Bench<double, OnCpu, Shape>& bench) {
+std::vector<std::array<int, 3>> node_places(const LinearBench<double, OnCpu, Shape>& bench) {
   const auto grid = bench.grid.view();
   std::vector<std::array<int, 3>> places(static_cast<std::size_t>(bench.count));
   for (int j = 0; j < grid.rows; ++j) {
@@ -480,7 +255,7 @@ std::vector<std::array<int, 3>> node_places(const Bench<double, OnCpu, Shape>& b
 template <class Shape>
 void check_neighbours() {
   constexpr int reach = Shape::width - 1, side = 2 * reach + 1;
-  Bench<double, OnCpu, Shape> bench({is_quadratic<Shape>});
+  LinearBench<double, OnCpu, Shape> bench({is_quadratic<Shape>});
   ElementList<double, OnCpu, Shape> list;
   StencilMatrix<double, OnCpu, Shape> matrix;
   list.build(bench.grid.view(), bench.points.view());
@@ -518,7 +293,7 @@ struct Keep {
 template <class Shape>
 void check_tiles() {
   constexpr int w = Shape::width, nodes = w * w * w;
-  Bench<double, OnCpu, Shape> bench({is_quadratic<Shape>});
+  LinearBench<double, OnCpu, Shape> bench({is_quadratic<Shape>});
   ElementList<double, OnCpu, Shape> list;
   list.build(bench.grid.view(), bench.points.view());
   const auto size = static_cast<std::size_t>(list.count()) * nodes * nodes * 9;
@@ -541,7 +316,7 @@ TEST(Elements, are_the_same_from_the_tiles_of_the_gpu) {
 }
 
 TEST(Elements, sum_the_same_on_every_run) {
-  Bench<double, OnCpu, Quadratic> bench({true});
+  LinearBench<double, OnCpu, Quadratic> bench({true});
   for (const auto form : {Operator::elements, Operator::stencil}) {
     const auto a = bench.product(form), b = bench.product(form);
     for (std::size_t n = 0; n < a.size(); ++n) EXPECT_TRUE(a[n].x == b[n].x && a[n].y == b[n].y && a[n].z == b[n].z);

@@ -1,0 +1,102 @@
+// What couples the points of an element: B-bar and the springs of nearly empty nodes.
+#include "linear_bench.hpp"
+
+namespace talus::solver::testing {
+namespace {
+
+template <class Shape>
+constexpr bool is_quadratic = Shape::width == 3;
+
+class ElementTerms : public InEachPlace {
+ protected:
+  static constexpr Setting with(bool quadratic, MaterialModel model) { return {quadratic, Mapping::terrain_following, model, true, true}; }
+
+  template <class Real, class Place, class Shape>
+  static void compare_forms() {
+    for (const auto model : {MaterialModel::hencky, MaterialModel::drucker_prager}) {
+      LinearBench<Real, Place, Shape> bench(with(is_quadratic<Shape>, model));
+      const auto expected = bench.product(Operator::points);
+      LinearBench<Real, Place, Shape> plain({is_quadratic<Shape>, Mapping::terrain_following, model});
+      EXPECT_GT(difference(plain.product(Operator::points), expected), 1e-3) << "the terms do nothing";
+      EXPECT_LT(difference(bench.product(Operator::elements), expected), 1e-12);
+      EXPECT_LT(difference(bench.product(Operator::stencil), expected), 1e-12);
+    }
+  }
+
+  /// Central differences of the force against the product, for elastic points: a yielding one holds its friction's pressure.
+  template <class Real, class Place, class Shape>
+  static void differentiate() {
+    LinearBench<Real, Place, Shape> bench(with(is_quadratic<Shape>, MaterialModel::hencky));
+    const auto product = bench.product(Operator::points);
+    const auto start = bench.u.download();
+    const auto direction = random_vectors(bench.count, 1, 5);  // that of product()
+    const auto force = [&](double step) {
+      std::vector<Vec3<double>> moved(start.size());
+      for (std::size_t n = 0; n < start.size(); ++n) moved[n] = start[n] + direction[n] * step;
+      bench.u.upload(moved);
+      bench.measure_stress();
+      return bench.internal.download();
+    };
+    constexpr double step = 1e-6;
+    auto slope = force(step);
+    const auto back = force(-step);
+    for (std::size_t n = 0; n < slope.size(); ++n) slope[n] = (slope[n] - back[n]) * (0.5 / step);
+    EXPECT_LT(difference(slope, product), 1e-7);  // step squared times the curvature, and rounding over the step
+  }
+
+  /// A motion that linear functions hold, turn and strain included, must not feel the springs of quadratic ones.
+  template <class Real, class Place, class Shape>
+  static void move_affinely() {
+    Domain d = ground(14, 14, 1.0, 1.0, [](double, double) { return 0.0; });
+    fill(d, {5, 8, 5, 8, 3, 6});
+    SolveOptions o;
+    o.shape = is_quadratic<Shape> ? ShapeKind::quadratic : ShapeKind::linear;
+    o.mapping = Mapping::cartesian;
+    LinearBench<Real, Place, Shape> bench(make_scene(d, o), {is_quadratic<Shape>, Mapping::cartesian, MaterialModel::hencky, false, true});
+    const auto nodes = bench.elements.view();
+    std::vector<Vec3<double>> x(static_cast<std::size_t>(bench.count)), none(x.size());
+    // Nodes by their place in the storage: blocks of four by four columns, layer by layer.
+    const GridView<Real> grid = bench.grid.view();
+    for (int j = 0; j < grid.rows; ++j) {
+      for (int i = 0; i < grid.columns; ++i) {
+        const BlockSlot slot = grid.slot(i, j);
+        for (int k = slot.first_layer; slot.offset >= 0 && k < slot.first_layer + slot.layers; ++k) {
+          const int n = GridView<Real>::node(slot, i, j, k);
+          x[static_cast<std::size_t>(n)] = {0.1 * j - 0.2 * k + 1, -0.1 * i + 0.05 * k, 0.2 * i + 0.3 * j};
+        }
+      }
+    }
+    static_cast<void>(nodes);
+    NodeVector<Place> u, y;
+    u.upload(x);
+    y.upload(none);
+    apply_springs(bench.elements, bench.springs, u, y);
+    if (is_quadratic<Shape>) {
+      EXPECT_LT(norm(y.download()), 1e-12 * 1e6 * norm(x));
+    } else {
+      EXPECT_GT(norm(y.download()), 0);  // hats hold to the fullest node: only a shift is free
+    }
+    for (auto& v : x) v = {1, 2, 3};
+    u.upload(x);
+    y.upload(none);
+    apply_springs(bench.elements, bench.springs, u, y);
+    EXPECT_LT(norm(y.download()), 1e-12 * 1e6 * norm(x));
+    for (auto& v : x) v = {0, 0, 0};
+    const auto mass = bench.mass.download();
+    for (std::size_t n = 0; n < mass.size(); ++n) {
+      if (mass[n] > 0 && mass[n] < bench.springs.light) x[n] = {1, 0, 0};
+    }
+    u.upload(x);
+    apply_springs(bench.elements, bench.springs, u, y);
+    EXPECT_GT(norm(y.download()), 1) << "no node is held";
+  }
+};
+
+TEST_P(ElementTerms, have_the_same_product_in_every_form) { TALUS_RUN(compare_forms); }
+TEST_P(ElementTerms, are_the_derivative_of_their_force) { TALUS_RUN(differentiate); }
+TEST_P(ElementTerms, let_a_body_move_as_a_whole) { TALUS_RUN(move_affinely); }
+
+TALUS_IN_EACH_PLACE(ElementTerms);
+
+}  // namespace
+}  // namespace talus::solver::testing

@@ -1,0 +1,255 @@
+// What tests of the linear algebra share: random points on wavy ground with their tangents, masses and constraints.
+#pragma once
+
+#include <random>
+
+#include "scenes.hpp"
+#include "solver/linear/cholesky_solver.hpp"
+#include "solver/linear/tangent_operator.hpp"
+
+namespace talus::solver::testing {
+
+struct Setting {
+  bool quadratic;
+  Mapping mapping = Mapping::terrain_following;
+  MaterialModel model = MaterialModel::hencky;
+  bool b_bar = false, springs = false;
+};
+
+/// Points off their lattice on wavy ground, with random strains, under a random displacement of the grid.
+inline Scene random_scene(const Setting& setting) {
+  Domain d = ground(14, 12, 2.0, 1.0, [](double x, double y) { return 3 - 0.1 * x + 0.3 * std::sin(y); });
+  fill(d, {8, 14, 8, 14, 0, 3});
+  SolveOptions o;
+  o.shape = setting.quadratic ? ShapeKind::quadratic : ShapeKind::linear;
+  o.mapping = setting.mapping;
+  Scene s = make_scene(d, o);
+  std::mt19937 engine(7);
+  std::uniform_real_distribution<double> u(-1, 1);
+  for (std::size_t p = 0; p < s.points.size(); ++p) {
+    for (int a = 0; a < 3; ++a) {
+      const double lowest = a == 2 && s.points.cell[2][p] == 0 ? 0.0 : -0.5;
+      s.points.offset[a][p] = std::clamp(s.points.offset[a][p] + 0.2 * u(engine), lowest, 0.499);
+    }
+    for (int a = 0; a < 6; ++a) s.points.elastic[a][p] = 0.01 * u(engine);
+    s.points.log_volume[p] = s.points.elastic[0][p] + s.points.elastic[1][p] + s.points.elastic[2][p];
+  }
+  return s;
+}
+
+inline std::vector<Vec3<double>> random_vectors(int count, double size, unsigned seed) {
+  std::mt19937 engine(seed);
+  std::uniform_real_distribution<double> u(-size, size);
+  std::vector<Vec3<double>> v(static_cast<std::size_t>(count));
+  for (auto& x : v) x = {u(engine), u(engine), u(engine)};
+  return v;
+}
+
+inline double norm(const std::vector<Vec3<double>>& v) {
+  double sum = 0;
+  for (const auto& x : v) sum += dot(x, x);
+  return std::sqrt(sum);
+}
+
+inline double difference(const std::vector<Vec3<double>>& a, const std::vector<Vec3<double>>& b) {
+  EXPECT_EQ(a.size(), b.size());
+  std::vector<Vec3<double>> d(a.size());
+  for (std::size_t n = 0; n < a.size(); ++n) d[n] = a[n] - b[n];
+  return norm(d) / norm(b);
+}
+
+inline Sym3<double> plane(const Vec3<double>& n) {
+  return {1 - n.x * n.x, 1 - n.y * n.y, 1 - n.z * n.z, -n.x * n.y, -n.y * n.z, -n.x * n.z};
+}
+
+/// y = freed (y + (mass inertia + stiffness) x)
+struct CloseSystem {
+  HeldNodes nodes;
+  const Vec3<double>* x;
+  Vec3<double>* y;
+  TALUS_HD void operator()(int n) const {
+    y[n] = nodes.freed[n] * (y[n] + x[n] * (nodes.mass[n] * nodes.inertia) + nodes.stiffness[n] * x[n]);
+  }
+};
+
+/// z = freed B^-1 freed r, B the node's own block.
+struct OwnBlocks {
+  HeldNodes nodes;
+  const Sym3<double>* blocks;
+  const Vec3<double>* r;
+  Vec3<double>* z;
+  TALUS_HD void operator()(int n) const {
+    const Sym3<double> p = nodes.freed[n];
+    const Sym3<double> b = (blocks[n] + nodes.stiffness[n]).plus_identity(nodes.mass[n] * nodes.inertia);
+    const Vec3<double> e[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    Vec3<double> column[3];
+    for (int a = 0; a < 3; ++a) column[a] = p * (b * (p * e[a])) + e[a] - p * e[a];
+    z[n] = p * (inverted(Mat3<double>{column[0], column[1], column[2]}) * (p * r[n]));
+  }
+};
+
+/// Everything a linear solve takes: grid, points, tangents, mass and constraints.
+template <class Real, class Place, class Shape>
+struct LinearBench {
+  Particles<Real, Place> points{{false, false, false}};
+  SparseGrid<Real, Place> grid;
+  ElementList<Real, Place, Shape> elements;
+  Material<Real> material;
+  int count = 0;
+  Buffer<Real, Place> tangents;
+  Buffer<double, Place> mass;
+  Buffer<Sym3<double>, Place> freed, blocks, stiffness;
+  MeanDilation<Real, Place, Shape> means;
+  bool b_bar;
+  FillerSprings springs;
+  NodeVector<Place> velocity, internal, u;
+  double inertia = 1e3;
+
+  explicit LinearBench(const Setting& setting) : LinearBench(random_scene(setting), setting) {}
+  LinearBench(const Scene& scene, const Setting& setting) : grid(scene.grid), b_bar(setting.b_bar) {
+    points.upload(scene.points);
+    MaterialOptions mo;
+    mo.model = setting.model;
+    material = make_material<Real>(mo);
+    grid.fit(points, 0);
+    count = grid.nodes();
+    elements.build(grid.view(), points.view());
+    refresh();
+    if (setting.springs) {
+      const double full = static_cast<double>(material.density) * scene.grid.spacing * scene.grid.spacing * scene.grid.layer_height;
+      springs = {mass.data(), 0.5 * full, 1e6};
+    }
+    hold();
+  }
+
+  NodeArrays nodes() {
+    NodeArrays n;
+    n.mass = mass.data();
+    n.velocity = velocity.data();
+    n.internal = internal.data();
+    n.u = u.data();
+    n.freed = freed.data();
+    return n;
+  }
+  TangentStore<Real> store() { return {tangents.data(), points.count()}; }
+  PointTangents<Real> from() { return {grid.view(), points.view(), store(), mean_view(), springs}; }
+  MeanDilationView<Real> mean_view() const { return b_bar ? means.view() : MeanDilationView<Real>{}; }
+  HeldNodes held() const { return {count, mass.data(), freed.data(), inertia, 0.0, stiffness.data()}; }
+
+  void refresh() {
+    const auto n = static_cast<std::size_t>(count);
+    u.upload(random_vectors(count, 0.01, 3));
+    for (auto* v : {&velocity, &internal}) {
+      v->resize(n);
+      v->fill_zero();
+    }
+    mass.resize(n);
+    mass.fill_zero();
+    tangents.resize(static_cast<std::size_t>(TangentStore<Real>::numbers) * static_cast<std::size_t>(points.count()));
+    for_each_grouped(
+        Place{}, points.count(), grid.groups(),
+        ScatterInertia<Real, Shape>{grid.view(), points.view(), material.density, false, false, nullptr, nodes()});
+    if (b_bar) means.begin_step(elements, points.count());
+    measure_stress();
+  }
+
+  /// Internal force and tangents for the displacement u.
+  void measure_stress() {
+    internal.fill_zero();
+    if (b_bar) means.measure(elements, grid.view(), points.view(), material, false, u.data());
+    for_each_grouped(Place{}, points.count(), grid.groups(),
+                     ScatterStress<Real, Shape>{grid.view(), points.view(), material, false, false, mean_view(), store(), nodes()});
+    if (springs.on()) apply_springs(elements, springs, u, internal);
+    synchronise(Place{});
+  }
+
+  /// Held, slipping on a tilted plane, sliding along a line, free; some on springs.
+  void hold() {
+    const auto m = mass.download();
+    std::vector<Sym3<double>> p(m.size()), own(m.size());
+    for (std::size_t n = 0; n < m.size(); n += 5) own[n] = {2e6, 3e6, 1e6, 5e5, -4e5, 0};
+    stiffness.upload(own);
+    for (std::size_t n = 0; n < m.size(); ++n) {
+      if (!(m[n] > 0) || n % 11 == 0) continue;
+      p[n] = {1, 1, 1, 0, 0, 0};
+      if (n % 7 == 0) p[n] = plane({-0.36, 0.48, 0.8});
+      if (n % 13 == 0) p[n] = {0.36, 0.64, 0, 0.48, 0, 0};
+    }
+    freed.upload(p);
+  }
+  void free_all() {
+    const auto m = mass.download();
+    std::vector<Sym3<double>> p(m.size());
+    for (std::size_t n = 0; n < m.size(); ++n) p[n] = m[n] > 0 ? Sym3<double>{1, 1, 1, 0, 0, 0} : Sym3<double>{};
+    freed.upload(p);
+    stiffness.fill_zero();
+  }
+
+  /// K x in one form.
+  std::vector<Vec3<double>> product(Operator form) {
+    TangentOperator<Real, Place, Shape> op(form);
+    op.begin_step(elements, count);
+    op.refresh(from(), grid.groups());
+    NodeVector<Place> x, y;
+    x.upload(random_vectors(count, 1, 5));
+    y.resize(x.size());
+    y.fill_zero();
+    op.apply(x, y);
+    synchronise(Place{});
+    return y.download();
+  }
+
+  NodeVector<Place> right_side() {
+    NodeVector<Place> b;
+    const auto p = freed.download();
+    auto v = random_vectors(count, 1e4, 9);
+    for (std::size_t n = 0; n < v.size(); ++n) v[n] = p[n] * v[n];
+    b.upload(v);
+    return b;
+  }
+
+  std::vector<Vec3<double>> by_gradients() {
+    NodeVector<Place> x;
+    const NodeVector<Place> b = right_side();
+    blocks.resize(static_cast<std::size_t>(count));
+    blocks.fill_zero();
+    for_each_grouped(Place{}, points.count(), grid.groups(),
+                     ScatterBlocks<Real, Shape>{grid.view(), points.view(), store(), blocks.data()});
+    ConjugateGradient<Place> cg;
+    const auto multiply = [&](const NodeVector<Place>& p, NodeVector<Place>& ap) {
+      ap.fill_zero();
+      for_each_grouped(Place{}, points.count(), grid.groups(),
+                       ApplyTangent<Real, Shape>{grid.view(), points.view(), store(), p.data(), ap.data()});
+      for_each(Place{}, count, CloseSystem{held(), p.data(), ap.data()});
+    };
+    const auto precondition = [&](const NodeVector<Place>& r, NodeVector<Place>& z) {
+      for_each(Place{}, count, OwnBlocks{held(), blocks.data(), r.data(), z.data()});
+    };
+    const LinearReport report = cg.solve(b, x, 1e-12, 5000, multiply, precondition);
+    EXPECT_TRUE(report.converged) << "residual " << report.residual;
+    return x.download();
+  }
+
+  std::vector<Vec3<double>> by_cholesky() {
+    CholeskySolver<Real, Place, Shape> solver;
+    solver.begin_step(elements);
+    NodeVector<Place> x;
+    const LinearReport report = solver.solve(from(), held(), right_side(), x);
+    EXPECT_TRUE(report.converged) << solver.factor().name() << ": residual " << report.residual;
+    EXPECT_FALSE(report.indefinite);
+    return x.download();
+  }
+};
+
+#if TALUS_FOR_GPU
+#define TALUS_RUN(function, ...)                                           \
+  (GetParam() == On::gpu ? function<double, OnGpu, Linear>(__VA_ARGS__)    \
+                         : function<double, OnCpu, Linear>(__VA_ARGS__),   \
+   GetParam() == On::gpu ? function<double, OnGpu, Quadratic>(__VA_ARGS__) \
+                         : function<double, OnCpu, Quadratic>(__VA_ARGS__))
+#else
+#define TALUS_RUN(function, ...) \
+  (function<double, OnCpu, Linear>(__VA_ARGS__), function<double, OnCpu, Quadratic>(__VA_ARGS__))
+#endif
+
+}  // namespace talus::solver::testing
