@@ -3,7 +3,7 @@
 // belong, in each of their elements (cf. the extension of Hoellig, Reif & Wipper 2001).
 //
 // Quadratic functions: node n is held to the straight line through its neighbours a and b inwards, k |u_n - 2 u_a + u_b|^2 / 2, which an
-// affine motion, a turn too, does not feel. Linear ones have no third node: n is held to the fullest node of the element, a thousand
+// affine motion, a turn too, does not feel. Linear ones have no third node: n is held to the fullest node of the element, a hundred
 // times more weakly, for a turn does feel that. All act on the displacement of the step, so that no force builds up from step to step.
 #pragma once
 
@@ -62,7 +62,7 @@ struct FillerSprings {
         s.near = s.far = a;
       }
     }
-    if (best > m) s.k = (width == 3 ? 1.0 : 1e-3) * stiffness * (1 - m / light);
+    if (best > m) s.k = (width == 3 ? 1.0 : 1e-2) * stiffness * (1 - m / light);
     return s;
   }
 };
