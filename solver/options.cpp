@@ -132,7 +132,8 @@ void SolveOptions::describe(recipe::Visitor& v) {
                  "shape functions of the grid");
   recipe::choice(v, "transfer", transfer, {{"apic", Transfer::apic}, {"flip", Transfer::flip}},
                  "how velocity passes between points and grid");
-  v.number("flip_fraction", flip_fraction, recipe::fraction, "flip: share of FLIP, the rest is PIC");
+  v.number("transfer_time", transfer_time, recipe::not_negative,
+           "CFL steps over which velocity finer than the grid decays; 0: at every step");
   recipe::choice(v, "stress_update", stress_update, {{"usl", StressUpdate::last}, {"musl", StressUpdate::modified}},
                  "stress from the grid's new velocity (usl), or from the points' mapped back (musl)");
   v.number("damping", damping, recipe::Range{0, 1, false, true}, "local non-viscous damping factor (Cundall)");
@@ -235,7 +236,7 @@ SolveOptions with_preset(SolveOptions o) {
   if (o.integrator == Integrator::explicit_) o.integrator = Integrator::newmark;
   o.shape = ShapeKind::linear;
   o.transfer = Transfer::flip;
-  o.flip_fraction = 1;
+  o.transfer_time = 1e30;
   o.stress_update = StressUpdate::modified;
   o.implicit.alpha = 0.25;
   o.implicit.beta = 0.5;

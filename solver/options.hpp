@@ -99,7 +99,7 @@ struct SolveOptions {
   Mapping mapping = Mapping::terrain_following;
   ShapeKind shape = ShapeKind::quadratic;
   Transfer transfer = Transfer::apic;
-  double flip_fraction = 0.99;
+  double transfer_time = 10;         // CFL steps
   StressUpdate stress_update = StressUpdate::last;
   double damping = 0;                // Cundall's local factor
   double courant = 0.5;

@@ -276,7 +276,8 @@ RunSummary Simulation::run(const std::string& scene, const std::string& title) {
 
 void Simulation::count(const BatchReport& batch) {
   if (options_.integrator == Integrator::explicit_) {
-    over_cfl_ = options_.courant;
+    const double rate = positive_from_bits(batch.clock.rate_bits);
+    if (rate > 0) over_cfl_ = batch.clock.step_size * rate;
     return;
   }
   memory_.newton += batch.stats.newton;

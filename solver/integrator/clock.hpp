@@ -21,6 +21,8 @@ struct Clock {
   double next_event = 0;           // never stepped over [s]
   double courant = 0;              // step_size = courant / rate
   double largest_step = 0;         // upper bound of step_size [s]
+  double transfer_time = 0;        // CFL steps over which velocity finer than the grid decays
+  double kept = 0;                 // share of it that this step keeps
   double outflow_volume = 0;       // since the last sort [m3]
   std::int64_t step = 0;
   std::uint32_t rate_bits = 0;     // largest (wave speed + speed) over cell of any point, as float bits [1/s]
@@ -31,6 +33,12 @@ struct Clock {
   int steps_between_sorts = 32;
   int outflow_count = 0;           // since the last sort
   int failed_point = -1;           // id of a point that failed
+
+  /// Share of the velocity finer than the grid that a step keeps: what is lost depends on time, not on the number of steps.
+  TALUS_HD double share_kept(double step_of, double rate) const {
+    const double lost = transfer_time > 0 ? step_of * rate / transfer_time : 1;
+    return lost < 1 - 1e-9 ? 1 - lost : 0;
+  }
 
   /// Opens the next step: settles its size, or halts. One thread.
   TALUS_HD void begin_step() {
@@ -55,6 +63,7 @@ struct Clock {
       step_size = remaining < 2 * wanted ? 0.5 * remaining : wanted;
       time += step_size;
     }
+    kept = share_kept(step_size, rate);
     rate_bits = 0;
     speed_bits = 0;
     ++step;

@@ -41,7 +41,8 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
         friction_(make_base_friction<Real>(options.base)),
         affine_(options.transfer == Transfer::apic),
         musl_(options.stress_update == StressUpdate::modified),
-        forces_apart_(musl_ || options.damping > 0 || (!affine_ && options.flip_fraction > 0)) {
+        keeps_(options.transfer_time > options.courant),
+        forces_apart_(musl_ || options.damping > 0 || keeps_) {
     sort(0);
   }
 
@@ -136,10 +137,9 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   template <Gather part>
   void gather() {
     const ProfilePhase<Place> phase("grid to points");
-    const Real flip = affine_ ? Real(0) : static_cast<Real>(options_.flip_fraction);
     for_each(Place{}, points_.count(),
              GridToParticle<Real, Shape, part>{grid_.view(), points_.view(), material_, clock_.data(), nodes_.data(),
-                                               forces_.data(), grid_.home(), flip, affine_, dilatant_});
+                                               keeps_ ? forces_.data() : nullptr, grid_.home(), affine_, dilatant_});
   }
 
   void sort(int gone) {
@@ -150,7 +150,9 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   }
 
   BaseFriction<Real> friction_;
-  bool affine_, musl_, forces_apart_;
+  bool affine_, musl_;
+  bool keeps_;  // points keep some of the velocity that is finer than the grid
+  bool forces_apart_;
   Walls<Real> walls_;
   const Vec3<double>* loads_now_ = nullptr;
   Buffer<Vec4<Real>, Place> nodes_, forces_;

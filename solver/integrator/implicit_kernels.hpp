@@ -252,7 +252,7 @@ struct AcceptStep {
   const Vec3<double>* new_velocity;       // at the end; null in statics
   const Vec3<double>* new_acceleration;
   const Vec3<double>* strain_displacement;  // what the strain comes from: u, or dt times the remapped velocity
-  double flip;                            // share of FLIP; 0 with APIC
+  double kept;                            // share of the points' velocity finer than the grid that stays
   bool affine, dilatant;
   bool speeds, deforms;                   // MUSL takes the velocity first and the rest later
   MeanDilationView<Real> means;           // of strain_displacement
@@ -276,7 +276,7 @@ struct AcceptStep {
   /// New velocity, acceleration and affine velocity; returns the way in reference coordinates [m].
   TALUS_HD Vec3<double> gather_motion(int p, const PointGradients<Real, Shape>& g) const {
     const bool follows = grid.mapping == Mapping::terrain_following;
-    Vec3<double> u{}, v{}, kick{}, a1{};
+    Vec3<double> u{}, v{}, a1{};
     double climb = 0;
     Mat3<double> moment{}, slope{};
     around(grid, g, [&](int n, int a, int b, int c) {
@@ -290,8 +290,7 @@ struct AcceptStep {
       }
       climb += w * (nodes.u[n].z - nx * nodes.u[n].x - ny * nodes.u[n].y);
       if (!new_velocity || !speeds) return;
-      v += new_velocity[n] * w;
-      kick += (new_velocity[n] - nodes.velocity[n]) * w;
+      v += (new_velocity[n] - nodes.velocity[n] * kept) * w;
       a1 += new_acceleration[n] * w;
       if (!affine) return;
       const Vec3<double> arm{static_cast<double>(g.s.near_x) + a, static_cast<double>(g.s.near_y) + b,
@@ -303,7 +302,7 @@ struct AcceptStep {
       add_outer(slope, new_velocity[n], gradient);
     });
     if (new_velocity && speeds) {
-      if (flip > 0) v = (widen(points.velocity_of(p)) + kick) * flip + v * (1 - flip);
+      if (kept > 0) v += widen(points.velocity_of(p)) * kept;
       store(points.velocity, p, v);
       store(points.acceleration, p, a1);
       if (affine) {

@@ -93,6 +93,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     clock.halt = clock.request = running;
     clock.outflow_count = 0;
     clock.outflow_volume = 0;
+    rate_ = static_cast<double>(positive_from_bits(clock.rate_bits));
     clock.rate_bits = clock.speed_bits = 0;
     fit_grid(clock.time);
     BatchReport report;
@@ -411,7 +412,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     for_each(Place{}, count_, EndOfStep{nodes(), scheme_, velocity_end_.data(), acceleration_end_.data()});
     AcceptStep<Real, Shape> step_kernel{this->grid_.view(), points_.view(), material_, clock_.data(), nodes(),
                                         dynamic_ ? velocity_end_.data() : nullptr, acceleration_end_.data(), u_.data(),
-                                        affine_ ? 0.0 : options_.flip_fraction, affine_, dilatant_, true, true, means()};
+                                        clock.share_kept(step, rate_), affine_, dilatant_, true, true, means()};
     const bool musl = dynamic_ && options_.stress_update == StressUpdate::modified;
     if (musl) {
       step_kernel.deforms = false;
@@ -441,6 +442,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   bool first_;  // no acceleration is known yet
   TimeScheme scheme_;
   Buffer<double, Place> mass_, contact_friction_, friction_limit_;
+  double rate_ = 0;  // CFL steps per time, as the last step ended [1/s]
   double slip_ = 0;  // [m]
   double pull_ = 0;  // [N]
   ElementList<Real, Place, Shape> elements_;

@@ -24,6 +24,7 @@ std::unique_ptr<Solver> make_solver(const Scene& scene, const SolveOptions& opti
                 std::vector<double>(cells, -1.0)};
   state.clock.courant = options.courant;
   state.clock.largest_step = options.largest_step;
+  state.clock.transfer_time = options.transfer_time;
   const double speed = std::hypot(options.initial_velocity[0], options.initial_velocity[1], options.initial_velocity[2]);
   const GroundTables ground = make_ground_tables(scene.grid);
   const auto rate = static_cast<float>(

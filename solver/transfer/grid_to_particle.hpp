@@ -14,7 +14,8 @@ enum class Gather {
   deformation    // MUSL, second half: gradient from the remapped momentum, stress, and the kept displacement
 };
 
-/// One thread: one point. nodes[] holds mass and new velocity; changes[] the velocity change of the step (FLIP).
+/// One thread: one point. nodes[] holds mass and new velocity; changes[] the velocity change of the step, null where points keep
+/// nothing of their own velocity.
 template <class Real, class Shape, Gather part>
 struct GridToParticle {
   GridView<Real> grid;
@@ -24,15 +25,15 @@ struct GridToParticle {
   const Vec4<Real>* nodes;
   const Vec4<Real>* changes;
   const std::uint64_t* home;  // key of the cell the point was sorted by (see sparse_grid.hpp)
-  Real flip;                  // share of FLIP in the velocity; 0 with APIC
   bool affine;
   bool dilatant;
 
   struct Sums {
-    Vec3<Real> velocity, change;     // [m/s]
+    Vec3<Real> velocity;             // [m/s]
     Mat3<Real> gradient;             // by reference coordinates, per cell
-    Mat3<Real> moment;               // of velocity about the point, in cells
     Real climb = 0;                  // rate of zeta [m/s]
+    Mat3<Real> moment;               // of velocity about the point, in cells
+    Vec3<Real> change;               // of the velocity in the step, where points keep some of their own [m/s]
   };
 
   TALUS_HD void operator()(int p) const {
@@ -71,7 +72,7 @@ struct GridToParticle {
           mean += v * s.wz[c];
           rise += v * s.gz[c];
           if (affine) lever += v * (s.wz[c] * (s.near_z + Real(c)));
-          if (flip > Real(0)) {
+          if (changes) {
             const Vec4<Real> d = changes[n];
             change += Vec3<Real>{d.x, d.y, d.z} * s.wz[c];
           }
@@ -96,7 +97,8 @@ struct GridToParticle {
 
   TALUS_HD void move_with(int p, const Stencil<Real, Shape>& s, const Sums& sums, Real dt) const {
     Vec3<Real> v = sums.velocity;
-    if (flip > Real(0)) v = (points.velocity_of(p) + sums.change) * flip + v * (Real(1) - flip);
+    const Real kept = changes ? Real(clock->kept) : Real(0);
+    if (kept > Real(0)) v = (points.velocity_of(p) + sums.change) * kept + v * (Real(1) - kept);
     points.velocity[0][p] = v.x;
     points.velocity[1][p] = v.y;
     points.velocity[2][p] = v.z;

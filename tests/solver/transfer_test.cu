@@ -181,7 +181,7 @@ class Transfers : public InEachPlace {
     mo.model = MaterialModel::hencky;
     for_each(Place{}, points.count(),
              GridToParticle<Real, Shape, Gather::all>{grid.view(), points.view(), make_material<Real>(mo), clock.data(),
-                                                      nodes.data(), nullptr, grid.home(), Real(0), true, false});
+                                                      nodes.data(), nullptr, grid.home(), true, false});
     synchronise(Place{});
     const ParticleState got = points.download();
     double worst = 0;

@@ -77,7 +77,7 @@ double Outcome::last_of(const std::string& name) const {
   return column.empty() ? unknown : column.back();
 }
 
-Outcome Bench::run(const std::string& variant, const Overrides& overrides) {
+Outcome Bench::run(const std::string& variant, const Overrides& overrides, bool profile) {
   const fs::path out = request_.out / name_ / folder_of(variant);
   fs::remove_all(out);
   fs::create_directories(out);
@@ -90,7 +90,9 @@ Outcome Bench::run(const std::string& variant, const Overrides& overrides) {
   for (const char* stage : {"talus-preprocess", "talus-solve"}) {
     const fs::path log = out / (std::string(stage) + ".log");
     std::vector<std::string> words{(request_.programs / stage).string(), recipe.string(), "--out", out.string(), "-q"};
-    if (stage == std::string("talus-solve")) words.insert(words.end(), {"--on", request_.on});
+    const bool solves = stage == std::string("talus-solve");
+    if (solves) words.insert(words.end(), {"--on", request_.on});
+    if (solves && profile) words.emplace_back("--profile");
     const int code = call(words, log);
     if (interrupted()) throw Interrupted({"stopped", "interrupted", "Run it again"});
     if (code == 0) continue;
@@ -145,6 +147,25 @@ void Bench::at_least(const Outcome& outcome, const std::string& quantity, double
   row.error = std::max(0.0, reference - computed);
   if (!std::isfinite(computed)) row.error = unknown;
   judge(std::move(row));
+}
+
+void Bench::at_most(const Outcome& outcome, const std::string& quantity, double computed, double reference) {
+  Row row = row_of(outcome, quantity);
+  row.computed = computed;
+  row.reference = reference;
+  row.tolerance = 0;
+  row.error = std::max(0.0, computed / reference - 1);
+  judge(std::move(row));
+}
+
+void Bench::note(const Outcome& outcome, const std::string& quantity, double computed) {
+  Row row = row_of(outcome, quantity);
+  row.computed = computed;
+  row.reference = row.tolerance = unknown;
+  row.error = 0;
+  row.pass = row.fault.empty();
+  if (!row.pass) row.computed = row.error = unknown;
+  rows_.push_back(std::move(row));
 }
 
 void Bench::picture(const std::string& name, const std::string& png) const {

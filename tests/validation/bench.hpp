@@ -51,8 +51,9 @@ class Bench {
   const Request& request() const { return request_; }
   bool complete() const { return request_.complete; }
 
-  /// Run the case's recipe with these overrides; results lie in OUT/CASE/VARIANT. Says on stderr what it does.
-  Outcome run(const std::string& variant, const Overrides& overrides);
+  /// Run the case's recipe with these overrides; results lie in OUT/CASE/VARIANT. Says on stderr what it does. With `profile` the run
+  /// measures its phases (RunSummary::profile).
+  Outcome run(const std::string& variant, const Overrides& overrides, bool profile = false);
 
   /// A row whose error is |computed / reference - 1|, or |computed| where the reference is 0. A run without a result is a
   /// failed row without numbers.
@@ -63,6 +64,11 @@ class Bench {
   }
   /// A row that `computed` passes from `reference` on; its error is what is missing.
   void at_least(const Outcome& outcome, const std::string& quantity, double computed, double reference);
+
+  /// A row that `computed` passes up to `reference`; its error is what is too much.
+  void at_most(const Outcome& outcome, const std::string& quantity, double computed, double reference);
+  /// A row that says what was measured and claims nothing: it passes when the run did.
+  void note(const Outcome& outcome, const std::string& quantity, double computed);
 
   const std::vector<Row>& rows() const { return rows_; }
 

@@ -9,6 +9,7 @@ const std::vector<Case>& cases() {
       {"A2", "cantilever with a load at its tip", true, cantilever},
       {"A3", "collapse of a sand column", true, sand_column},
       {"A3b", "sand columns of other aspect ratios", false, sand_column_aspects},
+      {"A4", "time and memory of a step", true, step_cost},
       {"B1", "block on an incline", true, block_on_incline},
       {"B2", "block on a bed that weakens with speed", true, velocity_weakening},
       {"B6", "vibrating bar, free fall, patch test", true, elastic_motion},

@@ -35,6 +35,7 @@ void large_compaction(Bench&);        // A1b
 void cantilever(Bench&);              // A2
 void sand_column(Bench&);             // A3
 void sand_column_aspects(Bench&);     // A3b
+void step_cost(Bench&);               // A4
 void block_on_incline(Bench&);        // B1
 void velocity_weakening(Bench&);      // B2
 void elastic_motion(Bench&);          // B6

@@ -1,0 +1,125 @@
+// A4: time and memory of a step over the number of points, and the share of its parts (the paper's Tables 3 and 4, Figs 14 and 15).
+#include <fmt/format.h>
+
+#include <map>
+
+#include "tests/validation/cases.hpp"
+#include "tests/validation/chart.hpp"
+
+namespace talus::validation {
+namespace {
+
+constexpr double h = 0.01, step = 5e-5;
+
+/// What the paper measured on an RTX 3060 Ti: bytes of device memory in all, by thickness in cells; 0: not told.
+double pcg_memory(int cells) {
+  switch (cells) {
+    case 1: case 2: return 0.7e9;
+    case 4: return 0.9e9;
+    case 8: return 1.1e9;
+    case 16: return 1.4e9;
+    default: return cells == 32 ? 2.1e9 : 0;
+  }
+}
+double cholesky_memory(int cells) { return cells == 8 ? 5.0e9 : 0; }
+double no_memory(int) { return 0; }
+
+struct Scheme {
+  std::string name;
+  Overrides overrides;
+  double paper_time;              // per point and step [s]
+  double (*paper_memory)(int);
+  std::vector<int> quick, complete;  // thickness in cells
+};
+
+std::vector<Scheme> schemes() {
+  const Overrides explicit_steps{{"solve.preset", words("none")},        {"solve.integrator", words("explicit")},
+                                 {"solve.shape", words("linear")},       {"solve.transfer", words("flip")},
+                                 {"solve.transfer_time", 1e30},          {"solve.stress_update", words("musl")},
+                                 {"solve.largest_step_s", step},         {"solve.cfl", 0.8}};
+  return {{"PCG", {{"solve.implicit.linear_solver", words("pcg")}}, 2e-7, pcg_memory, {1, 2}, {1, 2, 4, 8, 16, 32}},
+          {"Cholesky", {{"solve.implicit.linear_solver", words("cholesky")}}, 5e-6, cholesky_memory, {1, 2}, {1, 2, 4, 8}},
+          {"explicit", explicit_steps, 1.6e-8, no_memory, {1, 2}, {1, 2, 4, 8, 16, 32}}};
+}
+
+Overrides thick(int cells, int steps) {
+  return {{"preprocess.laboratory.rows", whole(cells + 7)},
+          {"preprocess.box[0].north_m", cells * h},
+          {"solve.wall[2].position_m", cells * h},
+          {"solve.end_time_s", steps * step}};
+}
+
+/// Share of every phase of a step over the number of points.
+std::string shares(const std::string& name, const std::vector<Outcome>& runs) {
+  Chart chart;
+  chart.title = fmt::format("A4: share of each part of a step, {}", name);
+  chart.x_label = "material points";
+  chart.y_label = "share of the time [%]";
+  chart.log_x = true;
+  chart.y = Limits{0, 100};
+  std::map<std::string, Series> parts;
+  int colour = 1;
+  for (const Outcome& o : runs) {
+    for (const auto& [phase, seconds] : o.run.summary.profile) {
+      if (phase == "records and frames") continue;
+      Series& s = parts.try_emplace(phase, Series{phase, {}, {}, colour}).first->second;
+      if (s.x.empty()) ++colour;
+      s.marks = true;
+      s.x.push_back(static_cast<double>(o.run.summary.particles));
+      s.y.push_back(100 * seconds / o.run.summary.wall_time);
+    }
+  }
+  for (const auto& [phase, series] : parts) chart.series.push_back(series);
+  return png_of(chart);
+}
+
+}  // namespace
+
+void step_cost(Bench& bench) {
+  const int steps = bench.complete() ? 200 : 10;
+  Chart time;
+  time.title = "A4: time per point and step";
+  time.x_label = "material points";
+  time.y_label = "time per point and step [s]";
+  time.log_x = time.log_y = true;
+  Chart memory = time;
+  memory.title = "A4: memory of points, grid and linear solver";
+  memory.y_label = "memory [GB]";
+  int colour = 1;
+  for (const Scheme& scheme : schemes()) {
+    Series eta{scheme.name, {}, {}, colour}, bytes{scheme.name, {}, {}, colour}, paper{scheme.name + ", paper (RTX 3060 Ti)", {}, {}, colour};
+    eta.marks = bytes.marks = paper.dashed = true;
+    ++colour;
+    std::vector<Outcome> profiled;
+    for (const int cells : bench.complete() ? scheme.complete : scheme.quick) {
+      const std::string variant = fmt::format("{}, {} points", scheme.name, 36288 * cells);
+      const Outcome o = bench.run(variant, thick(cells, steps) + scheme.overrides);
+      const RunSummary& s = o.run.summary;
+      const double points = static_cast<double>(s.particles), each = s.wall_time / (points * static_cast<double>(s.steps));
+      bench.note(o, "time per point and step [s]", each);
+      if (const double published = scheme.paper_memory(cells); published > 0) {
+        bench.at_most(o, "memory [GB]", s.memory / 1e9, published / 1e9);
+      } else {
+        bench.note(o, "memory [GB]", s.memory / 1e9);
+      }
+      if (!o.ok()) continue;
+      eta.x.push_back(points);
+      eta.y.push_back(each);
+      bytes.x.push_back(points);
+      bytes.y.push_back(s.memory / 1e9);
+      paper.x.push_back(points);
+      paper.y.push_back(scheme.paper_time);
+      // Once more with its phases: waiting for each of them would count in the time above.
+      Outcome phases = bench.run(variant + ", profile", thick(cells, steps) + scheme.overrides, true);
+      if (phases.ok()) profiled.push_back(std::move(phases));
+    }
+    time.series.push_back(eta);
+    if (paper.x.size() > 1) time.series.push_back(paper);
+    memory.series.push_back(bytes);
+    bench.picture("A4-shares-" + scheme.name, shares(scheme.name, profiled));
+  }
+  bench.picture("A4-time", png_of(time));
+  bench.picture("A4-memory", png_of(memory));
+}
+
+}  // namespace talus::validation
