@@ -73,8 +73,11 @@ void ImplicitOptions::describe(recipe::Visitor& v) {
   v.number("newmark_beta", beta, recipe::fraction, "newmark: beta (0.5: trapezoid; more damps)");
   v.integer("newton_iterations", newton_iterations, recipe::Range{1, 1000}, "most Newton iterations a step; 1: one linear solve");
   v.number("newton_tolerance", newton_tolerance, recipe::Range{0, 1, true, true}, "unbalanced force over the forces' size");
-  recipe::choice(v, "linear_solver", linear_solver, {{"pcg", LinearSolver::pcg}, {"cholesky", LinearSolver::cholesky}},
-                 "conjugate gradients, never assembled; or sparse Cholesky");
+  recipe::choice(v, "tangent", tangent, {{"frozen-yield", Tangent::frozen_yield}, {"exact", Tangent::exact}},
+                 "frozen-yield: symmetric, friction at the pressure of the last iteration; exact: not symmetric, needs bicgstab");
+  recipe::choice(v, "linear_solver", linear_solver,
+                 {{"pcg", LinearSolver::pcg}, {"bicgstab", LinearSolver::bicgstab}, {"cholesky", LinearSolver::cholesky}},
+                 "conjugate gradients, or stabilised bi-conjugate ones, never assembled; or sparse Cholesky");
   v.number("linear_tolerance", linear_tolerance, recipe::Range{0, 1, true, true}, "pcg: residual over right-hand side");
   v.integer("linear_iterations", linear_iterations, recipe::Range{1, 1e9}, "pcg: most iterations");
   recipe::choice(v, "operator", form,
@@ -83,6 +86,7 @@ void ImplicitOptions::describe(recipe::Visitor& v) {
   recipe::choice(v, "preconditioner", preconditioner,
                  {{"block", Preconditioner::block}, {"diagonal", Preconditioner::diagonal}}, "pcg: 3 x 3 blocks, or the diagonal");
   v.integer("step_cuts", step_cuts, recipe::Range{0, 30}, "halvings of a step before the run gives up");
+  v.number("apex", apex, recipe::not_negative, "drucker-prager: pressure over which the tip of the cone is rounded, in weights of a cell");
   v.flag("b_bar", b_bar, "volume change as the mean over a cell: nearly incompressible material does not lock");
   v.number("filler", filler, recipe::Range{0, 1, false, true},
            "quasi-static: springs against each step's displacement of nearly empty nodes, stiffness over a full cell's");
@@ -186,6 +190,14 @@ void SolveOptions::check(std::vector<Fault>& faults) const {
   if (implicit.b_bar && integrator == Integrator::explicit_) {
     faults.push_back({"[solve.implicit] b_bar = true has no effect with integrator = \"explicit\"", "only implicit steps average the volume change",
                       "Leave it out, or take integrator = \"newmark\" or \"quasi-static\""});
+  }
+  if (implicit.tangent == Tangent::exact && implicit.linear_solver != LinearSolver::bicgstab) {
+    faults.push_back({"[solve.implicit] tangent = \"exact\" does not go with this linear_solver", "the exact tangent is not symmetric",
+                      "Take linear_solver = \"bicgstab\""});
+  }
+  if (implicit.tangent == Tangent::exact && implicit.b_bar) {
+    faults.push_back({"[solve.implicit] tangent = \"exact\" does not go with b_bar", "the mean volume change is in the symmetric tangent alone",
+                      "Take tangent = \"frozen-yield\""});
   }
   if (material.dilatancy_angle > material.friction_angle) {
     faults.push_back({fmt::format("[solve.material] dilatancy_angle_deg = {} is above friction_angle_deg = {}",

@@ -17,7 +17,8 @@ enum class Transfer { apic, flip };
 enum class StressUpdate { last, modified };  // USL, MUSL
 enum class Integrator { explicit_, newmark, quasi_static };
 enum class Preset { none, reference };
-enum class LinearSolver { pcg, cholesky };
+enum class LinearSolver { pcg, bicgstab, cholesky };
+enum class Tangent { frozen_yield, exact };
 enum class Operator { points, elements, stencil };
 enum class Preconditioner { diagonal, block };
 enum class Axis { x, y, z };
@@ -52,12 +53,14 @@ struct ImplicitOptions {
   double alpha = 0.25, beta = 0.5;   // Newmark
   int newton_iterations = 30;        // 1: the single linear solve of the reference paper
   double newton_tolerance = 1e-6;    // unbalanced force over the forces' size
+  Tangent tangent = Tangent::frozen_yield;
   LinearSolver linear_solver = LinearSolver::pcg;
   double linear_tolerance = 1e-8;
   int linear_iterations = 5000;
   Operator form = Operator::points;
   Preconditioner preconditioner = Preconditioner::block;
   int step_cuts = 8;                 // halvings before giving up
+  double apex = 1;                   // rounding of the cone's tip, in weights of a cell
   bool b_bar = false;                // element means of the volume change
   double filler = 1e-3;              // stiffness of springs that hold nearly empty nodes in statics, over that of a full cell
   void describe(recipe::Visitor& v);

@@ -27,6 +27,7 @@ struct Constraints {
   double* friction = nullptr;       // coefficient there
   double* limit = nullptr;          // friction times the reaction found last [N]
   double slip = 0;                  // slip over which friction grows to its limit [m]
+  bool coupled = false;             // the derivative of the reaction stands in the friction's: not symmetric
   double pull = 0;                  // a contact opens when it would have to pull by more than this, or rounding would open it [N]
 
   /// Friction force for the displacement u and, with `stiffness`, minus its derivative: a smoothed Coulomb cone over the
@@ -178,6 +179,7 @@ struct MeasureResidual {
     }
     if (nodes.touch[n] != Touch::none) {
       if (decide) settle_contact(n, force);
+      if (!decide && held.coupled) limit_friction(n, -dot(force, held.normal[n]));
       if (nodes.touch[n] == Touch::closed) force += held.friction_force(n, nodes.u[n], nullptr);
     }
     nodes.residual[n] = nodes.freed[n] * force;
@@ -200,8 +202,9 @@ struct MeasureResidual {
       atomic_increment(changes);
       return;
     }
-    held.limit[n] = reaction > 0 ? held.friction[n] * reaction : 0;
+    limit_friction(n, reaction);
   }
+  TALUS_HD void limit_friction(int n, double reaction) const { held.limit[n] = reaction > 0 ? held.friction[n] * reaction : 0; }
 };
 
 /// One thread: one node. y = freed (y + mass inertia x + friction's stiffness x).
@@ -215,8 +218,10 @@ struct CloseProduct {
     Vec3<double> sum = y[n] + x[n] * (nodes.mass[n] * inertia);
     if (nodes.touch[n] == Touch::closed && held.limit[n] > 0) {
       Sym3<double> stiffness;
-      held.friction_force(n, nodes.u[n], &stiffness);
-      sum += stiffness * x[n];
+      const Vec3<double> force = held.friction_force(n, nodes.u[n], &stiffness);
+      // The reaction changes by n . sum, and the friction with it.
+      const Vec3<double> share = held.coupled ? force * (dot(held.normal[n], sum) / (held.limit[n] / held.friction[n])) : Vec3<double>{};
+      sum += stiffness * x[n] - share;
     }
     y[n] = nodes.freed[n] * sum;
   }

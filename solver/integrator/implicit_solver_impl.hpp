@@ -8,6 +8,7 @@
 #include "solver/integrator/implicit_nodes.hpp"
 #include "solver/integrator/point_solver.hpp"
 #include "solver/integrator/step_failure.hpp"
+#include "solver/linear/bicgstab.hpp"
 #include "solver/linear/cholesky_solver.hpp"
 #include "solver/linear/conjugate_gradient.hpp"
 #include "solver/linear/tangent_operator.hpp"
@@ -86,6 +87,9 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
         first_(state.clock.step == 0),
         operator_(options.implicit.form) {
     changes_.upload({0});
+    const double g = std::hypot(options.gravity[0], options.gravity[1], options.gravity[2]);
+    material_.exact_tangent = options.implicit.tangent == Tangent::exact;
+    material_.apex = static_cast<Real>(options.implicit.apex * options.material.density * g * scene.grid.layer_height);
   }
 
   BatchReport advance() override {
@@ -130,7 +134,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   std::size_t bytes() const override {
     std::size_t total = Base::bytes() + mass_.bytes() + touch_.bytes() + tangents_.bytes() + wall_freed_.bytes() +
                         contact_friction_.bytes() + friction_limit_.bytes() + freed_.bytes() + blocks_.bytes() + stiffness_.bytes() + operator_.bytes() +
-                        cholesky_.bytes() + elements_.bytes() + means_.bytes() + static_cast<std::size_t>(cholesky_.factor().factor_bytes());
+                        cholesky_.bytes() + elements_.bytes() + bicgstab_.bytes() + means_.bytes() + static_cast<std::size_t>(cholesky_.factor().factor_bytes());
     for (const auto* v : {&velocity_, &acceleration_, &external_, &internal_, &u_, &residual_, &normal_,
                           &velocity_end_, &acceleration_end_, &change_, &saved_u_, &cg_.r, &cg_.z, &cg_.p, &cg_.ap}) {
       total += v->bytes();
@@ -168,7 +172,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     n.touch = touch_.data();
     return n;
   }
-  Constraints held() { return {wall_freed_.data(), normal_.data(), contact_friction_.data(), friction_limit_.data(), slip_, pull_}; }
+  Constraints held() { return {wall_freed_.data(), normal_.data(), contact_friction_.data(), friction_limit_.data(), slip_, options_.implicit.tangent == Tangent::exact, pull_}; }
 
   void size_nodes() {
     count_ = this->grid_.nodes();
@@ -228,13 +232,27 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     }
   }
 
-  /// Slip over which friction grows: a small part of the way that gravity alone would make in a step, so that what rests creeps by no
-  /// more than that.
+  /// Slip over which friction grows: a part of the way that gravity alone would make in a step, so that what rests creeps by no more than
+  /// that.
   double smoothing(double step) const {
-    constexpr double part = 1e-5;
     const double g = std::hypot(options_.gravity[0], options_.gravity[1], options_.gravity[2]);
-    return dynamic_ ? part * 0.5 * std::max(g, 1e-3) * step * step : 1e-9 * this->frame_.cell[0];
+    return dynamic_ ? sharpness_ * 0.5 * std::max(g, 1e-3) * step * step : 1e-9 * this->frame_.cell[0];
   }
+
+  /// The corner between stick and slip can send Newton's iterations round in circles. Where they do not get on, friction is smoothed more
+  /// (still a thousandth of what flows in a step), and sharpened again once they do.
+  static constexpr double sharpest = 1e-5, bluntest = 0.1;
+  static constexpr int patience = 4;
+  void sharpen(const StepStats& stats) {
+    if (stats.newton <= 2 * patience) sharpness_ = std::max(sharpest, 0.5 * sharpness_);
+  }
+  bool blunt(double step) {
+    if (!dynamic_ || sharpness_ >= bluntest) return false;
+    sharpness_ = std::min(bluntest, 10 * sharpness_);
+    slip_ = smoothing(step);
+    return true;
+  }
+
 
   TangentStore<Real> tangents() { return {tangents_.data(), points_.count()}; }
 
@@ -300,6 +318,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     prepare(start, step);
     const ImplicitOptions& o = options_.implicit;
     if (o.newton_iterations == 1) return solve_once(stats);
+    double best = 1e300;  // least unbalanced force so far
+    int waited = 0;       // iterations since it was halved
     for (stats.newton = 0; stats.newton < o.newton_iterations; ++stats.newton) {
       measure_stress(true);
       pull_ = o.newton_tolerance * force_size() / std::sqrt(static_cast<double>(std::max(count_, 1)));
@@ -311,9 +331,18 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
       }
       stats.residual = unbalanced / force_size();
       if (!std::isfinite(stats.residual)) return false;
-      if (stats.residual <= o.newton_tolerance && changes == 0) return within_reach();
+      if (stats.residual <= o.newton_tolerance && changes == 0) {
+        sharpen(stats);
+        return within_reach();
+      }
+      waited = stats.residual < 0.5 * best ? 0 : waited + 1;
+      best = std::min(best, stats.residual);
+      if (waited >= patience && blunt(step)) {
+        waited = 0;
+        best = 1e300;
+      }
       if (!linear_solve(stats)) return false;
-      if (!search(unbalanced)) return false;
+      if (!search(unbalanced) && !blunt(step)) return false;
     }
     return false;
   }
@@ -396,8 +425,11 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     const auto precondition = [&](const NodeVector<Place>& r, NodeVector<Place>& z) {
       for_each(Place{}, count_, ApplyBlocks{nodes(), blocks_.data(), r.data(), z.data()});
     };
-    return cg_.solve(residual_, change_, options_.implicit.linear_tolerance, options_.implicit.linear_iterations, apply_tangent,
-                     precondition);
+    const ImplicitOptions& o = options_.implicit;
+    if (o.linear_solver == LinearSolver::bicgstab) {
+      return bicgstab_.solve(residual_, change_, o.linear_tolerance, o.linear_iterations, apply_tangent, precondition);
+    }
+    return cg_.solve(residual_, change_, o.linear_tolerance, o.linear_iterations, apply_tangent, precondition);
   }
 
   /// No point may go further than a cell in a step: shape functions stand still meanwhile.
@@ -444,6 +476,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   Buffer<double, Place> mass_, contact_friction_, friction_limit_;
   double rate_ = 0;  // CFL steps per time, as the last step ended [1/s]
   double slip_ = 0;  // [m]
+  double sharpness_ = sharpest;
   double pull_ = 0;  // [N]
   ElementList<Real, Place, Shape> elements_;
   MeanDilation<Real, Place, Shape> means_;
@@ -456,6 +489,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   Buffer<int, Place> changes_;
   Buffer<std::uint32_t, Place> farthest_;
   ConjugateGradient<Place> cg_;
+  BiCgStab<Place> bicgstab_;
   TangentOperator<Real, Place, Shape> operator_;
   CholeskySolver<Real, Place, Shape> cholesky_;
 };

@@ -25,6 +25,8 @@ struct Material {
   Real dilatancy = 0;        // slope beta of the plastic potential [-]
   Real shear_cohesion = 0;   // [Pa]
   Real tension = 0;          // largest -p carried [Pa]
+  Real apex = 0;             // pressure over which the tip of the cone is rounded [Pa]
+  bool exact_tangent = false;  // with what the volume change does to a yielding point's friction: not symmetric
 };
 
 template <class Real>
@@ -42,11 +44,33 @@ struct MeanVolume {
   Real stress{};     // mean Kirchhoff stress of its element [Pa]
 };
 
+/// Pressure that a Drucker-Prager point would have without cut-off, over the cut-off.
+template <class Real>
+TALUS_HD Real free_pressure(const Material<Real>& m, Real log_volume, Real plastic_log_volume) {
+  return m.tension - m.bulk_modulus * (log_volume - plastic_log_volume);
+}
+
+/// The cut-off: what is left of a free pressure, max(y, 0), rounded over `apex` to (y + sqrt(y^2 + apex^2)) / 2, and its derivative.
+template <class Real>
+struct CutPressure {
+  Real value, slope;
+  TALUS_HD CutPressure(const Material<Real>& m, Real y) {
+    if (m.apex > Real(0)) {
+      const Real root = sqrt(y * y + m.apex * m.apex);
+      // The difference of two large numbers where the point has opened far.
+      value = y > Real(0) ? Real(0.5) * (y + root) : Real(0.5) * m.apex * m.apex / (root - y);
+      slope = value / root;
+    } else {
+      value = y > Real(0) ? y : Real(0);
+      slope = y > Real(0) ? Real(1) : Real(0);
+    }
+  }
+};
+
 /// Pressure of a Drucker-Prager point, tension cut off.
 template <class Real>
 TALUS_HD Real granular_pressure(const Material<Real>& m, const MaterialState<Real>& s) {
-  const Real p = -m.bulk_modulus * (s.log_volume - s.plastic_log_volume);
-  return p > -m.tension ? p : -m.tension;
+  return CutPressure<Real>(m, free_pressure(m, s.log_volume, s.plastic_log_volume)).value - m.tension;
 }
 
 /// Kirchhoff stress tau = J sigma [Pa].
@@ -113,21 +137,50 @@ TALUS_HD void advance_linear(const Material<Real>& m, const Mat3<Real>& g, Sym3<
   stress = s + turned + (strain * (Real(2) * m.shear_modulus)).plus_identity(lame * trace(strain));
 }
 
-/// Return to the Drucker-Prager cone, smooth part or tension cut-off (de Souza Neto et al. 2008, box 8.8, non-associated).
+/// Where a trial of the Drucker-Prager cone ends (de Souza Neto et al. 2008, box 8.8, non-associated): shear - G g = alpha p(g) + k with
+/// dilatancy raising the pressure by K beta g. The pressure is convex in g, so Newton's steps come from one side.
+template <class Real>
+struct ConeReturn {
+  Real left;            // sqrt(J2) [Pa]
+  Real dilation = 0;    // plastic volume change
+  Real pressure, give;  // pressure [Pa] and the slope of its cut-off there
+  bool yields = false, tip = false;  // has yielded; no shear strength is left
+
+  TALUS_HD ConeReturn(const Material<Real>& m, Real shear, Real y) : left(shear) {
+    CutPressure<Real> cut(m, y);
+    pressure = cut.value - m.tension;
+    give = cut.slope;
+    Real excess = shear - m.friction * pressure - m.shear_cohesion;
+    if (excess <= Real(0)) return;
+    yields = true;
+    // An open point has no pressure to raise.
+    const Real raise = give > Real(0) ? m.bulk_modulus * m.dilatancy : Real(0);
+    Real multiplier = excess / (m.shear_modulus + m.friction * raise * give);
+    const int corrections = raise > Real(0) && m.apex > Real(0) ? 4 : raise > Real(0) ? 1 : 0;
+    for (int n = 0; n < corrections; ++n) {
+      const CutPressure<Real> now(m, y + raise * multiplier);
+      pressure = now.value - m.tension;
+      give = now.slope;
+      excess = shear - m.shear_modulus * multiplier - m.friction * pressure - m.shear_cohesion;
+      multiplier += excess / (m.shear_modulus + m.friction * raise * give);
+    }
+    left = shear - m.shear_modulus * multiplier;
+    dilation = raise > Real(0) ? m.dilatancy * multiplier : Real(0);
+    if (left < Real(0)) {
+      left = Real(0);
+      tip = true;
+    }
+  }
+};
+
+/// Return of a point to the cone.
 template <class Real>
 TALUS_HD void return_to_cone(const Material<Real>& m, MaterialState<Real>& s) {
   const Real shear = Real(2) * m.shear_modulus * sqrt(Real(0.5) * norm_squared(s.elastic));  // sqrt(J2) of the trial
-  const Real pressure = granular_pressure(m, s);
-  const Real excess = shear - m.friction * pressure - m.shear_cohesion;
-  if (excess <= Real(0)) return;
-  // Dilatancy raises the pressure as the point shears; an open point has none to raise.
-  const bool closed = m.dilatancy > Real(0) && pressure > -m.tension;
-  const Real beta = closed ? m.dilatancy : Real(0);
-  const Real multiplier = excess / (m.shear_modulus + m.friction * m.bulk_modulus * beta);
-  Real left = shear - m.shear_modulus * multiplier;
-  if (left < Real(0)) left = Real(0);  // apex: no shear strength at this pressure
-  s.elastic = s.elastic * (left / shear);
-  s.plastic_log_volume += beta * multiplier;
+  const ConeReturn<Real> end(m, shear, free_pressure(m, s.log_volume, s.plastic_log_volume));
+  if (!end.yields) return;
+  s.elastic = s.elastic * (end.left / shear);
+  s.plastic_log_volume += end.dilation;
 }
 
 /// Advance the state over a step with displacement gradient g = dt grad v, and the mean volume change where that is on.

@@ -82,8 +82,8 @@ TALUS_HD Mat3<Real> linear_stress(const Material<Real>& m, const MaterialState<R
   return {{s.xx, s.xy, s.xz}, {s.xy, s.yy, s.yz}, {s.xz, s.yz, s.zz}};
 }
 
-/// Principal Kirchhoff stresses of the trial strains `e` and D_ab = d tau_a / d e_b. `log_volume` is the trial's. The friction
-/// of a yielding point is held at its current pressure in D (frozen yield), which keeps D symmetric.
+/// Principal Kirchhoff stresses of the trial strains `e` and D_ab = d tau_a / d e_b. `log_volume` is the trial's. Unless the material asks for
+/// its exact tangent, the friction of a yielding point is held at its current pressure in D (frozen yield), which keeps D symmetric.
 template <class Real>
 TALUS_HD void principal_response(const Material<Real>& m, const Real e[3], Real log_volume, Real plastic_log_volume, Real tau[3],
                                  Real d[9]) {
@@ -115,23 +115,21 @@ TALUS_HD void principal_response(const Material<Real>& m, const Real e[3], Real 
   const Real s[3] = {e[0] - mean, e[1] - mean, e[2] - mean};
   const Real size = sqrt(Real(0.5) * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2]));
   const Real shear = twice * size;
-  Real pressure = -m.bulk_modulus * (log_volume - plastic_log_volume);
-  Real bulk = m.bulk_modulus;
-  const bool open = pressure <= -m.tension;
-  if (open) {
-    pressure = -m.tension;
-    bulk = Real(0);
+  const ConeReturn<Real> end(m, shear, free_pressure(m, log_volume, plastic_log_volume));
+  const Real left = end.left, pressure = end.pressure, bulk = m.bulk_modulus * end.give;
+  Real slope = Real(1);  // of sqrt(J2) after the return by the trial's
+  if (end.yields) {
+    const Real raised = end.dilation > Real(0) ? m.friction * m.dilatancy * bulk : Real(0);
+    slope = end.tip ? Real(0) : raised / (m.shear_modulus + raised);
   }
-  const Real excess = shear - m.friction * pressure - m.shear_cohesion;
-  Real left = shear, slope = Real(1);  // sqrt(J2) after the return, its derivative by the trial's
-  if (excess > Real(0)) {
-    const Real beta = open ? Real(0) : m.dilatancy;
-    const Real stiff = m.shear_modulus + m.friction * m.bulk_modulus * beta;
-    const Real multiplier = excess / stiff;
-    left = shear - m.shear_modulus * multiplier;
-    slope = m.friction * m.bulk_modulus * beta / stiff;
-    if (left < Real(0)) left = slope = Real(0);
-    pressure += m.bulk_modulus * beta * multiplier;
+  // Exact: shear' = slope dS + pull dy, p' = hold dy + lift dS, with y = -K tr(e) the free pressure.
+  Real pull = 0, hold = end.give, lift = 0;
+  if (m.exact_tangent && end.yields && !end.tip) {
+    const Real raise = end.dilation > Real(0) ? m.bulk_modulus * m.dilatancy : Real(0);
+    const Real stiff = m.shear_modulus + m.friction * raise * end.give;
+    pull = m.shear_modulus * m.friction * end.give / stiff;
+    hold = end.give * m.shear_modulus / stiff;
+    lift = end.give * raise / stiff;
   }
   const Real ratio = shear > Real(0) ? left / shear : Real(1);
   // d(2G s ratio) = 2G [ratio dev + (slope - ratio) n n^T], n = s / |s|
@@ -140,7 +138,8 @@ TALUS_HD void principal_response(const Material<Real>& m, const Real e[3], Real 
     tau[a] = twice * ratio * s[a] - pressure;
     for (int b = 0; b < 3; ++b) {
       const Real along = square > Real(0) ? s[a] * s[b] / square : Real(0);
-      d[3 * a + b] = bulk + twice * (ratio * ((a == b ? Real(1) : Real(0)) - Real(1.0 / 3)) + (slope - ratio) * along);
+      d[3 * a + b] = m.bulk_modulus * hold + twice * (ratio * ((a == b ? Real(1) : Real(0)) - Real(1.0 / 3)) + (slope - ratio) * along);
+      if (size > Real(0)) d[3 * a + b] -= pull * m.bulk_modulus * s[a] / size + lift * m.shear_modulus * s[b] / size;
     }
   }
 }

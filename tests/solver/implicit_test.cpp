@@ -457,6 +457,55 @@ TEST_P(Implicit, slides_down_an_incline_with_friction) {
   EXPECT_NEAR((end.x - start.x) / expected, 1, 0.02);
 }
 
+TEST_P(Implicit, lets_a_heap_of_sand_collapse_at_ten_times_the_cfl_step) {
+  // A column 1.5 times as high as wide, no cohesion, on a rough floor: yielding, opening, stick and slip in one. Against explicit steps.
+  Domain d = ground(26, 6, 0.1, 0.1, [](double, double) { return 0.0; });
+  fill(d, {0.35, 0.95, 0.25, 0.35, 0, 0.9});
+  SolveOptions o;
+  o.mapping = Mapping::cartesian;
+  o.material.youngs_modulus = 2e6;
+  o.material.poisson_ratio = 0.3;
+  o.material.density = 2650;
+  o.material.friction_angle = 31;
+  o.material.dilatancy_angle = 1;
+  o.material.cone = Cone::plane_strain;
+  o.base.friction_angle = 28;
+  o.walls.push_back({Axis::x, 0.35, Side::above, WallKind::roller});
+  o.walls.push_back({Axis::y, 0.25, Side::above, WallKind::roller});
+  o.walls.push_back({Axis::y, 0.35, Side::below, WallKind::roller});
+  const auto collapse = [&](Integrator integrator, Tangent tangent, StepStats& sums) {
+    o.integrator = integrator;
+    o.implicit.step = 0.018;
+    o.implicit.newton_tolerance = 1e-4;
+    o.implicit.linear_tolerance = 1e-3;
+    o.implicit.tangent = tangent;
+    o.implicit.linear_solver = tangent == Tangent::exact ? LinearSolver::bicgstab : LinearSolver::pcg;
+    const Scene scene = make_scene(d, o);
+    const auto solver = make_solver(scene, o, GetParam());
+    solver->set_next_event(1.0);
+    for (BatchReport batch; batch.clock.halt != at_event;) {
+      batch = solver->advance();
+      EXPECT_NE(batch.clock.halt, failed);
+      sums.newton += batch.stats.newton;
+      sums.cuts += batch.stats.cuts;
+      sums.over_cfl = std::max(sums.over_cfl, batch.stats.over_cfl);
+    }
+    return centre(*solver, scene).x - 0.35;
+  };
+  StepStats none;
+  const double expected = collapse(Integrator::explicit_, Tangent::frozen_yield, none);
+  EXPECT_GT(expected, 0.4);  // it has moved: its centre began at 0.3 m
+  for (const auto tangent : {Tangent::frozen_yield, Tangent::exact}) {
+    StepStats sums;
+    const double got = collapse(Integrator::newmark, tangent, sums);
+    std::printf("  sand at %.0f CFL, %s tangent: centre %.4f m, explicit %.4f m; %d Newton in 56 steps, %d cuts\n", sums.over_cfl,
+                tangent == Tangent::exact ? "exact" : "frozen-yield", got, expected, sums.newton, sums.cuts);
+    EXPECT_NEAR(got / expected, 1, 0.05);
+    EXPECT_GT(sums.over_cfl, 8);
+    EXPECT_LE(sums.cuts, 5);
+  }
+}
+
 TALUS_IN_EACH_PLACE(Implicit);
 
 }  // namespace
