@@ -13,6 +13,7 @@ const std::vector<Case>& cases() {
       {"B1", "block on an incline", true, block_on_incline},
       {"B2", "block on a bed that weakens with speed", true, velocity_weakening},
       {"B6", "vibrating bar, free fall, patch test", true, elastic_motion},
+      {"C1", "sand column in long steps", true, large_steps},
   };
   return list;
 }

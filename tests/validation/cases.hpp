@@ -39,5 +39,6 @@ void step_cost(Bench&);               // A4
 void block_on_incline(Bench&);        // B1
 void velocity_weakening(Bench&);      // B2
 void elastic_motion(Bench&);          // B6
+void large_steps(Bench&);             // C1
 
 }  // namespace talus::validation
