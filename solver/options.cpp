@@ -78,7 +78,9 @@ void ImplicitOptions::describe(recipe::Visitor& v) {
   recipe::choice(v, "linear_solver", linear_solver,
                  {{"pcg", LinearSolver::pcg}, {"bicgstab", LinearSolver::bicgstab}, {"cholesky", LinearSolver::cholesky}},
                  "conjugate gradients, or stabilised bi-conjugate ones, never assembled; or sparse Cholesky");
-  v.number("linear_tolerance", linear_tolerance, recipe::Range{0, 1, true, true}, "pcg: residual over right-hand side");
+  v.number("linear_tolerance", linear_tolerance, recipe::Range{0, 1, true, true}, "pcg, bicgstab: residual over right-hand side");
+  recipe::choice(v, "forcing", forcing, {{"eisenstat-walker", Forcing::eisenstat_walker}, {"fixed", Forcing::fixed}},
+                 "eisenstat-walker: no more exact than Newton's iteration can use, linear_tolerance at the finest; fixed: always linear_tolerance");
   v.integer("linear_iterations", linear_iterations, recipe::Range{1, 1e9}, "pcg: most iterations");
   recipe::choice(v, "operator", form,
                  {{"points", Operator::points}, {"elements", Operator::elements}, {"stencil", Operator::stencil}},

@@ -19,6 +19,7 @@ enum class Integrator { explicit_, newmark, quasi_static };
 enum class Preset { none, reference };
 enum class LinearSolver { pcg, bicgstab, cholesky };
 enum class Tangent { frozen_yield, exact };
+enum class Forcing { fixed, eisenstat_walker };
 enum class Operator { points, elements, stencil };
 enum class Preconditioner { diagonal, block };
 enum class Axis { x, y, z };
@@ -56,6 +57,7 @@ struct ImplicitOptions {
   Tangent tangent = Tangent::frozen_yield;
   LinearSolver linear_solver = LinearSolver::pcg;
   double linear_tolerance = 1e-8;
+  Forcing forcing = Forcing::eisenstat_walker;
   int linear_iterations = 5000;
   Operator form = Operator::points;
   Preconditioner preconditioner = Preconditioner::block;

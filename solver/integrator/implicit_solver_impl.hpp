@@ -72,6 +72,24 @@ struct RemapDisplacement {
   }
 };
 
+/// How exactly the next linear system is worth solving: as Newton's last iteration got on (Eisenstat & Walker 1996, choice 2, with their
+/// safeguard), and no further than Newton's own tolerance asks.
+struct LinearForcing {
+  double last_residual = 0, last = 0.1;
+  double next(double residual, const ImplicitOptions& o) {
+    constexpr double gamma = 0.9, most = 0.1, first = 1e-3;  // a nearly linear step should be done in two
+    if (o.forcing == Forcing::fixed) return o.linear_tolerance;
+    double wanted = first;
+    if (last_residual > 0) {
+      wanted = gamma * (residual / last_residual) * (residual / last_residual);
+      if (gamma * last * last > 0.1) wanted = std::max(wanted, gamma * last * last);
+    }
+    last_residual = residual;
+    last = std::clamp(wanted, 1e-12, most);
+    return std::max(o.linear_tolerance, std::min(most, std::max(last, 0.1 * o.newton_tolerance / residual)));
+  }
+};
+
 template <class Real, class Place, class Shape>
 class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   using Base = PointSolver<Real, Place, Shape>;
@@ -320,6 +338,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     if (o.newton_iterations == 1) return solve_once(stats);
     double best = 1e300;  // least unbalanced force so far
     int waited = 0;       // iterations since it was halved
+    LinearForcing forcing;
     for (stats.newton = 0; stats.newton < o.newton_iterations; ++stats.newton) {
       measure_stress(true);
       pull_ = o.newton_tolerance * force_size() / std::sqrt(static_cast<double>(std::max(count_, 1)));
@@ -341,7 +360,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
         waited = 0;
         best = 1e300;
       }
-      if (!linear_solve(stats)) return false;
+      if (!linear_solve(stats, forcing.next(stats.residual, o))) return false;
       if (!search(unbalanced) && !blunt(step)) return false;
     }
     return false;
@@ -352,7 +371,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     measure_stress(true);
     measure_residual(true);
     stats.newton = 1;
-    const bool solved = linear_solve(stats);
+    const bool solved = linear_solve(stats, options_.implicit.linear_tolerance);
     axpby(1.0, change_, 1.0, u_);
     stats.residual = stats.linear_residual;
     return solved && within_reach();
@@ -377,16 +396,16 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     return false;
   }
 
-  bool linear_solve(StepStats& stats) {
+  bool linear_solve(StepStats& stats, double tolerance) {
     const bool direct = options_.implicit.linear_solver == LinearSolver::cholesky;
-    LinearReport report = direct ? factorise() : iterate();
+    LinearReport report = direct ? factorise() : iterate(tolerance);
     stats.linear += report.iterations;
     if (report.indefinite) {
       stats.indefinite = true;
       // Compression makes the tangent of a sparsely filled cell indefinite; without that part it is one of a convex energy, slower but
       // sure to lead downhill.
       measure_stress(true, true);
-      report = direct ? factorise() : iterate();
+      report = direct ? factorise() : iterate(tolerance);
       stats.linear += report.iterations;
     }
     stats.linear_residual = report.residual;
@@ -414,7 +433,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     operator_.refresh(point_tangents(), this->grid_.groups());
   }
 
-  LinearReport iterate() {
+  LinearReport iterate(double tolerance) {
     refresh_operator();
     const ProfilePhase<Place> phase("conjugate gradients");
     const auto apply_tangent = [&](const NodeVector<Place>& x, NodeVector<Place>& y) {
@@ -427,9 +446,9 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     };
     const ImplicitOptions& o = options_.implicit;
     if (o.linear_solver == LinearSolver::bicgstab) {
-      return bicgstab_.solve(residual_, change_, o.linear_tolerance, o.linear_iterations, apply_tangent, precondition);
+      return bicgstab_.solve(residual_, change_, tolerance, o.linear_iterations, apply_tangent, precondition);
     }
-    return cg_.solve(residual_, change_, o.linear_tolerance, o.linear_iterations, apply_tangent, precondition);
+    return cg_.solve(residual_, change_, tolerance, o.linear_iterations, apply_tangent, precondition);
   }
 
   /// No point may go further than a cell in a step: shape functions stand still meanwhile.
