@@ -62,7 +62,7 @@ struct ImplicitOptions {
   Operator form = Operator::points;
   Preconditioner preconditioner = Preconditioner::block;
   int step_cuts = 8;                 // halvings before giving up
-  double apex = 1;                   // rounding of the cone's tip, in weights of a cell
+  double apex = 0.1;                 // rounding of the cone's tip, in weights of a cell
   bool b_bar = false;                // element means of the volume change
   double filler = 1e-3;              // stiffness of springs that hold nearly empty nodes in statics, over that of a full cell
   void describe(recipe::Visitor& v);

@@ -16,7 +16,8 @@ enum class Touch : unsigned char { none, open, closed };
 /// Arrays over the stored nodes, double whatever the precision of the points.
 struct NodeArrays {
   double* mass = nullptr;                // [kg]
-  Vec3<double>* velocity = nullptr;      // at the start of the step [m/s]
+  Vec3<double>* velocity = nullptr;      // at the start of the step, from the points [m/s]
+  Vec3<double>* arrival = nullptr;       // what the ground takes from it at once, where it points into the ground; null in statics [m/s]
   Vec3<double>* acceleration = nullptr;  // at the start of the step [m/s2]
   Vec3<double>* external = nullptr;      // at the end of the step [N]
   Vec3<double>* internal = nullptr;      // for the displacement u [N]
@@ -24,6 +25,9 @@ struct NodeArrays {
   Vec3<double>* residual = nullptr;      // unbalanced force, freed directions only [N]
   Sym3<double>* freed = nullptr;         // projector on the directions a node may move in
   Touch* touch = nullptr;
+
+  /// Velocity that the step begins with.
+  TALUS_HD Vec3<double> begin_velocity(int n) const { return arrival ? velocity[n] + arrival[n] : velocity[n]; }
 };
 
 /// Interpolation of a point once more, in double, with gradients by position [1/m].

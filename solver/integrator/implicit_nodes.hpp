@@ -78,11 +78,13 @@ struct PrepareNodes {
     nodes.velocity[n] = nodes.velocity[n] * (1 / m);
     if (nodes.acceleration) nodes.acceleration[n] = nodes.acceleration[n] * (1 / m);
     nodes.external[n] += gravity * m;
-    Vec3<double> u = predict ? nodes.velocity[n] * scheme.step : Vec3<double>{};
+    Vec3<double> u{};
     Sym3<double> freed = whole_space();
     Vec3<double> normal{};
     double friction = 0;
     const bool grounded = touch_ground(i, j, k, normal, friction, freed, u);
+    if (scheme.dynamic) nodes.arrival[n] = arrive(nodes.velocity[n], normal, friction);
+    if (predict && trace(freed) > 0) u = nodes.begin_velocity(n) * scheme.step;
     for (int w = 0; w < walls.count; ++w) meet(walls.list[w], i, j, k, grounded, normal, friction, freed, u);
     held.walls[n] = freed;
     held.normal[n] = normal;
@@ -94,6 +96,16 @@ struct PrepareNodes {
     }
     nodes.freed[n] = freed;
     nodes.u[n] = u;
+  }
+
+  /// Where the ground bends, or is met, a node comes with a velocity into it. The ground takes that at once, and friction its share of the same
+  /// impulse, as in an explicit step; spread over the step by Newmark's rule it would count four times.
+  TALUS_HD static Vec3<double> arrive(const Vec3<double>& v, const Vec3<double>& normal, double friction) {
+    const double approach = -dot(v, normal);
+    if (!(approach > 0)) return {};
+    const Vec3<double> slip = v + normal * approach;
+    const double speed = length(slip), loss = friction * approach;
+    return normal * approach - slip * (loss < speed ? loss / speed : 1.0);
   }
 
   TALUS_HD bool touch_ground(int i, int j, int k, Vec3<double>& normal, double& friction, Sym3<double>& freed,
@@ -172,24 +184,33 @@ struct MeasureResidual {
       return;
     }
     Vec3<double> force = nodes.external[n] - nodes.internal[n];
+    const double reaction = nodes.touch[n] == Touch::none ? 0 : reaction_of(n, force);
     if (scheme.dynamic) {
-      Vec3<double> a = nodes.velocity[n] * (1 / (scheme.alpha * scheme.step)) - nodes.u[n] * scheme.inertia();
+      Vec3<double> a = nodes.begin_velocity(n) * (1 / (scheme.alpha * scheme.step)) - nodes.u[n] * scheme.inertia();
       if (nodes.acceleration) a += nodes.acceleration[n] * (1 / (2 * scheme.alpha) - 1);
       force += a * m;
     }
     if (nodes.touch[n] != Touch::none) {
-      if (decide) settle_contact(n, force);
-      if (!decide && held.coupled) limit_friction(n, -dot(force, held.normal[n]));
+      if (decide) settle_contact(n, reaction);
+      if (!decide && held.coupled) limit_friction(n, reaction);
       if (nodes.touch[n] == Touch::closed) force += held.friction_force(n, nodes.u[n], nullptr);
     }
     nodes.residual[n] = nodes.freed[n] * force;
   }
 
  private:
-  /// Unilateral contact: it opens when it would have to pull, and closes when the node moves in.
-  TALUS_HD void settle_contact(int n, const Vec3<double>& force) const {
+  /// What presses the node onto the surface: forces, and less what it takes to stop a velocity away from it over the step. Velocity into it has been
+  /// taken at the start (PrepareNodes).
+  TALUS_HD double reaction_of(int n, const Vec3<double>& force) const {
     const Vec3<double> normal = held.normal[n];
-    const double reaction = -dot(force, normal);
+    const double dt = scheme.step;
+    const double arrives = scheme.dynamic ? (dot(nodes.begin_velocity(n), normal) - dot(nodes.u[n], normal) / dt) / dt : 0;
+    return -dot(force, normal) - nodes.mass[n] * arrives;
+  }
+
+  /// Unilateral contact: it opens when it would have to pull, and closes when the node moves in.
+  TALUS_HD void settle_contact(int n, double reaction) const {
+    const Vec3<double> normal = held.normal[n];
     if (nodes.touch[n] == Touch::closed && reaction < -held.pull) {
       nodes.touch[n] = Touch::open;
       nodes.freed[n] = held.walls[n];
@@ -289,7 +310,7 @@ struct EndOfStep {
   Vec3<double>* velocity;
   Vec3<double>* acceleration;
   TALUS_HD void operator()(int n) const {
-    const Vec3<double> v = nodes.velocity[n], u = nodes.u[n];
+    const Vec3<double> v = nodes.begin_velocity(n), u = nodes.u[n];
     const Vec3<double> a = nodes.acceleration ? nodes.acceleration[n] : Vec3<double>{};
     const double dt = scheme.step;
     const Vec3<double> a1 = (u - v * dt) * (1 / (scheme.alpha * dt * dt)) - a * (1 / (2 * scheme.alpha) - 1);

@@ -105,6 +105,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
         first_(state.clock.step == 0),
         operator_(options.implicit.form) {
     changes_.upload({0});
+    this->grid_.fit(points_, 0);
     const double g = std::hypot(options.gravity[0], options.gravity[1], options.gravity[2]);
     material_.exact_tangent = options.implicit.tangent == Tangent::exact;
     material_.apex = static_cast<Real>(options.implicit.apex * options.material.density * g * scene.grid.layer_height);
@@ -153,7 +154,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     std::size_t total = Base::bytes() + mass_.bytes() + touch_.bytes() + tangents_.bytes() + wall_freed_.bytes() +
                         contact_friction_.bytes() + friction_limit_.bytes() + freed_.bytes() + blocks_.bytes() + stiffness_.bytes() + operator_.bytes() +
                         cholesky_.bytes() + elements_.bytes() + bicgstab_.bytes() + means_.bytes() + static_cast<std::size_t>(cholesky_.factor().factor_bytes());
-    for (const auto* v : {&velocity_, &acceleration_, &external_, &internal_, &u_, &residual_, &normal_,
+    for (const auto* v : {&velocity_, &arrival_, &acceleration_, &external_, &internal_, &u_, &residual_, &normal_,
                           &velocity_end_, &acceleration_end_, &change_, &saved_u_, &cg_.r, &cg_.z, &cg_.p, &cg_.ap}) {
       total += v->bytes();
     }
@@ -181,6 +182,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     NodeArrays n;
     n.mass = mass_.data();
     n.velocity = velocity_.data();
+    n.arrival = dynamic_ ? arrival_.data() : nullptr;
     n.acceleration = dynamic_ ? acceleration_.data() : nullptr;
     n.external = external_.data();
     n.internal = internal_.data();
@@ -197,7 +199,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     const auto n = static_cast<std::size_t>(count_);
     mass_.resize(n);
     mass_.fill_zero();
-    for (auto* v : {&velocity_, &acceleration_, &external_}) {
+    for (auto* v : {&velocity_, &arrival_, &acceleration_, &external_}) {
       v->resize(n);
       v->fill_zero();
     }
@@ -500,7 +502,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   ElementList<Real, Place, Shape> elements_;
   MeanDilation<Real, Place, Shape> means_;
   Walls<double> walls_;
-  NodeVector<Place> velocity_, acceleration_, external_, internal_, u_, residual_, normal_, velocity_end_,
+  NodeVector<Place> velocity_, arrival_, acceleration_, external_, internal_, u_, residual_, normal_, velocity_end_,
       acceleration_end_, change_, saved_u_;
   Buffer<Sym3<double>, Place> freed_, wall_freed_, blocks_, stiffness_;
   Buffer<Touch, Place> touch_;
