@@ -1,6 +1,7 @@
 #include "tests/validation/points.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "common/run/hdf5.hpp"
@@ -59,6 +60,20 @@ std::vector<Points> read_points(const std::filesystem::path& run) {
     first += count;
   }
   return frames;
+}
+
+double front_of(const Points& points, double cell, double point_spacing) {
+  std::vector<double> x;
+  for (const auto& p : points.position) {
+    if (std::isfinite(p[0])) x.push_back(p[0]);
+  }
+  std::sort(x.begin(), x.end());
+  double front = 0;
+  for (const double at : x) {
+    if (at > front + cell + point_spacing) break;
+    front = at;
+  }
+  return front + 0.5 * point_spacing;
 }
 
 }  // namespace talus::validation

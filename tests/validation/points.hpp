@@ -20,4 +20,7 @@ struct Points {
 /// From group VTKHDF of run.h5. Throws DataError.
 std::vector<Points> read_points(const std::filesystem::path& run);
 
+/// Where a deposit along x ends: the last point before a gap of one cell, and half a point more (single grains roll on) [m].
+double front_of(const Points& points, double cell, double point_spacing);
+
 }  // namespace talus::validation

@@ -40,20 +40,7 @@ Overrides overrides_of(const Sand& s) {
           {"solve.end_time_s", gate_opens + s.flow_time}};
 }
 
-/// Where the deposit ends: the last point before a gap of one cell, and half a point more (single grains roll on).
-double front_of(const Points& points, const Sand& s) {
-  std::vector<double> x;
-  for (const auto& p : points.position) {
-    if (std::isfinite(p[0])) x.push_back(p[0]);
-  }
-  std::sort(x.begin(), x.end());
-  double front = 0;
-  for (const double at : x) {
-    if (at > front + s.h + s.point_spacing()) break;
-    front = at;
-  }
-  return front + 0.5 * s.point_spacing();
-}
+double front_of(const Points& points, const Sand& s) { return front_of(points, s.h, s.point_spacing()); }
 
 double top_of(const Points& points, const Sand& s) {
   double top = 0;
