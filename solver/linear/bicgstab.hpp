@@ -27,6 +27,15 @@ struct BiCgStab {
       report.converged = size == 0;
       return report;
     }
+    // Goes along `direction`, whose product is `product`; true when that was the last half step.
+    const auto go = [&](double way, const NodeVector<Place>& product) {
+      axpby(way, direction, 1.0, x);
+      axpby(-way, product, 1.0, r);
+      ++report.iterations;
+      report.residual = std::sqrt(dot(r, r)) / size;
+      report.converged = report.residual <= tolerance;
+      return report.converged;
+    };
     double rho = 1, alpha = 1, omega = 1;
     while (report.iterations < most) {
       const double next = dot(shadow, r);
@@ -41,28 +50,13 @@ struct BiCgStab {
       const double along = dot(shadow, v);
       if (along == 0) break;
       alpha = rho / along;
-      axpby(alpha, direction, 1.0, x);
-      axpby(-alpha, v, 1.0, r);
-      ++report.iterations;
-      report.residual = std::sqrt(dot(r, r)) / size;
-      if (report.residual <= tolerance) {
-        report.converged = true;
-        break;
-      }
+      if (go(alpha, v)) break;
       precondition(r, direction);
       apply(direction, t);
       const double tt = dot(t, t);
       if (!(tt > 0)) break;
       omega = dot(t, r) / tt;
-      axpby(omega, direction, 1.0, x);
-      axpby(-omega, t, 1.0, r);
-      ++report.iterations;
-      report.residual = std::sqrt(dot(r, r)) / size;
-      if (report.residual <= tolerance) {
-        report.converged = true;
-        break;
-      }
-      if (omega == 0) break;
+      if (go(omega, t) || omega == 0) break;
     }
     return report;
   }

@@ -4,9 +4,6 @@
 namespace talus::solver::testing {
 namespace {
 
-template <class Shape>
-constexpr bool is_quadratic = Shape::width == 3;
-
 class ElementTerms : public InEachPlace {
  protected:
   static constexpr Setting with(bool quadratic, MaterialModel model) { return {quadratic, Mapping::terrain_following, model, true, true}; }

@@ -9,6 +9,9 @@
 
 namespace talus::solver::testing {
 
+template <class Shape>
+inline constexpr bool is_quadratic = Shape::width == 3;
+
 struct Setting {
   bool quadratic;
   Mapping mapping = Mapping::terrain_following;

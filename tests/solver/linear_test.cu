@@ -11,9 +11,6 @@
 namespace talus::solver::testing {
 namespace {
 
-template <class Shape>
-constexpr bool is_quadratic = Shape::width == 3;
-
 class LinearSystem : public InEachPlace {
  protected:
   template <class Real, class Place, class Shape>
