@@ -248,6 +248,8 @@ SeedPoints seed_boxes(const Options& options) {
           points.y.push_back(place(1, j));
           points.height.push_back(place(2, k));
           points.volume.push_back(volume);
+          points.extent_x.push_back(side[0].length() / static_cast<double>(n[0]));
+          points.extent_y.push_back(side[1].length() / static_cast<double>(n[1]));
           points.release.push_back(static_cast<int>(b));
         }
       }

@@ -134,8 +134,8 @@ void SolveOptions::describe(recipe::Visitor& v) {
   recipe::choice(v, "mapping", mapping,
                  {{"terrain-following", Mapping::terrain_following}, {"cartesian", Mapping::cartesian}},
                  "background grid: layers follow the ground, or lie level");
-  recipe::choice(v, "shape", shape, {{"quadratic", ShapeKind::quadratic}, {"linear", ShapeKind::linear}},
-                 "shape functions of the grid");
+  recipe::choice(v, "shape", shape, {{"quadratic", ShapeKind::quadratic}, {"gimp", ShapeKind::gimp}, {"linear", ShapeKind::linear}},
+                 "functions of the grid: B-splines, hats averaged over the box of each point, or hats");
   recipe::choice(v, "transfer", transfer, {{"apic", Transfer::apic}, {"flip", Transfer::flip}},
                  "how velocity passes between points and grid");
   v.number("transfer_time", transfer_time, recipe::not_negative,

@@ -12,7 +12,7 @@
 namespace talus::solver {
 
 enum class Precision { single_, double_ };
-enum class ShapeKind { linear, quadratic };
+enum class ShapeKind { linear, quadratic, gimp };
 enum class Transfer { apic, flip };
 enum class StressUpdate { last, modified };  // USL, MUSL
 enum class Integrator { explicit_, newmark, quasi_static };

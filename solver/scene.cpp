@@ -21,6 +21,7 @@ void place(double position, int& cell, double& offset) {
 void size_state(ParticleState& s, std::size_t count) {
   for (auto* list : {&s.cell[0], &s.cell[1], &s.cell[2], &s.id, &s.release}) list->assign(count, 0);
   for (auto& list : s.offset) list.assign(count, 0);
+  for (auto& list : s.extent) list.assign(count, 0);
   for (auto& list : s.velocity) list.assign(count, 0);
   for (auto& list : s.acceleration) list.assign(count, 0);
   s.load.assign(count, -1);
@@ -85,6 +86,10 @@ Scene make_scene(const Domain& domain, const SolveOptions& options) {
     place(height / shape.layer_height, s.cell[2][p], s.offset[2][p]);
     for (int a = 0; a < 3; ++a) s.velocity[a][p] = options.initial_velocity[static_cast<std::size_t>(a)];
     s.volume[p] = domain.points.volume[p];
+    const double wide = domain.points.extent_x[p], deep = domain.points.extent_y[p];
+    s.extent[0][p] = wide / shape.spacing;
+    s.extent[1][p] = deep / shape.spacing;
+    s.extent[2][p] = s.volume[p] / (wide * deep * shape.layer_height);
     s.id[p] = static_cast<int>(p);
     s.release[p] = domain.points.release[p];
   }

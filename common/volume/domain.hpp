@@ -16,6 +16,7 @@ struct SeedPoints {
   std::vector<double> x, y;    // map coordinates [m]
   std::vector<double> height;  // above the bed, vertical [m]
   std::vector<double> volume;  // [m3]; the sum is the release's volume to 1e-12
+  std::vector<double> extent_x, extent_y;  // sides of the box that a point stands for; its height follows from the volume [m]
   std::vector<int> release;    // index into Domain::release_names
   std::size_t size() const { return x.size(); }
 };
@@ -32,7 +33,7 @@ struct Domain {
   std::vector<std::pair<std::string, std::string>> provenance;  // version, command, inputs and checksums
 };
 
-/// Write `file` (aside, renamed): PointDataGrid "points" (attributes volume, height, release), FloatGrids "terrain",
+/// Write `file` (aside, renamed): PointDataGrid "points" (attributes volume, height, extent_x, extent_y, release), FloatGrids "terrain",
 /// "before", "release_thickness" as DoubleGrids one voxel thick, MaskGrid "active" of the cells inside the domain;
 /// grid, CRS, units and provenance as metadata. Throws DataError (disk full, not writable).
 void write_domain(const std::filesystem::path& file, const Domain& domain);

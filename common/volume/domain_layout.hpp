@@ -9,7 +9,7 @@
 
 namespace talus::layout {
 
-inline constexpr int format = 1;  ///< raised when a reader of today would misread the file
+inline constexpr int format = 2;  ///< raised when a reader of today would misread the file
 inline constexpr auto kind = "talus-domain";
 
 inline constexpr auto points = "points";
@@ -20,6 +20,8 @@ inline constexpr auto active = "active";
 
 inline constexpr auto volume = "volume";
 inline constexpr auto height = "height";
+inline constexpr auto extent_x = "extent_x";
+inline constexpr auto extent_y = "extent_y";
 inline constexpr auto release = "release";
 inline constexpr auto id = "id";  ///< place in SeedPoints, so that reading gives the order of writing
 

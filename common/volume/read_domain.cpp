@@ -116,7 +116,8 @@ void take_leaf(const fs::path& file, const PointDataGrid::TreeType::LeafNodeType
                SeedPoints& points) {
   const AttributeHandle<openvdb::Vec3f> position(leaf.constAttributeArray("P"));
   const AttributeHandle<double> volume(leaf.constAttributeArray(layout::volume)),
-      height(leaf.constAttributeArray(layout::height));
+      height(leaf.constAttributeArray(layout::height)), extent_x(leaf.constAttributeArray(layout::extent_x)),
+      extent_y(leaf.constAttributeArray(layout::extent_y));
   const AttributeHandle<std::int32_t> release(leaf.constAttributeArray(layout::release));
   const AttributeHandle<std::int64_t> id(leaf.constAttributeArray(layout::id));
   for (auto point = leaf.beginIndexOn(); point; ++point) {
@@ -128,6 +129,8 @@ void take_leaf(const fs::path& file, const PointDataGrid::TreeType::LeafNodeType
     points.y[p] = map.south + (voxel.y() + 0.5 + static_cast<double>(offset.y())) * map.cell;
     points.height[p] = height.get(*point);
     points.volume[p] = volume.get(*point);
+    points.extent_x[p] = extent_x.get(*point);
+    points.extent_y[p] = extent_y.get(*point);
     points.release[p] = release.get(*point);
   }
 }
@@ -136,15 +139,16 @@ SeedPoints seed_points(const fs::path& file, const Contents& contents, const Map
   const auto grid = grid_named<PointDataGrid>(file, contents, layout::points);
   std::size_t found = 0;
   for (auto leaf = grid->tree().cbeginLeaf(); leaf; ++leaf) {
-    for (const char* name : {"P", layout::volume, layout::height, layout::release, layout::id})
+    for (const char* name : {"P", layout::volume, layout::height, layout::extent_x, layout::extent_y, layout::release, layout::id})
       if (!leaf->hasAttribute(name))
         refuse(file, "not a whole domain", std::string("points have no attribute \"") + name + "\"");
     found += leaf->onPointCount();
   }
   if (found != count)
     refuse(file, "holds " + std::to_string(found) + " points", "its header names " + std::to_string(count));
-  SeedPoints points{std::vector<double>(count), std::vector<double>(count), std::vector<double>(count),
-                    std::vector<double>(count), std::vector<int>(count)};
+  SeedPoints points;
+  for (auto* values : {&points.x, &points.y, &points.height, &points.volume, &points.extent_x, &points.extent_y}) values->resize(count);
+  points.release.resize(count);
   for (auto leaf = grid->tree().cbeginLeaf(); leaf; ++leaf) take_leaf(file, *leaf, map, points);
   return points;
 }

@@ -58,10 +58,12 @@ PointDataGrid::Ptr point_grid(const Domain& domain) {
   std::iota(ids.begin(), ids.end(), 0);
   attach<double>(*grid, *order, layout::volume, domain.points.volume);
   attach<double>(*grid, *order, layout::height, domain.points.height);
+  attach<double>(*grid, *order, layout::extent_x, domain.points.extent_x);
+  attach<double>(*grid, *order, layout::extent_y, domain.points.extent_y);
   attach<std::int32_t>(*grid, *order, layout::release, domain.points.release);
   attach<std::int64_t>(*grid, *order, layout::id, ids);
   grid->setName(layout::points);
-  grid->insertMeta("units", openvdb::StringMetadata("position m, volume m3, height m above the bed, vertical"));
+  grid->insertMeta("units", openvdb::StringMetadata("position m, volume m3, height m above the bed, vertical, extent m"));
   return grid;
 }
 

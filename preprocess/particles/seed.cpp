@@ -38,6 +38,8 @@ void seed_column(const Column& column, const Seeding& s, Shift& shift, SeedPoint
         points.y.push_back(column.south + (j + 0.5 + shift()) * column.side / n.y);
         points.height.push_back(column.foot + (k + 0.5 + shift()) * column.thickness / n.z);
         points.volume.push_back(volume);
+        points.extent_x.push_back(column.side / n.x);
+        points.extent_y.push_back(column.side / n.y);
         points.release.push_back(column.release);
       }
     }
@@ -45,7 +47,7 @@ void seed_column(const Column& column, const Seeding& s, Shift& shift, SeedPoint
 }
 
 void reserve(SeedPoints& points, std::size_t count) {
-  for (auto* values : {&points.x, &points.y, &points.height, &points.volume}) values->reserve(count);
+  for (auto* values : {&points.x, &points.y, &points.height, &points.volume, &points.extent_x, &points.extent_y}) values->reserve(count);
   points.release.reserve(count);
 }
 

@@ -80,8 +80,9 @@ double ground_at(const GridShape& shape, const GroundTables& ground, double xi, 
     using Shape = decltype(kind);
     double wx[3], wy[3], unused[3];
     const double ci = std::floor(xi + 0.5), cj = std::floor(eta + 0.5);
-    const int i = static_cast<int>(ci) + Shape::weigh(xi - ci, wx, unused);
-    const int j = static_cast<int>(cj) + Shape::weigh(eta - cj, wy, unused);
+    const int i = static_cast<int>(ci) + Shape::first(xi - ci), j = static_cast<int>(cj) + Shape::first(eta - cj);
+    Shape::weigh(xi - ci, 0.0, wx, unused);
+    Shape::weigh(eta - cj, 0.0, wy, unused);
     double z = 0;
     for (int b = 0; b < Shape::width; ++b) {
       for (int a = 0; a < Shape::width; ++a) {

@@ -1,5 +1,6 @@
 // Weights of a material point on the nodes around it, one direction at a time. The offset is the distance from the nearest
-// node in cells, -0.5 <= offset < 0.5; node `first` cells away from the nearest one carries weight[0].
+// node in cells, -0.5 <= offset < 0.5; node `first(offset)` cells away from the nearest one carries weight[0]. `half` is half the side of the
+// box that the point stands for, in cells; only functions that are `averaged` over it look at it.
 #pragma once
 
 #include "solver/parallel/macros.hpp"
@@ -9,29 +10,33 @@ namespace talus {
 /// Linear hat functions: two nodes.
 struct Linear {
   static constexpr int width = 2;
+  static constexpr bool averaged = false, spline = false;
   template <class Real>
-  TALUS_HD static Real weigh_edge(Real offset, int, Real, Real[2], Real[2]) { return offset; }  // hats end at an edge as they are
+  TALUS_HD static int first(Real offset) { return offset < Real(0) ? -1 : 0; }
   template <class Real>
-  TALUS_HD static int weigh(Real offset, Real weight[2], Real slope[2]) {
-    const int first = offset < Real(0) ? -1 : 0;
-    const Real s = offset - Real(first);
+  TALUS_HD static Real weigh_edge(Real offset, int, Real, Real, Real[2], Real[2]) { return offset; }  // hats end at an edge as they are
+  template <class Real>
+  TALUS_HD static void weigh(Real offset, Real, Real weight[2], Real slope[2]) {
+    const Real s = offset - Real(first(offset));
     weight[0] = Real(1) - s;
     weight[1] = s;
     slope[0] = Real(-1);
     slope[1] = Real(1);
-    return first;
   }
 };
 
 /// Quadratic B-splines (Steffen, Kirby & Berzins 2008): three nodes, gradients continuous across cells.
 struct Quadratic {
   static constexpr int width = 3;
+  static constexpr bool averaged = false, spline = true;
+  template <class Real>
+  TALUS_HD static int first(Real) { return -1; }
   /// Weights in the half cell beside an edge of the material (the ground, a wall) that stands on the nearest node, where the function of
   /// the node behind would reach through it. The field goes on there in a straight line (v_-1 = 2 v_0 - v_1), which leaves hats on the
   /// edge's node and the next: slopes stay continuous, linear fields exact, and the value on the edge is its node's. `inward` is +1 or -1;
   /// nearer than `lowest` the weights are those at `lowest`. Returns the offset they stand for.
   template <class Real>
-  TALUS_HD static Real weigh_edge(Real offset, int inward, Real lowest, Real weight[3], Real slope[3]) {
+  TALUS_HD static Real weigh_edge(Real offset, int inward, Real lowest, Real, Real weight[3], Real slope[3]) {
     const Real away = offset * Real(inward);
     const Real s = away > lowest ? away : lowest;
     weight[1 - inward] = Real(0);
@@ -43,7 +48,7 @@ struct Quadratic {
     return s * Real(inward);
   }
   template <class Real>
-  TALUS_HD static int weigh(Real offset, Real weight[3], Real slope[3]) {
+  TALUS_HD static void weigh(Real offset, Real, Real weight[3], Real slope[3]) {
     const Real below = Real(0.5) - offset, above = Real(0.5) + offset;
     weight[0] = Real(0.5) * below * below;
     weight[1] = Real(0.75) - offset * offset;
@@ -51,7 +56,34 @@ struct Quadratic {
     slope[0] = -below;
     slope[1] = Real(-2) * offset;
     slope[2] = above;
-    return -1;
+  }
+};
+
+/// Hats averaged over the point's box (generalised interpolation; Bardenhagen & Kober 2004): three nodes, 0 < half <= 0.5. Boxes that tile a body
+/// integrate the slopes of its nodes exactly, wherever the points have gone.
+struct Gimp {
+  static constexpr int width = 3;
+  static constexpr bool averaged = true, spline = false;
+  template <class Real>
+  TALUS_HD static int first(Real) { return -1; }
+  /// The box ends at the edge: a point nearer to it stands half a box inside. Returns the offset its weights stand for.
+  template <class Real>
+  TALUS_HD static Real weigh_edge(Real offset, int inward, Real, Real half, Real weight[3], Real slope[3]) {
+    const Real away = offset * Real(inward);
+    const Real inside = (away > half ? away : half) * Real(inward);
+    weigh(inside, half, weight, slope);
+    return inside;
+  }
+  template <class Real>
+  TALUS_HD static void weigh(Real offset, Real half, Real weight[3], Real slope[3]) {
+    const Real low = offset - half, high = offset + half;
+    const Real below = high < Real(0) ? high : Real(0), above = low > Real(0) ? low : Real(0);  // where the parts beside the node end
+    slope[0] = low < below ? (low - below) / (high - low) : Real(0);
+    slope[2] = high > above ? (high - above) / (high - low) : Real(0);
+    slope[1] = -(slope[0] + slope[2]);
+    weight[0] = slope[0] * Real(0.5) * (low + below);
+    weight[2] = slope[2] * Real(0.5) * (high + above);
+    weight[1] = Real(1) - weight[0] - weight[2];
   }
 };
 

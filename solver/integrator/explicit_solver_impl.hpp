@@ -83,6 +83,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     f.affine = o.transfer == Transfer::apic;
     f.plastic_volume = Base::needs_plastic_volume(o);
     f.move = o.stress_update == StressUpdate::modified;
+    f.extent = o.shape == ShapeKind::gimp;
     f.load = !o.loads.empty();
     return f;
   }
@@ -162,17 +163,15 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 template <class Real>
 std::unique_ptr<Solver> make_explicit_solver_of(const Scene& scene, const SolveOptions& options, On on,
                                                const SolverState& state) {
-  const bool quadratic = options.shape == ShapeKind::quadratic;
+  return with_shape(options.shape, [&](auto shape) -> std::unique_ptr<Solver> {
+    using Shape = decltype(shape);
 #if TALUS_FOR_GPU
-  if (on == On::gpu) {
-    if (quadratic) return std::make_unique<ExplicitSolverOf<Real, OnGpu, Quadratic>>(scene, options, state);
-    return std::make_unique<ExplicitSolverOf<Real, OnGpu, Linear>>(scene, options, state);
-  }
+    if (on == On::gpu) return std::make_unique<ExplicitSolverOf<Real, OnGpu, Shape>>(scene, options, state);
 #else
-  static_cast<void>(on);
+    static_cast<void>(on);
 #endif
-  if (quadratic) return std::make_unique<ExplicitSolverOf<Real, OnCpu, Quadratic>>(scene, options, state);
-  return std::make_unique<ExplicitSolverOf<Real, OnCpu, Linear>>(scene, options, state);
+    return std::make_unique<ExplicitSolverOf<Real, OnCpu, Shape>>(scene, options, state);
+  });
 }
 
 }  // namespace talus::solver

@@ -95,12 +95,7 @@ struct ScatterInertia {
     const PointGradients<Real, Shape> g(grid, points, p);
     const Real mass = points.volume[p] * density;
     const Vec3<Real> v = points.velocity_of(p);
-    Mat3<Real> turn{};
-    if (affine) {
-      turn = {{points.affine[0][p], points.affine[1][p], points.affine[2][p]},
-              {points.affine[3][p], points.affine[4][p], points.affine[5][p]},
-              {points.affine[6][p], points.affine[7][p], points.affine[8][p]}};
-    }
+    const Mat3<Real> turn = affine ? points.affine_of(p) : Mat3<Real>{};
     Vec3<double> acceleration{}, load{};
     if (accelerated) acceleration = widen(Vec3<Real>{points.acceleration[0][p], points.acceleration[1][p], points.acceleration[2][p]});
     if (loads && points.load[p] >= 0) load = loads[points.load[p]] * static_cast<double>(points.volume[p]);
@@ -271,6 +266,7 @@ struct AcceptStep {
     points.set_elastic(p, state.elastic);
     points.log_volume[p] = state.log_volume;
     if (dilatant) points.plastic_log_volume[p] = state.plastic_log_volume;
+    if constexpr (Shape::averaged) points.stretch_box(p, gradient, g.s.slope_x, g.s.slope_y);
     const double across = static_cast<double>(grid.spacing), up = static_cast<double>(grid.layer_height);
     points.move_by(p, Vec3<double>{move.x / across, move.y / across, move.z / up}, grid.walls);
     settle(p, g);
@@ -309,14 +305,7 @@ struct AcceptStep {
       if (kept > 0) v += widen(points.velocity_of(p)) * kept;
       store(points.velocity, p, v);
       store(points.acceleration, p, a1);
-      if (affine) {
-        const bool spline = Shape::width == 3;
-        const Vec3<double> x = spline && !g.s.edge_x ? moment.a * 4.0 : slope.a;
-        const Vec3<double> y = spline && !g.s.edge_y ? moment.b * 4.0 : slope.b;
-        const Vec3<double> z = spline && !g.s.edge_z ? moment.c * 4.0 : slope.c;
-        const double values[9] = {x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z};
-        for (int q = 0; q < 9; ++q) points.affine[q][p] = static_cast<Real>(values[q]);
-      }
+      if (affine) points.set_affine(p, g.s.affine_velocity(moment, slope));
     }
     return {u.x, u.y, climb};
   }

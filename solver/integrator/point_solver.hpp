@@ -11,6 +11,16 @@
 
 namespace talus::solver {
 
+/// f of the shape functions of that name.
+template <class F>
+auto with_shape(ShapeKind kind, F&& f) {
+  switch (kind) {
+    case ShapeKind::linear: return f(Linear{});
+    case ShapeKind::gimp: return f(Gimp{});
+    default: return f(Quadratic{});
+  }
+}
+
 template <class Real, class Place, class Shape>
 class PointSolver : public Solver {
  public:

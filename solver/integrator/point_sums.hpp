@@ -6,6 +6,22 @@
 
 namespace talus::solver {
 
+/// Weights of a point on the columns around it, in double, so that they sum to one.
+template <class Real, class Shape>
+struct MapWeights {
+  int i, j;  // first column
+  double x[Shape::width], y[Shape::width];
+  TALUS_HD MapWeights(const ParticleView<Real>& points, int p)
+      : i(points.cell_x[p] + Shape::first(points.offset_x[p])), j(points.cell_y[p] + Shape::first(points.offset_y[p])) {
+    double unused[Shape::width], half[2] = {};
+    if constexpr (Shape::averaged) {
+      for (int a = 0; a < 2; ++a) half[a] = static_cast<double>(points.half_extent(p, a, Real(1e-3)));
+    }
+    Shape::weigh(static_cast<double>(points.offset_x[p]), half[0], x, unused);
+    Shape::weigh(static_cast<double>(points.offset_y[p]), half[1], y, unused);
+  }
+};
+
 /// One thread: one point. Its energies, volume and momentum into rows of `out` (kinetic, potential, elastic, volume, px, py, pz).
 template <class Real, class Shape>
 struct MeasureEnergies {
@@ -42,17 +58,16 @@ struct MeasureEnergies {
   TALUS_HD double height(int p) const {
     const double zeta = (points.cell_z[p] + static_cast<double>(points.offset_z[p])) * grid.layer_height;
     if (grid.mapping == Mapping::cartesian) return zeta;
-    double wx[3], wy[3], unused[3], ground = 0;
-    const int i = points.cell_x[p] + Shape::weigh(static_cast<double>(points.offset_x[p]), wx, unused);
-    const int j = points.cell_y[p] + Shape::weigh(static_cast<double>(points.offset_y[p]), wy, unused);
+    const MapWeights<Real, Shape> w(points, p);
+    double ground = 0;
     for (int b = 0; b < Shape::width; ++b) {
-      for (int a = 0; a < Shape::width; ++a) ground += wx[a] * wy[b] * static_cast<double>(grid.terrain[grid.column(i + a, j + b)]);
+      for (int a = 0; a < Shape::width; ++a) ground += w.x[a] * w.y[b] * static_cast<double>(grid.terrain[grid.column(w.i + a, w.j + b)]);
     }
     return zeta + ground;
   }
 };
 
-/// One thread: one point. Its initial volume over the columns around it [m3]; weights in double, so that they sum to one.
+/// One thread: one point. Its initial volume over the columns around it [m3].
 template <class Real, class Shape>
 struct ScatterThickness {
   ParticleView<Real> points;
@@ -61,12 +76,10 @@ struct ScatterThickness {
 
   TALUS_HD void operator()(int p) const {
     if (points.cell_x[p] < 0) return;
-    double wx[3], wy[3], unused[3];
-    const int i = points.cell_x[p] + Shape::weigh(static_cast<double>(points.offset_x[p]), wx, unused);
-    const int j = points.cell_y[p] + Shape::weigh(static_cast<double>(points.offset_y[p]), wy, unused);
+    const MapWeights<Real, Shape> w(points, p);
     for (int b = 0; b < Shape::width; ++b) {
       for (int a = 0; a < Shape::width; ++a) {
-        scatter_add(&volume[(j + b) * columns + i + a], wx[a] * wy[b] * static_cast<double>(points.volume[p]));
+        scatter_add(&volume[(w.j + b) * columns + w.i + a], w.x[a] * w.y[b] * static_cast<double>(points.volume[p]));
       }
     }
   }

@@ -65,13 +65,17 @@ std::size_t CholeskySolver<Real, Place, Shape>::bytes() const {
 
 template class CholeskySolver<float, OnCpu, Linear>;
 template class CholeskySolver<float, OnCpu, Quadratic>;
+template class CholeskySolver<float, OnCpu, Gimp>;
 template class CholeskySolver<double, OnCpu, Linear>;
 template class CholeskySolver<double, OnCpu, Quadratic>;
+template class CholeskySolver<double, OnCpu, Gimp>;
 #if TALUS_FOR_GPU
 template class CholeskySolver<float, OnGpu, Linear>;
 template class CholeskySolver<float, OnGpu, Quadratic>;
+template class CholeskySolver<float, OnGpu, Gimp>;
 template class CholeskySolver<double, OnGpu, Linear>;
 template class CholeskySolver<double, OnGpu, Quadratic>;
+template class CholeskySolver<double, OnGpu, Gimp>;
 #endif
 
 }  // namespace talus::solver

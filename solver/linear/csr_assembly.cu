@@ -152,21 +152,29 @@ std::size_t CsrAssembly<Real, Place, Shape>::bytes() const {
 template double assembly_bytes<float, Linear>(int, int);
 template bool assembly_countable<float, Linear>(int, int);
 template double assembly_bytes<float, Quadratic>(int, int);
+template double assembly_bytes<float, Gimp>(int, int);
 template bool assembly_countable<float, Quadratic>(int, int);
+template bool assembly_countable<float, Gimp>(int, int);
 template double assembly_bytes<double, Linear>(int, int);
 template bool assembly_countable<double, Linear>(int, int);
 template double assembly_bytes<double, Quadratic>(int, int);
+template double assembly_bytes<double, Gimp>(int, int);
 template bool assembly_countable<double, Quadratic>(int, int);
+template bool assembly_countable<double, Gimp>(int, int);
 
 template class CsrAssembly<float, OnCpu, Linear>;
 template class CsrAssembly<float, OnCpu, Quadratic>;
+template class CsrAssembly<float, OnCpu, Gimp>;
 template class CsrAssembly<double, OnCpu, Linear>;
 template class CsrAssembly<double, OnCpu, Quadratic>;
+template class CsrAssembly<double, OnCpu, Gimp>;
 #if TALUS_FOR_GPU
 template class CsrAssembly<float, OnGpu, Linear>;
 template class CsrAssembly<float, OnGpu, Quadratic>;
+template class CsrAssembly<float, OnGpu, Gimp>;
 template class CsrAssembly<double, OnGpu, Linear>;
 template class CsrAssembly<double, OnGpu, Quadratic>;
+template class CsrAssembly<double, OnGpu, Gimp>;
 #endif
 
 }  // namespace talus::solver

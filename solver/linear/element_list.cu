@@ -15,10 +15,9 @@ struct MakeElementKeys {
   ParticleView<Real> points;
   std::uint64_t* keys;
   TALUS_HD void operator()(int p) const {
-    Real weight[Shape::width], slope[Shape::width];
-    const int i = points.cell_x[p] + Shape::weigh(points.offset_x[p], weight, slope);
-    const int j = points.cell_y[p] + Shape::weigh(points.offset_y[p], weight, slope);
-    const int k = points.cell_z[p] + Shape::weigh(points.offset_z[p], weight, slope);
+    const int i = points.cell_x[p] + Shape::first(points.offset_x[p]);
+    const int j = points.cell_y[p] + Shape::first(points.offset_y[p]);
+    const int k = points.cell_z[p] + Shape::first(points.offset_z[p]);
     keys[p] = home_key(grid.block_columns_x, i, j, k + 1);
   }
 };
@@ -86,13 +85,17 @@ std::size_t ElementList<Real, Place, Shape>::bytes() const {
 
 template class ElementList<float, OnCpu, Linear>;
 template class ElementList<float, OnCpu, Quadratic>;
+template class ElementList<float, OnCpu, Gimp>;
 template class ElementList<double, OnCpu, Linear>;
 template class ElementList<double, OnCpu, Quadratic>;
+template class ElementList<double, OnCpu, Gimp>;
 #if TALUS_FOR_GPU
 template class ElementList<float, OnGpu, Linear>;
 template class ElementList<float, OnGpu, Quadratic>;
+template class ElementList<float, OnGpu, Gimp>;
 template class ElementList<double, OnGpu, Linear>;
 template class ElementList<double, OnGpu, Quadratic>;
+template class ElementList<double, OnGpu, Gimp>;
 #endif
 
 }  // namespace talus::solver

@@ -144,13 +144,17 @@ void add_mean_blocks(const ElementList<Real, Place, Shape>& list, const MeanDila
 
 TALUS_INSTANTIATE(float, OnCpu, Linear)
 TALUS_INSTANTIATE(float, OnCpu, Quadratic)
+TALUS_INSTANTIATE(float, OnCpu, Gimp)
 TALUS_INSTANTIATE(double, OnCpu, Linear)
 TALUS_INSTANTIATE(double, OnCpu, Quadratic)
+TALUS_INSTANTIATE(double, OnCpu, Gimp)
 #if TALUS_FOR_GPU
 TALUS_INSTANTIATE(float, OnGpu, Linear)
 TALUS_INSTANTIATE(float, OnGpu, Quadratic)
+TALUS_INSTANTIATE(float, OnGpu, Gimp)
 TALUS_INSTANTIATE(double, OnGpu, Linear)
 TALUS_INSTANTIATE(double, OnGpu, Quadratic)
+TALUS_INSTANTIATE(double, OnGpu, Gimp)
 #endif
 #undef TALUS_INSTANTIATE
 

@@ -151,13 +151,17 @@ void StencilMatrix<Real, Place, Shape>::apply(const NodeVector<Place>& x, NodeVe
 
 template class StencilMatrix<float, OnCpu, Linear>;
 template class StencilMatrix<float, OnCpu, Quadratic>;
+template class StencilMatrix<float, OnCpu, Gimp>;
 template class StencilMatrix<double, OnCpu, Linear>;
 template class StencilMatrix<double, OnCpu, Quadratic>;
+template class StencilMatrix<double, OnCpu, Gimp>;
 #if TALUS_FOR_GPU
 template class StencilMatrix<float, OnGpu, Linear>;
 template class StencilMatrix<float, OnGpu, Quadratic>;
+template class StencilMatrix<float, OnGpu, Gimp>;
 template class StencilMatrix<double, OnGpu, Linear>;
 template class StencilMatrix<double, OnGpu, Quadratic>;
+template class StencilMatrix<double, OnGpu, Gimp>;
 #endif
 
 }  // namespace talus::solver

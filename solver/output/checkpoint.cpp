@@ -11,7 +11,7 @@
 namespace talus::solver {
 namespace {
 
-constexpr const char* kind = "talus checkpoint 1";
+constexpr const char* kind = "talus checkpoint 2";
 
 /// Visits every array of the points by name, so that writing and reading cannot differ.
 template <class State, class Ints, class Reals>
@@ -19,6 +19,7 @@ void visit_points(State& s, Ints&& ints, Reals&& reals) {
   for (int a = 0; a < 3; ++a) {
     ints(fmt::format("cell_{}", a), s.cell[a]);
     reals(fmt::format("offset_{}", a), s.offset[a]);
+    reals(fmt::format("extent_{}", a), s.extent[a]);
     reals(fmt::format("velocity_{}", a), s.velocity[a]);
     reals(fmt::format("acceleration_{}", a), s.acceleration[a]);
   }

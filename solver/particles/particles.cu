@@ -22,6 +22,7 @@ std::vector<double> download_as(const Buffer<Real, Place>& from) {
 template <class Real, class Place>
 bool Particles<Real, Place>::in_use(int slot) const {
   if (slot >= move_slot) return fields_.move;
+  if (slot >= extent_slot) return fields_.extent;
   if (slot >= acceleration_slot) return fields_.acceleration;
   if (slot >= affine_slot) return fields_.affine;
   return slot != plastic_slot || fields_.plastic_volume;
@@ -34,6 +35,7 @@ void Particles<Real, Place>::upload(const ParticleState& state) {
     ints_[a].upload(state.cell[a]);
     upload_as(reals_[offset_slot + a], state.offset[a]);
     upload_as(reals_[velocity_slot + a], state.velocity[a]);
+    if (fields_.extent) upload_as(reals_[extent_slot + a], state.extent[a]);
     if (fields_.move) reals_[move_slot + a].resize(state.size());
     if (fields_.acceleration) upload_as(reals_[acceleration_slot + a], state.acceleration[a]);
   }
@@ -54,6 +56,7 @@ ParticleState Particles<Real, Place>::download() const {
   for (int a = 0; a < 3; ++a) {
     state.cell[a] = ints_[a].download();
     state.offset[a] = download_as(reals_[offset_slot + a]);
+    state.extent[a] = fields_.extent ? download_as(reals_[extent_slot + a]) : zeros;
     state.velocity[a] = download_as(reals_[velocity_slot + a]);
     state.acceleration[a] = fields_.acceleration ? download_as(reals_[acceleration_slot + a]) : zeros;
   }
@@ -81,6 +84,7 @@ ParticleView<Real> Particles<Real, Place>::view() {
   v.offset_y = reals_[offset_slot + 1].data();
   v.offset_z = reals_[offset_slot + 2].data();
   for (int a = 0; a < 3; ++a) v.velocity[a] = reals_[velocity_slot + a].data();
+  for (int a = 0; a < 3; ++a) v.extent[a] = reals_[extent_slot + a].data();
   for (int a = 0; a < 3; ++a) v.move[a] = reals_[move_slot + a].data();
   for (int a = 0; a < 3; ++a) v.acceleration[a] = reals_[acceleration_slot + a].data();
   v.load = ints_[load_slot].data();

@@ -23,6 +23,7 @@ struct ParticleView {
   Real* log_volume;                       // ln(volume / initial volume) [-]
   Real* plastic_log_volume;               // the part of it that is plastic dilation; null when there is none
   Real* volume;                           // initial [m3]; mass is volume times the density of the scene
+  Real* extent[3];                        // sides of the box it stands for, along x, y, zeta, in cells; null unless functions are averaged over it
   Real* move[3];                          // displacement of this step in cells; null unless MUSL
   Real* acceleration[3];                  // [m/s2]; null unless Newmark
   int* id;                                // order of seeding
@@ -40,6 +41,28 @@ struct ParticleView {
     elastic[3][p] = s.xy;
     elastic[4][p] = s.yz;
     elastic[5][p] = s.xz;
+  }
+
+  TALUS_HD Mat3<Real> affine_of(int p) const {
+    return {{affine[0][p], affine[1][p], affine[2][p]}, {affine[3][p], affine[4][p], affine[5][p]}, {affine[6][p], affine[7][p], affine[8][p]}};
+  }
+  template <class Number>
+  TALUS_HD void set_affine(int p, const Mat3<Number>& m) const {
+    const Number values[9] = {m.a.x, m.a.y, m.a.z, m.b.x, m.b.y, m.b.z, m.c.x, m.c.y, m.c.z};
+    for (int q = 0; q < 9; ++q) affine[q][p] = static_cast<Real>(values[q]);
+  }
+
+  /// Half the sides of a point's box as weights use them, in cells.
+  TALUS_HD Real half_extent(int p, int axis, Real least) const {
+    const Real half = Real(0.5) * extent[axis][p];
+    return half < Real(0.5) ? (half > least ? half : least) : Real(0.5);
+  }
+  /// The box after a step with displacement gradient g over ground of these slopes: its sides grow with what happens along them.
+  TALUS_HD void stretch_box(int p, const Mat3<Real>& g, Real slope_x, Real slope_y) const {
+    const Real rise = slope_x * g.c.x + slope_y * g.c.y;
+    extent[0][p] *= Real(1) + g.a.x + slope_x * g.c.x;
+    extent[1][p] *= Real(1) + g.b.y + slope_y * g.c.y;
+    extent[2][p] *= Real(1) + g.c.z - rise;
   }
 
   /// New cell and offset after a move in cells: nothing goes below the ground or behind a wall.
@@ -72,13 +95,13 @@ struct ParticleView {
 /// Host copy of the whole state, in double.
 struct ParticleState {
   std::vector<int> cell[3], id, release, load;
-  std::vector<double> offset[3], velocity[3], acceleration[3], affine[9], elastic[6], log_volume, plastic_log_volume, volume;
+  std::vector<double> offset[3], extent[3], velocity[3], acceleration[3], affine[9], elastic[6], log_volume, plastic_log_volume, volume;
   std::size_t size() const { return id.size(); }
 };
 
 /// Which optional arrays a scene needs.
 struct ParticleFields {
-  bool affine = false, plastic_volume = false, move = false, acceleration = false, load = false;
+  bool affine = false, plastic_volume = false, extent = false, move = false, acceleration = false, load = false;
 };
 
 template <class Real, class Place>
@@ -98,7 +121,7 @@ class Particles {
 
  private:
   static constexpr int offset_slot = 0, velocity_slot = 3, elastic_slot = 6, log_slot = 12, volume_slot = 13,
-                       plastic_slot = 14, affine_slot = 15, acceleration_slot = 24, move_slot = 27, real_slots = 30;
+                       plastic_slot = 14, affine_slot = 15, acceleration_slot = 24, extent_slot = 27, move_slot = 30, real_slots = 33;
   static constexpr int load_slot = 5, int_slots = 6;
   bool in_use(int slot) const;
   ParticleFields fields_;

@@ -102,7 +102,7 @@ struct GridToParticle {
     points.velocity[0][p] = v.x;
     points.velocity[1][p] = v.y;
     points.velocity[2][p] = v.z;
-    if (affine) store_affine(p, s, sums);
+    if (affine) points.set_affine(p, s.affine_velocity(sums.moment, sums.gradient));
     const Vec3<Real> move{sums.velocity.x * dt / grid.spacing, sums.velocity.y * dt / grid.spacing,
                           sums.climb * dt / grid.layer_height};
     if constexpr (part == Gather::motion) {
@@ -112,17 +112,6 @@ struct GridToParticle {
     } else {
       points.move_by(p, move, grid.walls);
     }
-  }
-
-  /// APIC (Jiang et al. 2015): moment times the inverse of the weights' second moment, 4 per cell for quadratic B-splines;
-  /// for hats, and so beside the ground and walls, it equals the gradient.
-  TALUS_HD void store_affine(int p, const Stencil<Real, Shape>& s, const Sums& sums) const {
-    const bool spline = Shape::width == 3;
-    const Vec3<Real> x = spline && !s.edge_x ? sums.moment.a * Real(4) : sums.gradient.a;
-    const Vec3<Real> y = spline && !s.edge_y ? sums.moment.b * Real(4) : sums.gradient.b;
-    const Vec3<Real> z = spline && !s.edge_z ? sums.moment.c * Real(4) : sums.gradient.c;
-    const Real values[9] = {x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z};
-    for (int q = 0; q < 9; ++q) points.affine[q][p] = values[q];
   }
 
   TALUS_HD void deform(int p, const Stencil<Real, Shape>& s, const Sums& sums, Real dt) const {
@@ -135,6 +124,7 @@ struct GridToParticle {
     points.set_elastic(p, state.elastic);
     points.log_volume[p] = state.log_volume;
     if (dilatant) points.plastic_log_volume[p] = state.plastic_log_volume;
+    if constexpr (Shape::averaged) points.stretch_box(p, g, s.slope_x, s.slope_y);
     if constexpr (part == Gather::deformation) {
       points.move_by(p, Vec3<Real>{points.move[0][p], points.move[1][p], points.move[2][p]}, grid.walls);
     }

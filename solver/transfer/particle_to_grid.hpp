@@ -56,9 +56,7 @@ struct ParticleToGrid {
     Mat3<Real> turn{};
     Vec3<Real> corner = points.velocity_of(p);  // velocity at the first node
     if (affine) {
-      turn = {{points.affine[0][p], points.affine[1][p], points.affine[2][p]},
-              {points.affine[3][p], points.affine[4][p], points.affine[5][p]},
-              {points.affine[6][p], points.affine[7][p], points.affine[8][p]}};
+      turn = points.affine_of(p);
       corner += turn * Vec3<Real>{s.near_x, s.near_y, s.near_z};
     }
     for (int b = 0; b < Shape::width; ++b) {

@@ -19,21 +19,40 @@ struct Stencil {
 
   TALUS_HD Stencil(const GridView<Real>& grid, const ParticleView<Real>& points, int p) {
     const Real fx = points.offset_x[p], fy = points.offset_y[p], fz = points.offset_z[p];
-    const int ax = Shape::weigh(fx, wx, gx), ay = Shape::weigh(fy, wy, gy), az = Shape::weigh(fz, wz, gz);
+    Real half[3] = {};
+    if constexpr (Shape::averaged) {
+      for (int a = 0; a < 3; ++a) half[a] = points.half_extent(p, a, least_half(grid));
+    }
+    const int ax = Shape::first(fx), ay = Shape::first(fy), az = Shape::first(fz);
     i = points.cell_x[p] + ax;
     j = points.cell_y[p] + ay;
     k = points.cell_z[p] + az;
+    Shape::weigh(fx, half[0], wx, gx);
+    Shape::weigh(fy, half[1], wy, gy);
+    Shape::weigh(fz, half[2], wz, gz);
     if (grid.mapping == Mapping::terrain_following) measure_slope(grid);
-    near_x = Real(ax) - beside(points.cell_x[p], grid.walls.west, grid.walls.east, fx, grid.lowest_weighed, wx, gx, edge_x);
-    near_y = Real(ay) - beside(points.cell_y[p], grid.walls.south, grid.walls.north, fy, grid.lowest_weighed, wy, gy, edge_y);
-    near_z = Real(az) - beside(points.cell_z[p], 0, WallNodes::far, fz, grid.lowest_weighed, wz, gz, edge_z);
+    const Real lowest = grid.lowest_weighed;
+    near_x = Real(ax) - beside(points.cell_x[p], grid.walls.west, grid.walls.east, fx, lowest, half[0], wx, gx, edge_x);
+    near_y = Real(ay) - beside(points.cell_y[p], grid.walls.south, grid.walls.north, fy, lowest, half[1], wy, gy, edge_y);
+    near_z = Real(az) - beside(points.cell_z[p], 0, WallNodes::far, fz, lowest, half[2], wz, gz, edge_z);
+  }
+
+  /// Velocity change per cell that a point keeps, from the grid's velocity about it (APIC; Jiang et al. 2015): its moment times the inverse of the
+  /// weights' second moment, 4 per cell for splines; for hats, and so beside edges, that is its gradient.
+  template <class Number>
+  TALUS_HD Mat3<Number> affine_velocity(const Mat3<Number>& moment, const Mat3<Number>& gradient) const {
+    return {Shape::spline && !edge_x ? moment.a * Number(4) : gradient.a, Shape::spline && !edge_y ? moment.b * Number(4) : gradient.b,
+            Shape::spline && !edge_z ? moment.c * Number(4) : gradient.c};
   }
 
  private:
+  /// Boxes shrink no further in explicit steps, which have to be shorter the smaller they are; and never to nothing.
+  TALUS_HD static Real least_half(const GridView<Real>& grid) { return grid.lowest_weighed > Real(1e-3) ? grid.lowest_weighed : Real(1e-3); }
+
   /// Weights of one direction once more where the point is beside an edge; the offset they stand for.
-  TALUS_HD static Real beside(int cell, int first, int last, Real offset, Real lowest, Real* weight, Real* slope, bool& edge) {
+  TALUS_HD static Real beside(int cell, int first, int last, Real offset, Real lowest, Real half, Real* weight, Real* slope, bool& edge) {
     edge = width == 3 && (cell == first || cell == last);
-    return edge ? Shape::weigh_edge(offset, cell == first ? 1 : -1, lowest, weight, slope) : offset;
+    return edge ? Shape::weigh_edge(offset, cell == first ? 1 : -1, lowest, half, weight, slope) : offset;
   }
 
   TALUS_HD void measure_slope(const GridView<Real>& grid) {

@@ -34,6 +34,8 @@ Domain sample(std::size_t count, unsigned seed = 1) {
     domain.points.y.push_back(domain.grid.south + 400 * unit(random));
     domain.points.height.push_back(40 * unit(random));
     domain.points.volume.push_back(250 / 3.0 * unit(random));
+    domain.points.extent_x.push_back(20 * unit(random));
+    domain.points.extent_y.push_back(20 * unit(random));
     domain.points.release.push_back(static_cast<int>(p % 2));
   }
   return domain;
@@ -54,6 +56,8 @@ TEST(DomainFile, round_trip_keeps_everything) {
   EXPECT_EQ(back.provenance, domain.provenance);
   EXPECT_EQ(back.points.volume, domain.points.volume);
   EXPECT_EQ(back.points.height, domain.points.height);
+  EXPECT_EQ(back.points.extent_x, domain.points.extent_x);
+  EXPECT_EQ(back.points.extent_y, domain.points.extent_y);
   EXPECT_EQ(back.points.release, domain.points.release);
   ASSERT_EQ(back.points.size(), domain.points.size());
   for (std::size_t p = 0; p < back.points.size(); ++p) {

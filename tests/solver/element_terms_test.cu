@@ -6,14 +6,14 @@ namespace {
 
 class ElementTerms : public InEachPlace {
  protected:
-  static constexpr Setting with(bool quadratic, MaterialModel model) { return {quadratic, Mapping::terrain_following, model, true, true}; }
+  static constexpr Setting with(ShapeKind shape, MaterialModel model) { return {shape, Mapping::terrain_following, model, true, true}; }
 
   template <class Real, class Place, class Shape>
   static void compare_forms() {
     for (const auto model : {MaterialModel::hencky, MaterialModel::drucker_prager}) {
-      LinearBench<Real, Place, Shape> bench(with(is_quadratic<Shape>, model));
+      LinearBench<Real, Place, Shape> bench(with(kind_of<Shape>, model));
       const auto expected = bench.product(Operator::points);
-      LinearBench<Real, Place, Shape> plain({is_quadratic<Shape>, Mapping::terrain_following, model});
+      LinearBench<Real, Place, Shape> plain({kind_of<Shape>, Mapping::terrain_following, model});
       EXPECT_GT(difference(plain.product(Operator::points), expected), 1e-3) << "the terms do nothing";
       EXPECT_LT(difference(bench.product(Operator::elements), expected), 1e-12);
       EXPECT_LT(difference(bench.product(Operator::stencil), expected), 1e-12);
@@ -23,7 +23,7 @@ class ElementTerms : public InEachPlace {
   /// Central differences of the force against the product, for elastic points: a yielding one holds its friction's pressure.
   template <class Real, class Place, class Shape>
   static void differentiate() {
-    LinearBench<Real, Place, Shape> bench(with(is_quadratic<Shape>, MaterialModel::hencky));
+    LinearBench<Real, Place, Shape> bench(with(kind_of<Shape>, MaterialModel::hencky));
     const auto product = bench.product(Operator::points);
     const auto start = bench.u.download();
     const auto direction = random_vectors(bench.count, 1, 5);  // that of product()
@@ -47,9 +47,9 @@ class ElementTerms : public InEachPlace {
     Domain d = ground(14, 14, 1.0, 1.0, [](double, double) { return 0.0; });
     fill(d, {5, 8, 5, 8, 3, 6});
     SolveOptions o;
-    o.shape = is_quadratic<Shape> ? ShapeKind::quadratic : ShapeKind::linear;
+    o.shape = kind_of<Shape>;
     o.mapping = Mapping::cartesian;
-    LinearBench<Real, Place, Shape> bench(make_scene(d, o), {is_quadratic<Shape>, Mapping::cartesian, MaterialModel::hencky, false, true});
+    LinearBench<Real, Place, Shape> bench(make_scene(d, o), {kind_of<Shape>, Mapping::cartesian, MaterialModel::hencky, false, true});
     const auto nodes = bench.elements.view();
     std::vector<Vec3<double>> x(static_cast<std::size_t>(bench.count)), none(x.size());
     // Nodes by their place in the storage: blocks of four by four columns, layer by layer.
@@ -68,7 +68,7 @@ class ElementTerms : public InEachPlace {
     u.upload(x);
     y.upload(none);
     apply_springs(bench.elements, bench.springs, u, y);
-    if (is_quadratic<Shape>) {
+    if (Shape::width == 3) {
       EXPECT_LT(norm(y.download()), 1e-12 * 1e6 * norm(x));
     } else {
       EXPECT_GT(norm(y.download()), 0);  // hats hold to the fullest node: only a shift is free

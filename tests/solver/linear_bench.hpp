@@ -9,11 +9,8 @@
 
 namespace talus::solver::testing {
 
-template <class Shape>
-inline constexpr bool is_quadratic = Shape::width == 3;
-
 struct Setting {
-  bool quadratic;
+  ShapeKind shape;
   Mapping mapping = Mapping::terrain_following;
   MaterialModel model = MaterialModel::hencky;
   bool b_bar = false, springs = false;
@@ -24,7 +21,7 @@ inline Scene random_scene(const Setting& setting) {
   Domain d = ground(14, 12, 2.0, 1.0, [](double x, double y) { return 3 - 0.1 * x + 0.3 * std::sin(y); });
   fill(d, {8, 14, 8, 14, 0, 3});
   SolveOptions o;
-  o.shape = setting.quadratic ? ShapeKind::quadratic : ShapeKind::linear;
+  o.shape = setting.shape;
   o.mapping = setting.mapping;
   Scene s = make_scene(d, o);
   std::mt19937 engine(7);
@@ -94,7 +91,7 @@ struct OwnBlocks {
 /// Everything a linear solve takes: grid, points, tangents, mass and constraints.
 template <class Real, class Place, class Shape>
 struct LinearBench {
-  Particles<Real, Place> points{{false, false, false}};
+  Particles<Real, Place> points{{false, false, Shape::averaged}};
   SparseGrid<Real, Place> grid;
   ElementList<Real, Place, Shape> elements;
   Material<Real> material;
@@ -249,10 +246,12 @@ struct LinearBench {
   (GetParam() == On::gpu ? function<double, OnGpu, Linear>(__VA_ARGS__)    \
                          : function<double, OnCpu, Linear>(__VA_ARGS__),   \
    GetParam() == On::gpu ? function<double, OnGpu, Quadratic>(__VA_ARGS__) \
-                         : function<double, OnCpu, Quadratic>(__VA_ARGS__))
+                         : function<double, OnCpu, Quadratic>(__VA_ARGS__), \
+   GetParam() == On::gpu ? function<double, OnGpu, Gimp>(__VA_ARGS__)      \
+                         : function<double, OnCpu, Gimp>(__VA_ARGS__))
 #else
 #define TALUS_RUN(function, ...) \
-  (function<double, OnCpu, Linear>(__VA_ARGS__), function<double, OnCpu, Quadratic>(__VA_ARGS__))
+  (function<double, OnCpu, Linear>(__VA_ARGS__), function<double, OnCpu, Quadratic>(__VA_ARGS__), function<double, OnCpu, Gimp>(__VA_ARGS__))
 #endif
 
 }  // namespace talus::solver::testing

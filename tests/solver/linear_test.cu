@@ -17,7 +17,7 @@ class LinearSystem : public InEachPlace {
   static void compare_forms(double tolerance) {
     for (const auto mapping : {Mapping::terrain_following, Mapping::cartesian}) {
       for (const auto model : {MaterialModel::hencky, MaterialModel::drucker_prager}) {
-        LinearBench<Real, Place, Shape> bench({is_quadratic<Shape>, mapping, model});
+        LinearBench<Real, Place, Shape> bench({kind_of<Shape>, mapping, model});
         const auto expected = bench.product(Operator::points);
         EXPECT_GT(norm(expected), 0);
         EXPECT_LT(difference(bench.product(Operator::elements), expected), tolerance);
@@ -29,14 +29,14 @@ class LinearSystem : public InEachPlace {
   template <class Real, class Place, class Shape>
   static void compare_solvers() {
     for (const auto mapping : {Mapping::terrain_following, Mapping::cartesian}) {
-      LinearBench<Real, Place, Shape> bench({is_quadratic<Shape>, mapping});
+      LinearBench<Real, Place, Shape> bench({kind_of<Shape>, mapping});
       EXPECT_LT(difference(bench.by_cholesky(), bench.by_gradients()), 1e-8);
     }
   }
 
   template <class Real, class Place, class Shape>
   static void keep_analysis() {
-    LinearBench<Real, Place, Shape> bench({is_quadratic<Shape>});
+    LinearBench<Real, Place, Shape> bench({kind_of<Shape>});
     CholeskySolver<Real, Place, Shape> solver;
     NodeVector<Place> x;
     const NodeVector<Place> b = bench.right_side();
@@ -66,7 +66,7 @@ class LinearSystem : public InEachPlace {
 
   template <class Real, class Place, class Shape>
   static void report_indefinite() {
-    LinearBench<Real, Place, Shape> bench({is_quadratic<Shape>});
+    LinearBench<Real, Place, Shape> bench({kind_of<Shape>});
     CholeskySolver<Real, Place, Shape> solver;
     NodeVector<Place> x;
     const NodeVector<Place> b = bench.right_side();
@@ -83,7 +83,7 @@ class LinearSystem : public InEachPlace {
   /// A body without support, pulled by a force, has no static equilibrium: its matrix is singular.
   template <class Real, class Place, class Shape>
   static void report_singular() {
-    Setting setting{is_quadratic<Shape>};
+    Setting setting{kind_of<Shape>};
     Scene scene = random_scene(setting);
     for (auto& strain : scene.points.elastic) std::fill(strain.begin(), strain.end(), 0.0);
     std::fill(scene.points.log_volume.begin(), scene.points.log_volume.end(), 0.0);
@@ -104,7 +104,7 @@ class LinearSystem : public InEachPlace {
 
   template <class Real, class Place, class Shape>
   static void refuse(double limit, const std::string& what) {
-    LinearBench<Real, Place, Shape> bench({is_quadratic<Shape>});
+    LinearBench<Real, Place, Shape> bench({kind_of<Shape>});
     CholeskySolver<Real, Place, Shape> solver(limit);
     NodeVector<Place> x;
     const NodeVector<Place> b = bench.right_side();
@@ -129,11 +129,13 @@ TEST_P(LinearSystem, products_of_elements_and_stencil_are_those_of_the_points) {
   if (GetParam() == On::gpu) {
     compare_forms<float, OnGpu, Linear>(1e-5);
     compare_forms<float, OnGpu, Quadratic>(1e-5);
+    compare_forms<float, OnGpu, Gimp>(1e-5);
     return;
   }
 #endif
   compare_forms<float, OnCpu, Linear>(1e-5);
   compare_forms<float, OnCpu, Quadratic>(1e-5);
+  compare_forms<float, OnCpu, Gimp>(1e-5);
 }
 
 TEST_P(LinearSystem, cholesky_finds_the_displacement_that_conjugate_gradients_find) { TALUS_RUN(compare_solvers); }
@@ -210,8 +212,8 @@ class BothPlaces : public InEachPlace {
  protected:
   template <class Shape>
   static void compare() {
-    LinearBench<double, OnCpu, Shape> cpu({is_quadratic<Shape>});
-    LinearBench<double, OnGpu, Shape> gpu({is_quadratic<Shape>});
+    LinearBench<double, OnCpu, Shape> cpu({kind_of<Shape>});
+    LinearBench<double, OnGpu, Shape> gpu({kind_of<Shape>});
     for (const auto form : {Operator::points, Operator::elements, Operator::stencil}) {
       EXPECT_LT(difference(gpu.product(form), cpu.product(form)), 1e-11);
     }
@@ -221,13 +223,14 @@ class BothPlaces : public InEachPlace {
 TEST_P(BothPlaces, give_the_same_products_and_displacements) {
   compare<Linear>();
   compare<Quadratic>();
+  compare<Gimp>();
 }
 INSTANTIATE_TEST_SUITE_P(places, BothPlaces, ::testing::Values(On::gpu), place_name);
 #endif
 
 template <class Shape>
 void check_elements() {
-  LinearBench<double, OnCpu, Shape> bench({is_quadratic<Shape>});
+  LinearBench<double, OnCpu, Shape> bench({kind_of<Shape>});
   ElementList<double, OnCpu, Shape> list;
   list.build(bench.grid.view(), bench.points.view());
   const ElementView v = list.view();
@@ -245,7 +248,7 @@ void check_elements() {
     }
   }
   for (const int times : seen) EXPECT_EQ(times, 1);
-  EXPECT_EQ(folded > 0, is_quadratic<Shape>);
+  EXPECT_EQ(folded > 0, Shape::width == 3);
   int grouped = 0;
   for (const auto& colour : list.groups().ranges) {
     std::set<int> taken;  // by earlier ranges of this colour
@@ -262,6 +265,7 @@ void check_elements() {
 TEST(Elements, hold_every_point_once_and_share_no_node_within_a_colour) {
   check_elements<Linear>();
   check_elements<Quadratic>();
+  check_elements<Gimp>();
 }
 
 /// Column, row and layer of every stored node.
@@ -283,7 +287,7 @@ std::vector<std::array<int, 3>> node_places(const LinearBench<double, OnCpu, Sha
 template <class Shape>
 void check_neighbours() {
   constexpr int reach = Shape::width - 1, side = 2 * reach + 1;
-  LinearBench<double, OnCpu, Shape> bench({is_quadratic<Shape>});
+  LinearBench<double, OnCpu, Shape> bench({kind_of<Shape>});
   ElementList<double, OnCpu, Shape> list;
   StencilMatrix<double, OnCpu, Shape> matrix;
   list.build(bench.grid.view(), bench.points.view());
@@ -307,6 +311,7 @@ void check_neighbours() {
 TEST(Stencil, finds_each_neighbour_where_it_stands) {
   check_neighbours<Linear>();
   check_neighbours<Quadratic>();
+  check_neighbours<Gimp>();
 }
 
 /// Keeps the blocks it is handed.
@@ -321,7 +326,7 @@ struct Keep {
 template <class Shape>
 void check_tiles() {
   constexpr int w = Shape::width, nodes = w * w * w;
-  LinearBench<double, OnCpu, Shape> bench({is_quadratic<Shape>});
+  LinearBench<double, OnCpu, Shape> bench({kind_of<Shape>});
   ElementList<double, OnCpu, Shape> list;
   list.build(bench.grid.view(), bench.points.view());
   const auto size = static_cast<std::size_t>(list.count()) * nodes * nodes * 9;
@@ -341,10 +346,11 @@ void check_tiles() {
 TEST(Elements, are_the_same_from_the_tiles_of_the_gpu) {
   check_tiles<Linear>();
   check_tiles<Quadratic>();
+  check_tiles<Gimp>();
 }
 
 TEST(Elements, sum_the_same_on_every_run) {
-  LinearBench<double, OnCpu, Quadratic> bench({true});
+  LinearBench<double, OnCpu, Quadratic> bench({ShapeKind::quadratic});
   for (const auto form : {Operator::elements, Operator::stencil}) {
     const auto a = bench.product(form), b = bench.product(form);
     for (std::size_t n = 0; n < a.size(); ++n) EXPECT_TRUE(a[n].x == b[n].x && a[n].y == b[n].y && a[n].z == b[n].z);

@@ -27,6 +27,10 @@ inline Domain ground(int columns, int rows, double cell, double layer_height,
   return d;
 }
 
+/// The recipe's name of shape functions.
+template <class Shape>
+inline constexpr ShapeKind kind_of = Shape::averaged ? ShapeKind::gimp : Shape::spline ? ShapeKind::quadratic : ShapeKind::linear;
+
 struct Box {
   double x0, x1, y0, y1, bottom, top;  // [m]; bottom and top above the ground
 };
@@ -41,6 +45,8 @@ inline void fill(Domain& d, const Box& box, int across = 2, int up = 2) {
         d.points.y.push_back(y);
         d.points.height.push_back(h);
         d.points.volume.push_back(dx * dx * dz);
+        d.points.extent_x.push_back(dx);
+        d.points.extent_y.push_back(dx);
         d.points.release.push_back(0);
       }
     }

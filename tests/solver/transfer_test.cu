@@ -17,9 +17,14 @@ using Node = std::tuple<int, int, int>;
 struct Weight {
   double value, slope;
 };
-Weight weight(bool quadratic, double x, int n) {
+Weight weight(ShapeKind shape, double x, int n, double extent) {
   const double r = x - n, s = std::abs(r), sign = r < 0 ? -1 : 1;
-  if (!quadratic) return s < 1 ? Weight{1 - s, -sign} : Weight{0, 0};
+  const auto hat = [](double q) { return std::max(0.0, 1 - std::abs(q)); };
+  if (shape == ShapeKind::linear) return s < 1 ? Weight{1 - s, -sign} : Weight{0, 0};
+  if (shape == ShapeKind::gimp) {
+    const auto area = [](double q) { return q < -1 ? 0 : q < 0 ? 0.5 * (1 + q) * (1 + q) : q < 1 ? 0.5 + q - 0.5 * q * q : 1.0; };  // of the hat
+    return {(area(r + 0.5 * extent) - area(r - 0.5 * extent)) / extent, (hat(r + 0.5 * extent) - hat(r - 0.5 * extent)) / extent};
+  }
   if (s < 0.5) return {0.75 - r * r, -2 * r};
   if (s < 1.5) return {0.5 * (1.5 - s) * (1.5 - s), -sign * (1.5 - s)};
   return {0, 0};
@@ -41,6 +46,7 @@ class Transfers : public InEachPlace {
         s.points.velocity[a][p] = u(engine);
         s.points.offset[a][p] = std::clamp(s.points.offset[a][p] + 0.2 * u(engine), a == 2 && s.points.cell[2][p] == 0 ? 0.0 : -0.5, 0.499);
       }
+      for (int a = 0; a < 3; ++a) s.points.extent[a][p] *= 1 + 0.4 * u(engine);
       for (int a = 0; a < 9; ++a) s.points.affine[a][p] = 0.3 * u(engine);
       for (int a = 0; a < 6; ++a) s.points.elastic[a][p] = 1e-3 * u(engine);
     }
@@ -48,15 +54,26 @@ class Transfers : public InEachPlace {
   }
 
   /// Momentum after one scatter, by the definitions: m (v + C (xi - xi_p)) w - dt V tau grad w.
-  static std::map<Node, Vec4<double>> reference(const Scene& s, const Material<double>& m, double dt, bool quadratic) {
+  static std::map<Node, Vec4<double>> reference(const Scene& s, const Material<double>& m, double dt, ShapeKind shape) {
     std::map<Node, Vec4<double>> nodes;
     const GroundTables ground = make_ground_tables(s.grid);
     for (std::size_t p = 0; p < s.points.size(); ++p) {
       double x[3];
       for (int a = 0; a < 3; ++a) x[a] = s.points.cell[a][p] + s.points.offset[a][p];
-      constexpr double e = 1e-5;
-      const double bx = (ground_at(s.grid, ground, x[0] + e, x[1]) - ground_at(s.grid, ground, x[0] - e, x[1])) / (2 * e * s.grid.spacing);
-      const double by = (ground_at(s.grid, ground, x[0], x[1] + e) - ground_at(s.grid, ground, x[0], x[1] - e)) / (2 * e * s.grid.spacing);
+      const auto along = [&](int a, int n) { return weight(shape, x[a], n, s.points.extent[a][p]); };
+      double bx = 0, by = 0;  // slope of the ground there
+      for (int i = s.points.cell[0][p] - 1; i <= s.points.cell[0][p] + 1; ++i) {
+        for (int j = s.points.cell[1][p] - 1; j <= s.points.cell[1][p] + 1; ++j) {
+          const double z = ground.terrain[static_cast<std::size_t>(j * s.grid.columns + i)] / s.grid.spacing;
+          bx += along(0, i).slope * along(1, j).value * z;
+          by += along(0, i).value * along(1, j).slope * z;
+        }
+      }
+      // In the lowest half layer quadratic functions are hats, and their weights stop changing a tenth of a layer above the ground; the box of
+      // an averaged one ends on the ground.
+      const bool on_base = shape != ShapeKind::linear && s.points.cell[2][p] == 0;
+      const double nearest = shape == ShapeKind::gimp ? 0.5 * s.points.extent[2][p] : s.grid.lowest_weighed;
+      const double height = on_base ? std::max(x[2], nearest) : x[2];
       MaterialState<double> state;
       state.elastic = {s.points.elastic[0][p], s.points.elastic[1][p], s.points.elastic[2][p],
                        s.points.elastic[3][p], s.points.elastic[4][p], s.points.elastic[5][p]};
@@ -65,17 +82,16 @@ class Transfers : public InEachPlace {
       for (int i = s.points.cell[0][p] - 2; i <= s.points.cell[0][p] + 2; ++i) {
         for (int j = s.points.cell[1][p] - 2; j <= s.points.cell[1][p] + 2; ++j) {
           for (int k = s.points.cell[2][p] - 2; k <= s.points.cell[2][p] + 2; ++k) {
-            const Weight wx = weight(quadratic, x[0], i), wy = weight(quadratic, x[1], j);
-            // In the lowest half layer quadratic functions are hats, and their weights stop changing a tenth of a layer above the ground.
-            const bool on_base = quadratic && s.points.cell[2][p] == 0;
-            const Weight wz = on_base ? weight(false, std::max(x[2], s.grid.lowest_weighed), k) : weight(quadratic, x[2], k);
+            const Weight wx = along(0, i), wy = along(1, j);
+            const ShapeKind upright = on_base && shape == ShapeKind::quadratic ? ShapeKind::linear : shape;
+            const Weight wz = weight(upright, height, k, s.points.extent[2][p]);
             const double w = wx.value * wy.value * wz.value;
             if (w == 0) continue;
             const double gz = wx.value * wy.value * wz.slope / s.grid.layer_height;
             const Vec3<double> gradient{wx.slope * wy.value * wz.value / s.grid.spacing - bx * gz,
                                         wx.value * wy.slope * wz.value / s.grid.spacing - by * gz, gz};
             const Vec3<double> force = tau * gradient * (-volume * dt);
-            const double r[3] = {i - x[0], j - x[1], k - (on_base ? std::max(x[2], s.grid.lowest_weighed) : x[2])};
+            const double r[3] = {i - x[0], j - x[1], k - height};
             double v[3];
             for (int a = 0; a < 3; ++a) {
               v[a] = s.points.velocity[a][p];
@@ -95,14 +111,13 @@ class Transfers : public InEachPlace {
 
   template <class Real, class Place, class Shape>
   static void compare(double tolerance) {
-    constexpr bool quadratic = Shape::width == 3;
     Domain d;
-    const Scene s = scene(quadratic ? ShapeKind::quadratic : ShapeKind::linear, d);
+    const Scene s = scene(kind_of<Shape>, d);
     MaterialOptions mo;
     mo.model = MaterialModel::hencky;
     const double dt = 1e-3;
-    const auto expected = reference(s, make_material<double>(mo), dt, quadratic);
-    Particles<Real, Place> points({true, false, false});
+    const auto expected = reference(s, make_material<double>(mo), dt, kind_of<Shape>);
+    Particles<Real, Place> points({true, false, Shape::averaged});
     points.upload(s.points);
     SparseGrid<Real, Place> grid(s.grid);
     grid.fit(points, 0);
@@ -150,10 +165,9 @@ class Transfers : public InEachPlace {
   /// Velocity gather of a linear field in reference coordinates, and the climb, by the definitions.
   template <class Real, class Place, class Shape>
   static void gather_linear_field(double tolerance) {
-    constexpr bool quadratic = Shape::width == 3;
     Domain d;
-    const Scene s = scene(quadratic ? ShapeKind::quadratic : ShapeKind::linear, d);
-    Particles<Real, Place> points({true, false, false});
+    const Scene s = scene(kind_of<Shape>, d);
+    Particles<Real, Place> points({true, false, Shape::averaged});
     points.upload(s.points);
     SparseGrid<Real, Place> grid(s.grid);
     grid.fit(points, 0);
@@ -187,7 +201,8 @@ class Transfers : public InEachPlace {
     double worst = 0;
     int checked = 0;
     for (std::size_t p = 0; p < got.size(); ++p) {
-      if (got.cell[2][p] == 0 && got.offset[2][p] < s.grid.lowest_weighed) continue;
+      const double nearest = Shape::averaged ? 0.5 * got.extent[2][p] : s.grid.lowest_weighed;
+      if (got.cell[2][p] == 0 && got.offset[2][p] < nearest) continue;
       ++checked;
       for (int a = 0; a < 3; ++a) {
         double v = 0;
@@ -203,21 +218,25 @@ class Transfers : public InEachPlace {
   }
 };
 
-// The reference's terrain slopes are central differences, good to 1e-9; single precision rounds 27 terms at 6e-8.
+// Double precision to rounding of the sums; single precision rounds 27 terms at 6e-8.
 TEST_P(Transfers, scatters_mass_momentum_and_force_as_defined) {
 #if TALUS_FOR_GPU
   if (GetParam() == On::gpu) {
-    compare<double, OnGpu, Linear>(1e-8);
-    compare<double, OnGpu, Quadratic>(1e-8);
+    compare<double, OnGpu, Linear>(1e-12);
+    compare<double, OnGpu, Quadratic>(1e-12);
+    compare<double, OnGpu, Gimp>(1e-12);
     compare<float, OnGpu, Linear>(1e-5);
     compare<float, OnGpu, Quadratic>(1e-5);
+    compare<float, OnGpu, Gimp>(1e-5);
     return;
   }
 #endif
-  compare<double, OnCpu, Linear>(1e-8);
-  compare<double, OnCpu, Quadratic>(1e-8);
+  compare<double, OnCpu, Linear>(1e-12);
+  compare<double, OnCpu, Quadratic>(1e-12);
+  compare<double, OnCpu, Gimp>(1e-12);
   compare<float, OnCpu, Linear>(1e-5);
   compare<float, OnCpu, Quadratic>(1e-5);
+  compare<float, OnCpu, Gimp>(1e-5);
 }
 
 TEST_P(Transfers, gathers_a_linear_field_exactly) {
@@ -225,13 +244,17 @@ TEST_P(Transfers, gathers_a_linear_field_exactly) {
   if (GetParam() == On::gpu) {
     gather_linear_field<double, OnGpu, Linear>(1e-12);
     gather_linear_field<double, OnGpu, Quadratic>(1e-12);
+    gather_linear_field<double, OnGpu, Gimp>(1e-12);
     gather_linear_field<float, OnGpu, Quadratic>(1e-5);
+    gather_linear_field<float, OnGpu, Gimp>(1e-5);
     return;
   }
 #endif
   gather_linear_field<double, OnCpu, Linear>(1e-12);
   gather_linear_field<double, OnCpu, Quadratic>(1e-12);
+  gather_linear_field<double, OnCpu, Gimp>(1e-12);
   gather_linear_field<float, OnCpu, Quadratic>(1e-5);
+  gather_linear_field<float, OnCpu, Gimp>(1e-5);
 }
 
 TALUS_IN_EACH_PLACE(Transfers);

@@ -188,7 +188,7 @@ void large_compaction(Bench& bench) {
     bool always;
   };
   int colour = 1;
-  for (const Study& study : {Study{"quadratic", 2, true}, {"quadratic", 3, false}, {"quadratic", 4, false}, {"linear", 2, true}}) {
+  for (const Study& study : {Study{"gimp", 2, true}, {"gimp", 3, false}, {"quadratic", 2, true}, {"quadratic", 3, false}, {"quadratic", 4, false}, {"linear", 2, true}}) {
     if (!study.always && !bench.complete()) continue;
     const std::string name = fmt::format("{}, {} points per cell", study.shape, study.per_cell * study.per_cell * study.per_cell);
     std::vector<double> h, error;
@@ -199,13 +199,16 @@ void large_compaction(Bench& bench) {
       error.push_back(stress_error(o, soft));
       if (level == 5 && study.always) profile.series.push_back(stresses(study.shape, o, soft, colour));
     }
-    if (std::string(study.shape) == "quadratic") {  // linear functions stall: shown in the picture, promised by nobody
-      o.variant = name;
-      bench.at_least(o, "order of the stress error, h = 12.5 to 3.1 m", order(h, error, 3), 1);
-      bench.at_least(o, fmt::format("order of the stress error, h = 12.5 to {:.1f} m", h.back()), order(h, error, h.size()), 1);
-      bench.note(o, fmt::format("stress error, h = {:.1f} m", h.back()), error.back());
+    // Splines integrate at points, and their error goes flat; hats stall when points cross cells: both are shown, and promise no order.
+    o.variant = name;
+    const std::string range = fmt::format("order of the stress error, h = 12.5 to {:.1f} m", h.back());
+    if (std::string(study.shape) == "gimp") {
+      bench.at_least(o, range, order(h, error, h.size()), 1);
       if (study.per_cell == 2) chart.series.push_back(slope_line(1, h, h[0], error[0]));
+    } else {
+      bench.note(o, range, order(h, error, h.size()));
     }
+    bench.note(o, fmt::format("stress error, h = {:.1f} m", h.back()), error.back());
     chart.series.push_back(convergence(name, h, error, colour++));
   }
   bench.picture("A1b-convergence", png_of(chart));
