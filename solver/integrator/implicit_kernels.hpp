@@ -222,12 +222,15 @@ struct ScatterBlocks {
   }
 };
 
-/// One thread: one point. How far it goes, in cells, for the displacement u: the largest over all points, as float bits.
+/// One thread: one point. How far it goes for the displacement u, over how far it may: the largest over all points, as float bits. In a dynamic step,
+/// and on sloping ground, it may go a cell. Statics over level ground are exact however far it goes, short of going half a cell through an edge that
+/// it was too far from to meet.
 template <class Real, class Shape>
 struct MeasureMotion {
   GridView<Real> grid;
   ParticleView<Real> points;
   const Vec3<double>* u;
+  bool dynamic;
   std::uint32_t* farthest;
   TALUS_HD void operator()(int p) const {
     const PointGradients<Real, Shape> g(grid, points, p);
@@ -235,7 +238,14 @@ struct MeasureMotion {
     around(grid, g, [&](int n, int a, int b, int c) { way += u[n] * static_cast<double>(g.weight(a, b, c)); });
     const double across = static_cast<double>(g.across), up = static_cast<double>(g.up);
     const double rise = way.z - static_cast<double>(g.s.slope_x) * way.x - static_cast<double>(g.s.slope_y) * way.y;
-    const double cells = fmax(fmax(fabs(way.x), fabs(way.y)) * across, fabs(rise) * up);
+    double cells = fmax(fmax(fabs(way.x), fabs(way.y)) * across, fabs(rise) * up);
+    if (!dynamic && g.s.slope_x == Real(0) && g.s.slope_y == Real(0)) {
+      const double x = points.cell_x[p] + static_cast<double>(points.offset_x[p]) + way.x * across;
+      const double y = points.cell_y[p] + static_cast<double>(points.offset_y[p]) + way.y * across;
+      const double z = points.cell_z[p] + static_cast<double>(points.offset_z[p]) + rise * up;
+      const double through_x = fmax(grid.walls.west - x, x - grid.walls.east), through_y = fmax(grid.walls.south - y, y - grid.walls.north);
+      cells = 2 * fmax(fmax(through_x, through_y), fmax(-z, 0.0));
+    }
     atomic_max_positive(farthest, cells < 1e30 ? static_cast<float>(cells) : 1e30f);
   }
 };

@@ -454,10 +454,10 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     return cg_.solve(residual_, change_, tolerance, o.linear_iterations, apply_tangent, precondition);
   }
 
-  /// No point may go further than a cell in a step: shape functions stand still meanwhile.
+  /// Shape functions stand still during a step, and points must not outrun them.
   bool within_reach() {
     farthest_.upload({0});
-    for_each(Place{}, points_.count(), MeasureMotion<Real, Shape>{this->grid_.view(), points_.view(), u_.data(), farthest_.data()});
+    for_each(Place{}, points_.count(), MeasureMotion<Real, Shape>{this->grid_.view(), points_.view(), u_.data(), dynamic_, farthest_.data()});
     return positive_from_bits(farthest_.download().front()) <= 1.0f;
   }
 

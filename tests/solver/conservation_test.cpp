@@ -28,7 +28,7 @@ class Conservation : public InEachPlace {
 
 TEST_P(Conservation, falls_freely) {
   for (const auto transfer : {Transfer::apic, Transfer::flip}) {
-    for (const auto shape : {ShapeKind::quadratic, ShapeKind::linear}) {
+    for (const auto shape : {ShapeKind::quadratic, ShapeKind::gimp, ShapeKind::linear}) {
       for (const auto update : {StressUpdate::last, StressUpdate::modified}) {
         const Domain d = cube();
         SolveOptions o = options();
@@ -160,7 +160,7 @@ TEST_P(Conservation, loses_velocity_finer_than_the_grid_by_time_and_not_by_steps
 
 TEST_P(Conservation, deforms_uniformly_under_a_linear_velocity) {
   // Patch test: a linear velocity field gives every point inside the body the same gradient, whatever the layout.
-  for (const auto shape : {ShapeKind::quadratic, ShapeKind::linear}) {
+  for (const auto shape : {ShapeKind::quadratic, ShapeKind::gimp, ShapeKind::linear}) {
     Domain d = ground(24, 24, 1.0, 0.5, [](double, double) { return 0.0; });
     fill(d, {8, 14, 9, 15, 4, 8}, 3, 2);
     unsigned seed = 7;
@@ -258,7 +258,7 @@ TEST_P(Conservation, maps_the_points_volume) {
   Domain d = ground(20, 20, 2.0, 1.0, [](double x, double y) { return 0.1 * x + 0.05 * y; });
   fill(d, {10, 20, 10, 20, 0, 3});
   for (const auto precision : {Precision::double_, Precision::single_}) {
-    for (const auto shape : {ShapeKind::quadratic, ShapeKind::linear}) {
+    for (const auto shape : {ShapeKind::quadratic, ShapeKind::gimp, ShapeKind::linear}) {
       SolveOptions o;
       o.precision = precision;
       o.shape = shape;
@@ -319,7 +319,7 @@ TEST(Places, agree_on_a_slide) {
   }
   Domain d = ground(30, 20, 1.0, 0.5, [](double x, double y) { return 12 - 0.6 * x + 0.3 * std::sin(0.4 * y); });
   fill(d, {4, 9, 6, 12, 0, 2});
-  for (const auto shape : {ShapeKind::quadratic, ShapeKind::linear}) {
+  for (const auto shape : {ShapeKind::quadratic, ShapeKind::gimp, ShapeKind::linear}) {
     for (const auto transfer : {Transfer::apic, Transfer::flip}) {
       SolveOptions o;
       o.shape = shape;

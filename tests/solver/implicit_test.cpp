@@ -80,7 +80,7 @@ TEST_P(Implicit, carries_a_columns_own_weight) {
   o.gravity = {0, 0, -200.0 / 80};
   o.gravity_ramp = 1;
   o.implicit.step = 0.05;
-  for (const auto shape : {ShapeKind::linear, ShapeKind::quadratic}) {
+  for (const auto shape : {ShapeKind::linear, ShapeKind::quadratic, ShapeKind::gimp}) {
     o.shape = shape;
     const Scene scene = make_scene(d, o);
     const auto solver = make_solver(scene, o, GetParam());
@@ -89,7 +89,7 @@ TEST_P(Implicit, carries_a_columns_own_weight) {
     const ColumnResult r = measure_column(*solver, scene, d, o, 200, 50);
     const double exact = 200 / 1e6 * (50 * r.top_height - 0.5 * r.top_height * r.top_height);
     std::printf("  A1 %s: stress error (rms) %.2e, top displacement %.6f (%.3f %%), %d Newton, %d linear in the last step\n",
-                shape == ShapeKind::linear ? "linear" : "quadratic", r.stress_error, r.top, 100 * (r.top / exact - 1), newton,
+                name_of(shape), r.stress_error, r.top, 100 * (r.top / exact - 1), newton,
                 stats.linear);
     // validation.md A1: 0.2 %. Hats lose 0.3 % as points near the top cross cells and leave a cell with one of its two layers.
     EXPECT_LT(std::abs(r.top / exact - 1), shape == ShapeKind::quadratic ? 0.002 : 0.005);
@@ -222,7 +222,7 @@ TEST_P(Implicit, gives_the_same_displacement_by_every_linear_solver) {
   // Half of the column's load in one step, on a wavy ground that the body stands on.
   Domain d = ground(14, 12, 1.0, 1.0, [](double x, double y) { return 0.2 * std::sin(x) + 0.1 * y; });
   fill(d, {4, 8, 4, 7, 0, 4});
-  for (const auto shape : {ShapeKind::linear, ShapeKind::quadratic}) {
+  for (const auto shape : {ShapeKind::linear, ShapeKind::quadratic, ShapeKind::gimp}) {
     std::vector<double> reference;
     for (int kind = 0; kind < 4; ++kind) {
       SolveOptions o;
@@ -321,7 +321,7 @@ struct Cantilever {
 
 TEST_P(Implicit, bends_a_cantilever_until_points_leave_their_cells) {
   // 16 % of strain in the outer fibres, the tip moves by 13 cells. Without the filler neither shape gets past a quarter of the load.
-  for (const auto shape : {ShapeKind::linear, ShapeKind::quadratic}) {
+  for (const auto shape : {ShapeKind::linear, ShapeKind::quadratic, ShapeKind::gimp}) {
     Cantilever beam(shape, 3.6);
     beam.options.implicit.step = 0.05;
     const Scene scene = make_scene(beam.domain, beam.options);
@@ -329,7 +329,7 @@ TEST_P(Implicit, bends_a_cantilever_until_points_leave_their_cells) {
     steps_to(*solver, 1.0);
     // At the end the beam hangs at about 60 degrees.
     const double error = beam.deflection(*solver, scene) / (0.64684 * 10 - 0.125 * 0.87) - 1;
-    std::printf("  A2 %s, h = 0.5 m: tip deflection error %.1f %%\n", shape == ShapeKind::linear ? "linear" : "quadratic", 100 * error);
+    std::printf("  A2 %s, h = 0.5 m: tip deflection error %.1f %%\n", name_of(shape), 100 * error);
     EXPECT_LT(std::abs(error), 0.08);  // two cells over the depth
   }
 }
@@ -352,7 +352,7 @@ TEST_P(Implicit, does_not_lock_at_poissons_ratio_of_nearly_one_half) {
   for (const auto shape : {ShapeKind::linear, ShapeKind::quadratic}) {
     for (const double poisson : {0.49, 0.499}) {
       const double error = bend(shape, poisson, true);
-      std::printf("  nu = %.3f, %s, B-bar: deflection %+.1f %%\n", poisson, shape == ShapeKind::linear ? "linear" : "quadratic", 100 * error);
+      std::printf("  nu = %.3f, %s, B-bar: deflection %+.1f %%\n", poisson, name_of(shape), 100 * error);
       EXPECT_LT(std::abs(error), 0.05);
     }
   }
@@ -427,7 +427,7 @@ TEST_P(Implicit, meets_an_indefinite_tangent_and_says_so) {
 TEST_P(Implicit, carries_a_single_point_and_nodes_without_mass) {
   // Alone in its cells, at a node (so that splines leave layers without weight) and beside one: it falls as the parabola says.
   for (const double x : {5.0, 5.37}) {
-    for (const auto shape : {ShapeKind::linear, ShapeKind::quadratic}) {
+    for (const auto shape : {ShapeKind::linear, ShapeKind::quadratic, ShapeKind::gimp}) {
       for (const auto integrator : {Integrator::newmark, Integrator::explicit_}) {
         Domain d = ground(12, 12, 1.0, 1.0, [](double, double) { return 0.0; });
         fill(d, {x - 0.25, x + 0.25, 5, 5.5, 6, 6.5});

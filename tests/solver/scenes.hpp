@@ -31,6 +31,10 @@ inline Domain ground(int columns, int rows, double cell, double layer_height,
 template <class Shape>
 inline constexpr ShapeKind kind_of = Shape::averaged ? ShapeKind::gimp : Shape::spline ? ShapeKind::quadratic : ShapeKind::linear;
 
+inline const char* name_of(ShapeKind shape) {
+  return shape == ShapeKind::linear ? "linear" : shape == ShapeKind::gimp ? "gimp" : "quadratic";
+}
+
 struct Box {
   double x0, x1, y0, y1, bottom, top;  // [m]; bottom and top above the ground
 };
