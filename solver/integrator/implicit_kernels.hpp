@@ -190,38 +190,6 @@ struct ApplyTangent {
   }
 };
 
-/// One thread: one point. Diagonal 3 x 3 blocks of K.
-template <class Real, class Shape>
-struct ScatterBlocks {
-  GridView<Real> grid;
-  ParticleView<Real> points;
-  TangentStore<Real> tangents;
-  Sym3<double>* blocks;
-
-  TALUS_HD void operator()(int p) const {
-    const PointGradients<Real, Shape> g(grid, points, p);
-    const PointTangent<Real> t = tangents.get(p);
-    const Real volume = points.volume[p];
-    around(grid, g, [&](int n, int a, int b, int c) {
-      const Vec3<Real> grad = g.gradient(a, b, c);
-      Vec3<double> column[3];
-      for (int e = 0; e < 3; ++e) {
-        Mat3<Real> unit{};
-        const Vec3<Real> axis{Real(e == 0), Real(e == 1), Real(e == 2)};
-        add_outer(unit, axis, grad);
-        column[e] = widen(apply(t, unit) * (grad * volume));
-      }
-      Sym3<double>& block = blocks[n];
-      talus::scatter_add(&block.xx, column[0].x);
-      talus::scatter_add(&block.yy, column[1].y);
-      talus::scatter_add(&block.zz, column[2].z);
-      talus::scatter_add(&block.xy, 0.5 * (column[0].y + column[1].x));
-      talus::scatter_add(&block.yz, 0.5 * (column[1].z + column[2].y));
-      talus::scatter_add(&block.xz, 0.5 * (column[0].z + column[2].x));
-    });
-  }
-};
-
 /// One thread: one point. How far it goes for the displacement u, over how far it may: the largest over all points, as float bits. In a dynamic step,
 /// and on sloping ground, it may go a cell. Statics over level ground are exact however far it goes, short of going half a cell through an edge that
 /// it was too far from to meet.

@@ -259,50 +259,6 @@ struct FrictionStiffness {
   }
 };
 
-/// One thread: one node. Inverse of the diagonal, or of the 3 x 3 block, of the constrained operator.
-struct InvertBlocks {
-  NodeArrays nodes;
-  Constraints held;
-  double inertia;
-  bool whole;  // the block, else its diagonal
-  Sym3<double>* blocks;
-
-  TALUS_HD void operator()(int n) const {
-    const Sym3<double> p = nodes.freed[n];
-    Sym3<double>& b = blocks[n];
-    if (!(trace(p) > 0.5)) {
-      b = {};
-      return;
-    }
-    b = b.plus_identity(nodes.mass[n] * inertia);
-    if (nodes.touch[n] == Touch::closed && held.limit[n] > 0) {
-      Sym3<double> stiffness;
-      held.friction_force(n, nodes.u[n], &stiffness);
-      b = b + stiffness;
-    }
-    if (!whole) {
-      b = {safe(b.xx), safe(b.yy), safe(b.zz), 0, 0, 0};
-      return;
-    }
-    // P B P + (I - P) has B's action on the free directions and is regular.
-    const Vec3<double> e[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    Vec3<double> column[3];
-    for (int a = 0; a < 3; ++a) column[a] = p * (b * (p * e[a])) + e[a] - p * e[a];
-    const Mat3<double> inverse = inverted(Mat3<double>{column[0], column[1], column[2]});
-    b = {inverse.a.x, inverse.b.y, inverse.c.z, inverse.b.x, inverse.c.y, inverse.c.x};
-  }
-  TALUS_HD static double safe(double d) { return d > 0 ? 1 / d : 0; }
-};
-
-/// One thread: one node. z = freed inverse r.
-struct ApplyBlocks {
-  NodeArrays nodes;
-  const Sym3<double>* inverse;
-  const Vec3<double>* r;
-  Vec3<double>* z;
-  TALUS_HD void operator()(int n) const { z[n] = nodes.freed[n] * (inverse[n] * r[n]); }
-};
-
 /// One thread: one node. Newmark's velocity and acceleration at the end of the step.
 struct EndOfStep {
   NodeArrays nodes;

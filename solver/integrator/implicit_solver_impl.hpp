@@ -11,6 +11,7 @@
 #include "solver/linear/bicgstab.hpp"
 #include "solver/linear/cholesky_solver.hpp"
 #include "solver/linear/conjugate_gradient.hpp"
+#include "solver/linear/preconditioner.hpp"
 #include "solver/linear/tangent_operator.hpp"
 
 namespace talus::solver {
@@ -103,7 +104,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
         friction_(make_base_friction<double>(options.base)),
         step_(options.implicit.step),
         first_(state.clock.step == 0),
-        operator_(options.implicit.form) {
+        operator_(options.implicit.form),
+        preconditioner_(options.implicit.preconditioner) {
     changes_.upload({0});
     this->grid_.fit(points_, 0);
     const double g = std::hypot(options.gravity[0], options.gravity[1], options.gravity[2]);
@@ -152,7 +154,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
   std::size_t bytes() const override {
     std::size_t total = Base::bytes() + mass_.bytes() + touch_.bytes() + tangents_.bytes() + wall_freed_.bytes() +
-                        contact_friction_.bytes() + friction_limit_.bytes() + freed_.bytes() + blocks_.bytes() + stiffness_.bytes() + operator_.bytes() +
+                        contact_friction_.bytes() + friction_limit_.bytes() + freed_.bytes() + preconditioner_.bytes() + stiffness_.bytes() + operator_.bytes() +
                         cholesky_.bytes() + elements_.bytes() + bicgstab_.bytes() + means_.bytes() + static_cast<std::size_t>(cholesky_.factor().factor_bytes());
     for (const auto* v : {&velocity_, &arrival_, &acceleration_, &external_, &internal_, &u_, &residual_, &normal_,
                           &velocity_end_, &acceleration_end_, &change_, &saved_u_, &cg_.r, &cg_.z, &cg_.p, &cg_.ap}) {
@@ -209,7 +211,6 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     }
     freed_.resize(n);
     wall_freed_.resize(n);
-    blocks_.resize(n);
     contact_friction_.resize(n);
     friction_limit_.resize(n);
     touch_.resize(n);
@@ -417,22 +418,19 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
   PointTangents<Real> point_tangents() { return {this->grid_.view(), points_.view(), tangents(), means(), springs()}; }
 
-  LinearReport factorise() {
+  /// What stands on the diagonal beside the points' stiffness.
+  HeldNodes held_nodes() {
     stiffness_.resize(static_cast<std::size_t>(count_));
     for_each(Place{}, count_, FrictionStiffness{nodes(), held(), stiffness_.data()});
-    return cholesky_.solve(point_tangents(), {count_, mass_.data(), freed_.data(), scheme_.inertia(), dynamic_ ? 0 : static_shift, stiffness_.data()}, residual_,
-                           change_);
+    return {count_, mass_.data(), freed_.data(), scheme_.inertia(), dynamic_ ? 0 : static_shift, stiffness_.data()};
   }
+
+  LinearReport factorise() { return cholesky_.solve(point_tangents(), held_nodes(), residual_, change_); }
 
   void refresh_operator() {
     const ProfilePhase<Place> phase("operator and preconditioner");
-    blocks_.fill_zero();
-    for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
-                     ScatterBlocks<Real, Shape>{this->grid_.view(), points_.view(), tangents(), blocks_.data()});
-    if (means().on()) add_mean_blocks(elements_, means(), blocks_);
-    if (springs().on()) add_spring_blocks(elements_, springs(), blocks_);
-    const bool whole = options_.implicit.preconditioner == Preconditioner::block;
-    for_each(Place{}, count_, InvertBlocks{nodes(), held(), scheme_.inertia(), whole, blocks_.data()});
+    preconditioner_.refresh(point_tangents(), this->grid_.groups(), elements_,
+                            {this->grid_.view(), this->grid_.active_list(), this->grid_.active_blocks()}, held_nodes());
     operator_.refresh(point_tangents(), this->grid_.groups());
   }
 
@@ -445,7 +443,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
       for_each(Place{}, count_, CloseProduct{nodes(), held(), scheme_.inertia(), x.data(), y.data()});
     };
     const auto precondition = [&](const NodeVector<Place>& r, NodeVector<Place>& z) {
-      for_each(Place{}, count_, ApplyBlocks{nodes(), blocks_.data(), r.data(), z.data()});
+      preconditioner_.apply(r, z);
     };
     const ImplicitOptions& o = options_.implicit;
     if (o.linear_solver == LinearSolver::bicgstab) {
@@ -505,7 +503,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   Walls<double> walls_;
   NodeVector<Place> velocity_, arrival_, acceleration_, external_, internal_, u_, residual_, normal_, velocity_end_,
       acceleration_end_, change_, saved_u_;
-  Buffer<Sym3<double>, Place> freed_, wall_freed_, blocks_, stiffness_;
+  Buffer<Sym3<double>, Place> freed_, wall_freed_, stiffness_;
   Buffer<Touch, Place> touch_;
   Buffer<Real, Place> tangents_;
   Buffer<int, Place> changes_;
@@ -513,6 +511,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   ConjugateGradient<Place> cg_;
   BiCgStab<Place> bicgstab_;
   TangentOperator<Real, Place, Shape> operator_;
+  NodePreconditioner<Real, Place, Shape> preconditioner_;
   CholeskySolver<Real, Place, Shape> cholesky_;
 };
 

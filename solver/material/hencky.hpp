@@ -12,20 +12,21 @@ TALUS_HD bool is_small(const Sym3<Real>& s, Real limit) {
          fabs(s.xz) < limit;
 }
 
-/// exp(2 strain) - I, without cancellation for small strain.
+/// exp(2 strain) - I, without cancellation for small strain: the series of a strain halved often enough, squared as often.
 template <class Real>
 TALUS_HD Sym3<Real> stretch_deviation(const Sym3<Real>& strain) {
-  if (is_small(strain, Real(0.005))) {
-    const Sym3<Real> a = strain * Real(2);
-    const Sym3<Real> a2 = commuting_product(a, a), a3 = commuting_product(a2, a), a4 = commuting_product(a2, a2);
-    const Sym3<Real> a5 = commuting_product(a4, a);
-    return a + a2 * Real(1.0 / 2) + a3 * Real(1.0 / 6) + a4 * Real(1.0 / 24) + a5 * Real(1.0 / 120);
+  int halvings = 0;
+  Real part = Real(2);
+  while (halvings < 12 && !is_small(strain * part, Real(0.01))) {
+    part *= Real(0.5);
+    ++halvings;
   }
-  Real values[3];
-  Mat3<Real> directions;
-  eigen_symmetric(strain, values, directions);
-  for (Real& value : values) value = expm1(Real(2) * value);
-  return compose(values, directions);
+  const Sym3<Real> a = strain * part;
+  const Sym3<Real> a2 = commuting_product(a, a), a3 = commuting_product(a2, a), a4 = commuting_product(a2, a2);
+  const Sym3<Real> a5 = commuting_product(a4, a);
+  Sym3<Real> d = a + a2 * Real(1.0 / 2) + a3 * Real(1.0 / 6) + a4 * Real(1.0 / 24) + a5 * Real(1.0 / 120);
+  for (; halvings > 0; --halvings) d = d * Real(2) + commuting_product(d, d);  // (I + d)^2 - I
+  return d;
 }
 
 /// ln(I + deviation) / 2.

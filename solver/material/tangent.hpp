@@ -47,6 +47,30 @@ TALUS_HD Mat3<Real> apply(const PointTangent<Real>& t, const Mat3<Real>& dg) {
           column(t.pull[2], t.pull[5], t.pull[8])};
 }
 
+/// The tangent as the 81 numbers dP_ik / dG_jl, for those who need many of its products.
+template <class Real>
+struct WholeTangent {
+  Mat3<Real> change[3][3];  // [l][j]: dP for a unit of G_jl
+
+  TALUS_HD explicit WholeTangent(const PointTangent<Real>& t) {
+    for (int l = 0; l < 3; ++l) {
+      for (int j = 0; j < 3; ++j) {
+        Mat3<Real> unit{};
+        const Vec3<Real> axis{Real(j == 0), Real(j == 1), Real(j == 2)};
+        (l == 0 ? unit.a : l == 1 ? unit.b : unit.c) = axis;
+        change[l][j] = apply(t, unit);
+      }
+    }
+  }
+  /// dP for a unit displacement along each axis of a node whose gradient is g.
+  TALUS_HD void along(const Vec3<Real>& g, Mat3<Real> (&out)[3]) const {
+    for (int j = 0; j < 3; ++j) {
+      const Mat3<Real>&x = change[0][j], &y = change[1][j], &z = change[2][j];
+      out[j] = {x.a * g.x + y.a * g.y + z.a * g.z, x.b * g.x + y.b * g.y + z.b * g.z, x.c * g.x + y.c * g.y + z.c * g.z};
+    }
+  }
+};
+
 /// Takes from each off-diagonal pair what makes it indefinite: |s l_a - tau_a| <= sqrt(s l_a s l_b).
 template <class Real>
 TALUS_HD void make_definite(PointTangent<Real>& t) {
@@ -178,6 +202,24 @@ TALUS_HD VolumeResponse<Real> volume_response(const Material<Real>& m, const Mat
   return {state.mean_stress(), state.bulk()};
 }
 
+/// F^-1, for F = I + g.
+template <class Real>
+TALUS_HD Mat3<Real> inverse_deformation(const Mat3<Real>& g) {
+  return inverted(Mat3<Real>{{g.a.x + 1, g.a.y, g.a.z}, {g.b.x, g.b.y + 1, g.b.z}, {g.c.x, g.c.y, g.c.z + 1}});
+}
+
+/// The same stress without principal axes, which small strains can do without.
+template <class Real>
+TALUS_HD Mat3<Real> nominal_stress_alone(const Material<Real>& m, const MaterialState<Real>& start, const Mat3<Real>& g, const MeanVolume<Real>& mean) {
+  MaterialState<Real> end = start;
+  advance_material(m, g, end, mean);
+  Sym3<Real> tau = kirchhoff_stress(m, end);
+  if (mean.on) tau = deviator(tau).plus_identity(mean.stress);
+  const Mat3<Real> inverse = inverse_deformation(g);  // column b of P is tau times row b of F^-1
+  return {tau * Vec3<Real>{inverse.a.x, inverse.b.x, inverse.c.x}, tau * Vec3<Real>{inverse.a.y, inverse.b.y, inverse.c.y},
+          tau * Vec3<Real>{inverse.a.z, inverse.b.z, inverse.c.z}};
+}
+
 /// Nominal stress P of a point whose state at the start of the step is `start`, for the displacement gradient g of the step; with
 /// `tangent` not null also the derivative of P by g. With `mean` on (B-bar) its mean stress is the element's, and the tangent is
 /// without the bulk part, which couples the element's points (mean_dilation.hpp).
@@ -185,6 +227,7 @@ template <class Real>
 TALUS_HD Mat3<Real> nominal_stress(const Material<Real>& m, const MaterialState<Real>& start, const Mat3<Real>& g,
                                    PointTangent<Real>* tangent, const MeanVolume<Real>& mean = {}) {
   if (m.model == MaterialModel::linear_elastic) return linear_stress(m, start, g, tangent);
+  if (!tangent) return nominal_stress_alone(m, start, g, mean);
   PrincipalState<Real> state(m, start, g, mean);
   const Real* stretch = state.stretch;
   Real* tau = state.tau;
@@ -195,34 +238,31 @@ TALUS_HD Mat3<Real> nominal_stress(const Material<Real>& m, const MaterialState<
     for (int a = 0; a < 3; ++a) tau[a] += shift;
     for (int q = 0; q < 9; ++q) d[q] -= bulk;
   }
-  const Mat3<Real> f{{g.a.x + 1, g.a.y, g.a.z}, {g.b.x, g.b.y + 1, g.b.z}, {g.c.x, g.c.y, g.c.z + 1}};
-  const Mat3<Real> inverse = inverted(f);
+  const Mat3<Real> inverse = inverse_deformation(g);
   const Vec3<Real> n[3] = {axes.a, axes.b, axes.c};
   Vec3<Real> pull[3];  // n^T F^-T = F^-1 n
   for (int a = 0; a < 3; ++a) pull[a] = inverse * n[a];
   const auto column = [&](Real p0, Real p1, Real p2) { return n[0] * (tau[0] * p0) + n[1] * (tau[1] * p1) + n[2] * (tau[2] * p2); };
-  if (tangent) {
-    for (int a = 0; a < 3; ++a) {
-      tangent->axes[3 * a] = n[a].x;
-      tangent->axes[3 * a + 1] = n[a].y;
-      tangent->axes[3 * a + 2] = n[a].z;
-      tangent->pull[3 * a] = pull[a].x;
-      tangent->pull[3 * a + 1] = pull[a].y;
-      tangent->pull[3 * a + 2] = pull[a].z;
-      for (int b = 0; b < 3; ++b) tangent->direct[3 * a + b] = d[3 * a + b] - (a == b ? tau[a] : Real(0));
-    }
-    constexpr int first[3] = {0, 1, 0}, second[3] = {1, 2, 2};
-    for (int q = 0; q < 3; ++q) {
-      const int a = first[q], b = second[q];
-      const Real la = Real(1) + stretch[a], lb = Real(1) + stretch[b], gap = stretch[a] - stretch[b];
-      // Nearly equal stretches: the limit, whose error is of the order of the gap squared.
-      const bool close = fabs(gap) < Real(sizeof(Real) == 8 ? 1e-6 : 1e-3) * (la + lb);
-      const Real s = close ? (d[3 * a + a] + d[3 * b + b] - d[3 * a + b] - d[3 * b + a]) / (Real(2) * (la + lb))
-                           : (tau[a] - tau[b]) / gap;
-      tangent->pairs[3 * q] = s * lb;
-      tangent->pairs[3 * q + 1] = s * la;
-      tangent->pairs[3 * q + 2] = Real(0.5) * (s * la - tau[a] + s * lb - tau[b]);
-    }
+  for (int a = 0; a < 3; ++a) {
+    tangent->axes[3 * a] = n[a].x;
+    tangent->axes[3 * a + 1] = n[a].y;
+    tangent->axes[3 * a + 2] = n[a].z;
+    tangent->pull[3 * a] = pull[a].x;
+    tangent->pull[3 * a + 1] = pull[a].y;
+    tangent->pull[3 * a + 2] = pull[a].z;
+    for (int b = 0; b < 3; ++b) tangent->direct[3 * a + b] = d[3 * a + b] - (a == b ? tau[a] : Real(0));
+  }
+  constexpr int first[3] = {0, 1, 0}, second[3] = {1, 2, 2};
+  for (int q = 0; q < 3; ++q) {
+    const int a = first[q], b = second[q];
+    const Real la = Real(1) + stretch[a], lb = Real(1) + stretch[b], gap = stretch[a] - stretch[b];
+    // Nearly equal stretches: the limit, whose error is of the order of the gap squared.
+    const bool close = fabs(gap) < Real(sizeof(Real) == 8 ? 1e-6 : 1e-3) * (la + lb);
+    const Real s = close ? (d[3 * a + a] + d[3 * b + b] - d[3 * a + b] - d[3 * b + a]) / (Real(2) * (la + lb))
+                         : (tau[a] - tau[b]) / gap;
+    tangent->pairs[3 * q] = s * lb;
+    tangent->pairs[3 * q + 1] = s * la;
+    tangent->pairs[3 * q + 2] = Real(0.5) * (s * la - tau[a] + s * lb - tau[b]);
   }
   return {column(pull[0].x, pull[1].x, pull[2].x), column(pull[0].y, pull[1].y, pull[2].y),
           column(pull[0].z, pull[1].z, pull[2].z)};

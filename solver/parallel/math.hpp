@@ -49,13 +49,15 @@ TALUS_HD Real determinant(const Mat3<Real>& m) {
          m.c.x * (m.a.y * m.b.z - m.a.z * m.b.y);
 }
 
+template <class Real>
+TALUS_HD Vec3<Real> cross(const Vec3<Real>& u, const Vec3<Real>& v) {
+  return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+}
+
 /// Inverse by cofactors.
 template <class Real>
 TALUS_HD Mat3<Real> inverted(const Mat3<Real>& m) {
   const Real s = Real(1) / determinant(m);
-  const auto cross = [](const Vec3<Real>& u, const Vec3<Real>& v) {
-    return Vec3<Real>{u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
-  };
   // Rows of the inverse are the cross products of the columns.
   const Vec3<Real> ra = cross(m.b, m.c) * s, rb = cross(m.c, m.a) * s, rc = cross(m.a, m.b) * s;
   return {{ra.x, rb.x, rc.x}, {ra.y, rb.y, rc.y}, {ra.z, rb.z, rc.z}};
@@ -96,12 +98,51 @@ TALUS_HD Sym3<Real> commuting_product(const Sym3<Real>& s, const Sym3<Real>& t) 
           s.xy * t.xz + s.yy * t.yz + s.yz * t.zz, s.xx * t.xz + s.xy * t.yz + s.xz * t.zz};
 }
 
-/// Eigenvalues of s, and its eigenvectors as the columns of `vectors`, by cyclic Jacobi rotations: slow, but accurate for
-/// nearly equal eigenvalues too (Golub & Van Loan 2013, section 8.5).
+/// A unit vector along the eigenvector of s whose eigenvalue lies furthest from the other two, good to the square root of rounding (Eberly 2014, A robust
+/// eigensolver for 3 x 3 symmetric matrices); zero where s is a multiple of the identity.
+template <class Real>
+TALUS_HD Vec3<Real> outlying_eigenvector(const Sym3<Real>& s) {
+  const Real mean = trace(s) / Real(3);
+  const Sym3<Real> off = s.plus_identity(-mean);
+  const Real size = sqrt(norm_squared(off) / Real(6));
+  if (!(size > fabs(mean) * Real(sizeof(Real) == 8 ? 1e-14 : 1e-6))) return {};
+  const Sym3<Real> b = off * (Real(1) / size);  // eigenvalues 2 cos of angles a third of a turn apart
+  const Real half = Real(0.5) * determinant(Mat3<Real>{{b.xx, b.xy, b.xz}, {b.xy, b.yy, b.yz}, {b.xz, b.yz, b.zz}});
+  const Real r = half > Real(1) ? Real(1) : half < Real(-1) ? Real(-1) : half;
+  const Real value = r >= Real(0) ? Real(2) * cos(acos(r) / Real(3)) : Real(-2) * cos(acos(-r) / Real(3));
+  const Vec3<Real> rows[3] = {{b.xx - value, b.xy, b.xz}, {b.xy, b.yy - value, b.yz}, {b.xz, b.yz, b.zz - value}};
+  Vec3<Real> best{};
+  Real most = 0;
+  for (int p = 0; p < 3; ++p) {
+    const Vec3<Real> c = cross(rows[p], rows[(p + 1) % 3]);
+    const Real square = dot(c, c);
+    if (square > most) {
+      most = square;
+      best = c;
+    }
+  }
+  return most > Real(0) ? best * (Real(1) / sqrt(most)) : Vec3<Real>{};
+}
+
+/// Eigenvalues of s, and its eigenvectors as the columns of `vectors`, by cyclic Jacobi rotations (Golub & Van Loan 2013, section 8.5): accurate for nearly equal
+/// eigenvalues too. They begin in axes of which one is an eigenvector but for rounding, so that one sweep does nearly always.
 template <class Real>
 TALUS_HD void eigen_symmetric(const Sym3<Real>& s, Real values[3], Mat3<Real>& vectors) {
   Real m[3][3] = {{s.xx, s.xy, s.xz}, {s.xy, s.yy, s.yz}, {s.xz, s.yz, s.zz}};
   Real v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const Vec3<Real> w = outlying_eigenvector(s);
+  if (dot(w, w) > Real(0)) {
+    const Vec3<Real> across = fabs(w.x) > fabs(w.y) ? Vec3<Real>{-w.z, Real(0), w.x} : Vec3<Real>{Real(0), w.z, -w.y};
+    const Vec3<Real> u = across * (Real(1) / length(across)), t = cross(w, u);
+    const Vec3<Real> axis[3] = {u, t, w};
+    for (int q = 0; q < 3; ++q) {
+      const Vec3<Real> image = s * axis[q];
+      for (int p = 0; p <= q; ++p) m[p][q] = m[q][p] = dot(axis[p], image);
+      v[0][q] = axis[q].x;
+      v[1][q] = axis[q].y;
+      v[2][q] = axis[q].z;
+    }
+  }
   for (int sweep = 0; sweep < 12; ++sweep) {
     const Real off = m[0][1] * m[0][1] + m[0][2] * m[0][2] + m[1][2] * m[1][2];
     const Real all = m[0][0] * m[0][0] + m[1][1] * m[1][1] + m[2][2] * m[2][2];

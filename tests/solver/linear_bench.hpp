@@ -5,6 +5,7 @@
 
 #include "scenes.hpp"
 #include "solver/linear/cholesky_solver.hpp"
+#include "solver/linear/preconditioner.hpp"
 #include "solver/linear/tangent_operator.hpp"
 
 namespace talus::solver::testing {
@@ -72,22 +73,6 @@ struct CloseSystem {
   }
 };
 
-/// z = freed B^-1 freed r, B the node's own block.
-struct OwnBlocks {
-  HeldNodes nodes;
-  const Sym3<double>* blocks;
-  const Vec3<double>* r;
-  Vec3<double>* z;
-  TALUS_HD void operator()(int n) const {
-    const Sym3<double> p = nodes.freed[n];
-    const Sym3<double> b = (blocks[n] + nodes.stiffness[n]).plus_identity(nodes.mass[n] * nodes.inertia);
-    const Vec3<double> e[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    Vec3<double> column[3];
-    for (int a = 0; a < 3; ++a) column[a] = p * (b * (p * e[a])) + e[a] - p * e[a];
-    z[n] = p * (inverted(Mat3<double>{column[0], column[1], column[2]}) * (p * r[n]));
-  }
-};
-
 /// Everything a linear solve takes: grid, points, tangents, mass and constraints.
 template <class Real, class Place, class Shape>
 struct LinearBench {
@@ -98,7 +83,7 @@ struct LinearBench {
   int count = 0;
   Buffer<Real, Place> tangents;
   Buffer<double, Place> mass;
-  Buffer<Sym3<double>, Place> freed, blocks, stiffness;
+  Buffer<Sym3<double>, Place> freed, stiffness;
   MeanDilation<Real, Place, Shape> means;
   bool b_bar;
   FillerSprings springs;
@@ -208,25 +193,24 @@ struct LinearBench {
     return b;
   }
 
-  std::vector<Vec3<double>> by_gradients() {
+  std::vector<Vec3<double>> by_gradients(Preconditioner kind = Preconditioner::block, int* iterations = nullptr) {
     NodeVector<Place> x;
     const NodeVector<Place> b = right_side();
-    blocks.resize(static_cast<std::size_t>(count));
-    blocks.fill_zero();
-    for_each_grouped(Place{}, points.count(), grid.groups(),
-                     ScatterBlocks<Real, Shape>{grid.view(), points.view(), store(), blocks.data()});
+    NodePreconditioner<Real, Place, Shape> preconditioner(kind);
+    preconditioner.refresh(from(), grid.groups(), elements, {grid.view(), grid.active_list(), grid.active_blocks()}, held());
+    TangentOperator<Real, Place, Shape> op(Operator::points);
+    op.begin_step(elements, count);
+    op.refresh(from(), grid.groups());
     ConjugateGradient<Place> cg;
     const auto multiply = [&](const NodeVector<Place>& p, NodeVector<Place>& ap) {
       ap.fill_zero();
-      for_each_grouped(Place{}, points.count(), grid.groups(),
-                       ApplyTangent<Real, Shape>{grid.view(), points.view(), store(), p.data(), ap.data()});
+      op.apply(p, ap);
       for_each(Place{}, count, CloseSystem{held(), p.data(), ap.data()});
     };
-    const auto precondition = [&](const NodeVector<Place>& r, NodeVector<Place>& z) {
-      for_each(Place{}, count, OwnBlocks{held(), blocks.data(), r.data(), z.data()});
-    };
+    const auto precondition = [&](const NodeVector<Place>& r, NodeVector<Place>& z) { preconditioner.apply(r, z); };
     const LinearReport report = cg.solve(b, x, 1e-12, 5000, multiply, precondition);
     EXPECT_TRUE(report.converged) << "residual " << report.residual;
+    if (iterations) *iterations = report.iterations;
     return x.download();
   }
 
