@@ -1,12 +1,15 @@
 // talus-solve: domain.vdb -> run.h5.
+#include <cmath>
 #include <numeric>
 
 #include <fmt/format.h>
 
+#include "common/run/run_file.hpp"
 #include "common/stage/stage.hpp"
 #include "common/volume/domain.hpp"
 #include "solver/parallel/profile.hpp"
 #include "solver/run.hpp"
+#include "solver/stiffness.hpp"
 
 namespace {
 
@@ -57,11 +60,43 @@ void log_plan(const Domain& domain, const SolveOptions& o, On on) {
                        o.end_time / step, on == On::gpu ? "GPU" : "CPU"));
 }
 
+/// stiffness = "auto" carried out, and said.
+SolveOptions settle_stiffness(const Domain& domain, SolveOptions o) {
+  if (o.material.stiffness != StiffnessKind::automatic) return o;
+  const StiffnessDemand demand = lowest_stiffness(domain, o);
+  const double full = o.material.youngs_modulus;
+  log_info(fmt::format("stiffness: {:.3g} Pa instead of {:.3g} Pa, steps {:.3g} times as long: {}", demand.modulus, full, std::sqrt(full / demand.modulus),
+                       demand.reason));
+  return with_stiffness(o, demand);
+}
+
+/// The run once more, twice as stiff, and the difference of the deposits as a share of the volume.
+void check_stiffness(const Domain& domain, SolveOptions o, On on, const StageContext& context, const std::filesystem::path& first) {
+  o.transfer_time *= std::sqrt(2.0);
+  o.material.youngs_modulus *= 2;
+  log_info(fmt::format("stiffness check: once more with {:.3g} Pa", o.material.youngs_modulus));
+  const auto folder = context.out / "stiffness-check";
+  std::filesystem::create_directories(folder);
+  const RunPaths paths(folder);
+  Simulation(domain, o, on, paths, "").run(context.recipe.scene_name(), context.recipe.title());
+  const Run soft = read_run(first), stiff = read_run(paths.run);
+  double moved = 0, all = 0;
+  for (std::size_t n = 0; n < soft.maps.deposit_thickness.size(); ++n) {
+    const double a = soft.maps.deposit_thickness[n], b = stiff.maps.deposit_thickness[n];
+    if (std::isfinite(a) && std::isfinite(b)) {
+      moved += 0.5 * std::abs(a - b);
+      all += b;
+    }
+  }
+  log_info(fmt::format("stiffness check: {:.2f} % of the deposit lies elsewhere with {:.3g} Pa", all > 0 ? 100 * moved / all : 0, o.material.youngs_modulus));
+}
+
 void solve(StageContext& context) {
-  const auto options = with_preset(context.recipe.read<SolveOptions>("solve"));
+  auto options = with_preset(context.recipe.read<SolveOptions>("solve"));
   const On on = choose_place(context.on);
   const auto domain_file = options.domain.empty() ? context.out / "domain.vdb" : options.domain;
   const Domain domain = read_domain(domain_file);
+  options = settle_stiffness(domain, options);
   log_plan(domain, options, on);
   if (context.check_only) return;
 
@@ -75,6 +110,7 @@ void solve(StageContext& context) {
   log_info(fmt::format("{} at t = {:.2f} s after {} steps in {:.1f} s", summary.stop_reason, summary.time_end, summary.steps,
                        summary.wall_time));
   if (context.profile) log_profile(summary);
+  if (options.material.stiffness_check) check_stiffness(domain, options, on, context, paths.run);
   context.results.push_back(paths.run);
   write_used_recipe(context, stage(), settings, {context.recipe.file(), domain_file},
                     {{"on", summary.on},

@@ -44,6 +44,9 @@ void MaterialOptions::describe(recipe::Visitor& v) {
                  "constitutive law");
   v.number("density_kg_m3", density, recipe::positive, "bulk density of the released mass");
   v.number("youngs_modulus_Pa", youngs_modulus, recipe::positive, "stiffness; sets the step size, see docs/user-guide.md");
+  recipe::choice(v, "stiffness", stiffness, {{"as-given", StiffnessKind::as_given}, {"auto", StiffnessKind::automatic}},
+                 "auto: the lowest modulus up to that one which leaves the flow unchanged");
+  v.flag("stiffness_check", stiffness_check, "run again with twice the modulus and say how far the deposit moves");
   v.number("poisson_ratio", poisson_ratio, Range{-1, 0.5, true, true}, "Poisson's ratio");
   v.number("friction_angle_deg", friction_angle, Range{0, 90, false, true}, "internal friction angle");
   v.number("cohesion_Pa", cohesion, recipe::not_negative, "cohesion");
@@ -201,6 +204,10 @@ void SolveOptions::check(std::vector<Fault>& faults) const {
   if (implicit.tangent == Tangent::exact && implicit.b_bar) {
     faults.push_back({"[solve.implicit] tangent = \"exact\" does not go with b_bar", "the mean volume change is in the symmetric tangent alone",
                       "Take tangent = \"frozen-yield\""});
+  }
+  if (material.stiffness == StiffnessKind::automatic && material.model != MaterialModel::drucker_prager) {
+    faults.push_back({"[solve.material] stiffness = \"auto\" does not go with this model", "what an elastic body does depends on its stiffness",
+                      "Take model = \"drucker-prager\", or leave stiffness out"});
   }
   if (material.dilatancy_angle > material.friction_angle) {
     faults.push_back({fmt::format("[solve.material] dilatancy_angle_deg = {} is above friction_angle_deg = {}",

@@ -24,12 +24,15 @@ enum class Operator { points, elements, stencil };
 enum class Preconditioner { diagonal, block, column };
 enum class Axis { x, y, z };
 enum class Side { below, above };
+enum class StiffnessKind { as_given, automatic };
 enum class Cone { compression, extension, plane_strain };
 
 struct MaterialOptions {
   MaterialModel model = MaterialModel::drucker_prager;
   double density = 2000;             // [kg/m3]
   double youngs_modulus = 1e7;       // [Pa]
+  StiffnessKind stiffness = StiffnessKind::as_given;
+  bool stiffness_check = false;      // run again, twice as stiff
   double poisson_ratio = 0.25;       // [-]
   double friction_angle = 30;        // [deg]
   double cohesion = 0;               // [Pa]

@@ -1,7 +1,7 @@
 // z = B^-1 r for Krylov methods: the diagonal, a node's own 3 x 3 block, or a whole column of nodes at once.
 //
-// A column is solved exactly over its layers (block L D L^T; Golub & Van Loan 2013, section 4.5), so that how stiff it is upright - thin layers under wide cells - no
-// longer counts: iterations follow the horizontal CFL number alone.
+// A column is solved exactly over its layers (block L D L^T; Golub & Van Loan 2013, section 4.5), so that how stiff it is upright - thin layers under wide cells -
+// counts no longer in itself, only in so far as neighbouring columns share it.
 #pragma once
 
 #include "solver/linear/element_sums.hpp"

@@ -170,6 +170,39 @@ struct LinearBench {
     stiffness.fill_zero();
   }
 
+  /// Calls f(i, j, k, n) for every stored node.
+  template <class F>
+  void for_nodes(F&& f) const {
+    const GridView<Real> view = grid.view();
+    const auto slots = slots_of(grid);
+    for (int j = 0; j < view.rows; ++j) {
+      for (int i = 0; i < view.columns; ++i) {
+        const BlockSlot& slot = slots[static_cast<std::size_t>((j >> 2) * view.block_columns_x + (i >> 2))];
+        for (int k = slot.first_layer; slot.offset >= 0 && k < slot.first_layer + slot.layers; ++k) {
+          f(i, j, k, static_cast<std::size_t>(GridView<Real>::node(slot, i, j, k)));
+        }
+      }
+    }
+  }
+  /// Frees the columns whose numbers are multiples of `pitch` in both directions, and holds the others.
+  void hold_all_columns_but_one_in(int pitch) {
+    const auto m = mass.download();
+    std::vector<Sym3<double>> p(m.size());
+    for_nodes([&](int i, int j, int, std::size_t n) {
+      if (m[n] > 0 && i % pitch == 0 && j % pitch == 0) p[n] = {1, 1, 1, 0, 0, 0};
+    });
+    freed.upload(p);
+  }
+  /// The base nodes slide on level ground, all others are free.
+  void lay_down() {
+    free_all();
+    auto p = freed.download();
+    for_nodes([&](int, int, int k, std::size_t n) {
+      if (k == 0) p[n].zz = 0;
+    });
+    freed.upload(p);
+  }
+
   /// K x in one form.
   std::vector<Vec3<double>> product(Operator form) {
     TangentOperator<Real, Place, Shape> op(form);
@@ -193,7 +226,7 @@ struct LinearBench {
     return b;
   }
 
-  std::vector<Vec3<double>> by_gradients(Preconditioner kind = Preconditioner::block, int* iterations = nullptr) {
+  std::vector<Vec3<double>> by_gradients(Preconditioner kind = Preconditioner::block, int* iterations = nullptr, double tolerance = 1e-12) {
     NodeVector<Place> x;
     const NodeVector<Place> b = right_side();
     NodePreconditioner<Real, Place, Shape> preconditioner(kind);
@@ -208,7 +241,7 @@ struct LinearBench {
       for_each(Place{}, count, CloseSystem{held(), p.data(), ap.data()});
     };
     const auto precondition = [&](const NodeVector<Place>& r, NodeVector<Place>& z) { preconditioner.apply(r, z); };
-    const LinearReport report = cg.solve(b, x, 1e-12, 5000, multiply, precondition);
+    const LinearReport report = cg.solve(b, x, tolerance, 5000, multiply, precondition);
     EXPECT_TRUE(report.converged) << "residual " << report.residual;
     if (iterations) *iterations = report.iterations;
     return x.download();

@@ -8,6 +8,7 @@
 #include <functional>
 #include <vector>
 
+#include "solver/grid/sparse_grid.hpp"
 #include "solver/integrator/solver.hpp"
 #include "solver/parallel/place.hpp"
 
@@ -55,6 +56,20 @@ inline void fill(Domain& d, const Box& box, int across = 2, int up = 2) {
       }
     }
   }
+}
+
+/// Where the blocks of columns are stored.
+template <class Real, class Place>
+std::vector<BlockSlot> slots_of(const SparseGrid<Real, Place>& grid) {
+  const auto view = grid.view();
+  const auto count = static_cast<std::size_t>(((view.columns + 3) / 4) * ((view.rows + 3) / 4));
+  std::vector<BlockSlot> slots(count);
+  if constexpr (Place::is_gpu) {
+    detail::gpu_download(slots.data(), view.slots, count * sizeof(BlockSlot));
+  } else {
+    std::copy(view.slots, view.slots + count, slots.begin());
+  }
+  return slots;
 }
 
 /// Where a test runs. A GPU that is not there skips aloud, and fails where one was promised.

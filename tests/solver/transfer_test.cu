@@ -149,19 +149,6 @@ class Transfers : public InEachPlace {
     EXPECT_LT(worst, tolerance * scale);
   }
 
-  template <class Real, class Place>
-  static std::vector<BlockSlot> slots_of(const SparseGrid<Real, Place>& grid) {
-    const auto view = grid.view();
-    const auto count = static_cast<std::size_t>(((view.columns + 3) / 4) * ((view.rows + 3) / 4));
-    std::vector<BlockSlot> slots(count);
-    if constexpr (Place::is_gpu) {
-      detail::gpu_download(slots.data(), view.slots, count * sizeof(BlockSlot));
-    } else {
-      std::copy(view.slots, view.slots + count, slots.begin());
-    }
-    return slots;
-  }
-
   /// Velocity gather of a linear field in reference coordinates, and the climb, by the definitions.
   template <class Real, class Place, class Shape>
   static void gather_linear_field(double tolerance) {

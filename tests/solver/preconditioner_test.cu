@@ -1,0 +1,81 @@
+// Preconditioners: the solution does not depend on them, the number of iterations does.
+#include <cstdio>
+
+#include "linear_bench.hpp"
+
+namespace talus::solver::testing {
+namespace {
+
+constexpr Preconditioner kinds[] = {Preconditioner::diagonal, Preconditioner::block, Preconditioner::column};
+
+class Preconditioners : public InEachPlace {
+ protected:
+  template <class Real, class Place, class Shape>
+  static void give_one_solution() {
+    for (const bool b_bar : {false, true}) {
+      LinearBench<Real, Place, Shape> bench({kind_of<Shape>, Mapping::terrain_following, MaterialModel::hencky, b_bar, true});
+      const auto expected = bench.by_cholesky();
+      for (const Preconditioner kind : kinds) EXPECT_LT(difference(bench.by_gradients(kind), expected), 1e-8);
+    }
+  }
+
+  /// Where all columns but those a stencil apart are held, the columns left are the whole system.
+  template <class Real, class Place, class Shape>
+  static void solve_lone_columns() {
+    LinearBench<Real, Place, Shape> bench({kind_of<Shape>});
+    bench.hold_all_columns_but_one_in(Shape::width);
+    int iterations = 0;
+    bench.by_gradients(Preconditioner::column, &iterations);
+    EXPECT_LE(iterations, 2) << "one, and rounding";
+    bench.by_gradients(Preconditioner::block, &iterations);
+    EXPECT_GT(iterations, 5) << "the test shows nothing";
+  }
+
+  /// Iterations to a thousandth for a slab of four layers h / aspect high, in steps of five horizontal CFL steps.
+  template <class Real, class Place, class Shape>
+  static int iterations(Preconditioner kind, double aspect) {
+    constexpr double h = 2, over_cfl = 5;
+    Domain d = ground(22, 20, h, h / aspect, [](double, double) { return 0.0; });
+    fill(d, {8, 36, 8, 32, 0, 4 * h / aspect});
+    SolveOptions o;
+    o.shape = kind_of<Shape>;
+    LinearBench<Real, Place, Shape> bench(make_scene(d, o), {kind_of<Shape>});
+    bench.lay_down();
+    const double step = over_cfl * h / static_cast<double>(bench.material.wave_speed);
+    bench.inertia = 4 / (step * step);
+    int count = 0;
+    bench.by_gradients(kind, &count, 1e-3);
+    return count;
+  }
+
+  template <class Real, class Place, class Shape>
+  static void count_in_thin_layers() {
+    // What is left is that neighbouring columns share their upright stiffness: the Gram matrix of the functions along x and y, whose condition is 9 for hats and 56
+    // for splines over its diagonal, however thin the layers.
+    std::printf("  CG iterations at 5 horizontal CFL steps, %s functions; vertical: 5, 15, 50\n", name_of(kind_of<Shape>));
+    int of_blocks = 0;
+    for (const Preconditioner kind : kinds) {
+      int count[3];
+      const double aspects[3] = {1, 3, 10};
+      for (int a = 0; a < 3; ++a) count[a] = iterations<Real, Place, Shape>(kind, aspects[a]);
+      std::printf("    %-8s %4d %4d %4d\n", kind == Preconditioner::diagonal ? "diagonal" : kind == Preconditioner::block ? "block" : "column", count[0],
+                  count[1], count[2]);
+      if (kind == Preconditioner::column) {
+        EXPECT_LE(count[2], (Shape::spline ? 3.5 : 2) * count[0]);
+        EXPECT_LE(count[2], 0.55 * of_blocks);
+      } else {
+        EXPECT_GT(count[2], 4 * count[0]) << "thin layers cost nothing: the test shows nothing";
+        of_blocks = count[2];
+      }
+    }
+  }
+};
+
+TEST_P(Preconditioners, give_one_solution) { TALUS_RUN(give_one_solution); }
+TEST_P(Preconditioners, solve_columns_that_nothing_couples_at_once) { TALUS_RUN(solve_lone_columns); }
+TEST_P(Preconditioners, of_columns_see_less_of_thin_layers) { TALUS_RUN(count_in_thin_layers); }
+
+TALUS_IN_EACH_PLACE(Preconditioners);
+
+}  // namespace
+}  // namespace talus::solver::testing
