@@ -10,8 +10,8 @@
 
 namespace talus::solver {
 
-/// Where a node stands with the surface it can touch (ground or a frictional wall).
-enum class Touch : unsigned char { none, open, closed };
+/// Where a node stands with the surface it can touch (ground or a frictional wall): away from it, slipping along it, or stuck to it.
+enum class Touch : unsigned char { none, open, slips, sticks };
 
 /// Arrays over the stored nodes, double whatever the precision of the points.
 struct NodeArrays {

@@ -26,21 +26,29 @@ struct Constraints {
   Vec3<double>* normal = nullptr;   // of the surface it can touch
   double* friction = nullptr;       // coefficient there
   double* limit = nullptr;          // friction times the reaction found last [N]
-  double slip = 0;                  // slip over which friction grows to its limit [m]
+  Vec3<double>* along = nullptr;    // where it would slip, or began to; zero once it has changed its mind too often
+  unsigned char* changes = nullptr;  // between stick and slip, in this step
+  double slip = 0;                  // slip over which friction grows to its limit, for nodes that changed too often [m]
+  double nudge = 0;                 // slip that a node which starts to slip is ahead [m]
   bool coupled = false;             // the derivative of the reaction stands in the friction's: not symmetric
   double pull = 0;                  // a contact opens when it would have to pull by more than this, or rounding would open it [N]
 
-  /// Friction force for the displacement u and, with `stiffness`, minus its derivative: a smoothed Coulomb cone over the
-  /// displacement of the step, its limit held (Tresca), so that it has a potential and its derivative is symmetric.
+  /// A node may change between stick and slip so often in a step; then its friction is smoothed instead.
+  static constexpr int most_changes = 3;
+  TALUS_HD bool wavers(int n) const { return changes[n] > most_changes; }
+
+  /// Friction force of a slipping node for the displacement u and, with `stiffness`, minus its derivative: Coulomb's cone over the displacement of the step, its limit held
+  /// (Tresca), so that it has a potential and its derivative is symmetric. A node that starts to slip has its direction before it has moved.
   TALUS_HD Vec3<double> friction_force(int n, const Vec3<double>& u, Sym3<double>* stiffness) const {
-    const Vec3<double> along = u - normal[n] * dot(u, normal[n]);
-    const double size = sqrt(dot(along, along) + slip * slip);
+    const double ahead = wavers(n) ? 0 : nudge, smooth = wavers(n) ? slip : 1e-3 * nudge;
+    const Vec3<double> way = u - normal[n] * dot(u, normal[n]) + along[n] * ahead;
+    const double size = sqrt(dot(way, way) + smooth * smooth);
     if (stiffness) {
       const double k = limit[n] / size, l = k / (size * size);
-      *stiffness = Sym3<double>{k - l * along.x * along.x, k - l * along.y * along.y, k - l * along.z * along.z,
-                                -l * along.x * along.y, -l * along.y * along.z, -l * along.x * along.z};
+      *stiffness = Sym3<double>{k - l * way.x * way.x, k - l * way.y * way.y, k - l * way.z * way.z,
+                                -l * way.x * way.y, -l * way.y * way.z, -l * way.x * way.z};
     }
-    return along * (-limit[n] / size);
+    return way * (-limit[n] / size);
   }
 };
 
@@ -70,6 +78,8 @@ struct PrepareNodes {
     const double m = nodes.mass[n];
     nodes.touch[n] = Touch::none;
     held.limit[n] = 0;
+    held.along[n] = {};
+    held.changes[n] = 0;
     if (!(m > 0) || i >= grid.columns || j >= grid.rows) {
       nodes.freed[n] = held.walls[n] = Sym3<double>{};
       nodes.u[n] = {};
@@ -90,12 +100,27 @@ struct PrepareNodes {
     held.normal[n] = normal;
     held.friction[n] = friction;
     if (dot(normal, normal) > 0) {
-      nodes.touch[n] = Touch::closed;
       u = u - normal * dot(u, normal);
       freed = without(freed, normal);
+      nodes.touch[n] = begin_contact(n, normal, friction, freed);
+      if (nodes.touch[n] == Touch::sticks) {
+        freed = {};
+        u = {};
+      }
     }
     nodes.freed[n] = freed;
     nodes.u[n] = u;
+  }
+
+  /// A node that its own weight's friction can stop within the step is taken to stick, to begin with.
+  TALUS_HD Touch begin_contact(int n, const Vec3<double>& normal, double friction, const Sym3<double>& freed) const {
+    if (!(friction > 0)) return Touch::slips;
+    if (!scheme.dynamic) return Touch::sticks;
+    const Vec3<double> v = freed * nodes.begin_velocity(n);
+    const double speed = length(v);
+    if (speed <= friction * fabs(dot(gravity, normal)) * scheme.step) return Touch::sticks;
+    held.along[n] = v * (1 / speed);
+    return Touch::slips;
   }
 
   /// Where the ground bends, or is met, a node comes with a velocity into it. The ground takes that at once, and friction its share of the same
@@ -149,6 +174,13 @@ struct PrepareNodes {
   }
 };
 
+/// One thread: one node. Momentum that the step begins with.
+struct NodeMomentum {
+  NodeArrays nodes;
+  Vec3<double>* momentum;
+  TALUS_HD void operator()(int n) const { momentum[n] = nodes.mass[n] > 0 ? nodes.begin_velocity(n) * nodes.mass[n] : Vec3<double>{}; }
+};
+
 /// One thread: one node. Acceleration with which a run begins: that of the forces at its start.
 struct FirstAcceleration {
   NodeArrays nodes;
@@ -184,48 +216,71 @@ struct MeasureResidual {
       return;
     }
     Vec3<double> force = nodes.external[n] - nodes.internal[n];
-    const double reaction = nodes.touch[n] == Touch::none ? 0 : reaction_of(n, force);
+    if (nodes.touch[n] != Touch::none && decide) {
+      settle_contact(n, force);
+    } else if (nodes.touch[n] == Touch::slips && held.coupled) {
+      held.limit[n] = limit_of(n, stopping_force(n, force));
+    }
     if (scheme.dynamic) {
       Vec3<double> a = nodes.begin_velocity(n) * (1 / (scheme.alpha * scheme.step)) - nodes.u[n] * scheme.inertia();
       if (nodes.acceleration) a += nodes.acceleration[n] * (1 / (2 * scheme.alpha) - 1);
       force += a * m;
     }
-    if (nodes.touch[n] != Touch::none) {
-      if (decide) settle_contact(n, reaction);
-      if (!decide && held.coupled) limit_friction(n, reaction);
-      if (nodes.touch[n] == Touch::closed) force += held.friction_force(n, nodes.u[n], nullptr);
-    }
+    if (nodes.touch[n] == Touch::slips) force += held.friction_force(n, nodes.u[n], nullptr);
     nodes.residual[n] = nodes.freed[n] * force;
   }
 
  private:
-  /// What presses the node onto the surface: forces, and less what it takes to stop a velocity away from it over the step. Velocity into it has been
+  /// What the surface has to balance: forces, and what it takes to bring the velocity at the start to that of the displacement over the step. Velocity into the surface has been
   /// taken at the start (PrepareNodes).
-  TALUS_HD double reaction_of(int n, const Vec3<double>& force) const {
-    const Vec3<double> normal = held.normal[n];
+  TALUS_HD Vec3<double> stopping_force(int n, const Vec3<double>& force) const {
+    if (!scheme.dynamic) return force;
     const double dt = scheme.step;
-    const double arrives = scheme.dynamic ? (dot(nodes.begin_velocity(n), normal) - dot(nodes.u[n], normal) / dt) / dt : 0;
-    return -dot(force, normal) - nodes.mass[n] * arrives;
+    return force + (nodes.begin_velocity(n) - nodes.u[n] * (1 / dt)) * (nodes.mass[n] / dt);
+  }
+  TALUS_HD double limit_of(int n, const Vec3<double>& stop) const {
+    const double reaction = -dot(stop, held.normal[n]);
+    return reaction > 0 ? held.friction[n] * reaction : 0;
   }
 
-  /// Unilateral contact: it opens when it would have to pull, and closes when the node moves in.
-  TALUS_HD void settle_contact(int n, double reaction) const {
+  TALUS_HD void change(int n, Touch to, const Sym3<double>& freed) const {
+    nodes.touch[n] = to;
+    nodes.freed[n] = freed;
+    atomic_increment(changes);
+  }
+
+  /// The active set: contact opens when it would have to pull, and closes when the node moves in; a stuck node slips when friction cannot hold it, and a slipping one sticks
+  /// when it turns back.
+  TALUS_HD void settle_contact(int n, const Vec3<double>& force) const {
     const Vec3<double> normal = held.normal[n];
-    if (nodes.touch[n] == Touch::closed && reaction < -held.pull) {
-      nodes.touch[n] = Touch::open;
-      nodes.freed[n] = held.walls[n];
-      atomic_increment(changes);
-    } else if (nodes.touch[n] == Touch::open && dot(nodes.u[n], normal) < 0) {
-      nodes.touch[n] = Touch::closed;
-      nodes.freed[n] = without(held.walls[n], normal);
+    const Vec3<double> stop = stopping_force(n, force);
+    if (nodes.touch[n] == Touch::open) {
+      if (!(dot(nodes.u[n], normal) < 0)) return;
       nodes.u[n] = nodes.u[n] - normal * dot(nodes.u[n], normal);
       held.limit[n] = 0;
-      atomic_increment(changes);
-      return;
+      return change(n, Touch::slips, without(held.walls[n], normal));
     }
-    limit_friction(n, reaction);
+    if (-dot(stop, normal) < -held.pull) return change(n, Touch::open, held.walls[n]);
+    held.limit[n] = limit_of(n, stop);
+    if (!(held.friction[n] > 0) || held.wavers(n)) return;
+    const Sym3<double> plane = without(held.walls[n], normal);
+    if (nodes.touch[n] == Touch::sticks) {
+      const Vec3<double> along = plane * stop;
+      const double size = length(along);
+      if (!(size > held.limit[n] + held.pull)) return;
+      held.along[n] = along * (1 / size);
+      ++held.changes[n];
+      change(n, Touch::slips, plane);
+    } else if (dot(nodes.u[n], held.along[n]) < 0) {
+      ++held.changes[n];
+      if (held.wavers(n)) {
+        atomic_increment(changes);
+        return;
+      }
+      nodes.u[n] = {};
+      change(n, Touch::sticks, Sym3<double>{});
+    }
   }
-  TALUS_HD void limit_friction(int n, double reaction) const { held.limit[n] = reaction > 0 ? held.friction[n] * reaction : 0; }
 };
 
 /// One thread: one node. y = freed (y + mass inertia x + friction's stiffness x).
@@ -237,7 +292,7 @@ struct CloseProduct {
   Vec3<double>* y;
   TALUS_HD void operator()(int n) const {
     Vec3<double> sum = y[n] + x[n] * (nodes.mass[n] * inertia);
-    if (nodes.touch[n] == Touch::closed && held.limit[n] > 0) {
+    if (nodes.touch[n] == Touch::slips && held.limit[n] > 0) {
       Sym3<double> stiffness;
       const Vec3<double> force = held.friction_force(n, nodes.u[n], &stiffness);
       // The reaction changes by n . sum, and the friction with it.
@@ -255,7 +310,7 @@ struct FrictionStiffness {
   Sym3<double>* stiffness;
   TALUS_HD void operator()(int n) const {
     stiffness[n] = {};
-    if (nodes.touch[n] == Touch::closed && held.limit[n] > 0) held.friction_force(n, nodes.u[n], &stiffness[n]);
+    if (nodes.touch[n] == Touch::slips && held.limit[n] > 0) held.friction_force(n, nodes.u[n], &stiffness[n]);
   }
 };
 

@@ -153,7 +153,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   }
 
   std::size_t bytes() const override {
-    std::size_t total = Base::bytes() + mass_.bytes() + touch_.bytes() + tangents_.bytes() + wall_freed_.bytes() +
+    std::size_t total = Base::bytes() + mass_.bytes() + touch_.bytes() + wavers_.bytes() + along_.bytes() + tangents_.bytes() + wall_freed_.bytes() +
                         contact_friction_.bytes() + friction_limit_.bytes() + freed_.bytes() + preconditioner_.bytes() + stiffness_.bytes() + operator_.bytes() +
                         cholesky_.bytes() + elements_.bytes() + bicgstab_.bytes() + means_.bytes() + static_cast<std::size_t>(cholesky_.factor().factor_bytes());
     for (const auto* v : {&velocity_, &arrival_, &acceleration_, &external_, &internal_, &u_, &residual_, &normal_,
@@ -195,7 +195,10 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     n.touch = touch_.data();
     return n;
   }
-  Constraints held() { return {wall_freed_.data(), normal_.data(), contact_friction_.data(), friction_limit_.data(), slip_, options_.implicit.tangent == Tangent::exact, pull_}; }
+  Constraints held() {
+    return {wall_freed_.data(), normal_.data(), contact_friction_.data(), friction_limit_.data(), along_.data(), wavers_.data(), slip_, nudge_,
+            options_.implicit.tangent == Tangent::exact, pull_};
+  }
 
   void size_nodes() {
     count_ = this->grid_.nodes();
@@ -214,6 +217,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     contact_friction_.resize(n);
     friction_limit_.resize(n);
     touch_.resize(n);
+    along_.resize(n);
+    wavers_.resize(n);
     tangents_.resize(static_cast<std::size_t>(TangentStore<Real>::numbers) * static_cast<std::size_t>(points_.count()));
   }
 
@@ -231,6 +236,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     size_nodes();
     scheme_ = {dynamic_, options_.implicit.alpha, options_.implicit.beta, step};
     slip_ = smoothing(step);
+    nudge_ = smoothing(step) / sharpness_ * 1e-3;
     const Vec3<double>* loads = this->upload_loads(time);
     for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
                      ScatterInertia<Real, Shape>{this->grid_.view(), points_.view(), material_.density, affine_, dynamic_,
@@ -241,6 +247,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     for_each(Place{}, this->grid_.active_blocks() * block_columns,
              PrepareNodes<Real>{this->grid_.view(), this->grid_.active_list(), nodes(), held(),
                                 walls_, friction_, g, scheme_, predict});
+    stopping_force_ = dynamic_ ? std::sqrt(sum_squares_of_momentum()) / (scheme_.alpha * step) : 0;
     if (dynamic_ && first_) {
       copy(u_, saved_u_);
       u_.fill_zero();
@@ -258,7 +265,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   /// that.
   double smoothing(double step) const {
     const double g = std::hypot(options_.gravity[0], options_.gravity[1], options_.gravity[2]);
-    return dynamic_ ? sharpness_ * 0.5 * std::max(g, 1e-3) * step * step : 1e-9 * this->frame_.cell[0];
+    return sharpness_ * (dynamic_ ? 0.5 * std::max(g, 1e-3) * step * step : 1e-4 * this->frame_.cell[0]);
   }
 
   /// The corner between stick and slip can send Newton's iterations round in circles. Where they do not get on, friction is smoothed more
@@ -310,9 +317,17 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     return std::sqrt(dot(residual_, residual_));
   }
 
-  /// What the unbalanced force is measured against: the forces that balance, and rounding of the inertia.
+  /// Over the nodes [(kg m/s)^2].
+  double sum_squares_of_momentum() {
+    for_each(Place{}, count_, NodeMomentum{nodes(), change_.data()});
+    return dot(change_, change_);
+  }
+
+  /// What the unbalanced force is measured against: the forces that balance, and a little of what it takes to stop the body, whose rounding is all that is
+  /// unbalanced where no force acts or the step is tiny.
   double force_size() {
-    return std::sqrt(dot(internal_, internal_) + dot(external_, external_)) + 1e-300;
+    constexpr double rounding = 1e-8;
+    return std::sqrt(dot(internal_, internal_) + dot(external_, external_)) + rounding * stopping_force_ + 1e-300;
   }
 
   int contact_changes() {
@@ -495,16 +510,18 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   TimeScheme scheme_;
   Buffer<double, Place> mass_, contact_friction_, friction_limit_;
   double rate_ = 0;  // CFL steps per time, as the last step ended [1/s]
-  double slip_ = 0;  // [m]
+  double slip_ = 0, nudge_ = 0;  // [m]
   double sharpness_ = sharpest;
   double pull_ = 0;  // [N]
+  double stopping_force_ = 0;  // that would take the body's momentum within the step, as Newmark's rule has it [N]
   ElementList<Real, Place, Shape> elements_;
   MeanDilation<Real, Place, Shape> means_;
   Walls<double> walls_;
-  NodeVector<Place> velocity_, arrival_, acceleration_, external_, internal_, u_, residual_, normal_, velocity_end_,
+  NodeVector<Place> velocity_, arrival_, acceleration_, external_, internal_, u_, residual_, normal_, along_, velocity_end_,
       acceleration_end_, change_, saved_u_;
   Buffer<Sym3<double>, Place> freed_, wall_freed_, stiffness_;
   Buffer<Touch, Place> touch_;
+  Buffer<unsigned char, Place> wavers_;  // changes between stick and slip
   Buffer<Real, Place> tangents_;
   Buffer<int, Place> changes_;
   Buffer<std::uint32_t, Place> farthest_;
