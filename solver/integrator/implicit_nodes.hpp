@@ -27,15 +27,16 @@ struct Constraints {
   double* friction = nullptr;       // coefficient there
   double* limit = nullptr;          // friction times the reaction found last [N]
   Vec3<double>* along = nullptr;    // where it would slip, or began to; zero once it has changed its mind too often
-  unsigned char* changes = nullptr;  // between stick and slip, in this step
+  unsigned char* changes = nullptr;  // in this step: between stick and slip, and sixteen for every time it closed
   double slip = 0;                  // slip over which friction grows to its limit, for nodes that changed too often [m]
   double nudge = 0;                 // slip that a node which starts to slip is ahead [m]
   bool coupled = false;             // the derivative of the reaction stands in the friction's: not symmetric
   double pull = 0;                  // a contact opens when it would have to pull by more than this, or rounding would open it [N]
 
-  /// A node may change between stick and slip so often in a step; then its friction is smoothed instead.
-  static constexpr int most_changes = 3;
-  TALUS_HD bool wavers(int n) const { return changes[n] > most_changes; }
+  /// A node may change between stick and slip so often in a step (more made more cuts: decision 0006); then its friction is smoothed instead. One that has closed so often stays closed to the step's end.
+  static constexpr int most_changes = 1, closing = 16, most_closings = 3;
+  TALUS_HD bool wavers(int n) const { return changes[n] % closing > most_changes; }
+  TALUS_HD bool stays_closed(int n) const { return changes[n] / closing >= most_closings; }
 
   /// Friction force of a slipping node for the displacement u and, with `stiffness`, minus its derivative: Coulomb's cone over the displacement of the step, its limit held
   /// (Tresca), so that it has a potential and its derivative is symmetric. A node that starts to slip has its direction before it has moved.
@@ -201,6 +202,17 @@ struct AddDamping {
   TALUS_HD double against(double pull, double v) const { return v == 0 ? 0 : v > 0 ? -damping * fabs(pull) : damping * fabs(pull); }
 };
 
+/// A slipping node that turns back sticks; true if so. One that has changed too often goes on with smoothed friction instead.
+TALUS_HD bool stick_reversed(const NodeArrays& nodes, const Constraints& held, int n, int* changes) {
+  ++held.changes[n];
+  atomic_increment(changes);
+  if (held.wavers(n)) return false;
+  nodes.u[n] = {};
+  nodes.touch[n] = Touch::sticks;
+  nodes.freed[n] = {};
+  return true;
+}
+
 /// One thread: one node. The unbalanced force for the displacement u; with `decide` the state of its contact as well.
 struct MeasureResidual {
   NodeArrays nodes;
@@ -258,9 +270,10 @@ struct MeasureResidual {
       if (!(dot(nodes.u[n], normal) < 0)) return;
       nodes.u[n] = nodes.u[n] - normal * dot(nodes.u[n], normal);
       held.limit[n] = 0;
+      held.changes[n] = static_cast<unsigned char>(held.changes[n] + Constraints::closing);
       return change(n, Touch::slips, without(held.walls[n], normal));
     }
-    if (-dot(stop, normal) < -held.pull) return change(n, Touch::open, held.walls[n]);
+    if (-dot(stop, normal) < -held.pull && !held.stays_closed(n)) return change(n, Touch::open, held.walls[n]);
     held.limit[n] = limit_of(n, stop);
     if (!(held.friction[n] > 0) || held.wavers(n)) return;
     const Sym3<double> plane = without(held.walls[n], normal);
@@ -272,14 +285,20 @@ struct MeasureResidual {
       ++held.changes[n];
       change(n, Touch::slips, plane);
     } else if (dot(nodes.u[n], held.along[n]) < 0) {
-      ++held.changes[n];
-      if (held.wavers(n)) {
-        atomic_increment(changes);
-        return;
-      }
-      nodes.u[n] = {};
-      change(n, Touch::sticks, Sym3<double>{});
+      stick_reversed(nodes, held, n, changes);
     }
+  }
+};
+
+/// One thread: one node. A trial of the line search that turns a slip back makes the node stick, there and then: beyond that point friction would push it.
+struct StickReversed {
+  NodeArrays nodes;
+  Constraints held;
+  Vec3<double>* start;  // displacement that the line search sets out from
+  int* changes;
+  TALUS_HD void operator()(int n) const {
+    if (nodes.touch[n] != Touch::slips || !(held.friction[n] > 0) || held.wavers(n) || !(dot(nodes.u[n], held.along[n]) < 0)) return;
+    if (stick_reversed(nodes, held, n, changes)) start[n] = {};
   }
 };
 

@@ -404,10 +404,13 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     double share = 1;
     for (int halving = 0; halving < 10; ++halving, share *= 0.5) {
       axpby(share, change_, 1.0, u_);
+      for_each(Place{}, count_, StickReversed{nodes(), held(), saved_u_.data(), changes_.data()});
+      const bool stuck = contact_changes() > 0;
       measure_stress(false);
       const double after = measure_residual(false);
       const double along = std::abs(dot(residual_, change_));
       if (std::isfinite(after) && (after < before * (1 - 1e-4 * share) || along < 0.8 * downhill)) return true;
+      if (stuck && after < 2 * before) return true;  // another active set: Newton goes on with that
       // The change that must be made at the end of convergence is rounding: take it.
       if (halving == 0 && after <= 1e-11 * force_size()) return true;
       copy(saved_u_, u_);
