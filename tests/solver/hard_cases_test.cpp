@@ -132,7 +132,7 @@ TEST_P(HardCases, cliffs_spikes_and_pits_hold_nothing_inside_the_ground) {  // C
       const Scene scene = make_scene(d, o);
       const double released = make_solver(scene, o, GetParam())->energies().volume;
       auto solver = make_solver(scene, o, GetParam());
-      solver->set_next_event(6);
+      solver->set_next_event(4);
       double left = 0;
       for (BatchReport batch; batch.clock.halt != at_event;) {
         batch = solver->advance();
@@ -156,6 +156,7 @@ TEST_P(HardCases, a_deposit_stays_where_it_came_to_rest) {  // C8
   Domain d = ground(30, 30, 2.0, 2.0, [](double, double) { return 0.0; });
   fill(d, {24, 36, 24, 36, 0, 10});
   SolveOptions o;
+  o.material.youngs_modulus = 2e6;  // the weight of 10 m strains it by a tenth: the softest that is still at rest as a solid is
   const Scene scene = make_scene(d, o);
   const auto solver = make_solver(scene, o, GetParam());
   run_to(*solver, 60);
