@@ -24,21 +24,25 @@ struct BaseFriction {
   }
 };
 
-/// Velocity of a base node after contact with ground of slopes (sx, sy). A node moving into the ground loses its normal
+/// Velocity of a node after contact with a surface of this normal and friction coefficient. A node moving into the surface loses its normal
 /// velocity; the impulse that takes it away bounds the friction impulse, |dv_t| <= mu dv_n, so that stick holds exactly.
+template <class Real>
+TALUS_HD Vec3<Real> meet_surface(const Vec3<Real>& v, const Vec3<Real>& normal, Real coefficient) {
+  const Real approach = -dot(v, normal);
+  if (approach <= Real(0)) return v;
+  const Vec3<Real> slip = v + normal * approach;
+  const Real speed = length(slip), loss = coefficient * approach;
+  return loss < speed ? slip * (Real(1) - loss / speed) : Vec3<Real>{};
+}
+
+/// Velocity of a base node after contact with ground of slopes (sx, sy).
 template <class Real>
 TALUS_HD Vec3<Real> meet_ground(const BaseFriction<Real>& friction, const Vec3<Real>& v, Real sx, Real sy) {
   const Real scale = Real(1) / sqrt(Real(1) + sx * sx + sy * sy);
   const Vec3<Real> normal{-sx * scale, -sy * scale, scale};
-  const Real approach = -dot(v, normal);
-  if (approach <= Real(0)) return v;
-  if (friction.law == FrictionLaw::stick) return {};
-  const Vec3<Real> slip = v + normal * approach;
-  if (friction.law == FrictionLaw::none) return slip;
-  const Real speed = length(slip);
-  const Real loss = friction.at(speed) * approach;
-  if (loss >= speed) return {};
-  return slip * (Real(1) - loss / speed);
+  const Real along = dot(v, normal);
+  if (friction.law == FrictionLaw::stick) return along < Real(0) ? Vec3<Real>{} : v;
+  return meet_surface(v, normal, friction.at(length(v - normal * along)));
 }
 
 }  // namespace talus

@@ -127,11 +127,7 @@ struct PrepareNodes {
   /// Where the ground bends, or is met, a node comes with a velocity into it. The ground takes that at once, and friction its share of the same
   /// impulse, as in an explicit step; spread over the step by Newmark's rule it would count four times.
   TALUS_HD static Vec3<double> arrive(const Vec3<double>& v, const Vec3<double>& normal, double friction) {
-    const double approach = -dot(v, normal);
-    if (!(approach > 0)) return {};
-    const Vec3<double> slip = v + normal * approach;
-    const double speed = length(slip), loss = friction * approach;
-    return normal * approach - slip * (loss < speed ? loss / speed : 1.0);
+    return meet_surface(v, normal, friction) - v;
   }
 
   TALUS_HD bool touch_ground(int i, int j, int k, Vec3<double>& normal, double& friction, Sym3<double>& freed,

@@ -64,6 +64,18 @@ TEST(Stiffness, keeps_the_decay_of_fine_velocity_above_a_step) {
   EXPECT_NEAR(demand.transfer_time, 0.5, 1e-12) << "the step at cfl = 0.5";
 }
 
+TEST(Stiffness, of_an_elastic_body_is_its_own) {
+  SolveOptions o = sliding(1e9);
+  std::vector<Fault> faults;
+  o.check(faults);
+  EXPECT_TRUE(faults.empty());
+  o.material.model = MaterialModel::hencky;
+  o.check(faults);
+  ASSERT_EQ(faults.size(), 1u);
+  EXPECT_NE(faults[0].what.find("stiffness = \"auto\""), std::string::npos) << faults[0].what;
+  EXPECT_NE(faults[0].mend.find("drucker-prager"), std::string::npos) << faults[0].mend;
+}
+
 class StiffnessRuns : public InEachPlace {};
 TEST_P(StiffnessRuns, leave_the_deposit_where_it_was) {
   const Domain d = slope(20);
