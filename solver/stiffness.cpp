@@ -14,12 +14,8 @@ constexpr double weight_strain = 0.01, impact_strain = 0.05;
 
 /// The least friction the flow can meet: on its bed, or inside where the bed holds it.
 double least_friction(const SolveOptions& o) {
-  switch (o.base.law) {
-    case FrictionLaw::coulomb: return std::tan(o.base.friction_angle * M_PI / 180);
-    case FrictionLaw::velocity_weakening: return std::min(o.base.steady_coefficient, o.base.peak_coefficient);
-    case FrictionLaw::stick: return std::tan(o.material.friction_angle * M_PI / 180);
-    default: return 0;
-  }
+  if (o.base.law == FrictionLaw::stick) return std::tan(o.material.friction_angle * M_PI / 180);
+  return make_base_friction<double>(o.base).at(1e30);  // friction weakens with speed, if it changes at all
 }
 
 struct Summit {
@@ -58,7 +54,8 @@ StiffnessDemand lowest_stiffness(const Domain& domain, const SolveOptions& o) {
   demand.speed = std::sqrt(2 * g * head) + start;
 
   const MaterialOptions& m = o.material;
-  const double confined = (1 - m.poisson_ratio) / ((1 + m.poisson_ratio) * (1 - 2 * m.poisson_ratio));  // over Young's modulus
+  const double wave_speed = make_material<double>(m).wave_speed;
+  const double confined = m.density * wave_speed * wave_speed / m.youngs_modulus;  // modulus of confined compression over Young's
   struct Need {
     double modulus;
     std::string why;

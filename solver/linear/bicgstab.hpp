@@ -14,19 +14,13 @@ struct BiCgStab {
   LinearReport solve(const NodeVector<Place>& b, NodeVector<Place>& x, double tolerance, int most, Apply&& apply,
                      Precondition&& precondition) {
     LinearReport report;
-    x.resize(b.size());
-    x.fill_zero();
+    const double size = begin_solve(b, x, r, report);
+    if (!(size > 0)) return report;
     for (auto* w : {&v, &t, &direction, &p}) {
       w->resize(b.size());
       w->fill_zero();
     }
-    copy(b, r);
     copy(b, shadow);
-    const double size = std::sqrt(dot(b, b));
-    if (!(size > 0)) {
-      report.converged = size == 0;
-      return report;
-    }
     // Goes along `direction`, whose product is `product`; true when that was the last half step.
     const auto go = [&](double way, const NodeVector<Place>& product) {
       axpby(way, direction, 1.0, x);

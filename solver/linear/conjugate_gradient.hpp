@@ -14,6 +14,17 @@ struct LinearReport {
   bool indefinite = false;    // met a direction of negative curvature: the tangent is no minimum's
 };
 
+/// x = 0 and r = b, with which a solve begins: the size of b. Where that is no positive number there is nothing to solve, and the report says why.
+template <class Place>
+double begin_solve(const NodeVector<Place>& b, NodeVector<Place>& x, NodeVector<Place>& r, LinearReport& report) {
+  x.resize(b.size());
+  x.fill_zero();
+  copy(b, r);
+  const double size = std::sqrt(dot(b, b));
+  report.converged = size == 0;
+  return size;
+}
+
 template <class Place>
 struct ConjugateGradient {
   NodeVector<Place> r, z, p, ap;
@@ -23,16 +34,10 @@ struct ConjugateGradient {
   LinearReport solve(const NodeVector<Place>& b, NodeVector<Place>& x, double tolerance, int most, Apply&& apply,
                      Precondition&& precondition) {
     LinearReport report;
-    x.resize(b.size());
-    x.fill_zero();
+    const double size = begin_solve(b, x, r, report);
+    if (!(size > 0)) return report;
     z.resize(b.size());
     ap.resize(b.size());
-    copy(b, r);
-    const double size = std::sqrt(dot(b, b));
-    if (!(size > 0)) {
-      report.converged = size == 0;
-      return report;
-    }
     precondition(r, z);
     copy(z, p);
     double rz = dot(r, z);

@@ -58,11 +58,15 @@ struct ScatterBlocks {
   }
 };
 
+/// K + mass inertia + stiffness of a node.
+TALUS_HD Sym3<double> own_block(const HeldNodes& held, const Sym3<double>& tangent, int n) {
+  const Sym3<double> b = tangent.plus_identity(held.mass[n] * held.inertia);
+  return held.stiffness ? b + held.stiffness[n] : b;
+}
+
 /// What a node has on the diagonal: P (K + mass inertia + stiffness) P + (I - P), which has the action on the free directions and is regular.
-TALUS_HD Sym3<double> held_block(const HeldNodes& held, const Sym3<double>& own, int n) {
-  const Sym3<double> p = held.freed[n];
-  Sym3<double> b = own.plus_identity(held.mass[n] * held.inertia);
-  if (held.stiffness) b = b + held.stiffness[n];
+TALUS_HD Sym3<double> held_block(const HeldNodes& held, const Sym3<double>& tangent, int n) {
+  const Sym3<double> p = held.freed[n], b = own_block(held, tangent, n);
   const Vec3<double> e[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   Vec3<double> c[3];
   for (int a = 0; a < 3; ++a) c[a] = p * (b * (p * e[a])) + e[a] - p * e[a];
@@ -103,8 +107,7 @@ struct InvertBlocks {
       b = inverted(is_definite(b) ? b : diagonal_of(b));
       return;
     }
-    b = b.plus_identity(held.mass[n] * held.inertia);
-    if (held.stiffness) b = b + held.stiffness[n];
+    b = own_block(held, b, n);
     b = {safe(b.xx), safe(b.yy), safe(b.zz), 0, 0, 0};
   }
   TALUS_HD static double safe(double d) { return d > 0 ? 1 / d : 0; }
