@@ -4,6 +4,20 @@
 namespace talus::solver::testing {
 namespace {
 
+/// x = a motion linear in the nodes' indices. One thread: one column.
+template <class Real>
+struct SetAffinely {
+  GridView<Real> grid;
+  Vec3<double>* x;
+  TALUS_HD void operator()(int column) const {
+    const int i = column % grid.columns, j = column / grid.columns;
+    const BlockSlot slot = grid.slot(i, j);
+    for (int k = slot.first_layer; slot.offset >= 0 && k < slot.first_layer + slot.layers; ++k) {
+      x[GridView<Real>::node(slot, i, j, k)] = {0.1 * j - 0.2 * k + 1, -0.1 * i + 0.05 * k, 0.2 * i + 0.3 * j};
+    }
+  }
+};
+
 class ElementTerms : public InEachPlace {
  protected:
   static constexpr Setting with(ShapeKind shape, MaterialModel model) { return {shape, Mapping::terrain_following, model, true, true}; }
@@ -50,22 +64,11 @@ class ElementTerms : public InEachPlace {
     o.shape = kind_of<Shape>;
     o.mapping = Mapping::cartesian;
     LinearBench<Real, Place, Shape> bench(make_scene(d, o), {kind_of<Shape>, Mapping::cartesian, MaterialModel::hencky, false, true});
-    const auto nodes = bench.elements.view();
     std::vector<Vec3<double>> x(static_cast<std::size_t>(bench.count)), none(x.size());
-    // Nodes by their place in the storage: blocks of four by four columns, layer by layer.
-    const GridView<Real> grid = bench.grid.view();
-    for (int j = 0; j < grid.rows; ++j) {
-      for (int i = 0; i < grid.columns; ++i) {
-        const BlockSlot slot = grid.slot(i, j);
-        for (int k = slot.first_layer; slot.offset >= 0 && k < slot.first_layer + slot.layers; ++k) {
-          const int n = GridView<Real>::node(slot, i, j, k);
-          x[static_cast<std::size_t>(n)] = {0.1 * j - 0.2 * k + 1, -0.1 * i + 0.05 * k, 0.2 * i + 0.3 * j};
-        }
-      }
-    }
-    static_cast<void>(nodes);
     NodeVector<Place> u, y;
-    u.upload(x);
+    u.upload(none);
+    for_each(Place{}, d.grid.columns * d.grid.rows, SetAffinely<Real>{bench.grid.view(), u.data()});
+    x = u.download();
     y.upload(none);
     apply_springs(bench.elements, bench.springs, u, y);
     if (Shape::width == 3) {
