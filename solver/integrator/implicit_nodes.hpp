@@ -2,6 +2,7 @@
 #pragma once
 
 #include "solver/integrator/implicit_kernels.hpp"
+#include "solver/parallel/sums.hpp"
 
 namespace talus::solver {
 
@@ -31,7 +32,7 @@ struct Constraints {
   double slip = 0;                  // slip over which friction grows to its limit, for nodes that changed too often [m]
   double nudge = 0;                 // slip that a node which starts to slip is ahead [m]
   bool coupled = false;             // the derivative of the reaction stands in the friction's: not symmetric
-  double pull = 0;                  // a contact opens when it would have to pull by more than this, or rounding would open it [N]
+  const double* pull = nullptr;     // a contact opens when it would have to pull by more than this, or rounding would open it [N]
 
   /// A node may change between stick and slip so often in a step (more made more cuts: decision 0006); then its friction is smoothed instead. One that has closed so often stays closed to the step's end.
   static constexpr int most_changes = 1, closing = 16, most_closings = 3;
@@ -171,11 +172,45 @@ struct PrepareNodes {
   }
 };
 
-/// One thread: one node. Momentum that the step begins with.
-struct NodeMomentum {
+/// What Newton's iterations look at. Sums over the nodes.
+struct Balance {
+  double momentum = 0;  // at the start of the step, squared [(kg m/s)2]
+  double forces = 0;    // that balance, squared [N2]
+  double residual = 0;  // squared [N2]
+  double along = 0;     // residual . change [N m]
+  double changes = 0;   // of contacts
+  double pull = 0;      // see Constraints [N]
+};
+
+/// One thread: one node. Square of the momentum that the step begins with.
+struct SquareMomentum {
   NodeArrays nodes;
-  Vec3<double>* momentum;
-  TALUS_HD void operator()(int n) const { momentum[n] = nodes.mass[n] > 0 ? nodes.begin_velocity(n) * nodes.mass[n] : Vec3<double>{}; }
+  TALUS_HD Terms<1> operator()(int n) const {
+    if (!(nodes.mass[n] > 0)) return {};
+    const Vec3<double> p = nodes.begin_velocity(n) * nodes.mass[n];
+    return {{dot(p, p)}};
+  }
+};
+struct FinishMomentum {
+  Balance* balance;
+  TALUS_HD void operator()(const double* total) const { balance->momentum = *total; }
+};
+
+/// One thread: one node. Squares of the forces that balance.
+struct SquareForces {
+  NodeArrays nodes;
+  TALUS_HD Terms<1> operator()(int n) const { return {{dot(nodes.internal[n], nodes.internal[n]) + dot(nodes.external[n], nodes.external[n])}}; }
+};
+/// What the unbalanced force is measured against: the forces that balance, and a little of what it takes to stop the body, whose rounding is all that is
+/// unbalanced where no force acts or the step is tiny [N].
+TALUS_HD double force_size(const Balance& balance, double stopping_share) { return sqrt(balance.forces) + stopping_share * sqrt(balance.momentum) + 1e-300; }
+struct FinishForces {
+  Balance* balance;
+  double stopping_share, tolerance;  // of a node: the body's by the square root of their number
+  TALUS_HD void operator()(const double* total) const {
+    balance->forces = *total;
+    balance->pull = tolerance * force_size(*balance, stopping_share);
+  }
 };
 
 /// One thread: one node. Acceleration with which a run begins: that of the forces at its start.
@@ -199,9 +234,8 @@ struct AddDamping {
 };
 
 /// A slipping node that turns back sticks; true if so. One that has changed too often goes on with smoothed friction instead.
-TALUS_HD bool stick_reversed(const NodeArrays& nodes, const Constraints& held, int n, int* changes) {
+TALUS_HD bool stick_reversed(const NodeArrays& nodes, const Constraints& held, int n) {
   ++held.changes[n];
-  atomic_increment(changes);
   if (held.wavers(n)) return false;
   nodes.u[n] = {};
   nodes.touch[n] = Touch::sticks;
@@ -209,23 +243,25 @@ TALUS_HD bool stick_reversed(const NodeArrays& nodes, const Constraints& held, i
   return true;
 }
 
-/// One thread: one node. The unbalanced force for the displacement u; with `decide` the state of its contact as well.
+/// One thread: one node. The unbalanced force for the displacement u; with `decide` the state of its contact as well. Sums: the force squared, the
+/// force along `change` (where there is one), contacts that changed.
 struct MeasureResidual {
   NodeArrays nodes;
   Constraints held;
   TimeScheme scheme;
   bool decide;
-  int* changes;
+  const Vec3<double>* change;
 
-  TALUS_HD void operator()(int n) const {
+  TALUS_HD Terms<3> operator()(int n) const {
     const double m = nodes.mass[n];
     if (!(m > 0)) {
       nodes.residual[n] = {};
-      return;
+      return {};
     }
     Vec3<double> force = nodes.external[n] - nodes.internal[n];
+    bool changed = false;
     if (nodes.touch[n] != Touch::none && decide) {
-      settle_contact(n, force);
+      changed = settle_contact(n, force);
     } else if (nodes.touch[n] == Touch::slips && held.coupled) {
       held.limit[n] = limit_of(n, stopping_force(n, force));
     }
@@ -235,7 +271,9 @@ struct MeasureResidual {
       force += a * m;
     }
     if (nodes.touch[n] == Touch::slips) force += held.friction_force(n, nodes.u[n], nullptr);
-    nodes.residual[n] = nodes.freed[n] * force;
+    const Vec3<double> r = nodes.freed[n] * force;
+    nodes.residual[n] = r;
+    return {{dot(r, r), change ? dot(r, change[n]) : 0.0, changed ? 1.0 : 0.0}};
   }
 
  private:
@@ -251,39 +289,55 @@ struct MeasureResidual {
     return reaction > 0 ? held.friction[n] * reaction : 0;
   }
 
-  TALUS_HD void change(int n, Touch to, const Sym3<double>& freed) const {
+  TALUS_HD bool turn(int n, Touch to, const Sym3<double>& freed) const {
     nodes.touch[n] = to;
     nodes.freed[n] = freed;
-    atomic_increment(changes);
+    return true;
   }
 
   /// The active set: contact opens when it would have to pull, and closes when the node moves in; a stuck node slips when friction cannot hold it, and a slipping one sticks
-  /// when it turns back.
-  TALUS_HD void settle_contact(int n, const Vec3<double>& force) const {
+  /// when it turns back. True where it changed.
+  TALUS_HD bool settle_contact(int n, const Vec3<double>& force) const {
     const Vec3<double> normal = held.normal[n];
     const Vec3<double> stop = stopping_force(n, force);
     if (nodes.touch[n] == Touch::open) {
-      if (!(dot(nodes.u[n], normal) < 0)) return;
+      if (!(dot(nodes.u[n], normal) < 0)) return false;
       nodes.u[n] = nodes.u[n] - normal * dot(nodes.u[n], normal);
       held.limit[n] = 0;
       held.changes[n] = static_cast<unsigned char>(held.changes[n] + Constraints::closing);
-      return change(n, Touch::slips, without(held.walls[n], normal));
+      return turn(n, Touch::slips, without(held.walls[n], normal));
     }
-    if (-dot(stop, normal) < -held.pull && !held.stays_closed(n)) return change(n, Touch::open, held.walls[n]);
+    if (-dot(stop, normal) < -*held.pull && !held.stays_closed(n)) return turn(n, Touch::open, held.walls[n]);
     held.limit[n] = limit_of(n, stop);
-    if (!(held.friction[n] > 0) || held.wavers(n)) return;
+    if (!(held.friction[n] > 0) || held.wavers(n)) return false;
     const Sym3<double> plane = without(held.walls[n], normal);
     if (nodes.touch[n] == Touch::sticks) {
       const Vec3<double> along = plane * stop;
       const double size = length(along);
-      if (!(size > held.limit[n] + held.pull)) return;
+      if (!(size > held.limit[n] + *held.pull)) return false;
       held.along[n] = along * (1 / size);
       ++held.changes[n];
-      change(n, Touch::slips, plane);
-    } else if (dot(nodes.u[n], held.along[n]) < 0) {
-      stick_reversed(nodes, held, n, changes);
+      return turn(n, Touch::slips, plane);
     }
+    if (!(dot(nodes.u[n], held.along[n]) < 0)) return false;
+    stick_reversed(nodes, held, n);
+    return true;
   }
+};
+
+struct FinishResidual {
+  Balance* balance;
+  TALUS_HD void operator()(const double* total) const {
+    balance->residual = total[0];
+    balance->along = total[1];
+    balance->changes += total[2];
+  }
+};
+
+/// One thread.
+struct ForgetChanges {
+  Balance* balance;
+  TALUS_HD void operator()(int) const { balance->changes = 0; }
 };
 
 /// One thread: one node. A trial of the line search that turns a slip back makes the node stick, there and then: beyond that point friction would push it.
@@ -291,11 +345,15 @@ struct StickReversed {
   NodeArrays nodes;
   Constraints held;
   Vec3<double>* start;  // displacement that the line search sets out from
-  int* changes;
-  TALUS_HD void operator()(int n) const {
-    if (nodes.touch[n] != Touch::slips || !(held.friction[n] > 0) || held.wavers(n) || !(dot(nodes.u[n], held.along[n]) < 0)) return;
-    if (stick_reversed(nodes, held, n, changes)) start[n] = {};
+  TALUS_HD Terms<1> operator()(int n) const {
+    if (nodes.touch[n] != Touch::slips || !(held.friction[n] > 0) || held.wavers(n) || !(dot(nodes.u[n], held.along[n]) < 0)) return {};
+    if (stick_reversed(nodes, held, n)) start[n] = {};
+    return {{1.0}};
   }
+};
+struct FinishReversals {
+  Balance* balance;
+  TALUS_HD void operator()(const double* total) const { balance->changes += *total; }
 };
 
 /// One thread: one node. y = freed (y + mass inertia x + friction's stiffness x).

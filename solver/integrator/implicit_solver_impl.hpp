@@ -106,7 +106,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
         first_(state.clock.step == 0),
         operator_(options.implicit.form),
         preconditioner_(options.implicit.preconditioner) {
-    changes_.upload({0});
+    balance_.upload({Balance{}});
     this->grid_.fit(points_, 0);
     const double g = std::hypot(options.gravity[0], options.gravity[1], options.gravity[2]);
     material_.exact_tangent = options.implicit.tangent == Tangent::exact;
@@ -157,10 +157,10 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
                         contact_friction_.bytes() + friction_limit_.bytes() + freed_.bytes() + preconditioner_.bytes() + stiffness_.bytes() + operator_.bytes() +
                         cholesky_.bytes() + elements_.bytes() + bicgstab_.bytes() + means_.bytes() + static_cast<std::size_t>(cholesky_.factor().factor_bytes());
     for (const auto* v : {&velocity_, &arrival_, &acceleration_, &external_, &internal_, &u_, &residual_, &normal_,
-                          &velocity_end_, &acceleration_end_, &change_, &saved_u_, &cg_.r, &cg_.z, &cg_.p, &cg_.ap}) {
+                          &velocity_end_, &acceleration_end_, &change_, &saved_u_}) {
       total += v->bytes();
     }
-    return total;
+    return total + cg_.bytes();
   }
 
  private:
@@ -197,7 +197,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   }
   Constraints held() {
     return {wall_freed_.data(), normal_.data(), contact_friction_.data(), friction_limit_.data(), along_.data(), wavers_.data(), slip_, nudge_,
-            options_.implicit.tangent == Tangent::exact, pull_};
+            options_.implicit.tangent == Tangent::exact, &balance_.data()->pull};
   }
 
   void size_nodes() {
@@ -247,7 +247,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     for_each(Place{}, this->grid_.active_blocks() * block_columns,
              PrepareNodes<Real>{this->grid_.view(), this->grid_.active_list(), nodes(), held(),
                                 walls_, friction_, g, scheme_, predict});
-    stopping_force_ = dynamic_ ? std::sqrt(sum_squares_of_momentum()) / (scheme_.alpha * step) : 0;
+    if (dynamic_) sum_each<1>(Place{}, count_, sums_, SquareMomentum{nodes()}, FinishMomentum{balance_.data()});
     if (dynamic_ && first_) {
       copy(u_, saved_u_);
       u_.fill_zero();
@@ -311,29 +311,23 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     return {mass_.data(), 0.1 * full, options_.implicit.filler * 2 * static_cast<double>(material_.shear_modulus) * std::min(h, hz)};
   }
 
-  double measure_residual(bool decide) {
+  /// The unbalanced force for u_, with what `held` and the contacts' states say about it.
+  Balance measure_residual(bool decide) {
     const ProfilePhase<Place> phase("residual and contact");
-    for_each(Place{}, count_, MeasureResidual{nodes(), held(), scheme_, decide, changes_.data()});
-    return std::sqrt(dot(residual_, residual_));
+    if (decide) {
+      const double each = options_.implicit.newton_tolerance / std::sqrt(static_cast<double>(std::max(count_, 1)));
+      sum_each<1>(Place{}, count_, sums_, SquareForces{nodes()}, FinishForces{balance_.data(), stopping_share(), each});
+    }
+    sum_each<3>(Place{}, count_, sums_, MeasureResidual{nodes(), held(), scheme_, decide, decide ? nullptr : change_.data()}, FinishResidual{balance_.data()});
+    const Balance balance = balance_.download().front();
+    for_each(Place{}, 1, ForgetChanges{balance_.data()});
+    return balance;
   }
 
-  /// Over the nodes [(kg m/s)^2].
-  double sum_squares_of_momentum() {
-    for_each(Place{}, count_, NodeMomentum{nodes(), change_.data()});
-    return dot(change_, change_);
-  }
-
-  /// What the unbalanced force is measured against: the forces that balance, and a little of what it takes to stop the body, whose rounding is all that is
-  /// unbalanced where no force acts or the step is tiny.
-  double force_size() {
+  /// See force_size.
+  double stopping_share() const {
     constexpr double rounding = 1e-8;
-    return std::sqrt(dot(internal_, internal_) + dot(external_, external_)) + rounding * stopping_force_ + 1e-300;
-  }
-
-  int contact_changes() {
-    const int changes = changes_.download().front();
-    changes_.upload({0});
-    return changes;
+    return dynamic_ ? rounding / (scheme_.alpha * scheme_.step) : 0;
   }
 
   /// Elements and neighbours of the points as they stand.
@@ -360,16 +354,16 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     LinearForcing forcing;
     for (stats.newton = 0; stats.newton < o.newton_iterations; ++stats.newton) {
       measure_stress(true);
-      pull_ = o.newton_tolerance * force_size() / std::sqrt(static_cast<double>(std::max(count_, 1)));
-      double unbalanced = measure_residual(true);
-      const int changes = contact_changes();
-      if (changes > 0) {  // a contact that closed or opened has moved its node
+      Balance balance = measure_residual(true);
+      const bool changed = balance.changes > 0;
+      if (changed) {  // a contact that closed or opened has moved its node
         measure_stress(true);
-        unbalanced = measure_residual(false);
+        balance = measure_residual(false);
       }
-      stats.residual = unbalanced / force_size();
+      const double size = force_size(balance, stopping_share());
+      stats.residual = std::sqrt(balance.residual) / size;
       if (!std::isfinite(stats.residual)) return false;
-      if (stats.residual <= o.newton_tolerance && changes == 0) {
+      if (stats.residual <= o.newton_tolerance && !changed) {
         sharpen(stats);
         return within_reach();
       }
@@ -380,7 +374,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
         best = 1e300;
       }
       if (!linear_solve(stats, forcing.next(stats.residual, o))) return false;
-      if (!search(unbalanced) && !blunt(step)) return false;
+      if (!search(std::sqrt(balance.residual), size) && !blunt(step)) return false;
     }
     return false;
   }
@@ -398,21 +392,21 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
   /// u += s change with the largest s = 1, 1/2, 1/4 ... after which less force is unbalanced, or less of it along the change: a
   /// sheet that must turn passes through larger forces on its way, but downhill in energy.
-  bool search(double before) {
+  bool search(double before, double size) {
     copy(u_, saved_u_);
     const double downhill = std::abs(dot(residual_, change_));
     double share = 1;
     for (int halving = 0; halving < 10; ++halving, share *= 0.5) {
       axpby(share, change_, 1.0, u_);
-      for_each(Place{}, count_, StickReversed{nodes(), held(), saved_u_.data(), changes_.data()});
-      const bool stuck = contact_changes() > 0;
+      sum_each<1>(Place{}, count_, sums_, StickReversed{nodes(), held(), saved_u_.data()}, FinishReversals{balance_.data()});
       measure_stress(false);
-      const double after = measure_residual(false);
-      const double along = std::abs(dot(residual_, change_));
+      const Balance balance = measure_residual(false);
+      const bool stuck = balance.changes > 0;
+      const double after = std::sqrt(balance.residual), along = std::abs(balance.along);
       if (std::isfinite(after) && (after < before * (1 - 1e-4 * share) || along < 0.8 * downhill)) return true;
       if (stuck && after < 2 * before) return true;  // another active set: Newton goes on with that
       // The change that must be made at the end of convergence is rounding: take it.
-      if (halving == 0 && after <= 1e-11 * force_size()) return true;
+      if (halving == 0 && after <= 1e-11 * size) return true;
       copy(saved_u_, u_);
     }
     return false;
@@ -455,20 +449,27 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   LinearReport iterate(double tolerance) {
     refresh_operator();
     const ProfilePhase<Place> phase("conjugate gradients");
-    const auto apply_tangent = [&](const NodeVector<Place>& x, NodeVector<Place>& y) {
-      y.fill_zero();
-      operator_.apply(x, y);
-      for_each(Place{}, count_, CloseProduct{nodes(), held(), scheme_.inertia(), x.data(), y.data()});
-    };
-    const auto precondition = [&](const NodeVector<Place>& r, NodeVector<Place>& z) {
-      preconditioner_.apply(r, z);
-    };
     const ImplicitOptions& o = options_.implicit;
-    if (o.linear_solver == LinearSolver::bicgstab) {
-      return bicgstab_.solve(residual_, change_, tolerance, o.linear_iterations, apply_tangent, precondition);
-    }
-    return cg_.solve(residual_, change_, tolerance, o.linear_iterations, apply_tangent, precondition);
+    if (o.linear_solver == LinearSolver::pcg) return cg_.solve(residual_, change_, tolerance, o.linear_iterations, LinearSystem{*this});
+    LinearSystem system{*this};
+    const auto multiply = [&](const NodeVector<Place>& x, NodeVector<Place>& y) {
+      y.fill_zero();
+      system.product(x, y);
+      for_each(Place{}, count_, system.close(x, y));
+    };
+    const auto precondition = [&](const NodeVector<Place>& r, NodeVector<Place>& z) { preconditioner_.apply(r, z); };
+    return bicgstab_.solve(residual_, change_, tolerance, o.linear_iterations, multiply, precondition);
   }
+
+  /// The tangent of the step as conjugate gradients take it.
+  struct LinearSystem {
+    ImplicitSolverOf& solver;
+    void product(const NodeVector<Place>& x, NodeVector<Place>& y) { solver.operator_.apply(x, y); }
+    CloseProduct close(const NodeVector<Place>& x, NodeVector<Place>& y) {
+      return {solver.nodes(), solver.held(), solver.scheme_.inertia(), x.data(), y.data()};
+    }
+    void precondition(const NodeVector<Place>& r, NodeVector<Place>& z, CgState* state) { solver.preconditioner_.apply(r, z, state); }
+  };
 
   /// Shape functions stand still during a step, and points must not outrun them.
   bool within_reach() {
@@ -515,8 +516,6 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   double rate_ = 0;  // CFL steps per time, as the last step ended [1/s]
   double slip_ = 0, nudge_ = 0;  // [m]
   double sharpness_ = sharpest;
-  double pull_ = 0;  // [N]
-  double stopping_force_ = 0;  // that would take the body's momentum within the step, as Newmark's rule has it [N]
   ElementList<Real, Place, Shape> elements_;
   MeanDilation<Real, Place, Shape> means_;
   Walls<double> walls_;
@@ -526,7 +525,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   Buffer<Touch, Place> touch_;
   Buffer<unsigned char, Place> wavers_;  // changes between stick and slip
   Buffer<Real, Place> tangents_;
-  Buffer<int, Place> changes_;
+  Buffer<Balance, Place> balance_;
+  SumSpace<Place> sums_;
   Buffer<std::uint32_t, Place> farthest_;
   ConjugateGradient<Place> cg_;
   BiCgStab<Place> bicgstab_;

@@ -14,7 +14,11 @@ struct BiCgStab {
   LinearReport solve(const NodeVector<Place>& b, NodeVector<Place>& x, double tolerance, int most, Apply&& apply,
                      Precondition&& precondition) {
     LinearReport report;
-    const double size = begin_solve(b, x, r, report);
+    x.resize(b.size());
+    x.fill_zero();
+    copy(b, r);
+    const double size = std::sqrt(dot(b, b));
+    report.converged = size == 0;
     if (!(size > 0)) return report;
     for (auto* w : {&v, &t, &direction, &p}) {
       w->resize(b.size());

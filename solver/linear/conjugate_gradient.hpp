@@ -1,9 +1,12 @@
-// Preconditioned conjugate gradients (Hestenes & Stiefel 1952), written over the verbs of vectors.hpp and two functions.
+// Preconditioned conjugate gradients (Hestenes & Stiefel 1952). Step lengths and the end of the loop are found where the vectors are: the host only looks,
+// now and then, whether it is over.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "solver/linear/vectors.hpp"
+#include "solver/parallel/sums.hpp"
 
 namespace talus {
 
@@ -14,56 +17,165 @@ struct LinearReport {
   bool indefinite = false;    // met a direction of negative curvature: the tangent is no minimum's
 };
 
-/// x = 0 and r = b, with which a solve begins: the size of b. Where that is no positive number there is nothing to solve, and the report says why.
-template <class Place>
-double begin_solve(const NodeVector<Place>& b, NodeVector<Place>& x, NodeVector<Place>& r, LinearReport& report) {
-  x.resize(b.size());
-  x.fill_zero();
-  copy(b, r);
-  const double size = std::sqrt(dot(b, b));
-  report.converged = size == 0;
-  return size;
-}
+/// Where a solve stands, kept beside the vectors.
+struct CgState {
+  enum Halt : int { no, converged, indefinite, spent };
+  double tolerance = 0;
+  int most = 0, iterations = 0;
+  Halt halt = no;
+  double size = 0;       // b . b
+  double residual = 0;   // r . r
+  double curvature = 0;  // p . A p
+  double angle = 0;      // r . z
+  double turn = 0;       // share of the last direction in the next
 
-template <class Place>
-struct ConjugateGradient {
-  NodeVector<Place> r, z, p, ap;
-
-  /// Solves A x = b from x = 0. `apply(p, ap)`, `precondition(r, z)`.
-  template <class Apply, class Precondition>
-  LinearReport solve(const NodeVector<Place>& b, NodeVector<Place>& x, double tolerance, int most, Apply&& apply,
-                     Precondition&& precondition) {
-    LinearReport report;
-    const double size = begin_solve(b, x, r, report);
-    if (!(size > 0)) return report;
-    z.resize(b.size());
-    ap.resize(b.size());
-    precondition(r, z);
-    copy(z, p);
-    double rz = dot(r, z);
-    for (; report.iterations < most; ++report.iterations) {
-      apply(p, ap);
-      const double curvature = dot(p, ap);
-      if (!(curvature > 0)) {
-        report.indefinite = true;
-        break;
-      }
-      const double alpha = rz / curvature;
-      axpby(alpha, p, 1.0, x);
-      axpby(-alpha, ap, 1.0, r);
-      report.residual = std::sqrt(dot(r, r)) / size;
-      if (report.residual <= tolerance) {
-        ++report.iterations;
-        report.converged = true;
-        break;
-      }
-      precondition(r, z);
-      const double next = dot(r, z);
-      axpby(1.0, z, next / rz, p);
-      rz = next;
+  TALUS_HD void begin(double b_b) {
+    size = residual = b_b;
+    if (!(b_b > 0)) halt = b_b == 0 ? converged : spent;
+  }
+  TALUS_HD void take_curvature(double p_ap) {
+    curvature = p_ap;
+    if (!(p_ap > 0)) halt = indefinite;
+  }
+  TALUS_HD void take_residual(double r_r) {
+    residual = r_r;
+    ++iterations;
+    if (sqrt(r_r / size) <= tolerance) {
+      halt = converged;
+    } else if (iterations >= most) {
+      halt = spent;
     }
+  }
+  TALUS_HD void take_angle(double r_z) {
+    turn = iterations > 0 ? r_z / angle : 0;
+    angle = r_z;
+  }
+};
+
+namespace detail {
+
+/// What becomes of each sum.
+struct FinishBegin {
+  CgState* state;
+  TALUS_HD void operator()(const double* total) const { state->begin(*total); }
+};
+struct FinishCurvature {
+  CgState* state;
+  TALUS_HD void operator()(const double* total) const {
+    if (state->halt == CgState::no) state->take_curvature(*total);
+  }
+};
+struct FinishResidual {
+  CgState* state;
+  TALUS_HD void operator()(const double* total) const {
+    if (state->halt == CgState::no) state->take_residual(*total);
+  }
+};
+struct FinishAngle {
+  CgState* state;
+  TALUS_HD void operator()(const double* total) const {
+    if (state->halt == CgState::no) state->take_angle(*total);
+  }
+};
+
+struct BeginCg {
+  const Vec3<double>*b;
+  Vec3<double>*x, *r, *z, *p, *ap;
+  TALUS_HD Terms<1> operator()(int n) const {
+    x[n] = z[n] = p[n] = ap[n] = {};
+    r[n] = b[n];
+    return {{dot(b[n], b[n])}};
+  }
+};
+
+template <class Close>
+struct CloseProductOf {
+  Close close;
+  const CgState* state;
+  const Vec3<double>*p, *ap;
+  TALUS_HD Terms<1> operator()(int n) const {
+    if (state->halt != CgState::no) return {};
+    close(n);
+    return {{dot(p[n], ap[n])}};
+  }
+};
+
+struct StepAlong {
+  const CgState* state;
+  const Vec3<double>*p, *ap;
+  Vec3<double>*x, *r;
+  TALUS_HD Terms<1> operator()(int n) const {
+    if (state->halt != CgState::no) return {};
+    const double alpha = state->angle / state->curvature;
+    x[n] += p[n] * alpha;
+    r[n] = r[n] - ap[n] * alpha;
+    return {{dot(r[n], r[n])}};
+  }
+};
+
+struct TurnDirection {
+  const CgState* state;
+  const Vec3<double>* z;
+  Vec3<double>*p, *ap;
+  TALUS_HD void operator()(int n) const {
+    ap[n] = {};
+    if (state->halt == CgState::no) p[n] = z[n] + p[n] * state->turn;
+  }
+};
+
+}  // namespace detail
+
+template <class Place>
+class ConjugateGradient {
+ public:
+  /// Solves A x = b from x = 0. `system` has three members: product(p, ap), which adds to ap what takes more than one node; close(p, ap), a kernel over the nodes that
+  /// completes ap; precondition(r, z, state), which leaves z and r . z (detail::FinishAngle).
+  template <class System>
+  LinearReport solve(const NodeVector<Place>& b, NodeVector<Place>& x, double tolerance, int most, System&& system) {
+    const int count = static_cast<int>(b.size());
+    for (auto* v : {&x, &r_, &z_, &p_, &ap_}) v->resize(b.size());
+    CgState state;
+    state.tolerance = tolerance;
+    state.most = most;
+    state_.upload({state});
+    CgState* const s = state_.data();
+    sum_each<1>(Place{}, count, sums_, detail::BeginCg{b.data(), x.data(), r_.data(), z_.data(), p_.data(), ap_.data()}, detail::FinishBegin{s});
+    system.precondition(r_, z_, s);
+    // As many as the last solve took, then a few at a time: what is started after the end does nothing but take its time.
+    int ahead = Place::is_gpu ? std::clamp(last_, 2, 64) : 1;
+    for (;;) {
+      for (int i = 0; i < ahead; ++i) {
+        for_each(Place{}, count, detail::TurnDirection{s, z_.data(), p_.data(), ap_.data()});
+        system.product(p_, ap_);
+        sum_each<1>(Place{}, count, sums_, close_product(system.close(p_, ap_)), detail::FinishCurvature{s});
+        sum_each<1>(Place{}, count, sums_, detail::StepAlong{s, p_.data(), ap_.data(), x.data(), r_.data()}, detail::FinishResidual{s});
+        system.precondition(r_, z_, s);
+      }
+      state = state_.download().front();
+      if (state.halt != CgState::no) break;
+      ahead = Place::is_gpu ? std::max(2, ahead / 4) : 1;
+    }
+    last_ = state.iterations;
+    LinearReport report;
+    report.iterations = state.iterations;
+    report.residual = state.size > 0 ? std::sqrt(state.residual / state.size) : 0;
+    report.converged = state.halt == CgState::converged;
+    report.indefinite = state.halt == CgState::indefinite;
     return report;
   }
+
+  std::size_t bytes() const { return r_.bytes() + z_.bytes() + p_.bytes() + ap_.bytes() + sums_.bytes(); }
+
+ private:
+  template <class Close>
+  detail::CloseProductOf<Close> close_product(const Close& close) {
+    return {close, state_.data(), p_.data(), ap_.data()};
+  }
+
+  NodeVector<Place> r_, z_, p_, ap_;
+  Buffer<CgState, Place> state_;
+  SumSpace<Place> sums_;
+  int last_ = 0;
 };
 
 }  // namespace talus

@@ -113,13 +113,16 @@ struct InvertBlocks {
   TALUS_HD static double safe(double d) { return d > 0 ? 1 / d : 0; }
 };
 
-/// One thread: one node. z = P inverse P r.
+/// One thread: one node. z = P inverse P r. Returns r . z.
 struct ApplyBlocks {
   HeldNodes held;
   const Sym3<double>* inverse;
   const Vec3<double>* r;
   Vec3<double>* z;
-  TALUS_HD void operator()(int n) const { z[n] = held.freed[n] * (inverse[n] * (held.freed[n] * r[n])); }
+  TALUS_HD double operator()(int n) const {
+    z[n] = held.freed[n] * (inverse[n] * (held.freed[n] * r[n]));
+    return dot(r[n], z[n]);
+  }
 };
 
 TALUS_HD Mat3<double> product(const Mat3<double>& m, const Sym3<double>& s) {
@@ -199,7 +202,7 @@ struct FactoriseColumns {
   }
 };
 
-/// One thread: one column. z = (L D L^T)^-1 P r, then P z.
+/// One thread: one column. z = (L D L^T)^-1 P r, then P z. Returns the column's share of r . z.
 template <class Real, int reach>
 struct SolveColumns {
   StoredColumns<Real> columns;
@@ -209,8 +212,9 @@ struct SolveColumns {
   const Vec3<double>* r;
   Vec3<double>* z;
 
-  TALUS_HD void operator()(int c) const {
+  TALUS_HD double operator()(int c) const {
     const ColumnNodes<Real> node(columns, c);
+    double angle = 0;
     Vec3<double> near[2];  // of the layers just passed
     for (int k = 0; k < node.layers; ++k) {
       const int n = node[k];
@@ -227,8 +231,18 @@ struct SolveColumns {
       near[1] = near[0];
       near[0] = v;
       z[n] = held.freed[n] * v;
+      angle += dot(r[n], z[n]);
     }
+    return angle;
   }
+};
+
+/// A preconditioner's kernel in a loop that may be over.
+template <class Kernel>
+struct Measured {
+  Kernel kernel;
+  const CgState* state;
+  TALUS_HD Terms<1> operator()(int i) const { return state->halt == CgState::no ? Terms<1>{{kernel(i)}} : Terms<1>{}; }
 };
 
 }  // namespace
@@ -257,12 +271,18 @@ void NodePreconditioner<Real, Place, Shape>::refresh(const PointTangents<Real>& 
 }
 
 template <class Real, class Place, class Shape>
-void NodePreconditioner<Real, Place, Shape>::apply(const NodeVector<Place>& r, NodeVector<Place>& z) {
+template <class Kernel>
+void NodePreconditioner<Real, Place, Shape>::run(int count, const Kernel& kernel, CgState* state) {
+  if (!state) return for_each(Place{}, count, kernel);
+  sum_each<1>(Place{}, count, sums_, Measured<Kernel>{kernel, state}, talus::detail::FinishAngle{state});
+}
+
+template <class Real, class Place, class Shape>
+void NodePreconditioner<Real, Place, Shape>::apply(const NodeVector<Place>& r, NodeVector<Place>& z, CgState* state) {
   if (kind_ == Preconditioner::column) {
-    for_each(Place{}, columns_.count(),
-             SolveColumns<Real, reach>{columns_, held_, blocks_.data(), {above_[0].data(), above_[1].data()}, r.data(), z.data()});
+    run(columns_.count(), SolveColumns<Real, reach>{columns_, held_, blocks_.data(), {above_[0].data(), above_[1].data()}, r.data(), z.data()}, state);
   } else {
-    for_each(Place{}, held_.count, ApplyBlocks{held_, blocks_.data(), r.data(), z.data()});
+    run(held_.count, ApplyBlocks{held_, blocks_.data(), r.data(), z.data()}, state);
   }
 }
 

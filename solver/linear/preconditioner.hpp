@@ -4,6 +4,7 @@
 // counts no longer in itself, only in so far as neighbouring columns share it.
 #pragma once
 
+#include "solver/linear/conjugate_gradient.hpp"
 #include "solver/linear/element_sums.hpp"
 #include "solver/linear/held_nodes.hpp"
 #include "solver/linear/vectors.hpp"
@@ -29,16 +30,21 @@ class NodePreconditioner {
   /// (only its diagonal is taken).
   void refresh(const PointTangents<Real>& from, const PointGroups& groups, const ElementList<Real, Place, Shape>& list, const StoredColumns<Real>& columns,
                const HeldNodes& held);
-  void apply(const NodeVector<Place>& r, NodeVector<Place>& z);
+  /// z = B^-1 r; hands r . z to `state`, and does nothing where that has halted. Without one: z alone.
+  void apply(const NodeVector<Place>& r, NodeVector<Place>& z, CgState* state = nullptr);
   std::size_t bytes() const { return blocks_.bytes() + above_[0].bytes() + above_[1].bytes(); }
 
  private:
+  template <class Kernel>
+  void run(int count, const Kernel& kernel, CgState* state);
+
   static constexpr int reach = Shape::width - 1;  // layers that a column's nodes are coupled over
   Preconditioner kind_;
   HeldNodes held_;
   StoredColumns<Real> columns_;
   Buffer<Sym3<double>, Place> blocks_;      // inverses: of the blocks, or of the columns' pivots
   Buffer<Mat3<double>, Place> above_[2];    // L of the nodes one and two layers higher
+  SumSpace<Place> sums_;
 };
 
 }  // namespace talus::solver

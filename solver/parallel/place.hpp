@@ -171,6 +171,9 @@ inline void synchronise(OnGpu) { detail::gpu_synchronise(); }
 
 #if defined(__CUDACC__)
 namespace detail {
+/// Threads of a block: few where there is little to do, so that every multiprocessor gets some of it.
+inline int threads_for(int count) { return count < 65536 ? 32 : 128; }
+
 template <class Kernel>
 __global__ void run_kernel(int count, Kernel kernel) {
   const int i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
@@ -181,7 +184,7 @@ __global__ void run_kernel(int count, Kernel kernel) {
 template <class Kernel>
 void for_each(OnGpu, int count, const Kernel& kernel) {
   if (count <= 0) return;
-  constexpr int threads = 128;
+  const int threads = detail::threads_for(count);
   detail::run_kernel<<<(count + threads - 1) / threads, threads>>>(count, kernel);
   detail::gpu_check_launch(__PRETTY_FUNCTION__);
 }

@@ -235,13 +235,15 @@ struct LinearBench {
     op.begin_step(elements, count);
     op.refresh(from(), grid.groups());
     ConjugateGradient<Place> cg;
-    const auto multiply = [&](const NodeVector<Place>& p, NodeVector<Place>& ap) {
-      ap.fill_zero();
-      op.apply(p, ap);
-      for_each(Place{}, count, CloseSystem{held(), p.data(), ap.data()});
+    struct System {
+      TangentOperator<Real, Place, Shape>& op;
+      NodePreconditioner<Real, Place, Shape>& preconditioner;
+      HeldNodes held;
+      void product(const NodeVector<Place>& p, NodeVector<Place>& ap) { op.apply(p, ap); }
+      CloseSystem close(const NodeVector<Place>& p, NodeVector<Place>& ap) { return {held, p.data(), ap.data()}; }
+      void precondition(const NodeVector<Place>& r, NodeVector<Place>& z, CgState* state) { preconditioner.apply(r, z, state); }
     };
-    const auto precondition = [&](const NodeVector<Place>& r, NodeVector<Place>& z) { preconditioner.apply(r, z); };
-    const LinearReport report = cg.solve(b, x, tolerance, 5000, multiply, precondition);
+    const LinearReport report = cg.solve(b, x, tolerance, 5000, System{op, preconditioner, held()});
     EXPECT_TRUE(report.converged) << "residual " << report.residual;
     if (iterations) *iterations = report.iterations;
     return x.download();

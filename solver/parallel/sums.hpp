@@ -1,0 +1,129 @@
+// Sums over a range of indices that are finished in the place where they are made: a loop on the device needs no word from the host.
+#pragma once
+
+#include <algorithm>
+
+#include "solver/parallel/place.hpp"
+
+namespace talus {
+
+/// What one index adds to K sums.
+template <int K>
+struct Terms {
+  double value[K] = {};
+};
+
+/// Room for the partial sums; one for every stream of work.
+template <class Place>
+class SumSpace {
+ public:
+  double* partial(int count) {
+    partial_.resize(static_cast<std::size_t>(count));
+    return partial_.data();
+  }
+  /// Counts the blocks that are done; zero between sums.
+  unsigned* ticket() {
+    if (ticket_.size() == 0) ticket_.upload({0u});
+    return ticket_.data();
+  }
+  std::size_t bytes() const { return partial_.bytes() + ticket_.bytes(); }
+
+ private:
+  Buffer<double, Place> partial_;
+  Buffer<unsigned, Place> ticket_;
+};
+
+/// Sums body(i), Terms<K>, for i in [0, count), and calls finish(const double* total) once, by one thread. The order is fixed by count alone, so that a run
+/// repeats to the bit. A body may as well write what belongs to its index.
+template <int K, class Body, class Finish>
+void sum_each(OnCpu, int count, SumSpace<OnCpu>& space, const Body& body, const Finish& finish) {
+  constexpr int grain = 512;
+  const int chunks = (count + grain - 1) / grain;
+  struct Job {
+    const Body* body;
+    double* partial;
+    int count;
+  } job{&body, space.partial(K * std::max(chunks, 1)), count};
+  detail::cpu_parallel(
+      chunks, 1,
+      [](const void* data, int begin, int end) {
+        const Job& j = *static_cast<const Job*>(data);
+        const Body local = *j.body;
+        for (int chunk = begin; chunk < end; ++chunk) {
+          double sums[K] = {};
+          for (int i = chunk * grain; i < std::min((chunk + 1) * grain, j.count); ++i) {
+            const Terms<K> terms = local(i);
+            for (int k = 0; k < K; ++k) sums[k] += terms.value[k];
+          }
+          for (int k = 0; k < K; ++k) j.partial[K * chunk + k] = sums[k];
+        }
+      },
+      &job);
+  double total[K] = {};
+  for (int chunk = 0; chunk < chunks; ++chunk) {
+    for (int k = 0; k < K; ++k) total[k] += job.partial[K * chunk + k];
+  }
+  finish(static_cast<const double*>(total));
+}
+
+#if defined(__CUDACC__)
+namespace detail {
+
+/// Sum over the threads of a block, in thread 0.
+template <int K>
+__device__ void sum_block(double (&sums)[K]) {
+  __shared__ double warps[K][32];
+  const unsigned lane = threadIdx.x % 32, warp = threadIdx.x / 32, count = blockDim.x / 32;
+  for (int k = 0; k < K; ++k) {
+    for (unsigned apart = 16; apart > 0; apart /= 2) sums[k] += __shfl_down_sync(0xffffffffu, sums[k], apart);
+    if (lane == 0) warps[k][warp] = sums[k];
+  }
+  __syncthreads();
+  if (warp == 0) {
+    for (int k = 0; k < K; ++k) {
+      sums[k] = lane < count ? warps[k][lane] : 0.0;
+      for (unsigned apart = 16; apart > 0; apart /= 2) sums[k] += __shfl_down_sync(0xffffffffu, sums[k], apart);
+    }
+  }
+  __syncthreads();
+}
+
+template <int K, class Body, class Finish>
+__global__ void sum_kernel(int count, Body body, Finish finish, double* partial, unsigned* ticket) {
+  double sums[K] = {};
+  const int stride = static_cast<int>(gridDim.x * blockDim.x);
+  for (int i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x); i < count; i += stride) {
+    const Terms<K> terms = body(i);
+    for (int k = 0; k < K; ++k) sums[k] += terms.value[k];
+  }
+  sum_block<K>(sums);
+  __shared__ bool last;
+  if (threadIdx.x == 0) {
+    for (int k = 0; k < K; ++k) partial[k * gridDim.x + blockIdx.x] = sums[k];
+    __threadfence();
+    last = atomicInc(ticket, gridDim.x - 1) == gridDim.x - 1;
+  }
+  __syncthreads();
+  if (!last) return;
+  __threadfence();
+  for (int k = 0; k < K; ++k) {
+    sums[k] = 0;
+    for (unsigned b = threadIdx.x; b < gridDim.x; b += blockDim.x) sums[k] += __ldcg(&partial[k * gridDim.x + b]);
+  }
+  sum_block<K>(sums);
+  if (threadIdx.x == 0) finish(static_cast<const double*>(sums));
+}
+
+}  // namespace detail
+
+template <int K, class Body, class Finish>
+void sum_each(OnGpu, int count, SumSpace<OnGpu>& space, const Body& body, const Finish& finish) {
+  constexpr int most_blocks = 1024;
+  const int threads = detail::threads_for(count);
+  const int blocks = std::clamp((count + threads - 1) / threads, 1, most_blocks);
+  detail::sum_kernel<K><<<blocks, threads>>>(count, body, finish, space.partial(K * most_blocks), space.ticket());
+  detail::gpu_check_launch(__PRETTY_FUNCTION__);
+}
+#endif
+
+}  // namespace talus
