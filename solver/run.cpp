@@ -148,8 +148,7 @@ void Simulation::record(double time) {
   for (std::size_t c = 0; c < memory_.history.columns.size(); ++c) memory_.history.columns[c].push_back(row[c]);
 }
 
-PointFrame Simulation::point_frame(double time) const {
-  const ParticleState s = solver_->state().points;
+PointFrame Simulation::point_frame(double time, const ParticleState& s) const {
   const auto material = make_material<double>(options_.material);
   PointFrame frame;
   frame.time = time;
@@ -169,18 +168,18 @@ PointFrame Simulation::point_frame(double time) const {
   return frame;
 }
 
+/// The state is taken at once; the file is written while the run goes on.
 void Simulation::put_frame(double time) {
-  PointFrame frame;
-  frame.time = time;
-  if (options_.point_frames || options_.vdb_frames) frame = point_frame(time);
-  if (options_.vdb_frames) {
-    write_points_vdb(paths_.vdb_frames / fmt::format("points_{:05}.vdb", memory_.frames), frame, scene_.map.cell);
-  }
-  if (!options_.point_frames) {
-    frame = {};
-    frame.time = time;
-  }
-  frames_.put(memory_.frames, frame, scene_.map, solver_->thickness());
+  const bool points = options_.point_frames || options_.vdb_frames;
+  writing_.start([this, time, number = memory_.frames, thickness = solver_->thickness(), state = points ? solver_->state().points : ParticleState{}] {
+    PointFrame frame = point_frame(time, state);
+    if (options_.vdb_frames) write_points_vdb(paths_.vdb_frames / fmt::format("points_{:05}.vdb", number), frame, scene_.map.cell);
+    if (!options_.point_frames) {
+      frame = {};
+      frame.time = time;
+    }
+    frames_.put(number, frame, scene_.map, thickness);
+  });
 }
 
 bool Simulation::checkpoint_due(double time) const {
@@ -190,6 +189,7 @@ bool Simulation::checkpoint_due(double time) const {
 
 void Simulation::save_checkpoint() {
   memory_.wall_time = wall_time();
+  writing_.settle();  // a checkpoint counts on its frames, and HDF5 does one thing at a time
   write_checkpoint(paths_.checkpoint, {fingerprint_, solver_->state(), memory_});
 }
 
@@ -328,9 +328,11 @@ void Simulation::finish(RunSummary& summary) {
   summary.volume_final = std::accumulate(state.points.volume.begin(), state.points.volume.end(), 0.0);
   summary.volume_outflow = memory_.outflow_volume;
   summary.provenance = domain_.provenance;
+  writing_.settle();
   RunWriter writer(paths_.run);
   frames_.append_to(writer, memory_.frames, scene_.map);
   writer.finish(final_maps(), memory_.history, summary);
+  log_detail(fmt::format("files: {:.1f} s after the last step", wall_time() - memory_.wall_time));
   frames_.clear();
   std::error_code ignored;
   std::filesystem::remove(paths_.checkpoint, ignored);  // the run is whole: nothing is left to go on with

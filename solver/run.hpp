@@ -8,6 +8,7 @@
 #include "common/stage/stage.hpp"
 #include "solver/output/checkpoint.hpp"
 #include "solver/output/frames.hpp"
+#include "solver/output/side_work.hpp"
 #include "solver/scene.hpp"
 
 namespace talus::solver {
@@ -45,7 +46,7 @@ class Simulation {
   void finish(RunSummary& summary);
   RunMaps final_maps() const;
   double wall_time() const;
-  PointFrame point_frame(double time) const;
+  PointFrame point_frame(double time, const ParticleState& points) const;
 
   const Domain& domain_;
   SolveOptions options_;
@@ -62,6 +63,7 @@ class Simulation {
   double over_cfl_ = 0;  // step over the CFL step
   WallClock::time_point started_;
   double wall_before_ = 0;
+  SideWork writing_;  // last: what it does needs the rest
 };
 
 }  // namespace talus::solver
