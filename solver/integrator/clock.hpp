@@ -30,7 +30,7 @@ struct Clock {
   int halt = running;              // read by kernels: do nothing when set
   int request = running;           // set by kernels, becomes halt at the next step's begin
   int steps_since_sort = 0;
-  int steps_between_sorts = 32;
+  int steps_between_sorts = 32;    // for the sake of the memory's order; a point that strays asks for one at once
   int outflow_count = 0;           // since the last sort
   int failed_point = -1;           // id of a point that failed
 

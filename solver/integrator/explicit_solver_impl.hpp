@@ -12,6 +12,8 @@
 
 namespace talus::solver {
 
+/// A GPU gains little by order within the cells, and sorting there takes as long as ten steps.
+inline constexpr int gpu_steps_between_sorts = 256;
 inline constexpr int batch_steps = 32;  // steps given to the device before the host looks at the clock
 
 /// One thread: one node. The first one also opens the step.
@@ -43,6 +45,11 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
         musl_(options.stress_update == StressUpdate::modified),
         keeps_(options.transfer_time > options.courant),
         forces_apart_(musl_ || options.damping > 0 || keeps_) {
+    if (Place::is_gpu) {
+      Clock clock = read_clock();
+      clock.steps_between_sorts = gpu_steps_between_sorts;
+      clock_.upload({clock});
+    }
     sort(0);
   }
 
@@ -119,9 +126,9 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   template <Scatter what>
   void scatter() {
     const ProfilePhase<Place> phase("points to grid");
-    for_each_grouped(Place{}, points_.count(), grid_.groups(),
-                     ParticleToGrid<Real, Shape, what>{grid_.view(), points_.view(), material_, clock_.data(), nodes_.data(),
-                                                       forces_.data(), loads_now_, affine_, dilatant_});
+    scatter_points(Place{}, points_.count(), grid_.groups(),
+                   ParticleToGrid<Real, Shape, what>{grid_.view(), points_.view(), material_, clock_.data(), nodes_.data(),
+                                                     forces_.data(), loads_now_, affine_, dilatant_});
   }
 
   template <NodeContent content>

@@ -94,7 +94,7 @@ struct LinearForcing {
 template <class Real, class Place, class Shape>
 class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   using Base = PointSolver<Real, Place, Shape>;
-  using Base::clock_, Base::dilatant_, Base::grid_, Base::material_, Base::options_, Base::points_, Base::read_clock;
+  using Base::clock_, Base::dilatant_, Base::grid_, Base::material_, Base::options_, Base::points_, Base::read_clock, Base::sums_;
 
  public:
   ImplicitSolverOf(const Scene& scene, const SolveOptions& options, const SolverState& state)
@@ -526,7 +526,6 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   Buffer<unsigned char, Place> wavers_;  // changes between stick and slip
   Buffer<Real, Place> tangents_;
   Buffer<Balance, Place> balance_;
-  SumSpace<Place> sums_;
   Buffer<std::uint32_t, Place> farthest_;
   ConjugateGradient<Place> cg_;
   BiCgStab<Place> bicgstab_;

@@ -58,15 +58,11 @@ class PointSolver : public Solver {
   Energies energies() override {
     const ProfilePhase<Place> phase("records and frames");
     constexpr int rows = MeasureEnergies<Real, Shape>::rows;
-    const int count = points_.count();
-    sums_.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(count));
+    totals_.resize(rows);
     const Vec3<double> g{options_.gravity[0], options_.gravity[1], options_.gravity[2]};
-    for_each(Place{}, count,
-             MeasureEnergies<Real, Shape>{grid_.view(), points_.view(), material_, g, dilatant_, sums_.data()});
-    double total[rows];
-    for (int r = 0; r < rows; ++r) {
-      total[r] = count > 0 ? sum(Place{}, sums_.data() + static_cast<std::ptrdiff_t>(r) * count, count) : 0;
-    }
+    sum_each<rows>(Place{}, points_.count(), sums_, MeasureEnergies<Real, Shape>{grid_.view(), points_.view(), material_, g, dilatant_},
+                   FinishEnergies<rows>{totals_.data()});
+    const std::vector<double> total = totals_.download();
     return {total[0], total[1], total[2], total[3], {total[4], total[5], total[6]}};
   }
 
@@ -130,7 +126,8 @@ class PointSolver : public Solver {
   std::vector<double> load_volumes_;  // [m3]
   Buffer<Vec3<double>, Place> loads_;
   Buffer<Clock, Place> clock_;
-  Buffer<double, Place> peak_thickness_, peak_speed_, peak_pressure_, arrival_, sums_, thickness_;
+  Buffer<double, Place> peak_thickness_, peak_speed_, peak_pressure_, arrival_, totals_, thickness_;
+  SumSpace<Place> sums_;
 };
 
 }  // namespace talus::solver

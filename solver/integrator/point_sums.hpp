@@ -2,6 +2,7 @@
 #pragma once
 
 #include "solver/material/material.hpp"
+#include "solver/parallel/sums.hpp"
 #include "solver/transfer/stencil.hpp"
 
 namespace talus::solver {
@@ -22,7 +23,7 @@ struct MapWeights {
   }
 };
 
-/// One thread: one point. Its energies, volume and momentum into rows of `out` (kinetic, potential, elastic, volume, px, py, pz).
+/// One thread: one point. Sums of its energies (kinetic, potential, elastic), volume and momentum.
 template <class Real, class Shape>
 struct MeasureEnergies {
   static constexpr int rows = 7;
@@ -31,9 +32,8 @@ struct MeasureEnergies {
   Material<Real> material;
   Vec3<double> gravity;
   bool dilatant;
-  double* out;
 
-  TALUS_HD void operator()(int p) const {
+  TALUS_HD Terms<rows> operator()(int p) const {
     const double volume = static_cast<double>(points.volume[p]);
     const double mass = volume * static_cast<double>(material.density);
     const Vec3<Real> v = points.velocity_of(p);
@@ -43,14 +43,13 @@ struct MeasureEnergies {
     const double x = (points.cell_x[p] + static_cast<double>(points.offset_x[p])) * grid.spacing;
     const double y = (points.cell_y[p] + static_cast<double>(points.offset_y[p])) * grid.spacing;
     const double z = height(p);
-    const double values[rows] = {0.5 * mass * (vx * vx + vy * vy + vz * vz),
-                                 -mass * (gravity.x * x + gravity.y * y + gravity.z * z),
-                                 volume * static_cast<double>(elastic_energy(material, state)),
-                                 volume,
-                                 mass * vx,
-                                 mass * vy,
-                                 mass * vz};
-    for (int r = 0; r < rows; ++r) out[static_cast<std::size_t>(r) * static_cast<std::size_t>(points.count) + static_cast<std::size_t>(p)] = values[r];
+    return {{0.5 * mass * (vx * vx + vy * vy + vz * vz),
+             -mass * (gravity.x * x + gravity.y * y + gravity.z * z),
+             volume * static_cast<double>(elastic_energy(material, state)),
+             volume,
+             mass * vx,
+             mass * vy,
+             mass * vz}};
   }
 
  private:
@@ -64,6 +63,14 @@ struct MeasureEnergies {
       for (int a = 0; a < Shape::width; ++a) ground += w.x[a] * w.y[b] * static_cast<double>(grid.terrain[grid.column(w.i + a, w.j + b)]);
     }
     return zeta + ground;
+  }
+};
+
+template <int rows>
+struct FinishEnergies {
+  double* total;
+  TALUS_HD void operator()(const double* sums) const {
+    for (int r = 0; r < rows; ++r) total[r] = sums[r];
   }
 };
 

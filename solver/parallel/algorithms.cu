@@ -9,7 +9,6 @@
 #include <thrust/device_ptr.h>
 #include <thrust/execution_policy.h>
 #include <thrust/gather.h>
-#include <thrust/reduce.h>
 #include <thrust/scan.h>
 #include <thrust/scatter.h>
 #include <thrust/sequence.h>
@@ -80,11 +79,6 @@ int exclusive_sum(OnGpu, const int* values, int* sums, int count) {
   return last_value + last_sum;
 }
 
-double sum(OnGpu, const double* values, int count) {
-  const thrust::device_ptr<const double> v(values);
-  return thrust::reduce(policy(), v, v + count, 0.0);
-}
-
 double inner_product(OnGpu place, const double* a, const double* b, int count) {
   static SumSpace<OnGpu> space;
   static Buffer<double, OnGpu> total(1);
@@ -116,7 +110,6 @@ namespace talus {
 void sort_order(OnGpu, Buffer<std::uint64_t, OnGpu>&, Buffer<int, OnGpu>&) { throw std::logic_error("no CUDA"); }
 int exclusive_sum(OnGpu, const int*, int*, int) { throw std::logic_error("no CUDA"); }
 double inner_product(OnGpu, const double*, const double*, int) { throw std::logic_error("no CUDA"); }
-double sum(OnGpu, const double*, int) { throw std::logic_error("no CUDA"); }
 void gather(OnGpu, const double*, const int*, double*, int) { throw std::logic_error("no CUDA"); }
 void scatter(OnGpu, const double*, const int*, double*, int) { throw std::logic_error("no CUDA"); }
 double free_memory(OnGpu) { throw std::logic_error("no CUDA"); }

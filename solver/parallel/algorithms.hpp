@@ -15,10 +15,6 @@ void sort_order(OnGpu, Buffer<std::uint64_t, OnGpu>& keys, Buffer<int, OnGpu>& o
 int exclusive_sum(OnCpu, const int* values, int* sums, int count);
 int exclusive_sum(OnGpu, const int* values, int* sums, int count);
 
-/// Sum of count doubles, in a fixed order on the CPU.
-double sum(OnCpu, const double* values, int count);
-double sum(OnGpu, const double* values, int count);
-
 /// Sum of a[i] * b[i], in a fixed order on the CPU whatever the number of threads.
 double inner_product(OnCpu, const double* a, const double* b, int count);
 double inner_product(OnGpu, const double* a, const double* b, int count);

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -46,8 +45,6 @@ double inner_product(OnCpu, const double* a, const double* b, int count) {
       },
       [](double x, double y) { return x + y; }, tbb::simple_partitioner());
 }
-
-double sum(OnCpu, const double* values, int count) { return std::accumulate(values, values + count, 0.0); }
 
 void gather(OnCpu, const double* from, const int* order, double* to, int count) {
   for (int i = 0; i < count; ++i) to[i] = from[order[i]];

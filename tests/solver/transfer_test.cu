@@ -128,7 +128,7 @@ class Transfers : public InEachPlace {
     c.step_size = dt;
     Buffer<Clock, Place> clock;
     clock.upload({c});
-    for_each_grouped(Place{}, points.count(), grid.groups(),
+    scatter_points(Place{}, points.count(), grid.groups(),
                      ParticleToGrid<Real, Shape, Scatter::impulse>{grid.view(), points.view(), make_material<Real>(mo), clock.data(),
                                                                    nodes.data(), nullptr, nullptr, true, false});
     synchronise(Place{});
