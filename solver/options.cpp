@@ -124,8 +124,9 @@ void SolveOptions::describe(recipe::Visitor& v) {
   recipe::choice(v, "preset", preset, {{"none", Preset::none}, {"reference", Preset::reference}},
                  "reference: the implicit scheme of the reference paper as it stands (docs/theory.md)");
   recipe::choice(v, "integrator", integrator,
-                 {{"explicit", Integrator::explicit_}, {"newmark", Integrator::newmark}, {"quasi-static", Integrator::quasi_static}},
-                 "time integration");
+                 {{"explicit", Integrator::explicit_}, {"newmark", Integrator::newmark}, {"quasi-static", Integrator::quasi_static},
+                  {"auto", Integrator::automatic}},
+                 "time integration; auto: explicit or newmark, whichever takes less time, found by trying as the run goes on");
   v.number("gravity_ramp_s", gravity_ramp, recipe::not_negative, "time over which gravity grows to its full size");
   v.integer("gravity_loading_steps", gravity_loading_steps, recipe::Range{0, 100000},
             "quasi-static steps that bring the mass to equilibrium before the start; 0: start from zero stress");
@@ -193,8 +194,8 @@ void SolveOptions::check(std::vector<Fault>& faults) const {
     faults.push_back({"[solve.implicit] b_bar = true does not go with this [solve.material] model",
                       "its pressure does not follow from the volume change alone", "Take model = \"hencky\" or \"drucker-prager\""});
   }
-  if (implicit.b_bar && integrator == Integrator::explicit_) {
-    faults.push_back({"[solve.implicit] b_bar = true has no effect with integrator = \"explicit\"", "only implicit steps average the volume change",
+  if (implicit.b_bar && (integrator == Integrator::explicit_ || integrator == Integrator::automatic)) {
+    faults.push_back({"[solve.implicit] b_bar = true has no effect on explicit steps", "only implicit steps average the volume change",
                       "Leave it out, or take integrator = \"newmark\" or \"quasi-static\""});
   }
   if (implicit.tangent == Tangent::exact && implicit.linear_solver != LinearSolver::bicgstab) {
@@ -255,7 +256,7 @@ BaseFriction<Real> make_base_friction(const BaseOptions& o) {
 
 SolveOptions with_preset(SolveOptions o) {
   if (o.preset != Preset::reference) return o;
-  if (o.integrator == Integrator::explicit_) o.integrator = Integrator::newmark;
+  if (o.integrator != Integrator::quasi_static) o.integrator = Integrator::newmark;
   o.shape = ShapeKind::linear;
   o.transfer = Transfer::flip;
   o.transfer_time = 1e30;

@@ -15,7 +15,7 @@ enum class Precision { single_, double_ };
 enum class ShapeKind { linear, quadratic, gimp };
 enum class Transfer { apic, flip };
 enum class StressUpdate { last, modified };  // USL, MUSL
-enum class Integrator { explicit_, newmark, quasi_static };
+enum class Integrator { explicit_, newmark, quasi_static, automatic };
 enum class Preset { none, reference };
 enum class LinearSolver { pcg, bicgstab, cholesky };
 enum class Tangent { frozen_yield, exact };

@@ -34,11 +34,49 @@ Simulation::Simulation(const Domain& domain, const SolveOptions& options, On on,
       scene_(make_scene(domain, options_)),
       frames_(paths_.frames) {
   released_ = std::accumulate(scene_.points.volume.begin(), scene_.points.volume.end(), 0.0);
+  if (options_.integrator == Integrator::automatic) choice_.emplace(std::min(scene_.grid.spacing, scene_.grid.layer_height), options_.largest_step);
+}
+
+/// For the integrator of the hour.
+void Simulation::build_solver(const SolverState& state) {
+  SolveOptions o = options_;
+  if (choice_) {
+    o.integrator = choice_->current();
+    o.implicit.step = choice_->implicit_step();
+  }
+  solver_ = resume_solver(scene_, o, on_, state);
+}
+
+/// A batch of steps, and with integrator = "auto" what follows from its cost.
+BatchReport Simulation::advance() {
+  if (!choice_) return solver_->advance();
+  const auto begun = WallClock::now();
+  const auto wall = [&] { return std::chrono::duration<double>(WallClock::now() - begun).count(); };
+  const auto say = [&] {
+    if (const std::string news = choice_->news(); !news.empty()) log_info(fmt::format("t {:.2f} s: {}", time_, news));
+  };
+  BatchReport batch;
+  try {
+    batch = solver_->advance();
+  } catch (const NumericalError&) {
+    if (choice_->current() == Integrator::explicit_) throw;
+    choice_->note_failure(wall());
+    say();
+    build_solver(solver_->state());  // that of the last step that was accepted
+    solver_->set_next_event(next_event());
+    return advance();
+  }
+  const double rate = positive_from_bits(batch.clock.rate_bits);
+  const bool anew = choice_->note({batch.clock.time - time_, wall(), rate > 0 ? 1 / rate : 0, positive_from_bits(batch.clock.speed_bits)});
+  log_detail(fmt::format("{} {} dt {:.3g} cfl {:.3g} speed {:.3f} wall {:.4f}", batch.clock.time, choice_->current() == Integrator::newmark ? "N" : "E", batch.clock.step_size, 1/rate, positive_from_bits(batch.clock.speed_bits), wall()));
+  if (anew && batch.clock.halt != failed) build_solver(solver_->state());
+  say();
+  return batch;
 }
 
 void Simulation::resume(const std::filesystem::path& file) {
   Checkpoint checkpoint = read_checkpoint(file, fingerprint_);
-  solver_ = resume_solver(scene_, options_, on_, checkpoint.state);
+  build_solver(checkpoint.state);
   memory_ = std::move(checkpoint.memory);
   frames_.expect(memory_.frames);
   time_ = checkpoint.state.clock.time;
@@ -51,7 +89,7 @@ void Simulation::start() {
   std::error_code ignored;
   for (const auto& stale : {paths_.run, paths_.checkpoint}) std::filesystem::remove(stale, ignored);
   if (options_.gravity_loading_steps > 0) load_by_gravity();
-  solver_ = make_solver(scene_, options_, on_);
+  build_solver(first_state(scene_, options_));
   memory_.history.names = history_names;
   memory_.history.columns.resize(history_names.size());
   memory_.initial_thickness = solver_->thickness();
@@ -241,7 +279,7 @@ RunSummary Simulation::run(const std::string& scene, const std::string& title) {
   summary.stop_reason = "end of the simulated time";
   while (time_ < options_.end_time) {
     solver_->set_next_event(next_event());
-    const BatchReport batch = solver_->advance();
+    const BatchReport batch = advance();
     time_ = batch.clock.time;
     memory_.outflow_volume += batch.outflow_volume;
     memory_.outflow_count += batch.outflow_count;
@@ -275,7 +313,7 @@ RunSummary Simulation::run(const std::string& scene, const std::string& title) {
 }
 
 void Simulation::count(const BatchReport& batch) {
-  if (options_.integrator == Integrator::explicit_) {
+  if (batch.stats.newton == 0) {
     const double rate = positive_from_bits(batch.clock.rate_bits);
     if (rate > 0) over_cfl_ = batch.clock.step_size * rate;
     return;

@@ -4,8 +4,10 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "common/stage/stage.hpp"
+#include "solver/integrator/integrator_choice.hpp"
 #include "solver/output/checkpoint.hpp"
 #include "solver/output/frames.hpp"
 #include "solver/output/side_work.hpp"
@@ -33,6 +35,8 @@ class Simulation {
   using WallClock = std::chrono::steady_clock;
   void start();
   void load_by_gravity();
+  void build_solver(const SolverState& state);
+  BatchReport advance();
   void count(const BatchReport& batch);
   void pass_events(double time);
   double next_event() const;
@@ -54,6 +58,7 @@ class Simulation {
   RunPaths paths_;
   std::string fingerprint_;
   Scene scene_;
+  std::optional<IntegratorChoice> choice_;  // integrator = "auto"
   std::unique_ptr<Solver> solver_;
   FrameStore frames_;
   RunMemory memory_;

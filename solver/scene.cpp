@@ -61,7 +61,9 @@ Scene make_scene(const Domain& domain, const SolveOptions& options) {
   shape.layer_height = domain.layer_height;
   shape.mapping = options.mapping;
   shape.quadratic = options.shape == ShapeKind::quadratic;
-  shape.lowest_weighed = options.integrator == Integrator::explicit_ ? explicit_lowest_weighed : 0;
+  // With "auto" the same for both integrators: what has next to no weight has next to no say in a change.
+  const bool some_explicit = options.integrator == Integrator::explicit_ || options.integrator == Integrator::automatic;
+  shape.lowest_weighed = some_explicit ? explicit_lowest_weighed : 0;
   shape.terrain = domain.terrain.values;
   const GroundTables ground = make_ground_tables(shape);
 

@@ -33,6 +33,7 @@ struct Clock {
   int steps_between_sorts = 32;    // for the sake of the memory's order; a point that strays asks for one at once
   int outflow_count = 0;           // since the last sort
   int failed_point = -1;           // id of a point that failed
+  int accelerated = 0;             // the points know their acceleration: implicit steps were taken last
 
   /// Share of the velocity finer than the grid that a step keeps: what is lost depends on time, not on the number of steps.
   TALUS_HD double share_kept(double step_of, double rate) const {

@@ -45,11 +45,10 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
         musl_(options.stress_update == StressUpdate::modified),
         keeps_(options.transfer_time > options.courant),
         forces_apart_(musl_ || options.damping > 0 || keeps_) {
-    if (Place::is_gpu) {
-      Clock clock = read_clock();
-      clock.steps_between_sorts = gpu_steps_between_sorts;
-      clock_.upload({clock});
-    }
+    Clock clock = read_clock();
+    clock.accelerated = 0;
+    if (Place::is_gpu) clock.steps_between_sorts = gpu_steps_between_sorts;
+    clock_.upload({clock});
     sort(0);
   }
 

@@ -103,7 +103,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
         dynamic_(options.integrator == Integrator::newmark),
         friction_(make_base_friction<double>(options.base)),
         step_(options.implicit.step),
-        first_(state.clock.step == 0),
+        first_(state.clock.accelerated == 0),
+        midway_(state.clock.step > 0),
         operator_(options.implicit.form),
         preconditioner_(options.implicit.preconditioner) {
     balance_.upload({Balance{}});
@@ -132,6 +133,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
       step_ = step;
     }
     first_ = false;
+    clock.accelerated = 1;
     clock.step_size = step;
     clock.time = clock.next_event - clock.time <= step * (1 + 1e-12) ? clock.next_event : clock.time + step;
     ++clock.step;
@@ -235,6 +237,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     const double time = start + step;  // loads are those at the end of the step, walls those that stand at its start
     size_nodes();
     scheme_ = {dynamic_, options_.implicit.alpha, options_.implicit.beta, step};
+    // After explicit steps, light nodes are far out of balance: backward Euler asks for no acceleration to begin with.
+    if (first_ && midway_) scheme_ = {dynamic_, 0.5, 1, step};
     slip_ = smoothing(step);
     nudge_ = smoothing(step) / sharpness_ * 1e-3;
     const Vec3<double>* loads = this->upload_loads(time);
@@ -248,7 +252,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
              PrepareNodes<Real>{this->grid_.view(), this->grid_.active_list(), nodes(), held(),
                                 walls_, friction_, g, scheme_, predict});
     if (dynamic_) sum_each<1>(Place{}, count_, sums_, SquareMomentum{nodes()}, FinishMomentum{balance_.data()});
-    if (dynamic_ && first_) {
+    if (dynamic_ && first_ && !midway_) {
       copy(u_, saved_u_);
       u_.fill_zero();
       measure_stress(false);
@@ -510,7 +514,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   BaseFriction<double> friction_;
   double step_;
   int count_ = 0;
-  bool first_;  // no acceleration is known yet
+  bool first_;   // no acceleration is known yet
+  bool midway_;  // the run began with explicit steps
   TimeScheme scheme_;
   Buffer<double, Place> mass_, contact_friction_, friction_limit_;
   double rate_ = 0;  // CFL steps per time, as the last step ended [1/s]

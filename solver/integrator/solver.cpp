@@ -16,7 +16,7 @@ extern template std::unique_ptr<Solver> make_explicit_solver_of<double>(const Sc
 extern template std::unique_ptr<Solver> make_implicit_solver_of<float>(const Scene&, const SolveOptions&, On, const SolverState&);
 extern template std::unique_ptr<Solver> make_implicit_solver_of<double>(const Scene&, const SolveOptions&, On, const SolverState&);
 
-std::unique_ptr<Solver> make_solver(const Scene& scene, const SolveOptions& options, On on) {
+SolverState first_state(const Scene& scene, const SolveOptions& options) {
   SolverState state;
   state.points = scene.points;
   const auto cells = scene.map.count();
@@ -30,7 +30,11 @@ std::unique_ptr<Solver> make_solver(const Scene& scene, const SolveOptions& opti
   const auto rate = static_cast<float>(
       first_rate(scene.grid, ground, scene.points, make_material<double>(options.material).wave_speed, speed));
   atomic_max_positive(&state.clock.rate_bits, rate);
-  return resume_solver(scene, options, on, state);
+  return state;
+}
+
+std::unique_ptr<Solver> make_solver(const Scene& scene, const SolveOptions& options, On on) {
+  return resume_solver(scene, options, on, first_state(scene, options));
 }
 
 std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolveOptions& options, On on,

@@ -65,6 +65,9 @@ class Solver {
   virtual int particle_count() const = 0;
 };
 
+/// State of a scene at the start.
+SolverState first_state(const Scene& scene, const SolveOptions& options);
+
 /// From a scene at the start. `on` must be cpu or gpu.
 std::unique_ptr<Solver> make_solver(const Scene& scene, const SolveOptions& options, On on);
 
