@@ -13,7 +13,8 @@ constexpr double flow_cfl = 10;     // CFL steps of an implicit step in a flow
 constexpr double still = 1e-3;      // cells that nothing moves further than in such a step: at rest, or nearly
 constexpr double reach = 0.25;      // cells that a point may move in an implicit step
 constexpr double least_cfl = 3;     // shorter implicit steps cannot pay
-constexpr int warm_up = 2;          // batches of explicit steps before the first trial
+constexpr double first_price = 3;   // batches of explicit steps that the first trial is taken to cost
+constexpr double hopeless = 4;      // times as dear: the trial ends after its first step
 
 const char* name_of(Integrator i) { return i == Integrator::explicit_ ? "explicit" : "newmark"; }
 
@@ -35,9 +36,9 @@ void IntegratorChoice::measure(const BatchCost& batch) {
 
 bool IntegratorChoice::worth_trying() const {
   if (current_ == Integrator::explicit_ && wanted_step_ < least_cfl * wave_step_) return false;
-  if (batches_ < warm_up) return false;
   const bool changed = speed_at_trial_ < 0 || speed_ > 4 * speed_at_trial_ || speed_ < 0.25 * speed_at_trial_;
-  return wall_since_ > trial_wall_ / trial_share * (changed ? 1 : patience_);
+  const double price = trial_wall_ > 0 ? trial_wall_ : first_price * wall_since_ / std::max(batches_, 1);
+  return wall_since_ > price / trial_share * (changed ? 1 : patience_);
 }
 
 void IntegratorChoice::turn_to(Integrator to) {
@@ -77,6 +78,10 @@ bool IntegratorChoice::note(const BatchCost& batch) {
   if (trying_) {
     trial_wall_ += batch.wall;
     if (batches_ > 1) cost_of(current_).add(batch, 1);  // the first one pays for the change
+    if (batches_ == 1 && batch.wall > hopeless * cost_of(other()).rate() * batch.simulated) {
+      cost_of(current_).add(batch, 1);
+      return !end_trial();
+    }
     return batches_ >= trial_batches() && !end_trial();
   }
   wall_since_ += batch.wall;
