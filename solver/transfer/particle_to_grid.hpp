@@ -1,17 +1,12 @@
 // Particle to grid (P2G): mass, momentum and force of the points onto the nodes around them.
 #pragma once
 
-#include <new>
-
 #include "solver/integrator/clock.hpp"
 #include "solver/material/material.hpp"
+#include "solver/parallel/tiles.hpp"
 #include "solver/transfer/stencil.hpp"
 
 namespace talus {
-
-namespace detail {
-inline constexpr int tile_points = 64;  // of a block on the GPU: 26 kB of its shared memory in double precision
-}
 
 /// What P2G scatters.
 enum class Scatter {
@@ -23,7 +18,7 @@ enum class Scatter {
 /// Adds the points to nodes[] (mass, momentum) and, for Scatter::force, forces[].
 template <class Real, class Shape, Scatter what>
 struct ParticleToGrid {
-  static constexpr int width = Shape::width;
+  static constexpr int width = Shape::width, nodes_each = width * width * width;
   GridView<Real> grid;
   ParticleView<Real> points;
   Material<Real> material;
@@ -83,12 +78,18 @@ struct ParticleToGrid {
         for (int c = 0; c < width; ++c) {
           Sums sums;
           add(s, u, c, sums);
-          give(s.i + a, s.j + b, s.k + c, sums);
+          give_to(s.i + a, s.j + b, s.k + c, sums);
         }
       }
     }
   }
 
+  // As scatter_points has it; nodes by a, then b, then c.
+  TALUS_HD static bool same_nodes(const Source& s, const Source& t) { return s.i == t.i && s.j == t.j && s.k == t.k; }
+  TALUS_HD void add(const Source& s, int n, Sums& sums) const {
+    add(s, upright(s, n % width, n / width % width), n / (width * width), sums);
+  }
+  TALUS_HD void give(const Source& s, int n, const Sums& sums) const { give_to(s.i + n % width, s.j + n / width % width, s.k + n / (width * width), sums); }
   TALUS_HD bool counts(int p) const { return clock->halt == running && points.cell_x[p] >= 0; }
 
   /// What the nodes of one column of a point's stencil share.
@@ -119,57 +120,11 @@ struct ParticleToGrid {
     }
   }
 
-  TALUS_HD void give(int i, int j, int k, const Sums& sums) const {
+  TALUS_HD void give_to(int i, int j, int k, const Sums& sums) const {
     const int n = GridView<Real>::node(grid.slot(i, j), i, j, k > 0 ? k : 0);
     scatter_add(&nodes[n], sums.mass, sums.momentum);
     if constexpr (what == Scatter::force) scatter_add(&forces[n], Real(0), sums.force);
   }
 };
-
-/// Runs P2G over all points. On the CPU by groups that share no node; on the GPU by tiles of consecutive points, which mostly share their nodes.
-template <class Real, class Shape, Scatter what>
-void scatter_points(OnCpu place, int count, const PointGroups& groups, const ParticleToGrid<Real, Shape, what>& kernel) {
-  for_each_grouped(place, count, groups, kernel);
-}
-
-#if defined(__CUDACC__)
-namespace detail {
-/// A warp reads 32 points, one a lane, and then takes a lane for every node: sums stay in registers for as long as the next point has the same
-/// nodes, and go out by one atomic a node.
-template <class Real, class Shape, Scatter what>
-__global__ void scatter_tiles(int count, ParticleToGrid<Real, Shape, what> kernel) {
-  using Kernel = ParticleToGrid<Real, Shape, what>;
-  constexpr int warp_size = 32, nodes = Shape::width * Shape::width * Shape::width;
-  constexpr int teams = warp_size / nodes, each = warp_size / teams;  // teams of lanes, and points of each
-  __shared__ alignas(16) unsigned char room[tile_points * sizeof(typename Kernel::Source)];
-  auto* const tile = reinterpret_cast<typename Kernel::Source*>(room);
-  __shared__ bool counts[tile_points];
-  const int p = static_cast<int>(blockIdx.x) * tile_points + static_cast<int>(threadIdx.x);
-  counts[threadIdx.x] = p < count && kernel.counts(p);
-  if (counts[threadIdx.x]) new (tile + threadIdx.x) typename Kernel::Source(kernel, p);
-  __syncwarp();
-  const int lane = static_cast<int>(threadIdx.x) % warp_size, team = lane / nodes, node = lane % nodes;
-  if (team >= teams) return;
-  const int first = static_cast<int>(threadIdx.x) / warp_size * warp_size + team * each;
-  const int a = node % Shape::width, b = node / Shape::width % Shape::width, c = node / (Shape::width * Shape::width);
-  typename Kernel::Sums sums;
-  for (int q = first; q < first + each; ++q) {
-    if (!counts[q]) continue;
-    const typename Kernel::Source& s = tile[q];
-    kernel.add(s, kernel.upright(s, a, b), c, sums);
-    if (q + 1 < first + each && counts[q + 1] && tile[q + 1].i == s.i && tile[q + 1].j == s.j && tile[q + 1].k == s.k) continue;
-    kernel.give(s.i + a, s.j + b, s.k + c, sums);
-    sums = {};
-  }
-}
-}  // namespace detail
-
-template <class Real, class Shape, Scatter what>
-void scatter_points(OnGpu, int count, const PointGroups&, const ParticleToGrid<Real, Shape, what>& kernel) {
-  if (count <= 0) return;
-  detail::scatter_tiles<<<(count + detail::tile_points - 1) / detail::tile_points, detail::tile_points>>>(count, kernel);
-  detail::gpu_check_launch("points to grid");
-}
-#endif
 
 }  // namespace talus

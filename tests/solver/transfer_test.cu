@@ -129,8 +129,8 @@ class Transfers : public InEachPlace {
     Buffer<Clock, Place> clock;
     clock.upload({c});
     scatter_points(Place{}, points.count(), grid.groups(),
-                     ParticleToGrid<Real, Shape, Scatter::impulse>{grid.view(), points.view(), make_material<Real>(mo), clock.data(),
-                                                                   nodes.data(), nullptr, nullptr, true, false});
+                   ParticleToGrid<Real, Shape, Scatter::impulse>{grid.view(), points.view(), make_material<Real>(mo), clock.data(),
+                                                                 nodes.data(), nullptr, nullptr, true, false});
     synchronise(Place{});
     const auto got = nodes.download();
     const auto slots = slots_of(grid);
