@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -66,10 +67,13 @@ BatchReport Simulation::advance() {
     solver_->set_next_event(next_event());
     return advance();
   }
+  cost_.simulated += batch.clock.time - time_;
+  cost_.wall += wall();
+  if (!batch.sorted || batch.clock.halt == failed) return batch;  // points that have left are still among the others
   const double rate = positive_from_bits(batch.clock.rate_bits);
-  const bool anew = choice_->note({batch.clock.time - time_, wall(), rate > 0 ? 1 / rate : 0, positive_from_bits(batch.clock.speed_bits)});
-  log_detail(fmt::format("{} {} dt {:.3g} cfl {:.3g} speed {:.3f} wall {:.4f}", batch.clock.time, choice_->current() == Integrator::newmark ? "N" : "E", batch.clock.step_size, 1/rate, positive_from_bits(batch.clock.speed_bits), wall()));
-  if (anew && batch.clock.halt != failed) build_solver(solver_->state());
+  cost_.wave_step = rate > 0 ? 1 / rate : 0;
+  cost_.speed = positive_from_bits(batch.clock.speed_bits);
+  if (choice_->note(std::exchange(cost_, {}))) build_solver(solver_->state());
   say();
   return batch;
 }

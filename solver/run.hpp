@@ -59,6 +59,7 @@ class Simulation {
   std::string fingerprint_;
   Scene scene_;
   std::optional<IntegratorChoice> choice_;  // integrator = "auto"
+  BatchCost cost_;                          // since the last sort
   std::unique_ptr<Solver> solver_;
   FrameStore frames_;
   RunMemory memory_;

@@ -7,7 +7,7 @@
 
 namespace talus::solver {
 
-/// What a batch of steps did.
+/// What the steps from one sort of the points to the next did.
 struct BatchCost {
   double simulated = 0, wall = 0;  // [s]
   double wave_step = 0;            // the CFL step [s]
