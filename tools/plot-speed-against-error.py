@@ -1,0 +1,102 @@
+#!/usr/bin/env python3
+"""Draws docs/pictures/speed-against-error.png from docs/benchmarks/speed-against-error.csv.
+
+usage: tools/plot-speed-against-error.py [CSV [PNG]]        (Debian: python3-matplotlib)
+"""
+import csv
+import pathlib
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+SOURCE = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs/benchmarks/speed-against-error.csv"
+PICTURE = pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else ROOT / "docs/pictures/speed-against-error.png"
+COLOURS = {"explicit": "#0072b2", "newmark": "#d55e00", "auto": "#009e73"}  # Okabe & Ito 2008: told apart by all eyes
+MARKS = {("quadratic", "double"): "o", ("quadratic", "single"): "s", ("linear", "double"): "^", ("gimp", "single"): "D"}
+
+
+def number(row, key):
+    return float(row[key]) if row[key] else float("nan")
+
+
+def draw(axes, row, x, y, label):
+    on_gpu = "H200" in row["place"]
+    colour = COLOURS[row["integrator"]]
+    axes.plot(x, y, MARKS[row["shape"], row["precision"]], color=colour, markerfacecolor=colour if on_gpu else "white", markersize=8)
+    axes.annotate(label, (x, y), textcoords="offset points", xytext=(7, 5), fontsize=8)
+
+
+def frank(axes, rows, modulus):
+    rows = [r for r in rows if r["scene"] == "Frank Slide" and float(r["youngs_modulus_Pa"]) == modulus and r["stiffness"] == "as-given"]
+    rows = [r for r in rows if number(r, "elsewhere_than_finest_percent") > 0]
+    for row in rows:
+        height = row["layer_height_m"]
+        label = row["spacing_m"] + (f"/{height}" if height != row["spacing_m"] else "") + " m"
+        if row["integrator"] == "newmark":
+            label += f", {float(row['step_mean_cfl']):.2g} CFL"
+        elif row["step_asked_cfl"] == "0.1":
+            label += ", 0.1 CFL"
+        if row["integrator"] == "auto" or (row["precision"], row["shape"]) == ("single", "quadratic"):
+            label = ""  # beside its twin in double precision
+        draw(axes, row, number(row, "wall_s"), number(row, "elsewhere_than_finest_percent"), label)
+    axes.set_xscale("log")
+    axes.margins(x=0.12)
+    axes.set_ylim(0, 1.15 * max(number(r, "elsewhere_than_finest_percent") for r in rows))
+    axes.set_xlabel("wall time of the steps [s]")
+    axes.set_ylabel("deposit elsewhere than on the finest grid [%]")
+    axes.set_title(f"Frank Slide, E = {modulus:.0e} Pa".replace("e+0", "e"), loc="left", fontweight="bold")
+
+
+def stiff_slide(axes, rows):
+    rows = [r for r in rows if r["scene"] == "stiff slide"]
+    scenes = sorted({(int(r["layer_height_m"]), float(r["youngs_modulus_Pa"])) for r in rows}, reverse=True)
+    for height, modulus in scenes:
+        runs = [r for r in rows if int(r["layer_height_m"]) == height and float(r["youngs_modulus_Pa"]) == modulus]
+        fixed = next(number(r, "wall_s") for r in runs if r["integrator"] == "explicit")
+        runs = sorted((r for r in runs if r["integrator"] == "newmark"), key=lambda r: number(r, "step_mean_cfl"))
+        x = [number(r, "wall_s") / fixed for r in runs]
+        y = [number(r, "elsewhere_than_explicit_percent") for r in runs]
+        stiff = modulus > 5e9
+        colour = {40: "#d55e00", 10: "#cc79a7", 5: "#56b4e9"}[height]
+        axes.plot(x, y, "--o" if stiff else "-o", color=colour, markerfacecolor="white" if stiff else colour, markersize=8,
+                  label=f"layers of {height} m, {modulus:.2g} Pa".replace("e+0", "e"))
+        for run, across, up in zip(runs, x, y):
+            axes.annotate(f"{number(run, 'step_mean_cfl'):.2g}", (across, up), textcoords="offset points", xytext=(7, -3), fontsize=8)
+    axes.axvline(1, color=COLOURS["explicit"])
+    axes.annotate("explicit", (1, 0.2), textcoords="offset points", xytext=(5, 0), fontsize=8, color=COLOURS["explicit"])
+    axes.set_xscale("log")
+    axes.set_xlim(0.8, 60)
+    axes.set_ylim(bottom=0)
+    axes.legend(fontsize=8, loc=(0.07, 0.4))
+    axes.set_xlabel("wall time of Newmark steps over that of explicit ones")
+    axes.set_ylabel("deposit elsewhere than with explicit steps [%]")
+    axes.set_title("Stiff slide, H200; numbers: mean step over the CFL step", loc="left", fontweight="bold")
+
+
+def legend(axes):
+    for name, colour in COLOURS.items():
+        axes.plot([], [], "o", color=colour, label=name)
+    for (shape, precision), mark in MARKS.items():
+        axes.plot([], [], mark, color="grey", label=f"{shape}, {precision}")
+    axes.plot([], [], "o", color="grey", markerfacecolor="white", label="CPU, two threads (filled: H200)")
+    axes.legend(fontsize=8, loc="lower left")
+
+
+with open(SOURCE, newline="") as file:
+    table = list(csv.DictReader(file))
+figure, panels = plt.subplots(3, 1, figsize=(9, 14), dpi=110)
+frank(panels[0], table, 1e7)
+legend(panels[0])
+frank(panels[1], table, 1e9)
+stiff_slide(panels[2], table)
+for panel in panels:
+    panel.grid(color="#dddddd")
+    panel.set_axisbelow(True)
+figure.tight_layout()
+PICTURE.parent.mkdir(parents=True, exist_ok=True)
+figure.savefig(PICTURE)
+print(PICTURE)
