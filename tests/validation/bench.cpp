@@ -82,7 +82,7 @@ Outcome Bench::run(const std::string& variant, const Overrides& overrides, bool 
   fs::remove_all(out);
   fs::create_directories(out);
   const fs::path recipe = out / "recipe.toml";
-  write_text(recipe, recipe_with(request_.recipes / name_ / "recipe.toml", overrides));
+  write_text(recipe, recipe_with(request_.recipes / name_.substr(0, name_.find('-')) / "recipe.toml", overrides));
   fmt::print(stderr, "{:4} {:44} ", name_, variant);
   std::fflush(stderr);
   Outcome outcome;

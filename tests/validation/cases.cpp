@@ -8,6 +8,7 @@ const std::vector<Case>& cases() {
       {"A1b", "column compacted to a third", true, large_compaction},
       {"A2", "cantilever with a load at its tip", true, cantilever},
       {"A3", "collapse of a sand column", true, sand_column},
+      {"A3-friction", "run-out of the sand column over damping and base friction", false, sand_column_friction},
       {"A3b", "sand columns of other aspect ratios", false, sand_column_aspects},
       {"A4", "time and memory of a step", true, step_cost},
       {"B1", "block on an incline", true, block_on_incline},

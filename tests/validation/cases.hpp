@@ -22,7 +22,7 @@ inline std::vector<LinearScheme> linear_schemes() {
 }
 
 struct Case {
-  const char* name;   // of its folder, and of validation.md
+  const char* name;   // as in validation.md; up to a hyphen that of its recipe's folder
   const char* title;
   bool quick;         // has rows that need no LONG=1
   void (*run)(Bench&);
@@ -34,6 +34,7 @@ void self_weight_column(Bench&);      // A1
 void large_compaction(Bench&);        // A1b
 void cantilever(Bench&);              // A2
 void sand_column(Bench&);             // A3
+void sand_column_friction(Bench&);    // A3-friction
 void sand_column_aspects(Bench&);     // A3b
 void step_cost(Bench&);               // A4
 void block_on_incline(Bench&);        // B1

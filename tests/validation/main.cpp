@@ -85,7 +85,7 @@ int run(const Words& words) {
 int main(int argc, char** argv) {
   const Words words = parse(argc, argv);
   if (words.list) {
-    for (const Case& c : cases()) fmt::print("{:5} {}{}\n", c.name, c.title, c.quick ? "" : " (--long only)");
+    for (const Case& c : cases()) fmt::print("{:11} {}{}\n", c.name, c.title, c.quick ? "" : " (--long only)");
     return 0;
   }
   try {

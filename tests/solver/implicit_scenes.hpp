@@ -1,0 +1,78 @@
+// What the tests of implicit steps share: a column between rollers, a cantilever, and steps to a time.
+#pragma once
+
+#include "scenes.hpp"
+
+namespace talus::solver::testing {
+
+/// A column one cell wide between rollers, its lower end fixed, points 2 x 2 x 2 per cell.
+inline Domain column(double height, double layer_height) {
+  Domain d = ground(6, 6, 1.0, layer_height, [](double, double) { return 0.0; });
+  fill(d, {2.5, 3.5, 2.5, 3.5, 0, height});
+  return d;
+}
+
+inline SolveOptions column_options() {
+  SolveOptions o;
+  o.integrator = Integrator::quasi_static;
+  o.mapping = Mapping::cartesian;
+  o.shape = ShapeKind::linear;
+  o.material.model = MaterialModel::hencky;
+  o.material.poisson_ratio = 0;
+  o.base.law = FrictionLaw::stick;
+  for (const auto axis : {Axis::x, Axis::y}) {
+    o.walls.push_back({axis, 2.5, Side::above, WallKind::roller});
+    o.walls.push_back({axis, 3.5, Side::below, WallKind::roller});
+  }
+  return o;
+}
+
+/// Newton iterations on the way.
+inline int steps_to(Solver& solver, double time, StepStats* last = nullptr) {
+  solver.set_next_event(time);
+  int newton = 0;
+  for (;;) {
+    const BatchReport batch = solver.advance();
+    newton += batch.stats.newton;
+    if (last) *last = batch.stats;
+    if (batch.clock.halt == at_event) return newton;
+    if (batch.clock.halt == failed) {
+      ADD_FAILURE();
+      return newton;
+    }
+  }
+}
+
+/// validation.md A2 at two cells over the depth: a cantilever of 10 x 1 x 1 m, E = 1 GPa, held at x = 0, its last points pulled down.
+struct Cantilever {
+  Domain domain = ground(28, 10, 0.5, 0.5, [](double, double) { return 0.0; });
+  SolveOptions options;
+  Cantilever(ShapeKind shape, double k) {
+    domain.grid.west = domain.grid.south = -1.75;
+    fill(domain, {0, 10, 0, 1, 10, 11});
+    options.integrator = Integrator::quasi_static;
+    options.mapping = Mapping::cartesian;
+    options.shape = shape;
+    options.gravity = {0, 0, 0};
+    options.material.model = MaterialModel::corotated;
+    options.material.youngs_modulus = 1e9;
+    options.material.poisson_ratio = 0;
+    options.walls.push_back({Axis::x, 0, Side::above, WallKind::fixed});
+    options.loads.push_back({{9.7, 10, 0, 1, 10, 11}, {0, 0, -k * 1e9 / 12 / 100}, 1.0});  // k E I / L^2
+    options.implicit.linear_solver = LinearSolver::cholesky;
+  }
+  /// Mean deflection of the last points [m], which lie 1/8 m inside.
+  double deflection(const Solver& solver, const Scene& scene) const {
+    const ParticleState s = solver.state().points;
+    const auto x = positions(scene.map, scene.grid, solver.ground(), s);
+    double tip = 0, volume = 0;
+    for (std::size_t p = 0; p < s.size(); ++p) {
+      if (domain.points.x[static_cast<std::size_t>(s.id[p])] < 9.7) continue;
+      tip += s.volume[p] * (domain.points.height[static_cast<std::size_t>(s.id[p])] - x[p][2]);
+      volume += s.volume[p];
+    }
+    return tip / volume;
+  }
+};
+
+}  // namespace talus::solver::testing
