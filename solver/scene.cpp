@@ -8,8 +8,9 @@ namespace talus::solver {
 namespace {
 
 /// A lone point on the very ground would leave next to no mass on the node above it, and no explicit step would be short enough. At a tenth
-/// of a layer sum N'^2/N is 11, which the default cfl of 0.5 still covers (docs/theory.md, T11). Implicit steps need no such floor.
-constexpr double explicit_lowest_weighed = 0.1;
+/// of a layer sum N'^2/N is 11, which the default cfl of 0.5 still covers (docs/theory.md, T11). Implicit steps can do with less, and statics with none; but a node with next to no mass
+/// moves as it likes in a material without tension, and hands the point next to it a spin out of all measure.
+constexpr double explicit_lowest_weighed = 0.1, newmark_lowest_weighed = 0.01;
 
 /// Nearest node and offset from it of a position in cells.
 void place(double position, int& cell, double& offset) {
@@ -63,7 +64,7 @@ Scene make_scene(const Domain& domain, const SolveOptions& options) {
   shape.quadratic = options.shape == ShapeKind::quadratic;
   // With "auto" the same for both integrators: what has next to no weight has next to no say in a change.
   const bool some_explicit = options.integrator == Integrator::explicit_ || options.integrator == Integrator::automatic;
-  shape.lowest_weighed = some_explicit ? explicit_lowest_weighed : 0;
+  shape.lowest_weighed = some_explicit ? explicit_lowest_weighed : options.integrator == Integrator::newmark ? newmark_lowest_weighed : 0;
   shape.terrain = domain.terrain.values;
   const GroundTables ground = make_ground_tables(shape);
 

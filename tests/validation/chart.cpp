@@ -234,9 +234,12 @@ void draw_legend(const Chart& chart, const Frame& f, Canvas& canvas) {
   const double top = f.box.y + gap, low = f.box.y + f.box.height - h - gap;
   Box best{right, top, w, h};
   int least = hidden(chart, f, best);
-  for (const Box& box : {Box{left, top, w, h}, Box{right, low, w, h}, Box{left, low, w, h}}) {
-    const int count = hidden(chart, f, box);
-    if (count < least) least = count, best = box;
+  for (const double y : {top, low, 0.5 * (top + low)}) {  // the first of those that hide least
+    for (const double x : {right, left, 0.5 * (left + right)}) {
+      const Box box{x, y, w, h};
+      const int count = hidden(chart, f, box);
+      if (count < least) least = count, best = box;
+    }
   }
   canvas.fill(best, {1, 1, 1});
   canvas.frame(best, {pale, 2, {}, 1});
