@@ -279,6 +279,11 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   void sharpen(const StepStats& stats) {
     if (stats.newton <= 2 * patience) sharpness_ = std::max(sharpest, 0.5 * sharpness_);
   }
+  /// Nothing moves much further than the slip over which friction is smoothed: then a body may creep there that friction can hold.
+  bool creeps() const {
+    constexpr double share = 0.1;
+    return dynamic_ && sharpness_ > sharpest && slip_ > share * moved_ * std::min(this->frame_.cell[0], this->frame_.cell[2]);
+  }
   bool blunt(double step) {
     if (!dynamic_ || sharpness_ >= bluntest) return false;
     sharpness_ = std::min(bluntest, 10 * sharpness_);
@@ -368,8 +373,19 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
       stats.residual = std::sqrt(balance.residual) / size;
       if (!std::isfinite(stats.residual)) return false;
       if (stats.residual <= o.newton_tolerance && !changed) {
-        sharpen(stats);
-        return within_reach();
+        if (!within_reach()) return false;
+        if (!creeps()) {
+          sharpen(stats);
+          return true;
+        }
+        // Once more with a sharper corner, from here: a step that does not find its way there is cut.
+        sharpness_ = std::max(sharpest, 0.1 * sharpness_);
+        slip_ = smoothing(step);
+        waited = 0;
+        best = 1e300;
+        balance = measure_residual(true);
+        stats.residual = std::sqrt(balance.residual) / size;
+        if (stats.residual <= o.newton_tolerance) continue;
       }
       waited = stats.residual < 0.5 * best ? 0 : waited + 1;
       best = std::min(best, stats.residual);
@@ -479,7 +495,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   bool within_reach() {
     farthest_.upload({0});
     for_each(Place{}, points_.count(), MeasureMotion<Real, Shape>{this->grid_.view(), points_.view(), u_.data(), dynamic_, farthest_.data()});
-    return positive_from_bits(farthest_.download().front()) <= 1.0f;
+    moved_ = static_cast<double>(positive_from_bits(farthest_.download().front()));
+    return moved_ <= 1;
   }
 
   void accept(const Clock& clock, double step) {
@@ -521,6 +538,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   double rate_ = 0;  // CFL steps per time, as the last step ended [1/s]
   double slip_ = 0, nudge_ = 0;  // [m]
   double sharpness_ = sharpest;
+  double moved_ = 0;  // farthest in the step [cells]
   ElementList<Real, Place, Shape> elements_;
   MeanDilation<Real, Place, Shape> means_;
   Walls<double> walls_;
