@@ -40,6 +40,7 @@ Simulation::Simulation(const Domain& domain, const SolveOptions& options, On on,
 
 /// For the integrator of the hour.
 void Simulation::build_solver(const SolverState& state) {
+  writing_.settle();  // a frame under way asks the solver for its ground
   SolveOptions o = options_;
   if (choice_) {
     o.integrator = choice_->current();
