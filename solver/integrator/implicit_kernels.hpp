@@ -315,4 +315,18 @@ struct AcceptStep {
   }
 };
 
+/// One thread: one point. Momentum of the points' new velocity back to the nodes (MUSL).
+template <class Real, class Shape>
+struct ScatterVelocity {
+  GridView<Real> grid;
+  ParticleView<Real> points;
+  Real density;
+  Vec3<double>* momentum;
+  TALUS_HD void operator()(int p) const {
+    const PointGradients<Real, Shape> g(grid, points, p);
+    const Vec3<double> v = widen(points.velocity_of(p)) * static_cast<double>(points.volume[p] * density);
+    around(grid, g, [&](int n, int a, int b, int c) { scatter_add(&momentum[n], v * static_cast<double>(g.weight(a, b, c))); });
+  }
+};
+
 }  // namespace talus::solver

@@ -191,10 +191,6 @@ struct SquareMomentum {
     return {{dot(p, p)}};
   }
 };
-struct FinishMomentum {
-  Balance* balance;
-  TALUS_HD void operator()(const double* total) const { balance->momentum = *total; }
-};
 
 /// One thread: one node. Squares of the forces that balance.
 struct SquareForces {
@@ -403,6 +399,18 @@ struct EndOfStep {
     const Vec3<double> told = u * (1 / dt);
     velocity[n] = told + nodes.freed[n] * (v1 - told);
     acceleration[n] = nodes.freed[n] * a1;
+  }
+};
+
+/// One thread: one node. Momentum to displacement of the step, held nodes as the solve left them.
+struct RemapDisplacement {
+  NodeArrays nodes;
+  double step;
+  Vec3<double>* momentum;
+  TALUS_HD void operator()(int n) const {
+    if (!(nodes.mass[n] > 0)) return;
+    const Vec3<double> moved = momentum[n] * (step / nodes.mass[n]);
+    momentum[n] = nodes.u[n] + nodes.freed[n] * (moved - nodes.u[n]);
   }
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "solver/integrator/implicit_nodes.hpp"
+#include "solver/integrator/newton_control.hpp"
 #include "solver/integrator/point_solver.hpp"
 #include "solver/integrator/step_failure.hpp"
 #include "solver/linear/bicgstab.hpp"
@@ -44,50 +45,6 @@ struct RecordColumns {
     }
     const double spacing = static_cast<double>(grid.spacing);
     if (total > 0) record_column(maps, grid.column(i, j), total, length(momentum), density, spacing, time);
-  }
-};
-
-/// One thread: one point. Momentum of the points' new velocity back to the nodes (MUSL).
-template <class Real, class Shape>
-struct ScatterVelocity {
-  GridView<Real> grid;
-  ParticleView<Real> points;
-  Real density;
-  Vec3<double>* momentum;
-  TALUS_HD void operator()(int p) const {
-    const PointGradients<Real, Shape> g(grid, points, p);
-    const Vec3<double> v = widen(points.velocity_of(p)) * static_cast<double>(points.volume[p] * density);
-    around(grid, g, [&](int n, int a, int b, int c) { scatter_add(&momentum[n], v * static_cast<double>(g.weight(a, b, c))); });
-  }
-};
-
-/// One thread: one node. Momentum to displacement of the step, held nodes as the solve left them.
-struct RemapDisplacement {
-  NodeArrays nodes;
-  double step;
-  Vec3<double>* momentum;
-  TALUS_HD void operator()(int n) const {
-    if (!(nodes.mass[n] > 0)) return;
-    const Vec3<double> moved = momentum[n] * (step / nodes.mass[n]);
-    momentum[n] = nodes.u[n] + nodes.freed[n] * (moved - nodes.u[n]);
-  }
-};
-
-/// How exactly the next linear system is worth solving: as Newton's last iteration got on (Eisenstat & Walker 1996, choice 2, with their
-/// safeguard), and no further than Newton's own tolerance asks.
-struct LinearForcing {
-  double last_residual = 0, last = 0.1;
-  double next(double residual, const ImplicitOptions& o) {
-    constexpr double gamma = 0.9, most = 0.1, first = 1e-3;  // a nearly linear step should be done in two
-    if (o.forcing == Forcing::fixed) return o.linear_tolerance;
-    double wanted = first;
-    if (last_residual > 0) {
-      wanted = gamma * (residual / last_residual) * (residual / last_residual);
-      if (gamma * last * last > 0.1) wanted = std::max(wanted, gamma * last * last);
-    }
-    last_residual = residual;
-    last = std::clamp(wanted, 1e-12, most);
-    return std::max(o.linear_tolerance, std::min(most, std::max(last, 0.1 * o.newton_tolerance / residual)));
   }
 };
 
@@ -198,7 +155,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     return n;
   }
   Constraints held() {
-    return {wall_freed_.data(), normal_.data(), contact_friction_.data(), friction_limit_.data(), along_.data(), wavers_.data(), slip_, nudge_,
+    return {wall_freed_.data(), normal_.data(), contact_friction_.data(), friction_limit_.data(), along_.data(), wavers_.data(), corner_.slip(), corner_.nudge(),
             options_.implicit.tangent == Tangent::exact, &balance_.data()->pull};
   }
 
@@ -239,8 +196,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     scheme_ = {dynamic_, options_.implicit.alpha, options_.implicit.beta, step};
     // After explicit steps, light nodes are far out of balance: backward Euler asks for no acceleration to begin with.
     if (first_ && midway_) scheme_ = {dynamic_, 0.5, 1, step};
-    slip_ = smoothing(step);
-    nudge_ = smoothing(step) / sharpness_ * 1e-3;
+    corner_.smooths = dynamic_;
+    corner_.fall = fall(step);
     const Vec3<double>* loads = this->upload_loads(time);
     for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
                      ScatterInertia<Real, Shape>{this->grid_.view(), points_.view(), material_.density, affine_, dynamic_,
@@ -251,7 +208,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     for_each(Place{}, this->grid_.active_blocks() * block_columns,
              PrepareNodes<Real>{this->grid_.view(), this->grid_.active_list(), nodes(), held(),
                                 walls_, friction_, g, scheme_, predict});
-    if (dynamic_) sum_each<1>(Place{}, count_, sums_, SquareMomentum{nodes()}, FinishMomentum{balance_.data()});
+    if (dynamic_) sum_each<1>(Place{}, count_, sums_, SquareMomentum{nodes()}, KeepTotals<1>{&balance_.data()->momentum});
     if (dynamic_ && first_ && !midway_) {
       copy(u_, saved_u_);
       u_.fill_zero();
@@ -265,32 +222,11 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     }
   }
 
-  /// Slip over which friction grows: a part of the way that gravity alone would make in a step, so that what rests creeps by no more than
-  /// that.
-  double smoothing(double step) const {
+  /// See FrictionCorner.
+  double fall(double step) const {
     const double g = std::hypot(options_.gravity[0], options_.gravity[1], options_.gravity[2]);
-    return sharpness_ * (dynamic_ ? 0.5 * std::max(g, 1e-3) * step * step : 1e-4 * this->frame_.cell[0]);
+    return dynamic_ ? 0.5 * std::max(g, 1e-3) * step * step : 1e-4 * this->frame_.cell[0];
   }
-
-  /// The corner between stick and slip can send Newton's iterations round in circles. Where they do not get on, friction is smoothed more
-  /// (still a thousandth of what flows in a step), and sharpened again once they do.
-  static constexpr double sharpest = 1e-5, bluntest = 0.1;
-  static constexpr int patience = 4;
-  void sharpen(const StepStats& stats) {
-    if (stats.newton <= 2 * patience) sharpness_ = std::max(sharpest, 0.5 * sharpness_);
-  }
-  /// Nothing moves much further than the slip over which friction is smoothed: then a body may creep there that friction can hold.
-  bool creeps() const {
-    constexpr double share = 0.1;
-    return dynamic_ && sharpness_ > sharpest && slip_ > share * moved_ * std::min(this->frame_.cell[0], this->frame_.cell[2]);
-  }
-  bool blunt(double step) {
-    if (!dynamic_ || sharpness_ >= bluntest) return false;
-    sharpness_ = std::min(bluntest, 10 * sharpness_);
-    slip_ = smoothing(step);
-    return true;
-  }
-
 
   TangentStore<Real> tangents() { return {tangents_.data(), points_.count()}; }
 
@@ -373,14 +309,14 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
       stats.residual = std::sqrt(balance.residual) / size;
       if (!std::isfinite(stats.residual)) return false;
       if (stats.residual <= o.newton_tolerance && !changed) {
-        if (!within_reach()) return false;
-        if (!creeps()) {
-          sharpen(stats);
+        const double moved = farthest_move();
+        if (moved > 1) return false;
+        if (!corner_.creeps(moved * std::min(this->frame_.cell[0], this->frame_.cell[2]))) {
+          corner_.sharpen(stats.newton);
           return true;
         }
         // Once more with a sharper corner, from here: a step that does not find its way there is cut.
-        sharpness_ = std::max(sharpest, 0.1 * sharpness_);
-        slip_ = smoothing(step);
+        corner_.hone();
         waited = 0;
         best = 1e300;
         balance = measure_residual(true);
@@ -389,12 +325,12 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
       }
       waited = stats.residual < 0.5 * best ? 0 : waited + 1;
       best = std::min(best, stats.residual);
-      if (waited >= patience && blunt(step)) {
+      if (waited >= FrictionCorner::patience && corner_.blunt()) {
         waited = 0;
         best = 1e300;
       }
       if (!linear_solve(stats, forcing.next(stats.residual, o))) return false;
-      if (!search(std::sqrt(balance.residual), size) && !blunt(step)) return false;
+      if (!search(std::sqrt(balance.residual), size) && !corner_.blunt()) return false;
     }
     return false;
   }
@@ -407,7 +343,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     const bool solved = linear_solve(stats, options_.implicit.linear_tolerance);
     axpby(1.0, change_, 1.0, u_);
     stats.residual = stats.linear_residual;
-    return solved && within_reach();
+    return solved && farthest_move() <= 1;
   }
 
   /// u += s change with the largest s = 1, 1/2, 1/4 ... after which less force is unbalanced, or less of it along the change: a
@@ -491,12 +427,11 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     void precondition(const NodeVector<Place>& r, NodeVector<Place>& z, CgState* state) { solver.preconditioner_.apply(r, z, state); }
   };
 
-  /// Shape functions stand still during a step, and points must not outrun them.
-  bool within_reach() {
+  /// How far the points move [cells]. Shape functions stand still during a step, and points must not outrun them: one cell at most.
+  double farthest_move() {
     farthest_.upload({0});
     for_each(Place{}, points_.count(), MeasureMotion<Real, Shape>{this->grid_.view(), points_.view(), u_.data(), dynamic_, farthest_.data()});
-    moved_ = static_cast<double>(positive_from_bits(farthest_.download().front()));
-    return moved_ <= 1;
+    return static_cast<double>(positive_from_bits(farthest_.download().front()));
   }
 
   void accept(const Clock& clock, double step) {
@@ -536,9 +471,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   TimeScheme scheme_;
   Buffer<double, Place> mass_, contact_friction_, friction_limit_;
   double rate_ = 0;  // CFL steps per time, as the last step ended [1/s]
-  double slip_ = 0, nudge_ = 0;  // [m]
-  double sharpness_ = sharpest;
-  double moved_ = 0;  // farthest in the step [cells]
+  FrictionCorner corner_;
   ElementList<Real, Place, Shape> elements_;
   MeanDilation<Real, Place, Shape> means_;
   Walls<double> walls_;

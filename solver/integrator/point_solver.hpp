@@ -61,7 +61,7 @@ class PointSolver : public Solver {
     totals_.resize(rows);
     const Vec3<double> g{options_.gravity[0], options_.gravity[1], options_.gravity[2]};
     sum_each<rows>(Place{}, points_.count(), sums_, MeasureEnergies<Real, Shape>{grid_.view(), points_.view(), material_, g, dilatant_},
-                   FinishEnergies<rows>{totals_.data()});
+                   KeepTotals<rows>{totals_.data()});
     const std::vector<double> total = totals_.download();
     return {total[0], total[1], total[2], total[3], {total[4], total[5], total[6]}};
   }

@@ -66,14 +66,6 @@ struct MeasureEnergies {
   }
 };
 
-template <int rows>
-struct FinishEnergies {
-  double* total;
-  TALUS_HD void operator()(const double* sums) const {
-    for (int r = 0; r < rows; ++r) total[r] = sums[r];
-  }
-};
-
 /// One thread: one point. Its initial volume over the columns around it [m3].
 template <class Real, class Shape>
 struct ScatterThickness {

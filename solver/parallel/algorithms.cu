@@ -54,11 +54,6 @@ struct Products {
   TALUS_HD Terms<1> operator()(int i) const { return {{a[i] * b[i]}}; }
 };
 
-struct Keep {
-  double* total;
-  TALUS_HD void operator()(const double* sum) const { *total = *sum; }
-};
-
 }  // namespace
 
 void sort_order(OnGpu, Buffer<std::uint64_t, OnGpu>& keys, Buffer<int, OnGpu>& order) {
@@ -82,7 +77,7 @@ int exclusive_sum(OnGpu, const int* values, int* sums, int count) {
 double inner_product(OnGpu place, const double* a, const double* b, int count) {
   static SumSpace<OnGpu> space;
   static Buffer<double, OnGpu> total(1);
-  sum_each<1>(place, count, space, Products{a, b}, Keep{total.data()});
+  sum_each<1>(place, count, space, Products{a, b}, KeepTotals<1>{total.data()});
   return total.download().front();
 }
 

@@ -13,6 +13,15 @@ struct Terms {
   double value[K] = {};
 };
 
+/// A finish that leaves the totals where they can be read.
+template <int K>
+struct KeepTotals {
+  double* at;
+  TALUS_HD void operator()(const double* total) const {
+    for (int k = 0; k < K; ++k) at[k] = total[k];
+  }
+};
+
 /// Room for the partial sums; one for every stream of work.
 template <class Place>
 class SumSpace {
