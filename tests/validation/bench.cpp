@@ -127,7 +127,7 @@ Row Bench::row_of(const Outcome& outcome, const std::string& quantity) const {
 void Bench::judge(Row row) {
   if (!row.fault.empty()) row.computed = row.error = unknown;
   row.pass = row.fault.empty() && std::isfinite(row.error) && row.error <= row.tolerance;
-  rows_.push_back(std::move(row));
+  keep_(row);
 }
 
 void Bench::compare(const Outcome& outcome, const std::string& quantity, double computed, double reference,
@@ -165,7 +165,7 @@ void Bench::note(const Outcome& outcome, const std::string& quantity, double com
   row.error = 0;
   row.pass = row.fault.empty();
   if (!row.pass) row.computed = row.error = unknown;
-  rows_.push_back(std::move(row));
+  keep_(row);
 }
 
 void Bench::picture(const std::string& name, const std::string& png) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,7 +46,9 @@ struct Row {
 
 class Bench {
  public:
-  Bench(std::string name, const Request& request) : name_(std::move(name)), request_(request) {}
+  /// `keep` gets each row as it is judged.
+  Bench(std::string name, const Request& request, std::function<void(const Row&)> keep)
+      : name_(std::move(name)), request_(request), keep_(std::move(keep)) {}
 
   const std::string& name() const { return name_; }
   const Request& request() const { return request_; }
@@ -70,8 +73,6 @@ class Bench {
   /// A row that says what was measured and claims nothing: it passes when the run did.
   void note(const Outcome& outcome, const std::string& quantity, double computed);
 
-  const std::vector<Row>& rows() const { return rows_; }
-
   /// Write a picture OUT/NAME.png.
   void picture(const std::string& name, const std::string& png) const;
 
@@ -81,7 +82,7 @@ class Bench {
 
   std::string name_;
   const Request& request_;
-  std::vector<Row> rows_;
+  std::function<void(const Row&)> keep_;
 };
 
 }  // namespace talus::validation

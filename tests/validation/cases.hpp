@@ -33,7 +33,9 @@ const std::vector<Case>& cases();
 void self_weight_column(Bench&);      // A1
 void large_compaction(Bench&);        // A1b
 void cantilever(Bench&);              // A2
+void cantilever_loads(Bench&);        // A2-loads
 void sand_column(Bench&);             // A3
+void sand_column_paper(Bench&);       // A3-paper
 void sand_column_friction(Bench&);    // A3-friction
 void sand_column_aspects(Bench&);     // A3b
 void step_cost(Bench&);               // A4

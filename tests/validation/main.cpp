@@ -63,14 +63,15 @@ int run(const Words& words) {
   request.complete = words.complete;
   fs::create_directories(request.out);
   std::vector<Row> rows;
-  const auto keep = [&] { write_text(request.out.parent_path() / (request.out.filename().string() + ".json"), as_json(rows)); };
+  const auto keep = [&](const Row& row) {  // at once, so that what is there survives a long run that is stopped
+    rows.push_back(row);
+    write_text(request.out.parent_path() / (request.out.filename().string() + ".json"), as_json(rows));
+  };
   for (const Case& c : cases()) {
     if (!wanted(words, c) || (!c.quick && !words.complete)) continue;
     fmt::print(stderr, "{}: {}\n", c.name, c.title);
-    Bench bench(c.name, request);
+    Bench bench(c.name, request, keep);
     c.run(bench);
-    rows.insert(rows.end(), bench.rows().begin(), bench.rows().end());
-    keep();  // what is there survives a long run that is stopped
   }
   fmt::print("{}", as_table(rows));
   if (rows.empty()) return 1;

@@ -176,8 +176,12 @@ void refinement(Bench& bench, const std::vector<int>& levels) {
   bench.picture("A3-convergence", png_of(chart));
 }
 
+}  // namespace
+
+void sand_column(Bench& bench) { refinement(bench, bench.complete() ? std::vector<int>{1, 2, 3, 4} : std::vector<int>{1, 2}); }
+
 /// The paper's grid with 64 points per cell, explicit and implicit.
-void paper_grid(Bench& bench) {
+void sand_column_paper(Bench& bench) {
   const Sand s;
   const Goals goals{0.01, 0.03};  // validation.md A3
   for (const char* integrator : {"explicit", "newmark"}) {
@@ -189,17 +193,6 @@ void paper_grid(Bench& bench) {
                     outlines(c.outcome, s, fmt::format("A3: sand column, {}, h = 0.01 m", integrator)));
     }
   }
-}
-
-}  // namespace
-
-void sand_column(Bench& bench) {
-  if (!bench.complete()) {
-    refinement(bench, {1, 2});
-    return;
-  }
-  refinement(bench, {1, 2, 3, 4});
-  paper_grid(bench);
 }
 
 /// Run-out over damping and base friction (the paper's Fig. 13a).
