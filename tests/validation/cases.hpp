@@ -16,9 +16,10 @@ struct LinearScheme {
 };
 
 /// What there is to compare, in one place.
-inline std::vector<LinearScheme> linear_schemes() {
-  return {{"pcg", {{"solve.implicit.linear_solver", words("pcg")}}},
-          {"cholesky", {{"solve.implicit.linear_solver", words("cholesky")}}}};
+inline const std::vector<LinearScheme>& linear_schemes() {
+  static const std::vector<LinearScheme> schemes = {{"pcg", {{"solve.implicit.linear_solver", words("pcg")}}},
+                                                    {"cholesky", {{"solve.implicit.linear_solver", words("cholesky")}}}};
+  return schemes;
 }
 
 struct Case {
