@@ -1,6 +1,7 @@
 // A2: a cantilever bent far by a load at its tip.
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -93,7 +94,15 @@ double bend(Bench& bench, const Beam& b, const LinearScheme& scheme, double tole
   return judge(bench, bench.run(name_of(b, scheme.name), overrides_of(b) + scheme.overrides), b, b.k, tolerance);
 }
 
-void add_shape(Chart& chart, const Points* bent, const Beam& b, double k, int colour) {
+/// The outermost points of the beam's near face: its outline, which hides no other.
+bool on_outline(const std::array<double, 3>& start, const Beam& b) {
+  const double s = b.point_spacing();
+  const bool near = start[1] < s, low = start[2] < lift + s, high = start[2] > lift + depth - s, end = start[0] > length - s;
+  return near && (low || high || end);
+}
+
+/// The outline of the bent beam and the axis that the closed form gives it.
+void add_shape(Chart& chart, const Outcome& o, const Beam& b, double k, int colour) {
   constexpr int places = 60;
   AxisPoint axis[places];
   solid_beam(k, depth / b.arm(), Law::corotated, axis, places);
@@ -103,16 +112,19 @@ void add_shape(Chart& chart, const Points* bent, const Beam& b, double k, int co
     exact.y.push_back(-a.w * b.arm());
   }
   exact.width = 2;
-  chart.series.insert(chart.series.begin(), exact);
+  chart.series.push_back(exact);
+  const Points* bent = frame_at(o, b, k);
   if (!bent) return;
   Series points{fmt::format("k = {:g}", k), {}, {}, colour};
-  for (const auto& place : bent->position) {
+  for (std::size_t p = 0; p < bent->size(); ++p) {
+    if (!on_outline(o.first().position[p], b)) continue;
+    const auto& place = bent->position[p];
     points.x.push_back(place[0]);
     points.y.push_back(place[2] - lift - 0.5 * depth);
   }
   points.line = false;
   points.marks = true;
-  points.mark_size = 2.2;
+  points.mark_size = 2.5;
   chart.series.push_back(points);
 }
 
@@ -156,7 +168,7 @@ void load_study(Bench& bench, Beam b, double tolerance, Chart& curve, int colour
   for (const double k : {1.0, 2.0, 3.0, 3.6, 5.0, 8.0, 10.0}) {
     s.x.push_back(k);
     s.y.push_back(judge(bench, outcome, b, k, tolerance));
-    add_shape(beams, frame_at(outcome, b, k), b, k, next++);
+    add_shape(beams, outcome, b, k, next++);
   }
   curve.series.push_back(s);
   bench.picture(fmt::format("A2-beams-{}-{:g}", b.shape, b.h), png_of_panels({beams}));
