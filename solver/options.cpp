@@ -89,8 +89,9 @@ void ImplicitOptions::describe(recipe::Visitor& v) {
                  {{"points", Operator::points}, {"elements", Operator::elements}, {"stencil", Operator::stencil}},
                  "pcg: the tangent's product point by point, by stored elements, or by assembled blocks");
   recipe::choice(v, "preconditioner", preconditioner,
-                 {{"block", Preconditioner::block}, {"column", Preconditioner::column}, {"diagonal", Preconditioner::diagonal}},
-                 "pcg, bicgstab: 3 x 3 blocks, whole columns of nodes, or the diagonal");
+                 {{"block", Preconditioner::block}, {"column", Preconditioner::column}, {"diagonal", Preconditioner::diagonal},
+                  {"gauss-seidel", Preconditioner::gauss_seidel}, {"multigrid", Preconditioner::multigrid}},
+                 "pcg, bicgstab: the diagonal, 3 x 3 blocks, whole columns of nodes, Gauss-Seidel over columns, or multigrid with that");
   v.integer("step_cuts", step_cuts, recipe::Range{0, 30}, "halvings of a step before the run gives up");
   v.number("apex", apex, recipe::not_negative, "drucker-prager: pressure over which the tip of the cone is rounded, in weights of a cell");
   v.flag("b_bar", b_bar, "volume change as the mean over a cell: nearly incompressible material does not lock");

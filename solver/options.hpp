@@ -21,7 +21,7 @@ enum class LinearSolver { pcg, bicgstab, cholesky };
 enum class Tangent { frozen_yield, exact };
 enum class Forcing { fixed, eisenstat_walker };
 enum class Operator { points, elements, stencil };
-enum class Preconditioner { diagonal, block, column };
+enum class Preconditioner { diagonal, block, column, gauss_seidel, multigrid };
 enum class Axis { x, y, z };
 enum class Side { below, above };
 enum class StiffnessKind { as_given, automatic };

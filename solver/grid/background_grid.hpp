@@ -53,6 +53,12 @@ struct GridView {
   TALUS_HD static int node(const BlockSlot& s, int i, int j, int k) {
     return s.offset + (k - s.first_layer) * block_columns + ((j & 3) << 2) + (i & 3);
   }
+  /// The same for any (i, j, k); -1 where nothing is stored.
+  TALUS_HD int find(int i, int j, int k) const {
+    if (i < 0 || j < 0 || i >= columns || j >= rows) return -1;
+    const BlockSlot& s = slot(i, j);
+    return s.offset < 0 || k < s.first_layer || k >= s.first_layer + s.layers ? -1 : node(s, i, j, k);
+  }
 };
 
 }  // namespace talus

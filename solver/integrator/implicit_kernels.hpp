@@ -73,14 +73,6 @@ TALUS_HD void scatter_add(Vec3<double>* target, const Vec3<double>& v) {
   talus::scatter_add(&target->z, v.z);
 }
 
-/// Mat3 += v g^T
-template <class Real>
-TALUS_HD void add_outer(Mat3<Real>& m, const Vec3<Real>& v, const Vec3<Real>& g) {
-  m.a += v * g.x;
-  m.b += v * g.y;
-  m.c += v * g.z;
-}
-
 /// One thread: one point. Mass, momentum, acceleration (as mass times it) and loads to the nodes.
 template <class Real, class Shape>
 struct ScatterInertia {

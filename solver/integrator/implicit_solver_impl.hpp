@@ -279,7 +279,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   void group_elements() {
     const ImplicitOptions& o = options_.implicit;
     const bool direct = o.linear_solver == LinearSolver::cholesky;
-    if (dynamic_ && !direct && o.form == Operator::points && !o.b_bar) return;  // nothing goes by elements
+    const bool preconditioned = !direct && NodePreconditioner<Real, Place, Shape>::by_elements(o.preconditioner);
+    if (dynamic_ && !direct && !preconditioned && o.form == Operator::points && !o.b_bar) return;  // nothing goes by elements
     elements_.build(this->grid_.view(), points_.view());
     if (o.b_bar) means_.begin_step(elements_, points_.count());
     if (direct) {

@@ -16,4 +16,19 @@ struct HeldNodes {
   const Sym3<double>* stiffness = nullptr;  // of what else holds a node, friction say [N/m]; null: nothing
 };
 
+/// K + mass inertia + stiffness of a node.
+TALUS_HD Sym3<double> own_block(const HeldNodes& held, const Sym3<double>& tangent, int n) {
+  const Sym3<double> b = tangent.plus_identity(held.mass[n] * held.inertia);
+  return held.stiffness ? b + held.stiffness[n] : b;
+}
+
+/// What a node has on the diagonal: P (K + mass inertia + stiffness) P + (I - P), which has the action on the free directions and is regular.
+TALUS_HD Sym3<double> held_block(const HeldNodes& held, const Sym3<double>& tangent, int n) {
+  const Sym3<double> p = held.freed[n], b = own_block(held, tangent, n);
+  const Vec3<double> e[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  Vec3<double> c[3];
+  for (int a = 0; a < 3; ++a) c[a] = p * (b * (p * e[a])) + e[a] - p * e[a];
+  return {c[0].x, c[1].y, c[2].z, c[1].x, c[2].y, c[2].x};
+}
+
 }  // namespace talus::solver

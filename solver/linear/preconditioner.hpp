@@ -1,45 +1,44 @@
-// z = B^-1 r for Krylov methods: the diagonal, a node's own 3 x 3 block, or a whole column of nodes at once.
+// z = B^-1 r for Krylov methods: the diagonal, a node's own 3 x 3 block, a whole column of nodes at once, Gauss-Seidel over columns, multigrid.
 //
-// A column is solved exactly over its layers (block L D L^T; Golub & Van Loan 2013, section 4.5), so that how stiff it is upright - thin layers under wide cells -
-// counts no longer in itself, only in so far as neighbouring columns share it.
+// A column is solved exactly over its layers, so that how stiff it is upright - thin layers under wide cells - counts no longer in itself, only in so far as
+// neighbouring columns share it; Gauss-Seidel takes care of that too, and multigrid of how many columns lie side by side.
 #pragma once
 
 #include "solver/linear/conjugate_gradient.hpp"
 #include "solver/linear/element_sums.hpp"
+#include "solver/linear/column_factors.hpp"
 #include "solver/linear/held_nodes.hpp"
+#include "solver/linear/multigrid.hpp"
 #include "solver/linear/vectors.hpp"
 #include "solver/options.hpp"
 
 namespace talus::solver {
 
-/// The columns of nodes in storage: sixteen a block.
-template <class Real>
-struct StoredColumns {
-  GridView<Real> grid;
-  const int* active = nullptr;  // blocks
-  int blocks = 0;
-  int count() const { return blocks * block_columns; }
-};
-
 template <class Real, class Place, class Shape>
 class NodePreconditioner {
  public:
-  explicit NodePreconditioner(Preconditioner kind) : kind_(kind) {}
+  explicit NodePreconditioner(Preconditioner kind) : kind_(kind), grids_(kind == Preconditioner::multigrid) {}
+
+  /// Whether refresh() goes by elements.
+  static bool by_elements(Preconditioner kind) { return kind == Preconditioner::gauss_seidel || kind == Preconditioner::multigrid; }
 
   /// From the points' tangents and what holds the nodes; `held` must stay until the next call. `list` are the elements, for what couples the points of one
-  /// (only its diagonal is taken).
+  /// (only its diagonal is taken where a kind does not go by elements).
   void refresh(const PointTangents<Real>& from, const PointGroups& groups, const ElementList<Real, Place, Shape>& list, const StoredColumns<Real>& columns,
                const HeldNodes& held);
   /// z = B^-1 r; hands r . z to `state`, and does nothing where that has halted. Without one: z alone.
   void apply(const NodeVector<Place>& r, NodeVector<Place>& z, CgState* state = nullptr);
-  std::size_t bytes() const { return blocks_.bytes() + above_[0].bytes() + above_[1].bytes(); }
+  std::size_t bytes() const { return blocks_.bytes() + above_[0].bytes() + above_[1].bytes() + grids_.bytes(); }
 
  private:
   template <class Kernel>
   void run(int count, const Kernel& kernel, CgState* state);
 
+  ColumnFactors factors() { return {blocks_.data(), {above_[0].data(), above_[1].data()}}; }
+
   static constexpr int reach = Shape::width - 1;  // layers that a column's nodes are coupled over
   Preconditioner kind_;
+  Multigrid<Real, Place, Shape> grids_;
   HeldNodes held_;
   StoredColumns<Real> columns_;
   Buffer<Sym3<double>, Place> blocks_;      // inverses: of the blocks, or of the columns' pivots

@@ -6,10 +6,9 @@ namespace {
 /// Offset of local node b from local node a among the neighbours. `folded`: layer -1 of the element is layer 0.
 template <class Shape>
 TALUS_HD int neighbour_of(int a, int b, bool folded) {
-  constexpr int w = Shape::width, reach = w - 1, side = 2 * reach + 1;
+  constexpr int w = Shape::width;
   const auto layer = [&](int local) { return folded && local % w == 0 ? 1 : local % w; };
-  const int dx = b / w % w - a / w % w, dy = b / (w * w) - a / (w * w), dz = layer(b) - layer(a);
-  return ((dy + reach) * side + dx + reach) * side + dz + reach;
+  return StencilView<float, OnCpu, Shape>::neighbour(b / w % w - a / w % w, b / (w * w) - a / (w * w), layer(b) - layer(a));
 }
 
 /// One thread: one entry of the elements' node table.
@@ -75,21 +74,7 @@ struct ApplyBlockRow {
   StencilView<Real, Place, Shape> matrix;
   const Vec3<double>* x;
   Vec3<double>* y;
-  TALUS_HD void operator()(int row) const {
-    constexpr int neighbours = StencilView<Real, Place, Shape>::neighbours;
-    double sum[3] = {};
-    const Real* line = matrix.blocks + matrix.at(row, 0, 0, 0);
-    const int* table = matrix.table + matrix.table_at(row, 0);
-    for (int q = 0; q < neighbours; ++q) {
-      if (table[q] < 0) continue;
-      const Vec3<double> v = x[table[q]];
-      for (int i = 0; i < 3; ++i) {
-        const Real* k = line + i * 3 * neighbours + 3 * q;
-        sum[i] += static_cast<double>(k[0]) * v.x + static_cast<double>(k[1]) * v.y + static_cast<double>(k[2]) * v.z;
-      }
-    }
-    y[matrix.node_of[row]] += Vec3<double>{sum[0], sum[1], sum[2]};
-  }
+  TALUS_HD void operator()(int row) const { y[matrix.node_of[row]] += matrix.product(row, x); }
 };
 
 /// One thread: one scalar row. y += K x.
@@ -119,23 +104,28 @@ struct ApplyRow {
 template <class Real, class Place, class Shape>
 void StencilMatrix<Real, Place, Shape>::build(const ElementList<Real, Place, Shape>& list, int nodes) {
   constexpr int each = ElementList<Real, Place, Shape>::nodes_each;
-  const auto n = static_cast<std::size_t>(nodes);
-  row_of_.resize(n);
-  node_of_.resize(n);
-  table_.resize(n);  // flags first
-  table_.fill_zero();
-  for_each(Place{}, list.count() * each, FlagNodes{list.view().nodes, table_.data()});
-  rows_ = exclusive_sum(Place{}, table_.data(), row_of_.data(), nodes);
-  for_each(Place{}, nodes, NumberRows{row_of_.data(), node_of_.data(), table_.data()});
-  table_.resize(static_cast<std::size_t>(rows_) * View::neighbours);
+  flags_.resize(static_cast<std::size_t>(nodes));
+  flags_.fill_zero();
+  for_each(Place{}, list.count() * each, FlagNodes{list.view().nodes, flags_.data()});
+  number_rows(flags_);
   for_each(Place{}, rows_ * View::neighbours, Forget{table_.data()});
   for_each_grouped(Place{}, list.count(), list.groups(), MeetNeighbours<Real, Place, Shape>{view(), list.view()});
 }
 
 template <class Real, class Place, class Shape>
+void StencilMatrix<Real, Place, Shape>::number_rows(const Buffer<int, Place>& flags) {
+  const int nodes = static_cast<int>(flags.size());
+  row_of_.resize(flags.size());
+  node_of_.resize(flags.size());
+  rows_ = exclusive_sum(Place{}, flags.data(), row_of_.data(), nodes);
+  for_each(Place{}, nodes, NumberRows{row_of_.data(), node_of_.data(), flags.data()});
+  table_.resize(static_cast<std::size_t>(rows_) * View::neighbours);
+  blocks_.resize(static_cast<std::size_t>(rows_) * View::neighbours * 9);
+}
+
+template <class Real, class Place, class Shape>
 void StencilMatrix<Real, Place, Shape>::assemble(const ElementList<Real, Place, Shape>& list,
                                                  const PointTangents<Real>& from) {
-  blocks_.resize(static_cast<std::size_t>(rows_) * View::neighbours * 9);
   blocks_.fill_zero();
   sum_elements<Real, Place, Shape>(list, from, AddToStencil<Real, Place, Shape>{view(), list.view()});
 }

@@ -30,6 +30,24 @@ struct StencilView {
     if constexpr (Place::is_gpu) return entry * (3 * static_cast<std::size_t>(rows)) + line;
     return line * (3 * neighbours) + entry;
   }
+  /// Neighbour at (dx, dy, dz) nodes.
+  TALUS_HD static int neighbour(int dx, int dy, int dz) { return ((dy + reach) * side + dx + reach) * side + dz + reach; }
+  static constexpr int own = neighbours / 2;  // the node itself
+
+  /// K x for the node of a row.
+  TALUS_HD Vec3<double> product(int row, const Vec3<double>* x) const {
+    double sum[3] = {};
+    for (int q = 0; q < neighbours; ++q) {
+      const int n = table[table_at(row, q)];
+      if (n < 0) continue;
+      const Vec3<double> v = x[n];
+      for (int i = 0; i < 3; ++i) {
+        sum[i] += static_cast<double>(blocks[at(row, i, q, 0)]) * v.x + static_cast<double>(blocks[at(row, i, q, 1)]) * v.y +
+                  static_cast<double>(blocks[at(row, i, q, 2)]) * v.z;
+      }
+    }
+    return {sum[0], sum[1], sum[2]};
+  }
 };
 
 template <class Real, class Place, class Shape>
@@ -40,6 +58,9 @@ class StencilMatrix {
   /// Rows and neighbours of the nodes that the elements touch, out of `nodes` stored ones.
   void build(const ElementList<Real, Place, Shape>& list, int nodes);
 
+  /// Rows for those of the stored nodes that `flags` names. Whoever named them fills table and blocks.
+  void number_rows(const Buffer<int, Place>& flags);
+
   /// Sums the points' tangents; `build` came before.
   void assemble(const ElementList<Real, Place, Shape>& list, const PointTangents<Real>& from);
 
@@ -48,11 +69,11 @@ class StencilMatrix {
 
   View view() { return {rows_, node_of_.data(), row_of_.data(), table_.data(), blocks_.data()}; }
   int rows() const { return rows_; }
-  std::size_t bytes() const { return blocks_.bytes() + table_.bytes() + row_of_.bytes() + node_of_.bytes(); }
+  std::size_t bytes() const { return blocks_.bytes() + table_.bytes() + row_of_.bytes() + node_of_.bytes() + flags_.bytes(); }
 
  private:
   int rows_ = 0;
-  Buffer<int, Place> row_of_, node_of_, table_;
+  Buffer<int, Place> row_of_, node_of_, table_, flags_;
   Buffer<Real, Place> blocks_;
 };
 

@@ -43,6 +43,14 @@ struct Mat3 {
   TALUS_HD Vec3<Real> operator*(const Vec3<Real>& v) const { return a * v.x + b * v.y + c * v.z; }
 };
 
+/// Mat3 += v g^T
+template <class Real>
+TALUS_HD void add_outer(Mat3<Real>& m, const Vec3<Real>& v, const Vec3<Real>& g) {
+  m.a += v * g.x;
+  m.b += v * g.y;
+  m.c += v * g.z;
+}
+
 template <class Real>
 TALUS_HD Real determinant(const Mat3<Real>& m) {
   return m.a.x * (m.b.y * m.c.z - m.b.z * m.c.y) - m.b.x * (m.a.y * m.c.z - m.a.z * m.c.y) +

@@ -1,0 +1,46 @@
+// 3 x 3 blocks of nodes: products and inverses. A Mat3 holds columns.
+#pragma once
+
+#include "solver/parallel/math.hpp"
+
+namespace talus::solver {
+
+TALUS_HD Sym3<double> inverted(const Sym3<double>& s) {
+  const Mat3<double> m = talus::inverted(Mat3<double>{{s.xx, s.xy, s.xz}, {s.xy, s.yy, s.yz}, {s.xz, s.yz, s.zz}});
+  return {m.a.x, m.b.y, m.c.z, m.b.x, m.c.y, m.c.x};
+}
+
+TALUS_HD bool is_definite(const Sym3<double>& s) {
+  constexpr double margin = 1e-12;
+  const double minor = s.xx * s.yy - s.xy * s.xy;
+  const double whole = s.zz * minor - s.xx * s.yz * s.yz - s.yy * s.xz * s.xz + 2 * s.xy * s.yz * s.xz;
+  return s.xx > 0 && minor > margin * s.xx * s.yy && whole > margin * s.xx * s.yy * s.zz;
+}
+
+/// The diagonal's size where a block cannot be inverted as it stands.
+TALUS_HD Sym3<double> diagonal_of(const Sym3<double>& s) {
+  const auto safe = [](double d) { return fabs(d) > 0 ? fabs(d) : 1.0; };
+  return {safe(s.xx), safe(s.yy), safe(s.zz), 0, 0, 0};
+}
+
+TALUS_HD Mat3<double> product(const Mat3<double>& m, const Sym3<double>& s) {
+  return {m * Vec3<double>{s.xx, s.xy, s.xz}, m * Vec3<double>{s.xy, s.yy, s.yz}, m * Vec3<double>{s.xz, s.yz, s.zz}};
+}
+TALUS_HD Mat3<double> product(const Sym3<double>& s, const Mat3<double>& m) { return {s * m.a, s * m.b, s * m.c}; }
+TALUS_HD Vec3<double> product_transposed(const Mat3<double>& m, const Vec3<double>& v) { return {dot(m.a, v), dot(m.b, v), dot(m.c, v)}; }
+/// m n^T
+TALUS_HD Mat3<double> product_transposed(const Mat3<double>& m, const Mat3<double>& n) {
+  Mat3<double> out{};
+  add_outer(out, m.a, n.a);
+  add_outer(out, m.b, n.b);
+  add_outer(out, m.c, n.c);
+  return out;
+}
+TALUS_HD Mat3<double> difference(const Mat3<double>& m, const Mat3<double>& n) { return {m.a - n.a, m.b - n.b, m.c - n.c}; }
+/// s - m n^T, which is symmetric
+TALUS_HD Sym3<double> less(const Sym3<double>& s, const Mat3<double>& m, const Mat3<double>& n) {
+  const Mat3<double> t = product_transposed(m, n);
+  return {s.xx - t.a.x, s.yy - t.b.y, s.zz - t.c.z, s.xy - 0.5 * (t.a.y + t.b.x), s.yz - 0.5 * (t.b.z + t.c.y), s.xz - 0.5 * (t.a.z + t.c.x)};
+}
+
+}  // namespace talus::solver
