@@ -204,22 +204,20 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
                                                  loads, nodes()});
     const double ramp = options_.gravity_ramp > 0 ? std::min(1.0, time / options_.gravity_ramp) : 1.0;
     const Vec3<double> g{options_.gravity[0] * ramp, options_.gravity[1] * ramp, options_.gravity[2] * ramp};
-    const bool predict = dynamic_ && options_.implicit.newton_iterations > 1 && options_.damping == 0;
+    const bool predict = dynamic_ && options_.implicit.newton_iterations > 1;
     for_each(Place{}, this->grid_.active_blocks() * block_columns,
              PrepareNodes<Real>{this->grid_.view(), this->grid_.active_list(), nodes(), held(),
                                 walls_, friction_, g, scheme_, predict});
     if (dynamic_) sum_each<1>(Place{}, count_, sums_, SquareMomentum{nodes()}, KeepTotals<1>{&balance_.data()->momentum});
-    if (dynamic_ && first_ && !midway_) {
-      copy(u_, saved_u_);
-      u_.fill_zero();
-      measure_stress(false);
-      for_each(Place{}, count_, FirstAcceleration{nodes()});
-      copy(saved_u_, u_);
-    }
-    if (options_.damping > 0 && dynamic_) {
-      measure_stress(false);
-      for_each(Place{}, count_, AddDamping{nodes(), options_.damping});
-    }
+    if (!dynamic_) return;
+    const bool accelerates = first_ && !midway_, damps = options_.damping > 0;
+    if (!accelerates && !damps) return;
+    copy(u_, saved_u_);  // both are of the start of the step
+    u_.fill_zero();
+    measure_stress(false);
+    if (accelerates) for_each(Place{}, count_, FirstAcceleration{nodes()});
+    if (damps) for_each(Place{}, count_, AddDamping{nodes(), options_.damping});
+    copy(saved_u_, u_);
   }
 
   /// See FrictionCorner.
