@@ -73,6 +73,22 @@ struct CloseSystem {
   }
 };
 
+/// One thread: one point. Its tangent, many times.
+template <class Real>
+struct Stiffen {
+  ParticleView<Real> points;
+  TangentStore<Real> tangents;
+  int from;
+  Real times;
+  TALUS_HD void operator()(int p) const {
+    if (points.cell_x[p] < from) return;
+    PointTangent<Real> t = tangents.get(p);
+    for (Real& d : t.direct) d *= times;
+    for (Real& s : t.pairs) s *= times;
+    tangents.put(p, t);
+  }
+};
+
 /// Everything a linear solve takes: grid, points, tangents, mass and constraints.
 template <class Real, class Place, class Shape>
 struct LinearBench {
@@ -201,6 +217,16 @@ struct LinearBench {
       if (k == 0) p[n].zz = 0;
     });
     freed.upload(p);
+  }
+
+  /// Points from column `from` on are so many times as stiff, and their nodes as heavy.
+  void contrast(int from, double stiffer, double heavier) {
+    for_each(Place{}, points.count(), Stiffen<Real>{points.view(), store(), from, static_cast<Real>(stiffer)});
+    auto m = mass.download();
+    for_nodes([&](int i, int, int, std::size_t n) {
+      if (i >= from) m[n] *= heavier;
+    });
+    mass.upload(m);
   }
 
   /// K x in one form.

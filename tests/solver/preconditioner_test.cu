@@ -99,12 +99,45 @@ class Preconditioners : public InEachPlace {
       }
     }
   }
+
+  /// validation.md C3: half of a slab 1e4 times as stiff, or 100 times as heavy, or both, in steps of five CFL steps of the soft half.
+  template <class Real, class Place, class Shape>
+  static void count_with_contrasts() {
+    constexpr double h = 2;
+    Domain d = ground(24, 20, h, h, [](double, double) { return 0.0; });
+    fill(d, {10, 36, 10, 30, 0, 4 * h});
+    SolveOptions o;
+    o.shape = kind_of<Shape>;
+    const Scene scene = make_scene(d, o);
+    struct Contrast {
+      double stiffness, density;
+    };
+    constexpr Contrast contrasts[] = {{1, 1}, {1e4, 1}, {1, 100}, {1e4, 100}};
+    std::printf("  CG iterations to 1e-8, %s functions; stiffness and density of one half: 1 and 1, 1e4 and 1, 1 and 100, 1e4 and 100\n", name_of(kind_of<Shape>));
+    for (const Named& n : kinds) {
+      std::printf("    %-12s", n.name);
+      for (const Contrast& c : contrasts) {
+        LinearBench<Real, Place, Shape> bench(scene, {kind_of<Shape>});
+        bench.lay_down();
+        const double step = 5 * h / static_cast<double>(bench.material.wave_speed);
+        bench.inertia = 4 / (step * step);
+        bench.contrast(12, c.stiffness, c.density);
+        int count = 0;
+        const auto solution = bench.by_gradients(n.kind, &count, 1e-8);
+        std::printf(" %5d", count);
+        EXPECT_LT(difference(solution, bench.by_cholesky()), 1e-6) << n.name;
+      }
+      std::printf("\n");
+    }
+  }
 };
 
 TEST_P(Preconditioners, give_one_solution) { TALUS_RUN(give_one_solution); }
 TEST_P(Preconditioners, solve_columns_that_nothing_couples_at_once) { TALUS_RUN(solve_lone_columns); }
 TEST_P(Preconditioners, of_columns_see_less_of_thin_layers) { TALUS_RUN(count_in_thin_layers); }
 TEST_P(Preconditioners, of_grids_see_nothing_of_long_steps) { TALUS_RUN(count_in_long_steps); }
+
+TEST_P(Preconditioners, converge_in_a_body_of_two_stiffnesses) { TALUS_RUN(count_with_contrasts); }
 
 TALUS_IN_EACH_PLACE(Preconditioners);
 
