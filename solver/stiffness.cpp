@@ -10,7 +10,7 @@
 namespace talus::solver {
 namespace {
 
-constexpr double weight_strain = 0.01, impact_strain = 0.05;
+constexpr double weight_strain = 0.01, impact_strain = 0.02;
 
 /// The least friction the flow can meet: on its bed, or inside where the bed holds it.
 double least_friction(const SolveOptions& o) {
@@ -62,7 +62,7 @@ StiffnessDemand lowest_stiffness(const Domain& domain, const SolveOptions& o) {
   } needs[] = {
       {m.density * g * demand.depth / weight_strain / confined, fmt::format("the weight of {:.3g} m strains it by 1 %", demand.depth)},
       {m.density * demand.speed * demand.speed / impact_strain / confined,
-       fmt::format("the dynamic pressure at {:.3g} m/s, which the energy line allows, strains it by 5 %", demand.speed)},
+       fmt::format("the dynamic pressure at {:.3g} m/s, which the energy line allows, strains it by 2 %", demand.speed)},
       // Its decay time in seconds stays; where that is no more than a step, it would no longer be resolved.
       {o.transfer_time > 0 ? m.youngs_modulus * std::pow(o.courant / o.transfer_time, 2) : 0, "velocity finer than the grid decays within a step"}};
   const Need& most = *std::max_element(std::begin(needs), std::end(needs), [](const Need& a, const Need& b) { return a.modulus < b.modulus; });

@@ -267,6 +267,15 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     return balance;
   }
 
+  /// The same after the contacts' states have been decided on.
+  Balance decide_contacts(bool& changed) {
+    const Balance balance = measure_residual(true);
+    changed = balance.changes > 0;
+    if (!changed) return balance;
+    measure_stress(true);  // a contact that closed or opened has moved its node
+    return measure_residual(false);
+  }
+
   /// See force_size.
   double stopping_share() const {
     constexpr double rounding = 1e-8;
@@ -296,14 +305,10 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     double best = 1e300;  // least unbalanced force so far
     int waited = 0;       // iterations since it was halved
     LinearForcing forcing;
+    measure_stress(true);
     for (stats.newton = 0; stats.newton < o.newton_iterations; ++stats.newton) {
-      measure_stress(true);
-      Balance balance = measure_residual(true);
-      const bool changed = balance.changes > 0;
-      if (changed) {  // a contact that closed or opened has moved its node
-        measure_stress(true);
-        balance = measure_residual(false);
-      }
+      bool changed = false;
+      Balance balance = decide_contacts(changed);
       const double size = force_size(balance, stopping_share());
       stats.residual = std::sqrt(balance.residual) / size;
       if (!std::isfinite(stats.residual)) return false;
@@ -318,7 +323,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
         corner_.hone();
         waited = 0;
         best = 1e300;
-        balance = measure_residual(true);
+        balance = decide_contacts(changed);
         stats.residual = std::sqrt(balance.residual) / size;
         if (stats.residual <= o.newton_tolerance) continue;
       }
@@ -329,7 +334,9 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
         best = 1e300;
       }
       if (!linear_solve(stats, forcing.next(stats.residual, o))) return false;
-      if (!search(std::sqrt(balance.residual), size) && !corner_.blunt()) return false;
+      if (search(std::sqrt(balance.residual), size)) continue;
+      if (!corner_.blunt()) return false;
+      measure_stress(true);  // where the search began
     }
     return false;
   }
@@ -346,7 +353,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   }
 
   /// u += s change with the largest s = 1, 1/2, 1/4 ... after which less force is unbalanced, or less of it along the change: a
-  /// sheet that must turn passes through larger forces on its way, but downhill in energy.
+  /// sheet that must turn passes through larger forces on its way, but downhill in energy. Leaves the tangents there too: the first share is nearly always taken,
+  /// and the next iteration begins with them.
   bool search(double before, double size) {
     copy(u_, saved_u_);
     const double downhill = std::abs(dot(residual_, change_));
@@ -354,7 +362,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     for (int halving = 0; halving < 10; ++halving, share *= 0.5) {
       axpby(share, change_, 1.0, u_);
       sum_each<1>(Place{}, count_, sums_, StickReversed{nodes(), held(), saved_u_.data()}, FinishReversals{balance_.data()});
-      measure_stress(false);
+      measure_stress(true);
       const Balance balance = measure_residual(false);
       const bool stuck = balance.changes > 0;
       const double after = std::sqrt(balance.residual), along = std::abs(balance.along);

@@ -78,25 +78,38 @@ struct FactoriseColumns {
   }
 };
 
-/// z = (L D L^T)^-1 r over one column; r and z may be the same.
+/// z = (L D L^T)^-1 r over one column; r and z may be the same. What some layers need is fetched before they are solved: the loads are then under way together.
 template <class Real, int reach>
 TALUS_HD void solve_column(const ColumnNodes<Real>& node, const ColumnFactors& factors, const Vec3<double>* r, Vec3<double>* z) {
-  Vec3<double> near[2];  // of the layers just passed
-  for (int k = 0; k < node.layers; ++k) {
-    const int n = node[k];
-    Vec3<double> v = r[n];
-    for (int down = 1; down <= reach && down <= k; ++down) v = v - factors.above[down - 1][node[k - down]] * near[down - 1];
+  constexpr int ahead = 4;
+  Vec3<double> near[2], v[ahead];  // `near`: of the layers just passed
+  Mat3<double> l[ahead][reach];
+  const auto take = [&](int c, const Vec3<double>& right) {
+    v[c] = right;
+    for (int d = 0; d < reach; ++d) v[c] = v[c] - l[c][d] * near[d];
     near[1] = near[0];
-    near[0] = v;
-    z[n] = v;
+    near[0] = v[c];
+  };
+  for (int first = 0; first < node.layers; first += ahead) {
+    for (int c = 0; c < ahead; ++c) {
+      const int k = first + c;
+      v[c] = k < node.layers ? r[node[k]] : Vec3<double>{};
+      for (int d = 0; d < reach; ++d) l[c][d] = k < node.layers && k > d ? factors.above[d][node[k - d - 1]] : Mat3<double>{};
+    }
+    for (int c = 0; c < ahead; ++c) take(c, v[c]);
+    for (int c = 0; c < ahead && first + c < node.layers; ++c) z[node[first + c]] = v[c];
   }
-  for (int k = node.layers - 1; k >= 0; --k) {
-    const int n = node[k];
-    Vec3<double> v = factors.pivots[n] * z[n];
-    for (int up = 1; up <= reach && k + up < node.layers; ++up) v = v - product_transposed(factors.above[up - 1][n], near[up - 1]);
-    near[1] = near[0];
-    near[0] = v;
-    z[n] = v;
+  near[0] = near[1] = {};
+  for (int last = node.layers - 1; last >= 0; last -= ahead) {
+    Sym3<double> inverse[ahead];
+    for (int c = 0; c < ahead; ++c) {
+      const int k = last - c;
+      v[c] = k >= 0 ? z[node[k]] : Vec3<double>{};
+      inverse[c] = k >= 0 ? factors.pivots[node[k]] : Sym3<double>{};
+      for (int u = 0; u < reach; ++u) l[c][u] = k >= 0 && k + u + 1 < node.layers ? transposed(factors.above[u][node[k]]) : Mat3<double>{};
+    }
+    for (int c = 0; c < ahead; ++c) take(c, inverse[c] * v[c]);
+    for (int c = 0; c < ahead && last - c >= 0; ++c) z[node[last - c]] = v[c];
   }
 }
 

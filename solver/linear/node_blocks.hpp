@@ -27,7 +27,7 @@ TALUS_HD Mat3<double> product(const Mat3<double>& m, const Sym3<double>& s) {
   return {m * Vec3<double>{s.xx, s.xy, s.xz}, m * Vec3<double>{s.xy, s.yy, s.yz}, m * Vec3<double>{s.xz, s.yz, s.zz}};
 }
 TALUS_HD Mat3<double> product(const Sym3<double>& s, const Mat3<double>& m) { return {s * m.a, s * m.b, s * m.c}; }
-TALUS_HD Vec3<double> product_transposed(const Mat3<double>& m, const Vec3<double>& v) { return {dot(m.a, v), dot(m.b, v), dot(m.c, v)}; }
+TALUS_HD Mat3<double> transposed(const Mat3<double>& m) { return {{m.a.x, m.b.x, m.c.x}, {m.a.y, m.b.y, m.c.y}, {m.a.z, m.b.z, m.c.z}}; }
 /// m n^T
 TALUS_HD Mat3<double> product_transposed(const Mat3<double>& m, const Mat3<double>& n) {
   Mat3<double> out{};

@@ -1,6 +1,7 @@
 #include "solver/linear/stencil_level.hpp"
 
 #include "solver/parallel/algorithms.hpp"
+#include "solver/parallel/rows.hpp"
 
 namespace talus::solver {
 namespace {
@@ -46,7 +47,7 @@ struct MeetRows {
   View matrix;
   const NodePlace* places;
   TALUS_HD void operator()(int index) const {
-    const int row = index % matrix.rows, q = index / matrix.rows;
+    const int row = index / View::neighbours, q = index % View::neighbours;
     const NodePlace at = places[row];
     const int n = grid.find(at.i + q / View::side % View::side - View::reach, at.j + q / (View::side * View::side) - View::reach,
                             at.k + q % View::side - View::reach);
@@ -61,7 +62,7 @@ struct HoldRows {
   View matrix;
   HeldNodes held;
   TALUS_HD void operator()(int index) const {
-    const int row = index % matrix.rows, q = index / matrix.rows;
+    const int row = index / View::neighbours, q = index % View::neighbours;
     const int other = matrix.table[matrix.table_at(row, q)];
     if (other < 0) return;
     const int n = matrix.node_of[row];
@@ -102,7 +103,7 @@ struct SumFineBlocks {
   const NodePlace* places;  // of the coarse rows
 
   TALUS_HD void operator()(int index) const {
-    const int row = index % coarse.rows, q = index / coarse.rows;
+    const int row = index / View::neighbours, q = index % View::neighbours;
     double sum[9] = {};
     if (coarse.table[coarse.table_at(row, q)] >= 0) {
       const NodePlace at = places[row];
@@ -135,26 +136,22 @@ struct SumFineBlocks {
   }
 };
 
-/// One thread: one column. The blocks of its nodes, and those that couple them upwards, their symmetric part where tangents have another.
+/// One thread: one node. Its block, and those that couple it upwards, their symmetric part where tangents have another.
 template <class Real, class Place, class Shape>
 struct TakeColumns {
   using View = StencilView<Real, Place, Shape>;
-  StoredColumns<Real> columns;
   View matrix;
   ColumnFactors factors;
-  TALUS_HD void operator()(int c) const {
-    const ColumnNodes<Real> node(columns, c);
-    for (int k = 0; k < node.layers; ++k) {
-      const int n = node[k], row = matrix.row_of[n];
-      for (int up = 1; up <= View::reach; ++up) factors.above[up - 1][n] = {};
-      factors.pivots[n] = {1, 1, 1, 0, 0, 0};
-      if (row < 0) continue;
-      const Mat3<double> own = block(row, View::own);
-      factors.pivots[n] = {own.a.x, own.b.y, own.c.z, 0.5 * (own.a.y + own.b.x), 0.5 * (own.b.z + own.c.y), 0.5 * (own.a.z + own.c.x)};
-      for (int up = 1; up <= View::reach && k + up < node.layers; ++up) {
-        const int higher = matrix.row_of[node[k + up]];
-        if (higher >= 0) factors.above[up - 1][n] = block(higher, View::neighbour(0, 0, -up));
-      }
+  TALUS_HD void operator()(int n) const {
+    const int row = matrix.row_of[n];
+    factors.pivots[n] = {1, 1, 1, 0, 0, 0};
+    for (int up = 1; up <= View::reach; ++up) factors.above[up - 1][n] = {};
+    if (row < 0) return;
+    const Mat3<double> own = block(row, View::own);
+    factors.pivots[n] = {own.a.x, own.b.y, own.c.z, 0.5 * (own.a.y + own.b.x), 0.5 * (own.b.z + own.c.y), 0.5 * (own.a.z + own.c.x)};
+    for (int up = 1; up <= View::reach; ++up) {
+      const int higher = matrix.table[matrix.table_at(row, View::neighbour(0, 0, up))];
+      if (higher >= 0) factors.above[up - 1][n] = block(matrix.row_of[higher], View::neighbour(0, 0, -up));
     }
   }
 
@@ -165,28 +162,39 @@ struct TakeColumns {
   }
 };
 
-/// One thread: one node. r = b - A x, nothing where no row is.
+/// A node: r = b - A x, nothing where no row is.
 template <class Real, class Place, class Shape>
 struct NodeResidual {
   StencilView<Real, Place, Shape> matrix;
   const Vec3<double>*b, *x;
   Vec3<double>* r;
-  TALUS_HD void operator()(int n) const {
+  TALUS_HD Vec3<double> term(int n, int q) const {
     const int row = matrix.row_of[n];
-    r[n] = row < 0 ? Vec3<double>{} : b[n] - matrix.product(row, x);
+    return row < 0 ? Vec3<double>{} : matrix.product(row, q, x);
   }
+  TALUS_HD void finish(int n, const Vec3<double>& sum) const { r[n] = matrix.row_of[n] < 0 ? Vec3<double>{} : b[n] - sum; }
 };
 
-/// One thread: one layer of one column of a colour.
+/// A layer of a column of a colour.
 template <class Real, class Place, class Shape>
 struct ColourResidual {
   StoredColumns<Real> columns;
   const int* of_colour;
   int count;
   NodeResidual<Real, Place, Shape> at;
-  TALUS_HD void operator()(int index) const {
+  TALUS_HD Vec3<double> term(int index, int q) const {
+    const int n = node_of(index);
+    return n < 0 ? Vec3<double>{} : at.term(n, q);
+  }
+  TALUS_HD void finish(int index, const Vec3<double>& sum) const {
+    const int n = node_of(index);
+    if (n >= 0) at.finish(n, sum);
+  }
+
+ private:
+  TALUS_HD int node_of(int index) const {
     const ColumnNodes<Real> node(columns, of_colour[index % count]);
-    if (index / count < node.layers) at(node[index / count]);
+    return index / count < node.layers ? node[index / count] : -1;
   }
 };
 
@@ -290,7 +298,7 @@ void StencilLevel<Real, Place, Shape>::build(const StencilLevel& fine, TwoScale 
   for_each(Place{}, fine.matrix_.rows(), FlagParents<Real>{columns_.grid, x, y, fine.places_.data(), flags_.data()});
   matrix_.number_rows(flags_);
   place_rows();
-  for_each(Place{}, matrix_.rows() * matrix_.view().neighbours, MeetRows<Real, Place, Shape>{columns_.grid, matrix_.view(), places_.data()});
+  for_each(Place{}, matrix_.rows() * neighbours, MeetRows<Real, Place, Shape>{columns_.grid, matrix_.view(), places_.data()});
   colour();
 }
 
@@ -311,12 +319,12 @@ void StencilLevel<Real, Place, Shape>::colour() {
 template <class Real, class Place, class Shape>
 void StencilLevel<Real, Place, Shape>::assemble(const ElementList<Real, Place, Shape>& list, const PointTangents<Real>& from, const HeldNodes& held) {
   matrix_.assemble(list, from);
-  for_each(Place{}, matrix_.rows() * matrix_.view().neighbours, HoldRows<Real, Place, Shape>{matrix_.view(), held});
+  for_each(Place{}, matrix_.rows() * neighbours, HoldRows<Real, Place, Shape>{matrix_.view(), held});
 }
 
 template <class Real, class Place, class Shape>
 void StencilLevel<Real, Place, Shape>::assemble(StencilLevel& fine, TwoScale x, TwoScale y) {
-  for_each(Place{}, matrix_.rows() * matrix_.view().neighbours,
+  for_each(Place{}, matrix_.rows() * neighbours,
            SumFineBlocks<Real, Place, Shape>{matrix_.view(), fine.matrix_.view(), fine.columns_.grid, x, y, places_.data()});
 }
 
@@ -326,7 +334,7 @@ void StencilLevel<Real, Place, Shape>::factorise() {
   pivots_.resize(n);
   left_.resize(n);
   for (int up = 0; up < reach; ++up) above_[up].resize(n);
-  for_each(Place{}, columns_.count(), TakeColumns<Real, Place, Shape>{columns_, matrix_.view(), factors()});
+  for_each(Place{}, nodes_, TakeColumns<Real, Place, Shape>{matrix_.view(), factors()});
   for_each(Place{}, columns_.count(), FactoriseColumns<Real, reach>{columns_, factors()});
 }
 
@@ -338,14 +346,14 @@ void StencilLevel<Real, Place, Shape>::sweep(const NodeVector<Place>& b, NodeVec
     const int begin = c > 0 ? colour_ends_[static_cast<std::size_t>(c - 1)] : 0, count = colour_ends_[static_cast<std::size_t>(c)] - begin;
     const int* const of_colour = coloured_.data() + begin;
     const NodeResidual<Real, Place, Shape> residual{matrix_.view(), b.data(), x.data(), left_.data()};
-    for_each(Place{}, count * layers_, ColourResidual<Real, Place, Shape>{columns_, of_colour, count, residual});
+    sum_rows<neighbours>(Place{}, count * layers_, ColourResidual<Real, Place, Shape>{columns_, of_colour, count, residual});
     for_each(Place{}, count, CorrectColumns<Real, reach>{columns_, of_colour, factors(), left_.data(), x.data()});
   }
 }
 
 template <class Real, class Place, class Shape>
 void StencilLevel<Real, Place, Shape>::measure_residual(const NodeVector<Place>& b, const NodeVector<Place>& x, NodeVector<Place>& r) {
-  for_each(Place{}, nodes_, NodeResidual<Real, Place, Shape>{matrix_.view(), b.data(), x.data(), r.data()});
+  sum_rows<neighbours>(Place{}, nodes_, NodeResidual<Real, Place, Shape>{matrix_.view(), b.data(), x.data(), r.data()});
 }
 
 template <class Real, class Place, class Shape>

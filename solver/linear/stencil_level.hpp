@@ -18,7 +18,7 @@ struct NodePlace {
 template <class Real, class Place, class Shape>
 class StencilLevel {
  public:
-  static constexpr int reach = Shape::width - 1;
+  static constexpr int reach = Shape::width - 1, neighbours = StencilView<Real, Place, Shape>::neighbours;
 
   /// The finest grid: rows of the elements' nodes.
   void build(const ElementList<Real, Place, Shape>& list, const StoredColumns<Real>& columns, int nodes);

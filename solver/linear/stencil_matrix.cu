@@ -1,5 +1,7 @@
 #include "solver/linear/stencil_matrix.hpp"
 
+#include "solver/parallel/rows.hpp"
+
 namespace talus::solver {
 namespace {
 
@@ -68,35 +70,14 @@ struct AddToStencil {
   }
 };
 
-/// One thread: one row of blocks. y += K x.
-template <class Real, class Place, class Shape>
-struct ApplyBlockRow {
-  StencilView<Real, Place, Shape> matrix;
-  const Vec3<double>* x;
-  Vec3<double>* y;
-  TALUS_HD void operator()(int row) const { y[matrix.node_of[row]] += matrix.product(row, x); }
-};
-
-/// One thread: one scalar row. y += K x.
+/// A row of blocks: y += K x.
 template <class Real, class Place, class Shape>
 struct ApplyRow {
   StencilView<Real, Place, Shape> matrix;
   const Vec3<double>* x;
   Vec3<double>* y;
-  TALUS_HD void operator()(int index) const {
-    const int row = index / 3, i = index % 3;
-    double sum = 0;
-    for (int q = 0; q < StencilView<Real, Place, Shape>::neighbours; ++q) {
-      const int n = matrix.table[matrix.table_at(row, q)];
-      if (n < 0) continue;
-      const Vec3<double> v = x[n];
-      sum += static_cast<double>(matrix.blocks[matrix.at(row, i, q, 0)]) * v.x +
-             static_cast<double>(matrix.blocks[matrix.at(row, i, q, 1)]) * v.y +
-             static_cast<double>(matrix.blocks[matrix.at(row, i, q, 2)]) * v.z;
-    }
-    Vec3<double>& to = y[matrix.node_of[row]];
-    (i == 0 ? to.x : i == 1 ? to.y : to.z) += sum;
-  }
+  TALUS_HD Vec3<double> term(int row, int q) const { return matrix.product(row, q, x); }
+  TALUS_HD void finish(int row, const Vec3<double>& sum) const { y[matrix.node_of[row]] += sum; }
 };
 
 }  // namespace
@@ -132,11 +113,7 @@ void StencilMatrix<Real, Place, Shape>::assemble(const ElementList<Real, Place, 
 
 template <class Real, class Place, class Shape>
 void StencilMatrix<Real, Place, Shape>::apply(const NodeVector<Place>& x, NodeVector<Place>& y) {
-  if constexpr (Place::is_gpu) {
-    for_each(Place{}, 3 * rows_, ApplyRow<Real, Place, Shape>{view(), x.data(), y.data()});
-  } else {
-    for_each(Place{}, rows_, ApplyBlockRow<Real, Place, Shape>{view(), x.data(), y.data()});
-  }
+  sum_rows<View::neighbours>(Place{}, rows_, ApplyRow<Real, Place, Shape>{view(), x.data(), y.data()});
 }
 
 template class StencilMatrix<float, OnCpu, Linear>;

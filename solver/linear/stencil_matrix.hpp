@@ -8,7 +8,7 @@
 
 namespace talus::solver {
 
-/// The matrix as kernels see it. Row by row on the CPU, entry by entry on the GPU (see ElementMatrices).
+/// The matrix as kernels see it, row by row.
 template <class Real, class Place, class Shape>
 struct StencilView {
   static constexpr int reach = Shape::width - 1, side = 2 * reach + 1, neighbours = side * side * side;
@@ -19,34 +19,29 @@ struct StencilView {
   Real* blocks = nullptr;
 
   TALUS_HD std::size_t table_at(int row, int q) const {
-    if constexpr (Place::is_gpu)
-      return static_cast<std::size_t>(q) * static_cast<std::size_t>(rows) + static_cast<std::size_t>(row);
     return static_cast<std::size_t>(row) * neighbours + static_cast<std::size_t>(q);
   }
   /// Component i of the row's node against component j of neighbour q.
   TALUS_HD std::size_t at(int row, int i, int q, int j) const {
     const std::size_t line = 3 * static_cast<std::size_t>(row) + static_cast<std::size_t>(i);
     const std::size_t entry = 3 * static_cast<std::size_t>(q) + static_cast<std::size_t>(j);
-    if constexpr (Place::is_gpu) return entry * (3 * static_cast<std::size_t>(rows)) + line;
     return line * (3 * neighbours) + entry;
   }
   /// Neighbour at (dx, dy, dz) nodes.
   TALUS_HD static int neighbour(int dx, int dy, int dz) { return ((dy + reach) * side + dx + reach) * side + dz + reach; }
   static constexpr int own = neighbours / 2;  // the node itself
 
-  /// K x for the node of a row.
-  TALUS_HD Vec3<double> product(int row, const Vec3<double>* x) const {
-    double sum[3] = {};
-    for (int q = 0; q < neighbours; ++q) {
-      const int n = table[table_at(row, q)];
-      if (n < 0) continue;
-      const Vec3<double> v = x[n];
-      for (int i = 0; i < 3; ++i) {
-        sum[i] += static_cast<double>(blocks[at(row, i, q, 0)]) * v.x + static_cast<double>(blocks[at(row, i, q, 1)]) * v.y +
-                  static_cast<double>(blocks[at(row, i, q, 2)]) * v.z;
-      }
+  /// What neighbour q gives to K x at the node of a row.
+  TALUS_HD Vec3<double> product(int row, int q, const Vec3<double>* x) const {
+    const int n = table[table_at(row, q)];
+    if (n < 0) return {};
+    const Vec3<double> v = x[n];
+    double force[3];
+    for (int i = 0; i < 3; ++i) {
+      const Real* k = blocks + at(row, i, q, 0);
+      force[i] = static_cast<double>(k[0]) * v.x + static_cast<double>(k[1]) * v.y + static_cast<double>(k[2]) * v.z;
     }
-    return {sum[0], sum[1], sum[2]};
+    return {force[0], force[1], force[2]};
   }
 };
 

@@ -39,7 +39,7 @@ TEST(Stiffness, follows_the_energy_line_of_the_scene) {
   EXPECT_NEAR(demand.speed, std::sqrt(2 * 9.81 * head), 0.01 * demand.speed);
   EXPECT_EQ(demand.depth, 5);
   const double confined = 0.75 / (1.25 * 0.5);
-  EXPECT_NEAR(demand.modulus, 2000 * demand.speed * demand.speed / 0.05 / confined, 1e-6 * demand.modulus);
+  EXPECT_NEAR(demand.modulus, 2000 * demand.speed * demand.speed / 0.02 / confined, 1e-6 * demand.modulus);
   EXPECT_NE(demand.reason.find("dynamic pressure"), std::string::npos) << demand.reason;
   EXPECT_NEAR(demand.transfer_time, 10 * std::sqrt(demand.modulus / 1e9), 1e-12) << "the same time in seconds";
 }

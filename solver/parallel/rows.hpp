@@ -1,0 +1,53 @@
+// Sums of many terms for each of many indices, a row of a matrix times a vector say.
+#pragma once
+
+#include "solver/parallel/math.hpp"
+#include "solver/parallel/place.hpp"
+
+namespace talus {
+
+/// Calls kernel.finish(i, sum of kernel.term(i, part) for part in [0, parts)) for i in [0, count). Terms are Vec3<double>; their order is fixed.
+template <int parts, class Kernel>
+void sum_rows(OnCpu place, int count, const Kernel& kernel) {
+  struct Row {
+    Kernel kernel;
+    void operator()(int i) const {
+      Vec3<double> sum{};
+      for (int part = 0; part < parts; ++part) sum += kernel.term(i, part);
+      kernel.finish(i, sum);
+    }
+  };
+  for_each(place, count, Row{kernel});
+}
+
+#if defined(__CUDACC__)
+namespace detail {
+
+/// A warp for each row, so that its loads are under way together.
+template <int parts, class Kernel>
+__global__ void sum_row(int count, Kernel kernel) {
+  constexpr int warp_size = 32;
+  const int i = static_cast<int>((blockIdx.x * blockDim.x + threadIdx.x) / warp_size), lane = static_cast<int>(threadIdx.x % warp_size);
+  if (i >= count) return;
+  Vec3<double> sum{};
+  for (int part = lane; part < parts; part += warp_size) sum += kernel.term(i, part);
+  for (unsigned apart = warp_size / 2; apart > 0; apart /= 2) {
+    sum.x += __shfl_down_sync(0xffffffffu, sum.x, apart);
+    sum.y += __shfl_down_sync(0xffffffffu, sum.y, apart);
+    sum.z += __shfl_down_sync(0xffffffffu, sum.z, apart);
+  }
+  if (lane == 0) kernel.finish(i, sum);
+}
+
+}  // namespace detail
+
+template <int parts, class Kernel>
+void sum_rows(OnGpu, int count, const Kernel& kernel) {
+  if (count <= 0) return;
+  constexpr int threads = 128, each = threads / 32;
+  detail::sum_row<parts><<<(count + each - 1) / each, threads>>>(count, kernel);
+  detail::gpu_check_launch(__PRETTY_FUNCTION__);
+}
+#endif
+
+}  // namespace talus
