@@ -1,6 +1,7 @@
 // C1: the sand column of A3 in steps of 1 to 30 times the CFL step, against explicit steps on the same grid.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -21,7 +22,17 @@ double centre_of(const Outcome& o) {
   return sum / static_cast<double>(o.last().size());
 }
 
-double run_out_of(const Outcome& o, const Sand& s) { return o.ok() ? front_of(o.last(), s) : std::numeric_limits<double>::quiet_NaN(); }
+/// How far 99 of 100 points got [m]. Where the deposit ends is less: its tip is strings of points a cell apart, and chance says where they tear.
+double reach_of(const Outcome& o) {
+  if (!o.ok()) return std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> x;
+  for (const auto& p : o.last().position) x.push_back(p[0]);
+  const auto at = x.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(x.size()));
+  std::nth_element(x.begin(), at, x.end());
+  return *at;
+}
+
+double end_of(const Outcome& o, const Sand& s) { return o.ok() ? front_of(o.last(), s) : std::numeric_limits<double>::quiet_NaN(); }
 
 struct Scheme {
   const char* tangent;
@@ -34,8 +45,13 @@ void compare_steps(Bench& bench, const Sand& s, const std::vector<double>& lengt
   const std::string grid = fmt::format(", h = {:g} m", s.h);
   const auto run = [&](const std::string& name, const Overrides& more) { return bench.run(name + grid, overrides_of(s) + more); };
   const Outcome reference = run("explicit, 0.1 CFL", {{"solve.integrator", words("explicit")}, {"solve.cfl", 0.1}});
-  const double expected = centre_of(reference), reach = run_out_of(reference, s);
-  bench.note(reference, "run-out [m]", reach);
+  const double expected = centre_of(reference), reach = reach_of(reference);
+  const auto judge = [&](const Outcome& o, double tolerance) {
+    bench.compare(o, "reach of 99 %", reach_of(o), reach, tolerance);
+    bench.compare(o, "centre of mass", centre_of(o), expected, tolerance);
+    bench.note(o, "run-out [m]", end_of(o, s));
+  };
+  bench.note(reference, "run-out [m]", end_of(reference, s));
   Chart chart;
   chart.title = "C1: sand column, centre of mass over the step" + grid;
   chart.x_label = "step over the CFL step";
@@ -49,11 +65,8 @@ void compare_steps(Bench& bench, const Sand& s, const std::vector<double>& lengt
       const Outcome o = run(fmt::format("{}, {:g} CFL", scheme.tangent, over_cfl), {{"solve.implicit.step_s", over_cfl * cfl_step},
                                                                                  {"solve.implicit.tangent", words(scheme.tangent)},
                                                                                  {"solve.implicit.linear_solver", words(scheme.linear_solver)}});
-      const double centre = centre_of(o), cuts = o.last_of("step_cuts"), steps = static_cast<double>(o.run.summary.steps);
-      // 30 CFL need only finish (validation.md C1).
-      const double tolerance = over_cfl > 20 ? 0.1 : 0.03;
-      bench.compare(o, "run-out", run_out_of(o, s), reach, tolerance);
-      bench.compare(o, "centre of mass", centre, expected, tolerance);
+      const double cuts = o.last_of("step_cuts"), steps = static_cast<double>(o.run.summary.steps);
+      judge(o, over_cfl > 20 ? 0.1 : 0.03);  // 30 CFL need only finish (validation.md C1)
       bench.note(o, "Newton iterations a step", o.last_of("newton_iterations") / steps);
       if (over_cfl > 20) {
         bench.note(o, "steps cut, share", cuts / steps);
@@ -61,7 +74,7 @@ void compare_steps(Bench& bench, const Sand& s, const std::vector<double>& lengt
         bench.measure(o, "steps cut, share", o.ok() ? cuts / steps : 0, 0.01);
       }
       line.x.push_back(over_cfl);
-      line.y.push_back(100 * (centre / expected - 1));
+      line.y.push_back(100 * (centre_of(o) / expected - 1));
     }
     chart.series.push_back(line);
   }
@@ -69,8 +82,7 @@ void compare_steps(Bench& bench, const Sand& s, const std::vector<double>& lengt
   few.marks = true;
   for (const double cfl : {0.25, 0.5}) {
     const Outcome o = run(fmt::format("explicit, {:g} CFL", cfl), {{"solve.integrator", words("explicit")}, {"solve.cfl", cfl}});
-    bench.compare(o, "run-out", run_out_of(o, s), reach, 0.02);
-    bench.compare(o, "centre of mass", centre_of(o), expected, 0.02);
+    judge(o, 0.02);
     few.x.push_back(cfl);
     few.y.push_back(100 * (centre_of(o) / expected - 1));
   }
