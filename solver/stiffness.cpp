@@ -10,7 +10,8 @@
 namespace talus::solver {
 namespace {
 
-constexpr double weight_strain = 0.01, impact_strain = 0.02;
+/// Of the dynamic pressure. The energy line begins above what is released, so its weight makes no more than half of that.
+constexpr double impact_strain = 0.02;
 
 /// The least friction the flow can meet: on its bed, or inside where the bed holds it.
 double least_friction(const SolveOptions& o) {
@@ -22,14 +23,13 @@ struct Summit {
   double x = 0, y = 0, z = -1e30;
 };
 
-/// Highest place of what is released, and the thickest of it.
-Summit summit_of(const Domain& domain, double& depth) {
+/// Highest place of what is released.
+Summit summit_of(const Domain& domain) {
   Summit top;
   for (int row = 0; row < domain.grid.rows; ++row) {
     for (int column = 0; column < domain.grid.columns; ++column) {
       const double thickness = domain.release_thickness.at(column, row), ground = domain.terrain.at(column, row);
       if (!(thickness > 0) || !std::isfinite(ground)) continue;
-      depth = std::max(depth, thickness);
       if (ground + thickness > top.z) top = {domain.grid.x(column), domain.grid.y(row), ground + thickness};
     }
   }
@@ -40,7 +40,7 @@ Summit summit_of(const Domain& domain, double& depth) {
 
 StiffnessDemand lowest_stiffness(const Domain& domain, const SolveOptions& o) {
   StiffnessDemand demand;
-  const Summit top = summit_of(domain, demand.depth);
+  const Summit top = summit_of(domain);
   const double g = std::hypot(o.gravity[0], o.gravity[1], o.gravity[2]), mu = least_friction(o);
   double head = 0;  // between the energy line and the ground [m]
   for (int row = 0; row < domain.grid.rows; ++row) {
@@ -60,7 +60,6 @@ StiffnessDemand lowest_stiffness(const Domain& domain, const SolveOptions& o) {
     double modulus;
     std::string why;
   } needs[] = {
-      {m.density * g * demand.depth / weight_strain / confined, fmt::format("the weight of {:.3g} m strains it by 1 %", demand.depth)},
       {m.density * demand.speed * demand.speed / impact_strain / confined,
        fmt::format("the dynamic pressure at {:.3g} m/s, which the energy line allows, strains it by 2 %", demand.speed)},
       // Its decay time in seconds stays; where that is no more than a step, it would no longer be resolved.

@@ -61,7 +61,7 @@ def sand_column(axes, rows):
         draw(axes, row, number(row, "wall_s"), number(row, "elsewhere_than_finest_percent"), label)
     axes.set_xscale("log")
     axes.set_ylim(0, 17.5)
-    axes.text(0.015, 0.93, "cells of 0.0225 m above 8 %, of 0.01125 m below; numbers: step over the CFL step", transform=axes.transAxes, fontsize=8)
+    axes.text(0.015, 0.93, "cells of 0.0225 m above 8 %, of 0.01125 m below (reference preset: 16 and 13 %); numbers: step over the CFL step", transform=axes.transAxes, fontsize=8)
     axes.set_xlabel("wall time of the steps [s]")
     axes.set_ylabel("sand elsewhere than on the finest grid [%]")
     axes.set_title("Sand column A3", loc="left", fontweight="bold")
