@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "solver/linear/instances.hpp"
 #include "solver/parallel/profile.hpp"
 
 namespace talus::solver {
@@ -63,19 +64,7 @@ std::size_t CholeskySolver<Real, Place, Shape>::bytes() const {
   return stored_.bytes() + assembly_.bytes() + right_.bytes() + solution_.bytes() + left_over_.bytes();
 }
 
-template class CholeskySolver<float, OnCpu, Linear>;
-template class CholeskySolver<float, OnCpu, Quadratic>;
-template class CholeskySolver<float, OnCpu, Gimp>;
-template class CholeskySolver<double, OnCpu, Linear>;
-template class CholeskySolver<double, OnCpu, Quadratic>;
-template class CholeskySolver<double, OnCpu, Gimp>;
-#if TALUS_FOR_GPU
-template class CholeskySolver<float, OnGpu, Linear>;
-template class CholeskySolver<float, OnGpu, Quadratic>;
-template class CholeskySolver<float, OnGpu, Gimp>;
-template class CholeskySolver<double, OnGpu, Linear>;
-template class CholeskySolver<double, OnGpu, Quadratic>;
-template class CholeskySolver<double, OnGpu, Gimp>;
-#endif
+#define TALUS_INSTANTIATE(Real, Place, Shape) template class CholeskySolver<Real, Place, Shape>;
+TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
 
 }  // namespace talus::solver

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "solver/linear/csr_kernels.hpp"
+#include "solver/linear/instances.hpp"
 #include "solver/linear/runs.hpp"
 
 namespace talus::solver {
@@ -162,19 +163,7 @@ template double assembly_bytes<double, Gimp>(int, int);
 template bool assembly_countable<double, Quadratic>(int, int);
 template bool assembly_countable<double, Gimp>(int, int);
 
-template class CsrAssembly<float, OnCpu, Linear>;
-template class CsrAssembly<float, OnCpu, Quadratic>;
-template class CsrAssembly<float, OnCpu, Gimp>;
-template class CsrAssembly<double, OnCpu, Linear>;
-template class CsrAssembly<double, OnCpu, Quadratic>;
-template class CsrAssembly<double, OnCpu, Gimp>;
-#if TALUS_FOR_GPU
-template class CsrAssembly<float, OnGpu, Linear>;
-template class CsrAssembly<float, OnGpu, Quadratic>;
-template class CsrAssembly<float, OnGpu, Gimp>;
-template class CsrAssembly<double, OnGpu, Linear>;
-template class CsrAssembly<double, OnGpu, Quadratic>;
-template class CsrAssembly<double, OnGpu, Gimp>;
-#endif
+#define TALUS_INSTANTIATE(Real, Place, Shape) template class CsrAssembly<Real, Place, Shape>;
+TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
 
 }  // namespace talus::solver

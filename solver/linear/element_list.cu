@@ -1,6 +1,7 @@
 #include "solver/linear/element_list.hpp"
 
 #include "solver/grid/sparse_grid.hpp"
+#include "solver/linear/instances.hpp"
 #include "solver/linear/runs.hpp"
 
 namespace talus::solver {
@@ -83,19 +84,7 @@ std::size_t ElementList<Real, Place, Shape>::bytes() const {
   return keys_.bytes() + order_.bytes() + starts_.bytes() + nodes_.bytes() + scratch_.bytes();
 }
 
-template class ElementList<float, OnCpu, Linear>;
-template class ElementList<float, OnCpu, Quadratic>;
-template class ElementList<float, OnCpu, Gimp>;
-template class ElementList<double, OnCpu, Linear>;
-template class ElementList<double, OnCpu, Quadratic>;
-template class ElementList<double, OnCpu, Gimp>;
-#if TALUS_FOR_GPU
-template class ElementList<float, OnGpu, Linear>;
-template class ElementList<float, OnGpu, Quadratic>;
-template class ElementList<float, OnGpu, Gimp>;
-template class ElementList<double, OnGpu, Linear>;
-template class ElementList<double, OnGpu, Quadratic>;
-template class ElementList<double, OnGpu, Gimp>;
-#endif
+#define TALUS_INSTANTIATE(Real, Place, Shape) template class ElementList<Real, Place, Shape>;
+TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
 
 }  // namespace talus::solver

@@ -1,6 +1,7 @@
 #include "solver/linear/filler_springs.hpp"
 
 #include "solver/integrator/implicit_kernels.hpp"
+#include "solver/linear/instances.hpp"
 
 namespace talus::solver {
 namespace {
@@ -63,21 +64,6 @@ void add_spring_blocks(const ElementList<Real, Place, Shape>& list, const Filler
 #define TALUS_INSTANTIATE(Real, Place, Shape)                                                                                       \
   template void apply_springs(const ElementList<Real, Place, Shape>&, const FillerSprings&, const NodeVector<Place>&, NodeVector<Place>&); \
   template void add_spring_blocks(const ElementList<Real, Place, Shape>&, const FillerSprings&, Buffer<Sym3<double>, Place>&);
-
-TALUS_INSTANTIATE(float, OnCpu, Linear)
-TALUS_INSTANTIATE(float, OnCpu, Quadratic)
-TALUS_INSTANTIATE(float, OnCpu, Gimp)
-TALUS_INSTANTIATE(double, OnCpu, Linear)
-TALUS_INSTANTIATE(double, OnCpu, Quadratic)
-TALUS_INSTANTIATE(double, OnCpu, Gimp)
-#if TALUS_FOR_GPU
-TALUS_INSTANTIATE(float, OnGpu, Linear)
-TALUS_INSTANTIATE(float, OnGpu, Quadratic)
-TALUS_INSTANTIATE(float, OnGpu, Gimp)
-TALUS_INSTANTIATE(double, OnGpu, Linear)
-TALUS_INSTANTIATE(double, OnGpu, Quadratic)
-TALUS_INSTANTIATE(double, OnGpu, Gimp)
-#endif
-#undef TALUS_INSTANTIATE
+TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
 
 }  // namespace talus::solver

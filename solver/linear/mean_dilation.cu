@@ -1,6 +1,7 @@
 #include "solver/linear/mean_dilation.hpp"
 
 #include "solver/integrator/implicit_kernels.hpp"
+#include "solver/linear/instances.hpp"
 
 namespace talus::solver {
 namespace {
@@ -141,21 +142,6 @@ void add_mean_blocks(const ElementList<Real, Place, Shape>& list, const MeanDila
   template void apply_means(const ElementList<Real, Place, Shape>&, const MeanDilationView<Real>&, const NodeVector<Place>&,       \
                             NodeVector<Place>&);                                                                                   \
   template void add_mean_blocks(const ElementList<Real, Place, Shape>&, const MeanDilationView<Real>&, Buffer<Sym3<double>, Place>&);
-
-TALUS_INSTANTIATE(float, OnCpu, Linear)
-TALUS_INSTANTIATE(float, OnCpu, Quadratic)
-TALUS_INSTANTIATE(float, OnCpu, Gimp)
-TALUS_INSTANTIATE(double, OnCpu, Linear)
-TALUS_INSTANTIATE(double, OnCpu, Quadratic)
-TALUS_INSTANTIATE(double, OnCpu, Gimp)
-#if TALUS_FOR_GPU
-TALUS_INSTANTIATE(float, OnGpu, Linear)
-TALUS_INSTANTIATE(float, OnGpu, Quadratic)
-TALUS_INSTANTIATE(float, OnGpu, Gimp)
-TALUS_INSTANTIATE(double, OnGpu, Linear)
-TALUS_INSTANTIATE(double, OnGpu, Quadratic)
-TALUS_INSTANTIATE(double, OnGpu, Gimp)
-#endif
-#undef TALUS_INSTANTIATE
+TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
 
 }  // namespace talus::solver

@@ -1,9 +1,11 @@
 #include "solver/linear/multigrid.hpp"
 
+#include "solver/linear/instances.hpp"
+
 namespace talus::solver {
 namespace {
 
-/// One thread: one node. What is free of a vector; into a sum or anew.
+/// One thread: one node. What is free of a vector.
 struct KeepFree {
   const Sym3<double>* freed;
   const Vec3<double>* from;
@@ -102,19 +104,7 @@ std::size_t Multigrid<Real, Place, Shape>::bytes() const {
   return total;
 }
 
-template class Multigrid<float, OnCpu, Linear>;
-template class Multigrid<float, OnCpu, Quadratic>;
-template class Multigrid<float, OnCpu, Gimp>;
-template class Multigrid<double, OnCpu, Linear>;
-template class Multigrid<double, OnCpu, Quadratic>;
-template class Multigrid<double, OnCpu, Gimp>;
-#if TALUS_FOR_GPU
-template class Multigrid<float, OnGpu, Linear>;
-template class Multigrid<float, OnGpu, Quadratic>;
-template class Multigrid<float, OnGpu, Gimp>;
-template class Multigrid<double, OnGpu, Linear>;
-template class Multigrid<double, OnGpu, Quadratic>;
-template class Multigrid<double, OnGpu, Gimp>;
-#endif
+#define TALUS_INSTANTIATE(Real, Place, Shape) template class Multigrid<Real, Place, Shape>;
+TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
 
 }  // namespace talus::solver

@@ -14,7 +14,7 @@ namespace talus::solver {
 template <class Real, class Place, class Shape>
 class Multigrid {
  public:
-  /// One grid: Gauss-Seidel alone.
+  /// Without `coarser` grids: Gauss-Seidel alone.
   explicit Multigrid(bool coarser) : coarser_(coarser) {}
 
   /// From the points' tangents and what holds the nodes; `held` must stay until the next call.

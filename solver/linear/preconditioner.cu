@@ -1,5 +1,7 @@
 #include "solver/linear/preconditioner.hpp"
 
+#include "solver/linear/instances.hpp"
+
 namespace talus::solver {
 namespace {
 
@@ -187,19 +189,7 @@ void NodePreconditioner<Real, Place, Shape>::apply(const NodeVector<Place>& r, N
   }
 }
 
-template class NodePreconditioner<float, OnCpu, Linear>;
-template class NodePreconditioner<float, OnCpu, Quadratic>;
-template class NodePreconditioner<float, OnCpu, Gimp>;
-template class NodePreconditioner<double, OnCpu, Linear>;
-template class NodePreconditioner<double, OnCpu, Quadratic>;
-template class NodePreconditioner<double, OnCpu, Gimp>;
-#if TALUS_FOR_GPU
-template class NodePreconditioner<float, OnGpu, Linear>;
-template class NodePreconditioner<float, OnGpu, Quadratic>;
-template class NodePreconditioner<float, OnGpu, Gimp>;
-template class NodePreconditioner<double, OnGpu, Linear>;
-template class NodePreconditioner<double, OnGpu, Quadratic>;
-template class NodePreconditioner<double, OnGpu, Gimp>;
-#endif
+#define TALUS_INSTANTIATE(Real, Place, Shape) template class NodePreconditioner<Real, Place, Shape>;
+TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
 
 }  // namespace talus::solver

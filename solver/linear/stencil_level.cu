@@ -1,5 +1,6 @@
 #include "solver/linear/stencil_level.hpp"
 
+#include "solver/linear/instances.hpp"
 #include "solver/parallel/algorithms.hpp"
 #include "solver/parallel/rows.hpp"
 
@@ -375,19 +376,7 @@ std::size_t StencilLevel<Real, Place, Shape>::bytes() const {
          above_[1].bytes() + left_.bytes();
 }
 
-template class StencilLevel<float, OnCpu, Linear>;
-template class StencilLevel<float, OnCpu, Quadratic>;
-template class StencilLevel<float, OnCpu, Gimp>;
-template class StencilLevel<double, OnCpu, Linear>;
-template class StencilLevel<double, OnCpu, Quadratic>;
-template class StencilLevel<double, OnCpu, Gimp>;
-#if TALUS_FOR_GPU
-template class StencilLevel<float, OnGpu, Linear>;
-template class StencilLevel<float, OnGpu, Quadratic>;
-template class StencilLevel<float, OnGpu, Gimp>;
-template class StencilLevel<double, OnGpu, Linear>;
-template class StencilLevel<double, OnGpu, Quadratic>;
-template class StencilLevel<double, OnGpu, Gimp>;
-#endif
+#define TALUS_INSTANTIATE(Real, Place, Shape) template class StencilLevel<Real, Place, Shape>;
+TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
 
 }  // namespace talus::solver

@@ -1,7 +1,8 @@
 // One grid of a multigrid hierarchy: the tangent as a stencil of blocks, its columns' factors, and Gauss-Seidel over whole columns.
 //
-// Gauss-Seidel by columns (Trottenberg, Oosterlee & Schueller 2001, section 5.1) goes over them colour by colour; those of one colour share no block, so that they are solved at once, and in
-// one order on every run. Beside the stiffness upright it takes care of what neighbouring columns share of it through the functions' Gram matrix.
+// Gauss-Seidel by columns (Trottenberg, Oosterlee & Schueller 2001, section 5.1) goes over them colour by colour; those of one colour share no block, so that
+// they are solved at once, and in one order on every run. Beside the stiffness upright it takes care of what neighbouring columns share of it through the
+// functions' Gram matrix.
 #pragma once
 
 #include "solver/linear/block_layout.hpp"

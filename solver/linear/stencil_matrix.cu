@@ -1,5 +1,6 @@
 #include "solver/linear/stencil_matrix.hpp"
 
+#include "solver/linear/instances.hpp"
 #include "solver/parallel/rows.hpp"
 
 namespace talus::solver {
@@ -116,19 +117,7 @@ void StencilMatrix<Real, Place, Shape>::apply(const NodeVector<Place>& x, NodeVe
   sum_rows<View::neighbours>(Place{}, rows_, ApplyRow<Real, Place, Shape>{view(), x.data(), y.data()});
 }
 
-template class StencilMatrix<float, OnCpu, Linear>;
-template class StencilMatrix<float, OnCpu, Quadratic>;
-template class StencilMatrix<float, OnCpu, Gimp>;
-template class StencilMatrix<double, OnCpu, Linear>;
-template class StencilMatrix<double, OnCpu, Quadratic>;
-template class StencilMatrix<double, OnCpu, Gimp>;
-#if TALUS_FOR_GPU
-template class StencilMatrix<float, OnGpu, Linear>;
-template class StencilMatrix<float, OnGpu, Quadratic>;
-template class StencilMatrix<float, OnGpu, Gimp>;
-template class StencilMatrix<double, OnGpu, Linear>;
-template class StencilMatrix<double, OnGpu, Quadratic>;
-template class StencilMatrix<double, OnGpu, Gimp>;
-#endif
+#define TALUS_INSTANTIATE(Real, Place, Shape) template class StencilMatrix<Real, Place, Shape>;
+TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
 
 }  // namespace talus::solver

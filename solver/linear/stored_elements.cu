@@ -1,5 +1,7 @@
 #include "solver/linear/stored_elements.hpp"
 
+#include "solver/linear/instances.hpp"
+
 namespace talus::solver {
 namespace {
 
@@ -76,19 +78,7 @@ void StoredElements<Real, Place, Shape>::apply(const ElementList<Real, Place, Sh
   }
 }
 
-template class StoredElements<float, OnCpu, Linear>;
-template class StoredElements<float, OnCpu, Quadratic>;
-template class StoredElements<float, OnCpu, Gimp>;
-template class StoredElements<double, OnCpu, Linear>;
-template class StoredElements<double, OnCpu, Quadratic>;
-template class StoredElements<double, OnCpu, Gimp>;
-#if TALUS_FOR_GPU
-template class StoredElements<float, OnGpu, Linear>;
-template class StoredElements<float, OnGpu, Quadratic>;
-template class StoredElements<float, OnGpu, Gimp>;
-template class StoredElements<double, OnGpu, Linear>;
-template class StoredElements<double, OnGpu, Quadratic>;
-template class StoredElements<double, OnGpu, Gimp>;
-#endif
+#define TALUS_INSTANTIATE(Real, Place, Shape) template class StoredElements<Real, Place, Shape>;
+TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
 
 }  // namespace talus::solver

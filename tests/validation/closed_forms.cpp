@@ -173,6 +173,29 @@ double lube_run_out(double a) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
+namespace {
+
+/// Of the dam break: speed of small waves, and the acceleration of all.
+double wave_of(const DamBreak& d) { return std::sqrt(d.gravity * d.depth * std::cos(d.slope)); }
+double pull_of(const DamBreak& d) { return d.gravity * (std::sin(d.slope) - std::cos(d.slope) * std::tan(d.bed)); }
+
+}  // namespace
+
+double DamBreak::thickness(double x, double time) const {
+  const double c = wave_of(*this), fallen = x - 0.5 * pull_of(*this) * time * time;
+  if (fallen <= -c * time) return depth;
+  if (fallen >= 2 * c * time) return 0;
+  const double root = 2 * c - fallen / time;
+  return root * root / (9 * gravity * std::cos(slope));
+}
+
+double DamBreak::speed(double x, double time) const {
+  const double c = wave_of(*this), pull = pull_of(*this), fallen = x - 0.5 * pull * time * time;
+  if (fallen <= -c * time) return pull * time;
+  if (fallen >= 2 * c * time) return 0;
+  return 2.0 / 3.0 * (fallen / time + c) + pull * time;
+}
+
 double lube_height(double a) { return a < 1.15 ? a : std::pow(a, 0.4); }
 
 double observed_order(const double* x, const double* y, int count) {

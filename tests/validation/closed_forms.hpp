@@ -51,6 +51,14 @@ struct SlidingBlock {
   double way(double speed, double time) const;
 };
 
+/// A layer upslope of x = 0 that lets go at once (Mangeney, Heinrich & Roche 2000): depth-averaged, Coulomb on its bed, as much stress along the slope as
+/// across it. Angles in rad, x along the slope downhill, depth across it [m].
+struct DamBreak {
+  double slope, bed, depth, gravity = 9.81;
+  double thickness(double x, double time) const;  ///< across the slope [m]
+  double speed(double x, double time) const;      ///< downhill [m/s]; 0 where there is nothing
+};
+
 /// Columns of sand (Lube, Huppert, Sparks & Freundt 2005): aspect ratio height over width.
 double lube_run_out(double aspect);  ///< (d_inf - d_0) / d_0; NaN between 1.8 and 2.8, where the paper gives no law
 double lube_height(double aspect);   ///< h_inf / d_0

@@ -82,6 +82,25 @@ TEST(closed_forms, sand_column_has_lubes_run_out_and_height) {
   EXPECT_TRUE(std::isnan(lube_run_out(2)));
 }
 
+TEST(closed_forms, dam_break_keeps_its_volume_and_momentum_balance) {
+  const DamBreak dam{0.4, 0.35, 1.5};
+  const double pull = 9.81 * (std::sin(0.4) - std::cos(0.4) * std::tan(0.35)), dx = 1e-3;
+  double volume = 0, momentum = 0;
+  for (double x = -40 + dx / 2; x < 80; x += dx) {
+    volume += dx * dam.thickness(x, 3);
+    momentum += dx * dam.thickness(x, 3) * dam.speed(x, 3);
+  }
+  // What came in over x = -40 with the speed of the reservoir; weight less friction, the inflow's momentum and the pressure at x = -40.
+  EXPECT_NEAR(volume, 40 * 1.5 + 0.5 * pull * 9 * 1.5, 1e-3);
+  double impulse = 0;
+  const double dt = 1e-3;
+  for (double t = dt / 2; t < 3; t += dt) {
+    const double speed = pull * t, mass = 40 * 1.5 + 0.5 * pull * t * t * 1.5;
+    impulse += dt * (mass * pull + 1.5 * speed * speed + 0.5 * 9.81 * std::cos(0.4) * 1.5 * 1.5);
+  }
+  EXPECT_NEAR(momentum, impulse, 1e-3 * impulse);
+}
+
 TEST(closed_forms, order_is_the_slope_in_logarithms) {
   const double x[] = {1, 0.5, 0.25}, y[] = {3, 0.75, 0.1875};
   EXPECT_NEAR(observed_order(x, y, 3), 2, 1e-12);
