@@ -173,6 +173,18 @@ double lube_run_out(double a) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
+ParabolicCap::State ParabolicCap::at(double time) const {
+  const double pull = gravity * (std::sin(slope) - std::cos(slope) * std::tan(bed)), size = 2 * gravity * std::cos(slope) * depth / (radius * radius);
+  // f'^2 = size (1 - 1 / f^2), so that f^2 = 1 + size t^2.
+  const double width = std::sqrt(1 + size * time * time);
+  return {0.5 * pull * time * time, pull * time, width, size * time / width};
+}
+
+double ParabolicCap::thickness(const State& s, double along, double across) const {
+  const double r = std::hypot(along - s.way, across) / (radius * s.width);
+  return r < 1 ? depth * (1 - r * r) / (s.width * s.width) : 0;
+}
+
 namespace {
 
 /// Of the dam break: speed of small waves, and the acceleration of all.

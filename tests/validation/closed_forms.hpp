@@ -51,6 +51,19 @@ struct SlidingBlock {
   double way(double speed, double time) const;
 };
 
+/// A cap h = depth (1 - r^2 / radius^2) that slides down a plane and spreads (Hutter, Siegel, Savage & Nohguchi 1993, with as much stress along the slope as across it): it stays a
+/// paraboloid, f times as wide, f'' = 2 g cos(slope) depth / (radius^2 f^3). Angles in rad.
+struct ParabolicCap {
+  double slope, bed, depth, radius, gravity = 9.81;
+  struct State {
+    double way, speed;     // of the middle, down the slope [m], [m/s]
+    double width, spread;  // f, f' [1/s]
+  };
+  State at(double time) const;
+  /// Across the slope, `along` and `across` from where the middle began [m].
+  double thickness(const State& s, double along, double across) const;
+};
+
 /// A layer upslope of x = 0 that lets go at once (Mangeney, Heinrich & Roche 2000): depth-averaged, Coulomb on its bed, as much stress along the slope as
 /// across it. Angles in rad, x along the slope downhill, depth across it [m].
 struct DamBreak {

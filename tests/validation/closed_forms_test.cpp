@@ -82,6 +82,20 @@ TEST(closed_forms, sand_column_has_lubes_run_out_and_height) {
   EXPECT_TRUE(std::isnan(lube_run_out(2)));
 }
 
+TEST(closed_forms, parabolic_cap_spreads_by_its_own_pressure) {
+  const ParabolicCap cap{0.6, 0.4, 4, 80};
+  const double t = 5, dt = 1e-3;
+  const auto before = cap.at(t - dt), now = cap.at(t), after = cap.at(t + dt);
+  EXPECT_NEAR((after.width - 2 * now.width + before.width) / (dt * dt), 2 * 9.81 * std::cos(0.6) * 4 / (6400 * std::pow(now.width, 3)), 1e-6);
+  EXPECT_NEAR((after.width - before.width) / (2 * dt), now.spread, 1e-8);
+  EXPECT_NEAR((after.way - before.way) / (2 * dt), now.speed, 1e-9);
+  double volume = 0;
+  for (double x = -200; x < 200; x += 0.5) {
+    for (double y = -200; y < 200; y += 0.5) volume += 0.25 * cap.thickness(now, x, y);
+  }
+  EXPECT_NEAR(volume, 0.5 * M_PI * 6400 * 4, 1e-4 * volume);
+}
+
 TEST(closed_forms, dam_break_keeps_its_volume_and_momentum_balance) {
   const DamBreak dam{0.4, 0.35, 1.5};
   const double pull = 9.81 * (std::sin(0.4) - std::cos(0.4) * std::tan(0.35)), dx = 1e-3;

@@ -1,10 +1,12 @@
-// B5: a dam break on a slope.
+// B4 and B5: a parabolic cap and a dam break on a slope, against closed forms of the depth-averaged equations.
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <numbers>
 
+#include "common/raster/raster_io.hpp"
 #include "tests/validation/cases.hpp"
 #include "tests/validation/chart.hpp"
 #include "tests/validation/closed_forms.hpp"
@@ -12,7 +14,74 @@
 namespace talus::validation {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180, slope = 22 * degree, bed = 21 * degree;
+constexpr double degree = std::numbers::pi / 180;
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+struct Norms {
+  double mean = nothing, most = nothing;  // root of the mean square over that of the reference; largest over the largest
+};
+
+Norms norms(const std::vector<double>& computed, const std::vector<double>& exact) {
+  double square = 0, size = 0, most = 0, largest = 0;
+  for (std::size_t c = 0; c < exact.size(); ++c) {
+    const double d = computed[c] - exact[c];
+    square += d * d;
+    size += exact[c] * exact[c];
+    most = std::max(most, std::abs(d));
+    largest = std::max(largest, std::abs(exact[c]));
+  }
+  return {std::sqrt(square / size), most / largest};
+}
+
+void note(Bench& bench, const Outcome& o, const std::string& what, const Norms& n) {
+  bench.note(o, what + ", root mean square", n.mean);
+  bench.note(o, what + ", largest", n.most);
+}
+
+// B4 ---------------------------------------------------------------------------------------------------------------
+
+constexpr ParabolicCap cap{35 * degree, 25 * degree, 4, 80};
+
+/// Upright thickness over a point of the map [m]: where the upright line from the plane meets the surface, which leans downhill against it.
+double upright(const ParabolicCap::State& s, double x, double y) {
+  const double along = x / std::cos(cap.slope);
+  double h = 0;
+  for (int pass = 0; pass < 30; ++pass) h = cap.thickness(s, along - h * std::sin(cap.slope), y) / std::cos(cap.slope);
+  return h;
+}
+
+/// The plane and the cap on cells of this size, beside the run. Returns what names them in the recipe.
+Overrides write_scene(const Bench& bench, double cell) {
+  MapGrid grid;
+  grid.cell = cell;
+  grid.columns = static_cast<int>(std::ceil(260 / cell));
+  grid.rows = static_cast<int>(std::ceil(240 / cell)) | 1;
+  grid.west = -110;
+  grid.south = -0.5 * grid.rows * cell;
+  Raster plane{grid, std::vector<double>(grid.count())}, thickness = plane;
+  constexpr int parts = 8;  // of a cell's side: its mean thickness
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      plane.at(column, row) = 500 - std::tan(cap.slope) * grid.x(column);
+      double sum = 0;
+      for (int p = 0; p < parts * parts; ++p) {
+        const double dx = ((p % parts) + 0.5) / parts - 0.5, dy = ((p / parts) + 0.5) / parts - 0.5;
+        sum += upright(cap.at(0), grid.x(column) + dx * cell, grid.y(row) + dy * cell);
+      }
+      thickness.at(column, row) = sum / (parts * parts);
+    }
+  }
+  const auto folder = bench.request().out / bench.name();
+  std::filesystem::create_directories(folder);
+  const auto plane_file = folder / fmt::format("plane-{:g}.tif", cell), cap_file = folder / fmt::format("cap-{:g}.tif", cell);
+  write_geotiff(plane_file, plane, {"ground", "m", {}});
+  write_geotiff(cap_file, thickness, {"thickness, vertical", "m", {}});
+  return {{"preprocess.base_dem", words(plane_file.string())}, {"preprocess.release[0].thickness_raster", words(cap_file.string())}};
+}
+
+// B5 ---------------------------------------------------------------------------------------------------------------
+
+constexpr double slope = 22 * degree, bed = 21 * degree;
 constexpr double height = 1.08;                          // of the dam, upright [m]
 constexpr double west = -30, east = 36;                  // along the slope: what the upper end of the reservoir does not reach [m]
 
@@ -44,22 +113,6 @@ Profile profile_of(const Points& points, double cell) {
   return p;
 }
 
-struct Norms {
-  double mean = 0, most = 0;  // root of the mean square over that of the reference; largest over the largest
-};
-
-Norms norms(const std::vector<double>& computed, const std::vector<double>& exact) {
-  double square = 0, size = 0, most = 0, largest = 0;
-  for (std::size_t c = 0; c < exact.size(); ++c) {
-    const double d = computed[c] - exact[c];
-    square += d * d;
-    size += exact[c] * exact[c];
-    most = std::max(most, std::abs(d));
-    largest = std::max(largest, std::abs(exact[c]));
-  }
-  return {std::sqrt(square / size), most / largest};
-}
-
 Profile exact_at(const std::vector<double>& x, double time) {
   const DamBreak dam{slope, bed, height * std::cos(slope)};
   Profile p;
@@ -73,6 +126,74 @@ Profile exact_at(const std::vector<double>& x, double time) {
 }
 
 }  // namespace
+
+void parabolic_cap(Bench& bench) {
+  Chart errors, section;
+  errors.title = "B4: error over layer height, cells four times as wide";
+  errors.x_label = "layer height [m]";
+  errors.y_label = "error, root mean square over the reference's";
+  errors.log_x = errors.log_y = true;
+  section.title = "B4: parabolic cap on a plane after 5 s, down its middle";
+  section.x_label = "map distance from where the middle began [m]";
+  section.y_label = "thickness, upright [m]";
+  int colour = 1;
+  for (const char* mapping : {"terrain-following", "cartesian"}) {
+    std::vector<double> h, error;
+    for (const int layers : {2, 4, 8}) {
+      if (layers == 8 && !bench.complete()) continue;
+      const double layer = cap.depth / std::cos(cap.slope) / layers, cell = 4 * layer;
+      const Outcome o = bench.run(fmt::format("{}, {} layers", mapping, layers),
+                                  write_scene(bench, cell) + Overrides{{"preprocess.grid.spacing_m", cell},
+                                                                       {"preprocess.grid.layer_height_m", layer},
+                                                                       {"solve.mapping", words(mapping)}});
+      Norms of_thickness, of_speed;
+      double way = nothing;
+      if (o.ok()) {
+        const auto state = cap.at(o.last().time);
+        const MapGrid& grid = o.run.maps.grid;
+        const std::vector<double>& computed = o.run.frames.thickness.back();
+        std::vector<double> exact;
+        Series line{fmt::format("{}, {} layers", mapping, layers), {}, {}, colour++};
+        for (int row = 0; row < grid.rows; ++row) {
+          for (int column = 0; column < grid.columns; ++column) {
+            exact.push_back(upright(state, grid.x(column), grid.y(row)));
+            if (row != grid.rows / 2) continue;
+            line.x.push_back(grid.x(column));
+            line.y.push_back(computed[grid.index(column, row)]);
+          }
+        }
+        of_thickness = norms(computed, exact);
+        if (layers == 4) section.series.push_back(line);
+        // Down the slope, point by point.
+        std::vector<double> speed, expected;
+        double travelled = 0;
+        for (std::size_t p = 0; p < o.last().size(); ++p) {
+          const auto& x = o.last().position[p];
+          const auto& v = o.last().velocity[p];
+          travelled += (x[0] - o.first().position[p][0]) / std::cos(cap.slope);
+          speed.push_back(static_cast<double>(v[0]) * std::cos(cap.slope) - static_cast<double>(v[2]) * std::sin(cap.slope));
+          expected.push_back(state.speed + (x[0] * std::cos(cap.slope) + (500 - x[2]) * std::sin(cap.slope) - state.way) * state.spread / state.width);
+        }
+        of_speed = norms(speed, expected);
+        way = travelled / static_cast<double>(speed.size()) / state.way - 1;
+      }
+      note(bench, o, "thickness", of_thickness);
+      note(bench, o, "speed of the points", of_speed);
+      bench.note(o, "way of the centre, over the reference's less one", way);
+      h.push_back(layer);
+      error.push_back(of_thickness.mean);
+    }
+    errors.series.push_back(convergence(mapping, h, error, colour++));
+  }
+  Series exact{"Hutter et al. 1993", {}, {}, 0};
+  for (double x = -90; x <= 130; x += 1) {
+    exact.x.push_back(x);
+    exact.y.push_back(upright(cap.at(5), x, 0));
+  }
+  section.series.insert(section.series.begin(), exact);
+  bench.picture("B4-section", png_of(section));
+  bench.picture("B4-convergence", png_of(errors));
+}
 
 void dam_break(Bench& bench) {
   Chart thickness, errors;
@@ -98,8 +219,7 @@ void dam_break(Bench& bench) {
                                    {"preprocess.box[0].north_m", cell},
                                    {"solve.mapping", words(mapping)},
                                    {"solve.wall[1].position_m", cell}});
-      const auto nothing = std::numeric_limits<double>::quiet_NaN();
-      Norms of_thickness{nothing, nothing}, of_discharge = of_thickness;
+      Norms of_thickness, of_discharge;
       if (o.ok()) {
         const Profile computed = profile_of(o.last(), cell), exact = exact_at(computed.x, o.last().time);
         of_thickness = norms(computed.thickness, exact.thickness);
@@ -107,10 +227,8 @@ void dam_break(Bench& bench) {
         Series s{fmt::format("{}, {} layers", mapping, layers), computed.x, computed.thickness, colour++};
         if (layers == 4) thickness.series.push_back(s);
       }
-      bench.note(o, "thickness, root mean square", of_thickness.mean);
-      bench.note(o, "thickness, largest", of_thickness.most);
-      bench.note(o, "discharge, root mean square", of_discharge.mean);
-      bench.note(o, "discharge, largest", of_discharge.most);
+      note(bench, o, "thickness", of_thickness);
+      note(bench, o, "discharge", of_discharge);
       h.push_back(layer);
       error.push_back(of_thickness.mean);
     }
