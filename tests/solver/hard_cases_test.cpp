@@ -206,11 +206,11 @@ TEST_P(HardCases, a_slab_below_its_friction_angle_rests_in_long_steps_too) {
     const auto solver = make_solver(scene, o, GetParam());
     run_to(*solver, 5);
     const Centre start = centre(*solver, scene);
-    run_to(*solver, 15);
+    run_to(*solver, 65);
     const Centre end = centre(*solver, scene);
     const double creep = std::hypot(end.x - start.x, end.z - start.z);
-    std::printf("  slab at rest, %s stress, %g CFL: %.1e of its length in 10 s\n", geostatic ? "geostatic" : "zero", cfl, creep / length);
-    EXPECT_LT(creep, 1e-4 / 6 * length);
+    std::printf("  slab at rest, %s stress, %g CFL: %.1e of its length in 60 s\n", geostatic ? "geostatic" : "zero", cfl, creep / length);
+    EXPECT_LT(creep, 1e-4 * length);
   }
 }
 
@@ -261,7 +261,7 @@ TEST_P(HardCases, single_precision_ends_within_the_discretisation_error) {  // C
     o.courant = courant;
     const Scene scene = make_scene(d, o);
     const auto solver = make_solver(scene, o, GetParam());
-    run_to(*solver, 15);
+    run_to(*solver, 65);
     return solver->thickness();
   };
   const auto elsewhere = [](const std::vector<double>& a, const std::vector<double>& b) {
