@@ -261,7 +261,7 @@ TEST_P(HardCases, single_precision_ends_within_the_discretisation_error) {  // C
     o.courant = courant;
     const Scene scene = make_scene(d, o);
     const auto solver = make_solver(scene, o, GetParam());
-    run_to(*solver, 65);
+    run_to(*solver, 15);
     return solver->thickness();
   };
   const auto elsewhere = [](const std::vector<double>& a, const std::vector<double>& b) {
