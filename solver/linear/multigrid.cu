@@ -35,7 +35,7 @@ void Multigrid<Real, Place, Shape>::build(const ElementList<Real, Place, Shape>&
     Grid& next = grid(count);
     next.x.kind = extent.x > small_enough ? kind : TwoScale::same;
     next.y.kind = extent.y > small_enough ? kind : TwoScale::same;
-    if (next.x.kind != TwoScale::same && next.y.kind != TwoScale::same) {
+    if (next.by_two_steps()) {
       next.between.build(fine, next.x, {});
       next.level.build(next.between, {}, next.y);
     } else {
@@ -58,7 +58,7 @@ void Multigrid<Real, Place, Shape>::refresh(const PointTangents<Real>& from, con
     Grid& grid = *grids_[g];
     if (g == 0) {
       grid.level.assemble(list, from, held);
-    } else if (grid.x.kind != TwoScale::same && grid.y.kind != TwoScale::same) {
+    } else if (grid.by_two_steps()) {
       grid.between.assemble(grids_[g - 1]->level, grid.x, {});
       grid.level.assemble(grid.between, {}, grid.y);
     } else {

@@ -31,6 +31,7 @@ class Multigrid {
     StencilLevel<Real, Place, Shape> level, between;  // `between`: coarse along x alone
     TwoScale x, y;
     NodeVector<Place> b, u, r;
+    bool by_two_steps() const { return x.kind != TwoScale::same && y.kind != TwoScale::same; }
   };
   void build(const ElementList<Real, Place, Shape>& list, const StoredColumns<Real>& columns, int nodes);
   void cycle(std::size_t g);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <numbers>
 
 #include "common/raster/raster_io.hpp"
@@ -31,6 +32,20 @@ Norms norms(const std::vector<double>& computed, const std::vector<double>& exac
     largest = std::max(largest, std::abs(exact[c]));
   }
   return {std::sqrt(square / size), most / largest};
+}
+
+constexpr const char* mappings[] = {"terrain-following", "cartesian"};
+
+/// Layers over the thickness; cells are four layers wide.
+std::vector<int> layer_counts(const Bench& bench) { return bench.complete() ? std::vector<int>{2, 4, 8} : std::vector<int>{2, 4}; }
+
+Chart error_chart(const Bench& bench) {
+  Chart chart;
+  chart.title = bench.name() + ": error over layer height, cells four times as wide";
+  chart.x_label = "layer height [m]";
+  chart.y_label = "error, root mean square over the reference's";
+  chart.log_x = chart.log_y = true;
+  return chart;
 }
 
 void note(Bench& bench, const Outcome& o, const std::string& what, const Norms& n) {
@@ -128,22 +143,20 @@ Profile exact_at(const std::vector<double>& x, double time) {
 }  // namespace
 
 void parabolic_cap(Bench& bench) {
-  Chart errors, section;
-  errors.title = "B4: error over layer height, cells four times as wide";
-  errors.x_label = "layer height [m]";
-  errors.y_label = "error, root mean square over the reference's";
-  errors.log_x = errors.log_y = true;
+  Chart errors = error_chart(bench), section;
   section.title = "B4: parabolic cap on a plane after 5 s, down its middle";
   section.x_label = "map distance from where the middle began [m]";
   section.y_label = "thickness, upright [m]";
+  const auto layer_of = [](int layers) { return cap.depth / std::cos(cap.slope) / layers; };
+  std::map<int, Overrides> scenes;  // one for both grids
+  for (const int layers : layer_counts(bench)) scenes[layers] = write_scene(bench, 4 * layer_of(layers));
   int colour = 1;
-  for (const char* mapping : {"terrain-following", "cartesian"}) {
+  for (const char* mapping : mappings) {
     std::vector<double> h, error;
-    for (const int layers : {2, 4, 8}) {
-      if (layers == 8 && !bench.complete()) continue;
-      const double layer = cap.depth / std::cos(cap.slope) / layers, cell = 4 * layer;
+    for (const int layers : layer_counts(bench)) {
+      const double layer = layer_of(layers), cell = 4 * layer;
       const Outcome o = bench.run(fmt::format("{}, {} layers", mapping, layers),
-                                  write_scene(bench, cell) + Overrides{{"preprocess.grid.spacing_m", cell},
+                                  scenes[layers] + Overrides{{"preprocess.grid.spacing_m", cell},
                                                                        {"preprocess.grid.layer_height_m", layer},
                                                                        {"solve.mapping", words(mapping)}});
       Norms of_thickness, of_speed;
@@ -196,19 +209,14 @@ void parabolic_cap(Bench& bench) {
 }
 
 void dam_break(Bench& bench) {
-  Chart thickness, errors;
+  Chart errors = error_chart(bench), thickness;
   thickness.title = "B5: dam break on a slope after 5 s";
   thickness.x_label = "along the slope [m]";
   thickness.y_label = "thickness [m]";
-  errors.title = "B5: error over layer height, cells four times as wide";
-  errors.x_label = "layer height [m]";
-  errors.y_label = "error, root mean square over the reference's";
-  errors.log_x = errors.log_y = true;
   int colour = 1;
-  for (const char* mapping : {"terrain-following", "cartesian"}) {
+  for (const char* mapping : mappings) {
     std::vector<double> h, error;
-    for (const int layers : {2, 4, 8}) {
-      if (layers == 8 && !bench.complete()) continue;
+    for (const int layers : layer_counts(bench)) {
       const double layer = height / layers, cell = 4 * layer;
       const Outcome o = bench.run(fmt::format("{}, {} layers", mapping, layers),
                                   {{"preprocess.grid.spacing_m", cell},
