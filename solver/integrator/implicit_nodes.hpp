@@ -27,11 +27,12 @@ struct Constraints {
   Vec3<double>* normal = nullptr;   // of the surface it can touch
   double* friction = nullptr;       // coefficient there
   double* limit = nullptr;          // friction times the reaction found last [N]
-  Vec3<double>* along = nullptr;    // where it would slip, or began to; zero once it has changed its mind too often
+  Vec3<double>* along = nullptr;    // where it would slip, or began to; zero once it has changed its mind too often. `once`: its way in the step at the velocity it begins with [m]
   unsigned char* changes = nullptr;  // in this step: between stick and slip, and sixteen for every time it closed
   double slip = 0;                  // slip over which friction grows to its limit, for nodes that changed too often [m]
   double nudge = 0;                 // slip that a node which starts to slip is ahead [m]
   bool coupled = false;             // the derivative of the reaction stands in the friction's: not symmetric
+  bool once = false;                // one linear solve: friction is that of `along`, and its derivative the one there
   const double* pull = nullptr;     // a contact opens when it would have to pull by more than this, or rounding would open it [N]
 
   /// A node may change between stick and slip so often in a step (more made more cuts: decision 0006); then its friction is smoothed instead. One that has closed so often stays closed to the step's end.
@@ -42,7 +43,7 @@ struct Constraints {
   /// Friction force of a slipping node for the displacement u and, with `stiffness`, minus its derivative: Coulomb's cone over the displacement of the step, its limit held
   /// (Tresca), so that it has a potential and its derivative is symmetric. A node that starts to slip has its direction before it has moved.
   TALUS_HD Vec3<double> friction_force(int n, const Vec3<double>& u, Sym3<double>* stiffness) const {
-    const double ahead = wavers(n) ? 0 : nudge, smooth = wavers(n) ? slip : 1e-3 * nudge;
+    const double ahead = once ? 1 : wavers(n) ? 0 : nudge, smooth = once ? 1e-12 : wavers(n) ? slip : 1e-3 * nudge;
     const Vec3<double> way = u - normal[n] * dot(u, normal[n]) + along[n] * ahead;
     const double size = sqrt(dot(way, way) + smooth * smooth);
     if (stiffness) {
@@ -121,7 +122,7 @@ struct PrepareNodes {
     const Vec3<double> v = freed * nodes.begin_velocity(n);
     const double speed = length(v);
     if (speed <= friction * fabs(dot(gravity, normal)) * scheme.step) return Touch::sticks;
-    held.along[n] = v * (1 / speed);
+    held.along[n] = v * (held.once ? scheme.step : 1 / speed);
     return Touch::slips;
   }
 

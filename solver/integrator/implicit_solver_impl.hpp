@@ -156,7 +156,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   }
   Constraints held() {
     return {wall_freed_.data(), normal_.data(), contact_friction_.data(), friction_limit_.data(), along_.data(), wavers_.data(), corner_.slip(), corner_.nudge(),
-            options_.implicit.tangent == Tangent::exact, &balance_.data()->pull};
+            options_.implicit.tangent == Tangent::exact, options_.implicit.newton_iterations == 1, &balance_.data()->pull};
   }
 
   void size_nodes() {

@@ -35,8 +35,10 @@ void self_weight_column(Bench&);      // A1
 void large_compaction(Bench&);        // A1b
 void cantilever(Bench&);              // A2
 void cantilever_loads(Bench&);        // A2-loads
+void cantilever_studies(Bench&);      // A2-studies
 void sand_column(Bench&);             // A3
 void sand_column_paper(Bench&);       // A3-paper
+void sand_column_studies(Bench&);     // A3-studies
 void sand_column_friction(Bench&);    // A3-friction
 void sand_column_aspects(Bench&);     // A3b
 void step_cost(Bench&);               // A4

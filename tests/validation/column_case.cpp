@@ -159,6 +159,42 @@ Overrides refined_column(int level, const char* shape, int per_cell) {
   return o;
 }
 
+/// Error over the load steps, h = 50 m / 2^4: the stress against the closed form, which the grid bounds from below, and how far the top is
+/// from where twice as many steps as the most shown leave it.
+void load_step_study(Bench& bench, const Column& column) {
+  Chart chart;
+  chart.title = "A1b: error over load steps, h = 50 m / 2⁴, 8 points per cell";
+  chart.x_label = "share of the weight in a step";
+  chart.y_label = "error";
+  chart.log_x = chart.log_y = true;
+  chart.y = Limits{1e-6, 0.5};  // room for the legend
+  const int most = bench.complete() ? 160 : 40;
+  int colour = 1;
+  for (const char* shape : {"gimp", "quadratic", "linear"}) {
+    std::vector<double> share, stress, top;
+    double finest = nothing;
+    for (int count = 2 * most; count >= 20; count /= 2) {
+      const Outcome o = bench.run(fmt::format("{}, {} load steps", shape, count),
+                                  refined_column(4, shape, 2) + Overrides{{"solve.implicit.step_s", 1.0 / count}});
+      const double settled = top_of(o, column).computed;
+      bench.note(o, "stress error", stress_error(o, column));
+      if (count > most) {
+        finest = settled;
+        continue;
+      }
+      share.push_back(1.0 / count);
+      stress.push_back(stress_error(o, column));
+      top.push_back(std::abs(settled / finest - 1));
+      bench.note(o, fmt::format("top displacement against {} load steps", 2 * most), top.back());
+    }
+    chart.series.push_back(convergence(fmt::format("{}, top against {} steps", shape, 2 * most), share, top, colour));
+    Series exact{fmt::format("{}, stress against the closed form", shape), share, stress, colour++};
+    exact.dashed = exact.marks = true;
+    chart.series.push_back(exact);
+  }
+  bench.picture("A1b-steps", png_of(chart));
+}
+
 }  // namespace
 
 void self_weight_column(Bench& bench) {
@@ -213,6 +249,7 @@ void large_compaction(Bench& bench) {
   }
   bench.picture("A1b-convergence", png_of(chart));
   bench.picture("A1b-stress", png_of(profile, 1400, 1100));
+  load_step_study(bench, soft);
 }
 
 }  // namespace talus::validation

@@ -76,4 +76,14 @@ double front_of(const Points& points, double cell, double point_spacing) {
   return front + 0.5 * point_spacing;
 }
 
+double reach_of(const Points& points) {
+  std::vector<double> x;
+  for (const auto& p : points.position) {
+    if (std::isfinite(p[0])) x.push_back(p[0]);
+  }
+  const auto at = x.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(x.size()));
+  std::nth_element(x.begin(), at, x.end());
+  return *at;
+}
+
 }  // namespace talus::validation

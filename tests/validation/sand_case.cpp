@@ -167,6 +167,64 @@ void sand_column_paper(Bench& bench) {
   }
 }
 
+/// Reach of 99 % over points per cell and over the step, cells of 0.0225 m: against the most points and the shortest steps.
+void sand_column_studies(Bench& bench) {
+  Chart points, steps;
+  points.title = "A3: reach over points per cell, h = 0.0225 m";
+  points.x_label = "distance of the points over cell size";
+  points.y_label = "difference of the reach of 99 % to 343 points per cell";
+  steps.title = "A3: reach over the step, h = 0.0225 m, 27 points per cell";
+  steps.x_label = "step over the CFL step";
+  steps.y_label = "difference of the reach of 99 % to explicit steps of 0.02 CFL";
+  points.log_x = points.log_y = steps.log_x = steps.log_y = true;
+  const double cfl_step = 4.27e-4;  // cell over the wave speed and the square root of three [s]
+  int colour = 1;
+  for (const char* shape : {"quadratic", "gimp", "linear"}) {
+    Sand s;
+    s.h = 0.09 / 4;
+    const auto reach = [&](const std::string& name, const Overrides& more) {
+      const Outcome o = bench.run(fmt::format("{}, {}", shape, name), overrides_of(s) + Overrides{{"solve.shape", words(shape)}} + more);
+      const double x = o.ok() ? reach_of(o.last()) : nothing;
+      bench.note(o, "reach of 99 % [m]", x);
+      return x;
+    };
+    const auto explicit_steps = [&](double cfl) {
+      return reach(fmt::format("{} points per cell, explicit, {:g} CFL", s.per_cell * s.per_cell * s.per_cell, cfl), {{"solve.cfl", cfl}});
+    };
+    s.per_cell = 7;
+    const double most_points = explicit_steps(0.25);
+    std::vector<double> spacing, by_points;
+    for (const int per_cell : {2, 3, 4, 5}) {
+      s.per_cell = per_cell;
+      spacing.push_back(1.0 / per_cell);
+      by_points.push_back(std::abs(explicit_steps(0.25) / most_points - 1));
+    }
+    points.series.push_back(convergence(shape, spacing, by_points, colour));
+    s.per_cell = 3;
+    const double shortest = explicit_steps(0.02);
+    std::vector<double> cfl, by_step, over_cfl, by_implicit_step;
+    for (const double step : {0.5, 0.25, 0.1, 0.05}) {
+      cfl.push_back(step);
+      by_step.push_back(std::abs(explicit_steps(step) / shortest - 1));
+    }
+    for (const double step : {1.0, 3.0, 10.0, 30.0}) {
+      over_cfl.push_back(step);
+      by_implicit_step.push_back(std::abs(reach(fmt::format("newmark, {:g} CFL", step),
+                                                {{"solve.integrator", words("newmark")},
+                                                 {"solve.implicit.step_s", step * cfl_step},
+                                                 {"solve.implicit.newton_tolerance", 1e-4},
+                                                 {"solve.implicit.linear_tolerance", 1e-3}}) /
+                                              shortest - 1));
+    }
+    steps.series.push_back(convergence(fmt::format("{}, explicit", shape), cfl, by_step, colour));
+    Series implicit = convergence(fmt::format("{}, newmark", shape), over_cfl, by_implicit_step, colour++);
+    implicit.dashed = true;
+    steps.series.push_back(implicit);
+  }
+  bench.picture("A3-points", png_of(points));
+  bench.picture("A3-steps", png_of(steps));
+}
+
 /// Run-out over damping and base friction (the paper's Fig. 13a).
 void sand_column_friction(Bench& bench) {
   Chart chart;

@@ -1,7 +1,6 @@
 // C1: the sand column of A3 in steps of 1 to 30 times the CFL step, against explicit steps on the same grid.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -22,15 +21,7 @@ double centre_of(const Outcome& o) {
   return sum / static_cast<double>(o.last().size());
 }
 
-/// How far 99 of 100 points got [m]. Where the deposit ends is less: its tip is strings of points a cell apart, and chance says where they tear.
-double reach_of(const Outcome& o) {
-  if (!o.ok()) return std::numeric_limits<double>::quiet_NaN();
-  std::vector<double> x;
-  for (const auto& p : o.last().position) x.push_back(p[0]);
-  const auto at = x.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(x.size()));
-  std::nth_element(x.begin(), at, x.end());
-  return *at;
-}
+double reach_of(const Outcome& o) { return o.ok() ? reach_of(o.last()) : std::numeric_limits<double>::quiet_NaN(); }
 
 double end_of(const Outcome& o, const Sand& s) { return o.ok() ? front_of(o.last(), s) : std::numeric_limits<double>::quiet_NaN(); }
 
