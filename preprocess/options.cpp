@@ -69,6 +69,10 @@ void BoxOptions::describe(recipe::Visitor& v) {
   v.number("top_m", top_m, recipe::not_negative, "upper side, above the ground");
 }
 
+void BedRasters::describe(recipe::Visitor& v) {
+  for (auto& [name, file] : files) v.path(name, file, "raster that takes the place of [solve.base] " + name + "; no data: that number");
+}
+
 void Options::describe(recipe::Visitor& v) {
   v.path("before_dem", before_dem, "surface before the slide (1: with after_dem, 2: with sliding_surface)");
   v.path("after_dem", after_dem, "surface after it; only the lowering inside the source is taken out");
@@ -86,6 +90,9 @@ void Options::describe(recipe::Visitor& v) {
   laboratory.describe(v);
   v.leave();
   recipe::list(v, "box", box, "a block of material on or above that plane; may be repeated");
+  v.enter("bed", "friction of the bed from place to place");
+  bed.describe(v);
+  v.leave();
 }
 
 namespace {

@@ -60,6 +60,15 @@ struct LaboratoryOptions {
   void describe(recipe::Visitor& v);
 };
 
+/// Rasters of the bed's friction, under the names of the numbers in [solve.base] that they take the place of.
+struct BedRasters {
+  std::vector<std::pair<std::string, std::filesystem::path>> files{
+      {"friction_angle_deg", {}}, {"peak_coefficient", {}}, {"steady_coefficient", {}}, {"characteristic_speed_m_s", {}},
+      {"turbulence_m_s2", {}},    {"cohesion_Pa", {}},      {"pore_pressure_ratio", {}}};
+
+  void describe(recipe::Visitor& v);
+};
+
 /// One [[preprocess.box]]: a block of material; heights count from the ground.
 struct BoxOptions {
   std::string name;
@@ -79,6 +88,7 @@ struct Options {
   std::vector<ReleaseOptions> release;
   LaboratoryOptions laboratory;
   std::vector<BoxOptions> box;
+  BedRasters bed;
 
   void describe(recipe::Visitor& v);
   /// What the ranges of single keys cannot say: which keys go together.

@@ -98,6 +98,23 @@ Scene read_scene(const Options& options) {
   return from_releases(options);
 }
 
+/// Rasters of the bed on the working grid.
+std::vector<std::pair<std::string, Raster>> read_bed(const BedRasters& bed, const MapGrid& grid) {
+  std::vector<std::pair<std::string, Raster>> rasters;
+  for (const auto& [name, file] : bed.files) {
+    if (file.empty()) continue;
+    const Elevation values = read_elevation("bed." + name, file);
+    require_comparable_crs(values.crs_wkt(), values.file, grid.crs_wkt, "the working grid");
+    Raster raster = onto_grid(values, grid);
+    require_data(raster, file);
+    std::vector<char> negative(raster.values.size());
+    for (std::size_t i = 0; i < negative.size(); ++i) negative[i] = raster.values[i] < 0;  // false for nodata
+    refuse_cells(grid, negative, {file, "negative values of " + name, "it has none", "Mend the raster; no data means the number in [solve.base]"});
+    rasters.emplace_back(name, std::move(raster));
+  }
+  return rasters;
+}
+
 Raster total_thickness(const Scene& scene) {
   Raster total{scene.bed.grid, std::vector<double>(scene.bed.grid.count(), 0.0)};
   for (const Release& release : scene.releases) {
@@ -138,6 +155,7 @@ std::vector<std::filesystem::path> inputs_of(const Options& options) {
     add(release.thickness_raster);
     add(release.polygons);
   }
+  for (const auto& [name, file] : options.bed.files) add(file);
   return inputs;
 }
 
@@ -169,6 +187,7 @@ Prepared prepare(const Options& options, Points points) {
   if (points == Points::seeded) {
     domain.points = laboratory ? seed_boxes(options) : seed_points(scene.releases, seeding);
   }
+  domain.bed = read_bed(options.bed, domain.grid);
   domain.terrain = std::move(scene.bed);
   domain.before = std::move(scene.before);
   return prepared;

@@ -48,7 +48,13 @@ struct BaseOptions {
   double peak_coefficient = 0.7;
   double steady_coefficient = 0.23;
   double characteristic_speed = 1;   // [m/s]
+  double turbulence = 500;           // voellmy: xi [m/s2]
+  double cohesion = 0;               // [Pa]
+  double pore_pressure_ratio = 0;    // water's part of the normal stress [-]
   void describe(recipe::Visitor& v);
+  /// The number that the recipe calls by this name, null where it has none that a raster can give.
+  double* named(const std::string& key);
+  bool uses(const std::string& key) const;  ///< whether the law looks at it
 };
 
 /// How an implicit step is taken.
@@ -132,8 +138,9 @@ struct SolveOptions {
 template <class Real>
 Material<Real> make_material(const MaterialOptions& options);
 
+/// The bed's law with the same numbers everywhere.
 template <class Real>
-BaseFriction<Real> make_base_friction(const BaseOptions& options);
+BaseFriction<Real> make_base_friction(const SolveOptions& options);
 
 /// Map coordinates of node (0, 0, 0) and the spacing along each axis [m].
 struct WallFrame {

@@ -50,6 +50,29 @@ void attach_loads(const Domain& domain, const SolveOptions& options, Scene& scen
   }
 }
 
+/// The bed where domain.vdb has rasters of it: their values, the recipe's elsewhere.
+std::vector<Bed<double>> make_bed(const Domain& domain, const SolveOptions& options) {
+  if (domain.bed.empty()) return {};
+  std::vector<Bed<double>> bed;
+  for (std::size_t column = 0; column < domain.grid.count(); ++column) {
+    SolveOptions here = options;
+    for (const auto& [name, raster] : domain.bed) {
+      if (double* value = here.base.named(name); value && std::isfinite(raster.values[column])) *value = raster.values[column];
+    }
+    bed.push_back(make_base_friction<double>(here).uniform);
+  }
+  return bed;
+}
+
+/// Rasters that the law does not look at are a slip of whoever wrote the recipe.
+void check_bed(const Domain& domain, const SolveOptions& options) {
+  for (const auto& [name, raster] : domain.bed) {
+    if (options.base.uses(name)) continue;
+    throw RecipeError({fmt::format("[preprocess.bed] {} is given, but [solve.base] law does not use it", name), "the raster would have no effect",
+                       "Name the law that does, or leave the raster out and run talus-preprocess again"});
+  }
+}
+
 }  // namespace
 
 Scene make_scene(const Domain& domain, const SolveOptions& options) {
@@ -97,6 +120,8 @@ Scene make_scene(const Domain& domain, const SolveOptions& options) {
     s.release[p] = domain.points.release[p];
   }
   attach_loads(domain, options, scene);
+  check_bed(domain, options);
+  scene.bed = make_bed(domain, options);
   return scene;
 }
 

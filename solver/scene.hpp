@@ -15,6 +15,7 @@ struct Scene {
   GridShape grid;
   ParticleState points;
   std::vector<double> load_volumes;  // volume of the points each load pulls at [m3]
+  std::vector<Bed<double>> bed;      // of every column; empty where it is the same everywhere
 };
 
 /// Places the seeds of a domain on the background grid. Throws DataError when a seed stands outside the ground.

@@ -16,7 +16,8 @@ constexpr double impact_strain = 0.02;
 /// The least friction the flow can meet: on its bed, or inside where the bed holds it.
 double least_friction(const SolveOptions& o) {
   if (o.base.law == FrictionLaw::stick) return std::tan(o.material.friction_angle * M_PI / 180);
-  return make_base_friction<double>(o.base).at(1e30);  // friction weakens with speed, if it changes at all
+  const auto base = make_base_friction<double>(o);
+  return base.coefficient(base.uniform, 1e30);  // friction weakens with speed, if it changes at all
 }
 
 struct Summit {

@@ -28,13 +28,14 @@ struct Domain {
   Raster terrain;            // bed under the release, ground elsewhere [m]; NaN outside the domain
   Raster before;             // surface before the failure [m]
   Raster release_thickness;  // vertical [m], 0 where nothing is released
+  std::vector<std::pair<std::string, Raster>> bed;  // numbers of the bed's friction by the names of [solve.base]; NaN: the recipe's
   std::vector<std::string> release_names;
   SeedPoints points;
   std::vector<std::pair<std::string, std::string>> provenance;  // version, command, inputs and checksums
 };
 
 /// Write `file` (aside, renamed): PointDataGrid "points" (attributes volume, height, extent_x, extent_y, release), FloatGrids "terrain",
-/// "before", "release_thickness" as DoubleGrids one voxel thick, MaskGrid "active" of the cells inside the domain;
+/// "before", "release_thickness", and "bed.NAME" for rasters of the bed, as DoubleGrids one voxel thick, MaskGrid "active" of the cells inside the domain;
 /// grid, CRS, units and provenance as metadata. Throws DataError (disk full, not writable).
 void write_domain(const std::filesystem::path& file, const Domain& domain);
 

@@ -17,6 +17,7 @@ inline constexpr auto terrain = "terrain";
 inline constexpr auto before = "before";
 inline constexpr auto release_thickness = "release_thickness";
 inline constexpr auto active = "active";
+inline constexpr auto bed_prefix = "bed.";  ///< and the name of a number of [solve.base]
 
 inline constexpr auto volume = "volume";
 inline constexpr auto height = "height";

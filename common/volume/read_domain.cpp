@@ -166,6 +166,11 @@ Domain assemble(const fs::path& file, const Contents& contents) {
   domain.terrain = sheet(file, contents, layout::terrain, domain.grid);
   domain.before = sheet(file, contents, layout::before, domain.grid);
   domain.release_thickness = sheet(file, contents, layout::release_thickness, domain.grid);
+  for (const auto& grid : *contents.grids) {
+    const std::string name = grid->getName();
+    if (name.rfind(layout::bed_prefix, 0) != 0) continue;
+    domain.bed.emplace_back(name.substr(std::string(layout::bed_prefix).size()), sheet(file, contents, name.c_str(), domain.grid));
+  }
   for (std::size_t i = 0; i < facts.count("releases"); ++i)
     domain.release_names.push_back(facts.text(layout::numbered("release_name", i)));
   for (std::size_t i = 0; i < facts.count("facts"); ++i)

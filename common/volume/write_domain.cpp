@@ -138,11 +138,14 @@ void write_domain(const fs::path& file, const Domain& domain) {
   openvdb::initialize();
   PendingFile pending(file);
   try {
-    const openvdb::GridPtrVec grids{
+    openvdb::GridPtrVec grids{
         point_grid(domain), value_sheet(domain, domain.terrain, layout::terrain),
         value_sheet(domain, domain.before, layout::before),
         value_sheet(domain, domain.release_thickness, layout::release_thickness),
         sheet<openvdb::MaskGrid>(domain, domain.terrain, layout::active, [](double) { return true; })};
+    for (const auto& [name, raster] : domain.bed) {
+      grids.push_back(sheet<openvdb::DoubleGrid>(domain, raster, (layout::bed_prefix + name).c_str(), [](double cell) { return cell; }));
+    }
     openvdb::io::File(pending.path().string()).write(grids, metadata_of(domain));
   } catch (const openvdb::Exception& error) {
     throw DataError(write_fault(file, error.what()));

@@ -1,6 +1,7 @@
 // Weights of a material point on the nodes around it, one direction at a time. The offset is the distance from the nearest
 // node in cells, -0.5 <= offset < 0.5; node `first(offset)` cells away from the nearest one carries weight[0]. `half` is half the side of the
 // box that the point stands for, in cells; only functions that are `averaged` over it look at it.
+// `edge_share` is the integral of a node's function where the material ends at it, in cells.
 #pragma once
 
 #include "solver/parallel/macros.hpp"
@@ -10,6 +11,7 @@ namespace talus {
 /// Linear hat functions: two nodes.
 struct Linear {
   static constexpr int width = 2;
+  static constexpr double edge_share = 0.5;
   static constexpr bool averaged = false, spline = false;
   template <class Real>
   TALUS_HD static int first(Real offset) { return offset < Real(0) ? -1 : 0; }
@@ -28,6 +30,7 @@ struct Linear {
 /// Quadratic B-splines (Steffen, Kirby & Berzins 2008): three nodes, gradients continuous across cells.
 struct Quadratic {
   static constexpr int width = 3;
+  static constexpr double edge_share = 13.0 / 24;
   static constexpr bool averaged = false, spline = true;
   template <class Real>
   TALUS_HD static int first(Real) { return -1; }
@@ -63,6 +66,7 @@ struct Quadratic {
 /// integrate the slopes of its nodes exactly, wherever the points have gone.
 struct Gimp {
   static constexpr int width = 3;
+  static constexpr double edge_share = 0.5;
   static constexpr bool averaged = true, spline = false;
   template <class Real>
   TALUS_HD static int first(Real) { return -1; }

@@ -40,7 +40,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
  public:
   ExplicitSolverOf(const Scene& scene, const SolveOptions& options, const SolverState& state)
       : Base(scene, options, state, fields(options)),
-        friction_(make_base_friction<Real>(options.base)),
+        bed_(make_base_friction<Real>(options), scene.bed),
         affine_(options.transfer == Transfer::apic),
         musl_(options.stress_update == StressUpdate::modified),
         keeps_(options.transfer_time > options.courant),
@@ -81,7 +81,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     return report;
   }
 
-  std::size_t bytes() const override { return Base::bytes() + nodes_.bytes() + forces_.bytes(); }
+  std::size_t bytes() const override { return Base::bytes() + bed_.bytes() + nodes_.bytes() + forces_.bytes(); }
 
  private:
   static ParticleFields fields(const SolveOptions& o) {
@@ -138,7 +138,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     for_each(Place{}, grid_.active_blocks() * block_columns,
              UpdateColumns<Real, content>{grid_.view(), grid_.active_list(), clock_.data(), nodes_.data(), forces_.data(), g,
                                           options_.gravity_ramp, walls_,
-                                          friction_, static_cast<Real>(options_.damping), material_.density, this->maps()});
+                                          bed_.view(), static_cast<Real>(this->full_base()), static_cast<Real>(options_.damping), material_.density, this->maps()});
   }
 
   template <Gather part>
@@ -156,7 +156,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     if (forces_apart_) forces_.resize(static_cast<std::size_t>(grid_.nodes()));
   }
 
-  BaseFriction<Real> friction_;
+  BedOn<Real, Place> bed_;
   bool affine_, musl_;
   bool keeps_;  // points keep some of the velocity that is finer than the grid
   bool forces_apart_;

@@ -26,7 +26,8 @@ struct Constraints {
   Sym3<double>* walls = nullptr;    // directions that rollers and fixed walls leave free
   Vec3<double>* normal = nullptr;   // of the surface it can touch
   double* friction = nullptr;       // coefficient there
-  double* limit = nullptr;          // friction times the reaction found last [N]
+  double* traction = nullptr;       // of the bed, besides friction [N]; null where the law knows none
+  double* limit = nullptr;          // what friction can hold: the coefficient times the reaction found last, and the traction [N]
   Vec3<double>* along = nullptr;    // where it would slip, or began to; zero once it has changed its mind too often. `once`: its way in the step at the velocity it begins with [m]
   unsigned char* changes = nullptr;  // in this step: between stick and slip, and sixteen for every time it closed
   double slip = 0;                  // slip over which friction grows to its limit, for nodes that changed too often [m]
@@ -38,6 +39,8 @@ struct Constraints {
   /// A node may change between stick and slip so often in a step (more made more cuts: decision 0006); then its friction is smoothed instead. One that has closed so often stays closed to the step's end.
   static constexpr int most_changes = 1, closing = 16, most_closings = 3;
   TALUS_HD bool wavers(int n) const { return changes[n] % closing > most_changes; }
+  /// Whether anything but the normal acts on node n at the surface it can touch.
+  TALUS_HD bool grips(int n) const { return friction[n] > 0 || (traction && traction[n] > 0); }
   TALUS_HD bool stays_closed(int n) const { return changes[n] / closing >= most_closings; }
 
   /// Friction force of a slipping node for the displacement u and, with `stiffness`, minus its derivative: Coulomb's cone over the displacement of the step, its limit held
@@ -64,6 +67,7 @@ struct PrepareNodes {
   Constraints held;
   Walls<double> walls;
   BaseFriction<double> base;
+  double full_base;  // mass of a base node under a full layer [kg]
   Vec3<double> gravity;
   TimeScheme scheme;
   bool predict;  // start from the displacement of the present velocity
@@ -81,6 +85,7 @@ struct PrepareNodes {
     const double m = nodes.mass[n];
     nodes.touch[n] = Touch::none;
     held.limit[n] = 0;
+    if (held.traction) held.traction[n] = 0;
     held.along[n] = {};
     held.changes[n] = 0;
     if (!(m > 0) || i >= grid.columns || j >= grid.rows) {
@@ -117,11 +122,12 @@ struct PrepareNodes {
 
   /// A node that its own weight's friction can stop within the step is taken to stick, to begin with.
   TALUS_HD Touch begin_contact(int n, const Vec3<double>& normal, double friction, const Sym3<double>& freed) const {
-    if (!(friction > 0)) return Touch::slips;
+    if (!held.grips(n)) return Touch::slips;
     if (!scheme.dynamic) return Touch::sticks;
     const Vec3<double> v = freed * nodes.begin_velocity(n);
     const double speed = length(v);
-    if (speed <= friction * fabs(dot(gravity, normal)) * scheme.step) return Touch::sticks;
+    const double pull = held.traction ? held.traction[n] / nodes.mass[n] : 0;
+    if (speed <= (friction * fabs(dot(gravity, normal)) + pull) * scheme.step) return Touch::sticks;
     held.along[n] = v * (held.once ? scheme.step : 1 / speed);
     return Touch::slips;
   }
@@ -147,8 +153,15 @@ struct PrepareNodes {
     const double sx = static_cast<double>(grid.slope_x[column]), sy = static_cast<double>(grid.slope_y[column]);
     const double scale = 1 / sqrt(1 + sx * sx + sy * sy);
     normal = {-sx * scale, -sy * scale, scale};
-    const Vec3<double> v = nodes.velocity[GridView<Real>::node(grid.slot(i, j), i, j, k)];
-    friction = base.at(length(v - normal * dot(v, normal)));
+    const int n = GridView<Real>::node(grid.slot(i, j), i, j, k);
+    const Vec3<double> v = nodes.velocity[n];
+    const double slip = length(v - normal * dot(v, normal));
+    const Bed<double>& bed = base.at(column);
+    friction = base.coefficient(bed, slip);
+    if (held.traction && k == top) {
+      const double area = bed_area(nodes.mass[n], full_base, static_cast<double>(grid.spacing), sx, sy);
+      held.traction[n] = base.traction(bed, slip) * area;
+    }
     return true;
   }
 
@@ -283,7 +296,7 @@ struct MeasureResidual {
   }
   TALUS_HD double limit_of(int n, const Vec3<double>& stop) const {
     const double reaction = -dot(stop, held.normal[n]);
-    return reaction > 0 ? held.friction[n] * reaction : 0;
+    return reaction > 0 ? held.friction[n] * reaction + (held.traction ? held.traction[n] : 0) : 0;
   }
 
   TALUS_HD bool turn(int n, Touch to, const Sym3<double>& freed) const {
@@ -306,7 +319,7 @@ struct MeasureResidual {
     }
     if (-dot(stop, normal) < -*held.pull && !held.stays_closed(n)) return turn(n, Touch::open, held.walls[n]);
     held.limit[n] = limit_of(n, stop);
-    if (!(held.friction[n] > 0) || held.wavers(n)) return false;
+    if (!held.grips(n) || held.wavers(n)) return false;
     const Sym3<double> plane = without(held.walls[n], normal);
     if (nodes.touch[n] == Touch::sticks) {
       const Vec3<double> along = plane * stop;
@@ -343,7 +356,7 @@ struct StickReversed {
   Constraints held;
   Vec3<double>* start;  // displacement that the line search sets out from
   TALUS_HD Terms<1> operator()(int n) const {
-    if (nodes.touch[n] != Touch::slips || !(held.friction[n] > 0) || held.wavers(n) || !(dot(nodes.u[n], held.along[n]) < 0)) return {};
+    if (nodes.touch[n] != Touch::slips || !held.grips(n) || held.wavers(n) || !(dot(nodes.u[n], held.along[n]) < 0)) return {};
     if (stick_reversed(nodes, held, n)) start[n] = {};
     return {{1.0}};
   }
@@ -366,7 +379,7 @@ struct CloseProduct {
       Sym3<double> stiffness;
       const Vec3<double> force = held.friction_force(n, nodes.u[n], &stiffness);
       // The reaction changes by n . sum, and the friction with it.
-      const Vec3<double> share = held.coupled ? force * (dot(held.normal[n], sum) / (held.limit[n] / held.friction[n])) : Vec3<double>{};
+      const Vec3<double> share = held.coupled ? force * (dot(held.normal[n], sum) * held.friction[n] / held.limit[n]) : Vec3<double>{};
       sum += stiffness * x[n] - share;
     }
     y[n] = nodes.freed[n] * sum;

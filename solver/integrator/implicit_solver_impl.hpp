@@ -58,7 +58,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
       : Base(scene, options, state, fields(options)),
         affine_(options.transfer == Transfer::apic),
         dynamic_(options.integrator == Integrator::newmark),
-        friction_(make_base_friction<double>(options.base)),
+        bed_(make_base_friction<double>(options), scene.bed),
         step_(options.implicit.step),
         first_(state.clock.accelerated == 0),
         midway_(state.clock.step > 0),
@@ -113,7 +113,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
   std::size_t bytes() const override {
     std::size_t total = Base::bytes() + mass_.bytes() + touch_.bytes() + wavers_.bytes() + along_.bytes() + tangents_.bytes() + wall_freed_.bytes() +
-                        contact_friction_.bytes() + friction_limit_.bytes() + freed_.bytes() + preconditioner_.bytes() + stiffness_.bytes() + operator_.bytes() +
+                        contact_friction_.bytes() + bed_.bytes() + traction_.bytes() + friction_limit_.bytes() + freed_.bytes() + preconditioner_.bytes() + stiffness_.bytes() + operator_.bytes() +
                         cholesky_.bytes() + elements_.bytes() + bicgstab_.bytes() + means_.bytes() + static_cast<std::size_t>(cholesky_.factor().factor_bytes());
     for (const auto* v : {&velocity_, &arrival_, &acceleration_, &external_, &internal_, &u_, &residual_, &normal_,
                           &velocity_end_, &acceleration_end_, &change_, &saved_u_}) {
@@ -155,7 +155,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     return n;
   }
   Constraints held() {
-    return {wall_freed_.data(), normal_.data(), contact_friction_.data(), friction_limit_.data(), along_.data(), wavers_.data(), corner_.slip(), corner_.nudge(),
+    return {wall_freed_.data(), normal_.data(), contact_friction_.data(), traction_.data(), friction_limit_.data(), along_.data(), wavers_.data(), corner_.slip(), corner_.nudge(),
             options_.implicit.tangent == Tangent::exact, options_.implicit.newton_iterations == 1, &balance_.data()->pull};
   }
 
@@ -174,6 +174,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     freed_.resize(n);
     wall_freed_.resize(n);
     contact_friction_.resize(n);
+    if (bed_.view().has_traction()) traction_.resize(n);
     friction_limit_.resize(n);
     touch_.resize(n);
     along_.resize(n);
@@ -207,7 +208,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     const bool predict = dynamic_ && options_.implicit.newton_iterations > 1;
     for_each(Place{}, this->grid_.active_blocks() * block_columns,
              PrepareNodes<Real>{this->grid_.view(), this->grid_.active_list(), nodes(), held(),
-                                walls_, friction_, g, scheme_, predict});
+                                walls_, bed_.view(), this->full_base(), g, scheme_, predict});
     if (dynamic_) sum_each<1>(Place{}, count_, sums_, SquareMomentum{nodes()}, KeepTotals<1>{&balance_.data()->momentum});
     if (!dynamic_) return;
     const bool accelerates = first_ && !midway_, damps = options_.damping > 0;
@@ -470,13 +471,13 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   }
 
   bool affine_, dynamic_;
-  BaseFriction<double> friction_;
+  BedOn<double, Place> bed_;
   double step_;
   int count_ = 0;
   bool first_;   // no acceleration is known yet
   bool midway_;  // the run began with explicit steps
   TimeScheme scheme_;
-  Buffer<double, Place> mass_, contact_friction_, friction_limit_;
+  Buffer<double, Place> mass_, contact_friction_, traction_, friction_limit_;
   double rate_ = 0;  // CFL steps per time, as the last step ended [1/s]
   FrictionCorner corner_;
   ElementList<Real, Place, Shape> elements_;

@@ -21,6 +21,28 @@ auto with_shape(ShapeKind kind, F&& f) {
   }
 }
 
+/// The bed's friction and, where it changes from place to place, its numbers beside the grid.
+template <class Number, class Place>
+class BedOn {
+ public:
+  BedOn(const BaseFriction<Number>& friction, const std::vector<Bed<double>>& columns) : friction_(friction) {
+    if (columns.empty()) return;
+    std::vector<Bed<Number>> beds;
+    for (const Bed<double>& b : columns) {
+      beds.push_back({static_cast<Number>(b.coefficient), static_cast<Number>(b.peak), static_cast<Number>(b.characteristic_speed),
+                      static_cast<Number>(b.drag), static_cast<Number>(b.cohesion)});
+    }
+    columns_.upload(beds);
+    friction_.columns = columns_.data();
+  }
+  BaseFriction<Number> view() const { return friction_; }
+  std::size_t bytes() const { return columns_.bytes(); }
+
+ private:
+  BaseFriction<Number> friction_;
+  Buffer<Bed<Number>, Place> columns_;
+};
+
 template <class Real, class Place, class Shape>
 class PointSolver : public Solver {
  public:
@@ -88,6 +110,10 @@ class PointSolver : public Solver {
  protected:
   static bool needs_plastic_volume(const SolveOptions& o) {
     return o.material.model == MaterialModel::drucker_prager && o.material.dilatancy_angle > 0;
+  }
+  /// Mass of a base node under a full layer [kg].
+  double full_base() const {
+    return Shape::edge_share * static_cast<double>(material_.density) * frame_.cell[0] * frame_.cell[1] * frame_.cell[2];
   }
   Clock read_clock() const { return clock_.download().front(); }
   MapView maps() {

@@ -27,6 +27,7 @@ struct UpdateColumns {
   double gravity_ramp;       // time over which it grows [s]
   Walls<Real> walls;
   BaseFriction<Real> friction;
+  Real full_base;            // mass of a base node under a full layer [kg]
   Real damping;              // Cundall's local factor [-]
   Real density;              // [kg/m3]
   MapView maps;
@@ -87,7 +88,11 @@ struct UpdateColumns {
     if (on_ground) {
       BaseFriction<Real> law = friction;
       if (content == NodeContent::remapped && law.law != FrictionLaw::stick) law.law = FrictionLaw::none;
-      v = meet_ground(law, v, grid.slope_x[column], grid.slope_y[column]);
+      const Real sx = grid.slope_x[column], sy = grid.slope_y[column];
+      // On a Cartesian grid the nodes inside the ground touch no bed of their own.
+      const bool grips = content != NodeContent::remapped && friction.has_traction() && k == contact_layer(column);
+      const Real grip = grips ? bed_area(node.w, full_base, grid.spacing, sx, sy) * dt / node.w : Real(0);
+      v = meet_ground(law, law.at(column), v, sx, sy, grip);
     }
     if (walls.count > 0) v = meet_walls(walls, i, j, k, v, content != NodeContent::remapped);
     if constexpr (content == NodeContent::force) {
