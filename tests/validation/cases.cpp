@@ -17,6 +17,7 @@ const std::vector<Case>& cases() {
       {"A4", "time and memory of a step", true, step_cost},
       {"B1", "block on an incline", true, block_on_incline},
       {"B2", "block on a bed that weakens with speed", true, velocity_weakening},
+      {"B3", "heap on curved ground, facing any direction", true, energy_line},
       {"B4", "parabolic cap on a plane", true, parabolic_cap},
       {"B5", "dam break on a slope", true, dam_break},
       {"B6", "vibrating bar, free fall, patch test", true, elastic_motion},

@@ -44,6 +44,7 @@ void sand_column_aspects(Bench&);     // A3b
 void step_cost(Bench&);               // A4
 void block_on_incline(Bench&);        // B1
 void velocity_weakening(Bench&);      // B2
+void energy_line(Bench&);             // B3
 void parabolic_cap(Bench&);           // B4
 void dam_break(Bench&);               // B5
 void elastic_motion(Bench&);          // B6

@@ -1,8 +1,10 @@
 #include "tests/validation/closed_forms.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 
 namespace talus::validation {
 namespace {
@@ -171,6 +173,35 @@ double lube_run_out(double a) {
   if (a < 1.8) return 1.6 * a;
   if (a > 2.8) return 2.2 * std::pow(a, 2.0 / 3);
   return std::numeric_limits<double>::quiet_NaN();
+}
+
+double GroundLine::elevation(double x) const {
+  if (kind == parabola) {
+    const double left = std::max(run - x, 0.0) / run;
+    return fall * left * left;
+  }
+  const double slope = std::numbers::pi / 6, foot = fall / std::tan(slope);  // where the straight slope would meet level ground
+  const double half = radius * std::tan(slope / 2);                         // the arc's reach beyond it, and before it along the slope
+  if (x >= foot + half) return 0;
+  if (x <= foot - half * std::cos(slope)) return (foot - x) * std::tan(slope);
+  const double from_end = foot + half - x;
+  return radius - std::sqrt(radius * radius - from_end * from_end);
+}
+
+double GroundLine::reach(double x, double mu) const {
+  constexpr double g = 9.81, dx = 0.05;
+  const auto slope_at = [&](double at) { return std::atan((elevation(at - dx) - elevation(at + dx)) / (2 * dx)); };
+  double square = 0, angle = slope_at(x);  // of the speed
+  for (int step = 0; step < 1000000; ++step) {
+    const double next = slope_at(x + dx), mean = 0.5 * (angle + next), ds = dx / std::cos(mean);
+    const double turn = angle - next;
+    const double change = 2 * g * (std::sin(mean) - mu * std::cos(mean)) * ds - 2 * mu * square * turn;
+    if (square + change <= 0) return change < 0 && square > 0 ? x + dx * square / -change : x;
+    square += change;
+    angle = next;
+    x += dx;
+  }
+  return std::numeric_limits<double>::infinity();
 }
 
 ParabolicCap::State ParabolicCap::at(double time) const {

@@ -51,6 +51,16 @@ struct SlidingBlock {
   double way(double speed, double time) const;
 };
 
+/// Ground that falls along a line from `fall` to level: as a parabola over `run`, or at 30 degrees into an arc of `radius`. Lengths in m.
+struct GroundLine {
+  enum Kind { parabola, bend } kind;
+  double fall, run, radius;
+  double elevation(double x) const;
+  /// Where a point stops that starts at rest from x, with Coulomb friction mu, pressed on by the ground's curvature as well:
+  /// d(v^2)/ds = 2 g (sin t - mu cos t) - 2 mu v^2 dt/ds.
+  double reach(double x, double mu) const;
+};
+
 /// A cap h = depth (1 - r^2 / radius^2) that slides down a plane and spreads (Hutter, Siegel, Savage & Nohguchi 1993, with as much stress along the slope as across it): it stays a
 /// paraboloid, f times as wide, f'' = 2 g cos(slope) depth / (radius^2 f^3). Angles in rad.
 struct ParabolicCap {

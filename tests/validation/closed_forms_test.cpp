@@ -82,6 +82,23 @@ TEST(closed_forms, sand_column_has_lubes_run_out_and_height) {
   EXPECT_TRUE(std::isnan(lube_run_out(2)));
 }
 
+TEST(closed_forms, ground_line_takes_its_share_in_a_tight_bend) {
+  // Through a bend much shorter than the way, Coulomb's friction on the centripetal force leaves exp(-2 mu angle) of the square of the speed.
+  const GroundLine line{GroundLine::bend, 1000, 0, 1};
+  const double slope = M_PI / 6, mu = 0.4, foot = 1000 / std::tan(slope), start = 400;
+  const double square = 2 * 9.81 * (std::sin(slope) - mu * std::cos(slope)) * (foot - start) / std::cos(slope);
+  const double way = square * std::exp(-2 * mu * slope) / (2 * mu * 9.81);
+  EXPECT_NEAR(line.reach(start, mu) / (foot + way), 1, 2e-3);  // what a bend of 1 m is not tight by
+  EXPECT_NEAR(line.elevation(start), (foot - start) * std::tan(slope), 1e-9);
+  EXPECT_EQ(line.elevation(foot + 10), 0);
+  // On a parabola the drop over the way exceeds mu by what the bend takes.
+  const GroundLine parabola{GroundLine::parabola, 1000, 2250, 0};
+  const double end = parabola.reach(start, mu), drop = (parabola.elevation(start) - parabola.elevation(end)) / (end - start);
+  EXPECT_GT(drop, mu);
+  EXPECT_LT(drop, 1.3 * mu);
+  EXPECT_EQ(parabola.reach(2000, mu), 2000);  // too gentle to start
+}
+
 TEST(closed_forms, parabolic_cap_spreads_by_its_own_pressure) {
   const ParabolicCap cap{0.6, 0.4, 4, 80};
   const double t = 5, dt = 1e-3;

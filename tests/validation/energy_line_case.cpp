@@ -1,0 +1,138 @@
+// B3: a heap of sand on curved ground, whatever way that faces.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <numbers>
+
+#include "common/raster/raster_io.hpp"
+#include "tests/validation/cases.hpp"
+#include "tests/validation/chart.hpp"
+#include "tests/validation/closed_forms.hpp"
+
+namespace talus::validation {
+namespace {
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double degree = std::numbers::pi / 180;
+
+struct Terrain {
+  const char* name;
+  GroundLine line;
+};
+
+/// Fall 1000 m over 2250 m, then level: as a parabola, or at 30 degrees until an arc of 400 m leads over.
+constexpr Terrain terrains[] = {{"parabola", {GroundLine::parabola, 1000, 2250, 0}}, {"hockey stick", {GroundLine::bend, 1000, 0, 400}}};
+
+constexpr double first = 400, length = 120, width = 100, thickness = 10;  // of the heap: its middle along the line [m]
+constexpr double mu = 0.4;
+
+struct Facing {
+  double angle;  // of descent, from east [deg]
+  double along(double x, double y) const { return x * std::cos(angle * degree) + y * std::sin(angle * degree); }
+  double across(double x, double y) const { return y * std::cos(angle * degree) - x * std::sin(angle * degree); }
+};
+
+/// Ground and heap beside the run. Returns what names them in the recipe.
+Overrides write_scene(const Bench& bench, const Terrain& terrain, const Facing& facing, double cell) {
+  double west = 1e30, east = -1e30, south = 1e30, north = -1e30;  // around the way, 300 m wide
+  for (const double s : {100.0, 3300.0}) {
+    for (const double t : {-300.0, 300.0}) {
+      const double x = s * std::cos(facing.angle * degree) - t * std::sin(facing.angle * degree);
+      const double y = s * std::sin(facing.angle * degree) + t * std::cos(facing.angle * degree);
+      west = std::min(west, x), east = std::max(east, x), south = std::min(south, y), north = std::max(north, y);
+    }
+  }
+  MapGrid grid;
+  grid.cell = cell;
+  grid.west = std::floor(west / cell) * cell;
+  grid.south = std::floor(south / cell) * cell;
+  grid.columns = static_cast<int>(std::ceil((east - grid.west) / cell));
+  grid.rows = static_cast<int>(std::ceil((north - grid.south) / cell));
+  Raster ground{grid, std::vector<double>(grid.count())}, heap = ground;
+  constexpr int parts = 8;  // of a cell's side
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      const double x = grid.x(column), y = grid.y(row);
+      ground.at(column, row) = terrain.line.elevation(facing.along(x, y));
+      int inside = 0;
+      for (int p = 0; p < parts * parts; ++p) {
+        const double px = x + (((p % parts) + 0.5) / parts - 0.5) * cell, py = y + (((p / parts) + 0.5) / parts - 0.5) * cell;
+        inside += std::abs(facing.along(px, py) - first) < 0.5 * length && std::abs(facing.across(px, py)) < 0.5 * width;
+      }
+      heap.at(column, row) = thickness * inside / (parts * parts);
+    }
+  }
+  const auto folder = bench.request().out / bench.name();
+  std::filesystem::create_directories(folder);
+  const std::string place = fmt::format("{}-{:g}-{:g}.tif", terrain.line.kind == GroundLine::parabola ? "parabola" : "bend", facing.angle, cell);
+  write_geotiff(folder / ("ground-" + place), ground, {"ground", "m", {}});
+  write_geotiff(folder / ("heap-" + place), heap, {"thickness, vertical", "m", {}});
+  return {{"preprocess.base_dem", words((folder / ("ground-" + place)).string())},
+          {"preprocess.release[0].thickness_raster", words((folder / ("heap-" + place)).string())}};
+}
+
+/// Mean place of the points along the line and across it [m], and above the ground's own zero.
+struct Place {
+  double along = 0, across = 0, up = 0;
+};
+Place place_of(const Points& points, const Facing& facing) {
+  Place mean;
+  for (const auto& p : points.position) {
+    mean.along += facing.along(p[0], p[1]);
+    mean.across += facing.across(p[0], p[1]);
+    mean.up += p[2];
+  }
+  const auto count = static_cast<double>(points.size());
+  return {mean.along / count, mean.across / count, mean.up / count};
+}
+
+}  // namespace
+
+void energy_line(Bench& bench) {
+  Chart chart;
+  chart.title = "B3: way of the centre over the direction of descent";
+  chart.x_label = "direction of descent, from east [deg]";
+  chart.y_label = "way of the centre over that of a sliding point";
+  int colour = 1;
+  const std::vector<double> cells = bench.complete() ? std::vector<double>{20, 10} : std::vector<double>{20};
+  for (const Terrain& terrain : terrains) {
+    for (const char* mapping : {"terrain-following", "cartesian"}) {
+      if (!bench.complete() && (terrain.line.kind != GroundLine::parabola || mapping[0] == 'c')) continue;
+      for (const double cell : cells) {
+        Series line{fmt::format("{}, {}, cells of {:g} m", terrain.name, mapping, cell), {}, {}, colour++};
+        line.marks = true;
+        double eastwards = nothing;
+        for (const double angle : {0.0, 120.0, 225.0}) {
+          const Facing facing{angle};
+          const Outcome o = bench.run(fmt::format("{}, {}, {:g} m, towards {:g} deg", terrain.name, mapping, cell, angle),
+                                      write_scene(bench, terrain, facing, cell) + Overrides{{"preprocess.grid.spacing_m", cell},
+                                                                                            {"preprocess.grid.layer_height_m", 0.25 * cell},
+                                                                                            {"solve.mapping", words(mapping)}});
+          double way = nothing, aside = nothing, fall = nothing, expected = terrain.line.reach(first, mu) - first;
+          if (o.ok()) {
+            const Place start = place_of(o.first(), facing), end = place_of(o.last(), facing);
+            expected = terrain.line.reach(start.along, mu) - start.along;
+            way = end.along - start.along;
+            aside = end.across - start.across;
+            fall = (start.up - end.up) / way;
+          }
+          if (angle == 0) eastwards = way;
+          // validation.md B3: directions differ by less than 2 %; that of a point is met as well as the heap is one.
+          bench.compare(o, "way of the centre", way, expected, 0.02);
+          if (angle != 0) bench.compare(o, "way of the centre, against eastwards", way, eastwards, 0.02);
+          bench.note(o, "fall over way", fall);
+          bench.measure(o, "drift across, over the way", aside / way, 0.005);
+          line.x.push_back(angle);
+          line.y.push_back(way / expected);
+        }
+        chart.series.push_back(line);
+      }
+    }
+  }
+  chart.y = Limits{0.9, 1.1};
+  bench.picture("B3-directions", png_of(chart));
+}
+
+}  // namespace talus::validation
