@@ -7,8 +7,10 @@ namespace talus::postprocess {
 
 void SurveyOptions::describe(recipe::Visitor& v) {
   v.text("name", name, "how map and table call it: a survey, or another model's name");
-  v.path("thickness", thickness, "raster of the deposit's thickness, vertical [m]");
-  v.path("peak_thickness", peak_thickness, "raster of the peak thickness, vertical [m]; gives the footprint");
+  v.path("thickness", thickness, "raster of the deposit's thickness [m]");
+  v.path("peak_thickness", peak_thickness, "raster of the peak thickness [m]; gives the footprint");
+  recipe::choice(v, "direction", direction, {{"vertical", Direction::vertical}, {"slope-normal", Direction::slope_normal}},
+                 "which way these two measure thickness; slope-normal: brought to vertical with the run's ground");
   v.path("after_dem", after_dem, "elevations after the event: deposit where they lie above those before");
   v.path("before_dem", before_dem,
          "elevations before the event, with after_dem; empty: the surface the run started from");

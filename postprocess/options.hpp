@@ -9,6 +9,9 @@
 
 namespace talus::postprocess {
 
+/// Which way the survey's rasters measure thickness.
+enum class Direction { vertical, slope_normal };
+
 /// What the simulation is scored against. Nothing given: no score against a survey.
 struct SurveyOptions {
   std::string name = "survey";           // how the map and the table call it
@@ -17,6 +20,7 @@ struct SurveyOptions {
   std::filesystem::path before_dem;      // with after_dem: surveyed change; empty = the run's own surface before
   std::filesystem::path after_dem;
   std::filesystem::path polygon;  // outline of the affected area
+  Direction direction = Direction::vertical;  // of thickness and peak_thickness
   bool nodata_is_zero = false;    // thickness rasters: no data means no deposit
 
   bool given() const { return !(thickness.empty() && peak_thickness.empty() && after_dem.empty() && polygon.empty()); }

@@ -13,7 +13,7 @@
 #include "preprocess/release/releases.hpp"
 #include "preprocess/release/source.hpp"
 #include "preprocess/terrain/elevation.hpp"
-#include "preprocess/terrain/slope.hpp"
+#include "common/raster/slope.hpp"
 #include "preprocess/terrain/surfaces.hpp"
 
 namespace talus::preprocess {

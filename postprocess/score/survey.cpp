@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "common/raster/slope.hpp"
+
 namespace talus::postprocess {
 namespace {
 
@@ -46,6 +48,10 @@ void check_overlap(const fs::path& file, const Survey& survey, const RunMaps& ma
                    "Give the survey of this event, in the run's coordinates"});
 }
 
+std::vector<double> on_grid(const Raster& raster, const MapGrid& grid) {
+  return same_grid(raster.grid, grid) ? raster.values : resample_thickness(raster, grid).values;
+}
+
 void zero_for_nodata(std::vector<double>& values) {
   for (double& v : values) {
     if (std::isnan(v)) v = 0;
@@ -56,6 +62,12 @@ Raster read_thickness(const fs::path& file, const SurveyOptions& options, const 
   auto raster = read_raster(file);
   check_crs(file, raster.grid, maps.grid);
   if (options.nodata_is_zero) zero_for_nodata(raster.values);
+  if (options.direction == Direction::slope_normal) {
+    const auto cosine = on_grid({maps.grid, slope_cosine({maps.grid, maps.terrain})}, raster.grid);
+    for (std::size_t i = 0; i < cosine.size(); ++i) {
+      if (cosine[i] > 0) raster.values[i] /= cosine[i];  // beyond the run's ground: as it is
+    }
+  }
   return raster;
 }
 
@@ -118,10 +130,6 @@ std::vector<double> crossings(const MapPolygon& polygon, double y) {
   }
   std::sort(places.begin(), places.end());
   return places;
-}
-
-std::vector<double> on_grid(const Raster& raster, const MapGrid& grid) {
-  return same_grid(raster.grid, grid) ? raster.values : resample_thickness(raster, grid).values;
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include "common/stage/stage.hpp"
 #include "preprocess/release/polygon_cover.hpp"
 #include "preprocess/terrain/elevation.hpp"
-#include "preprocess/terrain/slope.hpp"
+#include "common/raster/slope.hpp"
 #include "preprocess/terrain/surfaces.hpp"
 
 namespace talus::preprocess {

@@ -75,6 +75,18 @@ TEST_F(SurveyTest, leaves_out_what_was_not_surveyed_and_says_how_much) {
   EXPECT_EQ(bring_to_survey_grid(run_.maps, *read_survey(options_, run_.maps, 1.0)).deposit_left_out, 0);
 }
 
+TEST_F(SurveyTest, brings_thickness_normal_to_the_slope_to_the_vertical) {
+  auto& grid = run_.maps.grid;
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) run_.maps.terrain[grid.index(column, row)] = 1000 - 0.75 * grid.cell * column;
+  }
+  options_.thickness = raster("normal.tif", grid, std::vector<double>(grid.count(), 2.0));
+  options_.direction = Direction::slope_normal;
+  const auto survey = read_survey(options_, run_.maps, 1.0);
+  ASSERT_TRUE(survey);
+  for (const double value : survey->deposit) EXPECT_NEAR(value, 2.5, 1e-6);  // 3 : 4 : 5
+}
+
 TEST_F(SurveyTest, takes_the_rise_of_the_surface_from_two_dems) {
   auto after = run_.maps.before;
   const auto& grid = run_.maps.grid;

@@ -2,7 +2,7 @@
 
 #include "preprocess/sum.hpp"
 #include "preprocess/terrain/geo_input.hpp"
-#include "preprocess/terrain/slope.hpp"
+#include "common/raster/slope.hpp"
 #include "tests/preprocess/scene.hpp"
 
 namespace talus::preprocess {

@@ -1,8 +1,8 @@
-#include "preprocess/terrain/slope.hpp"
+#include "common/raster/slope.hpp"
 
 #include <cmath>
 
-namespace talus::preprocess {
+namespace talus {
 
 namespace {
 
@@ -35,4 +35,4 @@ std::vector<double> slope_cosine(const Raster& surface) {
   return cosine;
 }
 
-}  // namespace talus::preprocess
+}  // namespace talus

@@ -5,10 +5,10 @@
 
 #include "common/raster/raster.hpp"
 
-namespace talus::preprocess {
+namespace talus {
 
 /// Cosine of the slope at every cell [rows * columns], by central differences (one-sided beside nodata and at the edge,
 /// level where a cell has no neighbour); 1 where the surface is nodata.
 std::vector<double> slope_cosine(const Raster& surface);
 
-}  // namespace talus::preprocess
+}  // namespace talus
