@@ -51,7 +51,7 @@ void log_profile(const RunSummary& summary) {
 void log_plan(const Domain& domain, const SolveOptions& o, On on) {
   const Scene scene = make_scene(domain, o);
   const GroundTables ground = make_ground_tables(scene.grid);
-  const double wave_speed = make_material<double>(o.material).wave_speed;
+  const double wave_speed = fastest_wave(o);
   const double step = std::min(o.courant / first_rate(scene.grid, ground, scene.points, wave_speed, 0), o.largest_step);
   const double volume = std::accumulate(scene.points.volume.begin(), scene.points.volume.end(), 0.0);
   log_info(fmt::format("{} material points, {:.0f} m3; grid {} x {} columns of {:g} m, layers of {:g} m", scene.points.size(),
@@ -74,6 +74,7 @@ SolveOptions settle_stiffness(const Domain& domain, SolveOptions o) {
 void check_stiffness(const Domain& domain, SolveOptions o, On on, const StageContext& context, const std::filesystem::path& first) {
   o.transfer_time *= std::sqrt(2.0);
   o.material.youngs_modulus *= 2;
+  for (PartOptions& part : o.parts) part.material.youngs_modulus *= 2;
   log_info(fmt::format("stiffness check: once more with {:.3g} Pa", o.material.youngs_modulus));
   const auto folder = context.out / "stiffness-check";
   std::filesystem::create_directories(folder);

@@ -1,5 +1,6 @@
 #include "solver/options.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -52,9 +53,22 @@ void MaterialOptions::describe(recipe::Visitor& v) {
   v.number("cohesion_Pa", cohesion, recipe::not_negative, "cohesion");
   v.number("dilatancy_angle_deg", dilatancy_angle, Range{0, 90, false, true}, "dilatancy angle");
   v.number("tension_cutoff_Pa", tension_cutoff, recipe::not_negative, "largest mean tension carried");
+  v.number("pore_pressure_ratio", pore_pressure_ratio, Range{0, 1}, "share of the pressure that water carries (saturated ground); friction acts on the rest");
+  v.number("softening_slip_m", softening_slip, recipe::not_negative, "slip over which friction and cohesion fall to the residual ones; 0: they do not");
+  v.number("residual_friction_angle_deg", residual_friction_angle, Range{0, 90, false, true}, "after softening: internal friction angle");
+  v.number("residual_cohesion_Pa", residual_cohesion, recipe::not_negative, "after softening: cohesion");
   recipe::choice(v, "cone", cone,
                  {{"compression", Cone::compression}, {"extension", Cone::extension}, {"plane-strain", Cone::plane_strain}},
                  "how the cone meets Mohr-Coulomb");
+}
+
+void PartOptions::describe(recipe::Visitor& v) {
+  v.text("release", release, "name of the release (of talus-preprocess) that is of this material; the keys below have their own defaults");
+  material.describe(v);
+}
+
+bool SolveOptions::any_material(const std::function<bool(const MaterialOptions&)>& is) const {
+  return is(material) || std::any_of(parts.begin(), parts.end(), [&](const PartOptions& part) { return is(part.material); });
 }
 
 void BaseOptions::describe(recipe::Visitor& v) {
@@ -190,6 +204,7 @@ void SolveOptions::describe(recipe::Visitor& v) {
   v.leave();
   recipe::list(v, "wall", walls, "plane walls, gates");
   recipe::list(v, "load", loads, "forces on parts of the mass");
+  recipe::list(v, "part", parts, "a release of another material than [solve.material]");
   v.enter("material", "the sliding mass");
   material.describe(v);
   v.leave();
@@ -215,7 +230,18 @@ void SolveOptions::check(std::vector<Fault>& faults) const {
     faults.push_back({fmt::format("[[solve.wall]] is given {} times", walls.size()), fmt::format("at most {} walls fit", most_walls),
                       "Leave some out"});
   }
-  const bool splits = material.model == MaterialModel::hencky || material.model == MaterialModel::drucker_prager;
+  if (parts.size() >= most_materials) {
+    faults.push_back({fmt::format("[[solve.part]] is given {} times", parts.size()), fmt::format("a scene has at most {} materials", most_materials),
+                      "Give releases of the same material the same name, or leave some out"});
+  }
+  for (const PartOptions& part : parts) {
+    if (part.material.stiffness == StiffnessKind::as_given && !part.material.stiffness_check) continue;
+    faults.push_back({fmt::format("[[solve.part]] release = \"{}\" gives stiffness or stiffness_check", part.release), "they are the whole scene's",
+                      "Give them in [solve.material]"});
+  }
+  const bool splits = !any_material([](const MaterialOptions& m) {
+    return m.model != MaterialModel::hencky && m.model != MaterialModel::drucker_prager;
+  });
   if (implicit.b_bar && integrator != Integrator::explicit_ && !splits) {
     faults.push_back({"[solve.implicit] b_bar = true does not go with this [solve.material] model",
                       "its pressure does not follow from the volume change alone", "Take model = \"hencky\" or \"drucker-prager\""});
@@ -236,11 +262,19 @@ void SolveOptions::check(std::vector<Fault>& faults) const {
     faults.push_back({"[solve.material] stiffness = \"auto\" does not go with this model", "what an elastic body does depends on its stiffness",
                       "Take model = \"drucker-prager\", or leave stiffness out"});
   }
-  if (material.dilatancy_angle > material.friction_angle) {
-    faults.push_back({fmt::format("[solve.material] dilatancy_angle_deg = {} is above friction_angle_deg = {}",
-                                  material.dilatancy_angle, material.friction_angle),
-                      "the material would make energy as it shears", "Lower dilatancy_angle_deg; 0 is usual for run-out"});
-  }
+  const auto check_material = [&](const std::string& table, const MaterialOptions& m) {
+    if (m.dilatancy_angle > m.friction_angle) {
+      faults.push_back({fmt::format("{} dilatancy_angle_deg = {} is above friction_angle_deg = {}", table, m.dilatancy_angle, m.friction_angle),
+                        "the material would make energy as it shears", "Lower dilatancy_angle_deg; 0 is usual for run-out"});
+    }
+    if (m.softening_slip > 0 && (m.residual_friction_angle > m.friction_angle || m.residual_cohesion > m.cohesion)) {
+      faults.push_back({fmt::format("{} softens to {} deg and {} Pa, from {} deg and {} Pa", table, m.residual_friction_angle, m.residual_cohesion,
+                                    m.friction_angle, m.cohesion),
+                        "a residual strength is no larger than the first", "Lower residual_friction_angle_deg or residual_cohesion_Pa"});
+    }
+  };
+  check_material("[solve.material]", material);
+  for (const PartOptions& part : parts) check_material("[[solve.part]] release = \"" + part.release + "\"", part.material);
   if (base.law == FrictionLaw::velocity_weakening && base.peak_coefficient < base.steady_coefficient) {
     faults.push_back({fmt::format("[solve.base] peak_coefficient = {} is below steady_coefficient = {}",
                                   base.peak_coefficient, base.steady_coefficient),
@@ -262,11 +296,38 @@ Material<Real> make_material(const MaterialOptions& o) {
   m.shear_modulus = static_cast<Real>(shear);
   m.bulk_modulus = static_cast<Real>(bulk);
   m.wave_speed = static_cast<Real>(std::sqrt((bulk + 4 * shear / 3) / o.density));
-  m.friction = static_cast<Real>(cone.slope);
+  const double borne = 1 - o.pore_pressure_ratio;  // by the grains
+  m.friction = static_cast<Real>(borne * cone.slope);
   m.dilatancy = static_cast<Real>(flow.slope);
   m.shear_cohesion = static_cast<Real>(cone.cohesion);
   m.tension = static_cast<Real>(std::min(tip, o.tension_cutoff));
+  if (o.softens()) {
+    const ConeFit left = fit_cone(o.cone, o.residual_friction_angle * radians_per_degree, o.residual_cohesion, o.dilatancy_angle * radians_per_degree);
+    m.residual_friction = static_cast<Real>(borne * left.slope);
+    m.residual_cohesion = static_cast<Real>(left.cohesion);
+  }
   return m;
+}
+
+template <class Real>
+Materials<Real> make_materials(const SolveOptions& options, double spacing, double layer_height) {
+  Materials<Real> materials;
+  int next = 0;
+  const auto add = [&](const MaterialOptions& o) {
+    Material<Real>& m = materials.list[next++];
+    m = make_material<Real>(o);
+    if (o.softens()) m.softening = static_cast<Real>(std::min(spacing, layer_height) / o.softening_slip);
+  };
+  add(options.material);
+  for (const PartOptions& part : options.parts) add(part.material);
+  while (next < most_materials) materials.list[next++] = materials.list[0];
+  return materials;
+}
+
+double fastest_wave(const SolveOptions& options) {
+  double fastest = make_material<double>(options.material).wave_speed;
+  for (const PartOptions& part : options.parts) fastest = std::max(fastest, make_material<double>(part.material).wave_speed);
+  return fastest;
 }
 
 template <class Real>
@@ -323,6 +384,8 @@ template Walls<float> make_walls(const std::vector<WallOptions>&, double, const 
 template Walls<double> make_walls(const std::vector<WallOptions>&, double, const WallFrame&);
 template Material<float> make_material(const MaterialOptions&);
 template Material<double> make_material(const MaterialOptions&);
+template Materials<float> make_materials(const SolveOptions&, double, double);
+template Materials<double> make_materials(const SolveOptions&, double, double);
 template BaseFriction<float> make_base_friction(const SolveOptions&);
 template BaseFriction<double> make_base_friction(const SolveOptions&);
 

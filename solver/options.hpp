@@ -1,6 +1,8 @@
 // What a recipe's [solve] table says. Every key, its default and its help stand in describe() and nowhere else.
 #pragma once
 
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "common/recipe/recipe.hpp"
@@ -38,7 +40,12 @@ struct MaterialOptions {
   double cohesion = 0;               // [Pa]
   double dilatancy_angle = 0;        // [deg]
   double tension_cutoff = 0;         // [Pa]
+  double pore_pressure_ratio = 0;    // water's part of the mean stress [-]
+  double softening_slip = 0;         // over which strength falls to the residual one [m]; 0: it does not
+  double residual_friction_angle = 0;  // [deg]
+  double residual_cohesion = 0;      // [Pa]
   Cone cone = Cone::compression;
+  bool softens() const { return model == MaterialModel::drucker_prager && softening_slip > 0; }
   void describe(recipe::Visitor& v);
 };
 
@@ -74,6 +81,13 @@ struct ImplicitOptions {
   double apex = 0.1;                 // rounding of the cone's tip, in weights of a cell
   bool b_bar = false;                // element means of the volume change
   double filler = 1e-3;              // stiffness of springs that hold nearly empty nodes in statics, over that of a full cell
+  void describe(recipe::Visitor& v);
+};
+
+/// A release of another material than [solve.material].
+struct PartOptions {
+  std::string release;
+  MaterialOptions material;
   void describe(recipe::Visitor& v);
 };
 
@@ -127,7 +141,11 @@ struct SolveOptions {
   bool point_frames = true;
   bool vdb_frames = false;
   MaterialOptions material;
+  std::vector<PartOptions> parts;
   BaseOptions base;
+
+  bool any_material(const std::function<bool(const MaterialOptions&)>& is) const;
+  bool densities_differ() const { return any_material([&](const MaterialOptions& m) { return m.density != material.density; }); }
 
   void describe(recipe::Visitor& v);
   void check(std::vector<Fault>& faults) const;
@@ -137,6 +155,14 @@ struct SolveOptions {
 /// 1990, table 4.1), or in plane strain for the flow its own dilatancy angle gives (the table's fit where that is the friction angle).
 template <class Real>
 Material<Real> make_material(const MaterialOptions& options);
+
+/// That of [solve.material] first, then those of the parts. Softening goes by slip: a band of shear is one cell wide, so that the strain over
+/// which strength falls is the slip over the least side of a cell (Pietruszczak & Mroz 1981), and results do not hang on the grid.
+template <class Real>
+Materials<Real> make_materials(const SolveOptions& options, double spacing, double layer_height);
+
+/// The fastest wave of any of them [m/s].
+double fastest_wave(const SolveOptions& options);
 
 /// The bed's law with the same numbers everywhere.
 template <class Real>

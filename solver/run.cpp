@@ -104,7 +104,11 @@ void Simulation::load_by_gravity() {
   SolveOptions o = options_;
   o.integrator = Integrator::quasi_static;
   // Elastic and held at its bed: what is about to slide has no other equilibrium. The first step brings it to its own strength.
-  if (o.material.model == MaterialModel::drucker_prager) o.material.model = MaterialModel::hencky;
+  const auto hold = [](MaterialOptions& m) {
+    if (m.model == MaterialModel::drucker_prager) m.model = MaterialModel::hencky;
+  };
+  hold(o.material);
+  for (PartOptions& part : o.parts) hold(part.material);
   o.base.law = FrictionLaw::stick;
   o.gravity_ramp = 1;
   o.implicit.step = 1.0 / options_.gravity_loading_steps;
@@ -127,7 +131,9 @@ void Simulation::load_by_gravity() {
   for (std::size_t q = 0; q < loaded.size(); ++q) {
     const auto p = static_cast<std::size_t>(loaded.id[q]);
     double mean = 0;
-    if (options_.material.model == MaterialModel::drucker_prager) {
+    const int material = scene_.points.material[p];
+    const MaterialOptions& own = material > 0 ? options_.parts[static_cast<std::size_t>(material) - 1].material : options_.material;
+    if (own.model == MaterialModel::drucker_prager) {
       mean = (loaded.elastic[0][q] + loaded.elastic[1][q] + loaded.elastic[2][q]) / 3;
     }
     for (std::size_t a = 0; a < 6; ++a) start.elastic[a][p] = loaded.elastic[a][q] - (a < 3 ? mean : 0);
@@ -192,7 +198,7 @@ void Simulation::record(double time) {
 }
 
 PointFrame Simulation::point_frame(double time, const ParticleState& s) const {
-  const auto material = make_material<double>(options_.material);
+  const auto materials = make_materials<double>(options_, scene_.grid.spacing, scene_.grid.layer_height);
   PointFrame frame;
   frame.time = time;
   frame.position = positions(scene_.map, scene_.grid, solver_->ground(), s);
@@ -204,7 +210,7 @@ PointFrame Simulation::point_frame(double time, const ParticleState& s) const {
         {s.elastic[0][p], s.elastic[1][p], s.elastic[2][p], s.elastic[3][p], s.elastic[4][p], s.elastic[5][p]},
         s.log_volume[p],
         s.plastic_log_volume[p]};
-    frame.pressure.push_back(static_cast<float>(-trace(kirchhoff_stress(material, state)) / 3));
+    frame.pressure.push_back(static_cast<float>(-trace(kirchhoff_stress(materials.of(s.material.data(), s.plastic_shear.data(), static_cast<int>(p)), state)) / 3));
   }
   frame.id = s.id;
   frame.release = s.release;

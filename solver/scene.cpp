@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace talus::solver {
 namespace {
@@ -26,6 +27,8 @@ void size_state(ParticleState& s, std::size_t count) {
   for (auto& list : s.velocity) list.assign(count, 0);
   for (auto& list : s.acceleration) list.assign(count, 0);
   s.load.assign(count, -1);
+  s.material.assign(count, 0);
+  s.plastic_shear.assign(count, 0);
   for (auto& list : s.affine) list.assign(count, 0);
   for (auto& list : s.elastic) list.assign(count, 0);
   for (auto* list : {&s.log_volume, &s.plastic_log_volume, &s.volume}) list->assign(count, 0);
@@ -47,6 +50,22 @@ void attach_loads(const Domain& domain, const SolveOptions& options, Scene& scen
                          "the load would pull at nothing", "Widen box_m (west, east, south, north, bottom, top above the ground)"});
     }
     scene.load_volumes.push_back(volume);
+  }
+}
+
+/// Gives the points of each part its material.
+void attach_materials(const Domain& domain, const SolveOptions& options, Scene& scene) {
+  for (std::size_t part = 0; part < options.parts.size(); ++part) {
+    const std::string& name = options.parts[part].release;
+    bool found = false;
+    for (std::size_t p = 0; p < scene.points.size(); ++p) {
+      if (domain.release_names[static_cast<std::size_t>(scene.points.release[p])] != name) continue;
+      scene.points.material[p] = static_cast<int>(part) + 1;
+      found = true;
+    }
+    if (found) continue;
+    throw RecipeError({fmt::format("[[solve.part]] release = \"{}\": no material point is of that release", name),
+                       fmt::format("domain.vdb has {}", fmt::join(domain.release_names, ", ")), "Name one of those, or leave the part out"});
   }
 }
 
@@ -120,6 +139,7 @@ Scene make_scene(const Domain& domain, const SolveOptions& options) {
     s.release[p] = domain.points.release[p];
   }
   attach_loads(domain, options, scene);
+  attach_materials(domain, options, scene);
   check_bed(domain, options);
   scene.bed = make_bed(domain, options);
   return scene;

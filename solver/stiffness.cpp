@@ -80,6 +80,7 @@ StiffnessDemand lowest_stiffness(const Domain& domain, const SolveOptions& o) {
 SolveOptions with_stiffness(SolveOptions o, const StiffnessDemand& demand) {
   o.material.youngs_modulus = demand.modulus;
   o.material.stiffness = StiffnessKind::as_given;
+  for (PartOptions& part : o.parts) part.material.youngs_modulus = std::min(part.material.youngs_modulus, demand.modulus);
   o.transfer_time = demand.transfer_time;
   return o;
 }

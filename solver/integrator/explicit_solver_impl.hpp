@@ -35,7 +35,7 @@ struct BeginStep {
 template <class Real, class Place, class Shape>
 class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   using Base = PointSolver<Real, Place, Shape>;
-  using Base::clock_, Base::dilatant_, Base::grid_, Base::material_, Base::options_, Base::points_, Base::read_clock;
+  using Base::clock_, Base::dilatant_, Base::grid_, Base::materials_, Base::options_, Base::points_, Base::read_clock;
 
  public:
   ExplicitSolverOf(const Scene& scene, const SolveOptions& options, const SolverState& state)
@@ -90,7 +90,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     f.plastic_volume = Base::needs_plastic_volume(o);
     f.move = o.stress_update == StressUpdate::modified;
     f.extent = o.shape == ShapeKind::gimp;
-    f.load = !o.loads.empty();
+    Base::add_fields(o, f);
     return f;
   }
 
@@ -126,26 +126,27 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   void scatter() {
     const ProfilePhase<Place> phase("points to grid");
     scatter_points(Place{}, points_.count(), grid_.groups(),
-                   ParticleToGrid<Real, Shape, what>{grid_.view(), points_.view(), material_, clock_.data(), nodes_.data(),
+                   ParticleToGrid<Real, Shape, what>{grid_.view(), points_.view(), materials_, clock_.data(), nodes_.data(),
                                                      forces_.data(), loads_now_, affine_, dilatant_});
   }
 
   template <NodeContent content>
   void update() {
+    if (content != NodeContent::remapped) this->measure_columns();
     const ProfilePhase<Place> phase("grid");
     const Vec3<Real> g{static_cast<Real>(options_.gravity[0]), static_cast<Real>(options_.gravity[1]),
                        static_cast<Real>(options_.gravity[2])};
     for_each(Place{}, grid_.active_blocks() * block_columns,
              UpdateColumns<Real, content>{grid_.view(), grid_.active_list(), clock_.data(), nodes_.data(), forces_.data(), g,
                                           options_.gravity_ramp, walls_,
-                                          bed_.view(), static_cast<Real>(this->full_base()), static_cast<Real>(options_.damping), material_.density, this->maps()});
+                                          bed_.view(), static_cast<Real>(this->full_base()), static_cast<Real>(options_.damping), materials_.list[0].density, this->column_volumes(), this->maps()});
   }
 
   template <Gather part>
   void gather() {
     const ProfilePhase<Place> phase("grid to points");
     for_each(Place{}, points_.count(),
-             GridToParticle<Real, Shape, part>{grid_.view(), points_.view(), material_, clock_.data(), nodes_.data(),
+             GridToParticle<Real, Shape, part>{grid_.view(), points_.view(), materials_, clock_.data(), nodes_.data(),
                                                keeps_ ? forces_.data() : nullptr, grid_.home(), affine_, dilatant_});
   }
 

@@ -78,14 +78,14 @@ template <class Real, class Shape>
 struct ScatterInertia {
   GridView<Real> grid;
   ParticleView<Real> points;
-  Real density;
+  Materials<Real> materials;
   bool affine, accelerated;
   const Vec3<double>* loads;  // force per volume of each load at the end of the step [N/m3]; null without loads
   NodeArrays nodes;
 
   TALUS_HD void operator()(int p) const {
     const PointGradients<Real, Shape> g(grid, points, p);
-    const Real mass = points.volume[p] * density;
+    const Real mass = points.volume[p] * materials.density(points.material, p);
     const Vec3<Real> v = points.velocity_of(p);
     const Mat3<Real> turn = affine ? points.affine_of(p) : Mat3<Real>{};
     Vec3<double> acceleration{}, load{};
@@ -144,7 +144,7 @@ template <class Real, class Shape>
 struct ScatterStress {
   GridView<Real> grid;
   ParticleView<Real> points;
-  Material<Real> material;
+  Materials<Real> materials;
   bool dilatant;
   bool definite;  // without the part of the tangent that compression makes negative
   MeanDilationView<Real> means;
@@ -154,6 +154,7 @@ struct ScatterStress {
   TALUS_HD void operator()(int p) const {
     const PointGradients<Real, Shape> g(grid, points, p);
     PointTangent<Real> tangent;
+    const Material<Real> material = materials.of(points.material, points.plastic_shear, p);
     const Mat3<Real> stress = nominal_stress(material, state_of(points, p, dilatant), displacement_gradient(grid, g, nodes.u),
                                              tangents.data ? &tangent : nullptr, means.at_point(p));
     if (tangents.data && definite) make_definite(tangent);
@@ -215,7 +216,7 @@ template <class Real, class Shape>
 struct AcceptStep {
   GridView<Real> grid;
   ParticleView<Real> points;
-  Material<Real> material;
+  Materials<Real> materials;
   Clock* clock;
   NodeArrays nodes;                       // velocity, acceleration: at the start
   const Vec3<double>* new_velocity;       // at the end; null in statics
@@ -232,7 +233,8 @@ struct AcceptStep {
     if (!deforms) return;
     const Mat3<Real> gradient = displacement_gradient(grid, g, strain_displacement);
     MaterialState<Real> state = state_of(points, p, dilatant);
-    advance_material(material, gradient, state, means.at_point(p));
+    advance_material(materials.of(points.material, points.plastic_shear, p), gradient, state, means.at_point(p));
+    if (points.plastic_shear) points.plastic_shear[p] += state.plastic_shear;
     points.set_elastic(p, state.elastic);
     points.log_volume[p] = state.log_volume;
     if (dilatant) points.plastic_log_volume[p] = state.plastic_log_volume;
@@ -301,7 +303,8 @@ struct AcceptStep {
       return;
     }
     const Real steep = Real(1) + g.s.slope_x * g.s.slope_x + g.s.slope_y * g.s.slope_y;
-    const Real waves = material.wave_speed * sqrt(Real(2) * g.across * g.across + steep * g.up * g.up);
+    const Real wave_speed = points.material ? materials.list[points.material[p]].wave_speed : materials.list[0].wave_speed;
+    const Real waves = wave_speed * sqrt(Real(2) * g.across * g.across + steep * g.up * g.up);
     atomic_max_positive(&clock->rate_bits, static_cast<float>(waves + speed * (g.across + g.across + g.up)));
     atomic_max_positive(&clock->speed_bits, static_cast<float>(speed));
   }
@@ -312,11 +315,11 @@ template <class Real, class Shape>
 struct ScatterVelocity {
   GridView<Real> grid;
   ParticleView<Real> points;
-  Real density;
+  Materials<Real> materials;
   Vec3<double>* momentum;
   TALUS_HD void operator()(int p) const {
     const PointGradients<Real, Shape> g(grid, points, p);
-    const Vec3<double> v = widen(points.velocity_of(p)) * static_cast<double>(points.volume[p] * density);
+    const Vec3<double> v = widen(points.velocity_of(p)) * static_cast<double>(points.volume[p] * materials.density(points.material, p));
     around(grid, g, [&](int n, int a, int b, int c) { scatter_add(&momentum[n], v * static_cast<double>(g.weight(a, b, c))); });
   }
 };

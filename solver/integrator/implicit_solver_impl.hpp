@@ -28,7 +28,9 @@ struct RecordColumns {
   const int* active;
   const double* mass;
   const Vec3<double>* velocity;  // null in statics
-  double density, time;
+  double density;         // where all points have the same [kg/m3]
+  const double* volumes;  // of the matter over each column, where they differ [m3]; else null
+  double time;
   MapView maps;
   TALUS_HD void operator()(int c) const {
     const int block = active[c / block_columns], inside = c % block_columns;
@@ -44,14 +46,16 @@ struct RecordColumns {
       if (velocity && mass[n] > 0) momentum += velocity[n] * mass[n];
     }
     const double spacing = static_cast<double>(grid.spacing);
-    if (total > 0) record_column(maps, grid.column(i, j), total, length(momentum), density, spacing, time);
+    const int column = grid.column(i, j);
+    const double mean = volumes && volumes[column] > 0 ? total / volumes[column] : density;
+    if (total > 0) record_column(maps, column, total, length(momentum), mean, spacing, time);
   }
 };
 
 template <class Real, class Place, class Shape>
 class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   using Base = PointSolver<Real, Place, Shape>;
-  using Base::clock_, Base::dilatant_, Base::grid_, Base::material_, Base::options_, Base::points_, Base::read_clock, Base::sums_;
+  using Base::clock_, Base::dilatant_, Base::grid_, Base::materials_, Base::options_, Base::points_, Base::read_clock, Base::sums_;
 
  public:
   ImplicitSolverOf(const Scene& scene, const SolveOptions& options, const SolverState& state)
@@ -67,8 +71,10 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     balance_.upload({Balance{}});
     this->grid_.fit(points_, 0);
     const double g = std::hypot(options.gravity[0], options.gravity[1], options.gravity[2]);
-    material_.exact_tangent = options.implicit.tangent == Tangent::exact;
-    material_.apex = static_cast<Real>(options.implicit.apex * options.material.density * g * scene.grid.layer_height);
+    for (Material<Real>& m : materials_.list) {
+      m.exact_tangent = options.implicit.tangent == Tangent::exact;
+      m.apex = static_cast<Real>(options.implicit.apex * static_cast<double>(m.density) * g * scene.grid.layer_height);
+    }
   }
 
   BatchReport advance() override {
@@ -129,7 +135,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     f.plastic_volume = Base::needs_plastic_volume(o);
     f.acceleration = true;
     f.extent = o.shape == ShapeKind::gimp;
-    f.load = !o.loads.empty();
+    Base::add_fields(o, f);
     return f;
   }
 
@@ -201,7 +207,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     corner_.fall = fall(step);
     const Vec3<double>* loads = this->upload_loads(time);
     for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
-                     ScatterInertia<Real, Shape>{this->grid_.view(), points_.view(), material_.density, affine_, dynamic_,
+                     ScatterInertia<Real, Shape>{this->grid_.view(), points_.view(), materials_, affine_, dynamic_,
                                                  loads, nodes()});
     const double ramp = options_.gravity_ramp > 0 ? std::min(1.0, time / options_.gravity_ramp) : 1.0;
     const Vec3<double> g{options_.gravity[0] * ramp, options_.gravity[1] * ramp, options_.gravity[2] * ramp};
@@ -236,7 +242,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     if (!with_tangent) store.data = nullptr;
     average(u_);
     for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
-                     ScatterStress<Real, Shape>{this->grid_.view(), points_.view(), material_, dilatant_, definite, means(), store, nodes()});
+                     ScatterStress<Real, Shape>{this->grid_.view(), points_.view(), materials_, dilatant_, definite, means(), store, nodes()});
     if (springs().on()) apply_springs(elements_, springs(), u_, internal_);
   }
 
@@ -244,15 +250,15 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
   /// B-bar: means over the elements for a displacement.
   void average(const NodeVector<Place>& u) {
-    if (options_.implicit.b_bar) means_.measure(elements_, this->grid_.view(), points_.view(), material_, dilatant_, u.data());
+    if (options_.implicit.b_bar) means_.measure(elements_, this->grid_.view(), points_.view(), materials_, dilatant_, u.data());
   }
 
   /// On nodes with less than a tenth of a full one's mass, in statics.
   FillerSprings springs() const {
     if (dynamic_) return {};
     const double h = this->frame_.cell[0], hz = this->frame_.cell[2];
-    const double full = static_cast<double>(material_.density) * h * h * hz;
-    return {mass_.data(), 0.1 * full, options_.implicit.filler * 2 * static_cast<double>(material_.shear_modulus) * std::min(h, hz)};
+    const double full = static_cast<double>(materials_.list[0].density) * h * h * hz;
+    return {mass_.data(), 0.1 * full, options_.implicit.filler * 2 * static_cast<double>(materials_.list[0].shear_modulus) * std::min(h, hz)};
   }
 
   /// The unbalanced force for u_, with what `held` and the contacts' states say about it.
@@ -445,7 +451,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   void accept(const Clock& clock, double step) {
     const ProfilePhase<Place> phase("grid to points");
     for_each(Place{}, count_, EndOfStep{nodes(), scheme_, velocity_end_.data(), acceleration_end_.data()});
-    AcceptStep<Real, Shape> step_kernel{this->grid_.view(), points_.view(), material_, clock_.data(), nodes(),
+    AcceptStep<Real, Shape> step_kernel{this->grid_.view(), points_.view(), materials_, clock_.data(), nodes(),
                                         dynamic_ ? velocity_end_.data() : nullptr, acceleration_end_.data(), u_.data(),
                                         clock.share_kept(step, rate_), affine_, dilatant_, true, true, means()};
     const bool musl = dynamic_ && options_.stress_update == StressUpdate::modified;
@@ -454,7 +460,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
       for_each(Place{}, points_.count(), step_kernel);
       change_.fill_zero();
       for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
-                       ScatterVelocity<Real, Shape>{this->grid_.view(), points_.view(), material_.density, change_.data()});
+                       ScatterVelocity<Real, Shape>{this->grid_.view(), points_.view(), materials_, change_.data()});
       for_each(Place{}, count_, RemapDisplacement{nodes(), step, change_.data()});
       average(change_);
       step_kernel.strain_displacement = change_.data();
@@ -464,9 +470,11 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
       average(u_);
     }
     for_each(Place{}, points_.count(), step_kernel);
+    this->measure_columns();
     for_each(Place{}, this->grid_.active_blocks() * block_columns,
              RecordColumns<Real>{this->grid_.view(), this->grid_.active_list(), mass_.data(),
-                                 dynamic_ ? velocity_end_.data() : nullptr, static_cast<double>(material_.density), clock.time,
+                                 dynamic_ ? velocity_end_.data() : nullptr, static_cast<double>(materials_.list[0].density),
+                                 this->column_volumes(), clock.time,
                                  this->maps()});
   }
 

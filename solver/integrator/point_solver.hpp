@@ -48,7 +48,7 @@ class PointSolver : public Solver {
  public:
   PointSolver(const Scene& scene, const SolveOptions& options, const SolverState& state, ParticleFields fields)
       : options_(options),
-        material_(make_material<Real>(options.material)),
+        materials_(make_materials<Real>(options, scene.grid.spacing, scene.grid.layer_height)),
         dilatant_(fields.plastic_volume),
         points_(fields),
         grid_(scene.grid),
@@ -82,7 +82,7 @@ class PointSolver : public Solver {
     constexpr int rows = MeasureEnergies<Real, Shape>::rows;
     totals_.resize(rows);
     const Vec3<double> g{options_.gravity[0], options_.gravity[1], options_.gravity[2]};
-    sum_each<rows>(Place{}, points_.count(), sums_, MeasureEnergies<Real, Shape>{grid_.view(), points_.view(), material_, g, dilatant_},
+    sum_each<rows>(Place{}, points_.count(), sums_, MeasureEnergies<Real, Shape>{grid_.view(), points_.view(), materials_, g, dilatant_},
                    KeepTotals<rows>{totals_.data()});
     const std::vector<double> total = totals_.download();
     return {total[0], total[1], total[2], total[3], {total[4], total[5], total[6]}};
@@ -103,17 +103,33 @@ class PointSolver : public Solver {
   const GroundTables& ground() const override { return grid_.ground(); }
   int particle_count() const override { return points_.count(); }
   std::size_t bytes() const override {
-    return points_.bytes() + grid_.bytes() + sums_.bytes() + thickness_.bytes() +
+    return points_.bytes() + grid_.bytes() + sums_.bytes() + column_volumes_.bytes() + thickness_.bytes() +
            peak_thickness_.bytes() + peak_speed_.bytes() + peak_pressure_.bytes() + arrival_.bytes();
   }
 
  protected:
   static bool needs_plastic_volume(const SolveOptions& o) {
-    return o.material.model == MaterialModel::drucker_prager && o.material.dilatancy_angle > 0;
+    return o.any_material([](const MaterialOptions& m) { return m.model == MaterialModel::drucker_prager && m.dilatancy_angle > 0; });
   }
+  /// Arrays that the scene's materials and loads need.
+  static void add_fields(const SolveOptions& o, ParticleFields& f) {
+    f.load = !o.loads.empty();
+    f.material = !o.parts.empty();
+    f.plastic_shear = o.any_material([](const MaterialOptions& m) { return m.softens(); });
+  }
+  /// Where densities differ, mass does not tell the thickness: volumes over the columns, for the maps.
+  void measure_columns() {
+    if (!options_.densities_differ()) return;
+    column_volumes_.resize(static_cast<std::size_t>(grid_.shape().columns) * static_cast<std::size_t>(grid_.shape().rows));
+    column_volumes_.fill_zero();
+    for_each_grouped(Place{}, points_.count(), grid_.groups(),
+                     ScatterThickness<Real, Shape>{points_.view(), grid_.shape().columns, column_volumes_.data()});
+  }
+  const double* column_volumes() const { return column_volumes_.data(); }
+
   /// Mass of a base node under a full layer [kg].
   double full_base() const {
-    return Shape::edge_share * static_cast<double>(material_.density) * frame_.cell[0] * frame_.cell[1] * frame_.cell[2];
+    return Shape::edge_share * static_cast<double>(materials_.list[0].density) * frame_.cell[0] * frame_.cell[1] * frame_.cell[2];
   }
   Clock read_clock() const { return clock_.download().front(); }
   MapView maps() {
@@ -144,7 +160,7 @@ class PointSolver : public Solver {
   }
 
   SolveOptions options_;
-  Material<Real> material_;
+  Materials<Real> materials_;
   bool dilatant_;
   Particles<Real, Place> points_;
   SparseGrid<Real, Place> grid_;
@@ -152,6 +168,7 @@ class PointSolver : public Solver {
   std::vector<double> load_volumes_;  // [m3]
   Buffer<Vec3<double>, Place> loads_;
   Buffer<Clock, Place> clock_;
+  Buffer<double, Place> column_volumes_;
   Buffer<double, Place> peak_thickness_, peak_speed_, peak_pressure_, arrival_, totals_, thickness_;
   SumSpace<Place> sums_;
 };

@@ -29,13 +29,13 @@ struct MeasureEnergies {
   static constexpr int rows = 7;
   GridView<Real> grid;
   ParticleView<Real> points;
-  Material<Real> material;
+  Materials<Real> materials;
   Vec3<double> gravity;
   bool dilatant;
 
   TALUS_HD Terms<rows> operator()(int p) const {
     const double volume = static_cast<double>(points.volume[p]);
-    const double mass = volume * static_cast<double>(material.density);
+    const double mass = volume * static_cast<double>(materials.density(points.material, p));
     const Vec3<Real> v = points.velocity_of(p);
     const double vx = static_cast<double>(v.x), vy = static_cast<double>(v.y), vz = static_cast<double>(v.z);
     const MaterialState<Real> state{points.elastic_of(p), points.log_volume[p],
@@ -45,7 +45,7 @@ struct MeasureEnergies {
     const double z = height(p);
     return {{0.5 * mass * (vx * vx + vy * vy + vz * vz),
              -mass * (gravity.x * x + gravity.y * y + gravity.z * z),
-             volume * static_cast<double>(elastic_energy(material, state)),
+             volume * static_cast<double>(elastic_energy(materials.of(points.material, points.plastic_shear, p), state)),
              volume,
              mass * vx,
              mass * vy,

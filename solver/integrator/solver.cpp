@@ -28,7 +28,7 @@ SolverState first_state(const Scene& scene, const SolveOptions& options) {
   const double speed = std::hypot(options.initial_velocity[0], options.initial_velocity[1], options.initial_velocity[2]);
   const GroundTables ground = make_ground_tables(scene.grid);
   const auto rate = static_cast<float>(
-      first_rate(scene.grid, ground, scene.points, make_material<double>(options.material).wave_speed, speed));
+      first_rate(scene.grid, ground, scene.points, fastest_wave(options), speed));
   atomic_max_positive(&state.clock.rate_bits, rate);
   return state;
 }

@@ -29,7 +29,8 @@ struct UpdateColumns {
   BaseFriction<Real> friction;
   Real full_base;            // mass of a base node under a full layer [kg]
   Real damping;              // Cundall's local factor [-]
-  Real density;              // [kg/m3]
+  Real density;              // where all points have the same [kg/m3]
+  const double* volumes;     // of the matter over each column, where they differ [m3]; else null
   MapView maps;
 
   TALUS_HD void operator()(int c) const {
@@ -57,8 +58,8 @@ struct UpdateColumns {
     }
     if constexpr (content != NodeContent::remapped) {
       if (mass > Real(0)) {
-        record_column(maps, column, static_cast<double>(mass), static_cast<double>(length(momentum)),
-                      static_cast<double>(density), static_cast<double>(grid.spacing), clock->time);
+        const double mean = volumes && volumes[column] > 0 ? static_cast<double>(mass) / volumes[column] : static_cast<double>(density);
+        record_column(maps, column, static_cast<double>(mass), static_cast<double>(length(momentum)), mean, static_cast<double>(grid.spacing), clock->time);
       }
     }
   }

@@ -20,7 +20,7 @@ template <class Real, class Shape>
 struct MeasureMeans {
   GridView<Real> grid;
   ParticleView<Real> points;
-  Material<Real> material;
+  Materials<Real> materials;
   bool dilatant;
   ElementView elements;
   const Vec3<double>* u;
@@ -56,7 +56,7 @@ struct MeasureMeans {
       const int p = elements.order[s];
       const PointGradients<Real, Shape> g(grid, points, p);
       const VolumeResponse<Real> r =
-          volume_response(material, state_of(points, p, dilatant), displacement_gradient(grid, g, u), increment[e]);
+          volume_response(materials.of(points.material, points.plastic_shear, p), state_of(points, p, dilatant), displacement_gradient(grid, g, u), increment[e]);
       mean += points.volume[p] * r.stress;
       bulk += points.volume[p] * r.bulk;
     }
@@ -116,10 +116,10 @@ void MeanDilation<Real, Place, Shape>::begin_step(const ElementList<Real, Place,
 
 template <class Real, class Place, class Shape>
 void MeanDilation<Real, Place, Shape>::measure(const ElementList<Real, Place, Shape>& list, const GridView<Real>& grid,
-                                               const ParticleView<Real>& points, const Material<Real>& material, bool dilatant,
+                                               const ParticleView<Real>& points, const Materials<Real>& materials, bool dilatant,
                                                const Vec3<double>* u) {
   for_each(Place{}, list.count(),
-           MeasureMeans<Real, Shape>{grid, points, material, dilatant, list.view(), u, increment_.data(), stress_.data(),
+           MeasureMeans<Real, Shape>{grid, points, materials, dilatant, list.view(), u, increment_.data(), stress_.data(),
                                      stiffness_.data(), gradient_.data()});
 }
 

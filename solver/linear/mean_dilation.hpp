@@ -37,9 +37,9 @@ class MeanDilation {
   /// The points have moved, or have been sorted, and `list` is their elements anew.
   void begin_step(const ElementList<Real, Place, Shape>& list, int points);
 
-  /// Means for the displacement u. Stress and tangent are measured with `material`, points dilating plastically or not.
+  /// Means for the displacement u. Stress and tangent are measured with `materials`, points dilating plastically or not.
   void measure(const ElementList<Real, Place, Shape>& list, const GridView<Real>& grid, const ParticleView<Real>& points,
-               const Material<Real>& material, bool dilatant, const Vec3<double>* u);
+               const Materials<Real>& materials, bool dilatant, const Vec3<double>* u);
 
   MeanDilationView<Real> view() const {
     return {element_of_.data(), increment_.data(), stress_.data(), stiffness_.data(), gradient_.data()};

@@ -25,6 +25,8 @@ struct Material {
   Real dilatancy = 0;        // slope beta of the plastic potential [-]
   Real shear_cohesion = 0;   // [Pa]
   Real tension = 0;          // largest -p carried [Pa]
+  Real residual_friction = 0, residual_cohesion = 0;  // slope and shear cohesion once softened
+  Real softening = 0;        // share of the way there per plastic shear strain; 0: does not soften [-]
   Real apex = 0;             // pressure over which the tip of the cone is rounded [Pa]
   bool exact_tangent = false;  // with what the volume change does to a yielding point's friction: not symmetric
 };
@@ -34,6 +36,34 @@ struct MaterialState {
   Sym3<Real> elastic;
   Real log_volume{};          // ln J
   Real plastic_log_volume{};  // part of it from dilatancy
+  Real plastic_shear{};       // equivalent plastic shear strain of this step, sqrt(2/3) of the deviatoric one's size
+};
+
+inline constexpr int most_materials = 8;
+
+/// A material that has yielded by this plastic shear strain: friction and cohesion on the way to what is left of them.
+template <class Real>
+TALUS_HD Material<Real> softened(Material<Real> m, Real plastic_shear) {
+  const Real way = plastic_shear * m.softening, left = way < Real(1) ? Real(1) - way : Real(0);
+  const Real cohesion = m.residual_cohesion + left * (m.shear_cohesion - m.residual_cohesion);
+  m.friction = m.residual_friction + left * (m.friction - m.residual_friction);
+  if (m.shear_cohesion > Real(0)) m.tension *= cohesion / m.shear_cohesion;
+  m.shear_cohesion = cohesion;
+  if (m.dilatancy > m.friction) m.dilatancy = m.friction;
+  return m;
+}
+
+/// The materials of a scene. A scene of one that does not soften has no arrays on its points, and they all take the first.
+template <class Real>
+struct Materials {
+  Material<Real> list[most_materials];
+
+  /// `which` and `plastic_shear` are the points' arrays; null where the scene needs none.
+  TALUS_HD Material<Real> of(const int* which, const Real* plastic_shear, int p) const {
+    const Material<Real>& m = which ? list[which[p]] : list[0];
+    return plastic_shear ? softened(m, plastic_shear[p]) : m;
+  }
+  TALUS_HD Real density(const int* which, int p) const { return which ? list[which[p]].density : list[0].density; }
 };
 
 /// What B-bar gives a point instead of its own volume change (mean_dilation.hpp).
@@ -179,7 +209,9 @@ TALUS_HD void return_to_cone(const Material<Real>& m, MaterialState<Real>& s) {
   const Real shear = Real(2) * m.shear_modulus * sqrt(Real(0.5) * norm_squared(s.elastic));  // sqrt(J2) of the trial
   const ConeReturn<Real> end(m, shear, free_pressure(m, s.log_volume, s.plastic_log_volume));
   if (!end.yields) return;
-  s.elastic = s.elastic * (end.left / shear);
+  const Real kept = end.left / shear;
+  s.plastic_shear = sqrt(Real(2.0 / 3) * norm_squared(s.elastic)) * (Real(1) - kept);
+  s.elastic = s.elastic * kept;
   s.plastic_log_volume += end.dilation;
 }
 

@@ -11,7 +11,7 @@
 namespace talus::solver {
 namespace {
 
-constexpr const char* kind = "talus checkpoint 2";
+constexpr const char* kind = "talus checkpoint 3";
 
 /// Visits every array of the points by name, so that writing and reading cannot differ.
 template <class State, class Ints, class Reals>
@@ -28,6 +28,8 @@ void visit_points(State& s, Ints&& ints, Reals&& reals) {
   ints("id", s.id);
   ints("release", s.release);
   ints("load", s.load);
+  ints("material", s.material);
+  reals("plastic_shear", s.plastic_shear);
   reals("log_volume", s.log_volume);
   reals("plastic_log_volume", s.plastic_log_volume);
   reals("volume", s.volume);

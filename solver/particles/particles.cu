@@ -22,6 +22,7 @@ std::vector<double> download_as(const Buffer<Real, Place>& from) {
 template <class Real, class Place>
 bool Particles<Real, Place>::in_use(int slot) const {
   if (slot >= move_slot) return fields_.move;
+  if (slot >= shear_slot) return fields_.plastic_shear;
   if (slot >= extent_slot) return fields_.extent;
   if (slot >= acceleration_slot) return fields_.acceleration;
   if (slot >= affine_slot) return fields_.affine;
@@ -42,6 +43,8 @@ void Particles<Real, Place>::upload(const ParticleState& state) {
   ints_[3].upload(state.id);
   ints_[4].upload(state.release);
   if (fields_.load) ints_[load_slot].upload(state.load);
+  if (fields_.material) ints_[material_slot].upload(state.material);
+  if (fields_.plastic_shear) upload_as(reals_[shear_slot], state.plastic_shear);
   for (int a = 0; a < 6; ++a) upload_as(reals_[elastic_slot + a], state.elastic[a]);
   for (int a = 0; fields_.affine && a < 9; ++a) upload_as(reals_[affine_slot + a], state.affine[a]);
   upload_as(reals_[log_slot], state.log_volume);
@@ -63,6 +66,8 @@ ParticleState Particles<Real, Place>::download() const {
   state.id = ints_[3].download();
   state.release = ints_[4].download();
   state.load = fields_.load ? ints_[load_slot].download() : std::vector<int>(static_cast<std::size_t>(count_), -1);
+  state.material = fields_.material ? ints_[material_slot].download() : std::vector<int>(static_cast<std::size_t>(count_), 0);
+  state.plastic_shear = fields_.plastic_shear ? download_as(reals_[shear_slot]) : zeros;
   for (int a = 0; a < 6; ++a) state.elastic[a] = download_as(reals_[elastic_slot + a]);
   for (int a = 0; a < 9; ++a) state.affine[a] = fields_.affine ? download_as(reals_[affine_slot + a]) : zeros;
   state.log_volume = download_as(reals_[log_slot]);
@@ -88,6 +93,8 @@ ParticleView<Real> Particles<Real, Place>::view() {
   for (int a = 0; a < 3; ++a) v.move[a] = reals_[move_slot + a].data();
   for (int a = 0; a < 3; ++a) v.acceleration[a] = reals_[acceleration_slot + a].data();
   v.load = ints_[load_slot].data();
+  v.material = ints_[material_slot].data();
+  v.plastic_shear = reals_[shear_slot].data();
   for (int a = 0; a < 6; ++a) v.elastic[a] = reals_[elastic_slot + a].data();
   for (int a = 0; a < 9; ++a) v.affine[a] = reals_[affine_slot + a].data();
   v.log_volume = reals_[log_slot].data();
@@ -113,7 +120,7 @@ void Particles<Real, Place>::reorder(const Buffer<int, Place>& order, int count)
     reals_[slot].swap(real_scratch_);
   }
   for (int slot = 0; slot < int_slots; ++slot) {
-    if (slot == load_slot && !fields_.load) continue;
+    if ((slot == load_slot && !fields_.load) || (slot == material_slot && !fields_.material)) continue;
     auto& array = ints_[slot];
     int_scratch_.resize(static_cast<std::size_t>(count));
     for_each(Place{}, count, Gather<int>{order.data(), array.data(), int_scratch_.data()});

@@ -29,6 +29,8 @@ struct ParticleView {
   int* id;                                // order of seeding
   int* release;                           // which release it belongs to
   int* load;                              // which load pulls at it, -1: none; null without loads
+  int* material;                          // which it is of; null in a scene of one
+  Real* plastic_shear;                    // equivalent plastic shear strain so far [-]; null unless a material softens
 
   TALUS_HD Vec3<Real> velocity_of(int p) const { return {velocity[0][p], velocity[1][p], velocity[2][p]}; }
   TALUS_HD Sym3<Real> elastic_of(int p) const {
@@ -94,14 +96,14 @@ struct ParticleView {
 
 /// Host copy of the whole state, in double.
 struct ParticleState {
-  std::vector<int> cell[3], id, release, load;
-  std::vector<double> offset[3], extent[3], velocity[3], acceleration[3], affine[9], elastic[6], log_volume, plastic_log_volume, volume;
+  std::vector<int> cell[3], id, release, load, material;
+  std::vector<double> offset[3], extent[3], velocity[3], acceleration[3], affine[9], elastic[6], log_volume, plastic_log_volume, plastic_shear, volume;
   std::size_t size() const { return id.size(); }
 };
 
 /// Which optional arrays a scene needs.
 struct ParticleFields {
-  bool affine = false, plastic_volume = false, extent = false, move = false, acceleration = false, load = false;
+  bool affine = false, plastic_volume = false, extent = false, move = false, acceleration = false, load = false, material = false, plastic_shear = false;
 };
 
 template <class Real, class Place>
@@ -121,13 +123,13 @@ class Particles {
 
  private:
   static constexpr int offset_slot = 0, velocity_slot = 3, elastic_slot = 6, log_slot = 12, volume_slot = 13,
-                       plastic_slot = 14, affine_slot = 15, acceleration_slot = 24, extent_slot = 27, move_slot = 30, real_slots = 33;
-  static constexpr int load_slot = 5, int_slots = 6;
+                       plastic_slot = 14, affine_slot = 15, acceleration_slot = 24, extent_slot = 27, shear_slot = 30, move_slot = 31, real_slots = 34;
+  static constexpr int load_slot = 5, material_slot = 6, int_slots = 7;
   bool in_use(int slot) const;
   ParticleFields fields_;
   int count_ = 0;
   Buffer<Real, Place> reals_[real_slots];
-  Buffer<int, Place> ints_[int_slots];  // cell x y z, id, release, load
+  Buffer<int, Place> ints_[int_slots];  // cell x y z, id, release, load, material
   Buffer<Real, Place> real_scratch_;
   Buffer<int, Place> int_scratch_;
 };

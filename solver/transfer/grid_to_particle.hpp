@@ -20,7 +20,7 @@ template <class Real, class Shape, Gather part>
 struct GridToParticle {
   GridView<Real> grid;
   ParticleView<Real> points;
-  Material<Real> material;
+  Materials<Real> materials;
   Clock* clock;
   const Vec4<Real>* nodes;
   const Vec4<Real>* changes;
@@ -120,7 +120,8 @@ struct GridToParticle {
     const Mat3<Real> g{sums.gradient.a * across - c * s.slope_x, sums.gradient.b * across - c * s.slope_y, c};
     MaterialState<Real> state{points.elastic_of(p), points.log_volume[p],
                               dilatant ? points.plastic_log_volume[p] : Real(0)};
-    advance_material(material, g, state);
+    advance_material(materials.of(points.material, points.plastic_shear, p), g, state);
+    if (points.plastic_shear) points.plastic_shear[p] += state.plastic_shear;
     points.set_elastic(p, state.elastic);
     points.log_volume[p] = state.log_volume;
     if (dilatant) points.plastic_log_volume[p] = state.plastic_log_volume;
@@ -150,7 +151,8 @@ struct GridToParticle {
     }
     const Real steep = Real(1) + s.slope_x * s.slope_x + s.slope_y * s.slope_y;
     const Real hx = Real(1) / grid.spacing, hz = Real(1) / grid.layer_height;
-    const Real waves = material.wave_speed * sqrt(Real(2) * hx * hx + steep * hz * hz);
+    const Real wave_speed = points.material ? materials.list[points.material[p]].wave_speed : materials.list[0].wave_speed;
+    const Real waves = wave_speed * sqrt(Real(2) * hx * hx + steep * hz * hz);
     const Real flow = fabs(v.x) * hx + fabs(v.y) * hx + fabs(sums.climb) * hz;
     atomic_max_positive(&clock->rate_bits, static_cast<float>(waves + flow));
     atomic_max_positive(&clock->speed_bits, static_cast<float>(speed));

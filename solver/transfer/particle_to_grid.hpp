@@ -21,7 +21,7 @@ struct ParticleToGrid {
   static constexpr int width = Shape::width, nodes_each = width * width * width;
   GridView<Real> grid;
   ParticleView<Real> points;
-  Material<Real> material;
+  Materials<Real> materials;
   const Clock* clock;
   Vec4<Real>* nodes;
   Vec4<Real>* forces;
@@ -40,10 +40,10 @@ struct ParticleToGrid {
     TALUS_HD Source(const ParticleToGrid& kernel, int p) : Stencil<Real, Shape>(kernel.grid, kernel.points, p) {
       const ParticleView<Real>& points = kernel.points;
       const Real volume = points.volume[p];
-      mass = volume * kernel.material.density;
+      mass = volume * kernel.materials.density(points.material, p);
       if constexpr (what != Scatter::momentum) {
         const MaterialState<Real> state{points.elastic_of(p), points.log_volume[p], kernel.dilatant ? points.plastic_log_volume[p] : Real(0)};
-        const Sym3<Real> tau = kirchhoff_stress(kernel.material, state);
+        const Sym3<Real> tau = kirchhoff_stress(kernel.materials.of(points.material, points.plastic_shear, p), state);
         const Real dt = what == Scatter::impulse ? Real(kernel.clock->step_size) : Real(1);
         const Real across = -volume * dt / kernel.grid.spacing, up = -volume * dt / kernel.grid.layer_height;
         pull.a = Vec3<Real>{tau.xx, tau.xy, tau.xz} * across;

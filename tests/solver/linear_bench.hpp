@@ -95,7 +95,7 @@ struct LinearBench {
   Particles<Real, Place> points{{false, false, Shape::averaged}};
   SparseGrid<Real, Place> grid;
   ElementList<Real, Place, Shape> elements;
-  Material<Real> material;
+  Materials<Real> materials;
   int count = 0;
   Buffer<Real, Place> tangents;
   Buffer<double, Place> mass;
@@ -111,13 +111,13 @@ struct LinearBench {
     points.upload(scene.points);
     MaterialOptions mo;
     mo.model = setting.model;
-    material = make_material<Real>(mo);
+    materials.list[0] = make_material<Real>(mo);
     grid.fit(points, 0);
     count = grid.nodes();
     elements.build(grid.view(), points.view());
     refresh();
     if (setting.springs) {
-      const double full = static_cast<double>(material.density) * scene.grid.spacing * scene.grid.spacing * scene.grid.layer_height;
+      const double full = static_cast<double>(materials.list[0].density) * scene.grid.spacing * scene.grid.spacing * scene.grid.layer_height;
       springs = {mass.data(), 0.5 * full, 1e6};
     }
     hold();
@@ -149,7 +149,7 @@ struct LinearBench {
     tangents.resize(static_cast<std::size_t>(TangentStore<Real>::numbers) * static_cast<std::size_t>(points.count()));
     for_each_grouped(
         Place{}, points.count(), grid.groups(),
-        ScatterInertia<Real, Shape>{grid.view(), points.view(), material.density, false, false, nullptr, nodes()});
+        ScatterInertia<Real, Shape>{grid.view(), points.view(), materials, false, false, nullptr, nodes()});
     if (b_bar) means.begin_step(elements, points.count());
     measure_stress();
   }
@@ -157,9 +157,9 @@ struct LinearBench {
   /// Internal force and tangents for the displacement u.
   void measure_stress() {
     internal.fill_zero();
-    if (b_bar) means.measure(elements, grid.view(), points.view(), material, false, u.data());
+    if (b_bar) means.measure(elements, grid.view(), points.view(), materials, false, u.data());
     for_each_grouped(Place{}, points.count(), grid.groups(),
-                     ScatterStress<Real, Shape>{grid.view(), points.view(), material, false, false, mean_view(), store(), nodes()});
+                     ScatterStress<Real, Shape>{grid.view(), points.view(), materials, false, false, mean_view(), store(), nodes()});
     if (springs.on()) apply_springs(elements, springs, u, internal);
     synchronise(Place{});
   }

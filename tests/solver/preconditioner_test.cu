@@ -51,7 +51,7 @@ class Preconditioners : public InEachPlace {
     o.shape = kind_of<Shape>;
     LinearBench<Real, Place, Shape> bench(make_scene(d, o), {kind_of<Shape>});
     bench.lay_down();
-    const double step = over_cfl * h / static_cast<double>(bench.material.wave_speed);
+    const double step = over_cfl * h / static_cast<double>(bench.materials.list[0].wave_speed);
     bench.inertia = 4 / (step * step);
     int count = 0;
     bench.by_gradients(kind, &count, 1e-3);
@@ -119,7 +119,7 @@ class Preconditioners : public InEachPlace {
       for (const Contrast& c : contrasts) {
         LinearBench<Real, Place, Shape> bench(scene, {kind_of<Shape>});
         bench.lay_down();
-        const double step = 5 * h / static_cast<double>(bench.material.wave_speed);
+        const double step = 5 * h / static_cast<double>(bench.materials.list[0].wave_speed);
         bench.inertia = 4 / (step * step);
         bench.contrast(12, c.stiffness, c.density);
         int count = 0;

@@ -129,7 +129,7 @@ class Transfers : public InEachPlace {
     Buffer<Clock, Place> clock;
     clock.upload({c});
     scatter_points(Place{}, points.count(), grid.groups(),
-                   ParticleToGrid<Real, Shape, Scatter::impulse>{grid.view(), points.view(), make_material<Real>(mo), clock.data(),
+                   ParticleToGrid<Real, Shape, Scatter::impulse>{grid.view(), points.view(), Materials<Real>{{make_material<Real>(mo)}}, clock.data(),
                                                                  nodes.data(), nullptr, nullptr, true, false});
     synchronise(Place{});
     const auto got = nodes.download();
@@ -181,7 +181,7 @@ class Transfers : public InEachPlace {
     MaterialOptions mo;
     mo.model = MaterialModel::hencky;
     for_each(Place{}, points.count(),
-             GridToParticle<Real, Shape, Gather::all>{grid.view(), points.view(), make_material<Real>(mo), clock.data(),
+             GridToParticle<Real, Shape, Gather::all>{grid.view(), points.view(), Materials<Real>{{make_material<Real>(mo)}}, clock.data(),
                                                       nodes.data(), nullptr, grid.home(), true, false});
     synchronise(Place{});
     const ParticleState got = points.download();
