@@ -22,6 +22,11 @@ void ReleaseOptions::describe(recipe::Visitor& v) {
                  "which way the thickness is measured");
 }
 
+void ErodibleOptions::describe(recipe::Visitor& v) {
+  v.flag("lowering", lowering, "with before_dem and after_dem: the layer is what went down outside the source; no raster, no polygons");
+  ReleaseOptions::describe(v);
+}
+
 void SourceOptions::describe(recipe::Visitor& v) {
   v.path("polygon", polygon, "outline of the source; empty = found as the connected region of lowering");
   v.number("threshold_m", threshold_m, recipe::not_negative, "lowering beyond which a cell belongs to such a region");
@@ -86,6 +91,7 @@ void Options::describe(recipe::Visitor& v) {
   grid.describe(v);
   v.leave();
   recipe::list(v, "release", release, "what is released onto base_dem; may be repeated");
+  recipe::list(v, "erodible", erodible, "a layer of ground that the slide can take along: material points with a strength of their own; may be repeated");
   v.enter("laboratory", "(4) a plane instead of elevation models, with [[preprocess.box]]");
   laboratory.describe(v);
   v.leave();
@@ -125,8 +131,8 @@ void check_way(const Options& o, std::vector<Fault>& faults) {
   }
 }
 
-void check_release(const ReleaseOptions& r, std::size_t item, std::vector<Fault>& faults) {
-  const std::string place = fmt::format("release {}", item + 1);
+void check_release(const char* kind, const ReleaseOptions& r, std::size_t item, std::vector<Fault>& faults) {
+  const std::string place = fmt::format("{} {}", kind, item + 1);
   if (r.thickness_raster.empty() == r.polygons.empty()) {
     faults.push_back(fault(place + (r.polygons.empty() ? ": neither thickness_raster nor polygons is given"
                                                        : ": thickness_raster and polygons are both given"),
@@ -172,19 +178,29 @@ void check_grid(const GridOptions& g, std::vector<Fault>& faults) {
 
 void Options::check(std::vector<Fault>& faults) const {
   if (laboratory.given() || !box.empty()) {
+    if (!erodible.empty()) faults.push_back(fault("erodible does not go with a laboratory", "its boxes are not read from maps", "Give the layer as a box"));
     check_grid(grid, faults);
     if (faults.empty()) check_laboratory(*this, faults);
     return;
   }
   check_way(*this, faults);
   std::set<std::string> names;
-  for (std::size_t i = 0; i < release.size(); ++i) {
-    check_release(release[i], i, faults);
-    if (!release[i].name.empty() && !names.insert(release[i].name).second) {
-      faults.push_back(fault(fmt::format("release {}: name \"{}\" is taken", i + 1, release[i].name),
-                             "results are told apart by name", "Name it otherwise"));
+  const auto check_list = [&](const char* kind, const auto& list, const auto& given_otherwise) {
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      if (!given_otherwise(list[i])) check_release(kind, list[i], i, faults);
+      if (!list[i].name.empty() && !names.insert(list[i].name).second) {
+        faults.push_back(fault(fmt::format("{} {}: name \"{}\" is taken", kind, i + 1, list[i].name), "results are told apart by name", "Name it otherwise"));
+      }
     }
-  }
+  };
+  check_list("release", release, [](const ReleaseOptions&) { return false; });
+  check_list("erodible", erodible, [&](const ErodibleOptions& e) {
+    if (e.lowering && (after_dem.empty() || !e.thickness_raster.empty() || !e.polygons.empty())) {
+      faults.push_back(fault("erodible: lowering = true beside a raster or polygons, or without after_dem", "the layer is the difference of two elevation models",
+                             "Give before_dem and after_dem and nothing else, or leave lowering out"));
+    }
+    return e.lowering;
+  });
   check_grid(grid, faults);
   if (source.seed_x_m.has_value() != source.seed_y_m.has_value()) {
     faults.push_back(

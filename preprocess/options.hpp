@@ -28,6 +28,13 @@ struct ReleaseOptions {
   void describe(recipe::Visitor& v);
 };
 
+/// One [[preprocess.erodible]]: a layer of ground, given as a release is, or all that was lowered outside the source.
+struct ErodibleOptions : ReleaseOptions {
+  bool lowering = false;
+
+  void describe(recipe::Visitor& v);
+};
+
 struct SourceOptions {
   std::filesystem::path polygon;
   double threshold_m = 0.5;
@@ -86,6 +93,7 @@ struct Options {
   SourceOptions source;
   GridOptions grid;
   std::vector<ReleaseOptions> release;
+  std::vector<ErodibleOptions> erodible;
   LaboratoryOptions laboratory;
   std::vector<BoxOptions> box;
   BedRasters bed;

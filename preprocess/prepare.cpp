@@ -23,6 +23,7 @@ namespace {
 struct Scene {
   Raster before, bed;
   std::vector<Release> releases;
+  std::vector<double> lowering = {};  // before less after [m]; where both are given
 };
 
 Scene from_source(Raster before, Source source) {
@@ -37,7 +38,11 @@ Scene from_before_and_after(const Options& options) {
   share_crs({&before, &after}, options.working_crs);
   std::vector<Raster> surfaces = align({&before, &after}, options);
   Source source = find_source({surfaces[0], surfaces[1], options.after_dem}, options.source);
-  return from_source(std::move(surfaces[0]), std::move(source));
+  std::vector<double> lowering;
+  for (std::size_t c = 0; c < surfaces[0].values.size(); ++c) lowering.push_back(surfaces[0].values[c] - surfaces[1].values[c]);
+  Scene scene = from_source(std::move(surfaces[0]), std::move(source));
+  scene.lowering = std::move(lowering);
+  return scene;
 }
 
 Scene from_sliding_surface(const Options& options) {
@@ -88,6 +93,33 @@ Scene from_laboratory(const Options& options) {
   return scene;
 }
 
+/// What went down where nothing fails: the layer that the slide took along.
+Release lowered_outside_source(const Scene& scene, const std::string& name) {
+  Release layer{name, {scene.bed.grid, std::vector<double>(scene.bed.grid.count(), 0.0)}};
+  bool any = false;
+  for (std::size_t c = 0; c < scene.lowering.size(); ++c) {
+    if (!(scene.lowering[c] > 0) || scene.releases.front().thickness.values[c] > 0) continue;
+    layer.thickness.values[c] = scene.lowering[c];
+    any = true;
+  }
+  if (!any) throw DataError(Fault{"[[preprocess.erodible]] lowering = true: nothing lies lower outside the source", "no ground was eroded", "Leave it out, or raise source.threshold_m"});
+  return layer;
+}
+
+/// Takes the erodible layers out of the bed, and puts them below everything that is released.
+void lay_erodible(const Options& options, Scene& scene) {
+  std::vector<Release> layers;
+  for (std::size_t e = 0; e < options.erodible.size(); ++e) {
+    ErodibleOptions o = options.erodible[e];
+    if (o.name.empty()) o.name = fmt::format("erodible-{}", e + 1);
+    layers.push_back(o.lowering ? lowered_outside_source(scene, o.name) : read_release(o, e, scene.bed));
+  }
+  for (const Release& layer : layers) {
+    for (std::size_t c = 0; c < scene.bed.values.size(); ++c) scene.bed.values[c] -= layer.thickness.values[c];
+  }
+  scene.releases.insert(scene.releases.begin(), std::make_move_iterator(layers.begin()), std::make_move_iterator(layers.end()));
+}
+
 Scene read_scene(const Options& options) {
   switch (options.way()) {
     case Way::before_and_after: return from_before_and_after(options);
@@ -115,10 +147,11 @@ std::vector<std::pair<std::string, Raster>> read_bed(const BedRasters& bed, cons
   return rasters;
 }
 
-Raster total_thickness(const Scene& scene) {
+/// Of what is released: the releases from the `first` one on.
+Raster total_thickness(const Scene& scene, std::size_t first) {
   Raster total{scene.bed.grid, std::vector<double>(scene.bed.grid.count(), 0.0)};
-  for (const Release& release : scene.releases) {
-    for (std::size_t i = 0; i < total.values.size(); ++i) total.values[i] += release.thickness.values[i];
+  for (std::size_t r = first; r < scene.releases.size(); ++r) {
+    for (std::size_t i = 0; i < total.values.size(); ++i) total.values[i] += scene.releases[r].thickness.values[i];
   }
   return total;
 }
@@ -151,6 +184,10 @@ std::vector<std::filesystem::path> inputs_of(const Options& options) {
   for (const auto& file :
        {options.before_dem, options.after_dem, options.sliding_surface, options.base_dem, options.source.polygon})
     add(file);
+  for (const ReleaseOptions& layer : options.erodible) {
+    add(layer.thickness_raster);
+    add(layer.polygons);
+  }
   for (const ReleaseOptions& release : options.release) {
     add(release.thickness_raster);
     add(release.polygons);
@@ -166,6 +203,7 @@ Prepared prepare(const Options& options, Points points) {
   options.check(faults);
   if (!faults.empty()) throw RecipeError(std::move(faults));
   Scene scene = read_scene(options);
+  lay_erodible(options, scene);
   const Seeding seeding = seeding_of(options.grid, scene.bed.grid.cell);
   Prepared prepared;
   prepared.inputs = inputs_of(options);
@@ -176,7 +214,7 @@ Prepared prepare(const Options& options, Points points) {
   Domain& domain = prepared.domain;
   domain.grid = scene.bed.grid;
   domain.layer_height = seeding.layer_height;
-  domain.release_thickness = total_thickness(scene);
+  domain.release_thickness = total_thickness(scene, options.erodible.size());
   warn_at_edge(domain.release_thickness);
   const std::vector<double> cosine = slope_cosine(scene.bed);
   prepared.total = volumes_of(domain.release_thickness, cosine);
@@ -187,6 +225,7 @@ Prepared prepare(const Options& options, Points points) {
   if (points == Points::seeded) {
     domain.points = laboratory ? seed_boxes(options) : seed_points(scene.releases, seeding);
   }
+  domain.erodible = static_cast<int>(options.erodible.size());
   domain.bed = read_bed(options.bed, domain.grid);
   domain.terrain = std::move(scene.bed);
   domain.before = std::move(scene.before);

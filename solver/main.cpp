@@ -8,6 +8,7 @@
 #include "common/stage/stage.hpp"
 #include "common/volume/domain.hpp"
 #include "solver/parallel/profile.hpp"
+#include "solver/plan.hpp"
 #include "solver/run.hpp"
 #include "solver/stiffness.hpp"
 
@@ -20,7 +21,7 @@ const char* const examples =
     "  talus-solve recipe.toml --out out/valley            # as the recipe says, on a GPU where there is one\n"
     "  talus-solve recipe.toml --out out/valley --on cpu   # on the processor\n"
     "  talus-solve recipe.toml --out out/valley --restart  # go on after Ctrl-C\n"
-    "  talus-solve recipe.toml --out out/valley --check    # say what would be done";
+    "  talus-solve recipe.toml --out out/valley --plan     # say what is on, how many steps, how long; write nothing";
 
 Stage stage() {
   Stage s;
@@ -98,6 +99,10 @@ void solve(StageContext& context) {
   const auto domain_file = options.domain.empty() ? context.out / "domain.vdb" : options.domain;
   const Domain domain = read_domain(domain_file);
   options = settle_stiffness(domain, options);
+  if (context.plan) {
+    for (const std::string& text : plan(domain, options, on)) log_info(text);
+    return;
+  }
   log_plan(domain, options, on);
   if (context.check_only) return;
 

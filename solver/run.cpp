@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "solver/output/thickness.hpp"
 #include "solver/parallel/place.hpp"
 #include "solver/parallel/profile.hpp"
 
@@ -348,6 +349,7 @@ RunMaps Simulation::final_maps() const {
   maps.initial_thickness = memory_.initial_thickness;
   maps.deposit_thickness = solver_->thickness();
   maps.peak_thickness = fields.peak_thickness;
+  if (domain_.release_names.size() > 1) tell_apart(maps);
   maps.peak_speed = fields.peak_speed;
   maps.peak_pressure = fields.peak_pressure;
   for (double& value : maps.peak_pressure) value /= 1000;  // Pa to kPa
@@ -357,6 +359,32 @@ RunMaps Simulation::final_maps() const {
   }
   maps.threshold = options_.map_threshold;
   return maps;
+}
+
+bool Simulation::went_along(const ParticleState& s, std::size_t p) const {
+  if (s.release[p] >= domain_.erodible) return true;
+  const auto first = static_cast<std::size_t>(s.id[p]);
+  const auto moved = [&](int a) { return s.cell[a][p] + s.offset[a][p] - scene_.points.cell[a][first] - scene_.points.offset[a][first]; };
+  return std::hypot(moved(0), moved(1)) > 1;
+}
+
+void Simulation::tell_apart(RunMaps& maps) const {
+  const ParticleState end = solver_->state().points;
+  const ParticleState& start = scene_.points;
+  const auto map_of = [&](const ParticleState& s, const std::function<bool(std::size_t)>& counts) { return thickness_of(scene_, options_, s, counts); };
+  for (std::size_t r = 0; r < domain_.release_names.size(); ++r) {
+    maps.deposit_of.emplace_back(domain_.release_names[r],
+                                 map_of(end, [&](std::size_t p) { return end.release[p] == static_cast<int>(r) && went_along(end, p); }));
+  }
+  if (domain_.erodible == 0) return;
+  maps.initial_thickness = map_of(start, [&](std::size_t p) { return start.release[p] >= domain_.erodible; });
+  maps.deposit_thickness = map_of(end, [&](std::size_t p) { return went_along(end, p); });
+  const auto layer = map_of(start, [&](std::size_t p) { return start.release[p] < domain_.erodible; });
+  const auto left = map_of(end, [&](std::size_t p) { return !went_along(end, p); });
+  for (std::size_t c = 0; c < layer.size(); ++c) {
+    maps.eroded_depth.push_back(std::max(0.0, layer[c] - left[c]));
+    maps.peak_thickness[c] = std::max(0.0, maps.peak_thickness[c] - layer[c]);
+  }
 }
 
 void Simulation::finish(RunSummary& summary) {
@@ -376,6 +404,16 @@ void Simulation::finish(RunSummary& summary) {
   summary.volume_released = released_;
   summary.volume_final = std::accumulate(state.points.volume.begin(), state.points.volume.end(), 0.0);
   summary.volume_outflow = memory_.outflow_volume;
+  if (domain_.erodible > 0) {
+    summary.volume_released = summary.volume_final = 0;
+    for (std::size_t p = 0; p < scene_.points.size(); ++p) {
+      if (scene_.points.release[p] >= domain_.erodible) summary.volume_released += scene_.points.volume[p];
+    }
+    for (std::size_t p = 0; p < state.points.size(); ++p) {
+      if (went_along(state.points, p)) summary.volume_final += state.points.volume[p];
+    }
+    summary.volume_entrained = summary.volume_final + summary.volume_outflow - summary.volume_released;
+  }
   summary.provenance = domain_.provenance;
   writing_.settle();
   RunWriter writer(paths_.run);

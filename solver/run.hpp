@@ -49,6 +49,10 @@ class Simulation {
   [[noreturn]] void fail(const Clock& clock) const;
   void finish(RunSummary& summary);
   RunMaps final_maps() const;
+  /// What belongs to which release, and what still lies in the ground.
+  void tell_apart(RunMaps& maps) const;
+  /// Whether a point is part of the slide: released, or taken along by more than a cell.
+  bool went_along(const ParticleState& s, std::size_t p) const;
   double wall_time() const;
   PointFrame point_frame(double time, const ParticleState& points) const;
 

@@ -38,6 +38,19 @@ void write_maps(h5::File& file, const RunMaps& maps) {
     file.set_text(path, "unit", field.unit);
     file.set_text(path, "long_name", field.long_name);
   }
+  const auto extra = [&](const std::string& path, const std::vector<double>& values, const std::string& long_name) {
+    file.write<double>(path, shape, values);
+    file.set_text(path, "unit", "m");
+    file.set_text(path, "long_name", long_name);
+  };
+  if (!maps.eroded_depth.empty()) extra("/maps/eroded_depth", maps.eroded_depth, "depth of ground that went along, vertical");
+  if (maps.deposit_of.empty()) return;
+  file.make_group("/maps/deposit_of");
+  for (std::size_t r = 0; r < maps.deposit_of.size(); ++r) {
+    const auto path = "/maps/deposit_of/" + std::to_string(r);
+    extra(path, maps.deposit_of[r].second, "thickness at the end of what came from one release, vertical");
+    file.set_text(path, "release", maps.deposit_of[r].first);
+  }
 }
 
 void write_history(h5::File& file, const RunHistory& history) {

@@ -20,11 +20,13 @@ struct RunMaps {
   std::vector<double> terrain;            // bed [m], NaN outside the domain
   std::vector<double> before;             // surface before the failure [m]
   std::vector<double> initial_thickness;  // [m]
-  std::vector<double> deposit_thickness;  // at the end [m]
+  std::vector<double> deposit_thickness;  // at the end, without what still lies where it was eroded from [m]
   std::vector<double> peak_thickness;     // running maximum [m]
   std::vector<double> peak_speed;         // running maximum of the depth-mean speed [m/s]
   std::vector<double> peak_pressure;      // running maximum of rho v^2 [kPa]
   std::vector<double> arrival_time;       // [s], NaN where it never came
+  std::vector<std::pair<std::string, std::vector<double>>> deposit_of;  // deposit_thickness by release, where there are several [m]
+  std::vector<double> eroded_depth;       // of the ground that went along [m]; empty where nothing can be eroded
   double threshold = 0;                   // thickness from which speed, pressure and arrival count [m]
 };
 
@@ -49,6 +51,7 @@ struct RunSummary {
   double memory = 0;           // points, grid and linear solver, at the end [bytes]
   double density = 0;          // [kg/m3]
   double volume_released = 0;  // [m3]
+  double volume_entrained = 0; // eroded from the ground on the way [m3]
   double volume_final = 0;     // [m3]
   double volume_outflow = 0;   // [m3]
   std::vector<std::pair<std::string, double>> profile;  // phases of the step loop [s]; empty unless measured

@@ -10,7 +10,7 @@
 namespace talus::run_layout {
 
 inline constexpr const char* format = "talus-run";
-inline constexpr std::int64_t format_version = 2;
+inline constexpr std::int64_t format_version = 3;
 
 struct MapField {
   const char* name;
@@ -47,6 +47,7 @@ inline constexpr SummaryItem<double> summary_numbers[] = {
     {"time_end_s", &RunSummary::time_end},          {"wall_time_s", &RunSummary::wall_time},
     {"memory_bytes", &RunSummary::memory},
     {"density_kg_m3", &RunSummary::density},        {"volume_released_m3", &RunSummary::volume_released},
+    {"volume_entrained_m3", &RunSummary::volume_entrained},
     {"volume_final_m3", &RunSummary::volume_final}, {"volume_outflow_m3", &RunSummary::volume_outflow},
 };
 

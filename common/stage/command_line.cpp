@@ -34,6 +34,7 @@ void declare(CLI::App& app, const Stage& stage, CommandLine& line, Words& words)
         ->type_name("[FILE]")
         ->expected(0, 1);
   if (stage.has_profile) app.add_flag("--profile", line.profile, "Measure where the time of a step goes, and say it at the end");
+  if (stage.has_profile) app.add_flag("--plan", line.plan, "Say what is on, points, memory, steps and the time to expect; run and write nothing");
   auto* verbose = app.add_flag("-v,--verbose", words.verbose, "Say more");
   app.add_flag("-q,--quiet", words.quiet, "Say nothing but errors")->excludes(verbose);
   app.add_flag("--version", words.version, "Print the version and its commit");
@@ -56,7 +57,7 @@ void untangle_restart(const CLI::App& app, CommandLine& line, Words& words) {
 std::string usage(const Stage& stage) {
   return fmt::format(
       "Usage: {} recipe.toml [--out DIR] [--check] [--template] [--on auto|cpu|gpu]{}{} [-v|-q] (all of it: {} --help)",
-      stage.name, stage.has_restart ? " [--restart [FILE]]" : "", stage.has_profile ? " [--profile]" : "", stage.name);
+      stage.name, stage.has_restart ? " [--restart [FILE]]" : "", stage.has_profile ? " [--profile] [--plan]" : "", stage.name);
 }
 
 std::variant<CommandLine, Answer> parse_command_line(int argc, char** argv, const Stage& stage) {

@@ -18,6 +18,7 @@ struct CommandLine {
   bool check_only = false;
   bool print_template = false;
   bool profile = false;
+  bool plan = false;
   std::optional<std::filesystem::path> restart;
   Verbosity verbosity = Verbosity::normal;
 };

@@ -24,6 +24,7 @@ struct StageContext {
   bool check_only = false;                       ///< --check: read and test everything cheap, compute and write nothing
   std::optional<std::filesystem::path> restart;  ///< talus-solve --restart [FILE]; empty path = OUT/checkpoint.h5
   bool profile = false;                          ///< talus-solve --profile
+  bool plan = false;                             ///< talus-solve --plan: say what would run, and what it would cost; write nothing
   std::string command_line;
   std::vector<std::filesystem::path> results;  ///< printed on stdout, one a line, at the end
 };
@@ -35,13 +36,13 @@ struct Stage {
   std::string examples;                        ///< shown under --help
   bool has_on = false;                         ///< takes --on auto|cpu|gpu
   bool has_restart = false;                    ///< takes --restart
-  bool has_profile = false;                    ///< takes --profile
+  bool has_profile = false;                    ///< takes --profile and --plan
   std::function<std::string()> template_toml;  ///< for --template
   std::function<void(StageContext&)> run;
 };
 
 /// Parses the command line, runs the stage, prints faults on stderr and result paths on stdout. Returns the exit code.
-/// Options: recipe.toml, --out DIR (default: the recipe's folder / "out"), --check, --template, --on, --restart, --profile,
+/// Options: recipe.toml, --out DIR (default: the recipe's folder / "out"), --check, --template, --on, --restart, --profile, --plan,
 /// -v, -q,
 /// --help (exit codes and examples included), --version (with the commit).
 int run_stage(int argc, char** argv, const Stage& stage);

@@ -30,6 +30,7 @@ struct Domain {
   Raster release_thickness;  // vertical [m], 0 where nothing is released
   std::vector<std::pair<std::string, Raster>> bed;  // numbers of the bed's friction by the names of [solve.base]; NaN: the recipe's
   std::vector<std::string> release_names;
+  int erodible = 0;  // of these, the first so many lie in the ground until something takes them along
   SeedPoints points;
   std::vector<std::pair<std::string, std::string>> provenance;  // version, command, inputs and checksums
 };

@@ -9,7 +9,7 @@
 
 namespace talus::layout {
 
-inline constexpr int format = 2;  ///< raised when a reader of today would misread the file
+inline constexpr int format = 3;  ///< raised when a reader of today would misread the file
 inline constexpr auto kind = "talus-domain";
 
 inline constexpr auto points = "points";

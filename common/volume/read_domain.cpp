@@ -173,6 +173,7 @@ Domain assemble(const fs::path& file, const Contents& contents) {
   }
   for (std::size_t i = 0; i < facts.count("releases"); ++i)
     domain.release_names.push_back(facts.text(layout::numbered("release_name", i)));
+  domain.erodible = static_cast<int>(facts.count("erodible"));
   for (std::size_t i = 0; i < facts.count("facts"); ++i)
     domain.provenance.emplace_back(facts.text(layout::numbered("fact_name", i)),
                                    facts.text(layout::numbered("fact_value", i)));

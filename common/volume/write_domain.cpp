@@ -109,6 +109,7 @@ openvdb::MetaMap metadata_of(const Domain& domain) {
   text("crs_wkt", domain.grid.crs_wkt);
   count("points", domain.points.size());
   count("releases", domain.release_names.size());
+  count("erodible", static_cast<std::size_t>(domain.erodible));
   for (std::size_t i = 0; i < domain.release_names.size(); ++i)
     text(layout::numbered("release_name", i), domain.release_names[i]);
   count("facts", domain.provenance.size());

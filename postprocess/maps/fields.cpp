@@ -37,6 +37,24 @@ Raster field_raster(const RunMaps& maps, const Field& field) {
   return raster;
 }
 
+Raster values_raster(const RunMaps& maps, const std::vector<double>& values) {
+  Raster raster{maps.grid, values};
+  const auto inside = inside_domain(maps);
+  for (std::size_t i = 0; i < inside.size(); ++i) {
+    if (!inside[i]) raster.values[i] = std::numeric_limits<double>::quiet_NaN();
+  }
+  return raster;
+}
+
+std::string file_word(const std::string& name) {
+  std::string word = name;
+  for (char& c : word) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_';
+    if (!plain) c = '-';
+  }
+  return word;
+}
+
 double volume_under(const std::vector<double>& thickness, double cell) {
   long double sum = 0;
   for (const double h : thickness) {

@@ -26,6 +26,12 @@ std::vector<char> inside_domain(const RunMaps& maps);
 /// One field as a raster: NaN outside the domain, 0 inside it where nothing is (arrival time: NaN).
 Raster field_raster(const RunMaps& maps, const Field& field);
 
+/// Thickness as a raster: NaN outside the domain, 0 inside it where nothing is.
+Raster values_raster(const RunMaps& maps, const std::vector<double>& values);
+
+/// A name as part of a file's: letters, digits, dots and dashes, "-" for anything else.
+std::string file_word(const std::string& name);
+
 /// Volume under a thickness raster, NaN as nothing [m3]. Summed in extended precision: it is compared to 1e-9.
 double volume_under(const std::vector<double>& thickness, double cell);
 

@@ -9,20 +9,28 @@ namespace talus::postprocess {
 
 std::vector<std::filesystem::path> write_geotiffs(const std::filesystem::path& folder, const Run& run) {
   std::vector<std::filesystem::path> files;
-  for (const auto& field : product_fields()) {
-    RasterTags tags{fmt::format("{} [{}]", field.long_name, field.unit), field.unit, {}};
+  const auto put = [&](const std::string& name, const char* long_name, const char* unit, bool zero_inside, const Raster& raster) {
+    RasterTags tags{fmt::format("{} [{}]", long_name, unit), unit, {}};
     tags.metadata = {
         {"TITLE", run.summary.title},
         {"SCENE", run.summary.scene},
-        {"QUANTITY", field.long_name},
+        {"QUANTITY", long_name},
         {"THICKNESS_CONVENTION", "vertical thickness, measured along the plumb line (not normal to the slope)"},
         {"FLOW_THRESHOLD_M", fmt::format("{}", run.maps.threshold)},
         {"TIME_END_S", fmt::format("{}", run.summary.time_end)},
         {"NODATA_MEANING",
-         field.zero_inside ? "outside the computed domain" : "outside the computed domain, or never reached"},
+         zero_inside ? "outside the computed domain" : "outside the computed domain, or never reached"},
         {"SOURCE", "Talus " + run.summary.version}};
-    files.push_back(folder / (std::string(field.name) + ".tif"));
-    write_cog(files.back(), field_raster(run.maps, field), tags);
+    files.push_back(folder / (name + ".tif"));
+    write_cog(files.back(), raster, tags);
+  };
+  for (const auto& field : product_fields()) put(field.name, field.long_name, field.unit, field.zero_inside, field_raster(run.maps, field));
+  const auto thickness = [&](const std::string& name, const char* long_name, const std::vector<double>& values) {
+    put(name, long_name, "m", true, values_raster(run.maps, values));
+  };
+  if (!run.maps.eroded_depth.empty()) thickness("eroded_depth", "depth of ground that went along, vertical", run.maps.eroded_depth);
+  for (const auto& [release, values] : run.maps.deposit_of) {
+    thickness("deposit_thickness_" + file_word(release), "deposit thickness of one release, vertical", values);
   }
   return files;
 }

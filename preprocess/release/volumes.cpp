@@ -30,7 +30,7 @@ Volumes volumes_of(const Raster& thickness, const std::vector<double>& cosine) {
 }
 
 std::vector<std::string> as_lines(const std::string& name, const Volumes& v) {
-  return {fmt::format("{}: {} m3 released: vertical thickness times map area", name, grouped(v.volume)),
+  return {fmt::format("{}: {} m3: vertical thickness times map area", name, grouped(v.volume)),
           fmt::format("  the same thickness taken as slope-normal would be {} m3 ({:+.1f} %)",
                       grouped(v.volume_if_normal), 100 * (v.volume_if_normal / v.volume - 1)),
           fmt::format("  area {} m2 on the map, {} m2 along the bed, {} cells", grouped(v.projected_area),

@@ -150,7 +150,7 @@ TEST_F(RunStage, no_recipe_is_a_usage_error) {
   EXPECT_EQ(
       err,
       "talus-sample: no recipe was given. Usage: talus-sample recipe.toml [--out DIR] [--check] [--template] [--on "
-      "auto|cpu|gpu] [--restart [FILE]] [--profile] [-v|-q] (all of it: talus-sample --help)\n");
+      "auto|cpu|gpu] [--restart [FILE]] [--profile] [--plan] [-v|-q] (all of it: talus-sample --help)\n");
   EXPECT_EQ(out, "");
 }
 

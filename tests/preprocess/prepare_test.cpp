@@ -173,7 +173,7 @@ TEST(prepare, says_both_conventions) {
   EXPECT_NEAR(v.max_vertical, 3, 1e-12);
   EXPECT_NEAR(v.max_normal, 1.5, 1e-9);
   EXPECT_EQ(as_lines("A", v),
-            (std::vector<std::string>{"A: 90,000 m3 released: vertical thickness times map area",
+            (std::vector<std::string>{"A: 90,000 m3: vertical thickness times map area",
                                       "  the same thickness taken as slope-normal would be 180,000 m3 (+100.0 %)",
                                       "  area 30,000 m2 on the map, 60,000 m2 along the bed, 300 cells",
                                       "  thickness at most 3.00 m vertical, 1.50 m slope-normal"}));
