@@ -199,6 +199,7 @@ void SolveOptions::describe(recipe::Visitor& v) {
   v.number("map_threshold_m", map_threshold, recipe::positive, "thickness from which speed, pressure and arrival count");
   v.flag("point_frames", point_frames, "write the material points of each frame into run.h5");
   v.flag("vdb_frames", vdb_frames, "write the material points of each frame as frames/*.vdb as well");
+  v.flag("energy_budget", energy_budget, "explicit steps: keep what is lost to the bed, to plastic flow, to damping and between points and grid (takes a third more time)");
   v.enter("implicit", "implicit steps");
   implicit.describe(v);
   v.leave();
@@ -225,6 +226,10 @@ void SolveOptions::check(std::vector<Fault>& faults) const {
     if (load.box.size() == 6 && load.force.size() == 3) continue;
     faults.push_back({"[[solve.load]] box_m or force_N has the wrong number of values", "a box has six, a force three",
                       "Give box_m = [west, east, south, north, bottom, top] and force_N = [east, north, up]"});
+  }
+  if (energy_budget && (integrator != Integrator::explicit_ || stress_update == StressUpdate::modified)) {
+    faults.push_back({"[solve] energy_budget = true does not go with this integrator or stress_update", "losses are counted in explicit steps with stress_update = \"usl\"",
+                      "Leave it out, or take integrator = \"explicit\""});
   }
   if (walls.size() > most_walls) {
     faults.push_back({fmt::format("[[solve.wall]] is given {} times", walls.size()), fmt::format("at most {} walls fit", most_walls),

@@ -140,6 +140,7 @@ struct SolveOptions {
   double map_threshold = 0.1;        // [m]
   bool point_frames = true;
   bool vdb_frames = false;
+  bool energy_budget = false;
   MaterialOptions material;
   std::vector<PartOptions> parts;
   BaseOptions base;

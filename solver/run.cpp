@@ -19,6 +19,8 @@ const std::vector<std::string> history_names = {"time_s",     "step",       "ste
                                                 "speed_max_m_s", "momentum_x_kg_m_s", "momentum_y_kg_m_s", "momentum_z_kg_m_s",
                                                 "newton_iterations", "linear_iterations", "step_cuts", "step_over_cfl"};
 
+const std::vector<std::string> budget_names = {"bed_loss_J", "damping_loss_J", "plastic_loss_J", "transfer_loss_J"};
+
 std::string duration(double seconds) {
   if (seconds < 100) return fmt::format("{:.0f} s", seconds);
   if (seconds < 6000) return fmt::format("{:.0f} min", seconds / 60);
@@ -97,7 +99,8 @@ void Simulation::start() {
   if (options_.gravity_loading_steps > 0) load_by_gravity();
   build_solver(first_state(scene_, options_));
   memory_.history.names = history_names;
-  memory_.history.columns.resize(history_names.size());
+  if (options_.energy_budget) memory_.history.names.insert(memory_.history.names.end(), budget_names.begin(), budget_names.end());
+  memory_.history.columns.resize(memory_.history.names.size());
   memory_.initial_thickness = solver_->thickness();
 }
 
@@ -194,7 +197,11 @@ void Simulation::record(double time) {
                         static_cast<double>(memory_.newton),
                         static_cast<double>(memory_.linear),
                         static_cast<double>(memory_.cuts),
-                        over_cfl_};
+                        over_cfl_,
+                        clock.bed_loss,
+                        clock.damping_loss,
+                        clock.plastic_loss,
+                        clock.transfer_loss};
   for (std::size_t c = 0; c < memory_.history.columns.size(); ++c) memory_.history.columns[c].push_back(row[c]);
 }
 

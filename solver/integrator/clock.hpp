@@ -33,6 +33,11 @@ struct Clock {
   int steps_between_sorts = 32;    // for the sake of the memory's order; a point that strays asks for one at once
   int outflow_count = 0;           // since the last sort
   int failed_point = -1;           // id of a point that failed
+  int keeps_budget = 0;            // the sums below are kept
+  double bed_loss = 0;             // energy lost so far to bed and walls [J]
+  double damping_loss = 0;         // to Cundall's damping [J]
+  double plastic_loss = 0;         // to plastic flow [J]
+  double transfer_loss = 0;        // between points and grid [J]
   int accelerated = 0;             // the points know their acceleration: implicit steps were taken last
 
   /// Share of the velocity finer than the grid that a step keeps: what is lost depends on time, not on the number of steps.

@@ -44,7 +44,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
         affine_(options.transfer == Transfer::apic),
         musl_(options.stress_update == StressUpdate::modified),
         keeps_(options.transfer_time > options.courant),
-        forces_apart_(musl_ || options.damping > 0 || keeps_) {
+        forces_apart_(musl_ || options.damping > 0 || keeps_ || options.energy_budget) {
     Clock clock = read_clock();
     clock.accelerated = 0;
     if (Place::is_gpu) clock.steps_between_sorts = gpu_steps_between_sorts;

@@ -25,6 +25,7 @@ SolverState first_state(const Scene& scene, const SolveOptions& options) {
   state.clock.courant = options.courant;
   state.clock.largest_step = options.largest_step;
   state.clock.transfer_time = options.transfer_time;
+  state.clock.keeps_budget = options.energy_budget ? 1 : 0;
   const double speed = std::hypot(options.initial_velocity[0], options.initial_velocity[1], options.initial_velocity[2]);
   const GroundTables ground = make_ground_tables(scene.grid);
   const auto rate = static_cast<float>(

@@ -20,7 +20,7 @@ template <class Real, NodeContent content>
 struct UpdateColumns {
   GridView<Real> grid;
   const int* active;
-  const Clock* clock;
+  Clock* clock;
   Vec4<Real>* nodes;
   Vec4<Real>* forces;        // in: internal force; out: velocity change of the step (FLIP)
   Vec3<Real> gravity;        // full [m/s2]
@@ -45,11 +45,12 @@ struct UpdateColumns {
     const int top_contact = contact_layer(column);
     Real mass = 0;
     Vec3<Real> momentum{};
+    Losses losses;
     for (int k = slot.first_layer; k < slot.first_layer + slot.layers; ++k) {
       const int n = GridView<Real>::node(slot, i, j, k);
       Vec4<Real>& node = nodes[n];
       if (!(node.w > Real(0))) continue;
-      const Vec3<Real> v = update(n, node, k <= top_contact, column, i, j, k);
+      const Vec3<Real> v = update(n, node, k <= top_contact, column, i, j, k, losses);
       node.x = v.x;
       node.y = v.y;
       node.z = v.z;
@@ -57,6 +58,11 @@ struct UpdateColumns {
       momentum += v * node.w;
     }
     if constexpr (content != NodeContent::remapped) {
+      if (clock->keeps_budget && mass > Real(0)) {
+        atomic_add(&clock->bed_loss, losses.contact);
+        atomic_add(&clock->damping_loss, losses.damping);
+        atomic_add(&clock->transfer_loss, losses.transfer);
+      }
       if (mass > Real(0)) {
         const double mean = volumes && volumes[column] > 0 ? static_cast<double>(mass) / volumes[column] : static_cast<double>(density);
         record_column(maps, column, static_cast<double>(mass), static_cast<double>(length(momentum)), mean, static_cast<double>(grid.spacing), clock->time);
@@ -71,21 +77,27 @@ struct UpdateColumns {
     return static_cast<int>(floor(grid.terrain[column] / grid.layer_height + Real(1e-4)));
   }
 
-  TALUS_HD Vec3<Real> update(int n, const Vec4<Real>& node, bool on_ground, int column, int i, int j, int k) const {
+  /// Of kinetic energy, over a column [J]. What the points give to the grid and get back counts with signs.
+  struct Losses {
+    double contact = 0, damping = 0, transfer = 0;
+  };
+  TALUS_HD Vec3<Real> update(int n, const Vec4<Real>& node, bool on_ground, int column, int i, int j, int k, Losses& losses) const {
     const Real dt = Real(clock->step_size);
     const bool growing = gravity_ramp > 0 && clock->time < gravity_ramp;
     const Vec3<Real> g = growing ? gravity * Real(clock->time / gravity_ramp) : gravity;
     const Vec3<Real> before{node.x / node.w, node.y / node.w, node.z / node.w};
-    Vec3<Real> v = before;
+    Vec3<Real> v = before, undamped = before;
     if constexpr (content == NodeContent::impulse) v += g * dt;
     if constexpr (content == NodeContent::force) {
       const Vec4<Real> f = forces[n];
       Vec3<Real> pull = Vec3<Real>{f.x, f.y, f.z} * (Real(1) / node.w) + g;
+      undamped += pull * dt;
       if (damping > Real(0)) {
         pull = {damped(pull.x, before.x), damped(pull.y, before.y), damped(pull.z, before.z)};
       }
       v += pull * dt;
     }
+    const Vec3<Real> free = v;
     if (on_ground) {
       BaseFriction<Real> law = friction;
       if (content == NodeContent::remapped && law.law != FrictionLaw::stick) law.law = FrictionLaw::none;
@@ -96,6 +108,14 @@ struct UpdateColumns {
       v = meet_ground(law, law.at(column), v, sx, sy, grip);
     }
     if (walls.count > 0) v = meet_walls(walls, i, j, k, v, content != NodeContent::remapped);
+    if (clock->keeps_budget) {
+      // Forces and impulses of a step act together, on the mean of its velocities: what rests loses nothing.
+      const Vec3<Real> mean = (before + v) * Real(0.5);
+      const double mass = static_cast<double>(node.w);
+      if (content == NodeContent::force && damping > Real(0)) losses.damping += mass * static_cast<double>(dot(undamped - free, mean));
+      losses.contact += mass * static_cast<double>(dot(free - v, mean));
+      losses.transfer += mass * static_cast<double>(dot(v - before, mean));
+    }
     if constexpr (content == NodeContent::force) {
       const Vec3<Real> change = v - before;
       forces[n] = {Real(0), change.x, change.y, change.z};

@@ -99,6 +99,11 @@ struct GridToParticle {
     Vec3<Real> v = sums.velocity;
     const Real kept = changes ? Real(clock->kept) : Real(0);
     if (kept > Real(0)) v = (points.velocity_of(p) + sums.change) * kept + v * (Real(1) - kept);
+    if (clock->keeps_budget) {
+      const Vec3<Real> old = points.velocity_of(p);
+      const double mass = static_cast<double>(points.volume[p] * materials.density(points.material, p));
+      atomic_add(&clock->transfer_loss, 0.5 * mass * (static_cast<double>(dot(old, old)) - static_cast<double>(dot(v, v))));
+    }
     points.velocity[0][p] = v.x;
     points.velocity[1][p] = v.y;
     points.velocity[2][p] = v.z;
@@ -120,7 +125,10 @@ struct GridToParticle {
     const Mat3<Real> g{sums.gradient.a * across - c * s.slope_x, sums.gradient.b * across - c * s.slope_y, c};
     MaterialState<Real> state{points.elastic_of(p), points.log_volume[p],
                               dilatant ? points.plastic_log_volume[p] : Real(0)};
-    advance_material(materials.of(points.material, points.plastic_shear, p), g, state);
+    const Material<Real> material = materials.of(points.material, points.plastic_shear, p);
+    const MaterialState<Real> before = state;
+    advance_material(material, g, state);
+    if (clock->keeps_budget) lose_to_flow(material, before, state, g, points.volume[p]);
     if (points.plastic_shear) points.plastic_shear[p] += state.plastic_shear;
     points.set_elastic(p, state.elastic);
     points.log_volume[p] = state.log_volume;
@@ -129,6 +137,14 @@ struct GridToParticle {
     if constexpr (part == Gather::deformation) {
       points.move_by(p, Vec3<Real>{points.move[0][p], points.move[1][p], points.move[2][p]}, grid.walls);
     }
+  }
+
+  /// The work of the stress, less what is kept as elastic energy.
+  TALUS_HD void lose_to_flow(const Material<Real>& m, const MaterialState<Real>& before, const MaterialState<Real>& after, const Mat3<Real>& g, Real volume) const {
+    const Sym3<Real> tau = (kirchhoff_stress(m, before) + kirchhoff_stress(m, after)) * Real(0.5);
+    const Real work = tau.xx * g.a.x + tau.yy * g.b.y + tau.zz * g.c.z + tau.xy * (g.a.y + g.b.x) + tau.yz * (g.b.z + g.c.y) + tau.xz * (g.a.z + g.c.x);
+    const Real kept = elastic_energy(m, after) - elastic_energy(m, before);
+    atomic_add(&clock->plastic_loss, static_cast<double>(volume) * static_cast<double>(work - kept));
   }
 
   /// Alarms of the clock: not a number, left the domain, left the home cell's neighbourhood; step size of the next step.

@@ -343,6 +343,34 @@ TEST(Places, agree_on_a_slide) {
   }
 }
 
+/// A slide of sand from its start to its rest: what it had is what it has and what was lost on the way, each loss counted where it happens.
+TEST_P(Conservation, closes_the_energy_budget_of_a_slide) {
+  Domain d = ground(40, 16, 1.0, 0.5, [](double x, double) { return x < 20 ? 0.03 * (20 - x) * (20 - x) : 0.0; });
+  fill(d, {4, 9, 5, 11, 0, 2});
+  for (const double damping : {0.0, 0.05}) {
+    SolveOptions o;
+    o.energy_budget = true;
+    o.damping = damping;
+    o.material.cohesion = 1000;
+    o.material.dilatancy_angle = 1;
+    const Scene scene = make_scene(d, o);
+    const auto solver = make_solver(scene, o, GetParam());
+    const Energies start = solver->energies();
+    run_to(*solver, 6.0);
+    const Energies end = solver->energies();
+    const Clock clock = solver->clock();
+    const double gone = start.kinetic + start.potential + start.elastic - end.kinetic - end.potential - end.elastic;
+    const double lost = clock.bed_loss + clock.damping_loss + clock.plastic_loss + clock.transfer_loss;
+    EXPECT_GT(gone, 0.5 * start.potential);
+    EXPECT_NEAR(lost, gone, 0.01 * gone);
+    EXPECT_GT(clock.bed_loss, 0.2 * gone);
+    EXPECT_GT(clock.plastic_loss, 0);
+    EXPECT_EQ(clock.damping_loss > 0, damping > 0);
+    std::printf("  of %.4g J: bed %.1f %%, plastic flow %.1f %%, damping %.1f %%, between points and grid %.1f %%, not accounted for %.2f %%\n", gone,
+                100 * clock.bed_loss / gone, 100 * clock.plastic_loss / gone, 100 * clock.damping_loss / gone, 100 * clock.transfer_loss / gone, 100 * (gone - lost) / gone);
+  }
+}
+
 TALUS_IN_EACH_PLACE(Conservation);
 
 }  // namespace
