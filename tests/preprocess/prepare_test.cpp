@@ -139,6 +139,79 @@ TEST(prepare, keeps_several_releases_apart) {
   EXPECT_NEAR(prepared.by_release[1].second.volume / test::volume_of(scene.heap), 1, 1e-12);
 }
 
+TEST(prepare, takes_erodible_ground_out_of_the_bed_and_fills_it_with_points) {
+  Scene scene;
+  ReleaseOptions& release = scene.as_release();
+  release.name = "source";
+  release.thickness_raster = test::write(scene.scratch, "bowl.tif", scene.bowl);
+  ErodibleOptions& layer = scene.options.erodible.emplace_back();
+  layer.name = "ground";
+  layer.thickness_raster = test::write(scene.scratch, "heap.tif", scene.heap);
+  const Prepared prepared = scene.prepare();
+  const Domain& d = prepared.domain;
+  EXPECT_EQ(d.release_names, (std::vector<std::string>{"ground", "source"}));
+  EXPECT_EQ(d.erodible, 1);
+  double lowered = 0;
+  for (std::size_t c = 0; c < d.terrain.values.size(); ++c) {
+    lowered += scene.before.values[c] - d.terrain.values[c];
+    EXPECT_NEAR(d.release_thickness.values[c], scene.bowl.values[c], 1e-5);  // what is released, and no ground
+  }
+  EXPECT_NEAR(lowered * 100 / test::volume_of(scene.heap), 1, 1e-6);
+  Sum ground;
+  for (std::size_t p = 0; p < d.points.size(); ++p) {
+    if (d.points.release[p] == 0) ground.add(d.points.volume[p]);
+  }
+  EXPECT_NEAR(ground.value() / test::volume_of(scene.heap), 1, 1e-12);
+  write_domain(scene.scratch / "domain.vdb", d);
+  EXPECT_EQ(read_domain(scene.scratch / "domain.vdb").erodible, 1);
+}
+
+TEST(prepare, finds_erodible_ground_where_it_went_down_outside_the_source) {
+  Scene scene;
+  const double x0 = scene.grid.west + 300, y0 = scene.grid.south + 80;  // away from bowl and heap
+  Raster after = scene.after;
+  double volume = 0;
+  for (int row = 0; row < scene.grid.rows; ++row) {
+    for (int column = 0; column < scene.grid.columns; ++column) {
+      if (std::hypot(scene.grid.x(column) - x0, scene.grid.y(row) - y0) > 40) continue;
+      after.at(column, row) -= 2;
+      volume += 2 * 100;
+    }
+  }
+  scene.rewrite_after(after);
+  scene.options.erodible.emplace_back().lowering = true;
+  const Domain d = scene.prepare().domain;
+  Sum ground;
+  for (std::size_t p = 0; p < d.points.size(); ++p) {
+    if (d.points.release[p] < d.erodible) ground.add(d.points.volume[p]);
+  }
+  EXPECT_NEAR(ground.value() / volume, 1, 1e-5);
+  scene.rewrite_after(scene.after);
+  EXPECT_NE(scene.data_fault().find("nothing lies lower outside the source"), std::string::npos);
+}
+
+TEST(prepare, brings_rasters_of_the_bed_onto_the_grid) {
+  Scene scene;
+  const MapGrid coarse = test::grid_of(25, 20, 20, scene.grid.west - 40, scene.grid.south - 40);
+  for (auto& [name, file] : scene.options.bed.files) {
+    if (name == "friction_angle_deg") {
+      file = test::write(scene.scratch, "angle.tif", test::raster_of(coarse, [&](double x, double) { return 10 + 0.02 * (x - coarse.west); }));
+    }
+  }
+  const Domain d = scene.prepare().domain;
+  ASSERT_EQ(d.bed.size(), 1u);
+  EXPECT_EQ(d.bed[0].first, "friction_angle_deg");
+  for (int row = 1; row + 1 < d.grid.rows; ++row) {
+    for (int column = 1; column + 1 < d.grid.columns; ++column) {
+      EXPECT_NEAR(d.bed[0].second.at(column, row), 10 + 0.02 * (d.grid.x(column) - coarse.west), 1e-4);
+    }
+  }
+  write_domain(scene.scratch / "domain.vdb", d);
+  const Domain back = read_domain(scene.scratch / "domain.vdb");
+  ASSERT_EQ(back.bed.size(), 1u);
+  EXPECT_EQ(back.bed[0].second.values, d.bed[0].second.values);
+}
+
 TEST(prepare, keeps_the_volume_of_a_release_on_another_grid) {
   TALUS_SEEDED(seed);
   Scene scene(seed);
