@@ -168,7 +168,7 @@ TEST(prepare, takes_erodible_ground_out_of_the_bed_and_fills_it_with_points) {
 
 TEST(prepare, finds_erodible_ground_where_it_went_down_outside_the_source) {
   Scene scene;
-  const double x0 = scene.grid.west + 300, y0 = scene.grid.south + 80;  // away from bowl and heap
+  const double x0 = scene.grid.west + 50, y0 = scene.grid.south + 50;  // away from bowl and heap
   Raster after = scene.after;
   double volume = 0;
   for (int row = 0; row < scene.grid.rows; ++row) {
