@@ -93,10 +93,11 @@ void Builder::volumes() {
   const double on_map = volume_under(run_.maps.deposit_thickness, run_.maps.grid.cell);
   section("Volume");
   number("volume_released_m3", "released", "m3", s.volume_released, 0);
+  if (!run_.maps.eroded_depth.empty()) number("volume_entrained_m3", "taken along from the ground", "m3", s.volume_entrained, 0);
   number("volume_final_m3", "in the domain at the end", "m3", s.volume_final, 0);
   number("volume_outflow_m3", "left through the edge", "m3", s.volume_outflow, 0);
   number("volume_closure_error", "(released - end - left) / released", "",
-         (s.volume_released - s.volume_final - s.volume_outflow) / s.volume_released, 12, "nothing was released");
+         (s.volume_released + s.volume_entrained - s.volume_final - s.volume_outflow) / s.volume_released, 12, "nothing was released");
   number("volume_on_map_m3", "under the deposit map", "m3", on_map, 0);
   number("volume_map_error", "(map - end) / released", "", (on_map - s.volume_final) / s.volume_released, 12,
          "nothing was released");

@@ -63,6 +63,17 @@ test_check_computes_and_writes_nothing() {
   expect_no_file out domain.vdb preprocess.used.toml
 }
 
+test_plan_says_what_it_takes_and_writes_nothing() {
+  scene
+  expect_exit 0 preprocess
+  expect_exit 0 solve --plan
+  for word in 'drucker-prager' 'coulomb, 15 deg' 'terrain-following, quadratic' 'MB now, on the CPU' 's at rest (waves of' 'steps to 3 s' 'ms a step'; do
+    grep -qF -- "$word" stderr || fail "--plan does not say: $word"
+  done
+  ! grep -qE 'softens|walls|rasters|erodible|damping' stderr || fail "--plan names what the recipe does not"
+  expect_no_file out domain.vdb preprocess.used.toml
+}
+
 test_check_finds_faults() {
   scene
   sed -i 's/^layer_height_m/layer_hight_m/' recipe.toml
