@@ -73,8 +73,9 @@ void attach_materials(const Domain& domain, const SolveOptions& options, Scene& 
 std::vector<Bed<double>> make_bed(const Domain& domain, const SolveOptions& options) {
   if (domain.bed.empty()) return {};
   std::vector<Bed<double>> bed;
+  SolveOptions here = options;
   for (std::size_t column = 0; column < domain.grid.count(); ++column) {
-    SolveOptions here = options;
+    here.base = options.base;
     for (const auto& [name, raster] : domain.bed) {
       if (double* value = here.base.named(name); value && std::isfinite(raster.values[column])) *value = raster.values[column];
     }
