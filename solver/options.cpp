@@ -199,7 +199,7 @@ void SolveOptions::describe(recipe::Visitor& v) {
   v.number("map_threshold_m", map_threshold, recipe::positive, "thickness from which speed, pressure and arrival count");
   v.flag("point_frames", point_frames, "write the material points of each frame into run.h5");
   v.flag("vdb_frames", vdb_frames, "write the material points of each frame as frames/*.vdb as well");
-  v.flag("energy_budget", energy_budget, "explicit steps: keep what is lost to the bed, to plastic flow, to damping and between points and grid (two to three times as slow on a GPU)");
+  v.flag("energy_budget", energy_budget, "explicit steps: keep what is lost to the bed, to plastic flow, to damping and between points and grid, and the impulse of bed and walls (two to three times as slow on a GPU)");
   v.enter("implicit", "implicit steps");
   implicit.describe(v);
   v.leave();

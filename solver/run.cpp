@@ -19,7 +19,8 @@ const std::vector<std::string> history_names = {"time_s",     "step",       "ste
                                                 "speed_max_m_s", "momentum_x_kg_m_s", "momentum_y_kg_m_s", "momentum_z_kg_m_s",
                                                 "newton_iterations", "linear_iterations", "step_cuts", "step_over_cfl"};
 
-const std::vector<std::string> budget_names = {"bed_loss_J", "damping_loss_J", "plastic_loss_J", "transfer_loss_J"};
+const std::vector<std::string> budget_names = {"bed_loss_J", "damping_loss_J", "plastic_loss_J", "transfer_loss_J",
+                                               "reaction_x_N_s", "reaction_y_N_s", "reaction_z_N_s"};
 
 std::string duration(double seconds) {
   if (seconds < 100) return fmt::format("{:.0f} s", seconds);
@@ -201,7 +202,10 @@ void Simulation::record(double time) {
                         clock.bed_loss,
                         clock.damping_loss,
                         clock.plastic_loss,
-                        clock.transfer_loss};
+                        clock.transfer_loss,
+                        clock.reaction[0],
+                        clock.reaction[1],
+                        clock.reaction[2]};
   for (std::size_t c = 0; c < memory_.history.columns.size(); ++c) memory_.history.columns[c].push_back(row[c]);
 }
 

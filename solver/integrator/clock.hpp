@@ -38,6 +38,7 @@ struct Clock {
   double damping_loss = 0;         // to Cundall's damping [J]
   double plastic_loss = 0;         // to plastic flow [J]
   double transfer_loss = 0;        // between points and grid [J]
+  double reaction[3] = {0, 0, 0};  // impulse of bed and walls on the mass so far [N s]
   int accelerated = 0;             // the points know their acceleration: implicit steps were taken last
 
   /// Share of the velocity finer than the grid that a step keeps: what is lost depends on time, not on the number of steps.

@@ -62,6 +62,7 @@ struct UpdateColumns {
         atomic_add(&clock->bed_loss, losses.contact);
         atomic_add(&clock->damping_loss, losses.damping);
         atomic_add(&clock->transfer_loss, losses.transfer);
+        for (int a = 0; a < 3; ++a) atomic_add(&clock->reaction[a], losses.reaction[a]);
       }
       if (mass > Real(0)) {
         const double mean = volumes && volumes[column] > 0 ? static_cast<double>(mass) / volumes[column] : static_cast<double>(density);
@@ -77,9 +78,9 @@ struct UpdateColumns {
     return static_cast<int>(floor(grid.terrain[column] / grid.layer_height + Real(1e-4)));
   }
 
-  /// Of kinetic energy, over a column [J]. What the points give to the grid and get back counts with signs.
+  /// Of kinetic energy, over a column [J]; what the points give to the grid and get back counts with signs. And what bed and walls gave it [N s].
   struct Losses {
-    double contact = 0, damping = 0, transfer = 0;
+    double contact = 0, damping = 0, transfer = 0, reaction[3] = {0, 0, 0};
   };
   TALUS_HD Vec3<Real> update(int n, const Vec4<Real>& node, bool on_ground, int column, int i, int j, int k, Losses& losses) const {
     const Real dt = Real(clock->step_size);
@@ -115,6 +116,9 @@ struct UpdateColumns {
       if (content == NodeContent::force && damping > Real(0)) losses.damping += mass * static_cast<double>(dot(undamped - free, mean));
       losses.contact += mass * static_cast<double>(dot(free - v, mean));
       losses.transfer += mass * static_cast<double>(dot(v - before, mean));
+      losses.reaction[0] += mass * static_cast<double>(v.x - free.x);
+      losses.reaction[1] += mass * static_cast<double>(v.y - free.y);
+      losses.reaction[2] += mass * static_cast<double>(v.z - free.z);
     }
     if constexpr (content == NodeContent::force) {
       const Vec3<Real> change = v - before;

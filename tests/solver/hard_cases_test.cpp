@@ -115,6 +115,36 @@ TEST_P(HardCases, impact_at_fifty_metres_a_second_stays_above_the_rock) {  // C5
   }
 }
 
+/// What weight, rock and wall gave is what the mass has: 1e-6 of what it came with (validation.md C5).
+TEST_P(HardCases, impact_on_rock_and_wall_balances_momentum) {
+  Domain d = ground(48, 120, 1.0, 1.0, [](double x, double) { return 0.1 * x; });
+  fill(d, {22, 26, 58, 62, 1, 5});
+  for (const auto law : {FrictionLaw::coulomb, FrictionLaw::stick}) {
+    SolveOptions o;
+    o.energy_budget = true;
+    o.initial_velocity = {50, 5, -20};
+    o.base.law = law;
+    o.base.friction_angle = 20;
+    o.walls.push_back({Axis::x, 34.5, Side::below, WallKind::frictional, 15});
+    const Scene scene = make_scene(d, o);
+    const auto solver = make_solver(scene, o, GetParam());
+    const Energies start = solver->energies();
+    const double came = std::abs(start.momentum.x), mass = start.volume * o.material.density;
+    double stopped = 0;
+    for (double time = 0.1; time < 0.75; time += 0.1) {
+      run_to(*solver, time);
+      const Energies now = solver->energies();
+      const Clock clock = solver->clock();
+      ASSERT_NEAR(now.volume, start.volume, 1e-9) << "something left";
+      EXPECT_NEAR(now.momentum.x, start.momentum.x + clock.reaction[0], 1e-6 * came) << time;
+      EXPECT_NEAR(now.momentum.y, start.momentum.y + clock.reaction[1], 1e-6 * came) << time;
+      EXPECT_NEAR(now.momentum.z, start.momentum.z + clock.reaction[2] - mass * 9.81 * clock.time, 1e-6 * came) << time;
+      stopped = -clock.reaction[0] / came;
+    }
+    EXPECT_GT(stopped, 0.8) << "the wall was not met";
+  }
+}
+
 TEST_P(HardCases, cliffs_spikes_and_pits_hold_nothing_inside_the_ground) {  // C7
   // A cliff of 80 degrees, one-cell spikes and pits at its foot.
   Domain d = ground(60, 16, 2.0, 1.0, [](double x, double y) {
