@@ -26,22 +26,17 @@ std::vector<char> inside_domain(const RunMaps& maps) {
 }
 
 Raster field_raster(const RunMaps& maps, const Field& field) {
-  Raster raster{maps.grid, maps.*(field.values)};
+  return values_raster(maps, maps.*(field.values), field.zero_inside);
+}
+
+Raster values_raster(const RunMaps& maps, const std::vector<double>& values, bool zero_inside) {
+  Raster raster{maps.grid, values};
   const auto inside = inside_domain(maps);
   for (std::size_t i = 0; i < inside.size(); ++i) {
     if (!inside[i])
       raster.values[i] = std::numeric_limits<double>::quiet_NaN();
-    else if (field.zero_inside && std::isnan(raster.values[i]))
+    else if (zero_inside && std::isnan(raster.values[i]))
       raster.values[i] = 0;
-  }
-  return raster;
-}
-
-Raster values_raster(const RunMaps& maps, const std::vector<double>& values) {
-  Raster raster{maps.grid, values};
-  const auto inside = inside_domain(maps);
-  for (std::size_t i = 0; i < inside.size(); ++i) {
-    if (!inside[i]) raster.values[i] = std::numeric_limits<double>::quiet_NaN();
   }
   return raster;
 }

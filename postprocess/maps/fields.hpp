@@ -26,8 +26,8 @@ std::vector<char> inside_domain(const RunMaps& maps);
 /// One field as a raster: NaN outside the domain, 0 inside it where nothing is (arrival time: NaN).
 Raster field_raster(const RunMaps& maps, const Field& field);
 
-/// Thickness as a raster: NaN outside the domain, 0 inside it where nothing is.
-Raster values_raster(const RunMaps& maps, const std::vector<double>& values);
+/// Values on the run's grid as a raster: NaN outside the domain; with `zero_inside` 0 for NaN inside it.
+Raster values_raster(const RunMaps& maps, const std::vector<double>& values, bool zero_inside);
 
 /// A name as part of a file's: letters, digits, dots and dashes, "-" for anything else.
 std::string file_word(const std::string& name);

@@ -26,7 +26,7 @@ std::vector<std::filesystem::path> write_geotiffs(const std::filesystem::path& f
   };
   for (const auto& field : product_fields()) put(field.name, field.long_name, field.unit, field.zero_inside, field_raster(run.maps, field));
   const auto thickness = [&](const std::string& name, const char* long_name, const std::vector<double>& values) {
-    put(name, long_name, "m", true, values_raster(run.maps, values));
+    put(name, long_name, "m", true, values_raster(run.maps, values, true));
   };
   if (!run.maps.eroded_depth.empty()) thickness("eroded_depth", "depth of ground that went along, vertical", run.maps.eroded_depth);
   for (const auto& [release, values] : run.maps.deposit_of) {

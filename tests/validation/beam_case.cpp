@@ -177,11 +177,8 @@ void load_study(Bench& bench, Beam b, double tolerance, Chart& curve, int colour
 
 /// Error at k = 3.6 over cell size, 2 x 2 x 2 points per cell (the paper's Fig. 10).
 void refinement(Bench& bench, const std::vector<double>& cells) {
-  Chart chart;
-  chart.title = "A2: error of the tip deflection over cell size, k = 3.6, 8 points per cell";
-  chart.x_label = "cell size [m]";
-  chart.y_label = "error against the beam with shear and stretch";
-  chart.log_x = chart.log_y = true;
+  Chart chart = log_chart("A2: error of the tip deflection over cell size, k = 3.6, 8 points per cell",
+                            "cell size [m]", "error against the beam with shear and stretch");
   int colour = 1;
   for (const char* shape : {"quadratic", "linear"}) {
     std::vector<double> h, error;
@@ -202,17 +199,15 @@ void refinement(Bench& bench, const std::vector<double>& cells) {
   bench.picture("A2-convergence", png_of(chart));
 }
 
+}  // namespace
+
 /// Error of the tip deflection over the points along a side of a cell, and over the load steps (against twice as many as the most; of fewer
 /// than ten the solver makes ten, nothing moving by more than a cell), h = 0.2 m, k = 3.6.
-void studies(Bench& bench) {
-  Chart points, steps;
-  points.title = "A2: error over points per cell, h = 0.2 m, k = 3.6, 20 load steps";
-  points.x_label = "distance of the points over cell size";
-  points.y_label = "error against the beam with shear and stretch";
-  steps.title = "A2: error over load steps, h = 0.2 m, k = 3.6, 8 points per cell";
-  steps.x_label = "share of the load in a step";
-  steps.y_label = "difference to 160 load steps";
-  points.log_x = points.log_y = steps.log_x = steps.log_y = true;
+void cantilever_studies(Bench& bench) {
+  Chart points = log_chart("A2: error over points per cell, h = 0.2 m, k = 3.6, 20 load steps",
+                             "distance of the points over cell size", "error against the beam with shear and stretch");
+  Chart steps = log_chart("A2: error over load steps, h = 0.2 m, k = 3.6, 8 points per cell",
+                            "share of the load in a step", "difference to 160 load steps");
   const auto tip = [&](const Beam& b, const std::string& name) {
     const Outcome o = bench.run(fmt::format("{}, {}", b.shape, name), overrides_of(b) + linear_schemes().front().overrides);
     const Points* frame = frame_at(o, b, b.k);
@@ -245,10 +240,6 @@ void studies(Bench& bench) {
   bench.picture("A2-points", png_of(points));
   bench.picture("A2-steps", png_of(steps));
 }
-
-}  // namespace
-
-void cantilever_studies(Bench& bench) { studies(bench); }
 
 void cantilever(Bench& bench) {
   refinement(bench, bench.complete() ? std::vector<double>{0.5, 0.25, 0.2, 0.125, 0.1} : std::vector<double>{0.5});

@@ -289,6 +289,15 @@ std::string png_of_panels(const std::vector<Chart>& panels, int width) {
   return canvas.png();
 }
 
+Chart log_chart(const std::string& title, const std::string& x_label, const std::string& y_label) {
+  Chart chart;
+  chart.title = title;
+  chart.x_label = x_label;
+  chart.y_label = y_label;
+  chart.log_x = chart.log_y = true;
+  return chart;
+}
+
 Series convergence(const std::string& name, const std::vector<double>& h, const std::vector<double>& error, int colour) {
   std::vector<double> x, y;
   for (std::size_t i = 0; i < h.size(); ++i) {

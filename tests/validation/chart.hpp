@@ -42,6 +42,9 @@ std::string png_of(const Chart& chart, int width = 1400, int height = 1000);
 /// Charts with equal scales below one another, each as high as its limits ask for.
 std::string png_of_panels(const std::vector<Chart>& panels, int width = 1400);
 
+/// An empty chart, logarithmic both ways.
+Chart log_chart(const std::string& title, const std::string& x_label, const std::string& y_label);
+
 /// "quadratic (order 1.93)": a series of errors over cell sizes with the observed order in its name.
 Series convergence(const std::string& name, const std::vector<double>& h, const std::vector<double>& error, int colour);
 

@@ -118,11 +118,8 @@ void add_statics(Bench& bench, Chart& profile, const char* shape, double top_tol
 
 /// The paper's Table 1 in one run, and its Fig. 6b.
 void paper_table(Bench& bench, Chart& profile) {
-  Chart steps;
-  steps.title = "A1: error of the top displacement over the step (paper's scheme, t = 4 s)";
-  steps.x_label = "step [s]";
-  steps.y_label = "error";
-  steps.log_x = steps.log_y = true;
+  Chart steps = log_chart("A1: error of the top displacement over the step (paper's scheme, t = 4 s)",
+                            "step [s]", "error");
   const auto study = [&](const std::string& name, const char* integrator, const Overrides& more,
                          const std::vector<std::pair<double, double>>& steps_and_tolerances, int colour) {
     Series s{name, {}, {}, colour};
@@ -162,11 +159,8 @@ Overrides refined_column(int level, const char* shape, int per_cell) {
 /// Error over the load steps, h = 50 m / 2^4: the stress against the closed form, which the grid bounds from below, and how far the top is
 /// from where twice as many steps as the most shown leave it.
 void load_step_study(Bench& bench, const Column& column) {
-  Chart chart;
-  chart.title = "A1b: error over load steps, h = 50 m / 2⁴, 8 points per cell";
-  chart.x_label = "share of the weight in a step";
-  chart.y_label = "error";
-  chart.log_x = chart.log_y = true;
+  Chart chart = log_chart("A1b: error over load steps, h = 50 m / 2⁴, 8 points per cell",
+                            "share of the weight in a step", "error");
   chart.y = Limits{1e-6, 0.5};  // room for the legend
   const int most = bench.complete() ? 160 : 40;
   int colour = 1;

@@ -2,14 +2,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <numbers>
 
-#include "common/raster/raster_io.hpp"
 #include "tests/validation/cases.hpp"
 #include "tests/validation/chart.hpp"
 #include "tests/validation/closed_forms.hpp"
+#include "tests/validation/map_scene.hpp"
 
 namespace talus::validation {
 namespace {
@@ -35,7 +34,7 @@ struct Facing {
 };
 
 /// Ground and heap beside the run. Returns what names them in the recipe.
-Overrides write_scene(const Bench& bench, const Terrain& terrain, const Facing& facing, double cell) {
+Overrides lay_out(const Bench& bench, const Terrain& terrain, const Facing& facing, double cell) {
   double west = 1e30, east = -1e30, south = 1e30, north = -1e30;  // around the way, 300 m wide
   for (const double s : {100.0, 3300.0}) {
     for (const double t : {-300.0, 300.0}) {
@@ -50,27 +49,15 @@ Overrides write_scene(const Bench& bench, const Terrain& terrain, const Facing& 
   grid.south = std::floor(south / cell) * cell;
   grid.columns = static_cast<int>(std::ceil((east - grid.west) / cell));
   grid.rows = static_cast<int>(std::ceil((north - grid.south) / cell));
-  Raster ground{grid, std::vector<double>(grid.count())}, heap = ground;
-  constexpr int parts = 8;  // of a cell's side
+  Raster ground{grid, std::vector<double>(grid.count())};
   for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column) {
-      const double x = grid.x(column), y = grid.y(row);
-      ground.at(column, row) = terrain.line.elevation(facing.along(x, y));
-      int inside = 0;
-      for (int p = 0; p < parts * parts; ++p) {
-        const double px = x + (((p % parts) + 0.5) / parts - 0.5) * cell, py = y + (((p / parts) + 0.5) / parts - 0.5) * cell;
-        inside += std::abs(facing.along(px, py) - first) < 0.5 * length && std::abs(facing.across(px, py)) < 0.5 * width;
-      }
-      heap.at(column, row) = thickness * inside / (parts * parts);
-    }
+    for (int column = 0; column < grid.columns; ++column) ground.at(column, row) = terrain.line.elevation(facing.along(grid.x(column), grid.y(row)));
   }
-  const auto folder = bench.request().out / bench.name();
-  std::filesystem::create_directories(folder);
-  const std::string place = fmt::format("{}-{:g}-{:g}.tif", terrain.line.kind == GroundLine::parabola ? "parabola" : "bend", facing.angle, cell);
-  write_geotiff(folder / ("ground-" + place), ground, {"ground", "m", {}});
-  write_geotiff(folder / ("heap-" + place), heap, {"thickness, vertical", "m", {}});
-  return {{"preprocess.base_dem", words((folder / ("ground-" + place)).string())},
-          {"preprocess.release[0].thickness_raster", words((folder / ("heap-" + place)).string())}};
+  const Raster heap = cell_means(grid, [&](double x, double y) {
+    return std::abs(facing.along(x, y) - first) < 0.5 * length && std::abs(facing.across(x, y)) < 0.5 * width ? thickness : 0.0;
+  });
+  const char* line = terrain.line.kind == GroundLine::parabola ? "parabola" : "bend";
+  return write_scene(bench, fmt::format("{}-{:g}-{:g}", line, facing.angle, cell), ground, heap);
 }
 
 /// Mean place of the points along the line and across it [m], and above the ground's own zero.
@@ -107,7 +94,7 @@ void energy_line(Bench& bench) {
         for (const double angle : {0.0, 120.0, 225.0}) {
           const Facing facing{angle};
           const Outcome o = bench.run(fmt::format("{}, {}, {:g} m, towards {:g} deg", terrain.name, mapping, cell, angle),
-                                      write_scene(bench, terrain, facing, cell) + Overrides{{"preprocess.grid.spacing_m", cell},
+                                      lay_out(bench, terrain, facing, cell) + Overrides{{"preprocess.grid.spacing_m", cell},
                                                                                             {"preprocess.grid.layer_height_m", 0.25 * cell},
                                                                                             {"solve.mapping", words(mapping)}});
           double way = nothing, aside = nothing, fall = nothing, expected = terrain.line.reach(first, mu) - first;

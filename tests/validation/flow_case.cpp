@@ -2,15 +2,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <map>
 #include <numbers>
 
-#include "common/raster/raster_io.hpp"
 #include "tests/validation/cases.hpp"
 #include "tests/validation/chart.hpp"
 #include "tests/validation/closed_forms.hpp"
+#include "tests/validation/map_scene.hpp"
 
 namespace talus::validation {
 namespace {
@@ -40,12 +39,8 @@ constexpr const char* mappings[] = {"terrain-following", "cartesian"};
 std::vector<int> layer_counts(const Bench& bench) { return bench.complete() ? std::vector<int>{2, 4, 8} : std::vector<int>{2, 4}; }
 
 Chart error_chart(const Bench& bench) {
-  Chart chart;
-  chart.title = bench.name() + ": error over layer height, cells four times as wide";
-  chart.x_label = "layer height [m]";
-  chart.y_label = "error, root mean square over the reference's";
-  chart.log_x = chart.log_y = true;
-  return chart;
+  return log_chart(bench.name() + ": error over layer height, cells four times as wide", "layer height [m]",
+                     "error, root mean square over the reference's");
 }
 
 void note(Bench& bench, const Outcome& o, const std::string& what, const Norms& n) {
@@ -66,32 +61,19 @@ double upright(const ParabolicCap::State& s, double x, double y) {
 }
 
 /// The plane and the cap on cells of this size, beside the run. Returns what names them in the recipe.
-Overrides write_scene(const Bench& bench, double cell) {
+Overrides lay_out(const Bench& bench, double cell) {
   MapGrid grid;
   grid.cell = cell;
   grid.columns = static_cast<int>(std::ceil(260 / cell));
   grid.rows = static_cast<int>(std::ceil(240 / cell)) | 1;
   grid.west = -110;
   grid.south = -0.5 * grid.rows * cell;
-  Raster plane{grid, std::vector<double>(grid.count())}, thickness = plane;
-  constexpr int parts = 8;  // of a cell's side: its mean thickness
+  Raster plane{grid, std::vector<double>(grid.count())};
   for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column) {
-      plane.at(column, row) = 500 - std::tan(cap.slope) * grid.x(column);
-      double sum = 0;
-      for (int p = 0; p < parts * parts; ++p) {
-        const double dx = ((p % parts) + 0.5) / parts - 0.5, dy = ((p / parts) + 0.5) / parts - 0.5;
-        sum += upright(cap.at(0), grid.x(column) + dx * cell, grid.y(row) + dy * cell);
-      }
-      thickness.at(column, row) = sum / (parts * parts);
-    }
+    for (int column = 0; column < grid.columns; ++column) plane.at(column, row) = 500 - std::tan(cap.slope) * grid.x(column);
   }
-  const auto folder = bench.request().out / bench.name();
-  std::filesystem::create_directories(folder);
-  const auto plane_file = folder / fmt::format("plane-{:g}.tif", cell), cap_file = folder / fmt::format("cap-{:g}.tif", cell);
-  write_geotiff(plane_file, plane, {"ground", "m", {}});
-  write_geotiff(cap_file, thickness, {"thickness, vertical", "m", {}});
-  return {{"preprocess.base_dem", words(plane_file.string())}, {"preprocess.release[0].thickness_raster", words(cap_file.string())}};
+  const Raster thickness = cell_means(grid, [](double x, double y) { return upright(cap.at(0), x, y); });
+  return write_scene(bench, fmt::format("{:g}", cell), plane, thickness);
 }
 
 // B5 ---------------------------------------------------------------------------------------------------------------
@@ -149,7 +131,7 @@ void parabolic_cap(Bench& bench) {
   section.y_label = "thickness, upright [m]";
   const auto layer_of = [](int layers) { return cap.depth / std::cos(cap.slope) / layers; };
   std::map<int, Overrides> scenes;  // one for both grids
-  for (const int layers : layer_counts(bench)) scenes[layers] = write_scene(bench, 4 * layer_of(layers));
+  for (const int layers : layer_counts(bench)) scenes[layers] = lay_out(bench, 4 * layer_of(layers));
   int colour = 1;
   for (const char* mapping : mappings) {
     std::vector<double> h, error;

@@ -119,11 +119,8 @@ double unrest(const Outcome& o) {
 }
 
 void refinement(Bench& bench, const std::vector<int>& levels) {
-  Chart chart;
-  chart.title = "A3: error over cell size, 27 points per cell";
-  chart.x_label = "cell size [m]";
-  chart.y_label = "error against Lube et al. 2005";
-  chart.log_x = chart.log_y = true;
+  Chart chart = log_chart("A3: error over cell size, 27 points per cell",
+                            "cell size [m]", "error against Lube et al. 2005");
   int colour = 1;
   for (const char* shape : {"quadratic", "linear"}) {
     std::vector<double> h, run_out, height;
@@ -169,14 +166,10 @@ void sand_column_paper(Bench& bench) {
 
 /// Reach of 99 % over points per cell and over the step, cells of 0.0225 m: against the most points and the shortest steps.
 void sand_column_studies(Bench& bench) {
-  Chart points, steps;
-  points.title = "A3: reach over points per cell, h = 0.0225 m";
-  points.x_label = "distance of the points over cell size";
-  points.y_label = "difference of the reach of 99 % to 343 points per cell";
-  steps.title = "A3: reach over the step, h = 0.0225 m, 27 points per cell";
-  steps.x_label = "step over the CFL step";
-  steps.y_label = "difference of the reach of 99 % to explicit steps of 0.02 CFL";
-  points.log_x = points.log_y = steps.log_x = steps.log_y = true;
+  Chart points = log_chart("A3: reach over points per cell, h = 0.0225 m",
+                             "distance of the points over cell size", "difference of the reach of 99 % to 343 points per cell");
+  Chart steps = log_chart("A3: reach over the step, h = 0.0225 m, 27 points per cell",
+                            "step over the CFL step", "difference of the reach of 99 % to explicit steps of 0.02 CFL");
   const double cfl_step = 4.27e-4;  // cell over the wave speed and the square root of three [s]
   int colour = 1;
   for (const char* shape : {"quadratic", "gimp", "linear"}) {
@@ -253,11 +246,8 @@ void sand_column_friction(Bench& bench) {
 }
 
 void sand_column_aspects(Bench& bench) {
-  Chart chart;
-  chart.title = "A3b: run-out over aspect ratio, one set of parameters";
-  chart.x_label = "aspect ratio, height over width";
-  chart.y_label = "(d end − d start) / d start";
-  chart.log_x = chart.log_y = true;
+  Chart chart = log_chart("A3b: run-out over aspect ratio, one set of parameters",
+                            "aspect ratio, height over width", "(d end − d start) / d start");
   Series low{"Lube et al. 2005: 1.6 a, 2.2 a²ᐟ³", {}, {}, 0}, high{"", {}, {}, 0};
   for (double a = 0.4; a < 1.8; a += 0.1) low.x.push_back(a), low.y.push_back(lube_run_out(a));
   for (double a = 2.81; a < 11; a += 0.5) high.x.push_back(a), high.y.push_back(lube_run_out(a));

@@ -1,0 +1,40 @@
+// Scenes on maps of the driver's own making: ground and release as GeoTIFFs beside the runs.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "common/raster/raster_io.hpp"
+#include "tests/validation/bench.hpp"
+
+namespace talus::validation {
+
+/// The mean of value(x, y) over 8 x 8 places of every cell.
+template <class Value>
+Raster cell_means(const MapGrid& grid, Value value) {
+  constexpr int parts = 8;
+  Raster raster{grid, std::vector<double>(grid.count())};
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      double sum = 0;
+      for (int p = 0; p < parts * parts; ++p) {
+        const double dx = ((p % parts) + 0.5) / parts - 0.5, dy = ((p / parts) + 0.5) / parts - 0.5;
+        sum += value(grid.x(column) + dx * grid.cell, grid.y(row) + dy * grid.cell);
+      }
+      raster.at(column, row) = sum / (parts * parts);
+    }
+  }
+  return raster;
+}
+
+/// Writes OUT/CASE/ground-PLACE.tif and release-PLACE.tif; returns what names them in a recipe of base and one release.
+inline Overrides write_scene(const Bench& bench, const std::string& place, const Raster& ground, const Raster& thickness) {
+  const auto folder = bench.request().out / bench.name();
+  std::filesystem::create_directories(folder);
+  const auto ground_file = folder / ("ground-" + place + ".tif"), release_file = folder / ("release-" + place + ".tif");
+  write_geotiff(ground_file, ground, {"ground", "m", {}});
+  write_geotiff(release_file, thickness, {"thickness, vertical", "m", {}});
+  return {{"preprocess.base_dem", words(ground_file.string())}, {"preprocess.release[0].thickness_raster", words(release_file.string())}};
+}
+
+}  // namespace talus::validation
