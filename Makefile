@@ -38,6 +38,7 @@ demo: build ## the synthetic valley from its two elevation models to a scored ma
 	@[[ $(OUT)/synthetic-valley/score.txt -nt $(BUILD)/.demo-begins ]] || cat $(OUT)/synthetic-valley/score.txt
 	@printf '%s\n' '' 'Results in $(abspath $(OUT))/synthetic-valley:' \
 	  '  map.png                      the map as a picture' \
+	  '  history.csv                  energy, volume, speed and steps over time' \
 	  '  maps/*.tif, maps/results.nc  the fields, for a GIS' \
 	  '  score.json, score.txt        the numbers above' \
 	  '  run.h5                       the points over time, for ParaView'

@@ -1,6 +1,8 @@
 #include "postprocess/postprocess.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <string>
 
@@ -40,6 +42,21 @@ void make_folder(const fs::path& folder) {
     throw DataError({folder.string() + ": cannot be made", error.message(), "Choose another folder with --out"});
 }
 
+/// Time series of the run, a row for every record, time first.
+std::string history_table(const RunHistory& history) {
+  std::vector<std::size_t> order(history.names.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_partition(order.begin(), order.end(), [&](std::size_t c) { return history.names[c] == "time_s"; });
+  std::string text;
+  for (const std::size_t c : order) text += (text.empty() ? "" : ",") + history.names[c];
+  const std::size_t rows = history.columns.empty() ? 0 : history.columns[0].size();
+  for (std::size_t row = 0; row < rows; ++row) {
+    text += "\n";
+    for (const std::size_t c : order) text += fmt::format("{}{:.9g}", c == order.front() ? "" : ",", history.columns[c][row]);
+  }
+  return text + "\n";
+}
+
 void write_results(StageContext& context, const Run& run, const Options& options, const std::optional<Survey>& survey) {
   const auto score = make_score(run, options, survey);
   const auto table = to_table(score);
@@ -58,6 +75,7 @@ void write_results(StageContext& context, const Run& run, const Options& options
     write_text(context.results.back(), bytes);
   };
   write("map.png", map_picture({run, options, survey, score}));
+  write("history.csv", history_table(run.history));
   write("score.txt", table);
   write("score.json", to_json(score));  // last: where it lies, everything is there
   log_info("\n" + table);
@@ -88,7 +106,7 @@ Stage stage() {
   stage.table = "postprocess";
   stage.summary = "Write maps, NetCDF, picture and scores of a run (run.h5 of talus-solve)";
   stage.examples =
-      "  talus-postprocess scene.toml --out out/scene    maps/*.tif, maps/results.nc, map.png, score.json, score.txt\n"
+      "  talus-postprocess scene.toml --out out/scene    maps/*.tif, maps/results.nc, map.png, history.csv, score.json, score.txt\n"
       "  talus-postprocess scene.toml --out out/scene --check    read run and survey, write nothing\n"
       "  talus-postprocess --template >> scene.toml    all keys with their defaults\n";
   stage.template_toml = [] { return recipe::to_toml(Options{}, "postprocess", true); };

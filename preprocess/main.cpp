@@ -76,6 +76,14 @@ void run(StageContext& context) {
   const auto file = context.out / "domain.vdb";
   write_domain(file, prepared.domain);
   context.results.push_back(file);
+  const auto bodies = context.out / "obstacles.vdb";
+  if (prepared.obstacles.empty()) {
+    std::error_code none_there;
+    std::filesystem::remove(bodies, none_there);
+  } else {
+    write_level_sets(bodies, prepared.obstacles, prepared.obstacle_voxel);
+    context.results.push_back(bodies);
+  }
   write_used_recipe(context, stage(), recipe::to_toml(options, "preprocess", false), prepared.inputs, facts);
 }
 

@@ -74,6 +74,14 @@ void BoxOptions::describe(recipe::Visitor& v) {
   v.number("top_m", top_m, recipe::not_negative, "upper side, above the ground");
 }
 
+void ObstacleOptions::describe(recipe::Visitor& v) {
+  v.text("name", name, "name of the obstacle, as in [[solve.obstacle]]");
+  v.path("polygons", polygons, "vector file of footprints");
+  v.text("attribute", attribute, "the polygons' attribute that holds their height above the ground [m]");
+  v.number("height_m", height_m, recipe::not_negative, "one height for all of them; 0 = that of the attribute");
+  v.number("voxel_m", voxel_m, recipe::not_negative, "voxels of obstacles.vdb: the smallest given counts; 0 = a quarter of the smaller of spacing_m and layer_height_m");
+}
+
 void BedRasters::describe(recipe::Visitor& v) {
   for (auto& [name, file] : files) v.path(name, file, "raster that takes the place of [solve.base] " + name + "; no data: that number");
 }
@@ -96,6 +104,7 @@ void Options::describe(recipe::Visitor& v) {
   laboratory.describe(v);
   v.leave();
   recipe::list(v, "box", box, "a block of material on or above that plane; may be repeated");
+  recipe::list(v, "obstacle", obstacle, "a body in the way, from polygons: written into OUT/obstacles.vdb for [[solve.obstacle]]; may be repeated");
   v.enter("bed", "friction of the bed from place to place");
   bed.describe(v);
   v.leave();
@@ -177,6 +186,15 @@ void check_grid(const GridOptions& g, std::vector<Fault>& faults) {
 }  // namespace
 
 void Options::check(std::vector<Fault>& faults) const {
+  std::set<std::string> bodies;
+  for (std::size_t i = 0; i < obstacle.size(); ++i) {
+    const std::string place = fmt::format("obstacle {}", i + 1);
+    if (obstacle[i].polygons.empty()) faults.push_back(fault(place + ": polygons is not given", "its footprint is not known", "Name a vector file"));
+    if (obstacle[i].name.empty() || !bodies.insert(obstacle[i].name).second) {
+      faults.push_back(fault(fmt::format("{}: name = \"{}\" is {}", place, obstacle[i].name, obstacle[i].name.empty() ? "empty" : "taken"), "[[solve.obstacle]] finds it by name",
+                             "Give it a name of its own"));
+    }
+  }
   if (laboratory.given() || !box.empty()) {
     if (!erodible.empty()) faults.push_back(fault("erodible does not go with a laboratory", "its boxes are not read from maps", "Give the layer as a box"));
     check_grid(grid, faults);

@@ -84,6 +84,17 @@ struct BoxOptions {
   void describe(recipe::Visitor& v);
 };
 
+/// One [[preprocess.obstacle]]: an upright body over polygons, for [[solve.obstacle]] of the same name.
+struct ObstacleOptions {
+  std::string name;
+  std::filesystem::path polygons;
+  std::string attribute = "height";
+  double height_m = 0;  // one height for all polygons; 0 = that of the attribute
+  double voxel_m = 0;   // 0 = a quarter of the smaller spacing
+
+  void describe(recipe::Visitor& v);
+};
+
 /// The four ways of saying what fails.
 enum class Way { before_and_after, before_and_sliding_surface, base_and_releases, laboratory };
 
@@ -97,6 +108,7 @@ struct Options {
   LaboratoryOptions laboratory;
   std::vector<BoxOptions> box;
   BedRasters bed;
+  std::vector<ObstacleOptions> obstacle;
 
   void describe(recipe::Visitor& v);
   /// What the ranges of single keys cannot say: which keys go together.

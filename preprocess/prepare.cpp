@@ -9,6 +9,7 @@
 #include "common/error.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/laboratory.hpp"
+#include "preprocess/obstacle/obstacles.hpp"
 #include "preprocess/particles/seed.hpp"
 #include "preprocess/release/releases.hpp"
 #include "preprocess/release/source.hpp"
@@ -193,6 +194,7 @@ std::vector<std::filesystem::path> inputs_of(const Options& options) {
     add(release.polygons);
   }
   for (const auto& [name, file] : options.bed.files) add(file);
+  for (const ObstacleOptions& obstacle : options.obstacle) add(obstacle.polygons);
   return inputs;
 }
 
@@ -227,6 +229,11 @@ Prepared prepare(const Options& options, Points points) {
   }
   domain.erodible = static_cast<int>(options.erodible.size());
   domain.bed = read_bed(options.bed, domain.grid);
+  prepared.obstacles = stand_obstacles(options.obstacle, scene.bed, 2 * domain.layer_height);
+  prepared.obstacle_voxel = obstacle_voxel(domain.grid.cell, domain.layer_height);
+  for (const ObstacleOptions& o : options.obstacle) {
+    if (o.voxel_m > 0) prepared.obstacle_voxel = std::min(prepared.obstacle_voxel, o.voxel_m);
+  }
   domain.terrain = std::move(scene.bed);
   domain.before = std::move(scene.before);
   return prepared;

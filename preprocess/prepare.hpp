@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/volume/domain.hpp"
+#include "common/volume/level_set.hpp"
 #include "preprocess/options.hpp"
 #include "preprocess/release/volumes.hpp"
 
@@ -18,6 +19,8 @@ struct Prepared {
   Volumes total;
   std::vector<std::pair<std::string, Volumes>> by_release;
   std::vector<std::filesystem::path> inputs;
+  std::vector<SolidBody> obstacles;
+  double obstacle_voxel = 0;  // [m]
 };
 
 enum class Points { seeded, counted };

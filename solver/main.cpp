@@ -1,4 +1,5 @@
 // talus-solve: domain.vdb -> run.h5.
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -93,8 +94,18 @@ void check_stiffness(const Domain& domain, SolveOptions o, On on, const StageCon
   log_info(fmt::format("stiffness check: {:.2f} % of the deposit lies elsewhere with {:.3g} Pa", all > 0 ? 100 * moved / all : 0, o.material.youngs_modulus));
 }
 
+/// Obstacles without a level set of their own are those of talus-preprocess.
+void find_obstacles(SolveOptions& o, const std::filesystem::path& out) {
+  for (ObstacleOptions& obstacle : o.obstacles) {
+    if (!obstacle.level_set.empty()) continue;
+    obstacle.level_set = out / "obstacles.vdb";
+    if (obstacle.grid.empty()) obstacle.grid = obstacle.name;
+  }
+}
+
 void solve(StageContext& context) {
   auto options = with_preset(context.recipe.read<SolveOptions>("solve"));
+  find_obstacles(options, context.out);
   const On on = choose_place(context.on);
   const auto domain_file = options.domain.empty() ? context.out / "domain.vdb" : options.domain;
   const Domain domain = read_domain(domain_file);
@@ -107,7 +118,12 @@ void solve(StageContext& context) {
   if (context.check_only) return;
 
   const std::string settings = recipe::to_toml(options, "solve", false);
-  const std::string fingerprint = sha256(domain_file) + "\n" + settings;
+  std::string fingerprint = sha256(domain_file) + "\n" + settings;
+  std::vector<std::filesystem::path> inputs{context.recipe.file(), domain_file};
+  for (const ObstacleOptions& obstacle : options.obstacles) {
+    fingerprint += sha256(obstacle.level_set) + "\n";
+    if (std::find(inputs.begin(), inputs.end(), obstacle.level_set) == inputs.end()) inputs.push_back(obstacle.level_set);
+  }
   const RunPaths paths(context.out);
   if (context.profile) Profile::of_run().turn_on();
   Simulation simulation(domain, options, on, paths, fingerprint);
@@ -118,7 +134,7 @@ void solve(StageContext& context) {
   if (context.profile) log_profile(summary);
   if (options.material.stiffness_check) check_stiffness(domain, options, on, context, paths.run);
   context.results.push_back(paths.run);
-  write_used_recipe(context, stage(), settings, {context.recipe.file(), domain_file},
+  write_used_recipe(context, stage(), settings, inputs,
                     {{"on", summary.on},
                      {"wall_time_s", fmt::format("{:.3f}", summary.wall_time)},
                      {"steps", fmt::format("{}", summary.steps)},

@@ -179,6 +179,8 @@ void SolveOptions::describe(recipe::Visitor& v) {
   recipe::choice(v, "mapping", mapping,
                  {{"terrain-following", Mapping::terrain_following}, {"cartesian", Mapping::cartesian}},
                  "background grid: layers follow the ground, or lie level");
+  recipe::choice(v, "ground_contact", ground, {{"nodes", GroundContact::nodes}, {"points", GroundContact::points}},
+                 "Cartesian grid: the ground met by the nodes at or below it, or by points between the nodes");
   recipe::choice(v, "shape", shape, {{"quadratic", ShapeKind::quadratic}, {"gimp", ShapeKind::gimp}, {"linear", ShapeKind::linear}},
                  "functions of the grid: B-splines, hats averaged over the box of each point, or hats");
   recipe::choice(v, "transfer", transfer, {{"apic", Transfer::apic}, {"flip", Transfer::flip}},
@@ -204,6 +206,7 @@ void SolveOptions::describe(recipe::Visitor& v) {
   implicit.describe(v);
   v.leave();
   recipe::list(v, "wall", walls, "plane walls, gates");
+  recipe::list(v, "obstacle", obstacles, "bodies in the way: walls, barriers, buildings");
   recipe::list(v, "load", loads, "forces on parts of the mass");
   recipe::list(v, "part", parts, "a release of another material than [solve.material]");
   v.enter("material", "the sliding mass");
@@ -212,6 +215,36 @@ void SolveOptions::describe(recipe::Visitor& v) {
   v.enter("base", "the bed under it");
   base.describe(v);
   v.leave();
+}
+
+double ObstacleOptions::friction() const { return std::tan(friction_angle * radians_per_degree); }
+
+void ObstacleOptions::describe(recipe::Visitor& v) {
+  v.text("name", name, "under which its force is recorded");
+  v.path("level_set", level_set, "OpenVDB file of signed distances [m], negative inside; empty: obstacles.vdb in the output folder (talus-preprocess)");
+  v.text("grid", grid, "name of the level set in that file; empty: the obstacle's own, or the only one of a level_set that is given");
+  v.number("friction_angle_deg", friction_angle, recipe::Range{0, 90, false, true}, "friction angle of its surface");
+}
+
+void SolveOptions::check_contacts(std::vector<Fault>& faults) const {
+  if (ground == GroundContact::points && mapping != Mapping::cartesian) {
+    faults.push_back({"[solve] ground_contact = \"points\" does not go with mapping = \"terrain-following\"", "there the nodes lie on the ground, and meet it exactly",
+                      "Leave it out, or take mapping = \"cartesian\""});
+  }
+  for (std::size_t o = 0; o < obstacles.size(); ++o) {
+    const std::string& name = obstacles[o].name;
+    const bool plain = !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") == std::string::npos;
+    if (!plain) faults.push_back({fmt::format("[[solve.obstacle]] number {}: name = \"{}\"", o + 1, name), "its forces are recorded under its name", "Give it one of letters, digits, - and _"});
+    for (std::size_t earlier = 0; earlier < o; ++earlier) {
+      if (plain && obstacles[earlier].name == name) faults.push_back({fmt::format("[[solve.obstacle]] name = \"{}\" is given twice", name), "its forces are recorded under its name", "Rename one"});
+    }
+  }
+  if (!meets_points()) return;
+  const std::string what = obstacles.empty() ? "[solve] ground_contact = \"points\"" : "[[solve.obstacle]]";
+  if (implicit.linear_solver == LinearSolver::cholesky && integrator != Integrator::explicit_) {
+    faults.push_back({what + " does not go with [solve.implicit] linear_solver = \"cholesky\"", "contact between nodes is not in the assembled matrix", "Take linear_solver = \"pcg\""});
+  }
+  if (energy_budget) faults.push_back({what + " does not go with energy_budget = true", "what is lost between nodes is not counted", "Leave energy_budget out"});
 }
 
 void SolveOptions::check(std::vector<Fault>& faults) const {
@@ -231,6 +264,7 @@ void SolveOptions::check(std::vector<Fault>& faults) const {
     faults.push_back({"[solve] energy_budget = true does not go with this integrator or stress_update", "losses are counted in explicit steps with stress_update = \"usl\"",
                       "Leave it out, or take integrator = \"explicit\""});
   }
+  check_contacts(faults);
   if (walls.size() > most_walls) {
     faults.push_back({fmt::format("[[solve.wall]] is given {} times", walls.size()), fmt::format("at most {} walls fit", most_walls),
                       "Leave some out"});

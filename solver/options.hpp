@@ -103,6 +103,16 @@ struct WallOptions {
   void describe(recipe::Visitor& v);
 };
 
+/// A body that stands in the way.
+struct ObstacleOptions {
+  std::string name;
+  std::filesystem::path level_set;   // empty: OUT/obstacles.vdb
+  std::string grid;                  // in that file; empty: the obstacle's name, or the only one of a file that is given
+  double friction_angle = 20;        // [deg]
+  double friction() const;           // coefficient
+  void describe(recipe::Visitor& v);
+};
+
 /// A force on the points that start inside a box.
 struct LoadOptions {
   std::vector<double> box = {0, 0, 0, 0, 0, 0};  // west, east, south, north [m], bottom, top above the ground [m]
@@ -118,6 +128,7 @@ struct SolveOptions {
   ImplicitOptions implicit;
   std::vector<WallOptions> walls;
   std::vector<LoadOptions> loads;
+  std::vector<ObstacleOptions> obstacles;
   double gravity_ramp = 0;           // [s]
   int gravity_loading_steps = 0;     // quasi-static steps before the start
   std::filesystem::path domain;      // empty: OUT/domain.vdb
@@ -125,6 +136,7 @@ struct SolveOptions {
   double stop_kinetic_fraction = 0;  // of its peak; 0: never
   Precision precision = Precision::double_;
   Mapping mapping = Mapping::terrain_following;
+  GroundContact ground = GroundContact::nodes;
   ShapeKind shape = ShapeKind::quadratic;
   Transfer transfer = Transfer::apic;
   double transfer_time = 10;         // CFL steps
@@ -148,8 +160,14 @@ struct SolveOptions {
   bool any_material(const std::function<bool(const MaterialOptions&)>& is) const;
   bool densities_differ() const { return any_material([&](const MaterialOptions& m) { return m.density != material.density; }); }
 
+  /// Whether the mass meets anything between nodes.
+  bool meets_points() const { return !obstacles.empty() || ground == GroundContact::points; }
+
   void describe(recipe::Visitor& v);
   void check(std::vector<Fault>& faults) const;
+
+ private:
+  void check_contacts(std::vector<Fault>& faults) const;
 };
 
 /// Moduli, wave speed and cone from a recipe's words. Cone fitted to Mohr-Coulomb in triaxial compression or extension (Chen & Mizuno

@@ -101,6 +101,8 @@ std::vector<std::string> features(const Domain& domain, const SolveOptions& o) {
   if (o.stress_update == StressUpdate::modified) add("stress", "from velocities mapped back (musl)");
   if (o.integrator != Integrator::explicit_ && o.implicit.b_bar) add("volume", "means over cells (B-bar)");
   if (!o.walls.empty()) add("walls", fmt::format("{}", o.walls.size()));
+  if (o.ground == GroundContact::points) add("ground", "met by points between the nodes");
+  for (const ObstacleOptions& obstacle : o.obstacles) add("obstacle", fmt::format("{}, {:g} deg", obstacle.name, obstacle.friction_angle));
   if (!o.loads.empty()) add("loads", fmt::format("{}", o.loads.size()));
   if (o.vdb_frames) add("frames", "points as .vdb too");
   return lines;
@@ -109,6 +111,7 @@ std::vector<std::string> features(const Domain& domain, const SolveOptions& o) {
 std::vector<std::string> plan(const Domain& domain, const SolveOptions& o, On on) {
   std::vector<std::string> lines = features(domain, o);
   const Scene scene = make_scene(domain, o);
+  for (const std::string& note : scene.contacts.notes) lines.push_back(note);
   const Trial trial = try_steps(scene, o, on);
   const auto add = [&](const std::string& name, const std::string& words) { lines.push_back(fmt::format("{:<12} {}", name, words)); };
   const double volume = std::accumulate(scene.points.volume.begin(), scene.points.volume.end(), 0.0);

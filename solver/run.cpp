@@ -101,6 +101,10 @@ void Simulation::start() {
   build_solver(first_state(scene_, options_));
   memory_.history.names = history_names;
   if (options_.energy_budget) memory_.history.names.insert(memory_.history.names.end(), budget_names.begin(), budget_names.end());
+  for (const ObstacleOptions& o : options_.obstacles) {
+    for (const char* axis : {"x", "y", "z"}) memory_.history.names.push_back(fmt::format("obstacle_{}_impulse_{}_N_s", o.name, axis));
+  }
+  for (const std::string& note : scene_.contacts.notes) log_info(note);
   memory_.history.columns.resize(memory_.history.names.size());
   memory_.initial_thickness = solver_->thickness();
 }
@@ -183,7 +187,7 @@ void Simulation::record(double time) {
   const Clock clock = solver_->clock();
   kinetic_ = e.kinetic;
   memory_.peak_kinetic = std::max(memory_.peak_kinetic, e.kinetic);
-  const double row[] = {time,
+  std::vector<double> row{time,
                         static_cast<double>(clock.step),
                         clock.step_size,
                         e.kinetic,
@@ -198,14 +202,11 @@ void Simulation::record(double time) {
                         static_cast<double>(memory_.newton),
                         static_cast<double>(memory_.linear),
                         static_cast<double>(memory_.cuts),
-                        over_cfl_,
-                        clock.bed_loss,
-                        clock.damping_loss,
-                        clock.plastic_loss,
-                        clock.transfer_loss,
-                        clock.reaction[0],
-                        clock.reaction[1],
-                        clock.reaction[2]};
+                        over_cfl_};
+  if (options_.energy_budget) {
+    row.insert(row.end(), {clock.bed_loss, clock.damping_loss, clock.plastic_loss, clock.transfer_loss, clock.reaction[0], clock.reaction[1], clock.reaction[2]});
+  }
+  for (const Vec3<double>& impulse : solver_->obstacle_impulses()) row.insert(row.end(), {impulse.x, impulse.y, impulse.z});
   for (std::size_t c = 0; c < memory_.history.columns.size(); ++c) memory_.history.columns[c].push_back(row[c]);
 }
 
@@ -398,6 +399,26 @@ void Simulation::tell_apart(RunMaps& maps) const {
   }
 }
 
+void Simulation::report_obstacles() const {
+  const RunHistory& history = memory_.history;
+  const std::vector<double>& time = history.columns[0];
+  const std::size_t count = options_.obstacles.size();
+  for (std::size_t o = 0; o < count; ++o) {
+    const auto impulse = [&](std::size_t axis, std::size_t row) { return history.columns[history.columns.size() - 3 * (count - o) + axis][row]; };
+    double peak = 0, when = 0;
+    for (std::size_t row = 1; row < time.size(); ++row) {
+      const double span = time[row] - time[row - 1];
+      const auto change = [&](std::size_t axis) { return (impulse(axis, row) - impulse(axis, row - 1)) / span; };
+      const double force = span > 0 ? std::hypot(change(0), change(1), change(2)) : 0;
+      if (force > peak) when = time[row];
+      peak = std::max(peak, force);
+    }
+    const std::size_t last = time.size() - 1;
+    log_info(fmt::format("obstacle {}: impulse ({:.4g}, {:.4g}, {:.4g}) N s, largest mean force over {:g} s {:.4g} N until t = {:.2f} s", options_.obstacles[o].name, impulse(0, last),
+                         impulse(1, last), impulse(2, last), options_.history_interval, peak, when));
+  }
+}
+
 void Simulation::finish(RunSummary& summary) {
   const SolverState state = solver_->state();
   memory_.wall_time = wall_time();
@@ -430,6 +451,7 @@ void Simulation::finish(RunSummary& summary) {
   RunWriter writer(paths_.run);
   frames_.append_to(writer, memory_.frames, scene_.map);
   writer.finish(final_maps(), memory_.history, summary);
+  report_obstacles();
   log_detail(fmt::format("files: {:.1f} s after the last step", wall_time() - memory_.wall_time));
   frames_.clear();
   std::error_code ignored;

@@ -47,6 +47,7 @@ class Simulation {
   bool calm() const;
   void report(Progress& progress, const Clock& clock) const;
   [[noreturn]] void fail(const Clock& clock) const;
+  void report_obstacles() const;
   void finish(RunSummary& summary);
   RunMaps final_maps() const;
   /// What belongs to which release, and what still lies in the ground.

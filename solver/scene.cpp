@@ -104,6 +104,7 @@ Scene make_scene(const Domain& domain, const SolveOptions& options) {
   shape.spacing = domain.grid.cell;
   shape.layer_height = domain.layer_height;
   shape.mapping = options.mapping;
+  shape.ground = options.ground;
   shape.quadratic = options.shape == ShapeKind::quadratic;
   // With "auto" the same for both integrators: what has next to no weight has next to no say in a change.
   const bool some_explicit = options.integrator == Integrator::explicit_ || options.integrator == Integrator::automatic;
@@ -143,6 +144,7 @@ Scene make_scene(const Domain& domain, const SolveOptions& options) {
   attach_materials(domain, options, scene);
   check_bed(domain, options);
   scene.bed = make_bed(domain, options);
+  scene.contacts = make_contact_points(domain.grid, shape, ground, options.obstacles);
   return scene;
 }
 

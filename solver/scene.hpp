@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/volume/domain.hpp"
+#include "solver/contact/contact_points.hpp"
 #include "solver/grid/sparse_grid.hpp"
 #include "solver/options.hpp"
 
@@ -16,6 +17,7 @@ struct Scene {
   ParticleState points;
   std::vector<double> load_volumes;  // volume of the points each load pulls at [m3]
   std::vector<Bed<double>> bed;      // of every column; empty where it is the same everywhere
+  ContactPoints contacts;
 };
 
 /// Places the seeds of a domain on the background grid. Throws DataError when a seed stands outside the ground.

@@ -20,6 +20,9 @@ inline constexpr int block_columns = block_side * block_side;  // columns of a b
 
 enum class Mapping { terrain_following, cartesian };
 
+/// What meets the ground of a Cartesian grid: the nodes at or below it, or points between the nodes.
+enum class GroundContact { nodes, points };
+
 /// Where the nodes of a block of columns are stored.
 struct BlockSlot {
   int offset = -1;     // first node; -1: no storage
@@ -41,6 +44,7 @@ struct GridView {
   Real lowest_weighed = 0;                  // cells from the ground or a wall within which weights no longer change
   WallNodes walls;
   Mapping mapping = Mapping::terrain_following;
+  GroundContact ground = GroundContact::nodes;
   const BlockSlot* slots = nullptr;         // [blocks in y * blocks in x]
   const Real* terrain = nullptr;            // spline coefficients of the ground at the nodes, from `datum` [m]
   const Real* slope_x = nullptr;            // slope of the ground at the nodes [-]
@@ -49,6 +53,11 @@ struct GridView {
 
   TALUS_HD int column(int i, int j) const { return j * columns + i; }
   TALUS_HD const BlockSlot& slot(int i, int j) const { return slots[(j >> 2) * block_columns_x + (i >> 2)]; }
+  /// Highest layer whose node touches the ground: the base layer, or on a Cartesian grid the last one not above the terrain; -1 where points do.
+  TALUS_HD int contact_layer(int column) const {
+    if (mapping == Mapping::terrain_following) return 0;
+    return ground == GroundContact::points ? -1 : static_cast<int>(floor(terrain[column] / layer_height + Real(1e-4)));
+  }
   /// Storage of the column's node in layer k (k >= 0, inside the slot's range).
   TALUS_HD static int node(const BlockSlot& s, int i, int j, int k) {
     return s.offset + (k - s.first_layer) * block_columns + ((j & 3) << 2) + (i & 3);

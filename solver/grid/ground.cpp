@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "solver/grid/shape_functions.hpp"
+#include "solver/grid/bicubic.hpp"
 #include "solver/grid/sparse_grid.hpp"
 
 namespace talus {
@@ -15,6 +16,26 @@ struct NodeWeights {
 NodeWeights node_weights(bool quadratic) {
   if (quadratic) return {{0.125, 0.75, 0.125}, {-0.5, 0.0, 0.5}};
   return {{0.0, 1.0, 0.0}, {-0.5, 0.0, 0.5}};  // mean of the slopes of the two cells
+}
+
+/// Nodes without ground beside known ones get the mean of those, which only curves beyond the places where points may be look at.
+void fill_rim(const GridShape& shape, std::vector<double>& terrain) {
+  const auto at = [&](int i, int j) { return static_cast<std::size_t>(j) * static_cast<std::size_t>(shape.columns) + static_cast<std::size_t>(i); };
+  for (int j = 0; j < shape.rows; ++j) {
+    for (int i = 0; i < shape.columns; ++i) {
+      if (std::isfinite(shape.terrain[at(i, j)])) continue;
+      double sum = 0;
+      int count = 0;
+      for (int b = std::max(j - 1, 0); b <= std::min(j + 1, shape.rows - 1); ++b) {
+        for (int a = std::max(i - 1, 0); a <= std::min(i + 1, shape.columns - 1); ++a) {
+          if (!std::isfinite(shape.terrain[at(a, b)])) continue;
+          sum += terrain[at(a, b)];
+          ++count;
+        }
+      }
+      if (count > 0) terrain[at(i, j)] = sum / count;
+    }
+  }
 }
 
 }  // namespace
@@ -32,6 +53,7 @@ GroundTables make_ground_tables(const GridShape& shape) {
   for (std::size_t n = 0; n < shape.terrain.size(); ++n) {
     if (std::isfinite(shape.terrain[n])) tables.terrain[n] = shape.terrain[n] - tables.datum;
   }
+  fill_rim(shape, tables.terrain);
   const NodeWeights w = node_weights(shape.quadratic);
   for (int j = 1; j + 1 < shape.rows; ++j) {
     for (int i = 1; i + 1 < shape.columns; ++i) {
@@ -75,7 +97,13 @@ GroundTables make_ground_tables(const GridShape& shape) {
   return tables;
 }
 
+GroundPoint<double> bicubic_ground(const GridShape& shape, const GroundTables& ground, double xi, double eta) {
+  const double i = std::floor(xi), j = std::floor(eta);
+  return bicubic_ground(ground.terrain.data(), shape.columns, shape.rows, shape.spacing, static_cast<int>(i), static_cast<int>(j), xi - i, eta - j);
+}
+
 double ground_at(const GridShape& shape, const GroundTables& ground, double xi, double eta) {
+  if (shape.ground == GroundContact::points) return bicubic_ground(shape, ground, xi, eta).height;
   const auto sample = [&](auto kind) {
     using Shape = decltype(kind);
     double wx[3], wy[3], unused[3];

@@ -106,6 +106,7 @@ GridView<Real> SparseGrid<Real, Place>::view() const {
   v.lowest_weighed = static_cast<Real>(shape_.lowest_weighed);
   v.walls = walls_;
   v.mapping = shape_.mapping;
+  v.ground = shape_.ground;
   v.slots = slots_.data();
   v.terrain = terrain_.data();
   v.slope_x = slope_x_.data();

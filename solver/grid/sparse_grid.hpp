@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "solver/grid/background_grid.hpp"
+#include "solver/grid/bicubic.hpp"
 #include "solver/particles/particles.hpp"
 
 namespace talus {
@@ -13,6 +14,7 @@ struct GridShape {
   int columns = 0, rows = 0;
   double spacing = 0, layer_height = 0;       // [m]
   Mapping mapping = Mapping::terrain_following;
+  GroundContact ground = GroundContact::nodes;
   bool quadratic = true;
   double lowest_weighed = 0;                  // see GridView
   std::vector<double> terrain;                // ground at the nodes [m], NaN outside the domain; [rows * columns]
@@ -26,7 +28,10 @@ struct GroundTables {
 };
 GroundTables make_ground_tables(const GridShape& shape);
 
-/// Ground elevation at (xi, eta), in cells from node (0, 0), as the grid's own functions interpolate it [m above datum].
+/// The same between nodes on the host, at (xi, eta) in cells from node (0, 0).
+GroundPoint<double> bicubic_ground(const GridShape& shape, const GroundTables& ground, double xi, double eta);
+
+/// Ground elevation at (xi, eta), in cells from node (0, 0), as the grid's own functions interpolate it, or bicubic where it is met by points [m above datum].
 double ground_at(const GridShape& shape, const GroundTables& ground, double xi, double eta);
 
 /// A point's sorting key: block in the high word, then column within the block, then layer.

@@ -35,12 +35,11 @@ struct BeginStep {
 template <class Real, class Place, class Shape>
 class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   using Base = PointSolver<Real, Place, Shape>;
-  using Base::clock_, Base::dilatant_, Base::grid_, Base::materials_, Base::options_, Base::points_, Base::read_clock;
+  using Base::bed_, Base::clock_, Base::contact_, Base::dilatant_, Base::grid_, Base::impulses_, Base::materials_, Base::options_, Base::points_, Base::read_clock;
 
  public:
   ExplicitSolverOf(const Scene& scene, const SolveOptions& options, const SolverState& state)
       : Base(scene, options, state, fields(options)),
-        bed_(make_base_friction<Real>(options), scene.bed),
         affine_(options.transfer == Transfer::apic),
         musl_(options.stress_update == StressUpdate::modified),
         keeps_(options.transfer_time > options.courant),
@@ -81,7 +80,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     return report;
   }
 
-  std::size_t bytes() const override { return Base::bytes() + bed_.bytes() + nodes_.bytes() + forces_.bytes(); }
+  std::size_t bytes() const override { return Base::bytes() + nodes_.bytes() + forces_.bytes(); }
 
  private:
   static ParticleFields fields(const SolveOptions& o) {
@@ -140,6 +139,16 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
              UpdateColumns<Real, content>{grid_.view(), grid_.active_list(), clock_.data(), nodes_.data(), forces_.data(), g,
                                           options_.gravity_ramp, walls_,
                                           bed_.view(), static_cast<Real>(this->full_base()), static_cast<Real>(options_.damping), materials_.list[0].density, this->column_volumes(), this->maps()});
+    if (contact_.on()) meet_surfaces<content>();
+  }
+
+  /// Obstacles, and ground between the nodes. What is mapped back a second time is merely kept from running through them.
+  template <NodeContent content>
+  void meet_surfaces() {
+    const ProfilePhase<Place> phase("contact");
+    constexpr bool first = content != NodeContent::remapped;
+    const PackedNodes<Real> nodes{nodes_.data(), content == NodeContent::force ? forces_.data() : nullptr};
+    impulses_.run(contact_, grid_.view(), nodes, grid_.nodes(), this->layer_mass(), {clock_.data(), 0, first, first});
   }
 
   template <Gather part>
@@ -152,12 +161,11 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
   void sort(int gone) {
     const ProfilePhase<Place> phase("sort and storage");
-    grid_.fit(points_, gone);
+    this->fit(gone);
     nodes_.resize(static_cast<std::size_t>(grid_.nodes()));
     if (forces_apart_) forces_.resize(static_cast<std::size_t>(grid_.nodes()));
   }
 
-  BedOn<Real, Place> bed_;
   bool affine_, musl_;
   bool keeps_;  // points keep some of the velocity that is finer than the grid
   bool forces_apart_;

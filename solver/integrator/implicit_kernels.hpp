@@ -3,6 +3,7 @@
 #pragma once
 
 #include "solver/contact/walls.hpp"
+#include "solver/grid/bicubic.hpp"
 #include "solver/integrator/clock.hpp"
 #include "solver/linear/mean_dilation.hpp"
 #include "solver/material/tangent.hpp"
@@ -67,11 +68,6 @@ TALUS_HD Vec3<Real> narrow(const Vec3<double>& v) {
   return {static_cast<Real>(v.x), static_cast<Real>(v.y), static_cast<Real>(v.z)};
 }
 using talus::scatter_add;
-TALUS_HD void scatter_add(Vec3<double>* target, const Vec3<double>& v) {
-  talus::scatter_add(&target->x, v.x);
-  talus::scatter_add(&target->y, v.y);
-  talus::scatter_add(&target->z, v.z);
-}
 
 /// One thread: one point. Mass, momentum, acceleration (as mass times it) and loads to the nodes.
 template <class Real, class Shape>
@@ -295,6 +291,7 @@ struct AcceptStep {
       raise_flag(&clock->request, failed);
       return;
     }
+    if (grid.ground == GroundContact::points) keep_above_ground(grid, points, p);
     const int i = points.cell_x[p], j = points.cell_y[p];
     if (i < 0 || j < 0 || i >= grid.columns || j >= grid.rows || !grid.open[grid.column(i, j)]) {
       points.cell_x[p] = -1;

@@ -141,9 +141,7 @@ struct PrepareNodes {
   TALUS_HD bool touch_ground(int i, int j, int k, Vec3<double>& normal, double& friction, Sym3<double>& freed,
                              Vec3<double>& u) const {
     const int column = grid.column(i, j);
-    const int top = grid.mapping == Mapping::terrain_following
-                        ? 0
-                        : static_cast<int>(floor(grid.terrain[column] / grid.layer_height + Real(1e-4)));
+    const int top = grid.contact_layer(column);
     if (k > top) return false;
     if (base.law == FrictionLaw::stick) {
       freed = {};

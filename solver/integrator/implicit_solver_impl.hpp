@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/contact/contact_forces.hpp"
 #include "solver/integrator/implicit_nodes.hpp"
 #include "solver/integrator/newton_control.hpp"
 #include "solver/integrator/point_solver.hpp"
@@ -55,21 +56,21 @@ struct RecordColumns {
 template <class Real, class Place, class Shape>
 class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   using Base = PointSolver<Real, Place, Shape>;
-  using Base::clock_, Base::dilatant_, Base::grid_, Base::materials_, Base::options_, Base::points_, Base::read_clock, Base::sums_;
+  using Base::clock_, Base::contact_, Base::dilatant_, Base::impulses_, Base::grid_, Base::materials_, Base::options_, Base::points_, Base::read_clock, Base::sums_;
 
  public:
   ImplicitSolverOf(const Scene& scene, const SolveOptions& options, const SolverState& state)
       : Base(scene, options, state, fields(options)),
         affine_(options.transfer == Transfer::apic),
         dynamic_(options.integrator == Integrator::newmark),
-        bed_(make_base_friction<double>(options), scene.bed),
+        node_bed_(make_base_friction<double>(options), scene.bed),
         step_(options.implicit.step),
         first_(state.clock.accelerated == 0),
         midway_(state.clock.step > 0),
         operator_(options.implicit.form),
         preconditioner_(options.implicit.preconditioner) {
     balance_.upload({Balance{}});
-    this->grid_.fit(points_, 0);
+    this->fit(0);
     const double g = std::hypot(options.gravity[0], options.gravity[1], options.gravity[2]);
     for (Material<Real>& m : materials_.list) {
       m.exact_tangent = options.implicit.tangent == Tangent::exact;
@@ -109,7 +110,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     report.stats.over_cfl = step * static_cast<double>(positive_from_bits(clock.rate_bits));
     if (clock.request == failed) clock.halt = failed;
     if (clock.halt != failed && clock.time >= clock.next_event) clock.halt = at_event;
-    if (report.outflow_count > 0) this->grid_.fit(points_, report.outflow_count);
+    if (report.outflow_count > 0) this->fit(report.outflow_count);
     report.sorted = true;
     report.clock = clock;
     clock.halt = clock.request = running;
@@ -119,7 +120,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
   std::size_t bytes() const override {
     std::size_t total = Base::bytes() + mass_.bytes() + touch_.bytes() + wavers_.bytes() + along_.bytes() + tangents_.bytes() + wall_freed_.bytes() +
-                        contact_friction_.bytes() + bed_.bytes() + traction_.bytes() + friction_limit_.bytes() + freed_.bytes() + preconditioner_.bytes() + stiffness_.bytes() + operator_.bytes() +
+                        contact_friction_.bytes() + node_bed_.bytes() + springs_.bytes() + grips_.bytes() + tractions_.bytes() + limits_.bytes() + contact_stiffness_.bytes() + traction_.bytes() + friction_limit_.bytes() + freed_.bytes() + preconditioner_.bytes() + stiffness_.bytes() + operator_.bytes() +
                         cholesky_.bytes() + elements_.bytes() + bicgstab_.bytes() + means_.bytes() + static_cast<std::size_t>(cholesky_.factor().factor_bytes());
     for (const auto* v : {&velocity_, &arrival_, &acceleration_, &external_, &internal_, &u_, &residual_, &normal_,
                           &velocity_end_, &acceleration_end_, &change_, &saved_u_}) {
@@ -180,7 +181,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     freed_.resize(n);
     wall_freed_.resize(n);
     contact_friction_.resize(n);
-    if (bed_.view().has_traction()) traction_.resize(n);
+    if (node_bed_.view().has_traction()) traction_.resize(n);
     friction_limit_.resize(n);
     touch_.resize(n);
     along_.resize(n);
@@ -190,7 +191,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
   void fit_grid(double time) {
     const ProfilePhase<Place> phase("sort and storage");
-    this->grid_.fit(points_, 0);
+    this->fit(0);
     walls_ = this->template stand_walls<double>(time);
     group_elements();
   }
@@ -214,7 +215,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     const bool predict = dynamic_ && options_.implicit.newton_iterations > 1;
     for_each(Place{}, this->grid_.active_blocks() * block_columns,
              PrepareNodes<Real>{this->grid_.view(), this->grid_.active_list(), nodes(), held(),
-                                walls_, bed_.view(), this->full_base(), g, scheme_, predict});
+                                walls_, node_bed_.view(), this->full_base(), g, scheme_, predict});
+    if (contact_.on()) prepare_surfaces(step, predict);
     if (dynamic_) sum_each<1>(Place{}, count_, sums_, SquareMomentum{nodes()}, KeepTotals<1>{&balance_.data()->momentum});
     if (!dynamic_) return;
     const bool accelerates = first_ && !midway_, damps = options_.damping > 0;
@@ -225,6 +227,25 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     if (accelerates) for_each(Place{}, count_, FirstAcceleration{nodes()});
     if (damps) for_each(Place{}, count_, AddDamping{nodes(), options_.damping});
     copy(saved_u_, u_);
+  }
+
+  /// Friction of the contact points for this step, and what they take at once.
+  void prepare_surfaces(double step, bool predict) {
+    const auto n = static_cast<std::size_t>(contact_.count());
+    springs_.resize(n);
+    grips_.resize(n);
+    tractions_.resize(n);
+    limits_.resize(n);
+    contact_stiffness_.resize(n);
+    contact_stiffness_.fill_zero();
+    contact_.each(MeasureGrip<Real, Shape>{this->grid_.view(), contact_.view(), nodes(), this->layer_mass(), dynamic_, contact_numbers()});
+    if (!dynamic_) return;
+    impulses_.run(contact_, this->grid_.view(), ArrivingNodes<Real>{nodes(), predict ? step : 0}, count_, this->layer_mass(), {nullptr, step, true, false});
+  }
+  ContactNumbers contact_numbers() {
+    const double wave = static_cast<double>(materials_.list[0].wave_speed);
+    const double modulus = static_cast<double>(materials_.list[0].density) * wave * wave;  // of uniaxial strain
+    return {springs_.data(), grips_.data(), tractions_.data(), limits_.data(), contact_stiffness_.data(), contact_stiffness * modulus / std::min(this->frame_.cell[0], this->frame_.cell[2])};
   }
 
   /// See FrictionCorner.
@@ -244,6 +265,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
                      ScatterStress<Real, Shape>{this->grid_.view(), points_.view(), materials_, dilatant_, definite, means(), store, nodes()});
     if (springs().on()) apply_springs(elements_, springs(), u_, internal_);
+    if (contact_.on()) contact_.each(ScatterContacts<Real, Shape>{this->grid_.view(), contact_.view(), nodes(), contact_numbers(), with_tangent});
   }
 
   MeanDilationView<Real> means() const { return options_.implicit.b_bar ? means_.view() : MeanDilationView<Real>{}; }
@@ -265,6 +287,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   Balance measure_residual(bool decide) {
     const ProfilePhase<Place> phase("residual and contact");
     if (decide) {
+      if (contact_.on()) contact_.each(RenewLimits<Real, Shape>{this->grid_.view(), contact_.view(), nodes(), contact_numbers()});
       const double each = options_.implicit.newton_tolerance / std::sqrt(static_cast<double>(std::max(count_, 1)));
       sum_each<1>(Place{}, count_, sums_, SquareForces{nodes()}, FinishForces{balance_.data(), stopping_share(), each});
     }
@@ -404,6 +427,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   HeldNodes held_nodes() {
     stiffness_.resize(static_cast<std::size_t>(count_));
     for_each(Place{}, count_, FrictionStiffness{nodes(), held(), stiffness_.data()});
+    if (contact_.on()) contact_.each(AddContactDiagonal<Real, Shape>{this->grid_.view(), contact_.view(), mass_.data(), contact_stiffness_.data(), stiffness_.data()});
     return {count_, mass_.data(), freed_.data(), scheme_.inertia(), dynamic_ ? 0 : static_shift, stiffness_.data()};
   }
 
@@ -434,7 +458,11 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   /// The tangent of the step as conjugate gradients take it.
   struct LinearSystem {
     ImplicitSolverOf& solver;
-    void product(const NodeVector<Place>& x, NodeVector<Place>& y) { solver.operator_.apply(x, y); }
+    void product(const NodeVector<Place>& x, NodeVector<Place>& y) {
+      solver.operator_.apply(x, y);
+      if (!solver.contact_.on()) return;
+      solver.contact_.each(ApplyContacts<Real, Shape>{solver.grid_.view(), solver.contact_.view(), solver.mass_.data(), solver.contact_stiffness_.data(), x.data(), y.data()});
+    }
     CloseProduct close(const NodeVector<Place>& x, NodeVector<Place>& y) {
       return {solver.nodes(), solver.held(), solver.scheme_.inertia(), x.data(), y.data()};
     }
@@ -450,6 +478,9 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
   void accept(const Clock& clock, double step) {
     const ProfilePhase<Place> phase("grid to points");
+    if (contact_.on()) {
+      contact_.each(KeepContacts<Real, Shape>{this->grid_.view(), contact_.view(), nodes(), contact_numbers(), step, dynamic_ ? impulses_.impulses() : nullptr});
+    }
     for_each(Place{}, count_, EndOfStep{nodes(), scheme_, velocity_end_.data(), acceleration_end_.data()});
     AcceptStep<Real, Shape> step_kernel{this->grid_.view(), points_.view(), materials_, clock_.data(), nodes(),
                                         dynamic_ ? velocity_end_.data() : nullptr, acceleration_end_.data(), u_.data(),
@@ -479,12 +510,14 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   }
 
   bool affine_, dynamic_;
-  BedOn<double, Place> bed_;
+  BedOn<double, Place> node_bed_;
   double step_;
   int count_ = 0;
   bool first_;   // no acceleration is known yet
   bool midway_;  // the run began with explicit steps
   TimeScheme scheme_;
+  Buffer<double, Place> springs_, grips_, tractions_, limits_;  // of the contact points
+  Buffer<Sym3<double>, Place> contact_stiffness_;
   Buffer<double, Place> mass_, contact_friction_, traction_, friction_limit_;
   double rate_ = 0;  // CFL steps per time, as the last step ended [1/s]
   FrictionCorner corner_;

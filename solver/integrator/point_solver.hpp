@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "solver/contact/contact_impulses.hpp"
 #include "solver/integrator/point_sums.hpp"
 #include "solver/integrator/solver.hpp"
 #include "solver/output/map_fields.hpp"
@@ -52,6 +53,8 @@ class PointSolver : public Solver {
         dilatant_(fields.plastic_volume),
         points_(fields),
         grid_(scene.grid),
+        bed_(make_base_friction<Real>(options), scene.bed),
+        contact_(scene.contacts, options.obstacles, bed_.view(), scene.grid, state.contacts),
         frame_{{scene.map.x(0), scene.map.y(0), grid_.ground().datum},
                {scene.grid.spacing, scene.grid.spacing, scene.grid.layer_height}},
         load_volumes_(scene.load_volumes) {
@@ -74,7 +77,8 @@ class PointSolver : public Solver {
   SolverState state() const override {
     return {points_.download(),
             read_clock(),
-            {peak_thickness_.download(), peak_speed_.download(), peak_pressure_.download(), arrival_.download()}};
+            {peak_thickness_.download(), peak_speed_.download(), peak_pressure_.download(), arrival_.download()},
+            contact_.state()};
   }
 
   Energies energies() override {
@@ -100,10 +104,11 @@ class PointSolver : public Solver {
     return result;
   }
 
+  std::vector<Vec3<double>> obstacle_impulses() const override { return contact_.obstacle_impulses(); }
   const GroundTables& ground() const override { return grid_.ground(); }
   int particle_count() const override { return points_.count(); }
   std::size_t bytes() const override {
-    return points_.bytes() + grid_.bytes() + sums_.bytes() + column_volumes_.bytes() + thickness_.bytes() +
+    return points_.bytes() + grid_.bytes() + bed_.bytes() + contact_.bytes() + impulses_.bytes() + sums_.bytes() + column_volumes_.bytes() + thickness_.bytes() +
            peak_thickness_.bytes() + peak_speed_.bytes() + peak_pressure_.bytes() + arrival_.bytes();
   }
 
@@ -126,6 +131,14 @@ class PointSolver : public Solver {
                      ScatterThickness<Real, Shape>{points_.view(), grid_.shape().columns, column_volumes_.data()});
   }
   const double* column_volumes() const { return column_volumes_.data(); }
+
+  /// Sorts the points and fits the grid to them; the `gone` last ones are dropped.
+  void fit(int gone) {
+    grid_.fit(points_, gone);
+    contact_.fit(grid_);
+  }
+  /// Mass of a full layer over a square metre [kg/m2].
+  double layer_mass() const { return static_cast<double>(materials_.list[0].density) * frame_.cell[2]; }
 
   /// Mass of a base node under a full layer [kg].
   double full_base() const {
@@ -164,6 +177,9 @@ class PointSolver : public Solver {
   bool dilatant_;
   Particles<Real, Place> points_;
   SparseGrid<Real, Place> grid_;
+  BedOn<Real, Place> bed_;
+  SurfaceContact<Real, Place, Shape> contact_;
+  ContactImpulses<Real, Place, Shape> impulses_;
   WallFrame frame_;
   std::vector<double> load_volumes_;  // [m3]
   Buffer<Vec3<double>, Place> loads_;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/stage/stage.hpp"
+#include "solver/contact/contact_state.hpp"
 #include "solver/integrator/clock.hpp"
 #include "solver/scene.hpp"
 
@@ -28,6 +29,7 @@ struct SolverState {
   ParticleState points;
   Clock clock;
   MapFields maps;
+  ContactState contacts;
 };
 
 /// What an implicit step took.
@@ -60,6 +62,8 @@ class Solver {
   /// Vertical thickness, initial volume over cell area, [rows * columns] [m]; its sum times the cell area is the volume of
   /// the points to rounding.
   virtual std::vector<double> thickness() = 0;
+  /// What every obstacle was given so far, along x, y and z [N s].
+  virtual std::vector<Vec3<double>> obstacle_impulses() const = 0;
   virtual const GroundTables& ground() const = 0;
   virtual std::size_t bytes() const = 0;
   virtual int particle_count() const = 0;

@@ -42,7 +42,7 @@ struct UpdateColumns {
     if (i >= grid.columns || j >= grid.rows) return;
     const BlockSlot slot = grid.slots[block];
     const int column = grid.column(i, j);
-    const int top_contact = contact_layer(column);
+    const int top_contact = grid.contact_layer(column);
     Real mass = 0;
     Vec3<Real> momentum{};
     Losses losses;
@@ -72,12 +72,6 @@ struct UpdateColumns {
   }
 
  private:
-  /// Highest layer that touches the ground: the base layer, or on a Cartesian grid the last one not above the terrain.
-  TALUS_HD int contact_layer(int column) const {
-    if (grid.mapping == Mapping::terrain_following) return 0;
-    return static_cast<int>(floor(grid.terrain[column] / grid.layer_height + Real(1e-4)));
-  }
-
   /// Of kinetic energy, over a column [J]; what the points give to the grid and get back counts with signs. And what bed and walls gave it [N s].
   struct Losses {
     double contact = 0, damping = 0, transfer = 0, reaction[3] = {0, 0, 0};
@@ -104,7 +98,7 @@ struct UpdateColumns {
       if (content == NodeContent::remapped && law.law != FrictionLaw::stick) law.law = FrictionLaw::none;
       const Real sx = grid.slope_x[column], sy = grid.slope_y[column];
       // On a Cartesian grid the nodes inside the ground touch no bed of their own.
-      const bool grips = content != NodeContent::remapped && friction.has_traction() && k == contact_layer(column);
+      const bool grips = content != NodeContent::remapped && friction.has_traction() && k == grid.contact_layer(column);
       const Real grip = grips ? bed_area(node.w, full_base, grid.spacing, sx, sy) * dt / node.w : Real(0);
       v = meet_ground(law, law.at(column), v, sx, sy, grip);
     }

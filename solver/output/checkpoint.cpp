@@ -11,7 +11,7 @@
 namespace talus::solver {
 namespace {
 
-constexpr const char* kind = "talus checkpoint 3";
+constexpr const char* kind = "talus checkpoint 4";
 
 /// Visits every array of the points by name, so that writing and reading cannot differ.
 template <class State, class Ints, class Reals>
@@ -41,6 +41,12 @@ void visit_maps(Maps& m, Reals&& reals) {
   reals("peak_speed", m.peak_speed);
   reals("peak_pressure", m.peak_pressure);
   reals("arrival", m.arrival);
+}
+
+template <class Contacts, class Reals>
+void visit_contacts(Contacts& c, Reals&& reals) {
+  reals("contact_force", c.force);
+  reals("contact_impulse", c.impulse);
 }
 
 h5::Dims dims_of(std::size_t count) { return {static_cast<hsize_t>(count)}; }
@@ -96,6 +102,7 @@ void write_checkpoint(const std::filesystem::path& path, const Checkpoint& check
   visit_maps(checkpoint.state.maps, [&](const std::string& name, const std::vector<double>& v) {
     file.write<double>("/maps/" + name, dims_of(v.size()), v);
   });
+  visit_contacts(checkpoint.state.contacts, [&](const std::string& name, const std::vector<double>& v) { file.write<double>("/" + name, dims_of(v.size()), v); });
   std::vector<std::uint8_t> clock(sizeof(Clock));
   std::memcpy(clock.data(), &checkpoint.state.clock, sizeof(Clock));
   file.write<std::uint8_t>("/clock", dims_of(clock.size()), clock);
@@ -119,6 +126,7 @@ Checkpoint read_checkpoint(const std::filesystem::path& path, const std::string&
       [&](const std::string& name, std::vector<double>& v) { v = file.read<double>("/points/" + name); });
   visit_maps(c.state.maps,
              [&](const std::string& name, std::vector<double>& v) { v = file.read<double>("/maps/" + name); });
+  visit_contacts(c.state.contacts, [&](const std::string& name, std::vector<double>& v) { v = file.read<double>("/" + name); });
   const auto clock = file.read<std::uint8_t>("/clock", dims_of(sizeof(Clock)));
   std::memcpy(static_cast<void*>(&c.state.clock), clock.data(), sizeof(Clock));
   c.memory = read_memory(file);

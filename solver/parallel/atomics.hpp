@@ -103,6 +103,13 @@ TALUS_HD void scatter_add(Real* target, Real value) {
 #endif
 }
 
+template <class Real>
+TALUS_HD void scatter_add(Vec3<Real>* target, const Vec3<Real>& v) {
+  scatter_add(&target->x, v.x);
+  scatter_add(&target->y, v.y);
+  scatter_add(&target->z, v.z);
+}
+
 /// The same for a node's mass and momentum at once.
 template <class Real>
 TALUS_HD void scatter_add(Vec4<Real>* target, Real w, const Vec3<Real>& v) {

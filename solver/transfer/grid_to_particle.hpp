@@ -1,6 +1,7 @@
 // Grid to particle (G2P): velocity, its gradient, the move and the new stress of the points.
 #pragma once
 
+#include "solver/grid/bicubic.hpp"
 #include "solver/integrator/clock.hpp"
 #include "solver/material/material.hpp"
 #include "solver/transfer/stencil.hpp"
@@ -157,6 +158,7 @@ struct GridToParticle {
       raise_flag(&clock->request, failed);
       return;
     }
+    if (grid.ground == GroundContact::points) keep_above_ground(grid, points, p);
     const int i = points.cell_x[p], j = points.cell_y[p], k = points.cell_z[p];
     if (i < 0 || j < 0 || i >= grid.columns || j >= grid.rows || !grid.open[grid.column(i, j)]) {
       points.cell_x[p] = -1;

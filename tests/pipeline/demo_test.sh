@@ -10,7 +10,7 @@ test_valley_runs_to_a_score() {
   rm -rf "$TALUS_BUILD/scratch/demo"
   expect_exit 0 pipeline
   local file
-  for file in domain.vdb preprocess.used.toml run.h5 solve.used.toml postprocess.used.toml score.json score.txt map.png \
+  for file in domain.vdb preprocess.used.toml run.h5 solve.used.toml postprocess.used.toml score.json score.txt map.png history.csv \
     maps/deposit_thickness.tif maps/peak_thickness.tif maps/peak_speed.tif maps/peak_pressure.tif maps/arrival_time.tif maps/results.nc; do
     [[ -s $out/$file ]] || fail "$file is missing"
     grep -qF "$out/$file" stdout || fail "no program named $file on stdout"

@@ -34,7 +34,7 @@ TEST_F(Program, writes_every_result_and_names_it) {
   run_it();
   for (const auto* name :
        {"maps/deposit_thickness.tif", "maps/peak_thickness.tif", "maps/peak_speed.tif", "maps/peak_pressure.tif",
-        "maps/arrival_time.tif", "maps/results.nc", "map.png", "score.json", "score.txt"}) {
+        "maps/arrival_time.tif", "maps/results.nc", "map.png", "history.csv", "score.json", "score.txt"}) {
     EXPECT_TRUE(fs::exists(out_ / name)) << name;
     EXPECT_NE(std::find(results_.begin(), results_.end(), out_ / name), results_.end()) << name << " is not announced";
   }

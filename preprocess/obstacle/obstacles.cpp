@@ -1,0 +1,113 @@
+#include "preprocess/obstacle/obstacles.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "common/error.hpp"
+#include "common/raster/bilinear.hpp"
+#include "common/raster/raster_io.hpp"
+#include "preprocess/release/polygon_cover.hpp"
+
+namespace talus::preprocess {
+namespace {
+
+/// A polygon with its height above the ground.
+struct Footprint {
+  MapPolygon polygon;
+  double height;  // [m]
+};
+
+double height_of(const MapPolygon& polygon, std::size_t number, const ObstacleOptions& o) {
+  if (o.height_m > 0) return o.height_m;
+  for (const auto& [name, value] : polygon.numbers) {
+    if (name == o.attribute && value > 0 && std::isfinite(value)) return value;
+  }
+  throw DataError(Fault{fmt::format("{}: polygon {} has no positive number \"{}\"", o.polygons.string(), number, o.attribute), "the obstacle's height is not known",
+                        "Name the attribute in the recipe (attribute = ...), or give height_m"});
+}
+
+/// Distance to the polygon's edge [m], negative inside.
+double signed_distance(const MapPolygon& polygon, double x, double y) {
+  double nearest = 1e300;
+  bool inside = false;
+  for (const auto& ring : polygon.rings) {
+    for (std::size_t n = 0; n < ring.size(); ++n) {
+      const auto &a = ring[n], &b = ring[(n + 1) % ring.size()];
+      const double ex = b[0] - a[0], ey = b[1] - a[1], px = x - a[0], py = y - a[1];
+      const double along = std::clamp((px * ex + py * ey) / std::max(ex * ex + ey * ey, 1e-300), 0.0, 1.0);
+      nearest = std::min(nearest, std::hypot(px - along * ex, py - along * ey));
+      if ((a[1] > y) != (b[1] > y) && px < ex * py / ey) inside = !inside;
+    }
+  }
+  return inside ? -nearest : nearest;
+}
+
+/// What does not change from voxel to voxel of a column.
+struct Column {
+  double x = NAN, y = NAN, ground = 0;
+  std::vector<double> across;  // distance to each footprint's edge on the map
+};
+
+SolidBody stand(const ObstacleOptions& o, const Raster& ground, double depth) {
+  std::vector<MapPolygon> polygons = read_polygons(o.polygons, ground.grid.crs_wkt);
+  check_polygons(polygons, o.polygons);
+  auto footprints = std::make_shared<std::vector<Footprint>>();
+  SolidBody body{o.name, {1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}, {}};
+  for (std::size_t p = 0; p < polygons.size(); ++p) {
+    const double height = height_of(polygons[p], p + 1, o);
+    for (const auto& corner : polygons[p].rings.front()) {
+      const double z = bilinear(ground, corner[0], corner[1]);
+      if (std::isnan(z)) {
+        throw DataError(Fault{fmt::format("{}: polygon {} reaches ({:.1f}, {:.1f}), where there is no ground", o.polygons.string(), p + 1, corner[0], corner[1]),
+                              "an obstacle stands on known ground", "Clip the polygon, or give a larger elevation model"});
+      }
+      for (std::size_t a = 0; a < 2; ++a) {
+        body.low[a] = std::min(body.low[a], corner[a]);
+        body.high[a] = std::max(body.high[a], corner[a]);
+      }
+      body.low[2] = std::min(body.low[2], z - depth);
+      body.high[2] = std::max(body.high[2], z + height);
+    }
+    footprints->push_back({polygons[p], height});
+  }
+  // Between the corners the ground may rise and fall.
+  for (int row = 0; row < ground.grid.rows; ++row) {
+    for (int column = 0; column < ground.grid.columns; ++column) {
+      const double x = ground.grid.x(column), y = ground.grid.y(row), z = ground.at(column, row);
+      for (const Footprint& f : *footprints) {
+        if (std::isnan(z) || signed_distance(f.polygon, x, y) > ground.grid.cell) continue;
+        body.low[2] = std::min(body.low[2], z - depth);
+        body.high[2] = std::max(body.high[2], z + f.height);
+      }
+    }
+  }
+  auto column = std::make_shared<Column>();
+  body.distance = [footprints, column, ground, depth](double x, double y, double z) {
+    if (x != column->x || y != column->y) {
+      const double here = bilinear(ground, x, y);
+      *column = {x, y, std::isnan(here) ? 0 : here, {}};
+      for (const Footprint& f : *footprints) column->across.push_back(std::isnan(here) ? 1e30 : signed_distance(f.polygon, x, y));
+    }
+    double nearest = 1e30;
+    for (std::size_t f = 0; f < footprints->size(); ++f) {
+      nearest = std::min(nearest, std::max({column->across[f], z - column->ground - (*footprints)[f].height, column->ground - depth - z}));
+    }
+    return nearest;
+  };
+  return body;
+}
+
+}  // namespace
+
+std::vector<SolidBody> stand_obstacles(const std::vector<ObstacleOptions>& obstacles, const Raster& ground, double depth) {
+  std::vector<SolidBody> bodies;
+  for (const ObstacleOptions& o : obstacles) bodies.push_back(stand(o, ground, depth));
+  return bodies;
+}
+
+double obstacle_voxel(double spacing, double layer_height) { return 0.25 * std::min(spacing, layer_height); }
+
+}  // namespace talus::preprocess

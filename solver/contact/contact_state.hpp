@@ -1,0 +1,14 @@
+// What the contact points of a run remember from step to step.
+#pragma once
+
+#include <vector>
+
+namespace talus::solver {
+
+/// Three numbers for every contact point; empty at the start of a run.
+struct ContactState {
+  std::vector<double> force;    // on the mass, last step [N]
+  std::vector<double> impulse;  // on the mass so far [N s]
+};
+
+}  // namespace talus::solver
