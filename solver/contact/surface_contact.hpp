@@ -6,6 +6,7 @@
 #include "solver/contact/base_friction.hpp"
 #include "solver/contact/contact_points.hpp"
 #include "solver/contact/contact_state.hpp"
+#include "solver/parallel/algorithms.hpp"
 #include "solver/transfer/stencil.hpp"
 
 namespace talus::solver {
@@ -91,17 +92,12 @@ struct ContactView {
   }
 };
 
-/// One thread: one place of the longest block's list, of every block in use.
+/// One thread: one contact point of the list.
 template <class Kernel>
-struct OverBlocks {
+struct OverList {
   Kernel kernel;
-  const int* active;  // blocks
-  const int* first;   // contact point of every block, and the count behind the last
-  int each;
-  TALUS_HD void operator()(int t) const {
-    const int block = active[t / each], c = first[block] + t % each;
-    if (c < first[block + 1]) kernel(c);
-  }
+  const int* list;
+  TALUS_HD void operator()(int t) const { kernel(list[t]); }
 };
 
 /// One thread: one contact point. Where the mass has left the block, nothing is pressed on any more.
@@ -171,15 +167,19 @@ class SurfaceContact {
   template <class Grid>
   void fit(const Grid& grid) {
     if (!on()) return;
-    active_ = grid.active_list();
-    active_count_ = grid.active_blocks();
-    if constexpr (!Place::is_gpu) {
-      for (auto& ranges : groups_.ranges) ranges.clear();
-      for (int a = 0; a < active_count_; ++a) {
-        const int block = active_[a], begin = first_.data()[block], end = first_.data()[block + 1];
-        if (begin < end) groups_.ranges[(block % blocks_x_ & 1) + 2 * (block / blocks_x_ & 1)].emplace_back(begin, end);
+    for (auto& ranges : groups_.ranges) ranges.clear();
+    std::vector<int> beside, active(static_cast<std::size_t>(grid.active_blocks()));
+    copy_to_host(Place{}, active.data(), grid.active_list(), active.size() * sizeof(int));
+    for (const int block : active) {
+      const int begin = first_[static_cast<std::size_t>(block)], end = first_[static_cast<std::size_t>(block) + 1];
+      if (begin == end) continue;
+      if constexpr (Place::is_gpu) {
+        for (int c = begin; c < end; ++c) beside.push_back(c);
+      } else {
+        groups_.ranges[(block % blocks_x_ & 1) + 2 * (block / blocks_x_ & 1)].emplace_back(begin, end);
       }
     }
+    beside_.upload(beside);
     for_each(Place{}, count_, ForgetForces<Real>{grid.view(), view()});
   }
 
@@ -187,7 +187,7 @@ class SurfaceContact {
   template <class Kernel>
   void each(const Kernel& kernel) {
     if constexpr (Place::is_gpu) {
-      for_each(Place{}, active_count_ * longest_, OverBlocks<Kernel>{kernel, active_, first_.data(), longest_});
+      for_each(Place{}, static_cast<int>(beside_.size()), OverList<Kernel>{kernel, beside_.data()});
     } else {
       for_each_grouped(Place{}, count_, groups_, kernel);
     }
@@ -206,7 +206,7 @@ class SurfaceContact {
   ContactState state() const { return {download_vectors(force_), download_vectors(impulse_)}; }
 
   std::size_t bytes() const {
-    std::size_t total = none_.bytes() + normal_.bytes() + area_.bytes() + body_.bytes() + friction_.bytes() + force_.bytes() + impulse_.bytes() + first_.bytes() + inverse_mass_.bytes();
+    std::size_t total = none_.bytes() + normal_.bytes() + area_.bytes() + body_.bytes() + friction_.bytes() + force_.bytes() + impulse_.bytes() + beside_.bytes() + inverse_mass_.bytes();
     for (std::size_t a = 0; a < 3; ++a) total += cell_[a].bytes() + offset_[a].bytes();
     return total;
   }
@@ -223,19 +223,18 @@ class SurfaceContact {
     return numbers;
   }
   void list_blocks(const ContactPoints& points, int blocks_y) {
-    std::vector<int> first(static_cast<std::size_t>(blocks_x_) * static_cast<std::size_t>(blocks_y) + 1, 0);
-    for (std::size_t c = 0; c < points.size(); ++c) ++first[static_cast<std::size_t>((points.cell[1][c] >> 2) * blocks_x_ + (points.cell[0][c] >> 2)) + 1];
-    longest_ = *std::max_element(first.begin(), first.end());
-    for (std::size_t b = 1; b < first.size(); ++b) first[b] += first[b - 1];
-    first_.upload(first);
+    first_.assign(static_cast<std::size_t>(blocks_x_) * static_cast<std::size_t>(blocks_y) + 1, 0);
+    for (std::size_t c = 0; c < points.size(); ++c) ++first_[static_cast<std::size_t>((points.cell[1][c] >> 2) * blocks_x_ + (points.cell[0][c] >> 2)) + 1];
+    for (std::size_t b = 1; b < first_.size(); ++b) first_[b] += first_[b - 1];
   }
 
-  int count_ = 0, blocks_x_ = 0, longest_ = 0, active_count_ = 0;
-  const int* active_ = nullptr;
+  int count_ = 0, blocks_x_ = 0;
   std::vector<int> bodies_;
+  std::vector<int> first_;  // contact point of every block, and the count behind the last
   std::size_t obstacles_ = 0;
   ContactView<Real> view_{};
-  Buffer<int, Place> cell_[3], body_, first_;
+  Buffer<int, Place> cell_[3], body_;
+  Buffer<int, Place> beside_;  // the contact points of the blocks in use; on the CPU groups_ has them
   Buffer<Real, Place> offset_[3], none_, area_, friction_, inverse_mass_;
   Buffer<Vec3<Real>, Place> normal_;
   Buffer<Vec3<double>, Place> force_, impulse_;

@@ -42,6 +42,7 @@ struct GridView {
   int block_columns_x = 0;                  // blocks in x
   Real spacing = 0, layer_height = 0;       // [m]
   Real lowest_weighed = 0;                  // cells from the ground or a wall within which weights no longer change
+  int drift = 1;                            // cells that a point may be from home before it is sorted again
   WallNodes walls;
   Mapping mapping = Mapping::terrain_following;
   GroundContact ground = GroundContact::nodes;

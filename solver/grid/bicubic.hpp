@@ -57,8 +57,8 @@ TALUS_HD GroundPoint<Real> bicubic_ground(const Real* terrain, int columns, int 
   return g;
 }
 
-/// A material point that got below ground met by points is put onto it, and stops going down. Contact holds the mean about a point of the ground, and on rough
-/// ground single ones slip through.
+/// A material point that got below ground met by points is put onto it: contact holds the mean about a point of the ground, and on rough ground single ones slip through. Their
+/// velocity is left to the contact, which knows of friction.
 template <class Real>
 TALUS_HD void keep_above_ground(const GridView<Real>& grid, const ParticleView<Real>& points, int p) {
   const int i = points.cell_x[p], j = points.cell_y[p];
@@ -68,13 +68,6 @@ TALUS_HD void keep_above_ground(const GridView<Real>& grid, const ParticleView<R
   if (Real(points.cell_z[p]) - nearest + points.offset_z[p] >= to - nearest) return;
   points.cell_z[p] = static_cast<int>(nearest);
   points.offset_z[p] = to - nearest;
-  const Real scale = Real(1) / sqrt(Real(1) + ground.slope_x * ground.slope_x + ground.slope_y * ground.slope_y);
-  const Vec3<Real> normal{-ground.slope_x * scale, -ground.slope_y * scale, scale}, v = points.velocity_of(p);
-  const Real into = dot(v, normal);
-  if (!(into < Real(0))) return;
-  points.velocity[0][p] = v.x - normal.x * into;
-  points.velocity[1][p] = v.y - normal.y * into;
-  points.velocity[2][p] = v.z - normal.z * into;
 }
 
 }  // namespace talus

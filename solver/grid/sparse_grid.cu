@@ -28,15 +28,14 @@ struct ForgetExtents {
   }
 };
 
-/// A point reaches two columns and two layers away: one for its stencil, one for the way it may go before the next sort.
+/// A point reaches a column and a layer beyond the way it may go before the next sort: that of its stencil.
 template <class Real>
 struct MeasureExtents {
   ParticleView<Real> points;
-  int columns, rows, blocks_x;
+  int columns, rows, blocks_x, reach;
   int* lowest;
   int* highest;
   TALUS_HD void operator()(int p) const {
-    constexpr int reach = 2;
     const int i = points.cell_x[p], j = points.cell_y[p], k = points.cell_z[p];
     const int i0 = i > reach ? i - reach : 0, i1 = i + reach < columns ? i + reach : columns - 1;
     const int j0 = j > reach ? j - reach : 0, j1 = j + reach < rows ? j + reach : rows - 1;
@@ -83,7 +82,7 @@ struct GiveStorage {
 }  // namespace
 
 template <class Real, class Place>
-SparseGrid<Real, Place>::SparseGrid(const GridShape& shape) : shape_(shape), ground_(make_ground_tables(shape)) {
+SparseGrid<Real, Place>::SparseGrid(const GridShape& shape, int drift) : shape_(shape), drift_(drift), ground_(make_ground_tables(shape)) {
   blocks_x_ = (shape.columns + block_side - 1) / block_side;
   blocks_y_ = (shape.rows + block_side - 1) / block_side;
   upload_as(terrain_, ground_.terrain);
@@ -104,6 +103,7 @@ GridView<Real> SparseGrid<Real, Place>::view() const {
   v.spacing = static_cast<Real>(shape_.spacing);
   v.layer_height = static_cast<Real>(shape_.layer_height);
   v.lowest_weighed = static_cast<Real>(shape_.lowest_weighed);
+  v.drift = drift_;
   v.walls = walls_;
   v.mapping = shape_.mapping;
   v.ground = shape_.ground;
@@ -129,7 +129,7 @@ void SparseGrid<Real, Place>::fit(Particles<Real, Place>& points, int gone) {
 template <class Real, class Place>
 void SparseGrid<Real, Place>::measure_extents(Particles<Real, Place>& points) {
   for_each(Place{}, static_cast<int>(lowest_.size()), ForgetExtents{lowest_.data(), highest_.data()});
-  for_each(Place{}, points.count(), MeasureExtents<Real>{points.view(), shape_.columns, shape_.rows, blocks_x_, lowest_.data(),
+  for_each(Place{}, points.count(), MeasureExtents<Real>{points.view(), shape_.columns, shape_.rows, blocks_x_, 1 + drift_, lowest_.data(),
                                                          highest_.data()});
 }
 

@@ -45,10 +45,11 @@ TALUS_HD std::uint64_t home_key(int block_columns_x, int i, int j, int k) {
 template <class Real, class Place>
 class SparseGrid {
  public:
-  explicit SparseGrid(const GridShape& shape);
+  /// `drift`: how far a point may go from home before it is sorted again [cells]. At most one on the CPU, where blocks of the same colour stand four columns apart.
+  SparseGrid(const GridShape& shape, int drift);
 
   /// Sort the points by home cell, drop those that left (the `gone` last ones after sorting), and give storage to every
-  /// column and layer they reach until they are a cell away from home.
+  /// column and layer they reach until they have drifted too far.
   void fit(Particles<Real, Place>& points, int gone);
 
   GridView<Real> view() const;
@@ -69,6 +70,7 @@ class SparseGrid {
   void group_points(int count);
 
   GridShape shape_;
+  int drift_;
   GroundTables ground_;
   WallNodes walls_;
   int blocks_x_ = 0, blocks_y_ = 0, nodes_ = 0, active_ = 0;

@@ -7,6 +7,8 @@
 #include "solver/integrator/point_solver.hpp"
 #include "solver/integrator/update_columns.hpp"
 #include "solver/parallel/algorithms.hpp"
+#include "solver/parallel/columns.hpp"
+#include "solver/parallel/recording.hpp"
 #include "solver/transfer/grid_to_particle.hpp"
 #include "solver/transfer/particle_to_grid.hpp"
 
@@ -14,7 +16,10 @@ namespace talus::solver {
 
 /// A GPU gains little by order within the cells, and sorting there takes as long as ten steps.
 inline constexpr int gpu_steps_between_sorts = 256;
-inline constexpr int batch_steps = 32;  // steps given to the device before the host looks at the clock
+/// Cells that points may drift before they are sorted: a sort takes as long as a dozen steps of a small scene.
+template <class Place>
+inline constexpr int drift_between_sorts = Place::is_gpu ? 3 : 1;
+inline constexpr int most_batch_steps = 64;  // given to the device before the host looks at the clock
 
 /// One thread: one node. The first one also opens the step.
 template <class Real>
@@ -39,7 +44,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
  public:
   ExplicitSolverOf(const Scene& scene, const SolveOptions& options, const SolverState& state)
-      : Base(scene, options, state, fields(options)),
+      : Base(scene, options, state, fields(options), drift_between_sorts<Place>),
         affine_(options.transfer == Transfer::apic),
         musl_(options.stress_update == StressUpdate::modified),
         keeps_(options.transfer_time > options.courant),
@@ -58,15 +63,20 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     clock_.upload({clock});
     walls_ = this->template stand_walls<Real>(clock.time);
     loads_now_ = this->upload_loads(clock.time);
-    // One more than the steps left: the last one's begin halts the clock at the sort.
-    for (int s = 0; s < std::min(left, batch_steps) + 1; ++s) step();
+    if (!options_.walls.empty()) recording_.forget();  // they come, go and move
+    // One more than the steps left: the last one's begin halts the clock at the sort. As many as lay between the last two sorts, and then a few at a time: what is started after
+    // the clock has halted does nothing but take its time.
+    const int ahead = std::clamp(expected_ - clock.steps_since_sort, 4, most_batch_steps);
+    recording_.repeat(std::min(left + 1, ahead), [&] { step(); });
     BatchReport report;
     clock = read_clock();
-    const int halt = clock.halt;
+    // What the last step of the batch asked for, no further one has answered.
+    const int halt = clock.halt == running ? clock.request : clock.halt;
     // A sort comes before an event of the same time (Clock::begin_step), so that the event's records see who has left.
     if (halt == wants_sort) {
       report.outflow_volume = clock.outflow_volume;
       report.outflow_count = clock.outflow_count;
+      expected_ = clock.steps_since_sort + 1;
       sort(clock.outflow_count);
       clock.outflow_volume = 0;
       clock.outflow_count = 0;
@@ -135,7 +145,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     const ProfilePhase<Place> phase("grid");
     const Vec3<Real> g{static_cast<Real>(options_.gravity[0]), static_cast<Real>(options_.gravity[1]),
                        static_cast<Real>(options_.gravity[2])};
-    for_each(Place{}, grid_.active_blocks() * block_columns,
+    for_each_column(Place{}, grid_.active_blocks(),
              UpdateColumns<Real, content>{grid_.view(), grid_.active_list(), clock_.data(), nodes_.data(), forces_.data(), g,
                                           options_.gravity_ramp, walls_,
                                           bed_.view(), static_cast<Real>(this->full_base()), static_cast<Real>(options_.damping), materials_.list[0].density, this->column_volumes(), this->maps()});
@@ -161,11 +171,14 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
   void sort(int gone) {
     const ProfilePhase<Place> phase("sort and storage");
+    recording_.forget();
     this->fit(gone);
     nodes_.resize(static_cast<std::size_t>(grid_.nodes()));
     if (forces_apart_) forces_.resize(static_cast<std::size_t>(grid_.nodes()));
   }
 
+  Recording<Place> recording_;  // of a step
+  int expected_ = 32;           // steps between sorts
   bool affine_, musl_;
   bool keeps_;  // points keep some of the velocity that is finer than the grid
   bool forces_apart_;

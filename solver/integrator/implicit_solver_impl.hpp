@@ -60,7 +60,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
  public:
   ImplicitSolverOf(const Scene& scene, const SolveOptions& options, const SolverState& state)
-      : Base(scene, options, state, fields(options)),
+      : Base(scene, options, state, fields(options), 0),  // sorted before every step
         affine_(options.transfer == Transfer::apic),
         dynamic_(options.integrator == Integrator::newmark),
         node_bed_(make_base_friction<double>(options), scene.bed),

@@ -47,12 +47,12 @@ class BedOn {
 template <class Real, class Place, class Shape>
 class PointSolver : public Solver {
  public:
-  PointSolver(const Scene& scene, const SolveOptions& options, const SolverState& state, ParticleFields fields)
+  PointSolver(const Scene& scene, const SolveOptions& options, const SolverState& state, ParticleFields fields, int drift)
       : options_(options),
         materials_(make_materials<Real>(options, scene.grid.spacing, scene.grid.layer_height)),
         dilatant_(fields.plastic_volume),
         points_(fields),
-        grid_(scene.grid),
+        grid_(scene.grid, drift),
         bed_(make_base_friction<Real>(options), scene.bed),
         contact_(scene.contacts, options.obstacles, bed_.view(), scene.grid, state.contacts),
         frame_{{scene.map.x(0), scene.map.y(0), grid_.ground().datum},

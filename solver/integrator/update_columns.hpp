@@ -15,7 +15,7 @@ enum class NodeContent {
   remapped  // momentum of the points' new velocities (MUSL): no forces, no friction, the ground alone
 };
 
-/// One thread: one column of a block, from its lowest to its highest stored layer. Mass stays, momentum becomes velocity.
+/// For for_each_column. Mass stays, momentum becomes velocity.
 template <class Real, NodeContent content>
 struct UpdateColumns {
   GridView<Real> grid;
@@ -33,49 +33,72 @@ struct UpdateColumns {
   const double* volumes;     // of the matter over each column, where they differ [m3]; else null
   MapView maps;
 
-  TALUS_HD void operator()(int c) const {
-    if (clock->halt != running) return;
-    const int block = active[c / block_columns];
-    const int inside = c % block_columns;
-    const int i = (block % grid.block_columns_x) * block_side + (inside & 3);
-    const int j = (block / grid.block_columns_x) * block_side + (inside >> 2);
-    if (i >= grid.columns || j >= grid.rows) return;
-    const BlockSlot slot = grid.slots[block];
-    const int column = grid.column(i, j);
-    const int top_contact = grid.contact_layer(column);
-    Real mass = 0;
-    Vec3<Real> momentum{};
-    Losses losses;
-    for (int k = slot.first_layer; k < slot.first_layer + slot.layers; ++k) {
-      const int n = GridView<Real>::node(slot, i, j, k);
-      Vec4<Real>& node = nodes[n];
-      if (!(node.w > Real(0))) continue;
-      const Vec3<Real> v = update(n, node, k <= top_contact, column, i, j, k, losses);
-      node.x = v.x;
-      node.y = v.y;
-      node.z = v.z;
-      mass += node.w;
-      momentum += v * node.w;
-    }
-    if constexpr (content != NodeContent::remapped) {
-      if (clock->keeps_budget && mass > Real(0)) {
-        atomic_add(&clock->bed_loss, losses.contact);
-        atomic_add(&clock->damping_loss, losses.damping);
-        atomic_add(&clock->transfer_loss, losses.transfer);
-        for (int a = 0; a < 3; ++a) atomic_add(&clock->reaction[a], losses.reaction[a]);
-      }
-      if (mass > Real(0)) {
-        const double mean = volumes && volumes[column] > 0 ? static_cast<double>(mass) / volumes[column] : static_cast<double>(density);
-        record_column(maps, column, static_cast<double>(mass), static_cast<double>(length(momentum)), mean, static_cast<double>(grid.spacing), clock->time);
-      }
-    }
-  }
-
- private:
+  struct Column {
+    bool inside = false;
+    int i = 0, j = 0, first = 0, last = 0;
+    int column = 0, top_contact = 0;
+    BlockSlot slot;
+  };
   /// Of kinetic energy, over a column [J]; what the points give to the grid and get back counts with signs. And what bed and walls gave it [N s].
   struct Losses {
     double contact = 0, damping = 0, transfer = 0, reaction[3] = {0, 0, 0};
   };
+  struct Sums {
+    Real mass = 0;
+    Vec3<Real> momentum{};
+    Losses losses;
+    TALUS_HD Sums& operator+=(const Sums& o) {
+      mass += o.mass;
+      momentum += o.momentum;
+      losses.contact += o.losses.contact;
+      losses.damping += o.losses.damping;
+      losses.transfer += o.losses.transfer;
+      for (int a = 0; a < 3; ++a) losses.reaction[a] += o.losses.reaction[a];
+      return *this;
+    }
+  };
+
+  TALUS_HD Column locate(int c) const {
+    Column at;
+    if (clock->halt != running) return at;
+    const int block = active[c / block_columns], in_block = c % block_columns;
+    at.i = (block % grid.block_columns_x) * block_side + (in_block & 3);
+    at.j = (block / grid.block_columns_x) * block_side + (in_block >> 2);
+    at.inside = at.i < grid.columns && at.j < grid.rows;
+    if (!at.inside) return at;
+    at.slot = grid.slots[block];
+    at.first = at.slot.first_layer;
+    at.last = at.first + at.slot.layers;
+    at.column = grid.column(at.i, at.j);
+    at.top_contact = grid.contact_layer(at.column);
+    return at;
+  }
+
+  TALUS_HD void layer(const Column& at, int k, Sums& sums) const {
+    const int n = GridView<Real>::node(at.slot, at.i, at.j, k);
+    Vec4<Real> node = nodes[n];
+    if (!(node.w > Real(0))) return;
+    const Vec3<Real> v = update(n, node, k <= at.top_contact, at.column, at.i, at.j, k, sums.losses);
+    nodes[n] = {node.w, v.x, v.y, v.z};
+    sums.mass += node.w;
+    sums.momentum += v * node.w;
+  }
+
+  TALUS_HD void finish(const Column& at, const Sums& sums) const {
+    if constexpr (content == NodeContent::remapped) return;
+    if (!(sums.mass > Real(0))) return;
+    if (clock->keeps_budget) {
+      atomic_add(&clock->bed_loss, sums.losses.contact);
+      atomic_add(&clock->damping_loss, sums.losses.damping);
+      atomic_add(&clock->transfer_loss, sums.losses.transfer);
+      for (int a = 0; a < 3; ++a) atomic_add(&clock->reaction[a], sums.losses.reaction[a]);
+    }
+    const double mass = static_cast<double>(sums.mass);
+    const double mean = volumes && volumes[at.column] > 0 ? mass / volumes[at.column] : static_cast<double>(density);
+    record_column(maps, at.column, mass, static_cast<double>(length(sums.momentum)), mean, static_cast<double>(grid.spacing), clock->time);
+  }
+
+ private:
   TALUS_HD Vec3<Real> update(int n, const Vec4<Real>& node, bool on_ground, int column, int i, int j, int k, Losses& losses) const {
     const Real dt = Real(clock->step_size);
     const bool growing = gravity_ramp > 0 && clock->time < gravity_ramp;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "solver/linear/vectors.hpp"
+#include "solver/parallel/recording.hpp"
 #include "solver/parallel/sums.hpp"
 
 namespace talus {
@@ -142,15 +143,16 @@ class ConjugateGradient {
     sum_each<1>(Place{}, count, sums_, detail::BeginCg{b.data(), x.data(), r_.data(), z_.data(), p_.data(), ap_.data()}, detail::FinishBegin{s});
     system.precondition(r_, z_, s);
     // As many as the last solve took, then a few at a time: what is started after the end does nothing but take its time.
+    loop_.forget();
     int ahead = Place::is_gpu ? std::clamp(last_, 2, 64) : 1;
     for (;;) {
-      for (int i = 0; i < ahead; ++i) {
+      loop_.repeat(ahead, [&] {
         for_each(Place{}, count, detail::TurnDirection{s, z_.data(), p_.data(), ap_.data()});
         system.product(p_, ap_);
         sum_each<1>(Place{}, count, sums_, close_product(system.close(p_, ap_)), detail::FinishCurvature{s});
         sum_each<1>(Place{}, count, sums_, detail::StepAlong{s, p_.data(), ap_.data(), x.data(), r_.data()}, detail::FinishResidual{s});
         system.precondition(r_, z_, s);
-      }
+      });
       state = state_.download().front();
       if (state.halt != CgState::no) break;
       ahead = Place::is_gpu ? std::max(2, ahead / 4) : 1;
@@ -175,6 +177,7 @@ class ConjugateGradient {
   NodeVector<Place> r_, z_, p_, ap_;
   Buffer<CgState, Place> state_;
   SumSpace<Place> sums_;
+  Recording<Place> loop_;
   int last_ = 0;
 };
 

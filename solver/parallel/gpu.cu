@@ -22,6 +22,9 @@ void check(cudaError_t code, const char* what) {
 
 __global__ void probe() {}
 
+cudaStream_t recorded = nullptr;  // made with the first recording
+bool recording = false;
+
 }  // namespace
 
 bool gpu_available() {
@@ -59,9 +62,38 @@ void gpu_upload(void* device, const void* host, std::size_t bytes) {
 void gpu_download(void* host, const void* device, std::size_t bytes) {
   check(cudaMemcpy(host, device, bytes, cudaMemcpyDeviceToHost), "download");
 }
-void gpu_fill_zero(void* device, std::size_t bytes) { check(cudaMemsetAsync(device, 0, bytes), "fill"); }
+void gpu_fill_zero(void* device, std::size_t bytes) { check(cudaMemsetAsync(device, 0, bytes, gpu_stream()), "fill"); }
 void gpu_synchronise() { check(cudaDeviceSynchronize(), "kernel"); }
 void gpu_check_launch(const char* where) { check(cudaGetLastError(), where); }
+
+cudaStream_t gpu_stream() { return recording ? recorded : nullptr; }
+
+void gpu_begin_recording() {
+  if (!recorded) check(cudaStreamCreateWithFlags(&recorded, cudaStreamNonBlocking), "stream");
+  check(cudaStreamBeginCapture(recorded, cudaStreamCaptureModeRelaxed), "begin of a recording");
+  recording = true;
+}
+
+void* gpu_end_recording(void* before) {
+  recording = false;
+  cudaGraph_t graph = nullptr;
+  check(cudaStreamEndCapture(recorded, &graph), "end of a recording");
+  auto executable = static_cast<cudaGraphExec_t>(before);
+  cudaGraphExecUpdateResultInfo info;
+  if (executable && cudaGraphExecUpdate(executable, graph, &info) != cudaSuccess) {
+    (void)cudaGetLastError();
+    check(cudaGraphExecDestroy(executable), "graph");
+    executable = nullptr;
+  }
+  if (!executable) check(cudaGraphInstantiate(&executable, graph, 0), "graph");
+  check(cudaGraphDestroy(graph), "graph");
+  return executable;
+}
+
+void gpu_replay(void* graph) { check(cudaGraphLaunch(static_cast<cudaGraphExec_t>(graph), nullptr), "graph"); }
+void gpu_drop(void* graph) {
+  if (graph) (void)cudaGraphExecDestroy(static_cast<cudaGraphExec_t>(graph));
+}
 
 }  // namespace detail
 }  // namespace talus
@@ -84,6 +116,11 @@ void gpu_download(void*, const void*, std::size_t) { absent(); }
 void gpu_fill_zero(void*, std::size_t) { absent(); }
 void gpu_synchronise() {}
 void gpu_check_launch(const char*) {}
+CUstream_st* gpu_stream() { absent(); }
+void gpu_begin_recording() { absent(); }
+void* gpu_end_recording(void*) { absent(); }
+void gpu_replay(void*) { absent(); }
+void gpu_drop(void*) {}
 }  // namespace detail
 }  // namespace talus
 

@@ -12,6 +12,8 @@
 #include "solver/parallel/atomics.hpp"
 #include "solver/parallel/macros.hpp"
 
+struct CUstream_st;  // CUDA's
+
 namespace talus {
 
 struct OnCpu {
@@ -37,6 +39,11 @@ void gpu_download(void* host, const void* device, std::size_t bytes);
 void gpu_fill_zero(void* device, std::size_t bytes);
 void gpu_synchronise();
 void gpu_check_launch(const char* where);
+CUstream_st* gpu_stream();  // where kernels are started: the default stream, or the one that is being recorded
+void gpu_begin_recording();
+void* gpu_end_recording(void* graph);  // what was recorded; takes the place of an earlier recording, if any
+void gpu_replay(void* graph);
+void gpu_drop(void* graph);
 }  // namespace detail
 
 /// Owned memory in a place. Grows, never shrinks; contents are lost on growth unless kept by resize_keep.
@@ -185,7 +192,7 @@ template <class Kernel>
 void for_each(OnGpu, int count, const Kernel& kernel) {
   if (count <= 0) return;
   const int threads = detail::threads_for(count);
-  detail::run_kernel<<<(count + threads - 1) / threads, threads>>>(count, kernel);
+  detail::run_kernel<<<(count + threads - 1) / threads, threads, 0, detail::gpu_stream()>>>(count, kernel);
   detail::gpu_check_launch(__PRETTY_FUNCTION__);
 }
 

@@ -20,6 +20,7 @@ class Profile {
 
   static Profile& of_run();
   void turn_on() { on_ = true; }
+  void turn_off() { on_ = false; }
   bool on() const { return on_; }
   void enter(const char* name);
   void leave();

@@ -45,7 +45,7 @@ template <int parts, class Kernel>
 void sum_rows(OnGpu, int count, const Kernel& kernel) {
   if (count <= 0) return;
   constexpr int threads = 128, each = threads / 32;
-  detail::sum_row<parts><<<(count + each - 1) / each, threads>>>(count, kernel);
+  detail::sum_row<parts><<<(count + each - 1) / each, threads, 0, detail::gpu_stream()>>>(count, kernel);
   detail::gpu_check_launch(__PRETTY_FUNCTION__);
 }
 #endif

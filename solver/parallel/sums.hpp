@@ -130,7 +130,7 @@ void sum_each(OnGpu, int count, SumSpace<OnGpu>& space, const Body& body, const 
   constexpr int most_blocks = 1024;
   const int threads = detail::threads_for(count);
   const int blocks = std::clamp((count + threads - 1) / threads, 1, most_blocks);
-  detail::sum_kernel<K><<<blocks, threads>>>(count, body, finish, space.partial(K * most_blocks), space.ticket());
+  detail::sum_kernel<K><<<blocks, threads, 0, detail::gpu_stream()>>>(count, body, finish, space.partial(K * most_blocks), space.ticket());
   detail::gpu_check_launch(__PRETTY_FUNCTION__);
 }
 #endif

@@ -15,6 +15,11 @@ namespace talus {
 ///   same_nodes(s, t) whether two sources have the same nodes
 ///   add(s, n, sums)  adds what node n of the source receives
 ///   give(s, n, sums) passes the sums on to that node
+/// and, for the lanes of a warp to pass on together what lies together in memory:
+///   Number, parts    what sums are made of, and of how many
+///   node_of(s, n)    where node n of the source is stored
+///   store(sums, to)  puts the parts side by side
+///   part(node, q)    where part q of a stored node is
 template <class Kernel>
 void scatter_points(OnCpu place, int count, const PointGroups& groups, const Kernel& kernel) {
   for_each_grouped(place, count, groups, kernel);
@@ -23,32 +28,66 @@ void scatter_points(OnCpu place, int count, const PointGroups& groups, const Ker
 #if defined(__CUDACC__)
 namespace detail {
 
-inline constexpr int tile_points = 64;  // of a block: 26 kB of shared memory for P2G in double precision
+inline constexpr int warp_size = 32, tile_warps = 2;
 
-/// A warp reads 32 points, one a lane, and then takes a lane for every node: sums stay in registers for as long as the next point has the same
-/// nodes, and go out by one atomic a node (after Gao et al. 2018).
+/// A warp reads `each` points, one a lane, and then takes a lane for every node: sums stay in registers for as long as the next point has the same
+/// nodes, and go out by one atomic a node (after Gao et al. 2018). With 32 points a block takes 26 kB of shared memory for P2G in double precision.
+/// What the lanes of a team found goes to memory. An atomic of 8 bytes takes as long as the 32 around it: neighbouring lanes add neighbouring parts of one node, not the same part of
+/// many nodes.
 template <class Kernel>
+__device__ void give_together(const Kernel& kernel, const typename Kernel::Source& source, int node, unsigned team, const typename Kernel::Sums& sums, typename Kernel::Number* values, int* places) {
+  constexpr int parts = Kernel::parts, apart = parts > 4 ? 8 : 4;
+  kernel.store(sums, values + node * parts);
+  places[node] = kernel.node_of(source, node);
+  __syncwarp(team);
+  for (int t = node; t < Kernel::nodes_each * apart; t += Kernel::nodes_each) {
+    const int n = t / apart, q = t % apart;
+    if (q < parts) atomicAdd(kernel.part(places[n], q), values[n * parts + q]);
+  }
+  __syncwarp(team);
+}
+
+template <int each, class Kernel>
 __global__ void run_tiles(int count, Kernel kernel) {
   using Source = typename Kernel::Source;
-  constexpr int warp_size = 32, teams = warp_size / Kernel::nodes_each, each = warp_size / teams;  // teams of lanes, and points of each
-  __shared__ alignas(16) unsigned char room[tile_points * sizeof(Source)];
-  __shared__ bool counts[tile_points];
+  constexpr int teams = warp_size / Kernel::nodes_each, share = each / teams;  // teams of lanes, and points of each
+  __shared__ alignas(16) unsigned char room[tile_warps * each * sizeof(Source)];
+  __shared__ bool counts[tile_warps * each];
   auto* const tile = reinterpret_cast<Source*>(room);
-  const int mine = static_cast<int>(threadIdx.x), p = static_cast<int>(blockIdx.x) * tile_points + mine;
-  counts[mine] = p < count && kernel.counts(p);
-  if (counts[mine]) new (tile + mine) Source(kernel, p);
+  const int lane = static_cast<int>(threadIdx.x) % warp_size, warp = static_cast<int>(threadIdx.x) / warp_size;
+  if (lane < each) {
+    const int mine = warp * each + lane, p = static_cast<int>(blockIdx.x) * tile_warps * each + mine;
+    counts[mine] = p < count && kernel.counts(p);
+    if (counts[mine]) new (tile + mine) Source(kernel, p);
+  }
   __syncwarp();
-  const int lane = mine % warp_size, team = lane / Kernel::nodes_each, node = lane % Kernel::nodes_each;
+  const int team = lane / Kernel::nodes_each, node = lane % Kernel::nodes_each;
   if (team >= teams) return;
-  const int first = mine / warp_size * warp_size + team * each;
+  constexpr bool together = sizeof(typename Kernel::Number) == 8;  // single precision has an atomic of 16 bytes
+  __shared__ typename Kernel::Number values[together ? tile_warps * teams * Kernel::nodes_each * Kernel::parts : 1];
+  __shared__ int places[together ? tile_warps * teams * Kernel::nodes_each : 1];
+  const int mine = (warp * teams + team) * Kernel::nodes_each;
+  const unsigned lanes = ((1u << Kernel::nodes_each) - 1u) << (team * Kernel::nodes_each);
+  const int first = warp * each + team * share;
   typename Kernel::Sums sums;
-  for (int q = first; q < first + each; ++q) {
+  for (int q = first; q < first + share; ++q) {
     if (!counts[q]) continue;
     kernel.add(tile[q], node, sums);
-    if (q + 1 < first + each && counts[q + 1] && kernel.same_nodes(tile[q], tile[q + 1])) continue;
-    kernel.give(tile[q], node, sums);
+    if (q + 1 < first + share && counts[q + 1] && kernel.same_nodes(tile[q], tile[q + 1])) continue;
+    if constexpr (together) {
+      give_together(kernel, tile[q], node, lanes, sums, values + mine * Kernel::parts, places + mine);
+    } else {
+      kernel.give(tile[q], node, sums);
+    }
     sums = {};
   }
+}
+
+template <int each, class Kernel>
+void start_tiles(int count, const Kernel& kernel) {
+  constexpr int points = tile_warps * each;
+  run_tiles<each><<<(count + points - 1) / points, tile_warps * warp_size, 0, gpu_stream()>>>(count, kernel);
+  gpu_check_launch(__PRETTY_FUNCTION__);
 }
 
 }  // namespace detail
@@ -56,8 +95,12 @@ __global__ void run_tiles(int count, Kernel kernel) {
 template <class Kernel>
 void scatter_points(OnGpu, int count, const PointGroups&, const Kernel& kernel) {
   if (count <= 0) return;
-  detail::run_tiles<<<(count + detail::tile_points - 1) / detail::tile_points, detail::tile_points>>>(count, kernel);
-  detail::gpu_check_launch(__PRETTY_FUNCTION__);
+  constexpr int enough = 250000;  // points that keep every multiprocessor busy
+  if (count < enough) {
+    detail::start_tiles<16>(count, kernel);
+  } else {
+    detail::start_tiles<32>(count, kernel);
+  }
 }
 #endif
 

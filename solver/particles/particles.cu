@@ -11,6 +11,19 @@ struct Gather {
   TALUS_HD void operator()(int p) const { to[p] = from[order[p]]; }
 };
 
+/// Arrays of one kind that go into another order together.
+template <class T, int most>
+struct GatherAll {
+  const int* order = nullptr;
+  int count = 0;  // of arrays
+  const T* from[most] = {};
+  T* to[most] = {};
+  TALUS_HD void operator()(int p) const {
+    const int q = order[p];
+    for (int a = 0; a < count; ++a) to[a][p] = from[a][q];
+  }
+};
+
 template <class Real, class Place>
 std::vector<double> download_as(const Buffer<Real, Place>& from) {
   const std::vector<Real> values = from.download();
@@ -108,11 +121,49 @@ std::size_t Particles<Real, Place>::bytes() const {
   std::size_t total = real_scratch_.bytes() + int_scratch_.bytes();
   for (const auto& array : reals_) total += array.bytes();
   for (const auto& array : ints_) total += array.bytes();
+  for (const auto& array : real_twins_) total += array.bytes();
+  for (const auto& array : int_twins_) total += array.bytes();
   return total;
 }
 
 template <class Real, class Place>
+bool Particles<Real, Place>::int_in_use(int slot) const {
+  return (slot != load_slot || fields_.load) && (slot != material_slot || fields_.material);
+}
+
+/// Every array at once, into a second set of them.
+template <class Real, class Place>
+void Particles<Real, Place>::reorder_together(const Buffer<int, Place>& order, int count) {
+  GatherAll<Real, move_slot> reals;
+  reals.order = order.data();
+  GatherAll<int, int_slots> ints;
+  ints.order = order.data();
+  const auto add = [&](auto& gather, auto& from, auto& to) {
+    to.resize(static_cast<std::size_t>(count));
+    gather.from[gather.count] = from.data();
+    gather.to[gather.count++] = to.data();
+  };
+  for (int slot = 0; slot < move_slot; ++slot) {
+    if (in_use(slot)) add(reals, reals_[slot], real_twins_[slot]);
+  }
+  for (int slot = 0; slot < int_slots; ++slot) {
+    if (int_in_use(slot)) add(ints, ints_[slot], int_twins_[slot]);
+  }
+  for_each(Place{}, count, reals);
+  for_each(Place{}, count, ints);
+  for (int slot = 0; slot < move_slot; ++slot) {
+    if (in_use(slot)) reals_[slot].swap(real_twins_[slot]);
+  }
+  for (int slot = 0; slot < int_slots; ++slot) {
+    if (int_in_use(slot)) ints_[slot].swap(int_twins_[slot]);
+  }
+  count_ = count;
+}
+
+template <class Real, class Place>
 void Particles<Real, Place>::reorder(const Buffer<int, Place>& order, int count) {
+  constexpr int few = 1 << 20;  // points whose state may be kept twice: thirty kernels take longer than what they do
+  if (Place::is_gpu && count_ <= few) return reorder_together(order, count);
   for (int slot = 0; slot < real_slots; ++slot) {
     if (!in_use(slot) || slot >= move_slot) continue;  // the displacement lives within one step only
     real_scratch_.resize(static_cast<std::size_t>(count));
@@ -120,7 +171,7 @@ void Particles<Real, Place>::reorder(const Buffer<int, Place>& order, int count)
     reals_[slot].swap(real_scratch_);
   }
   for (int slot = 0; slot < int_slots; ++slot) {
-    if ((slot == load_slot && !fields_.load) || (slot == material_slot && !fields_.material)) continue;
+    if (!int_in_use(slot)) continue;
     auto& array = ints_[slot];
     int_scratch_.resize(static_cast<std::size_t>(count));
     for_each(Place{}, count, Gather<int>{order.data(), array.data(), int_scratch_.data()});

@@ -126,10 +126,14 @@ class Particles {
                        plastic_slot = 14, affine_slot = 15, acceleration_slot = 24, extent_slot = 27, shear_slot = 30, move_slot = 31, real_slots = 34;
   static constexpr int load_slot = 5, material_slot = 6, int_slots = 7;
   bool in_use(int slot) const;
+  bool int_in_use(int slot) const;
+  void reorder_together(const Buffer<int, Place>& order, int count);
   ParticleFields fields_;
   int count_ = 0;
   Buffer<Real, Place> reals_[real_slots];
   Buffer<int, Place> ints_[int_slots];  // cell x y z, id, release, load, material
+  Buffer<Real, Place> real_twins_[move_slot];  // of as many points as may be kept twice
+  Buffer<int, Place> int_twins_[int_slots];
   Buffer<Real, Place> real_scratch_;
   Buffer<int, Place> int_scratch_;
 };

@@ -183,7 +183,8 @@ struct GridToParticle {
     const int i0 = (block % grid.block_columns_x) * block_side + (inside & 3);
     const int j0 = (block / grid.block_columns_x) * block_side + (inside >> 2);
     const int k0 = static_cast<int>(key & 0xffffff);
-    return i - i0 > 1 || i0 - i > 1 || j - j0 > 1 || j0 - j > 1 || k - k0 > 1 || k0 - k > 1;
+    const int most = grid.drift;
+    return i - i0 > most || i0 - i > most || j - j0 > most || j0 - j > most || k - k0 > most || k0 - k > most;
   }
   TALUS_HD void request_sort() const { replace_if(&clock->request, running, wants_sort); }
 };

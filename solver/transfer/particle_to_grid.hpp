@@ -18,7 +18,8 @@ enum class Scatter {
 /// Adds the points to nodes[] (mass, momentum) and, for Scatter::force, forces[].
 template <class Real, class Shape, Scatter what>
 struct ParticleToGrid {
-  static constexpr int width = Shape::width, nodes_each = width * width * width;
+  using Number = Real;
+  static constexpr int width = Shape::width, nodes_each = width * width * width, parts = what == Scatter::force ? 7 : 4;
   GridView<Real> grid;
   ParticleView<Real> points;
   Materials<Real> materials;
@@ -90,6 +91,19 @@ struct ParticleToGrid {
     add(s, upright(s, n % width, n / width % width), n / (width * width), sums);
   }
   TALUS_HD void give(const Source& s, int n, const Sums& sums) const { give_to(s.i + n % width, s.j + n / width % width, s.k + n / (width * width), sums); }
+  TALUS_HD int node_of(const Source& s, int n) const { return place_of(s.i + n % width, s.j + n / width % width, s.k + n / (width * width)); }
+  TALUS_HD static void store(const Sums& sums, Real* to) {
+    to[0] = sums.mass;
+    to[1] = sums.momentum.x;
+    to[2] = sums.momentum.y;
+    to[3] = sums.momentum.z;
+    if constexpr (what == Scatter::force) {
+      to[4] = sums.force.x;
+      to[5] = sums.force.y;
+      to[6] = sums.force.z;
+    }
+  }
+  TALUS_HD Real* part(int node, int q) const { return q < 4 ? &nodes[node].w + q : &forces[node].x + (q - 4); }
   TALUS_HD bool counts(int p) const { return clock->halt == running && points.cell_x[p] >= 0; }
 
   /// What the nodes of one column of a point's stencil share.
@@ -120,8 +134,9 @@ struct ParticleToGrid {
     }
   }
 
+  TALUS_HD int place_of(int i, int j, int k) const { return GridView<Real>::node(grid.slot(i, j), i, j, k > 0 ? k : 0); }
   TALUS_HD void give_to(int i, int j, int k, const Sums& sums) const {
-    const int n = GridView<Real>::node(grid.slot(i, j), i, j, k > 0 ? k : 0);
+    const int n = place_of(i, j, k);
     scatter_add(&nodes[n], sums.mass, sums.momentum);
     if constexpr (what == Scatter::force) scatter_add(&forces[n], Real(0), sums.force);
   }

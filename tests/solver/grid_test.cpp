@@ -136,7 +136,7 @@ TEST(SparseGrid, stores_every_node_a_point_can_reach_before_the_next_sort) {
   const Scene scene = make_scene(d, SolveOptions{});
   Particles<double, OnCpu> points({});
   points.upload(scene.points);
-  SparseGrid<double, OnCpu> grid(scene.grid);
+  SparseGrid<double, OnCpu> grid(scene.grid, 1);
   grid.fit(points, 0);
   const auto view = grid.view();
   const ParticleState s = points.download();

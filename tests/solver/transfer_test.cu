@@ -119,7 +119,7 @@ class Transfers : public InEachPlace {
     const auto expected = reference(s, make_material<double>(mo), dt, kind_of<Shape>);
     Particles<Real, Place> points({true, false, Shape::averaged});
     points.upload(s.points);
-    SparseGrid<Real, Place> grid(s.grid);
+    SparseGrid<Real, Place> grid(s.grid, 1);
     grid.fit(points, 0);
     Buffer<Vec4<Real>, Place> nodes;
     nodes.resize(static_cast<std::size_t>(grid.nodes()));
@@ -156,7 +156,7 @@ class Transfers : public InEachPlace {
     const Scene s = scene(kind_of<Shape>, d);
     Particles<Real, Place> points({true, false, Shape::averaged});
     points.upload(s.points);
-    SparseGrid<Real, Place> grid(s.grid);
+    SparseGrid<Real, Place> grid(s.grid, 1);
     grid.fit(points, 0);
     const double slope[3][3] = {{0.3, -0.1, 0.2}, {0.05, 0.4, -0.3}, {-0.2, 0.1, 0.25}};  // per cell, [component][direction]
     std::vector<Vec4<Real>> field(static_cast<std::size_t>(grid.nodes()));

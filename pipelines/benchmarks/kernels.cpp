@@ -1,0 +1,147 @@
+#include "pipelines/benchmarks/kernels.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "solver/integrator/solver.hpp"
+#include "solver/parallel/profile.hpp"
+
+namespace talus::benchmarks {
+namespace {
+
+using namespace solver;
+
+constexpr double speed_x = 3, speed_y = 2;  // [m/s]
+constexpr double density = 2000;            // [kg/m3]
+
+/// A block of sand 8 points to a cell, four times as wide as high, on level ground without friction, on its way.
+Scene block(double points, const SolveOptions& options) {
+  const int high = std::max(4, static_cast<int>(std::lround(std::cbrt(points / 8 / 16)))), wide = std::max(4, static_cast<int>(std::lround(std::sqrt(points / 8 / high))));
+  constexpr int margin = 12;
+  Scene scene;
+  GridShape& shape = scene.grid;
+  shape.columns = shape.rows = wide + 2 * margin;
+  shape.spacing = shape.layer_height = 1;
+  shape.quadratic = options.shape == ShapeKind::quadratic;
+  shape.lowest_weighed = options.integrator == Integrator::explicit_ ? 0.1 : 0.01;  // as make_scene
+  shape.terrain.assign(static_cast<std::size_t>(shape.columns) * static_cast<std::size_t>(shape.rows), 0.0);
+  scene.map = {shape.columns, shape.rows, 0, 0, 1, ""};
+  ParticleState& s = scene.points;
+  const auto count = static_cast<std::size_t>(8) * static_cast<std::size_t>(wide) * static_cast<std::size_t>(wide) * static_cast<std::size_t>(high);
+  for (auto* list : {&s.cell[0], &s.cell[1], &s.cell[2], &s.id}) list->reserve(count);
+  for (int k = 0; k < 2 * high; ++k) {
+    for (int j = 0; j < 2 * wide; ++j) {
+      for (int i = 0; i < 2 * wide; ++i) {
+        const double at[3] = {margin + 0.25 + 0.5 * i, margin + 0.25 + 0.5 * j, 0.25 + 0.5 * k};
+        for (int a = 0; a < 3; ++a) {
+          const double nearest = std::floor(at[a] + 0.5);
+          s.cell[a].push_back(static_cast<int>(nearest));
+          s.offset[a].push_back(at[a] - nearest);
+        }
+        s.id.push_back(static_cast<int>(s.id.size()));
+      }
+    }
+  }
+  const auto constant = [&](double value) { return std::vector<double>(s.id.size(), value); };
+  s.velocity[0] = constant(speed_x);
+  s.velocity[1] = constant(speed_y);
+  s.velocity[2] = constant(0);
+  for (int a = 0; a < 3; ++a) {
+    s.extent[a] = constant(0.5);
+    s.acceleration[a] = constant(0);
+  }
+  for (auto& list : s.affine) list = constant(0);
+  for (auto& list : s.elastic) list = constant(0);
+  s.log_volume = s.plastic_log_volume = s.plastic_shear = constant(0);
+  s.volume = constant(0.125);
+  s.release.assign(s.id.size(), 0);
+  s.material.assign(s.id.size(), 0);
+  s.load.assign(s.id.size(), -1);
+  return scene;
+}
+
+SolveOptions options_for(const KernelSetting& k) {
+  SolveOptions o;
+  o.shape = k.shape;
+  o.precision = k.precision;
+  o.material.density = density;
+  o.material.youngs_modulus = 1e7;
+  o.base.law = FrictionLaw::none;
+  o.initial_velocity = {speed_x, speed_y, 0};
+  if (k.newmark) {
+    o.integrator = Integrator::newmark;
+    o.implicit.step = 0.05;  // about 5 CFL steps
+    o.implicit.alpha = 0.5;
+    o.implicit.beta = 1;
+    o.implicit.newton_tolerance = 1e-4;
+    o.implicit.linear_tolerance = 1e-3;
+    o.implicit.form = k.shape == ShapeKind::linear ? Operator::stencil : Operator::points;
+  }
+  return o;
+}
+
+/// Steps taken, at least so many.
+struct Taken {
+  int steps = 0, linear = 0;
+};
+Taken take(Solver& solver, int steps) {
+  Taken taken;
+  const auto first = solver.clock().step;
+  while (taken.steps < steps) {
+    const BatchReport batch = solver.advance();
+    taken.linear += batch.stats.linear;
+    taken.steps = static_cast<int>(batch.clock.step - first);
+  }
+  return taken;
+}
+
+}  // namespace
+
+KernelRun time_kernels(const KernelSetting& k, On on) {
+  const SolveOptions options = options_for(k);
+  const auto solver = [&] {
+    const Scene scene = block(k.points, options);
+    return make_solver(scene, options, on);
+  }();
+  solver->set_next_event(1e9);
+  KernelRun run;
+  run.method = k.newmark ? "newmark" : "explicit";
+  run.shape = k.shape == ShapeKind::linear ? "linear" : "quadratic";
+  run.precision = k.precision == Precision::double_ ? "double" : "single";
+  run.place = on == On::gpu ? gpu_name() : "CPU";
+  run.points = solver->particle_count();
+  const int few = k.newmark ? 3 : 20;
+  take(*solver, few);  // storage, first launches
+  std::vector<double> rounds;
+  using WallClock = std::chrono::steady_clock;
+  const auto timed = [&](int steps) {
+    const auto begun = WallClock::now();
+    const Taken taken = take(*solver, steps);
+    run.cg_iterations = taken.linear;
+    run.steps = taken.steps;
+    return std::chrono::duration<double>(WallClock::now() - begun).count() / taken.steps;
+  };
+  const double guess = timed(few);
+  const int steps = std::clamp(static_cast<int>(0.3 / guess), few, k.newmark ? 20 : 2000);
+  for (int round = 0; round < 3; ++round) rounds.push_back(timed(steps));
+  std::sort(rounds.begin(), rounds.end());
+  run.step_seconds = rounds[1];
+  run.bytes = static_cast<double>(solver->bytes());
+  const Energies e = solver->energies();
+  const double mass = run.points * 0.125 * density;
+  run.check = std::hypot(e.momentum.x / mass - speed_x, e.momentum.y / mass - speed_y) / std::hypot(speed_x, speed_y);
+  run.pass = run.check < (k.precision == Precision::double_ ? (k.newmark ? 1e-4 : 1e-9) : 1e-3);
+  Profile& profile = Profile::of_run();
+  profile.turn_on();
+  const auto before = profile.phases();
+  const int profiled = take(*solver, few).steps;
+  profile.turn_off();
+  for (std::size_t p = 0; p < profile.phases().size(); ++p) {
+    const double was = p < before.size() ? before[p].seconds : 0;
+    if (const double seconds = profile.phases()[p].seconds - was; seconds > 0) run.phases.emplace_back(profile.phases()[p].name, seconds / profiled);
+  }
+  return run;
+}
+
+}  // namespace talus::benchmarks

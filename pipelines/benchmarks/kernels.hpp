@@ -1,0 +1,38 @@
+// What steps and kernels cost, measured without files: a block of sand that slides along, from 1e4 points on.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/stage/stage.hpp"
+#include "solver/options.hpp"
+
+namespace talus::benchmarks {
+
+/// One way of stepping, at one size.
+struct KernelRun {
+  std::string method;      // "explicit", "newmark"
+  std::string shape, precision, place;
+  double points = 0;
+  int steps = 0;           // timed, in each of three rounds
+  double step_seconds = 0;  // median of the rounds
+  double bytes = 0;        // of points, grid and solver
+  double cg_iterations = 0;  // newmark: in the timed steps of a round
+  double check = 0;        // how far the momentum is off the closed form, over its size
+  bool pass = false;
+  std::vector<std::pair<std::string, double>> phases;  // seconds a step, in a round of its own
+
+  double eta() const { return step_seconds / points; }
+};
+
+struct KernelSetting {
+  bool newmark = false;
+  solver::ShapeKind shape = solver::ShapeKind::quadratic;
+  solver::Precision precision = solver::Precision::double_;
+  double points = 1e4;
+};
+
+/// Builds the block, steps, checks, times. Throws what the solver throws.
+KernelRun time_kernels(const KernelSetting& setting, On on);
+
+}  // namespace talus::benchmarks

@@ -1,0 +1,106 @@
+// talus-bench: what steps cost, and time against error. Checks what it times; writes CSV and pictures.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <map>
+
+#include "common/stage/stage.hpp"
+#include "pipelines/benchmarks/kernels.hpp"
+#include "solver/integrator/solver.hpp"
+#include "tests/validation/chart.hpp"
+
+namespace {
+
+using namespace talus;
+namespace fs = std::filesystem;
+using benchmarks::KernelRun;
+using benchmarks::KernelSetting;
+
+struct Words {
+  std::string set, on = "auto";
+  fs::path out = "out";
+  double most = 0;
+};
+
+Words parse(int argc, char** argv) {
+  CLI::App app("Time steps and kernels on a block of sand, from 1e4 points on; check what is timed.", "talus-bench");
+  Words w;
+  app.add_option("set", w.set, "What to time")->required()->check(CLI::IsMember({"kernels"}));
+  app.add_option("--on", w.on, "Where")->type_name("auto|cpu|gpu")->check(CLI::IsMember({"auto", "cpu", "gpu"}));
+  app.add_option("--out", w.out, "Folder for CSV and pictures");
+  app.add_option("--most", w.most, "Largest number of points (default: 1e4 on a CPU, 1e7 on a GPU)");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    std::exit(app.exit(error) == 0 ? 0 : 2);
+  }
+  return w;
+}
+
+std::string csv_of(const std::vector<KernelRun>& runs) {
+  std::string text = "method,shape,precision,place,points,steps,step_us,seconds_per_point_and_step,bytes_per_point,cg_iterations_per_step,momentum_error,phases_us\n";
+  for (const KernelRun& r : runs) {
+    std::string phases;
+    for (const auto& [name, seconds] : r.phases) phases += fmt::format("{}{}: {:.2f}", phases.empty() ? "" : "; ", name, 1e6 * seconds);
+    text += fmt::format("{},{},{},{},{:.0f},{},{:.3f},{:.4g},{:.1f},{:.1f},{:.2g},\"{}\"\n", r.method, r.shape, r.precision, r.place, r.points, r.steps, 1e6 * r.step_seconds, r.eta(),
+                        r.bytes / r.points, r.cg_iterations / r.steps, r.check, phases);
+  }
+  return text;
+}
+
+/// One quantity over the number of points, a line for each way of stepping.
+template <class Quantity>
+std::string picture(const std::string& title, const std::string& label, const std::vector<KernelRun>& runs, Quantity&& quantity) {
+  validation::Chart chart = validation::log_chart(title, "material points", label);
+  std::map<std::string, validation::Series> lines;
+  for (const KernelRun& r : runs) {
+    const std::string name = fmt::format("{}, {}, {}", r.method, r.shape, r.precision);
+    auto& line = lines.try_emplace(name, validation::Series{name, {}, {}, static_cast<int>(lines.size()) + 1}).first->second;
+    line.marks = true;
+    line.x.push_back(r.points);
+    line.y.push_back(quantity(r));
+  }
+  for (auto& [name, line] : lines) chart.series.push_back(line);
+  return validation::png_of(chart);
+}
+
+int kernels(const Words& words, On on) {
+  const double most = words.most > 0 ? words.most : on == On::gpu ? 1e7 : 1e4;
+  std::vector<KernelRun> runs;
+  bool pass = true;
+  for (const bool newmark : {false, true}) {
+    for (const auto shape : {solver::ShapeKind::linear, solver::ShapeKind::quadratic}) {
+      for (const auto precision : {solver::Precision::single_, solver::Precision::double_}) {
+        if (newmark && precision == solver::Precision::single_) continue;
+        for (double points = 1e4; points <= most * 1.001; points *= std::sqrt(10.0)) {
+          if (newmark && points > 1.1e6) break;
+          runs.push_back(benchmarks::time_kernels({newmark, shape, precision, points}, on));
+          const KernelRun& r = runs.back();
+          pass = pass && r.pass;
+          fmt::print(stderr, "{:8} {:9} {:6} {:9.0f} points {:10.1f} us a step {:9.3g} s a point and step {:6.0f} B a point{}\n", r.method, r.shape, r.precision, r.points, 1e6 * r.step_seconds,
+                     r.eta(), r.bytes / r.points, r.pass ? "" : fmt::format("  WRONG: momentum off by {:.2g}", r.check));
+          write_text(words.out / "kernels.csv", csv_of(runs));
+        }
+      }
+    }
+  }
+  write_text(words.out / "kernels-time.png", picture("Time per point and step, " + runs.front().place, "time per point and step [s]", runs, [](const KernelRun& r) { return r.eta(); }));
+  write_text(words.out / "kernels-memory.png", picture("Memory of points, grid and solver, " + runs.front().place, "memory [B]", runs, [](const KernelRun& r) { return r.bytes; }));
+  return pass ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const Words words = parse(argc, argv);
+  try {
+    fs::create_directories(words.out);
+    return kernels(words, solver::choose_place(words.on == "cpu" ? On::cpu : words.on == "gpu" ? On::gpu : On::automatic));
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "talus-bench: {}\n", error.what());
+    return 2;
+  }
+}

@@ -1,0 +1,62 @@
+// Loops over the columns of the grid's blocks: one thread a column on the CPU; on a GPU eight threads share a column's layers, of which a small scene has more than it has columns.
+#pragma once
+
+#include "solver/grid/background_grid.hpp"
+#include "solver/parallel/place.hpp"
+
+namespace talus {
+
+/// Runs kernel over the columns of `blocks` blocks in use. The kernel has
+///   Column                    a column as it sees it: bool inside, int first, last (one behind the last layer); made by locate(c), c = block * 16 + column in it
+///   Sums                      of its layers, with +=
+///   layer(column, k, sums)    what happens in a layer
+///   finish(column, sums)      what happens once all layers are done
+template <class Kernel>
+struct WholeColumn {
+  Kernel kernel;
+  TALUS_HD void operator()(int c) const {
+    const typename Kernel::Column column = kernel.locate(c);
+    if (!column.inside) return;
+    typename Kernel::Sums sums;
+    for (int k = column.first; k < column.last; ++k) kernel.layer(column, k, sums);
+    kernel.finish(column, sums);
+  }
+};
+
+template <class Kernel>
+void for_each_column(OnCpu place, int blocks, const Kernel& kernel) {
+  for_each(place, blocks * block_columns, WholeColumn<Kernel>{kernel});
+}
+
+#if defined(__CUDACC__)
+namespace detail {
+inline constexpr int column_shares = 8;
+
+template <class Kernel>
+__global__ void run_columns(Kernel kernel) {
+  using Sums = typename Kernel::Sums;
+  __shared__ alignas(16) unsigned char room[column_shares * block_columns * sizeof(Sums)];
+  auto* const shared = reinterpret_cast<Sums*>(room);
+  const int thread = static_cast<int>(threadIdx.x), share = thread / block_columns;
+  const typename Kernel::Column column = kernel.locate(static_cast<int>(blockIdx.x) * block_columns + thread % block_columns);
+  Sums sums;
+  if (column.inside) {
+    for (int k = column.first + share; k < column.last; k += column_shares) kernel.layer(column, k, sums);
+  }
+  shared[thread] = sums;
+  __syncthreads();
+  if (share > 0 || !column.inside) return;
+  for (int s = 1; s < column_shares; ++s) sums += shared[thread + s * block_columns];
+  kernel.finish(column, sums);
+}
+}  // namespace detail
+
+template <class Kernel>
+void for_each_column(OnGpu, int blocks, const Kernel& kernel) {
+  if (blocks <= 0) return;
+  detail::run_columns<<<blocks, detail::column_shares * block_columns, 0, detail::gpu_stream()>>>(kernel);
+  detail::gpu_check_launch(__PRETTY_FUNCTION__);
+}
+#endif
+
+}  // namespace talus
