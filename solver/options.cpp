@@ -202,6 +202,7 @@ void SolveOptions::describe(recipe::Visitor& v) {
   v.flag("point_frames", point_frames, "write the material points of each frame into run.h5");
   v.flag("vdb_frames", vdb_frames, "write the material points of each frame as frames/*.vdb as well");
   v.flag("energy_budget", energy_budget, "explicit steps: keep what is lost to the bed, to plastic flow, to damping and between points and grid, and the impulse of bed and walls (two to three times as slow on a GPU)");
+  v.flag("deterministic", deterministic, "explicit steps: the same bits on every run on a GPU too, as on the CPU always (slower)");
   v.enter("implicit", "implicit steps");
   implicit.describe(v);
   v.leave();
@@ -265,6 +266,10 @@ void SolveOptions::check(std::vector<Fault>& faults) const {
                       "Leave it out, or take integrator = \"explicit\""});
   }
   check_contacts(faults);
+  if (deterministic && (integrator != Integrator::explicit_ || energy_budget)) {
+    faults.push_back({"[solve] deterministic = true does not go with this integrator or with energy_budget", "sums of implicit steps and of the budget are made in any order on a GPU",
+                      "Leave it out, or take integrator = \"explicit\" without energy_budget"});
+  }
   if (walls.size() > most_walls) {
     faults.push_back({fmt::format("[[solve.wall]] is given {} times", walls.size()), fmt::format("at most {} walls fit", most_walls),
                       "Leave some out"});

@@ -153,6 +153,7 @@ struct SolveOptions {
   bool point_frames = true;
   bool vdb_frames = false;
   bool energy_budget = false;
+  bool deterministic = false;
   MaterialOptions material;
   std::vector<PartOptions> parts;
   BaseOptions base;

@@ -104,6 +104,7 @@ std::vector<std::string> features(const Domain& domain, const SolveOptions& o) {
   if (o.ground == GroundContact::points) add("ground", "met by points between the nodes");
   for (const ObstacleOptions& obstacle : o.obstacles) add("obstacle", fmt::format("{}, {:g} deg", obstacle.name, obstacle.friction_angle));
   if (!o.loads.empty()) add("loads", fmt::format("{}", o.loads.size()));
+  if (o.deterministic) add("sums", "in a fixed order (deterministic)");
   if (o.vdb_frames) add("frames", "points as .vdb too");
   return lines;
 }

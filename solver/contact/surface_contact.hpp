@@ -115,8 +115,9 @@ struct ForgetForces {
 template <class Real, class Place, class Shape>
 class SurfaceContact {
  public:
-  SurfaceContact(const ContactPoints& points, const std::vector<ObstacleOptions>& obstacles, const BaseFriction<Real>& ground, const GridShape& shape, const ContactState& state)
+  SurfaceContact(const ContactPoints& points, const std::vector<ObstacleOptions>& obstacles, const BaseFriction<Real>& ground, const GridShape& shape, const ContactState& state, bool in_order)
       : count_(static_cast<int>(points.size())), blocks_x_((shape.columns + block_side - 1) / block_side) {
+    groups_.in_order = in_order;
     if (count_ == 0) return;
     view_.ground = ground;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -173,20 +174,21 @@ class SurfaceContact {
     for (const int block : active) {
       const int begin = first_[static_cast<std::size_t>(block)], end = first_[static_cast<std::size_t>(block) + 1];
       if (begin == end) continue;
-      if constexpr (Place::is_gpu) {
+      if (by_list()) {
         for (int c = begin; c < end; ++c) beside.push_back(c);
       } else {
         groups_.ranges[(block % blocks_x_ & 1) + 2 * (block / blocks_x_ & 1)].emplace_back(begin, end);
       }
     }
     beside_.upload(beside);
+    if constexpr (Place::is_gpu) groups_.upload();
     for_each(Place{}, count_, ForgetForces<Real>{grid.view(), view()});
   }
 
   /// Runs kernel(c) for every contact point of the blocks in use, such that scatter_add never meets itself.
   template <class Kernel>
   void each(const Kernel& kernel) {
-    if constexpr (Place::is_gpu) {
+    if (by_list()) {
       for_each(Place{}, static_cast<int>(beside_.size()), OverList<Kernel>{kernel, beside_.data()});
     } else {
       for_each_grouped(Place{}, count_, groups_, kernel);
@@ -212,6 +214,7 @@ class SurfaceContact {
   }
 
  private:
+  bool by_list() const { return Place::is_gpu && !groups_.in_order; }
   void upload_vectors(Buffer<Vec3<double>, Place>& to, const std::vector<double>& from) {
     std::vector<Vec3<double>> vectors(static_cast<std::size_t>(count_));
     for (std::size_t c = 0; 3 * c + 2 < from.size() && c < vectors.size(); ++c) vectors[c] = {from[3 * c], from[3 * c + 1], from[3 * c + 2]};

@@ -82,7 +82,8 @@ struct GiveStorage {
 }  // namespace
 
 template <class Real, class Place>
-SparseGrid<Real, Place>::SparseGrid(const GridShape& shape, int drift) : shape_(shape), drift_(drift), ground_(make_ground_tables(shape)) {
+SparseGrid<Real, Place>::SparseGrid(const GridShape& shape, int drift, bool in_order) : shape_(shape), drift_(drift), ground_(make_ground_tables(shape)) {
+  groups_.in_order = in_order;
   blocks_x_ = (shape.columns + block_side - 1) / block_side;
   blocks_y_ = (shape.rows + block_side - 1) / block_side;
   upload_as(terrain_, ground_.terrain);
@@ -145,18 +146,21 @@ void SparseGrid<Real, Place>::give_storage() {
 
 template <class Real, class Place>
 void SparseGrid<Real, Place>::group_points(int count) {
-  if constexpr (!Place::is_gpu) {
-    for (auto& ranges : groups_.ranges) ranges.clear();
-    for (int begin = 0; begin < count;) {
-      const auto block = keys_.data()[begin] >> 32;
-      int end = begin + 1;
-      while (end < count && keys_.data()[end] >> 32 == block) ++end;
-      const auto width = static_cast<std::uint64_t>(blocks_x_);
-      const std::uint64_t colour = (block % width & 1) + 2 * (block / width & 1);
-      groups_.ranges[colour].emplace_back(begin, end);
-      begin = end;
-    }
+  if (Place::is_gpu && !groups_.in_order) return;
+  std::vector<std::uint64_t> copy;
+  if (Place::is_gpu) copy = keys_.download();
+  const std::uint64_t* const keys = Place::is_gpu ? copy.data() : keys_.data();
+  for (auto& ranges : groups_.ranges) ranges.clear();
+  for (int begin = 0; begin < count;) {
+    const auto block = keys[begin] >> 32;
+    int end = begin + 1;
+    while (end < count && keys[end] >> 32 == block) ++end;
+    const auto width = static_cast<std::uint64_t>(blocks_x_);
+    const std::uint64_t colour = (block % width & 1) + 2 * (block / width & 1);
+    groups_.ranges[colour].emplace_back(begin, end);
+    begin = end;
   }
+  if constexpr (Place::is_gpu) groups_.upload();
 }
 
 template <class Real, class Place>

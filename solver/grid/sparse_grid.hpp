@@ -46,7 +46,8 @@ template <class Real, class Place>
 class SparseGrid {
  public:
   /// `drift`: how far a point may go from home before it is sorted again [cells]. At most one on the CPU, where blocks of the same colour stand four columns apart.
-  SparseGrid(const GridShape& shape, int drift);
+  /// `in_order`: scatters give the same bits on every run on a GPU too; a drift of at most one there as well.
+  SparseGrid(const GridShape& shape, int drift, bool in_order = false);
 
   /// Sort the points by home cell, drop those that left (the `gone` last ones after sorting), and give storage to every
   /// column and layer they reach until they have drifted too far.

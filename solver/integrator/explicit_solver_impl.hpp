@@ -44,7 +44,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
  public:
   ExplicitSolverOf(const Scene& scene, const SolveOptions& options, const SolverState& state)
-      : Base(scene, options, state, fields(options), drift_between_sorts<Place>),
+      : Base(scene, options, state, fields(options), options.deterministic ? 1 : drift_between_sorts<Place>),
         affine_(options.transfer == Transfer::apic),
         musl_(options.stress_update == StressUpdate::modified),
         keeps_(options.transfer_time > options.courant),

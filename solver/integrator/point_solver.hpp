@@ -52,9 +52,9 @@ class PointSolver : public Solver {
         materials_(make_materials<Real>(options, scene.grid.spacing, scene.grid.layer_height)),
         dilatant_(fields.plastic_volume),
         points_(fields),
-        grid_(scene.grid, drift),
+        grid_(scene.grid, drift, options.deterministic),
         bed_(make_base_friction<Real>(options), scene.bed),
-        contact_(scene.contacts, options.obstacles, bed_.view(), scene.grid, state.contacts),
+        contact_(scene.contacts, options.obstacles, bed_.view(), scene.grid, state.contacts, options.deterministic),
         frame_{{scene.map.x(0), scene.map.y(0), grid_.ground().datum},
                {scene.grid.spacing, scene.grid.spacing, scene.grid.layer_height}},
         load_volumes_(scene.load_volumes) {

@@ -10,11 +10,13 @@
 
 namespace talus {
 
-/// Largest of the values seen, for floats >= 0: their bit patterns order as the numbers do.
+/// Largest of the values seen, for floats >= 0: their bit patterns order as the numbers do. The lanes of a warp that meet here name the same place: one of them speaks for all,
+/// for atomics at one address come one after the other.
 TALUS_HD void atomic_max_positive(std::uint32_t* bits, float value) {
 #if defined(__CUDA_ARCH__)
-  const std::uint32_t mine = __float_as_uint(value);
-  if (mine > *bits) atomicMax(bits, mine);  // the read spares nearly all atomics
+  const unsigned together = __activemask(), most = __reduce_max_sync(together, __float_as_uint(value));
+  const bool speaks = static_cast<int>(threadIdx.x % 32) == __ffs(static_cast<int>(together)) - 1;
+  if (speaks && most > *bits) atomicMax(bits, most);  // the read spares nearly all atomics
 #else
   std::uint32_t mine;
   std::memcpy(&mine, &value, sizeof mine);
@@ -57,9 +59,16 @@ TALUS_HD void atomic_max(int* target, int value) {
 #endif
 }
 
+/// Lanes of a warp that meet here name the same place, as above.
 TALUS_HD void atomic_add(double* target, double value) {
 #if defined(__CUDA_ARCH__)
-  atomicAdd(target, value);
+  const unsigned together = __activemask();
+  if (together == 0xffffffffu) {
+    for (unsigned apart = 16; apart > 0; apart /= 2) value += __shfl_down_sync(together, value, apart);
+    if (threadIdx.x % 32 == 0) atomicAdd(target, value);
+  } else {
+    atomicAdd(target, value);
+  }
 #else
   std::atomic_ref<double> a(*target);
   a.fetch_add(value, std::memory_order_relaxed);

@@ -148,11 +148,17 @@ void for_each(OnCpu, int count, const Kernel& kernel) {
 
 /// Ranges of points, one per occupied column block, in four colours: blocks of one colour share no grid node.
 struct PointGroups {
-  std::vector<std::pair<int, int>> ranges[4];  // [begin, end) into the points
+  using Range = std::pair<int, int>;  // [begin, end) into the points
+  std::vector<Range> ranges[4];
+  bool in_order = false;              // a GPU goes by them too, so that sums are the same on every run
+  Buffer<Range, OnGpu> on_gpu[4];
+  void upload() {
+    for (int c = 0; in_order && c < 4; ++c) on_gpu[c].upload(ranges[c]);
+  }
 };
 
 /// Runs kernel(p) over all points such that scatter_add never meets itself. CPU: colour by colour, each block in order, so
-/// sums are the same on every run. GPU: all at once, with atomics.
+/// sums are the same on every run. GPU: all at once, with atomics; with groups.in_order as the CPU, a thread for every block.
 template <class Kernel>
 void for_each_grouped(OnCpu, int, const PointGroups& groups, const Kernel& kernel) {
   for (const auto& ranges : groups.ranges) {
@@ -196,9 +202,21 @@ void for_each(OnGpu, int count, const Kernel& kernel) {
   detail::gpu_check_launch(__PRETTY_FUNCTION__);
 }
 
+/// One thread: the points of a block, one after the other.
 template <class Kernel>
-void for_each_grouped(OnGpu place, int count, const PointGroups&, const Kernel& kernel) {
-  for_each(place, count, kernel);
+struct InOrder {
+  Kernel kernel;
+  const PointGroups::Range* ranges;
+  TALUS_HD void operator()(int r) const {
+    const int begin = ranges[r].first, end = ranges[r].second;
+    for (int p = begin; p < end; ++p) kernel(p);
+  }
+};
+
+template <class Kernel>
+void for_each_grouped(OnGpu place, int count, const PointGroups& groups, const Kernel& kernel) {
+  if (!groups.in_order) return for_each(place, count, kernel);
+  for (const auto& ranges : groups.on_gpu) for_each(place, static_cast<int>(ranges.size()), InOrder<Kernel>{kernel, ranges.data()});
 }
 #endif
 

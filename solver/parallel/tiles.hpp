@@ -18,6 +18,7 @@ namespace talus {
 /// and, for the lanes of a warp to pass on together what lies together in memory:
 ///   Number, parts    what sums are made of, and of how many
 ///   node_of(s, n)    where node n of the source is stored
+///   gives(s, n)      false where node n is none of its own: several n of a source may be stored in one place, but only one of them gives
 ///   store(sums, to)  puts the parts side by side
 ///   part(node, q)    where part q of a stored node is
 template <class Kernel>
@@ -90,11 +91,48 @@ void start_tiles(int count, const Kernel& kernel) {
   gpu_check_launch(__PRETTY_FUNCTION__);
 }
 
+/// A warp takes the points of a block of columns one after the other, a lane for every node.
+template <class Kernel>
+__global__ void run_tiles_in_order(const PointGroups::Range* ranges, Kernel kernel) {
+  using Source = typename Kernel::Source;
+  __shared__ alignas(16) unsigned char room[warp_size * sizeof(Source)];
+  __shared__ bool counts[warp_size];
+  auto* const tile = reinterpret_cast<Source*>(room);
+  const int begin = ranges[blockIdx.x].first, end = ranges[blockIdx.x].second, lane = static_cast<int>(threadIdx.x);
+  for (int first = begin; first < end; first += warp_size) {
+    __syncwarp();
+    const int p = first + lane;
+    counts[lane] = p < end && kernel.counts(p);
+    if (counts[lane]) new (tile + lane) Source(kernel, p);
+    __syncwarp();
+    for (int q = 0; q < warp_size; ++q) {
+      if (!counts[q]) continue;
+      if (lane < Kernel::nodes_each && kernel.gives(tile[q], lane)) {
+        typename Kernel::Sums sums;
+        kernel.add(tile[q], lane, sums);
+        typename Kernel::Number parts[Kernel::parts];
+        kernel.store(sums, parts);
+        const int node = kernel.node_of(tile[q], lane);
+        for (int part = 0; part < Kernel::parts; ++part) *kernel.part(node, part) += parts[part];
+      }
+      __syncwarp();
+    }
+  }
+}
+
 }  // namespace detail
 
 template <class Kernel>
-void scatter_points(OnGpu, int count, const PointGroups&, const Kernel& kernel) {
+void scatter_points(OnGpu, int count, const PointGroups& groups, const Kernel& kernel) {
   if (count <= 0) return;
+  if (groups.in_order) {
+    for (const auto& ranges : groups.on_gpu) {
+      if (ranges.size() == 0) continue;
+      detail::run_tiles_in_order<<<static_cast<unsigned>(ranges.size()), detail::warp_size, 0, detail::gpu_stream()>>>(ranges.data(), kernel);
+      detail::gpu_check_launch(__PRETTY_FUNCTION__);
+    }
+    return;
+  }
   constexpr int enough = 250000;  // points that keep every multiprocessor busy
   if (count < enough) {
     detail::start_tiles<16>(count, kernel);

@@ -53,7 +53,9 @@ struct GridToParticle {
   TALUS_HD Sums gather(const Stencil<Real, Shape>& s) const {
     Sums sums;
     const bool follows = grid.mapping == Mapping::terrain_following;
+    TALUS_UNROLL  // weights looked up by a loop's counter would go through memory
     for (int b = 0; b < Shape::width; ++b) {
+      TALUS_UNROLL
       for (int a = 0; a < Shape::width; ++a) {
         const int i = s.i + a, j = s.j + b;
         const BlockSlot& slot = grid.slot(i, j);
@@ -65,6 +67,7 @@ struct GridToParticle {
         // Sums up the column, then weighs them once.
         Vec3<Real> mean{}, rise{}, lever{}, change{};
         Real climb = 0;
+        TALUS_UNROLL
         for (int c = 0; c < Shape::width; ++c) {
           const int layer = s.k + c > 0 ? s.k + c : 0;
           const int n = GridView<Real>::node(slot, i, j, layer);

@@ -92,6 +92,7 @@ struct ParticleToGrid {
   }
   TALUS_HD void give(const Source& s, int n, const Sums& sums) const { give_to(s.i + n % width, s.j + n / width % width, s.k + n / (width * width), sums); }
   TALUS_HD int node_of(const Source& s, int n) const { return place_of(s.i + n % width, s.j + n / width % width, s.k + n / (width * width)); }
+  TALUS_HD static bool gives(const Source& s, int n) { return s.k + n / (width * width) >= 0; }  // below the ground there is none
   TALUS_HD static void store(const Sums& sums, Real* to) {
     to[0] = sums.mass;
     to[1] = sums.momentum.x;
