@@ -3,10 +3,14 @@
 
 #if defined(__CUDACC__)
 #define TALUS_HD __host__ __device__ __forceinline__
-#define TALUS_UNROLL _Pragma("unroll")
 #define TALUS_FOR_GPU 1  // this file is compiled for the GPU as well: instantiate templates for OnGpu
 #else
 #define TALUS_HD inline
-#define TALUS_UNROLL
 #define TALUS_FOR_GPU 0
+#endif
+
+#if defined(__CUDA_ARCH__)
+#define TALUS_UNROLL _Pragma("unroll")
+#else
+#define TALUS_UNROLL
 #endif
