@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 
+#include "common/error.hpp"
 #include "common/stage/stage.hpp"
 #include "pipelines/benchmarks/kernels.hpp"
 #include "solver/integrator/solver.hpp"
@@ -77,7 +78,13 @@ int kernels(const Words& words, On on) {
         if (newmark && precision == solver::Precision::single_) continue;
         for (double points = 1e4; points <= most * 1.001; points *= std::sqrt(10.0)) {
           if ((newmark && points > 1.1e6) || (precision == solver::Precision::double_ && points > 3.3e7)) break;
-          runs.push_back(benchmarks::time_kernels({newmark, shape, precision, points}, on));
+          try {
+            runs.push_back(benchmarks::time_kernels({newmark, shape, precision, points}, on));
+          } catch (const NumericalError& error) {
+            fmt::print(stderr, "{:.0f} points: {}\n", points, error.what());
+            pass = false;
+            break;
+          }
           const KernelRun& r = runs.back();
           pass = pass && r.pass;
           fmt::print(stderr, "{:8} {:9} {:6} {:9.0f} points {:10.1f} us a step {:9.3g} s a point and step {:6.0f} B a point{}\n", r.method, r.shape, r.precision, r.points, 1e6 * r.step_seconds,
