@@ -8,8 +8,8 @@ mkdir -p "$out"
 table=$out/scenes.csv
 echo 'scene,spacing_m,layer_height_m,place,points,steps,wall_s,us_per_step,seconds_per_point_and_step,simulated_s,footprint_csi,deposit_csi,thickness_rmse_m,runout_m' >"$table"
 
-# value FILE KEY: a number or text of a score.json; empty where there is none.
-value() { sed -n "s/^ *\"$2\": *\"\{0,1\}\([^\",]*\)\"\{0,1\},\{0,1\}$/\1/p" "$1" | head -n 1; }
+# value FILE KEY: a number or text of a score.json, commas in it as semicolons; empty where there is none.
+value() { sed -nE "s/^ *\"$2\": *\"?([^\"]*[^\",])\"?,?$/\1/p" "$1" | head -n 1 | tr , ';'; }
 
 # run SCENE SPACING LAYER
 run() {
