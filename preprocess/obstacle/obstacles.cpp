@@ -51,7 +51,8 @@ struct Column {
   std::vector<double> across;  // distance to each footprint's edge on the map
 };
 
-SolidBody stand(const ObstacleOptions& o, const Raster& ground, double depth) {
+SolidBody stand(const ObstacleOptions& o, const std::shared_ptr<const Raster>& shared_ground, double depth) {
+  const Raster& ground = *shared_ground;
   std::vector<MapPolygon> polygons = read_polygons(o.polygons, ground.grid.crs_wkt);
   check_polygons(polygons, o.polygons);
   auto footprints = std::make_shared<std::vector<Footprint>>();
@@ -76,18 +77,19 @@ SolidBody stand(const ObstacleOptions& o, const Raster& ground, double depth) {
   // Between the corners the ground may rise and fall.
   for (int row = 0; row < ground.grid.rows; ++row) {
     for (int column = 0; column < ground.grid.columns; ++column) {
-      const double x = ground.grid.x(column), y = ground.grid.y(row), z = ground.at(column, row);
+      const double x = ground.grid.x(column), y = ground.grid.y(row), z = ground.at(column, row), margin = ground.grid.cell;
+      if (x < body.low[0] - margin || x > body.high[0] + margin || y < body.low[1] - margin || y > body.high[1] + margin) continue;
       for (const Footprint& f : *footprints) {
-        if (std::isnan(z) || signed_distance(f.polygon, x, y) > ground.grid.cell) continue;
+        if (std::isnan(z) || signed_distance(f.polygon, x, y) > margin) continue;
         body.low[2] = std::min(body.low[2], z - depth);
         body.high[2] = std::max(body.high[2], z + f.height);
       }
     }
   }
   auto column = std::make_shared<Column>();
-  body.distance = [footprints, column, ground, depth](double x, double y, double z) {
+  body.distance = [footprints, column, shared_ground, depth](double x, double y, double z) {
     if (x != column->x || y != column->y) {
-      const double here = bilinear(ground, x, y);
+      const double here = bilinear(*shared_ground, x, y);
       *column = {x, y, std::isnan(here) ? 0 : here, {}};
       for (const Footprint& f : *footprints) column->across.push_back(std::isnan(here) ? 1e30 : signed_distance(f.polygon, x, y));
     }
@@ -104,7 +106,9 @@ SolidBody stand(const ObstacleOptions& o, const Raster& ground, double depth) {
 
 std::vector<SolidBody> stand_obstacles(const std::vector<ObstacleOptions>& obstacles, const Raster& ground, double depth) {
   std::vector<SolidBody> bodies;
-  for (const ObstacleOptions& o : obstacles) bodies.push_back(stand(o, ground, depth));
+  if (obstacles.empty()) return bodies;
+  const auto shared_ground = std::make_shared<const Raster>(ground);  // the bodies outlive the caller's
+  for (const ObstacleOptions& o : obstacles) bodies.push_back(stand(o, shared_ground, depth));
   return bodies;
 }
 
