@@ -8,7 +8,8 @@
 #include "common/run/run_file.hpp"
 #include "common/stage/stage.hpp"
 #include "common/volume/domain.hpp"
-#include "solver/parallel/profile.hpp"
+#include "solver/output/profile_report.hpp"
+#include "solver/parallel/bandwidth.hpp"
 #include "solver/plan.hpp"
 #include "solver/run.hpp"
 #include "solver/stiffness.hpp"
@@ -37,16 +38,13 @@ Stage stage() {
   return s;
 }
 
-/// Share of each phase in the step loop, and what the state took of memory.
-void log_profile(const RunSummary& summary) {
-  log_info(fmt::format("memory of points, grid and linear solver: {:.1f} MB", summary.memory / 1e6));
-  double named = 0;
-  for (const auto& [name, seconds] : summary.profile) named += seconds;
-  const auto line = [&](const std::string& name, double seconds) {
-    log_info(fmt::format("  {:28} {:9.3f} s {:5.1f} %", name, seconds, 100 * seconds / summary.wall_time));
-  };
-  for (const auto& [name, seconds] : summary.profile) line(name, seconds);
-  line("everything else", summary.wall_time - named);
+/// What was measured, in words and as profile.csv.
+void report_profile(const RunSummary& summary, On on, const std::filesystem::path& out) {
+  Profile& profile = Profile::of_run();
+  profile.turn_off();
+  const double copy = on == On::gpu ? copy_bandwidth(OnGpu{}) : copy_bandwidth(OnCpu{});
+  for (const std::string& text : profile_lines(summary, profile, copy)) log_info(text);
+  write_text(out / "profile.csv", profile_csv(profile, copy));
 }
 
 /// One sentence on what will run: points, cells, first step.
@@ -131,7 +129,7 @@ void solve(StageContext& context) {
   const RunSummary summary = simulation.run(context.recipe.scene_name(), context.recipe.title());
   log_info(fmt::format("{} at t = {:.2f} s after {} steps in {:.1f} s", summary.stop_reason, summary.time_end, summary.steps,
                        summary.wall_time));
-  if (context.profile) log_profile(summary);
+  if (context.profile) report_profile(summary, on, context.out);
   if (options.material.stiffness_check) check_stiffness(domain, options, on, context, paths.run);
   context.results.push_back(paths.run);
   write_used_recipe(context, stage(), settings, inputs,

@@ -431,6 +431,7 @@ void Simulation::finish(RunSummary& summary) {
   summary.time_end = time_;
   summary.wall_time = memory_.wall_time;
   summary.memory = static_cast<double>(solver_->bytes());
+  for (const auto& [owner, bytes] : solver_->memory()) summary.memory_of.emplace_back(owner, static_cast<double>(bytes));
   for (const Profile::Phase& p : Profile::of_run().phases()) summary.profile.emplace_back(p.name, p.seconds);
   summary.density = options_.material.density;
   summary.volume_released = released_;

@@ -55,6 +55,7 @@ struct RunSummary {
   double volume_final = 0;     // [m3]
   double volume_outflow = 0;   // [m3]
   std::vector<std::pair<std::string, double>> profile;  // phases of the step loop [s]; empty unless measured
+  std::vector<std::pair<std::string, double>> memory_of;  // its owners [bytes]
   std::vector<std::pair<std::string, std::string>> provenance;
 };
 

@@ -95,6 +95,7 @@ struct ContactView {
 /// One thread: one contact point of the list.
 template <class Kernel>
 struct OverList {
+  using Named = Kernel;
   Kernel kernel;
   const int* list;
   TALUS_HD void operator()(int t) const { kernel(list[t]); }

@@ -40,6 +40,7 @@ template <class Real>
 struct GridView {
   int columns = 0, rows = 0;                // nodes in x and y
   int block_columns_x = 0;                  // blocks in x
+  int nodes = 0;                            // stored
   Real spacing = 0, layer_height = 0;       // [m]
   Real lowest_weighed = 0;                  // cells from the ground or a wall within which weights no longer change
   int drift = 1;                            // cells that a point may be from home before it is sorted again

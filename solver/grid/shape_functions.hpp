@@ -42,12 +42,13 @@ struct Quadratic {
   TALUS_HD static Real weigh_edge(Real offset, int inward, Real lowest, Real, Real weight[3], Real slope[3]) {
     const Real away = offset * Real(inward);
     const Real s = away > lowest ? away : lowest;
-    weight[1 - inward] = Real(0);
+    const bool ahead = inward > 0;  // no index to look up: weights stay in registers
+    weight[0] = ahead ? Real(0) : s;
     weight[1] = Real(1) - s;
-    weight[1 + inward] = s;
-    slope[1 - inward] = Real(0);
+    weight[2] = ahead ? s : Real(0);
+    slope[0] = ahead ? Real(0) : Real(-1);
     slope[1] = Real(-inward);
-    slope[1 + inward] = Real(inward);
+    slope[2] = ahead ? Real(1) : Real(0);
     return s * Real(inward);
   }
   template <class Real>

@@ -101,6 +101,7 @@ GridView<Real> SparseGrid<Real, Place>::view() const {
   v.columns = shape_.columns;
   v.rows = shape_.rows;
   v.block_columns_x = blocks_x_;
+  v.nodes = nodes_;
   v.spacing = static_cast<Real>(shape_.spacing);
   v.layer_height = static_cast<Real>(shape_.layer_height);
   v.lowest_weighed = static_cast<Real>(shape_.lowest_weighed);

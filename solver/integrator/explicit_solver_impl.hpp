@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "solver/integrator/point_solver.hpp"
 #include "solver/integrator/update_columns.hpp"
@@ -29,6 +30,7 @@ struct BeginStep {
   Vec4<Real>* forces;  // null when forces are folded into the momentum
   int count;
   bool opens;
+  double bytes(int) const { return count * static_cast<double>((forces ? 2 : 1) * sizeof(*nodes)); }
   TALUS_HD void operator()(int n) const {
     if (n == 0 && opens) clock->begin_step();
     if (n >= count) return;
@@ -90,7 +92,11 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     return report;
   }
 
-  std::size_t bytes() const override { return Base::bytes() + nodes_.bytes() + forces_.bytes(); }
+  MemoryShares memory() const override {
+    MemoryShares shares = Base::memory();
+    shares.emplace_back("nodes", nodes_.bytes() + forces_.bytes());
+    return shares;
+  }
 
  private:
   static ParticleFields fields(const SolveOptions& o) {
@@ -164,9 +170,16 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   template <Gather part>
   void gather() {
     const ProfilePhase<Place> phase("grid to points");
-    for_each(Place{}, points_.count(),
-             GridToParticle<Real, Shape, part>{grid_.view(), points_.view(), materials_, clock_.data(), nodes_.data(),
-                                               keeps_ ? forces_.data() : nullptr, grid_.home(), affine_, dilatant_});
+    const auto run = [&](auto budget) {
+      for_each(Place{}, points_.count(),
+               GridToParticle<Real, Shape, part, decltype(budget)::value>{grid_.view(), points_.view(), materials_, clock_.data(), nodes_.data(),
+                                                                          keeps_ ? forces_.data() : nullptr, grid_.home(), affine_, dilatant_});
+    };
+    if (options_.energy_budget) {
+      run(std::true_type{});
+    } else {
+      run(std::false_type{});
+    }
   }
 
   void sort(int gone) {

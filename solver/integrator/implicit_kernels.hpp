@@ -7,7 +7,7 @@
 #include "solver/integrator/clock.hpp"
 #include "solver/linear/mean_dilation.hpp"
 #include "solver/material/tangent.hpp"
-#include "solver/transfer/stencil.hpp"
+#include "solver/transfer/point_gradients.hpp"
 
 namespace talus::solver {
 
@@ -31,88 +31,92 @@ struct NodeArrays {
   TALUS_HD Vec3<double> begin_velocity(int n) const { return arrival ? velocity[n] + arrival[n] : velocity[n]; }
 };
 
-/// Interpolation of a point once more, in double, with gradients by position [1/m].
+/// Mass, momentum, acceleration (as mass times it) and loads of the points to the nodes.
 template <class Real, class Shape>
-struct PointGradients {
-  Stencil<Real, Shape> s;
-  Real across, up;
-  TALUS_HD PointGradients(const GridView<Real>& grid, const ParticleView<Real>& points, int p)
-      : s(grid, points, p), across(Real(1) / grid.spacing), up(Real(1) / grid.layer_height) {}
-  TALUS_HD Real weight(int a, int b, int c) const { return s.wx[a] * s.wy[b] * s.wz[c]; }
-  TALUS_HD Vec3<Real> gradient(int a, int b, int c) const {
-    const Real gz = s.wx[a] * s.wy[b] * s.gz[c] * up;
-    return {s.gx[a] * s.wy[b] * s.wz[c] * across - s.slope_x * gz, s.wx[a] * s.gy[b] * s.wz[c] * across - s.slope_y * gz, gz};
-  }
-  TALUS_HD int node(const GridView<Real>& grid, int a, int b, int c) const {
-    const int layer = s.k + c > 0 ? s.k + c : 0;
-    return GridView<Real>::node(grid.slot(s.i + a, s.j + b), s.i + a, s.j + b, layer);
-  }
-};
-
-/// Calls f(node, a, b, c) for every node around a point.
-template <class Real, class Shape, class F>
-TALUS_HD void around(const GridView<Real>& grid, const PointGradients<Real, Shape>& g, F&& f) {
-  for (int b = 0; b < Shape::width; ++b) {
-    for (int a = 0; a < Shape::width; ++a) {
-      for (int c = 0; c < Shape::width; ++c) f(g.node(grid, a, b, c), a, b, c);
-    }
-  }
-}
-
-template <class Real>
-TALUS_HD Vec3<double> widen(const Vec3<Real>& v) {
-  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
-}
-template <class Real>
-TALUS_HD Vec3<Real> narrow(const Vec3<double>& v) {
-  return {static_cast<Real>(v.x), static_cast<Real>(v.y), static_cast<Real>(v.z)};
-}
-using talus::scatter_add;
-
-/// One thread: one point. Mass, momentum, acceleration (as mass times it) and loads to the nodes.
-template <class Real, class Shape>
-struct ScatterInertia {
-  GridView<Real> grid;
-  ParticleView<Real> points;
+struct ScatterInertia : PointScatter<Real, Shape> {
+  using Base = PointScatter<Real, Shape>;
+  using Number = double;
+  static constexpr int parts = 10;
   Materials<Real> materials;
   bool affine, accelerated;
   const Vec3<double>* loads;  // force per volume of each load at the end of the step [N/m3]; null without loads
   NodeArrays nodes;
 
-  TALUS_HD void operator()(int p) const {
-    const PointGradients<Real, Shape> g(grid, points, p);
-    const Real mass = points.volume[p] * materials.density(points.material, p);
-    const Vec3<Real> v = points.velocity_of(p);
-    const Mat3<Real> turn = affine ? points.affine_of(p) : Mat3<Real>{};
+  struct Source : PointGradients<Real, Shape> {
+    Real mass;
+    Vec3<Real> corner;  // velocity at the first node
+    Mat3<Real> turn{};  // its change per node
     Vec3<double> acceleration{}, load{};
-    if (accelerated) acceleration = widen(Vec3<Real>{points.acceleration[0][p], points.acceleration[1][p], points.acceleration[2][p]});
-    if (loads && points.load[p] >= 0) load = loads[points.load[p]] * static_cast<double>(points.volume[p]);
-    around(grid, g, [&](int n, int a, int b, int c) {
-      const double w = static_cast<double>(g.weight(a, b, c));
-      const double share = w * static_cast<double>(mass);
-      const Vec3<Real> there = v + turn * Vec3<Real>{g.s.near_x + Real(a), g.s.near_y + Real(b), g.s.near_z + Real(c)};
-      talus::scatter_add(&nodes.mass[n], share);
-      scatter_add(&nodes.velocity[n], widen(there) * share);
-      if (accelerated) scatter_add(&nodes.acceleration[n], acceleration * share);
-      if (loads) scatter_add(&nodes.external[n], load * w);
-    });
+    TALUS_HD Source(const ScatterInertia& k, int p) : PointGradients<Real, Shape>(k.grid, k.points, p) {
+      const ParticleView<Real>& points = k.points;
+      mass = points.volume[p] * k.materials.density(points.material, p);
+      corner = points.velocity_of(p);
+      if (k.affine) {
+        turn = points.affine_of(p);
+        corner += turn * Vec3<Real>{this->s.near_x, this->s.near_y, this->s.near_z};
+      }
+      if (k.accelerated) acceleration = widen(Vec3<Real>{points.acceleration[0][p], points.acceleration[1][p], points.acceleration[2][p]});
+      if (k.loads && points.load[p] >= 0) load = k.loads[points.load[p]] * static_cast<double>(points.volume[p]);
+    }
+  };
+  struct Sums {
+    double mass = 0;
+    Vec3<double> momentum, acceleration, load;
+  };
+
+  TALUS_HD void operator()(int p) const { Base::scatter(*this, p); }
+  TALUS_HD void add(const Source& g, int n, Sums& sums) const { add(g, Base::along_x(n), Base::along_y(n), Base::upwards(n), sums); }
+  TALUS_HD void add(const Source& g, int a, int b, int c, Sums& sums) const {
+    const double w = static_cast<double>(g.weight(a, b, c)), share = w * static_cast<double>(g.mass);
+    sums.mass += share;
+    sums.momentum += widen(g.corner + g.turn * Vec3<Real>{Real(a), Real(b), Real(c)}) * share;
+    sums.acceleration += g.acceleration * share;
+    sums.load += g.load * w;
+  }
+  TALUS_HD void give_to(int at, const Sums& sums) const {
+    talus::scatter_add(&nodes.mass[at], sums.mass);
+    scatter_add(&nodes.velocity[at], sums.momentum);
+    if (accelerated) scatter_add(&nodes.acceleration[at], sums.acceleration);
+    if (loads) scatter_add(&nodes.external[at], sums.load);
+  }
+  TALUS_HD static void store(const Sums& sums, double* to) {
+    to[0] = sums.mass;
+    put(sums.momentum, to + 1);
+    put(sums.acceleration, to + 4);
+    put(sums.load, to + 7);
+  }
+  TALUS_HD bool has(int q) const { return q < 4 || (q < 7 ? accelerated : loads != nullptr); }
+  TALUS_HD double* part(int node, int q) const {
+    return q == 0 ? &nodes.mass[node] : q < 4 ? &nodes.velocity[node].x + (q - 1) : q < 7 ? &nodes.acceleration[node].x + (q - 4) : &nodes.external[node].x + (q - 7);
   }
 };
 
-/// The tangents of all points, number by number.
+/// The tangents of all points, number by number; in single precision where Newton corrects what that rounds off.
 template <class Real>
 struct TangentStore {
   static constexpr int numbers = sizeof(PointTangent<Real>) / sizeof(Real);
   Real* data = nullptr;
   int count = 0;
+  float* single = nullptr;  // in place of `data`
+
+  TALUS_HD bool on() const { return data || single; }
+  double bytes_each() const { return on() ? numbers * static_cast<double>(single ? sizeof(float) : sizeof(Real)) : 0; }
   TALUS_HD void put(int p, const PointTangent<Real>& t) const {
     const Real* values = t.axes;
-    for (int q = 0; q < numbers; ++q) data[at(q, p)] = values[q];
+    if (single) {
+      for (int q = 0; q < numbers; ++q) single[at(q, p)] = static_cast<float>(values[q]);
+    } else {
+      for (int q = 0; q < numbers; ++q) data[at(q, p)] = values[q];
+    }
   }
   TALUS_HD PointTangent<Real> get(int p) const {
     PointTangent<Real> t;
     Real* values = t.axes;
-    for (int q = 0; q < numbers; ++q) values[q] = data[at(q, p)];
+    if (single) {
+      for (int q = 0; q < numbers; ++q) values[q] = static_cast<Real>(single[at(q, p)]);
+    } else {
+      for (int q = 0; q < numbers; ++q) values[q] = data[at(q, p)];
+    }
     return t;
   }
 
@@ -135,47 +139,66 @@ TALUS_HD Mat3<Real> displacement_gradient(const GridView<Real>& grid, const Poin
   return gradient;
 }
 
-/// One thread: one point. Internal force for the displacement u; the tangent as well where `tangents` has data.
+/// What the points' stresses, or their changes, give to the nodes: V P grad N, P = law(p, its gradients), which may keep what belongs to the point.
+template <class Real, class Shape, class Law>
+struct ScatterForces : PointScatter<Real, Shape> {
+  using Base = PointScatter<Real, Shape>;
+  using Named = Law;
+  using Number = double;
+  static constexpr int parts = 3;
+  Law law;
+  Vec3<double>* forces;
+
+  double bytes(int count) const { return law.bytes(count) + count * (this->points.place_bytes + sizeof(Real)) + this->grid.nodes * 3.0 * sizeof(*forces); }
+
+  struct Source : PointGradients<Real, Shape> {
+    Mat3<Real> pull;
+    TALUS_HD Source(const ScatterForces& k, int p) : PointGradients<Real, Shape>(k.grid, k.points, p) {
+      pull = k.law(k.grid, k.points, p, *this);
+      const Real volume = k.points.volume[p];
+      pull = {pull.a * volume, pull.b * volume, pull.c * volume};
+    }
+  };
+  using Sums = Vec3<double>;
+
+  TALUS_HD void operator()(int p) const { Base::scatter(*this, p); }
+  TALUS_HD void add(const Source& g, int n, Sums& sums) const { add(g, Base::along_x(n), Base::along_y(n), Base::upwards(n), sums); }
+  TALUS_HD void add(const Source& g, int a, int b, int c, Sums& sums) const { sums += widen(g.pull * g.gradient(a, b, c)); }
+  TALUS_HD void give_to(int at, const Sums& sums) const { scatter_add(&forces[at], sums); }
+  TALUS_HD static void store(const Sums& sums, double* to) { put(sums, to); }
+  TALUS_HD double* part(int node, int q) const { return &forces[node].x + q; }
+};
+
+/// Stress for the displacement u; the tangent as well where there is a store for it.
 template <class Real, class Shape>
-struct ScatterStress {
-  GridView<Real> grid;
-  ParticleView<Real> points;
+struct StressAt {
   Materials<Real> materials;
   bool dilatant;
   bool definite;  // without the part of the tangent that compression makes negative
   MeanDilationView<Real> means;
   TangentStore<Real> tangents;
-  NodeArrays nodes;
+  const Vec3<double>* u;
 
-  TALUS_HD void operator()(int p) const {
-    const PointGradients<Real, Shape> g(grid, points, p);
+  double bytes(int count) const { return count * (7.0 * sizeof(Real) + tangents.bytes_each()); }
+  TALUS_HD Mat3<Real> operator()(const GridView<Real>& grid, const ParticleView<Real>& points, int p, const PointGradients<Real, Shape>& g) const {
     PointTangent<Real> tangent;
-    const Material<Real> material = materials.of(points.material, points.plastic_shear, p);
-    const Mat3<Real> stress = nominal_stress(material, state_of(points, p, dilatant), displacement_gradient(grid, g, nodes.u),
-                                             tangents.data ? &tangent : nullptr, means.at_point(p));
-    if (tangents.data && definite) make_definite(tangent);
-    if (tangents.data) tangents.put(p, tangent);
-    const Real volume = points.volume[p];
-    around(grid, g, [&](int n, int a, int b, int c) {
-      scatter_add(&nodes.internal[n], widen(stress * (g.gradient(a, b, c) * volume)));
-    });
+    const Mat3<Real> stress = nominal_stress(materials.of(points.material, points.plastic_shear, p), state_of(points, p, dilatant), displacement_gradient(grid, g, u),
+                                             tangents.on() ? &tangent : nullptr, means.at_point(p));
+    if (tangents.on() && definite) make_definite(tangent);
+    if (tangents.on()) tangents.put(p, tangent);
+    return stress;
   }
 };
 
-/// One thread: one point. y += K x, point by point, never assembled.
+/// Change of the stress for a displacement x, by the tangents: K x, point by point, never assembled.
 template <class Real, class Shape>
-struct ApplyTangent {
-  GridView<Real> grid;
-  ParticleView<Real> points;
+struct TangentTimes {
   TangentStore<Real> tangents;
   const Vec3<double>* x;
-  Vec3<double>* y;
 
-  TALUS_HD void operator()(int p) const {
-    const PointGradients<Real, Shape> g(grid, points, p);
-    const Mat3<Real> change = apply(tangents.get(p), displacement_gradient(grid, g, x));
-    const Real volume = points.volume[p];
-    around(grid, g, [&](int n, int a, int b, int c) { scatter_add(&y[n], widen(change * (g.gradient(a, b, c) * volume))); });
+  double bytes(int count) const { return count * tangents.bytes_each(); }
+  TALUS_HD Mat3<Real> operator()(const GridView<Real>& grid, const ParticleView<Real>&, int p, const PointGradients<Real, Shape>& g) const {
+    return apply(tangents.get(p), displacement_gradient(grid, g, x));
   }
 };
 
@@ -307,18 +330,29 @@ struct AcceptStep {
   }
 };
 
-/// One thread: one point. Momentum of the points' new velocity back to the nodes (MUSL).
+/// Momentum of the points' new velocity back to the nodes (MUSL).
 template <class Real, class Shape>
-struct ScatterVelocity {
-  GridView<Real> grid;
-  ParticleView<Real> points;
+struct ScatterVelocity : PointScatter<Real, Shape> {
+  using Base = PointScatter<Real, Shape>;
+  using Number = double;
+  static constexpr int parts = 3;
   Materials<Real> materials;
   Vec3<double>* momentum;
-  TALUS_HD void operator()(int p) const {
-    const PointGradients<Real, Shape> g(grid, points, p);
-    const Vec3<double> v = widen(points.velocity_of(p)) * static_cast<double>(points.volume[p] * materials.density(points.material, p));
-    around(grid, g, [&](int n, int a, int b, int c) { scatter_add(&momentum[n], v * static_cast<double>(g.weight(a, b, c))); });
-  }
+
+  struct Source : PointGradients<Real, Shape> {
+    Vec3<double> momentum;
+    TALUS_HD Source(const ScatterVelocity& k, int p) : PointGradients<Real, Shape>(k.grid, k.points, p) {
+      momentum = widen(k.points.velocity_of(p)) * static_cast<double>(k.points.volume[p] * k.materials.density(k.points.material, p));
+    }
+  };
+  using Sums = Vec3<double>;
+
+  TALUS_HD void operator()(int p) const { Base::scatter(*this, p); }
+  TALUS_HD void add(const Source& g, int n, Sums& sums) const { add(g, Base::along_x(n), Base::along_y(n), Base::upwards(n), sums); }
+  TALUS_HD void add(const Source& g, int a, int b, int c, Sums& sums) const { sums += g.momentum * static_cast<double>(g.weight(a, b, c)); }
+  TALUS_HD void give_to(int at, const Sums& sums) const { scatter_add(&momentum[at], sums); }
+  TALUS_HD static void store(const Sums& sums, double* to) { put(sums, to); }
+  TALUS_HD double* part(int node, int q) const { return &momentum[node].x + q; }
 };
 
 }  // namespace talus::solver

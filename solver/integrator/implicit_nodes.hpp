@@ -371,6 +371,7 @@ struct CloseProduct {
   double inertia;
   const Vec3<double>* x;
   Vec3<double>* y;
+  double bytes(int count) const { return count * static_cast<double>(3 * sizeof(*y) + sizeof(*nodes.mass) + sizeof(*nodes.touch) + sizeof(*nodes.freed)); }
   TALUS_HD void operator()(int n) const {
     Vec3<double> sum = y[n] + x[n] * (nodes.mass[n] * inertia);
     if (nodes.touch[n] == Touch::slips && held.limit[n] > 0) {

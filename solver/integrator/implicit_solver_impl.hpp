@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "solver/contact/contact_forces.hpp"
 #include "solver/integrator/implicit_nodes.hpp"
@@ -67,7 +68,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
         step_(options.implicit.step),
         first_(state.clock.accelerated == 0),
         midway_(state.clock.step > 0),
-        operator_(options.implicit.form),
+        single_(std::is_same_v<Real, double> && options.implicit.newton_iterations > 1 && options.implicit.linear_solver != LinearSolver::cholesky),
+        operator_(options.implicit.form, single_),
         preconditioner_(options.implicit.preconditioner) {
     balance_.upload({Balance{}});
     this->fit(0);
@@ -118,15 +120,20 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     return report;
   }
 
-  std::size_t bytes() const override {
-    std::size_t total = Base::bytes() + mass_.bytes() + touch_.bytes() + wavers_.bytes() + along_.bytes() + tangents_.bytes() + wall_freed_.bytes() +
-                        contact_friction_.bytes() + node_bed_.bytes() + springs_.bytes() + grips_.bytes() + tractions_.bytes() + limits_.bytes() + contact_stiffness_.bytes() + traction_.bytes() + friction_limit_.bytes() + freed_.bytes() + preconditioner_.bytes() + stiffness_.bytes() + operator_.bytes() +
-                        cholesky_.bytes() + elements_.bytes() + bicgstab_.bytes() + means_.bytes() + static_cast<std::size_t>(cholesky_.factor().factor_bytes());
-    for (const auto* v : {&velocity_, &arrival_, &acceleration_, &external_, &internal_, &u_, &residual_, &normal_,
-                          &velocity_end_, &acceleration_end_, &change_, &saved_u_}) {
-      total += v->bytes();
-    }
-    return total + cg_.bytes();
+  MemoryShares memory() const override {
+    const auto sum = [](const auto&... buffers) { return (buffers.bytes() + ... + std::size_t{0}); };
+    MemoryShares shares = Base::memory();
+    shares.emplace_back("nodes", sum(mass_, velocity_, arrival_, acceleration_, external_, internal_, u_, residual_, velocity_end_, acceleration_end_, change_, saved_u_, freed_, touch_));
+    shares.emplace_back("bed and walls", sum(node_bed_, normal_, wall_freed_, contact_friction_, traction_, friction_limit_, along_, wavers_, stiffness_));
+    if (contact_.on()) shares.emplace_back("contact forces", sum(springs_, grips_, tractions_, limits_, contact_stiffness_));
+    shares.emplace_back("tangents", sum(tangents_, single_tangents_, means_));
+    shares.emplace_back("elements", sum(elements_));
+    shares.emplace_back("operator", sum(operator_));
+    shares.emplace_back("preconditioner", sum(preconditioner_));
+    shares.emplace_back("Krylov vectors", sum(cg_, bicgstab_));
+    shares.emplace_back("factor and its matrix", cholesky_.bytes() + static_cast<std::size_t>(cholesky_.factor().factor_bytes()));
+    std::erase_if(shares, [](const auto& share) { return share.second == 0; });
+    return shares;
   }
 
  private:
@@ -186,7 +193,12 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     touch_.resize(n);
     along_.resize(n);
     wavers_.resize(n);
-    tangents_.resize(static_cast<std::size_t>(TangentStore<Real>::numbers) * static_cast<std::size_t>(points_.count()));
+    const auto numbers = static_cast<std::size_t>(TangentStore<Real>::numbers) * static_cast<std::size_t>(points_.count());
+    if (single_) {
+      single_tangents_.resize(numbers);
+    } else {
+      tangents_.resize(numbers);
+    }
   }
 
   void fit_grid(double time) {
@@ -207,9 +219,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     corner_.smooths = dynamic_;
     corner_.fall = fall(step);
     const Vec3<double>* loads = this->upload_loads(time);
-    for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
-                     ScatterInertia<Real, Shape>{this->grid_.view(), points_.view(), materials_, affine_, dynamic_,
-                                                 loads, nodes()});
+    scatter_points(Place{}, points_.count(), this->grid_.groups(),
+                   ScatterInertia<Real, Shape>{{this->grid_.view(), points_.view()}, materials_, affine_, dynamic_, loads, nodes()});
     const double ramp = options_.gravity_ramp > 0 ? std::min(1.0, time / options_.gravity_ramp) : 1.0;
     const Vec3<double> g{options_.gravity[0] * ramp, options_.gravity[1] * ramp, options_.gravity[2] * ramp};
     const bool predict = dynamic_ && options_.implicit.newton_iterations > 1;
@@ -254,16 +265,17 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     return dynamic_ ? 0.5 * std::max(g, 1e-3) * step * step : 1e-4 * this->frame_.cell[0];
   }
 
-  TangentStore<Real> tangents() { return {tangents_.data(), points_.count()}; }
+  TangentStore<Real> tangents() { return {tangents_.data(), points_.count(), single_tangents_.data()}; }
 
   void measure_stress(bool with_tangent, bool definite = false) {
     const ProfilePhase<Place> phase("stress and tangent");
     internal_.fill_zero();
-    TangentStore<Real> store = tangents();
-    if (!with_tangent) store.data = nullptr;
     average(u_);
-    for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
-                     ScatterStress<Real, Shape>{this->grid_.view(), points_.view(), materials_, dilatant_, definite, means(), store, nodes()});
+    using Stress = StressAt<Real, Shape>;
+    scatter_points(Place{}, points_.count(), this->grid_.groups(),
+                   ScatterForces<Real, Shape, Stress>{{this->grid_.view(), points_.view()},
+                                                      Stress{materials_, dilatant_, definite, means(), with_tangent ? tangents() : TangentStore<Real>{}, u_.data()},
+                                                      internal_.data()});
     if (springs().on()) apply_springs(elements_, springs(), u_, internal_);
     if (contact_.on()) contact_.each(ScatterContacts<Real, Shape>{this->grid_.view(), contact_.view(), nodes(), contact_numbers(), with_tangent});
   }
@@ -490,8 +502,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
       step_kernel.deforms = false;
       for_each(Place{}, points_.count(), step_kernel);
       change_.fill_zero();
-      for_each_grouped(Place{}, points_.count(), this->grid_.groups(),
-                       ScatterVelocity<Real, Shape>{this->grid_.view(), points_.view(), materials_, change_.data()});
+      scatter_points(Place{}, points_.count(), this->grid_.groups(),
+                     ScatterVelocity<Real, Shape>{{this->grid_.view(), points_.view()}, materials_, change_.data()});
       for_each(Place{}, count_, RemapDisplacement{nodes(), step, change_.data()});
       average(change_);
       step_kernel.strain_displacement = change_.data();
@@ -515,6 +527,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   int count_ = 0;
   bool first_;   // no acceleration is known yet
   bool midway_;  // the run began with explicit steps
+  bool single_;  // tangents and operator in single precision: Newton's steps correct what that rounds off
   TimeScheme scheme_;
   Buffer<double, Place> springs_, grips_, tractions_, limits_;  // of the contact points
   Buffer<Sym3<double>, Place> contact_stiffness_;
@@ -530,6 +543,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   Buffer<Touch, Place> touch_;
   Buffer<unsigned char, Place> wavers_;  // changes between stick and slip
   Buffer<Real, Place> tangents_;
+  Buffer<float, Place> single_tangents_;
   Buffer<Balance, Place> balance_;
   Buffer<std::uint32_t, Place> farthest_;
   ConjugateGradient<Place> cg_;

@@ -107,9 +107,12 @@ class PointSolver : public Solver {
   std::vector<Vec3<double>> obstacle_impulses() const override { return contact_.obstacle_impulses(); }
   const GroundTables& ground() const override { return grid_.ground(); }
   int particle_count() const override { return points_.count(); }
-  std::size_t bytes() const override {
-    return points_.bytes() + grid_.bytes() + bed_.bytes() + contact_.bytes() + impulses_.bytes() + sums_.bytes() + column_volumes_.bytes() + thickness_.bytes() +
-           peak_thickness_.bytes() + peak_speed_.bytes() + peak_pressure_.bytes() + arrival_.bytes();
+  MemoryShares memory() const override {
+    MemoryShares shares{{"points", points_.bytes()},
+                        {"grid", grid_.bytes() + bed_.bytes()},
+                        {"maps and records", sums_.bytes() + column_volumes_.bytes() + thickness_.bytes() + peak_thickness_.bytes() + peak_speed_.bytes() + peak_pressure_.bytes() + arrival_.bytes()}};
+    if (contact_.on()) shares.emplace_back("contact points", contact_.bytes() + impulses_.bytes());
+    return shares;
   }
 
  protected:

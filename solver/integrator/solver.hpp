@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/stage/stage.hpp"
@@ -49,6 +50,8 @@ struct BatchReport {
   StepStats stats;                  // implicit: of the step
 };
 
+using MemoryShares = std::vector<std::pair<std::string, std::size_t>>;
+
 class Solver {
  public:
   virtual ~Solver() = default;
@@ -65,7 +68,13 @@ class Solver {
   /// What every obstacle was given so far, along x, y and z [N s].
   virtual std::vector<Vec3<double>> obstacle_impulses() const = 0;
   virtual const GroundTables& ground() const = 0;
-  virtual std::size_t bytes() const = 0;
+  /// What is held where the steps are taken, by owner [bytes].
+  virtual MemoryShares memory() const = 0;
+  std::size_t bytes() const {
+    std::size_t total = 0;
+    for (const auto& [owner, share] : memory()) total += share;
+    return total;
+  }
   virtual int particle_count() const = 0;
 };
 

@@ -33,6 +33,8 @@ struct UpdateColumns {
   const double* volumes;     // of the matter over each column, where they differ [m3]; else null
   MapView maps;
 
+  double bytes(int) const { return grid.nodes * static_cast<double>((content == NodeContent::force ? 4 : 2) * sizeof(*nodes)); }
+
   struct Column {
     bool inside = false;
     int i = 0, j = 0, first = 0, last = 0;

@@ -82,6 +82,7 @@ struct FinishAngle {
 struct BeginCg {
   const Vec3<double>*b;
   Vec3<double>*x, *r, *z, *p, *ap;
+  double bytes(int count) const { return 6.0 * count * sizeof(Vec3<double>); }
   TALUS_HD Terms<1> operator()(int n) const {
     x[n] = z[n] = p[n] = ap[n] = {};
     r[n] = b[n];
@@ -91,6 +92,8 @@ struct BeginCg {
 
 template <class Close>
 struct CloseProductOf {
+  using Named = Close;
+  double bytes(int count) const { return kernel_bytes(close, count) + count * static_cast<double>(sizeof(*p)); }
   Close close;
   const CgState* state;
   const Vec3<double>*p, *ap;
@@ -105,6 +108,7 @@ struct StepAlong {
   const CgState* state;
   const Vec3<double>*p, *ap;
   Vec3<double>*x, *r;
+  double bytes(int count) const { return 6.0 * count * sizeof(Vec3<double>); }
   TALUS_HD Terms<1> operator()(int n) const {
     if (state->halt != CgState::no) return {};
     const double alpha = state->angle / state->curvature;
@@ -118,6 +122,7 @@ struct TurnDirection {
   const CgState* state;
   const Vec3<double>* z;
   Vec3<double>*p, *ap;
+  double bytes(int count) const { return 4.0 * count * sizeof(Vec3<double>); }
   TALUS_HD void operator()(int n) const {
     ap[n] = {};
     if (state->halt == CgState::no) p[n] = z[n] + p[n] * state->turn;

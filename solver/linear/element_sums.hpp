@@ -83,22 +83,14 @@ struct SumElements {
 
   TALUS_HD void add_point(int p, int first_column, int first_row, Real (&sum)[columns * rows][9]) const {
     const PointGradients<Real, Shape> g(from.grid, from.points, p);
-    const std::conditional_t<(columns > 3), WholeTangent<Real>, PointTangent<Real>> whole(from.tangents.get(p));
+    const std::conditional_t<(columns > 3), WholeTangent<Real>, PointTangent<Real>> tangent(from.tangents.get(p));
     const Real volume = from.points.volume[p];
     Vec3<Real> row_gradient[rows];
     for (int r = 0; r < rows; ++r) row_gradient[r] = gradient(g, first_row + r) * volume;
     for (int q = 0; q < columns; ++q) {
       const Vec3<Real> at_column = gradient(g, first_column + q);
       Mat3<Real> change[3];  // of the stress, for a unit displacement of the column's node along each axis
-      if constexpr (columns > 3) {
-        whole.along(at_column, change);
-      } else {
-        for (int d = 0; d < 3; ++d) {
-          Mat3<Real> unit{};
-          add_outer(unit, Vec3<Real>{Real(d == 0), Real(d == 1), Real(d == 2)}, at_column);
-          change[d] = apply(whole, unit);
-        }
-      }
+      along(tangent, at_column, change);
       for (int r = 0; r < rows; ++r) {
         Real* k = sum[q * rows + r];
         for (int d = 0; d < 3; ++d) {

@@ -5,11 +5,6 @@
 
 namespace talus::solver {
 
-TALUS_HD Sym3<double> inverted(const Sym3<double>& s) {
-  const Mat3<double> m = talus::inverted(Mat3<double>{{s.xx, s.xy, s.xz}, {s.xy, s.yy, s.yz}, {s.xz, s.yz, s.zz}});
-  return {m.a.x, m.b.y, m.c.z, m.b.x, m.c.y, m.c.x};
-}
-
 TALUS_HD bool is_definite(const Sym3<double>& s) {
   constexpr double margin = 1e-12;
   const double minor = s.xx * s.yy - s.xy * s.xy;

@@ -1,61 +1,77 @@
 #include "solver/linear/preconditioner.hpp"
 
+#include <type_traits>
+
 #include "solver/linear/instances.hpp"
 
 namespace talus::solver {
 namespace {
 
-TALUS_HD void scatter_add_block(Mat3<double>& target, const Vec3<double> (&column)[3]) {
-  solver::scatter_add(&target.a, column[0]);
-  solver::scatter_add(&target.b, column[1]);
-  solver::scatter_add(&target.c, column[2]);
-}
-
-/// One thread: one point. Its 3 x 3 blocks of K for every node, and for pairs of nodes in one column where `above` is there.
-template <class Real, class Shape>
-struct ScatterBlocks {
-  PointTangents<Real> from;
+/// The points' 3 x 3 blocks of K for every node, and for pairs of nodes in one column where `above` is there. `Tangent`: as it serves the place.
+template <class Real, class Shape, class Tangent>
+struct ScatterBlocks : PointScatter<Real, Shape> {
+  using Base = PointScatter<Real, Shape>;
+  using Number = double;
+  static constexpr int reach = Shape::width - 1, parts = 6 + 9 * reach;
+  TangentStore<Real> tangents;
   ColumnFactors into;
 
-  TALUS_HD void operator()(int p) const {
-    constexpr int w = Shape::width;
-    const PointGradients<Real, Shape> g(from.grid, from.points, p);
-    const WholeTangent<Real> whole(from.tangents.get(p));
-    const Real volume = from.points.volume[p];
-    for (int b = 0; b < w; ++b) {
-      for (int a = 0; a < w; ++a) {
-        Vec3<Real> gradient[w];
-        int node[w];
-        for (int c = 0; c < w; ++c) {
-          gradient[c] = g.gradient(a, b, c);
-          node[c] = g.node(from.grid, a, b, c);
-        }
-        for (int c = 0; c < w; ++c) {
-          Mat3<Real> change[3];
-          whole.along(gradient[c] * volume, change);
-          add_own(into.pivots[node[c]], change, gradient[c]);
-          if (!into.above[0]) continue;
-          for (int higher = c + 1; higher < w; ++higher) {
-            if (node[higher] == node[c] || g.s.k + c < 0) continue;  // folded onto the ground, without weight
-            Vec3<double> column[3];
-            for (int e = 0; e < 3; ++e) column[e] = widen(change[e] * gradient[higher]);
-            scatter_add_block(into.above[higher - c - 1][node[c]], column);
-          }
-        }
-      }
+  double bytes(int count) const {
+    return count * (tangents.bytes_each() + this->points.place_bytes + sizeof(Real)) + 2.0 * this->grid.nodes * (sizeof(*into.pivots) + (into.above[0] ? reach : 0) * sizeof(*into.above[0]));
+  }
+
+  struct Source : PointGradients<Real, Shape> {
+    Tangent tangent;
+    Real volume;
+    TALUS_HD Source(const ScatterBlocks& k, int p) : PointGradients<Real, Shape>(k.grid, k.points, p), tangent(k.tangents.get(p)), volume(k.points.volume[p]) {}
+  };
+  struct Sums {
+    Sym3<double> own;
+    Mat3<double> above[reach];
+  };
+
+  TALUS_HD void operator()(int p) const { Base::scatter(*this, p); }
+  TALUS_HD void add(const Source& g, int n, Sums& sums) const { add(g, Base::along_x(n), Base::along_y(n), Base::upwards(n), sums); }
+  TALUS_HD void add(const Source& g, int a, int b, int c, Sums& sums) const {
+    if (g.s.k + c < 0) return;  // folded onto the ground, without weight
+    const Vec3<Real> gradient = g.gradient(a, b, c);
+    Mat3<Real> change[3];
+    along(g.tangent, gradient * g.volume, change);
+    const Mat3<double> own = block(change, gradient);
+    sums.own = sums.own + Sym3<double>{own.a.x, own.b.y, own.c.z, 0.5 * (own.a.y + own.b.x), 0.5 * (own.b.z + own.c.y), 0.5 * (own.a.z + own.c.x)};
+    if (!into.above[0]) return;
+    for (int up = 1; up <= reach; ++up) {
+      if (c + up >= Shape::width) break;
+      const Mat3<double> higher = block(change, g.gradient(a, b, c + up));
+      Mat3<double>& sum = sums.above[up - 1];
+      sum = {sum.a + higher.a, sum.b + higher.b, sum.c + higher.c};
     }
+  }
+  TALUS_HD void give_to(int at, const Sums& sums) const {
+    double values[parts];
+    store(sums, values);
+    for (int q = 0; q < parts; ++q) {
+      if (has(q) && values[q] != 0) talus::scatter_add(part(at, q), values[q]);
+    }
+  }
+  TALUS_HD static void store(const Sums& sums, double* to) {
+    const Sym3<double>& s = sums.own;
+    const double own[6] = {s.xx, s.yy, s.zz, s.xy, s.yz, s.xz};
+    for (int q = 0; q < 6; ++q) to[q] = own[q];
+    for (int up = 0; up < reach; ++up) {
+      put(sums.above[up].a, to + 6 + 9 * up);
+      put(sums.above[up].b, to + 9 + 9 * up);
+      put(sums.above[up].c, to + 12 + 9 * up);
+    }
+  }
+  TALUS_HD bool has(int q) const { return q < 6 || into.above[0]; }
+  TALUS_HD double* part(int node, int q) const {
+    return q < 6 ? &into.pivots[node].xx + q : &into.above[(q - 6) / 9][node].a.x + (q - 6) % 9;
   }
 
  private:
-  TALUS_HD static void add_own(Sym3<double>& block, const Mat3<Real> (&change)[3], const Vec3<Real>& gradient) {
-    Vec3<double> column[3];
-    for (int e = 0; e < 3; ++e) column[e] = widen(change[e] * gradient);
-    talus::scatter_add(&block.xx, column[0].x);
-    talus::scatter_add(&block.yy, column[1].y);
-    talus::scatter_add(&block.zz, column[2].z);
-    talus::scatter_add(&block.xy, 0.5 * (column[0].y + column[1].x));
-    talus::scatter_add(&block.yz, 0.5 * (column[1].z + column[2].y));
-    talus::scatter_add(&block.xz, 0.5 * (column[0].z + column[2].x));
+  TALUS_HD static Mat3<double> block(const Mat3<Real> (&change)[3], const Vec3<Real>& gradient) {
+    return {widen(change[0] * gradient), widen(change[1] * gradient), widen(change[2] * gradient)};
   }
 };
 
@@ -87,6 +103,7 @@ struct ApplyBlocks {
   const Sym3<double>* inverse;
   const Vec3<double>* r;
   Vec3<double>* z;
+  double bytes(int count) const { return count * static_cast<double>(sizeof(*inverse) + sizeof(*held.freed) + sizeof(*r) + sizeof(*z)); }
   TALUS_HD double operator()(int n) const {
     z[n] = held.freed[n] * (inverse[n] * (held.freed[n] * r[n]));
     return dot(r[n], z[n]);
@@ -115,6 +132,7 @@ struct SolveColumns {
   ColumnFactors factors;
   const Vec3<double>* r;
   Vec3<double>* z;
+  double bytes(int) const { return held.count * static_cast<double>(sizeof(Sym3<double>) + reach * sizeof(Mat3<double>) + sizeof(*held.freed) + sizeof(*r) + sizeof(*z)); }
   TALUS_HD double operator()(int c) const {
     const ColumnNodes<Real> node(columns, c);
     for (int k = 0; k < node.layers; ++k) z[node[k]] = held.freed[node[k]] * r[node[k]];
@@ -138,6 +156,8 @@ struct TakeAngle {
 /// A preconditioner's kernel in a loop that may be over.
 template <class Kernel>
 struct Measured {
+  using Named = Kernel;
+  double bytes(int count) const { return kernel_bytes(kernel, count); }
   Kernel kernel;
   const CgState* state;
   TALUS_HD Terms<1> operator()(int i) const { return state->halt == CgState::no ? Terms<1>{{kernel(i)}} : Terms<1>{}; }
@@ -159,7 +179,8 @@ void NodePreconditioner<Real, Place, Shape>::refresh(const PointTangents<Real>& 
     above_[up].resize(static_cast<std::size_t>(held.count));
     above_[up].fill_zero();
   }
-  for_each_grouped(Place{}, from.points.count, groups, ScatterBlocks<Real, Shape>{from, factors()});
+  using Blocks = ScatterBlocks<Real, Shape, std::conditional_t<Place::is_gpu, PointTangent<Real>, WholeTangent<Real>>>;
+  scatter_points(Place{}, from.points.count, groups, Blocks{{from.grid, from.points}, from.tangents, factors()});
   if (from.means.on()) add_mean_blocks(list, from.means, blocks_);
   if (from.springs.on()) add_spring_blocks(list, from.springs, blocks_);
   if (whole_columns) {

@@ -1,5 +1,7 @@
 #include "solver/linear/stencil_matrix.hpp"
 
+#include <type_traits>
+
 #include "solver/linear/instances.hpp"
 #include "solver/parallel/rows.hpp"
 
@@ -40,9 +42,9 @@ struct Forget {
 };
 
 /// One thread: one element. Tells its nodes of one another.
-template <class Real, class Place, class Shape>
+template <class View, class Shape>
 struct MeetNeighbours {
-  StencilView<Real, Place, Shape> matrix;
+  View matrix;
   ElementView elements;
   TALUS_HD void operator()(int e) const {
     constexpr int nodes = Shape::width * Shape::width * Shape::width;
@@ -57,45 +59,50 @@ struct MeetNeighbours {
 };
 
 /// Adds an element's blocks to the rows of its nodes.
-template <class Real, class Place, class Shape>
+template <class View, class Shape>
 struct AddToStencil {
-  StencilView<Real, Place, Shape> matrix;
+  View matrix;
   ElementView elements;
+  template <class Real>
   TALUS_HD void put(int e, int a, int b, const Real* block) const {
     constexpr int nodes = Shape::width * Shape::width * Shape::width;
     const int* mine = elements.nodes + static_cast<std::size_t>(e) * nodes;
     const int row = matrix.row_of[mine[a]], q = neighbour_of<Shape>(a, b, mine[0] == mine[1]);
+    using Number = std::remove_pointer_t<decltype(View::blocks)>;
     for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) talus::scatter_add(&matrix.blocks[matrix.at(row, i, q, j)], block[3 * i + j]);
+      for (int j = 0; j < 3; ++j) talus::scatter_add(&matrix.blocks[matrix.at(row, i, q, j)], static_cast<Number>(block[3 * i + j]));
     }
   }
 };
 
 /// A row of blocks: y += K x.
-template <class Real, class Place, class Shape>
+template <class View>
 struct ApplyRow {
-  StencilView<Real, Place, Shape> matrix;
+  View matrix;
   const Vec3<double>* x;
   Vec3<double>* y;
+  double bytes(int rows) const {
+    return rows * static_cast<double>(View::neighbours * (9 * sizeof(*matrix.blocks) + sizeof(int)) + sizeof(*x) + 2 * sizeof(*y));
+  }
   TALUS_HD Vec3<double> term(int row, int q) const { return matrix.product(row, q, x); }
   TALUS_HD void finish(int row, const Vec3<double>& sum) const { y[matrix.node_of[row]] += sum; }
 };
 
 }  // namespace
 
-template <class Real, class Place, class Shape>
-void StencilMatrix<Real, Place, Shape>::build(const ElementList<Real, Place, Shape>& list, int nodes) {
+template <class Real, class Place, class Shape, class Number>
+void StencilMatrix<Real, Place, Shape, Number>::build(const ElementList<Real, Place, Shape>& list, int nodes) {
   constexpr int each = ElementList<Real, Place, Shape>::nodes_each;
   flags_.resize(static_cast<std::size_t>(nodes));
   flags_.fill_zero();
   for_each(Place{}, list.count() * each, FlagNodes{list.view().nodes, flags_.data()});
   number_rows(flags_);
   for_each(Place{}, rows_ * View::neighbours, Forget{table_.data()});
-  for_each_grouped(Place{}, list.count(), list.groups(), MeetNeighbours<Real, Place, Shape>{view(), list.view()});
+  for_each_grouped(Place{}, list.count(), list.groups(), MeetNeighbours<View, Shape>{view(), list.view()});
 }
 
-template <class Real, class Place, class Shape>
-void StencilMatrix<Real, Place, Shape>::number_rows(const Buffer<int, Place>& flags) {
+template <class Real, class Place, class Shape, class Number>
+void StencilMatrix<Real, Place, Shape, Number>::number_rows(const Buffer<int, Place>& flags) {
   const int nodes = static_cast<int>(flags.size());
   row_of_.resize(flags.size());
   node_of_.resize(flags.size());
@@ -105,19 +112,24 @@ void StencilMatrix<Real, Place, Shape>::number_rows(const Buffer<int, Place>& fl
   blocks_.resize(static_cast<std::size_t>(rows_) * View::neighbours * 9);
 }
 
-template <class Real, class Place, class Shape>
-void StencilMatrix<Real, Place, Shape>::assemble(const ElementList<Real, Place, Shape>& list,
+template <class Real, class Place, class Shape, class Number>
+void StencilMatrix<Real, Place, Shape, Number>::assemble(const ElementList<Real, Place, Shape>& list,
                                                  const PointTangents<Real>& from) {
   blocks_.fill_zero();
-  sum_elements<Real, Place, Shape>(list, from, AddToStencil<Real, Place, Shape>{view(), list.view()});
+  sum_elements<Real, Place, Shape>(list, from, AddToStencil<View, Shape>{view(), list.view()});
 }
 
-template <class Real, class Place, class Shape>
-void StencilMatrix<Real, Place, Shape>::apply(const NodeVector<Place>& x, NodeVector<Place>& y) {
-  sum_rows<View::neighbours>(Place{}, rows_, ApplyRow<Real, Place, Shape>{view(), x.data(), y.data()});
+template <class Real, class Place, class Shape, class Number>
+void StencilMatrix<Real, Place, Shape, Number>::apply(const NodeVector<Place>& x, NodeVector<Place>& y) {
+  sum_rows<View::neighbours>(Place{}, rows_, ApplyRow<View>{view(), x.data(), y.data()});
 }
 
 #define TALUS_INSTANTIATE(Real, Place, Shape) template class StencilMatrix<Real, Place, Shape>;
 TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
+#define TALUS_INSTANTIATE_SINGLE(Real, Place, Shape) template class StencilMatrix<double, Place, Shape, float>;
+TALUS_FOR_EACH_SHAPE(TALUS_INSTANTIATE_SINGLE, double, OnCpu)
+#if TALUS_FOR_GPU
+TALUS_FOR_EACH_SHAPE(TALUS_INSTANTIATE_SINGLE, double, OnGpu)
+#endif
 
 }  // namespace talus::solver

@@ -9,14 +9,14 @@
 namespace talus::solver {
 
 /// The matrix as kernels see it, row by row.
-template <class Real, class Place, class Shape>
+template <class Real, class Place, class Shape, class Number = Real>
 struct StencilView {
   static constexpr int reach = Shape::width - 1, side = 2 * reach + 1, neighbours = side * side * side;
   int rows = 0;
   const int* node_of = nullptr;  // [rows]
   const int* row_of = nullptr;   // [nodes]
   int* table = nullptr;          // node each block stands for; -1: none
-  Real* blocks = nullptr;
+  Number* blocks = nullptr;
 
   TALUS_HD std::size_t table_at(int row, int q) const {
     return static_cast<std::size_t>(row) * neighbours + static_cast<std::size_t>(q);
@@ -38,17 +38,18 @@ struct StencilView {
     const Vec3<double> v = x[n];
     double force[3];
     for (int i = 0; i < 3; ++i) {
-      const Real* k = blocks + at(row, i, q, 0);
+      const Number* k = blocks + at(row, i, q, 0);
       force[i] = static_cast<double>(k[0]) * v.x + static_cast<double>(k[1]) * v.y + static_cast<double>(k[2]) * v.z;
     }
     return {force[0], force[1], force[2]};
   }
 };
 
-template <class Real, class Place, class Shape>
+/// `Number` is what the blocks are stored in.
+template <class Real, class Place, class Shape, class Number = Real>
 class StencilMatrix {
  public:
-  using View = StencilView<Real, Place, Shape>;
+  using View = StencilView<Real, Place, Shape, Number>;
 
   /// Rows and neighbours of the nodes that the elements touch, out of `nodes` stored ones.
   void build(const ElementList<Real, Place, Shape>& list, int nodes);
@@ -69,7 +70,7 @@ class StencilMatrix {
  private:
   int rows_ = 0;
   Buffer<int, Place> row_of_, node_of_, table_, flags_;
-  Buffer<Real, Place> blocks_;
+  Buffer<Number, Place> blocks_;
 };
 
 }  // namespace talus::solver

@@ -10,13 +10,18 @@ namespace talus::solver {
 template <class Real, class Place, class Shape>
 class TangentOperator {
  public:
-  explicit TangentOperator(Operator form) : form_(form) {}
+  /// `single`: the stencil is stored in single precision.
+  explicit TangentOperator(Operator form, bool single = false) : form_(form), single_(single && form == Operator::stencil) {}
 
   /// The points have moved, or have been sorted, and `list` is their elements anew; it must stay until the next call. The form `points`
   /// needs it for what couples the points of an element.
   void begin_step(const ElementList<Real, Place, Shape>& list, int nodes) {
     list_ = &list;
-    if (form_ == Operator::stencil) stencil_.build(list, nodes);
+    if (single_) {
+      single_stencil_.build(list, nodes);
+    } else if (form_ == Operator::stencil) {
+      stencil_.build(list, nodes);
+    }
   }
 
   /// The points' tangents have changed. `groups` are the points' (SparseGrid::groups()).
@@ -24,29 +29,37 @@ class TangentOperator {
     from_ = from;
     groups_ = &groups;
     if (form_ == Operator::elements) stored_.assemble(*list_, from);
-    if (form_ == Operator::stencil) stencil_.assemble(*list_, from);
+    if (single_) {
+      single_stencil_.assemble(*list_, from);
+    } else if (form_ == Operator::stencil) {
+      stencil_.assemble(*list_, from);
+    }
   }
 
   /// y += K x
   void apply(const NodeVector<Place>& x, NodeVector<Place>& y) {
     if (form_ == Operator::elements) return stored_.apply(*list_, x, y);
+    if (single_) return single_stencil_.apply(x, y);
     if (form_ == Operator::stencil) return stencil_.apply(x, y);
-    for_each_grouped(Place{}, from_.points.count, *groups_,
-                     ApplyTangent<Real, Shape>{from_.grid, from_.points, from_.tangents, x.data(), y.data()});
+    using Product = TangentTimes<Real, Shape>;
+    scatter_points(Place{}, from_.points.count, *groups_,
+                   ScatterForces<Real, Shape, Product>{{from_.grid, from_.points}, Product{from_.tangents, x.data()}, y.data()});
     if (from_.means.on()) apply_means(*list_, from_.means, x, y);
     if (from_.springs.on()) apply_springs(*list_, from_.springs, x, y);
   }
 
   /// What the form stores beside the points and their tangents.
-  std::size_t bytes() const { return stored_.bytes() + stencil_.bytes(); }
+  std::size_t bytes() const { return stored_.bytes() + stencil_.bytes() + single_stencil_.bytes(); }
 
  private:
   Operator form_;
+  bool single_;
   PointTangents<Real> from_{};
   const PointGroups* groups_ = nullptr;
   const ElementList<Real, Place, Shape>* list_ = nullptr;
   StoredElements<Real, Place, Shape> stored_;
   StencilMatrix<Real, Place, Shape> stencil_;
+  StencilMatrix<Real, Place, Shape, float> single_stencil_;
 };
 
 }  // namespace talus::solver

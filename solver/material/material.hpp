@@ -220,18 +220,13 @@ template <class Real>
 TALUS_HD void advance_material(const Material<Real>& m, const Mat3<Real>& g, MaterialState<Real>& s, const MeanVolume<Real>& mean = {}) {
   const Real own = log_volume_change(g), change = mean.on ? mean.increment : own;
   s.log_volume += change;
-  switch (m.model) {
-    case MaterialModel::linear_elastic:
-      advance_linear(m, g, s.elastic);
-      break;
-    case MaterialModel::hencky:
-    case MaterialModel::corotated:
-      s.elastic = advance_strain(s.elastic, g);
-      if (mean.on) s.elastic = s.elastic.plus_identity((change - own) / Real(3));
-      break;
-    default:
-      s.elastic = deviator(advance_strain(s.elastic, g));
-      return_to_cone(m, s);
+  if (m.model == MaterialModel::linear_elastic) return advance_linear(m, g, s.elastic);
+  s.elastic = advance_strain(s.elastic, g);
+  if (m.model == MaterialModel::drucker_prager) {
+    s.elastic = deviator(s.elastic);
+    return_to_cone(m, s);
+  } else if (mean.on) {
+    s.elastic = s.elastic.plus_identity((change - own) / Real(3));
   }
 }
 

@@ -62,14 +62,24 @@ struct WholeTangent {
       }
     }
   }
-  /// dP for a unit displacement along each axis of a node whose gradient is g.
-  TALUS_HD void along(const Vec3<Real>& g, Mat3<Real> (&out)[3]) const {
-    for (int j = 0; j < 3; ++j) {
-      const Mat3<Real>&x = change[0][j], &y = change[1][j], &z = change[2][j];
-      out[j] = {x.a * g.x + y.a * g.y + z.a * g.z, x.b * g.x + y.b * g.y + z.b * g.z, x.c * g.x + y.c * g.y + z.c * g.z};
-    }
-  }
 };
+
+/// dP for a unit displacement along each axis of a node whose gradient is g.
+template <class Real>
+TALUS_HD void along(const WholeTangent<Real>& t, const Vec3<Real>& g, Mat3<Real> (&out)[3]) {
+  for (int j = 0; j < 3; ++j) {
+    const Mat3<Real>&x = t.change[0][j], &y = t.change[1][j], &z = t.change[2][j];
+    out[j] = {x.a * g.x + y.a * g.y + z.a * g.z, x.b * g.x + y.b * g.y + z.b * g.z, x.c * g.x + y.c * g.y + z.c * g.z};
+  }
+}
+template <class Real>
+TALUS_HD void along(const PointTangent<Real>& t, const Vec3<Real>& g, Mat3<Real> (&out)[3]) {
+  for (int j = 0; j < 3; ++j) {
+    Mat3<Real> unit{};
+    add_outer(unit, Vec3<Real>{Real(j == 0), Real(j == 1), Real(j == 2)}, g);
+    out[j] = apply(t, unit);
+  }
+}
 
 /// Takes from each off-diagonal pair what makes it indefinite: |s l_a - tau_a| <= sqrt(s l_a s l_b).
 template <class Real>

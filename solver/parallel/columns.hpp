@@ -13,7 +13,9 @@ namespace talus {
 ///   finish(column, sums)      what happens once all layers are done
 template <class Kernel>
 struct WholeColumn {
+  using Named = Kernel;
   Kernel kernel;
+  double bytes(int columns) const { return kernel_bytes(kernel, columns); }
   TALUS_HD void operator()(int c) const {
     const typename Kernel::Column column = kernel.locate(c);
     if (!column.inside) return;
@@ -54,6 +56,7 @@ __global__ void run_columns(Kernel kernel) {
 template <class Kernel>
 void for_each_column(OnGpu, int blocks, const Kernel& kernel) {
   if (blocks <= 0) return;
+  const KernelTime<OnGpu> time(kernel, blocks * block_columns);
   detail::run_columns<<<blocks, detail::column_shares * block_columns, 0, detail::gpu_stream()>>>(kernel);
   detail::gpu_check_launch(__PRETTY_FUNCTION__);
 }

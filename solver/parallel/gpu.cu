@@ -1,6 +1,7 @@
 // Device memory and error handling. Without a CUDA compiler this file says that there is no GPU.
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "common/error.hpp"
 #include "solver/parallel/place.hpp"
@@ -90,6 +91,27 @@ void* gpu_end_recording(void* before) {
   return executable;
 }
 
+namespace {
+std::vector<cudaEvent_t> free_marks;
+}
+void* gpu_mark() {
+  cudaEvent_t event = nullptr;
+  if (free_marks.empty()) {
+    check(cudaEventCreate(&event), "event");
+  } else {
+    event = free_marks.back();
+    free_marks.pop_back();
+  }
+  check(cudaEventRecordWithFlags(event, gpu_stream(), recording ? cudaEventRecordExternal : cudaEventRecordDefault), "event");
+  return event;
+}
+double gpu_seconds_between(void* first, void* second) {
+  float milliseconds = 0;
+  check(cudaEventElapsedTime(&milliseconds, static_cast<cudaEvent_t>(first), static_cast<cudaEvent_t>(second)), "event");
+  return 1e-3 * static_cast<double>(milliseconds);
+}
+void gpu_forget_mark(void* mark) { free_marks.push_back(static_cast<cudaEvent_t>(mark)); }
+
 void gpu_replay(void* graph) { check(cudaGraphLaunch(static_cast<cudaGraphExec_t>(graph), nullptr), "graph"); }
 void gpu_drop(void* graph) {
   if (graph) (void)cudaGraphExecDestroy(static_cast<cudaGraphExec_t>(graph));
@@ -119,6 +141,9 @@ void gpu_check_launch(const char*) {}
 CUstream_st* gpu_stream() { absent(); }
 void gpu_begin_recording() { absent(); }
 void* gpu_end_recording(void*) { absent(); }
+void* gpu_mark() { absent(); }
+double gpu_seconds_between(void*, void*) { absent(); }
+void gpu_forget_mark(void*) {}
 void gpu_replay(void*) { absent(); }
 void gpu_drop(void*) {}
 }  // namespace detail

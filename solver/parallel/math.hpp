@@ -106,6 +106,14 @@ TALUS_HD Sym3<Real> commuting_product(const Sym3<Real>& s, const Sym3<Real>& t) 
           s.xy * t.xz + s.yy * t.yz + s.yz * t.zz, s.xx * t.xz + s.xy * t.yz + s.xz * t.zz};
 }
 
+/// Inverse by cofactors.
+template <class Real>
+TALUS_HD Sym3<Real> inverted(const Sym3<Real>& s) {
+  const Real xx = s.yy * s.zz - s.yz * s.yz, xy = s.yz * s.xz - s.xy * s.zz, xz = s.xy * s.yz - s.yy * s.xz;
+  const Real scale = Real(1) / (s.xx * xx + s.xy * xy + s.xz * xz);
+  return Sym3<Real>{xx, s.xx * s.zz - s.xz * s.xz, s.xx * s.yy - s.xy * s.xy, xy, s.xy * s.xz - s.xx * s.yz, xz} * scale;
+}
+
 /// A unit vector along the eigenvector of s whose eigenvalue lies furthest from the other two, good to the square root of rounding (Eberly 2014, A robust
 /// eigensolver for 3 x 3 symmetric matrices); zero where s is a multiple of the identity.
 template <class Real>

@@ -11,6 +11,7 @@
 
 #include "solver/parallel/atomics.hpp"
 #include "solver/parallel/macros.hpp"
+#include "solver/parallel/profile.hpp"
 
 struct CUstream_st;  // CUDA's
 
@@ -37,7 +38,6 @@ void gpu_free(void* memory);
 void gpu_upload(void* device, const void* host, std::size_t bytes);
 void gpu_download(void* host, const void* device, std::size_t bytes);
 void gpu_fill_zero(void* device, std::size_t bytes);
-void gpu_synchronise();
 void gpu_check_launch(const char* where);
 CUstream_st* gpu_stream();  // where kernels are started: the default stream, or the one that is being recorded
 void gpu_begin_recording();
@@ -137,6 +137,7 @@ void upload_as(Buffer<Real, Place>& to, const std::vector<double>& from) {
 /// Runs kernel(i) for i in [0, count), in any order.
 template <class Kernel>
 void for_each(OnCpu, int count, const Kernel& kernel) {
+  const KernelTime<OnCpu> time(kernel, count);
   detail::cpu_parallel(
       count, 256,
       [](const void* k, int begin, int end) {
@@ -160,7 +161,8 @@ struct PointGroups {
 /// Runs kernel(p) over all points such that scatter_add never meets itself. CPU: colour by colour, each block in order, so
 /// sums are the same on every run. GPU: all at once, with atomics; with groups.in_order as the CPU, a thread for every block.
 template <class Kernel>
-void for_each_grouped(OnCpu, int, const PointGroups& groups, const Kernel& kernel) {
+void for_each_grouped(OnCpu, int count, const PointGroups& groups, const Kernel& kernel) {
+  const KernelTime<OnCpu> time(kernel, count);
   for (const auto& ranges : groups.ranges) {
     struct Body {
       const Kernel* kernel;
@@ -197,6 +199,7 @@ __global__ void run_kernel(int count, Kernel kernel) {
 template <class Kernel>
 void for_each(OnGpu, int count, const Kernel& kernel) {
   if (count <= 0) return;
+  const KernelTime<OnGpu> time(kernel, count);
   const int threads = detail::threads_for(count);
   detail::run_kernel<<<(count + threads - 1) / threads, threads, 0, detail::gpu_stream()>>>(count, kernel);
   detail::gpu_check_launch(__PRETTY_FUNCTION__);
@@ -205,6 +208,7 @@ void for_each(OnGpu, int count, const Kernel& kernel) {
 /// One thread: the points of a block, one after the other.
 template <class Kernel>
 struct InOrder {
+  using Named = Kernel;
   Kernel kernel;
   const PointGroups::Range* ranges;
   TALUS_HD void operator()(int r) const {

@@ -1,21 +1,40 @@
-// Where the time of a run goes: named phases of a step, measured when asked for (--profile) and free of cost otherwise.
+// Where the time of a run goes: named phases of a step and the kernels in them, measured when asked for (--profile) and free of cost otherwise.
 #pragma once
 
 #include <chrono>
 #include <string>
+#include <string_view>
 #include <vector>
-
-#include "solver/parallel/place.hpp"
 
 namespace talus {
 
-/// Seconds by phase, of the one run of this process. A phase inside another is taken out of that one's time.
+namespace detail {
+void gpu_synchronise();
+void* gpu_mark();                                   // an event behind all that was started; part of the recording while there is one
+double gpu_seconds_between(void* first, void* second);
+void gpu_forget_mark(void* mark);
+}  // namespace detail
+
+/// Seconds by phase and kernel, of the one run of this process. A phase inside another is taken out of that one's time.
 class Profile {
  public:
   struct Phase {
     std::string name;
     double seconds = 0;
     long calls = 0;
+  };
+  struct Kernel {
+    std::string name;
+    std::size_t phase = 0;     // index into phases()
+    double seconds = 0;        // on a GPU: of the device alone
+    double bytes = 0;          // that it has to move, each read or written once; 0 where it does not say
+    long calls = 0;
+  };
+  /// A kernel between two marks on the device.
+  struct Mark {
+    std::size_t kernel = 0;
+    double bytes = 0;
+    void *begin = nullptr, *end = nullptr;
   };
 
   static Profile& of_run();
@@ -24,36 +43,119 @@ class Profile {
   bool on() const { return on_; }
   void enter(const char* name);
   void leave();
-  const std::vector<Phase>& phases() const { return phases_; }  // in the order met
+  bool within_phase() const { return !open_.empty(); }
+  const std::vector<Phase>& phases() const { return phases_; }   // in the order met
+  const std::vector<Kernel>& kernels() const { return kernels_; }
+
+  /// Work of a recording is named while it is recorded, and timed by its marks when it runs: nothing can wait for the device in between.
+  void begin_recording() { recording_ = true; }
+  std::vector<Mark> end_recording();
+  bool recording() const { return recording_; }
+  /// Seconds between the marks, the device being done with them, to their kernels; and to their phases, out of the one that is open.
+  void take(const std::vector<Mark>& marks);
+  static void forget(std::vector<Mark>& marks);
+
+  std::size_t kernel(std::string_view name);       // of the present phase
+  void add(std::size_t kernel, double seconds, double bytes);
+  void add(const Mark& mark) { marks_.push_back(mark); }
+  /// Takes the marks outside of recordings; the device is done with them.
+  void settle();
 
  private:
   using WallClock = std::chrono::steady_clock;
+  std::size_t find_phase(const char* name);
   void charge();
-  bool on_ = false;
+  bool on_ = false, recording_ = false;
   std::vector<Phase> phases_;
+  std::vector<Kernel> kernels_;
   std::vector<std::size_t> open_;
+  std::vector<Mark> marks_;
   WallClock::time_point since_;
 };
 
-/// A phase for as long as it lives. Waits for the GPU at both ends, so that its kernels are counted and no others.
+/// A phase for as long as it lives. Waits for the GPU at both ends, so that its kernels are counted and no others; in a recording it only names them.
 template <class Place>
 class ProfilePhase {
  public:
   explicit ProfilePhase(const char* name) : on_(Profile::of_run().on()) {
     if (!on_) return;
-    synchronise(Place{});
+    wait();
     Profile::of_run().enter(name);
   }
   ~ProfilePhase() {
     if (!on_) return;
-    synchronise(Place{});
+    wait();
     Profile::of_run().leave();
   }
   ProfilePhase(const ProfilePhase&) = delete;
   ProfilePhase& operator=(const ProfilePhase&) = delete;
 
  private:
+  static void wait() {
+    if constexpr (Place::is_gpu) {
+      if (Profile::of_run().recording()) return;
+      detail::gpu_synchronise();
+      Profile::of_run().settle();
+    }
+  }
   bool on_;
+};
+
+/// Name of a kernel's type without namespaces and arguments. A wrapper bears the name of what it wraps, its `Named`.
+template <class Kernel>
+std::string_view kernel_name() {
+  if constexpr (requires { typename Kernel::Named; }) {
+    return kernel_name<typename Kernel::Named>();
+  } else {
+    std::string_view name = __PRETTY_FUNCTION__;
+    name.remove_prefix(name.find("Kernel = ") + 9);
+    name = name.substr(0, name.find_first_of("<;]"));
+    const auto last = name.rfind("::");
+    return last == std::string_view::npos ? name : name.substr(last + 2);
+  }
+}
+
+/// What a kernel says it has to move for `count` indices; 0 where it does not say.
+template <class Kernel>
+double kernel_bytes(const Kernel& kernel, int count) {
+  if constexpr (requires { kernel.bytes(count); }) {
+    return kernel.bytes(count);
+  } else {
+    return 0;
+  }
+}
+
+/// Around the start of one kernel.
+template <class Place>
+class KernelTime {
+ public:
+  template <class Kernel>
+  KernelTime(const Kernel& kernel, int count) : on_(Profile::of_run().on()) {
+    if (!on_) return;
+    Profile& profile = Profile::of_run();
+    mark_.kernel = profile.kernel(kernel_name<Kernel>());
+    mark_.bytes = kernel_bytes(kernel, count);
+    if constexpr (Place::is_gpu) mark_.begin = detail::gpu_mark();
+    begun_ = WallClock::now();
+  }
+  ~KernelTime() {
+    if (!on_) return;
+    Profile& profile = Profile::of_run();
+    if constexpr (Place::is_gpu) {
+      mark_.end = detail::gpu_mark();
+      profile.add(mark_);
+    } else {
+      profile.add(mark_.kernel, std::chrono::duration<double>(WallClock::now() - begun_).count(), mark_.bytes);
+    }
+  }
+  KernelTime(const KernelTime&) = delete;
+  KernelTime& operator=(const KernelTime&) = delete;
+
+ private:
+  using WallClock = std::chrono::steady_clock;
+  bool on_;
+  Profile::Mark mark_;
+  WallClock::time_point begun_;
 };
 
 }  // namespace talus

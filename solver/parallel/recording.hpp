@@ -2,8 +2,9 @@
 // by one.
 #pragma once
 
+#include <optional>
+
 #include "solver/parallel/place.hpp"
-#include "solver/parallel/profile.hpp"
 
 namespace talus {
 
@@ -26,34 +27,59 @@ class Recording<OnGpu> {
   Recording() = default;
   Recording(const Recording&) = delete;
   Recording& operator=(const Recording&) = delete;
-  ~Recording() { detail::gpu_drop(graph_); }
+  ~Recording() {
+    detail::gpu_drop(graph_);
+    Profile::forget(marks_);
+  }
 
   /// Does body() as often as said. It must start the same kernels with the same arguments every time, until forget() is called. The first is done as it is, so that
-  /// buffers find their sizes; under --profile all are.
+  /// buffers find their sizes.
   template <class Body>
   void repeat(int times, const Body& body) {
+    Profile& profile = Profile::of_run();
+    if (marked_ != profile.on()) recorded_ = false;
     if (!recorded_ && times > 0) {
       body();
       --times;
     }
-    if (times > 0 && Profile::of_run().on()) {
-      for (int t = 0; t < times; ++t) body();
-      return;
-    }
-    if (!recorded_ && times > 0) {
-      detail::gpu_begin_recording();
-      body();
-      graph_ = detail::gpu_end_recording(graph_);
-      recorded_ = true;
-    }
+    if (times > 0 && profile.on()) return repeat_measured(times, body);
+    if (!recorded_ && times > 0) record(body);
     for (int t = 0; t < times; ++t) detail::gpu_replay(graph_);
   }
   /// Arguments have changed: record again.
   void forget() { recorded_ = false; }
 
  private:
+  template <class Body>
+  void record(const Body& body) {
+    detail::gpu_begin_recording();
+    body();
+    graph_ = detail::gpu_end_recording(graph_);
+    recorded_ = true;
+    marked_ = Profile::of_run().on();
+  }
+  /// With marks around its kernels, each time waited for.
+  template <class Body>
+  void repeat_measured(int times, const Body& body) {
+    Profile& profile = Profile::of_run();
+    std::optional<ProfilePhase<OnGpu>> phase;
+    if (!profile.within_phase()) phase.emplace("between kernels");
+    if (!recorded_) {
+      Profile::forget(marks_);
+      profile.begin_recording();
+      record(body);
+      marks_ = profile.end_recording();
+    }
+    for (int t = 0; t < times; ++t) {
+      detail::gpu_replay(graph_);
+      detail::gpu_synchronise();
+      profile.take(marks_);
+    }
+  }
+
   void* graph_ = nullptr;
-  bool recorded_ = false;
+  std::vector<Profile::Mark> marks_;  // of its kernels, under --profile
+  bool recorded_ = false, marked_ = false;
 };
 
 }  // namespace talus

@@ -8,16 +8,20 @@ namespace talus {
 
 /// Calls kernel.finish(i, sum of kernel.term(i, part) for part in [0, parts)) for i in [0, count). Terms are Vec3<double>; their order is fixed.
 template <int parts, class Kernel>
+struct WholeRow {
+  using Named = Kernel;
+  Kernel kernel;
+  double bytes(int rows) const { return kernel_bytes(kernel, rows); }
+  void operator()(int i) const {
+    Vec3<double> sum{};
+    for (int part = 0; part < parts; ++part) sum += kernel.term(i, part);
+    kernel.finish(i, sum);
+  }
+};
+
+template <int parts, class Kernel>
 void sum_rows(OnCpu place, int count, const Kernel& kernel) {
-  struct Row {
-    Kernel kernel;
-    void operator()(int i) const {
-      Vec3<double> sum{};
-      for (int part = 0; part < parts; ++part) sum += kernel.term(i, part);
-      kernel.finish(i, sum);
-    }
-  };
-  for_each(place, count, Row{kernel});
+  for_each(place, count, WholeRow<parts, Kernel>{kernel});
 }
 
 #if defined(__CUDACC__)
@@ -44,6 +48,7 @@ __global__ void sum_row(int count, Kernel kernel) {
 template <int parts, class Kernel>
 void sum_rows(OnGpu, int count, const Kernel& kernel) {
   if (count <= 0) return;
+  const KernelTime<OnGpu> time(kernel, count);
   constexpr int threads = 128, each = threads / 32;
   detail::sum_row<parts><<<(count + each - 1) / each, threads, 0, detail::gpu_stream()>>>(count, kernel);
   detail::gpu_check_launch(__PRETTY_FUNCTION__);

@@ -46,6 +46,7 @@ class SumSpace {
 /// repeats to the bit. A body may as well write what belongs to its index.
 template <int K, class Body, class Finish>
 void sum_each(OnCpu, int count, SumSpace<OnCpu>& space, const Body& body, const Finish& finish) {
+  const KernelTime<OnCpu> time(body, count);
   constexpr int grain = 512;
   const int chunks = (count + grain - 1) / grain;
   struct Job {
@@ -130,6 +131,7 @@ void sum_each(OnGpu, int count, SumSpace<OnGpu>& space, const Body& body, const 
   constexpr int most_blocks = 1024;
   const int threads = detail::threads_for(count);
   const int blocks = std::clamp((count + threads - 1) / threads, 1, most_blocks);
+  const KernelTime<OnGpu> time(body, count);
   detail::sum_kernel<K><<<blocks, threads, 0, detail::gpu_stream()>>>(count, body, finish, space.partial(K * most_blocks), space.ticket());
   detail::gpu_check_launch(__PRETTY_FUNCTION__);
 }

@@ -1,6 +1,7 @@
 // Scatters by tiles: points that stand side by side in memory mostly share their nodes, so that a GPU can sum what they give before it goes to memory.
 #pragma once
 
+#include <bit>
 #include <new>
 
 #include "solver/parallel/place.hpp"
@@ -21,6 +22,7 @@ namespace talus {
 ///   gives(s, n)      false where node n is none of its own: several n of a source may be stored in one place, but only one of them gives
 ///   store(sums, to)  puts the parts side by side
 ///   part(node, q)    where part q of a stored node is
+///   has(q)           whether there is such a part; may be left out where all are
 template <class Kernel>
 void scatter_points(OnCpu place, int count, const PointGroups& groups, const Kernel& kernel) {
   for_each_grouped(place, count, groups, kernel);
@@ -31,23 +33,32 @@ namespace detail {
 
 inline constexpr int warp_size = 32, tile_warps = 2;
 
-/// A warp reads `each` points, one a lane, and then takes a lane for every node: sums stay in registers for as long as the next point has the same
-/// nodes, and go out by one atomic a node (after Gao et al. 2018). With 32 points a block takes 26 kB of shared memory for P2G in double precision.
+template <class Kernel>
+__device__ bool has_part(const Kernel& kernel, int q) {
+  if constexpr (requires { kernel.has(q); }) {
+    return kernel.has(q);
+  } else {
+    return true;
+  }
+}
+
 /// What the lanes of a team found goes to memory. An atomic of 8 bytes takes as long as the 32 around it: neighbouring lanes add neighbouring parts of one node, not the same part of
 /// many nodes.
 template <class Kernel>
 __device__ void give_together(const Kernel& kernel, const typename Kernel::Source& source, int node, unsigned team, const typename Kernel::Sums& sums, typename Kernel::Number* values, int* places) {
-  constexpr int parts = Kernel::parts, apart = parts > 4 ? 8 : 4;
+  constexpr int parts = Kernel::parts, apart = static_cast<int>(std::bit_ceil(static_cast<unsigned>(parts)));
   kernel.store(sums, values + node * parts);
   places[node] = kernel.node_of(source, node);
   __syncwarp(team);
   for (int t = node; t < Kernel::nodes_each * apart; t += Kernel::nodes_each) {
     const int n = t / apart, q = t % apart;
-    if (q < parts) atomicAdd(kernel.part(places[n], q), values[n * parts + q]);
+    if (q < parts && has_part(kernel, q)) atomicAdd(kernel.part(places[n], q), values[n * parts + q]);
   }
   __syncwarp(team);
 }
 
+/// A warp reads `each` points, one a lane, and then takes a lane for every node: sums stay in registers for as long as the next point has the same
+/// nodes, and go out by one atomic a node (after Gao et al. 2018). With 32 points a block takes 26 kB of shared memory for P2G in double precision.
 template <int each, class Kernel>
 __global__ void run_tiles(int count, Kernel kernel) {
   using Source = typename Kernel::Source;
@@ -113,7 +124,9 @@ __global__ void run_tiles_in_order(const PointGroups::Range* ranges, Kernel kern
         typename Kernel::Number parts[Kernel::parts];
         kernel.store(sums, parts);
         const int node = kernel.node_of(tile[q], lane);
-        for (int part = 0; part < Kernel::parts; ++part) *kernel.part(node, part) += parts[part];
+        for (int q = 0; q < Kernel::parts; ++q) {
+          if (has_part(kernel, q)) *kernel.part(node, q) += parts[q];
+        }
       }
       __syncwarp();
     }
@@ -125,6 +138,7 @@ __global__ void run_tiles_in_order(const PointGroups::Range* ranges, Kernel kern
 template <class Kernel>
 void scatter_points(OnGpu, int count, const PointGroups& groups, const Kernel& kernel) {
   if (count <= 0) return;
+  const KernelTime<OnGpu> time(kernel, count);
   if (groups.in_order) {
     for (const auto& ranges : groups.on_gpu) {
       if (ranges.size() == 0) continue;
@@ -134,11 +148,11 @@ void scatter_points(OnGpu, int count, const PointGroups& groups, const Kernel& k
     return;
   }
   constexpr int enough = 250000;  // points that keep every multiprocessor busy
-  if (count < enough) {
-    detail::start_tiles<16>(count, kernel);
-  } else {
-    detail::start_tiles<32>(count, kernel);
+  constexpr bool fits = 2 * detail::tile_warps * detail::warp_size * sizeof(typename Kernel::Source) <= 65536;  // two blocks of 32 points a warp, and room beside them
+  if constexpr (fits) {
+    if (count >= enough) return detail::start_tiles<32>(count, kernel);
   }
+  detail::start_tiles<16>(count, kernel);
 }
 #endif
 

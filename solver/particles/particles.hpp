@@ -32,6 +32,8 @@ struct ParticleView {
   int* material;                          // which it is of; null in a scene of one
   Real* plastic_shear;                    // equivalent plastic shear strain so far [-]; null unless a material softens
 
+  static constexpr double place_bytes = 3 * (sizeof(int) + sizeof(Real));  // of a position
+
   TALUS_HD Vec3<Real> velocity_of(int p) const { return {velocity[0][p], velocity[1][p], velocity[2][p]}; }
   TALUS_HD Sym3<Real> elastic_of(int p) const {
     return {elastic[0][p], elastic[1][p], elastic[2][p], elastic[3][p], elastic[4][p], elastic[5][p]};

@@ -16,8 +16,8 @@ enum class Gather {
 };
 
 /// One thread: one point. nodes[] holds mass and new velocity; changes[] the velocity change of the step, null where points keep
-/// nothing of their own velocity.
-template <class Real, class Shape, Gather part>
+/// nothing of their own velocity. `budget`: adds up what is lost, for the clock.
+template <class Real, class Shape, Gather part, bool budget>
 struct GridToParticle {
   GridView<Real> grid;
   ParticleView<Real> points;
@@ -28,6 +28,11 @@ struct GridToParticle {
   const std::uint64_t* home;  // key of the cell the point was sorted by (see sparse_grid.hpp)
   bool affine;
   bool dilatant;
+
+  double bytes(int count) const {
+    const int moved = part == Gather::deformation ? 0 : 3 + (affine ? 9 : 0), deformed = part == Gather::motion ? 0 : 2 * (dilatant ? 8 : 7);
+    return count * (2 * points.place_bytes + (moved + deformed) * sizeof(Real) + sizeof(*home)) + grid.nodes * static_cast<double>((changes ? 2 : 1) * sizeof(*nodes));
+  }
 
   struct Sums {
     Vec3<Real> velocity;             // [m/s]
@@ -66,7 +71,6 @@ struct GridToParticle {
         }
         // Sums up the column, then weighs them once.
         Vec3<Real> mean{}, rise{}, lever{}, change{};
-        Real climb = 0;
         TALUS_UNROLL
         for (int c = 0; c < Shape::width; ++c) {
           const int layer = s.k + c > 0 ? s.k + c : 0;
@@ -80,12 +84,11 @@ struct GridToParticle {
             const Vec4<Real> d = changes[n];
             change += Vec3<Real>{d.x, d.y, d.z} * s.wz[c];
           }
-          climb += (v.z - nx * v.x - ny * v.y) * s.wz[c];
         }
         const Real w = s.wx[a] * s.wy[b];
         sums.velocity += mean * w;
         sums.change += change * w;
-        sums.climb += climb * w;
+        sums.climb += (mean.z - nx * mean.x - ny * mean.y) * w;
         sums.gradient.a += mean * (s.gx[a] * s.wy[b]);
         sums.gradient.b += mean * (s.wx[a] * s.gy[b]);
         sums.gradient.c += rise * w;
@@ -103,7 +106,7 @@ struct GridToParticle {
     Vec3<Real> v = sums.velocity;
     const Real kept = changes ? Real(clock->kept) : Real(0);
     if (kept > Real(0)) v = (points.velocity_of(p) + sums.change) * kept + v * (Real(1) - kept);
-    if (clock->keeps_budget) {
+    if constexpr (budget) {
       const Vec3<Real> old = points.velocity_of(p);
       const double mass = static_cast<double>(points.volume[p] * materials.density(points.material, p));
       atomic_add(&clock->transfer_loss, 0.5 * mass * (static_cast<double>(dot(old, old)) - static_cast<double>(dot(v, v))));
@@ -132,7 +135,7 @@ struct GridToParticle {
     const Material<Real> material = materials.of(points.material, points.plastic_shear, p);
     const MaterialState<Real> before = state;
     advance_material(material, g, state);
-    if (clock->keeps_budget) lose_to_flow(material, before, state, g, points.volume[p]);
+    if constexpr (budget) lose_to_flow(material, before, state, g, points.volume[p]);
     if (points.plastic_shear) points.plastic_shear[p] += state.plastic_shear;
     points.set_elastic(p, state.elastic);
     points.log_volume[p] = state.log_volume;

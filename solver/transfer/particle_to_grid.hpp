@@ -30,6 +30,11 @@ struct ParticleToGrid {
   bool affine;
   bool dilatant;
 
+  double bytes(int count) const {
+    const int state = what == Scatter::momentum ? 0 : dilatant ? 8 : 7;
+    return count * (points.place_bytes + (4 + (affine ? 9 : 0) + state) * static_cast<double>(sizeof(Real))) + grid.nodes * static_cast<double>((what == Scatter::force ? 4 : 2) * sizeof(*nodes));
+  }
+
   /// A point as its nodes see it.
   struct Source : Stencil<Real, Shape> {
     Real mass;

@@ -57,8 +57,10 @@ struct Stencil {
 
   TALUS_HD void measure_slope(const GridView<Real>& grid) {
     Real sx = 0, sy = 0;
+    TALUS_UNROLL
     for (int b = 0; b < width; ++b) {
       Real along = 0, value = 0;
+      TALUS_UNROLL
       for (int a = 0; a < width; ++a) {
         const Real t = grid.terrain[grid.column(i + a, j + b)];
         along += gx[a] * t;

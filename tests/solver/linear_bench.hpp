@@ -89,6 +89,13 @@ struct Stiffen {
   }
 };
 
+/// One thread: one point.
+template <class Real>
+struct CopyTangent {
+  TangentStore<Real> from, to;
+  TALUS_HD void operator()(int p) const { to.put(p, from.get(p)); }
+};
+
 /// Everything a linear solve takes: grid, points, tangents, mass and constraints.
 template <class Real, class Place, class Shape>
 struct LinearBench {
@@ -147,9 +154,7 @@ struct LinearBench {
     mass.resize(n);
     mass.fill_zero();
     tangents.resize(static_cast<std::size_t>(TangentStore<Real>::numbers) * static_cast<std::size_t>(points.count()));
-    for_each_grouped(
-        Place{}, points.count(), grid.groups(),
-        ScatterInertia<Real, Shape>{grid.view(), points.view(), materials, false, false, nullptr, nodes()});
+    scatter_points(Place{}, points.count(), grid.groups(), ScatterInertia<Real, Shape>{{grid.view(), points.view()}, materials, false, false, nullptr, nodes()});
     if (b_bar) means.begin_step(elements, points.count());
     measure_stress();
   }
@@ -158,8 +163,9 @@ struct LinearBench {
   void measure_stress() {
     internal.fill_zero();
     if (b_bar) means.measure(elements, grid.view(), points.view(), materials, false, u.data());
-    for_each_grouped(Place{}, points.count(), grid.groups(),
-                     ScatterStress<Real, Shape>{grid.view(), points.view(), materials, false, false, mean_view(), store(), nodes()});
+    using Stress = StressAt<Real, Shape>;
+    scatter_points(Place{}, points.count(), grid.groups(),
+                   ScatterForces<Real, Shape, Stress>{{grid.view(), points.view()}, Stress{materials, false, false, mean_view(), store(), u.data()}, internal.data()});
     if (springs.on()) apply_springs(elements, springs, u, internal);
     synchronise(Place{});
   }
@@ -229,11 +235,18 @@ struct LinearBench {
     mass.upload(m);
   }
 
-  /// K x in one form.
-  std::vector<Vec3<double>> product(Operator form) {
-    TangentOperator<Real, Place, Shape> op(form);
+  /// K x in one form. `single`: tangents or stencil stored in single precision.
+  std::vector<Vec3<double>> product(Operator form, bool single = false) {
+    TangentOperator<Real, Place, Shape> op(form, single);
     op.begin_step(elements, count);
-    op.refresh(from(), grid.groups());
+    PointTangents<Real> tangents_of_points = from();
+    Buffer<float, Place> narrow;
+    if (single && form == Operator::points) {
+      narrow.resize(tangents.size());
+      tangents_of_points.tangents = {nullptr, points.count(), narrow.data()};
+      for_each(Place{}, points.count(), CopyTangent<Real>{store(), tangents_of_points.tangents});
+    }
+    op.refresh(tangents_of_points, grid.groups());
     NodeVector<Place> x, y;
     x.upload(random_vectors(count, 1, 5));
     y.resize(x.size());

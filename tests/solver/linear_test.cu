@@ -22,6 +22,14 @@ class LinearSystem : public InEachPlace {
         EXPECT_GT(norm(expected), 0);
         EXPECT_LT(difference(bench.product(Operator::elements), expected), tolerance);
         EXPECT_LT(difference(bench.product(Operator::stencil), expected), tolerance);
+        // Rounded to 2^-24 each, and the stencil's sums on the way: a part in a million, but not none.
+        for (const auto form : {Operator::points, Operator::stencil}) {
+          const double rounding = difference(bench.product(form, true), expected);
+          EXPECT_LT(rounding, 1e-6);
+          if constexpr (std::is_same_v<Real, double>) {
+            EXPECT_GT(rounding, 1e-12) << "stored in double after all";
+          }
+        }
       }
     }
   }

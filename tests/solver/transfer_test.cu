@@ -181,7 +181,7 @@ class Transfers : public InEachPlace {
     MaterialOptions mo;
     mo.model = MaterialModel::hencky;
     for_each(Place{}, points.count(),
-             GridToParticle<Real, Shape, Gather::all>{grid.view(), points.view(), Materials<Real>{{make_material<Real>(mo)}}, clock.data(),
+             GridToParticle<Real, Shape, Gather::all, false>{grid.view(), points.view(), Materials<Real>{{make_material<Real>(mo)}}, clock.data(),
                                                       nodes.data(), nullptr, grid.home(), true, false});
     synchronise(Place{});
     const ParticleState got = points.download();

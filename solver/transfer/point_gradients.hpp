@@ -1,0 +1,86 @@
+// Interpolation at the points of an implicit step: gradients by position, and how what they give to the nodes is scattered.
+#pragma once
+
+#include "solver/parallel/tiles.hpp"
+#include "solver/transfer/stencil.hpp"
+
+namespace talus::solver {
+
+/// Interpolation of a point once more, in double, with gradients by position [1/m].
+template <class Real, class Shape>
+struct PointGradients {
+  Stencil<Real, Shape> s;
+  Real across, up;
+  TALUS_HD PointGradients(const GridView<Real>& grid, const ParticleView<Real>& points, int p)
+      : s(grid, points, p), across(Real(1) / grid.spacing), up(Real(1) / grid.layer_height) {}
+  TALUS_HD Real weight(int a, int b, int c) const { return s.wx[a] * s.wy[b] * s.wz[c]; }
+  TALUS_HD Vec3<Real> gradient(int a, int b, int c) const {
+    const Real gz = s.wx[a] * s.wy[b] * s.gz[c] * up;
+    return {s.gx[a] * s.wy[b] * s.wz[c] * across - s.slope_x * gz, s.wx[a] * s.gy[b] * s.wz[c] * across - s.slope_y * gz, gz};
+  }
+  TALUS_HD int node(const GridView<Real>& grid, int a, int b, int c) const {
+    const int layer = s.k + c > 0 ? s.k + c : 0;
+    return GridView<Real>::node(grid.slot(s.i + a, s.j + b), s.i + a, s.j + b, layer);
+  }
+};
+
+/// Calls f(node, a, b, c) for every node around a point.
+template <class Real, class Shape, class F>
+TALUS_HD void around(const GridView<Real>& grid, const PointGradients<Real, Shape>& g, F&& f) {
+  for (int b = 0; b < Shape::width; ++b) {
+    for (int a = 0; a < Shape::width; ++a) {
+      for (int c = 0; c < Shape::width; ++c) f(g.node(grid, a, b, c), a, b, c);
+    }
+  }
+}
+
+template <class Real>
+TALUS_HD Vec3<double> widen(const Vec3<Real>& v) {
+  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+template <class Real>
+TALUS_HD Vec3<Real> narrow(const Vec3<double>& v) {
+  return {static_cast<Real>(v.x), static_cast<Real>(v.y), static_cast<Real>(v.z)};
+}
+TALUS_HD void put(const Vec3<double>& v, double* to) {
+  to[0] = v.x;
+  to[1] = v.y;
+  to[2] = v.z;
+}
+using talus::scatter_add;
+
+/// What all scatters of scatter_points (tiles.hpp) have whose sources are gradients of points: nodes go by a, then b, then c. The kernel has
+///   add(source, a, b, c, sums)  adds what that node receives
+///   give_to(node, sums)         passes it on
+template <class Real, class Shape>
+struct PointScatter {
+  static constexpr int width = Shape::width, nodes_each = width * width * width;
+  GridView<Real> grid;
+  ParticleView<Real> points;
+
+  using Gradients = PointGradients<Real, Shape>;
+  TALUS_HD static int along_x(int n) { return n % width; }
+  TALUS_HD static int along_y(int n) { return n / width % width; }
+  TALUS_HD static int upwards(int n) { return n / (width * width); }
+  TALUS_HD static bool counts(int) { return true; }
+  TALUS_HD static bool same_nodes(const Gradients& g, const Gradients& h) { return g.s.i == h.s.i && g.s.j == h.s.j && g.s.k == h.s.k; }
+  TALUS_HD int node_of(const Gradients& g, int n) const { return g.node(grid, along_x(n), along_y(n), upwards(n)); }
+  TALUS_HD static bool gives(const Gradients& g, int n) { return g.s.k + upwards(n) >= 0; }  // below the ground there is none
+
+  /// One thread: one point.
+  template <class Kernel>
+  TALUS_HD static void scatter(const Kernel& kernel, int p) {
+    const typename Kernel::Source source(kernel, p);
+    for (int b = 0; b < width; ++b) {
+      for (int a = 0; a < width; ++a) {
+        for (int c = 0; c < width; ++c) {
+          typename Kernel::Sums sums;
+          kernel.add(source, a, b, c, sums);
+          kernel.give_to(source.node(kernel.grid, a, b, c), sums);
+        }
+      }
+    }
+  }
+};
+
+}  // namespace talus::solver
