@@ -33,7 +33,7 @@ void declare(CLI::App& app, const Stage& stage, CommandLine& line, Words& words)
     app.add_option("--restart", words.restart, "Go on from a checkpoint (default: checkpoint.h5 in the results)")
         ->type_name("[FILE]")
         ->expected(0, 1);
-  if (stage.has_profile) app.add_flag("--profile", line.profile, "Measure where the time of a step goes, and say it at the end");
+  if (stage.has_profile) app.add_flag("--profile", line.profile, "Measure where the time goes, phase by phase and kernel by kernel; say it at the end, and in profile.csv");
   if (stage.has_profile) app.add_flag("--plan", line.plan, "Say what is on, points, memory, steps and the time to expect; run and write nothing");
   auto* verbose = app.add_flag("-v,--verbose", words.verbose, "Say more");
   app.add_flag("-q,--quiet", words.quiet, "Say nothing but errors")->excludes(verbose);

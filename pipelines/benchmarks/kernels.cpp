@@ -107,7 +107,13 @@ Taken take(Solver& solver, int steps) {
   return taken;
 }
 
+std::string method_of(const KernelSetting& k) { return k.newmark ? "newmark" : "explicit"; }
+std::string shape_of(const KernelSetting& k) { return k.shape == ShapeKind::linear ? "linear" : "quadratic"; }
+std::string precision_of(const KernelSetting& k) { return k.precision == Precision::double_ ? "double" : "single"; }
+
 }  // namespace
+
+std::string name_of(const KernelSetting& k) { return fmt::format("{} {} {}", method_of(k), shape_of(k), precision_of(k)); }
 
 KernelRun time_kernels(const KernelSetting& k, On on) {
   const SolveOptions options = options_for(k);
@@ -117,9 +123,9 @@ KernelRun time_kernels(const KernelSetting& k, On on) {
   }();
   solver->set_next_event(1e9);
   KernelRun run;
-  run.method = k.newmark ? "newmark" : "explicit";
-  run.shape = k.shape == ShapeKind::linear ? "linear" : "quadratic";
-  run.precision = k.precision == Precision::double_ ? "double" : "single";
+  run.method = method_of(k);
+  run.shape = shape_of(k);
+  run.precision = precision_of(k);
   run.place = on == On::gpu ? gpu_name() : "CPU";
   run.points = solver->particle_count();
   const int few = k.newmark ? 3 : 20;
@@ -144,15 +150,17 @@ KernelRun time_kernels(const KernelSetting& k, On on) {
   run.check = std::hypot(e.momentum.x / mass - way_of(k.shape).x, e.momentum.y / mass - way_of(k.shape).y) / 0.36;
   // Rounding; Newton's tolerance of 1e-4 in some ten steps.
   run.pass = run.check < (k.newmark ? 2e-3 : k.precision == Precision::double_ ? 1e-9 : 1e-3);
+  for (const auto& [owner, bytes] : solver->memory()) run.memory.emplace_back(owner, static_cast<double>(bytes));
   Profile& profile = Profile::of_run();
+  profile.clear();
   profile.turn_on();
-  const auto before = profile.phases();
   const int profiled = take(*solver, few).steps;
   profile.turn_off();
-  for (std::size_t p = 0; p < profile.phases().size(); ++p) {
-    const double was = p < before.size() ? before[p].seconds : 0;
-    if (const double seconds = profile.phases()[p].seconds - was; seconds > 0) run.phases.emplace_back(profile.phases()[p].name, seconds / profiled);
+  for (const auto& phase : profile.phases()) {
+    if (phase.seconds > 0) run.phases.emplace_back(phase.name, phase.seconds / profiled);
   }
+  for (const auto& kernel : profile.kernels()) run.kernels.push_back({kernel.name, kernel.seconds / profiled, kernel.bytes / profiled});
+  std::sort(run.kernels.begin(), run.kernels.end(), [](const auto& a, const auto& b) { return a.seconds > b.seconds; });
   return run;
 }
 

@@ -21,6 +21,12 @@ struct KernelRun {
   double check = 0;        // how far the momentum is off the closed form, over that at 0.36 m/s
   bool pass = false;
   std::vector<std::pair<std::string, double>> phases;  // seconds a step, in a round of its own
+  struct Kernel {
+    std::string name;
+    double seconds = 0, bytes = 0;  // a step
+  };
+  std::vector<Kernel> kernels;                            // of that round, the longest first
+  std::vector<std::pair<std::string, double>> memory;  // bytes by owner
 
   double eta() const { return step_seconds / points; }
 };
@@ -31,6 +37,9 @@ struct KernelSetting {
   solver::Precision precision = solver::Precision::double_;
   double points = 1e4;
 };
+
+/// "explicit quadratic single", say.
+std::string name_of(const KernelSetting& setting);
 
 /// Builds the block, steps, checks, times. Throws what the solver throws.
 KernelRun time_kernels(const KernelSetting& setting, On on);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -11,6 +12,7 @@
 #include "common/stage/stage.hpp"
 #include "pipelines/benchmarks/kernels.hpp"
 #include "solver/integrator/solver.hpp"
+#include "solver/parallel/bandwidth.hpp"
 #include "tests/validation/chart.hpp"
 
 namespace {
@@ -23,7 +25,8 @@ using benchmarks::KernelSetting;
 struct Words {
   std::string set, on = "auto";
   fs::path out = "out";
-  double most = 0;
+  std::string only;
+  double least = 0, most = 0;
 };
 
 Words parse(int argc, char** argv) {
@@ -33,6 +36,8 @@ Words parse(int argc, char** argv) {
   app.add_option("--on", w.on, "Where")->type_name("auto|cpu|gpu")->check(CLI::IsMember({"auto", "cpu", "gpu"}));
   app.add_option("--out", w.out, "Folder for CSV and pictures");
   app.add_option("--most", w.most, "Largest number of points (default: 1e4 on a CPU, 1e7 on a GPU)");
+  app.add_option("--least", w.least, "Smallest number of points");
+  app.add_option("--only", w.only, "Rows that contain this, of \"METHOD SHAPE PRECISION\", as in \"explicit quadratic\"");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -41,13 +46,23 @@ Words parse(int argc, char** argv) {
   return w;
 }
 
-std::string csv_of(const std::vector<KernelRun>& runs) {
-  std::string text = "method,shape,precision,place,points,steps,step_us,seconds_per_point_and_step,bytes_per_point,cg_iterations_per_step,momentum_error,phases_us\n";
+std::string csv_of(const std::vector<KernelRun>& runs, double copy) {
+  std::string text = "method,shape,precision,place,points,steps,step_us,seconds_per_point_and_step,bytes_per_point,cg_iterations_per_step,seconds_per_point_and_cg_iteration,momentum_error,phases_us,kernels_us_and_share_of_copy,memory_bytes_per_point\n";
+  const auto join = [](const auto& list, auto&& word) {
+    std::string all;
+    for (const auto& item : list) all += (all.empty() ? "" : "; ") + word(item);
+    return all;
+  };
   for (const KernelRun& r : runs) {
-    std::string phases;
-    for (const auto& [name, seconds] : r.phases) phases += fmt::format("{}{}: {:.2f}", phases.empty() ? "" : "; ", name, 1e6 * seconds);
-    text += fmt::format("{},{},{},{},{:.0f},{},{:.3f},{:.4g},{:.1f},{:.1f},{:.2g},\"{}\"\n", r.method, r.shape, r.precision, r.place, r.points, r.steps, 1e6 * r.step_seconds, r.eta(),
-                        r.bytes / r.points, r.cg_iterations / r.steps, r.check, phases);
+    const double iterations = r.cg_iterations / r.steps;
+    double cg = 0;
+    for (const auto& [name, seconds] : r.phases) cg += name == "conjugate gradients" ? seconds : 0;
+    std::vector<KernelRun::Kernel> longest(r.kernels.begin(), r.kernels.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(r.kernels.size(), 12)));
+    text += fmt::format("{},{},{},{},{:.0f},{},{:.3f},{:.4g},{:.1f},{:.1f},{},{:.2g},\"{}\",\"{}\",\"{}\"\n", r.method, r.shape, r.precision, r.place, r.points, r.steps, 1e6 * r.step_seconds, r.eta(),
+                        r.bytes / r.points, iterations, iterations > 0 ? fmt::format("{:.3g}", cg / iterations / r.points) : "", r.check,
+                        join(r.phases, [](const auto& p) { return fmt::format("{}: {:.2f}", p.first, 1e6 * p.second); }),
+                        join(longest, [&](const auto& k) { return fmt::format("{}: {:.2f}", k.name, 1e6 * k.seconds) + (k.bytes > 0 ? fmt::format(" {:.0f} %", 100 * k.bytes / k.seconds / copy) : ""); }),
+                        join(r.memory, [&](const auto& m) { return fmt::format("{}: {:.0f}", m.first, m.second / r.points); }));
   }
   return text;
 }
@@ -70,13 +85,16 @@ std::string picture(const std::string& title, const std::string& label, const st
 
 int kernels(const Words& words, On on) {
   const double most = words.most > 0 ? words.most : on == On::gpu ? 1e7 : 1e4;
+  const double copy = on == On::gpu ? copy_bandwidth(OnGpu{}) : copy_bandwidth(OnCpu{});
   std::vector<KernelRun> runs;
   bool pass = true;
   for (const bool newmark : {false, true}) {
     for (const auto shape : {solver::ShapeKind::linear, solver::ShapeKind::quadratic}) {
       for (const auto precision : {solver::Precision::single_, solver::Precision::double_}) {
         if (newmark && precision == solver::Precision::single_) continue;
+        if (benchmarks::name_of({newmark, shape, precision, 0}).find(words.only) == std::string::npos) continue;
         for (double points = 1e4; points <= most * 1.001; points *= std::sqrt(10.0)) {
+          if (points * 1.1 < words.least) continue;
           if ((newmark && points > 1.1e6) || (precision == solver::Precision::double_ && points > 3.3e7)) break;
           try {
             runs.push_back(benchmarks::time_kernels({newmark, shape, precision, points}, on));
@@ -89,11 +107,12 @@ int kernels(const Words& words, On on) {
           pass = pass && r.pass;
           fmt::print(stderr, "{:8} {:9} {:6} {:9.0f} points {:10.1f} us a step {:9.3g} s a point and step {:6.0f} B a point{}\n", r.method, r.shape, r.precision, r.points, 1e6 * r.step_seconds,
                      r.eta(), r.bytes / r.points, r.pass ? "" : fmt::format("  WRONG: momentum off by {:.2g}", r.check));
-          write_text(words.out / "kernels.csv", csv_of(runs));
+          write_text(words.out / "kernels.csv", csv_of(runs, copy));
         }
       }
     }
   }
+  if (runs.empty()) throw RecipeError({"no row of the bench contains \"" + words.only + "\" between --least and --most", "", ""});
   write_text(words.out / "kernels-time.png", picture("Time per point and step, " + runs.front().place, "time per point and step [s]", runs, [](const KernelRun& r) { return r.eta(); }));
   write_text(words.out / "kernels-memory.png", picture("Memory of points, grid and solver, " + runs.front().place, "memory [B]", runs, [](const KernelRun& r) { return r.bytes; }));
   return pass ? 0 : 1;

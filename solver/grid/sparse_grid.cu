@@ -14,8 +14,8 @@ struct MakeKeys {
   int blocks_x;
   std::uint64_t* keys;
   TALUS_HD void operator()(int p) const {
-    keys[p] = points.cell_x[p] < 0 ? ~std::uint64_t{0}
-                                   : home_key(blocks_x, points.cell_x[p], points.cell_y[p], points.cell_z[p]);
+    const int octant = (points.offset_x[p] < Real(0) ? 0 : 1) + (points.offset_y[p] < Real(0) ? 0 : 2) + (points.offset_z[p] < Real(0) ? 0 : 4);
+    keys[p] = points.cell_x[p] < 0 ? ~std::uint64_t{0} : home_key(blocks_x, points.cell_x[p], points.cell_y[p], points.cell_z[p], octant);
   }
 };
 

@@ -34,14 +34,6 @@ GroundPoint<double> bicubic_ground(const GridShape& shape, const GroundTables& g
 /// Ground elevation at (xi, eta), in cells from node (0, 0), as the grid's own functions interpolate it, or bicubic where it is met by points [m above datum].
 double ground_at(const GridShape& shape, const GroundTables& ground, double xi, double eta);
 
-/// A point's sorting key: block in the high word, then column within the block, then layer.
-TALUS_HD std::uint64_t home_key(int block_columns_x, int i, int j, int k) {
-  const std::uint64_t block = static_cast<std::uint64_t>((j >> 2) * block_columns_x + (i >> 2));
-  const std::uint64_t inside = static_cast<std::uint64_t>(((j & 3) << 2) + (i & 3));
-  const std::uint64_t layer = static_cast<std::uint64_t>(k > 0xffffff ? 0xffffff : k);
-  return (block << 32) | (inside << 24) | layer;
-}
-
 template <class Real, class Place>
 class SparseGrid {
  public:

@@ -17,6 +17,12 @@ namespace talus::solver {
 
 /// A GPU gains little by order within the cells, and sorting there takes as long as ten steps.
 inline constexpr int gpu_steps_between_sorts = 256;
+/// But many points keep it busy, and then what lies apart costs more than that.
+inline constexpr int busy_gpu_steps_between_sorts = 32;
+template <class Shape>
+int steps_between_sorts_on_gpu(int points) {
+  return Shape::width > 2 && points >= points_that_keep_a_gpu_busy ? busy_gpu_steps_between_sorts : gpu_steps_between_sorts;
+}
 /// Cells that points may drift before they are sorted: a sort takes as long as a dozen steps of a small scene.
 template <class Place>
 inline constexpr int drift_between_sorts = Place::is_gpu ? 3 : 1;
@@ -32,7 +38,11 @@ struct BeginStep {
   bool opens;
   double bytes(int) const { return count * static_cast<double>((forces ? 2 : 1) * sizeof(*nodes)); }
   TALUS_HD void operator()(int n) const {
-    if (n == 0 && opens) clock->begin_step();
+    if (n == 0 && opens) {
+      Clock now = *clock;  // read at once, not number by number as it is needed
+      now.begin_step();
+      *clock = now;
+    }
     if (n >= count) return;
     nodes[n] = Vec4<Real>{};
     if (forces) forces[n] = Vec4<Real>{};
@@ -53,7 +63,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
         forces_apart_(musl_ || options.damping > 0 || keeps_ || options.energy_budget) {
     Clock clock = read_clock();
     clock.accelerated = 0;
-    if (Place::is_gpu) clock.steps_between_sorts = gpu_steps_between_sorts;
+    if (Place::is_gpu) clock.steps_between_sorts = steps_between_sorts_on_gpu<Shape>(points_.count());
     clock_.upload({clock});
     sort(0);
   }
@@ -66,9 +76,10 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     walls_ = this->template stand_walls<Real>(clock.time);
     loads_now_ = this->upload_loads(clock.time);
     if (!options_.walls.empty()) recording_.forget();  // they come, go and move
-    // One more than the steps left: the last one's begin halts the clock at the sort. As many as lay between the last two sorts, and then a few at a time: what is started after
-    // the clock has halted does nothing but take its time.
-    const int ahead = std::clamp(expected_ - clock.steps_since_sort, 4, most_batch_steps);
+    // One more than the steps left: the last one's begin halts the clock at the sort. As many as lay between the last two sorts or lead to the next event, and then a few at a time:
+    // what is started after the clock has halted does nothing but take its time.
+    const double to_event = clock.step_size > 0 ? std::ceil((clock.next_event - clock.time) / clock.step_size) + 1 : most_batch_steps;
+    const int ahead = std::clamp(static_cast<int>(std::min<double>(expected_ - clock.steps_since_sort, to_event)), 2, most_batch_steps);
     recording_.repeat(std::min(left + 1, ahead), [&] { step(); });
     BatchReport report;
     clock = read_clock();

@@ -62,13 +62,13 @@ struct UpdateColumns {
 
   TALUS_HD Column locate(int c) const {
     Column at;
-    if (clock->halt != running) return at;
+    const int halt = clock->halt;  // looked at once all is on its way
     const int block = active[c / block_columns], in_block = c % block_columns;
+    at.slot = grid.slots[block];
     at.i = (block % grid.block_columns_x) * block_side + (in_block & 3);
     at.j = (block / grid.block_columns_x) * block_side + (in_block >> 2);
-    at.inside = at.i < grid.columns && at.j < grid.rows;
+    at.inside = halt == running && at.i < grid.columns && at.j < grid.rows;
     if (!at.inside) return at;
-    at.slot = grid.slots[block];
     at.first = at.slot.first_layer;
     at.last = at.first + at.slot.layers;
     at.column = grid.column(at.i, at.j);

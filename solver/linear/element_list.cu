@@ -7,8 +7,6 @@
 namespace talus::solver {
 namespace {
 
-constexpr std::uint64_t layer_bits = 0xffffff;
-
 /// One thread: one point. Where its stencil starts; layers count from -1.
 template <class Real, class Shape>
 struct MakeElementKeys {
@@ -33,10 +31,8 @@ struct FindNodes {
   TALUS_HD void operator()(int e) const {
     constexpr int w = Shape::width;
     const std::uint64_t key = keys[starts[e]];
-    const int block = static_cast<int>(key >> 32), inside = static_cast<int>((key >> 24) & 15);
-    const int i = (block % grid.block_columns_x) * block_side + (inside & 3);
-    const int j = (block / grid.block_columns_x) * block_side + (inside >> 2);
-    const int k = static_cast<int>(key & layer_bits) - 1;
+    const HomeCell first(grid.block_columns_x, key);
+    const int i = first.i, j = first.j, k = first.k - 1;
     int* mine = nodes + static_cast<std::size_t>(e) * (w * w * w);
     for (int b = 0; b < w; ++b) {
       for (int a = 0; a < w; ++a) {

@@ -25,6 +25,7 @@ std::vector<std::string> profile_lines(const RunSummary& summary, const Profile&
   lines.push_back("where the time went:");
   double named = 0;
   for (const auto& [name, seconds] : summary.profile) {
+    if (!(seconds > 0)) continue;
     named += seconds;
     line(name, seconds);
   }

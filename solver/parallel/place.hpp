@@ -184,6 +184,9 @@ void for_each_grouped(OnCpu, int count, const PointGroups& groups, const Kernel&
 inline void synchronise(OnCpu) {}
 inline void synchronise(OnGpu) { detail::gpu_synchronise(); }
 
+/// From so many points on every multiprocessor has more to do than it can hold: what counts then is how much gets through, not how soon.
+inline constexpr int points_that_keep_a_gpu_busy = 250000;
+
 #if defined(__CUDACC__)
 namespace detail {
 /// Threads of a block: few where there is little to do, so that every multiprocessor gets some of it.
@@ -194,12 +197,25 @@ __global__ void run_kernel(int count, Kernel kernel) {
   const int i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
   if (i < count) kernel(i);
 }
+
+/// The same in as many registers as let this number of blocks of 128 threads share a multiprocessor.
+template <int blocks, class Kernel>
+__global__ __launch_bounds__(128, blocks) void run_dense(int count, Kernel kernel) {
+  const int i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  if (i < count) kernel(i);
+}
 }  // namespace detail
 
 template <class Kernel>
 void for_each(OnGpu, int count, const Kernel& kernel) {
   if (count <= 0) return;
   const KernelTime<OnGpu> time(kernel, count);
+  if constexpr (requires { Kernel::dense; }) {
+    if (Kernel::dense > 0 && count >= points_that_keep_a_gpu_busy) {
+      detail::run_dense<Kernel::dense><<<(count + 127) / 128, 128, 0, detail::gpu_stream()>>>(count, kernel);
+      return detail::gpu_check_launch(__PRETTY_FUNCTION__);
+    }
+  }
   const int threads = detail::threads_for(count);
   detail::run_kernel<<<(count + threads - 1) / threads, threads, 0, detail::gpu_stream()>>>(count, kernel);
   detail::gpu_check_launch(__PRETTY_FUNCTION__);

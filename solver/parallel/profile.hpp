@@ -40,6 +40,11 @@ class Profile {
   static Profile& of_run();
   void turn_on() { on_ = true; }
   void turn_off() { on_ = false; }
+  /// Forgets what was measured so far; between phases.
+  void clear() {
+    phases_.clear();
+    kernels_.clear();
+  }
   bool on() const { return on_; }
   void enter(const char* name);
   void leave();

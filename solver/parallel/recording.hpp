@@ -65,6 +65,8 @@ class Recording<OnGpu> {
     std::optional<ProfilePhase<OnGpu>> phase;
     if (!profile.within_phase()) phase.emplace("between kernels");
     if (!recorded_) {
+      detail::gpu_synchronise();
+      profile.settle();  // what was started one by one until here
       Profile::forget(marks_);
       profile.begin_recording();
       record(body);

@@ -128,8 +128,7 @@ __global__ void sum_kernel(int count, Body body, Finish finish, double* partial,
 
 template <int K, class Body, class Finish>
 void sum_each(OnGpu, int count, SumSpace<OnGpu>& space, const Body& body, const Finish& finish) {
-  constexpr int most_blocks = 1024;
-  const int threads = detail::threads_for(count);
+  constexpr int most_blocks = 512, threads = 256;  // the last block adds up what all have found: few blocks, many threads
   const int blocks = std::clamp((count + threads - 1) / threads, 1, most_blocks);
   const KernelTime<OnGpu> time(body, count);
   detail::sum_kernel<K><<<blocks, threads, 0, detail::gpu_stream()>>>(count, body, finish, space.partial(K * most_blocks), space.ticket());

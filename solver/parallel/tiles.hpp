@@ -15,10 +15,12 @@ namespace talus {
 ///   counts(p)        whether the point gives anything
 ///   same_nodes(s, t) whether two sources have the same nodes
 ///   add(s, n, sums)  adds what node n of the source receives
-///   give(s, n, sums) passes the sums on to that node
+///   give_to(place, sums)  passes them on to a stored node
 /// and, for the lanes of a warp to pass on together what lies together in memory:
 ///   Number, parts    what sums are made of, and of how many
-///   node_of(s, n)    where node n of the source is stored
+///   columns_each     columns of nodes that a source has; node n stands in column n % columns_each
+///   column_of(s, q)  where layer 0 of column q is stored, or would be
+///   node_in(column, s, n)  where node n of the source is stored, from that of its column
 ///   gives(s, n)      false where node n is none of its own: several n of a source may be stored in one place, but only one of them gives
 ///   store(sums, to)  puts the parts side by side
 ///   part(node, q)    where part q of a stored node is
@@ -45,10 +47,10 @@ __device__ bool has_part(const Kernel& kernel, int q) {
 /// What the lanes of a team found goes to memory. An atomic of 8 bytes takes as long as the 32 around it: neighbouring lanes add neighbouring parts of one node, not the same part of
 /// many nodes.
 template <class Kernel>
-__device__ void give_together(const Kernel& kernel, const typename Kernel::Source& source, int node, unsigned team, const typename Kernel::Sums& sums, typename Kernel::Number* values, int* places) {
+__device__ void give_together(const Kernel& kernel, int place, int node, unsigned team, const typename Kernel::Sums& sums, typename Kernel::Number* values, int* places) {
   constexpr int parts = Kernel::parts, apart = static_cast<int>(std::bit_ceil(static_cast<unsigned>(parts)));
   kernel.store(sums, values + node * parts);
-  places[node] = kernel.node_of(source, node);
+  places[node] = place;
   __syncwarp(team);
   for (int t = node; t < Kernel::nodes_each * apart; t += Kernel::nodes_each) {
     const int n = t / apart, q = t % apart;
@@ -65,14 +67,19 @@ __global__ void run_tiles(int count, Kernel kernel) {
   constexpr int teams = warp_size / Kernel::nodes_each, share = each / teams;  // teams of lanes, and points of each
   __shared__ alignas(16) unsigned char room[tile_warps * each * sizeof(Source)];
   __shared__ bool counts[tile_warps * each];
+  __shared__ int columns[tile_warps * each][Kernel::columns_each];
   auto* const tile = reinterpret_cast<Source*>(room);
   const int lane = static_cast<int>(threadIdx.x) % warp_size, warp = static_cast<int>(threadIdx.x) / warp_size;
+  bool any = false;
   if (lane < each) {
     const int mine = warp * each + lane, p = static_cast<int>(blockIdx.x) * tile_warps * each + mine;
-    counts[mine] = p < count && kernel.counts(p);
-    if (counts[mine]) new (tile + mine) Source(kernel, p);
+    counts[mine] = any = p < count && kernel.counts(p);
+    if (any) {
+      const Source& source = *new (tile + mine) Source(kernel, p);
+      for (int q = 0; q < Kernel::columns_each; ++q) columns[mine][q] = kernel.column_of(source, q);
+    }
   }
-  __syncwarp();
+  if (!__any_sync(0xffffffffu, any)) return;
   const int team = lane / Kernel::nodes_each, node = lane % Kernel::nodes_each;
   if (team >= teams) return;
   constexpr bool together = sizeof(typename Kernel::Number) == 8;  // single precision has an atomic of 16 bytes
@@ -86,10 +93,11 @@ __global__ void run_tiles(int count, Kernel kernel) {
     if (!counts[q]) continue;
     kernel.add(tile[q], node, sums);
     if (q + 1 < first + share && counts[q + 1] && kernel.same_nodes(tile[q], tile[q + 1])) continue;
+    const int place = kernel.node_in(columns[q][node % Kernel::columns_each], tile[q], node);
     if constexpr (together) {
-      give_together(kernel, tile[q], node, lanes, sums, values + mine * Kernel::parts, places + mine);
+      give_together(kernel, place, node, lanes, sums, values + mine * Kernel::parts, places + mine);
     } else {
-      kernel.give(tile[q], node, sums);
+      kernel.give_to(place, sums);
     }
     sums = {};
   }
@@ -123,7 +131,7 @@ __global__ void run_tiles_in_order(const PointGroups::Range* ranges, Kernel kern
         kernel.add(tile[q], lane, sums);
         typename Kernel::Number parts[Kernel::parts];
         kernel.store(sums, parts);
-        const int node = kernel.node_of(tile[q], lane);
+        const int node = kernel.node_in(kernel.column_of(tile[q], lane % Kernel::columns_each), tile[q], lane);
         for (int q = 0; q < Kernel::parts; ++q) {
           if (has_part(kernel, q)) *kernel.part(node, q) += parts[q];
         }
@@ -147,10 +155,9 @@ void scatter_points(OnGpu, int count, const PointGroups& groups, const Kernel& k
     }
     return;
   }
-  constexpr int enough = 250000;  // points that keep every multiprocessor busy
   constexpr bool fits = 2 * detail::tile_warps * detail::warp_size * sizeof(typename Kernel::Source) <= 65536;  // two blocks of 32 points a warp, and room beside them
   if constexpr (fits) {
-    if (count >= enough) return detail::start_tiles<32>(count, kernel);
+    if (count >= points_that_keep_a_gpu_busy) return detail::start_tiles<32>(count, kernel);
   }
   detail::start_tiles<16>(count, kernel);
 }

@@ -19,6 +19,7 @@ enum class Gather {
 /// nothing of their own velocity. `budget`: adds up what is lost, for the clock.
 template <class Real, class Shape, Gather part, bool budget>
 struct GridToParticle {
+  static constexpr int dense = part == Gather::all && !budget ? (sizeof(Real) == 8 ? 4 : 6) : 1;  // see run_dense
   GridView<Real> grid;
   ParticleView<Real> points;
   Materials<Real> materials;
@@ -63,7 +64,7 @@ struct GridToParticle {
       TALUS_UNROLL
       for (int a = 0; a < Shape::width; ++a) {
         const int i = s.i + a, j = s.j + b;
-        const BlockSlot& slot = grid.slot(i, j);
+        const int column = s.column(grid, a, b);
         Real nx = 0, ny = 0;
         if (follows) {
           nx = grid.slope_x[grid.column(i, j)];
@@ -73,8 +74,7 @@ struct GridToParticle {
         Vec3<Real> mean{}, rise{}, lever{}, change{};
         TALUS_UNROLL
         for (int c = 0; c < Shape::width; ++c) {
-          const int layer = s.k + c > 0 ? s.k + c : 0;
-          const int n = GridView<Real>::node(slot, i, j, layer);
+          const int n = s.node(column, c);
           const Vec4<Real> node = nodes[n];
           const Vec3<Real> v{node.x, node.y, node.z};
           mean += v * s.wz[c];
@@ -184,13 +184,9 @@ struct GridToParticle {
   }
 
   TALUS_HD bool strayed(std::uint64_t key, int i, int j, int k) const {
-    const int block = static_cast<int>(key >> 32);
-    const int inside = static_cast<int>((key >> 24) & 0xff);
-    const int i0 = (block % grid.block_columns_x) * block_side + (inside & 3);
-    const int j0 = (block / grid.block_columns_x) * block_side + (inside >> 2);
-    const int k0 = static_cast<int>(key & 0xffffff);
+    const HomeCell at(grid.block_columns_x, key);
     const int most = grid.drift;
-    return i - i0 > most || i0 - i > most || j - j0 > most || j0 - j > most || k - k0 > most || k0 - k > most;
+    return i - at.i > most || at.i - i > most || j - at.j > most || at.j - j > most || k - at.k > most || at.k - k > most;
   }
   TALUS_HD void request_sort() const { replace_if(&clock->request, running, wants_sort); }
 };

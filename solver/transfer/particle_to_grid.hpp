@@ -19,7 +19,7 @@ enum class Scatter {
 template <class Real, class Shape, Scatter what>
 struct ParticleToGrid {
   using Number = Real;
-  static constexpr int width = Shape::width, nodes_each = width * width * width, parts = what == Scatter::force ? 7 : 4;
+  static constexpr int width = Shape::width, columns_each = width * width, nodes_each = width * columns_each, parts = what == Scatter::force ? 7 : 4;
   GridView<Real> grid;
   ParticleView<Real> points;
   Materials<Real> materials;
@@ -81,10 +81,11 @@ struct ParticleToGrid {
     for (int b = 0; b < width; ++b) {
       for (int a = 0; a < width; ++a) {
         const Upright u = upright(s, a, b);
+        const int column = s.column(grid, a, b);
         for (int c = 0; c < width; ++c) {
           Sums sums;
           add(s, u, c, sums);
-          give_to(s.i + a, s.j + b, s.k + c, sums);
+          give_to(s.node(column, c), sums);
         }
       }
     }
@@ -95,8 +96,8 @@ struct ParticleToGrid {
   TALUS_HD void add(const Source& s, int n, Sums& sums) const {
     add(s, upright(s, n % width, n / width % width), n / (width * width), sums);
   }
-  TALUS_HD void give(const Source& s, int n, const Sums& sums) const { give_to(s.i + n % width, s.j + n / width % width, s.k + n / (width * width), sums); }
-  TALUS_HD int node_of(const Source& s, int n) const { return place_of(s.i + n % width, s.j + n / width % width, s.k + n / (width * width)); }
+  TALUS_HD int column_of(const Source& s, int q) const { return s.column(grid, q % width, q / width); }
+  TALUS_HD static int node_in(int column, const Source& s, int n) { return s.node(column, n / columns_each); }
   TALUS_HD static bool gives(const Source& s, int n) { return s.k + n / (width * width) >= 0; }  // below the ground there is none
   TALUS_HD static void store(const Sums& sums, Real* to) {
     to[0] = sums.mass;
@@ -140,9 +141,7 @@ struct ParticleToGrid {
     }
   }
 
-  TALUS_HD int place_of(int i, int j, int k) const { return GridView<Real>::node(grid.slot(i, j), i, j, k > 0 ? k : 0); }
-  TALUS_HD void give_to(int i, int j, int k, const Sums& sums) const {
-    const int n = place_of(i, j, k);
+  TALUS_HD void give_to(int n, const Sums& sums) const {
     scatter_add(&nodes[n], sums.mass, sums.momentum);
     if constexpr (what == Scatter::force) scatter_add(&forces[n], Real(0), sums.force);
   }

@@ -18,10 +18,7 @@ struct PointGradients {
     const Real gz = s.wx[a] * s.wy[b] * s.gz[c] * up;
     return {s.gx[a] * s.wy[b] * s.wz[c] * across - s.slope_x * gz, s.wx[a] * s.gy[b] * s.wz[c] * across - s.slope_y * gz, gz};
   }
-  TALUS_HD int node(const GridView<Real>& grid, int a, int b, int c) const {
-    const int layer = s.k + c > 0 ? s.k + c : 0;
-    return GridView<Real>::node(grid.slot(s.i + a, s.j + b), s.i + a, s.j + b, layer);
-  }
+  TALUS_HD int node(const GridView<Real>& grid, int a, int b, int c) const { return s.node(s.column(grid, a, b), c); }
 };
 
 /// Calls f(node, a, b, c) for every node around a point.
@@ -54,7 +51,7 @@ using talus::scatter_add;
 ///   give_to(node, sums)         passes it on
 template <class Real, class Shape>
 struct PointScatter {
-  static constexpr int width = Shape::width, nodes_each = width * width * width;
+  static constexpr int width = Shape::width, columns_each = width * width, nodes_each = width * columns_each;
   GridView<Real> grid;
   ParticleView<Real> points;
 
@@ -64,7 +61,8 @@ struct PointScatter {
   TALUS_HD static int upwards(int n) { return n / (width * width); }
   TALUS_HD static bool counts(int) { return true; }
   TALUS_HD static bool same_nodes(const Gradients& g, const Gradients& h) { return g.s.i == h.s.i && g.s.j == h.s.j && g.s.k == h.s.k; }
-  TALUS_HD int node_of(const Gradients& g, int n) const { return g.node(grid, along_x(n), along_y(n), upwards(n)); }
+  TALUS_HD int column_of(const Gradients& g, int q) const { return g.s.column(grid, q % width, q / width); }
+  TALUS_HD static int node_in(int column, const Gradients& g, int n) { return g.s.node(column, upwards(n)); }
   TALUS_HD static bool gives(const Gradients& g, int n) { return g.s.k + upwards(n) >= 0; }  // below the ground there is none
 
   /// One thread: one point.
