@@ -233,7 +233,7 @@ PointFrame Simulation::point_frame(double time, const ParticleState& s) const {
 /// The state is taken at once; the file is written while the run goes on.
 void Simulation::put_frame(double time) {
   const bool points = options_.point_frames || options_.vdb_frames;
-  writing_.start([this, time, number = memory_.frames, thickness = solver_->thickness(), state = points ? solver_->state().points : ParticleState{}] {
+  writing_.start([this, time, number = memory_.frames, thickness = solver_->thickness(), state = points ? solver_->shown() : ParticleState{}] {
     PointFrame frame = point_frame(time, state);
     if (options_.vdb_frames) write_points_vdb(paths_.vdb_frames / fmt::format("points_{:05}.vdb", number), frame, scene_.map.cell);
     if (!options_.point_frames) {

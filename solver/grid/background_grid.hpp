@@ -42,9 +42,10 @@ TALUS_HD std::uint64_t home_key(int block_columns_x, int i, int j, int k, int oc
 struct HomeCell {
   int i, j, k;
   TALUS_HD HomeCell(int block_columns_x, std::uint64_t key) {
-    const int block = static_cast<int>(key >> 32), inside = static_cast<int>((key >> 24) & 15);
-    i = (block % block_columns_x) * block_side + (inside & 3);
-    j = (block / block_columns_x) * block_side + (inside >> 2);
+    const auto block = static_cast<unsigned>(key >> 32), across = static_cast<unsigned>(block_columns_x);  // divided faster without a sign
+    const int inside = static_cast<int>((key >> 24) & 15);
+    i = static_cast<int>(block % across) * block_side + (inside & 3);
+    j = static_cast<int>(block / across) * block_side + (inside >> 2);
     k = static_cast<int>(key >> 3) & ((1 << 21) - 1);
   }
 };

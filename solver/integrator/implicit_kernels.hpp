@@ -64,14 +64,17 @@ struct ScatterInertia : PointScatter<Real, Shape> {
     Vec3<double> momentum, acceleration, load;
   };
 
-  TALUS_HD void operator()(int p) const { Base::scatter(*this, p); }
-  TALUS_HD void add(const Source& g, int n, Sums& sums) const { add(g, Base::along_x(n), Base::along_y(n), Base::upwards(n), sums); }
-  TALUS_HD void add(const Source& g, int a, int b, int c, Sums& sums) const {
-    const double w = static_cast<double>(g.weight(a, b, c)), share = w * static_cast<double>(g.mass);
-    sums.mass += share;
-    sums.momentum += widen(g.corner + g.turn * Vec3<Real>{Real(a), Real(b), Real(c)}) * share;
-    sums.acceleration += g.acceleration * share;
-    sums.load += g.load * w;
+  TALUS_HD void operator()(int p) const { scatter_point(*this, p); }
+  TALUS_HD void add(const Source& g, int q, Sums (&sums)[Base::deep]) const {
+    const int a = Base::along_x(q), b = Base::along_y(q);
+    TALUS_UNROLL
+    for (int c = 0; c < Base::deep; ++c) {
+      const double w = static_cast<double>(g.weight(a, b, c)), share = w * static_cast<double>(g.mass);
+      sums[c].mass += share;
+      sums[c].momentum += widen(g.corner + g.turn * Vec3<Real>{Real(a), Real(b), Real(c)}) * share;
+      sums[c].acceleration += g.acceleration * share;
+      sums[c].load += g.load * w;
+    }
   }
   TALUS_HD void give_to(int at, const Sums& sums) const {
     talus::scatter_add(&nodes.mass[at], sums.mass);
@@ -161,9 +164,11 @@ struct ScatterForces : PointScatter<Real, Shape> {
   };
   using Sums = Vec3<double>;
 
-  TALUS_HD void operator()(int p) const { Base::scatter(*this, p); }
-  TALUS_HD void add(const Source& g, int n, Sums& sums) const { add(g, Base::along_x(n), Base::along_y(n), Base::upwards(n), sums); }
-  TALUS_HD void add(const Source& g, int a, int b, int c, Sums& sums) const { sums += widen(g.pull * g.gradient(a, b, c)); }
+  TALUS_HD void operator()(int p) const { scatter_point(*this, p); }
+  TALUS_HD void add(const Source& g, int q, Sums (&sums)[Base::deep]) const {
+    TALUS_UNROLL
+    for (int c = 0; c < Base::deep; ++c) sums[c] += widen(g.pull * g.gradient(Base::along_x(q), Base::along_y(q), c));
+  }
   TALUS_HD void give_to(int at, const Sums& sums) const { scatter_add(&forces[at], sums); }
   TALUS_HD static void store(const Sums& sums, double* to) { put(sums, to); }
   TALUS_HD double* part(int node, int q) const { return &forces[node].x + q; }
@@ -347,9 +352,11 @@ struct ScatterVelocity : PointScatter<Real, Shape> {
   };
   using Sums = Vec3<double>;
 
-  TALUS_HD void operator()(int p) const { Base::scatter(*this, p); }
-  TALUS_HD void add(const Source& g, int n, Sums& sums) const { add(g, Base::along_x(n), Base::along_y(n), Base::upwards(n), sums); }
-  TALUS_HD void add(const Source& g, int a, int b, int c, Sums& sums) const { sums += g.momentum * static_cast<double>(g.weight(a, b, c)); }
+  TALUS_HD void operator()(int p) const { scatter_point(*this, p); }
+  TALUS_HD void add(const Source& g, int q, Sums (&sums)[Base::deep]) const {
+    TALUS_UNROLL
+    for (int c = 0; c < Base::deep; ++c) sums[c] += g.momentum * static_cast<double>(g.weight(Base::along_x(q), Base::along_y(q), c));
+  }
   TALUS_HD void give_to(int at, const Sums& sums) const { scatter_add(&momentum[at], sums); }
   TALUS_HD static void store(const Sums& sums, double* to) { put(sums, to); }
   TALUS_HD double* part(int node, int q) const { return &momentum[node].x + q; }

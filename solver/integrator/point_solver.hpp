@@ -81,6 +81,8 @@ class PointSolver : public Solver {
             contact_.state()};
   }
 
+  ParticleState shown() const override { return points_.download_shown(); }
+
   Energies energies() override {
     const ProfilePhase<Place> phase("records and frames");
     constexpr int rows = MeasureEnergies<Real, Shape>::rows;

@@ -61,6 +61,8 @@ class Solver {
   virtual void set_next_event(double time) = 0;
   virtual Clock clock() const = 0;
   virtual SolverState state() const = 0;
+  /// The points as frames show them: without affine velocity, acceleration, boxes and loads, whose lists are empty.
+  virtual ParticleState shown() const = 0;
   virtual Energies energies() = 0;
   /// Vertical thickness, initial volume over cell area, [rows * columns] [m]; its sum times the cell area is the volume of
   /// the points to rounding.

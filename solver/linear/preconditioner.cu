@@ -30,22 +30,10 @@ struct ScatterBlocks : PointScatter<Real, Shape> {
     Mat3<double> above[reach];
   };
 
-  TALUS_HD void operator()(int p) const { Base::scatter(*this, p); }
-  TALUS_HD void add(const Source& g, int n, Sums& sums) const { add(g, Base::along_x(n), Base::along_y(n), Base::upwards(n), sums); }
-  TALUS_HD void add(const Source& g, int a, int b, int c, Sums& sums) const {
-    if (g.s.k + c < 0) return;  // folded onto the ground, without weight
-    const Vec3<Real> gradient = g.gradient(a, b, c);
-    Mat3<Real> change[3];
-    along(g.tangent, gradient * g.volume, change);
-    const Mat3<double> own = block(change, gradient);
-    sums.own = sums.own + Sym3<double>{own.a.x, own.b.y, own.c.z, 0.5 * (own.a.y + own.b.x), 0.5 * (own.b.z + own.c.y), 0.5 * (own.a.z + own.c.x)};
-    if (!into.above[0]) return;
-    for (int up = 1; up <= reach; ++up) {
-      if (c + up >= Shape::width) break;
-      const Mat3<double> higher = block(change, g.gradient(a, b, c + up));
-      Mat3<double>& sum = sums.above[up - 1];
-      sum = {sum.a + higher.a, sum.b + higher.b, sum.c + higher.c};
-    }
+  TALUS_HD void operator()(int p) const { scatter_point(*this, p); }
+  TALUS_HD void add(const Source& g, int q, Sums (&sums)[Base::deep]) const {
+    TALUS_UNROLL
+    for (int c = 0; c < Base::deep; ++c) add(g, Base::along_x(q), Base::along_y(q), c, sums[c]);
   }
   TALUS_HD void give_to(int at, const Sums& sums) const {
     double values[parts];
@@ -70,6 +58,22 @@ struct ScatterBlocks : PointScatter<Real, Shape> {
   }
 
  private:
+  TALUS_HD void add(const Source& g, int a, int b, int c, Sums& sums) const {
+    if (g.s.k + c < 0) return;  // folded onto the ground, without weight
+    const Vec3<Real> gradient = g.gradient(a, b, c);
+    Mat3<Real> change[3];
+    along(g.tangent, gradient * g.volume, change);
+    const Mat3<double> own = block(change, gradient);
+    sums.own = sums.own + Sym3<double>{own.a.x, own.b.y, own.c.z, 0.5 * (own.a.y + own.b.x), 0.5 * (own.b.z + own.c.y), 0.5 * (own.a.z + own.c.x)};
+    if (!into.above[0]) return;
+    for (int up = 1; up <= reach; ++up) {
+      if (c + up >= Shape::width) break;
+      const Mat3<double> higher = block(change, g.gradient(a, b, c + up));
+      Mat3<double>& sum = sums.above[up - 1];
+      sum = {sum.a + higher.a, sum.b + higher.b, sum.c + higher.c};
+    }
+  }
+
   TALUS_HD static Mat3<double> block(const Mat3<Real> (&change)[3], const Vec3<Real>& gradient) {
     return {widen(change[0] * gradient), widen(change[1] * gradient), widen(change[2] * gradient)};
   }

@@ -1,5 +1,7 @@
 #include "solver/particles/particles.hpp"
 
+#include <type_traits>
+
 namespace talus {
 namespace {
 
@@ -26,8 +28,12 @@ struct GatherAll {
 
 template <class Real, class Place>
 std::vector<double> download_as(const Buffer<Real, Place>& from) {
-  const std::vector<Real> values = from.download();
-  return {values.begin(), values.end()};
+  std::vector<Real> values = from.download();
+  if constexpr (std::is_same_v<Real, double>) {
+    return values;
+  } else {
+    return {values.begin(), values.end()};
+  }
 }
 
 }  // namespace
@@ -66,26 +72,35 @@ void Particles<Real, Place>::upload(const ParticleState& state) {
 }
 
 template <class Real, class Place>
-ParticleState Particles<Real, Place>::download() const {
+ParticleState Particles<Real, Place>::download_shown() const {
   ParticleState state;
   const auto zeros = std::vector<double>(static_cast<std::size_t>(count_), 0.0);
   for (int a = 0; a < 3; ++a) {
     state.cell[a] = ints_[a].download();
     state.offset[a] = download_as(reals_[offset_slot + a]);
-    state.extent[a] = fields_.extent ? download_as(reals_[extent_slot + a]) : zeros;
     state.velocity[a] = download_as(reals_[velocity_slot + a]);
-    state.acceleration[a] = fields_.acceleration ? download_as(reals_[acceleration_slot + a]) : zeros;
   }
   state.id = ints_[3].download();
   state.release = ints_[4].download();
-  state.load = fields_.load ? ints_[load_slot].download() : std::vector<int>(static_cast<std::size_t>(count_), -1);
   state.material = fields_.material ? ints_[material_slot].download() : std::vector<int>(static_cast<std::size_t>(count_), 0);
   state.plastic_shear = fields_.plastic_shear ? download_as(reals_[shear_slot]) : zeros;
   for (int a = 0; a < 6; ++a) state.elastic[a] = download_as(reals_[elastic_slot + a]);
-  for (int a = 0; a < 9; ++a) state.affine[a] = fields_.affine ? download_as(reals_[affine_slot + a]) : zeros;
   state.log_volume = download_as(reals_[log_slot]);
   state.volume = download_as(reals_[volume_slot]);
   state.plastic_log_volume = fields_.plastic_volume ? download_as(reals_[plastic_slot]) : zeros;
+  return state;
+}
+
+template <class Real, class Place>
+ParticleState Particles<Real, Place>::download() const {
+  ParticleState state = download_shown();
+  const auto zeros = std::vector<double>(static_cast<std::size_t>(count_), 0.0);
+  for (int a = 0; a < 3; ++a) {
+    state.extent[a] = fields_.extent ? download_as(reals_[extent_slot + a]) : zeros;
+    state.acceleration[a] = fields_.acceleration ? download_as(reals_[acceleration_slot + a]) : zeros;
+  }
+  for (int a = 0; a < 9; ++a) state.affine[a] = fields_.affine ? download_as(reals_[affine_slot + a]) : zeros;
+  state.load = fields_.load ? ints_[load_slot].download() : std::vector<int>(static_cast<std::size_t>(count_), -1);
   return state;
 }
 

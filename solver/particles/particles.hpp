@@ -115,6 +115,8 @@ class Particles {
 
   void upload(const ParticleState& state);
   ParticleState download() const;
+  /// Without what only a further step needs: affine velocity, acceleration, boxes, loads.
+  ParticleState download_shown() const;
   ParticleView<Real> view();
   int count() const { return count_; }
   std::size_t bytes() const;

@@ -19,7 +19,7 @@ enum class Scatter {
 template <class Real, class Shape, Scatter what>
 struct ParticleToGrid {
   using Number = Real;
-  static constexpr int width = Shape::width, columns_each = width * width, nodes_each = width * columns_each, parts = what == Scatter::force ? 7 : 4;
+  static constexpr int width = Shape::width, columns_each = width * width, deep = width, parts = what == Scatter::force ? 7 : 4;
   GridView<Real> grid;
   ParticleView<Real> points;
   Materials<Real> materials;
@@ -75,30 +75,13 @@ struct ParticleToGrid {
   };
 
   /// One thread: one point.
-  TALUS_HD void operator()(int p) const {
-    if (!counts(p)) return;
-    const Source s(*this, p);
-    for (int b = 0; b < width; ++b) {
-      for (int a = 0; a < width; ++a) {
-        const Upright u = upright(s, a, b);
-        const int column = s.column(grid, a, b);
-        for (int c = 0; c < width; ++c) {
-          Sums sums;
-          add(s, u, c, sums);
-          give_to(s.node(column, c), sums);
-        }
-      }
-    }
-  }
+  TALUS_HD void operator()(int p) const { scatter_point(*this, p); }
 
-  // As scatter_points has it; nodes by a, then b, then c.
+  // As scatter_points has it.
   TALUS_HD static bool same_nodes(const Source& s, const Source& t) { return s.i == t.i && s.j == t.j && s.k == t.k; }
-  TALUS_HD void add(const Source& s, int n, Sums& sums) const {
-    add(s, upright(s, n % width, n / width % width), n / (width * width), sums);
-  }
   TALUS_HD int column_of(const Source& s, int q) const { return s.column(grid, q % width, q / width); }
-  TALUS_HD static int node_in(int column, const Source& s, int n) { return s.node(column, n / columns_each); }
-  TALUS_HD static bool gives(const Source& s, int n) { return s.k + n / (width * width) >= 0; }  // below the ground there is none
+  TALUS_HD static int node_in(int column, const Source& s, int c) { return s.node(column, c); }
+  TALUS_HD static bool gives(const Source& s, int c) { return s.k + c >= 0; }  // below the ground there is none
   TALUS_HD static void store(const Sums& sums, Real* to) {
     to[0] = sums.mass;
     to[1] = sums.momentum.x;
@@ -113,31 +96,25 @@ struct ParticleToGrid {
   TALUS_HD Real* part(int node, int q) const { return q < 4 ? &nodes[node].w + q : &forces[node].x + (q - 4); }
   TALUS_HD bool counts(int p) const { return clock->halt == running && points.cell_x[p] >= 0; }
 
-  /// What the nodes of one column of a point's stencil share.
-  struct Upright {
-    Real weight;
-    Vec3<Real> velocity, sideways;
-  };
-  TALUS_HD Upright upright(const Source& s, int a, int b) const {
-    Upright u{s.wx[a] * s.wy[b], s.corner, {}};
-    if (affine) u.velocity += s.turn.a * Real(a) + s.turn.b * Real(b);
-    if constexpr (what != Scatter::momentum) u.sideways = s.pull.a * (s.gx[a] * s.wy[b]) + s.pull.b * (s.wx[a] * s.gy[b]) + s.pulled * u.weight;
-    return u;
-  }
-
-  /// Adds what node c of the column receives.
-  TALUS_HD void add(const Source& s, const Upright& u, int c, Sums& sums) const {
-    const Real share = u.weight * s.wz[c] * s.mass;
-    sums.mass += share;
-    sums.momentum += (affine ? u.velocity + s.turn.c * Real(c) : u.velocity) * share;
+  TALUS_HD void add(const Source& s, int q, Sums (&sums)[deep]) const {
+    const int a = q % width, b = q / width;
+    const Real weight = s.wx[a] * s.wy[b], carried = weight * s.mass;
+    Vec3<Real> velocity = s.corner, sideways{}, upwards{};
+    if (affine) velocity += s.turn.a * Real(a) + s.turn.b * Real(b);
     if constexpr (what != Scatter::momentum) {
       // -V tau . grad N is linear in the weights' slopes.
-      const Vec3<Real> force = u.sideways * s.wz[c] + s.pull.c * (u.weight * s.gz[c]);
-      if constexpr (what == Scatter::impulse) {
-        sums.momentum += force;
-      } else {
-        sums.force += force;
-      }
+      sideways = s.pull.a * (s.gx[a] * s.wy[b]) + s.pull.b * (s.wx[a] * s.gy[b]);
+      upwards = s.pull.c * weight;
+      if (loads) sideways += s.pulled * weight;
+    }
+    TALUS_UNROLL
+    for (int c = 0; c < deep; ++c) {
+      const Real share = carried * s.wz[c];
+      sums[c].mass += share;
+      sums[c].momentum += velocity * share;
+      if (affine) velocity += s.turn.c;
+      if constexpr (what == Scatter::impulse) sums[c].momentum += sideways * s.wz[c] + upwards * s.gz[c];
+      if constexpr (what == Scatter::force) sums[c].force += sideways * s.wz[c] + upwards * s.gz[c];
     }
   }
 

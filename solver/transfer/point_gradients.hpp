@@ -46,39 +46,21 @@ TALUS_HD void put(const Vec3<double>& v, double* to) {
 }
 using talus::scatter_add;
 
-/// What all scatters of scatter_points (tiles.hpp) have whose sources are gradients of points: nodes go by a, then b, then c. The kernel has
-///   add(source, a, b, c, sums)  adds what that node receives
-///   give_to(node, sums)         passes it on
+/// What all scatters of scatter_points (tiles.hpp) have whose sources are gradients of points.
 template <class Real, class Shape>
 struct PointScatter {
-  static constexpr int width = Shape::width, columns_each = width * width, nodes_each = width * columns_each;
+  static constexpr int width = Shape::width, columns_each = width * width, deep = width;
   GridView<Real> grid;
   ParticleView<Real> points;
 
   using Gradients = PointGradients<Real, Shape>;
-  TALUS_HD static int along_x(int n) { return n % width; }
-  TALUS_HD static int along_y(int n) { return n / width % width; }
-  TALUS_HD static int upwards(int n) { return n / (width * width); }
+  TALUS_HD static int along_x(int q) { return q % width; }
+  TALUS_HD static int along_y(int q) { return q / width; }
   TALUS_HD static bool counts(int) { return true; }
   TALUS_HD static bool same_nodes(const Gradients& g, const Gradients& h) { return g.s.i == h.s.i && g.s.j == h.s.j && g.s.k == h.s.k; }
-  TALUS_HD int column_of(const Gradients& g, int q) const { return g.s.column(grid, q % width, q / width); }
-  TALUS_HD static int node_in(int column, const Gradients& g, int n) { return g.s.node(column, upwards(n)); }
-  TALUS_HD static bool gives(const Gradients& g, int n) { return g.s.k + upwards(n) >= 0; }  // below the ground there is none
-
-  /// One thread: one point.
-  template <class Kernel>
-  TALUS_HD static void scatter(const Kernel& kernel, int p) {
-    const typename Kernel::Source source(kernel, p);
-    for (int b = 0; b < width; ++b) {
-      for (int a = 0; a < width; ++a) {
-        for (int c = 0; c < width; ++c) {
-          typename Kernel::Sums sums;
-          kernel.add(source, a, b, c, sums);
-          kernel.give_to(source.node(kernel.grid, a, b, c), sums);
-        }
-      }
-    }
-  }
+  TALUS_HD int column_of(const Gradients& g, int q) const { return g.s.column(grid, along_x(q), along_y(q)); }
+  TALUS_HD static int node_in(int column, const Gradients& g, int c) { return g.s.node(column, c); }
+  TALUS_HD static bool gives(const Gradients& g, int c) { return g.s.k + c >= 0; }  // below the ground there is none
 };
 
 }  // namespace talus::solver

@@ -53,6 +53,7 @@ class Bench {
   const std::string& name() const { return name_; }
   const Request& request() const { return request_; }
   bool complete() const { return request_.complete; }
+  bool on_gpu() const { return request_.on == "gpu"; }
 
   /// Run the case's recipe with these overrides; results lie in OUT/CASE/VARIANT. Says on stderr what it does. With `profile` the run
   /// measures its phases (RunSummary::profile).

@@ -29,7 +29,7 @@ struct Scheme {
   Overrides overrides;
   double paper_time;              // per point and step [s]
   double (*paper_memory)(int);
-  std::vector<int> quick, complete;  // thickness in cells
+  std::vector<int> quick, complete, gpu;  // thickness in cells; `gpu`: beyond the paper's sizes
 };
 
 std::vector<Scheme> schemes() {
@@ -37,9 +37,9 @@ std::vector<Scheme> schemes() {
                                  {"solve.shape", words("linear")},       {"solve.transfer", words("flip")},
                                  {"solve.transfer_time", 1e30},          {"solve.stress_update", words("musl")},
                                  {"solve.largest_step_s", step},         {"solve.cfl", 0.8}};
-  return {{"PCG", {{"solve.implicit.linear_solver", words("pcg")}}, 2e-7, pcg_memory, {1, 2}, {1, 2, 4, 8, 16, 32}},
-          {"Cholesky", {{"solve.implicit.linear_solver", words("cholesky")}}, 5e-6, cholesky_memory, {1, 2}, {1, 2, 4, 8}},
-          {"explicit", explicit_steps, 1.6e-8, no_memory, {1, 2}, {1, 2, 4, 8, 16, 32}}};
+  return {{"PCG", {{"solve.implicit.linear_solver", words("pcg")}}, 2e-7, pcg_memory, {1, 2}, {1, 2, 4, 8, 16, 32}, {128, 512}},
+          {"Cholesky", {{"solve.implicit.linear_solver", words("cholesky")}}, 5e-6, cholesky_memory, {1, 2}, {1, 2, 4, 8}, {16}},
+          {"explicit", explicit_steps, 1.6e-8, no_memory, {1, 2}, {1, 2, 4, 8, 16, 32}, {128, 512}}};
 }
 
 Overrides thick(int cells, int steps) {
@@ -91,7 +91,9 @@ void step_cost(Bench& bench) {
     eta.marks = bytes.marks = paper.dashed = true;
     ++colour;
     std::vector<Outcome> profiled;
-    for (const int cells : bench.complete() ? scheme.complete : scheme.quick) {
+    std::vector<int> sizes = bench.complete() ? scheme.complete : scheme.quick;
+    if (bench.complete() && bench.on_gpu()) sizes.insert(sizes.end(), scheme.gpu.begin(), scheme.gpu.end());
+    for (const int cells : sizes) {
       const std::string variant = fmt::format("{}, {} points", scheme.name, 36288 * cells);
       const Outcome o = bench.run(variant, thick(cells, steps) + scheme.overrides);
       const RunSummary& s = o.run.summary;
@@ -109,6 +111,7 @@ void step_cost(Bench& bench) {
       bytes.y.push_back(s.memory / 1e9);
       paper.x.push_back(points);
       paper.y.push_back(scheme.paper_time);
+      if (cells > 32) continue;
       // Once more with its phases: waiting for each of them would count in the time above.
       Outcome phases = bench.run(variant + ", profile", thick(cells, steps) + scheme.overrides, true);
       if (phases.ok()) profiled.push_back(std::move(phases));
