@@ -105,7 +105,7 @@ File File::open(const std::filesystem::path& path, Naming naming) {
 }
 
 File::File(File&& other) noexcept
-    : id_(std::exchange(other.id_, hid_t{-1})), naming_(std::move(other.naming_)), writing_(other.writing_) {}
+    : id_(std::exchange(other.id_, hid_t{-1})), naming_(std::move(other.naming_)), writing_(other.writing_), plain_(other.plain_) {}
 
 File::~File() {
   if (id_ >= 0) H5Fclose(id_);
@@ -249,7 +249,7 @@ void File::write_raw(const std::string& path, const Dims& dims, hid_t type, cons
   if (product(dims) != count) throw std::logic_error(fmt::format("{}: {} values do not fill its shape", path, count));
   const Id space(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), H5Sclose);
   const Id list(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  if (count > 0) set_compression(list, chunk_of(dims));
+  if (count > 0 && !plain_) set_compression(list, chunk_of(dims));
   Id set(H5Dcreate2(id_, path.c_str(), type, space, H5P_DEFAULT, list, H5P_DEFAULT), H5Dclose);
   if (set.bad() || (count > 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) || !set.close()) {
     fail(path);

@@ -75,6 +75,8 @@ class File {
   double number(const std::string& object, const std::string& name) const;
   std::int64_t integer(const std::string& object, const std::string& name) const;
 
+  /// Whole datasets are written as they are from now on: for files that are soon read back and dropped.
+  void leave_plain() { plain_ = true; }
   /// Write a whole dataset, compressed where that pays.
   template <class T>
   void write(const std::string& path, const Dims& dims, std::span<const T> values) {
@@ -116,6 +118,7 @@ class File {
   hid_t id_;
   Naming naming_;
   bool writing_;
+  bool plain_ = false;
 };
 
 }  // namespace talus::h5

@@ -35,6 +35,7 @@ void FrameStore::put(std::int64_t number, const PointFrame& f, const MapGrid& gr
   if (error) throw DataError({folder_.string() + ": the folder cannot be made", error.message(), "Name another one with --out DIR"});
   PendingFile pending(file(number));
   h5::File out = h5::File::create(pending.path(), {file(number), "Free some space, or name another folder with --out DIR"});
+  out.leave_plain();  // to compress takes longer than the steps between two frames; run.h5 is compressed
   const auto count = static_cast<hsize_t>(f.id.size());
   out.set_number("/", "time", f.time);
   out.write<double>("/position", {count, 3}, flat(f.position));

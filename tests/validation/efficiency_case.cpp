@@ -37,9 +37,9 @@ std::vector<Scheme> schemes() {
                                  {"solve.shape", words("linear")},       {"solve.transfer", words("flip")},
                                  {"solve.transfer_time", 1e30},          {"solve.stress_update", words("musl")},
                                  {"solve.largest_step_s", step},         {"solve.cfl", 0.8}};
-  return {{"PCG", {{"solve.implicit.linear_solver", words("pcg")}}, 2e-7, pcg_memory, {1, 2}, {1, 2, 4, 8, 16, 32}, {128, 512}},
+  return {{"PCG", {{"solve.implicit.linear_solver", words("pcg")}}, 2e-7, pcg_memory, {1, 2}, {1, 2, 4, 8, 16, 32}, {128}},
           {"Cholesky", {{"solve.implicit.linear_solver", words("cholesky")}}, 5e-6, cholesky_memory, {1, 2}, {1, 2, 4, 8}, {16}},
-          {"explicit", explicit_steps, 1.6e-8, no_memory, {1, 2}, {1, 2, 4, 8, 16, 32}, {128, 512}}};
+          {"explicit", explicit_steps, 1.6e-8, no_memory, {1, 2}, {1, 2, 4, 8, 16, 32}, {128}}};
 }
 
 Overrides thick(int cells, int steps) {
