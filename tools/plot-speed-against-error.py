@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws docs/pictures/speed-against-error.png from docs/benchmarks/speed-against-error.csv.
+"""Draws docs/pictures/speed-against-error.png, and headline.png beside it, from docs/benchmarks/speed-against-error.csv.
 
 usage: tools/plot-speed-against-error.py [CSV [PNG]]        (Debian: python3-matplotlib)
 """
@@ -109,6 +109,38 @@ def legend(axes):
     axes.legend(fontsize=8, loc="lower left")
 
 
+def headline(axes, rows):
+    """Frank Slide, a line for every method: quadratic functions and double precision, the reference preset as it is."""
+    def pick(integrator, place, modulus, spacings, step):
+        found = [r for r in rows if r["scene"] == "Frank Slide" and (r["integrator"], r["step_asked_cfl"], r["stiffness"]) == (integrator, step, "as-given") and place in r["place"]
+                 and float(r["youngs_modulus_Pa"]) == modulus and r["precision"] == "double" and r["shape"] == ("linear" if integrator == "reference preset" else "quadratic")
+                 and (r["spacing_m"], r["layer_height_m"]) in spacings and number(r, "elsewhere_than_finest_percent") > 0]
+        found.sort(key=lambda r: number(r, "wall_s"))
+        return found
+
+    all_spacings = [("40", "40"), ("20", "20"), ("20", "10")]
+    for label, colour, runs in (
+        ("explicit, H200", COLOURS["explicit"], pick("explicit", "H200", 1e7, all_spacings, "0.5")),
+        ("explicit, two CPU threads", "#56b4e9", pick("explicit", "CPU", 1e7, all_spacings, "0.5")),
+        ("implicit (Newton), 10 CFL, 1e9 Pa, H200", COLOURS["newmark"], pick("newmark", "H200", 1e9, all_spacings, "10")),
+        ("the reference paper's PCG scheme, 1e9 Pa, H200", COLOURS["reference preset"], pick("reference preset", "H200", 1e9, all_spacings, "0.2")),
+    ):
+        axes.plot([number(r, "wall_s") for r in runs], [number(r, "elsewhere_than_finest_percent") for r in runs], "o-", color=colour, label=label, markersize=6)
+        for r in runs:
+            height = r["layer_height_m"]
+            axes.annotate(r["spacing_m"] + (f" over {height}" if height != r["spacing_m"] else "") + " m", (number(r, "wall_s"), number(r, "elsewhere_than_finest_percent")),
+                          textcoords="offset points", xytext=(6, 5), fontsize=8)
+    axes.set_xscale("log")
+    axes.set_xlim(0.05, 100)
+    axes.set_ylim(0, 8.5)
+    axes.set_xlabel("wall time of the steps, 100 s of slide [s]")
+    axes.set_ylabel("deposit elsewhere than on the finest grid [%]")
+    axes.set_title("Frank Slide: error over time to solution", loc="left", fontweight="bold")
+    axes.grid(color="#dddddd")
+    axes.set_axisbelow(True)
+    axes.legend(fontsize=8, loc="upper left")
+
+
 with open(SOURCE, newline="") as file:
     table = list(csv.DictReader(file))
 figure, panels = plt.subplots(4, 1, figsize=(9, 18.5), dpi=110)
@@ -124,3 +156,7 @@ figure.tight_layout()
 PICTURE.parent.mkdir(parents=True, exist_ok=True)
 figure.savefig(PICTURE)
 print(PICTURE)
+figure, axes = plt.subplots(figsize=(7.5, 4), dpi=110, layout="constrained")
+headline(axes, table)
+figure.savefig(PICTURE.with_name("headline.png"))
+print(PICTURE.with_name("headline.png"))
