@@ -52,6 +52,7 @@ Scene from_sliding_surface(const Options& options) {
   share_crs({&before, &sliding}, options.working_crs);
   require_comparable_crs(sliding.crs_wkt(), sliding.file, before.crs_wkt(), before.file.string());
   std::vector<Raster> surfaces = align({&before}, options);
+  log_resampling(sliding, surfaces[0].grid);
   const Raster under = onto_grid(sliding, surfaces[0].grid);
   require_data(under, sliding.file);
   Source source = find_source({surfaces[0], under, options.sliding_surface, true}, options.source);
@@ -138,6 +139,7 @@ std::vector<std::pair<std::string, Raster>> read_bed(const BedRasters& bed, cons
     if (file.empty()) continue;
     const Elevation values = read_elevation("bed." + name, file);
     require_comparable_crs(values.crs_wkt(), values.file, grid.crs_wkt, "the working grid");
+    log_resampling(values, grid);
     Raster raster = onto_grid(values, grid);
     require_data(raster, file);
     std::vector<char> negative(raster.values.size());

@@ -24,9 +24,11 @@ bool same_crs(const std::string& wkt_a, const std::string& wkt_b);
 /// Short name of a CRS for messages: "EPSG:32149", or the WKT's name, or "local metric coordinates".
 std::string crs_name(const std::string& wkt);
 
-/// Warp onto `grid` (another CRS, extent, registration or cell size). Elevations: bilinear where the target is finer,
+enum class Interpolation { bilinear, cubic };
+
+/// Warp onto `grid` (another CRS, extent, registration or cell size). Elevations: interpolated where the target is finer,
 /// area mean where it is coarser; NaN where the source has no data.
-Raster resample_elevation(const Raster& source, const MapGrid& grid);
+Raster resample_elevation(const Raster& source, const MapGrid& grid, Interpolation interpolation = Interpolation::bilinear);
 
 /// Bring a thickness onto `grid` by exact area weights (same CRS only), so that the volume inside both extents is kept
 /// to rounding. NaN counts as zero thickness but cells wholly outside the source are NaN.

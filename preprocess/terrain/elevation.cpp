@@ -94,20 +94,59 @@ Elevation read_elevation(std::string key, const std::filesystem::path& file) {
   return elevation;
 }
 
+namespace {
+
+/// As it was read, not placed.
+Raster read_off(const Elevation& elevation, const MapGrid& grid) {
+  const bool one_crs = same_crs(elevation.crs_wkt(), grid.crs_wkt);
+  if (elevation.scattered)
+    return interpolate_scattered(one_crs ? elevation.points : transform_points(elevation.points, grid.crs_wkt), grid, elevation.file);
+  if (one_crs && same_lattice(elevation.raster.grid, grid)) return window(elevation.raster, grid);
+  const bool coarser = grid.cell > elevation.cell() * (1 + 1e-6);
+  if (one_crs && coarser) return coarsened(elevation.raster, grid);
+  return resample_elevation(elevation.raster, grid, elevation.placement.moves() ? Interpolation::cubic : Interpolation::bilinear);
+}
+
+}  // namespace
+
 Raster onto_grid(const Elevation& elevation, const MapGrid& grid) {
+  const Placement& placement = elevation.placement;
+  MapGrid from = grid;
+  from.west -= placement.x;
+  from.south -= placement.y;
+  Raster result = read_off(elevation, from);
+  result.grid = grid;
+  if (!placement.given()) return result;
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) result.at(column, row) += placement.rise(grid.x(column), grid.y(row));
+  }
+  return result;
+}
+
+void log_resampling(const Elevation& elevation, const MapGrid& grid) {
   const bool one_crs = same_crs(elevation.crs_wkt(), grid.crs_wkt);
   if (elevation.scattered) {
-    log_info(fmt::format("{}: {} points triangulated onto the working grid", elevation.file.string(),
-                         elevation.points.x.size()));
-    return interpolate_scattered(one_crs ? elevation.points : transform_points(elevation.points, grid.crs_wkt), grid,
-                                 elevation.file);
+    log_info(fmt::format("{}: {} points triangulated onto the working grid", elevation.file.string(), elevation.points.x.size()));
+  } else if (!one_crs || !same_lattice(elevation.raster.grid, grid)) {
+    log_info(fmt::format("{}: {:g} m cells in {}{} resampled onto the working grid", elevation.file.string(), elevation.cell(), crs_name(elevation.crs_wkt()),
+                         one_crs && elevation.cell() == grid.cell ? ", registered otherwise," : ""));
   }
-  if (one_crs && same_lattice(elevation.raster.grid, grid)) return window(elevation.raster, grid);
-  log_info(fmt::format("{}: {:g} m cells in {}{} resampled onto the working grid", elevation.file.string(),
-                       elevation.cell(), crs_name(elevation.crs_wkt()),
-                       one_crs && elevation.cell() == grid.cell ? ", registered otherwise," : ""));
-  const bool coarser = grid.cell > elevation.cell() * (1 + 1e-6);
-  return one_crs && coarser ? coarsened(elevation.raster, grid) : resample_elevation(elevation.raster, grid);
+}
+
+Elevation part_of(const Elevation& elevation, const Extent& extent, const std::string& crs_wkt) {
+  Elevation part = elevation;
+  if (elevation.scattered) return part;
+  const Extent own = same_crs(crs_wkt, elevation.crs_wkt()) ? extent : transform_extent(extent, crs_wkt, elevation.crs_wkt());
+  const MapGrid& grid = elevation.raster.grid;
+  const auto cell_at = [&](double from, int count) { return std::clamp(static_cast<int>(std::floor(from / grid.cell)), 0, count - 1); };
+  const double rim = 2 * grid.cell;
+  Window w;
+  w.column = cell_at(own.west - grid.west - rim, grid.columns);
+  w.row = cell_at(own.south - grid.south - rim, grid.rows);
+  w.columns = cell_at(own.east - grid.west + rim, grid.columns) + 1 - w.column;
+  w.rows = cell_at(own.north - grid.south + rim, grid.rows) + 1 - w.row;
+  part.raster = cut(elevation.raster, w);
+  return part;
 }
 
 Raster thickness_onto_grid(const Raster& thickness, const MapGrid& grid, const std::filesystem::path& file) {

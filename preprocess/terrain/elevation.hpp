@@ -7,6 +7,7 @@
 
 #include "common/raster/raster.hpp"
 #include "preprocess/terrain/geo_input.hpp"
+#include "preprocess/terrain/placement.hpp"
 
 namespace talus::preprocess {
 
@@ -17,6 +18,7 @@ struct Elevation {
   bool scattered = false;
   Raster raster;
   ScatteredPoints points;
+  Placement placement = {};  // in the CRS of the working grid
 
   const std::string& crs_wkt() const { return scattered ? points.crs_wkt : raster.grid.crs_wkt; }
   Extent extent() const;
@@ -26,8 +28,15 @@ struct Elevation {
 /// Read a raster by any GDAL format, or points (see is_point_file). Throws DataError.
 Elevation read_elevation(std::string key, const std::filesystem::path& file);
 
-/// Copied where its cells are the grid's cells, resampled or triangulated otherwise; NaN where it has no data.
+/// Copied where its cells are the grid's cells, resampled or triangulated otherwise (moved by less than a cell: by cubic
+/// convolution, which does not flatten crests); NaN where it has no data.
 Raster onto_grid(const Elevation& elevation, const MapGrid& grid);
+
+/// Says in the log how it comes onto the working grid, where its cells are not copied.
+void log_resampling(const Elevation& elevation, const MapGrid& grid);
+
+/// What it holds within an extent given in `crs_wkt`, and a few cells around.
+Elevation part_of(const Elevation& elevation, const Extent& extent, const std::string& crs_wkt);
 
 /// Thickness onto the grid, conserving volume (see resample_thickness); 0 where it has no data. Throws DataError when
 /// CRS differ, when there is no overlap, or when more than 1e-9 of the volume lies outside the grid.

@@ -146,6 +146,7 @@ std::vector<Raster> align(const std::vector<const Elevation*>& dems, const Optio
   const MapGrid grid = working_grid(dems, options);
   std::vector<Raster> rasters;
   for (const Elevation* dem : dems) {
+    log_resampling(*dem, grid);
     rasters.push_back(onto_grid(*dem, grid));
     require_data(rasters.back(), dem->file);
   }
