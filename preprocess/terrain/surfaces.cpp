@@ -40,7 +40,7 @@ void trim(const std::vector<const Elevation*>& dems, std::vector<Raster>& raster
     for (std::size_t i = 0; i < dems.size(); ++i) {
       if (!in_part || (!ragged_edges && ends_ragged(*dems[i], grid))) mark_too(empty, empty_cells(rasters[i]));
     }
-    const Window window = trimmed(rasters.front().grid, empty, in_part ? 0.0 : 1.0 - 1e-9);
+    const CellWindow window = trimmed(rasters.front().grid, empty, in_part ? 0.0 : 1.0 - 1e-9);
     if (window.columns < 1 || window.rows < 1) {
       throw DataError(Fault{fmt::format("{}: has no data where the DEMs overlap", dems.back()->file.string()),
                             "nothing is left of the working grid", "Check its coordinates and CRS with gdalinfo"});
