@@ -80,6 +80,7 @@ std::string horizontal_wkt(const OGRSpatialReference* srs) {
   if (srs == nullptr || srs->IsEmpty()) return "";
   OGRSpatialReference horizontal(*srs);
   horizontal.StripVertical();
+  if (horizontal.GetAxesCount() > 2) horizontal.DemoteTo2D(nullptr);
   const std::array<const char*, 3> options{"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
   char* wkt = nullptr;
   const bool exported = horizontal.exportToWkt(&wkt, options.data()) == OGRERR_NONE;

@@ -28,7 +28,7 @@ void mark_too(std::vector<char>& marked, const std::vector<char>& more) {
 
 /// Data that were reprojected or triangulated end in ragged or slanting lines.
 bool ends_ragged(const Elevation& dem, const MapGrid& grid) {
-  return dem.scattered || !same_crs(dem.crs_wkt(), grid.crs_wkt);
+  return dem.scattered || dem.reprojected || !same_crs(dem.crs_wkt(), grid.crs_wkt);
 }
 
 /// Cut off border rows and columns where a DEM is wholly empty; and, unless `ragged_edges` may stay, those where a
