@@ -91,7 +91,15 @@ void Options::describe(recipe::Visitor& v) {
   v.path("after_dem", after_dem, "surface after it; only the lowering inside the source is taken out");
   v.path("sliding_surface", sliding_surface, "surface it slides on; no data = no sliding surface there");
   v.path("base_dem", base_dem, "ground under the releases (3: with [[preprocess.release]])");
-  v.text("working_crs", working_crs, "metric CRS to work in, \"EPSG:32149\"; empty = that of the first DEM");
+  v.text("working_crs", working_crs,
+         "metric CRS to work in, \"EPSG:32149\", or \"utm\": the UTM zone of the first DEM; files in degrees or feet are "
+         "reprojected to it; empty = the CRS of the first DEM");
+  recipe::choice(v, "vertical_unit", vertical_unit,
+                 {{"declared", VerticalUnit::declared},
+                  {"metre", VerticalUnit::metre},
+                  {"foot", VerticalUnit::foot},
+                  {"us-survey-foot", VerticalUnit::us_survey_foot}},
+                 "what the elevation models' heights are in; declared = what each file says, metres where it says nothing");
   v.enter("source", "what fails, for (1) and (2)");
   source.describe(v);
   v.leave();

@@ -16,6 +16,9 @@ enum class Direction { vertical, slope_normal };
 /// What becomes of cells without elevation.
 enum class EdgeNodata { refuse, outside };
 
+/// What the heights of elevation models are in: what the files say, or this.
+enum class VerticalUnit { declared, metre, foot, us_survey_foot };
+
 /// One [[preprocess.release]]: a raster of thickness, or polygons with a thickness.
 struct ReleaseOptions {
   std::string name;
@@ -101,6 +104,7 @@ enum class Way { before_and_after, before_and_sliding_surface, base_and_releases
 struct Options {
   std::filesystem::path before_dem, after_dem, sliding_surface, base_dem;
   std::string working_crs;
+  VerticalUnit vertical_unit = VerticalUnit::declared;
   SourceOptions source;
   GridOptions grid;
   std::vector<ReleaseOptions> release;

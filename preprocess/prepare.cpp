@@ -34,8 +34,8 @@ Scene from_source(Raster before, Source source) {
 }
 
 Scene from_before_and_after(const Options& options) {
-  Elevation before = read_elevation("before_dem", options.before_dem);
-  Elevation after = read_elevation("after_dem", options.after_dem);
+  Elevation before = read_elevation("before_dem", options.before_dem, dem_reading(options));
+  Elevation after = read_elevation("after_dem", options.after_dem, dem_reading(options));
   share_crs({&before, &after}, options.working_crs);
   std::vector<Raster> surfaces = align({&before, &after}, options);
   Source source = find_source({surfaces[0], surfaces[1], options.after_dem}, options.source);
@@ -47,8 +47,8 @@ Scene from_before_and_after(const Options& options) {
 }
 
 Scene from_sliding_surface(const Options& options) {
-  Elevation before = read_elevation("before_dem", options.before_dem);
-  Elevation sliding = read_elevation("sliding_surface", options.sliding_surface);
+  Elevation before = read_elevation("before_dem", options.before_dem, dem_reading(options));
+  Elevation sliding = read_elevation("sliding_surface", options.sliding_surface, dem_reading(options));
   share_crs({&before, &sliding}, options.working_crs);
   require_comparable_crs(sliding.crs_wkt(), sliding.file, before.crs_wkt(), before.file.string());
   std::vector<Raster> surfaces = align({&before}, options);
@@ -75,7 +75,7 @@ void warn_of_overlap(const std::vector<Release>& releases) {
 }
 
 Scene from_releases(const Options& options) {
-  Elevation base = read_elevation("base_dem", options.base_dem);
+  Elevation base = read_elevation("base_dem", options.base_dem, dem_reading(options));
   share_crs({&base}, options.working_crs);
   Raster bed = align({&base}, options).front();
   Scene scene{bed, std::move(bed), {}};
@@ -133,11 +133,12 @@ Scene read_scene(const Options& options) {
 }
 
 /// Rasters of the bed on the working grid.
-std::vector<std::pair<std::string, Raster>> read_bed(const BedRasters& bed, const MapGrid& grid) {
+std::vector<std::pair<std::string, Raster>> read_bed(const Options& options, const MapGrid& grid) {
+  const bool reproject = !options.working_crs.empty();
   std::vector<std::pair<std::string, Raster>> rasters;
-  for (const auto& [name, file] : bed.files) {
+  for (const auto& [name, file] : options.bed.files) {
     if (file.empty()) continue;
-    const Elevation values = read_elevation("bed." + name, file);
+    const Elevation values = read_elevation("bed." + name, file, {reproject ? grid.crs_wkt : "", "", dem_reading({}).or_else});
     require_comparable_crs(values.crs_wkt(), values.file, grid.crs_wkt, "the working grid");
     log_resampling(values, grid);
     Raster raster = onto_grid(values, grid);
@@ -202,10 +203,11 @@ std::vector<std::filesystem::path> inputs_of(const Options& options) {
 
 }  // namespace
 
-Prepared prepare(const Options& options, Points points) {
+Prepared prepare(const Options& given, Points points) {
   std::vector<Fault> faults;
-  options.check(faults);
+  given.check(faults);
   if (!faults.empty()) throw RecipeError(std::move(faults));
+  const Options options = with_utm_zone(given);
   Scene scene = read_scene(options);
   lay_erodible(options, scene);
   const Seeding seeding = seeding_of(options.grid, scene.bed.grid.cell);
@@ -230,7 +232,7 @@ Prepared prepare(const Options& options, Points points) {
     domain.points = laboratory ? seed_boxes(options) : seed_points(scene.releases, seeding);
   }
   domain.erodible = static_cast<int>(options.erodible.size());
-  domain.bed = read_bed(options.bed, domain.grid);
+  domain.bed = read_bed(options, domain.grid);
   prepared.obstacles = stand_obstacles(options.obstacle, scene.bed, 2 * domain.layer_height);
   prepared.obstacle_voxel = obstacle_voxel(domain.grid.cell, domain.layer_height);
   for (const ObstacleOptions& o : options.obstacle) {

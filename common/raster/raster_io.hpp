@@ -13,9 +13,8 @@
 
 namespace talus {
 
-/// Read band 1 of any GDAL raster; scale and offset applied, nodata (declared, or NaN) becomes NaN, +-inf a DataError.
-/// Refused with the command that mends it (DataError): missing or unreadable file, geographic CRS (degrees), CRS in
-/// feet, rotated or non-square cells, no valid cell at all. A file without CRS is taken as local metric coordinates.
+/// RasterFile(file).read(), see raster_file.hpp: band 1 of any GDAL raster, in metres, NaN for nodata. A file without CRS is
+/// taken as local metric coordinates; degrees, feet in the map's plane, and rasters without any value are refused.
 Raster read_raster(const std::filesystem::path& file);
 
 /// True when both name the same CRS (an empty one is local and equals only an empty one).

@@ -8,6 +8,7 @@
 
 #include "common/error.hpp"
 #include "common/raster/raster_io.hpp"
+#include "common/raster/vertical_unit.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/sum.hpp"
 #include "preprocess/terrain/scattered.hpp"
@@ -77,6 +78,43 @@ void require_same_crs(const Raster& thickness, const MapGrid& grid, const std::f
       fmt::format("Reproject: gdalwarp -t_srs {} -r average {} out.tif", wanted, file.string())});
 }
 
+const char* name_of(VerticalUnit unit) {
+  switch (unit) {
+    case VerticalUnit::metre: return "metre";
+    case VerticalUnit::foot: return "foot";
+    case VerticalUnit::us_survey_foot: return "us-survey-foot";
+    case VerticalUnit::declared: break;
+  }
+  return "";
+}
+
+/// A text file cannot name its CRS; places that all could be longitude and latitude are taken for that.
+ScatteredPoints with_likely_crs(ScatteredPoints points, const std::filesystem::path& file) {
+  const Extent e = points.extent();
+  const bool like_degrees =
+      points.crs_wkt.empty() && !points.x.empty() && e.west >= -180 && e.east <= 360 && e.south >= -90 && e.north <= 90;
+  if (!like_degrees) return points;
+  points.crs_wkt = crs_by_name("EPSG:4326");
+  log_warning(fmt::format("{}: x {:g}..{:g}, y {:g}..{:g} and no CRS: taken as longitude and latitude (WGS 84)",
+                          file.string(), e.west, e.east, e.south, e.north));
+  return points;
+}
+
+ScatteredPoints points_in_metres(const std::filesystem::path& file, const ReadOptions& how) {
+  ScatteredPoints points = read_points_as_given(file);
+  const double metres = metres_in(how.vertical_unit).value_or(1.0);
+  for (double& z : points.z) z *= metres;
+  if (how.to_crs.empty()) {
+    require_metric(points, file, how.or_else);
+    return points;
+  }
+  points = with_likely_crs(std::move(points), file);
+  if (is_metric(points.crs_wkt)) return points;
+  log_info(fmt::format("{}: {} points moved from {} to {}", file.string(), points.x.size(), crs_name(points.crs_wkt),
+                       crs_name(how.to_crs)));
+  return transform_points(std::move(points), how.to_crs);
+}
+
 }  // namespace
 
 Extent Elevation::extent() const {
@@ -84,12 +122,38 @@ Extent Elevation::extent() const {
   return {raster.grid.west, raster.grid.south, raster.grid.east(), raster.grid.north()};
 }
 
-Elevation read_elevation(std::string key, const std::filesystem::path& file) {
-  Elevation elevation{std::move(key), file, is_point_file(file), {}, {}};
-  if (elevation.scattered) {
-    elevation.points = read_points(file);
+ReadOptions dem_reading(const Options& options) {
+  const std::string crs = options.working_crs.empty() ? "" : metric_crs(options.working_crs);
+  return {crs, name_of(options.vertical_unit), "or set working_crs = \"utm\" in [preprocess]"};
+}
+
+Options with_utm_zone(Options options) {
+  if (options.working_crs != "utm") return options;
+  const std::filesystem::path& file = options.first_dem();
+  if (!is_point_file(file)) {
+    options.working_crs = crs_name(utm_crs_of(file));
   } else {
-    elevation.raster = read_raster(file);
+    const ScatteredPoints points = with_likely_crs(read_points_as_given(file), file);
+    const Extent e = points.extent();
+    options.working_crs =
+        points.crs_wkt.empty() ? "" : utm_zone_at(points.crs_wkt, 0.5 * (e.west + e.east), 0.5 * (e.south + e.north));
+  }
+  if (options.working_crs.empty())
+    throw DataError(Fault{file.string() + ": its UTM zone cannot be told", "it names no CRS, or lies near a pole",
+                          "Name the zone: working_crs = \"EPSG:326..\" (north) or \"EPSG:327..\" (south)"});
+  log_info(fmt::format("working_crs: \"utm\" is {}, by the centre of {}", options.working_crs, file.string()));
+  return options;
+}
+
+Elevation read_elevation(std::string key, const std::filesystem::path& file, const ReadOptions& how) {
+  Elevation elevation{std::move(key), file, is_point_file(file), false, {}, {}};
+  if (elevation.scattered) {
+    elevation.points = points_in_metres(file, how);
+  } else {
+    ReadOptions options = how;
+    elevation.reprojected = !options.to_crs.empty() && !in_metres(file);
+    if (!elevation.reprojected) options.to_crs.clear();
+    elevation.raster = RasterFile(file, options).read();
   }
   return elevation;
 }

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "common/raster/raster.hpp"
+#include "common/raster/raster_file.hpp"
+#include "preprocess/options.hpp"
 #include "preprocess/terrain/geo_input.hpp"
 #include "preprocess/terrain/placement.hpp"
 
@@ -16,6 +18,7 @@ struct Elevation {
   std::string key;  // its key in the recipe: "after_dem"
   std::filesystem::path file;
   bool scattered = false;
+  bool reprojected = false;  // as it was read: its data end in slanting lines
   Raster raster;
   ScatteredPoints points;
   Placement placement = {};  // in the CRS of the working grid
@@ -25,8 +28,16 @@ struct Elevation {
   double cell() const { return scattered ? 0.0 : raster.grid.cell; }  // 0 = has none
 };
 
+/// What the recipe says of reading: what degrees and feet become, and the unit of heights. `to_crs` is used for files
+/// in degrees or feet alone; those in metres are brought onto the working grid in one step, later.
+ReadOptions dem_reading(const Options& options);
+
+/// The options with working_crs = "utm" replaced by the UTM zone that holds the centre of the first DEM. Throws
+/// DataError.
+Options with_utm_zone(Options options);
+
 /// Read a raster by any GDAL format, or points (see is_point_file). Throws DataError.
-Elevation read_elevation(std::string key, const std::filesystem::path& file);
+Elevation read_elevation(std::string key, const std::filesystem::path& file, const ReadOptions& how = {});
 
 /// Copied where its cells are the grid's cells, resampled or triangulated otherwise (moved by less than a cell: by cubic
 /// convolution, which does not flatten crests); NaN where it has no data.

@@ -28,7 +28,7 @@ void mark_too(std::vector<char>& marked, const std::vector<char>& more) {
 
 /// Data that were reprojected or triangulated end in ragged or slanting lines.
 bool ends_ragged(const Elevation& dem, const MapGrid& grid) {
-  return dem.scattered || !same_crs(dem.crs_wkt(), grid.crs_wkt);
+  return dem.scattered || dem.reprojected || !same_crs(dem.crs_wkt(), grid.crs_wkt);
 }
 
 /// Cut off border rows and columns where a DEM is wholly empty; and, unless `ragged_edges` may stay, those where a
@@ -40,7 +40,7 @@ void trim(const std::vector<const Elevation*>& dems, std::vector<Raster>& raster
     for (std::size_t i = 0; i < dems.size(); ++i) {
       if (!in_part || (!ragged_edges && ends_ragged(*dems[i], grid))) mark_too(empty, empty_cells(rasters[i]));
     }
-    const Window window = trimmed(rasters.front().grid, empty, in_part ? 0.0 : 1.0 - 1e-9);
+    const CellWindow window = trimmed(rasters.front().grid, empty, in_part ? 0.0 : 1.0 - 1e-9);
     if (window.columns < 1 || window.rows < 1) {
       throw DataError(Fault{fmt::format("{}: has no data where the DEMs overlap", dems.back()->file.string()),
                             "nothing is left of the working grid", "Check its coordinates and CRS with gdalinfo"});

@@ -79,7 +79,7 @@ struct Border {
   double part() const { return static_cast<double>(empty) / length; }
 };
 
-std::array<Border, 4> borders(const MapGrid& grid, const std::vector<char>& empty, const Window& w) {
+std::array<Border, 4> borders(const MapGrid& grid, const std::vector<char>& empty, const CellWindow& w) {
   std::array<Border, 4> b{Border{0, w.rows}, Border{0, w.rows}, Border{0, w.columns}, Border{0, w.columns}};
   for (int row = w.row; row < w.row + w.rows; ++row) {
     b[0].empty += empty[grid.index(w.column, row)];
@@ -119,8 +119,8 @@ MapGrid working_grid(const std::vector<const Elevation*>& dems, const Options& o
   return grid;
 }
 
-Window trimmed(const MapGrid& grid, const std::vector<char>& empty, double allowed) {
-  Window w{0, 0, grid.columns, grid.rows};
+CellWindow trimmed(const MapGrid& grid, const std::vector<char>& empty, double allowed) {
+  CellWindow w{0, 0, grid.columns, grid.rows};
   while (w.columns > 0 && w.rows > 0) {
     const auto b = borders(grid, empty, w);
     const auto worst =
@@ -134,7 +134,7 @@ Window trimmed(const MapGrid& grid, const std::vector<char>& empty, double allow
   return w;
 }
 
-MapGrid cut(const MapGrid& grid, const Window& window) {
+MapGrid cut(const MapGrid& grid, const CellWindow& window) {
   MapGrid part = grid;
   part.west = grid.west + window.column * grid.cell;
   part.south = grid.south + window.row * grid.cell;
@@ -143,7 +143,7 @@ MapGrid cut(const MapGrid& grid, const Window& window) {
   return part;
 }
 
-Raster cut(const Raster& raster, const Window& window) {
+Raster cut(const Raster& raster, const CellWindow& window) {
   Raster part{cut(raster.grid, window), {}};
   part.values.reserve(part.grid.count());
   for (int row = 0; row < window.rows; ++row) {

@@ -198,16 +198,6 @@ TEST_F(RasterFile, refuses_feet_with_the_command_that_mends_it) {
   EXPECT_EQ(crs_name(mended(text, "f_utm.tif").grid.crs_wkt), "EPSG:32610");
 }
 
-TEST_F(RasterFile, refuses_elevations_in_feet_with_the_command_that_mends_it) {
-  write_geotiff(scratch / "h.tif", small_raster({2, 1, 0, 0, 1, epsg(32611)}, {1000, 2000}), {"z", "ft", {}});
-  const std::string file = (scratch / "h.tif").string();
-  const std::string text = fault(file);
-  EXPECT_EQ(text, file + ": its values are in ft (this stage needs metres). Convert: gdal_calc.py -A " + file +
-                      " --calc=A*0.3048 --outfile=h_m.tif");
-  const Raster metres = mended(text, "h_m.tif");
-  EXPECT_NEAR(metres.at(0, 0), 304.8, 1e-4);
-}
-
 TEST_F(RasterFile, refuses_a_rotated_raster_with_the_command_that_mends_it) {
   write_geotiff(scratch / "n.tif", random_raster({20, 20, 500000, 5500000, 10, epsg(32611)}, 7), {"z", "m", {}});
   shell(

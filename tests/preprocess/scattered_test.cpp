@@ -123,7 +123,7 @@ TEST(point_file, refuses_points_in_degrees) {
     "geometry":{"type":"Point","coordinates":[13.5,47.1,12.5]}}]})");
   EXPECT_EQ(fault_of<DataError>([&] { read_points(file); }),
             file.string() +
-                ": CRS is WGS 84 (this stage needs metres). Reproject: ogr2ogr -t_srs EPSG:<utm> out.gpkg " +
+                ": CRS is EPSG:4326 (this stage needs metres). Reproject: ogr2ogr -t_srs EPSG:32633 p_utm.gpkg " +
                 file.string());
 }
 
