@@ -146,14 +146,18 @@ Options with_utm_zone(Options options) {
 }
 
 Elevation read_elevation(std::string key, const std::filesystem::path& file, const ReadOptions& how) {
-  Elevation elevation{std::move(key), file, is_point_file(file), false, {}, {}};
+  Elevation elevation;
+  elevation.key = std::move(key);
+  elevation.file = file;
+  elevation.scattered = is_point_file(file);
   if (elevation.scattered) {
     elevation.points = points_in_metres(file, how);
   } else {
     ReadOptions options = how;
     elevation.reprojected = !options.to_crs.empty() && !in_metres(file);
     if (!elevation.reprojected) options.to_crs.clear();
-    elevation.raster = RasterFile(file, options).read();
+    elevation.on_disk = std::make_shared<RasterFile>(file, options);
+    elevation.raster.grid = elevation.on_disk->grid();
   }
   return elevation;
 }
@@ -175,6 +179,10 @@ Raster read_off(const Elevation& elevation, const MapGrid& grid) {
 
 Raster onto_grid(const Elevation& elevation, const MapGrid& grid) {
   const Placement& placement = elevation.placement;
+  if (elevation.on_disk) {
+    const Extent needed{grid.west - placement.x, grid.south - placement.y, grid.east() - placement.x, grid.north() - placement.y};
+    return onto_grid(part_of(elevation, needed, grid.crs_wkt), grid);
+  }
   MapGrid from = grid;
   from.west -= placement.x;
   from.south -= placement.y;
@@ -204,12 +212,13 @@ Elevation part_of(const Elevation& elevation, const Extent& extent, const std::s
   const MapGrid& grid = elevation.raster.grid;
   const auto cell_at = [&](double from, int count) { return std::clamp(static_cast<int>(std::floor(from / grid.cell)), 0, count - 1); };
   const double rim = 2 * grid.cell;
-  Window w;
+  CellWindow w;
   w.column = cell_at(own.west - grid.west - rim, grid.columns);
   w.row = cell_at(own.south - grid.south - rim, grid.rows);
   w.columns = cell_at(own.east - grid.west + rim, grid.columns) + 1 - w.column;
   w.rows = cell_at(own.north - grid.south + rim, grid.rows) + 1 - w.row;
-  part.raster = cut(elevation.raster, w);
+  part.raster = elevation.on_disk ? elevation.on_disk->read(w) : cut(elevation.raster, w);
+  part.on_disk.reset();
   return part;
 }
 

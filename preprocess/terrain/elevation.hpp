@@ -2,10 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "common/raster/raster.hpp"
+#include "common/raster/raster_file.hpp"
 #include "common/raster/raster_file.hpp"
 #include "preprocess/options.hpp"
 #include "preprocess/terrain/geo_input.hpp"
@@ -19,7 +21,8 @@ struct Elevation {
   std::filesystem::path file;
   bool scattered = false;
   bool reprojected = false;  // as it was read: its data end in slanting lines
-  Raster raster;
+  Raster raster;                              // its cells, or of one that stays in its file, nothing but the grid
+  std::shared_ptr<const RasterFile> on_disk;  // read by parts, as they are needed
   ScatteredPoints points;
   Placement placement = {};  // in the CRS of the working grid
 

@@ -1,6 +1,9 @@
 // Known shifts of synthetic and real terrain, found again.
 #include "preprocess/survey/coregistration.hpp"
 
+#include <iostream>
+
+#include "common/raster/raster_file.hpp"
 #include "tests/preprocess/terrain.hpp"
 
 namespace talus::preprocess {
@@ -120,6 +123,29 @@ TEST(coregistration, finds_no_horizontal_shift_on_a_plain) {
   EXPECT_FALSE(result.shift_known);
   EXPECT_EQ(result.placement.x, 0);
   EXPECT_NEAR(result.placement.z, -1.5, 1e-9);
+}
+
+/// D4 of the validation list: SRTM against itself, blurred and shifted by whole cells and some part of one.
+TEST(coregistration, brings_a_shifted_srtm_pair_from_57_m_to_3_m) {
+  const char* given = std::getenv("TALUS_DATA");
+  const auto folder = (given ? std::filesystem::path(given) : std::filesystem::path(TALUS_SOURCE_DIR) / ".." / "shared" / "data") / "coreg_srtm";
+  if (!std::filesystem::exists(folder)) {
+    std::cerr << "SKIPPED: " << folder.string() << " is missing (set TALUS_DATA)\n";
+    GTEST_SKIP() << folder.string() << " is missing";
+  }
+  ReadOptions how;
+  how.to_crs = utm_crs_of(folder / "srtm_ref.tif");
+  const Elevation before = read_elevation("before_dem", folder / "srtm_ref.tif", how);
+  const Elevation after = read_elevation("after_dem", folder / "srtm_blurred_and_shifted.tif", how);
+  auto patches = patches_of(before, after, before.raster.grid);
+  find_stable(patches, {});
+  const Coregistration result = coregister(patches, true, after.file);
+  std::cerr << "shift " << result.placement.x << " " << result.placement.y << " " << result.placement.z << " m, median |dz| " << result.unaligned.median_absolute << " -> "
+            << result.aligned.median_absolute << " m, nmad " << result.unaligned.nmad << " -> " << result.aligned.nmad << ", " << result.iterations << " iterations, cell "
+            << before.cell() << ", stable " << result.stable_share << "\n";
+  EXPECT_TRUE(result.converged);
+  EXPECT_NEAR(result.unaligned.median_absolute, 57, 10);  // of stable ground, in metres instead of degrees
+  EXPECT_LE(result.aligned.median_absolute, 3);
 }
 
 }  // namespace
