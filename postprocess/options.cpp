@@ -28,6 +28,11 @@ void Options::describe(recipe::Visitor& v) {
       "lower limits of the map's thickness classes, rising; empty: 0.1 5 10 25 50 100, or 0.1 0.5 1 2 5 10 where the "
       "deposit is thinner than 12 m");
   v.text("institution", institution, "who made this, for the NetCDF file");
+  v.flag("nodata_zero", nodata_zero,
+         "GeoTIFFs hold 0 outside the computed domain, for tools that take nodata badly (otherwise: nodata there)");
+  v.flag("avaframe", avaframe,
+         "also write peak pressure, thickness normal to the slope and speed as AvaFrame names and reads them, in "
+         "maps/avaframe");
   v.enter("survey", "what the run is scored against: thickness, or after_dem, or polygon; all empty: no scores");
   survey.describe(v);
   v.leave();

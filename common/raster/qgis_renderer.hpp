@@ -10,4 +10,7 @@ namespace talus {
 void add_class_renderer(XmlElement layer, const RasterStyle& style);
 void add_hillshade_renderer(XmlElement layer);
 
+/// The same for a layer of polygons: their outlines alone.
+void add_outline_renderer(XmlElement layer, const OutlineStyle& style);
+
 }  // namespace talus

@@ -57,7 +57,9 @@ RasterStyle difference_style(const std::vector<double>& limits, const std::strin
   }
   for (std::size_t i = 0; i < count; ++i) {
     const double upper = i + 1 < count ? limits[i + 1] : infinity;
-    style.classes.push_back({upper, difference_colour(true, i, count), "+" + class_label(i, limits) + " " + unit});
+    const auto label = i + 1 == count ? fmt::format("> +{:g} {}", limits[i], unit)
+                                      : fmt::format("+{:g} \u2013 +{:g} {}", limits[i], limits[i + 1], unit);
+    style.classes.push_back({upper, difference_colour(true, i, count), label});
   }
   return style;
 }

@@ -25,6 +25,13 @@ struct RasterStyle {
   double opacity = 1;               ///< 0 to 1
 };
 
+/// Polygons drawn by their outlines.
+struct OutlineStyle {
+  Colour colour;
+  double width_mm = 0.5;  ///< on paper
+  bool dashed = false;
+};
+
 /// Classes by their rising lower limits, the last without end; what lies below the first is not drawn. Labels carry the
 /// unit: "5 - 10 m".
 RasterStyle class_style(const std::vector<double>& limits, const std::string& unit, Ramp ramp = Ramp::heat);

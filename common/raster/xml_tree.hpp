@@ -24,8 +24,9 @@ class XmlElement {
     for (const auto& [key, value] : attributes) child.set(key, value);
     return child;
   }
-  void add_text(const char* name, const std::string& text) { CPLCreateXMLElementAndValue(node_, name, text.c_str()); }
-  /// Attributes come before elements: set them first.
+  XmlElement add_text(const char* name, const std::string& text) {
+    return XmlElement(CPLCreateXMLElementAndValue(node_, name, text.c_str()));
+  }
   void set(const char* key, const std::string& value) { CPLAddXMLAttributeAndValue(node_, key, value.c_str()); }
   CPLXMLNode* node() const { return node_; }
 
