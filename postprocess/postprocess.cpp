@@ -72,7 +72,7 @@ void write_results(StageContext& context, const Run& run, const Options& options
   const auto for_gis = write_gis(folder, context.results, {run, options, survey});
   context.results.insert(context.results.end(), for_gis.begin(), for_gis.end());
   context.results.push_back(folder / "results.nc");
-  write_netcdf(context.results.back(), run, {options.institution, context.command_line});
+  write_netcdf(context.results.back(), run, {options.institution, context.command_line, options.start_time});
   const auto write = [&](const char* name, const std::string& bytes) {
     context.results.push_back(context.out / name);
     write_text(context.results.back(), bytes);
