@@ -33,6 +33,9 @@ struct Options {
   double deposit_threshold = 1.0;    // [m]
   std::vector<double> classes;       // lower limits of the thickness classes [m]; empty = by the deposit's thickness
   std::string institution;
+  std::string start_time;            // when the failure began, UTC; empty = not known
+  bool nodata_zero = false;          // GeoTIFFs: 0 outside the domain too
+  bool avaframe = false;             // aliases for AvaFrame beside the maps
   SurveyOptions survey;
 
   void describe(recipe::Visitor& v);

@@ -12,6 +12,7 @@
 #include "common/run/run_file.hpp"
 #include "postprocess/maps/fields.hpp"
 #include "postprocess/maps/geotiff.hpp"
+#include "postprocess/maps/gis.hpp"
 #include "postprocess/maps/netcdf.hpp"
 #include "postprocess/options.hpp"
 #include "postprocess/picture/map_picture.hpp"
@@ -67,9 +68,11 @@ void write_results(StageContext& context, const Run& run, const Options& options
     std::error_code none_there;
     fs::remove(context.out / name, none_there);
   }
-  context.results = write_geotiffs(folder, run);
+  context.results = write_geotiffs(folder, run, options.nodata_zero ? Outside::zero : Outside::nodata);
+  const auto for_gis = write_gis(folder, context.results, {run, options, survey});
+  context.results.insert(context.results.end(), for_gis.begin(), for_gis.end());
   context.results.push_back(folder / "results.nc");
-  write_netcdf(context.results.back(), run, {options.institution, context.command_line});
+  write_netcdf(context.results.back(), run, {options.institution, context.command_line, options.start_time});
   const auto write = [&](const char* name, const std::string& bytes) {
     context.results.push_back(context.out / name);
     write_text(context.results.back(), bytes);

@@ -11,8 +11,8 @@ packages=(
   libgdal-dev libhdf5-dev libnetcdf-dev libcgal-dev
   libopenvdb-dev libboost-iostreams-dev libblosc-dev
   libcairo2-dev fonts-dejavu-core
-  # tests, and the readers that are not ours: gdalinfo, the COG validator, ncdump, vdb_print, h5dump
-  libgtest-dev gdal-bin python3-gdal netcdf-bin libopenvdb-tools hdf5-tools
+  # tests, and the readers that are not ours: gdalinfo, the COG validator, ncdump, cdo, what the CF checker takes, vdb_print, h5dump
+  libgtest-dev gdal-bin python3-gdal netcdf-bin cdo python3-netcdf4 udunits-bin libopenvdb-tools hdf5-tools
 )
 
 fail() { echo "tools/install-dependencies.sh: $*" >&2; exit 1; }

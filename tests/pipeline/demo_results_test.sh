@@ -70,10 +70,10 @@ test_ncdump_reads_the_netcdf() {
   shows 'double deposit_thickness\(y, x\)'
   shows 'double thickness\(time, y, x\)'
   shows 'x:standard_name = "projection_x_coordinate"'
-  shows 'peak_thickness:cell_methods = "time: maximum"'
+  shows 'peak_thickness:cell_methods = "area: mean time: maximum"'
   shows 'deposit_thickness:grid_mapping = "crs"'
   shows 'crs:crs_wkt = "PROJCRS'
-  shows 'time:units = "s"'
+  shows 'time:units = "seconds since 1970-01-01 00:00:00"'
   shows '_FillValue = -9999'
   expect_exit 0 ncdump -v time "$out/maps/results.nc"
   shows 'time = 0, [0-9.]+'
