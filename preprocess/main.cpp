@@ -25,6 +25,10 @@ Facts facts_of(const preprocess::Prepared& prepared) {
               {"layer_height_m", fmt::format("{:g}", domain.layer_height)},
               {"material_points", std::to_string(prepared.point_count)}};
   for (auto& fact : preprocess::as_facts(prepared.total)) facts.push_back(std::move(fact));
+  if (prepared.sliding_surface) {
+    facts.emplace_back("sliding_surface", fmt::format("computed from the outline, curvature {:.4g} 1/m, at most {:.4g} m deep, follows the ground in {} cells", prepared.sliding_surface->curvature,
+                                                      prepared.sliding_surface->depth, prepared.sliding_surface->touching));
+  }
   if (prepared.by_release.size() < 2) return facts;
   for (const auto& [name, volumes] : prepared.by_release) {
     for (auto& [key, value] : preprocess::as_facts(volumes)) facts.emplace_back(name + "." + key, std::move(value));

@@ -38,10 +38,26 @@ struct ErodibleOptions : ReleaseOptions {
   void describe(recipe::Visitor& v);
 };
 
+/// What the numbers of depth points are.
+enum class PointValue { elevation, depth };
+
+/// How deep the sliding surface lies that is computed under source.polygon. None given: by the area of the polygon.
+struct SlidingSurfaceOptions {
+  double depth_m = 0;    // 0 = not given
+  double volume_m3 = 0;  // 0 = not given
+  std::filesystem::path depth_points;
+  PointValue depth_points_hold = PointValue::elevation;
+  double depth_points_error_m = 0;
+
+  int ways_given() const { return (depth_m > 0) + (volume_m3 > 0) + !depth_points.empty(); }
+  void describe(recipe::Visitor& v);
+};
+
 struct SourceOptions {
   std::filesystem::path polygon;
   double threshold_m = 0.5;
   std::optional<double> seed_x_m, seed_y_m;
+  SlidingSurfaceOptions sliding_surface;
 
   void describe(recipe::Visitor& v);
 };
@@ -98,8 +114,8 @@ struct ObstacleOptions {
   void describe(recipe::Visitor& v);
 };
 
-/// The four ways of saying what fails.
-enum class Way { before_and_after, before_and_sliding_surface, base_and_releases, laboratory };
+/// The five ways of saying what fails.
+enum class Way { before_and_after, before_and_sliding_surface, before_and_outline, base_and_releases, laboratory };
 
 struct Options {
   std::filesystem::path before_dem, after_dem, sliding_surface, base_dem;

@@ -5,12 +5,14 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "common/error.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/laboratory.hpp"
 #include "preprocess/obstacle/obstacles.hpp"
 #include "preprocess/particles/seed.hpp"
+#include "preprocess/release/outline_source.hpp"
 #include "preprocess/release/releases.hpp"
 #include "preprocess/release/source.hpp"
 #include "preprocess/terrain/elevation.hpp"
@@ -25,6 +27,7 @@ struct Scene {
   Raster before, bed;
   std::vector<Release> releases;
   std::vector<double> lowering = {};  // before less after [m]; where both are given
+  std::optional<SlidingSurface> sliding_surface = {};  // where it was computed
 };
 
 Scene from_source(Raster before, Source source) {
@@ -57,6 +60,16 @@ Scene from_sliding_surface(const Options& options) {
   require_data(under, sliding.file);
   Source source = find_source({surfaces[0], under, options.sliding_surface, true}, options.source);
   return from_source(std::move(surfaces[0]), std::move(source));
+}
+
+Scene from_outline(const Options& options) {
+  Elevation before = read_elevation("before_dem", options.before_dem);
+  share_crs({&before}, options.working_crs);
+  Raster ground = align({&before}, options).front();
+  ComputedSource computed = source_by_outline(ground, options.source);
+  Scene scene = from_source(std::move(ground), std::move(computed.source));
+  scene.sliding_surface = std::move(computed.computed);
+  return scene;
 }
 
 void warn_of_overlap(const std::vector<Release>& releases) {
@@ -126,6 +139,7 @@ Scene read_scene(const Options& options) {
   switch (options.way()) {
     case Way::before_and_after: return from_before_and_after(options);
     case Way::before_and_sliding_surface: return from_sliding_surface(options);
+    case Way::before_and_outline: return from_outline(options);
     case Way::laboratory: return from_laboratory(options);
     case Way::base_and_releases: break;
   }
@@ -186,7 +200,7 @@ std::vector<std::filesystem::path> inputs_of(const Options& options) {
     if (!file.empty()) inputs.push_back(file);
   };
   for (const auto& file :
-       {options.before_dem, options.after_dem, options.sliding_surface, options.base_dem, options.source.polygon})
+       {options.before_dem, options.after_dem, options.sliding_surface, options.base_dem, options.source.polygon, options.source.sliding_surface.depth_points})
     add(file);
   for (const ReleaseOptions& layer : options.erodible) {
     add(layer.thickness_raster);
@@ -240,6 +254,7 @@ Prepared prepare(const Options& given, Points points) {
   }
   domain.terrain = std::move(scene.bed);
   domain.before = std::move(scene.before);
+  prepared.sliding_surface = std::move(scene.sliding_surface);
   return prepared;
 }
 

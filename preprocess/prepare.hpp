@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "common/volume/domain.hpp"
 #include "common/volume/level_set.hpp"
 #include "preprocess/options.hpp"
+#include "preprocess/release/sliding_surface.hpp"
 #include "preprocess/release/volumes.hpp"
 
 namespace talus::preprocess {
@@ -21,12 +23,13 @@ struct Prepared {
   std::vector<std::filesystem::path> inputs;
   std::vector<SolidBody> obstacles;
   double obstacle_voxel = 0;  // [m]
+  std::optional<SlidingSurface> sliding_surface = {};  // where it was computed from an outline
 };
 
 enum class Points { seeded, counted };
 
 /// Reads the files, aligns them, finds or reads the release and seeds its points. Throws RecipeError and DataError.
-/// Bed: under the released mass the sliding surface, min(before, after), or the base DEM itself (snow lies on it, so
+/// Bed: under the released mass the sliding surface (given or computed), min(before, after), or the base DEM itself (snow lies on it, so
 /// the surface before is base + thickness); elsewhere the ground as it is.
 Prepared prepare(const Options& options, Points points);
 
