@@ -11,9 +11,17 @@ namespace talus::gdal {
 namespace fs = std::filesystem;
 namespace {
 
-Dataset open(const fs::path& file) {
+/// Cells of ASCII grids in double precision: GDAL would keep seven digits, and 2345.678 m have as many.
+Dataset open_any(const fs::path& file, const AsciiGrid& ascii) {
+  constexpr unsigned how = GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR;
+  if (!ascii.is_one()) return Dataset(GDALDataset::Open(file.c_str(), how));
+  const std::array<const char*, 2> drivers{"AAIGrid", nullptr}, options{"DATATYPE=Float64", nullptr};
+  return Dataset(GDALDataset::Open(ascii.path().c_str(), how, drivers.data(), options.data()));
+}
+
+Dataset open(const fs::path& file, const AsciiGrid& ascii) {
   const QuietErrors errors;
-  Dataset dataset(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
+  Dataset dataset = open_any(file, ascii);
   if (!dataset) {
     const bool plain = file.is_absolute() && !file.string().starts_with("/vsi");
     if (plain && !fs::exists(file))
@@ -29,6 +37,11 @@ Dataset open(const fs::path& file) {
                                       : fmt::format("Name one of them in the recipe, such as {}", first)});
   }
   return dataset;
+}
+
+std::unique_ptr<AsciiGrid> ascii_grid(const fs::path& file) {
+  const QuietErrors errors;
+  return std::make_unique<AsciiGrid>(file);
 }
 
 /// The unit that a band names, else that of the vertical part of its CRS.
@@ -48,7 +61,10 @@ bool beyond_all_heights(double value) { return std::isfinite(value) && std::abs(
 std::string mended(const fs::path& file, const char* suffix) { return file.stem().string() + suffix + ".tif"; }
 
 RasterSource::RasterSource(fs::path file, const std::string& vertical_unit)
-    : file_(std::move(file)), dataset_(open(file_)), band_(dataset_->GetRasterBand(1)) {
+    : file_(std::move(file)),
+      ascii_(ascii_grid(file_)),
+      dataset_(open(file_, *ascii_)),
+      band_(dataset_->GetRasterBand(1)) {
   const QuietErrors errors;
   placed_ = dataset_->GetGeoTransform(transform_.data()) == CE_None;
   scale_ = band_->GetScale();

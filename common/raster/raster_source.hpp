@@ -3,9 +3,11 @@
 
 #include <array>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "common/raster/ascii_grid.hpp"
 #include "common/raster/gdal_support.hpp"
 
 namespace talus::gdal {
@@ -42,6 +44,7 @@ class RasterSource {
   void refuse_infinite(const std::vector<double>& values, int column, int line, int columns) const;
 
   std::filesystem::path file_;
+  std::unique_ptr<AsciiGrid> ascii_;  // stays as long as the dataset, which may read through it
   Dataset dataset_;
   GDALRasterBand* band_ = nullptr;
   bool placed_ = false;

@@ -109,17 +109,6 @@ TEST_F(RasterFile, a_raster_stored_south_first_reads_the_same) {
   EXPECT_EQ(back.values, raster.values);
 }
 
-TEST_F(RasterFile, dialects_of_ascii_grids_agree) {
-  const std::string cells = "1 2\n3 4\n";
-  const Raster corner =
-      read_raster(ascii("ncols 2\nnrows 2\nxllcorner 10\nyllcorner 20\ncellsize 4\nNODATA_value -9999", cells));
-  const Raster centre = read_raster(
-      ascii("NCOLS\t2\nNROWS\t2\nXLLCENTER\t12\nYLLCENTER\t22\nCELLSIZE\t4\nnodata_value\tnan", "1\t2\n3\t4\n"));
-  const Raster order = read_raster(ascii("nrows 2\nncols 2\nyllcorner 20\nxllcorner 10\ncellsize 4", cells));
-  EXPECT_TRUE(identical(corner, centre));
-  EXPECT_TRUE(identical(corner, order));
-}
-
 TEST_F(RasterFile, undeclared_nodata_values_are_dropped_with_a_warning) {
   testing::internal::CaptureStderr();
   const Raster raster = read_raster(ascii("ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 4", "-9999 7\n"));
