@@ -47,6 +47,31 @@ void SourceOptions::describe(recipe::Visitor& v) {
   v.leave();
 }
 
+void CoregistrationOptions::describe(recipe::Visitor& v) {
+  recipe::choice(v, "mode", mode, {{"check", Alignment::check}, {"apply", Alignment::apply}, {"off", Alignment::off}},
+                 "bring after_dem onto before_dem where nothing moved: check = find shift, height and tilt, and warn; apply = correct them");
+  v.flag("tilt", tilt, "look for a tilt too; one within its error is left out");
+  v.number("steepest_deg", steepest_deg, recipe::Range{0, 90, true, false}, "steeper ground is left out of the fit");
+  v.path("changed", changed, "polygons of ground to leave out of the fit, besides source and deposit; changes that stand out are found by themselves");
+}
+
+void DifferenceOptions::describe(recipe::Visitor& v) {
+  recipe::choice(v, "threshold", threshold,
+                 {{"probabilistic", Threshold::probabilistic}, {"propagated-error", Threshold::propagated_error}, {"minimum-level", Threshold::minimum_level}},
+                 "level of detection: confidence times the error; the error itself; or minimum_level_m alone");
+  v.number("confidence", confidence, recipe::Range{0.5, 0.9999}, "of the probabilistic level, two-sided");
+  v.number("minimum_level_m", minimum_level_m, recipe::not_negative, "the least level of detection in any case");
+  v.number("before_sigma_m", before_sigma_m, recipe::not_negative, "standard error of before_dem; 0 for both = the difference's, by slope, from stable ground");
+  v.number("after_sigma_m", after_sigma_m, recipe::not_negative, "that of after_dem");
+}
+
+double DifferenceOptions::given_sigma() const { return std::hypot(before_sigma_m, after_sigma_m); }
+
+void DepositOptions::describe(recipe::Visitor& v) {
+  v.path("polygon", polygon, "outline of the surveyed deposit; empty = what rose in the region of change that holds the source");
+  v.number("threshold_m", threshold_m, recipe::not_negative, "rise beyond which (and beyond the level of detection) a cell belongs to it");
+}
+
 void GridOptions::describe(recipe::Visitor& v) {
   v.number("spacing_m", spacing_m, recipe::not_negative,
            "horizontal spacing h of the grid; 0 = the cell of the first DEM");
@@ -112,6 +137,15 @@ void Options::describe(recipe::Visitor& v) {
                   {"foot", VerticalUnit::foot},
                   {"us-survey-foot", VerticalUnit::us_survey_foot}},
                  "what the elevation models' heights are in; declared = what each file says, metres where it says nothing");
+  v.enter("coregistration", "for (1): after_dem brought onto before_dem");
+  coregistration.describe(v);
+  v.leave();
+  v.enter("difference", "for (1): after_dem less before_dem, and from where on it is believed");
+  difference.describe(v);
+  v.leave();
+  v.enter("deposit", "for (1): what arrived, written for the score");
+  deposit.describe(v);
+  v.leave();
   v.enter("source", "what fails, for (1), (2) and (5)");
   source.describe(v);
   v.leave();

@@ -13,6 +13,9 @@ namespace talus::preprocess {
 /// Which way a thickness is measured.
 enum class Direction { vertical, slope_normal };
 
+/// From which difference on a change is believed (the vocabulary of GCD, Wheaton et al. 2010).
+enum class Threshold { minimum_level, propagated_error, probabilistic };
+
 /// What becomes of cells without elevation.
 enum class EdgeNodata { refuse, outside };
 
@@ -58,6 +61,37 @@ struct SourceOptions {
   double threshold_m = 0.5;
   std::optional<double> seed_x_m, seed_y_m;
   SlidingSurfaceOptions sliding_surface;
+
+  void describe(recipe::Visitor& v);
+};
+
+/// What is done about surveys that do not lie on one another.
+enum class Alignment { check, apply, off };
+
+struct CoregistrationOptions {
+  Alignment mode = Alignment::check;
+  bool tilt = true;
+  double steepest_deg = 45;
+  std::filesystem::path changed;
+
+  void describe(recipe::Visitor& v);
+};
+
+struct DifferenceOptions {
+  Threshold threshold = Threshold::probabilistic;
+  double confidence = 0.95;
+  double minimum_level_m = 0;
+  double before_sigma_m = 0, after_sigma_m = 0;  // 0 = learnt from stable ground
+
+  /// sqrt(s1^2 + s2^2) [m]; 0 where neither is given.
+  double given_sigma() const;
+  void describe(recipe::Visitor& v);
+};
+
+/// What arrived, for after_dem.
+struct DepositOptions {
+  std::filesystem::path polygon;
+  double threshold_m = 0.5;
 
   void describe(recipe::Visitor& v);
 };
@@ -121,7 +155,10 @@ struct Options {
   std::filesystem::path before_dem, after_dem, sliding_surface, base_dem;
   std::string working_crs;
   VerticalUnit vertical_unit = VerticalUnit::declared;
+  CoregistrationOptions coregistration;
+  DifferenceOptions difference;
   SourceOptions source;
+  DepositOptions deposit;
   GridOptions grid;
   std::vector<ReleaseOptions> release;
   std::vector<ErodibleOptions> erodible;

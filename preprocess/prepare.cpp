@@ -28,6 +28,8 @@ struct Scene {
   std::vector<Release> releases;
   std::vector<double> lowering = {};  // before less after [m]; where both are given
   std::optional<SlidingSurface> sliding_surface = {};  // where it was computed
+  std::optional<Survey> survey = {};
+  std::optional<SurveyedSlide> slide = {};
 };
 
 Scene from_source(Raster before, Source source) {
@@ -37,15 +39,17 @@ Scene from_source(Raster before, Source source) {
 }
 
 Scene from_before_and_after(const Options& options) {
-  Elevation before = read_elevation("before_dem", options.before_dem, dem_reading(options));
-  Elevation after = read_elevation("after_dem", options.after_dem, dem_reading(options));
-  share_crs({&before, &after}, options.working_crs);
-  std::vector<Raster> surfaces = align({&before, &after}, options);
-  Source source = find_source({surfaces[0], surfaces[1], options.after_dem}, options.source);
+  Survey survey = survey_of(options);
+  std::vector<Raster> surfaces = align({&survey.before, &survey.after}, options);
+  const Raster sigma = sigma_on(survey, surfaces[0]);
+  Source source = find_source({surfaces[0], surfaces[1], options.after_dem, false, levels_of(survey, sigma)}, options.source);
+  SurveyedSlide slide = delineate(survey, surfaces[0], surfaces[1], source.thickness, options.deposit);
   std::vector<double> lowering;
   for (std::size_t c = 0; c < surfaces[0].values.size(); ++c) lowering.push_back(surfaces[0].values[c] - surfaces[1].values[c]);
   Scene scene = from_source(std::move(surfaces[0]), std::move(source));
   scene.lowering = std::move(lowering);
+  scene.survey = std::move(survey);
+  scene.slide = std::move(slide);
   return scene;
 }
 
@@ -63,7 +67,7 @@ Scene from_sliding_surface(const Options& options) {
 }
 
 Scene from_outline(const Options& options) {
-  Elevation before = read_elevation("before_dem", options.before_dem);
+  Elevation before = read_elevation("before_dem", options.before_dem, dem_reading(options));
   share_crs({&before}, options.working_crs);
   Raster ground = align({&before}, options).front();
   ComputedSource computed = source_by_outline(ground, options.source);
@@ -200,7 +204,8 @@ std::vector<std::filesystem::path> inputs_of(const Options& options) {
     if (!file.empty()) inputs.push_back(file);
   };
   for (const auto& file :
-       {options.before_dem, options.after_dem, options.sliding_surface, options.base_dem, options.source.polygon, options.source.sliding_surface.depth_points})
+       {options.before_dem, options.after_dem, options.sliding_surface, options.base_dem, options.source.polygon, options.source.sliding_surface.depth_points,
+        options.coregistration.changed, options.deposit.polygon})
     add(file);
   for (const ReleaseOptions& layer : options.erodible) {
     add(layer.thickness_raster);
@@ -216,6 +221,14 @@ std::vector<std::filesystem::path> inputs_of(const Options& options) {
 }
 
 }  // namespace
+
+Survey survey_of(const Options& given) {
+  const Options options = with_utm_zone(given);
+  Elevation before = read_elevation("before_dem", options.before_dem, dem_reading(options));
+  Elevation after = read_elevation("after_dem", options.after_dem, dem_reading(options));
+  share_crs({&before, &after}, options.working_crs);
+  return compare_surveys(std::move(before), std::move(after), options);
+}
 
 Prepared prepare(const Options& given, Points points) {
   std::vector<Fault> faults;
@@ -255,6 +268,8 @@ Prepared prepare(const Options& given, Points points) {
   domain.terrain = std::move(scene.bed);
   domain.before = std::move(scene.before);
   prepared.sliding_surface = std::move(scene.sliding_surface);
+  prepared.survey = std::move(scene.survey);
+  prepared.slide = std::move(scene.slide);
   return prepared;
 }
 

@@ -12,6 +12,7 @@
 #include "preprocess/options.hpp"
 #include "preprocess/release/sliding_surface.hpp"
 #include "preprocess/release/volumes.hpp"
+#include "preprocess/survey/survey.hpp"
 
 namespace talus::preprocess {
 
@@ -24,9 +25,15 @@ struct Prepared {
   std::vector<SolidBody> obstacles;
   double obstacle_voxel = 0;  // [m]
   std::optional<SlidingSurface> sliding_surface = {};  // where it was computed from an outline
+  std::optional<Survey> survey = {};                   // where before and after are given
+  std::optional<SurveyedSlide> slide = {};
 };
 
 enum class Points { seeded, counted };
+
+/// What two elevation models say of what changed, and nothing further: the first part of prepare(), for before_dem and
+/// after_dem alone.
+Survey survey_of(const Options& options);
 
 /// Reads the files, aligns them, finds or reads the release and seeds its points. Throws RecipeError and DataError.
 /// Bed: under the released mass the sliding surface (given or computed), min(before, after), or the base DEM itself (snow lies on it, so

@@ -16,7 +16,6 @@ namespace {
 
 constexpr int most_iterations = 50;
 constexpr double still = 1e-3;           // cells: what is left of a shift at the end
-constexpr std::size_t least_cells = 100; // of stable ground
 
 void move(Placement& placement, const ShiftFit& fit, double length) {
   placement.x += fit.value[0];
@@ -24,13 +23,6 @@ void move(Placement& placement, const ShiftFit& fit, double length) {
   placement.z += fit.value[2];
   placement.tilt_x += fit.value[3] / length;
   placement.tilt_y += fit.value[4] / length;
-}
-
-void require_ground(std::size_t cells, const std::filesystem::path& after_file) {
-  if (cells >= least_cells) return;
-  throw DataError(Fault{fmt::format("{}: {} cells of stable ground are shared with the survey before", after_file.string(), cells),
-                        fmt::format("an alignment needs {} cells that are neither steep nor rough nor part of the slide", least_cells),
-                        "Give elevation models that reach further, raise steepest_deg or draw the polygons of [preprocess.coregistration] closer; or align them beforehand and set mode = \"off\""});
 }
 
 /// Heights in feet stretch relief, not only lift it: spreads differ by that factor.
@@ -50,7 +42,7 @@ void refuse_feet(const std::vector<Patch>& patches, const Placement& placement, 
     const bool later = feet > 1;
     throw DataError(Fault{fmt::format("{}: its relief is {:.3f} times that of the survey before", after_file.string(), ratio),
                           later ? "its heights look like feet" : "the heights of the survey before look like feet",
-                          fmt::format("Say so: {}_vertical_unit = \"foot\" in [preprocess]", later ? "after" : "before")});
+                          "Bring both to metres: gdal_calc.py -A in.tif --calc=A*0.3048 --outfile=out.tif, or vertical_unit in [preprocess] where all are in feet"});
   }
 }
 
@@ -103,6 +95,26 @@ Extent extent_of(const std::vector<Patch>& patches) {
   return all;
 }
 
+/// What is said of the ground in the end.
+Coregistration told(const std::vector<Patch>& patches, const Placement& start, Coregistration result) {
+  result.known = true;
+  result.unaligned = residuals_of(stable_misfit(patches, start));
+  const std::vector<double> rest = stable_misfit(patches, result.placement);
+  result.aligned = residuals_of(rest);
+  std::size_t cells = 0;
+  for (const Patch& p : patches) cells += p.stable.size();
+  result.stable_share = static_cast<double>(rest.size()) / static_cast<double>(cells);
+  return result;
+}
+
+/// Most cells agree to the last digit: the later model was made from the earlier one, and there is nothing to fit.
+Coregistration as_it_is(std::vector<Patch>& patches, Coregistration result) {
+  leave_out_changed(patches, result.placement);
+  result.converged = true;
+  const Placement start = result.placement;
+  return told(patches, start, std::move(result));
+}
+
 }  // namespace
 
 Coregistration coregister(std::vector<Patch>& patches, bool tilt, const std::filesystem::path& after_file) {
@@ -111,7 +123,9 @@ Coregistration coregister(std::vector<Patch>& patches, bool tilt, const std::fil
   const double length = extent.east - extent.west;
   result.placement.centre_x = (extent.west + extent.east) / 2;
   result.placement.centre_y = (extent.south + extent.north) / 2;
-  require_ground(stable_misfit(patches, result.placement).size(), after_file);
+  const std::size_t at_first = stable_misfit(patches, result.placement).size();
+  if (at_first < least_cells) return result;
+  if (nmad(stable_misfit(patches, result.placement)) == 0) return as_it_is(patches, std::move(result));
   refuse_feet(patches, result.placement, after_file);
   const Placement start = result.placement;
   move_by_whole_cells(patches, result.placement);
@@ -121,19 +135,11 @@ Coregistration coregister(std::vector<Patch>& patches, bool tilt, const std::fil
   settle(patches, sought, length, result);
   for (int round = 0; round < 2; ++round) {
     leave_out_changed(patches, result.placement);
-    require_ground(stable_misfit(patches, result.placement).size(), after_file);
+    if (stable_misfit(patches, result.placement).size() < std::max<std::size_t>(least_cells, at_first / 2)) return result;
     settle(patches, sought, length, result);
   }
   if (tilt) fit_tilt(patches, sought, length, result);
-  result.unaligned = residuals_of(stable_misfit(patches, start));
-  const std::vector<double> rest = stable_misfit(patches, result.placement);
-  result.aligned = residuals_of(rest);
-  std::size_t cells = 0;
-  for (const Patch& p : patches) cells += p.stable.size();
-  result.stable_share = static_cast<double>(rest.size()) / static_cast<double>(cells);
-  const double cell = patches.front().before.grid.cell;
-  result.stable_area = static_cast<double>(rest.size()) * cell * cell;
-  return result;
+  return told(patches, start, std::move(result));
 }
 
 }  // namespace talus::preprocess

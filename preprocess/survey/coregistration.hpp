@@ -16,14 +16,16 @@ struct StableGround {
 };
 
 struct Coregistration {
-  Placement placement;         ///< of the later survey; none where it could not be told
+  bool known = false;            ///< false: too little stable ground, or most of it changed
+  Placement placement;           ///< of the later survey
   Residuals unaligned, aligned;  ///< after less before on stable ground [m]
   int iterations = 0;
   bool converged = false;
   bool shift_known = true;   ///< false on ground too level, or sloping one way only, to tell a horizontal shift
   double stable_share = 0;   ///< of the cells that both surveys hold
-  double stable_area = 0;    ///< [m2] of the patches
 };
+
+inline constexpr std::size_t least_cells = 100;
 
 /// Marks the cells of the patches that are steep, rough or inside a polygon as not stable. Roughness is the distance
 /// from the mean of the eight neighbours.
@@ -37,7 +39,8 @@ void find_stable(std::vector<Patch>& patches, const StableGround& limits);
 /// iteration, until it moves by less than a thousandth of a cell. Starts from the whole-cell shift of least NMAD
 /// within 16 cells. In between, connected cells that changed by more than three NMAD are taken out of the stable
 /// ground, so that an unmapped slide does not pull. A tilt smaller than three times its error is left out. Throws
-/// DataError: hardly any stable ground, heights in feet, surveys that do not overlap once moved.
+/// DataError where heights look like feet. Not known where fewer than least_cells are stable, or where changes take more than half of
+/// what is neither steep nor rough nor in a polygon.
 Coregistration coregister(std::vector<Patch>& patches, bool tilt, const std::filesystem::path& after_file);
 
 /// Residuals of the stable cells with the later survey placed as told.

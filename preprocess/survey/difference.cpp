@@ -11,27 +11,25 @@ namespace {
 
 constexpr int block_cells = 1024;
 
-/// Rise per metre at every cell, by differences to the neighbours there are.
-double slope_at(const Raster& z, int column, int row) {
-  const auto value = [&](int c, int r) {
-    return c < 0 || r < 0 || c >= z.grid.columns || r >= z.grid.rows ? std::nan("") : z.at(c, r);
-  };
+/// Rise per metre at a cell of a raster one cell wider on every side, by differences to the neighbours there are.
+double slope_at(const Raster& wide, int column, int row) {
   const auto along = [&](double behind, double ahead) {
-    const double here = z.at(column, row);
-    if (!std::isnan(behind) && !std::isnan(ahead)) return (ahead - behind) / (2 * z.grid.cell);
-    if (!std::isnan(ahead)) return (ahead - here) / z.grid.cell;
-    return std::isnan(behind) ? 0.0 : (here - behind) / z.grid.cell;
+    const double here = wide.at(column, row);
+    if (!std::isnan(behind) && !std::isnan(ahead)) return (ahead - behind) / (2 * wide.grid.cell);
+    if (!std::isnan(ahead)) return (ahead - here) / wide.grid.cell;
+    return std::isnan(behind) ? 0.0 : (here - behind) / wide.grid.cell;
   };
-  return std::hypot(along(value(column - 1, row), value(column + 1, row)), along(value(column, row - 1), value(column, row + 1)));
+  return std::hypot(along(wide.at(column - 1, row), wide.at(column + 1, row)), along(wide.at(column, row - 1), wide.at(column, row + 1)));
 }
 
 Block block_of(const Elevation& before, const Elevation& after, const MapGrid& part, const ErrorModel& model) {
-  Block block{onto_grid(before, part), onto_grid(after, part), {part, std::vector<double>(part.count())}, {part, std::vector<double>(part.count())}};
+  const Raster wide = onto_grid(before, cut(part, {-1, -1, part.columns + 2, part.rows + 2}));  // so that blocks do not show in the slopes
+  Block block{cut(wide, {1, 1, part.columns, part.rows}), onto_grid(after, part), {part, std::vector<double>(part.count())}, {part, std::vector<double>(part.count())}};
   for (int row = 0; row < part.rows; ++row) {
     for (int column = 0; column < part.columns; ++column) {
       const double d = block.after.at(column, row) - block.before.at(column, row);
       block.difference.at(column, row) = d;
-      block.sigma.at(column, row) = std::isnan(d) ? d : model.sigma(slope_at(block.before, column, row));
+      block.sigma.at(column, row) = std::isnan(d) ? d : model.sigma(slope_at(wide, column + 1, row + 1));
     }
   }
   return block;

@@ -4,19 +4,16 @@
 #include <filesystem>
 #include <functional>
 
+#include "preprocess/options.hpp"
 #include "preprocess/survey/error_model.hpp"
 #include "preprocess/terrain/elevation.hpp"
 
 namespace talus::preprocess {
 
-/// From which difference on a change is believed (the vocabulary of GCD, Wheaton et al. 2010, Earth Surf. Process.
-/// Landforms 35, 136).
-enum class Threshold { minimum_level, propagated_error, probabilistic };
-
 struct Detection {
   Threshold threshold = Threshold::probabilistic;
   double minimum_level = 0;  ///< [m]; the least level in any case
-  double quantile = 1.96;    ///< of the normal distribution: 1.96 = 95 %
+  double quantile = 1.96;    ///< of the normal distribution, two-sided: 1.96 = 95 %
 
   /// Level of detection [m] of a cell whose difference has the standard deviation `sigma`.
   double level(double sigma) const;

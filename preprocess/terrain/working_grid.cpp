@@ -27,7 +27,9 @@ std::string text(const Extent& e) {
 }
 
 Extent extent_in(const Elevation& dem, const std::string& crs) {
-  return same_crs(dem.crs_wkt(), crs) ? dem.extent() : transform_extent(dem.extent(), dem.crs_wkt(), crs);
+  const Extent e = same_crs(dem.crs_wkt(), crs) ? dem.extent() : transform_extent(dem.extent(), dem.crs_wkt(), crs);
+  const Placement& p = dem.placement;
+  return {e.west + p.x, e.south + p.y, e.east + p.x, e.north + p.y};
 }
 
 double spacing_of(const Elevation& first, const Options& options) {

@@ -1,0 +1,56 @@
+// Two elevation models as one survey of what changed: aligned, compared, with the error of the comparison.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "preprocess/survey/coregistration.hpp"
+#include "preprocess/survey/difference.hpp"
+
+namespace talus::preprocess {
+
+struct Survey {
+  Elevation before, after;  // the later one placed, where that was asked for
+  MapGrid grid;             // what both cover, in cells of the first
+  Coregistration fit;
+  bool applied = false;
+  ErrorModel errors;
+  Detection detection;
+  std::vector<std::pair<MapGrid, std::vector<char>>> stable;  // of each patch that was looked at
+};
+
+/// Finds how the later survey lies on the earlier one, corrects it where the options say so, and learns the error of
+/// their difference from stable ground. Throws DataError where an alignment is asked for and there is no stable ground to
+/// find it on, where the surveys do not overlap, and where one looks like feet.
+Survey compare_surveys(Elevation before, Elevation after, const Options& options);
+
+/// What a Survey says, as people read it.
+std::vector<std::string> as_lines(const Survey& survey);
+
+/// One side of the slide as surveyed.
+struct SurveyedVolume {
+  std::string name;
+  VolumeWithError volume;
+};
+
+/// What is known of the slide on the working grid.
+struct SurveyedSlide {
+  Raster deposit;  // rise of the surface in the deposit, 0 outside, NaN where not surveyed [m]
+  Raster sigma;    // standard deviation of the difference [m]
+  std::vector<SurveyedVolume> volumes;
+};
+
+/// Level of detection, and at least `threshold`, of every cell; sigma as in SurveyedSlide.
+std::vector<double> levels_of(const Survey& survey, const Raster& sigma);
+
+/// Standard deviation of the difference on the cells of a surface [m].
+Raster sigma_on(const Survey& survey, const Raster& before);
+
+/// The deposit: within its polygon; else what rose beyond threshold and level of detection in the regions of change that
+/// hang together with the source; else, where nothing rose there, the largest region that rose. `source` is its
+/// thickness. Volumes of source and deposit with their errors.
+SurveyedSlide delineate(const Survey& survey, const Raster& before, const Raster& after, const Raster& source, const DepositOptions& options);
+
+}  // namespace talus::preprocess
