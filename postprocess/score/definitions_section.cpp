@@ -14,7 +14,11 @@ void of_run(const Scored& scored, Sheet& sheet) {
       "Run-out: in plan from the crown (highest release cell), straight to the farthest deposit cell, or along the thalweg to "
       "the deposit cell farthest along it; H: drop of the surface before the failure between the two; Fahrboeschung: "
       "atan(H/L); travel angle: the same of the centre of mass.");
-  if (!scored.thalweg.line.empty()) sheet.note("Thalweg: " + scored.thalweg.origin + ".");
+  if (!scored.thalweg.line.empty())
+    sheet.note(fmt::format("Thalweg: {}{}.", scored.thalweg.origin,
+                           scored.thalweg.given ? ", from its higher end"
+                                                : "; carried on through the thickest flow to the crown and the farthest "
+                                                  "deposit, and smoothed"));
 }
 
 void of_maps(const Survey& survey, Sheet& sheet) {

@@ -45,7 +45,7 @@ Thalweg given_thalweg(const std::filesystem::path& file, const RunMaps& maps) {
     thalweg.distance = lengths_along(thalweg.line);
   }
   thalweg.given = true;
-  thalweg.origin = "the line of " + file.filename().string();
+  thalweg.origin = "line of " + file.filename().string();
   return thalweg;
 }
 
@@ -85,9 +85,8 @@ Thalweg found_thalweg(const Run& run, const Options& options) {
   if (!by_mass) middle.clear();
   const auto way = without_returns(joined(maps, *top, middle, *toe), cell);
   auto thalweg = thalweg_from(smoothed(resampled(way, cell), smoothing), cell);
-  thalweg.origin = by_mass ? "the path of the centre of mass, carried on to the crown and the farthest deposit"
-                           : "the way through the thickest flow from the crown to the farthest deposit, because the centre "
-                             "of mass moves less than five cells over the frames";
+  thalweg.origin = by_mass ? "path of the centre of mass"
+                           : "thickest flow from crown to deposit, as the centre of mass moves less than five cells over the frames";
   return thalweg;
 }
 
