@@ -1,5 +1,6 @@
 // Simulation against survey, cell by cell, in volume and in reach.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
@@ -90,6 +91,22 @@ void reach_lines(const std::string& key, const std::string& label, double survey
                std::isfinite(surveyed) ? "the simulation has no run-out" : "the survey exceeds the threshold nowhere");
 }
 
+/// What lies between threshold and level of detection is deposit to the simulation and nothing to the survey.
+void blind_zone(const Scored& scored, Sheet& sheet) {
+  const auto& survey = *scored.survey;
+  const double threshold = scored.options.deposit_threshold;
+  double cells = 0, blind = 0;
+  for (std::size_t i = 0; i < survey.error.sigma.size(); ++i) {
+    if (std::isnan(survey.measured[i]) || survey.measured[i] == 0) continue;
+    cells += 1;
+    blind += survey.error.detection * survey.error.sigma[i] > threshold ? 1 : 0;
+  }
+  if (blind > 0.01 * cells)
+    sheet.note(fmt::format("Warning: the level of detection lies above the deposit threshold of {:g} m on {:.0f} % of the surveyed "
+                           "cells. Thinner deposit is simulated but cannot be surveyed there: raise deposit_threshold_m.",
+                           threshold, 100 * blind / cells));
+}
+
 void left_out(const Scored& scored, const OnSurveyGrid& simulated, Sheet& sheet) {
   sheet.number("deposit_not_surveyed_m3", "simulated deposit where nothing was surveyed", "m3", simulated.deposit_left_out, 0);
   const double share = simulated.deposit_left_out / scored.run.summary.volume_released;
@@ -131,6 +148,7 @@ void add_agreement(const Scored& scored, const OnSurveyGrid& simulated, Sheet& s
   reach_lines("runout", "run-out, straight", surveyed_reach.straight, deposit_reach.straight, sheet);
   reach_lines("thalweg_runout", "run-out along the thalweg", surveyed_reach.along, deposit_reach.along, sheet);
   left_out(scored, simulated, sheet);
+  blind_zone(scored, sheet);
 }
 
 }  // namespace talus::postprocess
