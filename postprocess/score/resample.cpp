@@ -3,6 +3,9 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
+#include "common/stage/stage.hpp"
 #include "postprocess/maps/fields.hpp"
 #include "postprocess/score/contingency.hpp"
 #include "postprocess/score/patches.hpp"
@@ -17,10 +20,10 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 struct Fixed {
   const Scored& scored;
   const OnSurveyGrid& simulated;
-  double simulated_volume;       // [m3]
-  Reach simulated_reach;         // [m]
-  std::vector<char> seeds;       // cells with a surveyed deposit
-  std::vector<double> along{};   // distance along the thalweg of the cells asked for so far, NaN of the others [m]
+  double simulated_volume;      // [m3]
+  Reach simulated_reach;        // [m]
+  std::vector<char> seeds;      // cells with a surveyed deposit
+  std::vector<double> along{};  // distance along the thalweg of the cells asked for so far, NaN of the others [m]
 };
 
 Reach surveyed_reach(Fixed& fixed, const std::vector<double>& deposit) {
@@ -71,12 +74,22 @@ Resampled resample(const Scored& scored, const OnSurveyGrid& simulated) {
   const auto& sigma = survey.error.sigma;
   if (sigma.empty()) return all;
   const auto& maps = scored.run.maps;
-  Fixed fixed{scored, simulated, volume_under(simulated.deposit, survey.grid.cell),
+  Fixed fixed{scored,
+              simulated,
+              volume_under(simulated.deposit, survey.grid.cell),
               reach_of(scored, maps.grid, maps.deposit_thickness, options.deposit_threshold),
-              std::vector<char>(survey.deposit.size()), std::vector<double>(survey.deposit.size(), nan)};
-  for (std::size_t i = 0; i < survey.deposit.size(); ++i) fixed.seeds[i] = survey.deposit[i] > options.deposit_threshold;
-  RandomField errors(survey.grid, survey.error.correlation_length, static_cast<std::uint64_t>(options.survey.resample_seed));
+              std::vector<char>(survey.deposit.size()),
+              std::vector<double>(survey.deposit.size(), nan)};
+  for (std::size_t i = 0; i < survey.deposit.size(); ++i)
+    fixed.seeds[i] = survey.deposit[i] > options.deposit_threshold;
+  RandomField errors(survey.grid, survey.error.correlation_length,
+                     static_cast<std::uint64_t>(options.survey.resample_seed));
+  Progress progress;
   for (int draw = 0; draw < options.survey.resamples; ++draw) {
+    if (progress.due())
+      progress.update(fmt::format("survey {}/{} drawn within its error", draw, options.survey.resamples));
+    if (interrupted())
+      throw Interrupted({"ended while drawing surveys", "", "Nothing was written; run the stage again"});
     auto value = errors.next();
     for (std::size_t i = 0; i < value.size(); ++i) {
       value[i] = survey.measured[i] == 0 ? 0 : survey.measured[i] + sigma[i] * value[i];

@@ -52,7 +52,8 @@ Thalweg given_thalweg(const std::filesystem::path& file, const RunMaps& maps) {
 Polyline path_of_mass(const Run& run) {
   Polyline path;
   for (std::size_t frame = 0; frame < run.frames.time.size(); ++frame) {
-    if (const auto centre = centre_of_mass(run.maps.grid, flow_thickness(run, frame), {})) path.push_back({centre->x, centre->y});
+    if (const auto centre = centre_of_mass(run.maps.grid, flow_thickness(run, frame), {}))
+      path.push_back({centre->x, centre->y});
   }
   return path;
 }
@@ -74,10 +75,13 @@ Thalweg found_thalweg(const Run& run, const Options& options) {
   const auto& maps = run.maps;
   const double cell = maps.grid.cell;
   const auto top = crown(maps, options.deposit_threshold);
-  const auto toe = top ? farthest(maps.grid, maps.deposit_thickness, options.deposit_threshold, *top, maps.before) : std::nullopt;
+  const auto toe =
+      top ? farthest(maps.grid, maps.deposit_thickness, options.deposit_threshold, *top, maps.before) : std::nullopt;
   if (!toe || plan_distance(*top, *toe) < cell) {
     Thalweg none;
-    none.origin = !top ? "no release in the run's maps" : !toe ? "no deposit above the threshold" : "nothing moved by a cell";
+    none.origin = !top   ? "no release in the run's maps"
+                  : !toe ? "no deposit above the threshold"
+                         : "nothing moved by a cell";
     return none;
   }
   auto middle = without_returns(path_of_mass(run), 2 * cell);
@@ -85,8 +89,9 @@ Thalweg found_thalweg(const Run& run, const Options& options) {
   if (!by_mass) middle.clear();
   const auto way = without_returns(joined(maps, *top, middle, *toe), cell);
   auto thalweg = thalweg_from(smoothed(resampled(way, cell), smoothing), cell);
-  thalweg.origin = by_mass ? "path of the centre of mass"
-                           : "thickest flow from crown to deposit, as the centre of mass moves less than five cells over the frames";
+  thalweg.origin =
+      by_mass ? "path of the centre of mass"
+              : "thickest flow from crown to deposit, as the centre of mass moves less than five cells over the frames";
   return thalweg;
 }
 
@@ -168,7 +173,8 @@ std::vector<double> cross_section_maxima(const Thalweg& thalweg, const MapGrid& 
       if (std::isnan(value)) continue;
       const auto place = project(thalweg, grid.x(column), grid.y(row));
       const double station = std::round(place.distance / step);
-      if (!(std::abs(place.offset) <= half_width && station >= 0 && station < static_cast<double>(maxima.size()))) continue;
+      if (!(std::abs(place.offset) <= half_width && station >= 0 && station < static_cast<double>(maxima.size())))
+        continue;
       double& top = maxima[static_cast<std::size_t>(station)];
       if (!(value <= top)) top = value;
     }
