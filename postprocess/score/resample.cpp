@@ -20,10 +20,11 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 struct Fixed {
   const Scored& scored;
   const OnSurveyGrid& simulated;
-  double simulated_volume;      // [m3]
-  Reach simulated_reach;        // [m]
-  std::vector<char> seeds;      // cells with a surveyed deposit
-  std::vector<double> along{};  // distance along the thalweg of the cells asked for so far, NaN of the others [m]
+  double simulated_volume;  // [m3]
+  Reach simulated_reach;    // [m]
+  std::vector<char> seeds;  // cells with a surveyed deposit
+  DistancesAlong along;     // the thalweg
+};                          // distance along the thalweg of the cells asked for so far, NaN of the others [m]
 };
 
 Reach surveyed_reach(Fixed& fixed, const std::vector<double>& deposit) {
@@ -38,9 +39,8 @@ Reach surveyed_reach(Fixed& fixed, const std::vector<double>& deposit) {
       const auto i = grid.index(column, row);
       if (!(patches[i] > threshold)) continue;
       const Place here{grid.x(column), grid.y(row), 0};
-      if (std::isnan(fixed.along[i])) fixed.along[i] = project(scored.thalweg, here.x, here.y).distance;
       reach.straight = std::fmax(reach.straight, plan_distance(*scored.crown, here));
-      reach.along = std::fmax(reach.along, fixed.along[i] - scored.crown_along);
+      reach.along = std::fmax(reach.along, fixed.along.at(column, row) - scored.crown_along);
     }
   }
   return reach;
@@ -79,7 +79,7 @@ Resampled resample(const Scored& scored, const OnSurveyGrid& simulated) {
               volume_under(simulated.deposit, survey.grid.cell),
               reach_of(scored, maps.grid, maps.deposit_thickness, options.deposit_threshold),
               std::vector<char>(survey.deposit.size()),
-              std::vector<double>(survey.deposit.size(), nan)};
+              DistancesAlong(scored.thalweg, survey.grid)};
   for (std::size_t i = 0; i < survey.deposit.size(); ++i)
     fixed.seeds[i] = survey.deposit[i] > options.deposit_threshold;
   RandomField errors(survey.grid, survey.error.correlation_length,

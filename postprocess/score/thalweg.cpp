@@ -127,6 +127,15 @@ AlongLine project(const Thalweg& thalweg, double x, double y) {
   return best;
 }
 
+DistancesAlong::DistancesAlong(const Thalweg& thalweg, const MapGrid& grid)
+    : thalweg_(thalweg), grid_(grid), known_(grid.count(), nan) {}
+
+double DistancesAlong::at(int column, int row) {
+  double& distance = known_[grid_.index(column, row)];
+  if (std::isnan(distance)) distance = project(thalweg_, grid_.x(column), grid_.y(row)).distance;
+  return distance;
+}
+
 std::optional<PlaceAlong> farthest_along(const Thalweg& thalweg, const MapGrid& grid, const std::vector<double>& values,
                                          double threshold, const std::vector<double>& surface) {
   std::optional<PlaceAlong> far;
@@ -153,11 +162,18 @@ std::vector<double> flow_thickness(const Run& run, std::size_t frame) {
 }
 
 Series front_over_time(const Run& run, const Thalweg& thalweg, double threshold) {
-  Series front;
+  const auto& grid = run.maps.grid;
+  DistancesAlong distances(thalweg, grid);
+  Series front{run.frames.time, {}};
   for (std::size_t frame = 0; frame < run.frames.time.size(); ++frame) {
-    const auto far = farthest_along(thalweg, run.maps.grid, flow_thickness(run, frame), threshold, {});
-    front.time.push_back(run.frames.time[frame]);
-    front.value.push_back(far ? far->distance : nan);
+    const auto thickness = flow_thickness(run, frame);
+    double reach = nan;
+    for (int row = 0; row < grid.rows; ++row) {
+      for (int column = 0; column < grid.columns; ++column) {
+        if (thickness[grid.index(column, row)] > threshold) reach = std::fmax(reach, distances.at(column, row));
+      }
+    }
+    front.value.push_back(reach);
   }
   return front;
 }

@@ -40,6 +40,18 @@ struct AlongLine {
 };
 AlongLine project(const Thalweg& thalweg, double x, double y);
 
+/// Distance along a line of the cells of a map, computed once for each cell that is asked for. Keeps references.
+class DistancesAlong {
+ public:
+  DistancesAlong(const Thalweg& thalweg, const MapGrid& grid);
+  double at(int column, int row);  ///< of the cell's centre [m]
+
+ private:
+  const Thalweg& thalweg_;
+  const MapGrid& grid_;
+  std::vector<double> known_;  // NaN: not asked for yet
+};
+
 /// A place, and how far along a line it lies [m].
 struct PlaceAlong {
   Place place;
