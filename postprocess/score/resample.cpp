@@ -24,7 +24,6 @@ struct Fixed {
   Reach simulated_reach;    // [m]
   std::vector<char> seeds;  // cells with a surveyed deposit
   DistancesAlong along;     // the thalweg
-};                          // distance along the thalweg of the cells asked for so far, NaN of the others [m]
 };
 
 Reach surveyed_reach(Fixed& fixed, const std::vector<double>& deposit) {
