@@ -58,8 +58,9 @@ std::string history_table(const RunHistory& history) {
   return text + "\n";
 }
 
-void write_results(StageContext& context, const Run& run, const Options& options, const std::optional<Survey>& survey) {
-  const auto score = make_score(run, options, survey);
+void write_results(StageContext& context, const Run& run, const Options& options, const std::optional<Survey>& survey,
+                   const Thalweg& thalweg) {
+  const auto score = make_score(run, options, survey, thalweg);
   const auto table = to_table(score);
   const auto folder = context.out / "maps";
   make_folder(folder);
@@ -92,13 +93,15 @@ void run(StageContext& context) {
   const auto run = read_run(file);
   check_volume(file, run);
   const auto survey = read_survey(options.survey, run.maps, options.footprint_threshold);
+  const auto thalweg = thalweg_of(run, options);
   log_info(fmt::format("{}: {} x {} cells of {:g} m, {} frames; {}", file.string(), run.maps.grid.columns,
                        run.maps.grid.rows, run.maps.grid.cell, run.frames.time.size(),
                        survey ? "scored against " + survey->name : std::string("no survey to score against")));
   if (context.check_only) return;
-  write_results(context, run, options, survey);
+  write_results(context, run, options, survey, thalweg);
   auto inputs = survey ? survey->inputs : std::vector<fs::path>{};
   inputs.insert(inputs.begin(), file);
+  if (thalweg.given) inputs.push_back(options.thalweg);
   write_used_recipe(context, stage(), recipe::to_toml(options, "postprocess", false), inputs,
                     {{"CRS", crs_name(run.maps.grid.crs_wkt)}});
 }

@@ -43,12 +43,23 @@ struct MapPolygon {
 /// All polygons of a vector file's first layer (multipolygons split), transformed to `crs_wkt` when both have a CRS.
 std::vector<MapPolygon> read_polygons(const std::filesystem::path& file, const std::string& crs_wkt);
 
+/// A line of points (x, y) [m], at least two, none repeated.
+using MapLine = std::vector<std::array<double, 2>>;
+
+/// All lines of a vector file's first layer (multilines split), transformed to `crs_wkt` when both have a CRS. Throws
+/// DataError: no such file, not a vector file, no line in it.
+std::vector<MapLine> read_lines(const std::filesystem::path& file, const std::string& crs_wkt);
+
 /// What a GeoTIFF says of itself beside its values.
 struct RasterTags {
   std::string description;  ///< band description: "deposit thickness, vertical [m]"
   std::string unit;         ///< "m"
   std::vector<std::pair<std::string, std::string>> metadata;
 };
+
+/// A number among the metadata items of a raster file (as RasterTags writes them); empty where the item is missing or no
+/// number. Throws DataError when the file cannot be opened.
+std::optional<double> raster_item(const std::filesystem::path& file, const std::string& name);
 
 /// Write a cloud-optimised GeoTIFF (COG driver, deflate, overviews, nodata -9999, Float64 so that volumes close to
 /// 1e-9), aside and renamed. Throws DataError when anything fails on the way (disk full).

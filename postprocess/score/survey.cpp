@@ -6,28 +6,14 @@
 
 #include <fmt/format.h>
 
-#include "common/raster/slope.hpp"
+#include "common/error.hpp"
+#include "postprocess/score/survey_error.hpp"
+#include "postprocess/score/survey_grid.hpp"
 
 namespace talus::postprocess {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool same_grid(const MapGrid& a, const MapGrid& b) {
-  const double slack = 1e-6 * a.cell;
-  return a.columns == b.columns && a.rows == b.rows && std::abs(a.west - b.west) < slack &&
-         std::abs(a.south - b.south) < slack && std::abs(a.cell - b.cell) * std::max(a.columns, a.rows) < slack;
-}
-
-void check_crs(const fs::path& file, const MapGrid& grid, const MapGrid& run) {
-  if (same_crs(grid.crs_wkt, run.crs_wkt)) return;
-  const auto mend = run.crs_wkt.empty() || grid.crs_wkt.empty()
-                        ? fmt::format("If the coordinates fit, name the CRS: gdal_edit.py -a_srs {} {}",
-                                      run.crs_wkt.empty() ? "None" : crs_name(run.crs_wkt), file.string())
-                        : fmt::format("Reproject: gdalwarp -t_srs {} {} out.tif", crs_name(run.crs_wkt), file.string());
-  throw DataError({fmt::format("{}: CRS is {}", file.string(), crs_name(grid.crs_wkt)),
-                   fmt::format("the run is in {}", crs_name(run.crs_wkt)), mend});
-}
 
 std::string box(const MapGrid& grid) {
   return fmt::format("x {:.1f} to {:.1f}, y {:.1f} to {:.1f}", grid.west, grid.east(), grid.south, grid.north());
@@ -48,31 +34,27 @@ void check_overlap(const fs::path& file, const Survey& survey, const RunMaps& ma
                    "Give the survey of this event, in the run's coordinates"});
 }
 
-std::vector<double> on_grid(const Raster& raster, const MapGrid& grid) {
-  return same_grid(raster.grid, grid) ? raster.values : resample_thickness(raster, grid).values;
-}
-
 void zero_for_nodata(std::vector<double>& values) {
   for (double& v : values) {
     if (std::isnan(v)) v = 0;
   }
 }
 
-Raster read_thickness(const fs::path& file, const SurveyOptions& options, const RunMaps& maps) {
+Raster read_values(const fs::path& file, const SurveyOptions& options, const RunMaps& maps) {
   auto raster = read_raster(file);
   check_crs(file, raster.grid, maps.grid);
   if (options.nodata_is_zero) zero_for_nodata(raster.values);
-  if (options.direction == Direction::slope_normal) {
-    const auto cosine = on_grid({maps.grid, slope_cosine({maps.grid, maps.terrain})}, raster.grid);
-    for (std::size_t i = 0; i < cosine.size(); ++i) {
-      if (cosine[i] > 0) raster.values[i] /= cosine[i];  // beyond the run's ground: as it is
-    }
-  }
+  return raster;
+}
+
+Raster read_thickness(const fs::path& file, const SurveyOptions& options, const RunMaps& maps) {
+  auto raster = read_values(file, options, maps);
+  to_vertical(raster, options, maps);
   return raster;
 }
 
 /// after - before on the grid of the after DEM, or on the run's where that DEM has another CRS.
-void read_change(const SurveyOptions& options, const RunMaps& maps, double footprint_threshold, Survey& survey) {
+void read_surfaces(const SurveyOptions& options, const RunMaps& maps, Survey& survey) {
   auto after = read_raster(options.after_dem);
   survey.inputs.push_back(options.after_dem);
   if (after.grid.crs_wkt.empty() != maps.grid.crs_wkt.empty()) check_crs(options.after_dem, after.grid, maps.grid);
@@ -86,13 +68,7 @@ void read_change(const SurveyOptions& options, const RunMaps& maps, double footp
     before = resample_elevation(before, after.grid);
   }
   survey.grid = after.grid;
-  survey.deposit_is_change = survey.footprint_is_change = true;
-  survey.footprint_threshold = footprint_threshold;
-  for (std::size_t i = 0; i < after.values.size(); ++i) {
-    const double change = after.values[i] - before.values[i];
-    survey.deposit.push_back(std::isnan(change) ? change : std::max(0.0, change));
-    survey.footprint.push_back(std::abs(change));
-  }
+  for (std::size_t i = 0; i < after.values.size(); ++i) survey.measured.push_back(after.values[i] - before.values[i]);
 }
 
 void read_footprint(const SurveyOptions& options, const RunMaps& maps, double threshold, Survey& survey) {
@@ -118,51 +94,28 @@ void read_footprint(const SurveyOptions& options, const RunMaps& maps, double th
   }
 }
 
-/// Where a row's centre line crosses the rings of one polygon, west to east.
-std::vector<double> crossings(const MapPolygon& polygon, double y) {
-  std::vector<double> places;
-  for (const auto& ring : polygon.rings) {
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-      const auto& a = ring[i];
-      const auto& b = ring[(i + 1) % ring.size()];
-      if ((a[1] > y) != (b[1] > y)) places.push_back(a[0] + (b[0] - a[0]) * (y - a[1]) / (b[1] - a[1]));
-    }
-  }
-  std::sort(places.begin(), places.end());
-  return places;
-}
-
 }  // namespace
-
-std::vector<double> rasterize(const std::vector<MapPolygon>& polygons, const MapGrid& grid) {
-  std::vector<double> values(grid.count(), 0.0);
-  for (const auto& polygon : polygons) {
-    for (int row = 0; row < grid.rows; ++row) {
-      // Even-odd: between the first and the second crossing is inside, holes count out.
-      const auto places = crossings(polygon, grid.y(row));
-      for (std::size_t k = 0; k + 1 < places.size(); k += 2) {
-        const double first = std::ceil((places[k] - grid.west) / grid.cell - 0.5);
-        const double past = std::ceil((places[k + 1] - grid.west) / grid.cell - 0.5);
-        const int from = static_cast<int>(std::clamp(first, 0.0, static_cast<double>(grid.columns)));
-        const int to = static_cast<int>(std::clamp(past, 0.0, static_cast<double>(grid.columns)));
-        for (int column = from; column < to; ++column) values[grid.index(column, row)] = 1;
-      }
-    }
-  }
-  return values;
-}
 
 std::optional<Survey> read_survey(const SurveyOptions& options, const RunMaps& maps, double footprint_threshold) {
   if (!options.given()) return std::nullopt;
   Survey survey;
   survey.name = options.name;
-  if (!options.thickness.empty()) {
-    auto thickness = read_thickness(options.thickness, options, maps);
-    survey.grid = thickness.grid;
-    survey.deposit = std::move(thickness.values);
-    survey.inputs.push_back(options.thickness);
-  } else if (!options.after_dem.empty()) {
-    read_change(options, maps, footprint_threshold, survey);
+  if (!options.after_dem.empty()) {
+    read_surfaces(options, maps, survey);
+  } else if (options.measures()) {
+    const auto& file = options.thickness.empty() ? options.difference : options.thickness;
+    auto raster = options.thickness.empty() ? read_values(file, options, maps) : read_thickness(file, options, maps);
+    survey.grid = raster.grid;
+    survey.measured = std::move(raster.values);
+    survey.inputs.push_back(file);
+  }
+  if (options.measures()) {
+    survey.deposit_is_change = survey.footprint_is_change = options.thickness.empty();
+    read_error(options, maps, survey);
+    auto seen = sight(survey, survey.measured);
+    survey.deposit = std::move(seen.deposit);
+    if (survey.footprint_is_change) survey.footprint = std::move(seen.footprint);
+    survey.footprint_threshold = footprint_threshold;
   }
   read_footprint(options, maps, footprint_threshold, survey);
   check_overlap(survey.inputs.front(), survey, maps);
@@ -171,7 +124,7 @@ std::optional<Survey> read_survey(const SurveyOptions& options, const RunMaps& m
 
 OnSurveyGrid bring_to_survey_grid(const RunMaps& maps, const Survey& survey) {
   const auto bring = [&](const std::vector<double>& values) { return on_grid({maps.grid, values}, survey.grid); };
-  OnSurveyGrid simulated{bring(maps.deposit_thickness), bring(maps.peak_thickness), 0};
+  OnSurveyGrid simulated{bring(maps.deposit_thickness), {}, bring(maps.peak_thickness), 0};
   auto initial = survey.deposit_is_change ? bring(maps.initial_thickness) : std::vector<double>(survey.grid.count(), 0.0);
   if (survey.deposit_is_change && !maps.eroded_depth.empty()) {
     const auto eroded = bring(maps.eroded_depth);
@@ -186,10 +139,12 @@ OnSurveyGrid bring_to_survey_grid(const RunMaps& maps, const Survey& survey) {
     double& peak = simulated.peak[i];
     h = std::isnan(h) ? 0 : h;
     peak = std::isnan(peak) ? 0 : peak;
-    if (survey.deposit_is_change) h = std::max(0.0, h - (std::isnan(initial[i]) ? 0 : initial[i]));
+    const double change = h - (std::isnan(initial[i]) ? 0 : initial[i]);
+    if (survey.deposit_is_change) h = std::max(0.0, change);
+    simulated.change.push_back(survey.deposit_is_change ? change : h);
     if (std::isfinite(surveyed[i])) continue;
     simulated.deposit_left_out += h * area;
-    h = std::numeric_limits<double>::quiet_NaN();
+    h = simulated.change.back() = std::numeric_limits<double>::quiet_NaN();
   }
   return simulated;
 }
