@@ -88,6 +88,7 @@ struct RunStage : testing::Test {
               true,
               true,
               true,
+              false,
               [] { return recipe::to_toml(SampleOptions{}, "solve", true); },
               [](StageContext&) {}};
   std::string out, err;
