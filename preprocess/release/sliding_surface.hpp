@@ -28,13 +28,13 @@ struct DepthPoint {
 
 /// laplace(z) = q with z = ground on the outline and z <= ground within, q such that the largest depth (or the volume)
 /// is the one given: the surface of least bending in the sense of Jaboyedoff et al. 2004 (sloping local base level) and
-/// Kuo et al. 2020 (least area under a given volume), (T22) and (T23) in docs/theory.md. `depth` and `volume` > 0; they
+/// Kuo et al. 2020 (least area under a given volume), (T21) and (T22) in docs/theory.md. `depth` and `volume` > 0; they
 /// are met to rounding. The ground must have elevations in all cells of the outline. Throws NumericalError.
 SlidingSurface surface_of_depth(const Raster& before, const Outline& outline, double depth);
 SlidingSurface surface_of_volume(const Raster& before, const Outline& outline, double volume);
 
 /// The surface of least integral (laplace(z) - q)^2, q free, that meets the points: exactly, or as a whole within their
-/// errors (mean square of misfit over error 1: Reinsch 1967), (T24). Where it would stand above the ground it is cut
+/// errors (mean square of misfit over error 1: Reinsch 1967), (T23). Where it would stand above the ground it is cut
 /// off there. Every point must lie within the outline; at least one.
 SlidingSurface surface_through(const Raster& before, const Outline& outline, const std::vector<DepthPoint>& points);
 
