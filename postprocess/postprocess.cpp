@@ -88,7 +88,8 @@ void write_results(StageContext& context, const Run& run, const Options& options
 }  // namespace
 
 void run(StageContext& context) {
-  const auto options = context.recipe.read<Options>("postprocess");
+  auto options = context.recipe.read<Options>("postprocess");
+  options.survey.find_in(context.out);
   const auto file = options.run.empty() ? context.out / "run.h5" : options.run;
   const auto run = read_run(file);
   check_volume(file, run);

@@ -7,6 +7,7 @@
 namespace talus::preprocess {
 
 /// Depths <= 0 become cells that touch the ground.
-SlidingSurface finish_surface(const Raster& before, const Outline& outline, const RimProblem::Vector& depth, double curvature);
+SlidingSurface finish_surface(const Raster& before, const Outline& outline, const RimProblem::Vector& depth,
+                              double curvature);
 
 }  // namespace talus::preprocess

@@ -24,7 +24,8 @@ std::vector<std::vector<double>> crossings(const MapGrid& grid, const MapPolygon
   const int lines = upright ? grid.columns : grid.rows;
   std::vector<std::vector<double>> found(static_cast<std::size_t>(lines));
   const auto place = [&](const std::array<double, 2>& corner) {
-    const std::array<double, 2> p{(corner[0] - grid.west) / grid.cell - 0.5, (corner[1] - grid.south) / grid.cell - 0.5};
+    const std::array<double, 2> p{(corner[0] - grid.west) / grid.cell - 0.5,
+                                  (corner[1] - grid.south) / grid.cell - 0.5};
     return upright ? std::array<double, 2>{p[1], p[0]} : p;  // along the line, across it
   };
   for (const auto& ring : polygon.rings) {
@@ -45,7 +46,8 @@ std::vector<Span> spans(const MapGrid& grid, const MapPolygon& polygon, bool upr
   for (std::size_t line = 0; line < lines.size(); ++line) {
     std::vector<double>& places = lines[line];
     std::sort(places.begin(), places.end());
-    for (std::size_t i = 0; i + 1 < places.size(); i += 2) all.push_back({static_cast<int>(line), places[i], places[i + 1]});
+    for (std::size_t i = 0; i + 1 < places.size(); i += 2)
+      all.push_back({static_cast<int>(line), places[i], places[i + 1]});
   }
   return all;
 }
@@ -84,7 +86,8 @@ void number_cells(Outline& outline, const std::filesystem::path& file) {
     outline.cells.push_back(c);
   }
   if (!outline.cells.empty()) return;
-  throw DataError(Fault{fmt::format("{}: {:.3g} m2 without the centre of a cell", file.string(), outline.area), fmt::format("cells of {:g} m are too coarse for this outline", outline.grid.cell),
+  throw DataError(Fault{fmt::format("{}: {:.3g} m2 without the centre of a cell", file.string(), outline.area),
+                        fmt::format("cells of {:g} m are too coarse for this outline", outline.grid.cell),
                         "Lower spacing_m in [preprocess.grid], or draw the outline wider"});
 }
 
@@ -104,12 +107,15 @@ Outline outline_of(const MapGrid& grid, const std::vector<MapPolygon>& polygons,
   outline.area = area.value() * grid.cell * grid.cell;
   mark_inside(outline, rows);
   number_cells(outline, file);
-  outline.reach.assign(outline.cells.size(), {0, 0, 0, 0});
+  constexpr double unknown = -1;
+  outline.reach.assign(outline.cells.size(), {unknown, unknown, unknown, unknown});
   measure_reach(outline, rows, false);
   measure_reach(outline, columns, true);
   constexpr double nearest = 1e-6;  // a centre on the outline: keeps the equations finite
   for (auto& sides : outline.reach) {
-    for (double& way : sides) way = way > 0 ? std::clamp(way, nearest, 1.0) : 1.0;  // 0: a corner on the line, counted for the other cell
+    for (double& way : sides)
+      way =
+          way == unknown ? 1.0 : std::clamp(way, nearest, 1.0);  // unknown: no outline on this side, or beyond a sliver
   }
   return outline;
 }

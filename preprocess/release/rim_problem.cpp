@@ -14,7 +14,8 @@ namespace {
 constexpr std::size_t none = static_cast<std::size_t>(-1);
 template <class Use>
 void for_neighbours(const MapGrid& grid, std::size_t cell, Use use) {
-  const int column = static_cast<int>(cell % static_cast<std::size_t>(grid.columns)), row = static_cast<int>(cell / static_cast<std::size_t>(grid.columns));
+  const int column = static_cast<int>(cell % static_cast<std::size_t>(grid.columns)),
+            row = static_cast<int>(cell / static_cast<std::size_t>(grid.columns));
   for (std::size_t side = 0; side < 4; ++side) {
     const int c = column + neighbours[side][0], r = row + neighbours[side][1];
     const bool there = c >= 0 && r >= 0 && c < grid.columns && r < grid.rows;
@@ -24,7 +25,8 @@ void for_neighbours(const MapGrid& grid, std::size_t cell, Use use) {
 
 }  // namespace
 
-RimProblem::RimProblem(const Outline& outline) : operator_(static_cast<Eigen::Index>(outline.cells.size()), static_cast<Eigen::Index>(outline.cells.size())) {
+RimProblem::RimProblem(const Outline& outline)
+    : operator_(static_cast<Eigen::Index>(outline.cells.size()), static_cast<Eigen::Index>(outline.cells.size())) {
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(5 * outline.cells.size());
   for (std::size_t i = 0; i < outline.cells.size(); ++i) {
@@ -52,7 +54,8 @@ void RimProblem::hold(const std::vector<char>& held) {
   }
   factors_.factorize(system);
   if (factors_.info() == Eigen::Success) return;
-  throw NumericalError(Fault{fmt::format("sliding surface: the system of {} cells cannot be factorised", held_.size()), "its matrix is not positive definite", "Please report it, with the outline"});
+  throw NumericalError(Fault{fmt::format("sliding surface: the system of {} cells cannot be factorised", held_.size()),
+                             "its matrix is not positive definite", "Please report it, with the outline"});
 }
 
 RimProblem::Vector RimProblem::solve(Vector load) const {

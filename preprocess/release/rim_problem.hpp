@@ -32,7 +32,8 @@ class RimProblem {
   Eigen::SimplicialLDLT<Matrix> factors_;
 };
 
-/// h^2 laplace of the ground at the cells of the outline [m]; ground without elevation (beyond the grid) counts as level.
+/// h^2 laplace of the ground at the cells of the outline [m]; ground without elevation (beyond the grid) counts as
+/// level.
 RimProblem::Vector ground_curvature(const Raster& before, const Outline& outline);
 
 }  // namespace talus::preprocess

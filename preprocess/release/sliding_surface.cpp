@@ -29,9 +29,10 @@ Family family_of(const RimProblem& problem, const Vector& ground, double cell) {
   return {problem.solve(-ground), problem.solve(Vector::Constant(ground.size(), cell * cell))};
 }
 
-/// Of the complementarity u >= 0, A u >= load, one of them equal: which cells touch the ground next (Hintermueller, Ito &
-/// Kunisch 2002).
-std::vector<char> touching_next(const RimProblem& problem, const Vector& u, const Vector& load, const std::vector<char>& touching) {
+/// Of the complementarity u >= 0, A u >= load, one of them equal: which cells touch the ground next (Hintermueller, Ito
+/// & Kunisch 2002).
+std::vector<char> touching_next(const RimProblem& problem, const Vector& u, const Vector& load,
+                                const std::vector<char>& touching) {
   constexpr double rounding = 1e-9;  // [m] so that ground as level as the surface does not change sides for ever
   const Vector push = problem.apply(u) - load;
   std::vector<char> next(touching.size());
@@ -43,12 +44,14 @@ std::vector<char> touching_next(const RimProblem& problem, const Vector& u, cons
 }
 
 [[noreturn]] void refuse_unsettled(double curvature) {
-  throw NumericalError(Fault{fmt::format("sliding surface: which cells touch the ground is not settled, at a curvature of {:.3g} 1/m", curvature),
-                             "every iteration changes some of them", "Smooth the surface before, or give another depth or volume"});
+  throw NumericalError(
+      Fault{fmt::format("sliding surface: which cells touch the ground is not settled, at a curvature of {:.3g} 1/m",
+                        curvature),
+            "every iteration changes some of them", "Smooth the surface before, or give another depth or volume"});
 }
 
-/// The depth is convex in q, cell by cell, and so are the largest depth and the volume: Newton's steps come down on q from
-/// above. Within each, the touching cells are found with q held.
+/// The depth is convex in q, cell by cell, and so are the largest depth and the volume: Newton's steps come down on q
+/// from above. Within each, the touching cells are found with q held.
 SlidingSurface meeting(const Goal& goal, const Raster& before, const Outline& outline) {
   constexpr int most = 100;
   RimProblem problem(outline);
@@ -118,7 +121,8 @@ SlidingSurface finish_surface(const Raster& before, const Outline& outline, cons
 
 Raster thickness_above(const Raster& surface, const Raster& before, const Outline& outline) {
   Raster thickness{before.grid, std::vector<double>(before.values.size(), 0.0)};
-  for (std::size_t c : outline.cells) thickness.values[c] = outline.part[c] * std::max(0.0, before.values[c] - surface.values[c]);
+  for (std::size_t c : outline.cells)
+    thickness.values[c] = outline.part[c] * std::max(0.0, before.values[c] - surface.values[c]);
   return thickness;
 }
 

@@ -18,11 +18,15 @@ using Dense = Eigen::MatrixXd;
 
 /// The four cells around a point and their bilinear shares.
 std::array<std::pair<std::size_t, double>, 4> shares_at(const MapGrid& grid, double x, double y) {
-  const double u = std::clamp((x - grid.west) / grid.cell - 0.5, 0.0, grid.columns - 1.0), v = std::clamp((y - grid.south) / grid.cell - 0.5, 0.0, grid.rows - 1.0);
+  const double u = std::clamp((x - grid.west) / grid.cell - 0.5, 0.0, grid.columns - 1.0),
+               v = std::clamp((y - grid.south) / grid.cell - 0.5, 0.0, grid.rows - 1.0);
   const int west = static_cast<int>(u), south = static_cast<int>(v);
   const int east = std::min(west + 1, grid.columns - 1), north = std::min(south + 1, grid.rows - 1);
   const double a = u - west, b = v - south;
-  return {{{grid.index(west, south), (1 - a) * (1 - b)}, {grid.index(east, south), a * (1 - b)}, {grid.index(west, north), (1 - a) * b}, {grid.index(east, north), a * b}}};
+  return {{{grid.index(west, south), (1 - a) * (1 - b)},
+           {grid.index(east, south), a * (1 - b)},
+           {grid.index(west, north), (1 - a) * b},
+           {grid.index(east, north), a * b}}};
 }
 
 /// How depths at the cells make up the depth at a point; the ground outside has none.
@@ -36,27 +40,33 @@ Vector reading_of(const Outline& outline, const DepthPoint& point) {
 
 /// What the points ask of the forces c that bend the surface and of q: K c + q p = given, p.c = 0, both scaled to one.
 struct PointSystem {
-  Dense bending;        // K
-  Vector per_curvature; // p
+  Dense bending;         // K
+  Vector per_curvature;  // p
   Vector given, error;
 
   Vector solve(double slack) const {
     const Eigen::Index n = given.size();
+    const double unit = 1 + slack * error.cwiseAbs2().maxCoeff();  // keeps both blocks of one size, whatever the slack
     Dense whole = Dense::Zero(n + 1, n + 1);
-    whole.topLeftCorner(n, n) = bending;
-    whole.diagonal().head(n) += slack * error.cwiseAbs2();
+    whole.topLeftCorner(n, n) = bending / unit;
+    whole.diagonal().head(n) += slack / unit * error.cwiseAbs2();
     whole.col(n).head(n) = per_curvature;
     whole.row(n).head(n) = per_curvature.transpose();
     Vector right(n + 1);
     right << given, 0.0;
-    return whole.completeOrthogonalDecomposition().solve(right);  // points at one place share their mean
+    Vector solution = whole.completeOrthogonalDecomposition().solve(right);  // points at one place share their mean
+    solution.head(n) /= unit;
+    return solution;
   }
 
   /// Sum of squares of misfit over error.
-  double misfit(const Vector& solution, double slack) const { return (slack * error.cwiseProduct(solution.head(given.size()))).squaredNorm(); }
+  double misfit(const Vector& solution, double slack) const {
+    return (slack * error.cwiseProduct(solution.head(given.size()))).squaredNorm();
+  }
 };
 
-/// The slack that leaves a mean square misfit of one (Reinsch 1967); so much that only q is left where that still is less.
+/// The slack that leaves a mean square misfit of one (Reinsch 1967); so much that only q is left where that still is
+/// less.
 double slack_within_errors(const PointSystem& system) {
   const double count = static_cast<double>((system.error.array() > 0).count());
   if (count == 0) return 0;
@@ -81,7 +91,8 @@ SlidingSurface surface_through(const Raster& before, const Outline& outline, con
   RimProblem problem(outline);
   const double area = before.grid.cell * before.grid.cell;
   const auto cells = static_cast<Eigen::Index>(outline.cells.size()), count = static_cast<Eigen::Index>(points.size());
-  const Vector at_zero = problem.solve(-ground_curvature(before, outline)), per_curvature = problem.solve(Vector::Constant(cells, area));
+  const Vector at_zero = problem.solve(-ground_curvature(before, outline)),
+               per_curvature = problem.solve(Vector::Constant(cells, area));
   Dense green(cells, count);
   PointSystem system{Dense(), Vector(count), Vector(count), Vector(count)};
   for (Eigen::Index k = 0; k < count; ++k) {
@@ -101,7 +112,9 @@ SlidingSurface surface_through(const Raster& before, const Outline& outline, con
   const Vector forces = solution.head(count) / force_unit;
   const Vector depth = at_zero + q * per_curvature + area * problem.solve(green * forces);
   SlidingSurface result = finish_surface(before, outline, depth, q);
-  for (const DepthPoint& point : points) result.misfit.push_back(value_at(before, point.x, point.y) - value_at(result.surface, point.x, point.y) - point.depth);
+  for (const DepthPoint& point : points)
+    result.misfit.push_back(value_at(before, point.x, point.y) - value_at(result.surface, point.x, point.y) -
+                            point.depth);
   return result;
 }
 

@@ -107,11 +107,13 @@ Coregistration told(const std::vector<Patch>& patches, const Placement& start, C
   return result;
 }
 
-/// Most cells agree to the last digit: the later model was made from the earlier one, and there is nothing to fit.
-Coregistration as_it_is(std::vector<Patch>& patches, Coregistration result) {
+/// Most cells differ by one and the same number: the later model was made from the earlier one, and there is no more to fit.
+Coregistration lifted(std::vector<Patch>& patches, Coregistration result) {
+  const Placement start = result.placement;
+  result.placement.z = -median(stable_misfit(patches, start));
   leave_out_changed(patches, result.placement);
   result.converged = true;
-  const Placement start = result.placement;
+  result.shift_known = false;
   return told(patches, start, std::move(result));
 }
 
@@ -125,7 +127,7 @@ Coregistration coregister(std::vector<Patch>& patches, bool tilt, const std::fil
   result.placement.centre_y = (extent.south + extent.north) / 2;
   const std::size_t at_first = stable_misfit(patches, result.placement).size();
   if (at_first < least_cells) return result;
-  if (nmad(stable_misfit(patches, result.placement)) == 0) return as_it_is(patches, std::move(result));
+  if (nmad(stable_misfit(patches, result.placement)) < 1e-9) return lifted(patches, std::move(result));
   refuse_feet(patches, result.placement, after_file);
   const Placement start = result.placement;
   move_by_whole_cells(patches, result.placement);

@@ -36,14 +36,15 @@ std::vector<Region> regions_above(const Raster& size, const std::vector<double>&
   return lowering_regions(near, 0.5);
 }
 
-std::vector<char> risen_beside(const Change& change, const Raster& source) {
+/// Believed changes, up or down, that hang together with the source.
+std::vector<char> changed_beside(const Change& change, const Raster& source) {
   Raster size = change.rise;
   for (double& d : size.values) d = std::abs(d);
   for (std::size_t i = 0; i < size.values.size(); ++i) size.values[i] = std::max(size.values[i], source.values[i]);
   std::vector<char> inside(size.values.size(), 0);
   for (const Region& region : regions_above(size, change.levels)) {
     if (std::none_of(region.cells.begin(), region.cells.end(), [&](std::size_t c) { return source.values[c] > 0; })) continue;
-    for (const std::size_t c : region.cells) inside[c] = change.rise.values[c] > change.levels[c];
+    for (const std::size_t c : region.cells) inside[c] = std::abs(change.rise.values[c]) > change.levels[c];
   }
   return inside;
 }
@@ -58,7 +59,7 @@ std::vector<char> largest_rise(const Change& change) {
   return inside;
 }
 
-std::vector<char> deposit_cells(const Change& change, const Raster& source, const DepositOptions& options) {
+std::vector<char> deposit_cells(const Change& change, const Raster& source, std::vector<char> slide, const DepositOptions& options) {
   if (!options.polygon.empty()) {
     std::vector<MapPolygon> polygons = read_polygons(options.polygon, source.grid.crs_wkt);
     check_polygons(polygons, options.polygon);
@@ -68,9 +69,9 @@ std::vector<char> deposit_cells(const Change& change, const Raster& source, cons
     for (std::size_t i = 0; i < inside.size(); ++i) inside[i] = inside[i] && change.rise.values[i] > 0;
     return inside;
   }
-  std::vector<char> inside = risen_beside(change, source);
-  const bool any = std::any_of(inside.begin(), inside.end(), [](char c) { return c != 0; });
-  return any ? inside : largest_rise(change);
+  for (std::size_t i = 0; i < slide.size(); ++i) slide[i] = slide[i] && change.rise.values[i] > 0;
+  const bool any = std::any_of(slide.begin(), slide.end(), [](char c) { return c != 0; });
+  return any ? slide : largest_rise(change);
 }
 
 VolumeWithError volume_in(const Raster& thickness, const Raster& sigma, const ErrorModel& errors) {
@@ -90,16 +91,18 @@ VolumeWithError volume_in(const Raster& thickness, const Raster& sigma, const Er
 }  // namespace
 
 SurveyedSlide delineate(const Survey& survey, const Raster& before, const Raster& after, const Raster& source, const DepositOptions& options) {
-  SurveyedSlide slide{{before.grid, std::vector<double>(before.grid.count(), 0.0)}, sigma_on(survey, before), {}};
+  const Raster zero{before.grid, std::vector<double>(before.grid.count(), 0.0)};
+  SurveyedSlide slide{zero, zero, sigma_on(survey, before), {}};
   Change change{after, levels_of(survey, slide.sigma)};
   for (std::size_t i = 0; i < change.levels.size(); ++i) {
     change.rise.values[i] -= before.values[i];
     change.levels[i] = std::max(change.levels[i], options.threshold_m);
   }
-  const std::vector<char> inside = deposit_cells(change, source, options);
-  for (std::size_t i = 0; i < inside.size(); ++i) {
-    if (std::isnan(change.rise.values[i])) slide.deposit.values[i] = change.rise.values[i];
-    if (inside[i]) slide.deposit.values[i] = change.rise.values[i];
+  const std::vector<char> moved = changed_beside(change, source), deposit = deposit_cells(change, source, moved, options);
+  for (std::size_t i = 0; i < deposit.size(); ++i) {
+    const double rise = change.rise.values[i];
+    if (deposit[i] || std::isnan(rise)) slide.deposit.values[i] = rise;
+    if (deposit[i] || moved[i] || source.values[i] > 0 || std::isnan(rise)) slide.change.values[i] = rise;
   }
   slide.volumes = {{"source", volume_in(source, slide.sigma, survey.errors)}, {"deposit", volume_in(slide.deposit, slide.sigma, survey.errors)}};
   return slide;

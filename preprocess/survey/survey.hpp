@@ -38,6 +38,7 @@ struct SurveyedVolume {
 /// What is known of the slide on the working grid.
 struct SurveyedSlide {
   Raster deposit;  // rise of the surface in the deposit, 0 outside, NaN where not surveyed [m]
+  Raster change;   // after less before in the slide, where it is believed; 0 outside, NaN where not surveyed [m]
   Raster sigma;    // standard deviation of the difference [m]
   std::vector<SurveyedVolume> volumes;
 };
