@@ -52,6 +52,8 @@ void Options::describe(recipe::Visitor& v) {
   v.flag("avaframe", avaframe,
          "also write peak pressure, thickness normal to the slope and speed as AvaFrame names and reads them, in "
          "maps/avaframe");
+  recipe::choice(v, "avaframe_format", avaframe_format, {{"tif", AvaFrameFormat::tif}, {"asc", AvaFrameFormat::asc}},
+                 "format of these; every version of AvaFrame, and ISeeSnow, reads asc");
   v.enter("survey", "what the run is scored against: thickness, or after_dem, or polygon; all empty: no scores");
   survey.describe(v);
   v.leave();
