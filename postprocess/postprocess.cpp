@@ -120,7 +120,7 @@ Stage stage() {
   stage.table = "postprocess";
   stage.summary = "Write maps, NetCDF, picture and scores of a run (run.h5 of talus-solve)";
   stage.examples =
-      "  talus-postprocess scene.toml --out out/scene    maps/*.tif, maps/results.nc, map.png, history.csv, score.json, score.txt\n"
+      "  talus-postprocess scene.toml --out out/scene    maps/ (with a QGIS project), map.png, history.csv, score.json, score.txt\n"
       "  talus-postprocess scene.toml --out out/scene --check    read run and survey, write nothing\n"
       "  talus-postprocess --template >> scene.toml    all keys with their defaults\n";
   stage.template_toml = [] { return recipe::to_toml(Options{}, "postprocess", true); };
