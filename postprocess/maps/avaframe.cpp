@@ -35,15 +35,16 @@ RasterTags tags_of(const Run& run, const Product& product) {
   const double cell = maps.grid.cell;
   const double released = volume_under(maps.initial_thickness, cell);
   const double misread = volume_under(normal_thickness(maps, maps.initial_thickness), cell);
-  return {fmt::format("{} [{}]", product.words, product.unit),
-          product.unit,
-          {{"TITLE", run.summary.title},
-           {"QUANTITY", product.words},
-           {"THICKNESS_CONVENTION", "normal to the slope: vertical thickness times the cosine of the bed's slope"},
-           {"RELEASE_VOLUME_M3", fmt::format("{:.10g}", released)},
-           {"RELEASE_VOLUME_MEANING", "vertical thickness over map area, or normal thickness over the area of the slope"},
-           {"RELEASE_VOLUME_IF_NORMAL_WERE_VERTICAL_M3", fmt::format("{:.10g}", misread)},
-           {"SOURCE", "Talus " + run.summary.version}}};
+  return {
+      fmt::format("{} [{}]", product.words, product.unit),
+      product.unit,
+      {{"TITLE", run.summary.title},
+       {"QUANTITY", product.words},
+       {"THICKNESS_CONVENTION", "normal to the slope: vertical thickness times the cosine of the bed's slope"},
+       {"RELEASE_VOLUME_M3", fmt::format("{:.10g}", released)},
+       {"RELEASE_VOLUME_MEANING", "vertical thickness over map area, or normal thickness over the area of the slope"},
+       {"RELEASE_VOLUME_IF_NORMAL_WERE_VERTICAL_M3", fmt::format("{:.10g}", misread)},
+       {"SOURCE", "Talus " + run.summary.version}}};
 }
 
 /// Esri's ASCII grid, corner by the centre of the cell and nodata as nan, as AvaFrame writes them. Every number has a

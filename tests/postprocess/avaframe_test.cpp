@@ -20,7 +20,8 @@ Run on_a_plane() {
   auto run = test::small_run();
   const auto& grid = run.maps.grid;
   for (int row = 2; row < grid.rows; ++row)
-    for (int column = 0; column < grid.columns; ++column) run.maps.terrain[grid.index(column, row)] = 1000 - 7.5 * column;
+    for (int column = 0; column < grid.columns; ++column)
+      run.maps.terrain[grid.index(column, row)] = 1000 - 7.5 * column;
   return run;
 }
 
@@ -30,7 +31,8 @@ TEST(AvaFrame, takes_thickness_normal_to_the_slope) {
   const auto& grid = run.maps.grid;
   for (int row = 10; row < 20; ++row)
     for (int column = 3; column < 35; ++column)
-      ASSERT_NEAR(normal[grid.index(column, row)], 3 * 0.8, 1e-12) << column << " " << row << ": rounding of a square root";
+      ASSERT_NEAR(normal[grid.index(column, row)], 3 * 0.8, 1e-12)
+          << column << " " << row << ": rounding of a square root";
 }
 
 TEST(AvaFrame, gives_the_true_volume_back_over_the_area_of_the_slope) {
@@ -61,7 +63,10 @@ TEST(AvaFrame, takes_names_apart_at_underscores) {
 TEST(AvaFrame, hashes_the_settings_and_nothing_of_the_machine) {
   const test::Scratch scratch;
   auto run = on_a_plane();
-  run.summary.provenance = {{"command", "a"}, {"hardware", "b"}, {"version", "c"}, {"grid", "40 x 30"},
+  run.summary.provenance = {{"command", "a"},
+                            {"hardware", "b"},
+                            {"version", "c"},
+                            {"grid", "40 x 30"},
                             {"input dem.tif", "/here/dem.tif sha256 0123"}};
   scratch.write("solve.used.toml", "# wall_time_s: 3\n[solve]\ncfl = 0.5\n");
   const auto settings = settings_text(run, scratch / "run.h5");

@@ -35,15 +35,16 @@ class Cf : public ::testing::Test {
     return output_of("/usr/bin/python3 '" TALUS_SOURCE_DIR "/tests/postprocess/check_cf.py' " + arguments);
   }
   static bool has_checker() {
-    return test::has_tool("/usr/bin/python3 -c 'import netCDF4, osgeo.gdal, ctypes; ctypes.CDLL(\"libudunits2.so.0\")'");
+    return test::has_tool(
+        "/usr/bin/python3 -c 'import netCDF4, osgeo.gdal, ctypes; ctypes.CDLL(\"libudunits2.so.0\")'");
   }
   test::Scratch scratch_;
   const std::filesystem::path file_ = scratch_ / "results.nc";
 };
 
-#define TALUS_NEED_CF_CHECKER                                                                  \
-  if (!has_checker()) {                                                                        \
-    if (std::getenv("TALUS_REQUIRE_TOOLS") != nullptr) FAIL() << "missing: python3-netcdf4";   \
+#define TALUS_NEED_CF_CHECKER                                                                       \
+  if (!has_checker()) {                                                                             \
+    if (std::getenv("TALUS_REQUIRE_TOOLS") != nullptr) FAIL() << "missing: python3-netcdf4";        \
     GTEST_SKIP() << "SKIPPED: CF is not checked; install python3-netcdf4 python3-gdal udunits-bin"; \
   }
 
@@ -93,7 +94,8 @@ TEST(StartTime, is_a_date_or_refused) {
     return faults.size();
   };
   for (const auto* good : {"", "1903-04-29 04:10:00", "2021-02-28 23:59:59"}) EXPECT_EQ(faults_of(good), 0U) << good;
-  for (const auto* bad : {"1903-04-29", "2021-02-29 00:00:00", "2021-02-28 24:00:00", "1580-01-01 00:00:00", "yesterday"})
+  for (const auto* bad :
+       {"1903-04-29", "2021-02-29 00:00:00", "2021-02-28 24:00:00", "1580-01-01 00:00:00", "yesterday"})
     EXPECT_EQ(faults_of(bad), 1U) << bad;
 }
 

@@ -116,10 +116,11 @@ TEST_F(ForGis, names_in_the_project_only_files_that_are_there) {
 
 TEST_F(ForGis, writes_outlines_that_ogrinfo_finds_valid) {
   TALUS_NEED_TOOL("/usr/bin/python3 -c 'from osgeo import ogr'", "python3-gdal");
-  const auto said = test::output_of(
-      "/usr/bin/python3 -c \"from osgeo import ogr; d = ogr.Open('" + (scratch_ / "outlines.gpkg").string() +
-      "'); print([(l.GetName(), all(f.GetGeometryRef().IsValid() for f in l), round(sum(f['area_m2'] for f in l))) for l "
-      "in d])\" 2>/dev/null");
+  const auto said = test::output_of("/usr/bin/python3 -c \"from osgeo import ogr; d = ogr.Open('" +
+                                    (scratch_ / "outlines.gpkg").string() +
+                                    "'); print([(l.GetName(), all(f.GetGeometryRef().IsValid() for f in l), "
+                                    "round(sum(f['area_m2'] for f in l))) for l "
+                                    "in d])\" 2>/dev/null");
   // The block of 32 x 10 cells of 3 m, cut off at 1 m: two thirds of a cell further than its outermost centres.
   const double side = 310 + 2 * 10 * 2.0 / 3, other = 90 + 2 * 10 * 2.0 / 3, corners = 2 * (20.0 / 3) * (20.0 / 3);
   EXPECT_NE(said.find(fmt::format("('footprint', True, {:.0f})", side * other - corners)), std::string::npos) << said;
