@@ -26,6 +26,16 @@ TEST(Styles, have_the_thresholds_of_hazard_work) {
   EXPECT_EQ(thickness_limits({1, 3}, {80}), (std::vector<double>{1, 3}));
 }
 
+TEST(Styles, suit_each_map) {
+  const auto run = small_run();
+  EXPECT_EQ(map_style("deposit_thickness", run.maps, {1, 3}).classes.back().label, "> 3 m");
+  EXPECT_EQ(map_style("deposit_thickness_scar", run.maps, {}).classes.front().label, "0.1 \u2013 0.5 m");
+  EXPECT_EQ(map_style("peak_pressure", run.maps, {1, 3}).classes.back().label, "> 100 kPa");
+  EXPECT_EQ(map_style("peak_speed", run.maps, {1, 3}).classes.back().label, "> 50 m/s");
+  EXPECT_EQ(map_style("difference_to_survey", run.maps, {1, 3}).classes.front().label, "< \u221210 m");
+  EXPECT_EQ(map_style("arrival_time", run.maps, {}).hidden_from, map_style("arrival_time", run.maps, {}).hidden_to);
+}
+
 TEST(Styles, round_the_times_of_arrival) {
   const auto run = small_run();  // up to 17 s
   EXPECT_EQ(time_limits(run.maps), (std::vector<double>{5, 10, 15}));
