@@ -39,6 +39,7 @@ demo: build ## the synthetic valley from its two elevation models to a scored ma
 	@printf '%s\n' '' 'Results in $(abspath $(OUT))/synthetic-valley:' \
 	  '  map.png                      the map as a picture' \
 	  '  history.csv                  energy, volume, speed and steps over time' \
+	  '  maps/synthetic-valley.qgs    all of it in QGIS: maps, outlines, hillshade' \
 	  '  maps/*.tif, maps/results.nc  the fields, for a GIS' \
 	  '  score.json, score.txt        the numbers above' \
 	  '  run.h5                       the points over time, for ParaView'

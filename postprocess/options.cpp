@@ -109,6 +109,8 @@ void Options::describe(recipe::Visitor& v) {
   v.path("thalweg", thalweg,
          "line along which run-out is measured (any vector format), from either end; empty: found as the path of the "
          "centre of mass");
+  recipe::choice(v, "avaframe_format", avaframe_format, {{"tif", AvaFrameFormat::tif}, {"asc", AvaFrameFormat::asc}},
+                 "format of these; every version of AvaFrame, and ISeeSnow, reads asc");
   v.enter("survey", "what the run is scored against: thickness, or difference, or after_dem, or polygon; all empty: no scores");
   survey.describe(v);
   v.leave();

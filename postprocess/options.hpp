@@ -12,6 +12,9 @@ namespace talus::postprocess {
 /// Which way the survey's rasters measure thickness.
 enum class Direction { vertical, slope_normal };
 
+/// How AvaFrame's rasters are written: every version of it reads .asc, newer ones .tif as well.
+enum class AvaFrameFormat { tif, asc };
+
 /// What the simulation is scored against. Nothing given: no score against a survey.
 struct SurveyOptions {
   std::string name = "survey";           // how the map and the table call it
@@ -49,6 +52,7 @@ struct Options {
   bool nodata_zero = false;          // GeoTIFFs: 0 outside the domain too
   bool avaframe = false;             // aliases for AvaFrame beside the maps
   std::filesystem::path thalweg;  // line along which run-out is measured; empty = found from the run
+  AvaFrameFormat avaframe_format = AvaFrameFormat::tif;
   SurveyOptions survey;
 
   void describe(recipe::Visitor& v);

@@ -10,6 +10,7 @@
 
 #include "common/raster/raster_io.hpp"
 #include "common/run/run_file.hpp"
+#include "postprocess/maps/avaframe.hpp"
 #include "postprocess/maps/fields.hpp"
 #include "postprocess/maps/geotiff.hpp"
 #include "postprocess/maps/gis.hpp"
@@ -34,6 +35,10 @@ void check_volume(const fs::path& file, const Run& run) {
     throw DataError({what, fmt::format("they differ by {:.1e} of the release", error), "Run talus-solve again"});
   if (error > 1e-9)
     log_warning(fmt::format("{} ({:.1e} of the release; 1e-9 is expected in double precision)", what, error));
+}
+
+fs::path run_file(const StageContext& context, const Options& options) {
+  return options.run.empty() ? context.out / "run.h5" : options.run;
 }
 
 void make_folder(const fs::path& folder) {
@@ -72,6 +77,12 @@ void write_results(StageContext& context, const Run& run, const Options& options
   context.results = write_geotiffs(folder, run, options.nodata_zero ? Outside::zero : Outside::nodata);
   const auto for_gis = write_gis(folder, context.results, {run, options, survey});
   context.results.insert(context.results.end(), for_gis.begin(), for_gis.end());
+  if (options.avaframe) {
+    make_folder(folder / "avaframe");
+    const auto aliases = write_avaframe(folder / "avaframe", run, settings_text(run, run_file(context, options)),
+                                        options.avaframe_format);
+    context.results.insert(context.results.end(), aliases.begin(), aliases.end());
+  }
   context.results.push_back(folder / "results.nc");
   write_netcdf(context.results.back(), run, {options.institution, context.command_line, options.start_time});
   const auto write = [&](const char* name, const std::string& bytes) {
@@ -90,7 +101,7 @@ void write_results(StageContext& context, const Run& run, const Options& options
 void run(StageContext& context) {
   auto options = context.recipe.read<Options>("postprocess");
   options.survey.find_in(context.out);
-  const auto file = options.run.empty() ? context.out / "run.h5" : options.run;
+  const auto file = run_file(context, options);
   const auto run = read_run(file);
   check_volume(file, run);
   const auto survey = read_survey(options.survey, run.maps, options.footprint_threshold);
@@ -113,7 +124,7 @@ Stage stage() {
   stage.table = "postprocess";
   stage.summary = "Write maps, NetCDF, picture and scores of a run (run.h5 of talus-solve)";
   stage.examples =
-      "  talus-postprocess scene.toml --out out/scene    maps/*.tif, maps/results.nc, map.png, history.csv, score.json, score.txt\n"
+      "  talus-postprocess scene.toml --out out/scene    maps/ (with a QGIS project), map.png, history.csv, score.json, score.txt\n"
       "  talus-postprocess scene.toml --out out/scene --check    read run and survey, write nothing\n"
       "  talus-postprocess --template >> scene.toml    all keys with their defaults\n";
   stage.template_toml = [] { return recipe::to_toml(Options{}, "postprocess", true); };

@@ -20,7 +20,8 @@ Run full_run(const std::string& crs, double west, double south) {
   run.maps.grid.west = west;
   run.maps.grid.south = south;
   run.maps.eroded_depth = test::block(run.maps.grid, 8, 12, 10, 20, 0.5);
-  run.maps.deposit_of = {{"upper scar", run.maps.deposit_thickness}, {"bed-2.5", run.maps.eroded_depth}};
+  run.maps.deposit_of = {{"upper scar", run.maps.deposit_thickness}, {"bed-2.5", run.maps.eroded_depth},
+                         {"bed 2.5", run.maps.eroded_depth}};
   return run;
 }
 
@@ -35,15 +36,16 @@ class Cf : public ::testing::Test {
     return output_of("/usr/bin/python3 '" TALUS_SOURCE_DIR "/tests/postprocess/check_cf.py' " + arguments);
   }
   static bool has_checker() {
-    return test::has_tool("/usr/bin/python3 -c 'import netCDF4, osgeo.gdal, ctypes; ctypes.CDLL(\"libudunits2.so.0\")'");
+    return test::has_tool(
+        "/usr/bin/python3 -c 'import netCDF4, osgeo.gdal, ctypes; ctypes.CDLL(\"libudunits2.so.0\")'");
   }
   test::Scratch scratch_;
   const std::filesystem::path file_ = scratch_ / "results.nc";
 };
 
-#define TALUS_NEED_CF_CHECKER                                                                  \
-  if (!has_checker()) {                                                                        \
-    if (std::getenv("TALUS_REQUIRE_TOOLS") != nullptr) FAIL() << "missing: python3-netcdf4";   \
+#define TALUS_NEED_CF_CHECKER                                                                       \
+  if (!has_checker()) {                                                                             \
+    if (std::getenv("TALUS_REQUIRE_TOOLS") != nullptr) FAIL() << "missing: python3-netcdf4";        \
     GTEST_SKIP() << "SKIPPED: CF is not checked; install python3-netcdf4 python3-gdal udunits-bin"; \
   }
 
@@ -93,7 +95,8 @@ TEST(StartTime, is_a_date_or_refused) {
     return faults.size();
   };
   for (const auto* good : {"", "1903-04-29 04:10:00", "2021-02-28 23:59:59"}) EXPECT_EQ(faults_of(good), 0U) << good;
-  for (const auto* bad : {"1903-04-29", "2021-02-29 00:00:00", "2021-02-28 24:00:00", "1580-01-01 00:00:00", "yesterday"})
+  for (const auto* bad :
+       {"1903-04-29", "2021-02-29 00:00:00", "2021-02-28 24:00:00", "1580-01-01 00:00:00", "yesterday"})
     EXPECT_EQ(faults_of(bad), 1U) << bad;
 }
 
@@ -130,6 +133,7 @@ TEST_F(Cf, gives_releases_names_that_netcdf_can_hold) {
   write_netcdf(file_, full_run(test::epsg(32632), 600000, 5100000), {});
   const auto header = output_of("ncdump -h '" + file_.string() + "'");
   for (const auto* words : {"double deposit_thickness_upper_scar(y, x)", "double deposit_thickness_bed_2_5(y, x)",
+                            "double deposit_thickness_bed_2_5_(y, x)",
                             "double eroded_depth(y, x)", "end of release bed-2.5, vertical"})
     EXPECT_NE(header.find(words), std::string::npos) << words << "\n" << header;
 }
