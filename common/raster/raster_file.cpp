@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "common/raster/gdal_support.hpp"
 #include "common/raster/raster_io.hpp"
 #include "common/raster/raster_source.hpp"
 #include "common/stage/stage.hpp"

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "common/raster/gdal_support.hpp"
 #include "common/raster/vertical_unit.hpp"
 #include "common/stage/stage.hpp"
 
@@ -86,6 +87,9 @@ void RasterSource::take_unit(const std::string& vertical_unit) {
   log_info(fmt::format("{}: heights {} {}, converted to metres (x {:.10g})", file_.string(),
                        given ? "taken as" : "are in", unit, *metres));
 }
+
+int RasterSource::columns() const { return dataset_->GetRasterXSize(); }
+int RasterSource::lines() const { return dataset_->GetRasterYSize(); }
 
 const OGRSpatialReference* RasterSource::srs() const {
   const OGRSpatialReference* srs = dataset_->GetSpatialRef();

@@ -29,7 +29,7 @@ test_missing_file() {
 test_geographic_crs() {
   scene
   echo 'GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",SPHEROID["WGS_1984",6378137.0,298.257223563]],PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]]' >before.prj
-  refused 3 "talus-preprocess: $PWD/before.asc: CRS is WGS 84, in degrees (this stage needs metres). Reproject: gdalwarp -t_srs EPSG:<a metric one> -r bilinear $PWD/before.asc before_utm.tif"
+  refused 3 "talus-preprocess: $PWD/before.asc: CRS is WGS 84, in degrees (this stage needs metres). Reproject: gdalwarp -t_srs EPSG:<a metric one> -r bilinear $PWD/before.asc before_utm.tif; or set working_crs = \"utm\" in [preprocess]"
 }
 
 test_no_overlap() {
