@@ -47,13 +47,13 @@ test_all_nodata() {
 test_nan_cells() {
   scene
   grid after.asc "i == 11 && j == 5 ? \"nan\" : $bowl - 4 * $in_source"
-  refused 3 "talus-preprocess: $PWD/after.asc: 1 cell without elevation, at x 500115.0, y 5000055.0 (nodata or NaN inside the working area). Fill them (gdal_fillnodata.py $PWD/after.asc out.tif), crop the working grid (west_m, south_m, east_m, north_m in [preprocess.grid]), or, where they reach its edge, leave them outside the domain: edge_nodata = \"outside\""
+  refused 3 "talus-preprocess: $PWD/after.asc: 1 cell without elevation, at x 500115.0, y 5000055.0 (nodata or NaN inside the working area). Fill them: fill = true in [preprocess.voids], or beforehand (gdal_fillnodata.py $PWD/after.asc out.tif); or crop the working grid (west_m, south_m, east_m, north_m in [preprocess.grid]), or, where they reach its edge, leave them outside the domain: edge_nodata = \"outside\""
 }
 
 test_nodata_cells() {
   scene
   grid before.asc "i == 11 && j == 5 ? -9999 : $bowl"
-  refused 3 "talus-preprocess: $PWD/before.asc: 1 cell without elevation, at x 500115.0, y 5000055.0 (nodata or NaN inside the working area). Fill them (gdal_fillnodata.py $PWD/before.asc out.tif), crop the working grid (west_m, south_m, east_m, north_m in [preprocess.grid]), or, where they reach its edge, leave them outside the domain: edge_nodata = \"outside\""
+  refused 3 "talus-preprocess: $PWD/before.asc: 1 cell without elevation, at x 500115.0, y 5000055.0 (nodata or NaN inside the working area). Fill them: fill = true in [preprocess.voids], or beforehand (gdal_fillnodata.py $PWD/before.asc out.tif); or crop the working grid (west_m, south_m, east_m, north_m in [preprocess.grid]), or, where they reach its edge, leave them outside the domain: edge_nodata = \"outside\""
 }
 
 test_empty_source() {

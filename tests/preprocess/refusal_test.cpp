@@ -78,20 +78,63 @@ TEST(refusal, nodata_inside_the_working_area) {
   after.at(20, 7) = after.at(21, 7) = after.at(9, 5) = std::nan("");
   scene.rewrite_after(after);
   const std::string file = scene.path("after.tif");
-  EXPECT_EQ(scene.data_fault(), file +
-                                    ": 3 cells without elevation, the first at x 500205.0, y 5100075.0 (nodata or NaN "
-                                    "inside the working area). Fill them "
-                                    "(gdal_fillnodata.py " +
-                                    file +
-                                    " out.tif), crop the working grid (west_m, south_m, east_m, north_m in "
-                                    "[preprocess.grid]), or, where they reach its edge, leave them outside the domain: "
-                                    "edge_nodata = \"outside\"");
+  EXPECT_EQ(scene.data_fault(),
+            file +
+                ": 3 cells without elevation, the first at x 500205.0, y 5100075.0 (nodata or NaN inside the working area). "
+                "Fill them: fill = true in [preprocess.voids], or beforehand (gdal_fillnodata.py " +
+                file +
+                " out.tif); or crop the working grid (west_m, south_m, east_m, north_m in [preprocess.grid]), or, where they "
+                "reach its edge, leave them outside the domain: edge_nodata = \"outside\"");
   scene.options.grid.edge_nodata = EdgeNodata::outside;
   EXPECT_EQ(scene.data_fault(),
             file +
-                ": 3 cells without elevation, the first at x 500205.0, y 5100075.0 (nodata or NaN inside the "
-                "working area). Fill them (gdal_fillnodata.py " +
+                ": 3 cells without elevation, the first at x 500205.0, y 5100075.0 (nodata or NaN inside the working area). "
+                "Fill them: fill = true in [preprocess.voids], or beforehand (gdal_fillnodata.py " +
                 file + " out.tif)");
+}
+
+TEST(refusal, voids_are_filled_on_request_up_to_a_size) {
+  Scene scene;
+  Raster after = scene.after;
+  for (int c = 20; c < 24; ++c) after.at(c, 7) = after.at(c, 8) = std::nan("");
+  scene.rewrite_after(after);
+  scene.options.voids.fill = true;
+  testing::internal::CaptureStderr();
+  const Prepared prepared = scene.prepare();
+  const std::string log = testing::internal::GetCapturedStderr();
+  EXPECT_NE(log.find("after.tif: 1 void of 8 cells filled by natural neighbours (the largest 8 cells; at most 10 m from "
+                     "data; error about "),
+            std::string::npos)
+      << log;
+  EXPECT_GT(prepared.total.volume, 0);
+  scene.options.voids.largest_m2 = 700;
+  const std::string file = scene.path("after.tif");
+  const std::string text = scene.data_fault();
+  EXPECT_EQ(text.find(file +
+                      ": 8 cells without elevation, the first at x 500205.0, y 5100085.0 (nodata or NaN inside the working "
+                      "area, in voids too large to fill or at its edge). Raise largest_m2 = 700 in [preprocess.voids], or "),
+            0u)
+      << text;
+}
+
+TEST(refusal, spikes_are_reported_and_removed_on_request) {
+  Scene scene;
+  Raster before = scene.before;
+  before.at(30, 20) += 300;
+  scene.rewrite_before(before);
+  testing::internal::CaptureStderr();
+  EXPECT_GT(scene.prepare().domain.before.at(30, 20), before.at(30, 20) - 1);
+  const std::string log = testing::internal::GetCapturedStderr();
+  EXPECT_NE(log.find("before.tif: 1 spike and 0 pits stand out from their neighbours: +"), std::string::npos) << log;
+  EXPECT_NE(log.find(" m at x 500305.0, y 5100205.0; remove them with spikes = \"remove\" in [preprocess.voids]"),
+            std::string::npos)
+      << log;
+  scene.options.voids.spikes = Spikes::remove;
+  EXPECT_EQ(scene.recipe_fault(),
+            "[preprocess]: voids.spikes = \"remove\" without voids.fill (what is removed is filled like a void). Set fill = "
+            "true in [preprocess.voids], or spikes = \"report\"");
+  scene.options.voids.fill = true;
+  EXPECT_NEAR(scene.prepare().domain.before.at(30, 20), scene.before.at(30, 20), 0.5);
 }
 
 TEST(refusal, empty_source) {
