@@ -100,6 +100,28 @@ ScatteredPoints with_likely_crs(ScatteredPoints points, const std::filesystem::p
   return points;
 }
 
+/// True when all heights are whole metres, and not all the same.
+bool whole_metres(const Raster& raster) {
+  double low = INFINITY, high = -INFINITY;
+  for (const double z : raster.values) {
+    if (std::isnan(z)) continue;
+    if (z != std::round(z)) return false;
+    low = std::min(low, z);
+    high = std::max(high, z);
+  }
+  return high > low;
+}
+
+/// Heights in steps: each carries the error of its rounding, and gentle slopes turn into stairs.
+void warn_of_steps(const std::filesystem::path& file, double step, double cell) {
+  constexpr double hardly_matters = 0.1;  // [m] below what surveys tell apart
+  if (step < hardly_matters) return;
+  log_warning(fmt::format(
+      "{}: heights come in steps of {:.3g} m (integers, or rounded): each is off by {:.2g} m (one sigma), and a "
+      "slope from cell to cell is told in steps of {:.2g} degrees. Take real numbers where they are to be had",
+      file.string(), step, step / std::sqrt(12.0), std::atan(step / cell) * 180 / M_PI));
+}
+
 ScatteredPoints points_in_metres(const std::filesystem::path& file, const ReadOptions& how) {
   ScatteredPoints points = read_points_as_given(file);
   const double metres = metres_in(how.vertical_unit).value_or(1.0);
@@ -153,7 +175,10 @@ Elevation read_elevation(std::string key, const std::filesystem::path& file, con
     ReadOptions options = how;
     elevation.reprojected = !options.to_crs.empty() && !in_metres(file);
     if (!elevation.reprojected) options.to_crs.clear();
-    elevation.raster = RasterFile(file, options).read();
+    const RasterFile opened(file, options);
+    elevation.raster = opened.read();
+    if (!elevation.key.starts_with("bed."))
+      warn_of_steps(file, std::max(opened.step(), whole_metres(elevation.raster) ? 1.0 : 0.0), elevation.cell());
   }
   return elevation;
 }

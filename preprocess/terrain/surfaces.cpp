@@ -69,17 +69,22 @@ void leave_edges_outside(std::vector<Raster>& rasters) {
     log_warning(fmt::format("{} cells without elevation reach the edge of the grid and lie outside the domain", count));
 }
 
-void refuse_empty_cells(const Elevation& dem, const Raster& raster, const Options& options) {
+/// `largest_void` is the area of the largest one that was left unfilled [m2].
+void refuse_empty_cells(const Elevation& dem, const Raster& raster, const Options& options, double largest_void) {
   const EdgeNodata edge = options.grid.edge_nodata;
   std::vector<char> empty = empty_cells(raster);
   if (edge == EdgeNodata::outside) {
     const std::vector<char> outside = reaching_edge(raster.grid, empty);
     for (std::size_t i = 0; i < empty.size(); ++i) empty[i] = empty[i] && !outside[i];
   }
-  const bool fill = options.voids.fill;
-  std::string mend = (fill ? fmt::format("Raise largest_m2 = {:g} in [preprocess.voids]", options.voids.largest_m2)
-                           : std::string("Fill them: fill = true in [preprocess.voids]")) +
-                     ", or beforehand (gdal_fillnodata.py " + dem.file.string() + " out.tif)";
+  const bool too_large = largest_void > 0;
+  const std::string beforehand = "(gdal_fillnodata.py " + dem.file.string() + " out.tif)";
+  std::string mend = "Fill them beforehand " + beforehand;
+  if (!options.voids.fill) mend = "Fill them: fill = true in [preprocess.voids], or beforehand " + beforehand;
+  if (too_large)
+    mend = fmt::format(
+        "Raise largest_m2 = {:g} in [preprocess.voids] (the largest void has {} m2), or fill it beforehand {}",
+        options.voids.largest_m2, grouped(largest_void), beforehand);
   if (edge == EdgeNodata::refuse) {
     mend +=
         "; or crop the working grid (west_m, south_m, east_m, north_m in [preprocess.grid]), or, where they reach its "
@@ -88,8 +93,8 @@ void refuse_empty_cells(const Elevation& dem, const Raster& raster, const Option
   }
   refuse_cells(raster.grid, empty,
                {dem.file, "cells without elevation",
-                fill ? "nodata or NaN inside the working area, in voids too large to fill or at its edge"
-                     : "nodata or NaN inside the working area",
+                too_large ? "nodata or NaN inside the working area, in voids too large to fill"
+                          : "nodata or NaN inside the working area",
                 mend});
 }
 
@@ -176,14 +181,16 @@ std::vector<Raster> align(const std::vector<const Elevation*>& dems, const Optio
   }
   const EdgeNodata edge = options.grid.edge_nodata;
   trim(dems, rasters, edge == EdgeNodata::outside);
+  std::vector<double> largest_void(dems.size(), 0.0);
   for (std::size_t i = 0; i < dems.size(); ++i) {
     look_at_spikes(*dems[i], rasters[i], options.voids);
     if (!options.voids.fill) continue;
     Filled result = fill(*dems[i], rasters[i], options.voids.largest_m2);
     rasters[i] = result.raster;
+    for (const VoidFill& v : result.voids) largest_void[i] = std::max(largest_void[i], v.filled ? 0.0 : v.area_m2);
     if (filled != nullptr) filled->push_back(std::move(result));
   }
-  for (std::size_t i = 0; i < dems.size(); ++i) refuse_empty_cells(*dems[i], rasters[i], options);
+  for (std::size_t i = 0; i < dems.size(); ++i) refuse_empty_cells(*dems[i], rasters[i], options, largest_void[i]);
   if (edge == EdgeNodata::outside) leave_edges_outside(rasters);
   return rasters;
 }

@@ -155,14 +155,12 @@ Worth worth_of(const Raster& raster, const Hole& hole, const std::vector<double>
   return worth;
 }
 
-VoidFill described(const MapGrid& grid, const Hole& hole, const std::vector<double>& distance) {
-  const auto farthest = static_cast<std::size_t>(std::max_element(distance.begin(), distance.end()) - distance.begin());
+VoidFill described(const MapGrid& grid, const Hole& hole) {
   VoidFill fill;
   fill.cells = hole.size();
-  fill.x = grid.x(hole[farthest][0]);
-  fill.y = grid.y(hole[farthest][1]);
+  fill.x = grid.x(hole.front()[0]);
+  fill.y = grid.y(hole.front()[1]);
   fill.area_m2 = static_cast<double>(hole.size()) * grid.cell * grid.cell;
-  fill.largest_distance = distance[farthest] * grid.cell;
   fill.rmse = unknown;
   return fill;
 }
@@ -186,9 +184,14 @@ Filled fill_voids(Raster raster, double largest_m2) {
   Filled result{std::move(raster), std::vector<char>(grid.count(), 0), std::vector<double>(grid.count(), 0.0), {}};
   const Raster given = result.raster;  // holes are filled from data alone, not from one another
   for (const Hole& hole : holes_of(given)) {
-    const std::vector<double> distance = distances(given, hole);
-    VoidFill& fill = result.voids.emplace_back(described(grid, hole, distance));
+    VoidFill& fill = result.voids.emplace_back(described(grid, hole));
     if (fill.area_m2 > largest_m2 * (1 + 1e-9)) continue;
+    const std::vector<double> distance = distances(given, hole);
+    const auto farthest = std::max_element(distance.begin(), distance.end());
+    const Cell& deepest = hole[static_cast<std::size_t>(farthest - distance.begin())];
+    fill.x = grid.x(deepest[0]);
+    fill.y = grid.y(deepest[1]);
+    fill.largest_distance = *farthest * grid.cell;
     const std::vector<double> heights = fill_hole(given, hole, hole);
     if (std::any_of(heights.begin(), heights.end(), [](double z) { return std::isnan(z); })) continue;
     const Worth worth = worth_of(given, hole, distance);

@@ -12,9 +12,9 @@ namespace talus::preprocess {
 /// A void: cells without elevation that hang together (8-connected) and do not reach the edge of the raster.
 struct VoidFill {
   std::size_t cells = 0;
-  double x = 0, y = 0;          // a cell of it, the one farthest from data [m]
+  double x = 0, y = 0;          // a cell of it: the one farthest from data, where it was filled [m]
   double area_m2 = 0;           // [m2]
-  double largest_distance = 0;  // from a cell's centre to the nearest with data [m]
+  double largest_distance = 0;  // from a cell's centre to the nearest with data [m]; 0 where it was not filled
   double rmse = 0;      // of filling holes of this shape nearby, where the truth is known [m]; NaN = no place for one
   int trials = 0;       // how many such holes
   bool filled = false;  // false: larger than allowed
@@ -45,9 +45,10 @@ struct Outlier {
   double height = 0;  // above the median of its neighbours [m]; negative = a pit
 };
 
-/// Cells that lie further from the median of their eight neighbours than ten times what is usual around (the NMAD of such
-/// deviations within seven cells), than three times all but one of the neighbours do from theirs (summits and crests are
-/// no faults), and at least `minimum_m` and a quarter of a cell. The farthest out first. Not looked at: cells on the edge.
+/// Cells that lie further from the median of their eight neighbours than ten times what is usual around (the NMAD of
+/// such deviations within seven cells), than three times all but one of the neighbours do from theirs (summits and
+/// crests are no faults), and at least `minimum_m` and a quarter of a cell. The farthest out first. Not looked at:
+/// cells on the edge.
 std::vector<Outlier> spikes_and_pits(const Raster& raster, double minimum_m = 2.0);
 
 /// "2 spikes and 1 pit: 35.2 m at x 361265.6, y 71238.4; ..."; "" for none.
