@@ -177,6 +177,10 @@ Raster RasterFile::read() const {
 
 Raster read_raster(const fs::path& file) { return RasterFile(file).read(); }
 
+Raster read_raster_in_metres(const fs::path& file, const std::string& crs_wkt) {
+  return RasterFile(file, {in_metres(file) ? "" : crs_wkt, "", ""}).read();
+}
+
 bool in_metres(const fs::path& file) { return RasterSource(file, "metre").in_metres(); }
 
 std::string utm_crs_of(const fs::path& file) {

@@ -51,6 +51,9 @@ class RasterFile {
   std::unique_ptr<Parts> parts_;
 };
 
+/// A raster whole: as it is where it is in metres, else reprojected to `crs_wkt`.
+Raster read_raster_in_metres(const std::filesystem::path& file, const std::string& crs_wkt);
+
 /// True when a raster's CRS is projected and in metres, or when it names none. Throws DataError as RasterFile does.
 bool in_metres(const std::filesystem::path& file);
 
