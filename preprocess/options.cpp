@@ -91,6 +91,15 @@ void GridOptions::describe(recipe::Visitor& v) {
       "cells without elevation that reach the edge of the grid: refuse them, or leave them outside the domain");
 }
 
+void VoidOptions::describe(recipe::Visitor& v) {
+  v.flag("fill", fill, "fill voids inside the elevation models by natural neighbours; else they are refused by place");
+  v.number("largest_m2", largest_m2, recipe::not_negative, "area of the largest void that is filled");
+  recipe::choice(v, "spikes", spikes,
+                 {{"ignore", Spikes::ignore}, {"report", Spikes::report}, {"remove", Spikes::remove}},
+                 "cells that stand out from their neighbours (ten times the usual around): remove = make them voids and fill "
+                 "them");
+}
+
 void LaboratoryOptions::describe(recipe::Visitor& v) {
   v.integer("columns", columns, recipe::not_negative, "cells from west to east; 0 = no laboratory");
   v.integer("rows", rows, recipe::not_negative, "cells from south to north");
@@ -151,6 +160,9 @@ void Options::describe(recipe::Visitor& v) {
   v.leave();
   v.enter("grid", "background grid and material points");
   grid.describe(v);
+  v.leave();
+  v.enter("voids", "cells without elevation inside the elevation models, and cells that stand out");
+  voids.describe(v);
   v.leave();
   recipe::list(v, "release", release, "what is released onto base_dem; may be repeated");
   recipe::list(v, "erodible", erodible, "a layer of ground that the slide can take along: material points with a strength of their own; may be repeated");
@@ -288,6 +300,10 @@ void Options::check(std::vector<Fault>& faults) const {
     return e.lowering;
   });
   check_grid(grid, faults);
+  if (voids.spikes == Spikes::remove && !voids.fill) {
+    faults.push_back(fault("voids.spikes = \"remove\" without voids.fill", "what is removed is filled like a void",
+                           "Set fill = true in [preprocess.voids], or spikes = \"report\""));
+  }
   if (source.seed_x_m.has_value() != source.seed_y_m.has_value()) {
     faults.push_back(
         fault("only one of source.seed_x_m and seed_y_m is given", "a point has both", "Give both or none"));

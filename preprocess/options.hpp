@@ -109,6 +109,18 @@ struct GridOptions {
   void describe(recipe::Visitor& v);
 };
 
+/// What is done about cells that stand out from their neighbours.
+enum class Spikes { ignore, report, remove };
+
+/// Holes in the elevation models, and cells that stand out of them.
+struct VoidOptions {
+  bool fill = false;
+  double largest_m2 = 1e5;
+  Spikes spikes = Spikes::report;
+
+  void describe(recipe::Visitor& v);
+};
+
 /// A scene without elevation models: a level or tilted plane, its cells as wide as grid.spacing_m.
 struct LaboratoryOptions {
   int columns = 0, rows = 0;  // 0 = no laboratory
@@ -160,6 +172,7 @@ struct Options {
   SourceOptions source;
   DepositOptions deposit;
   GridOptions grid;
+  VoidOptions voids;
   std::vector<ReleaseOptions> release;
   std::vector<ErodibleOptions> erodible;
   LaboratoryOptions laboratory;

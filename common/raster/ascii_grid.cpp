@@ -167,6 +167,8 @@ fs::path projection_beside(const fs::path& file) {
 
 }  // namespace
 
+bool begins_as_ascii_grid(const fs::path& file) { return ascii_header(start_of(file)).has_value(); }
+
 AsciiGrid::AsciiGrid(const fs::path& file) : path_(file.string()) {
   const auto header = ascii_header(start_of(file));
   if (!header) return;

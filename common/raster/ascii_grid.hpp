@@ -6,6 +6,9 @@
 
 namespace talus::gdal {
 
+/// True when a file begins as an ASCII grid does; its cells are not looked at.
+bool begins_as_ascii_grid(const std::filesystem::path& file);
+
 /// A file that may be an ASCII grid. Where its header names columns and rows it is one, and path() is what GDAL should
 /// open: the file itself, or a stand-in in memory with the usual header. That covers keys in any order, case and
 /// spelling (xllcentre, nbcols, nodata), one axis by corner and the other by centre, a byte-order mark, comments,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <ogrsf_frmts.h>
 
+#include "common/raster/ascii_grid.hpp"
 #include "common/raster/gdal_support.hpp"
 
 namespace talus {
@@ -29,6 +30,7 @@ int z_field_of(const OGRFeatureDefn& fields, const std::function<bool(std::strin
 std::optional<RasterGlance> glance_at_raster(const fs::path& file) {
   const gdal::QuietErrors errors;
   const gdal::Dataset raster = open(file, GDAL_OF_RASTER);
+  if (!raster && gdal::begins_as_ascii_grid(file)) return RasterGlance{"AAIGrid", 0};
   if (!raster) return std::nullopt;
   return RasterGlance{
       raster->GetDriver() == nullptr ? "" : raster->GetDriver()->GetDescription(),

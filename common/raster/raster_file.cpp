@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "common/raster/gdal_support.hpp"
 #include "common/raster/raster_io.hpp"
 #include "common/raster/raster_source.hpp"
 #include "common/stage/stage.hpp"
@@ -134,6 +135,7 @@ RasterFile::~RasterFile() = default;
 
 const fs::path& RasterFile::file() const { return parts_->source.file(); }
 const MapGrid& RasterFile::grid() const { return parts_->grid; }
+double RasterFile::step() const { return parts_->source.step(); }
 
 Raster RasterFile::read(const CellWindow& w) const {
   const MapGrid& whole = parts_->grid;
@@ -174,6 +176,10 @@ Raster RasterFile::read() const {
 }
 
 Raster read_raster(const fs::path& file) { return RasterFile(file).read(); }
+
+Raster read_raster_in_metres(const fs::path& file, const std::string& crs_wkt) {
+  return RasterFile(file, {in_metres(file) ? "" : crs_wkt, "", ""}).read();
+}
 
 bool in_metres(const fs::path& file) { return RasterSource(file, "metre").in_metres(); }
 

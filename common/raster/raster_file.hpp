@@ -36,6 +36,9 @@ class RasterFile {
   const std::filesystem::path& file() const;
   const MapGrid& grid() const;
 
+  /// Between one value that the file can hold and the next, where it holds integers [m]; 0 for real numbers.
+  double step() const;
+
   /// The cells of a window, which must lie inside the grid (std::out_of_range). All may be NaN. Throws DataError when
   /// they cannot be read (file cut short) and where one is infinite, naming its place.
   Raster read(const CellWindow& window) const;
@@ -47,6 +50,9 @@ class RasterFile {
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };
+
+/// A raster whole: as it is where it is in metres, else reprojected to `crs_wkt`.
+Raster read_raster_in_metres(const std::filesystem::path& file, const std::string& crs_wkt);
 
 /// True when a raster's CRS is projected and in metres, or when it names none. Throws DataError as RasterFile does.
 bool in_metres(const std::filesystem::path& file);

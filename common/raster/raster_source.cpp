@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "common/raster/gdal_support.hpp"
 #include "common/raster/vertical_unit.hpp"
 #include "common/stage/stage.hpp"
 
@@ -87,6 +88,9 @@ void RasterSource::take_unit(const std::string& vertical_unit) {
                        given ? "taken as" : "are in", unit, *metres));
 }
 
+int RasterSource::columns() const { return dataset_->GetRasterXSize(); }
+int RasterSource::lines() const { return dataset_->GetRasterYSize(); }
+
 const OGRSpatialReference* RasterSource::srs() const {
   const OGRSpatialReference* srs = dataset_->GetSpatialRef();
   return srs == nullptr || srs->IsEmpty() ? nullptr : srs;
@@ -96,6 +100,10 @@ bool RasterSource::in_metres() const {
   const QuietErrors errors;
   const OGRSpatialReference* own = srs();
   return own == nullptr || (!own->IsGeographic() && std::abs(own->GetLinearUnits() - 1) <= 1e-9);
+}
+
+double RasterSource::step() const {
+  return GDALDataTypeIsInteger(band_->GetRasterDataType()) != 0 ? std::abs(scale_) : 0.0;
 }
 
 std::array<double, 2> RasterSource::centre() const {

@@ -8,7 +8,11 @@
 #include <vector>
 
 #include "common/raster/ascii_grid.hpp"
-#include "common/raster/gdal_support.hpp"
+#include "common/raster/raster.hpp"
+
+class GDALDataset;
+class GDALRasterBand;
+class OGRSpatialReference;
 
 namespace talus::gdal {
 
@@ -23,14 +27,16 @@ class RasterSource {
   RasterSource(std::filesystem::path file, const std::string& vertical_unit);
 
   const std::filesystem::path& file() const { return file_; }
-  int columns() const { return dataset_->GetRasterXSize(); }
-  int lines() const { return dataset_->GetRasterYSize(); }
+  int columns() const;
+  int lines() const;
   bool placed() const { return placed_; }  ///< has a georeference
   const GeoTransform& transform() const { return transform_; }
   const OGRSpatialReference* srs() const;  ///< null when the file names none
   bool in_metres() const;                  ///< the CRS is projected and in metres, or there is none
   std::array<double, 2> centre() const;    ///< in the file's CRS
   std::array<int, 2> block() const;        ///< columns and lines that are stored together
+
+  double step() const;  ///< between neighbouring values of a file of integers [m]; 0 for real numbers
 
   /// Cells in the order of the file, first line first. Throws DataError: unreadable, infinite.
   std::vector<double> read(int column, int line, int columns, int lines);
@@ -45,7 +51,7 @@ class RasterSource {
 
   std::filesystem::path file_;
   std::unique_ptr<AsciiGrid> ascii_;  // stays as long as the dataset, which may read through it
-  Dataset dataset_;
+  std::shared_ptr<GDALDataset> dataset_;
   GDALRasterBand* band_ = nullptr;
   bool placed_ = false;
   GeoTransform transform_{};
@@ -68,8 +74,8 @@ class Warped {
 
  private:
   MapGrid grid_;
-  Dataset cells_;   // the source's cells, as a dataset of their own
-  Dataset warped_;  // goes before cells_
+  std::shared_ptr<GDALDataset> cells_;   // the source's cells, as a dataset of their own
+  std::shared_ptr<GDALDataset> warped_;  // goes before cells_
 };
 
 }  // namespace talus::gdal

@@ -9,6 +9,7 @@
 #include <exception>
 #include <utility>
 
+#include "common/raster/gdal_support.hpp"
 #include "common/raster/raster_source.hpp"
 
 namespace talus::gdal {
@@ -154,7 +155,7 @@ Dataset warp(const RasterSource& source, GDALDataset& cells, const MapGrid& grid
 Warped::Warped(RasterSource& source, const OGRSpatialReference& srs) {
   auto cells = std::make_unique<PlainCells>(source);
   grid_ = grid_around(source, *cells, srs);
-  cells_.reset(cells.release());
+  cells_ = Dataset(cells.release());
   warped_ = warp(source, *cells_, grid_, srs);
 }
 

@@ -90,22 +90,23 @@ VolumeWithError volume_in(const Raster& thickness, const Raster& sigma, const Er
 
 }  // namespace
 
-SurveyedSlide delineate(const Survey& survey, const Raster& before, const Raster& after, const Raster& source, const DepositOptions& options) {
-  const Raster zero{before.grid, std::vector<double>(before.grid.count(), 0.0)};
-  SurveyedSlide slide{zero, zero, sigma_on(survey, before), {}};
+void delineate(const Survey& survey, const SlideSurfaces& surfaces, const DepositOptions& options, SurveyedSlide& slide) {
+  const auto& [before, after, source] = surfaces;
   Change change{after, levels_of(survey, slide.sigma)};
   for (std::size_t i = 0; i < change.levels.size(); ++i) {
     change.rise.values[i] -= before.values[i];
     change.levels[i] = std::max(change.levels[i], options.threshold_m);
   }
   const std::vector<char> moved = changed_beside(change, source), deposit = deposit_cells(change, source, moved, options);
+  slide.deposit.values.assign(deposit.size(), 0.0);
+  slide.change.values.assign(deposit.size(), 0.0);
   for (std::size_t i = 0; i < deposit.size(); ++i) {
     const double rise = change.rise.values[i];
     if (deposit[i] || std::isnan(rise)) slide.deposit.values[i] = rise;
     if (deposit[i] || moved[i] || source.values[i] > 0 || std::isnan(rise)) slide.change.values[i] = rise;
+    if (!slide.filled.values.empty() && slide.filled.values[i] > 0) slide.change.values[i] = std::nan("");
   }
   slide.volumes = {{"source", volume_in(source, slide.sigma, survey.errors)}, {"deposit", volume_in(slide.deposit, slide.sigma, survey.errors)}};
-  return slide;
 }
 
 }  // namespace talus::preprocess

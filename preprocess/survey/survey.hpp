@@ -8,6 +8,7 @@
 
 #include "preprocess/survey/coregistration.hpp"
 #include "preprocess/survey/difference.hpp"
+#include "preprocess/terrain/voids.hpp"
 
 namespace talus::preprocess {
 
@@ -38,20 +39,27 @@ struct SurveyedVolume {
 /// What is known of the slide on the working grid.
 struct SurveyedSlide {
   Raster deposit;  // rise of the surface in the deposit, 0 outside, NaN where not surveyed [m]
-  Raster change;   // after less before in the slide, where it is believed; 0 outside, NaN where not surveyed [m]
-  Raster sigma;    // standard deviation of the difference [m]
+  Raster change;   // after less before in the slide, where it is believed; 0 outside, NaN where not surveyed or filled [m]
+  Raster sigma;    // standard error of the difference, that of filled voids taken in [m]
+  Raster filled;   // 1 where the survey before was filled, 2 the one after, 3 both, else 0; no values where none was
   std::vector<SurveyedVolume> volumes;
 };
 
-/// Level of detection, and at least `threshold`, of every cell; sigma as in SurveyedSlide.
+/// Standard error of every cell of a surface, and what was filled (in the order of the two surveys; empty = nothing); the rest is
+/// left to delineate().
+SurveyedSlide slide_on(const Survey& survey, const Raster& before, const std::vector<Filled>& filled);
+
+/// Level of detection of every cell.
 std::vector<double> levels_of(const Survey& survey, const Raster& sigma);
 
-/// Standard deviation of the difference on the cells of a surface [m].
-Raster sigma_on(const Survey& survey, const Raster& before);
+/// Both surfaces, and the source's thickness on the same cells.
+struct SlideSurfaces {
+  const Raster &before, &after, &source;
+};
 
 /// The deposit: within its polygon; else what rose beyond threshold and level of detection in the regions of change that
-/// hang together with the source; else, where nothing rose there, the largest region that rose. `source` is its
-/// thickness. Volumes of source and deposit with their errors.
-SurveyedSlide delineate(const Survey& survey, const Raster& before, const Raster& after, const Raster& source, const DepositOptions& options);
+/// hang together with the source; else, where nothing rose there, the largest region that rose. Volumes of source and deposit
+/// with their errors.
+void delineate(const Survey& survey, const SlideSurfaces& surfaces, const DepositOptions& options, SurveyedSlide& slide);
 
 }  // namespace talus::preprocess

@@ -172,6 +172,10 @@ std::vector<fs::path> write_survey(const fs::path& folder, const Survey& survey,
     put(files, folder / "deposit_surveyed.tif", prepared->slide->deposit, "surveyed rise of the surface in the deposit", class_style(thickness_classes, "m"));
   }
   if (prepared && prepared->slide) put(files, folder / "slide_difference.tif", prepared->slide->change, "surface after less surface before, in the slide alone", difference_style(change_classes, "m"));
+  if (prepared && prepared->slide && !prepared->slide->filled.values.empty()) {
+    files.push_back(folder / "filled.tif");
+    write_cog(files.back(), prepared->slide->filled, {"voids filled: 1 before, 2 after, 3 both", "1", {{"SOURCE", "Talus " + version()}}});
+  }
   say_volumes(survey, budgets, prepared, lines);
   files.push_back(folder / "survey.json");
   write_text(files.back(), survey_json(survey, budgets, prepared ? prepared->slide : std::nullopt));

@@ -100,6 +100,34 @@ ScatteredPoints with_likely_crs(ScatteredPoints points, const std::filesystem::p
   return points;
 }
 
+/// True when all heights are whole metres, and not all the same.
+Raster middle_of(const RasterFile& file) {
+  constexpr int most = 512;
+  const int columns = std::min(most, file.grid().columns), rows = std::min(most, file.grid().rows);
+  return file.read({(file.grid().columns - columns) / 2, (file.grid().rows - rows) / 2, columns, rows});
+}
+
+bool whole_metres(const Raster& raster) {
+  double low = INFINITY, high = -INFINITY;
+  for (const double z : raster.values) {
+    if (std::isnan(z)) continue;
+    if (z != std::round(z)) return false;
+    low = std::min(low, z);
+    high = std::max(high, z);
+  }
+  return high > low;
+}
+
+/// Heights in steps: each carries the error of its rounding, and gentle slopes turn into stairs.
+void warn_of_steps(const std::filesystem::path& file, double step, double cell) {
+  constexpr double hardly_matters = 0.1;  // [m] below what surveys tell apart
+  if (step < hardly_matters) return;
+  log_warning(fmt::format(
+      "{}: heights come in steps of {:.3g} m (integers, or rounded): each is off by {:.2g} m (one sigma), and a "
+      "slope from cell to cell is told in steps of {:.2g} degrees. Take real numbers where they are to be had",
+      file.string(), step, step / std::sqrt(12.0), std::atan(step / cell) * 180 / M_PI));
+}
+
 ScatteredPoints points_in_metres(const std::filesystem::path& file, const ReadOptions& how) {
   ScatteredPoints points = read_points_as_given(file);
   const double metres = metres_in(how.vertical_unit).value_or(1.0);
@@ -158,6 +186,7 @@ Elevation read_elevation(std::string key, const std::filesystem::path& file, con
     if (!elevation.reprojected) options.to_crs.clear();
     elevation.on_disk = std::make_shared<RasterFile>(file, options);
     elevation.raster.grid = elevation.on_disk->grid();
+    if (!elevation.key.starts_with("bed.")) warn_of_steps(file, std::max(elevation.on_disk->step(), whole_metres(middle_of(*elevation.on_disk)) ? 1.0 : 0.0), elevation.cell());
   }
   return elevation;
 }

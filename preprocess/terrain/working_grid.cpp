@@ -66,9 +66,17 @@ Extent overlap_of(const std::vector<const Elevation*>& dems, const std::string& 
     const Extent extent = extent_in(*dem, crs);
     const Extent smaller = intersection(overlap, extent);
     if (smaller.empty()) {
-      throw DataError(Fault{fmt::format("{}: covers {}, while {} covers {}", dem->file.string(), text(extent),
-                                        first.file.string(), text(overlap)),
-                            "they do not overlap", "Check the coordinates and the CRS of both with gdalinfo"});
+      const bool one_crs = same_crs(dem->crs_wkt(), first.crs_wkt());
+      throw DataError(Fault{
+          fmt::format("{}: covers {}, while {} covers {}", dem->file.string(), text(extent), first.file.string(),
+                      text(overlap)),
+          one_crs ? std::string("they do not overlap")
+                  : fmt::format("they do not overlap; the one says it is in {}, the other in {}",
+                                crs_name(dem->crs_wkt()), crs_name(first.crs_wkt())),
+          one_crs ? std::string("Check the coordinates and the CRS of both with gdalinfo")
+                  : "Check both with gdalinfo; where a CRS is named wrongly, name the right one: gdal_edit.py -a_srs "
+                    "EPSG:<code> " +
+                        dem->file.string()});
     }
     overlap = smaller;
   }

@@ -134,6 +134,14 @@ TEST(point_file, is_not_a_raster) {
   EXPECT_FALSE(is_point_file(file));
 }
 
+TEST(point_file, is_not_an_ascii_grid_of_whatever_dialect) {
+  Scratch scratch;
+  const std::string grid = "ncols 2\nnrows 2\nxllcentre 10\nyllcentre 20\ncellsize 5\n1 2\n3 4\n";
+  EXPECT_FALSE(is_point_file(scratch.write("dem.txt", grid)));
+  EXPECT_FALSE(is_point_file(scratch.write("odd.txt", "# made by hand\n" + grid)));
+  EXPECT_EQ(read_raster(scratch / "odd.txt").at(0, 0), 3);
+}
+
 TEST(metric_crs, refuses_degrees_and_unknown_names) {
   EXPECT_EQ(fault_of<RecipeError>([] { metric_crs("EPSG:4326"); }),
             "[preprocess]: working_crs = \"EPSG:4326\" (its coordinates are not in metres). Name a projected CRS in "
