@@ -44,7 +44,7 @@ Scene from_before_and_after(const Options& options) {
   std::vector<Raster> surfaces = align({&survey.before, &survey.after}, options, &filled);
   SurveyedSlide slide = slide_on(survey, surfaces[0], filled);
   Source source = find_source({surfaces[0], surfaces[1], options.after_dem, false, levels_of(survey, slide.sigma)}, options.source);
-  delineate(survey, {surfaces[0], surfaces[1], source.thickness}, options.deposit, slide);
+  delineate(survey, {surfaces[0], surfaces[1], source.thickness}, options, slide);
   std::vector<double> lowering;
   for (std::size_t c = 0; c < surfaces[0].values.size(); ++c) lowering.push_back(surfaces[0].values[c] - surfaces[1].values[c]);
   Scene scene = from_source(std::move(surfaces[0]), std::move(source));

@@ -28,12 +28,12 @@ Raster company(const MapGrid& grid, const std::vector<char>& marked) {
   return share;
 }
 
-void leave_out(const Region& region, const MapGrid& grid, std::vector<char>& stable) {
+void leave_out(const Region& region, const MapGrid& grid, std::vector<char>& kept) {
   const auto columns = static_cast<std::size_t>(grid.columns);
   for (const std::size_t cell : region.cells) {
     const int column = static_cast<int>(cell % columns), row = static_cast<int>(cell / columns);
     for (int r = std::max(0, row - rim); r <= std::min(grid.rows - 1, row + rim); ++r) {
-      for (int c = std::max(0, column - rim); c <= std::min(grid.columns - 1, column + rim); ++c) stable[grid.index(c, r)] = 0;
+      for (int c = std::max(0, column - rim); c <= std::min(grid.columns - 1, column + rim); ++c) kept[grid.index(c, r)] = 0;
     }
   }
 }
@@ -55,7 +55,9 @@ void leave_out_changed(std::vector<Patch>& patches, const Placement& placement) 
     std::vector<char> marked(grid.count());
     for (std::size_t i = 0; i < marked.size(); ++i) marked[i] = std::abs(misfits[p][i] - centre) > limit;  // false for NaN
     for (const Region& region : lowering_regions(company(grid, marked), 0.5)) {
-      if (region.cells.size() >= least_region) leave_out(region, grid, patches[p].stable);
+      if (region.cells.size() < least_region) continue;
+      leave_out(region, grid, patches[p].stable);
+      leave_out(region, grid, patches[p].unchanged);
     }
   }
 }

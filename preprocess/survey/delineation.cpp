@@ -18,35 +18,65 @@ struct Change {
   std::vector<double> levels;  // from which it counts [m]
 };
 
-constexpr int bridge = 3;  // cells: a thin sheet between scar and deposit may lie below the level of detection
+constexpr int bridge = 10;           // cells: a thin sheet between scar and deposit may lie below the level of detection
+constexpr double sure = 3;           // levels: no noise
+constexpr std::size_t sure_cells = 5;
 
-/// Regions of `size` above the levels, those within twice the bridge taken together.
-std::vector<Region> regions_above(const Raster& size, const std::vector<double>& levels) {
-  const MapGrid& grid = size.grid;
-  Raster near{grid, std::vector<double>(grid.count(), 0.0)};
+/// Connected regions of believed change, up or down, without their fringe.
+std::vector<Region> changed_regions(const Change& change) {
+  const MapGrid& grid = change.rise.grid;
+  Raster marked{grid, std::vector<double>(grid.count(), 0.0)};
+  for (std::size_t i = 0; i < grid.count(); ++i) marked.values[i] = std::abs(change.rise.values[i]) > change.levels[i] ? 1 : 0;
+  Raster dense = marked;
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
-      const std::size_t i = grid.index(column, row);
-      if (!(size.values[i] > levels[i])) continue;
-      for (int r = std::max(0, row - bridge); r <= std::min(grid.rows - 1, row + bridge); ++r) {
-        for (int c = std::max(0, column - bridge); c <= std::min(grid.columns - 1, column + bridge); ++c) near.at(c, r) = 1;
+      double company = 0;
+      for (int r = std::max(0, row - 1); r <= std::min(grid.rows - 1, row + 1); ++r) {
+        for (int c = std::max(0, column - 1); c <= std::min(grid.columns - 1, column + 1); ++c) company += marked.at(c, r);
+      }
+      if (company <= 4) dense.at(column, row) = 0;
+    }
+  }
+  return lowering_regions(dense, 0.5);
+}
+
+/// No noise: enough of it stands out by several levels.
+bool is_sure(const Region& region, const Change& change) {
+  return static_cast<std::size_t>(std::count_if(region.cells.begin(), region.cells.end(), [&](std::size_t c) { return std::abs(change.rise.values[c]) > sure * change.levels[c]; })) >=
+         sure_cells;
+}
+
+/// True when a cell of the slide lies within the bridge's length of a region.
+bool near_slide(const Region& region, const MapGrid& grid, const std::vector<char>& slide) {
+  for (const std::size_t cell : region.cells) {
+    const int column = static_cast<int>(cell % static_cast<std::size_t>(grid.columns)), row = static_cast<int>(cell / static_cast<std::size_t>(grid.columns));
+    for (int r = std::max(0, row - bridge); r <= std::min(grid.rows - 1, row + bridge); ++r) {
+      for (int c = std::max(0, column - bridge); c <= std::min(grid.columns - 1, column + bridge); ++c) {
+        if (slide[grid.index(c, r)]) return true;
       }
     }
   }
-  return lowering_regions(near, 0.5);
+  return false;
 }
 
-/// Believed changes, up or down, that hang together with the source.
+/// Believed changes, up or down, from the source on: regions that are no noise, each within the bridge's length of one
+/// that belongs to the slide.
 std::vector<char> changed_beside(const Change& change, const Raster& source) {
-  Raster size = change.rise;
-  for (double& d : size.values) d = std::abs(d);
-  for (std::size_t i = 0; i < size.values.size(); ++i) size.values[i] = std::max(size.values[i], source.values[i]);
-  std::vector<char> inside(size.values.size(), 0);
-  for (const Region& region : regions_above(size, change.levels)) {
-    if (std::none_of(region.cells.begin(), region.cells.end(), [&](std::size_t c) { return source.values[c] > 0; })) continue;
-    for (const std::size_t c : region.cells) inside[c] = std::abs(change.rise.values[c]) > change.levels[c];
+  const MapGrid& grid = source.grid;
+  std::vector<char> slide(grid.count());
+  for (std::size_t i = 0; i < slide.size(); ++i) slide[i] = source.values[i] > 0;
+  std::vector<Region> regions = changed_regions(change);
+  std::erase_if(regions, [&](const Region& region) { return !is_sure(region, change); });
+  for (bool grown = true; grown;) {
+    grown = false;
+    for (Region& region : regions) {
+      if (region.cells.empty() || !near_slide(region, grid, slide)) continue;
+      for (const std::size_t c : region.cells) slide[c] = 1;
+      region.cells.clear();
+      grown = true;
+    }
   }
-  return inside;
+  return slide;
 }
 
 std::vector<char> largest_rise(const Change& change) {
@@ -74,30 +104,55 @@ std::vector<char> deposit_cells(const Change& change, const Raster& source, std:
   return any ? slide : largest_rise(change);
 }
 
-VolumeWithError volume_in(const Raster& thickness, const Raster& sigma, const ErrorModel& errors) {
-  Sum sum, squares;
+/// What would come or go at the edge of a region if the level of detection were one standard error lower or higher, half of it
+/// [m3]: cells of the region not that far above their level, and neighbours of it not that far below.
+double edge_error(const Raster& thickness, const Change& change, const Raster& sigma) {
+  const MapGrid& grid = thickness.grid;
+  Sum sum;
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      const std::size_t i = grid.index(column, row);
+      const double size = std::abs(change.rise.values[i]), beyond = size - change.levels[i];
+      if (!(std::abs(beyond) < sigma.values[i]) || (beyond > 0) != (thickness.values[i] > 0)) continue;
+      bool beside = false;
+      for (int r = std::max(0, row - 1); r <= std::min(grid.rows - 1, row + 1); ++r) {
+        for (int c = std::max(0, column - 1); c <= std::min(grid.columns - 1, column + 1); ++c) beside = beside || thickness.at(c, r) > 0;
+      }
+      if (beside) sum.add(size);
+    }
+  }
+  return sum.value() * grid.cell * grid.cell / 2;
+}
+
+/// What was filled errs as one: a hole bridged too high is too high throughout.
+VolumeWithError volume_in(const Raster& thickness, const SurveyedSlide& slide, const Change* change, const ErrorModel& errors) {
+  Sum sum, squares, filled;
   std::size_t cells = 0;
   for (std::size_t i = 0; i < thickness.values.size(); ++i) {
     if (!(thickness.values[i] > 0)) continue;
+    const double fill = slide.fill_error.empty() ? 0 : slide.fill_error[i];
     sum.add(thickness.values[i]);
-    squares.add(sigma.values[i] * sigma.values[i]);
+    squares.add(slide.sigma.values[i] * slide.sigma.values[i] - fill * fill);
+    filled.add(fill);
     ++cells;
   }
   if (cells == 0) return {};
   const double cell = thickness.grid.cell, count = static_cast<double>(cells), area = count * cell * cell;
-  return {sum.value() * cell * cell, area, area * errors.of_mean(squares.value() / count, area, cell)};
+  const double surveyed = area * errors.of_mean(std::max(0.0, squares.value()) / count, area, cell);
+  const double edge = change ? edge_error(thickness, *change, slide.sigma) : 0;  // a given outline has none
+  return {sum.value() * cell * cell, area, std::hypot(surveyed, filled.value() * cell * cell, edge)};
 }
 
 }  // namespace
 
-void delineate(const Survey& survey, const SlideSurfaces& surfaces, const DepositOptions& options, SurveyedSlide& slide) {
+void delineate(const Survey& survey, const SlideSurfaces& surfaces, const Options& options, SurveyedSlide& slide) {
   const auto& [before, after, source] = surfaces;
   Change change{after, levels_of(survey, slide.sigma)};
   for (std::size_t i = 0; i < change.levels.size(); ++i) {
     change.rise.values[i] -= before.values[i];
-    change.levels[i] = std::max(change.levels[i], options.threshold_m);
+    change.levels[i] = std::max(change.levels[i], options.deposit.threshold_m);
   }
-  const std::vector<char> moved = changed_beside(change, source), deposit = deposit_cells(change, source, moved, options);
+  const std::vector<char> moved = changed_beside(change, source), deposit = deposit_cells(change, source, moved, options.deposit);
   slide.deposit.values.assign(deposit.size(), 0.0);
   slide.change.values.assign(deposit.size(), 0.0);
   for (std::size_t i = 0; i < deposit.size(); ++i) {
@@ -106,7 +161,8 @@ void delineate(const Survey& survey, const SlideSurfaces& surfaces, const Deposi
     if (deposit[i] || moved[i] || source.values[i] > 0 || std::isnan(rise)) slide.change.values[i] = rise;
     if (!slide.filled.values.empty() && slide.filled.values[i] > 0) slide.change.values[i] = std::nan("");
   }
-  slide.volumes = {{"source", volume_in(source, slide.sigma, survey.errors)}, {"deposit", volume_in(slide.deposit, slide.sigma, survey.errors)}};
+  slide.volumes = {{"source", volume_in(source, slide, !options.source.polygon.empty() ? nullptr : &change, survey.errors)},
+                   {"deposit", volume_in(slide.deposit, slide, options.deposit.polygon.empty() ? &change : nullptr, survey.errors)}};
 }
 
 }  // namespace talus::preprocess

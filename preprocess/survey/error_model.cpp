@@ -22,7 +22,7 @@ std::vector<Sample> samples_of(const std::vector<Patch>& patches, const std::vec
   std::vector<Sample> samples;
   for (std::size_t p = 0; p < patches.size(); ++p) {
     for (std::size_t i = 0; i < misfits[p].size(); ++i) {
-      if (patches[p].stable[i] && !std::isnan(misfits[p][i])) samples.push_back({std::hypot(patches[p].slope_x[i], patches[p].slope_y[i]), misfits[p][i]});
+      if (patches[p].unchanged[i] && !std::isnan(misfits[p][i])) samples.push_back({std::hypot(patches[p].slope_x[i], patches[p].slope_y[i]), misfits[p][i]});
     }
   }
   return samples;
@@ -55,7 +55,7 @@ ErrorModel ErrorModel::learnt(const std::vector<Patch>& patches, const Placement
   for (std::size_t p = 0; p < patches.size(); ++p) {
     for (std::size_t i = 0; i < misfits[p].size(); ++i) {
       const double sigma = model.sigma(std::hypot(patches[p].slope_x[i], patches[p].slope_y[i]));
-      misfits[p][i] = patches[p].stable[i] && sigma > 0 ? misfits[p][i] / sigma : std::numeric_limits<double>::quiet_NaN();
+      misfits[p][i] = patches[p].unchanged[i] && sigma > 0 ? misfits[p][i] / sigma : std::numeric_limits<double>::quiet_NaN();
     }
   }
   model.variogram_ = variogram_of(patches, misfits);

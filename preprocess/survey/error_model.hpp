@@ -12,7 +12,7 @@ class ErrorModel {
  public:
   ErrorModel() = default;
 
-  /// From the misfit of the stable cells: NMAD in classes of slope (steeper ground errs more; Hugonnet et al. 2022, IEEE
+  /// From the misfit of the unchanged cells, steep and rough ones too: NMAD in classes of slope (steeper ground errs more; Hugonnet et al. 2022, IEEE
   /// JSTARS 15, 6456), and the variogram of the misfit over it. `given` [m] > 0 takes the place of the NMAD.
   static ErrorModel learnt(const std::vector<Patch>& patches, const Placement& placement, double given);
 

@@ -44,6 +44,7 @@ void find_stable(std::vector<Patch>& patches, const StableGround& limits) {
     const std::vector<char> outside = cells_inside(limits.outside, patch.before.grid);
     for (std::size_t i = 0; i < patch.stable.size(); ++i) {
       const double slope = std::hypot(patch.slope_x[i], patch.slope_y[i]);
+      patch.unchanged[i] = !outside[i];
       patch.stable[i] = slope <= steep && roughness[p][i] <= rough && !outside[i];  // false for NaN
     }
   }

@@ -122,16 +122,18 @@ std::vector<std::string> as_lines(const Survey& s) {
 }
 
 SurveyedSlide slide_on(const Survey& s, const Raster& before, const std::vector<Filled>& filled) {
-  SurveyedSlide slide{{before.grid, {}}, {before.grid, {}}, {before.grid, {}}, {before.grid, {}}, {}};
+  SurveyedSlide slide{{before.grid, {}}, {before.grid, {}}, {before.grid, {}}, {}, {before.grid, {}}, {}};
   for (const double cosine : slope_cosine(before)) slide.sigma.values.push_back(s.errors.sigma(std::sqrt(std::max(0.0, 1 / (cosine * cosine) - 1))));
   for (std::size_t k = 0; k < filled.size(); ++k) {
     if (filled[k].count() == 0) continue;
     slide.filled.values.resize(before.grid.count(), 0.0);
+    slide.fill_error.resize(before.grid.count(), 0.0);
     const double unknown = std::isnan(filled[k].rmse()) ? 0.0 : filled[k].rmse();  // where a hole found no place to be tried: as the others
     for (std::size_t i = 0; i < slide.sigma.values.size(); ++i) {
       if (!filled[k].filled[i]) continue;
-      const double error = filled[k].sigma[i];
-      slide.sigma.values[i] = std::hypot(slide.sigma.values[i], std::isnan(error) ? unknown : error);
+      const double error = std::isnan(filled[k].sigma[i]) ? unknown : filled[k].sigma[i];
+      slide.sigma.values[i] = std::hypot(slide.sigma.values[i], error);
+      slide.fill_error[i] = std::hypot(slide.fill_error[i], error);
       slide.filled.values[i] += static_cast<double>(k + 1);
     }
   }

@@ -41,6 +41,7 @@ struct SurveyedSlide {
   Raster deposit;  // rise of the surface in the deposit, 0 outside, NaN where not surveyed [m]
   Raster change;   // after less before in the slide, where it is believed; 0 outside, NaN where not surveyed or filled [m]
   Raster sigma;    // standard error of the difference, that of filled voids taken in [m]
+  std::vector<double> fill_error;  // of what was filled alone, as much of sigma [m]; empty where nothing was
   Raster filled;   // 1 where the survey before was filled, 2 the one after, 3 both, else 0; no values where none was
   std::vector<SurveyedVolume> volumes;
 };
@@ -57,9 +58,9 @@ struct SlideSurfaces {
   const Raster &before, &after, &source;
 };
 
-/// The deposit: within its polygon; else what rose beyond threshold and level of detection in the regions of change that
-/// hang together with the source; else, where nothing rose there, the largest region that rose. Volumes of source and deposit
-/// with their errors.
-void delineate(const Survey& survey, const SlideSurfaces& surfaces, const DepositOptions& options, SurveyedSlide& slide);
+/// The deposit: within its polygon; else what rose beyond threshold and level of detection in regions of change that are
+/// no noise (five cells beyond three levels) and lie within ten cells of the source or of one another; else, where nothing rose there, the largest
+/// region that rose. Volumes of source and deposit with their errors: of the surveys, of what was filled, and of where the edge is drawn.
+void delineate(const Survey& survey, const SlideSurfaces& surfaces, const Options& options, SurveyedSlide& slide);
 
 }  // namespace talus::preprocess

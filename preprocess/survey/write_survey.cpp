@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -12,6 +13,7 @@
 #include "common/stage/stage.hpp"
 #include "preprocess/sum.hpp"
 #include "preprocess/survey/survey_json.hpp"
+#include "preprocess/terrain/working_grid.hpp"
 
 namespace talus::preprocess {
 
@@ -89,10 +91,17 @@ class BlockFiles {
   std::optional<RasterWriter> unaligned_;
 };
 
+/// The cells of a raster that lie in a grid on the same lattice.
+Raster within(const Raster& raster, const MapGrid& grid) {
+  const int west = static_cast<int>(std::lround((grid.west - raster.grid.west) / grid.cell)), south = static_cast<int>(std::lround((grid.south - raster.grid.south) / grid.cell));
+  const int column = std::max(0, west), row = std::max(0, south);
+  return cut(raster, {column, row, std::min(raster.grid.columns, west + grid.columns) - column, std::min(raster.grid.rows, south + grid.rows) - row});
+}
+
 /// 1 where ground counted as stable, 0 where not, nodata where nobody looked.
 void write_stable(const fs::path& file, const Survey& survey) {
   RasterWriter writer(file, survey.grid, {"ground that counted as stable [1]", "1", {{"SOURCE", "Talus " + version()}}});
-  for (const auto& [grid, stable] : survey.stable) writer.write({grid, std::vector<double>(stable.begin(), stable.end())});
+  for (const auto& [grid, stable] : survey.stable) writer.write(within({grid, std::vector<double>(stable.begin(), stable.end())}, survey.grid));
   writer.finish();
 }
 
