@@ -14,7 +14,7 @@ using talus::samples::Sample;
 
 const std::map<std::string, Sample (*)(double)> kinds{{"inclined-plane", talus::samples::inclined_plane},
                                                       {"parabolic-chute", talus::samples::parabolic_chute},
-                                                      {"raw-valley", talus::samples::raw_valley},
+                                                      {"raw-valley", [](double cell) { return talus::samples::raw_valley(cell, 1); }},
                                                       {"rock-slope", talus::samples::rock_slope},
                                                       {"valley", talus::samples::valley}};
 

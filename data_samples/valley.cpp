@@ -171,9 +171,9 @@ bool unseen(double x, double y) {
 
 }  // namespace
 
-Sample raw_valley(double cell) {
+Sample raw_valley(double cell, unsigned seed) {
   const double ratio = volume_ratio(), shift_x = 0.4 * cell, shift_y = -0.7 * cell, lift = 1.3;
-  SurveyError first(41), second(43);
+  SurveyError first(2 * seed), second(2 * seed + 1);
   Sample sample;
   sample.rasters.emplace_back("before_dem", raster_of(width, height, cell, [&](double x, double y) {
                                 const Place p = turned(x, y);

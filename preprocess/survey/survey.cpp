@@ -116,8 +116,12 @@ std::vector<std::string> as_lines(const Survey& s) {
   else
     lines.push_back(fmt::format("after - before there: median {:+.3f} m, NMAD {:.3f} m", is.median, is.nmad));
   const Variogram& v = s.errors.variogram();
-  lines.push_back(fmt::format("error of the difference: {:.3f} m a cell{}; {:.0f} % of its variance independent, {:.0f} % over {:.0f} m, {:.0f} % over {:.0f} m", s.errors.typical(),
-                              s.errors.is_given() ? " (given)" : s.errors.sigma(1) > 1.1 * s.errors.sigma(0) ? " (more on steep ground)" : "", 100 * v.nugget, 100 * v.short_sill, v.short_range, 100 * v.long_sill, v.long_range));
+  std::string line = fmt::format("error of the difference: {:.3f} m a cell{}; {:.0f} % of its variance independent", s.errors.typical(),
+                                 s.errors.is_given() ? " (given)" : s.errors.sigma(1) > 1.1 * s.errors.sigma(0) ? " (more on steep ground)" : "", 100 * v.nugget);
+  for (const auto& [sill, range] : {std::pair{v.short_sill, v.short_range}, {v.long_sill, v.long_range}}) {
+    if (sill > 0) line += fmt::format(", {:.0f} % alike over {:.0f} m", 100 * sill, range);
+  }
+  lines.push_back(line);
   return lines;
 }
 

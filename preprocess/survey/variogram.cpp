@@ -77,11 +77,12 @@ class Sampling {
 
 /// Non-negative least squares for nugget and two sills, by trying which of them are zero.
 struct Sills {
-  Eigen::Vector3d value = Eigen::Vector3d::Zero();
+  Eigen::Vector3d value = Eigen::Vector3d::Zero();  // nugget, shorter range, longer range
   double error = INFINITY;
 };
 
-Sills best_sills(const Variogram& v, double short_range, double long_range) {
+/// Non-negative least squares for nugget and sills over two ranges, by trying which of them are zero; `allowed` has a bit for each that may be used.
+Sills best_sills(const Variogram& v, double short_range, double long_range, int allowed) {
   const auto n = static_cast<Eigen::Index>(v.lags.size());
   Eigen::MatrixXd all(n, 3);
   Eigen::VectorXd wanted(n);
@@ -92,6 +93,7 @@ Sills best_sills(const Variogram& v, double short_range, double long_range) {
   }
   Sills best;
   for (int subset = 1; subset < 8; ++subset) {
+    if ((subset & allowed) != subset) continue;
     std::vector<Eigen::Index> used;
     for (int j = 0; j < 3; ++j) {
       if (subset & (1 << j)) used.push_back(j);
@@ -107,17 +109,29 @@ Sills best_sills(const Variogram& v, double short_range, double long_range) {
   return best;
 }
 
+/// A second range has to explain what the first one leaves: semivariances of long lags scatter, and would be taken for one.
+constexpr double worth_a_range = 0.5;
+
 void fit_model(Variogram& v) {
   Sills best;
+  for (const double range : v.lags) {
+    const Sills one = best_sills(v, range, range, 0b011);
+    if (!(one.error < best.error)) continue;
+    best = one;
+    v.short_range = range;
+  }
+  const double enough = worth_a_range * best.error;
+  Sills two{best.value, enough};
   for (std::size_t a = 0; a < v.lags.size(); ++a) {
     for (std::size_t b = a + 1; b < v.lags.size(); ++b) {
-      const Sills sills = best_sills(v, v.lags[a], v.lags[b]);
-      if (!(sills.error < best.error)) continue;
-      best = sills;
+      const Sills sills = best_sills(v, v.lags[a], v.lags[b], 0b111);
+      if (!(sills.error < two.error)) continue;
+      two = sills;
       v.short_range = v.lags[a];
       v.long_range = v.lags[b];
     }
   }
+  if (two.error < enough) best = two;
   const double sum = best.value.sum();
   if (!(sum > 0)) return;
   v.nugget = best.value[0] / sum;

@@ -28,7 +28,7 @@ struct Variogram {
 
 /// From the misfit on stable ground, each cell's over its own standard deviation: semivariance after Dowd (1984),
 /// 2.198 median|a - b|^2 / 2, in fifteen classes of distance from a cell to half a patch, 4,000 random pairs in
-/// each; nugget and sills by non-negative least squares for the best two ranges. `normalised` has a vector for every patch,
+/// each; nugget and sills by non-negative least squares for the best range, or the best two where the second halves what is left. `normalised` has a vector for every patch,
 /// NaN where not stable. A pure nugget where there are too few cells. Same data, same result.
 Variogram variogram_of(const std::vector<Patch>& patches, const std::vector<std::vector<double>>& normalised);
 

@@ -40,7 +40,7 @@ void expect_committed(const std::string& kind, const samples::Sample& sample) {
 TEST(samples, are_what_the_program_makes) {
   expect_committed("inclined-plane", samples::inclined_plane(10));
   expect_committed("parabolic-chute", samples::parabolic_chute(10));
-  expect_committed("raw-valley", samples::raw_valley(10));
+  expect_committed("raw-valley", samples::raw_valley(10, 1));
   expect_committed("rock-slope", samples::rock_slope(10));
   expect_committed("valley", samples::valley(10));
 }
