@@ -28,6 +28,9 @@ void Options::describe(recipe::Visitor& v) {
       "lower limits of the map's thickness classes, rising; empty: 0.1 5 10 25 50 100, or 0.1 0.5 1 2 5 10 where the "
       "deposit is thinner than 12 m");
   v.text("institution", institution, "who made this, for the NetCDF file");
+  v.path("thalweg", thalweg,
+         "line along which run-out is measured (any vector format), from either end; empty: found as the path of the "
+         "centre of mass");
   v.enter("survey", "what the run is scored against: thickness, or after_dem, or polygon; all empty: no scores");
   survey.describe(v);
   v.leave();

@@ -1,4 +1,4 @@
-// Outlines out of vector files, through OGR.
+// Outlines and lines out of vector files, through OGR.
 #include <fmt/format.h>
 #include <ogrsf_frmts.h>
 
@@ -67,7 +67,6 @@ MapPolygon attributes_of(const OGRFeature& feature) {
 
 struct Reading {
   const fs::path& file;
-  OGRCoordinateTransformation* transform;  // null: coordinates stay
   std::vector<MapPolygon> polygons{};
 
   void add(const OGRFeature& feature, const OGRGeometry& shape) {
@@ -83,11 +82,31 @@ struct Reading {
   }
 };
 
-void carry(const Reading& reading, OGRGeometry& shape, const gdal::QuietErrors& errors) {
-  if (reading.transform == nullptr || shape.transform(reading.transform) == OGRERR_NONE) return;
-  throw DataError({reading.file.string() + ": a polygon cannot be brought to the working CRS", errors.text(),
+void carry(const fs::path& file, OGRCoordinateTransformation* transform, OGRGeometry& shape,
+           const gdal::QuietErrors& errors) {
+  if (transform == nullptr || shape.transform(transform) == OGRERR_NONE) return;
+  const char* what = wkbFlatten(shape.getGeometryType()) == wkbPolygon ? "a polygon" : "a shape";
+  throw DataError({fmt::format("{}: {} cannot be brought to the working CRS", file.string(), what), errors.text(),
                    "Its coordinates do not fit its CRS. Name the true one: ogr2ogr -a_srs EPSG:<code> out.gpkg " +
-                       reading.file.string()});
+                       file.string()});
+}
+
+void add_lines(const OGRGeometry& shape, const fs::path& file, std::vector<MapLine>& lines) {
+  const auto flat = wkbFlatten(shape.getGeometryType());
+  if (flat == wkbMultiLineString || flat == wkbGeometryCollection) {
+    const auto& parts = *shape.toGeometryCollection();
+    for (int i = 0; i < parts.getNumGeometries(); ++i) add_lines(*parts.getGeometryRef(i), file, lines);
+  }
+  if (flat != wkbLineString) return;
+  const auto& line = *shape.toLineString();
+  MapLine points;
+  for (int i = 0; i < line.getNumPoints(); ++i) {
+    const std::array<double, 2> point{line.getX(i), line.getY(i)};
+    if (!std::isfinite(point[0]) || !std::isfinite(point[1]))
+      throw DataError({file.string() + ": a line has a vertex that is not a number", "", "Draw the line again"});
+    if (points.empty() || points.back() != point) points.push_back(point);
+  }
+  if (points.size() > 1) lines.push_back(std::move(points));
 }
 
 gdal::Transformation transformation_of(const OGRLayer& layer, const std::string& crs_wkt) {
@@ -105,14 +124,14 @@ std::vector<MapPolygon> read_polygons(const fs::path& file, const std::string& c
   const gdal::Dataset dataset = open(file);
   OGRLayer& layer = *dataset->GetLayer(0);
   const gdal::Transformation transform = transformation_of(layer, crs_wkt);
-  Reading reading{file, transform.get()};
+  Reading reading{file};
   std::string other;
   for (const auto& feature : layer) {
     const OGRGeometry* geometry = feature->GetGeometryRef();
     if (geometry == nullptr) continue;
     const std::unique_ptr<OGRGeometry> shape(geometry->getLinearGeometry());  // arcs become short chords
     const std::size_t before = reading.polygons.size();
-    carry(reading, *shape, errors);
+    carry(file, transform.get(), *shape, errors);
     reading.add(*feature, *shape);
     if (reading.polygons.size() == before) other = shape->getGeometryName();
   }
@@ -124,6 +143,32 @@ std::vector<MapPolygon> read_polygons(const fs::path& file, const std::string& c
                      other.empty() ? "the layer is empty" : "it holds " + other,
                      "Draw the outline as a polygon, or put that layer first"});
   return reading.polygons;
+}
+
+std::vector<MapLine> read_lines(const fs::path& file, const std::string& crs_wkt) {
+  const gdal::QuietErrors errors;
+  const gdal::Dataset dataset = open(file);
+  OGRLayer& layer = *dataset->GetLayer(0);
+  const gdal::Transformation transform = transformation_of(layer, crs_wkt);
+  std::vector<MapLine> lines;
+  std::string other;
+  for (const auto& feature : layer) {
+    const OGRGeometry* geometry = feature->GetGeometryRef();
+    if (geometry == nullptr) continue;
+    const std::unique_ptr<OGRGeometry> shape(geometry->getLinearGeometry());  // arcs become short chords
+    const std::size_t before = lines.size();
+    carry(file, transform.get(), *shape, errors);
+    add_lines(*shape, file, lines);
+    if (lines.size() == before) other = shape->getGeometryName();
+  }
+  if (errors.failed())
+    throw DataError(
+        {file.string() + ": cannot be read to its end", errors.text(), "Look at it: ogrinfo -al " + file.string()});
+  if (lines.empty())
+    throw DataError({file.string() + ": no line in its first layer",
+                     other.empty() ? "the layer is empty" : "it holds " + other,
+                     "Draw a line from the crown downwards, or put that layer first"});
+  return lines;
 }
 
 }  // namespace talus

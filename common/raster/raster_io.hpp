@@ -42,6 +42,13 @@ struct MapPolygon {
 /// All polygons of a vector file's first layer (multipolygons split), transformed to `crs_wkt` when both have a CRS.
 std::vector<MapPolygon> read_polygons(const std::filesystem::path& file, const std::string& crs_wkt);
 
+/// A line of points (x, y) [m], at least two, none repeated.
+using MapLine = std::vector<std::array<double, 2>>;
+
+/// All lines of a vector file's first layer (multilines split), transformed to `crs_wkt` when both have a CRS. Throws
+/// DataError: no such file, not a vector file, no line in it.
+std::vector<MapLine> read_lines(const std::filesystem::path& file, const std::string& crs_wkt);
+
 /// What a GeoTIFF says of itself beside its values.
 struct RasterTags {
   std::string description;  ///< band description: "deposit thickness, vertical [m]"

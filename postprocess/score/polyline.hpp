@@ -1,0 +1,25 @@
+// What a line in the plane can do: be walked in even steps, and be smoothed.
+#pragma once
+
+#include <array>
+#include <vector>
+
+namespace talus::postprocess {
+
+using Polyline = std::vector<std::array<double, 2>>;  // [m]
+
+/// Length along the line up to each vertex [m]. [line.size()]
+std::vector<double> lengths_along(const Polyline& line);
+
+/// The same line with vertices at even distances, as near to `step` [m] as its length allows; ends stay.
+Polyline resampled(const Polyline& line, double step);
+
+/// Vertices averaged with their neighbours (1/4, 1/2, 1/4) so many times; ends stay. On vertices a step apart this is a
+/// Gaussian of standard deviation step * sqrt(times / 2).
+Polyline smoothed(Polyline line, int times);
+
+/// Without the vertices nearer than `step` [m] to the one kept before, and without those that would turn the line by
+/// more than a right angle. The first and the last stay.
+Polyline without_returns(const Polyline& line, double step);
+
+}  // namespace talus::postprocess

@@ -1,0 +1,177 @@
+#include "postprocess/score/thalweg.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "common/error.hpp"
+#include "common/raster/bilinear.hpp"
+#include "common/raster/raster_io.hpp"
+#include "postprocess/score/flow_path.hpp"
+#include "postprocess/score/mobility.hpp"
+#include "postprocess/score/polyline.hpp"
+
+namespace talus::postprocess {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double shortest_path_cells = 5;  // a centre of mass that moves less says little about the way
+constexpr int smoothing = 18;              // a Gaussian of three cells: takes off the corners of cells, keeps bends
+
+Thalweg thalweg_from(const Polyline& line, double cell) {
+  Thalweg thalweg;
+  thalweg.line = resampled(line, cell);
+  thalweg.distance = lengths_along(thalweg.line);
+  return thalweg;
+}
+
+Thalweg given_thalweg(const std::filesystem::path& file, const RunMaps& maps) {
+  const auto lines = read_lines(file, maps.grid.crs_wkt);
+  if (lines.size() > 1)
+    throw DataError({fmt::format("{}: {} lines", file.string(), lines.size()), "a thalweg is one line",
+                     "Keep one of them, or join them: ogr2ogr -nlt LINESTRING out.gpkg " + file.string()});
+  auto thalweg = thalweg_from(lines.front(), maps.grid.cell);
+  auto heights = sample_along(thalweg, maps.grid, maps.before);
+  std::erase_if(heights, [](double z) { return std::isnan(z); });
+  if (heights.size() < 2)
+    throw DataError({file.string() + ": the line misses the run's area",
+                     fmt::format("run x {:.1f} to {:.1f}, y {:.1f} to {:.1f}", maps.grid.west, maps.grid.east(),
+                                 maps.grid.south, maps.grid.north()),
+                     "Give a line along this slide, in its CRS"});
+  if (heights.front() < heights.back()) {
+    std::reverse(thalweg.line.begin(), thalweg.line.end());
+    thalweg.distance = lengths_along(thalweg.line);
+  }
+  thalweg.given = true;
+  thalweg.origin = "the line of " + file.filename().string();
+  return thalweg;
+}
+
+Polyline path_of_mass(const Run& run) {
+  Polyline path;
+  for (std::size_t frame = 0; frame < run.frames.time.size(); ++frame) {
+    if (const auto centre = centre_of_mass(run.maps.grid, flow_thickness(run, frame), {})) path.push_back({centre->x, centre->y});
+  }
+  return path;
+}
+
+/// Crown, the centre of mass on its way, farthest deposit: joined through the thickest flow.
+Polyline joined(const RunMaps& maps, const Place& crown, const Polyline& middle, const Place& toe) {
+  Place last = crown;
+  Polyline line{{crown.x, crown.y}};
+  if (!middle.empty()) {
+    line.insert(line.end(), middle.begin(), middle.end());
+    last = {middle.back()[0], middle.back()[1], 0};
+  }
+  const auto rest = flow_path(maps.grid, maps.peak_thickness, last, toe);
+  line.insert(line.end(), rest.begin() + 1, rest.end());
+  return line;
+}
+
+Thalweg found_thalweg(const Run& run, const Options& options) {
+  const auto& maps = run.maps;
+  const double cell = maps.grid.cell;
+  const auto top = crown(maps, options.deposit_threshold);
+  const auto toe = top ? farthest(maps.grid, maps.deposit_thickness, options.deposit_threshold, *top, maps.before) : std::nullopt;
+  if (!toe || plan_distance(*top, *toe) < cell) {
+    Thalweg none;
+    none.origin = !top ? "no release in the run's maps" : !toe ? "no deposit above the threshold" : "nothing moved by a cell";
+    return none;
+  }
+  auto middle = without_returns(path_of_mass(run), 2 * cell);
+  const bool by_mass = middle.size() > 1 && lengths_along(middle).back() > shortest_path_cells * cell;
+  if (!by_mass) middle.clear();
+  const auto way = without_returns(joined(maps, *top, middle, *toe), cell);
+  auto thalweg = thalweg_from(smoothed(resampled(way, cell), smoothing), cell);
+  thalweg.origin = by_mass ? "the path of the centre of mass, carried on to the crown and the farthest deposit"
+                           : "the way through the thickest flow from the crown to the farthest deposit, because the centre "
+                             "of mass moves less than five cells over the frames";
+  return thalweg;
+}
+
+}  // namespace
+
+Thalweg thalweg_of(const Run& run, const Options& options) {
+  return options.thalweg.empty() ? found_thalweg(run, options) : given_thalweg(options.thalweg, run.maps);
+}
+
+std::vector<double> sample_along(const Thalweg& thalweg, const MapGrid& grid, const std::vector<double>& values) {
+  const Raster raster{grid, values};
+  std::vector<double> samples;
+  for (const auto& [x, y] : thalweg.line) samples.push_back(bilinear(raster, x, y));
+  return samples;
+}
+
+AlongLine project(const Thalweg& thalweg, double x, double y) {
+  AlongLine best{nan, std::numeric_limits<double>::infinity()};
+  double nearest = std::numeric_limits<double>::infinity();
+  const std::size_t segments = thalweg.line.size() < 2 ? 0 : thalweg.line.size() - 1;
+  for (std::size_t i = 0; i < segments; ++i) {
+    const auto &a = thalweg.line[i], &b = thalweg.line[i + 1];
+    const double length = thalweg.distance[i + 1] - thalweg.distance[i];
+    const double ux = (b[0] - a[0]) / length, uy = (b[1] - a[1]) / length;
+    const double along = std::clamp((x - a[0]) * ux + (y - a[1]) * uy, i == 0 ? -1e300 : 0.0, i + 1 == segments ? 1e300 : length);
+    const double dx = x - a[0] - along * ux, dy = y - a[1] - along * uy, gap = std::hypot(dx, dy);
+    if (gap >= nearest) continue;
+    nearest = gap;
+    best = {thalweg.distance[i] + along, std::copysign(gap, ux * dy - uy * dx)};
+  }
+  return best;
+}
+
+std::vector<double> distance_along(const Thalweg& thalweg, const MapGrid& grid, const std::vector<double>& values, double threshold) {
+  std::vector<double> distances(values.size(), nan);
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      const auto i = grid.index(column, row);
+      if (values[i] > threshold) distances[i] = project(thalweg, grid.x(column), grid.y(row)).distance;
+    }
+  }
+  return distances;
+}
+
+std::vector<double> flow_thickness(const Run& run, std::size_t frame) {
+  auto thickness = run.frames.thickness.at(frame);
+  if (run.maps.eroded_depth.empty()) return thickness;
+  const auto& start = run.frames.thickness.front();
+  for (std::size_t i = 0; i < thickness.size(); ++i) {
+    thickness[i] = std::max(0.0, thickness[i] - (start[i] - run.maps.initial_thickness[i]));
+  }
+  return thickness;
+}
+
+Series front_over_time(const Run& run, const Thalweg& thalweg, double threshold) {
+  Series front;
+  for (std::size_t frame = 0; frame < run.frames.time.size(); ++frame) {
+    double reach = nan;
+    for (const double d : distance_along(thalweg, run.maps.grid, flow_thickness(run, frame), threshold)) {
+      if (!(d <= reach) && !std::isnan(d)) reach = d;
+    }
+    front.time.push_back(run.frames.time[frame]);
+    front.value.push_back(reach);
+  }
+  return front;
+}
+
+std::vector<double> cross_section_maxima(const Thalweg& thalweg, const MapGrid& grid, const std::vector<double>& values,
+                                         double half_width) {
+  std::vector<double> maxima(thalweg.line.size(), nan);
+  if (maxima.size() < 2) return maxima;
+  const double step = thalweg.length() / static_cast<double>(maxima.size() - 1);
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      const double value = values[grid.index(column, row)];
+      if (std::isnan(value)) continue;
+      const auto place = project(thalweg, grid.x(column), grid.y(row));
+      const double station = std::round(place.distance / step);
+      if (!(std::abs(place.offset) <= half_width && station >= 0 && station < static_cast<double>(maxima.size()))) continue;
+      double& top = maxima[static_cast<std::size_t>(station)];
+      if (!(value <= top)) top = value;
+    }
+  }
+  return maxima;
+}
+
+}  // namespace talus::postprocess

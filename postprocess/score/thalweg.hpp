@@ -1,0 +1,63 @@
+// The line along which run-out is measured and profiles are drawn.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/run/run_file.hpp"
+#include "postprocess/options.hpp"
+
+namespace talus::postprocess {
+
+/// A line in map coordinates [m] from the crown downwards, vertices about one cell apart. Empty (no vertex) where a run
+/// has neither release nor deposit and no line is given.
+struct Thalweg {
+  std::vector<std::array<double, 2>> line;
+  std::vector<double> distance;  ///< along the line, of each vertex [m], from 0
+  bool given = false;            ///< read from a file, not found
+  std::string origin;            ///< how it came about, in words
+
+  double length() const { return distance.empty() ? 0 : distance.back(); }  ///< [m]
+};
+
+/// The line of `[postprocess] thalweg`, turned so that it begins at its higher end, or else the path of the centre of
+/// mass over the frames, carried on through the thickest flow to the crown and to the farthest deposit, and smoothed (the
+/// idea: Tonnel et al. 2023, AvaFrame com1DFA, mass-averaged path). Where the centre of mass moves less than five cells or
+/// frames are missing, it is the way through the thickest flow from the crown to the farthest deposit.
+/// Throws DataError: unreadable file, no line or several in it, a line that misses the run's area.
+Thalweg thalweg_of(const Run& run, const Options& options);
+
+/// `values` of `grid` at the line's vertices, bilinear; NaN outside the grid and where a cell has no value.
+std::vector<double> sample_along(const Thalweg& thalweg, const MapGrid& grid, const std::vector<double>& values);
+
+/// Where a point lies beside a line.
+struct AlongLine {
+  double distance = 0;  ///< along the line, of the nearest point of it [m]; beyond its ends the end segments go on
+  double offset = 0;    ///< from the line, positive to the left looking downwards [m]
+};
+AlongLine project(const Thalweg& thalweg, double x, double y);
+
+/// Distance along the line of every cell whose value exceeds `threshold`; NaN elsewhere. [rows * columns]
+std::vector<double> distance_along(const Thalweg& thalweg, const MapGrid& grid, const std::vector<double>& values,
+                                   double threshold);
+
+/// What moves or has come to rest at a frame: its thickness without erodible ground that still lies in place [m].
+std::vector<double> flow_thickness(const Run& run, std::size_t frame);
+
+/// A number over time.
+struct Series {
+  std::vector<double> time;   ///< [s]
+  std::vector<double> value;  ///< NaN where there is none
+};
+
+/// How far along the line the flow reaches at each frame: the largest distance of a cell thicker than `threshold` [m].
+Series front_over_time(const Run& run, const Thalweg& thalweg, double threshold);
+
+/// Largest value across the line at each of its vertices, over the cells nearest to it and within `half_width` [m] on
+/// either side (Fischer 2013, AIMEC: maxima over cross sections); NaN where no cell lies there.
+std::vector<double> cross_section_maxima(const Thalweg& thalweg, const MapGrid& grid, const std::vector<double>& values,
+                                         double half_width);
+
+}  // namespace talus::postprocess
