@@ -28,6 +28,7 @@ void Options::describe(recipe::Visitor& v) {
       "lower limits of the map's thickness classes, rising; empty: 0.1 5 10 25 50 100, or 0.1 0.5 1 2 5 10 where the "
       "deposit is thinner than 12 m");
   v.text("institution", institution, "who made this, for the NetCDF file");
+  v.flag("report", report, "write report.html: maps, profiles, scores and settings on one page to send on");
   v.path("thalweg", thalweg,
          "line along which run-out is measured (any vector format), from either end; empty: found as the path of the "
          "centre of mass");

@@ -33,6 +33,7 @@ struct Options {
   double deposit_threshold = 1.0;    // [m]
   std::vector<double> classes;       // lower limits of the thickness classes [m]; empty = by the deposit's thickness
   std::string institution;
+  bool report = true;             // write report.html
   std::filesystem::path thalweg;  // line along which run-out is measured; empty = found from the run
   SurveyOptions survey;
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -15,12 +17,21 @@
 #include "postprocess/maps/netcdf.hpp"
 #include "postprocess/options.hpp"
 #include "postprocess/picture/map_picture.hpp"
+#include "postprocess/report/report.hpp"
 #include "postprocess/score/score.hpp"
 
 namespace talus::postprocess {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// What is worked on: a run, and what it is scored against.
+struct Job {
+  fs::path file;  // run.h5
+  Run run;
+  Options options;
+  std::optional<Survey> survey;
+};
 
 /// The map must hold the volume of the points: 1e-9 of it where the run was in double precision. A hundredth off is no
 /// rounding but a broken run.
@@ -57,13 +68,33 @@ std::string history_table(const RunHistory& history) {
   return text + "\n";
 }
 
-void write_results(StageContext& context, const Run& run, const Options& options, const std::optional<Survey>& survey) {
+/// What preprocess and solve left beside the run about themselves.
+std::vector<StageText> texts_of_stages(const fs::path& folder) {
+  std::vector<StageText> texts;
+  for (const auto* stage : {"preprocess", "solve"}) {
+    std::ifstream stream(folder / (std::string(stage) + ".used.toml"), std::ios::binary);
+    texts.push_back({stage, {}});
+    if (stream) texts.back().text.emplace(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+  }
+  return texts;
+}
+
+/// What this stage leaves about itself.
+std::string used_text(const StageContext& context, const Job& job) {
+  auto inputs = job.survey ? job.survey->inputs : std::vector<fs::path>{};
+  inputs.insert(inputs.begin(), job.file);
+  return used_recipe(context, stage(), recipe::to_used_toml(job.options, "postprocess"), inputs,
+                     {{"CRS", crs_name(job.run.maps.grid.crs_wkt)}});
+}
+
+void write_results(StageContext& context, const Job& job) {
+  const auto& [file, run, options, survey] = job;
   const auto score = make_score(run, options, survey);
   const auto table = to_table(score);
   const auto folder = context.out / "maps";
   make_folder(folder);
   for (const auto* name :
-       {"score.json", "score.txt"}) {  // so that new maps never lie beside the scores of an older run
+       {"score.json", "score.txt", "report.html"}) {  // so that new maps never lie beside the scores of an older run
     std::error_code none_there;
     fs::remove(context.out / name, none_there);
   }
@@ -76,6 +107,13 @@ void write_results(StageContext& context, const Run& run, const Options& options
   };
   write("map.png", map_picture({run, options, survey, score}));
   write("history.csv", history_table(run.history));
+  const auto used = used_text(context, job);
+  write("postprocess.used.toml", used);
+  if (options.report) {
+    auto stages = texts_of_stages(file.parent_path());
+    stages.push_back({"postprocess", used});
+    write("report.html", report_html({run, options, survey, score, std::move(stages), file}));
+  }
   write("score.txt", table);
   write("score.json", to_json(score));  // last: where it lies, everything is there
   log_info("\n" + table);
@@ -84,20 +122,16 @@ void write_results(StageContext& context, const Run& run, const Options& options
 }  // namespace
 
 void run(StageContext& context) {
-  const auto options = context.recipe.read<Options>("postprocess");
-  const auto file = options.run.empty() ? context.out / "run.h5" : options.run;
-  const auto run = read_run(file);
-  check_volume(file, run);
-  const auto survey = read_survey(options.survey, run.maps, options.footprint_threshold);
-  log_info(fmt::format("{}: {} x {} cells of {:g} m, {} frames; {}", file.string(), run.maps.grid.columns,
-                       run.maps.grid.rows, run.maps.grid.cell, run.frames.time.size(),
-                       survey ? "scored against " + survey->name : std::string("no survey to score against")));
-  if (context.check_only) return;
-  write_results(context, run, options, survey);
-  auto inputs = survey ? survey->inputs : std::vector<fs::path>{};
-  inputs.insert(inputs.begin(), file);
-  write_used_recipe(context, stage(), recipe::to_toml(options, "postprocess", false), inputs,
-                    {{"CRS", crs_name(run.maps.grid.crs_wkt)}});
+  Job job;
+  job.options = context.recipe.read<Options>("postprocess");
+  job.file = job.options.run.empty() ? context.out / "run.h5" : job.options.run;
+  job.run = read_run(job.file);
+  check_volume(job.file, job.run);
+  job.survey = read_survey(job.options.survey, job.run.maps, job.options.footprint_threshold);
+  log_info(fmt::format("{}: {} x {} cells of {:g} m, {} frames; {}", job.file.string(), job.run.maps.grid.columns,
+                       job.run.maps.grid.rows, job.run.maps.grid.cell, job.run.frames.time.size(),
+                       job.survey ? "scored against " + job.survey->name : std::string("no survey to score against")));
+  if (!context.check_only) write_results(context, job);
 }
 
 Stage stage() {
@@ -106,7 +140,7 @@ Stage stage() {
   stage.table = "postprocess";
   stage.summary = "Write maps, NetCDF, picture and scores of a run (run.h5 of talus-solve)";
   stage.examples =
-      "  talus-postprocess scene.toml --out out/scene    maps/*.tif, maps/results.nc, map.png, history.csv, score.json, score.txt\n"
+      "  talus-postprocess scene.toml --out out/scene    maps/*.tif, maps/results.nc, map.png, report.html, history.csv, score.json, score.txt\n"
       "  talus-postprocess scene.toml --out out/scene --check    read run and survey, write nothing\n"
       "  talus-postprocess --template >> scene.toml    all keys with their defaults\n";
   stage.template_toml = [] { return recipe::to_toml(Options{}, "postprocess", true); };

@@ -1,4 +1,4 @@
-// The stage talus-postprocess: run.h5 -> maps/*.tif, maps/results.nc, map.png, history.csv, score.json, score.txt.
+// The stage talus-postprocess: run.h5 -> maps/*.tif, maps/results.nc, map.png, report.html, history.csv, score.json, score.txt.
 #pragma once
 
 #include "common/stage/stage.hpp"

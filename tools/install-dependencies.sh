@@ -10,7 +10,9 @@ packages=(
   libeigen3-dev libsuitesparse-dev libopenblas0-serial libtbb-dev libfmt-dev libspdlog-dev libcli11-dev nlohmann-json3-dev libtomlplusplus-dev
   libgdal-dev libhdf5-dev libnetcdf-dev libcgal-dev
   libopenvdb-dev libboost-iostreams-dev libblosc-dev
-  libcairo2-dev fonts-dejavu-core
+  libcairo2-dev fonts-dejavu-core zlib1g-dev
+  # what report.html is made of, and what bundles its scripts; ffmpeg makes animations where they are asked for
+  libjs-leaflet libjs-chart.js esbuild ffmpeg
   # tests, and the readers that are not ours: gdalinfo, the COG validator, ncdump, vdb_print, h5dump
   libgtest-dev gdal-bin python3-gdal netcdf-bin libopenvdb-tools hdf5-tools
 )

@@ -1,0 +1,89 @@
+#include "postprocess/report/report.hpp"
+
+#include <chrono>
+#include <ctime>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include "common/raster/raster_io.hpp"
+#include "common/stage/stage.hpp"
+#include "postprocess/picture/view.hpp"
+#include "postprocess/report/page.hpp"
+#include "postprocess/report/parts.hpp"
+
+namespace talus::postprocess {
+namespace {
+
+Json run_json(const ReportInput& input) {
+  const auto& s = input.run.summary;
+  const auto& options = input.options;
+  Json json{{"title", s.title}, {"scene", s.scene}, {"version", version()}, {"run_version", s.version}};
+  json["made"] = fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)));
+  json["hardware"] = hardware();
+  json["institution"] = options.institution;
+  json["crs"] = crs_name(input.run.maps.grid.crs_wkt);
+  json["map"] = {{"columns", input.run.maps.grid.columns}, {"rows", input.run.maps.grid.rows}, {"cell", input.run.maps.grid.cell}};
+  json["thresholds"] = {{"footprint", options.footprint_threshold}, {"deposit", options.deposit_threshold},
+                        {"map", input.run.maps.threshold}};
+  json["density"] = s.density;
+  json["survey"] = nullptr;
+  if (const auto& survey = input.survey)
+    json["survey"] = {{"name", survey->name}, {"is_change", survey->deposit_is_change}, {"is_polygon", !survey->polygons.empty()},
+                      {"footprint_threshold", survey->footprint_threshold}};
+  return json;
+}
+
+Json map_json(const ReportInput& input, const Thalweg& thalweg) {
+  const auto window = affected_window(input.run.maps, input.options, input.survey);
+  int coarsest = 1;
+  Json json{{"window", {{"west", window.west}, {"south", window.south}, {"east", window.east}, {"north", window.north}}}};
+  json["ground"] = ground_json(input, window, coarsest);
+  json["layers"] = layers_json(input, window, coarsest);
+  json["frames"] = frames_json(input, window, coarsest);
+  json["lines"] = lines_json(input, window, thalweg);
+  json["coarsest"] = coarsest;
+  return json;
+}
+
+/// JSON inside <script>: no "<" may stand there, or a title could end the block.
+std::string for_script(const Json& json) {
+  const auto text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string safe;
+  safe.reserve(text.size());
+  for (const char c : text) c == '<' ? safe.append("\\u003c") : safe.append(1, c);
+  return safe;
+}
+
+std::string for_html(const std::string& text) {
+  std::string safe;
+  for (const char c : text) {
+    if (c == '&') safe += "&amp;";
+    else if (c == '<') safe += "&lt;";
+    else safe += c;
+  }
+  return safe;
+}
+
+std::string filled(std::string_view page, std::string_view slot, const std::string& text) {
+  const auto at = page.find(slot);
+  if (at == std::string_view::npos) throw std::logic_error("the page has no " + std::string(slot));
+  return std::string(page.substr(0, at)) + text + std::string(page.substr(at + slot.size()));
+}
+
+}  // namespace
+
+std::string report_html(const ReportInput& input) {
+  const auto thalweg = thalweg_of(input.run, input.options);
+  Json data;
+  data["run"] = run_json(input);
+  data["score"] = score_json(input.score);
+  data["volumes"] = volumes_json(input.run);
+  data["stages"] = stages_json(input.stages);
+  data["profile"] = profile_json(input, thalweg);
+  data["series"] = series_json(input, thalweg);
+  data["map"] = map_json(input, thalweg);
+  return filled(filled(page_template(), "@TITLE@", for_html(input.run.summary.title)), "@DATA@", for_script(data));
+}
+
+}  // namespace talus::postprocess
