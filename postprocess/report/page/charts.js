@@ -7,7 +7,7 @@ export const colours = { ink: "#1a1c20", grey: "#8a8f98", orange: "#d55e00", yel
 const axisWidth = 66; // the same for all, so that charts above one another share their x
 
 function setDefaults() {
-  Chart.defaults.font.family = '"DejaVu Sans", "Segoe UI", "Helvetica Neue", Arial, sans-serif';
+  Chart.defaults.font.family = '"Segoe UI", "Helvetica Neue", Arial, "Liberation Sans", "DejaVu Sans", sans-serif';
   Chart.defaults.font.size = 12;
   Chart.defaults.color = "#33363c";
   Chart.defaults.animation = false;
@@ -29,7 +29,7 @@ function dataset(line) {
 
 function axis(title, extra) {
   return { type: "linear", title: { display: true, text: title }, grid: { color: "#e6e8eb" }, ...extra,
-    ticks: { callback: (value) => number(value, decimalsOf(value)), maxRotation: 0, autoSkipPadding: 16 } };
+    ticks: { includeBounds: false, callback: (value) => number(value, decimalsOf(value)), maxRotation: 0, autoSkipPadding: 16 } };
 }
 
 function decimalsOf(value) {
@@ -50,7 +50,7 @@ export function lineChart(box, spec) {
       interaction: { mode: "nearest", axis: "x", intersect: false },
       scales: { x: axis(spec.x, { min: spec.min, max: spec.max }), y },
       plugins: {
-        legend: { display: spec.lines.length > 1, align: "start", labels: { boxWidth: 26, boxHeight: 0, usePointStyle: false } },
+        legend: { display: spec.lines.length > 1, align: "start", labels: { usePointStyle: true, pointStyle: "line", pointStyleWidth: 30 } },
         tooltip: { callbacks: { title: (items) => `${spec.x}: ${number(items[0].parsed.x, 1)}`,
           label: (item) => `${item.dataset.label}: ${number(item.parsed.y, 2)}` } },
       },

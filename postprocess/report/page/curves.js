@@ -4,6 +4,8 @@ import { number, scaled } from "./format.js";
 
 function text(id, words) { document.getElementById(id).textContent = words; }
 
+const visible = 0.05; // [m] of a layer on a profile of hundreds
+
 /** Three charts above one another: elevation, thickness, speed. `pointAt(i)` is told which vertex is looked at. */
 export function drawProfile(data, pointAt) {
   const profile = data.profile, box = document.getElementById("profile");
@@ -14,16 +16,19 @@ export function drawProfile(data, pointAt) {
   const s = profile.distance, survey = data.run.survey?.name;
   const common = { x: "Distance along the thalweg [m]", min: 0, max: s[s.length - 1], onHover: pointAt };
   const line = (label, key, more) => ({ label, data: points(s, profile[key]), ...more });
-  const elevations = [
-    line("Surface before", "before", { colour: colours.grey, width: 1.5, dashes: [5, 3] }),
+  // A surface is drawn where there is a layer to see; elsewhere it would hide the bed.
+  const surface = (key, layer) => profile[key].map((z, i) => (profile[layer][i] > visible ? z : NaN));
+  const elevations = [ // the first is drawn on top
+    { label: "Deposit, simulated", data: points(s, surface("deposit_surface", "deposit")), colour: colours.orange, fill: "+1", fillColour: "rgba(213, 94, 0, 0.35)" },
     line("Bed", "bed", { colour: colours.ink, width: 1.5 }),
-    line("Deposit, simulated", "deposit_surface", { colour: colours.orange, fill: 1, fillColour: "rgba(213, 94, 0, 0.35)" }),
+    line("Surface before", "before", { colour: colours.grey, width: 1.5, dashes: [5, 3] }),
   ];
   const thickness = [line("Deposit, simulated", "deposit", { colour: colours.orange, fill: "origin", fillColour: "rgba(213, 94, 0, 0.18)" }),
     line("Peak, simulated", "peak", { colour: colours.yellow, dashes: [6, 3] })];
   if (profile.surveyed) {
-    elevations.push(line(`Surface after, ${survey}`, "surveyed_surface", { colour: colours.blue, dashes: [8, 4] }));
-    thickness.push(line(`Deposit, ${survey}`, "surveyed", { colour: colours.blue, dashes: [8, 4] }));
+    const after = data.run.survey.is_change ? profile.surveyed_surface : surface("surveyed_surface", "surveyed");
+    elevations.unshift({ label: `Surface after, ${survey}`, data: points(s, after), colour: colours.blue, dashes: [8, 4] });
+    thickness.unshift(line(`Deposit, ${survey}`, "surveyed", { colour: colours.blue, dashes: [8, 4] }));
   }
   lineChart(box, { ...common, id: "profile-elevation", title: "Elevation", y: "Elevation [m]", height: 300, lines: elevations, zero: false });
   lineChart(box, { ...common, id: "profile-thickness", title: "Thickness, vertical", y: "Thickness [m]", height: 220, lines: thickness });

@@ -7,7 +7,7 @@ const styles = {
   survey_footprint: { title: "footprint", colour: "#004db3", width: 1.3, dashes: [4, 3], casing: 2.6 },
   survey_deposit: { title: "deposit", colour: "#004db3", width: 2.4, dashes: [9, 5], casing: 4.4 },
   release: { title: "Release", colour: "#00735c", width: 2.2, casing: 4 },
-  thalweg: { title: "Thalweg", colour: "#8c1a73", width: 1.8, dashes: [2, 3], casing: 3.6 },
+  thalweg: { title: "Thalweg", colour: "#8c1a73", width: 2, dashes: [7, 3, 2, 3], casing: 3.4 },
 };
 
 /** Lists of [[x, y], ...] in map coordinates. */

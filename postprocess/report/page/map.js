@@ -52,12 +52,21 @@ export class ReportMap {
     this.painter = new Painter(fields.ground.shade);
     this.ground = paintGround(fields.ground.shade);
     this.canvas = document.createElement("canvas");
+    this.fit(element);
     this.leaflet = this.makeLeaflet(element);
     this.leaflet.addLayer(new CanvasOverlay(this.ground, boundsOf(fields.ground.shade)));
     this.thematic = null;
     this.overlays = new Map(lines.map((line) => [line.id, lineLayer(line).addTo(this.leaflet)]));
     this.marker = L.circleMarker([0, 0], { radius: 6, color: "#fff", weight: 2, fillColor: "#8c1a73", fillOpacity: 1, interactive: false });
     this.drawTicks(element);
+  }
+
+  /** The frame takes the proportions of what it shows, as far as the screen allows. */
+  fit(element) {
+    if (!element.clientWidth) return;
+    const { west, south, east, north } = this.window, most = Math.max(360, Math.min(0.86 * window.innerHeight, 860));
+    const height = (element.clientWidth * (north - south)) / (east - west);
+    element.style.height = `${Math.min(Math.max(height, 340), most)}px`;
   }
 
   makeLeaflet(element) {
@@ -71,8 +80,25 @@ export class ReportMap {
     map.on("blur mouseout", () => map.scrollWheelZoom.disable());
     L.control.scale({ imperial: false, maxWidth: 160, position: "bottomleft" }).addTo(map);
     new NorthArrow({ position: "topright" }).addTo(map);
-    new ResizeObserver(() => { map.invalidateSize({ animate: false }); }).observe(element);
+    this.followSize(element, map, bounds);
     return map;
+  }
+
+  /** A frame that changes its size shows the whole again, until somebody has moved or zoomed it. */
+  followSize(element, map, bounds) {
+    let touched = false;
+    map.on("dragstart boxzoomstart dblclick", () => { touched = true; });
+    element.addEventListener("wheel", () => { touched = true; }, { passive: true });
+    element.querySelector(".leaflet-control-zoom").addEventListener("click", () => { touched = true; });
+    new ResizeObserver(() => {
+      if (!element.clientWidth) return; // hidden while printing
+      map.invalidateSize({ animate: false });
+      if (touched) return;
+      map.setMinZoom(-12);
+      map.fitBounds(bounds, { animate: false });
+      map.setMinZoom(map.getZoom() - 1);
+    }).observe(element);
+    window.addEventListener("resize", () => this.fit(element));
   }
 
   /** Coordinates along the lower and left edge. */

@@ -3,7 +3,7 @@ import { blending } from "./paint.js";
 import { h, number, unitWords } from "./format.js";
 import { ticks } from "./map.js";
 
-const ink = "#1a1c20", face = '"DejaVu Sans", "Segoe UI", Arial, sans-serif';
+const ink = "#1a1c20", face = '"Segoe UI", "Helvetica Neue", Arial, "Liberation Sans", "DejaVu Sans", sans-serif';
 
 /** A round length of at most `limit` metres. */
 function roundBelow(limit) {
@@ -14,6 +14,8 @@ function roundBelow(limit) {
 /** One plate: the map window on a canvas, all lengths in pixels of a picture `width` wide. */
 class Plate {
   constructor(window, width, tallest) {
+    this.type = width > 1500 ? 24 : 27; // smaller plates need larger type
+    this.stroke = width > 1500 ? 1.8 : 1.35;
     const sideways = width - 2 * 62, scale = Math.min(sideways / (window.east - window.west), tallest / (window.north - window.south));
     const size = { width: (window.east - window.west) * scale, height: (window.north - window.south) * scale };
     this.window = window;
@@ -21,7 +23,7 @@ class Plate {
     this.box = { x: (width - size.width) / 2, y: 12, ...size };
     this.canvas = document.createElement("canvas");
     this.canvas.width = width;
-    this.canvas.height = Math.ceil(size.height + 12 + 96);
+    this.canvas.height = Math.ceil(size.height + 12 + 102);
     this.context = this.canvas.getContext("2d");
   }
 
@@ -47,8 +49,8 @@ class Plate {
     this.clipped(() => {
       for (const [colour, width, opacity, dashes] of [["#fff", style.casing, 0.8, []], [style.colour, style.width, style.opacity ?? 1, style.dashes ?? []]]) {
         if (!width) continue;
-        Object.assign(this.context, { strokeStyle: colour, lineWidth: 1.8 * width, globalAlpha: opacity, lineJoin: "round" });
-        this.context.setLineDash(dashes.map((d) => 1.8 * d));
+        Object.assign(this.context, { strokeStyle: colour, lineWidth: this.stroke * width, globalAlpha: opacity, lineJoin: "round" });
+        this.context.setLineDash(dashes.map((d) => this.stroke * d));
         this.context.beginPath();
         for (const line of lines) line.forEach(([x, y], i) => this.context[i ? "lineTo" : "moveTo"](...this.pixel(x, y)));
         this.context.stroke();
@@ -67,19 +69,19 @@ class Plate {
     Object.assign(context, { strokeStyle: ink, lineWidth: 3 });
     context.setLineDash([]);
     context.strokeRect(x, y, width, height);
-    for (const east of ticks(window.west, window.east, width / 260)) {
+    for (const east of ticks(window.west, window.east, width / 210)) {
       const [px] = this.pixel(east, window.south);
       context.fillStyle = ink;
       context.fillRect(px - 1, y + height, 2, 10);
-      this.text(number(east), px, y + height + 34, 22);
+      this.text(number(east), px, y + height + 36, this.type);
     }
-    for (const north of ticks(window.south, window.north, height / 260)) {
+    for (const north of ticks(window.south, window.north, height / 210)) {
       const [, py] = this.pixel(window.west, north);
       context.fillRect(x - 10, py - 1, 10, 2);
       context.save();
       context.translate(x - 18, py);
       context.rotate(-Math.PI / 2);
-      this.text(number(north), 0, 0, 22);
+      this.text(number(north), 0, 0, this.type);
       context.restore();
     }
   }
@@ -87,15 +89,15 @@ class Plate {
   /** Below the frame. */
   scaleBar() {
     const length = roundBelow(0.3 * (this.window.east - this.window.west)), width = length * this.scale;
-    const x = this.box.x + 4, y = this.box.y + this.box.height + 52, kilometres = length >= 2000;
+    const x = this.box.x + 4, y = this.box.y + this.box.height + 56, kilometres = length >= 2000;
     for (let i = 0; i < 4; ++i) {
       this.context.fillStyle = i % 2 ? "#fff" : ink;
       this.context.fillRect(x + (i * width) / 4, y, width / 4, 12);
     }
     Object.assign(this.context, { strokeStyle: ink, lineWidth: 1.5 });
     this.context.strokeRect(x, y, width, 12);
-    this.text("0", x, y + 36, 21);
-    this.text(`${kilometres ? length / 1000 : length} ${kilometres ? "km" : "m"}`, x + width, y + 36, 21);
+    this.text("0", x + 4, y + 38, this.type);
+    this.text(`${kilometres ? length / 1000 : length} ${kilometres ? "km" : "m"}`, x + width, y + 38, this.type);
   }
 
   northArrow() {
@@ -132,7 +134,7 @@ export class Plates {
     this.box = document.getElementById("plates");
   }
 
-  plate(field, classes, mode, { width = 1000, tallest = 1000, lines = this.lines } = {}) {
+  plate(field, classes, mode, { width = 1000, tallest = 730, lines = this.lines } = {}) {
     const plate = new Plate(this.data.map.window, width, tallest), { map } = this;
     plate.image(map.ground, this.fields.ground.shade);
     plate.image(map.painter.paint(field, classes, mode, { most: 1100 }), field);
@@ -147,7 +149,7 @@ export class Plates {
   draw() {
     this.fields.layers.forEach((layer, i) => {
       const unit = layer.unit ? ` [${unitWords(layer.unit)}]` : "";
-      const plate = this.plate(layer.field, layer.classes, blending(layer), i === 0 ? { width: 1800, tallest: 1500 } : {});
+      const plate = this.plate(layer.field, layer.classes, blending(layer), i === 0 ? { width: 1800, tallest: 1330 } : {});
       this.box.append(figure(plate, layer.title + unit, layer.classes, i === 0));
       if (i === 0) this.box.lastChild.append(this.lineLegend());
     });

@@ -26,18 +26,25 @@ export function headline(data) {
 }
 
 const cards = [
-  ["volume_released_m3", "Released", volume], ["volume_entrained_m3", "Taken along", volume], ["volume_outflow_m3", "Left the map", volume],
+  ["volume_released_m3", "Released", volume], ["volume_entrained_m3", "Taken along", volume],
   ["runout_m", "Run-out L"], ["thalweg_runout_m", "Run-out along the thalweg"], ["drop_m", "Drop H"], ["fahrboeschung_deg", "Angle of reach"],
   ["affected_area_m2", "Footprint", area], ["deposit_area_m2", "Deposit area", area], ["max_deposit_thickness_m", "Thickest deposit"],
-  ["max_peak_speed_m_s", "Peak speed"], ["max_peak_pressure_kpa", "Peak pressure"], ["deposit_csi", "Deposit CSI"], ["footprint_csi", "Footprint CSI"],
-  ["thickness_rmse_m", "Thickness RMSE"], ["thickness_bias_m", "Thickness bias"], ["runout_difference_m", "Run-out, sim. \u2212 survey"],
-  ["deposit_volume_ratio", "Deposit volume, sim. / survey"],
+  ["max_peak_speed_m_s", "Peak speed"], ["deposit_csi", "Deposit CSI"], ["footprint_csi", "Footprint CSI"],
+  ["thickness_rmse_m", "Thickness RMSE"], ["runout_difference_m", "Run-out, sim. \u2212 survey"],
+  ["deposit_volume_ratio", "Volume, sim. / survey"],
 ];
+
+/** Three figures are enough at a glance; the table of scores has them all. */
+function rounded(entry) {
+  if (typeof entry.value !== "number" || entry.value === 0) return entry;
+  const whole = Math.floor(Math.log10(Math.abs(entry.value))) + 1;
+  return { ...entry, decimals: Math.min(entry.decimals, Math.max(0, 3 - Math.max(whole, 0))) };
+}
 
 /** "0.87" and below it "± 0.02". */
 function card(item, title, words) {
   const { entry, sd } = item;
-  const value = words ? words(entry.value) : scoreWords({ entry });
+  const value = words ? words(entry.value) : scoreWords({ entry: rounded(entry) });
   const spread = sd === undefined ? null : h("span", { class: "spread" }, `\u00b1 ${quantity(sd, entry.unit, entry.decimals)}`);
   return h("div", {}, h("dt", {}, title), h("dd", { "data-key": entry.key }, value, spread));
 }
@@ -51,6 +58,6 @@ export function drawSummary(data) {
   const box = document.getElementById("key-numbers");
   for (const [key, title, words] of cards) {
     const item = items.get(key);
-    if (item && !(key === "volume_outflow_m3" && item.entry.value === 0)) box.append(card(item, title, words));
+    if (item) box.append(card(item, title, words));
   }
 }

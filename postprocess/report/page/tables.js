@@ -110,11 +110,11 @@ function parametersOf(stage) {
   const changed = stage.keys.filter((key) => key.default !== null).length;
   for (const key of stage.keys) {
     const isChanged = key.default !== null;
-    rows.push(h("tr", { class: isChanged ? "changed" : marked ? "usual" : null }, h("td", {}, h("code", {}, `${key.table}.${key.key}`)),
+    rows.push(h("tr", { class: isChanged ? "changed" : marked ? "usual" : null }, h("td", {}, h("code", {}, `${key.table}.${key.key}`.slice(stage.stage.length + 1))),
       h("td", {}, h("code", { class: "path" }, key.value)), h("td", {}, isChanged ? h("code", {}, key.default) : null)));
   }
   const words = marked ? `${changed} of ${stage.keys.length} changed from their default.` : `${stage.keys.length} parameters; none is marked as changed.`;
-  return [title, h("p", { class: "note" }, words), table([h("th", {}, "Parameter"), h("th", {}, "Value used"), h("th", {}, "Default")], rows)];
+  return [title, h("p", { class: "note" }, words), h("div", { class: "stage-parameters" }, table([h("th", {}, "Parameter"), h("th", {}, "Value used"), h("th", {}, "Default")], rows))];
 }
 
 const notFacts = ["What was used, defaults filled in. This file is itself a recipe", "recipe", "input", "program", "command", "hardware"];
