@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <utility>
 
 namespace talus::postprocess {
 
@@ -14,9 +15,50 @@ void SurveyOptions::describe(recipe::Visitor& v) {
   v.path("after_dem", after_dem, "elevations after the event: deposit where they lie above those before");
   v.path("before_dem", before_dem,
          "elevations before the event, with after_dem; empty: the surface the run started from");
+  v.path("difference", difference,
+         "raster of elevations after - before the event [m], aligned: deposit where it is positive");
   v.path("polygon", polygon, "outline of the affected area (any vector format); gives the footprint");
   v.flag("nodata_is_zero", nodata_is_zero,
-         "thickness rasters: no data means no deposit (otherwise: not surveyed, left out)");
+         "thickness and difference rasters: no data means no deposit (otherwise: not surveyed, left out)");
+  v.path("sigma", sigma, "raster of the standard error (1 sigma) of thickness or change [m]");
+  v.number("sigma_m", sigma_m, recipe::not_negative, "the same error for all cells, instead of a raster; 0: not known");
+  v.number("correlation_length_m", correlation_length, recipe::not_negative,
+           "distance within which errors are alike (range of a spherical variogram); 0: CORRELATION_LENGTH_M of the sigma "
+           "raster, else every cell for itself");
+  v.number("detection", detection, recipe::not_negative,
+           "with a sigma: thickness or change below this times sigma counts as none (1.96: 95 %); 0: off");
+  v.integer("resamples", resamples, {0, 100000},
+            "with a sigma: surveys drawn within their error, for the spread of the scores; 0: none");
+  v.integer("resample_seed", resample_seed, {0, 2147483647}, "same seed, same spread");
+}
+
+void SurveyOptions::check(std::vector<Fault>& faults) const {
+  const std::pair<const std::filesystem::path&, const char*> deposits[] = {
+      {thickness, "thickness"}, {difference, "difference"}, {after_dem, "after_dem"}};
+  std::string given;
+  int count = 0;
+  for (const auto& [file, key] : deposits) {
+    if (file.empty()) continue;
+    given += (count++ > 0 ? " and " : "") + std::string(key);
+  }
+  if (count > 1)
+    faults.push_back({"[postprocess.survey] gives " + given, "one deposit can be scored at a time", "Leave one of them out"});
+  if (!peak_thickness.empty() && !polygon.empty()) {
+    faults.push_back({"[postprocess.survey] gives peak_thickness and polygon", "both say what the footprint is",
+                      "Leave one of them out"});
+  }
+  if (!before_dem.empty() && after_dem.empty()) {
+    faults.push_back(
+        {"[postprocess.survey] gives before_dem alone", "a change needs two surfaces", "Give after_dem as well"});
+  }
+  if (!sigma.empty() && sigma_m > 0) {
+    faults.push_back({"[postprocess.survey] gives sigma and sigma_m", "both say what the survey's error is",
+                      "Leave one of them out"});
+  }
+  if ((!sigma.empty() || sigma_m > 0) && !measures()) {
+    faults.push_back({"[postprocess.survey] gives an error without a measurement", "an outline or a peak thickness has none",
+                      "Give thickness, difference or after_dem, or leave sigma out"});
+  }
 }
 
 void Options::describe(recipe::Visitor& v) {
@@ -32,7 +74,7 @@ void Options::describe(recipe::Visitor& v) {
   v.path("thalweg", thalweg,
          "line along which run-out is measured (any vector format), from either end; empty: found as the path of the "
          "centre of mass");
-  v.enter("survey", "what the run is scored against: thickness, or after_dem, or polygon; all empty: no scores");
+  v.enter("survey", "what the run is scored against: thickness, or difference, or after_dem, or polygon; all empty: no scores");
   survey.describe(v);
   v.leave();
 }
@@ -46,18 +88,7 @@ void Options::check(std::vector<Fault>& faults) const {
     faults.push_back({"[postprocess] classes_m has " + std::to_string(classes.size()) + " classes",
                       "nobody tells more than 9 shades apart on a map", "Give 9 limits or fewer"});
   }
-  if (!survey.thickness.empty() && !survey.after_dem.empty()) {
-    faults.push_back({"[postprocess.survey] gives thickness and after_dem", "one deposit can be scored at a time",
-                      "Leave one of them out"});
-  }
-  if (!survey.peak_thickness.empty() && !survey.polygon.empty()) {
-    faults.push_back({"[postprocess.survey] gives peak_thickness and polygon", "both say what the footprint is",
-                      "Leave one of them out"});
-  }
-  if (!survey.before_dem.empty() && survey.after_dem.empty()) {
-    faults.push_back(
-        {"[postprocess.survey] gives before_dem alone", "a change needs two surfaces", "Give after_dem as well"});
-  }
+  survey.check(faults);
 }
 
 }  // namespace talus::postprocess

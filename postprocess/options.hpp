@@ -19,11 +19,20 @@ struct SurveyOptions {
   std::filesystem::path peak_thickness;  // raster of peak thickness, vertical [m]: the footprint
   std::filesystem::path before_dem;      // with after_dem: surveyed change; empty = the run's own surface before
   std::filesystem::path after_dem;
-  std::filesystem::path polygon;  // outline of the affected area
+  std::filesystem::path difference;  // raster of after - before, aligned [m]
+  std::filesystem::path polygon;     // outline of the affected area
   Direction direction = Direction::vertical;  // of thickness and peak_thickness
-  bool nodata_is_zero = false;    // thickness rasters: no data means no deposit
+  bool nodata_is_zero = false;    // thickness and difference rasters: no data means no deposit, no change
+  std::filesystem::path sigma;    // raster of the standard error of thickness or change [m]
+  double sigma_m = 0;             // the same, one number for all cells [m]; 0 = not known
+  double correlation_length = 0;  // range within which errors are alike [m]; 0 = as the sigma raster says
+  double detection = 1.96;        // level of detection over sigma
+  int resamples = 200;            // of the survey, within its error
+  int resample_seed = 1;
 
-  bool given() const { return !(thickness.empty() && peak_thickness.empty() && after_dem.empty() && polygon.empty()); }
+  bool measures() const { return !(thickness.empty() && difference.empty() && after_dem.empty()); }  ///< not an outline only
+  bool given() const { return measures() || !peak_thickness.empty() || !polygon.empty(); }
+  void check(std::vector<Fault>& faults) const;
   void describe(recipe::Visitor& v);
 };
 

@@ -31,6 +31,7 @@ struct Job {
   Run run;
   Options options;
   std::optional<Survey> survey;
+  Thalweg thalweg;
 };
 
 /// The map must hold the volume of the points: 1e-9 of it where the run was in double precision. A hundredth off is no
@@ -83,13 +84,14 @@ std::vector<StageText> texts_of_stages(const fs::path& folder) {
 std::string used_text(const StageContext& context, const Job& job) {
   auto inputs = job.survey ? job.survey->inputs : std::vector<fs::path>{};
   inputs.insert(inputs.begin(), job.file);
+  if (job.thalweg.given) inputs.push_back(job.options.thalweg);
   return used_recipe(context, stage(), recipe::to_used_toml(job.options, "postprocess"), inputs,
                      {{"CRS", crs_name(job.run.maps.grid.crs_wkt)}});
 }
 
 void write_results(StageContext& context, const Job& job) {
-  const auto& [file, run, options, survey] = job;
-  const auto score = make_score(run, options, survey);
+  const auto& [file, run, options, survey, thalweg] = job;
+  const auto score = make_score(run, options, survey, thalweg);
   const auto table = to_table(score);
   const auto folder = context.out / "maps";
   make_folder(folder);
@@ -112,7 +114,7 @@ void write_results(StageContext& context, const Job& job) {
   if (options.report) {
     auto stages = texts_of_stages(file.parent_path());
     stages.push_back({"postprocess", used});
-    write("report.html", report_html({run, options, survey, score, std::move(stages), file}));
+    write("report.html", report_html({run, options, survey, score, thalweg, std::move(stages), file}));
   }
   write("score.txt", table);
   write("score.json", to_json(score));  // last: where it lies, everything is there
@@ -128,6 +130,7 @@ void run(StageContext& context) {
   job.run = read_run(job.file);
   check_volume(job.file, job.run);
   job.survey = read_survey(job.options.survey, job.run.maps, job.options.footprint_threshold);
+  job.thalweg = thalweg_of(job.run, job.options);
   log_info(fmt::format("{}: {} x {} cells of {:g} m, {} frames; {}", job.file.string(), job.run.maps.grid.columns,
                        job.run.maps.grid.rows, job.run.maps.grid.cell, job.run.frames.time.size(),
                        job.survey ? "scored against " + job.survey->name : std::string("no survey to score against")));

@@ -56,6 +56,10 @@ struct RasterTags {
   std::vector<std::pair<std::string, std::string>> metadata;
 };
 
+/// A number among the metadata items of a raster file (as RasterTags writes them); empty where the item is missing or no
+/// number. Throws DataError when the file cannot be opened.
+std::optional<double> raster_item(const std::filesystem::path& file, const std::string& name);
+
 /// Write a cloud-optimised GeoTIFF (COG driver, deflate, overviews, nodata -9999, Float64 so that volumes close to
 /// 1e-9), aside and renamed. Throws DataError when anything fails on the way (disk full).
 void write_cog(const std::filesystem::path& file, const Raster& raster, const RasterTags& tags);

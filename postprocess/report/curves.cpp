@@ -44,7 +44,8 @@ std::vector<double> surveyed_surface(const ReportInput& input, const Thalweg& th
 
 }  // namespace
 
-Json profile_json(const ReportInput& input, const Thalweg& thalweg) {
+Json profile_json(const ReportInput& input) {
+  const auto& thalweg = input.thalweg;
   if (thalweg.line.size() < 2) return nullptr;
   const auto& maps = input.run.maps;
   const auto along = [&](const std::vector<double>& values) { return sample_along(thalweg, maps.grid, values); };
@@ -66,7 +67,8 @@ Json profile_json(const ReportInput& input, const Thalweg& thalweg) {
   return json;
 }
 
-Json series_json(const ReportInput& input, const Thalweg& thalweg) {
+Json series_json(const ReportInput& input) {
+  const auto& thalweg = input.thalweg;
   const auto& history = input.run.history;
   Json json{{"history", Json::object()}, {"front", nullptr}, {"motion", nullptr}};
   for (std::size_t c = 0; c < history.names.size(); ++c) json["history"][history.names[c]] = history.columns[c];

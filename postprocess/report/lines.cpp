@@ -59,7 +59,7 @@ Json contours(const RunMaps& maps, const Window& window) {
 
 }  // namespace
 
-Json lines_json(const ReportInput& input, const Window& window, const Thalweg& thalweg) {
+Json lines_json(const ReportInput& input, const Window& window) {
   const auto maps = cropped(input.run.maps, window);
   const auto& options = input.options;
   Json json;
@@ -74,7 +74,7 @@ Json lines_json(const ReportInput& input, const Window& window, const Thalweg& t
     else if (!survey.footprint.empty())
       json["survey_footprint"] = outline(survey.grid, survey.footprint, survey.footprint_threshold, window);
   }
-  json["thalweg"] = line_json(thalweg.line, window);
+  json["thalweg"] = line_json(input.thalweg.line, window);
   json["contours"] = contours(maps, window);
   return json;
 }

@@ -5,7 +5,6 @@
 
 #include "postprocess/picture/view.hpp"
 #include "postprocess/report/report.hpp"
-#include "postprocess/score/thalweg.hpp"
 
 namespace talus::postprocess {
 
@@ -22,13 +21,13 @@ Json frames_json(const ReportInput& input, const Window& window, int& coarsest);
 Json ground_json(const ReportInput& input, const Window& window, int& coarsest);
 
 /// Outlines, contours and the thalweg as lists of x, y [m from the window's west and south].
-Json lines_json(const ReportInput& input, const Window& window, const Thalweg& thalweg);
+Json lines_json(const ReportInput& input, const Window& window);
 
 /// Elevations, thickness and speed along the thalweg.
-Json profile_json(const ReportInput& input, const Thalweg& thalweg);
+Json profile_json(const ReportInput& input);
 
 /// Numbers over time: the history's columns, the front along the thalweg, the volume in motion.
-Json series_json(const ReportInput& input, const Thalweg& thalweg);
+Json series_json(const ReportInput& input);
 
 Json score_json(const Score& score);
 

@@ -34,14 +34,14 @@ Json run_json(const ReportInput& input) {
   return json;
 }
 
-Json map_json(const ReportInput& input, const Thalweg& thalweg) {
+Json map_json(const ReportInput& input) {
   const auto window = affected_window(input.run.maps, input.options, input.survey);
   int coarsest = 1;
   Json json{{"window", {{"west", window.west}, {"south", window.south}, {"east", window.east}, {"north", window.north}}}};
   json["ground"] = ground_json(input, window, coarsest);
   json["layers"] = layers_json(input, window, coarsest);
   json["frames"] = frames_json(input, window, coarsest);
-  json["lines"] = lines_json(input, window, thalweg);
+  json["lines"] = lines_json(input, window);
   json["coarsest"] = coarsest;
   return json;
 }
@@ -74,15 +74,14 @@ std::string filled(std::string_view page, std::string_view slot, const std::stri
 }  // namespace
 
 std::string report_html(const ReportInput& input) {
-  const auto thalweg = thalweg_of(input.run, input.options);
   Json data;
   data["run"] = run_json(input);
   data["score"] = score_json(input.score);
   data["volumes"] = volumes_json(input.run);
   data["stages"] = stages_json(input.stages);
-  data["profile"] = profile_json(input, thalweg);
-  data["series"] = series_json(input, thalweg);
-  data["map"] = map_json(input, thalweg);
+  data["profile"] = profile_json(input);
+  data["series"] = series_json(input);
+  data["map"] = map_json(input);
   return filled(filled(page_template(), "@TITLE@", for_html(input.run.summary.title)), "@DATA@", for_script(data));
 }
 

@@ -10,6 +10,7 @@
 #include "postprocess/options.hpp"
 #include "postprocess/score/score.hpp"
 #include "postprocess/score/survey.hpp"
+#include "postprocess/score/thalweg.hpp"
 
 namespace talus::postprocess {
 
@@ -24,6 +25,7 @@ struct ReportInput {
   const Options& options;
   const std::optional<Survey>& survey;
   const Score& score;
+  const Thalweg& thalweg;
   std::vector<StageText> stages;
   std::filesystem::path run_file;  ///< for what is read of the points: how much is in motion
 };

@@ -1,12 +1,21 @@
 #include "postprocess/score/contingency.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+
+#include "postprocess/score/statistics.hpp"
 
 namespace talus::postprocess {
 namespace {
 
 double ratio(double part, double whole) { return whole > 0 ? part / whole : std::numeric_limits<double>::quiet_NaN(); }
+
+/// 1 where two sizes agree, falling steeply as their ratio leaves 1.
+double likeness(double ratio) {
+  return ratio > 0 ? std::pow(std::sin(std::numbers::pi / 2 * std::min(ratio, 1 / ratio)), 5) : 0;
+}
 
 }  // namespace
 
@@ -24,6 +33,15 @@ double Contingency::d2pc() const {
   return std::hypot(1 - hit_rate(), ratio(false_positive, false_positive + true_negative));
 }
 
+double Contingency::spi(double runout_ratio) const {
+  if (!(runout_ratio > 0)) return std::numeric_limits<double>::quiet_NaN();
+  Contingency even = *this;
+  even.true_negative = std::max(0.0, 5 * (true_positive + false_negative) - false_positive);
+  const double sum = std::max(0.0, csi()) + std::max(0.0, even.hss()) + std::max(0.0, 1 - even.d2pc()) + likeness(foc()) +
+                     likeness(runout_ratio);
+  return true_positive + false_negative > 0 ? sum / 5 : std::numeric_limits<double>::quiet_NaN();
+}
+
 Contingency compare(const std::vector<double>& simulated, double simulated_threshold,
                     const std::vector<double>& surveyed, double surveyed_threshold, double cell_area) {
   Contingency areas;
@@ -39,7 +57,8 @@ Contingency compare(const std::vector<double>& simulated, double simulated_thres
 
 ThicknessError thickness_error(const std::vector<double>& simulated, const std::vector<double>& surveyed,
                                double threshold) {
-  double square = 0, sum = 0, absolute = 0, count = 0;
+  std::vector<double> differences;
+  double square = 0, sum = 0, absolute = 0;
   for (std::size_t i = 0; i < simulated.size(); ++i) {
     // NaN in either makes both comparisons or the difference fail: not surveyed, not counted.
     const double difference = simulated[i] - surveyed[i];
@@ -47,9 +66,10 @@ ThicknessError thickness_error(const std::vector<double>& simulated, const std::
     square += difference * difference;
     sum += difference;
     absolute += std::abs(difference);
-    ++count;
+    differences.push_back(difference);
   }
-  return {std::sqrt(ratio(square, count)), ratio(sum, count), ratio(absolute, count)};
+  const auto count = static_cast<double>(differences.size());
+  return {std::sqrt(ratio(square, count)), ratio(sum, count), ratio(absolute, count), median(differences), nmad(differences)};
 }
 
 }  // namespace talus::postprocess

@@ -25,15 +25,23 @@ struct Contingency {
   double d2pc() const;
   /// Factor of conservativeness: simulated over surveyed area, (TP + FP) / (TP + FN) (r.avaflow's FoC).
   double foc() const;
+  /// Synthetic performance index of r.avaflow (2.3, evaluation scores), 1 = perfect, 0 = nothing right: the mean of CSI,
+  /// HSS, 1 - D2PC, sin^5(pi/2 min(FoC, 1/FoC)) and sin^5(pi/2 min(R, 1/R)), each not below 0, where R is the simulated
+  /// run-out along the thalweg over the surveyed one. As there, HSS and D2PC are taken with TN = 5 (TP + FN) - FP, so that
+  /// the extent of the map has no part in it. NaN where the survey has no area or R is not positive.
+  double spi(double runout_ratio) const;
 };
 
 /// Yes is a value above the threshold. Both vectors on the same grid; `cell_area` in m2.
 Contingency compare(const std::vector<double>& simulated, double simulated_threshold,
                     const std::vector<double>& surveyed, double surveyed_threshold, double cell_area);
 
-/// Difference simulated - surveyed over the union of both above the threshold (cells where either exceeds it).
+/// Difference simulated - surveyed over the union of both above the threshold (cells where either exceeds it) [m]; NaN
+/// where no cell exceeds it.
 struct ThicknessError {
-  double rmse = 0, bias = 0, mean_absolute = 0;  // [m]; NaN where no cell exceeds the threshold
+  double rmse = 0, bias = 0, mean_absolute = 0;
+  double median = 0;
+  double nmad = 0;  ///< 1.4826 median(|d - median(d)|): the spread of the bulk of the cells (Hoehle and Hoehle 2009)
 };
 ThicknessError thickness_error(const std::vector<double>& simulated, const std::vector<double>& surveyed,
                                double threshold);

@@ -5,12 +5,16 @@
 
 namespace talus::postprocess {
 
-std::optional<Place> crown(const RunMaps& maps, double threshold) {
+double release_limit(const RunMaps& maps, double threshold) {
   double thickest = 0;
   for (const double h : maps.initial_thickness) {
     if (h > thickest) thickest = h;
   }
-  const double limit = std::min(threshold, 0.1 * thickest);
+  return std::min(threshold, 0.1 * thickest);
+}
+
+std::optional<Place> crown(const RunMaps& maps, double threshold) {
+  const double limit = release_limit(maps, threshold);
   std::optional<Place> highest;
   for (int row = 0; row < maps.grid.rows; ++row) {
     for (int column = 0; column < maps.grid.columns; ++column) {

@@ -14,8 +14,11 @@ struct Place {
   double x = 0, y = 0, z = 0;
 };
 
-/// Highest cell of the release on the surface before the failure. A release cell is one thicker at the start than the
-/// deposit threshold, or than a tenth of the thickest where the whole release is thin. Empty without a release.
+/// A release cell is one thicker at the start than this: the deposit threshold, or a tenth of the thickest where the
+/// whole release is thin [m].
+double release_limit(const RunMaps& maps, double threshold);
+
+/// Highest cell of the release (see release_limit) on the surface before the failure. Empty without a release.
 std::optional<Place> crown(const RunMaps& maps, double threshold);
 
 /// The cell centre above `threshold` farthest (in plan, as the crow flies) from `from`; z is taken from `surface`,

@@ -1,17 +1,14 @@
 // The numbers of a run, and how well it agrees with a survey.
 //
-// Definitions (the same words stand under score.txt):
-// - footprint: peak thickness above footprint_threshold_m; the survey's is its peak thickness above the same threshold,
-// or
+// Definitions (the same words stand under score.txt; those of single scores with the functions that compute them):
+// - footprint: peak thickness above footprint_threshold_m; the survey's is its peak thickness above the same threshold, or
 //   the inside of its polygon, or |after - before| above the threshold.
-// - deposit: final thickness above deposit_threshold_m. Against a surveyed change (after - before), both sides are the
-// rise of
-//   the surface: max(0, after - before) and max(0, final - initial thickness), because in the source area the slide's
-//   own scar is not deposit.
-// - CSI: intersection over union of the areas, TP / (TP + FP + FN).
-// - thickness RMSE and bias: of simulated minus surveyed over the union of both deposits.
-// - run-out L: distance in plan, straight, from the crown (highest cell of the release) to the farthest deposit cell;
-//   H: drop of the surface before the failure between the two; H/L is the tangent of the Fahrboeschung.
+// - deposit: final thickness above deposit_threshold_m. Against a surveyed change (after - before), both sides are the rise
+//   of the surface: max(0, after - before) and max(0, final - initial thickness), because in the source area the slide's own
+//   scar is not deposit.
+// - run-out L: distance in plan from the crown (highest cell of the release), straight to the farthest deposit cell, or along
+//   the thalweg to the deposit cell farthest along it; H: drop of the surface before the failure between the two; H/L is the
+//   tangent of the Fahrboeschung (Heim 1932).
 #pragma once
 
 #include <cstdint>
@@ -24,6 +21,7 @@
 #include "common/run/run_file.hpp"
 #include "postprocess/options.hpp"
 #include "postprocess/score/survey.hpp"
+#include "postprocess/score/thalweg.hpp"
 
 namespace talus::postprocess {
 
@@ -50,6 +48,9 @@ struct Score {
   std::optional<double> number(const std::string& key) const;
 };
 
+Score make_score(const Run& run, const Options& options, const std::optional<Survey>& survey, const Thalweg& thalweg);
+
+/// The same along thalweg_of(run, options).
 Score make_score(const Run& run, const Options& options, const std::optional<Survey>& survey);
 
 /// One flat object: key -> value; a value that does not exist is absent, and `not_scored` says why.

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "common/raster/slope.hpp"
+#include "common/stage/stage.hpp"
 
 namespace talus::postprocess {
 namespace {
@@ -58,21 +59,30 @@ void zero_for_nodata(std::vector<double>& values) {
   }
 }
 
-Raster read_thickness(const fs::path& file, const SurveyOptions& options, const RunMaps& maps) {
+/// Slope-normal values to vertical ones, where the options say so and the run has ground.
+void to_vertical(Raster& raster, const SurveyOptions& options, const RunMaps& maps) {
+  if (options.direction != Direction::slope_normal) return;
+  const auto cosine = on_grid({maps.grid, slope_cosine({maps.grid, maps.terrain})}, raster.grid);
+  for (std::size_t i = 0; i < cosine.size(); ++i) {
+    if (cosine[i] > 0) raster.values[i] /= cosine[i];  // beyond the run's ground: as it is
+  }
+}
+
+Raster read_values(const fs::path& file, const SurveyOptions& options, const RunMaps& maps) {
   auto raster = read_raster(file);
   check_crs(file, raster.grid, maps.grid);
   if (options.nodata_is_zero) zero_for_nodata(raster.values);
-  if (options.direction == Direction::slope_normal) {
-    const auto cosine = on_grid({maps.grid, slope_cosine({maps.grid, maps.terrain})}, raster.grid);
-    for (std::size_t i = 0; i < cosine.size(); ++i) {
-      if (cosine[i] > 0) raster.values[i] /= cosine[i];  // beyond the run's ground: as it is
-    }
-  }
+  return raster;
+}
+
+Raster read_thickness(const fs::path& file, const SurveyOptions& options, const RunMaps& maps) {
+  auto raster = read_values(file, options, maps);
+  to_vertical(raster, options, maps);
   return raster;
 }
 
 /// after - before on the grid of the after DEM, or on the run's where that DEM has another CRS.
-void read_change(const SurveyOptions& options, const RunMaps& maps, double footprint_threshold, Survey& survey) {
+void read_surfaces(const SurveyOptions& options, const RunMaps& maps, Survey& survey) {
   auto after = read_raster(options.after_dem);
   survey.inputs.push_back(options.after_dem);
   if (after.grid.crs_wkt.empty() != maps.grid.crs_wkt.empty()) check_crs(options.after_dem, after.grid, maps.grid);
@@ -86,13 +96,50 @@ void read_change(const SurveyOptions& options, const RunMaps& maps, double footp
     before = resample_elevation(before, after.grid);
   }
   survey.grid = after.grid;
-  survey.deposit_is_change = survey.footprint_is_change = true;
-  survey.footprint_threshold = footprint_threshold;
-  for (std::size_t i = 0; i < after.values.size(); ++i) {
-    const double change = after.values[i] - before.values[i];
-    survey.deposit.push_back(std::isnan(change) ? change : std::max(0.0, change));
-    survey.footprint.push_back(std::abs(change));
+  for (std::size_t i = 0; i < after.values.size(); ++i) survey.measured.push_back(after.values[i] - before.values[i]);
+}
+
+/// The raster of sigma on the survey's grid. A measured value without a sigma is not known well enough to be compared; 0
+/// stands for ground that was mapped as untouched, and needs none.
+std::vector<double> read_sigma(const SurveyOptions& options, const RunMaps& maps, Survey& survey) {
+  if (options.sigma.empty()) return std::vector<double>(survey.grid.count(), options.sigma_m);
+  auto raster = read_raster(options.sigma);
+  check_crs(options.sigma, raster.grid, maps.grid);
+  survey.inputs.push_back(options.sigma);
+  if (!options.thickness.empty()) to_vertical(raster, options, maps);
+  if (!same_grid(raster.grid, survey.grid)) raster = resample_elevation(raster, survey.grid);
+  std::size_t without = 0;
+  for (std::size_t i = 0; i < raster.values.size(); ++i) {
+    double& sigma = raster.values[i];
+    if (sigma < 0)
+      throw DataError({fmt::format("{}: a standard error of {:g} m", options.sigma.string(), sigma), "it cannot be negative",
+                       "Give the raster of 1 sigma, in metres"});
+    if (!std::isnan(sigma) || std::isnan(survey.measured[i])) continue;
+    if (survey.measured[i] == 0) {
+      sigma = 0;
+      continue;
+    }
+    survey.measured[i] = std::numeric_limits<double>::quiet_NaN();
+    ++without;
   }
+  if (without > 0) survey.notes.push_back(fmt::format("{} surveyed cells without a sigma are left out.", without));
+  return raster.values;
+}
+
+void read_error(const SurveyOptions& options, const RunMaps& maps, Survey& survey) {
+  if (options.sigma.empty() && options.sigma_m == 0) return;
+  auto& error = survey.error;
+  error.sigma = read_sigma(options, maps, survey);
+  error.detection = options.detection;
+  error.correlation_length = options.correlation_length;
+  if (options.correlation_length == 0 && !options.sigma.empty())
+    error.correlation_length = std::max(0.0, raster_item(options.sigma, "CORRELATION_LENGTH_M").value_or(0));
+  if (error.correlation_length > 0 || options.resamples == 0) return;
+  const std::string warning =
+      "The range of the survey's errors is not known: they are drawn for every cell for itself, which makes the spread of "
+      "scores too small. Give correlation_length_m.";
+  survey.notes.push_back("Warning: " + warning);
+  log_warning("[postprocess.survey] " + warning);
 }
 
 void read_footprint(const SurveyOptions& options, const RunMaps& maps, double threshold, Survey& survey) {
@@ -152,17 +199,38 @@ std::vector<double> rasterize(const std::vector<MapPolygon>& polygons, const Map
   return values;
 }
 
+Sighting sight(const Survey& survey, const std::vector<double>& value) {
+  Sighting seen{value, value};
+  const auto& error = survey.error;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    const bool detected = error.sigma.empty() || !(std::abs(value[i]) < error.detection * error.sigma[i]);
+    if (std::isnan(value[i])) continue;
+    seen.deposit[i] = detected ? std::max(0.0, value[i]) : 0;
+    seen.footprint[i] = detected ? std::abs(value[i]) : 0;
+  }
+  return seen;
+}
+
 std::optional<Survey> read_survey(const SurveyOptions& options, const RunMaps& maps, double footprint_threshold) {
   if (!options.given()) return std::nullopt;
   Survey survey;
   survey.name = options.name;
-  if (!options.thickness.empty()) {
-    auto thickness = read_thickness(options.thickness, options, maps);
-    survey.grid = thickness.grid;
-    survey.deposit = std::move(thickness.values);
-    survey.inputs.push_back(options.thickness);
-  } else if (!options.after_dem.empty()) {
-    read_change(options, maps, footprint_threshold, survey);
+  if (!options.after_dem.empty()) {
+    read_surfaces(options, maps, survey);
+  } else if (options.measures()) {
+    const auto& file = options.thickness.empty() ? options.difference : options.thickness;
+    auto raster = options.thickness.empty() ? read_values(file, options, maps) : read_thickness(file, options, maps);
+    survey.grid = raster.grid;
+    survey.measured = std::move(raster.values);
+    survey.inputs.push_back(file);
+  }
+  if (options.measures()) {
+    survey.deposit_is_change = survey.footprint_is_change = options.thickness.empty();
+    read_error(options, maps, survey);
+    auto seen = sight(survey, survey.measured);
+    survey.deposit = std::move(seen.deposit);
+    if (survey.footprint_is_change) survey.footprint = std::move(seen.footprint);
+    survey.footprint_threshold = footprint_threshold;
   }
   read_footprint(options, maps, footprint_threshold, survey);
   check_overlap(survey.inputs.front(), survey, maps);
@@ -171,7 +239,7 @@ std::optional<Survey> read_survey(const SurveyOptions& options, const RunMaps& m
 
 OnSurveyGrid bring_to_survey_grid(const RunMaps& maps, const Survey& survey) {
   const auto bring = [&](const std::vector<double>& values) { return on_grid({maps.grid, values}, survey.grid); };
-  OnSurveyGrid simulated{bring(maps.deposit_thickness), bring(maps.peak_thickness), 0};
+  OnSurveyGrid simulated{bring(maps.deposit_thickness), {}, bring(maps.peak_thickness), 0};
   auto initial = survey.deposit_is_change ? bring(maps.initial_thickness) : std::vector<double>(survey.grid.count(), 0.0);
   if (survey.deposit_is_change && !maps.eroded_depth.empty()) {
     const auto eroded = bring(maps.eroded_depth);
@@ -186,10 +254,12 @@ OnSurveyGrid bring_to_survey_grid(const RunMaps& maps, const Survey& survey) {
     double& peak = simulated.peak[i];
     h = std::isnan(h) ? 0 : h;
     peak = std::isnan(peak) ? 0 : peak;
-    if (survey.deposit_is_change) h = std::max(0.0, h - (std::isnan(initial[i]) ? 0 : initial[i]));
+    const double change = h - (std::isnan(initial[i]) ? 0 : initial[i]);
+    if (survey.deposit_is_change) h = std::max(0.0, change);
+    simulated.change.push_back(survey.deposit_is_change ? change : h);
     if (std::isfinite(surveyed[i])) continue;
     simulated.deposit_left_out += h * area;
-    h = std::numeric_limits<double>::quiet_NaN();
+    h = simulated.change.back() = std::numeric_limits<double>::quiet_NaN();
   }
   return simulated;
 }

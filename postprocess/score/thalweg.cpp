@@ -45,7 +45,7 @@ Thalweg given_thalweg(const std::filesystem::path& file, const RunMaps& maps) {
     thalweg.distance = lengths_along(thalweg.line);
   }
   thalweg.given = true;
-  thalweg.origin = "the line of " + file.filename().string();
+  thalweg.origin = "line of " + file.filename().string();
   return thalweg;
 }
 
@@ -85,9 +85,8 @@ Thalweg found_thalweg(const Run& run, const Options& options) {
   if (!by_mass) middle.clear();
   const auto way = without_returns(joined(maps, *top, middle, *toe), cell);
   auto thalweg = thalweg_from(smoothed(resampled(way, cell), smoothing), cell);
-  thalweg.origin = by_mass ? "the path of the centre of mass, carried on to the crown and the farthest deposit"
-                           : "the way through the thickest flow from the crown to the farthest deposit, because the centre "
-                             "of mass moves less than five cells over the frames";
+  thalweg.origin = by_mass ? "path of the centre of mass"
+                           : "thickest flow from crown to deposit, as the centre of mass moves less than five cells over the frames";
   return thalweg;
 }
 
@@ -105,31 +104,37 @@ std::vector<double> sample_along(const Thalweg& thalweg, const MapGrid& grid, co
 }
 
 AlongLine project(const Thalweg& thalweg, double x, double y) {
-  AlongLine best{nan, std::numeric_limits<double>::infinity()};
+  constexpr double without_end = 1e300;
+  AlongLine best{nan, nan};
   double nearest = std::numeric_limits<double>::infinity();
   const std::size_t segments = thalweg.line.size() < 2 ? 0 : thalweg.line.size() - 1;
   for (std::size_t i = 0; i < segments; ++i) {
     const auto &a = thalweg.line[i], &b = thalweg.line[i + 1];
     const double length = thalweg.distance[i + 1] - thalweg.distance[i];
     const double ux = (b[0] - a[0]) / length, uy = (b[1] - a[1]) / length;
-    const double along = std::clamp((x - a[0]) * ux + (y - a[1]) * uy, i == 0 ? -1e300 : 0.0, i + 1 == segments ? 1e300 : length);
-    const double dx = x - a[0] - along * ux, dy = y - a[1] - along * uy, gap = std::hypot(dx, dy);
-    if (gap >= nearest) continue;
-    nearest = gap;
-    best = {thalweg.distance[i] + along, std::copysign(gap, ux * dy - uy * dx)};
+    const double low = i == 0 ? -without_end : 0, high = i + 1 == segments ? without_end : length;
+    const double along = std::clamp((x - a[0]) * ux + (y - a[1]) * uy, low, high);
+    const double dx = x - a[0] - along * ux, dy = y - a[1] - along * uy, square = dx * dx + dy * dy;
+    if (square >= nearest) continue;
+    nearest = square;
+    best = {thalweg.distance[i] + along, std::copysign(std::sqrt(square), ux * dy - uy * dx)};
   }
   return best;
 }
 
-std::vector<double> distance_along(const Thalweg& thalweg, const MapGrid& grid, const std::vector<double>& values, double threshold) {
-  std::vector<double> distances(values.size(), nan);
-  for (int row = 0; row < grid.rows; ++row) {
+std::optional<PlaceAlong> farthest_along(const Thalweg& thalweg, const MapGrid& grid, const std::vector<double>& values,
+                                         double threshold, const std::vector<double>& surface) {
+  std::optional<PlaceAlong> far;
+  for (int row = 0; row < grid.rows && !thalweg.line.empty(); ++row) {
     for (int column = 0; column < grid.columns; ++column) {
       const auto i = grid.index(column, row);
-      if (values[i] > threshold) distances[i] = project(thalweg, grid.x(column), grid.y(row)).distance;
+      if (!(values[i] > threshold)) continue;
+      const double distance = project(thalweg, grid.x(column), grid.y(row)).distance;
+      if (!far || distance > far->distance)
+        far = PlaceAlong{{grid.x(column), grid.y(row), surface.empty() ? 0 : surface[i]}, distance};
     }
   }
-  return distances;
+  return far;
 }
 
 std::vector<double> flow_thickness(const Run& run, std::size_t frame) {
@@ -145,12 +150,9 @@ std::vector<double> flow_thickness(const Run& run, std::size_t frame) {
 Series front_over_time(const Run& run, const Thalweg& thalweg, double threshold) {
   Series front;
   for (std::size_t frame = 0; frame < run.frames.time.size(); ++frame) {
-    double reach = nan;
-    for (const double d : distance_along(thalweg, run.maps.grid, flow_thickness(run, frame), threshold)) {
-      if (!(d <= reach) && !std::isnan(d)) reach = d;
-    }
+    const auto far = farthest_along(thalweg, run.maps.grid, flow_thickness(run, frame), threshold, {});
     front.time.push_back(run.frames.time[frame]);
-    front.value.push_back(reach);
+    front.value.push_back(far ? far->distance : nan);
   }
   return front;
 }

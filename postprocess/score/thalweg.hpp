@@ -8,6 +8,7 @@
 
 #include "common/run/run_file.hpp"
 #include "postprocess/options.hpp"
+#include "postprocess/score/mobility.hpp"
 
 namespace talus::postprocess {
 
@@ -39,9 +40,16 @@ struct AlongLine {
 };
 AlongLine project(const Thalweg& thalweg, double x, double y);
 
-/// Distance along the line of every cell whose value exceeds `threshold`; NaN elsewhere. [rows * columns]
-std::vector<double> distance_along(const Thalweg& thalweg, const MapGrid& grid, const std::vector<double>& values,
-                                   double threshold);
+/// A place, and how far along a line it lies [m].
+struct PlaceAlong {
+  Place place;
+  double distance = 0;
+};
+
+/// The cell above `threshold` that lies farthest along the line; z is taken from `surface`, which has the same grid
+/// (empty: z = 0). Empty where no cell exceeds the threshold or the line is empty.
+std::optional<PlaceAlong> farthest_along(const Thalweg& thalweg, const MapGrid& grid, const std::vector<double>& values,
+                                         double threshold, const std::vector<double>& surface);
 
 /// What moves or has come to rest at a frame: its thickness without erodible ground that still lies in place [m].
 std::vector<double> flow_thickness(const Run& run, std::size_t frame);

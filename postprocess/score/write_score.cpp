@@ -28,7 +28,9 @@ std::string value_text(const ScoreEntry& entry) {
   if (const auto* count = std::get_if<std::int64_t>(&entry.value)) return grouped(fmt::format("{}", *count));
   const double value = std::get<double>(entry.value);
   if (entry.decimals > 6) return fmt::format("{:.1e}", value);  // a closure error: its size matters, not its digits
-  return grouped(fmt::format("{:.{}f}", value == 0 ? 0.0 : value, entry.decimals));
+  const auto plain = fmt::format("{:.{}f}", value, entry.decimals);
+  const bool rounds_to_zero = plain.find_first_not_of("-0.") == std::string::npos;
+  return grouped(rounds_to_zero ? fmt::format("{:.{}f}", 0.0, entry.decimals) : plain);
 }
 
 bool is_text(const ScoreEntry& entry) { return std::holds_alternative<std::string>(entry.value); }

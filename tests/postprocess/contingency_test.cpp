@@ -42,6 +42,22 @@ TEST(Contingency, takes_a_threshold_for_each_side) {
   EXPECT_EQ(compare({2, 0.8}, 1, {1, 1}, 0.5, 1).false_negative, 1);
 }
 
+TEST(Contingency, makes_a_synthetic_index_of_five_parts) {
+  Contingency c;
+  c.true_positive = 60, c.false_positive = 20, c.false_negative = 40, c.true_negative = 123456;  // TN has no part in it
+  const double csi = 60.0 / 120, tn = 5 * 100 - 20;
+  const double hss = 2 * (60 * tn - 20 * 40) / (100 * (40 + tn) + 80 * (20 + tn));
+  const double d2pc = std::hypot(0.4, 20.0 / 500);
+  const double foc = std::pow(std::sin(1.5707963267948966 * 0.8), 5), reach = std::pow(std::sin(1.5707963267948966 * 0.9), 5);
+  EXPECT_DOUBLE_EQ(c.spi(0.9), (csi + hss + 1 - d2pc + foc + reach) / 5);
+  EXPECT_DOUBLE_EQ(c.spi(0.9), c.spi(1 / 0.9)) << "too far counts as too short by the same ratio";
+  EXPECT_TRUE(std::isnan(c.spi(nan)));
+  EXPECT_TRUE(std::isnan(Contingency{}.spi(1)));
+  const std::vector<double> map{0, 3, 5, 0};
+  EXPECT_DOUBLE_EQ(compare(map, 1, map, 1, 1).spi(1), 1);
+  EXPECT_NEAR(compare({0, 0, 0, 0}, 1, map, 1, 1).spi(1e-9), 0, 1e-12) << "nothing right is 0, not below";
+}
+
 TEST(ThicknessError, is_taken_over_the_union_of_both_deposits) {
   //                               both  sim  survey  neither  not surveyed
   const std::vector<double> simulated{4, 3, 0, 0.5, 9};
@@ -50,7 +66,10 @@ TEST(ThicknessError, is_taken_over_the_union_of_both_deposits) {
   EXPECT_DOUBLE_EQ(error.rmse, std::sqrt((4.0 + 9 + 36) / 3));
   EXPECT_DOUBLE_EQ(error.bias, (2.0 + 3 - 6) / 3);
   EXPECT_DOUBLE_EQ(error.mean_absolute, 11.0 / 3);
+  EXPECT_DOUBLE_EQ(error.median, 2) << "of 2, 3 and -6";
+  EXPECT_DOUBLE_EQ(error.nmad, 1.4826) << "distances from it 0, 1 and 8";
   EXPECT_TRUE(std::isnan(thickness_error({0}, {0}, 1).rmse));
+  EXPECT_TRUE(std::isnan(thickness_error({0}, {0}, 1).nmad));
 }
 
 }  // namespace

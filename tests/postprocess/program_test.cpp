@@ -102,11 +102,42 @@ TEST_F(Program, reports_all_faults_of_its_table_at_once) {
   recipe_ +=
       "[postprocess]\nclasses_m = [5.0, 1.0]\n[postprocess.survey]\nthickness = \"a.tif\"\nafter_dem = "
       "\"b.tif\"\npolygon = \"c.gpkg\"\n"
-      "peak_thickness = \"d.tif\"\n";
+      "peak_thickness = \"d.tif\"\nsigma = \"e.tif\"\nsigma_m = 0.3\n";
   const auto fault = test::fault_of<RecipeError>([&] { run_it(); });
-  for (const auto* words : {"classes_m does not rise", "thickness and after_dem", "peak_thickness and polygon"}) {
+  for (const auto* words : {"classes_m does not rise", "thickness and after_dem", "peak_thickness and polygon", "sigma and sigma_m"}) {
     EXPECT_NE(fault.find(words), std::string::npos) << fault;
   }
+}
+
+TEST_F(Program, refuses_an_error_of_nothing_measured) {
+  recipe_ += "[postprocess.survey]\npolygon = \"c.gpkg\"\nsigma_m = 0.3\n";
+  EXPECT_NE(test::fault_of<RecipeError>([&] { run_it(); }).find("gives an error without a measurement"), std::string::npos);
+}
+
+TEST_F(Program, scores_with_the_surveys_error_along_a_line_named_in_the_recipe) {
+  const auto run = test::small_run();
+  test::write_run(out_ / "run.h5", run);
+  auto change = run.maps.deposit_thickness;
+  for (std::size_t i = 0; i < change.size(); ++i) change[i] -= run.maps.initial_thickness[i];
+  write_geotiff(scratch_ / "difference.tif", {run.maps.grid, change}, {"", "m", {}});
+  write_geotiff(scratch_ / "sigma.tif", {run.maps.grid, std::vector<double>(change.size(), 0.4)},
+                {"", "m", {{"CORRELATION_LENGTH_M", "50"}}});
+  scratch_.write("line.geojson", R"({"type":"FeatureCollection","crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::32632"}},
+"features":[{"type":"Feature","properties":{},"geometry":{"type":"LineString","coordinates":[[600390,5100150],[600010,5100150]]}}]})");
+  recipe_ +=
+      "[postprocess]\nthalweg = \"line.geojson\"\n[postprocess.survey]\ndifference = \"difference.tif\"\nsigma = \"sigma.tif\"\n";
+  run_it();
+  EXPECT_EQ(score().at("deposit_csi"), 1);
+  EXPECT_EQ(score().at("residual_chi2"), 0);
+  EXPECT_EQ(score().at("resamples"), 200);
+  EXPECT_EQ(score().at("survey_correlation_length_m"), 50);
+  EXPECT_GT(score().at("deposit_csi_sd"), 0);
+  EXPECT_LT(score().at("deposit_csi_p05"), score().at("deposit_csi_p95"));
+  EXPECT_GT(score().at("footprint_csi_sd"), 0);
+  EXPECT_EQ(score().at("thalweg"), "line of line.geojson");
+  EXPECT_EQ(score().at("thalweg_runout_m"), 310) << "columns 3 to 34";
+  const auto used = test::text_of(out_ / "postprocess.used.toml");
+  for (const auto* name : {"line.geojson", "difference.tif", "sigma.tif"}) EXPECT_NE(used.find(name), std::string::npos) << used;
 }
 
 TEST_F(Program, prints_a_template_that_it_accepts) {

@@ -118,6 +118,90 @@ TEST_F(SurveyTest, takes_the_runs_own_surface_when_only_the_after_dem_is_given) 
   EXPECT_TRUE(std::isnan(survey->deposit[0])) << "outside the run's domain nothing is known";
 }
 
+/// A difference: up by 0.4 and 3 m, down by 5 m, unchanged elsewhere.
+std::vector<double> some_change() {
+  std::vector<double> change(small_grid().count(), 0.0);
+  change[small_grid().index(10, 10)] = 0.4;
+  change[small_grid().index(20, 10)] = 3;
+  change[small_grid().index(5, 10)] = -5;
+  return change;
+}
+
+TEST_F(SurveyTest, takes_a_difference_as_rise_and_fall) {
+  options_.difference = raster("difference.tif", small_grid(), some_change());
+  const auto survey = read_survey(options_, run_.maps, 1.0);
+  ASSERT_TRUE(survey && survey->deposit_is_change && survey->footprint_is_change);
+  EXPECT_EQ(survey->deposit[small_grid().index(10, 10)], 0.4) << "no level of detection without a sigma";
+  EXPECT_EQ(survey->deposit[small_grid().index(20, 10)], 3);
+  EXPECT_EQ(survey->deposit[small_grid().index(5, 10)], 0);
+  EXPECT_EQ(survey->footprint[small_grid().index(5, 10)], 5);
+  EXPECT_TRUE(survey->error.sigma.empty());
+}
+
+TEST_F(SurveyTest, counts_what_lies_below_the_level_of_detection_as_no_change) {
+  options_.difference = raster("difference.tif", small_grid(), some_change());
+  options_.sigma_m = 0.25;  // a level of 0.49 m
+  options_.correlation_length = 60;
+  const auto survey = read_survey(options_, run_.maps, 1.0);
+  EXPECT_EQ(survey->deposit[small_grid().index(10, 10)], 0);
+  EXPECT_EQ(survey->footprint[small_grid().index(10, 10)], 0);
+  EXPECT_EQ(survey->measured[small_grid().index(10, 10)], 0.4) << "what was measured is kept for the residuals";
+  EXPECT_EQ(survey->deposit[small_grid().index(20, 10)], 3);
+  EXPECT_TRUE(survey->notes.empty());
+  options_.detection = 0;
+  EXPECT_EQ(read_survey(options_, run_.maps, 1.0)->deposit[small_grid().index(10, 10)], 0.4);
+}
+
+TEST_F(SurveyTest, brings_sigma_to_its_grid_with_the_range_its_file_names) {
+  const MapGrid coarse{.columns = 20, .rows = 15, .west = 600000, .south = 5100000, .cell = 20, .crs_wkt = test::utm32n};
+  write_geotiff(scratch_ / "sigma.tif", {coarse, std::vector<double>(coarse.count(), 0.3)},
+                {"sigma", "m", {{"CORRELATION_LENGTH_M", "45.5"}}});
+  options_.difference = raster("difference.tif", small_grid(), some_change());
+  options_.sigma = scratch_ / "sigma.tif";
+  auto survey = read_survey(options_, run_.maps, 1.0);
+  ASSERT_EQ(survey->error.sigma.size(), small_grid().count());
+  EXPECT_NEAR(survey->error.sigma[small_grid().index(13, 7)], 0.3, 1e-12);
+  EXPECT_EQ(survey->error.correlation_length, 45.5);
+  EXPECT_EQ(survey->inputs.size(), 2u);
+  options_.correlation_length = 80;
+  EXPECT_EQ(read_survey(options_, run_.maps, 1.0)->error.correlation_length, 80) << "the recipe goes first";
+}
+
+TEST_F(SurveyTest, warns_where_the_range_of_its_errors_is_not_known) {
+  options_.difference = raster("difference.tif", small_grid(), some_change());
+  options_.sigma_m = 0.25;
+  const auto survey = read_survey(options_, run_.maps, 1.0);
+  EXPECT_EQ(survey->error.correlation_length, 0);
+  ASSERT_EQ(survey->notes.size(), 1u);
+  EXPECT_NE(survey->notes[0].find("Give correlation_length_m"), std::string::npos) << survey->notes[0];
+  options_.resamples = 0;
+  EXPECT_TRUE(read_survey(options_, run_.maps, 1.0)->notes.empty()) << "nobody draws";
+}
+
+TEST_F(SurveyTest, leaves_out_what_was_measured_without_a_sigma) {
+  options_.difference = raster("difference.tif", small_grid(), some_change());
+  auto sigma = std::vector<double>(small_grid().count(), 0.1);
+  sigma[small_grid().index(20, 10)] = sigma[small_grid().index(30, 20)] = test::nan;
+  options_.sigma = raster("sigma.tif", small_grid(), sigma);
+  options_.correlation_length = 60;
+  const auto survey = read_survey(options_, run_.maps, 1.0);
+  EXPECT_TRUE(std::isnan(survey->deposit[small_grid().index(20, 10)]));
+  EXPECT_EQ(survey->deposit[small_grid().index(30, 20)], 0) << "mapped as untouched: needs none";
+  EXPECT_EQ(survey->notes, std::vector<std::string>{"1 surveyed cells without a sigma are left out."});
+  sigma[3] = -0.1;
+  options_.sigma = raster("negative.tif", small_grid(), sigma);
+  EXPECT_NE(fault().find("negative.tif: a standard error of -0.1 m (it cannot be negative)"), std::string::npos) << fault();
+}
+
+TEST_F(SurveyTest, compares_the_change_itself_with_what_was_measured) {
+  options_.difference = raster("difference.tif", small_grid(), some_change());
+  const auto survey = read_survey(options_, run_.maps, 1.0);
+  const auto simulated = bring_to_survey_grid(run_.maps, *survey);
+  EXPECT_EQ(simulated.change[small_grid().index(4, 15)], -6) << "the scar";
+  EXPECT_EQ(simulated.deposit[small_grid().index(4, 15)], 0);
+  EXPECT_EQ(simulated.change[small_grid().index(26, 15)], 1.5);
+}
+
 TEST_F(SurveyTest, fills_polygons_and_leaves_their_holes) {
   options_.polygon = scratch_.write("outline.geojson", square_with_hole(600000, 5100100, 40));
   const auto survey = read_survey(options_, run_.maps, 1.0);

@@ -1,0 +1,136 @@
+// Simulation against survey, cell by cell, in volume and in reach.
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "postprocess/maps/fields.hpp"
+#include "postprocess/score/contingency.hpp"
+#include "postprocess/score/ranking.hpp"
+#include "postprocess/score/residual.hpp"
+#include "postprocess/score/sections.hpp"
+
+namespace talus::postprocess {
+namespace {
+
+/// One map of each side, what counts as yes on it, and how far yes reaches.
+struct Pair {
+  std::string what;
+  const std::vector<double>&simulated, &surveyed;
+  double simulated_threshold, surveyed_threshold;
+  Reach simulated_reach, surveyed_reach;
+};
+
+void overlap(const Pair& pair, double cell_area, Sheet& sheet) {
+  const auto& what = pair.what;
+  const auto c = compare(pair.simulated, pair.simulated_threshold, pair.surveyed, pair.surveyed_threshold, cell_area);
+  sheet.number(what + "_csi", what + " CSI", "", c.csi(), 3, "neither side exceeds the threshold");
+  sheet.number(what + "_hss", what + " Heidke skill score", "", c.hss(), 3, "everywhere the same");
+  sheet.number(what + "_auroc", what + " AUROC", "", auroc(pair.simulated, pair.surveyed, pair.surveyed_threshold), 3,
+               "the survey says the same everywhere");
+  sheet.number(what + "_d2pc", what + " distance to perfect classification", "", c.d2pc(), 3, "one side has no area");
+  sheet.number(what + "_foc", what + " area, simulated / surveyed (FoC)", "", c.foc(), 3,
+               "the survey exceeds the threshold nowhere");
+  sheet.number(what + "_spi", what + " synthetic performance index", "", c.spi(pair.simulated_reach.along / pair.surveyed_reach.along),
+               3, "one side has no run-out along the thalweg");
+  sheet.number(what + "_true_positive_m2", what + " in both (TP)", "m2", c.true_positive, 0);
+  sheet.number(what + "_false_positive_m2", what + " in the simulation only (FP)", "m2", c.false_positive, 0);
+  sheet.number(what + "_false_negative_m2", what + " in the survey only (FN)", "m2", c.false_negative, 0);
+  sheet.number(what + "_true_negative_m2", what + " in neither (TN)", "m2", c.true_negative, 0);
+}
+
+void thickness(const Scored& scored, const OnSurveyGrid& simulated, Sheet& sheet) {
+  const auto& survey = *scored.survey;
+  const auto error = thickness_error(simulated.deposit, survey.deposit, scored.options.deposit_threshold);
+  constexpr const char* none = "neither deposit exceeds the threshold";
+  sheet.number("thickness_rmse_m", "thickness RMSE", "m", error.rmse, 2, none);
+  sheet.number("thickness_bias_m", "thickness bias (simulated - surveyed)", "m", error.bias, 2, none);
+  sheet.number("thickness_mae_m", "thickness mean absolute error", "m", error.mean_absolute, 2, none);
+  sheet.number("thickness_median_m", "thickness median difference", "m", error.median, 2, none);
+  sheet.number("thickness_nmad_m", "thickness NMAD", "m", error.nmad, 2, none);
+  const double volume = volume_under(survey.deposit, survey.grid.cell);
+  sheet.number("survey_deposit_volume_m3", "surveyed deposit volume", "m3", volume, 0);
+  sheet.number("deposit_volume_ratio", "deposit volume, simulated / surveyed", "",
+               volume_under(simulated.deposit, survey.grid.cell) / volume, 3, "the survey holds no deposit");
+  double thickest = 0;
+  for (const double h : survey.deposit) thickest = h > thickest ? h : thickest;
+  sheet.number("survey_max_deposit_thickness_m", "thickest surveyed deposit", "m", thickest, 2);
+}
+
+void centre_offset(const Scored& scored, const OnSurveyGrid& simulated, Sheet& sheet) {
+  const auto& survey = *scored.survey;
+  const auto here = centre_of_mass(survey.grid, simulated.deposit, {}), there = centre_of_mass(survey.grid, survey.deposit, {});
+  if (!here || !there)
+    return sheet.skip({"centre_of_mass_offset_m", "centre_of_mass_offset_along_m"}, "one side has no deposit");
+  sheet.number("centre_of_mass_offset_m", "centre-of-mass offset of the deposits", "m", plan_distance(*here, *there), 1);
+  sheet.number("centre_of_mass_offset_along_m", "the same along the thalweg, simulated - surveyed", "m",
+               project(scored.thalweg, here->x, here->y).distance - project(scored.thalweg, there->x, there->y).distance, 1,
+               scored.thalweg.origin);
+}
+
+void residuals(const Scored& scored, const OnSurveyGrid& simulated, Sheet& sheet) {
+  const auto& survey = *scored.survey;
+  if (survey.error.sigma.empty())
+    return sheet.skip({"residual_median_sigma", "residual_within_95", "residual_chi2"}, "the survey's error (sigma) is not given");
+  const double threshold = scored.options.deposit_threshold;
+  std::vector<char> counts(simulated.deposit.size());
+  for (std::size_t i = 0; i < counts.size(); ++i) counts[i] = simulated.deposit[i] > threshold || survey.deposit[i] > threshold;
+  const auto r = residual_of(simulated.change, survey.measured, survey.error.sigma, counts);
+  constexpr const char* none = "no deposit where the survey has an error";
+  sheet.count("residual_cells", "cells with a deposit and a sigma", static_cast<std::int64_t>(r.cells));
+  sheet.number("residual_median_sigma", "median residual over sigma", "", r.median, 2, none);
+  sheet.number("residual_within_95", "share of cells within 1.96 sigma", "", r.within, 3, none);
+  sheet.number("residual_chi2", "reduced chi-square", "", r.chi_squared, 2, none);
+}
+
+/// A pair of run-outs and their difference, under keys that begin as named.
+void reach_lines(const std::string& key, const std::string& label, double surveyed, double simulated, Sheet& sheet) {
+  sheet.number("survey_" + key + "_m", "surveyed " + label, "m", surveyed, 0, "the survey exceeds the threshold nowhere");
+  sheet.number(key + "_difference_m", label + ", simulated - surveyed", "m", simulated - surveyed, 0,
+               std::isfinite(surveyed) ? "the simulation has no run-out" : "the survey exceeds the threshold nowhere");
+}
+
+void left_out(const Scored& scored, const OnSurveyGrid& simulated, Sheet& sheet) {
+  sheet.number("deposit_not_surveyed_m3", "simulated deposit where nothing was surveyed", "m3", simulated.deposit_left_out, 0);
+  const double share = simulated.deposit_left_out / scored.run.summary.volume_released;
+  if (share > 0.01)
+    sheet.note(fmt::format("Warning: {:.1f} % of the simulated deposit lies where the survey has no data; it is not in the "
+                           "scores. If no data means no deposit, set nodata_is_zero.",
+                           100 * share));
+}
+
+}  // namespace
+
+void add_agreement(const Scored& scored, const OnSurveyGrid& simulated, Sheet& sheet) {
+  const auto& survey = *scored.survey;
+  const auto& options = scored.options;
+  const auto& maps = scored.run.maps;
+  const double area = survey.grid.cell * survey.grid.cell;
+  const auto deposit_reach = reach_of(scored, maps.grid, maps.deposit_thickness, options.deposit_threshold);
+  Reach surveyed_reach{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+  sheet.section("Agreement with: " + survey.name);
+  if (survey.footprint.empty()) {
+    sheet.skip({"footprint_csi"}, "the survey gives a deposit only (peak_thickness or polygon would give its footprint)");
+  } else {
+    surveyed_reach = reach_of(scored, survey.grid, survey.footprint, survey.footprint_threshold);
+    overlap({"footprint", simulated.peak, survey.footprint, options.footprint_threshold, survey.footprint_threshold,
+             reach_of(scored, maps.grid, maps.peak_thickness, options.footprint_threshold), surveyed_reach},
+            area, sheet);
+  }
+  if (survey.deposit.empty()) {
+    sheet.skip({"deposit_csi", "thickness_rmse_m", "thickness_bias_m"}, "the survey gives a footprint only");
+  } else {
+    surveyed_reach = reach_of(scored, survey.grid, survey.deposit, options.deposit_threshold);
+    overlap({"deposit", simulated.deposit, survey.deposit, options.deposit_threshold, options.deposit_threshold, deposit_reach,
+             surveyed_reach},
+            area, sheet);
+    thickness(scored, simulated, sheet);
+    residuals(scored, simulated, sheet);
+    centre_offset(scored, simulated, sheet);
+  }
+  reach_lines("runout", "run-out, straight", surveyed_reach.straight, deposit_reach.straight, sheet);
+  reach_lines("thalweg_runout", "run-out along the thalweg", surveyed_reach.along, deposit_reach.along, sheet);
+  left_out(scored, simulated, sheet);
+}
+
+}  // namespace talus::postprocess

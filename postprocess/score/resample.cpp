@@ -1,0 +1,89 @@
+#include "postprocess/score/resample.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "postprocess/maps/fields.hpp"
+#include "postprocess/score/contingency.hpp"
+#include "postprocess/score/patches.hpp"
+#include "postprocess/score/random_field.hpp"
+
+namespace talus::postprocess {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// What does not change from draw to draw.
+struct Fixed {
+  const Scored& scored;
+  const OnSurveyGrid& simulated;
+  double simulated_volume;       // [m3]
+  Reach simulated_reach;         // [m]
+  std::vector<char> seeds;       // cells with a surveyed deposit
+  std::vector<double> along{};   // distance along the thalweg of the cells asked for so far, NaN of the others [m]
+};
+
+Reach surveyed_reach(Fixed& fixed, const std::vector<double>& deposit) {
+  const auto& scored = fixed.scored;
+  const auto& grid = scored.survey->grid;
+  const double threshold = scored.options.deposit_threshold;
+  if (!scored.crown) return {nan, nan};
+  Reach reach{nan, nan};
+  const auto patches = patches_with(grid, deposit, threshold, fixed.seeds);
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      const auto i = grid.index(column, row);
+      if (!(patches[i] > threshold)) continue;
+      const Place here{grid.x(column), grid.y(row), 0};
+      if (std::isnan(fixed.along[i])) fixed.along[i] = project(scored.thalweg, here.x, here.y).distance;
+      reach.straight = std::fmax(reach.straight, plan_distance(*scored.crown, here));
+      reach.along = std::fmax(reach.along, fixed.along[i] - scored.crown_along);
+    }
+  }
+  return reach;
+}
+
+void score_draw(Fixed& fixed, const Sighting& seen, Resampled& all) {
+  const auto& survey = *fixed.scored.survey;
+  const auto& options = fixed.scored.options;
+  const auto& simulated = fixed.simulated;
+  const double area = survey.grid.cell * survey.grid.cell, threshold = options.deposit_threshold;
+  if (survey.footprint_is_change)
+    all.footprint_csi.push_back(
+        compare(simulated.peak, options.footprint_threshold, seen.footprint, survey.footprint_threshold, area).csi());
+  all.deposit_csi.push_back(compare(simulated.deposit, threshold, seen.deposit, threshold, area).csi());
+  const auto error = thickness_error(simulated.deposit, seen.deposit, threshold);
+  all.rmse.push_back(error.rmse);
+  all.bias.push_back(error.bias);
+  all.volume.push_back(volume_under(seen.deposit, survey.grid.cell));
+  all.volume_ratio.push_back(fixed.simulated_volume / all.volume.back());
+  const auto reach = surveyed_reach(fixed, seen.deposit);
+  all.runout_difference.push_back(fixed.simulated_reach.straight - reach.straight);
+  all.thalweg_runout_difference.push_back(fixed.simulated_reach.along - reach.along);
+}
+
+}  // namespace
+
+Resampled resample(const Scored& scored, const OnSurveyGrid& simulated) {
+  Resampled all;
+  const auto& survey = *scored.survey;
+  const auto& options = scored.options;
+  const auto& sigma = survey.error.sigma;
+  if (sigma.empty()) return all;
+  const auto& maps = scored.run.maps;
+  Fixed fixed{scored, simulated, volume_under(simulated.deposit, survey.grid.cell),
+              reach_of(scored, maps.grid, maps.deposit_thickness, options.deposit_threshold),
+              std::vector<char>(survey.deposit.size()), std::vector<double>(survey.deposit.size(), nan)};
+  for (std::size_t i = 0; i < survey.deposit.size(); ++i) fixed.seeds[i] = survey.deposit[i] > options.deposit_threshold;
+  RandomField errors(survey.grid, survey.error.correlation_length, static_cast<std::uint64_t>(options.survey.resample_seed));
+  for (int draw = 0; draw < options.survey.resamples; ++draw) {
+    auto value = errors.next();
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      value[i] = survey.measured[i] == 0 ? 0 : survey.measured[i] + sigma[i] * value[i];
+    }
+    score_draw(fixed, sight(survey, value), all);
+  }
+  return all;
+}
+
+}  // namespace talus::postprocess

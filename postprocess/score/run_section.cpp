@@ -1,0 +1,113 @@
+// What the run itself says: volumes, cost, extent.
+#include <algorithm>
+
+#include "common/raster/slope.hpp"
+#include "postprocess/maps/fields.hpp"
+#include "postprocess/score/sections.hpp"
+
+namespace talus::postprocess {
+namespace {
+
+double largest(const std::vector<double>& values) {
+  double top = 0;
+  for (const double v : values) {
+    if (v > top) top = v;
+  }
+  return top;
+}
+
+double area_above(const std::vector<double>& values, double threshold, double cell) {
+  return static_cast<double>(std::count_if(values.begin(), values.end(), [&](double v) { return v > threshold; })) *
+         cell * cell;
+}
+
+/// The release by both conventions. A thickness t over a cell of area A on a slope s is the volume t A where t is vertical,
+/// and t A / cos(s) where it is normal to the slope; A / cos(s) is the true area of the cell.
+struct Release {
+  double volume_if_normal = 0;           // [m3]
+  double area = 0, true_area = 0;        // of the cells thicker than release_limit() [m2]
+  double thickest_normal = 0;            // [m]
+};
+
+Release release_of(const RunMaps& maps, double threshold) {
+  const auto cosine = slope_cosine({maps.grid, maps.terrain});
+  const double area = maps.grid.cell * maps.grid.cell, limit = release_limit(maps, threshold);
+  Release release;
+  for (std::size_t i = 0; i < cosine.size(); ++i) {
+    const double h = maps.initial_thickness[i];
+    if (!(h > 0)) continue;
+    release.volume_if_normal += h * area / cosine[i];
+    release.thickest_normal = std::max(release.thickest_normal, h * cosine[i]);
+    if (!(h > limit)) continue;
+    release.area += area;
+    release.true_area += area / cosine[i];
+  }
+  return release;
+}
+
+void volumes(const Scored& scored, Sheet& sheet) {
+  const auto& run = scored.run;
+  const auto& s = run.summary;
+  const double on_map = volume_under(run.maps.deposit_thickness, run.maps.grid.cell);
+  const auto release = release_of(run.maps, scored.options.deposit_threshold);
+  sheet.section("Volume");
+  sheet.number("volume_released_m3", "released", "m3", s.volume_released, 0);
+  sheet.number("volume_if_thickness_were_slope_normal_m3", "if its thickness were normal to the slope", "m3",
+               release.volume_if_normal, 0);
+  sheet.number("release_area_m2", "area of the release, in plan", "m2", release.area, 0);
+  sheet.number("release_true_area_m2", "area of the release, along the slope", "m2", release.true_area, 0);
+  if (!run.maps.eroded_depth.empty())
+    sheet.number("volume_entrained_m3", "taken along from the ground", "m3", s.volume_entrained, 0);
+  sheet.number("volume_final_m3", "in the domain at the end", "m3", s.volume_final, 0);
+  sheet.number("volume_outflow_m3", "lost through the edge", "m3", s.volume_outflow, 0);
+  sheet.number("volume_closure_error", "(released - end - lost) / released", "",
+               (s.volume_released + s.volume_entrained - s.volume_final - s.volume_outflow) / s.volume_released, 12,
+               "nothing was released");
+  sheet.number("volume_on_map_m3", "under the deposit map", "m3", on_map, 0);
+  sheet.number("volume_map_error", "(map - end) / released", "", (on_map - s.volume_final) / s.volume_released, 12,
+               "nothing was released");
+  sheet.number("max_release_thickness_m", "thickest release", "m", largest(run.maps.initial_thickness), 2);
+  sheet.number("max_release_thickness_slope_normal_m", "thickest release, normal to the slope", "m",
+               release.thickest_normal, 2);
+}
+
+void computation(const Scored& scored, Sheet& sheet) {
+  const auto& s = scored.run.summary;
+  sheet.section("Computation");
+  sheet.text("stop_reason", "stopped because", s.stop_reason);
+  sheet.number("time_end_s", "stopped at", "s", s.time_end, 1);
+  sheet.count("particles", "material points", s.particles);
+  sheet.count("particles_outflow", "material points lost through the edge", s.particles_outflow);
+  sheet.count("steps", "steps", s.steps);
+  sheet.number("wall_time_s", "wall time of the steps", "s", s.wall_time, 1);
+  sheet.text("on", "computed on", s.on);
+  sheet.text("precision", "precision", s.precision);
+  sheet.text("version", "version", s.version);
+}
+
+void extent(const Scored& scored, Sheet& sheet) {
+  const auto& maps = scored.run.maps;
+  const auto& options = scored.options;
+  sheet.section("Extent");
+  sheet.number("cell_m", "map cell", "m", maps.grid.cell, 2);
+  sheet.number("footprint_threshold_m", "footprint: peak thickness above", "m", options.footprint_threshold, 2);
+  sheet.number("deposit_threshold_m", "deposit: final thickness above", "m", options.deposit_threshold, 2);
+  sheet.number("affected_area_m2", "footprint area", "m2",
+               area_above(maps.peak_thickness, options.footprint_threshold, maps.grid.cell), 0);
+  sheet.number("deposit_area_m2", "deposit area", "m2",
+               area_above(maps.deposit_thickness, options.deposit_threshold, maps.grid.cell), 0);
+  sheet.number("max_deposit_thickness_m", "thickest deposit", "m", largest(maps.deposit_thickness), 2);
+  sheet.number("max_peak_thickness_m", "largest peak thickness", "m", largest(maps.peak_thickness), 2);
+  sheet.number("max_peak_speed_m_s", "largest peak speed", "m/s", largest(maps.peak_speed), 1);
+  sheet.number("max_peak_pressure_kpa", "largest peak pressure", "kPa", largest(maps.peak_pressure), 1);
+}
+
+}  // namespace
+
+void add_run(const Scored& scored, Sheet& sheet) {
+  volumes(scored, sheet);
+  computation(scored, sheet);
+  extent(scored, sheet);
+}
+
+}  // namespace talus::postprocess

@@ -1,0 +1,24 @@
+// Medians and quantiles.
+#pragma once
+
+#include <vector>
+
+namespace talus::postprocess {
+
+/// The value below which the share `q` (0 to 1) of the values lies, linear between the sorted values (Hyndman and Fan
+/// 1996, type 7). NaN where there is none.
+double quantile(std::vector<double> values, double q);
+
+double median(const std::vector<double>& values);
+
+/// 1.4826 median(|v - median(v)|): the standard deviation of a normal distribution, unmoved by outliers. NaN where there
+/// is no value.
+double nmad(const std::vector<double>& values);
+
+/// Mean, standard deviation (over n - 1; 0 for a single value) and quantiles of what is not NaN.
+struct Spread {
+  double mean = 0, deviation = 0, low = 0, high = 0;  ///< low, high: 5 % and 95 % quantile
+};
+Spread spread_of(std::vector<double> values);
+
+}  // namespace talus::postprocess
