@@ -74,6 +74,11 @@ void Options::describe(recipe::Visitor& v) {
   v.path("thalweg", thalweg,
          "line along which run-out is measured (any vector format), from either end; empty: found as the path of the "
          "centre of mass");
+  v.flag("nodata_zero", nodata_zero,
+         "GeoTIFFs hold 0 outside the computed domain, for tools that take nodata badly (otherwise: nodata there)");
+  v.flag("avaframe", avaframe,
+         "also write peak pressure, thickness normal to the slope and speed as AvaFrame names and reads them, in "
+         "maps/avaframe");
   v.enter("survey", "what the run is scored against: thickness, or difference, or after_dem, or polygon; all empty: no scores");
   survey.describe(v);
   v.leave();

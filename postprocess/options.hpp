@@ -44,6 +44,8 @@ struct Options {
   std::string institution;
   bool report = true;             // write report.html
   std::filesystem::path thalweg;  // line along which run-out is measured; empty = found from the run
+  bool nodata_zero = false;          // GeoTIFFs: 0 outside the domain too
+  bool avaframe = false;             // aliases for AvaFrame beside the maps
   SurveyOptions survey;
 
   void describe(recipe::Visitor& v);

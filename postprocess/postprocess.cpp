@@ -14,6 +14,7 @@
 #include "common/run/run_file.hpp"
 #include "postprocess/maps/fields.hpp"
 #include "postprocess/maps/geotiff.hpp"
+#include "postprocess/maps/gis.hpp"
 #include "postprocess/maps/netcdf.hpp"
 #include "postprocess/options.hpp"
 #include "postprocess/picture/map_picture.hpp"
@@ -100,7 +101,9 @@ void write_results(StageContext& context, const Job& job) {
     std::error_code none_there;
     fs::remove(context.out / name, none_there);
   }
-  context.results = write_geotiffs(folder, run);
+  context.results = write_geotiffs(folder, run, options.nodata_zero ? Outside::zero : Outside::nodata);
+  const auto for_gis = write_gis(folder, context.results, {run, options, survey});
+  context.results.insert(context.results.end(), for_gis.begin(), for_gis.end());
   context.results.push_back(folder / "results.nc");
   write_netcdf(context.results.back(), run, {options.institution, context.command_line});
   const auto write = [&](const char* name, const std::string& bytes) {

@@ -39,7 +39,7 @@ Colour class_colour(std::size_t index, std::size_t count, Ramp ramp) {
   const double t = place(index, count, 0.5);
   // Chroma stays inside sRGB at every lightness: a hump over the middle.
   const double lightness = 0.93 - 0.68 * t, hump = std::sin(std::numbers::pi * std::pow(t, 0.85));
-  if (ramp == Ramp::sea) return from_oklch(lightness, 0.05 + 0.06 * hump, 165 + 120 * t);
+  if (ramp == Ramp::sea) return from_oklch(0.93 - 0.60 * t, 0.045 + 0.065 * hump + 0.05 * t * t, 165 + 125 * t);
   return from_oklch(lightness, 0.065 + 0.11 * hump, 102 - 78 * t);
 }
 

@@ -111,7 +111,7 @@ void add_lines(const OGRGeometry& shape, const fs::path& file, std::vector<MapLi
 
 gdal::Transformation transformation_of(const OGRLayer& layer, const std::string& crs_wkt) {
   const OGRSpatialReference* own = const_cast<OGRLayer&>(layer).GetSpatialRef();
-  if (crs_wkt.empty() || own == nullptr || own->IsEmpty()) return nullptr;
+  if (crs_wkt.empty() || own == nullptr || own->IsEmpty() || own->IsLocal() != 0) return nullptr;
   OGRSpatialReference from(*own);
   from.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   return gdal::transformation(from, gdal::spatial_reference(crs_wkt));

@@ -2,14 +2,28 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "common/raster/raster_io.hpp"
 #include "postprocess/maps/fields.hpp"
 
 namespace talus::postprocess {
 
-std::vector<std::filesystem::path> write_geotiffs(const std::filesystem::path& folder, const Run& run) {
+namespace {
+
+std::string meaning_of_nodata(bool zero_inside, Outside outside) {
+  if (!zero_inside) return "outside the computed domain, or never reached";
+  return outside == Outside::zero ? "not used: 0 outside the computed domain too" : "outside the computed domain";
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> write_geotiffs(const std::filesystem::path& folder, const Run& run, Outside outside) {
   std::vector<std::filesystem::path> files;
-  const auto put = [&](const std::string& name, const char* long_name, const char* unit, bool zero_inside, const Raster& raster) {
+  const auto put = [&](const std::string& name, const char* long_name, const char* unit, bool zero_inside, Raster raster) {
+    if (zero_inside && outside == Outside::zero)
+      std::replace_if(raster.values.begin(), raster.values.end(), [](double v) { return std::isnan(v); }, 0.0);
     RasterTags tags{fmt::format("{} [{}]", long_name, unit), unit, {}};
     tags.metadata = {
         {"TITLE", run.summary.title},
@@ -18,8 +32,7 @@ std::vector<std::filesystem::path> write_geotiffs(const std::filesystem::path& f
         {"THICKNESS_CONVENTION", "vertical thickness, measured along the plumb line (not normal to the slope)"},
         {"FLOW_THRESHOLD_M", fmt::format("{}", run.maps.threshold)},
         {"TIME_END_S", fmt::format("{}", run.summary.time_end)},
-        {"NODATA_MEANING",
-         zero_inside ? "outside the computed domain" : "outside the computed domain, or never reached"},
+        {"NODATA_MEANING", meaning_of_nodata(zero_inside, outside)},
         {"SOURCE", "Talus " + run.summary.version}};
     files.push_back(folder / (name + ".tif"));
     write_cog(files.back(), raster, tags);

@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "common/raster/isolines.hpp"
 #include "postprocess/picture/hillshade.hpp"
-#include "postprocess/picture/isolines.hpp"
 
 namespace talus::postprocess {
 namespace {

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <map>
 
+#include "common/raster/isolines.hpp"
 #include "postprocess/picture/classes.hpp"
 #include "postprocess/picture/furniture.hpp"
 #include "postprocess/picture/hillshade.hpp"
-#include "postprocess/picture/isolines.hpp"
 #include "postprocess/picture/map_picture.hpp"
 #include "postprocess/picture/view.hpp"
 #include "tests/postprocess/scene.hpp"

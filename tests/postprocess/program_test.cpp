@@ -34,7 +34,8 @@ TEST_F(Program, writes_every_result_and_names_it) {
   run_it();
   for (const auto* name :
        {"maps/deposit_thickness.tif", "maps/peak_thickness.tif", "maps/peak_speed.tif", "maps/peak_pressure.tif",
-        "maps/arrival_time.tif", "maps/results.nc", "map.png", "history.csv", "score.json", "score.txt"}) {
+        "maps/arrival_time.tif", "maps/results.nc", "maps/deposit_thickness.qml", "maps/peak_pressure.qml", "maps/terrain.tif",
+        "maps/terrain.qml", "maps/outlines.gpkg", "maps/small.qgs", "map.png", "history.csv", "score.json", "score.txt"}) {
     EXPECT_TRUE(fs::exists(out_ / name)) << name;
     EXPECT_NE(std::find(results_.begin(), results_.end(), out_ / name), results_.end()) << name << " is not announced";
   }
@@ -52,6 +53,17 @@ TEST_F(Program, scores_against_a_thickness_raster_named_in_the_recipe) {
   run_it();
   EXPECT_EQ(score().at("deposit_csi"), 1);
   EXPECT_FALSE(score().contains("footprint_csi"));
+}
+
+TEST_F(Program, writes_zero_outside_the_domain_where_that_is_asked_for) {
+  test::write_run(out_ / "run.h5", test::small_run());
+  run_it();
+  EXPECT_TRUE(std::isnan(read_raster(out_ / "maps/deposit_thickness.tif").at(20, 1)));
+  recipe_ += "[postprocess]\nnodata_zero = true\n";
+  run_it();
+  EXPECT_EQ(read_raster(out_ / "maps/deposit_thickness.tif").at(20, 1), 0);
+  EXPECT_EQ(read_raster(out_ / "maps/peak_speed.tif").at(20, 1), 0);
+  EXPECT_TRUE(std::isnan(read_raster(out_ / "maps/arrival_time.tif").at(20, 1))) << "0 s would be an arrival";
 }
 
 TEST_F(Program, writes_nothing_when_only_checking) {

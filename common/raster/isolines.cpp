@@ -1,4 +1,4 @@
-#include "postprocess/picture/isolines.hpp"
+#include "common/raster/isolines.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <limits>
 #include <unordered_map>
 
-namespace talus::postprocess {
+namespace talus {
 namespace {
 
 /// Where lines cross the edges between neighbouring nodes, and which crossings belong together.
@@ -42,7 +42,8 @@ class Marching {
     const int column = static_cast<int>((e / 2) % (grid_.columns + 2)) - 1,
               row = static_cast<int>((e / 2) / (grid_.columns + 2)) - 1;
     const double a = value(column, row), b = value(column + 1 - axis, row + axis);
-    const double part = std::clamp((level_ - a) / (b - a), 0.0, 1.0) * grid_.cell;
+    // Never on a node itself, even where its value is the level: lines through different edges then never touch.
+    const double part = std::clamp((level_ - a) / (b - a), 1e-6, 1 - 1e-6) * grid_.cell;
     return {grid_.x(column) + (axis == 0 ? part : 0), grid_.y(row) + (axis == 1 ? part : 0)};
   }
 
@@ -110,4 +111,4 @@ std::vector<Polyline> isolines(const MapGrid& grid, const std::vector<double>& v
   return Marching(grid, values, level, at_edge).run();
 }
 
-}  // namespace talus::postprocess
+}  // namespace talus

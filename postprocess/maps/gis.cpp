@@ -1,0 +1,104 @@
+#include "postprocess/maps/gis.hpp"
+
+#include <algorithm>
+#include <map>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "common/raster/outlines.hpp"
+#include "common/raster/qgis_project.hpp"
+#include "common/raster/raster_io.hpp"
+#include "postprocess/maps/fields.hpp"
+#include "postprocess/maps/outlines.hpp"
+#include "postprocess/maps/styles.hpp"
+#include "postprocess/picture/view.hpp"
+
+namespace talus::postprocess {
+namespace fs = std::filesystem;
+namespace {
+
+// As in the picture: green for what was released, ink for what was touched, blue and dashed for what was surveyed.
+const OutlineStyle release_line{{0.0, 0.45, 0.36}, 0.7, false};
+const OutlineStyle footprint_line{{0.12, 0.12, 0.14}, 0.35, false};
+const OutlineStyle deposit_line{{0.47, 0.15, 0.0}, 0.5, false};
+const OutlineStyle class_line{{0.47, 0.15, 0.0}, 0.2, false};
+const OutlineStyle pressure_line{{0.45, 0.0, 0.45}, 0.35, false};
+const OutlineStyle survey_line{{0.0, 0.30, 0.70}, 0.7, true};
+
+fs::path write_terrain(const fs::path& folder, const Run& run) {
+  const fs::path file = folder / "terrain.tif";
+  write_cog(file, {run.maps.grid, run.maps.before},
+            {"elevation of the ground before the failure [m]",
+             "m",
+             {{"TITLE", run.summary.title},
+              {"SCENE", run.summary.scene},
+              {"QUANTITY", "elevation of the ground before the failure"},
+              {"SOURCE", "Talus " + run.summary.version}}});
+  return file;
+}
+
+ProjectLayer outline(const std::string& name, const std::string& layer, const OutlineStyle& style, bool shown = true) {
+  return {name, "outlines.gpkg|layername=" + layer, shown, style};
+}
+
+ProjectGroup outline_group(const GisInput& input) {
+  const auto& options = input.options;
+  ProjectGroup group{"Outlines", {}};
+  if (input.survey) group.layers.push_back(outline("Survey: " + input.survey->name, "survey", survey_line));
+  const double deposit = options.deposit_threshold, footprint = options.footprint_threshold;
+  group.layers.push_back(outline("Release", "release", release_line));
+  group.layers.push_back(outline(fmt::format("Deposit above {:g} m", deposit),
+                                 fmt::format("deposit|subset=threshold_m = {}", deposit), deposit_line));
+  group.layers.push_back(outline(fmt::format("Peak thickness above {:g} m", footprint), "footprint", footprint_line));
+  group.layers.push_back(outline("Deposit, every class", "deposit", class_line, false));
+  group.layers.push_back(outline("Peak pressure, every class", "pressure", pressure_line, false));
+  return group;
+}
+
+/// What the legend says of a map; maps without words of their own are named after their file.
+std::string legend_name(const std::string& map) {
+  static const std::map<std::string, std::string> words = {
+      {"deposit_thickness", "Deposit thickness, vertical [m]"}, {"peak_thickness", "Peak thickness, vertical [m]"},
+      {"peak_speed", "Peak speed [m/s]"},                       {"peak_pressure", "Peak pressure [kPa]"},
+      {"arrival_time", "Arrival time [s]"},                     {"eroded_depth", "Depth of erosion, vertical [m]"}};
+  const auto found = words.find(map);
+  if (found != words.end()) return found->second;
+  std::string name = map;
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name + " [m]";
+}
+
+QgisProject project_of(const std::vector<fs::path>& maps, const GisInput& input) {
+  const auto& [run, options, survey] = input;
+  const Window window = affected_window(run.maps, options, survey);
+  QgisProject project{run.summary.title, run.maps.grid.crs_wkt, {window.west, window.south, window.east, window.north}, {}};
+  project.groups.push_back(outline_group(input));
+  ProjectGroup results{"Maps", {}};
+  for (const auto& map : maps) {
+    const std::string name = map.stem().string();
+    const bool shown = name == "deposit_thickness";
+    results.layers.push_back(
+        {legend_name(name), map.filename().string(), shown, map_style(name, run.maps, options.classes)});
+  }
+  project.groups.push_back(std::move(results));
+  project.groups.push_back({"Ground", {{"Terrain before the failure", "terrain.tif", true, HillshadeStyle{}}}});
+  return project;
+}
+
+}  // namespace
+
+std::vector<fs::path> write_gis(const fs::path& folder, const std::vector<fs::path>& maps, const GisInput& input) {
+  const auto& run = input.run;
+  std::vector<fs::path> files;
+  for (const auto& map : maps)
+    files.push_back(write_qgis_style(map, map_style(map.stem().string(), run.maps, input.options.classes)));
+  const fs::path terrain = write_terrain(folder, run), outlines = folder / "outlines.gpkg";
+  write_outlines(outlines, run.maps.grid.crs_wkt, map_outlines(run, input.options, input.survey));
+  const fs::path project = folder / (file_word(run.summary.scene) + ".qgs");
+  write_qgis_project(project, project_of(maps, input));
+  files.insert(files.end(), {terrain, write_qgis_hillshade_style(terrain), outlines, project});
+  return files;
+}
+
+}  // namespace talus::postprocess

@@ -1,0 +1,25 @@
+// What makes the maps ready for a GIS: styles beside them, outlines, the terrain below, and a project of QGIS.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "common/run/run_file.hpp"
+#include "postprocess/options.hpp"
+#include "postprocess/score/survey.hpp"
+
+namespace talus::postprocess {
+
+struct GisInput {
+  const Run& run;
+  const Options& options;
+  const std::optional<Survey>& survey;
+};
+
+/// Beside `maps`, the GeoTIFFs in `folder`: NAME.qml for each of them, terrain.tif (ground before the failure) with its
+/// hillshade, outlines.gpkg and SCENE.qgs. Returns the files. Throws DataError.
+std::vector<std::filesystem::path> write_gis(const std::filesystem::path& folder,
+                                             const std::vector<std::filesystem::path>& maps, const GisInput& input);
+
+}  // namespace talus::postprocess
