@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "postprocess/maps/fields.hpp"
+#include "postprocess/maps/styles.hpp"
 #include "postprocess/picture/hillshade.hpp"
 #include "postprocess/report/limits.hpp"
 #include "postprocess/report/pack.hpp"
@@ -116,8 +117,8 @@ class Layers {
   }
 
   Raster map(const std::vector<double>& values) const { return values_raster(maps_, values, true); }
-  std::vector<double> thickness_limits(const std::vector<double>& values) const {
-    return class_limits(input_.options.classes, largest(values));
+  Json thickness_classes(const std::vector<double>& values, Ramp ramp = Ramp::heat) const {
+    return classes(thickness_limits(input_.options.classes, values), ramp);
   }
 
   void simulated();
@@ -134,36 +135,36 @@ class Layers {
 };
 
 void Layers::simulated() {
-  const auto limits = thickness_limits(maps_.deposit_thickness);
-  add({"deposit", "Deposit thickness", "m", classes(limits, Ramp::heat), map(maps_.deposit_thickness), Merge::mean, 2,
+  const auto deposit = thickness_classes(maps_.deposit_thickness);
+  add({"deposit", "Deposit thickness", "m", deposit, map(maps_.deposit_thickness), Merge::mean, 2,
        "Thickness at the end of the run, vertical."});
-  add({"peak_thickness", "Peak thickness", "m", classes(thickness_limits(maps_.peak_thickness), Ramp::heat),
+  add({"peak_thickness", "Peak thickness", "m", thickness_classes(maps_.peak_thickness),
        map(maps_.peak_thickness), Merge::largest, 2, "Largest thickness over time, vertical."});
   const auto threshold = fmt::format(", where the flow was thicker than {:g} m.", maps_.threshold);
-  add({"peak_speed", "Peak speed", "m/s", classes(speed_limits(largest(maps_.peak_speed)), Ramp::sea),
+  add({"peak_speed", "Peak speed", "m/s", classes(speed_limits(maps_), Ramp::sea),
        map(maps_.peak_speed), Merge::largest, 1, "Largest depth-mean speed over time" + threshold});
-  add({"peak_pressure", "Peak pressure", "kPa", classes(pressure_limits(largest(maps_.peak_pressure)), Ramp::heat),
+  add({"peak_pressure", "Peak pressure", "kPa", classes(pressure_limits(maps_), Ramp::heat),
        map(maps_.peak_pressure), Merge::largest, 1, "Largest density times speed squared over time" + threshold});
-  add({"arrival", "Arrival time", "s", time_classes(time_limits(largest(maps_.arrival_time))),
+  add({"arrival", "Arrival time", "s", time_classes(time_limits(maps_)),
        values_raster(maps_, maps_.arrival_time, false), Merge::smallest, 1,
        fmt::format("When the flow first was thicker than {:g} m.", maps_.threshold)});
-  add({"release", "Release thickness", "m", classes(thickness_limits(maps_.initial_thickness), Ramp::heat),
+  add({"release", "Release thickness", "m", thickness_classes(maps_.initial_thickness),
        map(maps_.initial_thickness), Merge::mean, 2, "Thickness at the start, vertical."});
   for (const auto& [name, values] : maps_.deposit_of)
-    add({"deposit_" + file_word(name), "Deposit from " + name, "m", classes(limits, Ramp::heat), map(values),
+    add({"deposit_" + file_word(name), "Deposit from " + name, "m", deposit, map(values),
          Merge::mean, 2, "The part of the deposit that came from this release, vertical."});
 }
 
 void Layers::erosion() {
   if (maps_.eroded_depth.empty()) return;
-  add({"eroded", "Eroded depth", "m", classes(thickness_limits(maps_.eroded_depth), Ramp::sea), map(maps_.eroded_depth),
+  add({"eroded", "Eroded depth", "m", thickness_classes(maps_.eroded_depth, Ramp::sea), map(maps_.eroded_depth),
        Merge::mean, 2, "Depth of the ground that went along, vertical."});
 }
 
 void Layers::surveyed(const Survey& survey) {
   const auto simulated = bring_to_survey_grid(maps_, survey);
   if (!survey.deposit.empty()) {
-    add({"surveyed", "Deposit, " + survey.name, "m", classes(thickness_limits(maps_.deposit_thickness), Ramp::heat),
+    add({"surveyed", "Deposit, " + survey.name, "m", thickness_classes(maps_.deposit_thickness),
          {survey.grid, survey.deposit}, Merge::mean, 2,
          survey.deposit_is_change ? "Rise of the surface between the two surveys, vertical." : "Thickness, vertical."});
     difference(survey, simulated);
@@ -219,7 +220,7 @@ Json frames_json(const ReportInput& input, const Window& window, int& coarsest) 
     thickest = std::max(thickest, largest(frame.values));
     frames.push_back(frame.values);
   }
-  json["classes"] = classes(class_limits(input.options.classes, thickest), Ramp::heat);
+  json["classes"] = classes(thickness_limits(input.options.classes, {thickest}), Ramp::heat);
   json["grid"] = grid_json(grid);
   json["data"] = packed(frames);
   return json;

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "postprocess/picture/view.hpp"
-
 namespace talus::postprocess {
 namespace {
 
@@ -18,29 +16,6 @@ double round_above(double value) {
 }
 
 }  // namespace
-
-std::vector<double> speed_limits(double fastest) {
-  if (fastest > 60) return {1, 5, 10, 25, 50, 100};
-  return {0.5, 1, 5, 10, 25, 50};
-}
-
-std::vector<double> pressure_limits(double largest) {
-  if (largest <= 100) return {1, 3, 5, 10, 25, 50};
-  std::vector<double> limits{1};
-  for (double power = 10; power < largest && limits.size() < 7; power *= 10) {
-    limits.push_back(power);
-    if (5 * power < largest) limits.push_back(5 * power);
-  }
-  return limits;
-}
-
-std::vector<double> time_limits(double latest) {
-  if (!(latest > 0)) return {};
-  const double step = round_below(latest / 5);  // five to ten classes
-  std::vector<double> limits;
-  for (int k = 1; k * step < latest && k < 10; ++k) limits.push_back(k * step);
-  return limits;
-}
 
 std::vector<double> difference_limits(const std::vector<double>& differences) {
   std::vector<double> sizes;
