@@ -32,7 +32,7 @@ Json series_json(const ReportInput& input);
 Json score_json(const Score& score);
 
 /// Release and deposit read both ways, vertical and normal to the slope, with projected and true area.
-Json volumes_json(const Run& run);
+Json volumes_json(const Run& run, double deposit_threshold);
 
 /// What each stage used: facts, keys, defaults.
 Json stages_json(const std::vector<StageText>& stages);

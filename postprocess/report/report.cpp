@@ -1,5 +1,6 @@
 #include "postprocess/report/report.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 
@@ -34,8 +35,18 @@ Json run_json(const ReportInput& input) {
   return json;
 }
 
+/// The affected window, as wide as it is high where the map goes on that far: screens are wide.
+Window shown_window(const ReportInput& input) {
+  const auto& grid = input.run.maps.grid;
+  auto window = affected_window(input.run.maps, input.options, input.survey);
+  const double width = std::min(std::max(window.width(), window.height()), grid.east() - grid.west);
+  window.west = std::clamp(0.5 * (window.west + window.east - width), grid.west, grid.east() - width);
+  window.east = window.west + width;
+  return window;
+}
+
 Json map_json(const ReportInput& input) {
-  const auto window = affected_window(input.run.maps, input.options, input.survey);
+  const auto window = shown_window(input);
   int coarsest = 1;
   Json json{{"window", {{"west", window.west}, {"south", window.south}, {"east", window.east}, {"north", window.north}}}};
   json["ground"] = ground_json(input, window, coarsest);
@@ -77,7 +88,7 @@ std::string report_html(const ReportInput& input) {
   Json data;
   data["run"] = run_json(input);
   data["score"] = score_json(input.score);
-  data["volumes"] = volumes_json(input.run);
+  data["volumes"] = volumes_json(input.run, input.options.deposit_threshold);
   data["stages"] = stages_json(input.stages);
   data["profile"] = profile_json(input);
   data["series"] = series_json(input);

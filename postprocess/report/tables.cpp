@@ -4,28 +4,29 @@
 #include "common/raster/slope.hpp"
 #include "common/recipe/used.hpp"
 #include "postprocess/report/parts.hpp"
+#include "postprocess/score/mobility.hpp"
 
 namespace talus::postprocess {
 namespace {
 
 /// A thickness map read both ways. Vertical is how Talus means it; the other column is what the same numbers would be,
 /// were they measured normal to the slope.
-Json both_ways(const std::string& name, const RunMaps& maps, const std::vector<double>& cosine,
-               const std::vector<double>& thickness) {
+Json both_ways(const std::string& name, const Raster& thickness, const std::vector<double>& cosine, double limit) {
   double vertical = 0, normal = 0, projected = 0, true_area = 0, thickest = 0, thickest_normal = 0;
-  const double cell = maps.grid.cell * maps.grid.cell;
-  for (std::size_t i = 0; i < thickness.size(); ++i) {
-    const double h = thickness[i];
+  const double cell = thickness.grid.cell * thickness.grid.cell;
+  for (std::size_t i = 0; i < thickness.values.size(); ++i) {
+    const double h = thickness.values[i];
     if (!(h > 0)) continue;
     vertical += h * cell;
     normal += h * cell / cosine[i];
-    if (h > maps.threshold) projected += cell;
-    if (h > maps.threshold) true_area += cell / cosine[i];
+    if (h > limit) projected += cell;
+    if (h > limit) true_area += cell / cosine[i];
     thickest = std::max(thickest, h);
     thickest_normal = std::max(thickest_normal, h * cosine[i]);
   }
   return {{"name", name},           {"volume", vertical},   {"volume_if_normal", normal},        {"area_projected", projected},
-          {"area_true", true_area}, {"thickest", thickest}, {"thickest_normal", thickest_normal}};
+          {"area_true", true_area}, {"thickest", thickest}, {"thickest_normal", thickest_normal},
+          {"limit", limit}};
 }
 
 Json entry_json(const ScoreEntry& entry) {
@@ -47,14 +48,15 @@ Json score_json(const Score& score) {
   return json;
 }
 
-Json volumes_json(const Run& run) {
+Json volumes_json(const Run& run, double deposit_threshold) {
   const auto cosine = slope_cosine({run.maps.grid, run.maps.terrain});
-  Json json{{"threshold", run.maps.threshold},
-            {"bodies", {both_ways("Release", run.maps, cosine, run.maps.initial_thickness),
-                        both_ways("Deposit", run.maps, cosine, run.maps.deposit_thickness)}}};
-  if (!run.maps.eroded_depth.empty())
-    json["bodies"].push_back(both_ways("Eroded ground", run.maps, cosine, run.maps.eroded_depth));
-  return json;
+  const auto& maps = run.maps;
+  auto bodies = Json::array();
+  bodies.push_back(both_ways("Release", {maps.grid, maps.initial_thickness}, cosine, release_limit(maps, deposit_threshold)));
+  bodies.push_back(both_ways("Deposit", {maps.grid, maps.deposit_thickness}, cosine, deposit_threshold));
+  if (!maps.eroded_depth.empty())
+    bodies.push_back(both_ways("Eroded ground", {maps.grid, maps.eroded_depth}, cosine, 0));
+  return bodies;
 }
 
 Json stages_json(const std::vector<StageText>& stages) {

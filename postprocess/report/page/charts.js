@@ -36,6 +36,12 @@ function decimalsOf(value) {
   return Number.isInteger(value) ? 0 : Math.min(Math.max(0, -Math.floor(Math.log10(Math.abs(value) % 1 || 1))), 3);
 }
 
+/** A sample of each line, dashes and all. */
+function legendLabels(chart) {
+  return chart.data.datasets.map((d, i) => ({ text: d.label, strokeStyle: d.borderColor, fillStyle: d.borderColor, lineDash: d.borderDash,
+    lineWidth: d.borderWidth, pointStyle: "line", hidden: !chart.isDatasetVisible(i), datasetIndex: i }));
+}
+
 /** Put a chart into `box`. `spec`: {id, title, height, x, y, lines, min, max, onHover, zero}. */
 export function lineChart(box, spec) {
   const canvas = h("canvas", { id: spec.id, role: "img", "aria-label": spec.title });
@@ -50,7 +56,7 @@ export function lineChart(box, spec) {
       interaction: { mode: "nearest", axis: "x", intersect: false },
       scales: { x: axis(spec.x, { min: spec.min, max: spec.max }), y },
       plugins: {
-        legend: { display: spec.lines.length > 1, align: "start", labels: { usePointStyle: true, pointStyle: "line", pointStyleWidth: 30 } },
+        legend: { display: spec.lines.length > 1, align: "start", labels: { usePointStyle: true, pointStyleWidth: 30, generateLabels: legendLabels } },
         tooltip: { callbacks: { title: (items) => `${spec.x}: ${number(items[0].parsed.x, 1)}`,
           label: (item) => `${item.dataset.label}: ${number(item.parsed.y, 2)}` } },
       },

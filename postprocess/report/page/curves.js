@@ -83,7 +83,8 @@ export function drawSeries(data) {
     lineChart(box, { id: "series-speed", title: "Speed", x: "Time [s]", y: "Speed [m/s]", height: 240, lines: speed });
   }
   if (motion) {
-    const { factor, prefix } = { 1: { factor: 1, prefix: "" }, 1e6: { factor: 1e6, prefix: "million " } }[Math.max(...motion.volume) >= 1e6 ? 1e6 : 1];
+    const largest = Math.max(...motion.volume), factor = largest >= 1e6 ? 1e6 : largest >= 1e4 ? 1e3 : 1;
+    const prefix = { 1: "", 1e3: "thousand ", 1e6: "million " }[factor];
     lineChart(box, { id: "series-motion", title: "Volume in motion", x: "Time [s]", y: `Volume [${prefix}m\u00b3]`, height: 240,
       lines: [curve("In motion", motion.time, motion.volume, factor, { colour: colours.blue, dots: true })] });
     notes.push(`In motion: material points faster than ${motion.faster_than} m/s, at the ${motion.time.length} frames the run wrote.`);

@@ -27,7 +27,7 @@ export function headline(data) {
 
 const cards = [
   ["volume_released_m3", "Released", volume], ["volume_entrained_m3", "Taken along", volume],
-  ["runout_m", "Run-out L"], ["thalweg_runout_m", "Run-out along the thalweg"], ["drop_m", "Drop H"], ["fahrboeschung_deg", "Angle of reach"],
+  ["runout_m", "Run-out L"], ["thalweg_runout_m", "Run-out, thalweg"], ["drop_m", "Drop H"], ["fahrboeschung_deg", "Angle of reach"],
   ["affected_area_m2", "Footprint", area], ["deposit_area_m2", "Deposit area", area], ["max_deposit_thickness_m", "Thickest deposit"],
   ["max_peak_speed_m_s", "Peak speed"], ["deposit_csi", "Deposit CSI"], ["footprint_csi", "Footprint CSI"],
   ["thickness_rmse_m", "Thickness RMSE"], ["runout_difference_m", "Run-out, sim. \u2212 survey"],

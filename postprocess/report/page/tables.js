@@ -56,9 +56,15 @@ export function drawScores(data) {
   box.append(h("h3", {}, "Definitions"), h("ul", { class: "plain-list note" }, score.notes.map((note) => h("li", {}, note))));
 }
 
+/** From which thickness on an area counts, for each body. */
+function areaWords(bodies) {
+  const parts = bodies.filter((b) => b.volume > 0).map((b) => `${b.name.toLowerCase()} ${number(b.limit, 2)} m`);
+  return `Areas count cells thicker than: ${parts.join(", ")}. The slope is that of the bed.`;
+}
+
 /** The volume both ways, from the maps; the names of the columns say which is which. */
 export function drawVolumes(data) {
-  const box = document.getElementById("volumes"), { bodies, threshold } = data.volumes;
+  const box = document.getElementById("volumes"), bodies = data.volumes;
   const cell = (words) => h("td", { class: "number" }, words);
   const rows = bodies.filter((b) => b.volume > 0).map((b) => h("tr", {}, h("td", {}, b.name), cell(volume(b.volume)), cell(volume(b.volume_if_normal)),
     cell(`${number(100 * (b.volume_if_normal / b.volume - 1), 1)}\u2009%`), cell(area(b.area_projected)), cell(area(b.area_true)),
@@ -67,7 +73,7 @@ export function drawVolumes(data) {
   box.append(table([h("th", {}, "Body"), ...heads.map((words) => h("th", { class: "number" }, words))], rows));
   box.append(h("p", { class: "note prose" }, "Every thickness in this report is vertical, as the difference of two elevation models is. Models that average over " +
     "depth often give it normal to the slope; there it is thinner by the cosine of the slope for the same body. The third column is the volume that would " +
-    `result if these vertical numbers were handed to such a model as they are. Areas count cells thicker than ${threshold} m; slope from the bed.`));
+    `result if these vertical numbers were handed to such a model as they are. ${areaWords(bodies)}`));
 }
 
 /** "path  sha256 abc" taken apart. */
