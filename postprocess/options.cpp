@@ -71,6 +71,8 @@ void Options::describe(recipe::Visitor& v) {
       "deposit is thinner than 12 m");
   v.text("institution", institution, "who made this, for the NetCDF file");
   v.flag("report", report, "write report.html: maps, profiles, scores and settings on one page to send on");
+  recipe::choice(v, "animation", animation, {{"none", Animation::none}, {"mp4", Animation::mp4}, {"gif", Animation::gif}},
+                 "a film of the flow on the map; needs the program ffmpeg and a run with frames");
   v.path("thalweg", thalweg,
          "line along which run-out is measured (any vector format), from either end; empty: found as the path of the "
          "centre of mass");

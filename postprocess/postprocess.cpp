@@ -17,6 +17,7 @@
 #include "postprocess/maps/gis.hpp"
 #include "postprocess/maps/netcdf.hpp"
 #include "postprocess/options.hpp"
+#include "postprocess/picture/animation.hpp"
 #include "postprocess/picture/map_picture.hpp"
 #include "postprocess/report/report.hpp"
 #include "postprocess/score/score.hpp"
@@ -97,7 +98,7 @@ void write_results(StageContext& context, const Job& job) {
   const auto folder = context.out / "maps";
   make_folder(folder);
   for (const auto* name :
-       {"score.json", "score.txt", "report.html"}) {  // so that new maps never lie beside the scores of an older run
+       {"score.json", "score.txt", "report.html", "animation.mp4", "animation.gif"}) {  // so that new maps never lie beside the scores of an older run
     std::error_code none_there;
     fs::remove(context.out / name, none_there);
   }
@@ -111,6 +112,8 @@ void write_results(StageContext& context, const Job& job) {
     write_text(context.results.back(), bytes);
   };
   write("map.png", map_picture({run, options, survey, score}));
+  if (options.animation != Animation::none)
+    context.results.push_back(write_animation(context.out, {run, options, survey, score}, options.animation));
   write("history.csv", history_table(run.history));
   const auto used = used_text(context, job);
   write("postprocess.used.toml", used);
@@ -137,6 +140,7 @@ void run(StageContext& context) {
   log_info(fmt::format("{}: {} x {} cells of {:g} m, {} frames; {}", job.file.string(), job.run.maps.grid.columns,
                        job.run.maps.grid.rows, job.run.maps.grid.cell, job.run.frames.time.size(),
                        job.survey ? "scored against " + job.survey->name : std::string("no survey to score against")));
+  check_animation(job.options.animation, job.run);
   if (!context.check_only) write_results(context, job);
 }
 
