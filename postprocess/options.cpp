@@ -1,10 +1,27 @@
 #include "postprocess/options.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <functional>
+#include <regex>
 #include <utility>
 
 namespace talus::postprocess {
+namespace {
+
+/// "1903-04-29 04:10:00", after the calendar reform of 1582, before which calendars differ.
+bool is_date(const std::string& text) {
+  static const std::regex form(R"((\d{4})-(\d\d)-(\d\d) (\d\d):(\d\d):(\d\d))");
+  std::smatch part;
+  if (!std::regex_match(text, part, form)) return false;
+  const auto number = [&](int i) { return std::stoi(part[static_cast<std::size_t>(i)]); };
+  const auto unsigned_number = [&](int i) { return static_cast<unsigned>(number(i)); };
+  const std::chrono::year_month_day day{std::chrono::year{number(1)}, std::chrono::month{unsigned_number(2)},
+                                        std::chrono::day{unsigned_number(3)}};
+  return day.ok() && number(1) > 1582 && number(4) < 24 && number(5) < 60 && number(6) < 60;
+}
+
+}  // namespace
 
 void SurveyOptions::describe(recipe::Visitor& v) {
   v.text("name", name, "how map and table call it: a survey, or another model's name");
@@ -76,11 +93,15 @@ void Options::describe(recipe::Visitor& v) {
   v.path("thalweg", thalweg,
          "line along which run-out is measured (any vector format), from either end; empty: found as the path of the "
          "centre of mass");
+  v.text("start_time", start_time,
+         "when the failure began, UTC, as 1903-04-29 04:10:00, for the time axis of the NetCDF file; empty: not known");
   v.flag("nodata_zero", nodata_zero,
          "GeoTIFFs hold 0 outside the computed domain, for tools that take nodata badly (otherwise: nodata there)");
   v.flag("avaframe", avaframe,
          "also write peak pressure, thickness normal to the slope and speed as AvaFrame names and reads them, in "
          "maps/avaframe");
+  recipe::choice(v, "avaframe_format", avaframe_format, {{"tif", AvaFrameFormat::tif}, {"asc", AvaFrameFormat::asc}},
+                 "format of these; every version of AvaFrame, and ISeeSnow, reads asc");
   v.enter("survey", "what the run is scored against: thickness, or difference, or after_dem, or polygon; all empty: no scores");
   survey.describe(v);
   v.leave();
@@ -90,6 +111,10 @@ void Options::check(std::vector<Fault>& faults) const {
   if (std::adjacent_find(classes.begin(), classes.end(), std::greater_equal<>()) != classes.end()) {
     faults.push_back({"[postprocess] classes_m does not rise", "classes are given by their lower limits",
                       "Sort the limits, each once"});
+  }
+  if (!start_time.empty() && !is_date(start_time)) {
+    faults.push_back({"[postprocess] start_time = \"" + start_time + "\"", "this is no date and time",
+                      "Write it as 1903-04-29 04:10:00"});
   }
   if (classes.size() > 9) {
     faults.push_back({"[postprocess] classes_m has " + std::to_string(classes.size()) + " classes",

@@ -12,6 +12,9 @@ namespace talus::postprocess {
 /// Which way the survey's rasters measure thickness.
 enum class Direction { vertical, slope_normal };
 
+/// How AvaFrame's rasters are written: every version of it reads .asc, newer ones .tif as well.
+enum class AvaFrameFormat { tif, asc };
+
 /// What the simulation is scored against. Nothing given: no score against a survey.
 struct SurveyOptions {
   std::string name = "survey";           // how the map and the table call it
@@ -48,8 +51,10 @@ struct Options {
   Animation animation = Animation::none;
   bool report = true;             // write report.html
   std::filesystem::path thalweg;  // line along which run-out is measured; empty = found from the run
+  std::string start_time;            // when the failure began, UTC; empty = not known
   bool nodata_zero = false;          // GeoTIFFs: 0 outside the domain too
   bool avaframe = false;             // aliases for AvaFrame beside the maps
+  AvaFrameFormat avaframe_format = AvaFrameFormat::tif;
   SurveyOptions survey;
 
   void describe(recipe::Visitor& v);

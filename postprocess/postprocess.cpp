@@ -12,6 +12,7 @@
 
 #include "common/raster/raster_io.hpp"
 #include "common/run/run_file.hpp"
+#include "postprocess/maps/avaframe.hpp"
 #include "postprocess/maps/fields.hpp"
 #include "postprocess/maps/geotiff.hpp"
 #include "postprocess/maps/gis.hpp"
@@ -47,6 +48,10 @@ void check_volume(const fs::path& file, const Run& run) {
     throw DataError({what, fmt::format("they differ by {:.1e} of the release", error), "Run talus-solve again"});
   if (error > 1e-9)
     log_warning(fmt::format("{} ({:.1e} of the release; 1e-9 is expected in double precision)", what, error));
+}
+
+fs::path run_file(const StageContext& context, const Options& options) {
+  return options.run.empty() ? context.out / "run.h5" : options.run;
 }
 
 void make_folder(const fs::path& folder) {
@@ -105,8 +110,14 @@ void write_results(StageContext& context, const Job& job) {
   context.results = write_geotiffs(folder, run, options.nodata_zero ? Outside::zero : Outside::nodata);
   const auto for_gis = write_gis(folder, context.results, {run, options, survey});
   context.results.insert(context.results.end(), for_gis.begin(), for_gis.end());
+  if (options.avaframe) {
+    make_folder(folder / "avaframe");
+    const auto aliases = write_avaframe(folder / "avaframe", run, settings_text(run, file),
+                                        options.avaframe_format);
+    context.results.insert(context.results.end(), aliases.begin(), aliases.end());
+  }
   context.results.push_back(folder / "results.nc");
-  write_netcdf(context.results.back(), run, {options.institution, context.command_line});
+  write_netcdf(context.results.back(), run, {options.institution, context.command_line, options.start_time});
   const auto write = [&](const char* name, const std::string& bytes) {
     context.results.push_back(context.out / name);
     write_text(context.results.back(), bytes);
@@ -132,7 +143,7 @@ void write_results(StageContext& context, const Job& job) {
 void run(StageContext& context) {
   Job job;
   job.options = context.recipe.read<Options>("postprocess");
-  job.file = job.options.run.empty() ? context.out / "run.h5" : job.options.run;
+  job.file = run_file(context, job.options);
   job.run = read_run(job.file);
   check_volume(job.file, job.run);
   job.survey = read_survey(job.options.survey, job.run.maps, job.options.footprint_threshold);
@@ -150,7 +161,7 @@ Stage stage() {
   stage.table = "postprocess";
   stage.summary = "Write maps, NetCDF, picture and scores of a run (run.h5 of talus-solve)";
   stage.examples =
-      "  talus-postprocess scene.toml --out out/scene    maps/*.tif, maps/results.nc, map.png, report.html, history.csv, score.json, score.txt\n"
+      "  talus-postprocess scene.toml --out out/scene    maps/ (with a QGIS project), map.png, report.html, history.csv, score.json, score.txt\n"
       "  talus-postprocess scene.toml --out out/scene --check    read run and survey, write nothing\n"
       "  talus-postprocess --template >> scene.toml    all keys with their defaults\n";
   stage.template_toml = [] { return recipe::to_toml(Options{}, "postprocess", true); };

@@ -73,7 +73,8 @@ Polyline open_ring(Polyline ring, double twice, bool counter_clockwise) {
 }  // namespace
 
 std::vector<MapPolygon> outline_above(const Raster& raster, double threshold) {
-  if (!(threshold >= 0)) throw std::invalid_argument("outline_above: everything outside lies above a negative threshold");
+  if (!(threshold >= 0))
+    throw std::invalid_argument("outline_above: everything outside lies above a negative threshold");
   auto rings = isolines(raster.grid, raster.values, threshold, AtEdge::close);
   auto groups = polygons_of(raster.grid, rings);
   std::map<std::size_t, std::vector<std::size_t>> members;

@@ -104,7 +104,8 @@ void write_outlines(const fs::path& gpkg, const std::string& crs_wkt, const std:
   const MemoryFile file;
   auto* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
   if (driver == nullptr)
-    throw DataError({gpkg.string() + ": cannot be written", "this GDAL has no GPKG driver", "Install GDAL with SQLite"});
+    throw DataError(
+        {gpkg.string() + ": cannot be written", "this GDAL has no GPKG driver", "Install GDAL with SQLite"});
   gdal::Dataset dataset(driver->Create(file.path(), 0, 0, 0, GDT_Unknown, nullptr));
   bool good = dataset != nullptr;
   for (const auto& layer : layers) good = good && add_layer(*dataset, srs, layer);

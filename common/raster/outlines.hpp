@@ -11,8 +11,9 @@
 
 namespace talus {
 
-/// Area above `threshold` (not negative) as polygons with holes, interpolated between cell centres; nodata and what lies
-/// beyond the raster count as 0. The polygons are valid and disjoint: outer ring counter-clockwise, holes clockwise.
+/// Area above `threshold` (not negative) as polygons with holes, interpolated between cell centres; nodata and what
+/// lies beyond the raster count as 0. The polygons are valid and disjoint: outer ring counter-clockwise, holes
+/// clockwise.
 std::vector<MapPolygon> outline_above(const Raster& raster, double threshold);
 
 /// Several polygons that are one thing, written as one multipolygon.

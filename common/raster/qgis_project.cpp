@@ -34,15 +34,16 @@ bool is_raster(const ProjectLayer& layer) { return !std::holds_alternative<Outli
 const char* provider(const ProjectLayer& layer) { return is_raster(layer) ? "gdal" : "ogr"; }
 const char* checked(bool shown) { return shown ? "Qt::Checked" : "Qt::Unchecked"; }
 
-/// The same in every run, so that a project compares equal to one made before. QGIS takes no id of ten letters or fewer.
+/// The same in every run, so that a project compares equal to one made before. QGIS takes no id of ten letters or
+/// fewer.
 std::string id_of(std::size_t group, std::size_t layer) { return fmt::format("talus_layer_{:02}_{:02}", group, layer); }
 
 void add_tree(XmlElement root, const QgisProject& project) {
   XmlElement tree = root.add("layer-tree-group");
   for (std::size_t g = 0; g < project.groups.size(); ++g) {
     const auto& layers = project.groups[g].layers;
-    XmlElement group = tree.add(
-        "layer-tree-group", {{"name", project.groups[g].name}, {"checked", checked(true)}, {"expanded", "1"}});
+    XmlElement group =
+        tree.add("layer-tree-group", {{"name", project.groups[g].name}, {"checked", checked(true)}, {"expanded", "1"}});
     for (std::size_t i = 0; i < layers.size(); ++i) {
       group.add("layer-tree-layer", {{"id", id_of(g, i)},
                                      {"name", layers[i].name},
@@ -86,9 +87,9 @@ void add_canvas(XmlElement root, const QgisProject& project) {
   const ProjectView& view = project.view;
   XmlElement settings = root.add("ProjectViewSettings", {{"UseProjectScales", "0"}, {"rotation", "0"}});
   add_crs(settings.add("DefaultViewExtent", {{"xmin", fmt::format("{}", view.west)},
-                                         {"ymin", fmt::format("{}", view.south)},
-                                         {"xmax", fmt::format("{}", view.east)},
-                                         {"ymax", fmt::format("{}", view.north)}}),
+                                             {"ymin", fmt::format("{}", view.south)},
+                                             {"xmax", fmt::format("{}", view.east)},
+                                             {"ymax", fmt::format("{}", view.north)}}),
           project.crs_wkt);
 }
 

@@ -11,20 +11,24 @@ namespace {
 /// QGIS reads numbers as C does, and knows "inf".
 std::string number(double value) { return std::isinf(value) ? (value < 0 ? "-inf" : "inf") : fmt::format("{}", value); }
 
-/// Everything finite stands in the list of hidden values: QGIS compares, and a bound without end is not promised to work.
-double finite(double value) { return std::isinf(value) ? std::copysign(std::numeric_limits<float>::max(), value) : value; }
+/// Everything finite stands in the list of hidden values: QGIS compares, and a bound without end is not promised to
+/// work.
+double finite(double value) {
+  return std::isinf(value) ? std::copysign(std::numeric_limits<float>::max(), value) : value;
+}
 
-/// Classes are drawn cell by cell: what is shown are the values that are there. A hillshade needs the surface between the
-/// cells before it is shaded, or every cell becomes a step.
+/// Classes are drawn cell by cell: what is shown are the values that are there. A hillshade needs the surface between
+/// the cells before it is shaded, or every cell becomes a step.
 enum class Between { nothing, surface };
 
 XmlElement add_pipe(XmlElement layer, Between cells) {
   XmlElement pipe = layer.add("pipe");
   const bool smooth = cells == Between::surface;
-  pipe.add("provider").add("resampling", {{"enabled", smooth ? "true" : "false"},
-                                          {"zoomedInResamplingMethod", smooth ? "cubic" : "nearestNeighbour"},
-                                          {"zoomedOutResamplingMethod", smooth ? "bilinear" : "nearestNeighbour"},
-                                          {"maxOversampling", "2"}});
+  pipe.add("provider")
+      .add("resampling", {{"enabled", smooth ? "true" : "false"},
+                          {"zoomedInResamplingMethod", smooth ? "cubic" : "nearestNeighbour"},
+                          {"zoomedOutResamplingMethod", smooth ? "bilinear" : "nearestNeighbour"},
+                          {"maxOversampling", "2"}});
   return pipe;
 }
 
@@ -67,7 +71,8 @@ void add_class_renderer(XmlElement layer, const RasterStyle& style) {
                                                    {"minimumValue", low},
                                                    {"maximumValue", high}});
   for (const auto& one : classes)
-    shader.add("item", {{"value", number(one.upper)}, {"color", hex(one.colour)}, {"alpha", "255"}, {"label", one.label}});
+    shader.add("item",
+               {{"value", number(one.upper)}, {"color", hex(one.colour)}, {"alpha", "255"}, {"label", one.label}});
   add_rest_of_pipe(layer, pipe, Between::nothing);
 }
 

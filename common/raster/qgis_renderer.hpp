@@ -1,4 +1,4 @@
-// What styles and projects of QGIS say of how a raster is drawn. For the sources of this folder alone.
+// What styles and projects of QGIS say of how a layer is drawn.
 #pragma once
 
 #include "common/raster/qgis_style.hpp"

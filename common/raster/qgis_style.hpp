@@ -43,8 +43,8 @@ RasterStyle time_style(const std::vector<double>& limits, const std::string& uni
 /// smaller than the first of them is not drawn.
 RasterStyle difference_style(const std::vector<double>& limits, const std::string& unit);
 
-/// Write the style of `raster_file` (band 1) beside it, as NAME.qml for QGIS 3. Returns its path. Throws DataError (disk
-/// full).
+/// Write the style of `raster_file` (band 1) beside it, as NAME.qml for QGIS 3. Returns its path. Throws DataError
+/// (disk full).
 std::filesystem::path write_qgis_style(const std::filesystem::path& raster_file, const RasterStyle& style);
 
 /// The same for a terrain: a grey hillshade lit from four sides.

@@ -1,34 +1,25 @@
-// An XML document being made, on GDAL's tree. For the sources of this folder alone.
+// An XML document being made. GDAL's tree stands behind it.
 #pragma once
-
-#include <cpl_conv.h>
-#include <cpl_minixml.h>
 
 #include <initializer_list>
 #include <memory>
 #include <string>
 #include <utility>
 
+struct CPLXMLNode;
+
 namespace talus {
 
 /// One element; the document owns them all.
 class XmlElement {
  public:
-  explicit XmlElement(CPLXMLNode* node) : node_(node) {}
-
   using Attributes = std::initializer_list<std::pair<const char*, std::string>>;
 
+  explicit XmlElement(CPLXMLNode* node) : node_(node) {}
   /// A new element inside this one, behind those it has.
-  XmlElement add(const char* name, Attributes attributes = {}) {
-    XmlElement child(CPLCreateXMLNode(node_, CXT_Element, name));
-    for (const auto& [key, value] : attributes) child.set(key, value);
-    return child;
-  }
-  XmlElement add_text(const char* name, const std::string& text) {
-    return XmlElement(CPLCreateXMLElementAndValue(node_, name, text.c_str()));
-  }
-  void set(const char* key, const std::string& value) { CPLAddXMLAttributeAndValue(node_, key, value.c_str()); }
-  CPLXMLNode* node() const { return node_; }
+  XmlElement add(const char* name, Attributes attributes = {});
+  XmlElement add_text(const char* name, const std::string& text);
+  void set(const char* key, const std::string& value);
 
  private:
   CPLXMLNode* node_;
@@ -36,19 +27,14 @@ class XmlElement {
 
 class XmlDocument {
  public:
-  XmlDocument(const char* root, XmlElement::Attributes attributes) : tree_(CPLCreateXMLNode(nullptr, CXT_Element, root)) {
-    for (const auto& [key, value] : attributes) this->root().set(key, value);
-  }
+  XmlDocument(const char* root, XmlElement::Attributes attributes);
   XmlElement root() const { return XmlElement(tree_.get()); }
   /// The document, with `doctype` above it.
-  std::string text(const std::string& doctype) const {
-    const std::unique_ptr<char, void (*)(void*)> text(CPLSerializeXMLTree(tree_.get()), CPLFree);
-    return doctype + "\n" + text.get();
-  }
+  std::string text(const std::string& doctype) const;
 
  private:
   struct Destroy {
-    void operator()(CPLXMLNode* node) const { CPLDestroyXMLNode(node); }
+    void operator()(CPLXMLNode* node) const;
   };
   std::unique_ptr<CPLXMLNode, Destroy> tree_;
 };

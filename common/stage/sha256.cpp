@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <fstream>
 #include <span>
+#include <sstream>
 #include <system_error>
 
 #include "common/stage/stage.hpp"
@@ -76,11 +77,8 @@ std::string hexadecimal(const State& state) {
   return text;
 }
 
-}  // namespace
-
-std::string sha256(const std::filesystem::path& path) {
-  errno = 0;
-  std::ifstream stream(path, std::ios::binary);
+/// The digest of a stream read to its end.
+std::string digest(std::istream& stream) {
   State state = initial_state;
   Block block{};
   std::uint64_t length = 0;
@@ -88,12 +86,26 @@ std::string sha256(const std::filesystem::path& path) {
     absorb(state, block);
     length += block.size();
   }
-  if (stream.bad() || !stream.eof())
-    throw DataError({path.string() + ": cannot be read", std::generic_category().message(errno),
-                     "Check the path and its permissions"});
   const auto rest = static_cast<std::size_t>(stream.gcount());
   absorb_end(state, std::span(block).first(rest), length + rest);
   return hexadecimal(state);
+}
+
+}  // namespace
+
+std::string sha256(const std::filesystem::path& path) {
+  errno = 0;
+  std::ifstream stream(path, std::ios::binary);
+  std::string text = digest(stream);
+  if (stream.bad() || !stream.eof())
+    throw DataError({path.string() + ": cannot be read", std::generic_category().message(errno),
+                     "Check the path and its permissions"});
+  return text;
+}
+
+std::string sha256_of_text(const std::string& text) {
+  std::istringstream stream(text);
+  return digest(stream);
 }
 
 }  // namespace talus

@@ -74,6 +74,7 @@ void write_text(const std::filesystem::path& path, const std::string& text);
 
 /// SHA-256 of a file, in hex. Throws DataError.
 std::string sha256(const std::filesystem::path& path);
+std::string sha256_of_text(const std::string& text);
 
 /// The text of `<stage>.used.toml`: the options with defaults filled in (recipe::to_used_toml marks those that were
 /// changed), and above them as comments version, command, inputs with their checksums, CRS, hardware, wall time (pairs

@@ -54,7 +54,7 @@ const Names common_names = {{"latitude of natural origin", "latitude_of_projecti
 
 struct Method {
   const char* cf;
-  Names own;  // where CF calls a parameter otherwise for this projection
+  Names own;  // where CF calls a parameter otherwise for this projection; "" where it has none
 };
 
 const std::map<std::string, Method> methods = {
@@ -72,6 +72,25 @@ const std::map<std::string, Method> methods = {
      {"stereographic",
       {{"longitude of natural origin", "longitude_of_projection_origin"},
        {"scale factor at natural origin", "scale_factor_at_projection_origin"}}}},
+    {"polar stereographic (variant b)",
+     {"polar_stereographic",
+      {{"latitude of standard parallel", "standard_parallel"},
+       {"longitude of origin", "straight_vertical_longitude_from_pole"}}}},
+    {"mercator (variant a)",
+     {"mercator",
+      {{"longitude of natural origin", "longitude_of_projection_origin"},
+       {"latitude of natural origin", ""},
+       {"scale factor at natural origin", "scale_factor_at_projection_origin"}}}},
+    {"hotine oblique mercator (variant b)",
+     {"oblique_mercator",
+      {{"latitude of projection centre", "latitude_of_projection_origin"},
+       {"longitude of projection centre", "longitude_of_projection_origin"},
+       {"azimuth at projection centre", "azimuth_of_central_line"},
+       {"azimuth of initial line", "azimuth_of_central_line"},
+       {"scale factor at projection centre", "scale_factor_at_projection_origin"},
+       {"scale factor on initial line", "scale_factor_at_projection_origin"},
+       {"easting at projection centre", "false_easting"},
+       {"northing at projection centre", "false_northing"}}}},
 };
 
 void add(CfProjection& projection, const std::string& name, double value) {
@@ -98,6 +117,57 @@ void add_figure_of_the_earth(CfProjection& projection, const std::string& wkt) {
   add(projection, "longitude_of_prime_meridian", meridian.empty() ? 0.0 : meridian[0]);
 }
 
+/// A polar projection given by its standard parallel lies at the pole of that side.
+void add_pole(CfProjection& projection) {
+  if (projection.grid_mapping_name != "polar_stereographic") return;
+  for (const auto& [name, values] : std::vector(projection.numbers)) {
+    if (name == "standard_parallel") add(projection, "latitude_of_projection_origin", values[0] < 0 ? -90 : 90);
+  }
+}
+
+/// CF's oblique Mercator has no angle of its own between its axes and its central line.
+bool lies_along_its_line(const std::string& wkt) {
+  std::size_t place = 0;
+  double azimuth = 0, angle = 0;
+  while (const auto parameter = next_name(wkt, "PARAMETER", place)) {
+    const auto values = numbers_at(wkt, place);
+    if (values.empty()) continue;
+    if (lower(*parameter).starts_with("azimuth")) azimuth = values[0];
+    if (lower(*parameter).starts_with("angle from rectified")) angle = values[0];
+  }
+  return azimuth == angle;
+}
+
+/// CF's spelling of a datum: everything but letters and digits is one underscore.
+std::string datum_word(const std::string& name) {
+  std::string word;
+  for (const char c : name) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0)
+      word += c;
+    else if (!word.empty() && word.back() != '_')
+      word += '_';
+  }
+  while (!word.empty() && word.back() == '_') word.pop_back();
+  return word;
+}
+
+void add_names(CfProjection& projection, const std::string& wkt) {
+  const auto named = [&](const char* keyword) {
+    std::size_t place = 0;
+    return next_name(wkt, keyword, place);
+  };
+  const auto projected = named("PROJCRS"), geographic = named("BASEGEOGCRS"), ellipsoid = named("ELLIPSOID");
+  auto datum = named("DATUM");
+  if (!datum) datum = named("ENSEMBLE");
+  if (!projected || !geographic || !ellipsoid || !datum) return;
+  if (datum->ends_with(" ensemble")) datum->resize(datum->size() - 9);
+  projection.words = {{"projected_crs_name", *projected},
+                      {"geographic_crs_name", *geographic},
+                      {"horizontal_datum_name", datum_word(*datum)},
+                      {"reference_ellipsoid_name", *ellipsoid},
+                      {"prime_meridian_name", named("PRIMEM").value_or("Greenwich")}};
+}
+
 }  // namespace
 
 CfProjection cf_projection(const std::string& wkt2) {
@@ -114,12 +184,16 @@ CfProjection cf_projection(const std::string& wkt2) {
     const auto own = method->second.own.find(key);
     const auto shared = common_names.find(key);
     if (values.empty()) continue;
-    if (own != method->second.own.end())
-      add(projection, own->second, values[0]);
-    else if (shared != common_names.end())
+    if (own != method->second.own.end()) {
+      if (!own->second.empty()) add(projection, own->second, values[0]);
+    } else if (shared != common_names.end()) {
       add(projection, shared->second, values[0]);
+    }
   }
+  if (projection.grid_mapping_name == "oblique_mercator" && !lies_along_its_line(wkt2)) return {};
+  add_pole(projection);
   add_figure_of_the_earth(projection, wkt2);
+  add_names(projection, wkt2);
   return projection;
 }
 

@@ -12,6 +12,8 @@ struct CfProjection {
   std::string grid_mapping_name;  ///< empty: a projection CF has no name for
   std::vector<std::pair<std::string, std::vector<double>>>
       numbers;  ///< parameters, angles in degrees, lengths in metres
+  /// Names of the CRS, its geographic CRS, datum, ellipsoid and prime meridian: all of them or none, as CF asks.
+  std::vector<std::pair<std::string, std::string>> words;
 };
 
 /// Read METHOD, PARAMETER, ELLIPSOID and PRIMEM of a WKT2 text. Projections not in CF's appendix give an empty name:

@@ -7,8 +7,8 @@ namespace talus::postprocess {
 
 const std::vector<Field>& product_fields() {
   static const std::vector<Field> fields = {
-      {"deposit_thickness", &RunMaps::deposit_thickness, "m", "deposit thickness at the end, vertical", "", true},
-      {"peak_thickness", &RunMaps::peak_thickness, "m", "peak thickness, vertical", "time: maximum", true},
+      {"deposit_thickness", &RunMaps::deposit_thickness, "m", "deposit thickness at the end, vertical", "area: mean", true},
+      {"peak_thickness", &RunMaps::peak_thickness, "m", "peak thickness, vertical", "area: mean time: maximum", true},
       {"peak_speed", &RunMaps::peak_speed, "m s-1", "peak of the depth-mean speed", "time: maximum", true},
       {"peak_pressure", &RunMaps::peak_pressure, "kPa", "peak flow pressure, density times speed squared",
        "time: maximum", true},

@@ -58,10 +58,12 @@ ProjectGroup outline_group(const GisInput& input) {
 
 /// What the legend says of a map; maps without words of their own are named after their file.
 std::string legend_name(const std::string& map) {
-  static const std::map<std::string, std::string> words = {
-      {"deposit_thickness", "Deposit thickness, vertical [m]"}, {"peak_thickness", "Peak thickness, vertical [m]"},
-      {"peak_speed", "Peak speed [m/s]"},                       {"peak_pressure", "Peak pressure [kPa]"},
-      {"arrival_time", "Arrival time [s]"},                     {"eroded_depth", "Depth of erosion, vertical [m]"}};
+  static const std::map<std::string, std::string> words = {{"deposit_thickness", "Deposit thickness, vertical [m]"},
+                                                           {"peak_thickness", "Peak thickness, vertical [m]"},
+                                                           {"peak_speed", "Peak speed [m/s]"},
+                                                           {"peak_pressure", "Peak pressure [kPa]"},
+                                                           {"arrival_time", "Arrival time [s]"},
+                                                           {"eroded_depth", "Depth of erosion, vertical [m]"}};
   const auto found = words.find(map);
   if (found != words.end()) return found->second;
   std::string name = map;
@@ -72,7 +74,8 @@ std::string legend_name(const std::string& map) {
 QgisProject project_of(const std::vector<fs::path>& maps, const GisInput& input) {
   const auto& [run, options, survey] = input;
   const Window window = affected_window(run.maps, options, survey);
-  QgisProject project{run.summary.title, run.maps.grid.crs_wkt, {window.west, window.south, window.east, window.north}, {}};
+  QgisProject project{
+      run.summary.title, run.maps.grid.crs_wkt, {window.west, window.south, window.east, window.north}, {}};
   project.groups.push_back(outline_group(input));
   ProjectGroup results{"Maps", {}};
   for (const auto& map : maps) {

@@ -1,119 +1,53 @@
 #include "postprocess/maps/netcdf.hpp"
 
-#include <netcdf.h>
-#include <netcdf_mem.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <ctime>
-#include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include "common/stage/stage.hpp"
-#include "common/stage/write_fault.hpp"
 #include "postprocess/maps/cf_projection.hpp"
 #include "postprocess/maps/fields.hpp"
+#include "postprocess/maps/nc_file.hpp"
 
 namespace talus::postprocess {
 namespace {
 
-constexpr double fill = -9999;
-
-/// A NetCDF file made in memory; every call is checked. In memory, because a full disk leaves the library unable to
-/// close its file, and crashing: the bytes are written by write_text(), which knows what to say.
-class Nc {
- public:
-  explicit Nc(std::filesystem::path shown) : shown_(std::move(shown)) {
-    check(nc_create_mem(shown_.filename().c_str(), NC_NETCDF4, 0, &id_), "it cannot be created");
-  }
-  Nc(const Nc&) = delete;
-  Nc& operator=(const Nc&) = delete;
-  ~Nc() {
-    if (id_ >= 0) nc_abort(id_);
-  }
-  std::string close() {
-    NC_memio image{};
-    check(nc_close_memio(std::exchange(id_, -1), &image), "closing it");
-    const std::unique_ptr<void, decltype(&std::free)> owner(image.memory, &std::free);
-    return {static_cast<const char*>(image.memory), image.size};
-  }
-
-  int dimension(const char* name, std::size_t size) {
-    int dimension = 0;
-    check(nc_def_dim(id_, name, size, &dimension), name);
-    return dimension;
-  }
-  int variable(const char* name, nc_type type, const std::vector<int>& dimensions) {
-    int variable = 0;
-    check(nc_def_var(id_, name, type, static_cast<int>(dimensions.size()), dimensions.data(), &variable), name);
-    return variable;
-  }
-  /// A map (or maps over time): chunked by map, compressed, with fill value.
-  int field(const char* name, const std::vector<int>& dimensions, std::size_t rows, std::size_t columns) {
-    const int id = variable(name, NC_DOUBLE, dimensions);
-    std::vector<std::size_t> chunk(dimensions.size(), 1);
-    chunk[dimensions.size() - 2] = std::min<std::size_t>(rows, 512);
-    chunk[dimensions.size() - 1] = std::min<std::size_t>(columns, 512);
-    check(nc_def_var_chunking(id_, id, NC_CHUNKED, chunk.data()), name);
-    check(nc_def_var_deflate(id_, id, 1, 1, 4), name);
-    check(nc_def_var_fill(id_, id, NC_FILL, &fill), name);
-    return id;
-  }
-  void text(int variable, const char* name, const std::string& value) {
-    check(nc_put_att_text(id_, variable, name, value.size(), value.data()), name);
-  }
-  void numbers(int variable, const char* name, const std::vector<double>& values) {
-    check(nc_put_att_double(id_, variable, name, NC_DOUBLE, values.size(), values.data()), name);
-  }
-  void put(int variable, const std::vector<double>& values) {
-    check(nc_put_var_double(id_, variable, values.data()), "values");
-  }
-  void put_map(int variable, std::size_t time, std::size_t rows, std::size_t columns,
-               const std::vector<double>& values) {
-    const std::size_t start[] = {time, 0, 0}, count[] = {1, rows, columns};
-    check(nc_put_vara_double(id_, variable, start, count, values.data()), "values");
-  }
-  void end_definitions() { check(nc_enddef(id_), "header"); }
-
- private:
-  void check(int status, const char* doing) {
-    if (status != NC_NOERR) throw DataError(write_fault(shown_, fmt::format("{}: {}", doing, nc_strerror(status))));
-  }
-
-  std::filesystem::path shown_;
-  int id_ = -1;
-};
+/// CF asks for a date to count from. This one is understood by every reader.
+const std::string nominal_start = "1970-01-01 00:00:00";
 
 std::vector<double> filled(std::vector<double> values, const std::vector<char>& inside) {
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!inside[i] || std::isnan(values[i])) values[i] = fill;
+    if (!inside[i] || std::isnan(values[i])) values[i] = nc_fill;
   }
   return values;
 }
 
+struct Axis {
+  int dimension = -1, variable = -1, bounds = -1;
+};
 struct Axes {
-  int x, y;  // dimensions
-  int x_variable, y_variable;
+  Axis x, y;
 };
 
 Axes define_axes(Nc& nc, const MapGrid& grid) {
-  Axes axes{};
-  axes.y = nc.dimension("y", static_cast<std::size_t>(grid.rows));
-  axes.x = nc.dimension("x", static_cast<std::size_t>(grid.columns));
-  axes.x_variable = nc.variable("x", NC_DOUBLE, {axes.x});
-  axes.y_variable = nc.variable("y", NC_DOUBLE, {axes.y});
+  Axes axes;
+  axes.y.dimension = nc.dimension("y", static_cast<std::size_t>(grid.rows));
+  axes.x.dimension = nc.dimension("x", static_cast<std::size_t>(grid.columns));
+  const int sides = nc.dimension("bnds", 2);
   for (const bool is_x : {true, false}) {
-    const int id = is_x ? axes.x_variable : axes.y_variable;
-    nc.text(id, "standard_name", is_x ? "projection_x_coordinate" : "projection_y_coordinate");
-    nc.text(id, "long_name", is_x ? "easting of the cell centre" : "northing of the cell centre");
-    nc.text(id, "units", "m");
-    nc.text(id, "axis", is_x ? "X" : "Y");
+    auto& [dimension, variable, bounds] = is_x ? axes.x : axes.y;
+    variable = nc.variable(is_x ? "x" : "y", NC_DOUBLE, {dimension});
+    bounds = nc.variable(is_x ? "x_bnds" : "y_bnds", NC_DOUBLE, {dimension, sides});
+    nc.text(variable, "standard_name", is_x ? "projection_x_coordinate" : "projection_y_coordinate");
+    nc.text(variable, "long_name", is_x ? "easting of the cell centre" : "northing of the cell centre");
+    nc.text(variable, "units", "m");
+    nc.text(variable, "axis", is_x ? "X" : "Y");
+    nc.text(variable, "bounds", is_x ? "x_bnds" : "y_bnds");
   }
   return axes;
 }
@@ -121,7 +55,9 @@ Axes define_axes(Nc& nc, const MapGrid& grid) {
 void define_crs(Nc& nc, const MapGrid& grid) {
   const int id = nc.variable("crs", NC_INT, {});
   const auto projection = cf_projection(grid.crs_wkt);
+  nc.text(id, "long_name", "coordinate reference system");
   if (!projection.grid_mapping_name.empty()) nc.text(id, "grid_mapping_name", projection.grid_mapping_name);
+  for (const auto& [name, words] : projection.words) nc.text(id, name.c_str(), words);
   for (const auto& [name, values] : projection.numbers) nc.numbers(id, name.c_str(), values);
   nc.text(id, "crs_wkt", grid.crs_wkt);
   nc.text(id, "spatial_ref", grid.crs_wkt);  // GDAL's name for it
@@ -143,69 +79,103 @@ void describe_file(Nc& nc, const Run& run, const NetcdfNotes& notes) {
           "computed domain hold the fill value; inside it 0 means that nothing is there.");
 }
 
-/// What every map variable says of itself.
-void describe_field(Nc& nc, int id, const Field& field, bool has_crs) {
-  nc.text(id, "long_name", field.long_name);
-  nc.text(id, "units", field.unit);
-  if (*field.cell_methods != '\0') nc.text(id, "cell_methods", field.cell_methods);
-  if (has_crs) nc.text(id, "grid_mapping", "crs");
-}
-
-struct Variable {
-  int id;
-  const Field* field;
+/// A map variable: what it says of itself, and its values.
+struct MapVariable {
+  std::string name, long_name, units, cell_methods;
+  const std::vector<double>* values;
+  bool zero_inside;
 };
 
-const Field start_field{
-    "initial_thickness", &RunMaps::initial_thickness, "m", "thickness at the start, vertical", "", true};
-const Field bed_field{"bed_elevation", &RunMaps::terrain, "m", "elevation of the bed", "", false};
-const Field thickness_field{"thickness", nullptr, "m", "thickness, vertical", "time: point", true};
+/// Letters, digits and underscores, as CF asks of names.
+std::string nc_name(const std::string& name) {
+  std::string word = file_word(name);
+  std::replace_if(word.begin(), word.end(), [](char c) { return c == '-' || c == '.'; }, '_');
+  return word;
+}
+
+std::vector<MapVariable> map_variables(const RunMaps& maps) {
+  std::vector<MapVariable> all;
+  for (const auto& f : product_fields())
+    all.push_back({f.name, f.long_name, f.unit, f.cell_methods, &(maps.*(f.values)), f.zero_inside});
+  all.push_back({"initial_thickness", "thickness at the start, vertical", "m", "area: mean", &maps.initial_thickness, true});
+  all.push_back({"bed_elevation", "elevation of the bed", "m", "area: mean", &maps.terrain, false});
+  if (!maps.eroded_depth.empty())
+    all.push_back({"eroded_depth", "depth of ground that went along, vertical", "m", "area: mean", &maps.eroded_depth, true});
+  for (const auto& [release, values] : maps.deposit_of)
+    all.push_back({"deposit_thickness_" + nc_name(release), "deposit thickness at the end of release " + release +
+                       ", vertical", "m", "area: mean", &values, true});
+  return all;
+}
+
+int define_map(Nc& nc, const MapVariable& map, const std::vector<int>& dimensions, const MapGrid& grid) {
+  const int id = nc.field(map.name.c_str(), dimensions, static_cast<std::size_t>(grid.rows),
+                          static_cast<std::size_t>(grid.columns));
+  nc.text(id, "long_name", map.long_name);
+  nc.text(id, "units", map.units);
+  if (!map.cell_methods.empty()) nc.text(id, "cell_methods", map.cell_methods);
+  if (!grid.crs_wkt.empty()) nc.text(id, "grid_mapping", "crs");
+  return id;
+}
+
+int define_time(Nc& nc, int dimension, const std::string& start) {
+  const int id = nc.variable("time", NC_DOUBLE, {dimension});
+  nc.text(id, "standard_name", "time");
+  nc.text(id, "long_name", "time since the start of the failure");
+  nc.text(id, "units", "seconds since " + (start.empty() ? nominal_start : start));
+  nc.text(id, "calendar", "standard");
+  nc.text(id, "axis", "T");
+  if (start.empty()) nc.text(id, "comment", "the date is nominal: the run does not say when the failure began");
+  return id;
+}
 
 /// The variables of one file, defined first and filled afterwards.
 struct Layout {
   Axes axes{};
-  std::vector<Variable> maps;
+  std::vector<MapVariable> maps;
+  std::vector<int> ids;
   int time = -1, thickness = -1;
 };
 
-Layout define(Nc& nc, const Run& run) {
+Layout define(Nc& nc, const Run& run, const NetcdfNotes& notes) {
   const auto& grid = run.maps.grid;
-  const auto rows = static_cast<std::size_t>(grid.rows), columns = static_cast<std::size_t>(grid.columns);
-  const bool has_crs = !grid.crs_wkt.empty(), has_frames = !run.frames.time.empty();
   Layout layout;
-  const int time_dimension = has_frames ? nc.dimension("time", run.frames.time.size()) : -1;
+  const bool has_frames = !run.frames.time.empty();
+  const int time = has_frames ? nc.dimension("time", run.frames.time.size()) : -1;
   layout.axes = define_axes(nc, grid);
-  if (has_crs) define_crs(nc, grid);
-  const auto add = [&](const Field& field) {
-    const int id = nc.field(field.name, {layout.axes.y, layout.axes.x}, rows, columns);
-    describe_field(nc, id, field, has_crs);
-    layout.maps.push_back({id, &field});
-  };
-  for (const auto& field : product_fields()) add(field);
-  add(start_field);
-  add(bed_field);
+  const int y = layout.axes.y.dimension, x = layout.axes.x.dimension;
+  if (!grid.crs_wkt.empty()) define_crs(nc, grid);
+  layout.maps = map_variables(run.maps);
+  for (const auto& map : layout.maps) layout.ids.push_back(define_map(nc, map, {y, x}, grid));
   if (!has_frames) return layout;
-  layout.time = nc.variable("time", NC_DOUBLE, {time_dimension});
-  nc.text(layout.time, "long_name", "time since the start of the failure");
-  nc.text(layout.time, "units", "s");
-  nc.text(layout.time, "axis", "T");
-  layout.thickness = nc.field(thickness_field.name, {time_dimension, layout.axes.y, layout.axes.x}, rows, columns);
-  describe_field(nc, layout.thickness, thickness_field, has_crs);
+  layout.time = define_time(nc, time, notes.start);
+  const MapVariable thickness{"thickness", "thickness, vertical", "m", "area: mean time: point", nullptr, true};
+  layout.thickness = define_map(nc, thickness, {time, y, x}, grid);
   return layout;
+}
+
+void fill_axis(Nc& nc, const Axis& axis, int count, double start, double cell) {
+  std::vector<double> centres, bounds;
+  for (int i = 0; i < count; ++i) {
+    centres.push_back(start + (i + 0.5) * cell);
+    bounds.insert(bounds.end(), {start + i * cell, start + (i + 1) * cell});
+  }
+  nc.put(axis.variable, centres);
+  nc.put(axis.bounds, bounds);
 }
 
 void fill_in(Nc& nc, const Layout& layout, const Run& run) {
   const auto& grid = run.maps.grid;
-  std::vector<double> x, y;
-  for (int i = 0; i < grid.columns; ++i) x.push_back(grid.x(i));
-  for (int i = 0; i < grid.rows; ++i) y.push_back(grid.y(i));
-  nc.put(layout.axes.x_variable, x);
-  nc.put(layout.axes.y_variable, y);
+  fill_axis(nc, layout.axes.x, grid.columns, grid.west, grid.cell);
+  fill_axis(nc, layout.axes.y, grid.rows, grid.south, grid.cell);
   const auto inside = inside_domain(run.maps);
-  for (const auto& [id, field] : layout.maps) nc.put(id, filled(field_raster(run.maps, *field).values, inside));
+  for (std::size_t i = 0; i < layout.maps.size(); ++i) {
+    const auto& map = layout.maps[i];
+    nc.put(layout.ids[i], filled(values_raster(run.maps, *map.values, map.zero_inside).values, inside));
+  }
   if (layout.time >= 0) nc.put(layout.time, run.frames.time);
   for (std::size_t i = 0; i < run.frames.time.size(); ++i) {
-    nc.put_map(layout.thickness, i, y.size(), x.size(), filled(run.frames.thickness[i], inside));
+    nc.put_map(layout.thickness, i, static_cast<std::size_t>(grid.rows), static_cast<std::size_t>(grid.columns),
+               filled(run.frames.thickness[i], inside));
   }
 }
 
@@ -214,7 +184,7 @@ void fill_in(Nc& nc, const Layout& layout, const Run& run) {
 void write_netcdf(const std::filesystem::path& file, const Run& run, const NetcdfNotes& notes) {
   Nc nc(file);
   describe_file(nc, run, notes);
-  const auto layout = define(nc, run);
+  const auto layout = define(nc, run, notes);
   nc.end_definitions();
   fill_in(nc, layout, run);
   write_text(file, nc.close());

@@ -50,6 +50,7 @@ std::vector<double> time_limits(const RunMaps& maps) {
 RasterStyle map_style(const std::string& name, const RunMaps& maps, const std::vector<double>& given_classes) {
   if (name == "peak_pressure") return class_style(pressure_limits(maps), "kPa");
   if (name == "peak_speed") return class_style(speed_limits(maps), "m/s", Ramp::sea);
+  if (name.starts_with("difference")) return difference_style(thickness_limits({}, maps.deposit_thickness), "m");
   if (name == "arrival_time") return time_style(time_limits(maps), "s");
   const auto& values = name == "peak_thickness" ? maps.peak_thickness
                        : name == "eroded_depth" ? maps.eroded_depth

@@ -19,7 +19,8 @@ namespace {
 using test::Scratch;
 
 MapGrid grid_of(int cells, double cell) {
-  return {.columns = cells, .rows = cells, .west = 500000, .south = 5400000, .cell = cell, .crs_wkt = test::epsg(32611)};
+  return {
+      .columns = cells, .rows = cells, .west = 500000, .south = 5400000, .cell = cell, .crs_wkt = test::epsg(32611)};
 }
 
 /// Values by a function of the distance from the middle.
@@ -45,8 +46,9 @@ OGRPolygon shape_of(const MapPolygon& polygon) {
 }
 
 TEST(OutlineAbove, has_the_area_of_a_disc) {
-  // A cone of 120 m, 1 m falling per m, above 20 m: a disc of 100 m. Chords of at most a cell across a circle of ten cells
-  // lie inside it by cell^2 / (8 r) at most: 1.25 m of 100 m, 2.5 % of the area; the other side is open by as much.
+  // A cone of 120 m, 1 m falling per m, above 20 m: a disc of 100 m. Chords of at most a cell across a circle of ten
+  // cells lie inside it by cell^2 / (8 r) at most: 1.25 m of 100 m, 2.5 % of the area; the other side is open by as
+  // much.
   const auto polygons = outline_above(around_middle(grid_of(40, 10), [](double r) { return 120 - r; }), 20);
   ASSERT_EQ(polygons.size(), 1U);
   EXPECT_EQ(polygons[0].rings.size(), 1U);
@@ -111,7 +113,8 @@ class OutlineFile : public ::testing::Test {
     const auto cone = around_middle(grid_of(40, 10), [](double r) { return r < 40 ? 0 : 120 - r; });
     OutlineLayer deposit{"deposit", {}};
     for (const double level : {20.0, 60.0})
-      deposit.features.push_back({"above " + std::to_string(static_cast<int>(level)), outline_above(cone, level), {{"threshold_m", level}}});
+      deposit.features.push_back(
+          {"above " + std::to_string(static_cast<int>(level)), outline_above(cone, level), {{"threshold_m", level}}});
     deposit.features.push_back({"nothing", {}, {}});
     write_outlines(file_, cone.grid.crs_wkt, {deposit, {"survey", {{"mapped", outline_above(cone, 40), {}}}}});
   }

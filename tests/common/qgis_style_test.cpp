@@ -30,7 +30,8 @@ std::vector<Item> items_of(const Document& document) {
   CPLXMLNode* shader = CPLGetXMLNode(document.get(), "=qgis.pipe.rasterrenderer.rastershader.colorrampshader");
   for (CPLXMLNode* node = shader != nullptr ? shader->psChild : nullptr; node != nullptr; node = node->psNext) {
     if (node->eType != CXT_Element || std::string(node->pszValue) != "item") continue;
-    items.push_back({CPLGetXMLValue(node, "value", ""), CPLGetXMLValue(node, "color", ""), CPLGetXMLValue(node, "label", "")});
+    items.push_back(
+        {CPLGetXMLValue(node, "value", ""), CPLGetXMLValue(node, "color", ""), CPLGetXMLValue(node, "label", "")});
   }
   return items;
 }
@@ -55,7 +56,8 @@ TEST(QgisStyle, lists_classes_by_their_upper_ends_with_unit) {
 TEST(QgisStyle, hides_what_lies_below_the_first_class) {
   const Scratch scratch;
   const auto document = parsed(write_qgis_style(scratch / "a.tif", class_style({0.1, 5}, "m")));
-  const auto* hidden = CPLGetXMLNode(document.get(), "=qgis.pipe.rasterrenderer.rasterTransparency.singleValuePixelList.pixelListEntry");
+  const auto* hidden =
+      CPLGetXMLNode(document.get(), "=qgis.pipe.rasterrenderer.rasterTransparency.singleValuePixelList.pixelListEntry");
   ASSERT_NE(hidden, nullptr);
   EXPECT_LT(std::stod(CPLGetXMLValue(hidden, "min", "")), -1e30);
   EXPECT_STREQ(CPLGetXMLValue(hidden, "max", ""), "0.1");
@@ -95,7 +97,8 @@ TEST(Colours, keep_their_order_in_every_ramp) {
   for (const Ramp ramp : {Ramp::heat, Ramp::sea}) {
     for (std::size_t i = 0; i + 1 < 6; ++i) {
       const double step = oklab_lightness(class_colour(i, 6, ramp)) - oklab_lightness(class_colour(i + 1, 6, ramp));
-      EXPECT_NEAR(step, ramp == Ramp::heat ? 0.68 / 5 : 0.60 / 5, 0.02) << "between class " << i << " and the next: equal steps must look equal";
+      EXPECT_NEAR(step, ramp == Ramp::heat ? 0.68 / 5 : 0.60 / 5, 0.02)
+          << "between class " << i << " and the next: equal steps must look equal";
     }
   }
 }
@@ -116,7 +119,8 @@ TEST(QgisStyle, escapes_what_xml_would_misread) {
 
 TEST(QgisStyle, that_cannot_be_written_is_named) {
   const Scratch scratch;
-  const auto fault = test::fault_of<DataError>([&] { write_qgis_style(scratch / "none/a.tif", class_style({1}, "m")); });
+  const auto fault =
+      test::fault_of<DataError>([&] { write_qgis_style(scratch / "none/a.tif", class_style({1}, "m")); });
   EXPECT_NE(fault.find("a.qml: cannot be written"), std::string::npos) << fault;
 }
 

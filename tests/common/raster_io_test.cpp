@@ -8,6 +8,7 @@
 #include "common/error.hpp"
 #include "tests/common/rasters.hpp"
 #include "tests/common/scratch.hpp"
+#include "tests/common/tools.hpp"
 
 namespace talus {
 namespace {
@@ -51,6 +52,23 @@ TEST_F(RasterFile, round_trip_keeps_every_bit_and_nodata) {
     EXPECT_TRUE(same_crs(back.grid.crs_wkt, raster.grid.crs_wkt));
     EXPECT_EQ(scratch.files(), 1u);
   }
+}
+
+TEST_F(RasterFile, a_large_cog_has_overviews_and_passes_gdals_own_validator) {
+  TALUS_NEED_TOOL("/usr/bin/python3 -c 'import osgeo_utils.samples.validate_cloud_optimized_geotiff'", "python3-gdal");
+  Raster raster = random_raster({1300, 1100, 500000, 5500000, 2, epsg(32611)}, 3);
+  for (int row = 0; row < 300; ++row)
+    for (int column = 0; column < 700; ++column) raster.at(column, row) = std::nan("");
+  write_cog(scratch / "large.tif", raster, {"z", "m", {}});
+  int code = -1;
+  const auto said = test::output_of("/usr/bin/python3 -m osgeo_utils.samples.validate_cloud_optimized_geotiff --full-check=yes '" +
+                                        (scratch / "large.tif").string() + "'",
+                                    &code);
+  EXPECT_EQ(code, 0) << said;
+  EXPECT_NE(said.find("is a valid cloud optimized GeoTIFF"), std::string::npos) << said;
+  const auto info = test::output_of("gdalinfo '" + (scratch / "large.tif").string() + "'");
+  EXPECT_NE(info.find("Overviews: 650x550, 325x275"), std::string::npos) << info;
+  EXPECT_NE(info.find("Block=512x512"), std::string::npos) << info;
 }
 
 TEST_F(RasterFile, local_coordinates_stay_local) {

@@ -70,13 +70,48 @@ test_ncdump_reads_the_netcdf() {
   shows 'double deposit_thickness\(y, x\)'
   shows 'double thickness\(time, y, x\)'
   shows 'x:standard_name = "projection_x_coordinate"'
-  shows 'peak_thickness:cell_methods = "time: maximum"'
+  shows 'peak_thickness:cell_methods = "area: mean time: maximum"'
   shows 'deposit_thickness:grid_mapping = "crs"'
   shows 'crs:crs_wkt = "PROJCRS'
-  shows 'time:units = "s"'
+  shows 'time:units = "seconds since 1970-01-01 00:00:00"'
   shows '_FillValue = -9999'
   expect_exit 0 ncdump -v time "$out/maps/results.nc"
   shows 'time = 0, [0-9.]+'
+}
+
+test_netcdf_follows_cf() {
+  /usr/bin/python3 -c 'import netCDF4, osgeo.gdal, ctypes; ctypes.CDLL("libudunits2.so.0")' 2>/dev/null || need_tool python3-netcdf4
+  expect_exit 0 /usr/bin/python3 "$TALUS_SOURCE/tests/postprocess/check_cf.py" "$out/maps/results.nc"
+  need_tool cdo
+  expect_exit 0 cdo -s infon "$out/maps/results.nc"
+  if grep -qiE 'warning|error' stdout stderr; then fail "cdo complains: $(<stderr)"; fi
+}
+
+test_outlines_are_valid_and_stand_where_the_maps_do() {
+  /usr/bin/python3 -c 'from osgeo import gdal, ogr' 2>/dev/null || need_tool python3-gdal
+  cat >outlines.py <<'PYTHON'
+import sys
+from osgeo import gdal, ogr
+gdal.UseExceptions()
+file = ogr.Open(sys.argv[1] + "/outlines.gpkg")
+map = gdal.Open(sys.argv[1] + "/deposit_thickness.tif")
+west, dx, _, north, _, dy = map.GetGeoTransform()
+assert file.GetLayerCount() == 5, [layer.GetName() for layer in file]
+for layer in file:
+    assert layer.GetSpatialRef().IsSame(map.GetSpatialRef()), layer.GetName()
+    for feature in layer:
+        shape = feature.GetGeometryRef()
+        assert shape.IsValid() and abs(shape.GetArea() - feature["area_m2"]) < 1e-6 * shape.GetArea(), feature["name"]
+        x0, x1, y0, y1 = shape.GetEnvelope()
+        inside = west <= x0 <= x1 <= west + map.RasterXSize * dx and north + map.RasterYSize * dy <= y0 <= y1 <= north
+        assert inside or layer.GetName() == "survey", feature["name"]
+deposit = file.GetLayerByName("deposit")
+areas = [feature["area_m2"] for feature in deposit]
+assert len(areas) > 2 and areas == sorted(areas, reverse=True), f"a higher threshold encloses more: {areas}"
+print("all valid")
+PYTHON
+  expect_exit 0 /usr/bin/python3 outlines.py "$out/maps"
+  shows 'all valid'
 }
 
 test_vdb_print_lists_the_domain() {

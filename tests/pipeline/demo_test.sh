@@ -11,7 +11,8 @@ test_valley_runs_to_a_score() {
   expect_exit 0 pipeline
   local file
   for file in domain.vdb preprocess.used.toml run.h5 solve.used.toml postprocess.used.toml score.json score.txt map.png history.csv \
-    maps/deposit_thickness.tif maps/peak_thickness.tif maps/peak_speed.tif maps/peak_pressure.tif maps/arrival_time.tif maps/results.nc; do
+    maps/deposit_thickness.tif maps/peak_thickness.tif maps/peak_speed.tif maps/peak_pressure.tif maps/arrival_time.tif maps/results.nc \
+    maps/deposit_thickness.qml maps/terrain.tif maps/outlines.gpkg maps/synthetic-valley.qgs; do
     [[ -s $out/$file ]] || fail "$file is missing"
     grep -qF "$out/$file" stdout || fail "no program named $file on stdout"
   done

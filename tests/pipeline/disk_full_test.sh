@@ -30,8 +30,10 @@ whole() {
     *.nc) expect_exit 0 ncdump "$1" ;;
     *.h5) expect_exit 0 h5dump "$1" ;;
     *.vdb) expect_exit 0 "$bin/talus-solve" recipe.toml --out "$(dirname "$1")" --check ;;
+    *.gpkg) expect_exit 0 ogrinfo -al "$1" ;;
+    *.qml | *.qgs) expect_exit 0 python3 -c 'import sys, xml.etree.ElementTree as tree; tree.parse(sys.argv[1])' "$1" ;;
     *.json) expect_exit 0 python3 -m json.tool "$1" ;;
-    *.toml | *.txt) [[ $(tail -c 1 "$1" | wc -l) -eq 1 ]] || fail "$1 ends within a line" ;;
+    *.toml | *.txt | *.csv) [[ $(tail -c 1 "$1" | wc -l) -eq 1 ]] || fail "$1 ends within a line" ;;
     *) fail "$1 was left behind" ;;
   esac
 }
@@ -62,7 +64,7 @@ fills() {
 need_readers() {
   need_mounts
   local tool
-  for tool in gdalinfo ncdump h5dump; do need_tool $tool; done
+  for tool in gdalinfo ogrinfo ncdump h5dump; do need_tool $tool; done
 }
 
 test_preprocess() {

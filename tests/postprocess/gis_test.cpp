@@ -26,6 +26,16 @@ TEST(Styles, have_the_thresholds_of_hazard_work) {
   EXPECT_EQ(thickness_limits({1, 3}, {80}), (std::vector<double>{1, 3}));
 }
 
+TEST(Styles, suit_each_map) {
+  const auto run = small_run();
+  EXPECT_EQ(map_style("deposit_thickness", run.maps, {1, 3}).classes.back().label, "> 3 m");
+  EXPECT_EQ(map_style("deposit_thickness_scar", run.maps, {}).classes.front().label, "0.1 \u2013 0.5 m");
+  EXPECT_EQ(map_style("peak_pressure", run.maps, {1, 3}).classes.back().label, "> 100 kPa");
+  EXPECT_EQ(map_style("peak_speed", run.maps, {1, 3}).classes.back().label, "> 50 m/s");
+  EXPECT_EQ(map_style("difference_to_survey", run.maps, {1, 3}).classes.front().label, "< \u221210 m");
+  EXPECT_EQ(map_style("arrival_time", run.maps, {}).hidden_from, map_style("arrival_time", run.maps, {}).hidden_to);
+}
+
 TEST(Styles, round_the_times_of_arrival) {
   const auto run = small_run();  // up to 17 s
   EXPECT_EQ(time_limits(run.maps), (std::vector<double>{5, 10, 15}));
@@ -116,10 +126,11 @@ TEST_F(ForGis, names_in_the_project_only_files_that_are_there) {
 
 TEST_F(ForGis, writes_outlines_that_ogrinfo_finds_valid) {
   TALUS_NEED_TOOL("/usr/bin/python3 -c 'from osgeo import ogr'", "python3-gdal");
-  const auto said = test::output_of(
-      "/usr/bin/python3 -c \"from osgeo import ogr; d = ogr.Open('" + (scratch_ / "outlines.gpkg").string() +
-      "'); print([(l.GetName(), all(f.GetGeometryRef().IsValid() for f in l), round(sum(f['area_m2'] for f in l))) for l "
-      "in d])\" 2>/dev/null");
+  const auto said = test::output_of("/usr/bin/python3 -c \"from osgeo import ogr; d = ogr.Open('" +
+                                    (scratch_ / "outlines.gpkg").string() +
+                                    "'); print([(l.GetName(), all(f.GetGeometryRef().IsValid() for f in l), "
+                                    "round(sum(f['area_m2'] for f in l))) for l "
+                                    "in d])\" 2>/dev/null");
   // The block of 32 x 10 cells of 3 m, cut off at 1 m: two thirds of a cell further than its outermost centres.
   const double side = 310 + 2 * 10 * 2.0 / 3, other = 90 + 2 * 10 * 2.0 / 3, corners = 2 * (20.0 / 3) * (20.0 / 3);
   EXPECT_NE(said.find(fmt::format("('footprint', True, {:.0f})", side * other - corners)), std::string::npos) << said;

@@ -66,6 +66,17 @@ TEST_F(Program, writes_zero_outside_the_domain_where_that_is_asked_for) {
   EXPECT_TRUE(std::isnan(read_raster(out_ / "maps/arrival_time.tif").at(20, 1))) << "0 s would be an arrival";
 }
 
+TEST_F(Program, writes_aliases_for_avaframe_where_they_are_asked_for) {
+  test::write_run(out_ / "run.h5", test::small_run());
+  run_it();
+  EXPECT_FALSE(fs::exists(out_ / "maps/avaframe"));
+  recipe_ += "[postprocess]\navaframe = true\navaframe_format = \"asc\"\n";
+  run_it();
+  EXPECT_EQ(std::distance(fs::directory_iterator(out_ / "maps/avaframe"), {}), 4);
+  const auto is_alias = [](const fs::path& file) { return file.string().ends_with("_C_S_null_mpm_pft.asc"); };
+  EXPECT_EQ(std::count_if(results_.begin(), results_.end(), is_alias), 1) << "not announced";
+}
+
 TEST_F(Program, writes_nothing_when_only_checking) {
   test::write_run(out_ / "run.h5", test::small_run());
   run_it(true);

@@ -1,0 +1,88 @@
+// A NetCDF file being made. For the sources of this folder alone.
+#pragma once
+
+#include <netcdf.h>
+#include <netcdf_mem.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "common/stage/write_fault.hpp"
+
+namespace talus::postprocess {
+
+inline constexpr double nc_fill = -9999;
+
+/// A NetCDF file made in memory; every call is checked. In memory, because a full disk leaves the library unable to
+/// close its file, and crashing: the bytes are written by write_text(), which knows what to say.
+class Nc {
+ public:
+  explicit Nc(std::filesystem::path shown) : shown_(std::move(shown)) {
+    check(nc_create_mem(shown_.filename().c_str(), NC_NETCDF4, 0, &id_), "it cannot be created");
+  }
+  Nc(const Nc&) = delete;
+  Nc& operator=(const Nc&) = delete;
+  ~Nc() {
+    if (id_ >= 0) nc_abort(id_);
+  }
+  std::string close() {
+    NC_memio image{};
+    check(nc_close_memio(std::exchange(id_, -1), &image), "closing it");
+    const std::unique_ptr<void, decltype(&std::free)> owner(image.memory, &std::free);
+    return {static_cast<const char*>(image.memory), image.size};
+  }
+
+  int dimension(const char* name, std::size_t size) {
+    int dimension = 0;
+    check(nc_def_dim(id_, name, size, &dimension), name);
+    return dimension;
+  }
+  int variable(const char* name, nc_type type, const std::vector<int>& dimensions) {
+    int variable = 0;
+    check(nc_def_var(id_, name, type, static_cast<int>(dimensions.size()), dimensions.data(), &variable), name);
+    return variable;
+  }
+  /// A map (or maps over time): chunked by map, compressed, with fill value.
+  int field(const char* name, const std::vector<int>& dimensions, std::size_t rows, std::size_t columns) {
+    const int id = variable(name, NC_DOUBLE, dimensions);
+    std::vector<std::size_t> chunk(dimensions.size(), 1);
+    chunk[dimensions.size() - 2] = std::min<std::size_t>(rows, 512);
+    chunk[dimensions.size() - 1] = std::min<std::size_t>(columns, 512);
+    check(nc_def_var_chunking(id_, id, NC_CHUNKED, chunk.data()), name);
+    check(nc_def_var_deflate(id_, id, 1, 1, 4), name);
+    check(nc_def_var_fill(id_, id, NC_FILL, &nc_fill), name);
+    return id;
+  }
+  void text(int variable, const char* name, const std::string& value) {
+    check(nc_put_att_text(id_, variable, name, value.size(), value.data()), name);
+  }
+  void numbers(int variable, const char* name, const std::vector<double>& values) {
+    check(nc_put_att_double(id_, variable, name, NC_DOUBLE, values.size(), values.data()), name);
+  }
+  void put(int variable, const std::vector<double>& values) {
+    check(nc_put_var_double(id_, variable, values.data()), "values");
+  }
+  void put_map(int variable, std::size_t time, std::size_t rows, std::size_t columns,
+               const std::vector<double>& values) {
+    const std::size_t start[] = {time, 0, 0}, count[] = {1, rows, columns};
+    check(nc_put_vara_double(id_, variable, start, count, values.data()), "values");
+  }
+  void end_definitions() { check(nc_enddef(id_), "header"); }
+
+ private:
+  void check(int status, const char* doing) {
+    if (status != NC_NOERR) throw DataError(write_fault(shown_, fmt::format("{}: {}", doing, nc_strerror(status))));
+  }
+
+  std::filesystem::path shown_;
+  int id_ = -1;
+};
+
+}  // namespace talus::postprocess
