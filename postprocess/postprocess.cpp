@@ -96,35 +96,46 @@ std::string used_text(const StageContext& context, const Job& job) {
                      {{"CRS", crs_name(job.run.maps.grid.crs_wkt)}});
 }
 
+/// Everything under maps/.
+void write_maps(StageContext& context, const Job& job) {
+  const auto& [file, run, options, survey, thalweg] = job;
+  const auto folder = context.out / "maps";
+  make_folder(folder);
+  auto& results = context.results;
+  results = write_geotiffs(folder, run, options.nodata_zero ? Outside::zero : Outside::nodata);
+  const auto for_gis = write_gis(folder, results, {run, options, survey});
+  results.insert(results.end(), for_gis.begin(), for_gis.end());
+  if (options.avaframe) {
+    make_folder(folder / "avaframe");
+    const auto aliases = write_avaframe(folder / "avaframe", run, settings_text(run, file), options.avaframe_format);
+    results.insert(results.end(), aliases.begin(), aliases.end());
+  }
+  results.push_back(folder / "results.nc");
+  write_netcdf(results.back(), run, {options.institution, context.command_line, options.start_time});
+}
+
+/// So that new maps never lie beside the scores or the report of an older run.
+void remove_older(const fs::path& out) {
+  for (const auto* name : {"score.json", "score.txt", "report.html", "animation.mp4", "animation.gif"}) {
+    std::error_code none_there;
+    fs::remove(out / name, none_there);
+  }
+}
+
 void write_results(StageContext& context, const Job& job) {
   const auto& [file, run, options, survey, thalweg] = job;
   const auto score = make_score(run, options, survey, thalweg);
   const auto table = to_table(score);
-  const auto folder = context.out / "maps";
-  make_folder(folder);
-  for (const auto* name :
-       {"score.json", "score.txt", "report.html", "animation.mp4", "animation.gif"}) {  // so that new maps never lie beside the scores of an older run
-    std::error_code none_there;
-    fs::remove(context.out / name, none_there);
-  }
-  context.results = write_geotiffs(folder, run, options.nodata_zero ? Outside::zero : Outside::nodata);
-  const auto for_gis = write_gis(folder, context.results, {run, options, survey});
-  context.results.insert(context.results.end(), for_gis.begin(), for_gis.end());
-  if (options.avaframe) {
-    make_folder(folder / "avaframe");
-    const auto aliases = write_avaframe(folder / "avaframe", run, settings_text(run, file),
-                                        options.avaframe_format);
-    context.results.insert(context.results.end(), aliases.begin(), aliases.end());
-  }
-  context.results.push_back(folder / "results.nc");
-  write_netcdf(context.results.back(), run, {options.institution, context.command_line, options.start_time});
+  remove_older(context.out);
+  write_maps(context, job);
   const auto write = [&](const char* name, const std::string& bytes) {
     context.results.push_back(context.out / name);
     write_text(context.results.back(), bytes);
   };
-  write("map.png", map_picture({run, options, survey, score}));
+  const PictureInput picture{run, options, survey, score, {}};
+  write("map.png", map_picture(picture));
   if (options.animation != Animation::none)
-    context.results.push_back(write_animation(context.out, {run, options, survey, score}, options.animation));
+    context.results.push_back(write_animation(context.out, picture, options.animation));
   write("history.csv", history_table(run.history));
   const auto used = used_text(context, job);
   write("postprocess.used.toml", used);

@@ -1,5 +1,6 @@
 // Simulation against survey, cell by cell, in volume and in reach.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
@@ -31,8 +32,9 @@ void overlap(const Pair& pair, double cell_area, Sheet& sheet) {
   sheet.number(what + "_d2pc", what + " distance to perfect classification", "", c.d2pc(), 3, "one side has no area");
   sheet.number(what + "_foc", what + " area, simulated / surveyed (FoC)", "", c.foc(), 3,
                "the survey exceeds the threshold nowhere");
-  sheet.number(what + "_spi", what + " synthetic performance index", "", c.spi(pair.simulated_reach.along / pair.surveyed_reach.along),
-               3, "one side has no run-out along the thalweg");
+  sheet.number(what + "_spi", what + " synthetic performance index", "",
+               c.spi(pair.simulated_reach.along / pair.surveyed_reach.along), 3,
+               "one side has no run-out along the thalweg");
   sheet.number(what + "_true_positive_m2", what + " in both (TP)", "m2", c.true_positive, 0);
   sheet.number(what + "_false_positive_m2", what + " in the simulation only (FP)", "m2", c.false_positive, 0);
   sheet.number(what + "_false_negative_m2", what + " in the survey only (FN)", "m2", c.false_negative, 0);
@@ -59,22 +61,27 @@ void thickness(const Scored& scored, const OnSurveyGrid& simulated, Sheet& sheet
 
 void centre_offset(const Scored& scored, const OnSurveyGrid& simulated, Sheet& sheet) {
   const auto& survey = *scored.survey;
-  const auto here = centre_of_mass(survey.grid, simulated.deposit, {}), there = centre_of_mass(survey.grid, survey.deposit, {});
+  const auto here = centre_of_mass(survey.grid, simulated.deposit, {}),
+             there = centre_of_mass(survey.grid, survey.deposit, {});
   if (!here || !there)
     return sheet.skip({"centre_of_mass_offset_m", "centre_of_mass_offset_along_m"}, "one side has no deposit");
-  sheet.number("centre_of_mass_offset_m", "centre-of-mass offset of the deposits", "m", plan_distance(*here, *there), 1);
-  sheet.number("centre_of_mass_offset_along_m", "the same along the thalweg, simulated - surveyed", "m",
-               project(scored.thalweg, here->x, here->y).distance - project(scored.thalweg, there->x, there->y).distance, 1,
-               scored.thalweg.origin);
+  sheet.number("centre_of_mass_offset_m", "centre-of-mass offset of the deposits", "m", plan_distance(*here, *there),
+               1);
+  sheet.number(
+      "centre_of_mass_offset_along_m", "the same along the thalweg, simulated - surveyed", "m",
+      project(scored.thalweg, here->x, here->y).distance - project(scored.thalweg, there->x, there->y).distance, 1,
+      scored.thalweg.origin);
 }
 
 void residuals(const Scored& scored, const OnSurveyGrid& simulated, Sheet& sheet) {
   const auto& survey = *scored.survey;
   if (survey.error.sigma.empty())
-    return sheet.skip({"residual_median_sigma", "residual_within_95", "residual_chi2"}, "the survey's error (sigma) is not given");
+    return sheet.skip({"residual_median_sigma", "residual_within_95", "residual_chi2"},
+                      "the survey's error (sigma) is not given");
   const double threshold = scored.options.deposit_threshold;
   std::vector<char> counts(simulated.deposit.size());
-  for (std::size_t i = 0; i < counts.size(); ++i) counts[i] = simulated.deposit[i] > threshold || survey.deposit[i] > threshold;
+  for (std::size_t i = 0; i < counts.size(); ++i)
+    counts[i] = simulated.deposit[i] > threshold || survey.deposit[i] > threshold;
   const auto r = residual_of(simulated.change, survey.measured, survey.error.sigma, counts);
   constexpr const char* none = "no deposit where the survey has an error";
   sheet.count("residual_cells", "cells with a deposit and a sigma", static_cast<std::int64_t>(r.cells));
@@ -85,18 +92,38 @@ void residuals(const Scored& scored, const OnSurveyGrid& simulated, Sheet& sheet
 
 /// A pair of run-outs and their difference, under keys that begin as named.
 void reach_lines(const std::string& key, const std::string& label, double surveyed, double simulated, Sheet& sheet) {
-  sheet.number("survey_" + key + "_m", "surveyed " + label, "m", surveyed, 0, "the survey exceeds the threshold nowhere");
+  sheet.number("survey_" + key + "_m", "surveyed " + label, "m", surveyed, 0,
+               "the survey exceeds the threshold nowhere");
   sheet.number(key + "_difference_m", label + ", simulated - surveyed", "m", simulated - surveyed, 0,
                std::isfinite(surveyed) ? "the simulation has no run-out" : "the survey exceeds the threshold nowhere");
 }
 
+/// What lies between threshold and level of detection is deposit to the simulation and nothing to the survey.
+void blind_zone(const Scored& scored, Sheet& sheet) {
+  const auto& survey = *scored.survey;
+  const double threshold = scored.options.deposit_threshold;
+  double cells = 0, blind = 0;
+  for (std::size_t i = 0; i < survey.error.sigma.size(); ++i) {
+    if (std::isnan(survey.measured[i]) || survey.measured[i] == 0) continue;
+    cells += 1;
+    blind += survey.error.detection * survey.error.sigma[i] > threshold ? 1 : 0;
+  }
+  if (blind > 0.01 * cells)
+    sheet.note(fmt::format(
+        "Warning: the level of detection lies above the deposit threshold of {:g} m on {:.0f} % of the surveyed "
+        "cells. Thinner deposit is simulated but cannot be surveyed there: raise deposit_threshold_m.",
+        threshold, 100 * blind / cells));
+}
+
 void left_out(const Scored& scored, const OnSurveyGrid& simulated, Sheet& sheet) {
-  sheet.number("deposit_not_surveyed_m3", "simulated deposit where nothing was surveyed", "m3", simulated.deposit_left_out, 0);
+  sheet.number("deposit_not_surveyed_m3", "simulated deposit where nothing was surveyed", "m3",
+               simulated.deposit_left_out, 0);
   const double share = simulated.deposit_left_out / scored.run.summary.volume_released;
   if (share > 0.01)
-    sheet.note(fmt::format("Warning: {:.1f} % of the simulated deposit lies where the survey has no data; it is not in the "
-                           "scores. If no data means no deposit, set nodata_is_zero.",
-                           100 * share));
+    sheet.note(
+        fmt::format("Warning: {:.1f} % of the simulated deposit lies where the survey has no data; it is not in the "
+                    "scores. If no data means no deposit, set nodata_is_zero.",
+                    100 * share));
 }
 
 }  // namespace
@@ -110,7 +137,8 @@ void add_agreement(const Scored& scored, const OnSurveyGrid& simulated, Sheet& s
   Reach surveyed_reach{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
   sheet.section("Agreement with: " + survey.name);
   if (survey.footprint.empty()) {
-    sheet.skip({"footprint_csi"}, "the survey gives a deposit only (peak_thickness or polygon would give its footprint)");
+    sheet.skip({"footprint_csi"},
+               "the survey gives a deposit only (peak_thickness or polygon would give its footprint)");
   } else {
     surveyed_reach = reach_of(scored, survey.grid, survey.footprint, survey.footprint_threshold);
     overlap({"footprint", simulated.peak, survey.footprint, options.footprint_threshold, survey.footprint_threshold,
@@ -121,8 +149,8 @@ void add_agreement(const Scored& scored, const OnSurveyGrid& simulated, Sheet& s
     sheet.skip({"deposit_csi", "thickness_rmse_m", "thickness_bias_m"}, "the survey gives a footprint only");
   } else {
     surveyed_reach = reach_of(scored, survey.grid, survey.deposit, options.deposit_threshold);
-    overlap({"deposit", simulated.deposit, survey.deposit, options.deposit_threshold, options.deposit_threshold, deposit_reach,
-             surveyed_reach},
+    overlap({"deposit", simulated.deposit, survey.deposit, options.deposit_threshold, options.deposit_threshold,
+             deposit_reach, surveyed_reach},
             area, sheet);
     thickness(scored, simulated, sheet);
     residuals(scored, simulated, sheet);
@@ -131,6 +159,7 @@ void add_agreement(const Scored& scored, const OnSurveyGrid& simulated, Sheet& s
   reach_lines("runout", "run-out, straight", surveyed_reach.straight, deposit_reach.straight, sheet);
   reach_lines("thalweg_runout", "run-out along the thalweg", surveyed_reach.along, deposit_reach.along, sheet);
   left_out(scored, simulated, sheet);
+  blind_zone(scored, sheet);
 }
 
 }  // namespace talus::postprocess

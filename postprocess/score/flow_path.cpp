@@ -62,7 +62,8 @@ struct Search {
 };
 
 std::optional<std::size_t> cell_of(const MapGrid& grid, const Place& place) {
-  const double column = std::floor((place.x - grid.west) / grid.cell), row = std::floor((place.y - grid.south) / grid.cell);
+  const double column = std::floor((place.x - grid.west) / grid.cell),
+               row = std::floor((place.y - grid.south) / grid.cell);
   if (!(column >= 0 && row >= 0 && column < grid.columns && row < grid.rows)) return std::nullopt;
   return grid.index(static_cast<int>(column), static_cast<int>(row));
 }

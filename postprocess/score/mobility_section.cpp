@@ -15,8 +15,9 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 void straight(const Scored& scored, Sheet& sheet) {
   const auto& maps = scored.run.maps;
   const auto& crown = scored.crown;
-  const auto toe = crown ? farthest(maps.grid, maps.deposit_thickness, scored.options.deposit_threshold, *crown, maps.before)
-                         : std::nullopt;
+  const auto toe =
+      crown ? farthest(maps.grid, maps.deposit_thickness, scored.options.deposit_threshold, *crown, maps.before)
+            : std::nullopt;
   if (!toe)
     return sheet.skip({"runout_m", "drop_m", "h_over_l", "fahrboeschung_deg", "max_drop_m"},
                       crown ? "no deposit above the threshold" : "no release in the run's maps");
@@ -34,7 +35,8 @@ void straight(const Scored& scored, Sheet& sheet) {
 
 void along_thalweg(const Scored& scored, Sheet& sheet) {
   const auto& maps = scored.run.maps;
-  const auto far = farthest_along(scored.thalweg, maps.grid, maps.deposit_thickness, scored.options.deposit_threshold, maps.before);
+  const auto far =
+      farthest_along(scored.thalweg, maps.grid, maps.deposit_thickness, scored.options.deposit_threshold, maps.before);
   if (!far || !scored.crown)
     return sheet.skip({"thalweg_runout_m", "thalweg_drop_m", "thalweg_h_over_l", "thalweg_fahrboeschung_deg"},
                       scored.thalweg.line.empty() ? scored.thalweg.origin
@@ -46,7 +48,8 @@ void along_thalweg(const Scored& scored, Sheet& sheet) {
   sheet.number("thalweg_runout_m", "run-out L along the thalweg", "m", length, 0);
   sheet.number("thalweg_drop_m", "drop H along the thalweg", "m", drop, 0);
   sheet.number("thalweg_h_over_l", "H/L along the thalweg", "", drop / length, 4, "the deposit ends at the crown");
-  sheet.number("thalweg_fahrboeschung_deg", "Fahrboeschung along the thalweg", "deg", std::atan2(drop, length) * degrees, 2);
+  sheet.number("thalweg_fahrboeschung_deg", "Fahrboeschung along the thalweg", "deg",
+               std::atan2(drop, length) * degrees, 2);
 }
 
 void centre(const Scored& scored, Sheet& sheet) {

@@ -7,8 +7,8 @@
 
 namespace talus::postprocess {
 
-/// `values` without the patches (cells above `threshold`, joined by eight neighbours) that hold no cell of `seeds`: such
-/// cells become 0.
+/// `values` without the patches (cells above `threshold`, joined by eight neighbours) that hold no cell of `seeds`:
+/// such cells become 0.
 std::vector<double> patches_with(const MapGrid& grid, const std::vector<double>& values, double threshold,
                                  const std::vector<char>& seeds);
 

@@ -44,7 +44,8 @@ Polyline smoothed(Polyline line, int times) {
   for (int k = 0; k < times; ++k) {
     const Polyline before = line;
     for (std::size_t i = 1; i + 1 < line.size(); ++i) {
-      for (std::size_t c = 0; c < 2; ++c) line[i][c] = 0.25 * before[i - 1][c] + 0.5 * before[i][c] + 0.25 * before[i + 1][c];
+      for (std::size_t c = 0; c < 2; ++c)
+        line[i][c] = 0.25 * before[i - 1][c] + 0.5 * before[i][c] + 0.25 * before[i + 1][c];
     }
   }
   return line;
@@ -59,8 +60,8 @@ Polyline without_returns(const Polyline& line, double step) {
   }
   if (line.size() < 2 || kept.back() == line.back()) return kept;
   // The last point must stay: what stands in its way goes.
-  while (kept.size() > 1 && (apart(kept.back(), line.back()) < step ||
-                             turns_back(kept[kept.size() - 2], kept.back(), line.back()))) {
+  while (kept.size() > 1 &&
+         (apart(kept.back(), line.back()) < step || turns_back(kept[kept.size() - 2], kept.back(), line.back()))) {
     kept.pop_back();
   }
   kept.push_back(line.back());

@@ -40,7 +40,8 @@ RandomField::RandomField(const MapGrid& grid, double range, std::uint64_t seed)
     plane_[i] = spherical(std::hypot(std::min(x, wide_ - x), std::min(y, high_ - y)), cells);
   }
   transform(plane_);
-  for (const auto& value : plane_) amplitude_.push_back(std::sqrt(std::max(0.0, value.real()) / static_cast<double>(count)));
+  for (const auto& value : plane_)
+    amplitude_.push_back(std::sqrt(std::max(0.0, value.real()) / static_cast<double>(count)));
 }
 
 void RandomField::transform(std::vector<Complex>& plane) const {

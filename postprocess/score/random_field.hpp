@@ -10,10 +10,10 @@
 
 namespace talus::postprocess {
 
-/// Gaussian random fields of mean 0 and variance 1 on a map, the correlation of two cells at distance d being spherical,
-/// 1 - 1.5 (d/a) + 0.5 (d/a)^3 up to the range a, 0 beyond it (Matheron 1963). By circulant embedding (Dietrich and
-/// Newsam 1997): on a torus that is the range wider than the map the transform of the correlation is not negative, so the
-/// fields are exact. Two come out of one Fourier transform. Equal seeds give equal fields.
+/// Gaussian random fields of mean 0 and variance 1 on a map, the correlation of two cells at distance d being
+/// spherical, 1 - 1.5 (d/a) + 0.5 (d/a)^3 up to the range a, 0 beyond it (Matheron 1963). By circulant embedding
+/// (Dietrich and Newsam 1997): on a torus that is the range wider than the map the transform of the correlation is not
+/// negative, so the fields are exact. Two come out of one Fourier transform. Equal seeds give equal fields.
 class RandomField {
  public:
   /// `range` in m; up to a cell: every cell for itself. Ranges beyond three times the map's longer side count as that.

@@ -3,6 +3,9 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
+#include "common/stage/stage.hpp"
 #include "postprocess/maps/fields.hpp"
 #include "postprocess/score/contingency.hpp"
 #include "postprocess/score/patches.hpp"
@@ -17,10 +20,10 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 struct Fixed {
   const Scored& scored;
   const OnSurveyGrid& simulated;
-  double simulated_volume;       // [m3]
-  Reach simulated_reach;         // [m]
-  std::vector<char> seeds;       // cells with a surveyed deposit
-  std::vector<double> along{};   // distance along the thalweg of the cells asked for so far, NaN of the others [m]
+  double simulated_volume;  // [m3]
+  Reach simulated_reach;    // [m]
+  std::vector<char> seeds;  // cells with a surveyed deposit
+  DistancesAlong along;     // the thalweg
 };
 
 Reach surveyed_reach(Fixed& fixed, const std::vector<double>& deposit) {
@@ -35,9 +38,8 @@ Reach surveyed_reach(Fixed& fixed, const std::vector<double>& deposit) {
       const auto i = grid.index(column, row);
       if (!(patches[i] > threshold)) continue;
       const Place here{grid.x(column), grid.y(row), 0};
-      if (std::isnan(fixed.along[i])) fixed.along[i] = project(scored.thalweg, here.x, here.y).distance;
       reach.straight = std::fmax(reach.straight, plan_distance(*scored.crown, here));
-      reach.along = std::fmax(reach.along, fixed.along[i] - scored.crown_along);
+      reach.along = std::fmax(reach.along, fixed.along.at(column, row) - scored.crown_along);
     }
   }
   return reach;
@@ -71,12 +73,22 @@ Resampled resample(const Scored& scored, const OnSurveyGrid& simulated) {
   const auto& sigma = survey.error.sigma;
   if (sigma.empty()) return all;
   const auto& maps = scored.run.maps;
-  Fixed fixed{scored, simulated, volume_under(simulated.deposit, survey.grid.cell),
+  Fixed fixed{scored,
+              simulated,
+              volume_under(simulated.deposit, survey.grid.cell),
               reach_of(scored, maps.grid, maps.deposit_thickness, options.deposit_threshold),
-              std::vector<char>(survey.deposit.size()), std::vector<double>(survey.deposit.size(), nan)};
-  for (std::size_t i = 0; i < survey.deposit.size(); ++i) fixed.seeds[i] = survey.deposit[i] > options.deposit_threshold;
-  RandomField errors(survey.grid, survey.error.correlation_length, static_cast<std::uint64_t>(options.survey.resample_seed));
+              std::vector<char>(survey.deposit.size()),
+              DistancesAlong(scored.thalweg, survey.grid)};
+  for (std::size_t i = 0; i < survey.deposit.size(); ++i)
+    fixed.seeds[i] = survey.deposit[i] > options.deposit_threshold;
+  RandomField errors(survey.grid, survey.error.correlation_length,
+                     static_cast<std::uint64_t>(options.survey.resample_seed));
+  Progress progress;
   for (int draw = 0; draw < options.survey.resamples; ++draw) {
+    if (progress.due())
+      progress.update(fmt::format("survey {}/{} drawn within its error", draw, options.survey.resamples));
+    if (interrupted())
+      throw Interrupted({"ended while drawing surveys", "", "Nothing was written; run the stage again"});
     auto value = errors.next();
     for (std::size_t i = 0; i < value.size(); ++i) {
       value[i] = survey.measured[i] == 0 ? 0 : survey.measured[i] + sigma[i] * value[i];

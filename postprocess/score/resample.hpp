@@ -13,10 +13,10 @@ struct Resampled {
   std::vector<double> deposit_csi, rmse, bias, volume, volume_ratio, runout_difference, thalweg_runout_difference;
 };
 
-/// Each draw is measured + sigma g with g from RandomField, brought under the level of detection again, and scored as the
-/// survey is. Cells measured as exactly 0 were mapped as untouched and stay so. For the run-out only patches of deposit
-/// count that touch a deposit of the survey: noise far away is no run-out. The survey holds one such error already, so the
-/// mean of the draws lies a little below a score that errors can only lower.
+/// Each draw is measured + sigma g with g from RandomField, brought under the level of detection again, and scored as
+/// the survey is. Cells measured as exactly 0 were mapped as untouched and stay so. For the run-out only patches of
+/// deposit count that touch a deposit of the survey: noise far away is no run-out. The survey holds one such error
+/// already, so the mean of the draws lies a little below a score that errors can only lower.
 Resampled resample(const Scored& scored, const OnSurveyGrid& simulated);
 
 }  // namespace talus::postprocess

@@ -21,12 +21,12 @@ double area_above(const std::vector<double>& values, double threshold, double ce
          cell * cell;
 }
 
-/// The release by both conventions. A thickness t over a cell of area A on a slope s is the volume t A where t is vertical,
-/// and t A / cos(s) where it is normal to the slope; A / cos(s) is the true area of the cell.
+/// The release by both conventions. A thickness t over a cell of area A on a slope s is the volume t A where t is
+/// vertical, and t A / cos(s) where it is normal to the slope; A / cos(s) is the true area of the cell.
 struct Release {
-  double volume_if_normal = 0;           // [m3]
-  double area = 0, true_area = 0;        // of the cells thicker than release_limit() [m2]
-  double thickest_normal = 0;            // [m]
+  double volume_if_normal = 0;     // [m3]
+  double area = 0, true_area = 0;  // of the cells thicker than release_limit() [m2]
+  double thickest_normal = 0;      // [m]
 };
 
 Release release_of(const RunMaps& maps, double threshold) {

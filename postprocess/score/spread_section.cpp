@@ -37,7 +37,8 @@ void add_spread(const Scored& scored, const OnSurveyGrid& simulated, Sheet& shee
   sheet.section("Spread from the survey's error");
   sheet.count("resamples", "surveys drawn", draws);
   sheet.number("survey_correlation_length_m", "range of the survey's errors", "m", survey.error.correlation_length, 1);
-  if (!survey.footprint_is_change) sheet.skip({"footprint_csi_sd"}, "the footprint is not a surveyed change, its error is not known");
+  if (!survey.footprint_is_change)
+    sheet.skip({"footprint_csi_sd"}, "the footprint is not a surveyed change, its error is not known");
   for (const Line& line : {Line{"footprint_csi", "footprint CSI", "", 3, all.footprint_csi},
                            Line{"deposit_csi", "deposit CSI", "", 3, all.deposit_csi},
                            Line{"thickness_rmse", "thickness RMSE", "m", 2, all.rmse},

@@ -6,29 +6,14 @@
 
 #include <fmt/format.h>
 
-#include "common/raster/slope.hpp"
-#include "common/stage/stage.hpp"
+#include "common/error.hpp"
+#include "postprocess/score/survey_error.hpp"
+#include "postprocess/score/survey_grid.hpp"
 
 namespace talus::postprocess {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool same_grid(const MapGrid& a, const MapGrid& b) {
-  const double slack = 1e-6 * a.cell;
-  return a.columns == b.columns && a.rows == b.rows && std::abs(a.west - b.west) < slack &&
-         std::abs(a.south - b.south) < slack && std::abs(a.cell - b.cell) * std::max(a.columns, a.rows) < slack;
-}
-
-void check_crs(const fs::path& file, const MapGrid& grid, const MapGrid& run) {
-  if (same_crs(grid.crs_wkt, run.crs_wkt)) return;
-  const auto mend = run.crs_wkt.empty() || grid.crs_wkt.empty()
-                        ? fmt::format("If the coordinates fit, name the CRS: gdal_edit.py -a_srs {} {}",
-                                      run.crs_wkt.empty() ? "None" : crs_name(run.crs_wkt), file.string())
-                        : fmt::format("Reproject: gdalwarp -t_srs {} {} out.tif", crs_name(run.crs_wkt), file.string());
-  throw DataError({fmt::format("{}: CRS is {}", file.string(), crs_name(grid.crs_wkt)),
-                   fmt::format("the run is in {}", crs_name(run.crs_wkt)), mend});
-}
 
 std::string box(const MapGrid& grid) {
   return fmt::format("x {:.1f} to {:.1f}, y {:.1f} to {:.1f}", grid.west, grid.east(), grid.south, grid.north());
@@ -49,22 +34,9 @@ void check_overlap(const fs::path& file, const Survey& survey, const RunMaps& ma
                    "Give the survey of this event, in the run's coordinates"});
 }
 
-std::vector<double> on_grid(const Raster& raster, const MapGrid& grid) {
-  return same_grid(raster.grid, grid) ? raster.values : resample_thickness(raster, grid).values;
-}
-
 void zero_for_nodata(std::vector<double>& values) {
   for (double& v : values) {
     if (std::isnan(v)) v = 0;
-  }
-}
-
-/// Slope-normal values to vertical ones, where the options say so and the run has ground.
-void to_vertical(Raster& raster, const SurveyOptions& options, const RunMaps& maps) {
-  if (options.direction != Direction::slope_normal) return;
-  const auto cosine = on_grid({maps.grid, slope_cosine({maps.grid, maps.terrain})}, raster.grid);
-  for (std::size_t i = 0; i < cosine.size(); ++i) {
-    if (cosine[i] > 0) raster.values[i] /= cosine[i];  // beyond the run's ground: as it is
   }
 }
 
@@ -99,49 +71,6 @@ void read_surfaces(const SurveyOptions& options, const RunMaps& maps, Survey& su
   for (std::size_t i = 0; i < after.values.size(); ++i) survey.measured.push_back(after.values[i] - before.values[i]);
 }
 
-/// The raster of sigma on the survey's grid. A measured value without a sigma is not known well enough to be compared; 0
-/// stands for ground that was mapped as untouched, and needs none.
-std::vector<double> read_sigma(const SurveyOptions& options, const RunMaps& maps, Survey& survey) {
-  if (options.sigma.empty()) return std::vector<double>(survey.grid.count(), options.sigma_m);
-  auto raster = read_raster(options.sigma);
-  check_crs(options.sigma, raster.grid, maps.grid);
-  survey.inputs.push_back(options.sigma);
-  if (!options.thickness.empty()) to_vertical(raster, options, maps);
-  if (!same_grid(raster.grid, survey.grid)) raster = resample_elevation(raster, survey.grid);
-  std::size_t without = 0;
-  for (std::size_t i = 0; i < raster.values.size(); ++i) {
-    double& sigma = raster.values[i];
-    if (sigma < 0)
-      throw DataError({fmt::format("{}: a standard error of {:g} m", options.sigma.string(), sigma), "it cannot be negative",
-                       "Give the raster of 1 sigma, in metres"});
-    if (!std::isnan(sigma) || std::isnan(survey.measured[i])) continue;
-    if (survey.measured[i] == 0) {
-      sigma = 0;
-      continue;
-    }
-    survey.measured[i] = std::numeric_limits<double>::quiet_NaN();
-    ++without;
-  }
-  if (without > 0) survey.notes.push_back(fmt::format("{} surveyed cells without a sigma are left out.", without));
-  return raster.values;
-}
-
-void read_error(const SurveyOptions& options, const RunMaps& maps, Survey& survey) {
-  if (options.sigma.empty() && options.sigma_m == 0) return;
-  auto& error = survey.error;
-  error.sigma = read_sigma(options, maps, survey);
-  error.detection = options.detection;
-  error.correlation_length = options.correlation_length;
-  if (options.correlation_length == 0 && !options.sigma.empty())
-    error.correlation_length = std::max(0.0, raster_item(options.sigma, "CORRELATION_LENGTH_M").value_or(0));
-  if (error.correlation_length > 0 || options.resamples == 0) return;
-  const std::string warning =
-      "The range of the survey's errors is not known: they are drawn for every cell for itself, which makes the spread of "
-      "scores too small. Give correlation_length_m.";
-  survey.notes.push_back("Warning: " + warning);
-  log_warning("[postprocess.survey] " + warning);
-}
-
 void read_footprint(const SurveyOptions& options, const RunMaps& maps, double threshold, Survey& survey) {
   const bool has_grid = !survey.deposit.empty();
   if (!options.peak_thickness.empty() || !options.polygon.empty()) survey.footprint_is_change = false;
@@ -165,51 +94,7 @@ void read_footprint(const SurveyOptions& options, const RunMaps& maps, double th
   }
 }
 
-/// Where a row's centre line crosses the rings of one polygon, west to east.
-std::vector<double> crossings(const MapPolygon& polygon, double y) {
-  std::vector<double> places;
-  for (const auto& ring : polygon.rings) {
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-      const auto& a = ring[i];
-      const auto& b = ring[(i + 1) % ring.size()];
-      if ((a[1] > y) != (b[1] > y)) places.push_back(a[0] + (b[0] - a[0]) * (y - a[1]) / (b[1] - a[1]));
-    }
-  }
-  std::sort(places.begin(), places.end());
-  return places;
-}
-
 }  // namespace
-
-std::vector<double> rasterize(const std::vector<MapPolygon>& polygons, const MapGrid& grid) {
-  std::vector<double> values(grid.count(), 0.0);
-  for (const auto& polygon : polygons) {
-    for (int row = 0; row < grid.rows; ++row) {
-      // Even-odd: between the first and the second crossing is inside, holes count out.
-      const auto places = crossings(polygon, grid.y(row));
-      for (std::size_t k = 0; k + 1 < places.size(); k += 2) {
-        const double first = std::ceil((places[k] - grid.west) / grid.cell - 0.5);
-        const double past = std::ceil((places[k + 1] - grid.west) / grid.cell - 0.5);
-        const int from = static_cast<int>(std::clamp(first, 0.0, static_cast<double>(grid.columns)));
-        const int to = static_cast<int>(std::clamp(past, 0.0, static_cast<double>(grid.columns)));
-        for (int column = from; column < to; ++column) values[grid.index(column, row)] = 1;
-      }
-    }
-  }
-  return values;
-}
-
-Sighting sight(const Survey& survey, const std::vector<double>& value) {
-  Sighting seen{value, value};
-  const auto& error = survey.error;
-  for (std::size_t i = 0; i < value.size(); ++i) {
-    const bool detected = error.sigma.empty() || !(std::abs(value[i]) < error.detection * error.sigma[i]);
-    if (std::isnan(value[i])) continue;
-    seen.deposit[i] = detected ? std::max(0.0, value[i]) : 0;
-    seen.footprint[i] = detected ? std::abs(value[i]) : 0;
-  }
-  return seen;
-}
 
 std::optional<Survey> read_survey(const SurveyOptions& options, const RunMaps& maps, double footprint_threshold) {
   if (!options.given()) return std::nullopt;

@@ -14,18 +14,18 @@ namespace talus::postprocess {
 
 /// How far a survey may be off.
 struct SurveyError {
-  std::vector<double> sigma;       ///< standard error of the measured value at each cell [m]; empty: not known
-  double correlation_length = 0;   ///< range of a spherical correlation of the errors [m]; 0: cells are independent
-  double detection = 0;            ///< level of detection over sigma; 0: off
+  std::vector<double> sigma;      ///< standard error of the measured value at each cell [m]; empty: not known
+  double correlation_length = 0;  ///< range of a spherical correlation of the errors [m]; 0: cells are independent
+  double detection = 0;           ///< level of detection over sigma; 0: off
 };
 
 /// A survey on its own grid. Empty vectors: not given. NaN: not surveyed.
 struct Survey {
   std::string name;
-  MapGrid grid;                 ///< the grid everything is compared on: the survey's, or the run's for a bare polygon
-  std::vector<double> measured; ///< thickness, or after - before, before any level of detection [m]
-  SurveyError error;            ///< of `measured`
-  std::vector<double> deposit;  ///< [m] thickness, or max(0, after - before)
+  MapGrid grid;                  ///< the grid everything is compared on: the survey's, or the run's for a bare polygon
+  std::vector<double> measured;  ///< thickness, or after - before, before any level of detection [m]
+  SurveyError error;             ///< of `measured`
+  std::vector<double> deposit;   ///< [m] thickness, or max(0, after - before)
   bool deposit_is_change = false;    ///< deposit is a change of the surface: compared with the simulated change
   std::vector<double> footprint;     ///< peak thickness or |change| [m], or 1 inside and 0 outside a polygon
   bool footprint_is_change = false;  ///< footprint is |after - before|

@@ -52,7 +52,8 @@ Thalweg given_thalweg(const std::filesystem::path& file, const RunMaps& maps) {
 Polyline path_of_mass(const Run& run) {
   Polyline path;
   for (std::size_t frame = 0; frame < run.frames.time.size(); ++frame) {
-    if (const auto centre = centre_of_mass(run.maps.grid, flow_thickness(run, frame), {})) path.push_back({centre->x, centre->y});
+    if (const auto centre = centre_of_mass(run.maps.grid, flow_thickness(run, frame), {}))
+      path.push_back({centre->x, centre->y});
   }
   return path;
 }
@@ -74,10 +75,13 @@ Thalweg found_thalweg(const Run& run, const Options& options) {
   const auto& maps = run.maps;
   const double cell = maps.grid.cell;
   const auto top = crown(maps, options.deposit_threshold);
-  const auto toe = top ? farthest(maps.grid, maps.deposit_thickness, options.deposit_threshold, *top, maps.before) : std::nullopt;
+  const auto toe =
+      top ? farthest(maps.grid, maps.deposit_thickness, options.deposit_threshold, *top, maps.before) : std::nullopt;
   if (!toe || plan_distance(*top, *toe) < cell) {
     Thalweg none;
-    none.origin = !top ? "no release in the run's maps" : !toe ? "no deposit above the threshold" : "nothing moved by a cell";
+    none.origin = !top   ? "no release in the run's maps"
+                  : !toe ? "no deposit above the threshold"
+                         : "nothing moved by a cell";
     return none;
   }
   auto middle = without_returns(path_of_mass(run), 2 * cell);
@@ -85,8 +89,9 @@ Thalweg found_thalweg(const Run& run, const Options& options) {
   if (!by_mass) middle.clear();
   const auto way = without_returns(joined(maps, *top, middle, *toe), cell);
   auto thalweg = thalweg_from(smoothed(resampled(way, cell), smoothing), cell);
-  thalweg.origin = by_mass ? "path of the centre of mass"
-                           : "thickest flow from crown to deposit, as the centre of mass moves less than five cells over the frames";
+  thalweg.origin =
+      by_mass ? "path of the centre of mass"
+              : "thickest flow from crown to deposit, as the centre of mass moves less than five cells over the frames";
   return thalweg;
 }
 
@@ -122,6 +127,15 @@ AlongLine project(const Thalweg& thalweg, double x, double y) {
   return best;
 }
 
+DistancesAlong::DistancesAlong(const Thalweg& thalweg, const MapGrid& grid)
+    : thalweg_(thalweg), grid_(grid), known_(grid.count(), nan) {}
+
+double DistancesAlong::at(int column, int row) {
+  double& distance = known_[grid_.index(column, row)];
+  if (std::isnan(distance)) distance = project(thalweg_, grid_.x(column), grid_.y(row)).distance;
+  return distance;
+}
+
 std::optional<PlaceAlong> farthest_along(const Thalweg& thalweg, const MapGrid& grid, const std::vector<double>& values,
                                          double threshold, const std::vector<double>& surface) {
   std::optional<PlaceAlong> far;
@@ -148,11 +162,18 @@ std::vector<double> flow_thickness(const Run& run, std::size_t frame) {
 }
 
 Series front_over_time(const Run& run, const Thalweg& thalweg, double threshold) {
-  Series front;
+  const auto& grid = run.maps.grid;
+  DistancesAlong distances(thalweg, grid);
+  Series front{run.frames.time, {}};
   for (std::size_t frame = 0; frame < run.frames.time.size(); ++frame) {
-    const auto far = farthest_along(thalweg, run.maps.grid, flow_thickness(run, frame), threshold, {});
-    front.time.push_back(run.frames.time[frame]);
-    front.value.push_back(far ? far->distance : nan);
+    const auto thickness = flow_thickness(run, frame);
+    double reach = nan;
+    for (int row = 0; row < grid.rows; ++row) {
+      for (int column = 0; column < grid.columns; ++column) {
+        if (thickness[grid.index(column, row)] > threshold) reach = std::fmax(reach, distances.at(column, row));
+      }
+    }
+    front.value.push_back(reach);
   }
   return front;
 }
@@ -168,7 +189,8 @@ std::vector<double> cross_section_maxima(const Thalweg& thalweg, const MapGrid& 
       if (std::isnan(value)) continue;
       const auto place = project(thalweg, grid.x(column), grid.y(row));
       const double station = std::round(place.distance / step);
-      if (!(std::abs(place.offset) <= half_width && station >= 0 && station < static_cast<double>(maxima.size()))) continue;
+      if (!(std::abs(place.offset) <= half_width && station >= 0 && station < static_cast<double>(maxima.size())))
+        continue;
       double& top = maxima[static_cast<std::size_t>(station)];
       if (!(value <= top)) top = value;
     }

@@ -24,10 +24,10 @@ struct Thalweg {
 };
 
 /// The line of `[postprocess] thalweg`, turned so that it begins at its higher end, or else the path of the centre of
-/// mass over the frames, carried on through the thickest flow to the crown and to the farthest deposit, and smoothed (the
-/// idea: Tonnel et al. 2023, AvaFrame com1DFA, mass-averaged path). Where the centre of mass moves less than five cells or
-/// frames are missing, it is the way through the thickest flow from the crown to the farthest deposit.
-/// Throws DataError: unreadable file, no line or several in it, a line that misses the run's area.
+/// mass over the frames, carried on through the thickest flow to the crown and to the farthest deposit, and smoothed
+/// (the idea: Tonnel et al. 2023, AvaFrame com1DFA, mass-averaged path). Where the centre of mass moves less than five
+/// cells or frames are missing, it is the way through the thickest flow from the crown to the farthest deposit. Throws
+/// DataError: unreadable file, no line or several in it, a line that misses the run's area.
 Thalweg thalweg_of(const Run& run, const Options& options);
 
 /// `values` of `grid` at the line's vertices, bilinear; NaN outside the grid and where a cell has no value.
@@ -39,6 +39,18 @@ struct AlongLine {
   double offset = 0;    ///< from the line, positive to the left looking downwards [m]
 };
 AlongLine project(const Thalweg& thalweg, double x, double y);
+
+/// Distance along a line of the cells of a map, computed once for each cell that is asked for. Keeps references.
+class DistancesAlong {
+ public:
+  DistancesAlong(const Thalweg& thalweg, const MapGrid& grid);
+  double at(int column, int row);  ///< of the cell's centre [m]
+
+ private:
+  const Thalweg& thalweg_;
+  const MapGrid& grid_;
+  std::vector<double> known_;  // NaN: not asked for yet
+};
 
 /// A place, and how far along a line it lies [m].
 struct PlaceAlong {

@@ -25,7 +25,8 @@ double covariance(double range, int dx, int dy) {
   return sum / count;
 }
 
-// 400 fields of about 1850 / (8 x 8) independent patches: a standard error near 0.01 for the variance; 0.04 is four of them.
+// 400 fields of about 1850 / (8 x 8) independent patches: a standard error near 0.01 for the variance; 0.04 is four of
+// them.
 constexpr double chance = 0.04;
 
 TEST(RandomField, has_unit_variance_and_spherical_correlation) {

@@ -47,7 +47,8 @@ TEST(Resample, carries_the_error_into_volume_bias_and_rmse) {
   // 100 cells of 100 m2, at 1.5 m or more, off by 0.2 m each for itself: no cell falls under the threshold of 0.5 m.
   const auto all = Setting(0.2).draw();
   const double sigma_volume = 0.2 * 100 * std::sqrt(100.0);
-  EXPECT_NEAR(spread_of(all.volume).deviation, sigma_volume, 0.15 * sigma_volume);  // 400 draws: a standard error of 3.5 %
+  EXPECT_NEAR(spread_of(all.volume).deviation, sigma_volume,
+              0.15 * sigma_volume);  // 400 draws: a standard error of 3.5 %
   EXPECT_NEAR(spread_of(all.volume).mean, 24000, 4 * sigma_volume / 20);
   EXPECT_NEAR(spread_of(all.bias).deviation, 0.2 / 10, 0.15 * 0.2 / 10);
   EXPECT_NEAR(spread_of(all.rmse).mean, 0.2, 0.01);

@@ -132,6 +132,16 @@ TEST(Score, measures_residuals_by_the_surveys_error) {
   EXPECT_EQ(json.at("not_scored").at("footprint_csi_sd"), "the footprint is not a surveyed change, its error is not known");
 }
 
+TEST(Score, warns_where_the_level_of_detection_hides_deposit) {
+  auto survey = shifted_survey();
+  survey.measured = survey.deposit;
+  survey.error = {std::vector<double>(survey.grid.count(), 0.5), 30, 1.96};
+  const auto notes = [&] { return json_of(small_run(), survey).at("notes").dump(); };
+  EXPECT_EQ(notes().find("level of detection lies above"), std::string::npos) << "0.98 m against 1 m";
+  survey.error.sigma.assign(survey.grid.count(), 0.6);
+  EXPECT_NE(notes().find("above the deposit threshold of 1 m on 100 %"), std::string::npos) << notes();
+}
+
 TEST(Score, is_perfect_against_itself) {
   const auto run = small_run();
   Survey survey = shifted_survey();

@@ -75,7 +75,8 @@ TEST(Thalweg, is_empty_and_says_why_without_a_deposit) {
 TEST(Thalweg, turns_a_given_line_so_that_it_begins_at_the_higher_end) {
   const test::Scratch scratch;
   Options options;
-  options.thalweg = scratch.write("line.geojson", geojson("LineString", "[[600390,5100150],[600200,5100150],[600010,5100150]]"));
+  options.thalweg =
+      scratch.write("line.geojson", geojson("LineString", "[[600390,5100150],[600200,5100150],[600010,5100150]]"));
   const auto thalweg = thalweg_of(small_run(), options);
   EXPECT_TRUE(thalweg.given);
   EXPECT_EQ(thalweg.line.front()[0], 600010) << "the slope falls to the east";
@@ -90,11 +91,14 @@ TEST(Thalweg, refuses_what_is_not_one_line_over_the_run) {
     options.thalweg = scratch.write("line.geojson", text);
     return test::fault_of<DataError>([&] { thalweg_of(small_run(), options); });
   };
-  EXPECT_NE(fault(geojson("LineString", "[[500000,5100150],[500100,5100150]]")).find("misses the run's area"), std::string::npos);
-  EXPECT_NE(fault(geojson("MultiLineString", "[[[600010,5100150],[600100,5100150]],[[600200,5100150],[600300,5100150]]]"))
-                .find("2 lines (a thalweg is one line)"),
+  EXPECT_NE(fault(geojson("LineString", "[[500000,5100150],[500100,5100150]]")).find("misses the run's area"),
             std::string::npos);
-  EXPECT_NE(fault(geojson("Point", "[600010,5100150]")).find("no line in its first layer (it holds POINT)"), std::string::npos);
+  EXPECT_NE(
+      fault(geojson("MultiLineString", "[[[600010,5100150],[600100,5100150]],[[600200,5100150],[600300,5100150]]]"))
+          .find("2 lines (a thalweg is one line)"),
+      std::string::npos);
+  EXPECT_NE(fault(geojson("Point", "[600010,5100150]")).find("no line in its first layer (it holds POINT)"),
+            std::string::npos);
 }
 
 TEST(Thalweg, samples_a_map_bilinearly) {
@@ -123,7 +127,8 @@ TEST(Thalweg, follows_the_front_over_time_and_leaves_out_ground_at_rest) {
   auto front = front_over_time(run, thalweg, 1);
   EXPECT_EQ(front.time, (std::vector<double>{0, 5, 10}));
   EXPECT_EQ(front.value, (std::vector<double>{65, 115, 175}));
-  // The same with 2 m of erodible ground below the foot of the slope, of which the last frame has taken half of a cell's.
+  // The same with 2 m of erodible ground below the foot of the slope, of which the last frame has taken half of a
+  // cell's.
   run.maps.eroded_depth.assign(run.maps.grid.count(), 0.0);
   for (auto& frame : run.frames.thickness) {
     for (int column = 20; column < 40; ++column) frame[run.maps.grid.index(column, 15)] += 2;
