@@ -237,6 +237,54 @@ TEST_F(Report, profile_follows_the_thalweg_from_the_release_to_the_deposit) {
   EXPECT_GT(profile.at("before").at(1).get<double>(), profile.at("before").at(count - 2).get<double>());
 }
 
+/// A cap that slides down a bumpy slope, 300 x 300 cells, 60 frames.
+Run large_run() {
+  auto run = test::small_run();
+  auto& maps = run.maps;
+  maps.grid.columns = maps.grid.rows = 300;
+  const auto& grid = maps.grid;
+  const auto cap = [&](double along, double height) {
+    std::vector<double> values;
+    for (int row = 0; row < grid.rows; ++row)
+      for (int column = 0; column < grid.columns; ++column) {
+        const double away = std::hypot(column - along, row - 150.0 + 20 * std::sin(0.02 * along)) / 60;
+        values.push_back(std::max(0.0, 1 - away * away) * height * (1 + 0.1 * std::sin(0.7 * column) * std::cos(0.9 * row)));
+      }
+    return values;
+  };
+  maps.terrain.clear();
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column)
+      maps.terrain.push_back(3000 - 6.0 * column + 8 * std::sin(0.31 * row) * std::sin(0.23 * column) + 3 * std::sin(1.7 * row + 0.9 * column));
+  maps.initial_thickness = cap(60, 80);
+  maps.deposit_thickness = cap(240, 40);
+  maps.before = maps.terrain;
+  run.frames = {};
+  maps.peak_thickness.assign(grid.count(), 0);
+  for (int frame = 0; frame < 60; ++frame) {
+    run.frames.time.push_back(frame);
+    run.frames.thickness.push_back(cap(60 + 3 * frame, 80 - 40.0 / 59 * frame));
+    for (std::size_t i = 0; i < grid.count(); ++i)
+      maps.peak_thickness[i] = std::max(maps.peak_thickness[i], run.frames.thickness.back()[i]);
+  }
+  maps.peak_speed = maps.peak_pressure = maps.arrival_time = maps.peak_thickness;
+  return run;
+}
+
+TEST(ReportSize, a_map_of_300_by_300_cells_with_60_frames_stays_below_ten_megabytes) {
+  const test::Scratch scratch;
+  const auto run = large_run();
+  const Options options;
+  const std::optional<Survey> survey;
+  test::write_run(scratch / "run.h5", run);
+  const auto thalweg = thalweg_of(run, options);
+  const auto score = make_score(run, options, survey, thalweg);
+  const auto page = report_html({run, options, survey, score, thalweg, {}, scratch / "run.h5"});
+  RecordProperty("bytes", static_cast<int>(page.size()));
+  EXPECT_LT(page.size(), 10'000'000U);
+  EXPECT_GT(page.size(), 1'000'000U);
+}
+
 TEST(Page, loads_nothing_and_has_a_place_for_title_and_data) {
   const auto page = page_template();
   EXPECT_NE(page.find("<title>@TITLE@</title>"), std::string_view::npos);

@@ -23,7 +23,7 @@ class Plate {
     this.box = { x: (width - size.width) / 2, y: 12, ...size };
     this.canvas = document.createElement("canvas");
     this.canvas.width = width;
-    this.canvas.height = Math.ceil(size.height + 12 + 102);
+    this.canvas.height = Math.ceil(size.height + 12 + 112);
     this.context = this.canvas.getContext("2d");
   }
 
@@ -134,7 +134,7 @@ export class Plates {
     this.box = document.getElementById("plates");
   }
 
-  plate(field, classes, mode, { width = 1000, tallest = 730, lines = this.lines } = {}) {
+  plate(field, classes, mode, { width = 1000, tallest = 640, lines = this.lines } = {}) {
     const plate = new Plate(this.data.map.window, width, tallest), { map } = this;
     plate.image(map.ground, this.fields.ground.shade);
     plate.image(map.painter.paint(field, classes, mode, { most: 1100 }), field);
@@ -149,7 +149,7 @@ export class Plates {
   draw() {
     this.fields.layers.forEach((layer, i) => {
       const unit = layer.unit ? ` [${unitWords(layer.unit)}]` : "";
-      const plate = this.plate(layer.field, layer.classes, blending(layer), i === 0 ? { width: 1800, tallest: 1330 } : {});
+      const plate = this.plate(layer.field, layer.classes, blending(layer), i === 0 ? { width: 1800, tallest: 1150 } : {});
       this.box.append(figure(plate, layer.title + unit, layer.classes, i === 0));
       if (i === 0) this.box.lastChild.append(this.lineLegend());
     });
