@@ -56,7 +56,8 @@ class Reader {
     for (const auto& line : lines_) {
       if (!line.starts_with('#')) return;
       const auto colon = line.find(": ");
-      if (colon != std::string::npos) used_.facts.emplace_back(trimmed(line.substr(1, colon - 1)), line.substr(colon + 2));
+      if (colon != std::string::npos)
+        used_.facts.emplace_back(trimmed(line.substr(1, colon - 1)), line.substr(colon + 2));
     }
   }
 
@@ -67,7 +68,8 @@ class Reader {
       if (node.is_table()) {
         table(below, *node.as_table());
       } else if (items != nullptr && !items->empty() && items->is_array_of_tables()) {
-        for (std::size_t i = 0; i < items->size(); ++i) table(fmt::format("{} {}", below, i + 1), *items->get(i)->as_table());
+        for (std::size_t i = 0; i < items->size(); ++i)
+          table(fmt::format("{} {}", below, i + 1), *items->get(i)->as_table());
       } else {
         value(path, std::string(name.str()), node);
       }

@@ -39,7 +39,8 @@ std::string quoted(const std::string& text) {
 /// A child's standard input. A child that ends early must not end us: SIGPIPE is ignored meanwhile.
 class Pipe {
  public:
-  explicit Pipe(const std::string& command) : before_(std::signal(SIGPIPE, SIG_IGN)), pipe_(::popen(command.c_str(), "w")) {}
+  explicit Pipe(const std::string& command)
+      : before_(std::signal(SIGPIPE, SIG_IGN)), pipe_(::popen(command.c_str(), "w")) {}
   Pipe(const Pipe&) = delete;
   Pipe& operator=(const Pipe&) = delete;
   ~Pipe() {
@@ -85,10 +86,12 @@ bool encode(const PictureInput& input, const std::string& tail, int rate) {
   Progress progress;
   for (std::size_t i = 0; i < frames.time.size(); ++i) {
     const auto flow = flow_thickness(input.run, i);
-    const auto canvas = draw_map({input.run, input.options, input.survey, input.score, Instant{frames.time[i], flow, most}});
+    const auto canvas =
+        draw_map({input.run, input.options, input.survey, input.score, Instant{frames.time[i], flow, most}});
     if (!pipe)
-      pipe.emplace(fmt::format("ffmpeg -nostdin -loglevel error -y -f rawvideo -pix_fmt bgr0 -s {}x{} -r {} -i pipe:0 {}",
-                               canvas.width(), canvas.height(), rate, tail));
+      pipe.emplace(
+          fmt::format("ffmpeg -nostdin -loglevel error -y -f rawvideo -pix_fmt bgr0 -s {}x{} -r {} -i pipe:0 {}",
+                      canvas.width(), canvas.height(), rate, tail));
     const auto pixels = canvas.pixels();
     const int times = i + 1 == frames.time.size() ? 1 + seconds_at_the_end * rate : 1;
     for (int k = 0; k < times; ++k)
@@ -100,7 +103,9 @@ bool encode(const PictureInput& input, const std::string& tail, int rate) {
 
 }  // namespace
 
-int film_rate(std::size_t frames) { return std::clamp(static_cast<int>(std::lround(static_cast<double>(frames) / 8)), 2, 25); }
+int film_rate(std::size_t frames) {
+  return std::clamp(static_cast<int>(std::lround(static_cast<double>(frames) / 8)), 2, 25);
+}
 
 void check_animation(Animation animation, const Run& run) {
   if (animation == Animation::none) return;
@@ -109,7 +114,8 @@ void check_animation(Animation animation, const Run& run) {
                      "Install it: apt-get install ffmpeg, or set animation = \"none\""});
   if (run.frames.time.size() < 2)
     throw DataError({"[postprocess] animation: the run holds " + std::to_string(run.frames.time.size()) + " frames",
-                     "a film needs two", "Set frame_interval_s of [solve] and run talus-solve again, or animation = \"none\""});
+                     "a film needs two",
+                     "Set frame_interval_s of [solve] and run talus-solve again, or animation = \"none\""});
 }
 
 fs::path write_animation(const fs::path& folder, const PictureInput& input, Animation animation) {

@@ -74,7 +74,8 @@ Json series_json(const ReportInput& input) {
   for (std::size_t c = 0; c < history.names.size(); ++c) json["history"][history.names[c]] = history.columns[c];
   if (thalweg.line.size() >= 2 && !input.run.frames.time.empty()) {
     const auto front = front_over_time(input.run, thalweg, input.options.footprint_threshold);
-    json["front"] = {{"time", front.time}, {"distance", rounded(front.value)}, {"threshold", input.options.footprint_threshold}};
+    json["front"] = {
+        {"time", front.time}, {"distance", rounded(front.value)}, {"threshold", input.options.footprint_threshold}};
   }
   const auto motion = read_motion(input.run_file, moving);
   if (motion.time.size() >= 2) {

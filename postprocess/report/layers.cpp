@@ -46,7 +46,9 @@ Json time_classes(const std::vector<double>& limits) {
   auto list = Json::array();
   const std::size_t count = limits.size() + 1;
   for (std::size_t i = 0; i < count; ++i) {
-    const auto label = limits.empty() ? std::string("all") : i == 0 ? fmt::format("0 \u2013 {:g}", limits[0]) : class_label(i - 1, limits);
+    const auto label = limits.empty() ? std::string("all")
+                       : i == 0       ? fmt::format("0 \u2013 {:g}", limits[0])
+                                      : class_label(i - 1, limits);
     list.push_back(class_json(i == 0 ? -endless : limits[i - 1], i < limits.size() ? limits[i] : endless,
                               class_colour(count - 1 - i, count, Ramp::sea), label));
   }
@@ -138,21 +140,21 @@ void Layers::simulated() {
   const auto deposit = thickness_classes(maps_.deposit_thickness);
   add({"deposit", "Deposit thickness", "m", deposit, map(maps_.deposit_thickness), Merge::mean, 2,
        "Thickness at the end of the run, vertical."});
-  add({"peak_thickness", "Peak thickness", "m", thickness_classes(maps_.peak_thickness),
-       map(maps_.peak_thickness), Merge::largest, 2, "Largest thickness over time, vertical."});
+  add({"peak_thickness", "Peak thickness", "m", thickness_classes(maps_.peak_thickness), map(maps_.peak_thickness),
+       Merge::largest, 2, "Largest thickness over time, vertical."});
   const auto threshold = fmt::format(", where the flow was thicker than {:g} m.", maps_.threshold);
-  add({"peak_speed", "Peak speed", "m/s", classes(speed_limits(maps_), Ramp::sea),
-       map(maps_.peak_speed), Merge::largest, 1, "Largest depth-mean speed over time" + threshold});
-  add({"peak_pressure", "Peak pressure", "kPa", classes(pressure_limits(maps_), Ramp::heat),
-       map(maps_.peak_pressure), Merge::largest, 1, "Largest density times speed squared over time" + threshold});
+  add({"peak_speed", "Peak speed", "m/s", classes(speed_limits(maps_), Ramp::sea), map(maps_.peak_speed),
+       Merge::largest, 1, "Largest depth-mean speed over time" + threshold});
+  add({"peak_pressure", "Peak pressure", "kPa", classes(pressure_limits(maps_), Ramp::heat), map(maps_.peak_pressure),
+       Merge::largest, 1, "Largest density times speed squared over time" + threshold});
   add({"arrival", "Arrival time", "s", time_classes(time_limits(maps_)),
        values_raster(maps_, maps_.arrival_time, false), Merge::smallest, 1,
        fmt::format("When the flow first was thicker than {:g} m.", maps_.threshold)});
-  add({"release", "Release thickness", "m", thickness_classes(maps_.initial_thickness),
-       map(maps_.initial_thickness), Merge::mean, 2, "Thickness at the start, vertical."});
+  add({"release", "Release thickness", "m", thickness_classes(maps_.initial_thickness), map(maps_.initial_thickness),
+       Merge::mean, 2, "Thickness at the start, vertical."});
   for (const auto& [name, values] : maps_.deposit_of)
-    add({"deposit_" + file_word(name), "Deposit from " + name, "m", deposit, map(values),
-         Merge::mean, 2, "The part of the deposit that came from this release, vertical."});
+    add({"deposit_" + file_word(name), "Deposit from " + name, "m", deposit, map(values), Merge::mean, 2,
+         "The part of the deposit that came from this release, vertical."});
 }
 
 void Layers::erosion() {
@@ -164,8 +166,13 @@ void Layers::erosion() {
 void Layers::surveyed(const Survey& survey) {
   const auto simulated = bring_to_survey_grid(maps_, survey);
   if (!survey.deposit.empty()) {
-    add({"surveyed", "Deposit, " + survey.name, "m", thickness_classes(maps_.deposit_thickness),
-         {survey.grid, survey.deposit}, Merge::mean, 2,
+    add({"surveyed",
+         "Deposit, " + survey.name,
+         "m",
+         thickness_classes(maps_.deposit_thickness),
+         {survey.grid, survey.deposit},
+         Merge::mean,
+         2,
          survey.deposit_is_change ? "Rise of the surface between the two surveys, vertical." : "Thickness, vertical."});
     difference(survey, simulated);
   }
@@ -182,7 +189,8 @@ void Layers::difference(const Survey& survey, const OnSurveyGrid& simulated) {
   add({"difference", "Difference, simulated \u2212 " + survey.name, "m", difference_classes(limits), std::move(raster),
        Merge::mean, 2,
        fmt::format("Where either deposit is thicker than {:g} m: red where the simulation has more, blue where it has "
-                   "less.", limit)});
+                   "less.",
+                   limit)});
 }
 
 void Layers::agreement(const Survey& survey, const OnSurveyGrid& simulated) {
@@ -214,7 +222,8 @@ Json frames_json(const ReportInput& input, const Window& window, int& coarsest) 
   coarsest = std::max(coarsest, factor);
   double thickest = 0;
   for (std::size_t i = 0; i < run.frames.time.size(); ++i) {
-    const auto frame = coarsened(cut(values_raster(run.maps, flow_thickness(run, i), true), window), factor, Merge::mean);
+    const auto frame =
+        coarsened(cut(values_raster(run.maps, flow_thickness(run, i), true), window), factor, Merge::mean);
     grid = frame.grid;
     json["time"].push_back(run.frames.time[i]);
     thickest = std::max(thickest, largest(frame.values));

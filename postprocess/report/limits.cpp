@@ -22,7 +22,7 @@ std::vector<double> difference_limits(const std::vector<double>& differences) {
   for (const double d : differences)
     if (std::abs(d) > 0) sizes.push_back(std::abs(d));
   if (sizes.empty()) return {0.2, 0.5, 1};
-  const auto place = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() - 1 - sizes.size() / 50);
+  const auto place = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() - 1 - sizes.size() / 10);
   std::nth_element(sizes.begin(), place, sizes.end());
   const double scale = round_above(std::max(*place, 0.1));
   return {scale / 5, scale / 2, scale};

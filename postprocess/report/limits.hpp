@@ -5,8 +5,8 @@
 
 namespace talus::postprocess {
 
-/// Rising positive limits of a symmetric scale [m]: 1/5, 1/2 and the whole of a round number that 98 of 100 differences
-/// do not exceed. NaN and 0 are left out.
+/// Rising positive limits of a symmetric scale [m]: 1/5, 1/2 and the whole of a round number that nine in ten
+/// differences do not exceed. NaN and 0 are left out.
 std::vector<double> difference_limits(const std::vector<double>& differences);
 
 }  // namespace talus::postprocess

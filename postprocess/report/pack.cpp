@@ -79,7 +79,8 @@ Raster coarsened(const Raster& raster, int factor, Merge merge) {
     for (int column = 0; column < coarse.grid.columns; ++column) {
       Merged merged(merge);
       for (int r = row * factor; r < std::min((row + 1) * factor, grid.rows); ++r)
-        for (int c = column * factor; c < std::min((column + 1) * factor, grid.columns); ++c) merged.add(raster.at(c, r));
+        for (int c = column * factor; c < std::min((column + 1) * factor, grid.columns); ++c)
+          merged.add(raster.at(c, r));
       coarse.values.push_back(merged.value());
     }
   }
@@ -89,7 +90,8 @@ Raster coarsened(const Raster& raster, int factor, Merge merge) {
 int factor_for(const MapGrid& grid, std::size_t cells) {
   int factor = 1;
   while (static_cast<std::size_t>((grid.columns + factor - 1) / factor) *
-             static_cast<std::size_t>((grid.rows + factor - 1) / factor) > cells)
+             static_cast<std::size_t>((grid.rows + factor - 1) / factor) >
+         cells)
     ++factor;
   return factor;
 }
@@ -117,10 +119,13 @@ nlohmann::ordered_json packed(const std::vector<std::vector<double>>& frames) {
   return {{"offset", offset}, {"step", step}, {"bytes", base64(deflated(bytes))}};
 }
 
-nlohmann::ordered_json packed(const std::vector<double>& values) { return packed(std::vector<std::vector<double>>{values}); }
+nlohmann::ordered_json packed(const std::vector<double>& values) {
+  return packed(std::vector<std::vector<double>>{values});
+}
 
 nlohmann::ordered_json grid_json(const MapGrid& grid) {
-  return {{"columns", grid.columns}, {"rows", grid.rows}, {"west", grid.west}, {"south", grid.south}, {"cell", grid.cell}};
+  return {
+      {"columns", grid.columns}, {"rows", grid.rows}, {"west", grid.west}, {"south", grid.south}, {"cell", grid.cell}};
 }
 
 std::string base64(const std::string& bytes) {

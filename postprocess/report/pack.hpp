@@ -25,8 +25,8 @@ Raster coarsened(const Raster& raster, int factor, Merge merge);
 int factor_for(const MapGrid& grid, std::size_t cells);
 
 /// Values as unsigned integers q with value = offset + step * (q - 1), and q = 0 for NaN: {"offset", "step", "bytes"}.
-/// 16 bit, all high bytes before all low bytes, zlib stream, base64. The error is at most half a step, 1 / 131068 of the
-/// range. Infinite values are not expected.
+/// 16 bit, all high bytes before all low bytes, zlib stream, base64. The error is at most half a step, 1 / 131068 of
+/// the range. Infinite values are not expected.
 nlohmann::ordered_json packed(const std::vector<double>& values);
 
 /// The same for several grids of one kind, end to end.

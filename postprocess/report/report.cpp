@@ -24,13 +24,17 @@ Json run_json(const ReportInput& input) {
   json["hardware"] = hardware();
   json["institution"] = options.institution;
   json["crs"] = crs_name(input.run.maps.grid.crs_wkt);
-  json["map"] = {{"columns", input.run.maps.grid.columns}, {"rows", input.run.maps.grid.rows}, {"cell", input.run.maps.grid.cell}};
-  json["thresholds"] = {{"footprint", options.footprint_threshold}, {"deposit", options.deposit_threshold},
+  json["map"] = {
+      {"columns", input.run.maps.grid.columns}, {"rows", input.run.maps.grid.rows}, {"cell", input.run.maps.grid.cell}};
+  json["thresholds"] = {{"footprint", options.footprint_threshold},
+                        {"deposit", options.deposit_threshold},
                         {"map", input.run.maps.threshold}};
   json["density"] = s.density;
   json["survey"] = nullptr;
   if (const auto& survey = input.survey)
-    json["survey"] = {{"name", survey->name}, {"is_change", survey->deposit_is_change}, {"is_polygon", !survey->polygons.empty()},
+    json["survey"] = {{"name", survey->name},
+                      {"is_change", survey->deposit_is_change},
+                      {"is_polygon", !survey->polygons.empty()},
                       {"footprint_threshold", survey->footprint_threshold}};
   return json;
 }
@@ -48,7 +52,8 @@ Window shown_window(const ReportInput& input) {
 Json map_json(const ReportInput& input) {
   const auto window = shown_window(input);
   int coarsest = 1;
-  Json json{{"window", {{"west", window.west}, {"south", window.south}, {"east", window.east}, {"north", window.north}}}};
+  Json json{
+      {"window", {{"west", window.west}, {"south", window.south}, {"east", window.east}, {"north", window.north}}}};
   json["ground"] = ground_json(input, window, coarsest);
   json["layers"] = layers_json(input, window, coarsest);
   json["frames"] = frames_json(input, window, coarsest);
@@ -69,9 +74,12 @@ std::string for_script(const Json& json) {
 std::string for_html(const std::string& text) {
   std::string safe;
   for (const char c : text) {
-    if (c == '&') safe += "&amp;";
-    else if (c == '<') safe += "&lt;";
-    else safe += c;
+    if (c == '&')
+      safe += "&amp;";
+    else if (c == '<')
+      safe += "&lt;";
+    else
+      safe += c;
   }
   return safe;
 }

@@ -30,8 +30,8 @@ struct ReportInput {
   std::filesystem::path run_file;  ///< for what is read of the points: how much is in motion
 };
 
-/// The page as the bytes of an HTML file: nothing in it is loaded from elsewhere. Throws DataError when a *.used.toml or
-/// the points of the run cannot be read.
+/// The page as the bytes of an HTML file: nothing in it is loaded from elsewhere. Throws DataError when a *.used.toml
+/// or the points of the run cannot be read.
 std::string report_html(const ReportInput& input);
 
 }  // namespace talus::postprocess

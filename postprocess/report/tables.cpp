@@ -24,8 +24,13 @@ Json both_ways(const std::string& name, const Raster& thickness, const std::vect
     thickest = std::max(thickest, h);
     thickest_normal = std::max(thickest_normal, h * cosine[i]);
   }
-  return {{"name", name},           {"volume", vertical},   {"volume_if_normal", normal},        {"area_projected", projected},
-          {"area_true", true_area}, {"thickest", thickest}, {"thickest_normal", thickest_normal},
+  return {{"name", name},
+          {"volume", vertical},
+          {"volume_if_normal", normal},
+          {"area_projected", projected},
+          {"area_true", true_area},
+          {"thickest", thickest},
+          {"thickest_normal", thickest_normal},
           {"limit", limit}};
 }
 
@@ -52,7 +57,8 @@ Json volumes_json(const Run& run, double deposit_threshold) {
   const auto cosine = slope_cosine({run.maps.grid, run.maps.terrain});
   const auto& maps = run.maps;
   auto bodies = Json::array();
-  bodies.push_back(both_ways("Release", {maps.grid, maps.initial_thickness}, cosine, release_limit(maps, deposit_threshold)));
+  bodies.push_back(
+      both_ways("Release", {maps.grid, maps.initial_thickness}, cosine, release_limit(maps, deposit_threshold)));
   bodies.push_back(both_ways("Deposit", {maps.grid, maps.deposit_thickness}, cosine, deposit_threshold));
   if (!maps.eroded_depth.empty())
     bodies.push_back(both_ways("Eroded ground", {maps.grid, maps.eroded_depth}, cosine, 0));
@@ -67,7 +73,9 @@ Json stages_json(const std::vector<StageText>& stages) {
       const auto used = recipe::read_used_recipe(*stage.text, stage.stage + ".used.toml");
       for (const auto& [name, value] : used.facts) json["facts"].push_back({name, value});
       for (const auto& key : used.keys)
-        json["keys"].push_back({{"table", key.table}, {"key", key.key}, {"value", key.value},
+        json["keys"].push_back({{"table", key.table},
+                                {"key", key.key},
+                                {"value", key.value},
                                 {"default", key.default_value ? Json(*key.default_value) : Json()}});
     }
     list.push_back(std::move(json));

@@ -37,7 +37,9 @@ std::vector<double> unpacked(const nlohmann::ordered_json& packed, std::size_t c
   const auto stream = from_base64(packed.at("bytes"));
   std::string bytes(2 * count, '\0');
   uLongf size = bytes.size();
-  EXPECT_EQ(uncompress(reinterpret_cast<Bytef*>(bytes.data()), &size, reinterpret_cast<const Bytef*>(stream.data()), stream.size()), Z_OK);
+  EXPECT_EQ(uncompress(reinterpret_cast<Bytef*>(bytes.data()), &size, reinterpret_cast<const Bytef*>(stream.data()),
+                       stream.size()),
+            Z_OK);
   EXPECT_EQ(size, 2 * count);
   std::vector<double> values;
   for (std::size_t i = 0; i < count; ++i) {
@@ -113,7 +115,9 @@ class Report : public ::testing::Test {
     test::write_run(file_, run_);
     thalweg_ = thalweg_of(run_, options_);
   }
-  ReportInput input() { return {run_, options_, survey_, score_ = make_score(run_, options_, survey_, thalweg_), thalweg_, stages_, file_}; }
+  ReportInput input() {
+    return {run_, options_, survey_, score_ = make_score(run_, options_, survey_, thalweg_), thalweg_, stages_, file_};
+  }
 
   /// A survey on a grid of its own, half as fine, that has 1 m less than the simulation everywhere.
   void survey_it() {
@@ -138,7 +142,8 @@ class Report : public ::testing::Test {
   std::optional<Survey> survey_;
   Thalweg thalweg_;
   Score score_;
-  std::vector<StageText> stages_{{"preprocess", {}}, {"solve", "# What\n# input: a  sha256 0\n\n[solve]\ncfl = 0.4  # default: 0.5\n"}};
+  std::vector<StageText> stages_{{"preprocess", {}},
+                                 {"solve", "# What\n# input: a  sha256 0\n\n[solve]\ncfl = 0.4  # default: 0.5\n"}};
 };
 
 Json layer_of(const Json& data, const std::string& id) {
@@ -161,7 +166,8 @@ TEST_F(Report, layers_hold_the_maps_that_the_geotiffs_hold) {
     for (int column = 0; column < columns; ++column) {
       const auto i = run_.maps.grid.index(first + column, bottom + row);
       if (std::isnan(run_.maps.terrain[i])) continue;
-      EXPECT_NEAR(values[static_cast<std::size_t>(row * columns + column)], run_.maps.deposit_thickness[i], 6.5 / 65534);
+      EXPECT_NEAR(values[static_cast<std::size_t>(row * columns + column)], run_.maps.deposit_thickness[i],
+                  6.5 / 65534);
       ++compared;
     }
   }
@@ -183,7 +189,8 @@ TEST_F(Report, difference_is_simulated_minus_surveyed_where_either_is_a_deposit)
   const auto& grid = layer.at("grid");
   double sum = 0;
   int cells = 0;
-  for (const double d : unpacked(layer.at("data"), grid.at("columns").get<std::size_t>() * grid.at("rows").get<std::size_t>())) {
+  for (const double d :
+       unpacked(layer.at("data"), grid.at("columns").get<std::size_t>() * grid.at("rows").get<std::size_t>())) {
     if (std::isnan(d)) continue;
     sum += d;
     ++cells;
@@ -232,7 +239,8 @@ TEST_F(Report, profile_follows_the_thalweg_from_the_release_to_the_deposit) {
   const auto profile = data_of(report_html(input())).at("profile");
   const auto count = profile.at("distance").size();
   ASSERT_GT(count, 10U);
-  for (const auto* key : {"before", "bed", "deposit_surface", "deposit", "peak", "speed", "surveyed", "surveyed_surface"})
+  for (const auto* key :
+       {"before", "bed", "deposit_surface", "deposit", "peak", "speed", "surveyed", "surveyed_surface"})
     EXPECT_EQ(profile.at(key).size(), count) << key;
   EXPECT_GT(profile.at("before").at(1).get<double>(), profile.at("before").at(count - 2).get<double>());
 }
@@ -248,14 +256,16 @@ Run large_run() {
     for (int row = 0; row < grid.rows; ++row)
       for (int column = 0; column < grid.columns; ++column) {
         const double away = std::hypot(column - along, row - 150.0 + 20 * std::sin(0.02 * along)) / 60;
-        values.push_back(std::max(0.0, 1 - away * away) * height * (1 + 0.1 * std::sin(0.7 * column) * std::cos(0.9 * row)));
+        values.push_back(std::max(0.0, 1 - away * away) * height *
+                         (1 + 0.1 * std::sin(0.7 * column) * std::cos(0.9 * row)));
       }
     return values;
   };
   maps.terrain.clear();
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column)
-      maps.terrain.push_back(3000 - 6.0 * column + 8 * std::sin(0.31 * row) * std::sin(0.23 * column) + 3 * std::sin(1.7 * row + 0.9 * column));
+      maps.terrain.push_back(3000 - 6.0 * column + 8 * std::sin(0.31 * row) * std::sin(0.23 * column) +
+                             3 * std::sin(1.7 * row + 0.9 * column));
   maps.initial_thickness = cap(60, 80);
   maps.deposit_thickness = cap(240, 40);
   maps.before = maps.terrain;
@@ -290,7 +300,8 @@ TEST(Page, loads_nothing_and_has_a_place_for_title_and_data) {
   EXPECT_NE(page.find("<title>@TITLE@</title>"), std::string_view::npos);
   EXPECT_NE(page.find("id=\"data\">@DATA@</script>"), std::string_view::npos);
   EXPECT_NE(page.find("default-src 'none'"), std::string_view::npos);
-  for (const auto* words : {"<script src", "<link", "url(images/", "sourceMappingURL", "@LEAFLET", "@CHART", "@SCRIPT", "@STYLE"})
+  for (const auto* words :
+       {"<script src", "<link", "url(images/", "sourceMappingURL", "@LEAFLET", "@CHART", "@SCRIPT", "@STYLE"})
     EXPECT_EQ(page.find(words), std::string_view::npos) << words;
 }
 

@@ -160,9 +160,8 @@ export class ReportMap {
     else this.marker.setLatLng([place[1], place[0]]).addTo(this.leaflet);
   }
 
-  /** Call with map coordinates under the cursor, or null when it leaves. A tap counts as well. */
+  /** Call with map coordinates under the cursor. A tap counts as well. */
   onCursor(tell) {
     this.leaflet.on("mousemove click", (event) => tell({ x: event.latlng.lng, y: event.latlng.lat }));
-    this.leaflet.on("mouseout", () => tell(null));
   }
 }

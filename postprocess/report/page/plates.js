@@ -145,7 +145,7 @@ export class Plates {
     return plate;
   }
 
-  /** The first layer large, the others two a row, and six instants of the flow. */
+  /** The first layer large, the others two a row, and some instants of the flow. */
   draw() {
     this.fields.layers.forEach((layer, i) => {
       const unit = layer.unit ? ` [${unitWords(layer.unit)}]` : "";
@@ -161,9 +161,10 @@ export class Plates {
     }
   }
 
-  /** Six instants spread over the time until the flow has come to rest. */
+  /** Some instants spread over the time, as many as fill the last page of six plates. */
   instants() {
-    const count = this.fields.frames.time.length, wanted = Math.min(6, count);
+    const count = this.fields.frames.time.length, room = 6 - ((this.fields.layers.length - 1) % 6);
+    const wanted = Math.min(room < 3 ? room + 6 : room, count);
     if (count < 2) return [];
     const chosen = Array.from({ length: wanted }, (_, k) => Math.round((k * (count - 1)) / (wanted - 1)));
     return [...new Set(chosen)];
