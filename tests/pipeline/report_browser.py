@@ -145,6 +145,14 @@ def check_curves(browser):
     WebDriverWait(browser, 5).until(lambda b: b.execute_script("return !!report.map.marker._map"))
 
 
+def check_scores(browser):
+    """A score stands with its spread, and the spread nowhere by itself."""
+    csi = browser.find_element(By.CSS_SELECTOR, "#score td[data-key=deposit_csi]").text
+    assert " \u00b1 0.0" in csi and " to " in csi, f"the deposit's CSI has no spread: {csi}"
+    alone = browser.find_elements(By.CSS_SELECTOR, "#score td[data-key$=_sd], #score td[data-key*=_p05]")
+    assert not alone, f"a spread stands by itself: {[cell.get_attribute('data-key') for cell in alone]}"
+
+
 def check_parameters(browser):
     text = browser.find_element(By.ID, "parameters").text
     marked = [row.text for row in browser.find_elements(By.CSS_SELECTOR, "#parameters tr.changed")]
@@ -171,6 +179,7 @@ def clicks(browser, out):
     check_player(browser)
     check_cursor(browser, out)
     check_curves(browser)
+    check_scores(browser)
     check_parameters(browser)
     check_console(browser)
 

@@ -17,6 +17,7 @@ need_browser() {
 made() {
   scene
   sed -i 's/^end_time_s.*/end_time_s = 3.0\nframe_interval_s = 0.5/' recipe.toml
+  echo 'sigma_m = 0.2' >>recipe.toml   # of the survey: scores get a spread
   expect_exit 0 preprocess
   expect_exit 0 solve
   expect_exit 0 postprocess

@@ -1,10 +1,10 @@
 // Title block and key numbers.
 import { area, h, number, quantity, volume } from "./format.js";
-import { scoreEntries, scoreWords } from "./tables.js";
+import { scoreSections, scoreWords } from "./tables.js";
 
 /** Score entries with their spread, by key. */
 function byKey(score) {
-  return new Map(score.sections.flatMap(scoreEntries).map((item) => [item.entry.key, item]));
+  return new Map(scoreSections(score).flatMap((section) => section.items).map((item) => [item.entry.key, item]));
 }
 
 function valueOf(items, key) { return items.get(key)?.entry.value; }
@@ -30,8 +30,8 @@ const cards = [
   ["runout_m", "Run-out L"], ["thalweg_runout_m", "Run-out, thalweg"], ["drop_m", "Drop H"], ["fahrboeschung_deg", "Angle of reach"],
   ["affected_area_m2", "Footprint", area], ["deposit_area_m2", "Deposit area", area], ["max_deposit_thickness_m", "Thickest deposit"],
   ["max_peak_speed_m_s", "Peak speed"], ["deposit_csi", "Deposit CSI"], ["footprint_csi", "Footprint CSI"],
-  ["thickness_rmse_m", "Thickness RMSE"], ["runout_difference_m", "Run-out, sim. \u2212 survey"],
-  ["deposit_volume_ratio", "Volume, sim. / survey"],
+  ["thickness_rmse_m", "Thickness RMSE"], ["runout_difference_m", "Run-out \u2212 survey"],
+  ["deposit_volume_ratio", "Volume / survey"],
 ];
 
 /** Three figures are enough at a glance; the table of scores has them all. */

@@ -2,20 +2,25 @@
 import { area, h, number, quantity, unitWords, volume } from "./format.js";
 import { definition } from "./words.js";
 
-const spreadEnds = ["_sd", "_p05", "_p95"];
+/** "thickness_rmse_sd_m" tells the spread of "thickness_rmse_m": {base, what}; null for what stands by itself. */
+function spreadOf(key) {
+  const found = /^(.*)_(sd|p05|p95)(_[a-z0-9_]+)?$/.exec(key);
+  return found && { base: found[1] + (found[3] ?? ""), what: found[2] };
+}
 
-/** Entries by key; those that tell the spread of another are under it: {entry, sd, p05, p95}. */
-export function scoreEntries(section) {
-  const found = new Map();
-  for (const entry of section.entries) if (!spreadEnds.some((end) => entry.key.endsWith(end))) found.set(entry.key, { entry });
-  for (const entry of section.entries) {
-    const end = spreadEnds.find((e) => entry.key.endsWith(e));
-    if (!end) continue;
-    const base = found.get(entry.key.slice(0, -end.length));
-    if (base) base[end.slice(1)] = entry.value;
-    else found.set(entry.key, { entry });
+/** Sections with their entries as {entry, sd, p05, p95}: a spread, wherever it stands, goes to what it is the spread of.
+ * What has no such entry stays an entry of its own; sections left empty are dropped. */
+export function scoreSections(score) {
+  const sections = score.sections.map((s) => ({ title: s.title, items: s.entries.map((entry) => ({ entry })) }));
+  const byKey = new Map(sections.flatMap((s) => s.items.map((item) => [item.entry.key, item])));
+  for (const section of sections) {
+    section.items = section.items.filter(({ entry }) => {
+      const spread = spreadOf(entry.key), base = spread && byKey.get(spread.base);
+      if (base) base[spread.what] = entry.value;
+      return !base;
+    });
   }
-  return [...found.values()];
+  return sections.filter((section) => section.items.length);
 }
 
 /** "0.87 ± 0.02", and in brackets where 90 of 100 lie. */
@@ -23,7 +28,7 @@ export function scoreWords({ entry, sd, p05, p95 }) {
   if (typeof entry.value === "string") return entry.value;
   const tiny = entry.decimals > 6; // a closure error: its size matters, not its digits
   const digits = entry.decimals;
-  const value = tiny ? (entry.value === 0 ? "0" : entry.value.toExponential(1).replace("-", "\u2212")) : number(entry.value, digits);
+  const value = tiny ? (entry.value === 0 ? "0" : entry.value.toExponential(1).replaceAll("-", "\u2212")) : number(entry.value, digits);
   const spread = sd === undefined ? "" : ` \u00b1 ${number(sd, digits)}`;
   const range = p05 === undefined || p95 === undefined ? "" : ` (${number(p05, digits)} to ${number(p95, digits)})`;
   const unit = unitWords(entry.unit);
@@ -36,11 +41,11 @@ function table(head, rows) {
 
 export function drawScores(data) {
   const box = document.getElementById("score"), { score } = data;
-  const rows = [], hasSpread = score.sections.some((s) => s.entries.some((e) => e.key.endsWith("_sd")));
-  const ordered = [...score.sections].sort((a, b) => b.title.startsWith("Agreement") - a.title.startsWith("Agreement"));
+  const rows = [], sections = scoreSections(score), hasSpread = sections.some((s) => s.items.some((item) => item.sd !== undefined));
+  const ordered = [...sections].sort((a, b) => b.title.startsWith("Agreement") - a.title.startsWith("Agreement"));
   for (const section of ordered) {
     rows.push(h("tr", { class: "group" }, h("td", { colspan: 3 }, section.title)));
-    for (const item of scoreEntries(section)) {
+    for (const item of section.items) {
       rows.push(h("tr", {}, h("td", {}, item.entry.label), h("td", { class: "number", "data-key": item.entry.key }, scoreWords(item)),
         h("td", { class: "plain" }, definition(item.entry.key))));
     }
