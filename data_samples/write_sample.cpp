@@ -4,6 +4,7 @@
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
+#include <cmath>
 #include <memory>
 
 #include "common/stage/stage.hpp"
@@ -38,6 +39,7 @@ void write_raster(const std::filesystem::path& file, const Raster& raster) {
   for (int row = 0; row < grid.rows; ++row) {
     std::vector<double> line(raster.values.begin() + row * grid.columns,
                              raster.values.begin() + (row + 1) * grid.columns);
+    for (double& value : line) value = std::isnan(value) ? -9999 : value;
     require(band.RasterIO(GF_Write, 0, grid.rows - 1 - row, grid.columns, 1, line.data(), grid.columns, 1, GDT_Float64,
                           0, 0) == CE_None,
             file);

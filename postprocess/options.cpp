@@ -23,6 +23,12 @@ bool is_date(const std::string& text) {
 
 }  // namespace
 
+void SurveyOptions::find_in(const std::filesystem::path& out) {
+  if (!from_preprocess) return;
+  difference = out / "survey" / "slide_difference.tif";
+  sigma = out / "survey" / "difference_sigma.tif";
+}
+
 void SurveyOptions::describe(recipe::Visitor& v) {
   v.text("name", name, "how map and table call it: a survey, or another model's name");
   v.path("thickness", thickness, "raster of the deposit's thickness [m]");
@@ -34,6 +40,8 @@ void SurveyOptions::describe(recipe::Visitor& v) {
          "elevations before the event, with after_dem; empty: the surface the run started from");
   v.path("difference", difference,
          "raster of elevations after - before the event [m], aligned: deposit where it is positive");
+  v.flag("from_preprocess", from_preprocess,
+         "score against the change of surface that talus-preprocess found between before_dem and after_dem, with its error (OUT/survey)");
   v.path("polygon", polygon, "outline of the affected area (any vector format); gives the footprint");
   v.flag("nodata_is_zero", nodata_is_zero,
          "thickness and difference rasters: no data means no deposit (otherwise: not surveyed, left out)");
@@ -58,6 +66,7 @@ void SurveyOptions::check(std::vector<Fault>& faults) const {
     if (file.empty()) continue;
     given += (count++ > 0 ? " and " : "") + std::string(key);
   }
+  if (from_preprocess) given += (count++ > 0 ? " and " : "") + std::string("from_preprocess");
   if (count > 1)
     faults.push_back({"[postprocess.survey] gives " + given, "one deposit can be scored at a time", "Leave one of them out"});
   if (!peak_thickness.empty() && !polygon.empty()) {
@@ -72,7 +81,10 @@ void SurveyOptions::check(std::vector<Fault>& faults) const {
     faults.push_back({"[postprocess.survey] gives sigma and sigma_m", "both say what the survey's error is",
                       "Leave one of them out"});
   }
-  if ((!sigma.empty() || sigma_m > 0) && !measures()) {
+  if (from_preprocess && (!sigma.empty() || sigma_m > 0)) {
+    faults.push_back({"[postprocess.survey] gives from_preprocess and an error", "the error comes with the change that talus-preprocess found",
+                      "Leave sigma out; [preprocess.difference] takes the surveys' own"});
+  } else if ((!sigma.empty() || sigma_m > 0) && !measures()) {
     faults.push_back({"[postprocess.survey] gives an error without a measurement", "an outline or a peak thickness has none",
                       "Give thickness, difference or after_dem, or leave sigma out"});
   }
@@ -90,9 +102,6 @@ void Options::describe(recipe::Visitor& v) {
   v.flag("report", report, "write report.html: maps, profiles, scores and settings on one page to send on");
   recipe::choice(v, "animation", animation, {{"none", Animation::none}, {"mp4", Animation::mp4}, {"gif", Animation::gif}},
                  "a film of the flow on the map; needs the program ffmpeg and a run with frames");
-  v.path("thalweg", thalweg,
-         "line along which run-out is measured (any vector format), from either end; empty: found as the path of the "
-         "centre of mass");
   v.text("start_time", start_time,
          "when the failure began, UTC, as 1903-04-29 04:10:00, for the time axis of the NetCDF file; empty: not known");
   v.flag("nodata_zero", nodata_zero,
@@ -100,6 +109,9 @@ void Options::describe(recipe::Visitor& v) {
   v.flag("avaframe", avaframe,
          "also write peak pressure, thickness normal to the slope and speed as AvaFrame names and reads them, in "
          "maps/avaframe");
+  v.path("thalweg", thalweg,
+         "line along which run-out is measured (any vector format), from either end; empty: found as the path of the "
+         "centre of mass");
   recipe::choice(v, "avaframe_format", avaframe_format, {{"tif", AvaFrameFormat::tif}, {"asc", AvaFrameFormat::asc}},
                  "format of these; every version of AvaFrame, and ISeeSnow, reads asc");
   v.enter("survey", "what the run is scored against: thickness, or difference, or after_dem, or polygon; all empty: no scores");

@@ -23,6 +23,7 @@ struct SurveyOptions {
   std::filesystem::path before_dem;      // with after_dem: surveyed change; empty = the run's own surface before
   std::filesystem::path after_dem;
   std::filesystem::path difference;  // raster of after - before, aligned [m]
+  bool from_preprocess = false;      // difference and sigma are what talus-preprocess wrote into OUT/survey
   std::filesystem::path polygon;     // outline of the affected area
   Direction direction = Direction::vertical;  // of thickness and peak_thickness
   bool nodata_is_zero = false;    // thickness and difference rasters: no data means no deposit, no change
@@ -34,6 +35,8 @@ struct SurveyOptions {
   int resample_seed = 1;
 
   bool measures() const { return !(thickness.empty() && difference.empty() && after_dem.empty()); }  ///< not an outline only
+  /// Names the files under `out` where from_preprocess asks for them.
+  void find_in(const std::filesystem::path& out);
   bool given() const { return measures() || !peak_thickness.empty() || !polygon.empty(); }
   void check(std::vector<Fault>& faults) const;
   void describe(recipe::Visitor& v);
@@ -50,10 +53,10 @@ struct Options {
   std::string institution;
   Animation animation = Animation::none;
   bool report = true;             // write report.html
-  std::filesystem::path thalweg;  // line along which run-out is measured; empty = found from the run
   std::string start_time;            // when the failure began, UTC; empty = not known
   bool nodata_zero = false;          // GeoTIFFs: 0 outside the domain too
   bool avaframe = false;             // aliases for AvaFrame beside the maps
+  std::filesystem::path thalweg;  // line along which run-out is measured; empty = found from the run
   AvaFrameFormat avaframe_format = AvaFrameFormat::tif;
   SurveyOptions survey;
 

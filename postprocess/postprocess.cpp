@@ -154,6 +154,7 @@ void write_results(StageContext& context, const Job& job) {
 void run(StageContext& context) {
   Job job;
   job.options = context.recipe.read<Options>("postprocess");
+  job.options.survey.find_in(context.out);
   job.file = run_file(context, job.options);
   job.run = read_run(job.file);
   check_volume(job.file, job.run);

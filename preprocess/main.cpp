@@ -7,6 +7,7 @@
 #include "common/stage/stage.hpp"
 #include "preprocess/prepare.hpp"
 #include "preprocess/sum.hpp"
+#include "preprocess/survey/write_survey.hpp"
 
 namespace {
 
@@ -25,6 +26,10 @@ Facts facts_of(const preprocess::Prepared& prepared) {
               {"layer_height_m", fmt::format("{:g}", domain.layer_height)},
               {"material_points", std::to_string(prepared.point_count)}};
   for (auto& fact : preprocess::as_facts(prepared.total)) facts.push_back(std::move(fact));
+  if (prepared.sliding_surface) {
+    facts.emplace_back("sliding_surface", fmt::format("computed from the outline, curvature {:.4g} 1/m, at most {:.4g} m deep, follows the ground in {} cells", prepared.sliding_surface->curvature,
+                                                      prepared.sliding_surface->depth, prepared.sliding_surface->touching));
+  }
   if (prepared.by_release.size() < 2) return facts;
   for (const auto& [name, volumes] : prepared.by_release) {
     for (auto& [key, value] : preprocess::as_facts(volumes)) facts.emplace_back(name + "." + key, std::move(value));
@@ -40,6 +45,9 @@ void report(const preprocess::Prepared& prepared) {
     for (const auto& [name, volumes] : prepared.by_release) {
       for (const std::string& line : preprocess::as_lines(name, volumes)) log_info(line);
     }
+  }
+  if (prepared.survey) {
+    for (const std::string& line : preprocess::as_lines(*prepared.survey)) log_info(line);
   }
   const std::string whole = prepared.by_release.size() == 1 ? prepared.by_release.front().first : "all releases";
   for (const std::string& line : preprocess::as_lines(whole, prepared.total)) log_info(line);
@@ -65,12 +73,37 @@ Facts provenance_of(const StageContext& context, const preprocess::Prepared& pre
 
 Stage stage();
 
+/// OUT/survey, where there is anything to put into it.
+void write_survey_files(StageContext& context, const preprocess::Prepared& prepared) {
+  const auto folder = context.out / "survey";
+  std::vector<std::string> lines;
+  std::vector<std::filesystem::path> files;
+  if (prepared.survey) files = preprocess::write_survey(folder, *prepared.survey, &prepared, lines);
+  if (prepared.sliding_surface) files = preprocess::write_source(folder, prepared);
+  for (const std::string& line : lines) log_info(line);
+  context.results.insert(context.results.end(), files.begin(), files.end());
+}
+
+/// --difference: the two surveys alone, block by block, however large they are.
+void run_difference(StageContext& context, const preprocess::Options& options) {
+  if (options.way() != preprocess::Way::before_and_after)
+    throw RecipeError(Fault{"--difference: [preprocess] does not give before_dem and after_dem", "there is nothing to compare", "Give both, or leave --difference out"});
+  const preprocess::Survey survey = preprocess::survey_of(options);
+  std::vector<std::string> lines = preprocess::as_lines(survey);
+  if (!context.check_only) context.results = preprocess::write_survey(context.out / "survey", survey, nullptr, lines);
+  for (const std::string& line : lines) log_info(line);
+  if (!context.check_only)
+    write_used_recipe(context, stage(), recipe::to_toml(options, "preprocess", false), {options.before_dem, options.after_dem}, {{"crs", crs_name(survey.grid.crs_wkt)}});
+}
+
 void run(StageContext& context) {
   const auto options = context.recipe.read<preprocess::Options>("preprocess");
+  if (context.difference) return run_difference(context, options);
   auto prepared =
       preprocess::prepare(options, context.check_only ? preprocess::Points::counted : preprocess::Points::seeded);
   report(prepared);
   if (context.check_only) return;
+  write_survey_files(context, prepared);
   const Facts facts = facts_of(prepared);
   prepared.domain.provenance = provenance_of(context, prepared, facts);
   const auto file = context.out / "domain.vdb";
@@ -95,7 +128,9 @@ Stage stage() {
   stage.examples =
       "  talus-preprocess recipe.toml --out out/scene    read, align, seed the material points, write domain.vdb\n"
       "  talus-preprocess recipe.toml --check            say volumes and counts, write nothing\n"
+      "  talus-preprocess recipe.toml --difference       compare the two surveys block by block, write OUT/survey and stop\n"
       "  talus-preprocess --template > recipe.toml       every key with its meaning and range";
+  stage.has_difference = true;
   stage.template_toml = [] { return recipe::to_toml(preprocess::Options{}, "preprocess", true); };
   stage.run = run;
   return stage;

@@ -27,12 +27,49 @@ void ErodibleOptions::describe(recipe::Visitor& v) {
   ReleaseOptions::describe(v);
 }
 
+void SlidingSurfaceOptions::describe(recipe::Visitor& v) {
+  v.number("depth_m", depth_m, recipe::not_negative, "largest vertical depth below before_dem; 0 = not given");
+  v.number("volume_m3", volume_m3, recipe::not_negative, "volume between it and before_dem; 0 = not given");
+  v.path("depth_points", depth_points, "places where it is known (boreholes): vector points, or a table of x, y, z; none of the three: volume from the polygon's area (Guzzetti et al. 2009)");
+  recipe::choice(v, "depth_points_hold", depth_points_hold, {{"elevation", PointValue::elevation}, {"depth", PointValue::depth}},
+                 "what the z of these points is: elevation of the sliding surface, or its vertical depth below before_dem");
+  v.number("depth_points_error_m", depth_points_error_m, recipe::not_negative, "standard error of these points; 0 = met exactly");
+}
+
 void SourceOptions::describe(recipe::Visitor& v) {
-  v.path("polygon", polygon, "outline of the source; empty = found as the connected region of lowering");
+  v.path("polygon", polygon, "outline of the source; empty = found as the connected region of lowering; needed for (5)");
   v.number("threshold_m", threshold_m, recipe::not_negative, "lowering beyond which a cell belongs to such a region");
   v.optional_number("seed_x_m", seed_x_m, recipe::any,
                     "take the region that holds this point (its easting); else the largest by volume");
   v.optional_number("seed_y_m", seed_y_m, recipe::any, "its northing");
+  v.enter("sliding_surface", "(5) how deep the surface lies that is computed under the polygon: give one of the first three");
+  sliding_surface.describe(v);
+  v.leave();
+}
+
+void CoregistrationOptions::describe(recipe::Visitor& v) {
+  recipe::choice(v, "mode", mode, {{"check", Alignment::check}, {"apply", Alignment::apply}, {"off", Alignment::off}},
+                 "bring after_dem onto before_dem where nothing moved: check = find shift, height and tilt, and warn; apply = correct them");
+  v.flag("tilt", tilt, "look for a tilt too; one within its error is left out");
+  v.number("steepest_deg", steepest_deg, recipe::Range{0, 90, true, false}, "steeper ground is left out of the fit");
+  v.path("changed", changed, "polygons of ground to leave out of the fit, besides source and deposit; changes that stand out are found by themselves");
+}
+
+void DifferenceOptions::describe(recipe::Visitor& v) {
+  recipe::choice(v, "threshold", threshold,
+                 {{"probabilistic", Threshold::probabilistic}, {"propagated-error", Threshold::propagated_error}, {"minimum-level", Threshold::minimum_level}},
+                 "level of detection: confidence times the error; the error itself; or minimum_level_m alone");
+  v.number("confidence", confidence, recipe::Range{0.5, 0.9999}, "of the probabilistic level, two-sided");
+  v.number("minimum_level_m", minimum_level_m, recipe::not_negative, "the least level of detection in any case");
+  v.number("before_sigma_m", before_sigma_m, recipe::not_negative, "standard error of before_dem; 0 for both = the difference's, by slope, from stable ground");
+  v.number("after_sigma_m", after_sigma_m, recipe::not_negative, "that of after_dem");
+}
+
+double DifferenceOptions::given_sigma() const { return std::hypot(before_sigma_m, after_sigma_m); }
+
+void DepositOptions::describe(recipe::Visitor& v) {
+  v.path("polygon", polygon, "outline of the surveyed deposit; empty = what rose in the region of change that holds the source");
+  v.number("threshold_m", threshold_m, recipe::not_negative, "rise beyond which (and beyond the level of detection) a cell belongs to it");
 }
 
 void GridOptions::describe(recipe::Visitor& v) {
@@ -52,6 +89,15 @@ void GridOptions::describe(recipe::Visitor& v) {
   recipe::choice(
       v, "edge_nodata", edge_nodata, {{"refuse", EdgeNodata::refuse}, {"outside", EdgeNodata::outside}},
       "cells without elevation that reach the edge of the grid: refuse them, or leave them outside the domain");
+}
+
+void VoidOptions::describe(recipe::Visitor& v) {
+  v.flag("fill", fill, "fill voids inside the elevation models by natural neighbours; else they are refused by place");
+  v.number("largest_m2", largest_m2, recipe::not_negative, "area of the largest void that is filled");
+  recipe::choice(v, "spikes", spikes,
+                 {{"ignore", Spikes::ignore}, {"report", Spikes::report}, {"remove", Spikes::remove}},
+                 "cells that stand out from their neighbours (ten times the usual around): remove = make them voids and fill "
+                 "them");
 }
 
 void LaboratoryOptions::describe(recipe::Visitor& v) {
@@ -87,16 +133,36 @@ void BedRasters::describe(recipe::Visitor& v) {
 }
 
 void Options::describe(recipe::Visitor& v) {
-  v.path("before_dem", before_dem, "surface before the slide (1: with after_dem, 2: with sliding_surface)");
+  v.path("before_dem", before_dem, "surface before the slide (1: with after_dem, 2: with sliding_surface, 5: with source.polygon alone)");
   v.path("after_dem", after_dem, "surface after it; only the lowering inside the source is taken out");
   v.path("sliding_surface", sliding_surface, "surface it slides on; no data = no sliding surface there");
   v.path("base_dem", base_dem, "ground under the releases (3: with [[preprocess.release]])");
-  v.text("working_crs", working_crs, "metric CRS to work in, \"EPSG:32149\"; empty = that of the first DEM");
-  v.enter("source", "what fails, for (1) and (2)");
+  v.text("working_crs", working_crs,
+         "metric CRS to work in, \"EPSG:32149\", or \"utm\": the UTM zone of the first DEM; files in degrees or feet are "
+         "reprojected to it; empty = the CRS of the first DEM");
+  recipe::choice(v, "vertical_unit", vertical_unit,
+                 {{"declared", VerticalUnit::declared},
+                  {"metre", VerticalUnit::metre},
+                  {"foot", VerticalUnit::foot},
+                  {"us-survey-foot", VerticalUnit::us_survey_foot}},
+                 "what the elevation models' heights are in; declared = what each file says, metres where it says nothing");
+  v.enter("coregistration", "for (1): after_dem brought onto before_dem");
+  coregistration.describe(v);
+  v.leave();
+  v.enter("difference", "for (1): after_dem less before_dem, and from where on it is believed");
+  difference.describe(v);
+  v.leave();
+  v.enter("deposit", "for (1): what arrived, written for the score");
+  deposit.describe(v);
+  v.leave();
+  v.enter("source", "what fails, for (1), (2) and (5)");
   source.describe(v);
   v.leave();
   v.enter("grid", "background grid and material points");
   grid.describe(v);
+  v.leave();
+  v.enter("voids", "cells without elevation inside the elevation models, and cells that stand out");
+  voids.describe(v);
   v.leave();
   recipe::list(v, "release", release, "what is released onto base_dem; may be repeated");
   recipe::list(v, "erodible", erodible, "a layer of ground that the slide can take along: material points with a strength of their own; may be repeated");
@@ -118,15 +184,15 @@ Fault fault(std::string what, std::string why, std::string mend) {
 
 void check_way(const Options& o, std::vector<Fault>& faults) {
   const std::string mend =
-      "Give exactly one of: before_dem and after_dem; before_dem and sliding_surface; base_dem and "
-      "[[preprocess.release]]; [preprocess.laboratory] and [[preprocess.box]]";
+      "Give exactly one of: before_dem and after_dem; before_dem and sliding_surface; before_dem and source.polygon; "
+      "base_dem and [[preprocess.release]]; [preprocess.laboratory] and [[preprocess.box]]";
   const bool before = !o.before_dem.empty(), after = !o.after_dem.empty(), sliding = !o.sliding_surface.empty();
   const bool base = !o.base_dem.empty(), releases = !o.release.empty();
   if (!before && !base) {
     faults.push_back(fault("neither before_dem nor base_dem is given", "nothing says what fails", mend));
   } else if (before && base) {
     faults.push_back(fault("before_dem and base_dem are both given", "they belong to different ways", mend));
-  } else if (before && after == sliding) {
+  } else if (before && after == sliding && (after || o.source.polygon.empty())) {
     faults.push_back(fault(after ? "after_dem and sliding_surface are both given" : "before_dem stands alone",
                            "nothing says clearly what lies under the failing mass", mend));
   } else if (before && releases) {
@@ -155,6 +221,20 @@ void check_release(const char* kind, const ReleaseOptions& r, std::size_t item, 
   if (!r.polygons.empty() && r.thickness_m == 0 && r.attribute.empty()) {
     faults.push_back(fault(place + ": polygons without thickness", "attribute is empty and thickness_m is 0",
                            "Name the attribute that holds the thickness, or give thickness_m"));
+  }
+}
+
+void check_depth(const Options& o, std::vector<Fault>& faults) {
+  const SlidingSurfaceOptions& s = o.source.sliding_surface;
+  if (s.ways_given() > 1) {
+    faults.push_back(fault("source.sliding_surface: more than one of depth_m, volume_m3 and depth_points is given", "each says by itself how deep the surface lies", "Leave the others out"));
+  }
+  if (s.depth_points.empty() && (s.depth_points_error_m > 0 || s.depth_points_hold != PointValue::elevation)) {
+    faults.push_back(fault("source.sliding_surface: depth_points_hold or depth_points_error_m is given without depth_points", "there are no points to read", "Give depth_points"));
+  }
+  if (s.ways_given() > 0 && (o.before_dem.empty() || !o.after_dem.empty() || !o.sliding_surface.empty())) {
+    faults.push_back(fault("source.sliding_surface is given, but not before_dem and source.polygon alone", "only there is a sliding surface computed; elsewhere the files hold it",
+                           "Leave it out, or leave after_dem, sliding_surface and base_dem out"));
   }
 }
 
@@ -220,6 +300,10 @@ void Options::check(std::vector<Fault>& faults) const {
     return e.lowering;
   });
   check_grid(grid, faults);
+  if (voids.spikes == Spikes::remove && !voids.fill) {
+    faults.push_back(fault("voids.spikes = \"remove\" without voids.fill", "what is removed is filled like a void",
+                           "Set fill = true in [preprocess.voids], or spikes = \"report\""));
+  }
   if (source.seed_x_m.has_value() != source.seed_y_m.has_value()) {
     faults.push_back(
         fault("only one of source.seed_x_m and seed_y_m is given", "a point has both", "Give both or none"));
@@ -228,6 +312,7 @@ void Options::check(std::vector<Fault>& faults) const {
     faults.push_back(fault("source.polygon and a seed point are both given",
                            "the polygon already says what the source is", "Leave one out"));
   }
+  check_depth(*this, faults);
   if (!base_dem.empty() && !source.polygon.empty()) {
     faults.push_back(fault("source.polygon is given with base_dem", "the releases say what fails there",
                            "Use polygons = ... in [[preprocess.release]]"));
@@ -237,7 +322,8 @@ void Options::check(std::vector<Fault>& faults) const {
 Way Options::way() const {
   if (laboratory.given()) return Way::laboratory;
   if (!base_dem.empty()) return Way::base_and_releases;
-  return after_dem.empty() ? Way::before_and_sliding_surface : Way::before_and_after;
+  if (!after_dem.empty()) return Way::before_and_after;
+  return sliding_surface.empty() ? Way::before_and_outline : Way::before_and_sliding_surface;
 }
 
 }  // namespace talus::preprocess

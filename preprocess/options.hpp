@@ -13,8 +13,14 @@ namespace talus::preprocess {
 /// Which way a thickness is measured.
 enum class Direction { vertical, slope_normal };
 
+/// From which difference on a change is believed (the vocabulary of GCD, Wheaton et al. 2010).
+enum class Threshold { minimum_level, propagated_error, probabilistic };
+
 /// What becomes of cells without elevation.
 enum class EdgeNodata { refuse, outside };
+
+/// What the heights of elevation models are in: what the files say, or this.
+enum class VerticalUnit { declared, metre, foot, us_survey_foot };
 
 /// One [[preprocess.release]]: a raster of thickness, or polygons with a thickness.
 struct ReleaseOptions {
@@ -35,10 +41,57 @@ struct ErodibleOptions : ReleaseOptions {
   void describe(recipe::Visitor& v);
 };
 
+/// What the numbers of depth points are.
+enum class PointValue { elevation, depth };
+
+/// How deep the sliding surface lies that is computed under source.polygon. None given: by the area of the polygon.
+struct SlidingSurfaceOptions {
+  double depth_m = 0;    // 0 = not given
+  double volume_m3 = 0;  // 0 = not given
+  std::filesystem::path depth_points;
+  PointValue depth_points_hold = PointValue::elevation;
+  double depth_points_error_m = 0;
+
+  int ways_given() const { return (depth_m > 0) + (volume_m3 > 0) + !depth_points.empty(); }
+  void describe(recipe::Visitor& v);
+};
+
 struct SourceOptions {
   std::filesystem::path polygon;
   double threshold_m = 0.5;
   std::optional<double> seed_x_m, seed_y_m;
+  SlidingSurfaceOptions sliding_surface;
+
+  void describe(recipe::Visitor& v);
+};
+
+/// What is done about surveys that do not lie on one another.
+enum class Alignment { check, apply, off };
+
+struct CoregistrationOptions {
+  Alignment mode = Alignment::check;
+  bool tilt = true;
+  double steepest_deg = 45;
+  std::filesystem::path changed;
+
+  void describe(recipe::Visitor& v);
+};
+
+struct DifferenceOptions {
+  Threshold threshold = Threshold::probabilistic;
+  double confidence = 0.95;
+  double minimum_level_m = 0;
+  double before_sigma_m = 0, after_sigma_m = 0;  // 0 = learnt from stable ground
+
+  /// sqrt(s1^2 + s2^2) [m]; 0 where neither is given.
+  double given_sigma() const;
+  void describe(recipe::Visitor& v);
+};
+
+/// What arrived, for after_dem.
+struct DepositOptions {
+  std::filesystem::path polygon;
+  double threshold_m = 0.5;
 
   void describe(recipe::Visitor& v);
 };
@@ -52,6 +105,18 @@ struct GridOptions {
   int jitter_seed = 1;
   std::optional<double> west_m, south_m, east_m, north_m;
   EdgeNodata edge_nodata = EdgeNodata::refuse;
+
+  void describe(recipe::Visitor& v);
+};
+
+/// What is done about cells that stand out from their neighbours.
+enum class Spikes { ignore, report, remove };
+
+/// Holes in the elevation models, and cells that stand out of them.
+struct VoidOptions {
+  bool fill = false;
+  double largest_m2 = 1e5;
+  Spikes spikes = Spikes::report;
 
   void describe(recipe::Visitor& v);
 };
@@ -95,14 +160,19 @@ struct ObstacleOptions {
   void describe(recipe::Visitor& v);
 };
 
-/// The four ways of saying what fails.
-enum class Way { before_and_after, before_and_sliding_surface, base_and_releases, laboratory };
+/// The five ways of saying what fails.
+enum class Way { before_and_after, before_and_sliding_surface, before_and_outline, base_and_releases, laboratory };
 
 struct Options {
   std::filesystem::path before_dem, after_dem, sliding_surface, base_dem;
   std::string working_crs;
+  VerticalUnit vertical_unit = VerticalUnit::declared;
+  CoregistrationOptions coregistration;
+  DifferenceOptions difference;
   SourceOptions source;
+  DepositOptions deposit;
   GridOptions grid;
+  VoidOptions voids;
   std::vector<ReleaseOptions> release;
   std::vector<ErodibleOptions> erodible;
   LaboratoryOptions laboratory;

@@ -5,12 +5,14 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "common/error.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/laboratory.hpp"
 #include "preprocess/obstacle/obstacles.hpp"
 #include "preprocess/particles/seed.hpp"
+#include "preprocess/release/outline_source.hpp"
 #include "preprocess/release/releases.hpp"
 #include "preprocess/release/source.hpp"
 #include "preprocess/terrain/elevation.hpp"
@@ -25,6 +27,9 @@ struct Scene {
   Raster before, bed;
   std::vector<Release> releases;
   std::vector<double> lowering = {};  // before less after [m]; where both are given
+  std::optional<SlidingSurface> sliding_surface = {};  // where it was computed
+  std::optional<Survey> survey = {};
+  std::optional<SurveyedSlide> slide = {};
 };
 
 Scene from_source(Raster before, Source source) {
@@ -34,28 +39,42 @@ Scene from_source(Raster before, Source source) {
 }
 
 Scene from_before_and_after(const Options& options) {
-  Elevation before = read_elevation("before_dem", options.before_dem);
-  Elevation after = read_elevation("after_dem", options.after_dem);
-  share_crs({&before, &after}, options.working_crs);
-  std::vector<Raster> surfaces = align({&before, &after}, options);
-  Source source = find_source({surfaces[0], surfaces[1], options.after_dem}, options.source);
+  Survey survey = survey_of(options);
+  std::vector<Filled> filled;
+  std::vector<Raster> surfaces = align({&survey.before, &survey.after}, options, &filled);
+  SurveyedSlide slide = slide_on(survey, surfaces[0], filled);
+  Source source = find_source({surfaces[0], surfaces[1], options.after_dem, false, levels_of(survey, slide.sigma)}, options.source);
+  delineate(survey, {surfaces[0], surfaces[1], source.thickness}, options.deposit, slide);
   std::vector<double> lowering;
   for (std::size_t c = 0; c < surfaces[0].values.size(); ++c) lowering.push_back(surfaces[0].values[c] - surfaces[1].values[c]);
   Scene scene = from_source(std::move(surfaces[0]), std::move(source));
   scene.lowering = std::move(lowering);
+  scene.survey = std::move(survey);
+  scene.slide = std::move(slide);
   return scene;
 }
 
 Scene from_sliding_surface(const Options& options) {
-  Elevation before = read_elevation("before_dem", options.before_dem);
-  Elevation sliding = read_elevation("sliding_surface", options.sliding_surface);
+  Elevation before = read_elevation("before_dem", options.before_dem, dem_reading(options));
+  Elevation sliding = read_elevation("sliding_surface", options.sliding_surface, dem_reading(options));
   share_crs({&before, &sliding}, options.working_crs);
   require_comparable_crs(sliding.crs_wkt(), sliding.file, before.crs_wkt(), before.file.string());
   std::vector<Raster> surfaces = align({&before}, options);
+  log_resampling(sliding, surfaces[0].grid);
   const Raster under = onto_grid(sliding, surfaces[0].grid);
   require_data(under, sliding.file);
   Source source = find_source({surfaces[0], under, options.sliding_surface, true}, options.source);
   return from_source(std::move(surfaces[0]), std::move(source));
+}
+
+Scene from_outline(const Options& options) {
+  Elevation before = read_elevation("before_dem", options.before_dem, dem_reading(options));
+  share_crs({&before}, options.working_crs);
+  Raster ground = align({&before}, options).front();
+  ComputedSource computed = source_by_outline(ground, options.source);
+  Scene scene = from_source(std::move(ground), std::move(computed.source));
+  scene.sliding_surface = std::move(computed.computed);
+  return scene;
 }
 
 void warn_of_overlap(const std::vector<Release>& releases) {
@@ -74,7 +93,7 @@ void warn_of_overlap(const std::vector<Release>& releases) {
 }
 
 Scene from_releases(const Options& options) {
-  Elevation base = read_elevation("base_dem", options.base_dem);
+  Elevation base = read_elevation("base_dem", options.base_dem, dem_reading(options));
   share_crs({&base}, options.working_crs);
   Raster bed = align({&base}, options).front();
   Scene scene{bed, std::move(bed), {}};
@@ -125,6 +144,7 @@ Scene read_scene(const Options& options) {
   switch (options.way()) {
     case Way::before_and_after: return from_before_and_after(options);
     case Way::before_and_sliding_surface: return from_sliding_surface(options);
+    case Way::before_and_outline: return from_outline(options);
     case Way::laboratory: return from_laboratory(options);
     case Way::base_and_releases: break;
   }
@@ -132,12 +152,14 @@ Scene read_scene(const Options& options) {
 }
 
 /// Rasters of the bed on the working grid.
-std::vector<std::pair<std::string, Raster>> read_bed(const BedRasters& bed, const MapGrid& grid) {
+std::vector<std::pair<std::string, Raster>> read_bed(const Options& options, const MapGrid& grid) {
+  const bool reproject = !options.working_crs.empty();
   std::vector<std::pair<std::string, Raster>> rasters;
-  for (const auto& [name, file] : bed.files) {
+  for (const auto& [name, file] : options.bed.files) {
     if (file.empty()) continue;
-    const Elevation values = read_elevation("bed." + name, file);
+    const Elevation values = read_elevation("bed." + name, file, {reproject ? grid.crs_wkt : "", "", dem_reading({}).or_else});
     require_comparable_crs(values.crs_wkt(), values.file, grid.crs_wkt, "the working grid");
+    log_resampling(values, grid);
     Raster raster = onto_grid(values, grid);
     require_data(raster, file);
     std::vector<char> negative(raster.values.size());
@@ -183,7 +205,8 @@ std::vector<std::filesystem::path> inputs_of(const Options& options) {
     if (!file.empty()) inputs.push_back(file);
   };
   for (const auto& file :
-       {options.before_dem, options.after_dem, options.sliding_surface, options.base_dem, options.source.polygon})
+       {options.before_dem, options.after_dem, options.sliding_surface, options.base_dem, options.source.polygon, options.source.sliding_surface.depth_points,
+        options.coregistration.changed, options.deposit.polygon})
     add(file);
   for (const ReleaseOptions& layer : options.erodible) {
     add(layer.thickness_raster);
@@ -200,10 +223,19 @@ std::vector<std::filesystem::path> inputs_of(const Options& options) {
 
 }  // namespace
 
-Prepared prepare(const Options& options, Points points) {
+Survey survey_of(const Options& given) {
+  const Options options = with_utm_zone(given);
+  Elevation before = read_elevation("before_dem", options.before_dem, dem_reading(options));
+  Elevation after = read_elevation("after_dem", options.after_dem, dem_reading(options));
+  share_crs({&before, &after}, options.working_crs);
+  return compare_surveys(std::move(before), std::move(after), options);
+}
+
+Prepared prepare(const Options& given, Points points) {
   std::vector<Fault> faults;
-  options.check(faults);
+  given.check(faults);
   if (!faults.empty()) throw RecipeError(std::move(faults));
+  const Options options = with_utm_zone(given);
   Scene scene = read_scene(options);
   lay_erodible(options, scene);
   const Seeding seeding = seeding_of(options.grid, scene.bed.grid.cell);
@@ -228,7 +260,7 @@ Prepared prepare(const Options& options, Points points) {
     domain.points = laboratory ? seed_boxes(options) : seed_points(scene.releases, seeding);
   }
   domain.erodible = static_cast<int>(options.erodible.size());
-  domain.bed = read_bed(options.bed, domain.grid);
+  domain.bed = read_bed(options, domain.grid);
   prepared.obstacles = stand_obstacles(options.obstacle, scene.bed, 2 * domain.layer_height);
   prepared.obstacle_voxel = obstacle_voxel(domain.grid.cell, domain.layer_height);
   for (const ObstacleOptions& o : options.obstacle) {
@@ -236,6 +268,9 @@ Prepared prepare(const Options& options, Points points) {
   }
   domain.terrain = std::move(scene.bed);
   domain.before = std::move(scene.before);
+  prepared.sliding_surface = std::move(scene.sliding_surface);
+  prepared.survey = std::move(scene.survey);
+  prepared.slide = std::move(scene.slide);
   return prepared;
 }
 

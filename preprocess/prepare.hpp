@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,7 +10,9 @@
 #include "common/volume/domain.hpp"
 #include "common/volume/level_set.hpp"
 #include "preprocess/options.hpp"
+#include "preprocess/release/sliding_surface.hpp"
 #include "preprocess/release/volumes.hpp"
+#include "preprocess/survey/survey.hpp"
 
 namespace talus::preprocess {
 
@@ -21,12 +24,19 @@ struct Prepared {
   std::vector<std::filesystem::path> inputs;
   std::vector<SolidBody> obstacles;
   double obstacle_voxel = 0;  // [m]
+  std::optional<SlidingSurface> sliding_surface = {};  // where it was computed from an outline
+  std::optional<Survey> survey = {};                   // where before and after are given
+  std::optional<SurveyedSlide> slide = {};
 };
 
 enum class Points { seeded, counted };
 
+/// What two elevation models say of what changed, and nothing further: the first part of prepare(), for before_dem and
+/// after_dem alone.
+Survey survey_of(const Options& options);
+
 /// Reads the files, aligns them, finds or reads the release and seeds its points. Throws RecipeError and DataError.
-/// Bed: under the released mass the sliding surface, min(before, after), or the base DEM itself (snow lies on it, so
+/// Bed: under the released mass the sliding surface (given or computed), min(before, after), or the base DEM itself (snow lies on it, so
 /// the surface before is base + thickness); elsewhere the ground as it is.
 Prepared prepare(const Options& options, Points points);
 

@@ -36,6 +36,8 @@ void start() {
   std::call_once(once, [] {
     use_bundled_data();
     GDALAllRegister();
+    // GDAL would keep a twentieth of all memory of cells it has read; large rasters are read here once, by windows.
+    if (CPLGetConfigOption("GDAL_CACHEMAX", nullptr) == nullptr) GDALSetCacheMax64(GIntBig{128} << 20);
   });
 }
 
@@ -78,6 +80,7 @@ std::string horizontal_wkt(const OGRSpatialReference* srs) {
   if (srs == nullptr || srs->IsEmpty()) return "";
   OGRSpatialReference horizontal(*srs);
   horizontal.StripVertical();
+  if (horizontal.GetAxesCount() > 2) horizontal.DemoteTo2D(nullptr);
   const std::array<const char*, 3> options{"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
   char* wkt = nullptr;
   const bool exported = horizontal.exportToWkt(&wkt, options.data()) == OGRERR_NONE;
@@ -111,9 +114,12 @@ std::string utm_zone(const OGRSpatialReference& srs, double x, double y) {
   OGRSpatialReference from(srs);
   from.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   const Transformation t(OGRCreateCoordinateTransformation(&from, &geographic));
-  const bool known = t && t->Transform(1, &x, &y) && std::abs(x) <= 180 && std::abs(y) <= 84;
+  bool known = t && t->Transform(1, &x, &y);
+  if (x > 180 && x <= 360) x -= 360;  // some count 0..360 degrees
+  known = known && std::abs(x) <= 180 && y >= -80 && y <= 84;
   if (!known) return "EPSG:<a metric one>";
-  const int zone = std::min(60, static_cast<int>(std::floor((x + 180) / 6)) + 1);
+  int zone = std::min(60, static_cast<int>(std::floor((x + 180) / 6)) + 1);
+  if (zone == 31 && x >= 3 && y >= 56 && y < 64) zone = 32;  // western Norway lies in 32 by agreement
   return fmt::format("EPSG:{}", (y < 0 ? 32700 : 32600) + zone);
 }
 

@@ -27,6 +27,11 @@ struct MapGrid {
   double north() const { return south + rows * cell; }
 };
 
+/// A part of a grid, by its cells; row 0 is the southernmost.
+struct CellWindow {
+  int column = 0, row = 0, columns = 0, rows = 0;
+};
+
 /// Values at cell centres; NaN is nodata.
 struct Raster {
   MapGrid grid;

@@ -13,9 +13,8 @@
 
 namespace talus {
 
-/// Read band 1 of any GDAL raster; scale and offset applied, nodata (declared, or NaN) becomes NaN, +-inf a DataError.
-/// Refused with the command that mends it (DataError): missing or unreadable file, geographic CRS (degrees), CRS in
-/// feet, rotated or non-square cells, no valid cell at all. A file without CRS is taken as local metric coordinates.
+/// RasterFile(file).read(), see raster_file.hpp: band 1 of any GDAL raster, in metres, NaN for nodata. A file without CRS is
+/// taken as local metric coordinates; degrees, feet in the map's plane, and rasters without any value are refused.
 Raster read_raster(const std::filesystem::path& file);
 
 /// True when both name the same CRS (an empty one is local and equals only an empty one).
@@ -24,9 +23,11 @@ bool same_crs(const std::string& wkt_a, const std::string& wkt_b);
 /// Short name of a CRS for messages: "EPSG:32149", or the WKT's name, or "local metric coordinates".
 std::string crs_name(const std::string& wkt);
 
-/// Warp onto `grid` (another CRS, extent, registration or cell size). Elevations: bilinear where the target is finer,
+enum class Interpolation { bilinear, cubic };
+
+/// Warp onto `grid` (another CRS, extent, registration or cell size). Elevations: interpolated where the target is finer,
 /// area mean where it is coarser; NaN where the source has no data.
-Raster resample_elevation(const Raster& source, const MapGrid& grid);
+Raster resample_elevation(const Raster& source, const MapGrid& grid, Interpolation interpolation = Interpolation::bilinear);
 
 /// Bring a thickness onto `grid` by exact area weights (same CRS only), so that the volume inside both extents is kept
 /// to rounding. NaN counts as zero thickness but cells wholly outside the source are NaN.

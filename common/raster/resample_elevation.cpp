@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/raster/axis_overlap.hpp"
+#include "common/raster/bicubic.hpp"
 #include "common/raster/bilinear.hpp"
 #include "common/raster/gdal_support.hpp"
 #include "common/raster/raster_io.hpp"
@@ -32,9 +33,10 @@ Raster area_mean(const Raster& source, const MapGrid& grid) {
   return result;
 }
 
-/// Mean over n x n bilinear samples a cell, the samples carried into the source's CRS row by row. `transform` may be
+/// Mean over n x n interpolated samples a cell, the samples carried into the source's CRS row by row. `transform` may be
 /// null.
-Raster sampled(const Raster& source, const MapGrid& grid, OGRCoordinateTransformation* transform, int n) {
+Raster sampled(const Raster& source, const MapGrid& grid, OGRCoordinateTransformation* transform, int n, Interpolation interpolation) {
+  const auto at = interpolation == Interpolation::cubic ? bicubic : bilinear;
   Raster result{grid, std::vector<double>(grid.count(), 0)};
   const auto samples = static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(n);
   std::vector<double> x(samples), y(samples);
@@ -47,7 +49,7 @@ Raster sampled(const Raster& source, const MapGrid& grid, OGRCoordinateTransform
       // Points that PROJ cannot carry become HUGE_VAL, which lies outside of every source.
       if (transform != nullptr) transform->Transform(static_cast<int>(samples), x.data(), y.data());
       for (std::size_t k = 0; k < samples; ++k)
-        result.at(static_cast<int>(k) / n, row) += bilinear(source, x[k], y[k]) / (n * n);
+        result.at(static_cast<int>(k) / n, row) += at(source, x[k], y[k]) / (n * n);
     }
   }
   return result;
@@ -72,13 +74,13 @@ Raster cropped(const Raster& source, const MapGrid& grid) {
 
 }  // namespace
 
-Raster resample_elevation(const Raster& source, const MapGrid& grid) {
+Raster resample_elevation(const Raster& source, const MapGrid& grid, Interpolation interpolation) {
   const gdal::QuietErrors errors;
   const double ratio = grid.cell / source.grid.cell;
   constexpr double hardly_coarser = 1 + 1e-6;
   if (same_crs(source.grid.crs_wkt, grid.crs_wkt)) {
     if (same_cells(source.grid, grid)) return cropped(source, grid);
-    return ratio > hardly_coarser ? area_mean(source, grid) : sampled(source, grid, nullptr, 1);
+    return ratio > hardly_coarser ? area_mean(source, grid) : sampled(source, grid, nullptr, 1, interpolation);
   }
   if (source.grid.crs_wkt.empty() || grid.crs_wkt.empty())
     throw DataError({fmt::format("an elevation raster in {} is wanted in {}", crs_name(source.grid.crs_wkt),
@@ -87,7 +89,7 @@ Raster resample_elevation(const Raster& source, const MapGrid& grid) {
                      "Give it one: gdal_translate -a_srs EPSG:<code> in.tif out.tif"});
   const auto to_source =
       gdal::transformation(gdal::spatial_reference(grid.crs_wkt), gdal::spatial_reference(source.grid.crs_wkt));
-  return sampled(source, grid, to_source.get(), std::max(1, static_cast<int>(std::ceil(ratio - 1e-6))));
+  return sampled(source, grid, to_source.get(), std::max(1, static_cast<int>(std::ceil(ratio - 1e-6))), interpolation);
 }
 
 }  // namespace talus

@@ -19,6 +19,7 @@ struct CommandLine {
   bool print_template = false;
   bool profile = false;
   bool plan = false;
+  bool difference = false;
   std::optional<std::filesystem::path> restart;
   Verbosity verbosity = Verbosity::normal;
 };

@@ -25,6 +25,7 @@ struct StageContext {
   std::optional<std::filesystem::path> restart;  ///< talus-solve --restart [FILE]; empty path = OUT/checkpoint.h5
   bool profile = false;                          ///< talus-solve --profile
   bool plan = false;                             ///< talus-solve --plan: say what would run, and what it would cost; write nothing
+  bool difference = false;                       ///< talus-preprocess --difference: compare the surveys and stop
   std::string command_line;
   std::vector<std::filesystem::path> results;  ///< printed on stdout, one a line, at the end
 };
@@ -37,12 +38,13 @@ struct Stage {
   bool has_on = false;                         ///< takes --on auto|cpu|gpu
   bool has_restart = false;                    ///< takes --restart
   bool has_profile = false;                    ///< takes --profile and --plan
+  bool has_difference = false;                 ///< takes --difference
   std::function<std::string()> template_toml;  ///< for --template
   std::function<void(StageContext&)> run;
 };
 
 /// Parses the command line, runs the stage, prints faults on stderr and result paths on stdout. Returns the exit code.
-/// Options: recipe.toml, --out DIR (default: the recipe's folder / "out"), --check, --template, --on, --restart, --profile, --plan,
+/// Options: recipe.toml, --out DIR (default: the recipe's folder / "out"), --check, --template, --on, --restart, --profile, --plan, --difference,
 /// -v, -q,
 /// --help (exit codes and examples included), --version (with the commit).
 int run_stage(int argc, char** argv, const Stage& stage);

@@ -75,8 +75,7 @@ void describe_file(Nc& nc, const Run& run, const NetcdfNotes& notes) {
           fmt::format("{:%Y-%m-%dT%H:%M:%SZ}: {}", fmt::gmtime(std::time(nullptr)), notes.command_line));
   nc.text(NC_GLOBAL, "comment",
           "Thickness is vertical (along the plumb line), not normal to the slope, and counts released volume. Cells "
-          "outside the "
-          "computed domain hold the fill value; inside it 0 means that nothing is there.");
+          "outside the computed domain hold the fill value; inside it 0 means that nothing is there.");
 }
 
 /// A map variable: what it says of itself, and its values.
@@ -101,9 +100,12 @@ std::vector<MapVariable> map_variables(const RunMaps& maps) {
   all.push_back({"bed_elevation", "elevation of the bed", "m", "area: mean", &maps.terrain, false});
   if (!maps.eroded_depth.empty())
     all.push_back({"eroded_depth", "depth of ground that went along, vertical", "m", "area: mean", &maps.eroded_depth, true});
-  for (const auto& [release, values] : maps.deposit_of)
-    all.push_back({"deposit_thickness_" + nc_name(release), "deposit thickness at the end of release " + release +
-                       ", vertical", "m", "area: mean", &values, true});
+  for (const auto& [release, values] : maps.deposit_of) {
+    std::string name = "deposit_thickness_" + nc_name(release);
+    const auto taken = [&](const MapVariable& other) { return other.name == name; };
+    while (std::any_of(all.begin(), all.end(), taken)) name += "_";  // "a-b" after "a b"
+    all.push_back({name, "deposit thickness at the end of release " + release + ", vertical", "m", "area: mean", &values, true});
+  }
   return all;
 }
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "common/error.hpp"
+#include "common/raster/raster_file.hpp"
 #include "postprocess/score/survey_error.hpp"
 #include "postprocess/score/survey_grid.hpp"
 
@@ -55,13 +56,13 @@ Raster read_thickness(const fs::path& file, const SurveyOptions& options, const 
 
 /// after - before on the grid of the after DEM, or on the run's where that DEM has another CRS.
 void read_surfaces(const SurveyOptions& options, const RunMaps& maps, Survey& survey) {
-  auto after = read_raster(options.after_dem);
+  auto after = read_raster_in_metres(options.after_dem, maps.grid.crs_wkt);
   survey.inputs.push_back(options.after_dem);
   if (after.grid.crs_wkt.empty() != maps.grid.crs_wkt.empty()) check_crs(options.after_dem, after.grid, maps.grid);
   if (!same_crs(after.grid.crs_wkt, maps.grid.crs_wkt)) after = resample_elevation(after, maps.grid);
   Raster before{maps.grid, maps.before};
   if (!options.before_dem.empty()) {
-    before = read_raster(options.before_dem);
+    before = read_raster_in_metres(options.before_dem, maps.grid.crs_wkt);
     survey.inputs.push_back(options.before_dem);
   }
   if (!same_grid(before.grid, after.grid) || !same_crs(before.grid.crs_wkt, after.grid.crs_wkt)) {

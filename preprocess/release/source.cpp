@@ -81,8 +81,27 @@ void refuse_enclosed_nodata(const SurfacePair& s, const std::vector<double>& par
                 "Fill them: gdal_fillnodata.py " + s.under_file.string() + " out.tif"});
 }
 
+/// Lowering below its level of detection is none.
+Raster detected(const Raster& lowering, const std::vector<double>& level) {
+  Raster result = lowering;
+  for (std::size_t i = 0; i < level.size(); ++i) {
+    if (!(lowering.values[i] > level[i])) result.values[i] = std::min(result.values[i], 0.0);
+  }
+  return result;
+}
+
+/// Noise pricks holes into a source: lowered cells that it encloses are its own.
+void fill_pricks(const Raster& lowering, std::vector<double>& part) {
+  std::vector<char> open(part.size());
+  for (std::size_t i = 0; i < part.size(); ++i) open[i] = part[i] == 0;
+  const std::vector<char> outside = reaching_edge(lowering.grid, open);
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    if (open[i] && !outside[i] && lowering.values[i] > 0) part[i] = 1;
+  }
+}
+
 std::vector<double> part_by_region(const SurfacePair& s, const SourceOptions& options) {
-  const Raster lowering = lowering_of(s);
+  const Raster all = lowering_of(s), lowering = detected(all, s.level);
   std::vector<Region> regions =
       lowering_regions(lowering, s.is_sliding_surface ? std::min(rim, options.threshold_m) : options.threshold_m);
   std::erase_if(regions, [&](const Region& region) {
@@ -93,6 +112,7 @@ std::vector<double> part_by_region(const SurfacePair& s, const SourceOptions& op
   const Region& region = chosen(regions, lowering, options);
   std::vector<double> part(lowering.values.size(), 0.0);
   for (std::size_t cell : region.cells) part[cell] = 1.0;
+  if (!s.level.empty()) fill_pricks(all, part);
   if (regions.size() > 1) {
     const Region& next = &region == &regions[0] ? regions[1] : regions[0];
     log_info(fmt::format(

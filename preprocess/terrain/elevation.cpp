@@ -8,6 +8,7 @@
 
 #include "common/error.hpp"
 #include "common/raster/raster_io.hpp"
+#include "common/raster/vertical_unit.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/sum.hpp"
 #include "preprocess/terrain/scattered.hpp"
@@ -77,6 +78,71 @@ void require_same_crs(const Raster& thickness, const MapGrid& grid, const std::f
       fmt::format("Reproject: gdalwarp -t_srs {} -r average {} out.tif", wanted, file.string())});
 }
 
+const char* name_of(VerticalUnit unit) {
+  switch (unit) {
+    case VerticalUnit::metre: return "metre";
+    case VerticalUnit::foot: return "foot";
+    case VerticalUnit::us_survey_foot: return "us-survey-foot";
+    case VerticalUnit::declared: break;
+  }
+  return "";
+}
+
+/// A text file cannot name its CRS; places that all could be longitude and latitude are taken for that.
+ScatteredPoints with_likely_crs(ScatteredPoints points, const std::filesystem::path& file) {
+  const Extent e = points.extent();
+  const bool like_degrees =
+      points.crs_wkt.empty() && !points.x.empty() && e.west >= -180 && e.east <= 360 && e.south >= -90 && e.north <= 90;
+  if (!like_degrees) return points;
+  points.crs_wkt = crs_by_name("EPSG:4326");
+  log_warning(fmt::format("{}: x {:g}..{:g}, y {:g}..{:g} and no CRS: taken as longitude and latitude (WGS 84)",
+                          file.string(), e.west, e.east, e.south, e.north));
+  return points;
+}
+
+/// True when all heights are whole metres, and not all the same.
+Raster middle_of(const RasterFile& file) {
+  constexpr int most = 512;
+  const int columns = std::min(most, file.grid().columns), rows = std::min(most, file.grid().rows);
+  return file.read({(file.grid().columns - columns) / 2, (file.grid().rows - rows) / 2, columns, rows});
+}
+
+bool whole_metres(const Raster& raster) {
+  double low = INFINITY, high = -INFINITY;
+  for (const double z : raster.values) {
+    if (std::isnan(z)) continue;
+    if (z != std::round(z)) return false;
+    low = std::min(low, z);
+    high = std::max(high, z);
+  }
+  return high > low;
+}
+
+/// Heights in steps: each carries the error of its rounding, and gentle slopes turn into stairs.
+void warn_of_steps(const std::filesystem::path& file, double step, double cell) {
+  constexpr double hardly_matters = 0.1;  // [m] below what surveys tell apart
+  if (step < hardly_matters) return;
+  log_warning(fmt::format(
+      "{}: heights come in steps of {:.3g} m (integers, or rounded): each is off by {:.2g} m (one sigma), and a "
+      "slope from cell to cell is told in steps of {:.2g} degrees. Take real numbers where they are to be had",
+      file.string(), step, step / std::sqrt(12.0), std::atan(step / cell) * 180 / M_PI));
+}
+
+ScatteredPoints points_in_metres(const std::filesystem::path& file, const ReadOptions& how) {
+  ScatteredPoints points = read_points_as_given(file);
+  const double metres = metres_in(how.vertical_unit).value_or(1.0);
+  for (double& z : points.z) z *= metres;
+  if (how.to_crs.empty()) {
+    require_metric(points, file, how.or_else);
+    return points;
+  }
+  points = with_likely_crs(std::move(points), file);
+  if (is_metric(points.crs_wkt)) return points;
+  log_info(fmt::format("{}: {} points moved from {} to {}", file.string(), points.x.size(), crs_name(points.crs_wkt),
+                       crs_name(how.to_crs)));
+  return transform_points(std::move(points), how.to_crs);
+}
+
 }  // namespace
 
 Extent Elevation::extent() const {
@@ -84,30 +150,105 @@ Extent Elevation::extent() const {
   return {raster.grid.west, raster.grid.south, raster.grid.east(), raster.grid.north()};
 }
 
-Elevation read_elevation(std::string key, const std::filesystem::path& file) {
-  Elevation elevation{std::move(key), file, is_point_file(file), {}, {}};
-  if (elevation.scattered) {
-    elevation.points = read_points(file);
+ReadOptions dem_reading(const Options& options) {
+  const std::string crs = options.working_crs.empty() ? "" : metric_crs(options.working_crs);
+  return {crs, name_of(options.vertical_unit), "or set working_crs = \"utm\" in [preprocess]"};
+}
+
+Options with_utm_zone(Options options) {
+  if (options.working_crs != "utm") return options;
+  const std::filesystem::path& file = options.first_dem();
+  if (!is_point_file(file)) {
+    options.working_crs = crs_name(utm_crs_of(file));
   } else {
-    elevation.raster = read_raster(file);
+    const ScatteredPoints points = with_likely_crs(read_points_as_given(file), file);
+    const Extent e = points.extent();
+    options.working_crs =
+        points.crs_wkt.empty() ? "" : utm_zone_at(points.crs_wkt, 0.5 * (e.west + e.east), 0.5 * (e.south + e.north));
+  }
+  if (options.working_crs.empty())
+    throw DataError(Fault{file.string() + ": its UTM zone cannot be told", "it names no CRS, or lies near a pole",
+                          "Name the zone: working_crs = \"EPSG:326..\" (north) or \"EPSG:327..\" (south)"});
+  log_info(fmt::format("working_crs: \"utm\" is {}, by the centre of {}", options.working_crs, file.string()));
+  return options;
+}
+
+Elevation read_elevation(std::string key, const std::filesystem::path& file, const ReadOptions& how) {
+  Elevation elevation;
+  elevation.key = std::move(key);
+  elevation.file = file;
+  elevation.scattered = is_point_file(file);
+  if (elevation.scattered) {
+    elevation.points = points_in_metres(file, how);
+  } else {
+    ReadOptions options = how;
+    elevation.reprojected = !options.to_crs.empty() && !in_metres(file);
+    if (!elevation.reprojected) options.to_crs.clear();
+    elevation.on_disk = std::make_shared<RasterFile>(file, options);
+    elevation.raster.grid = elevation.on_disk->grid();
+    if (!elevation.key.starts_with("bed.")) warn_of_steps(file, std::max(elevation.on_disk->step(), whole_metres(middle_of(*elevation.on_disk)) ? 1.0 : 0.0), elevation.cell());
   }
   return elevation;
 }
 
+namespace {
+
+/// As it was read, not placed.
+Raster read_off(const Elevation& elevation, const MapGrid& grid) {
+  const bool one_crs = same_crs(elevation.crs_wkt(), grid.crs_wkt);
+  if (elevation.scattered)
+    return interpolate_scattered(one_crs ? elevation.points : transform_points(elevation.points, grid.crs_wkt), grid, elevation.file);
+  if (one_crs && same_lattice(elevation.raster.grid, grid)) return window(elevation.raster, grid);
+  const bool coarser = grid.cell > elevation.cell() * (1 + 1e-6);
+  if (one_crs && coarser) return coarsened(elevation.raster, grid);
+  return resample_elevation(elevation.raster, grid, elevation.placement.moves() ? Interpolation::cubic : Interpolation::bilinear);
+}
+
+}  // namespace
+
 Raster onto_grid(const Elevation& elevation, const MapGrid& grid) {
+  const Placement& placement = elevation.placement;
+  if (elevation.on_disk) {
+    const Extent needed{grid.west - placement.x, grid.south - placement.y, grid.east() - placement.x, grid.north() - placement.y};
+    return onto_grid(part_of(elevation, needed, grid.crs_wkt), grid);
+  }
+  MapGrid from = grid;
+  from.west -= placement.x;
+  from.south -= placement.y;
+  Raster result = read_off(elevation, from);
+  result.grid = grid;
+  if (!placement.given()) return result;
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) result.at(column, row) += placement.rise(grid.x(column), grid.y(row));
+  }
+  return result;
+}
+
+void log_resampling(const Elevation& elevation, const MapGrid& grid) {
   const bool one_crs = same_crs(elevation.crs_wkt(), grid.crs_wkt);
   if (elevation.scattered) {
-    log_info(fmt::format("{}: {} points triangulated onto the working grid", elevation.file.string(),
-                         elevation.points.x.size()));
-    return interpolate_scattered(one_crs ? elevation.points : transform_points(elevation.points, grid.crs_wkt), grid,
-                                 elevation.file);
+    log_info(fmt::format("{}: {} points triangulated onto the working grid", elevation.file.string(), elevation.points.x.size()));
+  } else if (!one_crs || !same_lattice(elevation.raster.grid, grid)) {
+    log_info(fmt::format("{}: {:g} m cells in {}{} resampled onto the working grid", elevation.file.string(), elevation.cell(), crs_name(elevation.crs_wkt()),
+                         one_crs && elevation.cell() == grid.cell ? ", registered otherwise," : ""));
   }
-  if (one_crs && same_lattice(elevation.raster.grid, grid)) return window(elevation.raster, grid);
-  log_info(fmt::format("{}: {:g} m cells in {}{} resampled onto the working grid", elevation.file.string(),
-                       elevation.cell(), crs_name(elevation.crs_wkt()),
-                       one_crs && elevation.cell() == grid.cell ? ", registered otherwise," : ""));
-  const bool coarser = grid.cell > elevation.cell() * (1 + 1e-6);
-  return one_crs && coarser ? coarsened(elevation.raster, grid) : resample_elevation(elevation.raster, grid);
+}
+
+Elevation part_of(const Elevation& elevation, const Extent& extent, const std::string& crs_wkt) {
+  Elevation part = elevation;
+  if (elevation.scattered) return part;
+  const Extent own = same_crs(crs_wkt, elevation.crs_wkt()) ? extent : transform_extent(extent, crs_wkt, elevation.crs_wkt());
+  const MapGrid& grid = elevation.raster.grid;
+  const auto cell_at = [&](double from, int count) { return std::clamp(static_cast<int>(std::floor(from / grid.cell)), 0, count - 1); };
+  const double rim = 2 * grid.cell;
+  CellWindow w;
+  w.column = cell_at(own.west - grid.west - rim, grid.columns);
+  w.row = cell_at(own.south - grid.south - rim, grid.rows);
+  w.columns = cell_at(own.east - grid.west + rim, grid.columns) + 1 - w.column;
+  w.rows = cell_at(own.north - grid.south + rim, grid.rows) + 1 - w.row;
+  part.raster = elevation.on_disk ? elevation.on_disk->read(w) : cut(elevation.raster, w);
+  part.on_disk.reset();
+  return part;
 }
 
 Raster thickness_onto_grid(const Raster& thickness, const MapGrid& grid, const std::filesystem::path& file) {

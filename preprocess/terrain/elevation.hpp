@@ -2,11 +2,16 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "common/raster/raster.hpp"
+#include "common/raster/raster_file.hpp"
+#include "common/raster/raster_file.hpp"
+#include "preprocess/options.hpp"
 #include "preprocess/terrain/geo_input.hpp"
+#include "preprocess/terrain/placement.hpp"
 
 namespace talus::preprocess {
 
@@ -15,19 +20,37 @@ struct Elevation {
   std::string key;  // its key in the recipe: "after_dem"
   std::filesystem::path file;
   bool scattered = false;
-  Raster raster;
+  bool reprojected = false;  // as it was read: its data end in slanting lines
+  Raster raster;                              // its cells, or of one that stays in its file, nothing but the grid
+  std::shared_ptr<const RasterFile> on_disk;  // read by parts, as they are needed
   ScatteredPoints points;
+  Placement placement = {};  // in the CRS of the working grid
 
   const std::string& crs_wkt() const { return scattered ? points.crs_wkt : raster.grid.crs_wkt; }
   Extent extent() const;
   double cell() const { return scattered ? 0.0 : raster.grid.cell; }  // 0 = has none
 };
 
-/// Read a raster by any GDAL format, or points (see is_point_file). Throws DataError.
-Elevation read_elevation(std::string key, const std::filesystem::path& file);
+/// What the recipe says of reading: what degrees and feet become, and the unit of heights. `to_crs` is used for files
+/// in degrees or feet alone; those in metres are brought onto the working grid in one step, later.
+ReadOptions dem_reading(const Options& options);
 
-/// Copied where its cells are the grid's cells, resampled or triangulated otherwise; NaN where it has no data.
+/// The options with working_crs = "utm" replaced by the UTM zone that holds the centre of the first DEM. Throws
+/// DataError.
+Options with_utm_zone(Options options);
+
+/// Read a raster by any GDAL format, or points (see is_point_file). Throws DataError.
+Elevation read_elevation(std::string key, const std::filesystem::path& file, const ReadOptions& how = {});
+
+/// Copied where its cells are the grid's cells, resampled or triangulated otherwise (moved by less than a cell: by cubic
+/// convolution, which does not flatten crests); NaN where it has no data.
 Raster onto_grid(const Elevation& elevation, const MapGrid& grid);
+
+/// Says in the log how it comes onto the working grid, where its cells are not copied.
+void log_resampling(const Elevation& elevation, const MapGrid& grid);
+
+/// What it holds within an extent given in `crs_wkt`, and a few cells around.
+Elevation part_of(const Elevation& elevation, const Extent& extent, const std::string& crs_wkt);
 
 /// Thickness onto the grid, conserving volume (see resample_thickness); 0 where it has no data. Throws DataError when
 /// CRS differ, when there is no overlap, or when more than 1e-9 of the volume lies outside the grid.

@@ -1,17 +1,13 @@
-// What preprocess needs of GDAL beyond rasters and polygons: naming a CRS, moving extents, reading scattered points.
+// Scattered elevations out of text and vector files, and the CRS that a recipe names.
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
-namespace talus::preprocess {
+#include "common/raster/coordinates.hpp"
 
-/// A rectangle in map coordinates [m].
-struct Extent {
-  double west = 0, south = 0, east = 0, north = 0;
-  bool empty() const { return !(west < east && south < north); }
-};
+namespace talus::preprocess {
 
 /// Elevations at scattered places.
 struct ScatteredPoints {
@@ -23,16 +19,19 @@ struct ScatteredPoints {
 /// WKT2 of a CRS named in the recipe ("EPSG:32149"). Throws RecipeError when unknown or not in metres.
 std::string metric_crs(const std::string& name);
 
-/// Smallest rectangle in `to_wkt` around `extent` in `from_wkt`.
-Extent transform_extent(const Extent& extent, const std::string& from_wkt, const std::string& to_wkt);
-
 /// True for a vector file of points, or a text file of x, y, z columns (.csv, .xyz, .txt) that is no gapless raster to
 /// GDAL.
 bool is_point_file(const std::filesystem::path& file);
 
-/// Read it. A header line names the columns x, y, z (any order and case; also easting, northing, elevation, height);
-/// without one they are the first three. Vector points carry z in their geometry or in such an attribute. Throws
-/// DataError with the line.
+/// Points as they lie in their file, whatever their CRS. A header line names the columns x, y, z (any order and case;
+/// also easting, northing, longitude, latitude, elevation, height); without one they are the first three. Vector points
+/// carry z in their geometry or in such an attribute. Throws DataError with the line.
+ScatteredPoints read_points_as_given(const std::filesystem::path& file);
+
+/// Throws DataError where points are in degrees or feet; `or_else` names another way out (see ReadOptions).
+void require_metric(const ScatteredPoints& points, const std::filesystem::path& file, const std::string& or_else = "");
+
+/// read_points_as_given(), in metres.
 ScatteredPoints read_points(const std::filesystem::path& file);
 
 /// The points in another CRS.

@@ -29,8 +29,8 @@ bool is_one_of(std::string_view name, std::initializer_list<std::string_view> na
   return std::find(names.begin(), names.end(), lower(name)) != names.end();
 }
 
-bool is_x_name(std::string_view name) { return is_one_of(name, {"x", "x_m", "easting", "east"}); }
-bool is_y_name(std::string_view name) { return is_one_of(name, {"y", "y_m", "northing", "north"}); }
+bool is_x_name(std::string_view name) { return is_one_of(name, {"x", "x_m", "easting", "east", "longitude", "lon"}); }
+bool is_y_name(std::string_view name) { return is_one_of(name, {"y", "y_m", "northing", "north", "latitude", "lat"}); }
 
 /// The line without its comment, cut at separators and stripped of quotes.
 std::vector<std::string> words_of(const std::string& line) {

@@ -28,7 +28,7 @@ void mark_too(std::vector<char>& marked, const std::vector<char>& more) {
 
 /// Data that were reprojected or triangulated end in ragged or slanting lines.
 bool ends_ragged(const Elevation& dem, const MapGrid& grid) {
-  return dem.scattered || !same_crs(dem.crs_wkt(), grid.crs_wkt);
+  return dem.scattered || dem.reprojected || !same_crs(dem.crs_wkt(), grid.crs_wkt);
 }
 
 /// Cut off border rows and columns where a DEM is wholly empty; and, unless `ragged_edges` may stay, those where a
@@ -40,7 +40,7 @@ void trim(const std::vector<const Elevation*>& dems, std::vector<Raster>& raster
     for (std::size_t i = 0; i < dems.size(); ++i) {
       if (!in_part || (!ragged_edges && ends_ragged(*dems[i], grid))) mark_too(empty, empty_cells(rasters[i]));
     }
-    const Window window = trimmed(rasters.front().grid, empty, in_part ? 0.0 : 1.0 - 1e-9);
+    const CellWindow window = trimmed(rasters.front().grid, empty, in_part ? 0.0 : 1.0 - 1e-9);
     if (window.columns < 1 || window.rows < 1) {
       throw DataError(Fault{fmt::format("{}: has no data where the DEMs overlap", dems.back()->file.string()),
                             "nothing is left of the working grid", "Check its coordinates and CRS with gdalinfo"});
@@ -69,21 +69,50 @@ void leave_edges_outside(std::vector<Raster>& rasters) {
     log_warning(fmt::format("{} cells without elevation reach the edge of the grid and lie outside the domain", count));
 }
 
-void refuse_empty_cells(const Elevation& dem, const Raster& raster, EdgeNodata edge) {
+/// `largest_void` is the area of the largest one that was left unfilled [m2].
+void refuse_empty_cells(const Elevation& dem, const Raster& raster, const Options& options, double largest_void) {
+  const EdgeNodata edge = options.grid.edge_nodata;
   std::vector<char> empty = empty_cells(raster);
   if (edge == EdgeNodata::outside) {
     const std::vector<char> outside = reaching_edge(raster.grid, empty);
     for (std::size_t i = 0; i < empty.size(); ++i) empty[i] = empty[i] && !outside[i];
   }
-  std::string mend = "Fill them (gdal_fillnodata.py " + dem.file.string() + " out.tif)";
+  const bool too_large = largest_void > 0;
+  const std::string beforehand = "(gdal_fillnodata.py " + dem.file.string() + " out.tif)";
+  std::string mend = "Fill them beforehand " + beforehand;
+  if (!options.voids.fill) mend = "Fill them: fill = true in [preprocess.voids], or beforehand " + beforehand;
+  if (too_large)
+    mend = fmt::format(
+        "Raise largest_m2 = {:g} in [preprocess.voids] (the largest void has {} m2), or fill it beforehand {}",
+        options.voids.largest_m2, grouped(largest_void), beforehand);
   if (edge == EdgeNodata::refuse) {
     mend +=
-        ", crop the working grid (west_m, south_m, east_m, north_m in [preprocess.grid]), or, where they reach its "
+        "; or crop the working grid (west_m, south_m, east_m, north_m in [preprocess.grid]), or, where they reach its "
         "edge, "
         "leave them outside the domain: edge_nodata = \"outside\"";
   }
   refuse_cells(raster.grid, empty,
-               {dem.file, "cells without elevation", "nodata or NaN inside the working area", mend});
+               {dem.file, "cells without elevation",
+                too_large ? "nodata or NaN inside the working area, in voids too large to fill"
+                          : "nodata or NaN inside the working area",
+                mend});
+}
+
+void look_at_spikes(const Elevation& dem, Raster& raster, const VoidOptions& options) {
+  if (options.spikes == Spikes::ignore) return;
+  const std::vector<Outlier> outliers = spikes_and_pits(raster);
+  if (outliers.empty()) return;
+  const bool remove = options.spikes == Spikes::remove;
+  log_warning(fmt::format("{}: {}{}", dem.file.string(), summary(outliers, raster.grid),
+                          remove ? "; removed" : "; remove them with spikes = \"remove\" in [preprocess.voids]"));
+  if (!remove) return;
+  for (const Outlier& outlier : outliers) raster.values[outlier.cell] = std::numeric_limits<double>::quiet_NaN();
+}
+
+Filled fill(const Elevation& dem, const Raster& raster, double largest_m2) {
+  Filled filled = fill_voids(raster, largest_m2);
+  if (const std::string text = summary(filled); !text.empty()) log_info(dem.file.string() + ": " + text);
+  return filled;
 }
 
 }  // namespace
@@ -142,16 +171,27 @@ void require_data(const Raster& raster, const std::filesystem::path& file) {
                         "Check its coordinates and nodata value with gdalinfo"});
 }
 
-std::vector<Raster> align(const std::vector<const Elevation*>& dems, const Options& options) {
+std::vector<Raster> align(const std::vector<const Elevation*>& dems, const Options& options,
+                          std::vector<Filled>* filled) {
   const MapGrid grid = working_grid(dems, options);
   std::vector<Raster> rasters;
   for (const Elevation* dem : dems) {
+    log_resampling(*dem, grid);
     rasters.push_back(onto_grid(*dem, grid));
     require_data(rasters.back(), dem->file);
   }
   const EdgeNodata edge = options.grid.edge_nodata;
   trim(dems, rasters, edge == EdgeNodata::outside);
-  for (std::size_t i = 0; i < dems.size(); ++i) refuse_empty_cells(*dems[i], rasters[i], edge);
+  std::vector<double> largest_void(dems.size(), 0.0);
+  for (std::size_t i = 0; i < dems.size(); ++i) {
+    look_at_spikes(*dems[i], rasters[i], options.voids);
+    if (!options.voids.fill) continue;
+    Filled result = fill(*dems[i], rasters[i], options.voids.largest_m2);
+    rasters[i] = result.raster;
+    for (const VoidFill& v : result.voids) largest_void[i] = std::max(largest_void[i], v.filled ? 0.0 : v.area_m2);
+    if (filled != nullptr) filled->push_back(std::move(result));
+  }
+  for (std::size_t i = 0; i < dems.size(); ++i) refuse_empty_cells(*dems[i], rasters[i], options, largest_void[i]);
   if (edge == EdgeNodata::outside) leave_edges_outside(rasters);
   return rasters;
 }

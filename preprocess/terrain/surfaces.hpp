@@ -8,6 +8,7 @@
 #include "common/raster/raster.hpp"
 #include "preprocess/options.hpp"
 #include "preprocess/terrain/elevation.hpp"
+#include "preprocess/terrain/voids.hpp"
 
 namespace talus::preprocess {
 
@@ -33,7 +34,9 @@ void require_data(const Raster& raster, const std::filesystem::path& file);
 /// Bring DEMs onto the working grid (the first gives CRS, registration and cell). Where one was reprojected or
 /// triangulated, the grid is trimmed to where it has data. Other cells without data are refused by name and place; with
 /// edge_nodata = "outside" those that reach the edge become nodata in every raster returned. All are on one grid, in
-/// the order of `dems`.
-std::vector<Raster> align(const std::vector<const Elevation*>& dems, const Options& options);
+/// the order of `dems`. Before that, spikes and pits are reported or removed and voids filled, as [preprocess.voids] asks;
+/// `filled`, where wanted, receives for every DEM what was filled and how well (empty without voids.fill).
+std::vector<Raster> align(const std::vector<const Elevation*>& dems, const Options& options,
+                          std::vector<Filled>* filled = nullptr);
 
 }  // namespace talus::preprocess

@@ -27,7 +27,9 @@ std::string text(const Extent& e) {
 }
 
 Extent extent_in(const Elevation& dem, const std::string& crs) {
-  return same_crs(dem.crs_wkt(), crs) ? dem.extent() : transform_extent(dem.extent(), dem.crs_wkt(), crs);
+  const Extent e = same_crs(dem.crs_wkt(), crs) ? dem.extent() : transform_extent(dem.extent(), dem.crs_wkt(), crs);
+  const Placement& p = dem.placement;
+  return {e.west + p.x, e.south + p.y, e.east + p.x, e.north + p.y};
 }
 
 double spacing_of(const Elevation& first, const Options& options) {
@@ -64,9 +66,17 @@ Extent overlap_of(const std::vector<const Elevation*>& dems, const std::string& 
     const Extent extent = extent_in(*dem, crs);
     const Extent smaller = intersection(overlap, extent);
     if (smaller.empty()) {
-      throw DataError(Fault{fmt::format("{}: covers {}, while {} covers {}", dem->file.string(), text(extent),
-                                        first.file.string(), text(overlap)),
-                            "they do not overlap", "Check the coordinates and the CRS of both with gdalinfo"});
+      const bool one_crs = same_crs(dem->crs_wkt(), first.crs_wkt());
+      throw DataError(Fault{
+          fmt::format("{}: covers {}, while {} covers {}", dem->file.string(), text(extent), first.file.string(),
+                      text(overlap)),
+          one_crs ? std::string("they do not overlap")
+                  : fmt::format("they do not overlap; the one says it is in {}, the other in {}",
+                                crs_name(dem->crs_wkt()), crs_name(first.crs_wkt())),
+          one_crs ? std::string("Check the coordinates and the CRS of both with gdalinfo")
+                  : "Check both with gdalinfo; where a CRS is named wrongly, name the right one: gdal_edit.py -a_srs "
+                    "EPSG:<code> " +
+                        dem->file.string()});
     }
     overlap = smaller;
   }
@@ -79,7 +89,7 @@ struct Border {
   double part() const { return static_cast<double>(empty) / length; }
 };
 
-std::array<Border, 4> borders(const MapGrid& grid, const std::vector<char>& empty, const Window& w) {
+std::array<Border, 4> borders(const MapGrid& grid, const std::vector<char>& empty, const CellWindow& w) {
   std::array<Border, 4> b{Border{0, w.rows}, Border{0, w.rows}, Border{0, w.columns}, Border{0, w.columns}};
   for (int row = w.row; row < w.row + w.rows; ++row) {
     b[0].empty += empty[grid.index(w.column, row)];
@@ -119,8 +129,8 @@ MapGrid working_grid(const std::vector<const Elevation*>& dems, const Options& o
   return grid;
 }
 
-Window trimmed(const MapGrid& grid, const std::vector<char>& empty, double allowed) {
-  Window w{0, 0, grid.columns, grid.rows};
+CellWindow trimmed(const MapGrid& grid, const std::vector<char>& empty, double allowed) {
+  CellWindow w{0, 0, grid.columns, grid.rows};
   while (w.columns > 0 && w.rows > 0) {
     const auto b = borders(grid, empty, w);
     const auto worst =
@@ -134,7 +144,7 @@ Window trimmed(const MapGrid& grid, const std::vector<char>& empty, double allow
   return w;
 }
 
-MapGrid cut(const MapGrid& grid, const Window& window) {
+MapGrid cut(const MapGrid& grid, const CellWindow& window) {
   MapGrid part = grid;
   part.west = grid.west + window.column * grid.cell;
   part.south = grid.south + window.row * grid.cell;
@@ -143,7 +153,7 @@ MapGrid cut(const MapGrid& grid, const Window& window) {
   return part;
 }
 
-Raster cut(const Raster& raster, const Window& window) {
+Raster cut(const Raster& raster, const CellWindow& window) {
   Raster part{cut(raster.grid, window), {}};
   part.values.reserve(part.grid.count());
   for (int row = 0; row < window.rows; ++row) {

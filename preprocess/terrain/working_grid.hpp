@@ -20,18 +20,13 @@ bool same_lattice(const MapGrid& a, const MapGrid& b);
 /// (no overlap; one file with and one without CRS).
 MapGrid working_grid(const std::vector<const Elevation*>& dems, const Options& options);
 
-/// A part of a grid, by its cells.
-struct Window {
-  int column = 0, row = 0, columns = 0, rows = 0;
-};
-
 /// Drops border rows and columns of which more than `allowed` (0..1) is marked in `empty` [rows * columns], the
 /// emptiest first. Below 1 - 1e-9 it drops wholly empty ones; 0 leaves a rectangle without empty cells on its border,
 /// as DEMs need that were reprojected or triangulated and whose data do not end along the grid's lines.
-Window trimmed(const MapGrid& grid, const std::vector<char>& empty, double allowed);
+CellWindow trimmed(const MapGrid& grid, const std::vector<char>& empty, double allowed);
 
 /// The part of a raster or grid in the window.
-MapGrid cut(const MapGrid& grid, const Window& window);
-Raster cut(const Raster& raster, const Window& window);
+MapGrid cut(const MapGrid& grid, const CellWindow& window);
+Raster cut(const Raster& raster, const CellWindow& window);
 
 }  // namespace talus::preprocess

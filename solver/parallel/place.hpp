@@ -185,7 +185,7 @@ inline void synchronise(OnCpu) {}
 inline void synchronise(OnGpu) { detail::gpu_synchronise(); }
 
 /// From so many points on every multiprocessor has more to do than it can hold: what counts then is how much gets through, not how soon.
-inline constexpr int points_that_keep_a_gpu_busy = 250000;
+inline constexpr int points_that_keep_a_gpu_busy = 65536;
 
 #if defined(__CUDACC__)
 namespace detail {

@@ -177,7 +177,7 @@ void Particles<Real, Place>::reorder_together(const Buffer<int, Place>& order, i
 
 template <class Real, class Place>
 void Particles<Real, Place>::reorder(const Buffer<int, Place>& order, int count) {
-  constexpr int few = 1 << 20;  // points whose state may be kept twice: thirty kernels take longer than what they do
+  constexpr int few = 1 << 19;  // points whose state may be kept twice: thirty kernels take longer than what they do
   if (Place::is_gpu && count_ <= few) return reorder_together(order, count);
   for (int slot = 0; slot < real_slots; ++slot) {
     if (!in_use(slot) || slot >= move_slot) continue;  // the displacement lives within one step only

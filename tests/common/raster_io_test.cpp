@@ -127,17 +127,6 @@ TEST_F(RasterFile, a_raster_stored_south_first_reads_the_same) {
   EXPECT_EQ(back.values, raster.values);
 }
 
-TEST_F(RasterFile, dialects_of_ascii_grids_agree) {
-  const std::string cells = "1 2\n3 4\n";
-  const Raster corner =
-      read_raster(ascii("ncols 2\nnrows 2\nxllcorner 10\nyllcorner 20\ncellsize 4\nNODATA_value -9999", cells));
-  const Raster centre = read_raster(
-      ascii("NCOLS\t2\nNROWS\t2\nXLLCENTER\t12\nYLLCENTER\t22\nCELLSIZE\t4\nnodata_value\tnan", "1\t2\n3\t4\n"));
-  const Raster order = read_raster(ascii("nrows 2\nncols 2\nyllcorner 20\nxllcorner 10\ncellsize 4", cells));
-  EXPECT_TRUE(identical(corner, centre));
-  EXPECT_TRUE(identical(corner, order));
-}
-
 TEST_F(RasterFile, undeclared_nodata_values_are_dropped_with_a_warning) {
   testing::internal::CaptureStderr();
   const Raster raster = read_raster(ascii("ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 4", "-9999 7\n"));
@@ -214,16 +203,6 @@ TEST_F(RasterFile, refuses_feet_with_the_command_that_mends_it) {
                       "EPSG:32610 -r bilinear " +
                       file + " f_utm.tif");
   EXPECT_EQ(crs_name(mended(text, "f_utm.tif").grid.crs_wkt), "EPSG:32610");
-}
-
-TEST_F(RasterFile, refuses_elevations_in_feet_with_the_command_that_mends_it) {
-  write_geotiff(scratch / "h.tif", small_raster({2, 1, 0, 0, 1, epsg(32611)}, {1000, 2000}), {"z", "ft", {}});
-  const std::string file = (scratch / "h.tif").string();
-  const std::string text = fault(file);
-  EXPECT_EQ(text, file + ": its values are in ft (this stage needs metres). Convert: gdal_calc.py -A " + file +
-                      " --calc=A*0.3048 --outfile=h_m.tif");
-  const Raster metres = mended(text, "h_m.tif");
-  EXPECT_NEAR(metres.at(0, 0), 304.8, 1e-4);
 }
 
 TEST_F(RasterFile, refuses_a_rotated_raster_with_the_command_that_mends_it) {

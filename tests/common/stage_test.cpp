@@ -89,6 +89,7 @@ struct RunStage : testing::Test {
               true,
               true,
               true,
+              false,
               [] { return recipe::to_toml(SampleOptions{}, "solve", true); },
               [](StageContext&) {}};
   std::string out, err;

@@ -29,7 +29,7 @@ test_missing_file() {
 test_geographic_crs() {
   scene
   echo 'GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",SPHEROID["WGS_1984",6378137.0,298.257223563]],PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]]' >before.prj
-  refused 3 "talus-preprocess: $PWD/before.asc: CRS is WGS 84, in degrees (this stage needs metres). Reproject: gdalwarp -t_srs EPSG:<a metric one> -r bilinear $PWD/before.asc before_utm.tif"
+  refused 3 "talus-preprocess: $PWD/before.asc: CRS is WGS 84, in degrees (this stage needs metres). Reproject: gdalwarp -t_srs EPSG:<a metric one> -r bilinear $PWD/before.asc before_utm.tif; or set working_crs = \"utm\" in [preprocess]"
 }
 
 test_no_overlap() {
@@ -47,13 +47,13 @@ test_all_nodata() {
 test_nan_cells() {
   scene
   grid after.asc "i == 11 && j == 5 ? \"nan\" : $bowl - 4 * $in_source"
-  refused 3 "talus-preprocess: $PWD/after.asc: 1 cell without elevation, at x 500115.0, y 5000055.0 (nodata or NaN inside the working area). Fill them (gdal_fillnodata.py $PWD/after.asc out.tif), crop the working grid (west_m, south_m, east_m, north_m in [preprocess.grid]), or, where they reach its edge, leave them outside the domain: edge_nodata = \"outside\""
+  refused 3 "talus-preprocess: $PWD/after.asc: 1 cell without elevation, at x 500115.0, y 5000055.0 (nodata or NaN inside the working area). Fill them: fill = true in [preprocess.voids], or beforehand (gdal_fillnodata.py $PWD/after.asc out.tif); or crop the working grid (west_m, south_m, east_m, north_m in [preprocess.grid]), or, where they reach its edge, leave them outside the domain: edge_nodata = \"outside\""
 }
 
 test_nodata_cells() {
   scene
   grid before.asc "i == 11 && j == 5 ? -9999 : $bowl"
-  refused 3 "talus-preprocess: $PWD/before.asc: 1 cell without elevation, at x 500115.0, y 5000055.0 (nodata or NaN inside the working area). Fill them (gdal_fillnodata.py $PWD/before.asc out.tif), crop the working grid (west_m, south_m, east_m, north_m in [preprocess.grid]), or, where they reach its edge, leave them outside the domain: edge_nodata = \"outside\""
+  refused 3 "talus-preprocess: $PWD/before.asc: 1 cell without elevation, at x 500115.0, y 5000055.0 (nodata or NaN inside the working area). Fill them: fill = true in [preprocess.voids], or beforehand (gdal_fillnodata.py $PWD/before.asc out.tif); or crop the working grid (west_m, south_m, east_m, north_m in [preprocess.grid]), or, where they reach its edge, leave them outside the domain: edge_nodata = \"outside\""
 }
 
 test_empty_source() {

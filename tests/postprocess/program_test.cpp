@@ -17,7 +17,7 @@ class Program : public ::testing::Test {
   Program() { fs::create_directories(out_); }
   void run_it(bool check_only = false) {
     StageContext context{
-        recipe::Recipe(scratch_.write("recipe.toml", recipe_)), out_, On::automatic, check_only, {}, false, false, "test", {}};
+        recipe::Recipe(scratch_.write("recipe.toml", recipe_)), out_, On::automatic, check_only, {}, false, false, false, "test", {}};
     run(context);
     results_ = context.results;
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "common/raster/coordinates.hpp"
 #include "postprocess/maps/fields.hpp"
 #include "tests/postprocess/scene.hpp"
 
@@ -200,6 +201,20 @@ TEST_F(SurveyTest, compares_the_change_itself_with_what_was_measured) {
   EXPECT_EQ(simulated.change[small_grid().index(4, 15)], -6) << "the scar";
   EXPECT_EQ(simulated.deposit[small_grid().index(4, 15)], 0);
   EXPECT_EQ(simulated.change[small_grid().index(26, 15)], 1.5);
+TEST_F(SurveyTest, brings_dems_in_degrees_to_the_runs_crs) {
+  const auto& run = run_.maps.grid;
+  MapGrid degrees{0, 0, 0, 0, 0.0001, crs_by_name("EPSG:4326")};
+  const Extent e = transform_extent({run.west, run.south, run.east(), run.north()}, run.crs_wkt, degrees.crs_wkt);
+  degrees.west = e.west - 0.001;
+  degrees.south = e.south - 0.001;
+  degrees.columns = static_cast<int>((e.east - e.west) / degrees.cell) + 20;
+  degrees.rows = static_cast<int>((e.north - e.south) / degrees.cell) + 20;
+  options_.before_dem = raster("before.tif", degrees, std::vector<double>(degrees.count(), 1000));
+  options_.after_dem = raster("after.tif", degrees, std::vector<double>(degrees.count(), 1003));
+  const auto survey = read_survey(options_, run_.maps, 1.0);
+  EXPECT_TRUE(same_crs(survey->grid.crs_wkt, run.crs_wkt));
+  EXPECT_NEAR(survey->grid.cell, 9.3, 0.06);  // of 7.7 x 11.1 m
+  EXPECT_NEAR(survey->deposit[survey->grid.index(survey->grid.columns / 2, survey->grid.rows / 2)], 3, 1e-9);
 }
 
 TEST_F(SurveyTest, fills_polygons_and_leaves_their_holes) {

@@ -187,7 +187,7 @@ TEST(trimmed, leaves_a_rectangle_without_holes_on_its_border) {
       empty[grid.index(column, row)] = std::abs(u) > 22 || std::abs(v) > 17;
     }
   }
-  const Window w = trimmed(grid, empty, 0);
+  const CellWindow w = trimmed(grid, empty, 0);
   EXPECT_GT(w.columns * w.rows, 0.8 * 44 * 34);
   for (int row = w.row; row < w.row + w.rows; ++row) {
     for (int column = w.column; column < w.column + w.columns; ++column) ASSERT_FALSE(empty[grid.index(column, row)]);

@@ -21,8 +21,8 @@ std::string faults_of(const Options& options) {
 }
 
 const std::string one_way =
-    " Give exactly one of: before_dem and after_dem; before_dem and sliding_surface; base_dem and "
-    "[[preprocess.release]]; [preprocess.laboratory] and [[preprocess.box]]\n";
+    " Give exactly one of: before_dem and after_dem; before_dem and sliding_surface; before_dem and source.polygon; "
+    "base_dem and [[preprocess.release]]; [preprocess.laboratory] and [[preprocess.box]]\n";
 
 TEST(options, know_their_ways) {
   Options options = before_and_after();

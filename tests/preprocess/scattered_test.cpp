@@ -123,7 +123,7 @@ TEST(point_file, refuses_points_in_degrees) {
     "geometry":{"type":"Point","coordinates":[13.5,47.1,12.5]}}]})");
   EXPECT_EQ(fault_of<DataError>([&] { read_points(file); }),
             file.string() +
-                ": CRS is WGS 84 (this stage needs metres). Reproject: ogr2ogr -t_srs EPSG:<utm> out.gpkg " +
+                ": CRS is EPSG:4326 (this stage needs metres). Reproject: ogr2ogr -t_srs EPSG:32633 p_utm.gpkg " +
                 file.string());
 }
 
@@ -132,6 +132,14 @@ TEST(point_file, is_not_a_raster) {
   const auto file =
       test::write(scratch, "dem.tif", test::raster_of(test::grid_of(3, 3, 1), [](double, double) { return 1.0; }));
   EXPECT_FALSE(is_point_file(file));
+}
+
+TEST(point_file, is_not_an_ascii_grid_of_whatever_dialect) {
+  Scratch scratch;
+  const std::string grid = "ncols 2\nnrows 2\nxllcentre 10\nyllcentre 20\ncellsize 5\n1 2\n3 4\n";
+  EXPECT_FALSE(is_point_file(scratch.write("dem.txt", grid)));
+  EXPECT_FALSE(is_point_file(scratch.write("odd.txt", "# made by hand\n" + grid)));
+  EXPECT_EQ(read_raster(scratch / "odd.txt").at(0, 0), 3);
 }
 
 TEST(metric_crs, refuses_degrees_and_unknown_names) {

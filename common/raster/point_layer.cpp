@@ -1,0 +1,80 @@
+#include "common/raster/point_layer.hpp"
+
+#include <fmt/format.h>
+#include <ogrsf_frmts.h>
+
+#include "common/raster/ascii_grid.hpp"
+#include "common/raster/gdal_support.hpp"
+
+namespace talus {
+namespace fs = std::filesystem;
+namespace {
+
+gdal::Dataset open(const fs::path& file, unsigned kind) {
+  return gdal::Dataset(GDALDataset::Open(file.c_str(), kind | GDAL_OF_READONLY));
+}
+
+bool is_point(const OGRGeometry* geometry) {
+  return geometry != nullptr && wkbFlatten(geometry->getGeometryType()) == wkbPoint;
+}
+
+int z_field_of(const OGRFeatureDefn& fields, const std::function<bool(std::string_view)>& is_z_name) {
+  int found = -1;
+  for (int i = 0; i < fields.GetFieldCount(); ++i)
+    if (is_z_name(const_cast<OGRFeatureDefn&>(fields).GetFieldDefn(i)->GetNameRef())) found = i;
+  return found;
+}
+
+}  // namespace
+
+std::optional<RasterGlance> glance_at_raster(const fs::path& file) {
+  const gdal::QuietErrors errors;
+  const gdal::Dataset raster = open(file, GDAL_OF_RASTER);
+  if (!raster && gdal::begins_as_ascii_grid(file)) return RasterGlance{"AAIGrid", 0};
+  if (!raster) return std::nullopt;
+  return RasterGlance{
+      raster->GetDriver() == nullptr ? "" : raster->GetDriver()->GetDescription(),
+      static_cast<std::size_t>(raster->GetRasterXSize()) * static_cast<std::size_t>(raster->GetRasterYSize())};
+}
+
+bool holds_points(const fs::path& file) {
+  const gdal::QuietErrors errors;
+  const gdal::Dataset dataset = open(file, GDAL_OF_VECTOR);
+  if (!dataset || dataset->GetLayerCount() == 0) return false;
+  OGRLayer& layer = *dataset->GetLayer(0);
+  const auto kind = wkbFlatten(layer.GetGeomType());
+  if (kind == wkbPoint || kind != wkbUnknown) return kind == wkbPoint;
+  layer.ResetReading();
+  const OGRFeatureUniquePtr feature(layer.GetNextFeature());
+  return feature && is_point(feature->GetGeometryRef());
+}
+
+PointLayer read_point_layer(const fs::path& file, const std::function<bool(std::string_view)>& is_z_name) {
+  const gdal::QuietErrors errors;
+  const gdal::Dataset dataset = open(file, GDAL_OF_VECTOR);
+  if (!dataset || dataset->GetLayerCount() == 0)
+    throw DataError(
+        {file.string() + ": cannot be read as points", errors.text(), "Look at it: ogrinfo " + file.string()});
+  OGRLayer& layer = *dataset->GetLayer(0);
+  PointLayer points;
+  points.crs_wkt = gdal::horizontal_wkt(layer.GetSpatialRef());
+  const int z_field = z_field_of(*layer.GetLayerDefn(), is_z_name);
+  for (const auto& feature : layer) {
+    const OGRGeometry* geometry = feature->GetGeometryRef();
+    if (!is_point(geometry)) continue;
+    const OGRPoint& point = *geometry->toPoint();
+    if (!point.Is3D() && z_field < 0)
+      throw DataError({fmt::format("{}: point {} has no elevation", file.string(), feature->GetFID()),
+                       "neither its geometry nor an attribute z, elevation or height holds one",
+                       "Rename the attribute: ogr2ogr -sql \"SELECT *, <column> AS z FROM <layer>\" out.gpkg in.gpkg"});
+    points.x.push_back(point.getX());
+    points.y.push_back(point.getY());
+    points.z.push_back(point.Is3D() ? point.getZ() : feature->GetFieldAsDouble(z_field));
+  }
+  if (errors.failed())
+    throw DataError(
+        {file.string() + ": cannot be read to its end", errors.text(), "Look at it: ogrinfo -al " + file.string()});
+  return points;
+}
+
+}  // namespace talus

@@ -1,0 +1,32 @@
+// Elevations at scattered points out of vector files, through OGR.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace talus {
+
+struct PointLayer {
+  std::vector<double> x, y, z;  // in the units of their CRS; z as given
+  std::string crs_wkt;          // empty = none named
+};
+
+/// What GDAL takes a file for when it is asked for a raster: its driver and count of cells; nullopt when it is none.
+struct RasterGlance {
+  std::string driver;
+  std::size_t cells = 0;
+};
+std::optional<RasterGlance> glance_at_raster(const std::filesystem::path& file);
+
+/// True when the first layer of a vector file holds points.
+bool holds_points(const std::filesystem::path& file);
+
+/// The points of a vector file's first layer; z from the geometry, else from the attribute that `is_z_name` knows.
+/// Throws DataError: not a vector file, a point without elevation.
+PointLayer read_point_layer(const std::filesystem::path& file, const std::function<bool(std::string_view)>& is_z_name);
+
+}  // namespace talus

@@ -1,0 +1,63 @@
+#include "preprocess/survey/changed_cells.hpp"
+
+#include <cmath>
+
+#include "preprocess/release/regions.hpp"
+#include "preprocess/survey/robust.hpp"
+
+namespace talus::preprocess {
+
+namespace {
+
+constexpr double beyond = 3;            // NMAD
+constexpr std::size_t least_region = 20;  // cells: fewer are noise
+constexpr int rim = 3;                  // cells around a change, where it thins out
+
+/// The share of the 3 x 3 cells around each that are marked: a single cell of noise has no company.
+Raster company(const MapGrid& grid, const std::vector<char>& marked) {
+  Raster share{grid, std::vector<double>(grid.count(), 0.0)};
+  for (int row = 1; row + 1 < grid.rows; ++row) {
+    for (int column = 1; column + 1 < grid.columns; ++column) {
+      int count = 0;
+      for (int j = -1; j <= 1; ++j) {
+        for (int i = -1; i <= 1; ++i) count += marked[grid.index(column + i, row + j)];
+      }
+      share.at(column, row) = count / 9.0;
+    }
+  }
+  return share;
+}
+
+void leave_out(const Region& region, const MapGrid& grid, std::vector<char>& stable) {
+  const auto columns = static_cast<std::size_t>(grid.columns);
+  for (const std::size_t cell : region.cells) {
+    const int column = static_cast<int>(cell % columns), row = static_cast<int>(cell / columns);
+    for (int r = std::max(0, row - rim); r <= std::min(grid.rows - 1, row + rim); ++r) {
+      for (int c = std::max(0, column - rim); c <= std::min(grid.columns - 1, column + rim); ++c) stable[grid.index(c, r)] = 0;
+    }
+  }
+}
+
+}  // namespace
+
+void leave_out_changed(std::vector<Patch>& patches, const Placement& placement) {
+  std::vector<std::vector<double>> misfits;
+  std::vector<double> all;
+  for (const Patch& p : patches) {
+    misfits.push_back(misfit(p, placement));
+    for (std::size_t i = 0; i < p.stable.size(); ++i) {
+      if (p.stable[i] && !std::isnan(misfits.back()[i])) all.push_back(misfits.back()[i]);
+    }
+  }
+  const double centre = median(all), limit = beyond * std::max(nmad(all), 1e-6);
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    const MapGrid& grid = patches[p].before.grid;
+    std::vector<char> marked(grid.count());
+    for (std::size_t i = 0; i < marked.size(); ++i) marked[i] = std::abs(misfits[p][i] - centre) > limit;  // false for NaN
+    for (const Region& region : lowering_regions(company(grid, marked), 0.5)) {
+      if (region.cells.size() >= least_region) leave_out(region, grid, patches[p].stable);
+    }
+  }
+}
+
+}  // namespace talus::preprocess

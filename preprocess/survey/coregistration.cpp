@@ -1,0 +1,147 @@
+#include "preprocess/survey/coregistration.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/error.hpp"
+#include "preprocess/survey/changed_cells.hpp"
+#include "preprocess/survey/first_guess.hpp"
+#include "preprocess/survey/shift_fit.hpp"
+
+namespace talus::preprocess {
+
+namespace {
+
+constexpr int most_iterations = 50;
+constexpr double still = 1e-3;           // cells: what is left of a shift at the end
+
+void move(Placement& placement, const ShiftFit& fit, double length) {
+  placement.x += fit.value[0];
+  placement.y += fit.value[1];
+  placement.z += fit.value[2];
+  placement.tilt_x += fit.value[3] / length;
+  placement.tilt_y += fit.value[4] / length;
+}
+
+/// Heights in feet stretch relief, not only lift it: spreads differ by that factor.
+void refuse_feet(const std::vector<Patch>& patches, const Placement& placement, const std::filesystem::path& after_file) {
+  std::vector<double> before, after;
+  for (const Patch& p : patches) {
+    const std::vector<double> d = misfit(p, placement);
+    for (std::size_t i = 0; i < d.size(); ++i) {
+      if (std::isnan(d[i])) continue;
+      before.push_back(p.before.values[i]);
+      after.push_back(p.before.values[i] + d[i]);
+    }
+  }
+  const double ratio = nmad(after) / nmad(before);
+  for (const double feet : {1 / 0.3048, 0.3048}) {
+    if (!(std::abs(ratio / feet - 1) < 0.05)) continue;
+    const bool later = feet > 1;
+    throw DataError(Fault{fmt::format("{}: its relief is {:.3f} times that of the survey before", after_file.string(), ratio),
+                          later ? "its heights look like feet" : "the heights of the survey before look like feet",
+                          "Bring both to metres: gdal_calc.py -A in.tif --calc=A*0.3048 --outfile=out.tif, or vertical_unit in [preprocess] where all are in feet"});
+  }
+}
+
+}  // namespace
+
+std::vector<double> stable_misfit(const std::vector<Patch>& patches, const Placement& placement) {
+  std::vector<double> all;
+  for (const Patch& p : patches) {
+    const std::vector<double> d = misfit(p, placement);
+    for (std::size_t i = 0; i < d.size(); ++i) {
+      if (p.stable[i] && !std::isnan(d[i])) all.push_back(d[i]);
+    }
+  }
+  return all;
+}
+
+namespace {
+
+/// Iterates the fit of what is sought until it stands still; leaves the last errors.
+ShiftFit settle(const std::vector<Patch>& patches, const std::vector<int>& sought, double length, Coregistration& result) {
+  ShiftFit last;
+  const double cell = patches.front().before.grid.cell;
+  result.converged = false;
+  for (int i = 0; i < most_iterations && !result.converged; ++i) {
+    const ShiftRows rows = rows_of(patches, result.placement, length);
+    last = fit_shift(rows, sought);
+    move(result.placement, last, length);
+    ++result.iterations;
+    result.converged = std::hypot(last.value[0], last.value[1]) < still * cell && std::abs(last.value[2]) < still * std::max(nmad(rows.misfit), 1e-6);
+  }
+  return last;
+}
+
+/// A tilt within three times its error is noise. Cells beside one another err alike: one in a hundred counts.
+void fit_tilt(const std::vector<Patch>& patches, std::vector<int> sought, double length, Coregistration& result) {
+  Coregistration tilted = result;
+  sought.insert(sought.end(), {ShiftUnknown::tilt_x, ShiftUnknown::tilt_y});
+  const ShiftFit last = settle(patches, sought, length, tilted);
+  const auto clear = [&](double tilt, double error) { return std::abs(tilt * length) > 3 * 10 * error + 1e-9; };
+  if (tilted.converged && (clear(tilted.placement.tilt_x, last.error[ShiftUnknown::tilt_x]) || clear(tilted.placement.tilt_y, last.error[ShiftUnknown::tilt_y]))) result = tilted;
+}
+
+/// The rectangle around all patches.
+Extent extent_of(const std::vector<Patch>& patches) {
+  Extent all{INFINITY, INFINITY, -INFINITY, -INFINITY};
+  for (const Patch& p : patches) {
+    const MapGrid& grid = p.before.grid;
+    all = {std::min(all.west, grid.west), std::min(all.south, grid.south), std::max(all.east, grid.east()), std::max(all.north, grid.north())};
+  }
+  return all;
+}
+
+/// What is said of the ground in the end.
+Coregistration told(const std::vector<Patch>& patches, const Placement& start, Coregistration result) {
+  result.known = true;
+  result.unaligned = residuals_of(stable_misfit(patches, start));
+  const std::vector<double> rest = stable_misfit(patches, result.placement);
+  result.aligned = residuals_of(rest);
+  std::size_t cells = 0;
+  for (const Patch& p : patches) cells += p.stable.size();
+  result.stable_share = static_cast<double>(rest.size()) / static_cast<double>(cells);
+  return result;
+}
+
+/// Most cells differ by one and the same number: the later model was made from the earlier one, and there is no more to fit.
+Coregistration lifted(std::vector<Patch>& patches, Coregistration result) {
+  const Placement start = result.placement;
+  result.placement.z = -median(stable_misfit(patches, start));
+  leave_out_changed(patches, result.placement);
+  result.converged = true;
+  result.shift_known = false;
+  return told(patches, start, std::move(result));
+}
+
+}  // namespace
+
+Coregistration coregister(std::vector<Patch>& patches, bool tilt, const std::filesystem::path& after_file) {
+  Coregistration result;
+  const Extent extent = extent_of(patches);
+  const double length = extent.east - extent.west;
+  result.placement.centre_x = (extent.west + extent.east) / 2;
+  result.placement.centre_y = (extent.south + extent.north) / 2;
+  const std::size_t at_first = stable_misfit(patches, result.placement).size();
+  if (at_first < least_cells) return result;
+  if (nmad(stable_misfit(patches, result.placement)) < 1e-9) return lifted(patches, std::move(result));
+  refuse_feet(patches, result.placement, after_file);
+  const Placement start = result.placement;
+  move_by_whole_cells(patches, result.placement);
+  std::vector<int> sought{shift_z};
+  result.shift_known = tells_a_shift(rows_of(patches, result.placement, length));
+  if (result.shift_known) sought = {shift_x, shift_y, shift_z};
+  settle(patches, sought, length, result);
+  for (int round = 0; round < 2; ++round) {
+    leave_out_changed(patches, result.placement);
+    if (stable_misfit(patches, result.placement).size() < std::max<std::size_t>(least_cells, at_first / 2)) return result;
+    settle(patches, sought, length, result);
+  }
+  if (tilt) fit_tilt(patches, sought, length, result);
+  return told(patches, start, std::move(result));
+}
+
+}  // namespace talus::preprocess

@@ -1,0 +1,41 @@
+// What the difference of two surveys is worth: its standard deviation cell by cell, and that of volumes.
+#pragma once
+
+#include <vector>
+
+#include "preprocess/survey/variogram.hpp"
+
+namespace talus::preprocess {
+
+/// The error of after - before, learnt where nothing moved or given.
+class ErrorModel {
+ public:
+  ErrorModel() = default;
+
+  /// From the misfit of the stable cells: NMAD in classes of slope (steeper ground errs more; Hugonnet et al. 2022, IEEE
+  /// JSTARS 15, 6456), and the variogram of the misfit over it. `given` [m] > 0 takes the place of the NMAD.
+  static ErrorModel learnt(const std::vector<Patch>& patches, const Placement& placement, double given);
+
+  /// Without stable ground: `given` alone [m], errors of cells independent.
+  static ErrorModel of(double given);
+
+  /// Standard deviation [m] on ground that rises by `slope` a metre.
+  double sigma(double slope) const;
+
+  /// Standard deviation of the mean over an area [m2] whose cells have `mean_square` [m2] as their mean variance; with
+  /// what the alignment's own height is not known better than.
+  double of_mean(double mean_square, double area, double cell) const;
+
+  const Variogram& variogram() const { return variogram_; }
+  double typical() const { return typical_; }    ///< over all stable ground [m]
+  double offset() const { return offset_; }      ///< of the mean height of stable ground [m]
+  bool is_given() const { return given_; }
+
+ private:
+  std::vector<double> slopes_, sigmas_;  // middle of each class [-], NMAD in it [m]
+  double typical_ = 0, offset_ = 0;
+  bool given_ = false;
+  Variogram variogram_;
+};
+
+}  // namespace talus::preprocess

@@ -1,0 +1,28 @@
+// Pieces of two surveys from which their misfit is learnt: the whole where it is small, else an even spread of it.
+#pragma once
+
+#include <vector>
+
+#include "preprocess/terrain/elevation.hpp"
+
+namespace talus::preprocess {
+
+struct Patch {
+  Raster before;                          // on cells of the working grid
+  std::vector<double> slope_x, slope_y;   // of it, rise per metre east and north; NaN where not known
+  Elevation after;                        // as it was read, so that it is resampled once only; a margin wider
+  std::vector<char> stable;               // cells that neither the slide nor the terrain's roughness has spoilt
+};
+
+/// Cells of which a fit makes use: more add time, not digits.
+inline constexpr std::size_t most_patch_cells = std::size_t{1} << 22;
+/// Cells by which a patch of the later survey reaches further, and by which the two may be shifted.
+inline constexpr int patch_margin = 32;
+
+/// One patch that is the whole grid, or 64 squares on a lattice. Slopes by central differences (Horn 1981).
+std::vector<Patch> patches_of(const Elevation& before, const Elevation& after, const MapGrid& grid);
+
+/// After less before on the cells of a patch, the later survey placed as told [m]; NaN where either has no value.
+std::vector<double> misfit(const Patch& patch, const Placement& placement);
+
+}  // namespace talus::preprocess

@@ -1,0 +1,147 @@
+#include "preprocess/survey/survey.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "common/error.hpp"
+#include "common/raster/slope.hpp"
+#include "common/stage/stage.hpp"
+#include "preprocess/sum.hpp"
+#include "preprocess/terrain/working_grid.hpp"
+
+namespace talus::preprocess {
+
+namespace {
+
+constexpr double noticeable_shift = 0.2;    // cells
+constexpr double noticeable_height = 0.05;  // [m]
+
+/// z with P(|normal| < z) = confidence.
+double normal_quantile(double confidence) {
+  double low = 0, high = 10;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (low + high) / 2;
+    (std::erf(middle / std::numbers::sqrt2) < confidence ? low : high) = middle;
+  }
+  return low;
+}
+
+/// The polygons of what changed: named ones, source and deposit.
+std::vector<MapPolygon> changed_ground(const Options& options, const std::string& crs_wkt) {
+  std::vector<MapPolygon> all;
+  for (const auto& file : {options.coregistration.changed, options.source.polygon, options.deposit.polygon}) {
+    if (file.empty()) continue;
+    for (MapPolygon& polygon : read_polygons(file, crs_wkt)) all.push_back(std::move(polygon));
+  }
+  return all;
+}
+
+/// The overlap of both in cells of the first, whatever part of it and spacing the scene is computed with.
+MapGrid whole_overlap(const Elevation& before, const Elevation& after, const Options& options) {
+  Options whole = options;
+  whole.grid.west_m = whole.grid.south_m = whole.grid.east_m = whole.grid.north_m = std::nullopt;
+  if (!before.scattered) whole.grid.spacing_m = 0;
+  return working_grid({&before, &after}, whole);
+}
+
+[[noreturn]] void refuse_alignment(const Survey& s, std::size_t shared) {
+  throw DataError(Fault{fmt::format("{}: no stable ground to align it on ({} cells are shared with {})", s.after.file.string(), grouped(static_cast<double>(shared)), s.before.file.string()),
+                        fmt::format("{} cells are needed that are neither steep nor rough nor part of the slide, and more of them than changed", least_cells),
+                        "Give elevation models that reach further beyond the slide, raise steepest_deg in [preprocess.coregistration], name the changed ground there, or align the models "
+                        "beforehand and set mode = \"off\""});
+}
+
+bool noticeable(const Survey& s) {
+  const Placement& p = s.fit.placement;
+  return std::hypot(p.x, p.y) > noticeable_shift * s.grid.cell || std::abs(p.z) > std::max(noticeable_height, s.fit.aligned.nmad) || p.tilt_x != 0 || p.tilt_y != 0;
+}
+
+std::string placement_words(const Survey& s) {
+  const Placement& p = s.fit.placement;
+  std::string words = fmt::format("{:+.2f} m east, {:+.2f} m north ({:+.2f}, {:+.2f} cells), {:+.2f} m high", -p.x, -p.y, -p.x / s.grid.cell, -p.y / s.grid.cell, -p.z);
+  if (p.tilt_x != 0 || p.tilt_y != 0) words += fmt::format(", tilted by {:+.2f} m/km towards the east and {:+.2f} m/km towards the north", -1000 * p.tilt_x, -1000 * p.tilt_y);
+  return words;
+}
+
+void say_alignment(const Survey& s) {
+  if (!s.fit.known) {
+    log_info(fmt::format("{}: too little ground shared with {} is stable to tell how they lie on one another, or how large their error is", s.after.file.string(), s.before.file.string()));
+    return;
+  }
+  const std::string where = fmt::format("{}: on stable ground it lies {} of {}", s.after.file.string(), placement_words(s), s.before.file.string());
+  if (s.applied) {
+    log_info(where + "; corrected");
+  } else if (noticeable(s)) {
+    log_warning(where + ". Correct it: mode = \"apply\" in [preprocess.coregistration]");
+  }
+}
+
+}  // namespace
+
+Survey compare_surveys(Elevation before, Elevation after, const Options& options) {
+  const CoregistrationOptions& how = options.coregistration;
+  Survey s;
+  s.before = std::move(before);
+  s.after = std::move(after);
+  s.grid = whole_overlap(s.before, s.after, options);
+  s.detection = {options.difference.threshold, options.difference.minimum_level_m, normal_quantile(options.difference.confidence)};
+  const double given = options.difference.given_sigma();
+  s.errors = ErrorModel::of(given);
+  if (how.mode == Alignment::off && given > 0) return s;
+  std::vector<Patch> patches = patches_of(s.before, s.after, s.grid);
+  find_stable(patches, {how.steepest_deg, 3, changed_ground(options, s.grid.crs_wkt)});
+  s.fit = coregister(patches, how.tilt, s.after.file);
+  if (!s.fit.known && how.mode == Alignment::apply) refuse_alignment(s, s.grid.count());
+  s.applied = how.mode == Alignment::apply;
+  if (how.mode != Alignment::off) say_alignment(s);
+  if (!s.fit.known) return s;
+  if (s.applied) {
+    s.after.placement = s.fit.placement;
+    s.grid = whole_overlap(s.before, s.after, options);
+  }
+  s.errors = ErrorModel::learnt(patches, s.applied ? s.fit.placement : Placement{}, given);
+  for (Patch& patch : patches) s.stable.emplace_back(patch.before.grid, std::move(patch.stable));
+  return s;
+}
+
+std::vector<std::string> as_lines(const Survey& s) {
+  if (!s.fit.known) return {};
+  const Residuals &was = s.fit.unaligned, &is = s.applied ? s.fit.aligned : s.fit.unaligned;
+  std::vector<std::string> lines{fmt::format("stable ground: {} cells, {:.0f} % of what both surveys hold", grouped(static_cast<double>(is.count)), 100 * s.fit.stable_share)};
+  if (s.applied)
+    lines.push_back(fmt::format("after - before there: median {:+.3f} -> {:+.3f} m, NMAD {:.3f} -> {:.3f} m, median |dz| {:.3f} -> {:.3f} m", was.median, is.median, was.nmad, is.nmad,
+                                was.median_absolute, is.median_absolute));
+  else
+    lines.push_back(fmt::format("after - before there: median {:+.3f} m, NMAD {:.3f} m", is.median, is.nmad));
+  const Variogram& v = s.errors.variogram();
+  lines.push_back(fmt::format("error of the difference: {:.3f} m a cell{}; {:.0f} % of its variance independent, {:.0f} % over {:.0f} m, {:.0f} % over {:.0f} m", s.errors.typical(),
+                              s.errors.is_given() ? " (given)" : s.errors.sigma(1) > 1.1 * s.errors.sigma(0) ? " (more on steep ground)" : "", 100 * v.nugget, 100 * v.short_sill, v.short_range, 100 * v.long_sill, v.long_range));
+  return lines;
+}
+
+SurveyedSlide slide_on(const Survey& s, const Raster& before, const std::vector<Filled>& filled) {
+  SurveyedSlide slide{{before.grid, {}}, {before.grid, {}}, {before.grid, {}}, {before.grid, {}}, {}};
+  for (const double cosine : slope_cosine(before)) slide.sigma.values.push_back(s.errors.sigma(std::sqrt(std::max(0.0, 1 / (cosine * cosine) - 1))));
+  for (std::size_t k = 0; k < filled.size(); ++k) {
+    if (filled[k].count() == 0) continue;
+    slide.filled.values.resize(before.grid.count(), 0.0);
+    const double unknown = std::isnan(filled[k].rmse()) ? 0.0 : filled[k].rmse();  // where a hole found no place to be tried: as the others
+    for (std::size_t i = 0; i < slide.sigma.values.size(); ++i) {
+      if (!filled[k].filled[i]) continue;
+      const double error = filled[k].sigma[i];
+      slide.sigma.values[i] = std::hypot(slide.sigma.values[i], std::isnan(error) ? unknown : error);
+      slide.filled.values[i] += static_cast<double>(k + 1);
+    }
+  }
+  return slide;
+}
+
+std::vector<double> levels_of(const Survey& s, const Raster& sigma) {
+  std::vector<double> levels;
+  for (const double value : sigma.values) levels.push_back(s.detection.level(value));
+  return levels;
+}
+
+}  // namespace talus::preprocess

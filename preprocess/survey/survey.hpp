@@ -1,0 +1,65 @@
+// Two elevation models as one survey of what changed: aligned, compared, with the error of the comparison.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "preprocess/survey/coregistration.hpp"
+#include "preprocess/survey/difference.hpp"
+#include "preprocess/terrain/voids.hpp"
+
+namespace talus::preprocess {
+
+struct Survey {
+  Elevation before, after;  // the later one placed, where that was asked for
+  MapGrid grid;             // what both cover, in cells of the first
+  Coregistration fit;
+  bool applied = false;
+  ErrorModel errors;
+  Detection detection;
+  std::vector<std::pair<MapGrid, std::vector<char>>> stable;  // of each patch that was looked at
+};
+
+/// Finds how the later survey lies on the earlier one, corrects it where the options say so, and learns the error of
+/// their difference from stable ground. Throws DataError where an alignment is asked for and there is no stable ground to
+/// find it on, where the surveys do not overlap, and where one looks like feet.
+Survey compare_surveys(Elevation before, Elevation after, const Options& options);
+
+/// What a Survey says, as people read it.
+std::vector<std::string> as_lines(const Survey& survey);
+
+/// One side of the slide as surveyed.
+struct SurveyedVolume {
+  std::string name;
+  VolumeWithError volume;
+};
+
+/// What is known of the slide on the working grid.
+struct SurveyedSlide {
+  Raster deposit;  // rise of the surface in the deposit, 0 outside, NaN where not surveyed [m]
+  Raster change;   // after less before in the slide, where it is believed; 0 outside, NaN where not surveyed or filled [m]
+  Raster sigma;    // standard error of the difference, that of filled voids taken in [m]
+  Raster filled;   // 1 where the survey before was filled, 2 the one after, 3 both, else 0; no values where none was
+  std::vector<SurveyedVolume> volumes;
+};
+
+/// Standard error of every cell of a surface, and what was filled (in the order of the two surveys; empty = nothing); the rest is
+/// left to delineate().
+SurveyedSlide slide_on(const Survey& survey, const Raster& before, const std::vector<Filled>& filled);
+
+/// Level of detection of every cell.
+std::vector<double> levels_of(const Survey& survey, const Raster& sigma);
+
+/// Both surfaces, and the source's thickness on the same cells.
+struct SlideSurfaces {
+  const Raster &before, &after, &source;
+};
+
+/// The deposit: within its polygon; else what rose beyond threshold and level of detection in the regions of change that
+/// hang together with the source; else, where nothing rose there, the largest region that rose. Volumes of source and deposit
+/// with their errors.
+void delineate(const Survey& survey, const SlideSurfaces& surfaces, const DepositOptions& options, SurveyedSlide& slide);
+
+}  // namespace talus::preprocess

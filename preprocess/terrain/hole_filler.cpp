@@ -1,0 +1,171 @@
+#include "preprocess/terrain/hole_filler.hpp"
+
+#include <CGAL/Delaunay_triangulation_2.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Interpolation_traits_2.h>
+#include <CGAL/Triangulation_vertex_base_with_info_2.h>
+#include <CGAL/interpolation_functions.h>
+#include <CGAL/natural_neighbor_coordinates_2.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+namespace talus::preprocess {
+
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Point = Kernel::Point_2;
+using Vector = Kernel::Vector_2;
+
+/// Height at a cell of the rim, and its gradient per cell.
+struct Site {
+  double height = 0;
+  Vector gradient{0, 0};
+};
+using Vertex = CGAL::Triangulation_vertex_base_with_info_2<Site, Kernel>;
+using Triangulation = CGAL::Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<Vertex>>;
+using Handle = Triangulation::Vertex_handle;
+
+/// The surroundings of a hole: which cells are known.
+class Surroundings {
+ public:
+  Surroundings(const Raster& raster, const std::vector<Cell>& hole) : raster_(raster) {
+    constexpr int margin = rim_width;
+    low_ = high_ = hole.front();
+    for (const auto& [column, row] : hole) {
+      low_ = {std::min(low_[0], column), std::min(low_[1], row)};
+      high_ = {std::max(high_[0], column), std::max(high_[1], row)};
+    }
+    low_ = {std::max(0, low_[0] - margin), std::max(0, low_[1] - margin)};
+    high_ = {std::min(raster.grid.columns - 1, high_[0] + margin), std::min(raster.grid.rows - 1, high_[1] + margin)};
+    width_ = high_[0] - low_[0] + 1;
+    in_hole_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(high_[1] - low_[1] + 1), 0);
+    for (const auto& [column, row] : hole) in_hole_[index(column, row)] = 1;
+  }
+
+  bool known(int column, int row) const {
+    const MapGrid& grid = raster_.grid;
+    if (column < 0 || row < 0 || column >= grid.columns || row >= grid.rows) return false;
+    return !(inside(column, row) && in_hole_[index(column, row)] != 0) && !std::isnan(raster_.at(column, row));
+  }
+  double height(int column, int row) const { return raster_.at(column, row); }
+
+  /// Known cells within rim_width of the hole.
+  std::vector<Cell> rim(const std::vector<Cell>& hole) const {
+    std::vector<char> taken(in_hole_.size(), 0);
+    std::vector<Cell> cells;
+    for (const auto& [column, row] : hole) {
+      for (int r = row - rim_width; r <= row + rim_width; ++r) {
+        for (int c = column - rim_width; c <= column + rim_width; ++c) {
+          if (!known(c, r) || taken[index(c, r)] != 0) continue;
+          taken[index(c, r)] = 1;
+          cells.push_back({c, r});
+        }
+      }
+    }
+    return cells;
+  }
+
+ private:
+  bool inside(int column, int row) const {
+    return column >= low_[0] && row >= low_[1] && column <= high_[0] && row <= high_[1];
+  }
+  std::size_t index(int column, int row) const {
+    return static_cast<std::size_t>(row - low_[1]) * static_cast<std::size_t>(width_) +
+           static_cast<std::size_t>(column - low_[0]);
+  }
+
+  const Raster& raster_;
+  Cell low_{}, high_{};
+  int width_ = 0;
+  std::vector<char> in_hole_;
+};
+
+/// A quadratic surface through one cell, as close to others as can be (least squares, the nearer the heavier).
+class QuadraticThrough {
+ public:
+  void add(double u, double v, double rise) {
+    const double weight = 1.0 / (u * u + v * v);
+    Eigen::Matrix<double, 5, 1> terms;
+    terms << u, v, u * u, u * v, v * v;
+    normal_ += weight * terms * terms.transpose();
+    right_ += weight * rise * terms;
+    ++count_;
+  }
+  bool supported() const { return count_ >= 12; }  // more than twice its five coefficients
+  /// Of as simple a surface as the cells leave open: a plane, or level, where they are too few.
+  Vector gradient() const {
+    const Eigen::Matrix<double, 5, 1> fit = normal_.completeOrthogonalDecomposition().solve(right_);
+    return {fit[0], fit[1]};
+  }
+
+ private:
+  Eigen::Matrix<double, 5, 5> normal_ = Eigen::Matrix<double, 5, 5>::Zero();
+  Eigen::Matrix<double, 5, 1> right_ = Eigen::Matrix<double, 5, 1>::Zero();
+  int count_ = 0;
+};
+
+/// Gradient of the quadratic surface through a cell that lies closest to the known ones around: exact where the ground
+/// is one. An island in a void looks further until it sees enough.
+Vector gradient_at(const Surroundings& around, int column, int row) {
+  const double here = around.height(column, row);
+  constexpr int farthest = 60;
+  for (int reach = gradient_reach;; reach *= 2) {
+    QuadraticThrough surface;
+    for (int v = -reach; v <= reach; ++v) {
+      for (int u = -reach; u <= reach; ++u) {
+        if ((u != 0 || v != 0) && around.known(column + u, row + v))
+          surface.add(u, v, around.height(column + u, row + v) - here);
+      }
+    }
+    if (surface.supported() || reach > farthest) return surface.gradient();
+  }
+}
+
+Triangulation triangulated(const Surroundings& around, const std::vector<Cell>& rim, Interpolation how) {
+  std::vector<std::pair<Point, Site>> sites;
+  for (const auto& [column, row] : rim) {
+    Site site{around.height(column, row)};
+    if (how == Interpolation::quadratic) site.gradient = gradient_at(around, column, row);
+    sites.emplace_back(Point(column, row), site);
+  }
+  return Triangulation(sites.begin(), sites.end());
+}
+
+double elevation_at(const Triangulation& triangulation, const Point& at, Interpolation how,
+                    Triangulation::Face_handle& near) {
+  std::vector<std::pair<Handle, double>> neighbours;
+  const auto keep = [](const std::pair<Handle, double>& pair) { return pair; };
+  near = triangulation.locate(at, near);
+  const auto result =
+      CGAL::natural_neighbor_coordinates_2(triangulation, at, std::back_inserter(neighbours), keep, near);
+  if (!result.third || !(result.second > 0)) return std::nan("");
+  const auto value = [](Handle v) { return std::pair(v->info().height, true); };
+  if (how == Interpolation::sibson)
+    return CGAL::linear_interpolation(neighbours.begin(), neighbours.end(), result.second, value);
+  double sum = 0;
+  for (const auto& [vertex, weight] : neighbours)
+    sum += weight / result.second * (vertex->info().height + 0.5 * (vertex->info().gradient * (at - vertex->point())));
+  return sum;
+}
+
+}  // namespace
+
+std::vector<double> fill_hole(const Raster& raster, const std::vector<Cell>& hole, const std::vector<Cell>& wanted,
+                              Interpolation how) {
+  const Surroundings around(raster, hole);
+  const Triangulation triangulation = triangulated(around, around.rim(hole), how);
+  std::vector<double> heights;
+  Triangulation::Face_handle near;
+  for (const auto& [column, row] : wanted) {
+    heights.push_back(triangulation.dimension() < 2 ? std::nan("")
+                                                    : elevation_at(triangulation, Point(column, row), how, near));
+  }
+  return heights;
+}
+
+}  // namespace talus::preprocess

@@ -1,0 +1,25 @@
+// One hole in a raster, filled from its rim. CGAL stays behind hole_filler.cpp.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "common/raster/raster.hpp"
+
+namespace talus::preprocess {
+
+using Cell = std::array<int, 2>;  // column, row
+
+/// Rings of cells around a hole that take part (a second ring would be hidden behind the first), and how far around
+/// each of them its gradient is taken from [cells].
+constexpr int rim_width = 1, gradient_reach = 3;
+
+enum class Interpolation { sibson, quadratic };
+
+/// Elevations for `wanted`, a part of the `hole`, from the cells around the hole that have one. The hole's own values
+/// are not looked at. Every cell of the hole must be at least one cell from the raster's edge.
+std::vector<double> fill_hole(const Raster& raster, const std::vector<Cell>& hole, const std::vector<Cell>& wanted,
+                              Interpolation how = Interpolation::quadratic);
+
+}  // namespace talus::preprocess

@@ -1,0 +1,148 @@
+// The source under an outline: from files to the released mass, and what is refused.
+#include "preprocess/release/outline_source.hpp"
+
+#include "tests/preprocess/scene.hpp"
+
+namespace talus::preprocess {
+namespace {
+
+using namespace talus::test;
+
+/// The small scene with nothing but the surface before, and a tilted rectangle for an outline that cuts through cells.
+struct OutlineScene : Scene {
+  explicit OutlineScene(unsigned seed = 1) : Scene(seed) {
+    options.after_dem.clear();
+    outline("POLYGON((500063 5100127, 500193 5100109, 500214 5100231, 500081 5100248, 500063 5100127))");
+  }
+  SlidingSurfaceOptions& surface() { return options.source.sliding_surface; }
+  void outline(const std::string& wkt) { options.source.polygon = write_polygon(scratch, "outline.csv", wkt); }
+  void points(const std::string& text) { surface().depth_points = scratch.write("boreholes.csv", text); }
+};
+
+constexpr double outline_area = 16318.5;  // of that rectangle, by its corners [m2]
+
+double volume_of_points(const Prepared& prepared) {
+  Sum sum;
+  for (double v : prepared.domain.points.volume) sum.add(v);
+  return sum.value();
+}
+
+TEST(outline_source, releases_the_volume_asked_for) {
+  TALUS_SEEDED(seed);
+  OutlineScene scene(seed);
+  scene.surface().volume_m3 = 2e5;
+  const Prepared prepared = scene.prepare();
+  EXPECT_NEAR(prepared.total.volume, 2e5, 1e-4);
+  EXPECT_NEAR(volume_of_points(prepared), 2e5, 1e-4);
+  ASSERT_TRUE(prepared.sliding_surface);
+  for (std::size_t c = 0; c < prepared.domain.before.values.size(); ++c) {
+    ASSERT_LE(prepared.domain.terrain.values[c], prepared.domain.before.values[c]);
+    ASSERT_GE(prepared.domain.terrain.values[c] + 1e-9,
+              prepared.sliding_surface->surface.values[c]);  // above it only where the outline cuts a cell
+  }
+}
+
+TEST(outline_source, lies_as_deep_as_asked_for) {
+  OutlineScene scene;
+  scene.surface().depth_m = 25;
+  const Prepared prepared = scene.prepare();
+  EXPECT_NEAR(prepared.sliding_surface->depth, 25, 1e-9);
+  EXPECT_NEAR(prepared.total.max_vertical, 25, 1e-9);  // the deepest cell lies wholly inside
+}
+
+TEST(outline_source, given_back_as_sliding_surface_is_the_same_source) {
+  OutlineScene scene;
+  scene.surface().depth_m = 25;
+  const Prepared computed = scene.prepare();
+  scene.surface() = {};
+  scene.options.sliding_surface = write(scene.scratch, "sliding_surface.tif", computed.sliding_surface->surface);
+  const Prepared again = scene.prepare();
+  EXPECT_NEAR(again.total.volume / computed.total.volume, 1, 1e-12);
+  EXPECT_FALSE(again.sliding_surface);
+}
+
+TEST(outline_source, without_a_depth_has_the_volume_of_slides_of_its_area) {
+  OutlineScene scene;
+  EXPECT_NEAR(scene.prepare().total.volume / volume_by_area(outline_area), 1, 1e-9);
+  EXPECT_NEAR(volume_by_area(1e4), 0.074 * std::pow(10.0, 5.8), 1e-6);
+}
+
+TEST(outline_source, goes_through_depth_points_given_as_elevation_or_as_depth) {
+  OutlineScene scene;
+  const Raster& before = scene.before;
+  const double x = 500140, y = 5100180;
+  scene.points(fmt::format("easting,northing,elevation\n{},{},{:.6f}\n500110,5100150,{:.6f}\n", x, y,
+                           value_at(before, x, y) - 12, value_at(before, 500110, 5100150) - 9));
+  const Prepared by_elevation = scene.prepare();
+  EXPECT_NEAR(value_at(before, x, y) - value_at(by_elevation.sliding_surface->surface, x, y), 12, 1e-5);
+  scene.points("500140 5100180 12\n500110 5100150 9\n");
+  scene.surface().depth_points_hold = PointValue::depth;
+  const Prepared by_depth = scene.prepare();
+  for (std::size_t c = 0; c < before.values.size(); ++c)
+    ASSERT_NEAR(by_depth.domain.terrain.values[c], by_elevation.domain.terrain.values[c], 1e-4);
+  EXPECT_EQ(by_depth.inputs.back(), scene.surface().depth_points);
+}
+
+TEST(outline_source, refuses_depth_points_outside_and_above_the_ground_all_at_once) {
+  OutlineScene scene;
+  scene.surface().depth_points_hold = PointValue::depth;
+  scene.points("500140 5100180 12\n500350 5100180 12\n500110 5100150 -3\n");
+  const std::string fault = scene.data_fault();
+  EXPECT_NE(fault.find("boreholes.csv: point 2 at x 500350.0, y 5100180.0 (it lies outside the outline, where nothing "
+                       "slides). Leave it out, or draw the outline wider"),
+            std::string::npos)
+      << fault;
+  EXPECT_NE(
+      fault.find(
+          "point 3 at x 500110.0, y 5100150.0, depth -3.00 m (the sliding surface lies below the ground, which is at "),
+      std::string::npos)
+      << fault;
+  scene.points("# none\n");
+  EXPECT_NE(scene.data_fault().find("boreholes.csv: no points"), std::string::npos);
+}
+
+TEST(outline_source, refuses_outlines_that_cross_themselves_or_lie_outside_or_hold_no_cell) {
+  OutlineScene scene;
+  scene.surface().depth_m = 10;
+  scene.outline("POLYGON((500063 5100127, 500193 5100231, 500193 5100127, 500063 5100231, 500063 5100127))");
+  EXPECT_NE(scene.data_fault().find("outline.csv"), std::string::npos);
+  scene.outline("POLYGON((400063 5100127, 400193 5100109, 400214 5100231, 400063 5100127))");
+  EXPECT_NE(scene.data_fault().find("outline.csv"), std::string::npos);
+  scene.outline("POLYGON((500061 5100121, 500063 5100121, 500063 5100123, 500061 5100121))");
+  const std::string fault = scene.data_fault();
+  EXPECT_NE(
+      fault.find("outline.csv: 2 m2 without the centre of a cell (cells of 10 m are too coarse for this outline)."),
+      std::string::npos)
+      << fault;
+}
+
+TEST(outline_source, refuses_ground_without_elevation_within) {
+  OutlineScene scene;
+  scene.surface().depth_m = 10;
+  scene.options.grid.edge_nodata = EdgeNodata::outside;
+  Raster holed = scene.before;
+  for (int row = 10; row < 20; ++row) {
+    for (int column = 0; column < 10; ++column) holed.at(column, row) = NAN;
+  }
+  scene.rewrite_before(holed);
+  EXPECT_NE(scene.data_fault().find("cells without elevation in before_dem"), std::string::npos);
+}
+
+TEST(outline_source, is_one_way_of_its_own) {
+  OutlineScene scene;
+  EXPECT_EQ(scene.options.way(), Way::before_and_outline);
+  scene.surface().depth_m = 10;
+  scene.surface().volume_m3 = 10;
+  EXPECT_NE(scene.recipe_fault().find("more than one of depth_m, volume_m3 and depth_points is given"),
+            std::string::npos);
+  scene.surface().volume_m3 = 0;
+  scene.surface().depth_points_error_m = 1;
+  EXPECT_NE(scene.recipe_fault().find("without depth_points"), std::string::npos);
+  scene.surface().depth_points_error_m = 0;
+  scene.options.after_dem = scene.scratch / "after.tif";
+  EXPECT_NE(scene.recipe_fault().find("source.sliding_surface is given, but not before_dem and source.polygon alone"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace talus::preprocess
