@@ -62,14 +62,14 @@ function energyChart(box, history) {
   if (history.bed_loss_J) lines.push(curve("Lost to the bed", t, history.bed_loss_J, factor, { colour: colours.blue }));
   if (history.plastic_loss_J) lines.push(curve("Lost to plastic flow", t, history.plastic_loss_J, factor, { colour: colours.green }));
   lineChart(box, { id: "series-energy", title: "Energy", x: "Time [s]", y: `Energy [${prefix}J]`, height: 240, lines });
-  if (!kineticStandsOut(history.kinetic_J, released)) return;
+  if (!kineticLiesFlat(history.kinetic_J, released)) return;
   const own = unitOf(history.kinetic_J);
   lineChart(box, { id: "series-kinetic", title: "Kinetic energy", x: "Time [s]", y: `Energy [${own.prefix}J]`, height: 240,
     lines: [curve("Kinetic", t, history.kinetic_J, own.factor, { colour: colours.orange })] });
 }
 
 /** True where kinetic energy would lie flat beside the potential one. */
-function kineticStandsOut(kinetic, released) {
+function kineticLiesFlat(kinetic, released) {
   return Math.max(...kinetic) < 0.1 * Math.max(...released);
 }
 
