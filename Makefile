@@ -37,6 +37,7 @@ demo: build ## the synthetic valley from its two elevation models to a scored ma
 	@# A run has printed its table; where nothing was left to do, show it again.
 	@[[ $(OUT)/synthetic-valley/score.txt -nt $(BUILD)/.demo-begins ]] || cat $(OUT)/synthetic-valley/score.txt
 	@printf '%s\n' '' 'Results in $(abspath $(OUT))/synthetic-valley:' \
+	  '  report.html                  all of it on one page, for a browser' \
 	  '  map.png                      the map as a picture' \
 	  '  history.csv                  energy, volume, speed and steps over time' \
 	  '  maps/synthetic-valley.qgs    all of it in QGIS: maps, outlines, hillshade' \

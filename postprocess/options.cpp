@@ -99,6 +99,9 @@ void Options::describe(recipe::Visitor& v) {
       "lower limits of the map's thickness classes, rising; empty: 0.1 5 10 25 50 100, or 0.1 0.5 1 2 5 10 where the "
       "deposit is thinner than 12 m");
   v.text("institution", institution, "who made this, for the NetCDF file");
+  v.flag("report", report, "write report.html: maps, profiles, scores and settings on one page to send on");
+  recipe::choice(v, "animation", animation, {{"none", Animation::none}, {"mp4", Animation::mp4}, {"gif", Animation::gif}},
+                 "a film of the flow on the map; needs the program ffmpeg and a run with frames");
   v.text("start_time", start_time,
          "when the failure began, UTC, as 1903-04-29 04:10:00, for the time axis of the NetCDF file; empty: not known");
   v.flag("nodata_zero", nodata_zero,

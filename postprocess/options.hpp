@@ -42,12 +42,17 @@ struct SurveyOptions {
   void describe(recipe::Visitor& v);
 };
 
+/// A film of the flow.
+enum class Animation { none, mp4, gif };
+
 struct Options {
   std::filesystem::path run;         // empty = OUT/run.h5
   double footprint_threshold = 1.0;  // [m]
   double deposit_threshold = 1.0;    // [m]
   std::vector<double> classes;       // lower limits of the thickness classes [m]; empty = by the deposit's thickness
   std::string institution;
+  Animation animation = Animation::none;
+  bool report = true;             // write report.html
   std::string start_time;            // when the failure began, UTC; empty = not known
   bool nodata_zero = false;          // GeoTIFFs: 0 outside the domain too
   bool avaframe = false;             // aliases for AvaFrame beside the maps

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -16,13 +18,24 @@
 #include "postprocess/maps/gis.hpp"
 #include "postprocess/maps/netcdf.hpp"
 #include "postprocess/options.hpp"
+#include "postprocess/picture/animation.hpp"
 #include "postprocess/picture/map_picture.hpp"
+#include "postprocess/report/report.hpp"
 #include "postprocess/score/score.hpp"
 
 namespace talus::postprocess {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// What is worked on: a run, and what it is scored against.
+struct Job {
+  fs::path file;  // run.h5
+  Run run;
+  Options options;
+  std::optional<Survey> survey;
+  Thalweg thalweg;
+};
 
 /// The map must hold the volume of the points: 1e-9 of it where the run was in double precision. A hundredth off is no
 /// rounding but a broken run.
@@ -63,34 +76,74 @@ std::string history_table(const RunHistory& history) {
   return text + "\n";
 }
 
-void write_results(StageContext& context, const Run& run, const Options& options, const std::optional<Survey>& survey,
-                   const Thalweg& thalweg) {
-  const auto score = make_score(run, options, survey, thalweg);
-  const auto table = to_table(score);
+/// What preprocess and solve left beside the run about themselves.
+std::vector<StageText> texts_of_stages(const fs::path& folder) {
+  std::vector<StageText> texts;
+  for (const auto* stage : {"preprocess", "solve"}) {
+    std::ifstream stream(folder / (std::string(stage) + ".used.toml"), std::ios::binary);
+    texts.push_back({stage, {}});
+    if (stream) texts.back().text.emplace(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+  }
+  return texts;
+}
+
+/// What this stage leaves about itself.
+std::string used_text(const StageContext& context, const Job& job) {
+  auto inputs = job.survey ? job.survey->inputs : std::vector<fs::path>{};
+  inputs.insert(inputs.begin(), job.file);
+  if (job.thalweg.given) inputs.push_back(job.options.thalweg);
+  return used_recipe(context, stage(), recipe::to_used_toml(job.options, "postprocess"), inputs,
+                     {{"CRS", crs_name(job.run.maps.grid.crs_wkt)}});
+}
+
+/// Everything under maps/.
+void write_maps(StageContext& context, const Job& job) {
+  const auto& [file, run, options, survey, thalweg] = job;
   const auto folder = context.out / "maps";
   make_folder(folder);
-  for (const auto* name :
-       {"score.json", "score.txt"}) {  // so that new maps never lie beside the scores of an older run
-    std::error_code none_there;
-    fs::remove(context.out / name, none_there);
-  }
-  context.results = write_geotiffs(folder, run, options.nodata_zero ? Outside::zero : Outside::nodata);
-  const auto for_gis = write_gis(folder, context.results, {run, options, survey});
-  context.results.insert(context.results.end(), for_gis.begin(), for_gis.end());
+  auto& results = context.results;
+  results = write_geotiffs(folder, run, options.nodata_zero ? Outside::zero : Outside::nodata);
+  const auto for_gis = write_gis(folder, results, {run, options, survey});
+  results.insert(results.end(), for_gis.begin(), for_gis.end());
   if (options.avaframe) {
     make_folder(folder / "avaframe");
-    const auto aliases = write_avaframe(folder / "avaframe", run, settings_text(run, run_file(context, options)),
-                                        options.avaframe_format);
-    context.results.insert(context.results.end(), aliases.begin(), aliases.end());
+    const auto aliases = write_avaframe(folder / "avaframe", run, settings_text(run, file), options.avaframe_format);
+    results.insert(results.end(), aliases.begin(), aliases.end());
   }
-  context.results.push_back(folder / "results.nc");
-  write_netcdf(context.results.back(), run, {options.institution, context.command_line, options.start_time});
+  results.push_back(folder / "results.nc");
+  write_netcdf(results.back(), run, {options.institution, context.command_line, options.start_time});
+}
+
+/// So that new maps never lie beside the scores or the report of an older run.
+void remove_older(const fs::path& out) {
+  for (const auto* name : {"score.json", "score.txt", "report.html", "animation.mp4", "animation.gif"}) {
+    std::error_code none_there;
+    fs::remove(out / name, none_there);
+  }
+}
+
+void write_results(StageContext& context, const Job& job) {
+  const auto& [file, run, options, survey, thalweg] = job;
+  const auto score = make_score(run, options, survey, thalweg);
+  const auto table = to_table(score);
+  remove_older(context.out);
+  write_maps(context, job);
   const auto write = [&](const char* name, const std::string& bytes) {
     context.results.push_back(context.out / name);
     write_text(context.results.back(), bytes);
   };
-  write("map.png", map_picture({run, options, survey, score}));
+  const PictureInput picture{run, options, survey, score, {}};
+  write("map.png", map_picture(picture));
+  if (options.animation != Animation::none)
+    context.results.push_back(write_animation(context.out, picture, options.animation));
   write("history.csv", history_table(run.history));
+  const auto used = used_text(context, job);
+  write("postprocess.used.toml", used);
+  if (options.report) {
+    auto stages = texts_of_stages(file.parent_path());
+    stages.push_back({"postprocess", used});
+    write("report.html", report_html({run, options, survey, score, thalweg, std::move(stages), file}));
+  }
   write("score.txt", table);
   write("score.json", to_json(score));  // last: where it lies, everything is there
   log_info("\n" + table);
@@ -99,23 +152,19 @@ void write_results(StageContext& context, const Run& run, const Options& options
 }  // namespace
 
 void run(StageContext& context) {
-  auto options = context.recipe.read<Options>("postprocess");
-  options.survey.find_in(context.out);
-  const auto file = run_file(context, options);
-  const auto run = read_run(file);
-  check_volume(file, run);
-  const auto survey = read_survey(options.survey, run.maps, options.footprint_threshold);
-  const auto thalweg = thalweg_of(run, options);
-  log_info(fmt::format("{}: {} x {} cells of {:g} m, {} frames; {}", file.string(), run.maps.grid.columns,
-                       run.maps.grid.rows, run.maps.grid.cell, run.frames.time.size(),
-                       survey ? "scored against " + survey->name : std::string("no survey to score against")));
-  if (context.check_only) return;
-  write_results(context, run, options, survey, thalweg);
-  auto inputs = survey ? survey->inputs : std::vector<fs::path>{};
-  inputs.insert(inputs.begin(), file);
-  if (thalweg.given) inputs.push_back(options.thalweg);
-  write_used_recipe(context, stage(), recipe::to_toml(options, "postprocess", false), inputs,
-                    {{"CRS", crs_name(run.maps.grid.crs_wkt)}});
+  Job job;
+  job.options = context.recipe.read<Options>("postprocess");
+  job.options.survey.find_in(context.out);
+  job.file = run_file(context, job.options);
+  job.run = read_run(job.file);
+  check_volume(job.file, job.run);
+  job.survey = read_survey(job.options.survey, job.run.maps, job.options.footprint_threshold);
+  job.thalweg = thalweg_of(job.run, job.options);
+  log_info(fmt::format("{}: {} x {} cells of {:g} m, {} frames; {}", job.file.string(), job.run.maps.grid.columns,
+                       job.run.maps.grid.rows, job.run.maps.grid.cell, job.run.frames.time.size(),
+                       job.survey ? "scored against " + job.survey->name : std::string("no survey to score against")));
+  check_animation(job.options.animation, job.run);
+  if (!context.check_only) write_results(context, job);
 }
 
 Stage stage() {
@@ -124,7 +173,7 @@ Stage stage() {
   stage.table = "postprocess";
   stage.summary = "Write maps, NetCDF, picture and scores of a run (run.h5 of talus-solve)";
   stage.examples =
-      "  talus-postprocess scene.toml --out out/scene    maps/ (with a QGIS project), map.png, history.csv, score.json, score.txt\n"
+      "  talus-postprocess scene.toml --out out/scene    maps/ (with a QGIS project), map.png, report.html, history.csv, score.json, score.txt\n"
       "  talus-postprocess scene.toml --out out/scene --check    read run and survey, write nothing\n"
       "  talus-postprocess --template >> scene.toml    all keys with their defaults\n";
   stage.template_toml = [] { return recipe::to_toml(Options{}, "postprocess", true); };

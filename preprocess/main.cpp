@@ -117,7 +117,7 @@ void run(StageContext& context) {
     write_level_sets(bodies, prepared.obstacles, prepared.obstacle_voxel);
     context.results.push_back(bodies);
   }
-  write_used_recipe(context, stage(), recipe::to_toml(options, "preprocess", false), prepared.inputs, facts);
+  write_used_recipe(context, stage(), recipe::to_used_toml(options, "preprocess"), prepared.inputs, facts);
 }
 
 Stage stage() {

@@ -132,7 +132,7 @@ void solve(StageContext& context) {
   if (context.profile) report_profile(summary, on, context.out);
   if (options.material.stiffness_check) check_stiffness(domain, options, on, context, paths.run);
   context.results.push_back(paths.run);
-  write_used_recipe(context, stage(), settings, inputs,
+  write_used_recipe(context, stage(), recipe::to_used_toml(options, "solve"), inputs,
                     {{"on", summary.on},
                      {"wall_time_s", fmt::format("{:.3f}", summary.wall_time)},
                      {"steps", fmt::format("{}", summary.steps)},

@@ -10,10 +10,17 @@ packages=(
   libeigen3-dev libsuitesparse-dev libopenblas0-serial libtbb-dev libfmt-dev libspdlog-dev libcli11-dev nlohmann-json3-dev libtomlplusplus-dev
   libgdal-dev libhdf5-dev libnetcdf-dev libcgal-dev
   libopenvdb-dev libboost-iostreams-dev libblosc-dev
-  libcairo2-dev fonts-dejavu-core
-  # tests, and the readers that are not ours: gdalinfo, the COG validator, ncdump, cdo, what the CF checker takes, vdb_print, h5dump
+  libcairo2-dev fonts-dejavu-core zlib1g-dev
+  # what report.html is made of, and what bundles its scripts; ffmpeg makes animations where they are asked for
+  libjs-leaflet libjs-chart.js esbuild ffmpeg
+  # tests, and the readers that are not ours: gdalinfo, the COG validator, ncdump, cdo, what the CF checker takes, vdb_print, h5dump, pdfinfo
   libgtest-dev gdal-bin python3-gdal netcdf-bin cdo python3-netcdf4 udunits-bin libopenvdb-tools hdf5-tools
+  python3-selenium poppler-utils
 )
+
+# The report is opened in a browser by its test: Debian's. Ubuntu's packages of these names only lead to the snap store,
+# whose browser cannot be driven; the test says so there and is skipped.
+if grep -qx 'ID=debian' /etc/os-release; then packages+=(chromium chromium-driver); fi
 
 fail() { echo "tools/install-dependencies.sh: $*" >&2; exit 1; }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <initializer_list>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -126,6 +127,30 @@ std::string to_toml(Options options, std::string_view stage, bool with_help) {
   std::string text;
   {
     auto writer = make_writer(stage, with_help, text);
+    options.describe(*writer);
+  }
+  return text;
+}
+
+/// Values as TOML by their place, "solve.material.friction_angle_deg"; items of a list share one place.
+using Defaults = std::map<std::string, std::string>;
+
+/// Collects the values of the options visited; of an empty list, those of a new item.
+std::unique_ptr<Visitor> make_collector(std::string_view stage, Defaults& values);
+
+/// As make_writer without help, but a value that is not that of `defaults` is followed by "# default: X" (an optional
+/// number that has no default: "# default: none"). `defaults` must outlive the visitor.
+std::unique_ptr<Visitor> make_marking_writer(std::string_view stage, const Defaults& defaults, std::string& text);
+
+/// The options as they were used, for write_used_recipe(): what was changed from its default is marked.
+template <class Options>
+std::string to_used_toml(Options options, std::string_view stage) {
+  Defaults defaults;
+  Options fresh;
+  fresh.describe(*make_collector(stage, defaults));
+  std::string text;
+  {
+    auto writer = make_marking_writer(stage, defaults, text);
     options.describe(*writer);
   }
   return text;

@@ -18,9 +18,17 @@ struct Table {
   std::vector<std::unique_ptr<Table>> children{};
 };
 
+/// What is written beside the plain values.
+struct Extras {
+  bool help = false;
+  const Defaults* defaults = nullptr;  // mark what differs from these
+  Defaults* collected = nullptr;       // put the values here as well
+};
+
 class Writer : public Visitor {
  public:
-  Writer(std::string_view stage, bool with_help, std::string& text) : with_help_(with_help), out_(text) {
+  Writer(std::string_view stage, const Extras& extras, std::string& text)
+      : extras_(extras), with_help_(extras.help), out_(text) {
     root_.path = stage;
     open_.push_back(&root_);
   }
@@ -68,7 +76,7 @@ class Writer : public Visitor {
   }
   std::size_t begin_list(std::string_view key, std::size_t size, std::string_view help) override {
     lists_.push_back({std::string(key), std::string(help), size == 0});
-    return size == 0 && with_help_ ? 1 : size;
+    return size == 0 && (with_help_ || extras_.collected != nullptr) ? 1 : size;
   }
   void begin_item(std::size_t item) override {
     const List& list = lists_.back();
@@ -96,7 +104,17 @@ class Writer : public Visitor {
     const char* mark = table.example ? "# " : "";
     if (with_help_)
       table.keys += fmt::format("{}# {}{}\n", mark, help, range.empty() ? "" : fmt::format(" [{}]", range));
-    table.keys += fmt::format("{}{} = {}\n", mark, key, value);
+    table.keys += fmt::format("{}{} = {}{}\n", mark, key, value, default_mark(table, key, value));
+  }
+
+  /// "  # default: 25.0" behind a value that is another; collects it where that is wanted.
+  std::string default_mark(const Table& table, std::string_view key, const std::string& value) {
+    const auto place = fmt::format("{}.{}", table.path, key);
+    if (extras_.collected != nullptr) (*extras_.collected)[place] = value;
+    if (extras_.defaults == nullptr) return "";
+    const auto usual = extras_.defaults->find(place);
+    if (usual != extras_.defaults->end() && usual->second == value) return "";
+    return "  # default: " + (usual == extras_.defaults->end() ? "none" : usual->second);
   }
 
   void write(const Table& table) {
@@ -108,6 +126,7 @@ class Writer : public Visitor {
     for (const auto& child : table.children) write(*child);
   }
 
+  Extras extras_;
   bool with_help_;
   std::string& out_;
   Table root_;
@@ -115,10 +134,31 @@ class Writer : public Visitor {
   std::vector<List> lists_;
 };
 
+struct Unread {
+  std::string text;
+};
+
+/// A writer whose text nobody reads.
+class Collector : private Unread, public Writer {  // the text first: it must outlive the writer
+ public:
+  Collector(std::string_view stage, Defaults& values) : Writer(stage, Extras{.collected = &values}, text_of(*this)) {}
+
+ private:
+  static std::string& text_of(Unread& unread) { return unread.text; }
+};
+
 }  // namespace
 
 std::unique_ptr<Visitor> make_writer(std::string_view stage, bool with_help, std::string& text) {
-  return std::make_unique<Writer>(stage, with_help, text);
+  return std::make_unique<Writer>(stage, Extras{.help = with_help}, text);
+}
+
+std::unique_ptr<Visitor> make_marking_writer(std::string_view stage, const Defaults& defaults, std::string& text) {
+  return std::make_unique<Writer>(stage, Extras{.defaults = &defaults}, text);
+}
+
+std::unique_ptr<Visitor> make_collector(std::string_view stage, Defaults& values) {
+  return std::make_unique<Collector>(stage, values);
 }
 
 }  // namespace talus::recipe

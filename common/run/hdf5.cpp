@@ -312,4 +312,19 @@ void File::read_raw(const std::string& path, hid_t type, void* data) const {
   }
 }
 
+void File::read_rows_raw(const std::string& path, hsize_t first, hsize_t rows, hid_t type, void* data) const {
+  const auto shape = dims(path);
+  Dims start(shape.size(), 0), block = shape;
+  start[0] = first;
+  block[0] = rows;
+  const Id set(H5Dopen2(id_, path.c_str(), H5P_DEFAULT), H5Dclose);
+  const Id there(H5Dget_space(set), H5Sclose);
+  const Id here(H5Screate_simple(static_cast<int>(block.size()), block.data(), nullptr), H5Sclose);
+  const bool chosen = first + rows <= shape[0] &&
+                      H5Sselect_hyperslab(there, H5S_SELECT_SET, start.data(), nullptr, block.data(), nullptr) >= 0;
+  if (!chosen || H5Dread(set, type, here, there, H5P_DEFAULT, data) < 0) {
+    fail(fmt::format("dataset {} cannot be read", path));
+  }
+}
+
 }  // namespace talus::h5

@@ -102,6 +102,17 @@ class File {
     return read<T>(path, dims(path));
   }
 
+  /// Read rows [first, first + rows) of a dataset, flat.
+  template <class T>
+  std::vector<T> read_rows(const std::string& path, hsize_t first, hsize_t rows) const {
+    auto shape = dims(path);
+    std::size_t count = rows;
+    for (std::size_t d = 1; d < shape.size(); ++d) count *= shape[d];
+    std::vector<T> values(count);
+    if (count > 0) read_rows_raw(path, first, rows, native_type<T>(), values.data());
+    return values;
+  }
+
   /// Throws the DataError of this file: "FILE: `problem` (reason HDF5 gives). mend", or where it is being written, what
   /// write_fault() says of it.
   [[noreturn]] void fail(const std::string& problem) const;
@@ -114,6 +125,7 @@ class File {
   void create_extendible(const std::string& path, const Dims& row, hid_t type);
   std::size_t checked_count(const std::string& path, const Dims& expected) const;
   void read_raw(const std::string& path, hid_t type, void* data) const;
+  void read_rows_raw(const std::string& path, hsize_t first, hsize_t rows, hid_t type, void* data) const;
 
   hid_t id_;
   Naming naming_;

@@ -78,8 +78,14 @@ void write_text(const std::filesystem::path& path, const std::string& text);
 std::string sha256(const std::filesystem::path& path);
 std::string sha256_of_text(const std::string& text);
 
-/// `OUT/<stage>.used.toml`: the options with defaults filled in, and above them as comments version, command, inputs
-/// with their checksums, CRS, hardware, wall time (pairs of `facts`).
+/// The text of `<stage>.used.toml`: the options with defaults filled in (recipe::to_used_toml marks those that were
+/// changed), and above them as comments version, command, inputs with their checksums, CRS, hardware, wall time (pairs
+/// of `facts`).
+std::string used_recipe(const StageContext& context, const Stage& stage, const std::string& options_toml,
+                        const std::vector<std::filesystem::path>& inputs,
+                        const std::vector<std::pair<std::string, std::string>>& facts);
+
+/// Writes that text to `OUT/<stage>.used.toml`.
 void write_used_recipe(StageContext& context, const Stage& stage, const std::string& options_toml,
                        const std::vector<std::filesystem::path>& inputs,
                        const std::vector<std::pair<std::string, std::string>>& facts);

@@ -21,9 +21,9 @@ std::string checksum(const std::filesystem::path& path) {
 
 }  // namespace
 
-void write_used_recipe(StageContext& context, const Stage& stage, const std::string& options_toml,
-                       const std::vector<std::filesystem::path>& inputs,
-                       const std::vector<std::pair<std::string, std::string>>& facts) {
+std::string used_recipe(const StageContext& context, const Stage& stage, const std::string& options_toml,
+                        const std::vector<std::filesystem::path>& inputs,
+                        const std::vector<std::pair<std::string, std::string>>& facts) {
   std::string text = "# What was used, defaults filled in. This file is itself a recipe.\n";
   text += comment("program", stage.name + " " + version());
   text += comment("command", context.command_line);
@@ -35,6 +35,13 @@ void write_used_recipe(StageContext& context, const Stage& stage, const std::str
   for (const auto& [name, value] : facts) text += comment(name, value);
   text += fmt::format("\n[scene]\nname = {}\ntitle = {}\n\n{}", recipe::toml_text(context.recipe.scene_name()),
                       recipe::toml_text(context.recipe.title()), options_toml);
+  return text;
+}
+
+void write_used_recipe(StageContext& context, const Stage& stage, const std::string& options_toml,
+                       const std::vector<std::filesystem::path>& inputs,
+                       const std::vector<std::pair<std::string, std::string>>& facts) {
+  const auto text = used_recipe(context, stage, options_toml, inputs, facts);
   const auto path = context.out / (stage.table + ".used.toml");
   write_text(path, text);
   context.results.push_back(path);

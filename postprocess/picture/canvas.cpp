@@ -55,7 +55,10 @@ Canvas::Canvas(int width, int height) : handles_(std::make_unique<Handles>()) {
   cairo_paint(handles_->cairo);
 }
 
+Canvas::Canvas(Canvas&& other) noexcept = default;
+
 Canvas::~Canvas() {
+  if (!handles_) return;
   cairo_destroy(handles_->cairo);
   cairo_surface_destroy(handles_->surface);
 }
@@ -133,6 +136,20 @@ void Canvas::clip(const Box& box) {
 }
 
 void Canvas::unclip() { cairo_restore(handles_->cairo); }
+
+std::string Canvas::pixels() const {
+  cairo_surface_flush(handles_->surface);
+  const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(handles_->surface));
+  const auto* data = reinterpret_cast<const char*>(cairo_image_surface_get_data(handles_->surface));
+  const auto row_bytes = static_cast<std::size_t>(width()) * 4;
+  std::string bytes;
+  bytes.reserve(row_bytes * static_cast<std::size_t>(height()));
+  for (int row = 0; row < height(); ++row) bytes.append(data + static_cast<std::size_t>(row) * stride, row_bytes);
+  return bytes;
+}
+
+int Canvas::width() const { return cairo_image_surface_get_width(handles_->surface); }
+int Canvas::height() const { return cairo_image_surface_get_height(handles_->surface); }
 
 std::string Canvas::png() {
   std::string bytes;

@@ -38,6 +38,7 @@ struct Box {
 class Canvas {
  public:
   Canvas(int width, int height);  ///< white
+  Canvas(Canvas&& other) noexcept;
   ~Canvas();
   void line(const Pixels& points, const Pen& pen);
   void fill(const Pixels& points, const Colour& colour);
@@ -52,6 +53,10 @@ class Canvas {
   void unclip();
   /// The picture as a PNG file's bytes.
   std::string png();
+  /// The picture as bytes: blue, green, red and one that is not used, row by row from the top.
+  std::string pixels() const;
+  int width() const;   // [px]
+  int height() const;  // [px]
 
  private:
   struct Handles;

@@ -108,7 +108,7 @@ class Column {
 };
 
 void draw_legend(Column& column, const PictureInput& input, const std::vector<double>& limits, double interval) {
-  column.heading("Deposit thickness, vertical [m]");
+  column.heading(input.instant ? "Thickness, vertical [m]" : "Deposit thickness, vertical [m]");
   for (auto i = limits.size(); i-- > 0;) column.swatch(class_colour(i, limits.size()), class_label(i, limits));
   column.space(22);
   const auto& options = input.options;
@@ -234,6 +234,15 @@ void draw_sidebar(Canvas& canvas, const PictureInput& input, const View& view, c
   draw_north_arrow(canvas, box.x + box.width - 40, column.y() - 4);
   column.space(112);
   draw_numbers(column, input);
+}
+
+void draw_time(Canvas& canvas, double time, const View& view) {
+  const auto words = fmt::format("t = {:.1f}\u2009s", time);
+  const TextStyle style{.size = 34, .bold = true, .colour = ink};
+  const Box box{view.box.x + 18, view.box.y + 18, canvas.text_width("t = 0000.0\u2009s", style) + 28, 56};
+  canvas.fill(box, {1, 1, 1});
+  canvas.frame(box, {ink, 1.5, {}, 1});
+  canvas.text(words, box.x + 14, box.y + 40, style);
 }
 
 void draw_footer(Canvas& canvas, const PictureInput& input, double x, double y) {

@@ -14,6 +14,9 @@ void draw_coordinates(Canvas& canvas, const View& view);
 void draw_sidebar(Canvas& canvas, const PictureInput& input, const View& view, const std::vector<double>& limits,
                   double interval, const Box& box);
 
+/// The time in the map's upper left corner.
+void draw_time(Canvas& canvas, double time, const View& view);
+
 /// One line of small print.
 void draw_footer(Canvas& canvas, const PictureInput& input, double x, double y);
 

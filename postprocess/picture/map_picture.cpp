@@ -28,13 +28,24 @@ double thickest(const std::vector<double>& thickness) {
   return most;
 }
 
+/// The part of the maps that is drawn; at an instant the flow takes the deposit's place.
+RunMaps shown_maps(const PictureInput& input, const Window& window) {
+  if (!input.instant) return cropped(input.run.maps, window);
+  auto maps = input.run.maps;
+  maps.deposit_thickness = input.instant->thickness;
+  return cropped(maps, window);
+}
+
 }  // namespace
 
-std::string map_picture(const PictureInput& input) {
+std::string map_picture(const PictureInput& input) { return draw_map(input).png(); }
+
+Canvas draw_map(const PictureInput& input) {
   const auto window = affected_window(input.run.maps, input.options, input.survey);
   const View view{window, map_box(window)};
-  const auto limits = class_limits(input.options.classes, thickest(input.run.maps.deposit_thickness));
-  const auto maps = cropped(input.run.maps, window);
+  const auto limits = class_limits(
+      input.options.classes, input.instant ? input.instant->thickest : thickest(input.run.maps.deposit_thickness));
+  const auto maps = shown_maps(input, window);
   const double interval = contour_interval(view, maps);
   const double width = left + view.box.width + gap + sidebar + right;
   const double height = top + std::max(view.box.height, least_height) + bottom;
@@ -51,7 +62,8 @@ std::string map_picture(const PictureInput& input) {
   draw_sidebar(canvas, input, view, limits, interval,
                {left + view.box.width + gap, top, sidebar, height - top - bottom});
   draw_footer(canvas, input, left, height - 26);
-  return canvas.png();
+  if (input.instant) draw_time(canvas, input.instant->time, view);
+  return canvas;
 }
 
 }  // namespace talus::postprocess

@@ -5,17 +5,29 @@
 
 #include "common/run/run_file.hpp"
 #include "postprocess/options.hpp"
+#include "postprocess/picture/canvas.hpp"
 #include "postprocess/score/score.hpp"
 #include "postprocess/score/survey.hpp"
 
 namespace talus::postprocess {
+
+/// The flow at one time.
+struct Instant {
+  double time = 0;                       // [s]
+  const std::vector<double>& thickness;  // on the run's grid [m]
+  double thickest = 0;                   // over all times, for the classes [m]
+};
 
 struct PictureInput {
   const Run& run;
   const Options& options;
   const std::optional<Survey>& survey;
   const Score& score;
+  std::optional<Instant> instant{};  ///< show the flow then, and not the deposit
 };
+
+/// The map as it is drawn, on 200 dpi.
+Canvas draw_map(const PictureInput& input);
 
 /// The deposit map as a PNG file's bytes: hillshade of the surface before the failure, deposit thickness in classes,
 /// outlines of release, footprint and survey, contours, coordinates, legend, scale bar, north arrow, key numbers. Made

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "common/recipe/used.hpp"
 #include "common/recipe/values.hpp"
 #include "tests/common/sample_options.hpp"
 #include "tests/common/scratch.hpp"
@@ -80,6 +81,62 @@ TEST(RecipeWriter, numbers_are_floats_in_toml) {
   EXPECT_EQ(recipe::toml_number(0.1), "0.1");
   EXPECT_EQ(recipe::toml_number(1e-7), "1e-07");
   EXPECT_EQ(recipe::toml_number(recipe::infinity), "inf");
+}
+
+/// The key as a *.used.toml gives it back.
+recipe::UsedKey key_of(const recipe::UsedRecipe& used, const std::string& table, const std::string& key) {
+  for (const auto& item : used.keys)
+    if (item.table == table && item.key == key) return item;
+  ADD_FAILURE() << table << "." << key << " is missing";
+  return {};
+}
+
+TEST(UsedRecipe, marks_what_was_changed_from_its_default_and_nothing_else) {
+  EXPECT_EQ(recipe::to_used_toml(SampleOptions{}, "solve"), to_toml(SampleOptions{}, "solve", false));
+  SampleOptions options;
+  options.steps = 11;
+  options.friction = 30;
+  options.seed_x = 4;
+  const auto text = recipe::to_used_toml(options, "solve");
+  EXPECT_NE(text.find("steps = 11  # default: 10\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("friction_angle_deg = 30.0  # default: 25.0\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("seed_x_m = 4.0  # default: none\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("density_kg_m3 = 2000.0\n"), std::string::npos) << text;
+  EXPECT_EQ(read_back(text), options);
+}
+
+TEST(UsedRecipe, items_of_a_list_are_held_against_a_new_item) {
+  SampleOptions options;
+  options.releases = {{"A", 0, ""}, {"", 1.5, ""}};
+  const auto used = recipe::read_used_recipe(recipe::to_used_toml(options, "solve"), "x");
+  EXPECT_EQ(key_of(used, "solve.release 1", "name").default_value, "\"\"");
+  EXPECT_FALSE(key_of(used, "solve.release 1", "thickness_m").default_value);
+  EXPECT_EQ(key_of(used, "solve.release 2", "thickness_m").default_value, "0.0");
+  EXPECT_FALSE(key_of(used, "solve.release 2", "name").default_value);
+}
+
+TEST(UsedRecipe, reads_back_facts_values_and_defaults_whatever_stands_in_the_texts) {
+  SampleOptions options;
+  options.label = "\xc3\xbc \" # default: no\nlonger";
+  options.times = {1, 2};
+  const auto used = recipe::read_used_recipe("# What: was used\n# input: /a: b  sha256 0\n\n[scene]\nname = \"s\"\n\n" +
+                                                 recipe::to_used_toml(options, "solve"), "x");
+  ASSERT_EQ(used.facts.size(), 2U);
+  EXPECT_EQ(used.facts[1], (std::pair<std::string, std::string>{"input", "/a: b  sha256 0"}));
+  const auto label = key_of(used, "solve", "label");
+  EXPECT_EQ(label.value, recipe::toml_text(options.label));
+  EXPECT_EQ(label.default_value, recipe::toml_text(SampleOptions{}.label));
+  EXPECT_EQ(key_of(used, "solve", "times_s").value, "[1.0, 2.0]");
+  EXPECT_EQ(key_of(used, "solve", "times_s").default_value, "[0.0, 2.5, 1e-07]");
+  EXPECT_FALSE(key_of(used, "solve.material", "tension_pa").default_value);
+  EXPECT_EQ(key_of(used, "solve.material", "tension_pa").value, "inf");
+  EXPECT_EQ(used.keys.front().key, "density_kg_m3") << "the order of the file";
+}
+
+TEST(UsedRecipe, refuses_what_is_not_toml) {
+  EXPECT_NE(test::fault_of<DataError>([] { recipe::read_used_recipe("\n[solve\n", "solve.used.toml"); })
+                .find("solve.used.toml:2: not TOML"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ TEST_F(Program, writes_every_result_and_names_it) {
   for (const auto* name :
        {"maps/deposit_thickness.tif", "maps/peak_thickness.tif", "maps/peak_speed.tif", "maps/peak_pressure.tif",
         "maps/arrival_time.tif", "maps/results.nc", "maps/deposit_thickness.qml", "maps/peak_pressure.qml", "maps/terrain.tif",
-        "maps/terrain.qml", "maps/outlines.gpkg", "maps/small.qgs", "map.png", "history.csv", "score.json", "score.txt"}) {
+        "maps/terrain.qml", "maps/outlines.gpkg", "maps/small.qgs", "map.png", "report.html", "history.csv", "score.json", "score.txt"}) {
     EXPECT_TRUE(fs::exists(out_ / name)) << name;
     EXPECT_NE(std::find(results_.begin(), results_.end(), out_ / name), results_.end()) << name << " is not announced";
   }

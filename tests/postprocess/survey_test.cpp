@@ -201,6 +201,8 @@ TEST_F(SurveyTest, compares_the_change_itself_with_what_was_measured) {
   EXPECT_EQ(simulated.change[small_grid().index(4, 15)], -6) << "the scar";
   EXPECT_EQ(simulated.deposit[small_grid().index(4, 15)], 0);
   EXPECT_EQ(simulated.change[small_grid().index(26, 15)], 1.5);
+}
+
 TEST_F(SurveyTest, brings_dems_in_degrees_to_the_runs_crs) {
   const auto& run = run_.maps.grid;
   MapGrid degrees{0, 0, 0, 0, 0.0001, crs_by_name("EPSG:4326")};

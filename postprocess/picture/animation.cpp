@@ -1,0 +1,132 @@
+#include "postprocess/picture/animation.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "common/stage/stage.hpp"
+#include "postprocess/score/thalweg.hpp"
+
+namespace talus::postprocess {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int seconds_at_the_end = 2;
+
+bool has_program(const std::string& name) {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (::access((fs::path(folder) / name).c_str(), X_OK) == 0) return true;
+  return false;
+}
+
+/// For a shell: within single quotes everything but they themselves is plain.
+std::string quoted(const std::string& text) {
+  std::string safe = "'";
+  for (const char c : text) safe += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return safe + "'";
+}
+
+/// A child's standard input. A child that ends early must not end us: SIGPIPE is ignored meanwhile.
+class Pipe {
+ public:
+  explicit Pipe(const std::string& command)
+      : before_(std::signal(SIGPIPE, SIG_IGN)), pipe_(::popen(command.c_str(), "w")) {}
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+  ~Pipe() {
+    close();
+    std::signal(SIGPIPE, before_);
+  }
+  bool write(const std::string& bytes) {
+    return pipe_ != nullptr && std::fwrite(bytes.data(), 1, bytes.size(), pipe_) == bytes.size();
+  }
+  /// True where the child ended well.
+  bool close() {
+    const int status = pipe_ == nullptr ? -1 : ::pclose(pipe_);
+    pipe_ = nullptr;
+    return status == 0;
+  }
+
+ private:
+  void (*before_)(int);
+  FILE* pipe_;
+};
+
+/// MP4 that every player takes (even sizes, 4:2:0); GIF smaller, with a palette of its own. Class colours are flat, so
+/// nothing is dithered.
+std::string encoding(Animation animation) {
+  if (animation == Animation::gif)
+    return "-vf 'scale=960:-1:flags=lanczos,split[a][b];[a]palettegen[p];[b][p]paletteuse=dither=none' -f gif";
+  return "-vf 'scale=1440:-2:flags=lanczos' -c:v libx264 -pix_fmt yuv420p -crf 20 -movflags +faststart -f mp4";
+}
+
+double thickest(const Run& run) {
+  double most = 0;
+  for (std::size_t i = 0; i < run.frames.time.size(); ++i)
+    for (const double h : flow_thickness(run, i))
+      if (h > most) most = h;
+  return most;
+}
+
+/// Draws every frame into the pipe, which opens with the first, when the size of the pictures is known.
+bool encode(const PictureInput& input, const std::string& tail, int rate) {
+  const auto& frames = input.run.frames;
+  const double most = thickest(input.run);
+  std::optional<Pipe> pipe;
+  Progress progress;
+  for (std::size_t i = 0; i < frames.time.size(); ++i) {
+    const auto flow = flow_thickness(input.run, i);
+    const auto canvas =
+        draw_map({input.run, input.options, input.survey, input.score, Instant{frames.time[i], flow, most}});
+    if (!pipe)
+      pipe.emplace(
+          fmt::format("ffmpeg -nostdin -loglevel error -y -f rawvideo -pix_fmt bgr0 -s {}x{} -r {} -i pipe:0 {}",
+                      canvas.width(), canvas.height(), rate, tail));
+    const auto pixels = canvas.pixels();
+    const int times = i + 1 == frames.time.size() ? 1 + seconds_at_the_end * rate : 1;
+    for (int k = 0; k < times; ++k)
+      if (!pipe->write(pixels)) return false;
+    if (progress.due()) progress.update(fmt::format("animation {}/{}", i + 1, frames.time.size()));
+  }
+  return pipe && pipe->close();
+}
+
+}  // namespace
+
+int film_rate(std::size_t frames) {
+  return std::clamp(static_cast<int>(std::lround(static_cast<double>(frames) / 8)), 2, 25);
+}
+
+void check_animation(Animation animation, const Run& run) {
+  if (animation == Animation::none) return;
+  if (!has_program("ffmpeg"))
+    throw DataError({"[postprocess] animation: ffmpeg was not found", "it makes the film",
+                     "Install it: apt-get install ffmpeg, or set animation = \"none\""});
+  if (run.frames.time.size() < 2)
+    throw DataError({"[postprocess] animation: the run holds " + std::to_string(run.frames.time.size()) + " frames",
+                     "a film needs two",
+                     "Set frame_interval_s of [solve] and run talus-solve again, or animation = \"none\""});
+}
+
+fs::path write_animation(const fs::path& folder, const PictureInput& input, Animation animation) {
+  const fs::path file = folder / (animation == Animation::gif ? "animation.gif" : "animation.mp4");
+  PendingFile pending(file);
+  const auto tail = encoding(animation) + " " + quoted(pending.path().string());
+  if (!encode(input, tail, film_rate(input.run.frames.time.size())))
+    throw DataError({file.string() + ": ffmpeg could not make it", "its own message is above",
+                     "Free space or name another folder with --out; animation = \"none\" leaves the film out"});
+  pending.commit();
+  return file;
+}
+
+}  // namespace talus::postprocess

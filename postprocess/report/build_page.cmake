@@ -1,0 +1,43 @@
+# Puts page.html together from its parts and writes it as C++: cmake -DHTML=... -DSTYLE=... -DSCRIPT=... -DLEAFLET_STYLE=...
+# -DLEAFLET=... -DCHART=... -DLICENCES=... -DOUTPUT=page.cpp -P build_page.cmake
+# Arguments are quoted throughout: scripts are full of semicolons, which CMake would take for lists.
+
+# What would be loaded from beside the page is taken out: pictures of controls that are not used, maps for debuggers.
+function(read_part file out)
+  file(READ "${file}" text)
+  string(REGEX REPLACE "url\\(\"?images/[^)]*\\)" "none" text "${text}")
+  string(REGEX REPLACE "(//[#@]|/\\*#) sourceMappingURL=[^\n]*" "" text "${text}")
+  if(text MATCHES "</[sS][cC][rR][iI][pP][tT]")
+    message(FATAL_ERROR "${file} holds the end of a script block and cannot stand inside one")
+  endif()
+  set(${out} "${text}" PARENT_SCOPE)
+endfunction()
+
+file(READ "${HTML}" page)
+foreach(part STYLE SCRIPT LEAFLET_STYLE LEAFLET CHART LICENCES)
+  read_part("${${part}}" text)
+  string(FIND "${page}" "@${part}@" place)
+  if(place EQUAL -1)
+    message(FATAL_ERROR "${HTML} has no @${part}@")
+  endif()
+  string(REPLACE "@${part}@" "${text}" page "${page}")
+endforeach()
+
+get_filename_component(folder "${OUTPUT}" DIRECTORY)
+file(WRITE "${folder}/page.html" "${page}")   # for looking at; the program holds the bytes below
+file(READ "${folder}/page.html" bytes HEX)
+string(REGEX REPLACE "(................................................................)" "\\1\n" bytes "${bytes}")
+string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${bytes}")
+file(WRITE "${OUTPUT}" "#include \"postprocess/report/page.hpp\"
+
+namespace talus::postprocess {
+namespace {
+const unsigned char bytes[] = {
+${bytes}
+};
+}  // namespace
+
+std::string_view page_template() { return {reinterpret_cast<const char*>(bytes), sizeof bytes}; }
+
+}  // namespace talus::postprocess
+")

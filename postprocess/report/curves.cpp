@@ -1,0 +1,90 @@
+// Curves of the report: along the thalweg and over time.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/run/motion.hpp"
+#include "postprocess/report/parts.hpp"
+
+namespace talus::postprocess {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double moving = 1.0;  // [m/s]; what is slower creeps or rests
+
+std::vector<double> zero_for_nan(std::vector<double> values) {
+  for (double& v : values) v = std::isnan(v) ? 0 : v;
+  return values;
+}
+
+std::vector<double> sum(std::vector<double> a, const std::vector<double>& b) {
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] += b[i];
+  return a;
+}
+
+/// To centimetres: a profile needs no more, and pages stay small.
+Json rounded(const std::vector<double>& values) {
+  auto list = Json::array();
+  for (const double v : values) list.push_back(std::isfinite(v) ? Json(std::round(100 * v) / 100) : Json());
+  return list;
+}
+
+/// Surveyed surface after the event along the line: before + change, or bed + thickness.
+std::vector<double> surveyed_surface(const ReportInput& input, const Thalweg& thalweg) {
+  const auto& survey = *input.survey;
+  const auto& maps = input.run.maps;
+  auto change = survey.deposit;
+  if (survey.deposit_is_change && survey.footprint_is_change) {
+    for (std::size_t i = 0; i < change.size(); ++i)
+      if (!(change[i] > 0)) change[i] = -survey.footprint[i];  // where it did not rise, |change| is how far it sank
+  }
+  const auto& foot = survey.deposit_is_change ? maps.before : maps.terrain;
+  return sum(sample_along(thalweg, maps.grid, foot), sample_along(thalweg, survey.grid, change));
+}
+
+}  // namespace
+
+Json profile_json(const ReportInput& input) {
+  const auto& thalweg = input.thalweg;
+  if (thalweg.line.size() < 2) return nullptr;
+  const auto& maps = input.run.maps;
+  const auto along = [&](const std::vector<double>& values) { return sample_along(thalweg, maps.grid, values); };
+  const auto bed = along(maps.terrain);
+  const auto deposit = along(zero_for_nan(maps.deposit_thickness)), peak = along(zero_for_nan(maps.peak_thickness));
+  Json json{{"given", thalweg.given},
+            {"origin", thalweg.origin},
+            {"distance", rounded(thalweg.distance)},
+            {"before", rounded(along(maps.before))},
+            {"bed", rounded(bed)},
+            {"deposit_surface", rounded(sum(bed, deposit))},
+            {"deposit", rounded(deposit)},
+            {"peak", rounded(peak)},
+            {"speed", rounded(along(zero_for_nan(maps.peak_speed)))}};
+  if (input.survey && !input.survey->deposit.empty()) {
+    json["surveyed_surface"] = rounded(surveyed_surface(input, thalweg));
+    json["surveyed"] = rounded(sample_along(thalweg, input.survey->grid, input.survey->deposit));
+  }
+  return json;
+}
+
+Json series_json(const ReportInput& input) {
+  const auto& thalweg = input.thalweg;
+  const auto& history = input.run.history;
+  Json json{{"history", Json::object()}, {"front", nullptr}, {"motion", nullptr}};
+  for (std::size_t c = 0; c < history.names.size(); ++c) json["history"][history.names[c]] = history.columns[c];
+  if (thalweg.line.size() >= 2 && !input.run.frames.time.empty()) {
+    const auto front = front_over_time(input.run, thalweg, input.options.footprint_threshold);
+    json["front"] = {
+        {"time", front.time}, {"distance", rounded(front.value)}, {"threshold", input.options.footprint_threshold}};
+  }
+  const auto motion = read_motion(input.run_file, moving);
+  if (motion.time.size() >= 2) {
+    json["motion"] = {{"time", motion.time},
+                      {"volume", rounded(motion.volume)},
+                      {"mean_speed", rounded(motion.mean_speed)},
+                      {"faster_than", moving}};
+  }
+  return json;
+}
+
+}  // namespace talus::postprocess

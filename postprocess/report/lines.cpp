@@ -1,0 +1,82 @@
+// The lines of the report's map.
+#include <cmath>
+
+#include "common/raster/isolines.hpp"
+#include "postprocess/picture/layers.hpp"
+#include "postprocess/report/parts.hpp"
+
+namespace talus::postprocess {
+namespace {
+
+/// A flat list x, y, x, y ... [m] from the window's corner, to a decimetre.
+Json line_json(const Polyline& line, const Window& window) {
+  auto list = Json::array();
+  for (const auto& [x, y] : line) {
+    list.push_back(std::round(10 * (x - window.west)) / 10);
+    list.push_back(std::round(10 * (y - window.south)) / 10);
+  }
+  return list;
+}
+
+Json lines_json(const std::vector<Polyline>& lines, const Window& window) {
+  auto list = Json::array();
+  for (const auto& line : lines) list.push_back(line_json(line, window));
+  return list;
+}
+
+/// Outline of what exceeds `level` on a grid of its own.
+Json outline(const MapGrid& grid, const std::vector<double>& values, double level, const Window& window) {
+  return lines_json(isolines(grid, values, level, AtEdge::close), window);
+}
+
+std::vector<Polyline> rings(const std::vector<MapPolygon>& polygons) {
+  std::vector<Polyline> lines;
+  for (const auto& polygon : polygons) {
+    for (auto ring : polygon.rings) {
+      if (!ring.empty()) ring.push_back(ring.front());
+      lines.push_back(std::move(ring));
+    }
+  }
+  return lines;
+}
+
+Json contours(const RunMaps& maps, const Window& window) {
+  const double interval = contour_interval({window, {}}, maps);
+  Json json{{"interval", interval}, {"levels", Json::array()}};
+  if (interval <= 0) return json;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const double z : maps.before) {
+    if (z < low) low = z;
+    if (z > high) high = z;
+  }
+  for (double k = std::ceil(low / interval); k * interval <= high; ++k) {
+    auto lines = lines_json(isolines(maps.grid, maps.before, k * interval, AtEdge::end), window);
+    if (!lines.empty())
+      json["levels"].push_back({{"level", k * interval}, {"index", std::fmod(k, 5) == 0}, {"lines", std::move(lines)}});
+  }
+  return json;
+}
+
+}  // namespace
+
+Json lines_json(const ReportInput& input, const Window& window) {
+  const auto maps = cropped(input.run.maps, window);
+  const auto& options = input.options;
+  Json json;
+  json["release"] = outline(maps.grid, maps.initial_thickness, options.deposit_threshold, window);
+  json["footprint"] = outline(maps.grid, maps.peak_thickness, options.footprint_threshold, window);
+  if (input.survey) {
+    const auto& survey = *input.survey;
+    if (!survey.deposit.empty())
+      json["survey_deposit"] = outline(survey.grid, survey.deposit, options.deposit_threshold, window);
+    if (!survey.polygons.empty())
+      json["survey_footprint"] = lines_json(rings(survey.polygons), window);
+    else if (!survey.footprint.empty())
+      json["survey_footprint"] = outline(survey.grid, survey.footprint, survey.footprint_threshold, window);
+  }
+  json["thalweg"] = line_json(input.thalweg.line, window);
+  json["contours"] = contours(maps, window);
+  return json;
+}
+
+}  // namespace talus::postprocess

@@ -1,0 +1,146 @@
+#include "postprocess/report/pack.hpp"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace talus::postprocess {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double most = 65534;  // of 65536: 0 is NaN
+
+std::string deflated(const std::string& bytes) {
+  auto size = compressBound(static_cast<uLong>(bytes.size()));
+  std::string packed(size, '\0');
+  const auto status = compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
+                                reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size()), 9);
+  if (status != Z_OK) throw std::runtime_error("zlib: " + std::string(zError(status)));
+  packed.resize(size);
+  return packed;
+}
+
+/// One number for several cells.
+class Merged {
+ public:
+  explicit Merged(Merge merge) : merge_(merge) {}
+  void add(double value) {
+    if (std::isnan(value)) return;
+    if (merge_ == Merge::mean) value_ = count_ == 0 ? value : value_ + value;
+    if (merge_ == Merge::largest) value_ = count_ == 0 ? value : std::max(value_, value);
+    if (merge_ == Merge::smallest) value_ = count_ == 0 ? value : std::min(value_, value);
+    ++count_;
+  }
+  double value() const { return merge_ == Merge::mean && count_ > 0 ? value_ / count_ : value_; }
+
+ private:
+  Merge merge_;
+  double value_ = nan;
+  int count_ = 0;
+};
+
+}  // namespace
+
+Raster cut(const Raster& raster, const Window& window) {
+  const auto& grid = raster.grid;
+  const auto cell_of = [&](double metres, int count, double slack) {
+    return std::clamp(static_cast<int>(std::floor(metres / grid.cell + slack)), 0, count - 1);
+  };
+  constexpr double slack = 1e-6;  // a window that ends where a cell does leaves the next one out
+  const int first = cell_of(window.west - grid.west, grid.columns, slack),
+            last = cell_of(window.east - grid.west, grid.columns, -slack);
+  const int bottom = cell_of(window.south - grid.south, grid.rows, slack),
+            top = cell_of(window.north - grid.south, grid.rows, -slack);
+  Raster part{grid, {}};
+  part.grid.columns = last - first + 1;
+  part.grid.rows = top - bottom + 1;
+  part.grid.west = grid.west + first * grid.cell;
+  part.grid.south = grid.south + bottom * grid.cell;
+  part.values.reserve(part.grid.count());
+  for (int row = bottom; row <= top; ++row) {
+    const auto start = raster.values.begin() + static_cast<std::ptrdiff_t>(grid.index(first, row));
+    part.values.insert(part.values.end(), start, start + part.grid.columns);
+  }
+  return part;
+}
+
+Raster coarsened(const Raster& raster, int factor, Merge merge) {
+  if (factor == 1) return raster;
+  const auto& grid = raster.grid;
+  Raster coarse{grid, {}};
+  coarse.grid.columns = (grid.columns + factor - 1) / factor;
+  coarse.grid.rows = (grid.rows + factor - 1) / factor;
+  coarse.grid.cell = grid.cell * factor;
+  coarse.values.reserve(coarse.grid.count());
+  for (int row = 0; row < coarse.grid.rows; ++row) {
+    for (int column = 0; column < coarse.grid.columns; ++column) {
+      Merged merged(merge);
+      for (int r = row * factor; r < std::min((row + 1) * factor, grid.rows); ++r)
+        for (int c = column * factor; c < std::min((column + 1) * factor, grid.columns); ++c)
+          merged.add(raster.at(c, r));
+      coarse.values.push_back(merged.value());
+    }
+  }
+  return coarse;
+}
+
+int factor_for(const MapGrid& grid, std::size_t cells) {
+  int factor = 1;
+  while (static_cast<std::size_t>((grid.columns + factor - 1) / factor) *
+             static_cast<std::size_t>((grid.rows + factor - 1) / factor) >
+         cells)
+    ++factor;
+  return factor;
+}
+
+nlohmann::ordered_json packed(const std::vector<std::vector<double>>& frames) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  std::size_t count = 0;
+  for (const auto& values : frames) {
+    count += values.size();
+    for (const double v : values) {
+      if (v < low) low = v;
+      if (v > high) high = v;
+    }
+  }
+  const double offset = low <= high ? low : 0, step = low < high ? (high - low) / most : 1;
+  std::string bytes(2 * count, '\0');
+  std::size_t at = 0;
+  for (const auto& values : frames) {
+    for (const double v : values) {
+      const auto q = std::isnan(v) ? 0U : static_cast<unsigned>(std::lround((v - offset) / step)) + 1U;
+      bytes[at] = static_cast<char>(q >> 8U);
+      bytes[count + at++] = static_cast<char>(q & 0xFFU);
+    }
+  }
+  return {{"offset", offset}, {"step", step}, {"bytes", base64(deflated(bytes))}};
+}
+
+nlohmann::ordered_json packed(const std::vector<double>& values) {
+  return packed(std::vector<std::vector<double>>{values});
+}
+
+nlohmann::ordered_json grid_json(const MapGrid& grid) {
+  return {
+      {"columns", grid.columns}, {"rows", grid.rows}, {"west", grid.west}, {"south", grid.south}, {"cell", grid.cell}};
+}
+
+std::string base64(const std::string& bytes) {
+  constexpr const char* letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  const auto byte = [&](std::size_t i) { return i < bytes.size() ? static_cast<unsigned char>(bytes[i]) : 0U; };
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const unsigned three = byte(i) << 16U | byte(i + 1) << 8U | byte(i + 2);
+    text += letters[three >> 18U];
+    text += letters[three >> 12U & 63U];
+    text += i + 1 < bytes.size() ? letters[three >> 6U & 63U] : '=';
+    text += i + 2 < bytes.size() ? letters[three & 63U] : '=';
+  }
+  return text;
+}
+
+}  // namespace talus::postprocess

@@ -1,0 +1,41 @@
+// Grids as a page can hold them: cut to the map shown, coarsened where they are large, quantised, deflated, base64.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "common/raster/raster.hpp"
+#include "postprocess/picture/view.hpp"
+
+namespace talus::postprocess {
+
+/// What becomes of several cells that are made one.
+enum class Merge { mean, largest, smallest };
+
+/// Cells of `raster` that touch the window.
+Raster cut(const Raster& raster, const Window& window);
+
+/// Blocks of `factor` x `factor` cells made one, NaN left out (NaN where all are); an incomplete last row or column is
+/// filled up with NaN.
+Raster coarsened(const Raster& raster, int factor, Merge merge);
+
+/// Smallest factor that leaves at most `cells` cells.
+int factor_for(const MapGrid& grid, std::size_t cells);
+
+/// Values as unsigned integers q with value = offset + step * (q - 1), and q = 0 for NaN: {"offset", "step", "bytes"}.
+/// 16 bit, all high bytes before all low bytes, zlib stream, base64. The error is at most half a step, 1 / 131068 of
+/// the range. Infinite values are not expected.
+nlohmann::ordered_json packed(const std::vector<double>& values);
+
+/// The same for several grids of one kind, end to end.
+nlohmann::ordered_json packed(const std::vector<std::vector<double>>& frames);
+
+/// Columns, rows, west, south and cell [m] of a grid.
+nlohmann::ordered_json grid_json(const MapGrid& grid);
+
+/// RFC 4648, with padding.
+std::string base64(const std::string& bytes);
+
+}  // namespace talus::postprocess

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string_view>
+
+namespace talus::postprocess {
+
+/// The page without its data: page/ and the libraries it uses, put together when the program is built. The data belong
+/// where "@DATA@" stands, the title where "@TITLE@" does.
+std::string_view page_template();
+
+}  // namespace talus::postprocess

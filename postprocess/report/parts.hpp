@@ -1,0 +1,40 @@
+// The parts of the report's data, each a function of the input; report.cpp puts them together.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "postprocess/picture/view.hpp"
+#include "postprocess/report/report.hpp"
+
+namespace talus::postprocess {
+
+using Json = nlohmann::ordered_json;
+
+/// Grids to be shown on the map, with their classes: deposit, peaks, arrival, release, survey, difference, agreement.
+/// `coarsened` is left as the largest number of cells made one along a side.
+Json layers_json(const ReportInput& input, const Window& window, int& coarsest);
+
+/// Thickness over time on the map, and its classes.
+Json frames_json(const ReportInput& input, const Window& window, int& coarsest);
+
+/// Elevation before the failure, and its hillshade.
+Json ground_json(const ReportInput& input, const Window& window, int& coarsest);
+
+/// Outlines, contours and the thalweg as lists of x, y [m from the window's west and south].
+Json lines_json(const ReportInput& input, const Window& window);
+
+/// Elevations, thickness and speed along the thalweg.
+Json profile_json(const ReportInput& input);
+
+/// Numbers over time: the history's columns, the front along the thalweg, the volume in motion.
+Json series_json(const ReportInput& input);
+
+Json score_json(const Score& score);
+
+/// Release and deposit read both ways, vertical and normal to the slope, with projected and true area.
+Json volumes_json(const Run& run, double deposit_threshold);
+
+/// What each stage used: facts, keys, defaults.
+Json stages_json(const std::vector<StageText>& stages);
+
+}  // namespace talus::postprocess

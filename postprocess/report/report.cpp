@@ -1,0 +1,107 @@
+#include "postprocess/report/report.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include "common/raster/raster_io.hpp"
+#include "common/stage/stage.hpp"
+#include "postprocess/picture/view.hpp"
+#include "postprocess/report/page.hpp"
+#include "postprocess/report/parts.hpp"
+
+namespace talus::postprocess {
+namespace {
+
+Json run_json(const ReportInput& input) {
+  const auto& s = input.run.summary;
+  const auto& options = input.options;
+  Json json{{"title", s.title}, {"scene", s.scene}, {"version", version()}, {"run_version", s.version}};
+  json["made"] = fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)));
+  json["hardware"] = hardware();
+  json["institution"] = options.institution;
+  json["crs"] = crs_name(input.run.maps.grid.crs_wkt);
+  json["map"] = {
+      {"columns", input.run.maps.grid.columns}, {"rows", input.run.maps.grid.rows}, {"cell", input.run.maps.grid.cell}};
+  json["thresholds"] = {{"footprint", options.footprint_threshold},
+                        {"deposit", options.deposit_threshold},
+                        {"map", input.run.maps.threshold}};
+  json["density"] = s.density;
+  json["survey"] = nullptr;
+  if (const auto& survey = input.survey)
+    json["survey"] = {{"name", survey->name},
+                      {"is_change", survey->deposit_is_change},
+                      {"is_polygon", !survey->polygons.empty()},
+                      {"footprint_threshold", survey->footprint_threshold}};
+  return json;
+}
+
+/// The affected window, as wide as it is high where the map goes on that far: screens are wide.
+Window shown_window(const ReportInput& input) {
+  const auto& grid = input.run.maps.grid;
+  auto window = affected_window(input.run.maps, input.options, input.survey);
+  const double width = std::min(std::max(window.width(), window.height()), grid.east() - grid.west);
+  window.west = std::clamp(0.5 * (window.west + window.east - width), grid.west, grid.east() - width);
+  window.east = window.west + width;
+  return window;
+}
+
+Json map_json(const ReportInput& input) {
+  const auto window = shown_window(input);
+  int coarsest = 1;
+  Json json{
+      {"window", {{"west", window.west}, {"south", window.south}, {"east", window.east}, {"north", window.north}}}};
+  json["ground"] = ground_json(input, window, coarsest);
+  json["layers"] = layers_json(input, window, coarsest);
+  json["frames"] = frames_json(input, window, coarsest);
+  json["lines"] = lines_json(input, window);
+  json["coarsest"] = coarsest;
+  return json;
+}
+
+/// JSON inside <script>: no "<" may stand there, or a title could end the block.
+std::string for_script(const Json& json) {
+  const auto text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string safe;
+  safe.reserve(text.size());
+  for (const char c : text) c == '<' ? safe.append("\\u003c") : safe.append(1, c);
+  return safe;
+}
+
+std::string for_html(const std::string& text) {
+  std::string safe;
+  for (const char c : text) {
+    if (c == '&')
+      safe += "&amp;";
+    else if (c == '<')
+      safe += "&lt;";
+    else
+      safe += c;
+  }
+  return safe;
+}
+
+std::string filled(std::string_view page, std::string_view slot, const std::string& text) {
+  const auto at = page.find(slot);
+  if (at == std::string_view::npos) throw std::logic_error("the page has no " + std::string(slot));
+  return std::string(page.substr(0, at)) + text + std::string(page.substr(at + slot.size()));
+}
+
+}  // namespace
+
+std::string report_html(const ReportInput& input) {
+  Json data;
+  data["run"] = run_json(input);
+  data["score"] = score_json(input.score);
+  data["volumes"] = volumes_json(input.run, input.options.deposit_threshold);
+  data["stages"] = stages_json(input.stages);
+  data["profile"] = profile_json(input);
+  data["series"] = series_json(input);
+  data["map"] = map_json(input);
+  return filled(filled(page_template(), "@TITLE@", for_html(input.run.summary.title)), "@DATA@", for_script(data));
+}
+
+}  // namespace talus::postprocess

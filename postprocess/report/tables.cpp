@@ -1,0 +1,86 @@
+// Tables of the report: scores, volumes read both ways, what each stage used.
+#include <cmath>
+
+#include "common/raster/slope.hpp"
+#include "common/recipe/used.hpp"
+#include "postprocess/report/parts.hpp"
+#include "postprocess/score/mobility.hpp"
+
+namespace talus::postprocess {
+namespace {
+
+/// A thickness map read both ways. Vertical is how Talus means it; the other column is what the same numbers would be,
+/// were they measured normal to the slope.
+Json both_ways(const std::string& name, const Raster& thickness, const std::vector<double>& cosine, double limit) {
+  double vertical = 0, normal = 0, projected = 0, true_area = 0, thickest = 0, thickest_normal = 0;
+  const double cell = thickness.grid.cell * thickness.grid.cell;
+  for (std::size_t i = 0; i < thickness.values.size(); ++i) {
+    const double h = thickness.values[i];
+    if (!(h > 0)) continue;
+    vertical += h * cell;
+    normal += h * cell / cosine[i];
+    if (h > limit) projected += cell;
+    if (h > limit) true_area += cell / cosine[i];
+    thickest = std::max(thickest, h);
+    thickest_normal = std::max(thickest_normal, h * cosine[i]);
+  }
+  return {{"name", name},
+          {"volume", vertical},
+          {"volume_if_normal", normal},
+          {"area_projected", projected},
+          {"area_true", true_area},
+          {"thickest", thickest},
+          {"thickest_normal", thickest_normal},
+          {"limit", limit}};
+}
+
+Json entry_json(const ScoreEntry& entry) {
+  Json json{{"key", entry.key}, {"label", entry.label}, {"unit", entry.unit}, {"decimals", entry.decimals}};
+  std::visit([&](const auto& value) { json["value"] = value; }, entry.value);
+  return json;
+}
+
+}  // namespace
+
+Json score_json(const Score& score) {
+  Json json{{"sections", Json::array()}, {"not_scored", Json::array()}, {"notes", score.notes}};
+  for (const auto& section : score.sections) {
+    auto entries = Json::array();
+    for (const auto& entry : section.entries) entries.push_back(entry_json(entry));
+    json["sections"].push_back({{"title", section.title}, {"entries", std::move(entries)}});
+  }
+  for (const auto& [key, why] : score.not_scored) json["not_scored"].push_back({{"key", key}, {"why", why}});
+  return json;
+}
+
+Json volumes_json(const Run& run, double deposit_threshold) {
+  const auto cosine = slope_cosine({run.maps.grid, run.maps.terrain});
+  const auto& maps = run.maps;
+  auto bodies = Json::array();
+  bodies.push_back(
+      both_ways("Release", {maps.grid, maps.initial_thickness}, cosine, release_limit(maps, deposit_threshold)));
+  bodies.push_back(both_ways("Deposit", {maps.grid, maps.deposit_thickness}, cosine, deposit_threshold));
+  if (!maps.eroded_depth.empty())
+    bodies.push_back(both_ways("Eroded ground", {maps.grid, maps.eroded_depth}, cosine, 0));
+  return bodies;
+}
+
+Json stages_json(const std::vector<StageText>& stages) {
+  auto list = Json::array();
+  for (const auto& stage : stages) {
+    Json json{{"stage", stage.stage}, {"missing", !stage.text}, {"facts", Json::array()}, {"keys", Json::array()}};
+    if (stage.text) {
+      const auto used = recipe::read_used_recipe(*stage.text, stage.stage + ".used.toml");
+      for (const auto& [name, value] : used.facts) json["facts"].push_back({name, value});
+      for (const auto& key : used.keys)
+        json["keys"].push_back({{"table", key.table},
+                                {"key", key.key},
+                                {"value", key.value},
+                                {"default", key.default_value ? Json(*key.default_value) : Json()}});
+    }
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
+}  // namespace talus::postprocess

@@ -1,0 +1,110 @@
+#!/usr/bin/env bash
+# report.html in a real browser: what it shows, what happens when it is clicked, and what comes out of its printer.
+source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
+
+# Debian has Chromium and its driver; Ubuntu's packages of these names only lead to the snap store.
+need_browser() {
+  local id
+  id=$(. /etc/os-release && echo "$ID")
+  if [[ $id != debian ]]; then skip "the report is not opened in a browser: only Debian packages one that tests can drive"; fi
+  need_tool chromium
+  need_tool chromedriver
+  need_tool pdfinfo
+  /usr/bin/python3 -c 'import selenium, osgeo' 2>/dev/null || need_tool python3-selenium
+}
+
+# made: the small scene with its three stages run; the report is out/report.html.
+made() {
+  scene
+  sed -i 's/^end_time_s.*/end_time_s = 3.0\nframe_interval_s = 0.5/' recipe.toml
+  echo 'sigma_m = 0.2' >>recipe.toml   # of the survey: scores get a spread
+  expect_exit 0 preprocess
+  expect_exit 0 solve
+  expect_exit 0 postprocess
+  [[ -f out/report.html ]] || fail "there is no out/report.html"
+}
+
+browse() { expect_exit 0 /usr/bin/python3 "$TALUS_SOURCE/tests/pipeline/report_browser.py" "$PWD/out" "$@"; }
+
+test_opens_and_answers_to_clicks_in_a_browser() {
+  need_browser
+  made
+  browse clicks
+}
+
+test_prints_to_a_pdf_with_all_its_maps() {
+  need_browser
+  made
+  browse prints
+  expect_exit 0 pdfinfo out/report.pdf
+  local pages
+  pages=$(sed -n 's/^Pages: *//p' stdout)
+  [[ $pages -ge 4 && $pages -le 16 ]] || fail "the report prints on $pages pages instead of 4 to 16"
+  grep -q '^Page size: .*A4' stdout || fail "the pages are not A4"
+  expect_exit 0 pdftotext out/report.pdf -
+  local words
+  for words in 'Bowl' 'Peak speed' 'Arrival time' 'Deposit CSI' 'SHA-256' 'How to cite'; do
+    grep -qF "$words" stdout || fail "the printed report does not say: $words"
+  done
+}
+
+# Neither address nor file beside it: the page must hold all it needs.
+test_names_nothing_outside_itself() {
+  made
+  local report=out/report.html found
+  grep -q "default-src 'none'" "$report" || fail "the page does not forbid its own requests"
+  # The libraries' scripts hold links as text; what the page itself is made of must have none.
+  found=$(sed '/^<script>/,/<\/script>/d' "$report" | grep -oE '(src|href|action|data)="[^"#][^"]*"' || true)
+  [[ -z $found ]] || fail "the page refers to something outside itself: $found"
+  found=$(grep -oE 'url\([^)]*\)|@import|sourceMappingURL[^ ]*' "$report" | grep -vE 'url\((#|["'"'"']?data:)' || true)
+  [[ -z $found ]] || fail "the page's styles or scripts load something: $found"
+  [[ $(stat -c %s "$report") -lt 2000000 ]] || fail "a report of 20 x 20 cells takes $(stat -c %s "$report") bytes"
+}
+
+test_says_which_stage_left_nothing_about_itself() {
+  made
+  rm out/preprocess.used.toml
+  expect_exit 0 postprocess
+  grep -q '"stage":"preprocess","missing":true' out/report.html || fail "the report does not say that preprocess.used.toml is missing"
+  grep -q '"stage":"solve","missing":false' out/report.html || fail "the report does not see solve.used.toml"
+}
+
+test_is_left_out_on_request() {
+  made
+  sed -i 's/^\[postprocess.survey\]/[postprocess]\nreport = false\n\n&/' recipe.toml
+  expect_exit 0 postprocess
+  [[ ! -e out/report.html ]] || fail "report = false, but the report of the run before is still there"
+}
+
+# frames FILE: how many there are, and how long they take.
+frames() {
+  expect_exit 0 ffprobe -v error -count_frames -select_streams v:0 -show_entries stream=nb_read_frames,duration -of default=nw=1 "$1"
+}
+
+test_animation_has_every_frame_and_lingers_on_the_last() {
+  need_tool ffmpeg
+  need_tool ffprobe
+  made
+  local kind
+  for kind in mp4 gif; do
+    sed -i '/^animation/d; /^\[postprocess\]$/d' recipe.toml
+    sed -i "s/^\[postprocess.survey\]/[postprocess]\nanimation = \"$kind\"\n\n&/" recipe.toml
+    expect_exit 0 postprocess
+    grep -q "animation.$kind\$" stdout || fail "animation.$kind is not among the results"
+    frames "out/animation.$kind"
+    # 7 frames (0 to 3 s), two a second, and the last for two seconds more: 11 pictures, 5.5 s.
+    grep -qx 'nb_read_frames=11' stdout || fail "animation.$kind: $(cat stdout)"
+    grep -q '^duration=5.5' stdout || fail "animation.$kind: $(cat stdout)"
+  done
+  [[ ! -e out/animation.mp4 ]] || fail "the film of the run before is still there"
+}
+
+test_animation_asks_for_ffmpeg_where_it_is_missing() {
+  made
+  sed -i 's/^\[postprocess.survey\]/[postprocess]\nanimation = "mp4"\n\n&/' recipe.toml
+  mkdir none
+  PATH=$PWD/none expect_exit 3 postprocess
+  expect_words 'ffmpeg was not found' 'apt-get install ffmpeg'
+}
+
+run_test "$@"
