@@ -58,7 +58,7 @@ expect_stdout_paths() {
   done <"$TALUS_SCRATCH/stdout"
 }
 
-# expect_no_file DIR [EXCEPT...]: DIR is missing or holds no file, not even a hidden one, but those named.
+# expect_no_file DIR [EXCEPT...]: DIR is missing or holds no file, not even a hidden one, but those named and what lies in folders named.
 expect_no_file() {
   local folder=$1 file name except
   shift
@@ -66,7 +66,7 @@ expect_no_file() {
   while IFS= read -r -d '' file; do
     name=${file#"$folder"/}
     for except in "$@"; do
-      [[ $name != "$except" ]] || continue 2
+      [[ $name != "$except" && $name != "$except"/* ]] || continue 2
     done
     fail "$file was left behind"
   done < <(find "$folder" -type f -print0)

@@ -13,18 +13,36 @@ double release_limit(const RunMaps& maps, double threshold) {
   return std::min(threshold, 0.1 * thickest);
 }
 
+namespace {
+
+constexpr double level = 1e-3;  // [m] heights that differ by less are the same
+
+/// Of several places the one nearest to their centroid.
+Place nearest_to_middle(const std::vector<Place>& places) {
+  Place middle;
+  for (const Place& p : places) {
+    middle.x += p.x / static_cast<double>(places.size());
+    middle.y += p.y / static_cast<double>(places.size());
+  }
+  return *std::min_element(places.begin(), places.end(), [&](const Place& a, const Place& b) { return plan_distance(a, middle) < plan_distance(b, middle); });
+}
+
+}  // namespace
+
 std::optional<Place> crown(const RunMaps& maps, double threshold) {
   const double limit = release_limit(maps, threshold);
-  std::optional<Place> highest;
+  std::vector<Place> highest;
   for (int row = 0; row < maps.grid.rows; ++row) {
     for (int column = 0; column < maps.grid.columns; ++column) {
       const auto i = maps.grid.index(column, row);
       if (!(maps.initial_thickness[i] > limit) || std::isnan(maps.before[i])) continue;
-      if (!highest || maps.before[i] > highest->z)
-        highest = Place{maps.grid.x(column), maps.grid.y(row), maps.before[i]};
+      if (!highest.empty() && maps.before[i] < highest.front().z - level) continue;
+      if (!highest.empty() && maps.before[i] > highest.front().z + level) highest.clear();
+      highest.push_back({maps.grid.x(column), maps.grid.y(row), maps.before[i]});
     }
   }
-  return highest;
+  if (highest.empty()) return std::nullopt;
+  return nearest_to_middle(highest);
 }
 
 std::optional<Place> farthest(const MapGrid& grid, const std::vector<double>& values, double threshold,

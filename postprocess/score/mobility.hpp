@@ -18,7 +18,8 @@ struct Place {
 /// whole release is thin [m].
 double release_limit(const RunMaps& maps, double threshold);
 
-/// Highest cell of the release (see release_limit) on the surface before the failure. Empty without a release.
+/// Highest cell of the release (see release_limit) on the surface before the failure; of an edge that is level, its
+/// middle. Empty without a release.
 std::optional<Place> crown(const RunMaps& maps, double threshold);
 
 /// The cell centre above `threshold` farthest (in plan, as the crow flies) from `from`; z is taken from `surface`,

@@ -68,6 +68,7 @@ ShiftFit settle(const std::vector<Patch>& patches, const std::vector<int>& sough
   result.converged = false;
   for (int i = 0; i < most_iterations && !result.converged; ++i) {
     const ShiftRows rows = rows_of(patches, result.placement, length);
+    if (rows.misfit.size() < least_cells) break;  // moved off one another
     last = fit_shift(rows, sought);
     move(result.placement, last, length);
     ++result.iterations;
@@ -95,11 +96,20 @@ Extent extent_of(const std::vector<Patch>& patches) {
   return all;
 }
 
-/// What is said of the ground in the end.
+/// Cells that both surveys hold.
+std::size_t shared_cells(const std::vector<Patch>& patches, const Placement& placement) {
+  std::size_t count = 0;
+  for (const Patch& p : patches) {
+    for (const double d : misfit(p, placement)) count += !std::isnan(d);
+  }
+  return count;
+}
+
+/// What is said of the ground in the end. A placement at which the surveys share less than half of what they did is not believed.
 Coregistration told(const std::vector<Patch>& patches, const Placement& start, Coregistration result) {
-  result.known = true;
   result.unaligned = residuals_of(stable_misfit(patches, start));
   const std::vector<double> rest = stable_misfit(patches, result.placement);
+  result.known = rest.size() >= least_cells && 2 * shared_cells(patches, result.placement) > shared_cells(patches, start);
   result.aligned = residuals_of(rest);
   std::size_t cells = 0;
   for (const Patch& p : patches) cells += p.stable.size();

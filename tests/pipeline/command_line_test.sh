@@ -60,7 +60,7 @@ test_check_computes_and_writes_nothing() {
   [[ ! -e out ]] || fail "talus-preprocess --check made the output folder"
   expect_exit 0 preprocess
   expect_exit 0 solve --check
-  expect_no_file out domain.vdb preprocess.used.toml
+  expect_no_file out domain.vdb preprocess.used.toml survey
 }
 
 test_plan_says_what_it_takes_and_writes_nothing() {
@@ -71,7 +71,7 @@ test_plan_says_what_it_takes_and_writes_nothing() {
     grep -qF -- "$word" stderr || fail "--plan does not say: $word"
   done
   ! grep -qE 'softens|walls|rasters|erodible|damping' stderr || fail "--plan names what the recipe does not"
-  expect_no_file out domain.vdb preprocess.used.toml
+  expect_no_file out domain.vdb preprocess.used.toml survey
 }
 
 test_check_finds_faults() {
@@ -124,7 +124,7 @@ test_gpu_that_is_not_there_is_refused() {
   if command -v nvidia-smi >/dev/null && nvidia-smi -L >/dev/null 2>&1; then skip "this machine has a GPU"; fi
   expect_exit 2 "$bin/talus-solve" recipe.toml --out out --on gpu
   expect_error "talus-solve: --on gpu (this machine has no GPU that the program can use). Use --on cpu or --on auto"
-  expect_no_file out domain.vdb preprocess.used.toml
+  expect_no_file out domain.vdb preprocess.used.toml survey
 }
 
 run_test "$@"

@@ -6,7 +6,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
 nothing_looks_finished() {
   [[ ! -s stdout ]] || fail "an interrupted run names results on stdout"
   rm -rf out/.frames
-  expect_no_file out domain.vdb preprocess.used.toml checkpoint.h5
+  expect_no_file out domain.vdb preprocess.used.toml survey checkpoint.h5
 }
 
 long_scene() {

@@ -25,7 +25,7 @@ test_domain() {
     cut_file out/domain.vdb $part
     expect_exit 3 solve
     expect_error "talus-solve: $PWD/out/domain.vdb: ends too early (the file is truncated: its writing or copying was cut short). Run talus-preprocess again, or copy it again"
-    expect_no_file out domain.vdb domain.vdb.whole preprocess.used.toml
+    expect_no_file out domain.vdb domain.vdb.whole preprocess.used.toml survey
   done
 }
 

@@ -41,7 +41,7 @@ test_no_overlap() {
 test_all_nodata() {
   scene
   grid before.asc -9999
-  refused 3 "talus-preprocess: $PWD/before.asc: no cell holds a value (all 20 x 20 cells are nodata). Check the file and its nodata value: gdalinfo -stats $PWD/before.asc"
+  refused 3 "talus-preprocess: $PWD/before.asc: has no data at all in the working grid (all its cells there are nodata). Check its coordinates and nodata value with gdalinfo"
 }
 
 test_nan_cells() {

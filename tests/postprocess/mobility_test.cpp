@@ -18,6 +18,18 @@ TEST(Mobility, finds_the_crown_on_the_surface_before) {
   EXPECT_EQ(place->z, highest);
 }
 
+TEST(Mobility, takes_the_middle_of_a_level_crown) {
+  auto run = test::small_run();
+  for (double& z : run.maps.before) z = 100;
+  for (int row = 0; row < run.maps.grid.rows; ++row) {
+    for (int column = 0; column < run.maps.grid.columns; ++column) run.maps.before[run.maps.grid.index(column, row)] -= column;
+  }
+  const auto place = crown(run.maps, 1.0);
+  ASSERT_TRUE(place);
+  EXPECT_EQ(place->x, run.maps.grid.x(3));
+  EXPECT_NEAR(place->y, (run.maps.grid.y(10) + run.maps.grid.y(19)) / 2, 0.51 * run.maps.grid.cell);
+}
+
 TEST(Mobility, finds_a_thin_release_too) {
   auto run = test::small_run();
   for (double& h : run.maps.initial_thickness) h *= 0.05;  // 0.3 m

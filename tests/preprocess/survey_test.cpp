@@ -1,7 +1,7 @@
 // Difference of two surveys: its error, its volumes, what of it is the slide.
 #include "preprocess/survey/survey.hpp"
 
-#include <numbers>
+#include <iostream>
 
 #include "data_samples/terrains.hpp"
 #include "preprocess/survey/write_survey.hpp"
@@ -36,7 +36,7 @@ Options raw_options(const Scratch& scratch, unsigned seed) {
 /// not expected to be centred, but to be as large as said.
 TEST(survey, recovers_shift_and_volumes_of_a_raw_pair_within_their_stated_errors) {
   const double truth = clean_volume();
-  double squares = 0;
+  double squares = 0, worst = 0, shift = 0;
   for (unsigned seed = 1; seed <= 8; ++seed) {
     Scratch scratch;
     const Prepared prepared = prepare(raw_options(scratch, seed), Points::counted);
@@ -44,13 +44,16 @@ TEST(survey, recovers_shift_and_volumes_of_a_raw_pair_within_their_stated_errors
     EXPECT_NEAR(p.x, -4, 0.1 * 10) << "seed " << seed;
     EXPECT_NEAR(p.y, 7, 0.1 * 10);
     EXPECT_NEAR(p.z, -1.3, 0.1);
+    shift = std::max(shift, std::hypot(p.x + 4, p.y - 7) / 10);
     for (const SurveyedVolume& side : prepared.slide->volumes) {
       const double off = (side.volume.volume - truth) / side.volume.error;
       EXPECT_LT(std::abs(off), 2.6) << side.name << ", seed " << seed;  // 1 in 100 by chance
       EXPECT_LT(side.volume.error, 0.02 * truth);
       squares += off * off / 16;
+      worst = std::max(worst, std::abs(off));
     }
   }
+  std::cerr << "volumes off by " << std::sqrt(squares) << " stated errors (rms), at most " << worst << "; shift by at most " << shift << " cells\n";
   EXPECT_GT(std::sqrt(squares), 0.4);  // errors neither far too large
   EXPECT_LT(std::sqrt(squares), 1.5);  // nor far too small
 }
@@ -83,6 +86,18 @@ TEST(survey, refuses_to_align_without_stable_ground) {
   MapGrid small = grid_of(9, 9, 10);
   scene.rewrite_before(raster_of(small, [](double x, double y) { return 0.3 * (x - 500000) + 0.1 * (y - 5100000); }));
   scene.rewrite_after(raster_of(small, [](double x, double y) { return 0.3 * (x - 500000) + 0.1 * (y - 5100000) - 5; }));
+  scene.options.coregistration.mode = Alignment::apply;
+  EXPECT_NE(scene.data_fault().find("no stable ground"), std::string::npos) << scene.data_fault();
+}
+
+/// They share a strip of eleven columns, but lie twelve apart.
+TEST(survey, refuses_to_align_models_that_do_not_overlap_once_moved) {
+  std::mt19937 random(4);
+  test::Scene scene;
+  const MapGrid grid = grid_of(120, 90, 10), later = grid_of(120, 90, 10, grid.east() - 110);
+  const test::Hills hills(grid_of(240, 90, 10), random);
+  scene.rewrite_before(raster_of(grid, hills));
+  scene.rewrite_after(raster_of(later, [&](double x, double y) { return hills(x + 120, y); }));
   scene.options.coregistration.mode = Alignment::apply;
   EXPECT_NE(scene.data_fault().find("no stable ground"), std::string::npos) << scene.data_fault();
 }

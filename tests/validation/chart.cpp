@@ -15,7 +15,6 @@ namespace {
 using postprocess::Align;
 using postprocess::Box;
 using postprocess::Canvas;
-using postprocess::Colour;
 using postprocess::Pen;
 using postprocess::Pixels;
 using postprocess::TextStyle;
