@@ -76,14 +76,16 @@ std::string history_table(const RunHistory& history) {
   return text + "\n";
 }
 
+std::optional<std::string> text_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return std::nullopt;
+  return std::string(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+}
+
 /// What preprocess and solve left beside the run about themselves.
 std::vector<StageText> texts_of_stages(const fs::path& folder) {
   std::vector<StageText> texts;
-  for (const auto* stage : {"preprocess", "solve"}) {
-    std::ifstream stream(folder / (std::string(stage) + ".used.toml"), std::ios::binary);
-    texts.push_back({stage, {}});
-    if (stream) texts.back().text.emplace(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
-  }
+  for (const auto* stage : {"preprocess", "solve"}) texts.push_back({stage, text_of(folder / (std::string(stage) + ".used.toml"))});
   return texts;
 }
 
@@ -142,7 +144,8 @@ void write_results(StageContext& context, const Job& job) {
   if (options.report) {
     auto stages = texts_of_stages(file.parent_path());
     stages.push_back({"postprocess", used});
-    write("report.html", report_html({run, options, survey, score, thalweg, std::move(stages), file}));
+    const auto comparison = text_of(file.parent_path() / "survey" / "survey.json");
+    write("report.html", report_html({run, options, survey, score, thalweg, std::move(stages), comparison, file}));
   }
   write("score.txt", table);
   write("score.json", to_json(score));  // last: where it lies, everything is there

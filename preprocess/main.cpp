@@ -78,6 +78,8 @@ void write_survey_files(StageContext& context, const preprocess::Prepared& prepa
   const auto folder = context.out / "survey";
   std::vector<std::string> lines;
   std::vector<std::filesystem::path> files;
+  std::error_code none_there;
+  std::filesystem::remove(folder / "survey.json", none_there);  // of an earlier recipe, perhaps
   if (prepared.survey) files = preprocess::write_survey(folder, *prepared.survey, &prepared, lines);
   if (prepared.sliding_surface) files = preprocess::write_source(folder, prepared);
   for (const std::string& line : lines) log_info(line);

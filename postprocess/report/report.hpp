@@ -27,6 +27,7 @@ struct ReportInput {
   const Score& score;
   const Thalweg& thalweg;
   std::vector<StageText> stages;
+  std::optional<std::string> comparison;  ///< survey.json of talus-preprocess; empty: no two models were compared
   std::filesystem::path run_file;  ///< for what is read of the points: how much is in motion
 };
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "common/error.hpp"
+#include "common/raster/inside.hpp"
 #include "common/raster/raster_file.hpp"
 #include "postprocess/score/survey_error.hpp"
 #include "postprocess/score/survey_grid.hpp"
@@ -85,7 +86,8 @@ void read_footprint(const SurveyOptions& options, const RunMaps& maps, double th
     if (!has_grid) survey.grid = maps.grid;
     survey.polygons = read_polygons(options.polygon, survey.grid.crs_wkt);
     survey.inputs.push_back(options.polygon);
-    survey.footprint = rasterize(survey.polygons, survey.grid);
+    const auto inside = cells_inside(survey.polygons, survey.grid);
+    survey.footprint.assign(inside.begin(), inside.end());
     survey.footprint_threshold = 0.5;
     if (std::none_of(survey.footprint.begin(), survey.footprint.end(), [](double v) { return v > 0; })) {
       throw DataError({fmt::format("{}: no polygon covers a cell of the run's area", options.polygon.string()),

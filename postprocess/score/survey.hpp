@@ -58,7 +58,4 @@ std::optional<Survey> read_survey(const SurveyOptions& options, const RunMaps& m
 /// Area-weighted, so that volume is kept; where the run's map ends but the survey goes on, nothing arrived: 0.
 OnSurveyGrid bring_to_survey_grid(const RunMaps& maps, const Survey& survey);
 
-/// 1 where the cell centre lies inside any polygon (holes counted out), else 0.
-std::vector<double> rasterize(const std::vector<MapPolygon>& polygons, const MapGrid& grid);
-
 }  // namespace talus::postprocess

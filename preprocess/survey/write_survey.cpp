@@ -8,6 +8,7 @@
 
 #include "common/error.hpp"
 #include "common/raster/outlines.hpp"
+#include "common/raster/qgis_project.hpp"
 #include "common/raster/qgis_style.hpp"
 #include "common/raster/raster_writer.hpp"
 #include "common/stage/stage.hpp"
@@ -134,6 +135,32 @@ Raster bed_of_source(const Domain& domain) {
   return bed;
 }
 
+/// Everything at once: outlines over differences over the ground.
+void write_project(const fs::path& folder, const Survey& survey, std::vector<fs::path>& files) {
+  const auto is_there = [&](const char* name) { return std::find(files.begin(), files.end(), folder / name) != files.end(); };
+  QgisProject project{"Surveyed change", survey.grid.crs_wkt, {survey.grid.west, survey.grid.south, survey.grid.east(), survey.grid.north()}, {}};
+  ProjectGroup outlines{"Outlines", {}}, change{"Change", {}}, ground{"Ground", {}};
+  if (is_there("outlines.gpkg")) {
+    outlines.layers.push_back({"source", "outlines.gpkg|layername=source", true, OutlineStyle{{0.0, 0.45, 0.35}, 0.6, false}});
+    outlines.layers.push_back({"deposit", "outlines.gpkg|layername=deposit", true, OutlineStyle{{0.05, 0.25, 0.65}, 0.6, true}});
+    project.groups.push_back(outlines);
+  }
+  const auto add = [&](const char* name, const char* words, bool shown, const RasterStyle& style) {
+    if (is_there(name)) change.layers.push_back({words, name, shown, style});
+  };
+  add("slide_difference.tif", "difference in the slide", true, difference_style(change_classes, "m"));
+  add("difference.tif", "difference", !is_there("slide_difference.tif"), difference_style(change_classes, "m"));
+  add("difference_unaligned.tif", "difference as the models came", false, difference_style(change_classes, "m"));
+  add("difference_sigma.tif", "standard error of the difference", false, class_style(sigma_classes, "m"));
+  add("source_thickness.tif", "source, thickness", false, class_style(thickness_classes, "m"));
+  add("deposit_surveyed.tif", "deposit, rise of the surface", false, class_style(thickness_classes, "m"));
+  ground.layers = {{"surface after", "after_aligned.tif", false, HillshadeStyle{}}, {"surface before", "before_aligned.tif", true, HillshadeStyle{}}};
+  project.groups.push_back(change);
+  project.groups.push_back(ground);
+  files.push_back(folder / "survey.qgs");
+  write_qgis_project(files.back(), project);
+}
+
 }  // namespace
 
 std::vector<fs::path> write_source(const fs::path& folder, const Prepared& prepared) {
@@ -186,6 +213,7 @@ std::vector<fs::path> write_survey(const fs::path& folder, const Survey& survey,
     write_cog(files.back(), prepared->slide->filled, {"voids filled: 1 before, 2 after, 3 both", "1", {{"SOURCE", "Talus " + version()}}});
   }
   say_volumes(survey, budgets, prepared, lines);
+  write_project(folder, survey, files);
   files.push_back(folder / "survey.json");
   write_text(files.back(), survey_json(survey, budgets, prepared ? prepared->slide : std::nullopt));
   return files;

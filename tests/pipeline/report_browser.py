@@ -153,6 +153,13 @@ def check_scores(browser):
     assert not alone, f"a spread stands by itself: {[cell.get_attribute('data-key') for cell in alone]}"
 
 
+def check_surveys(browser):
+    """Alignment, error and volumes of the two models that the scene was made from."""
+    text = browser.find_element(By.ID, "surveys").text
+    for words in ["the later model lay", "level of detection", "source, as surveyed"]:
+        assert words in text, f"the comparison of the surveys does not say '{words}': {text}"
+
+
 def check_parameters(browser):
     text = browser.find_element(By.ID, "parameters").text
     marked = [row.text for row in browser.find_elements(By.CSS_SELECTOR, "#parameters tr.changed")]
@@ -180,6 +187,7 @@ def clicks(browser, out):
     check_cursor(browser, out)
     check_curves(browser)
     check_scores(browser)
+    check_surveys(browser)
     check_parameters(browser)
     check_console(browser)
 

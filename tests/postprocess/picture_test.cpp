@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "common/raster/inside.hpp"
 #include "common/raster/isolines.hpp"
 #include "postprocess/picture/classes.hpp"
 #include "postprocess/picture/furniture.hpp"
@@ -169,7 +170,8 @@ TEST(Picture, draws_a_bare_polygon_and_shortens_a_long_name) {
   survey->grid = small_grid();
   survey->footprint_threshold = 0.5;
   survey->polygons.push_back({{{{600040, 5100080}, {600360, 5100080}, {600360, 5100220}, {600040, 5100220}}}, {}, ""});
-  survey->footprint = rasterize(survey->polygons, survey->grid);
+  const auto inside = cells_inside(survey->polygons, survey->grid);
+  survey->footprint.assign(inside.begin(), inside.end());
   EXPECT_GT(blue_pixels(run, survey), 2000);
 }
 

@@ -116,7 +116,7 @@ class Report : public ::testing::Test {
     thalweg_ = thalweg_of(run_, options_);
   }
   ReportInput input() {
-    return {run_, options_, survey_, score_ = make_score(run_, options_, survey_, thalweg_), thalweg_, stages_, file_};
+    return {run_, options_, survey_, score_ = make_score(run_, options_, survey_, thalweg_), thalweg_, stages_, comparison_, file_};
   }
 
   /// A survey on a grid of its own, half as fine, that has 1 m less than the simulation everywhere.
@@ -140,6 +140,7 @@ class Report : public ::testing::Test {
   talus::Run run_ = test::small_run();
   Options options_;
   std::optional<Survey> survey_;
+  std::optional<std::string> comparison_;
   Thalweg thalweg_;
   Score score_;
   std::vector<StageText> stages_{{"preprocess", {}},
@@ -197,6 +198,14 @@ TEST_F(Report, difference_is_simulated_minus_surveyed_where_either_is_a_deposit)
   }
   EXPECT_EQ(cells, 100);  // the deposit's cells, 1.5 m and more
   EXPECT_NEAR(sum / cells, 1, 1e-9);
+}
+
+TEST_F(Report, what_two_models_say_of_one_another_is_handed_on) {
+  EXPECT_TRUE(data_of(report_html(input())).at("surveys").is_null());
+  comparison_ = R"({"alignment": {"known": true, "after_lies_east_m": 4.02}})";
+  EXPECT_EQ(data_of(report_html(input())).at("surveys").at("alignment").at("after_lies_east_m"), 4.02);
+  comparison_ = "{ cut sho";
+  EXPECT_THROW(report_html(input()), DataError);
 }
 
 TEST_F(Report, a_title_cannot_end_the_script_that_holds_the_data) {
@@ -289,7 +298,7 @@ TEST(ReportSize, a_map_of_300_by_300_cells_with_60_frames_stays_below_ten_megaby
   test::write_run(scratch / "run.h5", run);
   const auto thalweg = thalweg_of(run, options);
   const auto score = make_score(run, options, survey, thalweg);
-  const auto page = report_html({run, options, survey, score, thalweg, {}, scratch / "run.h5"});
+  const auto page = report_html({run, options, survey, score, thalweg, {}, {}, scratch / "run.h5"});
   RecordProperty("bytes", static_cast<int>(page.size()));
   EXPECT_LT(page.size(), 10'000'000U);
   EXPECT_GT(page.size(), 1'000'000U);

@@ -209,7 +209,7 @@ TEST(write_survey, leaves_rasters_outlines_and_styles_for_a_gis) {
   std::vector<std::string> lines;
   const auto files = write_survey(scene.scratch / "survey", *prepared.survey, &prepared, lines);
   for (const char* name : {"before_aligned.tif", "after_aligned.tif", "difference.tif", "difference_sigma.tif", "stable_ground.tif", "source_thickness.tif", "sliding_surface.tif",
-                           "deposit_surveyed.tif", "slide_difference.tif", "outlines.gpkg", "survey.json", "difference.qml", "source_thickness.qml"})
+                           "deposit_surveyed.tif", "slide_difference.tif", "outlines.gpkg", "survey.qgs", "survey.json", "difference.qml", "source_thickness.qml"})
     EXPECT_TRUE(std::filesystem::exists(scene.scratch / "survey" / name)) << name;
   const Raster difference = read_raster(scene.scratch / "survey" / "difference.tif");
   for (std::size_t i = 0; i < difference.values.size(); ++i) ASSERT_NEAR(difference.values[i], scene.after.values[i] - scene.before.values[i], 1e-4);

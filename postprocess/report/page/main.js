@@ -7,6 +7,7 @@ import { drawMethod } from "./method.js";
 import { Panel } from "./panel.js";
 import { Plates } from "./plates.js";
 import { drawSummary } from "./summary.js";
+import { drawSurveys } from "./surveys.js";
 import { drawInputs, drawParameters, drawScores, drawVersions, drawVolumes } from "./tables.js";
 
 function complain(words) {
@@ -41,6 +42,7 @@ async function draw() {
   const data = JSON.parse(document.getElementById("data").textContent), view = {};
   drawSummary(data);
   drawScores(data);
+  drawSurveys(data);
   drawVolumes(data);
   drawInputs(data);
   drawParameters(data);
