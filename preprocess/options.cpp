@@ -265,6 +265,22 @@ void check_grid(const GridOptions& g, std::vector<Fault>& faults) {
 
 }  // namespace
 
+namespace {
+
+/// Tables that speak of two elevation models, where there is one.
+void check_comparison(const Options& o, std::vector<Fault>& faults) {
+  if (!o.after_dem.empty()) return;
+  const auto refuse = [&](bool given, const char* what) {
+    if (given) faults.push_back(fault(std::string(what) + " is given without after_dem", "it speaks of a second elevation model", "Give after_dem, or leave it out"));
+  };
+  refuse(o.coregistration.mode == Alignment::apply, "coregistration.mode = \"apply\"");
+  refuse(!o.coregistration.changed.empty(), "coregistration.changed");
+  refuse(o.difference.given_sigma() > 0 || o.difference.minimum_level_m > 0, "an error or level in [preprocess.difference]");
+  refuse(!o.deposit.polygon.empty(), "deposit.polygon");
+}
+
+}  // namespace
+
 void Options::check(std::vector<Fault>& faults) const {
   std::set<std::string> bodies;
   for (std::size_t i = 0; i < obstacle.size(); ++i) {
@@ -300,6 +316,7 @@ void Options::check(std::vector<Fault>& faults) const {
     return e.lowering;
   });
   check_grid(grid, faults);
+  check_comparison(*this, faults);
   if (voids.spikes == Spikes::remove && !voids.fill) {
     faults.push_back(fault("voids.spikes = \"remove\" without voids.fill", "what is removed is filled like a void",
                            "Set fill = true in [preprocess.voids], or spikes = \"report\""));

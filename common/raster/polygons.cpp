@@ -119,10 +119,11 @@ gdal::Transformation transformation_of(const OGRLayer& layer, const std::string&
 
 }  // namespace
 
-std::vector<MapPolygon> read_polygons(const fs::path& file, const std::string& crs_wkt) {
+std::vector<MapPolygon> read_polygons(const fs::path& file, const std::string& crs_wkt, const std::string& named) {
   const gdal::QuietErrors errors;
   const gdal::Dataset dataset = open(file);
-  OGRLayer& layer = *dataset->GetLayer(0);
+  OGRLayer* found = named.empty() ? nullptr : dataset->GetLayerByName(named.c_str());
+  OGRLayer& layer = found == nullptr ? *dataset->GetLayer(0) : *found;
   const gdal::Transformation transform = transformation_of(layer, crs_wkt);
   Reading reading{file};
   std::string other;

@@ -40,8 +40,8 @@ struct MapPolygon {
   std::string name;                                     ///< attribute "name", if any
 };
 
-/// All polygons of a vector file's first layer (multipolygons split), transformed to `crs_wkt` when both have a CRS.
-std::vector<MapPolygon> read_polygons(const std::filesystem::path& file, const std::string& crs_wkt);
+/// All polygons of the layer `named`, or of the first one where a vector file has none of that name (multipolygons split), transformed to `crs_wkt` when both have a CRS.
+std::vector<MapPolygon> read_polygons(const std::filesystem::path& file, const std::string& crs_wkt, const std::string& named = "");
 
 /// A line of points (x, y) [m], at least two, none repeated.
 using MapLine = std::vector<std::array<double, 2>>;

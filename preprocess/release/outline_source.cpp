@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t most_points = 1000;  // each takes a vector over the cells and a solve
 
 Outline read_outline(const Raster& before, const std::filesystem::path& file) {
-  std::vector<MapPolygon> polygons = read_polygons(file, before.grid.crs_wkt);
+  std::vector<MapPolygon> polygons = read_polygons(file, before.grid.crs_wkt, "source");
   check_polygons(polygons, file);
   Outline outline = outline_of(before.grid, polygons, file);
   std::vector<char> empty(outline.part.size());

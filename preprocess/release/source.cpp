@@ -139,7 +139,7 @@ std::vector<double> part_by_region(const SurfacePair& s, const SourceOptions& op
 }
 
 std::vector<double> part_by_polygon(const SurfacePair& s, const SourceOptions& options) {
-  std::vector<MapPolygon> polygons = read_polygons(options.polygon, s.before.grid.crs_wkt);
+  std::vector<MapPolygon> polygons = read_polygons(options.polygon, s.before.grid.crs_wkt, "source");
   check_polygons(polygons, options.polygon);
   std::vector<double> part(s.before.grid.count(), 0.0);
   for (const MapPolygon& polygon : polygons) {

@@ -91,7 +91,7 @@ std::vector<char> largest_rise(const Change& change) {
 
 std::vector<char> deposit_cells(const Change& change, const Raster& source, std::vector<char> slide, const DepositOptions& options) {
   if (!options.polygon.empty()) {
-    std::vector<MapPolygon> polygons = read_polygons(options.polygon, source.grid.crs_wkt);
+    std::vector<MapPolygon> polygons = read_polygons(options.polygon, source.grid.crs_wkt, "deposit");
     check_polygons(polygons, options.polygon);
     std::vector<char> inside = cells_inside(polygons, source.grid);
     if (std::none_of(inside.begin(), inside.end(), [](char c) { return c != 0; }))

@@ -31,9 +31,9 @@ double normal_quantile(double confidence) {
 /// The polygons of what changed: named ones, source and deposit.
 std::vector<MapPolygon> changed_ground(const Options& options, const std::string& crs_wkt) {
   std::vector<MapPolygon> all;
-  for (const auto& file : {options.coregistration.changed, options.source.polygon, options.deposit.polygon}) {
+  for (const auto& [file, layer] : {std::pair{options.coregistration.changed, "changed"}, {options.source.polygon, "source"}, {options.deposit.polygon, "deposit"}}) {
     if (file.empty()) continue;
-    for (MapPolygon& polygon : read_polygons(file, crs_wkt)) all.push_back(std::move(polygon));
+    for (MapPolygon& polygon : read_polygons(file, crs_wkt, layer)) all.push_back(std::move(polygon));
   }
   return all;
 }

@@ -128,5 +128,18 @@ TEST(options, read_what_they_write) {
   EXPECT_EQ(recipe::to_toml(recipe.read<Options>("preprocess"), "preprocess", false), text);
 }
 
+TEST(options, tables_of_two_models_need_two_models) {
+  Options options;
+  options.before_dem = "before.tif";
+  options.sliding_surface = "sliding.tif";
+  options.coregistration.mode = Alignment::apply;
+  options.deposit.polygon = "deposit.gpkg";
+  std::vector<Fault> faults;
+  options.check(faults);
+  ASSERT_EQ(faults.size(), 2u);
+  EXPECT_NE(faults[0].what.find("coregistration.mode"), std::string::npos);
+  EXPECT_NE(faults[1].what.find("deposit.polygon"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace talus::preprocess

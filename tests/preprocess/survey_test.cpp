@@ -203,6 +203,18 @@ TEST(delineation, deposit_is_what_rose_beside_the_source_or_inside_its_polygon) 
   EXPECT_LT(part, 0.7 * heap);  // the polygon begins at the heap's middle
 }
 
+/// The polygon runs between cell centres, so that cells on it count in part.
+TEST(write_survey, outlines_given_back_give_the_same_slide) {
+  test::Scene scene;
+  const Prepared prepared = scene.prepare();
+  std::vector<std::string> lines;
+  write_survey(scene.scratch / "survey", *prepared.survey, &prepared, lines);
+  scene.options.source.polygon = scene.options.deposit.polygon = scene.scratch / "survey" / "outlines.gpkg";
+  const Prepared again = scene.prepare();
+  EXPECT_NEAR(again.total.volume / prepared.total.volume, 1, 0.02);
+  EXPECT_NEAR(again.slide->volumes[1].volume.volume / prepared.slide->volumes[1].volume.volume, 1, 0.02);
+}
+
 TEST(write_survey, leaves_rasters_outlines_and_styles_for_a_gis) {
   test::Scene scene;
   const Prepared prepared = scene.prepare();
