@@ -6,7 +6,7 @@ if(NOT TALUS_CUDA STREQUAL "OFF")
   if(NOT CMAKE_CUDA_COMPILER AND EXISTS /usr/local/cuda/bin/nvcc)
     set(CMAKE_CUDA_COMPILER /usr/local/cuda/bin/nvcc)
   endif()
-  if(NOT CMAKE_CUDA_ARCHITECTURES)
+  if(NOT CMAKE_CUDA_ARCHITECTURES AND NOT DEFINED ENV{CUDAARCHS})   # which CMake reads by itself
     # Ampere (and, by binary compatibility, Ada) and Hopper, with PTX for what comes after.
     set(CMAKE_CUDA_ARCHITECTURES "80-real;90")
   endif()

@@ -27,6 +27,12 @@ void SurveyOptions::find_in(const std::filesystem::path& out) {
   if (!from_preprocess) return;
   difference = out / "survey" / "slide_difference.tif";
   sigma = out / "survey" / "difference_sigma.tif";
+  for (const auto& file : {difference, sigma}) {
+    if (!std::filesystem::exists(file))
+      throw DataError({file.string() + ": no such file",
+                       "[postprocess.survey] from_preprocess = true, and talus-preprocess writes it where before_dem and after_dem are given",
+                       "Run talus-preprocess with the same --out, or name the survey otherwise"});
+  }
 }
 
 void SurveyOptions::describe(recipe::Visitor& v) {

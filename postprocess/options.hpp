@@ -35,7 +35,7 @@ struct SurveyOptions {
   int resample_seed = 1;
 
   bool measures() const { return !(thickness.empty() && difference.empty() && after_dem.empty()); }  ///< not an outline only
-  /// Names the files under `out` where from_preprocess asks for them.
+  /// Names the files under `out` where from_preprocess asks for them. Throws DataError when they are not there.
   void find_in(const std::filesystem::path& out);
   bool given() const { return measures() || !peak_thickness.empty() || !polygon.empty(); }
   void check(std::vector<Fault>& faults) const;

@@ -256,5 +256,15 @@ TEST_F(SurveyTest, names_a_missing_file) {
   EXPECT_NE(fault().find("nowhere.tif: no such file"), std::string::npos) << fault();
 }
 
+TEST_F(SurveyTest, finds_what_preprocess_left_or_says_what_is_missing) {
+  options_.from_preprocess = true;
+  EXPECT_THROW(options_.find_in(scratch_ / "out"), DataError);
+  std::filesystem::create_directories(scratch_ / "out" / "survey");
+  for (const char* name : {"slide_difference.tif", "difference_sigma.tif"}) std::filesystem::copy_file(raster(name, small_grid(), some_change()), scratch_ / "out" / "survey" / name);
+  options_.find_in(scratch_ / "out");
+  EXPECT_EQ(options_.difference, scratch_ / "out" / "survey" / "slide_difference.tif");
+  EXPECT_EQ(options_.sigma, scratch_ / "out" / "survey" / "difference_sigma.tif");
+}
+
 }  // namespace
 }  // namespace talus::postprocess
