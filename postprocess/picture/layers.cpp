@@ -49,17 +49,6 @@ void draw(Canvas& canvas, const View& view, const std::vector<Polyline>& lines, 
   }
 }
 
-std::vector<Polyline> rings(const std::vector<MapPolygon>& polygons) {
-  std::vector<Polyline> lines;
-  for (const auto& polygon : polygons) {
-    for (auto ring : polygon.rings) {
-      if (!ring.empty()) ring.push_back(ring.front());
-      lines.push_back(std::move(ring));
-    }
-  }
-  return lines;
-}
-
 /// The elevation along a contour, upright, where the line is straightest within the frame.
 void label_contour(Canvas& canvas, const View& view, const Polyline& line, double level) {
   const auto points = on_canvas(view, line);
@@ -111,6 +100,17 @@ std::pair<double, double> relief(const View& view, const RunMaps& maps) {
 }
 
 }  // namespace
+
+std::vector<Polyline> rings(const std::vector<MapPolygon>& polygons) {
+  std::vector<Polyline> lines;
+  for (const auto& polygon : polygons) {
+    for (auto ring : polygon.rings) {
+      if (!ring.empty()) ring.push_back(ring.front());
+      lines.push_back(std::move(ring));
+    }
+  }
+  return lines;
+}
 
 LineStyle survey_style() { return {{white, 7, {}, 0.9}, {{0.0, 0.30, 0.70}, 4, {15, 9}, 1}}; }
 LineStyle survey_footprint_style() { return {{white, 3.6, {}, 0.6}, {{0.0, 0.30, 0.70}, 1.8, {5, 4}, 1}}; }

@@ -3,11 +3,15 @@
 
 #include <vector>
 
+#include "common/raster/isolines.hpp"
 #include "postprocess/picture/canvas.hpp"
 #include "postprocess/picture/map_picture.hpp"
 #include "postprocess/picture/view.hpp"
 
 namespace talus::postprocess {
+
+/// All rings of the polygons as closed lines.
+std::vector<Polyline> rings(const std::vector<MapPolygon>& polygons);
 
 /// Line styles, shared by map and legend.
 struct LineStyle {

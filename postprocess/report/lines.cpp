@@ -29,17 +29,6 @@ Json outline(const MapGrid& grid, const std::vector<double>& values, double leve
   return lines_json(isolines(grid, values, level, AtEdge::close), window);
 }
 
-std::vector<Polyline> rings(const std::vector<MapPolygon>& polygons) {
-  std::vector<Polyline> lines;
-  for (const auto& polygon : polygons) {
-    for (auto ring : polygon.rings) {
-      if (!ring.empty()) ring.push_back(ring.front());
-      lines.push_back(std::move(ring));
-    }
-  }
-  return lines;
-}
-
 Json contours(const RunMaps& maps, const Window& window) {
   const double interval = contour_interval({window, {}}, maps);
   Json json{{"interval", interval}, {"levels", Json::array()}};

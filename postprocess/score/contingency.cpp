@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "postprocess/score/statistics.hpp"
+#include "common/statistics.hpp"
 
 namespace talus::postprocess {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "postprocess/score/statistics.hpp"
+#include "common/statistics.hpp"
 
 namespace talus::postprocess {
 

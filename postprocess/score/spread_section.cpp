@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "postprocess/score/resample.hpp"
-#include "postprocess/score/statistics.hpp"
+#include "common/statistics.hpp"
 
 namespace talus::postprocess {
 namespace {

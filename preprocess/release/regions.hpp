@@ -17,4 +17,7 @@ struct Region {
 /// All regions, the largest by volume first. `lowering` is in m, NaN counts as none.
 std::vector<Region> lowering_regions(const Raster& lowering, double threshold);
 
+/// Noise gives a region a fringe: marked cells (above 0) with fewer than four of their eight neighbours marked become 0.
+void cut_fringe(const MapGrid& grid, std::vector<double>& marked);
+
 }  // namespace talus::preprocess

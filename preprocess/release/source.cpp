@@ -90,20 +90,6 @@ Raster detected(const Raster& lowering, const std::vector<double>& level) {
   return result;
 }
 
-/// Noise gives a region a fringe: cells with fewer than four of their eight neighbours in it are cut off.
-void cut_fringe(const MapGrid& grid, std::vector<double>& part) {
-  const std::vector<double> whole = part;
-  for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column) {
-      int company = 0;
-      for (int r = std::max(0, row - 1); r <= std::min(grid.rows - 1, row + 1); ++r) {
-        for (int c = std::max(0, column - 1); c <= std::min(grid.columns - 1, column + 1); ++c) company += whole[grid.index(c, r)] > 0;
-      }
-      if (company <= 4) part[grid.index(column, row)] = 0;
-    }
-  }
-}
-
 /// Noise pricks holes into a source: lowered cells that it encloses are its own.
 void fill_pricks(const Raster& lowering, std::vector<double>& part) {
   std::vector<char> open(part.size());

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "preprocess/release/regions.hpp"
-#include "preprocess/survey/robust.hpp"
+#include "common/statistics.hpp"
 
 namespace talus::preprocess {
 

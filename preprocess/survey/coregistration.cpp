@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/error.hpp"
+#include "common/statistics.hpp"
 #include "preprocess/survey/changed_cells.hpp"
 #include "preprocess/survey/first_guess.hpp"
 #include "preprocess/survey/shift_fit.hpp"
@@ -18,11 +19,11 @@ constexpr int most_iterations = 50;
 constexpr double still = 1e-3;           // cells: what is left of a shift at the end
 
 void move(Placement& placement, const ShiftFit& fit, double length) {
-  placement.x += fit.value[0];
-  placement.y += fit.value[1];
-  placement.z += fit.value[2];
-  placement.tilt_x += fit.value[3] / length;
-  placement.tilt_y += fit.value[4] / length;
+  placement.x += fit.value[shift_x];
+  placement.y += fit.value[shift_y];
+  placement.z += fit.value[shift_z];
+  placement.tilt_x += fit.value[ShiftUnknown::tilt_x] / length;
+  placement.tilt_y += fit.value[ShiftUnknown::tilt_y] / length;
 }
 
 /// Heights in feet stretch relief, not only lift it: spreads differ by that factor.
@@ -135,9 +136,10 @@ Coregistration coregister(std::vector<Patch>& patches, bool tilt, const std::fil
   const double length = extent.east - extent.west;
   result.placement.centre_x = (extent.west + extent.east) / 2;
   result.placement.centre_y = (extent.south + extent.north) / 2;
-  const std::size_t at_first = stable_misfit(patches, result.placement).size();
+  const std::vector<double> first_misfit = stable_misfit(patches, result.placement);
+  const std::size_t at_first = first_misfit.size();
   if (at_first < least_cells) return result;
-  if (nmad(stable_misfit(patches, result.placement)) < 1e-9) return lifted(patches, std::move(result));
+  if (nmad(first_misfit) < 1e-9) return lifted(patches, std::move(result));
   refuse_feet(patches, result.placement, after_file);
   const Placement start = result.placement;
   move_by_whole_cells(patches, result.placement);

@@ -5,7 +5,7 @@
 
 #include "common/raster/raster_io.hpp"
 #include "preprocess/survey/patches.hpp"
-#include "preprocess/survey/robust.hpp"
+#include "preprocess/survey/residuals.hpp"
 
 namespace talus::preprocess {
 

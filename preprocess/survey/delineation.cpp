@@ -27,17 +27,8 @@ std::vector<Region> changed_regions(const Change& change) {
   const MapGrid& grid = change.rise.grid;
   Raster marked{grid, std::vector<double>(grid.count(), 0.0)};
   for (std::size_t i = 0; i < grid.count(); ++i) marked.values[i] = std::abs(change.rise.values[i]) > change.levels[i] ? 1 : 0;
-  Raster dense = marked;
-  for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column) {
-      double company = 0;
-      for (int r = std::max(0, row - 1); r <= std::min(grid.rows - 1, row + 1); ++r) {
-        for (int c = std::max(0, column - 1); c <= std::min(grid.columns - 1, column + 1); ++c) company += marked.at(c, r);
-      }
-      if (company <= 4) dense.at(column, row) = 0;
-    }
-  }
-  return lowering_regions(dense, 0.5);
+  cut_fringe(grid, marked.values);
+  return lowering_regions(marked, 0.5);
 }
 
 /// No noise: enough of it stands out by several levels.

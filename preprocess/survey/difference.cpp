@@ -11,26 +11,14 @@ namespace {
 
 constexpr int block_cells = 1024;
 
-/// Rise per metre at a cell of a raster one cell wider on every side, by differences to the neighbours there are.
-double slope_at(const Raster& wide, int column, int row) {
-  const auto along = [&](double behind, double ahead) {
-    const double here = wide.at(column, row);
-    if (!std::isnan(behind) && !std::isnan(ahead)) return (ahead - behind) / (2 * wide.grid.cell);
-    if (!std::isnan(ahead)) return (ahead - here) / wide.grid.cell;
-    return std::isnan(behind) ? 0.0 : (here - behind) / wide.grid.cell;
-  };
-  return std::hypot(along(wide.at(column - 1, row), wide.at(column + 1, row)), along(wide.at(column, row - 1), wide.at(column, row + 1)));
-}
-
 Block block_of(const Elevation& before, const Elevation& after, const MapGrid& part, const ErrorModel& model) {
   const Raster wide = onto_grid(before, cut(part, {-1, -1, part.columns + 2, part.rows + 2}));  // so that blocks do not show in the slopes
-  Block block{cut(wide, {1, 1, part.columns, part.rows}), onto_grid(after, part), {part, std::vector<double>(part.count())}, {part, std::vector<double>(part.count())}};
-  for (int row = 0; row < part.rows; ++row) {
-    for (int column = 0; column < part.columns; ++column) {
-      const double d = block.after.at(column, row) - block.before.at(column, row);
-      block.difference.at(column, row) = d;
-      block.sigma.at(column, row) = std::isnan(d) ? d : model.sigma(slope_at(wide, column + 1, row + 1));
-    }
+  const CellWindow inner{1, 1, part.columns, part.rows};
+  Block block{cut(wide, inner), onto_grid(after, part), {part, std::vector<double>(part.count())}, cut(Raster{wide.grid, model.sigmas(wide)}, inner)};
+  for (std::size_t i = 0; i < part.count(); ++i) {
+    const double d = block.after.values[i] - block.before.values[i];
+    block.difference.values[i] = d;
+    if (std::isnan(d)) block.sigma.values[i] = d;
   }
   return block;
 }

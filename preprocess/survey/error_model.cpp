@@ -5,7 +5,8 @@
 #include <limits>
 #include <numbers>
 
-#include "preprocess/survey/robust.hpp"
+#include "common/raster/slope.hpp"
+#include "common/statistics.hpp"
 
 namespace talus::preprocess {
 
@@ -79,6 +80,12 @@ double ErrorModel::sigma(double slope) const {
   const auto k = static_cast<std::size_t>(above - slopes_.begin());
   const double t = (slope - slopes_[k - 1]) / (slopes_[k] - slopes_[k - 1]);
   return (1 - t) * sigmas_[k - 1] + t * sigmas_[k];
+}
+
+std::vector<double> ErrorModel::sigmas(const Raster& surface) const {
+  std::vector<double> values;
+  for (const double cosine : slope_cosine(surface)) values.push_back(sigma(std::sqrt(std::max(0.0, 1 / (cosine * cosine) - 1))));
+  return values;
 }
 
 double ErrorModel::of_mean(double mean_square, double area, double cell) const {

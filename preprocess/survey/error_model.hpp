@@ -22,6 +22,9 @@ class ErrorModel {
   /// Standard deviation [m] on ground that rises by `slope` a metre.
   double sigma(double slope) const;
 
+  /// The same of every cell of a surface, by its slope [m].
+  std::vector<double> sigmas(const Raster& surface) const;
+
   /// Standard deviation of the mean over an area [m2] whose cells have `mean_square` [m2] as their mean variance; with
   /// what the alignment's own height is not known better than.
   double of_mean(double mean_square, double area, double cell) const;

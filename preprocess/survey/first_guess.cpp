@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "preprocess/survey/robust.hpp"
+#include "common/statistics.hpp"
 
 namespace talus::preprocess {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "preprocess/survey/robust.hpp"
+#include "common/statistics.hpp"
 
 namespace talus::preprocess {
 

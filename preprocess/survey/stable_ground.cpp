@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "common/raster/inside.hpp"
+#include "common/statistics.hpp"
 #include "preprocess/survey/coregistration.hpp"
 
 namespace talus::preprocess {

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "common/error.hpp"
-#include "common/raster/slope.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/sum.hpp"
 #include "preprocess/terrain/working_grid.hpp"
@@ -127,7 +126,7 @@ std::vector<std::string> as_lines(const Survey& s) {
 
 SurveyedSlide slide_on(const Survey& s, const Raster& before, const std::vector<Filled>& filled) {
   SurveyedSlide slide{{before.grid, {}}, {before.grid, {}}, {before.grid, {}}, {}, {before.grid, {}}, {}};
-  for (const double cosine : slope_cosine(before)) slide.sigma.values.push_back(s.errors.sigma(std::sqrt(std::max(0.0, 1 / (cosine * cosine) - 1))));
+  slide.sigma.values = s.errors.sigmas(before);
   for (std::size_t k = 0; k < filled.size(); ++k) {
     if (filled[k].count() == 0) continue;
     slide.filled.values.resize(before.grid.count(), 0.0);

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "preprocess/survey/robust.hpp"
+#include "common/statistics.hpp"
 
 namespace talus::preprocess {
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "postprocess/score/statistics.hpp"
+#include "common/statistics.hpp"
 #include "tests/postprocess/scene.hpp"
 
 namespace talus::postprocess {

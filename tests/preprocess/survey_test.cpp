@@ -3,6 +3,7 @@
 
 #include <iostream>
 
+#include "common/statistics.hpp"
 #include "data_samples/terrains.hpp"
 #include "preprocess/survey/write_survey.hpp"
 #include "tests/preprocess/scene.hpp"

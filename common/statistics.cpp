@@ -1,10 +1,10 @@
-#include "postprocess/score/statistics.hpp"
+#include "common/statistics.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace talus::postprocess {
+namespace talus {
 
 double quantile(std::vector<double> values, double q) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
@@ -37,4 +37,4 @@ Spread spread_of(std::vector<double> values) {
   return {mean, std::sqrt(square / std::max(1.0, count - 1)), quantile(values, 0.05), quantile(values, 0.95)};
 }
 
-}  // namespace talus::postprocess
+}  // namespace talus

@@ -1,10 +1,10 @@
-#include "postprocess/score/statistics.hpp"
+#include "common/statistics.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace talus::postprocess {
+namespace talus {
 namespace {
 
 TEST(Statistics, takes_quantiles_between_the_sorted_values) {
@@ -31,4 +31,4 @@ TEST(Statistics, spread_leaves_out_draws_without_a_value) {
 }
 
 }  // namespace
-}  // namespace talus::postprocess
+}  // namespace talus

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace talus::postprocess {
+namespace talus {
 
 /// The value below which the share `q` (0 to 1) of the values lies, linear between the sorted values (Hyndman and Fan
 /// 1996, type 7). NaN where there is none.
@@ -11,8 +11,8 @@ double quantile(std::vector<double> values, double q);
 
 double median(const std::vector<double>& values);
 
-/// 1.4826 median(|v - median(v)|): the standard deviation of a normal distribution, unmoved by outliers. NaN where
-/// there is no value.
+/// 1.4826 median(|v - median(v)|): the standard deviation of a normal distribution, unmoved by outliers (Hoehle & Hoehle
+/// 2009, Tab. 2). NaN where there is no value.
 double nmad(const std::vector<double>& values);
 
 /// Mean, standard deviation (over n - 1; 0 for a single value) and quantiles of what is not NaN.
@@ -21,4 +21,4 @@ struct Spread {
 };
 Spread spread_of(std::vector<double> values);
 
-}  // namespace talus::postprocess
+}  // namespace talus
