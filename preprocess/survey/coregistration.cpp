@@ -17,6 +17,7 @@ namespace {
 
 constexpr int most_iterations = 50;
 constexpr double still = 1e-3;           // cells: what is left of a shift at the end
+constexpr int free_iterations = 3;       // after which no cell comes back
 
 void move(Placement& placement, const ShiftFit& fit, double length) {
   placement.x += fit.value[shift_x];
@@ -62,12 +63,22 @@ std::vector<double> stable_misfit(const std::vector<Patch>& patches, const Place
 
 namespace {
 
-/// Iterates the fit of what is sought until it stands still; leaves the last errors.
-ShiftFit settle(const std::vector<Patch>& patches, const std::vector<int>& sought, double length, Coregistration& result) {
+/// Cells without both surveys no longer count as stable.
+void leave_out_unshared(std::vector<Patch>& patches, const Placement& placement) {
+  for (Patch& p : patches) {
+    const std::vector<double> d = misfit(p, placement);
+    for (std::size_t i = 0; i < d.size(); ++i) p.stable[i] &= !std::isnan(d[i]);
+  }
+}
+
+/// Iterates the fit of what is sought until it stands still; leaves the last errors. Near a shift by whole cells, a row at the
+/// rim is shared at one iterate and not at the next, each the answer of the other: after the first iterations, who is out stays out.
+ShiftFit settle(std::vector<Patch>& patches, const std::vector<int>& sought, double length, Coregistration& result) {
   ShiftFit last;
   const double cell = patches.front().before.grid.cell;
   result.converged = false;
   for (int i = 0; i < most_iterations && !result.converged; ++i) {
+    if (i >= free_iterations) leave_out_unshared(patches, result.placement);
     const ShiftRows rows = rows_of(patches, result.placement, length);
     if (rows.misfit.size() < least_cells) break;  // moved off one another
     last = fit_shift(rows, sought);
@@ -79,7 +90,7 @@ ShiftFit settle(const std::vector<Patch>& patches, const std::vector<int>& sough
 }
 
 /// A tilt within three times its error is noise. Cells beside one another err alike: one in a hundred counts.
-void fit_tilt(const std::vector<Patch>& patches, std::vector<int> sought, double length, Coregistration& result) {
+void fit_tilt(std::vector<Patch>& patches, std::vector<int> sought, double length, Coregistration& result) {
   Coregistration tilted = result;
   sought.insert(sought.end(), {ShiftUnknown::tilt_x, ShiftUnknown::tilt_y});
   const ShiftFit last = settle(patches, sought, length, tilted);

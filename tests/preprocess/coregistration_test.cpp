@@ -72,6 +72,17 @@ Coregistration found(const Pair& pair, bool tilt = false) {
   return coregister(patches, tilt, "after.tif");
 }
 
+/// Share of the variance of noise that cubic convolution (Keys 1981) leaves `shift` cells along one axis off the cell centres.
+double kept_variance(double shift) {
+  double sum = 0;
+  for (int k = -1; k <= 2; ++k) {
+    const double s = std::abs(shift - std::floor(shift) - k);
+    const double weight = s < 1 ? 1 + s * s * (1.5 * s - 2.5) : 2 + s * (-4 + s * (2.5 - 0.5 * s));
+    sum += weight * weight;
+  }
+  return sum;
+}
+
 TEST(coregistration, finds_a_known_sub_pixel_shift_to_a_twentieth_of_a_cell) {
   TALUS_SEEDED(seed);
   std::mt19937 random(seed);
@@ -83,7 +94,8 @@ TEST(coregistration, finds_a_known_sub_pixel_shift_to_a_twentieth_of_a_cell) {
     EXPECT_NEAR(result.placement.x, -change.x, 0.05 * 5);
     EXPECT_NEAR(result.placement.y, -change.y, 0.05 * 5);
     EXPECT_NEAR(result.placement.z, -change.z, 0.05);  // 0.42 m of noise on twenty thousand cells, and the shift's share
-    EXPECT_NEAR(result.aligned.nmad, 0.3 * std::sqrt(2.0), 0.06);
+    const double noise = 0.3 * std::sqrt(1 + kept_variance(result.placement.x / 5) * kept_variance(result.placement.y / 5));
+    EXPECT_NEAR(result.aligned.nmad / noise, 1, 0.08);  // within 4 % in 450 draws: cells are few and the rims of the slide blur
     EXPECT_GT(result.unaligned.nmad, result.aligned.nmad);
   }
 }
