@@ -30,9 +30,9 @@ void ErodibleOptions::describe(recipe::Visitor& v) {
 void SlidingSurfaceOptions::describe(recipe::Visitor& v) {
   v.number("depth_m", depth_m, recipe::not_negative, "largest vertical depth below before_dem; 0 = not given");
   v.number("volume_m3", volume_m3, recipe::not_negative, "volume between it and before_dem; 0 = not given");
-  v.path("depth_points", depth_points, "places where it is known (boreholes): vector points, or a table of x, y, z; none of the three: volume from the polygon's area (Guzzetti et al. 2009)");
+  v.path("depth_points", depth_points, "places where it is known (boreholes): vector points, or a table of x, y and z or depth, heights in vertical_unit; none of the three: volume from the polygon's area (Guzzetti et al. 2009)");
   recipe::choice(v, "depth_points_hold", depth_points_hold, {{"elevation", PointValue::elevation}, {"depth", PointValue::depth}},
-                 "what the z of these points is: elevation of the sliding surface, or its vertical depth below before_dem");
+                 "what the z of these points is where it is not named depth: elevation of the sliding surface, or its vertical depth below before_dem");
   v.number("depth_points_error_m", depth_points_error_m, recipe::not_negative, "standard error of these points; 0 = met exactly");
 }
 

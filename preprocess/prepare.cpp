@@ -71,7 +71,7 @@ Scene from_outline(const Options& options) {
   Elevation before = read_elevation("before_dem", options.before_dem, dem_reading(options));
   share_crs({&before}, options.working_crs);
   Raster ground = align({&before}, options).front();
-  ComputedSource computed = source_by_outline(ground, options.source);
+  ComputedSource computed = source_by_outline(ground, options.source, dem_reading(options));
   Scene scene = from_source(std::move(ground), std::move(computed.source));
   scene.sliding_surface = std::move(computed.computed);
   return scene;

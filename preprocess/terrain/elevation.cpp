@@ -8,7 +8,6 @@
 
 #include "common/error.hpp"
 #include "common/raster/raster_io.hpp"
-#include "common/raster/vertical_unit.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/sum.hpp"
 #include "preprocess/terrain/scattered.hpp"
@@ -88,18 +87,6 @@ const char* name_of(VerticalUnit unit) {
   return "";
 }
 
-/// A text file cannot name its CRS; places that all could be longitude and latitude are taken for that.
-ScatteredPoints with_likely_crs(ScatteredPoints points, const std::filesystem::path& file) {
-  const Extent e = points.extent();
-  const bool like_degrees =
-      points.crs_wkt.empty() && !points.x.empty() && e.west >= -180 && e.east <= 360 && e.south >= -90 && e.north <= 90;
-  if (!like_degrees) return points;
-  points.crs_wkt = crs_by_name("EPSG:4326");
-  log_warning(fmt::format("{}: x {:g}..{:g}, y {:g}..{:g} and no CRS: taken as longitude and latitude (WGS 84)",
-                          file.string(), e.west, e.east, e.south, e.north));
-  return points;
-}
-
 /// True when all heights are whole metres, and not all the same.
 Raster middle_of(const RasterFile& file) {
   constexpr int most = 512;
@@ -126,21 +113,6 @@ void warn_of_steps(const std::filesystem::path& file, double step, double cell) 
       "{}: heights come in steps of {:.3g} m (integers, or rounded): each is off by {:.2g} m (one sigma), and a "
       "slope from cell to cell is told in steps of {:.2g} degrees. Take real numbers where they are to be had",
       file.string(), step, step / std::sqrt(12.0), std::atan(step / cell) * 180 / M_PI));
-}
-
-ScatteredPoints points_in_metres(const std::filesystem::path& file, const ReadOptions& how) {
-  ScatteredPoints points = read_points_as_given(file);
-  const double metres = metres_in(how.vertical_unit).value_or(1.0);
-  for (double& z : points.z) z *= metres;
-  if (how.to_crs.empty()) {
-    require_metric(points, file, how.or_else);
-    return points;
-  }
-  points = with_likely_crs(std::move(points), file);
-  if (is_metric(points.crs_wkt)) return points;
-  log_info(fmt::format("{}: {} points moved from {} to {}", file.string(), points.x.size(), crs_name(points.crs_wkt),
-                       crs_name(how.to_crs)));
-  return transform_points(std::move(points), how.to_crs);
 }
 
 }  // namespace
@@ -179,7 +151,7 @@ Elevation read_elevation(std::string key, const std::filesystem::path& file, con
   elevation.file = file;
   elevation.scattered = is_point_file(file);
   if (elevation.scattered) {
-    elevation.points = points_in_metres(file, how);
+    elevation.points = read_points(file, how);
   } else {
     ReadOptions options = how;
     elevation.reprojected = !options.to_crs.empty() && !in_metres(file);

@@ -8,7 +8,6 @@
 
 #include "common/raster/raster.hpp"
 #include "common/raster/raster_file.hpp"
-#include "common/raster/raster_file.hpp"
 #include "preprocess/options.hpp"
 #include "preprocess/terrain/geo_input.hpp"
 #include "preprocess/terrain/placement.hpp"
