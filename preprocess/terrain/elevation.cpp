@@ -7,29 +7,15 @@
 #include <limits>
 
 #include "common/error.hpp"
+#include "common/raster/crop.hpp"
 #include "common/raster/raster_io.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/sum.hpp"
 #include "preprocess/terrain/scattered.hpp"
-#include "preprocess/terrain/working_grid.hpp"
 
 namespace talus::preprocess {
 
 namespace {
-
-/// The raster's values on a grid of the same lattice; NaN outside the raster.
-Raster window(const Raster& raster, const MapGrid& grid) {
-  const int shift_column = static_cast<int>(std::lround((grid.west - raster.grid.west) / grid.cell));
-  const int shift_row = static_cast<int>(std::lround((grid.south - raster.grid.south) / grid.cell));
-  Raster result{grid, std::vector<double>(grid.count(), std::numeric_limits<double>::quiet_NaN())};
-  for (int row = std::max(0, -shift_row); row < std::min(grid.rows, raster.grid.rows - shift_row); ++row) {
-    for (int column = std::max(0, -shift_column); column < std::min(grid.columns, raster.grid.columns - shift_column);
-         ++column) {
-      result.at(column, row) = raster.at(column + shift_column, row + shift_row);
-    }
-  }
-  return result;
-}
 
 /// A mean that does not pass over voids: cells that hold the centre of one are void.
 void keep_voids(const Raster& raster, Raster& result) {
@@ -170,7 +156,7 @@ Raster read_off(const Elevation& elevation, const MapGrid& grid) {
   const bool one_crs = same_crs(elevation.crs_wkt(), grid.crs_wkt);
   if (elevation.scattered)
     return interpolate_scattered(one_crs ? elevation.points : transform_points(elevation.points, grid.crs_wkt), grid, elevation.file);
-  if (one_crs && same_lattice(elevation.raster.grid, grid)) return window(elevation.raster, grid);
+  if (one_crs && same_lattice(elevation.raster.grid, grid)) return cut_to(elevation.raster, grid);
   const bool coarser = grid.cell > elevation.cell() * (1 + 1e-6);
   if (one_crs && coarser) return coarsened(elevation.raster, grid);
   return resample_elevation(elevation.raster, grid, elevation.placement.moves() ? Interpolation::cubic : Interpolation::bilinear);
@@ -225,7 +211,7 @@ Elevation part_of(const Elevation& elevation, const Extent& extent, const std::s
 
 Raster thickness_onto_grid(const Raster& thickness, const MapGrid& grid, const std::filesystem::path& file) {
   require_same_crs(thickness, grid, file);
-  Raster result = same_lattice(thickness.grid, grid) ? window(thickness, grid) : resample_thickness(thickness, grid);
+  Raster result = same_lattice(thickness.grid, grid) ? cut_to(thickness, grid) : resample_thickness(thickness, grid);
   const auto has_data = [](double t) { return !std::isnan(t); };
   const bool overlaps = std::any_of(result.values.begin(), result.values.end(), has_data);
   for (double& t : result.values) t = std::isnan(t) ? 0.0 : t;
