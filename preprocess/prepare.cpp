@@ -13,6 +13,7 @@
 #include "preprocess/obstacle/obstacles.hpp"
 #include "preprocess/particles/seed.hpp"
 #include "preprocess/release/outline_source.hpp"
+#include "preprocess/release/polygon_cover.hpp"
 #include "preprocess/release/releases.hpp"
 #include "preprocess/release/source.hpp"
 #include "preprocess/terrain/elevation.hpp"
@@ -43,7 +44,7 @@ Scene from_before_and_after(const Options& options) {
   std::vector<Filled> filled;
   std::vector<Raster> surfaces = align({&survey.before, &survey.after}, options, &filled);
   SurveyedSlide slide = slide_on(survey, surfaces[0], filled);
-  Source source = find_source({surfaces[0], surfaces[1], options.after_dem, false, levels_of(survey, slide.sigma)}, options.source);
+  Source source = find_source({surfaces[0], surfaces[1], options.after_dem, false, survey.source, levels_of(survey, slide.sigma)}, options.source);
   delineate(survey, {surfaces[0], surfaces[1], source.thickness}, options, slide);
   std::vector<double> lowering;
   for (std::size_t c = 0; c < surfaces[0].values.size(); ++c) lowering.push_back(surfaces[0].values[c] - surfaces[1].values[c]);
@@ -63,7 +64,9 @@ Scene from_sliding_surface(const Options& options) {
   log_resampling(sliding, surfaces[0].grid);
   const Raster under = onto_grid(sliding, surfaces[0].grid);
   require_data(under, sliding.file);
-  Source source = find_source({surfaces[0], under, options.sliding_surface, true}, options.source);
+  SurfacePair pair{surfaces[0], under, options.sliding_surface, true};
+  if (!options.source.polygon.empty()) pair.outline = read_valid_polygons(options.source.polygon, under.grid.crs_wkt, "source");
+  Source source = find_source(pair, options.source);
   return from_source(std::move(surfaces[0]), std::move(source));
 }
 

@@ -20,9 +20,7 @@ namespace {
 constexpr std::size_t most_points = 1000;  // each takes a vector over the cells and a solve
 
 Outline read_outline(const Raster& before, const std::filesystem::path& file) {
-  std::vector<MapPolygon> polygons = read_polygons(file, before.grid.crs_wkt, "source");
-  check_polygons(polygons, file);
-  Outline outline = outline_of(before.grid, polygons, file);
+  Outline outline = outline_of(before.grid, read_valid_polygons(file, before.grid.crs_wkt, "source"), file);
   std::vector<char> empty(outline.part.size());
   for (std::size_t c = 0; c < empty.size(); ++c) empty[c] = outline.part[c] > 0 && std::isnan(before.values[c]);
   refuse_cells(before.grid, empty,

@@ -1,23 +1,17 @@
 #include "preprocess/options.hpp"
 
-#include "tests/preprocess/terrain.hpp"
+#include "tests/preprocess/scene.hpp"
 
 namespace talus::preprocess {
 namespace {
+
+using test::faults_of;
 
 Options before_and_after() {
   Options options;
   options.before_dem = "before.tif";
   options.after_dem = "after.tif";
   return options;
-}
-
-std::string faults_of(const Options& options) {
-  std::vector<Fault> faults;
-  options.check(faults);
-  std::string text;
-  for (const Fault& fault : faults) text += to_string(fault) + "\n";
-  return text;
 }
 
 const std::string one_way =
@@ -122,10 +116,7 @@ TEST(options, read_what_they_write) {
   options.grid.edge_nodata = EdgeNodata::outside;
   options.source.seed_x_m = 5;
   options.source.seed_y_m = 7;
-  const std::string text = recipe::to_toml(options, "preprocess", false);
-  test::Scratch scratch;
-  const recipe::Recipe recipe(scratch.write("recipe.toml", text));
-  EXPECT_EQ(recipe::to_toml(recipe.read<Options>("preprocess"), "preprocess", false), text);
+  test::expect_read_as_written(options);
 }
 
 TEST(options, tables_of_two_models_need_two_models) {

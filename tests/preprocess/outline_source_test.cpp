@@ -21,12 +21,6 @@ struct OutlineScene : Scene {
 
 constexpr double outline_area = 16318.5;  // of that rectangle, by its corners [m2]
 
-double volume_of_points(const Prepared& prepared) {
-  Sum sum;
-  for (double v : prepared.domain.points.volume) sum.add(v);
-  return sum.value();
-}
-
 TEST(outline_source, releases_the_volume_asked_for) {
   TALUS_SEEDED(seed);
   OutlineScene scene(seed);

@@ -194,14 +194,36 @@ TEST(robust, statistics_ignore_a_few_wild_values) {
   EXPECT_TRUE(std::isnan(median({})));
 }
 
+const char* const eastern_half = "POLYGON((500300 5100000, 500400 5100000, 500400 5100300, 500300 5100300, 500300 5100000))";
+
 TEST(delineation, deposit_is_what_rose_beside_the_source_or_inside_its_polygon) {
   test::Scene scene;
   const double heap = test::volume_of(scene.heap);
   EXPECT_NEAR(scene.prepare().slide->volumes[1].volume.volume / heap, 1, 0.02);  // rim thinner than threshold_m left out
-  scene.options.deposit.polygon = test::write_polygon(scene.scratch, "heap.csv", "POLYGON((500300 5100000, 500400 5100000, 500400 5100300, 500300 5100300, 500300 5100000))");
+  scene.options.deposit.polygon = test::write_polygon(scene.scratch, "heap.csv", eastern_half);
   const double part = scene.prepare().slide->volumes[1].volume.volume;
   EXPECT_GT(part, 0.3 * heap);
   EXPECT_LT(part, 0.7 * heap);  // the polygon begins at the heap's middle
+}
+
+/// What tells the alignment and what is delineated is the same outline: the file may be gone by then.
+TEST(delineation, outlines_are_read_once) {
+  test::Scene scene;
+  scene.options.deposit.polygon = test::write_polygon(scene.scratch, "heap.csv", eastern_half);
+  const Prepared whole = scene.prepare();
+  const Survey survey = survey_of(scene.options);
+  std::filesystem::remove(scene.scratch / "heap.csv");
+  SurveyedSlide slide = slide_on(survey, scene.before, {});
+  delineate(survey, {scene.before, scene.after, scene.bowl}, scene.options, slide);
+  EXPECT_EQ(slide.volumes[1].volume.volume, whole.slide->volumes[1].volume.volume);
+  EXPECT_GT(slide.volumes[1].volume.volume, 0);
+}
+
+TEST(delineation, an_outline_that_crosses_itself_is_refused_before_anything_is_compared) {
+  test::Scene scene;
+  scene.options.deposit.polygon =
+      test::write_polygon(scene.scratch, "heap.csv", "POLYGON((500100 5100100, 500300 5100200, 500300 5100100, 500100 5100200, 500100 5100100))");
+  EXPECT_NE(test::fault_of<DataError>([&] { survey_of(scene.options); }).find("heap.csv: polygon 1: its outline crosses"), std::string::npos);
 }
 
 /// The polygon runs between cell centres, so that cells on it count in part.
