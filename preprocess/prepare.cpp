@@ -56,7 +56,7 @@ Scene from_before_and_after(const Options& options) {
 }
 
 Scene from_sliding_surface(const Options& options) {
-  Elevation before = read_elevation("before_dem", options.before_dem, dem_reading(options));
+  Elevation before = read_elevation("before_dem", options.before_dem, dem_reading(options, options.before_vertical_unit));
   Elevation sliding = read_elevation("sliding_surface", options.sliding_surface, dem_reading(options));
   share_crs({&before, &sliding}, options.working_crs);
   require_comparable_crs(sliding.crs_wkt(), sliding.file, before.crs_wkt(), before.file.string());
@@ -71,7 +71,7 @@ Scene from_sliding_surface(const Options& options) {
 }
 
 Scene from_outline(const Options& options) {
-  Elevation before = read_elevation("before_dem", options.before_dem, dem_reading(options));
+  Elevation before = read_elevation("before_dem", options.before_dem, dem_reading(options, options.before_vertical_unit));
   share_crs({&before}, options.working_crs);
   Raster ground = align({&before}, options).front();
   ComputedSource computed = source_by_outline(ground, options.source, dem_reading(options));
@@ -228,8 +228,8 @@ std::vector<std::filesystem::path> inputs_of(const Options& options) {
 
 Survey survey_of(const Options& given) {
   const Options options = with_utm_zone(given);
-  Elevation before = read_elevation("before_dem", options.before_dem, dem_reading(options));
-  Elevation after = read_elevation("after_dem", options.after_dem, dem_reading(options));
+  Elevation before = read_elevation("before_dem", options.before_dem, dem_reading(options, options.before_vertical_unit));
+  Elevation after = read_elevation("after_dem", options.after_dem, dem_reading(options, options.after_vertical_unit));
   share_crs({&before, &after}, options.working_crs);
   return compare_surveys(std::move(before), std::move(after), options);
 }

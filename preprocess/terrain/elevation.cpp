@@ -68,7 +68,8 @@ const char* name_of(VerticalUnit unit) {
     case VerticalUnit::metre: return "metre";
     case VerticalUnit::foot: return "foot";
     case VerticalUnit::us_survey_foot: return "us-survey-foot";
-    case VerticalUnit::declared: break;
+    case VerticalUnit::declared:
+    case VerticalUnit::same: break;
   }
   return "";
 }
@@ -108,9 +109,10 @@ Extent Elevation::extent() const {
   return {raster.grid.west, raster.grid.south, raster.grid.east(), raster.grid.north()};
 }
 
-ReadOptions dem_reading(const Options& options) {
+ReadOptions dem_reading(const Options& options, VerticalUnit of_model) {
+  const VerticalUnit unit = of_model == VerticalUnit::same ? options.vertical_unit : of_model;
   const std::string crs = options.working_crs.empty() ? "" : metric_crs(options.working_crs);
-  return {crs, name_of(options.vertical_unit), "or set working_crs = \"utm\" in [preprocess]"};
+  return {crs, name_of(unit), "or set working_crs = \"utm\" in [preprocess]"};
 }
 
 Options with_utm_zone(Options options) {

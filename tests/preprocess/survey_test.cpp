@@ -108,7 +108,46 @@ TEST(survey, says_so_when_one_model_looks_like_feet) {
   Raster feet = scene.after;
   for (double& z : feet.values) z /= 0.3048;
   scene.rewrite_after(feet);
-  EXPECT_NE(scene.data_fault().find("look like feet"), std::string::npos) << scene.data_fault();
+  const std::string fault = scene.data_fault();
+  EXPECT_NE(fault.find("look like feet"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("after_vertical_unit = \"foot\""), std::string::npos) << fault;
+  scene.options.after_vertical_unit = VerticalUnit::foot;
+  EXPECT_EQ(scene.data_fault(), "") << "what it says helps";
+}
+
+/// Heights of a scene in another unit than the file says, which is none.
+void rewrite_in(test::Scene& scene, double before_metres, double after_metres) {
+  Raster before = scene.before, after = scene.after;
+  for (double& z : before.values) z /= before_metres;
+  for (double& z : after.values) z /= after_metres;
+  scene.rewrite_before(before);
+  scene.rewrite_after(after);
+}
+
+TEST(survey, one_model_in_feet_and_one_in_metres_are_compared_in_metres) {
+  constexpr double ft = 0.3048, us_ft = 1200.0 / 3937.0;
+  struct Case {
+    double before, after;
+    VerticalUnit all, only_before, only_after;
+  };
+  using enum VerticalUnit;
+  for (const Case& c : {Case{1, ft, declared, same, foot}, {us_ft, 1, declared, us_survey_foot, same}, {ft, 1, foot, same, metre}, {ft, 1, foot, same, declared},
+                        {us_ft, ft, foot, us_survey_foot, same}}) {
+    test::Scene scene;
+    rewrite_in(scene, c.before, c.after);
+    scene.options.vertical_unit = c.all;
+    scene.options.before_vertical_unit = c.only_before;
+    scene.options.after_vertical_unit = c.only_after;
+    const Prepared prepared = scene.prepare();
+    const auto& difference = prepared.slide->change;
+    for (std::size_t i = 0; i < difference.values.size(); ++i) {
+      const double change = scene.after.values[i] - scene.before.values[i];
+      if (!(scene.bowl.values[i] > 0)) continue;
+      ASSERT_NEAR(difference.values[i], change, 1e-9);  // rounding of heights of 1000 m
+    }
+    EXPECT_NEAR(prepared.slide->volumes[0].volume.volume / test::volume_of(scene.bowl), 1, 1e-6);
+    EXPECT_NEAR(prepared.total.volume / test::volume_of(scene.bowl), 1, 1e-6);
+  }
 }
 
 /// Two cells: one beyond its level, one not.
