@@ -30,9 +30,9 @@ void ErodibleOptions::describe(recipe::Visitor& v) {
 void SlidingSurfaceOptions::describe(recipe::Visitor& v) {
   v.number("depth_m", depth_m, recipe::not_negative, "largest vertical depth below before_dem; 0 = not given");
   v.number("volume_m3", volume_m3, recipe::not_negative, "volume between it and before_dem; 0 = not given");
-  v.path("depth_points", depth_points, "places where it is known (boreholes): vector points, or a table of x, y, z; none of the three: volume from the polygon's area (Guzzetti et al. 2009)");
+  v.path("depth_points", depth_points, "places where it is known (boreholes): vector points, or a table of x, y and z or depth, heights in vertical_unit; none of the three: volume from the polygon's area (Guzzetti et al. 2009)");
   recipe::choice(v, "depth_points_hold", depth_points_hold, {{"elevation", PointValue::elevation}, {"depth", PointValue::depth}},
-                 "what the z of these points is: elevation of the sliding surface, or its vertical depth below before_dem");
+                 "what the z of these points is where it is not named depth: elevation of the sliding surface, or its vertical depth below before_dem");
   v.number("depth_points_error_m", depth_points_error_m, recipe::not_negative, "standard error of these points; 0 = met exactly");
 }
 
@@ -132,6 +132,21 @@ void BedRasters::describe(recipe::Visitor& v) {
   for (auto& [name, file] : files) v.path(name, file, "raster that takes the place of [solve.base] " + name + "; no data: that number");
 }
 
+namespace {
+
+/// For one of the models, where it differs from the others.
+void describe_unit(recipe::Visitor& v, const char* key, VerticalUnit& unit, const char* help) {
+  recipe::choice(v, key, unit,
+                 {{"same", VerticalUnit::same},
+                  {"declared", VerticalUnit::declared},
+                  {"metre", VerticalUnit::metre},
+                  {"foot", VerticalUnit::foot},
+                  {"us-survey-foot", VerticalUnit::us_survey_foot}},
+                 help);
+}
+
+}  // namespace
+
 void Options::describe(recipe::Visitor& v) {
   v.path("before_dem", before_dem, "surface before the slide (1: with after_dem, 2: with sliding_surface, 5: with source.polygon alone)");
   v.path("after_dem", after_dem, "surface after it; only the lowering inside the source is taken out");
@@ -146,6 +161,8 @@ void Options::describe(recipe::Visitor& v) {
                   {"foot", VerticalUnit::foot},
                   {"us-survey-foot", VerticalUnit::us_survey_foot}},
                  "what the elevation models' heights are in; declared = what each file says, metres where it says nothing");
+  describe_unit(v, "before_vertical_unit", before_vertical_unit, "what the heights of before_dem are in, where it differs from the others; same = as vertical_unit says");
+  describe_unit(v, "after_vertical_unit", after_vertical_unit, "what the heights of after_dem are in, where it differs from the others; same = as vertical_unit says");
   v.enter("coregistration", "for (1): after_dem brought onto before_dem");
   coregistration.describe(v);
   v.leave();
@@ -281,6 +298,21 @@ void check_comparison(const Options& o, std::vector<Fault>& faults) {
 
 }  // namespace
 
+namespace {
+
+/// Units of models that are not there.
+void check_units(const Options& o, std::vector<Fault>& faults) {
+  const auto refuse = [&](VerticalUnit unit, const std::filesystem::path& dem, const std::string& name) {
+    if (unit == VerticalUnit::same || !dem.empty()) return;
+    faults.push_back(fault(name + "_vertical_unit is given without " + name + "_dem", "there are no heights that it speaks of",
+                           "Leave it out, or use vertical_unit, which is for all elevation models"));
+  };
+  refuse(o.before_vertical_unit, o.before_dem, "before");
+  refuse(o.after_vertical_unit, o.after_dem, "after");
+}
+
+}  // namespace
+
 void Options::check(std::vector<Fault>& faults) const {
   std::set<std::string> bodies;
   for (std::size_t i = 0; i < obstacle.size(); ++i) {
@@ -298,6 +330,7 @@ void Options::check(std::vector<Fault>& faults) const {
     return;
   }
   check_way(*this, faults);
+  check_units(*this, faults);
   std::set<std::string> names;
   const auto check_list = [&](const char* kind, const auto& list, const auto& given_otherwise) {
     for (std::size_t i = 0; i < list.size(); ++i) {

@@ -19,8 +19,8 @@ enum class Threshold { minimum_level, propagated_error, probabilistic };
 /// What becomes of cells without elevation.
 enum class EdgeNodata { refuse, outside };
 
-/// What the heights of elevation models are in: what the files say, or this.
-enum class VerticalUnit { declared, metre, foot, us_survey_foot };
+/// What the heights of elevation models are in: what the files say, or this. `same`: of one model, as of all the others.
+enum class VerticalUnit { declared, metre, foot, us_survey_foot, same };
 
 /// One [[preprocess.release]]: a raster of thickness, or polygons with a thickness.
 struct ReleaseOptions {
@@ -166,7 +166,8 @@ enum class Way { before_and_after, before_and_sliding_surface, before_and_outlin
 struct Options {
   std::filesystem::path before_dem, after_dem, sliding_surface, base_dem;
   std::string working_crs;
-  VerticalUnit vertical_unit = VerticalUnit::declared;
+  VerticalUnit vertical_unit = VerticalUnit::declared;  // never `same`
+  VerticalUnit before_vertical_unit = VerticalUnit::same, after_vertical_unit = VerticalUnit::same;
   CoregistrationOptions coregistration;
   DifferenceOptions difference;
   SourceOptions source;

@@ -13,6 +13,7 @@
 #include "preprocess/obstacle/obstacles.hpp"
 #include "preprocess/particles/seed.hpp"
 #include "preprocess/release/outline_source.hpp"
+#include "preprocess/release/polygon_cover.hpp"
 #include "preprocess/release/releases.hpp"
 #include "preprocess/release/source.hpp"
 #include "preprocess/terrain/elevation.hpp"
@@ -43,7 +44,7 @@ Scene from_before_and_after(const Options& options) {
   std::vector<Filled> filled;
   std::vector<Raster> surfaces = align({&survey.before, &survey.after}, options, &filled);
   SurveyedSlide slide = slide_on(survey, surfaces[0], filled);
-  Source source = find_source({surfaces[0], surfaces[1], options.after_dem, false, levels_of(survey, slide.sigma)}, options.source);
+  Source source = find_source({surfaces[0], surfaces[1], options.after_dem, false, survey.source, levels_of(survey, slide.sigma)}, options.source);
   delineate(survey, {surfaces[0], surfaces[1], source.thickness}, options, slide);
   std::vector<double> lowering;
   for (std::size_t c = 0; c < surfaces[0].values.size(); ++c) lowering.push_back(surfaces[0].values[c] - surfaces[1].values[c]);
@@ -55,7 +56,7 @@ Scene from_before_and_after(const Options& options) {
 }
 
 Scene from_sliding_surface(const Options& options) {
-  Elevation before = read_elevation("before_dem", options.before_dem, dem_reading(options));
+  Elevation before = read_elevation("before_dem", options.before_dem, dem_reading(options, options.before_vertical_unit));
   Elevation sliding = read_elevation("sliding_surface", options.sliding_surface, dem_reading(options));
   share_crs({&before, &sliding}, options.working_crs);
   require_comparable_crs(sliding.crs_wkt(), sliding.file, before.crs_wkt(), before.file.string());
@@ -63,15 +64,17 @@ Scene from_sliding_surface(const Options& options) {
   log_resampling(sliding, surfaces[0].grid);
   const Raster under = onto_grid(sliding, surfaces[0].grid);
   require_data(under, sliding.file);
-  Source source = find_source({surfaces[0], under, options.sliding_surface, true}, options.source);
+  SurfacePair pair{surfaces[0], under, options.sliding_surface, true};
+  if (!options.source.polygon.empty()) pair.outline = read_valid_polygons(options.source.polygon, under.grid.crs_wkt, "source");
+  Source source = find_source(pair, options.source);
   return from_source(std::move(surfaces[0]), std::move(source));
 }
 
 Scene from_outline(const Options& options) {
-  Elevation before = read_elevation("before_dem", options.before_dem, dem_reading(options));
+  Elevation before = read_elevation("before_dem", options.before_dem, dem_reading(options, options.before_vertical_unit));
   share_crs({&before}, options.working_crs);
   Raster ground = align({&before}, options).front();
-  ComputedSource computed = source_by_outline(ground, options.source);
+  ComputedSource computed = source_by_outline(ground, options.source, dem_reading(options));
   Scene scene = from_source(std::move(ground), std::move(computed.source));
   scene.sliding_surface = std::move(computed.computed);
   return scene;
@@ -225,8 +228,8 @@ std::vector<std::filesystem::path> inputs_of(const Options& options) {
 
 Survey survey_of(const Options& given) {
   const Options options = with_utm_zone(given);
-  Elevation before = read_elevation("before_dem", options.before_dem, dem_reading(options));
-  Elevation after = read_elevation("after_dem", options.after_dem, dem_reading(options));
+  Elevation before = read_elevation("before_dem", options.before_dem, dem_reading(options, options.before_vertical_unit));
+  Elevation after = read_elevation("after_dem", options.after_dem, dem_reading(options, options.after_vertical_unit));
   share_crs({&before, &after}, options.working_crs);
   return compare_surveys(std::move(before), std::move(after), options);
 }

@@ -18,10 +18,14 @@ bool is_point(const OGRGeometry* geometry) {
   return geometry != nullptr && wkbFlatten(geometry->getGeometryType()) == wkbPoint;
 }
 
-int z_field_of(const OGRFeatureDefn& fields, const std::function<bool(std::string_view)>& is_z_name) {
+std::string name_of(const OGRFeatureDefn& fields, int field) {
+  return const_cast<OGRFeatureDefn&>(fields).GetFieldDefn(field)->GetNameRef();
+}
+
+int field_of(const OGRFeatureDefn& fields, const std::function<bool(std::string_view)>& is_wanted) {
   int found = -1;
   for (int i = 0; i < fields.GetFieldCount(); ++i)
-    if (is_z_name(const_cast<OGRFeatureDefn&>(fields).GetFieldDefn(i)->GetNameRef())) found = i;
+    if (is_wanted(name_of(fields, i))) found = i;
   return found;
 }
 
@@ -49,7 +53,7 @@ bool holds_points(const fs::path& file) {
   return feature && is_point(feature->GetGeometryRef());
 }
 
-PointLayer read_point_layer(const fs::path& file, const std::function<bool(std::string_view)>& is_z_name) {
+PointLayer read_point_layer(const fs::path& file, const ZAttributes& attributes) {
   const gdal::QuietErrors errors;
   const gdal::Dataset dataset = open(file, GDAL_OF_VECTOR);
   if (!dataset || dataset->GetLayerCount() == 0)
@@ -58,18 +62,23 @@ PointLayer read_point_layer(const fs::path& file, const std::function<bool(std::
   OGRLayer& layer = *dataset->GetLayer(0);
   PointLayer points;
   points.crs_wkt = gdal::horizontal_wkt(layer.GetSpatialRef());
-  const int z_field = z_field_of(*layer.GetLayerDefn(), is_z_name);
+  const OGRFeatureDefn& fields = *layer.GetLayerDefn();
+  const int first = field_of(fields, attributes.first), known = field_of(fields, attributes.known);
   for (const auto& feature : layer) {
     const OGRGeometry* geometry = feature->GetGeometryRef();
     if (!is_point(geometry)) continue;
     const OGRPoint& point = *geometry->toPoint();
-    if (!point.Is3D() && z_field < 0)
+    const bool in_geometry = first < 0 && point.Is3D();
+    const int field = first >= 0 ? first : known;
+    if (!in_geometry && (field < 0 || !feature->IsFieldSetAndNotNull(field)))
       throw DataError({fmt::format("{}: point {} has no elevation", file.string(), feature->GetFID()),
-                       "neither its geometry nor an attribute z, elevation or height holds one",
+                       first < 0 ? "neither its geometry nor an attribute z, elevation or height holds one"
+                                 : "its attribute " + name_of(fields, first) + " is empty",
                        "Rename the attribute: ogr2ogr -sql \"SELECT *, <column> AS z FROM <layer>\" out.gpkg in.gpkg"});
     points.x.push_back(point.getX());
     points.y.push_back(point.getY());
-    points.z.push_back(point.Is3D() ? point.getZ() : feature->GetFieldAsDouble(z_field));
+    points.z.push_back(in_geometry ? point.getZ() : feature->GetFieldAsDouble(field));
+    if (!in_geometry) points.z_name = name_of(fields, field);
   }
   if (errors.failed())
     throw DataError(

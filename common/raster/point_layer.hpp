@@ -13,6 +13,7 @@ namespace talus {
 struct PointLayer {
   std::vector<double> x, y, z;  // in the units of their CRS; z as given
   std::string crs_wkt;          // empty = none named
+  std::string z_name = {};      // of the attribute that z is; empty = the geometry's
 };
 
 /// What GDAL takes a file for when it is asked for a raster: its driver and count of cells; nullopt when it is none.
@@ -25,8 +26,13 @@ std::optional<RasterGlance> glance_at_raster(const std::filesystem::path& file);
 /// True when the first layer of a vector file holds points.
 bool holds_points(const std::filesystem::path& file);
 
-/// The points of a vector file's first layer; z from the geometry, else from the attribute that `is_z_name` knows.
-/// Throws DataError: not a vector file, a point without elevation.
-PointLayer read_point_layer(const std::filesystem::path& file, const std::function<bool(std::string_view)>& is_z_name);
+/// Which attributes hold z, by their names.
+struct ZAttributes {
+  std::function<bool(std::string_view)> known;                            // where the geometry has none
+  std::function<bool(std::string_view)> first = [](auto) { return false; };  // whatever the geometry has
+};
+
+/// The points of a vector file's first layer. Throws DataError: not a vector file, a point without elevation.
+PointLayer read_point_layer(const std::filesystem::path& file, const ZAttributes& attributes);
 
 }  // namespace talus

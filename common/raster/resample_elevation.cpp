@@ -8,6 +8,7 @@
 #include "common/raster/axis_overlap.hpp"
 #include "common/raster/bicubic.hpp"
 #include "common/raster/bilinear.hpp"
+#include "common/raster/crop.hpp"
 #include "common/raster/gdal_support.hpp"
 #include "common/raster/raster_io.hpp"
 
@@ -55,23 +56,6 @@ Raster sampled(const Raster& source, const MapGrid& grid, OGRCoordinateTransform
   return result;
 }
 
-bool same_cells(const MapGrid& a, const MapGrid& b) {
-  const auto on_node = [&](double offset) { return std::abs(offset - std::round(offset)) < 1e-6; };
-  return std::abs(a.cell - b.cell) < 1e-9 * a.cell && on_node((b.west - a.west) / a.cell) &&
-         on_node((b.south - a.south) / a.cell);
-}
-
-/// The same cells with another extent: values are copied, not interpolated.
-Raster cropped(const Raster& source, const MapGrid& grid) {
-  const int right = static_cast<int>(std::lround((grid.west - source.grid.west) / grid.cell));
-  const int up = static_cast<int>(std::lround((grid.south - source.grid.south) / grid.cell));
-  Raster result{grid, std::vector<double>(grid.count(), std::nan(""))};
-  for (int row = std::max(0, -up); row < std::min(grid.rows, source.grid.rows - up); ++row)
-    for (int column = std::max(0, -right); column < std::min(grid.columns, source.grid.columns - right); ++column)
-      result.at(column, row) = source.at(column + right, row + up);
-  return result;
-}
-
 }  // namespace
 
 Raster resample_elevation(const Raster& source, const MapGrid& grid, Interpolation interpolation) {
@@ -79,7 +63,7 @@ Raster resample_elevation(const Raster& source, const MapGrid& grid, Interpolati
   const double ratio = grid.cell / source.grid.cell;
   constexpr double hardly_coarser = 1 + 1e-6;
   if (same_crs(source.grid.crs_wkt, grid.crs_wkt)) {
-    if (same_cells(source.grid, grid)) return cropped(source, grid);
+    if (same_lattice(source.grid, grid)) return cut_to(source, grid);
     return ratio > hardly_coarser ? area_mean(source, grid) : sampled(source, grid, nullptr, 1, interpolation);
   }
   if (source.grid.crs_wkt.empty() || grid.crs_wkt.empty())

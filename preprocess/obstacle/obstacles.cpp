@@ -53,8 +53,7 @@ struct Column {
 
 SolidBody stand(const ObstacleOptions& o, const std::shared_ptr<const Raster>& shared_ground, double depth) {
   const Raster& ground = *shared_ground;
-  std::vector<MapPolygon> polygons = read_polygons(o.polygons, ground.grid.crs_wkt);
-  check_polygons(polygons, o.polygons);
+  const std::vector<MapPolygon> polygons = read_valid_polygons(o.polygons, ground.grid.crs_wkt);
   auto footprints = std::make_shared<std::vector<Footprint>>();
   SolidBody body{o.name, {1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}, {}};
   for (std::size_t p = 0; p < polygons.size(); ++p) {

@@ -20,9 +20,7 @@ namespace {
 constexpr std::size_t most_points = 1000;  // each takes a vector over the cells and a solve
 
 Outline read_outline(const Raster& before, const std::filesystem::path& file) {
-  std::vector<MapPolygon> polygons = read_polygons(file, before.grid.crs_wkt, "source");
-  check_polygons(polygons, file);
-  Outline outline = outline_of(before.grid, polygons, file);
+  Outline outline = outline_of(before.grid, read_valid_polygons(file, before.grid.crs_wkt, "source"), file);
   std::vector<char> empty(outline.part.size());
   for (std::size_t c = 0; c < empty.size(); ++c) empty[c] = outline.part[c] > 0 && std::isnan(before.values[c]);
   refuse_cells(before.grid, empty,
@@ -31,8 +29,10 @@ Outline read_outline(const Raster& before, const std::filesystem::path& file) {
   return outline;
 }
 
-ScatteredPoints read_on_grid(const std::filesystem::path& file, const MapGrid& grid) {
-  ScatteredPoints points = read_points(file);
+/// `how` but in the CRS of the grid, whether or not the recipe names one: the grid is there by now.
+ScatteredPoints read_on_grid(const std::filesystem::path& file, const MapGrid& grid, ReadOptions how) {
+  how.to_crs = grid.crs_wkt;
+  ScatteredPoints points = read_points(file, how, PointHeights::depths_or_elevations);
   if (points.x.empty())
     throw DataError(Fault{file.string() + ": no points", "the depth of the sliding surface is to come from them",
                           "Give points, or depth_m or volume_m3 instead"});
@@ -54,8 +54,10 @@ bool is_inside(const Outline& outline, double x, double y) {
 }
 
 /// All faults at once: points outside the outline, and points that are not below the ground.
-std::vector<DepthPoint> depth_points(const Raster& before, const Outline& outline, const SlidingSurfaceOptions& o) {
-  const ScatteredPoints read = read_on_grid(o.depth_points, before.grid);
+std::vector<DepthPoint> depth_points(const Raster& before, const Outline& outline, const SlidingSurfaceOptions& o,
+                                     const ReadOptions& how) {
+  const ScatteredPoints read = read_on_grid(o.depth_points, before.grid, how);
+  const bool are_depths = read.are_depths || o.depth_points_hold == PointValue::depth;
   std::vector<DepthPoint> points;
   std::vector<Fault> faults;
   for (std::size_t i = 0; i < read.x.size(); ++i) {
@@ -67,14 +69,15 @@ std::vector<DepthPoint> depth_points(const Raster& before, const Outline& outlin
       continue;
     }
     const double ground = value_at(before, read.x[i], read.y[i]);
-    const double depth = o.depth_points_hold == PointValue::depth ? read.z[i] : ground - read.z[i];
+    const double depth = are_depths ? read.z[i] : ground - read.z[i];
     if (depth > 0) {
       points.push_back({read.x[i], read.y[i], depth, o.depth_points_error_m});
     } else {
       faults.push_back(
           {fmt::format("{}, depth {:.2f} m", place, depth),
            fmt::format("the sliding surface lies below the ground, which is at {:.2f} m there", ground),
-           "Check its value, the vertical datum, and whether depth_points_hold is \"elevation\" or \"depth\""});
+           "Check its value and unit, the vertical datum, and whether depth_points_hold is \"elevation\" or "
+           "\"depth\""});
     }
   }
   if (!faults.empty()) throw DataError(std::move(faults));
@@ -103,8 +106,9 @@ void report(const SlidingSurface& s, const Outline& outline) {
     log_info(fmt::format("sliding surface: {} depth points, met to {:.3g} m", s.misfit.size(), worst));
 }
 
-SlidingSurface compute(const Raster& before, const Outline& outline, const SlidingSurfaceOptions& o) {
-  if (!o.depth_points.empty()) return surface_through(before, outline, depth_points(before, outline, o));
+SlidingSurface compute(const Raster& before, const Outline& outline, const SlidingSurfaceOptions& o,
+                       const ReadOptions& how) {
+  if (!o.depth_points.empty()) return surface_through(before, outline, depth_points(before, outline, o, how));
   if (o.depth_m > 0) return surface_of_depth(before, outline, o.depth_m);
   if (o.volume_m3 > 0) return surface_of_volume(before, outline, o.volume_m3);
   const double volume = volume_by_area(outline.area);
@@ -120,9 +124,9 @@ SlidingSurface compute(const Raster& before, const Outline& outline, const Slidi
 
 double volume_by_area(double area) { return 0.074 * std::pow(area, 1.450); }
 
-ComputedSource source_by_outline(const Raster& before, const SourceOptions& options) {
+ComputedSource source_by_outline(const Raster& before, const SourceOptions& options, const ReadOptions& points) {
   const Outline outline = read_outline(before, options.polygon);
-  ComputedSource result{{}, compute(before, outline, options.sliding_surface)};
+  ComputedSource result{{}, compute(before, outline, options.sliding_surface, points)};
   report(result.computed, outline);
   result.source = {thickness_above(result.computed.surface, before, outline), before};
   Source& source = result.source;

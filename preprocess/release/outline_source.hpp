@@ -3,6 +3,7 @@
 #pragma once
 
 #include "common/raster/raster.hpp"
+#include "common/raster/raster_file.hpp"
 #include "preprocess/options.hpp"
 #include "preprocess/release/sliding_surface.hpp"
 #include "preprocess/release/source.hpp"
@@ -20,7 +21,9 @@ double volume_by_area(double area);
 
 /// The surface through what is given (depth_m, volume_m3 or depth_points; else the volume_by_area(), with a warning)
 /// and the source above it. Cells on the outline count by their covered part. Throws DataError: polygons that are not
-/// valid or lie outside, ground without elevation within, depth points outside or above the ground.
-ComputedSource source_by_outline(const Raster& before, const SourceOptions& options);
+/// valid or lie outside, ground without elevation within, depth points outside or above the ground. `points` says in
+/// what unit depth points are (as vertical_unit of elevation models); those in degrees are brought to the CRS of
+/// `before`, and a column named depth holds depths.
+ComputedSource source_by_outline(const Raster& before, const SourceOptions& options, const ReadOptions& points);
 
 }  // namespace talus::preprocess

@@ -139,4 +139,11 @@ void check_polygons(std::vector<MapPolygon>& polygons, const std::filesystem::pa
   }
 }
 
+std::vector<MapPolygon> read_valid_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
+                                            const std::string& layer) {
+  std::vector<MapPolygon> polygons = read_polygons(file, crs_wkt, layer);
+  check_polygons(polygons, file);
+  return polygons;
+}
+
 }  // namespace talus::preprocess

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "common/raster/raster.hpp"
@@ -13,6 +14,10 @@ namespace talus::preprocess {
 /// corners or no area, or whose holes lie outside; and turn the rings (outer counter-clockwise, holes clockwise).
 /// CGAL's exact predicates decide.
 void check_polygons(std::vector<MapPolygon>& polygons, const std::filesystem::path& file);
+
+/// read_polygons() that pass check_polygons().
+std::vector<MapPolygon> read_valid_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
+                                            const std::string& layer = "");
 
 /// Area without the holes [m2]; rings turned as check_polygons() does.
 double area_of(const MapPolygon& polygon);

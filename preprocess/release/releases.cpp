@@ -60,8 +60,7 @@ double thickness_of(const MapPolygon& polygon, std::size_t number, const Release
 }
 
 Raster from_polygons(const ReleaseOptions& options, const MapGrid& grid) {
-  std::vector<MapPolygon> polygons = read_polygons(options.polygons, grid.crs_wkt);
-  check_polygons(polygons, options.polygons);
+  const std::vector<MapPolygon> polygons = read_valid_polygons(options.polygons, grid.crs_wkt);
   Raster thickness{grid, std::vector<double>(grid.count(), 0.0)};
   std::vector<double> covered(grid.count(), 0.0);
   bool overlap = false;

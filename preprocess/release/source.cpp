@@ -125,10 +125,8 @@ std::vector<double> part_by_region(const SurfacePair& s, const SourceOptions& op
 }
 
 std::vector<double> part_by_polygon(const SurfacePair& s, const SourceOptions& options) {
-  std::vector<MapPolygon> polygons = read_polygons(options.polygon, s.before.grid.crs_wkt, "source");
-  check_polygons(polygons, options.polygon);
   std::vector<double> part(s.before.grid.count(), 0.0);
-  for (const MapPolygon& polygon : polygons) {
+  for (const MapPolygon& polygon : s.outline) {
     const std::vector<double> covered = coverage(s.before.grid, polygon, options.polygon);
     for (std::size_t i = 0; i < part.size(); ++i) part[i] = std::min(1.0, part[i] + covered[i]);
   }
@@ -151,7 +149,7 @@ std::vector<double> part_by_polygon(const SurfacePair& s, const SourceOptions& o
 }  // namespace
 
 Source find_source(const SurfacePair& s, const SourceOptions& options) {
-  const std::vector<double> part = options.polygon.empty() ? part_by_region(s, options) : part_by_polygon(s, options);
+  const std::vector<double> part = s.outline.empty() ? part_by_region(s, options) : part_by_polygon(s, options);
   if (s.is_sliding_surface) refuse_enclosed_nodata(s, part);
   Source source{{s.before.grid, std::vector<double>(part.size(), 0.0)}, s.before};
   double most = 0;

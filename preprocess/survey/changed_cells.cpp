@@ -1,5 +1,6 @@
 #include "preprocess/survey/changed_cells.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "preprocess/release/regions.hpp"
@@ -13,16 +14,19 @@ constexpr double beyond = 3;            // NMAD
 constexpr std::size_t least_region = 20;  // cells: fewer are noise
 constexpr int rim = 3;                  // cells around a change, where it thins out
 
-/// The share of the 3 x 3 cells around each that are marked: a single cell of noise has no company.
+/// The share of the 3 x 3 cells around each that are marked, of those that the map has: a single cell of noise has no
+/// company.
 Raster company(const MapGrid& grid, const std::vector<char>& marked) {
   Raster share{grid, std::vector<double>(grid.count(), 0.0)};
-  for (int row = 1; row + 1 < grid.rows; ++row) {
-    for (int column = 1; column + 1 < grid.columns; ++column) {
+  for (int row = 0; row < grid.rows; ++row) {
+    const int south = std::max(0, row - 1), north = std::min(grid.rows - 1, row + 1);
+    for (int column = 0; column < grid.columns; ++column) {
+      const int west = std::max(0, column - 1), east = std::min(grid.columns - 1, column + 1);
       int count = 0;
-      for (int j = -1; j <= 1; ++j) {
-        for (int i = -1; i <= 1; ++i) count += marked[grid.index(column + i, row + j)];
+      for (int r = south; r <= north; ++r) {
+        for (int c = west; c <= east; ++c) count += marked[grid.index(c, r)];
       }
-      share.at(column, row) = count / 9.0;
+      share.at(column, row) = static_cast<double>(count) / ((north - south + 1) * (east - west + 1));
     }
   }
   return share;

@@ -44,7 +44,8 @@ void refuse_feet(const std::vector<Patch>& patches, const Placement& placement, 
     const bool later = feet > 1;
     throw DataError(Fault{fmt::format("{}: its relief is {:.3f} times that of the survey before", after_file.string(), ratio),
                           later ? "its heights look like feet" : "the heights of the survey before look like feet",
-                          "Bring both to metres: gdal_calc.py -A in.tif --calc=A*0.3048 --outfile=out.tif, or vertical_unit in [preprocess] where all are in feet"});
+                          fmt::format("Say so in [preprocess]: {0}_vertical_unit = \"foot\" or \"us-survey-foot\"; or, where the other one is said to be in feet and is not, {1}_vertical_unit = \"metre\"",
+                                      later ? "after" : "before", later ? "before" : "after")});
   }
 }
 

@@ -4,7 +4,6 @@
 
 #include "common/error.hpp"
 #include "common/raster/inside.hpp"
-#include "preprocess/release/polygon_cover.hpp"
 #include "preprocess/release/regions.hpp"
 #include "preprocess/sum.hpp"
 #include "preprocess/survey/survey.hpp"
@@ -80,13 +79,11 @@ std::vector<char> largest_rise(const Change& change) {
   return inside;
 }
 
-std::vector<char> deposit_cells(const Change& change, const Raster& source, std::vector<char> slide, const DepositOptions& options) {
-  if (!options.polygon.empty()) {
-    std::vector<MapPolygon> polygons = read_polygons(options.polygon, source.grid.crs_wkt, "deposit");
-    check_polygons(polygons, options.polygon);
-    std::vector<char> inside = cells_inside(polygons, source.grid);
+std::vector<char> deposit_cells(const Change& change, const std::vector<MapPolygon>& outline, std::vector<char> slide, const std::filesystem::path& file) {
+  if (!outline.empty()) {
+    std::vector<char> inside = cells_inside(outline, change.rise.grid);
     if (std::none_of(inside.begin(), inside.end(), [](char c) { return c != 0; }))
-      throw DataError(Fault{options.polygon.string() + ": no polygon covers a cell of the working grid", "the deposit would be empty", "Check the CRS of both with ogrinfo and gdalinfo"});
+      throw DataError(Fault{file.string() + ": no polygon covers a cell of the working grid", "the deposit would be empty", "Check the CRS of both with ogrinfo and gdalinfo"});
     for (std::size_t i = 0; i < inside.size(); ++i) inside[i] = inside[i] && change.rise.values[i] > 0;
     return inside;
   }
@@ -143,7 +140,7 @@ void delineate(const Survey& survey, const SlideSurfaces& surfaces, const Option
     change.rise.values[i] -= before.values[i];
     change.levels[i] = std::max(change.levels[i], options.deposit.threshold_m);
   }
-  const std::vector<char> moved = changed_beside(change, source), deposit = deposit_cells(change, source, moved, options.deposit);
+  const std::vector<char> moved = changed_beside(change, source), deposit = deposit_cells(change, survey.deposit, moved, options.deposit.polygon);
   slide.deposit.values.assign(deposit.size(), 0.0);
   slide.change.values.assign(deposit.size(), 0.0);
   for (std::size_t i = 0; i < deposit.size(); ++i) {
@@ -152,8 +149,8 @@ void delineate(const Survey& survey, const SlideSurfaces& surfaces, const Option
     if (deposit[i] || moved[i] || source.values[i] > 0 || std::isnan(rise)) slide.change.values[i] = rise;
     if (!slide.filled.values.empty() && slide.filled.values[i] > 0) slide.change.values[i] = std::nan("");
   }
-  slide.volumes = {{"source", volume_in(source, slide, !options.source.polygon.empty() ? nullptr : &change, survey.errors)},
-                   {"deposit", volume_in(slide.deposit, slide, options.deposit.polygon.empty() ? &change : nullptr, survey.errors)}};
+  slide.volumes = {{"source", volume_in(source, slide, survey.source.empty() ? &change : nullptr, survey.errors)},
+                   {"deposit", volume_in(slide.deposit, slide, survey.deposit.empty() ? &change : nullptr, survey.errors)}};
 }
 
 }  // namespace talus::preprocess

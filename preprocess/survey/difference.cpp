@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "preprocess/terrain/working_grid.hpp"
+#include "common/raster/crop.hpp"
 
 namespace talus::preprocess {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "preprocess/terrain/working_grid.hpp"
+#include "common/raster/crop.hpp"
 
 namespace talus::preprocess {
 

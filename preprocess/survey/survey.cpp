@@ -7,6 +7,7 @@
 
 #include "common/error.hpp"
 #include "common/stage/stage.hpp"
+#include "preprocess/release/polygon_cover.hpp"
 #include "preprocess/sum.hpp"
 #include "preprocess/terrain/working_grid.hpp"
 
@@ -27,13 +28,17 @@ double normal_quantile(double confidence) {
   return low;
 }
 
+void read_outlines(Survey& s, const Options& options) {
+  if (!options.source.polygon.empty()) s.source = read_valid_polygons(options.source.polygon, s.grid.crs_wkt, "source");
+  if (!options.deposit.polygon.empty()) s.deposit = read_valid_polygons(options.deposit.polygon, s.grid.crs_wkt, "deposit");
+}
+
 /// The polygons of what changed: named ones, source and deposit.
-std::vector<MapPolygon> changed_ground(const Options& options, const std::string& crs_wkt) {
+std::vector<MapPolygon> changed_ground(const Survey& s, const std::filesystem::path& named) {
   std::vector<MapPolygon> all;
-  for (const auto& [file, layer] : {std::pair{options.coregistration.changed, "changed"}, {options.source.polygon, "source"}, {options.deposit.polygon, "deposit"}}) {
-    if (file.empty()) continue;
-    for (MapPolygon& polygon : read_polygons(file, crs_wkt, layer)) all.push_back(std::move(polygon));
-  }
+  if (!named.empty()) all = read_polygons(named, s.grid.crs_wkt, "changed");
+  all.insert(all.end(), s.source.begin(), s.source.end());
+  all.insert(all.end(), s.deposit.begin(), s.deposit.end());
   return all;
 }
 
@@ -85,12 +90,13 @@ Survey compare_surveys(Elevation before, Elevation after, const Options& options
   s.before = std::move(before);
   s.after = std::move(after);
   s.grid = whole_overlap(s.before, s.after, options);
+  read_outlines(s, options);
   s.detection = {options.difference.threshold, options.difference.minimum_level_m, normal_quantile(options.difference.confidence)};
   const double given = options.difference.given_sigma();
   s.errors = ErrorModel::of(given);
   if (how.mode == Alignment::off && given > 0) return s;
   std::vector<Patch> patches = patches_of(s.before, s.after, s.grid);
-  find_stable(patches, {how.steepest_deg, 3, changed_ground(options, s.grid.crs_wkt)});
+  find_stable(patches, {how.steepest_deg, 3, changed_ground(s, how.changed)});
   s.fit = coregister(patches, how.tilt, s.after.file);
   if (!s.fit.known && how.mode == Alignment::apply) refuse_alignment(s, s.grid.count());
   s.applied = how.mode == Alignment::apply;

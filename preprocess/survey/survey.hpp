@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/raster/raster_io.hpp"
 #include "preprocess/survey/coregistration.hpp"
 #include "preprocess/survey/difference.hpp"
 #include "preprocess/terrain/voids.hpp"
@@ -19,12 +20,13 @@ struct Survey {
   bool applied = false;
   ErrorModel errors;
   Detection detection;
+  std::vector<MapPolygon> source, deposit;  // outlines, where the recipe gives them
   std::vector<std::pair<MapGrid, std::vector<char>>> stable;  // of each patch that was looked at
 };
 
 /// Finds how the later survey lies on the earlier one, corrects it where the options say so, and learns the error of
 /// their difference from stable ground. Throws DataError where an alignment is asked for and there is no stable ground to
-/// find it on, where the surveys do not overlap, and where one looks like feet.
+/// find it on, where the surveys do not overlap, where one looks like feet, and where an outline is not valid.
 Survey compare_surveys(Elevation before, Elevation after, const Options& options);
 
 /// What a Survey says, as people read it.

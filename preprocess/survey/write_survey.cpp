@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "common/error.hpp"
+#include "common/raster/crop.hpp"
 #include "common/raster/outlines.hpp"
 #include "common/raster/qgis_project.hpp"
 #include "common/raster/qgis_style.hpp"
@@ -14,7 +15,6 @@
 #include "common/stage/stage.hpp"
 #include "preprocess/sum.hpp"
 #include "preprocess/survey/survey_json.hpp"
-#include "preprocess/terrain/working_grid.hpp"
 
 namespace talus::preprocess {
 
@@ -92,17 +92,13 @@ class BlockFiles {
   std::optional<RasterWriter> unaligned_;
 };
 
-/// The cells of a raster that lie in a grid on the same lattice.
-Raster within(const Raster& raster, const MapGrid& grid) {
-  const int west = static_cast<int>(std::lround((grid.west - raster.grid.west) / grid.cell)), south = static_cast<int>(std::lround((grid.south - raster.grid.south) / grid.cell));
-  const int column = std::max(0, west), row = std::max(0, south);
-  return cut(raster, {column, row, std::min(raster.grid.columns, west + grid.columns) - column, std::min(raster.grid.rows, south + grid.rows) - row});
-}
-
 /// 1 where ground counted as stable, 0 where not, nodata where nobody looked.
 void write_stable(const fs::path& file, const Survey& survey) {
   RasterWriter writer(file, survey.grid, {"ground that counted as stable [1]", "1", {{"SOURCE", "Talus " + version()}}});
-  for (const auto& [grid, stable] : survey.stable) writer.write(within({grid, std::vector<double>(stable.begin(), stable.end())}, survey.grid));
+  for (const auto& [grid, stable] : survey.stable) {
+    const MapGrid part = shared_part(grid, survey.grid);  // the rest of it was shared only before the later model moved
+    if (part.count() > 0) writer.write(cut_to({grid, std::vector<double>(stable.begin(), stable.end())}, part));
+  }
   writer.finish();
 }
 

@@ -7,30 +7,15 @@
 #include <limits>
 
 #include "common/error.hpp"
+#include "common/raster/crop.hpp"
 #include "common/raster/raster_io.hpp"
-#include "common/raster/vertical_unit.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/sum.hpp"
 #include "preprocess/terrain/scattered.hpp"
-#include "preprocess/terrain/working_grid.hpp"
 
 namespace talus::preprocess {
 
 namespace {
-
-/// The raster's values on a grid of the same lattice; NaN outside the raster.
-Raster window(const Raster& raster, const MapGrid& grid) {
-  const int shift_column = static_cast<int>(std::lround((grid.west - raster.grid.west) / grid.cell));
-  const int shift_row = static_cast<int>(std::lround((grid.south - raster.grid.south) / grid.cell));
-  Raster result{grid, std::vector<double>(grid.count(), std::numeric_limits<double>::quiet_NaN())};
-  for (int row = std::max(0, -shift_row); row < std::min(grid.rows, raster.grid.rows - shift_row); ++row) {
-    for (int column = std::max(0, -shift_column); column < std::min(grid.columns, raster.grid.columns - shift_column);
-         ++column) {
-      result.at(column, row) = raster.at(column + shift_column, row + shift_row);
-    }
-  }
-  return result;
-}
 
 /// A mean that does not pass over voids: cells that hold the centre of one are void.
 void keep_voids(const Raster& raster, Raster& result) {
@@ -83,21 +68,10 @@ const char* name_of(VerticalUnit unit) {
     case VerticalUnit::metre: return "metre";
     case VerticalUnit::foot: return "foot";
     case VerticalUnit::us_survey_foot: return "us-survey-foot";
-    case VerticalUnit::declared: break;
+    case VerticalUnit::declared:
+    case VerticalUnit::same: break;
   }
   return "";
-}
-
-/// A text file cannot name its CRS; places that all could be longitude and latitude are taken for that.
-ScatteredPoints with_likely_crs(ScatteredPoints points, const std::filesystem::path& file) {
-  const Extent e = points.extent();
-  const bool like_degrees =
-      points.crs_wkt.empty() && !points.x.empty() && e.west >= -180 && e.east <= 360 && e.south >= -90 && e.north <= 90;
-  if (!like_degrees) return points;
-  points.crs_wkt = crs_by_name("EPSG:4326");
-  log_warning(fmt::format("{}: x {:g}..{:g}, y {:g}..{:g} and no CRS: taken as longitude and latitude (WGS 84)",
-                          file.string(), e.west, e.east, e.south, e.north));
-  return points;
 }
 
 /// True when all heights are whole metres, and not all the same.
@@ -128,21 +102,6 @@ void warn_of_steps(const std::filesystem::path& file, double step, double cell) 
       file.string(), step, step / std::sqrt(12.0), std::atan(step / cell) * 180 / M_PI));
 }
 
-ScatteredPoints points_in_metres(const std::filesystem::path& file, const ReadOptions& how) {
-  ScatteredPoints points = read_points_as_given(file);
-  const double metres = metres_in(how.vertical_unit).value_or(1.0);
-  for (double& z : points.z) z *= metres;
-  if (how.to_crs.empty()) {
-    require_metric(points, file, how.or_else);
-    return points;
-  }
-  points = with_likely_crs(std::move(points), file);
-  if (is_metric(points.crs_wkt)) return points;
-  log_info(fmt::format("{}: {} points moved from {} to {}", file.string(), points.x.size(), crs_name(points.crs_wkt),
-                       crs_name(how.to_crs)));
-  return transform_points(std::move(points), how.to_crs);
-}
-
 }  // namespace
 
 Extent Elevation::extent() const {
@@ -150,9 +109,10 @@ Extent Elevation::extent() const {
   return {raster.grid.west, raster.grid.south, raster.grid.east(), raster.grid.north()};
 }
 
-ReadOptions dem_reading(const Options& options) {
+ReadOptions dem_reading(const Options& options, VerticalUnit of_model) {
+  const VerticalUnit unit = of_model == VerticalUnit::same ? options.vertical_unit : of_model;
   const std::string crs = options.working_crs.empty() ? "" : metric_crs(options.working_crs);
-  return {crs, name_of(options.vertical_unit), "or set working_crs = \"utm\" in [preprocess]"};
+  return {crs, name_of(unit), "or set working_crs = \"utm\" in [preprocess]"};
 }
 
 Options with_utm_zone(Options options) {
@@ -179,7 +139,7 @@ Elevation read_elevation(std::string key, const std::filesystem::path& file, con
   elevation.file = file;
   elevation.scattered = is_point_file(file);
   if (elevation.scattered) {
-    elevation.points = points_in_metres(file, how);
+    elevation.points = read_points(file, how);
   } else {
     ReadOptions options = how;
     elevation.reprojected = !options.to_crs.empty() && !in_metres(file);
@@ -198,7 +158,7 @@ Raster read_off(const Elevation& elevation, const MapGrid& grid) {
   const bool one_crs = same_crs(elevation.crs_wkt(), grid.crs_wkt);
   if (elevation.scattered)
     return interpolate_scattered(one_crs ? elevation.points : transform_points(elevation.points, grid.crs_wkt), grid, elevation.file);
-  if (one_crs && same_lattice(elevation.raster.grid, grid)) return window(elevation.raster, grid);
+  if (one_crs && same_lattice(elevation.raster.grid, grid)) return cut_to(elevation.raster, grid);
   const bool coarser = grid.cell > elevation.cell() * (1 + 1e-6);
   if (one_crs && coarser) return coarsened(elevation.raster, grid);
   return resample_elevation(elevation.raster, grid, elevation.placement.moves() ? Interpolation::cubic : Interpolation::bilinear);
@@ -253,7 +213,7 @@ Elevation part_of(const Elevation& elevation, const Extent& extent, const std::s
 
 Raster thickness_onto_grid(const Raster& thickness, const MapGrid& grid, const std::filesystem::path& file) {
   require_same_crs(thickness, grid, file);
-  Raster result = same_lattice(thickness.grid, grid) ? window(thickness, grid) : resample_thickness(thickness, grid);
+  Raster result = same_lattice(thickness.grid, grid) ? cut_to(thickness, grid) : resample_thickness(thickness, grid);
   const auto has_data = [](double t) { return !std::isnan(t); };
   const bool overlaps = std::any_of(result.values.begin(), result.values.end(), has_data);
   for (double& t : result.values) t = std::isnan(t) ? 0.0 : t;

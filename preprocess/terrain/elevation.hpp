@@ -8,7 +8,6 @@
 
 #include "common/raster/raster.hpp"
 #include "common/raster/raster_file.hpp"
-#include "common/raster/raster_file.hpp"
 #include "preprocess/options.hpp"
 #include "preprocess/terrain/geo_input.hpp"
 #include "preprocess/terrain/placement.hpp"
@@ -32,8 +31,9 @@ struct Elevation {
 };
 
 /// What the recipe says of reading: what degrees and feet become, and the unit of heights. `to_crs` is used for files
-/// in degrees or feet alone; those in metres are brought onto the working grid in one step, later.
-ReadOptions dem_reading(const Options& options);
+/// in degrees or feet alone; those in metres are brought onto the working grid in one step, later. `of_model` is the unit
+/// that the recipe gives for one model alone.
+ReadOptions dem_reading(const Options& options, VerticalUnit of_model = VerticalUnit::same);
 
 /// The options with working_crs = "utm" replaced by the UTM zone that holds the centre of the first DEM. Throws
 /// DataError.

@@ -6,15 +6,21 @@
 #include <vector>
 
 #include "common/raster/coordinates.hpp"
+#include "common/raster/raster_file.hpp"
 
 namespace talus::preprocess {
 
-/// Elevations at scattered places.
+/// Elevations, or depths, at scattered places.
 struct ScatteredPoints {
   std::vector<double> x, y, z;  // [m]
   std::string crs_wkt;          // empty = local metric coordinates
+  bool are_depths = false;      // by the name of their column: z is counted down from the ground
+  std::string unit = {};        // of z, by the name of its column; "" = not said
   Extent extent() const;
 };
+
+/// What is looked for among the columns of a file of points. Beside depths, elevations are taken for the ground's.
+enum class PointHeights { elevations, depths_or_elevations };
 
 /// WKT2 of a CRS named in the recipe ("EPSG:32149"). Throws RecipeError when unknown or not in metres.
 std::string metric_crs(const std::string& name);
@@ -24,15 +30,22 @@ std::string metric_crs(const std::string& name);
 bool is_point_file(const std::filesystem::path& file);
 
 /// Points as they lie in their file, whatever their CRS. A header line names the columns x, y, z (any order and case;
-/// also easting, northing, longitude, latitude, elevation, height); without one they are the first three. Vector points
-/// carry z in their geometry or in such an attribute. Throws DataError with the line.
-ScatteredPoints read_points_as_given(const std::filesystem::path& file);
+/// also easting, northing, longitude, latitude, elevation, height, and depth where it is wanted), with or without a unit
+/// behind them; without one they are the first three. Vector points carry z in their geometry or in such an attribute;
+/// an attribute of depth goes before the geometry. Throws DataError with the line.
+ScatteredPoints read_points_as_given(const std::filesystem::path& file,
+                                     PointHeights heights = PointHeights::elevations);
+
+/// A text file cannot name its CRS; places that all could be longitude and latitude are taken for that, with a warning.
+ScatteredPoints with_likely_crs(ScatteredPoints points, const std::filesystem::path& file);
 
 /// Throws DataError where points are in degrees or feet; `or_else` names another way out (see ReadOptions).
 void require_metric(const ScatteredPoints& points, const std::filesystem::path& file, const std::string& or_else = "");
 
-/// read_points_as_given(), in metres.
-ScatteredPoints read_points(const std::filesystem::path& file);
+/// read_points_as_given(), in metres: z by the unit in the name of its column, else by `how.vertical_unit`; places in
+/// degrees or feet moved to `how.to_crs`, and refused where that is empty.
+ScatteredPoints read_points(const std::filesystem::path& file, const ReadOptions& how = {},
+                            PointHeights heights = PointHeights::elevations);
 
 /// The points in another CRS.
 ScatteredPoints transform_points(ScatteredPoints points, const std::string& to_wkt);

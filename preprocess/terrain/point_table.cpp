@@ -29,8 +29,37 @@ bool is_one_of(std::string_view name, std::initializer_list<std::string_view> na
   return std::find(names.begin(), names.end(), lower(name)) != names.end();
 }
 
-bool is_x_name(std::string_view name) { return is_one_of(name, {"x", "x_m", "easting", "east", "longitude", "lon"}); }
-bool is_y_name(std::string_view name) { return is_one_of(name, {"y", "y_m", "northing", "north", "latitude", "lat"}); }
+/// "Depth (m)" is depth in m, "depth_us_ft" depth in us ft.
+struct NameAndUnit {
+  std::string name, unit;
+};
+
+NameAndUnit split(std::string_view text) {
+  constexpr std::string_view parting = "_-([ ])";
+  const std::size_t end = std::min(text.find_first_of(parting), text.size());
+  NameAndUnit result{lower(text.substr(0, end)), ""};
+  for (const char c : lower(text.substr(end))) {
+    const bool parts = parting.find(c) != std::string_view::npos;
+    if (!parts) result.unit += c;
+    if (parts && !result.unit.empty() && result.unit.back() != ' ') result.unit += ' ';
+  }
+  while (result.unit.ends_with(' ')) result.unit.pop_back();
+  return result;
+}
+
+/// The units that stand behind names; other words are part of the name ("depth of bedrock", "height above").
+bool is_unit(std::string_view text) {
+  return is_one_of(text, {"", "m", "metre", "metres", "meter", "meters", "ft", "foot", "feet", "us ft", "ft us",
+                          "us survey foot", "us survey feet"});
+}
+
+bool is_place_name(std::string_view text, std::initializer_list<std::string_view> names) {
+  const auto [name, unit] = split(text);
+  return (unit.empty() || unit == "m") && is_one_of(name, names);
+}
+
+bool is_x_name(std::string_view text) { return is_place_name(text, {"x", "easting", "east", "longitude", "lon"}); }
+bool is_y_name(std::string_view text) { return is_place_name(text, {"y", "northing", "north", "latitude", "lat"}); }
 
 /// The line without its comment, cut at separators and stripped of quotes.
 std::vector<std::string> words_of(const std::string& line) {
@@ -54,18 +83,40 @@ std::optional<double> number_of(const std::string& word) {
   return value;
 }
 
-using Columns = std::array<std::size_t, 3>;  // of x, y, z
+struct Columns {
+  std::array<std::size_t, 3> of{0, 1, 2};  // x, y, z
+  HeightName z;
+};
 
-/// A header is a first line that names all three columns.
-std::optional<Columns> columns_of_header(const std::vector<std::string>& words) {
+/// A unit in brackets belongs to the name before it.
+std::vector<std::string> names_of_header(const std::vector<std::string>& words) {
+  std::vector<std::string> names;
+  for (const std::string& word : words) {
+    if (!names.empty() && (word.starts_with('(') || word.starts_with('['))) {
+      names.back() += word;
+    } else {
+      names.push_back(word);
+    }
+  }
+  return names;
+}
+
+/// A header is a first line that names all three columns. Where depths are read too, they go before elevations, which
+/// beside them are the ground's.
+std::optional<Columns> columns_of_header(const std::vector<std::string>& words, PointHeights heights) {
+  const std::vector<std::string> names = names_of_header(words);
   std::array<std::optional<std::size_t>, 3> found;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    if (is_x_name(words[i])) found[0] = i;
-    if (is_y_name(words[i])) found[1] = i;
-    if (is_z_name(words[i])) found[2] = i;
+  HeightName z;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (is_x_name(names[i])) found[0] = i;
+    if (is_y_name(names[i])) found[1] = i;
+    const auto height = height_name(names[i]);
+    if (!height || (height->depth ? heights == PointHeights::elevations : z.depth)) continue;
+    found[2] = i;
+    z = *height;
   }
   if (!found[0] || !found[1] || !found[2]) return std::nullopt;
-  return Columns{*found[0], *found[1], *found[2]};
+  return Columns{{*found[0], *found[1], *found[2]}, z};
 }
 
 [[noreturn]] void refuse_line(const std::filesystem::path& file, int line_number, const std::string& line) {
@@ -75,30 +126,36 @@ std::optional<Columns> columns_of_header(const std::vector<std::string>& words) 
 
 }  // namespace
 
-bool is_z_name(std::string_view name) {
-  return is_one_of(name, {"z", "z_m", "elevation", "elev", "height", "altitude"});
+std::optional<HeightName> height_name(std::string_view text) {
+  const auto [name, unit] = split(text);
+  const bool depth = name == "depth";
+  if (!is_unit(unit) || (!depth && !is_one_of(name, {"z", "elevation", "elev", "height", "altitude"})))
+    return std::nullopt;
+  return HeightName{depth, unit};
 }
 
-ScatteredPoints read_point_table(const std::filesystem::path& file) {
+ScatteredPoints read_point_table(const std::filesystem::path& file, PointHeights heights) {
   std::ifstream stream(file);
   if (!stream)
     throw DataError(Fault{file.string() + ": cannot be opened", "missing or not readable", "Check the path"});
   ScatteredPoints points;
-  Columns columns{0, 1, 2};
+  Columns columns;
   std::string line;
   bool first = true;
   for (int line_number = 1; std::getline(stream, line); ++line_number) {
     const auto words = words_of(line);
     if (words.empty()) continue;
     if (std::exchange(first, false)) {
-      if (const auto named = columns_of_header(words)) {
+      if (const auto named = columns_of_header(words, heights)) {
         columns = *named;
+        points.are_depths = named->z.depth;
+        points.unit = named->z.unit;
         continue;
       }
     }
     std::array<double, 3> xyz{};
     for (std::size_t i = 0; i < 3; ++i) {
-      const auto value = columns[i] < words.size() ? number_of(words[columns[i]]) : std::nullopt;
+      const auto value = columns.of[i] < words.size() ? number_of(words[columns.of[i]]) : std::nullopt;
       if (!value) refuse_line(file, line_number, line);
       xyz[i] = *value;
     }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "common/raster/crop.hpp"
 #include "common/raster/raster_io.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/sum.hpp"

@@ -16,8 +16,6 @@ namespace {
 
 constexpr double lattice_tolerance = 1e-4;  // of a cell: coordinates in files carry their own rounding
 
-bool is_whole(double value) { return std::abs(value - std::round(value)) < lattice_tolerance; }
-
 Extent intersection(const Extent& a, const Extent& b) {
   return {std::max(a.west, b.west), std::max(a.south, b.south), std::min(a.east, b.east), std::min(a.north, b.north)};
 }
@@ -104,12 +102,6 @@ std::array<Border, 4> borders(const MapGrid& grid, const std::vector<char>& empt
 
 }  // namespace
 
-bool same_lattice(const MapGrid& a, const MapGrid& b) {
-  const double cells = std::max({a.columns, a.rows, b.columns, b.rows});
-  return std::abs(a.cell / b.cell - 1) * cells < lattice_tolerance && is_whole((a.west - b.west) / a.cell) &&
-         is_whole((a.south - b.south) / a.cell);
-}
-
 MapGrid working_grid(const std::vector<const Elevation*>& dems, const Options& options) {
   const Elevation& first = *dems.front();
   const std::string crs = options.working_crs.empty() ? first.crs_wkt() : metric_crs(options.working_crs);
@@ -142,26 +134,6 @@ CellWindow trimmed(const MapGrid& grid, const std::vector<char>& empty, double a
     --(side < 2 ? w.columns : w.rows);
   }
   return w;
-}
-
-MapGrid cut(const MapGrid& grid, const CellWindow& window) {
-  MapGrid part = grid;
-  part.west = grid.west + window.column * grid.cell;
-  part.south = grid.south + window.row * grid.cell;
-  part.columns = window.columns;
-  part.rows = window.rows;
-  return part;
-}
-
-Raster cut(const Raster& raster, const CellWindow& window) {
-  Raster part{cut(raster.grid, window), {}};
-  part.values.reserve(part.grid.count());
-  for (int row = 0; row < window.rows; ++row) {
-    for (int column = 0; column < window.columns; ++column) {
-      part.values.push_back(raster.at(window.column + column, window.row + row));
-    }
-  }
-  return part;
 }
 
 }  // namespace talus::preprocess

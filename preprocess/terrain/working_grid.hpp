@@ -10,10 +10,6 @@
 
 namespace talus::preprocess {
 
-/// True when the cells of one grid are cells of the other: same size, corners a whole number of cells apart (to 1e-4 of
-/// one).
-bool same_lattice(const MapGrid& a, const MapGrid& b);
-
 /// The working grid: CRS `working_crs` or that of the first DEM, cell `spacing_m` or that of the first DEM, registered
 /// to the first DEM's south-west corner (to multiples of the spacing where that DEM is points or in another CRS); all
 /// cells that lie wholly inside every DEM and inside the crop. Throws RecipeError (no spacing for points) and DataError
@@ -24,9 +20,5 @@ MapGrid working_grid(const std::vector<const Elevation*>& dems, const Options& o
 /// emptiest first. Below 1 - 1e-9 it drops wholly empty ones; 0 leaves a rectangle without empty cells on its border,
 /// as DEMs need that were reprojected or triangulated and whose data do not end along the grid's lines.
 CellWindow trimmed(const MapGrid& grid, const std::vector<char>& empty, double allowed);
-
-/// The part of a raster or grid in the window.
-MapGrid cut(const MapGrid& grid, const CellWindow& window);
-Raster cut(const Raster& raster, const CellWindow& window);
 
 }  // namespace talus::preprocess

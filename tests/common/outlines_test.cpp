@@ -34,6 +34,11 @@ Raster around_middle(const MapGrid& grid, Function&& value) {
   return raster;
 }
 
+/// 120 m high, falling by 1 m per m, on cells of 10 m: above 20 m a disc of 100 m around (500200, 5400200).
+Raster cone() {
+  return around_middle(grid_of(40, 10), [](double r) { return 120 - r; });
+}
+
 OGRPolygon shape_of(const MapPolygon& polygon) {
   OGRPolygon shape;
   for (const auto& ring : polygon.rings) {
@@ -46,10 +51,10 @@ OGRPolygon shape_of(const MapPolygon& polygon) {
 }
 
 TEST(OutlineAbove, has_the_area_of_a_disc) {
-  // A cone of 120 m, 1 m falling per m, above 20 m: a disc of 100 m. Chords of at most a cell across a circle of ten
+  // Chords of at most a cell across a circle of ten
   // cells lie inside it by cell^2 / (8 r) at most: 1.25 m of 100 m, 2.5 % of the area; the other side is open by as
   // much.
-  const auto polygons = outline_above(around_middle(grid_of(40, 10), [](double r) { return 120 - r; }), 20);
+  const auto polygons = outline_above(cone(), 20);
   ASSERT_EQ(polygons.size(), 1U);
   EXPECT_EQ(polygons[0].rings.size(), 1U);
   const double disc = std::numbers::pi * 100 * 100;
@@ -57,7 +62,7 @@ TEST(OutlineAbove, has_the_area_of_a_disc) {
 }
 
 TEST(OutlineAbove, lies_where_the_value_is_the_threshold) {
-  const auto polygons = outline_above(around_middle(grid_of(40, 10), [](double r) { return 120 - r; }), 20);
+  const auto polygons = outline_above(cone(), 20);
   for (const auto& [x, y] : polygons.at(0).rings.at(0))
     EXPECT_NEAR(std::hypot(x - 500200, y - 5400200), 100, 0.3) << "the cone is bent by cell^2 / (8 r) within a cell";
 }
@@ -110,13 +115,13 @@ TEST(OutlineAbove, gives_valid_disjoint_polygons_of_noise) {
 class OutlineFile : public ::testing::Test {
  protected:
   void write() const {
-    const auto cone = around_middle(grid_of(40, 10), [](double r) { return r < 40 ? 0 : 120 - r; });
+    const auto crater = around_middle(grid_of(40, 10), [](double r) { return r < 40 ? 0 : 120 - r; });
     OutlineLayer deposit{"deposit", {}};
     for (const double level : {20.0, 60.0})
       deposit.features.push_back(
-          {"above " + std::to_string(static_cast<int>(level)), outline_above(cone, level), {{"threshold_m", level}}});
+          {"above " + std::to_string(static_cast<int>(level)), outline_above(crater, level), {{"threshold_m", level}}});
     deposit.features.push_back({"nothing", {}, {}});
-    write_outlines(file_, cone.grid.crs_wkt, {deposit, {"survey", {{"mapped", outline_above(cone, 40), {}}}}});
+    write_outlines(file_, crater.grid.crs_wkt, {deposit, {"survey", {{"mapped", outline_above(crater, 40), {}}}}});
   }
   Scratch scratch_;
   const std::filesystem::path file_ = scratch_ / "outlines.gpkg";
@@ -155,8 +160,7 @@ TEST_F(OutlineFile, is_what_ogrinfo_expects) {
 }
 
 TEST_F(OutlineFile, without_crs_is_read_as_it_is) {
-  auto cone = around_middle(grid_of(40, 10), [](double r) { return 120 - r; });
-  write_outlines(file_, "", {{"all", {{"cone", outline_above(cone, 20), {}}}}});
+  write_outlines(file_, "", {{"all", {{"cone", outline_above(cone(), 20), {}}}}});
   EXPECT_NEAR(read_polygons(file_, test::epsg(32611)).at(0).rings.at(0).at(0)[0], 500200, 110);
 }
 

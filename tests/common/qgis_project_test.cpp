@@ -1,24 +1,19 @@
 // A project of QGIS as an XML document: what stands in it, and what QGIS asks of it.
 #include "common/raster/qgis_project.hpp"
 
-#include <cpl_minixml.h>
 #include <gtest/gtest.h>
 
-#include <memory>
 #include <set>
 
 #include "common/error.hpp"
 #include "tests/common/rasters.hpp"
 #include "tests/common/scratch.hpp"
+#include "tests/common/xml.hpp"
 
 namespace talus {
 namespace {
 
 using test::Scratch;
-
-struct Destroy {
-  void operator()(CPLXMLNode* node) const { CPLDestroyXMLNode(node); }
-};
 
 QgisProject sample() {
   QgisProject project{"Slide & \"debris\"", test::epsg(32611), {500000, 5400000, 500400, 5400300}, {}};
@@ -35,7 +30,7 @@ class ProjectFile : public ::testing::Test {
   ProjectFile() : file_(scratch_ / "slide.qgs") { read(sample()); }
   void read(const QgisProject& project) {
     write_qgis_project(file_, project);
-    document_.reset(CPLParseXMLFile(file_.c_str()));
+    document_ = test::parsed(file_);
   }
   std::string value(const char* path) const { return CPLGetXMLValue(document_.get(), path, "none"); }
   /// Elements `name` directly inside the one at `path`.
@@ -49,7 +44,7 @@ class ProjectFile : public ::testing::Test {
 
   Scratch scratch_;
   std::filesystem::path file_;
-  std::unique_ptr<CPLXMLNode, Destroy> document_;
+  test::XmlDocument document_;
 };
 
 TEST_F(ProjectFile, names_title_crs_and_what_is_seen_first) {

@@ -1,31 +1,23 @@
 // Styles for QGIS: the classes, and the file as an XML document.
 #include "common/raster/qgis_style.hpp"
 
-#include <cpl_minixml.h>
 #include <gtest/gtest.h>
-
-#include <memory>
 
 #include "common/error.hpp"
 #include "tests/common/scratch.hpp"
+#include "tests/common/xml.hpp"
 
 namespace talus {
 namespace {
 
+using test::parsed;
 using test::Scratch;
-
-struct Destroy {
-  void operator()(CPLXMLNode* node) const { CPLDestroyXMLNode(node); }
-};
-using Document = std::unique_ptr<CPLXMLNode, Destroy>;
-
-Document parsed(const std::filesystem::path& file) { return Document(CPLParseXMLFile(file.c_str())); }
 
 struct Item {
   std::string value, colour, label;
 };
 
-std::vector<Item> items_of(const Document& document) {
+std::vector<Item> items_of(const test::XmlDocument& document) {
   std::vector<Item> items;
   CPLXMLNode* shader = CPLGetXMLNode(document.get(), "=qgis.pipe.rasterrenderer.rastershader.colorrampshader");
   for (CPLXMLNode* node = shader != nullptr ? shader->psChild : nullptr; node != nullptr; node = node->psNext) {

@@ -3,11 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 
 #include "common/error.hpp"
 #include "tests/common/rasters.hpp"
-#include "tests/common/scratch.hpp"
 #include "tests/common/tools.hpp"
 
 namespace talus {
@@ -17,18 +15,11 @@ using test::epsg;
 using test::fault_of;
 using test::identical;
 using test::random_raster;
-using test::Scratch;
 using test::small_raster;
 
-struct RasterFile : testing::Test {
-  Scratch scratch;
+struct RasterFile : test::Workshop {
   std::string fault(const std::filesystem::path& file) {
     return fault_of<DataError>([&] { read_raster(file); });
-  }
-  /// Run a shell command that must work; what it says goes into a file.
-  void shell(const std::string& command) const {
-    const std::string quiet = "cd " + scratch.folder().string() + " && (" + command + ") > log.txt 2>&1";
-    ASSERT_EQ(std::system(quiet.c_str()), 0) << command << "\n" << test::text_of(scratch / "log.txt");
   }
   /// The command a fault proposes, run as it stands; `made` is what it writes.
   Raster mended(const std::string& fault_text, const std::string& made) const {
@@ -55,17 +46,12 @@ TEST_F(RasterFile, round_trip_keeps_every_bit_and_nodata) {
 }
 
 TEST_F(RasterFile, a_large_cog_has_overviews_and_passes_gdals_own_validator) {
-  TALUS_NEED_TOOL("/usr/bin/python3 -c 'import osgeo_utils.samples.validate_cloud_optimized_geotiff'", "python3-gdal");
+  TALUS_NEED_TOOL(TALUS_COG_VALIDATOR);
   Raster raster = random_raster({1300, 1100, 500000, 5500000, 2, epsg(32611)}, 3);
   for (int row = 0; row < 300; ++row)
     for (int column = 0; column < 700; ++column) raster.at(column, row) = std::nan("");
   write_cog(scratch / "large.tif", raster, {"z", "m", {}});
-  int code = -1;
-  const auto said = test::output_of("/usr/bin/python3 -m osgeo_utils.samples.validate_cloud_optimized_geotiff --full-check=yes '" +
-                                        (scratch / "large.tif").string() + "'",
-                                    &code);
-  EXPECT_EQ(code, 0) << said;
-  EXPECT_NE(said.find("is a valid cloud optimized GeoTIFF"), std::string::npos) << said;
+  test::expect_valid_cog(scratch / "large.tif");
   const auto info = test::output_of("gdalinfo '" + (scratch / "large.tif").string() + "'");
   EXPECT_NE(info.find("Overviews: 650x550, 325x275"), std::string::npos) << info;
   EXPECT_NE(info.find("Block=512x512"), std::string::npos) << info;
@@ -106,22 +92,7 @@ TEST_F(RasterFile, row_zero_is_the_southernmost) {
 TEST_F(RasterFile, a_raster_stored_south_first_reads_the_same) {
   const Raster raster = random_raster({4, 3, 100, 200, 10, epsg(32611)}, 4);
   write_geotiff(scratch / "north.tif", raster, {"z", "m", {}});
-  const auto vrt = scratch.write(
-      "south.vrt", R"(<VRTDataset rasterXSize="4" rasterYSize="3">
-<GeoTransform>100, 10, 0, 200, 0, 10</GeoTransform><VRTRasterBand dataType="Float64" band="1">)" +
-                       [] {
-                         std::string sources;
-                         for (int row = 0; row < 3; ++row)
-                           sources +=
-                               "<SimpleSource><SourceFilename relativeToVRT=\"1\">north.tif</SourceFilename>"
-                               "<SrcRect xOff=\"0\" yOff=\"" +
-                               std::to_string(2 - row) +
-                               "\" xSize=\"4\" ySize=\"1\"/>"
-                               "<DstRect xOff=\"0\" yOff=\"" +
-                               std::to_string(row) + "\" xSize=\"4\" ySize=\"1\"/></SimpleSource>";
-                         return sources;
-                       }() +
-                       "</VRTRasterBand></VRTDataset>");
+  const auto vrt = scratch.write("south.vrt", test::south_first_vrt("north.tif", raster.grid));
   const Raster back = read_raster(vrt);
   EXPECT_EQ(back.grid.south, 200);
   EXPECT_EQ(back.values, raster.values);

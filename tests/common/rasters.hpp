@@ -42,6 +42,25 @@ inline double volume(const Raster& raster) {
   return sum * raster.grid.cell * raster.grid.cell;
 }
 
+/// A VRT that stores the cells of the GeoTIFF `file` south first, line by line.
+inline std::string south_first_vrt(const std::string& file, const MapGrid& grid) {
+  const auto number = [](double value) { return std::to_string(value); };
+  const std::string columns = std::to_string(grid.columns), rows = std::to_string(grid.rows);
+  std::string text = "<VRTDataset rasterXSize=\"" + columns + "\" rasterYSize=\"" + rows + "\"><SRS>" + grid.crs_wkt +
+                     "</SRS><GeoTransform>" + number(grid.west) + ", " + number(grid.cell) + ", 0, " +
+                     number(grid.south) + ", 0, " + number(grid.cell) +
+                     "</GeoTransform><VRTRasterBand dataType=\"Float64\" band=\"1\"><NoDataValue>-9999</NoDataValue>";
+  for (int row = 0; row < grid.rows; ++row) {
+    const auto line = [&](const char* name, int at) {
+      return std::string("<") + name + " xOff=\"0\" yOff=\"" + std::to_string(at) + "\" xSize=\"" + columns +
+             "\" ySize=\"1\"/>";
+    };
+    text += "<SimpleSource><SourceFilename relativeToVRT=\"1\">" + file + "</SourceFilename>" +
+            line("SrcRect", grid.rows - 1 - row) + line("DstRect", row) + "</SimpleSource>";
+  }
+  return text + "</VRTRasterBand></VRTDataset>";
+}
+
 /// Same cells, same bits; NaN equals NaN.
 inline bool identical(const Raster& a, const Raster& b) {
   const bool same_grid = a.grid.columns == b.grid.columns && a.grid.rows == b.grid.rows && a.grid.west == b.grid.west &&

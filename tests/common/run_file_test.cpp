@@ -2,7 +2,6 @@
 #include "common/run/run_file.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -12,6 +11,7 @@
 
 #include "common/error.hpp"
 #include "tests/common/scratch.hpp"
+#include "tests/common/tools.hpp"
 
 namespace fs = std::filesystem;
 
@@ -80,15 +80,6 @@ void write_some_run(const fs::path& file) {
   writer.finish(maps, some_history, some_summary());
 }
 
-std::string output_of(const std::string& command) {
-  std::string text;
-  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-  char buffer[4096];
-  while (pipe != nullptr && fgets(buffer, sizeof buffer, pipe) != nullptr) text += buffer;
-  if (pipe != nullptr) pclose(pipe);
-  return text;
-}
-
 /// The first fault of reading a file, which must be a DataError.
 Fault fault_of(const fs::path& file) {
   try {
@@ -144,14 +135,14 @@ TEST_F(RunFile, holds_vtkhdf_as_h5dump_sees_it) {
   ASSERT_EQ(std::system("command -v h5dump > /dev/null"), 0) << "install hdf5-tools";
   write_some_run(file_);
   const auto header =
-      output_of("h5dump -a /VTKHDF/Type -a /VTKHDF/Version -a /VTKHDF/Steps/NSteps '" + file_.string() + "'");
+      test::output_of("h5dump -a /VTKHDF/Type -a /VTKHDF/Version -a /VTKHDF/Steps/NSteps '" + file_.string() + "'");
   EXPECT_NE(header.find("UnstructuredGrid"), std::string::npos) << header;
   EXPECT_NE(header.find("STRSIZE 16"), std::string::npos) << "fixed length\n" << header;
   EXPECT_NE(header.find("H5T_CSET_ASCII"), std::string::npos) << header;
   EXPECT_NE(header.find("(0): 2, 0"), std::string::npos) << "version 2.0\n" << header;
   EXPECT_EQ(header.find("error"), std::string::npos) << header;
   const auto dump = [&](const std::string& name) {
-    return output_of("h5dump -w 0 -d /VTKHDF/" + name + " '" + file_.string() + "'");
+    return test::output_of("h5dump -w 0 -d /VTKHDF/" + name + " '" + file_.string() + "'");
   };
   EXPECT_NE(dump("NumberOfPoints").find("(0): 5, 4"), std::string::npos);
   EXPECT_NE(dump("Steps/Values").find("(0): 0, 1.5"), std::string::npos);

@@ -1,4 +1,5 @@
 // Different grids, CRS, extents and registrations brought to one grid.
+#include "common/raster/crop.hpp"
 #include "preprocess/terrain/geo_input.hpp"
 #include "preprocess/terrain/working_grid.hpp"
 #include "tests/preprocess/scene.hpp"

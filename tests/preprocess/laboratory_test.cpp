@@ -2,10 +2,12 @@
 
 #include "preprocess/prepare.hpp"
 #include "preprocess/sum.hpp"
-#include "tests/preprocess/terrain.hpp"
+#include "tests/preprocess/scene.hpp"
 
 namespace talus::preprocess {
 namespace {
+
+using test::faults_of;
 
 Options bench() {
   Options o;
@@ -18,14 +20,6 @@ Options bench() {
 }
 
 Prepared prepared(const Options& o) { return prepare(o, Points::seeded); }
-
-std::string faults_of(const Options& options) {
-  std::vector<Fault> faults;
-  options.check(faults);
-  std::string text;
-  for (const Fault& fault : faults) text += to_string(fault) + "\n";
-  return text;
-}
 
 double volume_of(const SeedPoints& points, int release) {
   Sum sum;
@@ -194,10 +188,7 @@ TEST(laboratory, reads_what_it_writes) {
   Options o = bench();
   o.laboratory.slope_x = 0.25;
   o.box.push_back({"lid", 4, 5, 4, 5, 2.5, 3});
-  const std::string text = recipe::to_toml(o, "preprocess", false);
-  test::Scratch scratch;
-  const recipe::Recipe recipe(scratch.write("recipe.toml", text));
-  EXPECT_EQ(recipe::to_toml(recipe.read<Options>("preprocess"), "preprocess", false), text);
+  test::expect_read_as_written(o);
 }
 
 }  // namespace

@@ -1,23 +1,17 @@
 #include "preprocess/options.hpp"
 
-#include "tests/preprocess/terrain.hpp"
+#include "tests/preprocess/scene.hpp"
 
 namespace talus::preprocess {
 namespace {
+
+using test::faults_of;
 
 Options before_and_after() {
   Options options;
   options.before_dem = "before.tif";
   options.after_dem = "after.tif";
   return options;
-}
-
-std::string faults_of(const Options& options) {
-  std::vector<Fault> faults;
-  options.check(faults);
-  std::string text;
-  for (const Fault& fault : faults) text += to_string(fault) + "\n";
-  return text;
 }
 
 const std::string one_way =
@@ -122,10 +116,31 @@ TEST(options, read_what_they_write) {
   options.grid.edge_nodata = EdgeNodata::outside;
   options.source.seed_x_m = 5;
   options.source.seed_y_m = 7;
-  const std::string text = recipe::to_toml(options, "preprocess", false);
-  test::Scratch scratch;
-  const recipe::Recipe recipe(scratch.write("recipe.toml", text));
-  EXPECT_EQ(recipe::to_toml(recipe.read<Options>("preprocess"), "preprocess", false), text);
+  test::expect_read_as_written(options);
+}
+
+TEST(options, units_of_one_model_come_back_and_wrong_ones_are_refused_by_word) {
+  Options options = before_and_after();
+  options.before_dem = "/data/before.tif";
+  options.after_dem = "/data/after.tif";
+  options.before_vertical_unit = VerticalUnit::us_survey_foot;
+  options.after_vertical_unit = VerticalUnit::declared;
+  test::expect_read_as_written(options);
+  const test::Scratch scratch;
+  const recipe::Recipe recipe(scratch.write("recipe.toml", "[preprocess]\nafter_vertical_unit = \"fot\"\n"));
+  const std::string fault = test::fault_of<RecipeError>([&] { recipe.read<Options>("preprocess"); });
+  EXPECT_NE(fault.find("after_vertical_unit = \"fot\" (no such choice). Did you mean \"foot\"?"), std::string::npos) << fault;
+}
+
+TEST(options, units_of_models_that_are_not_there_are_refused) {
+  Options options = before_and_after();
+  options.after_vertical_unit = VerticalUnit::foot;
+  EXPECT_EQ(faults_of(options), "");
+  options.after_dem.clear();
+  options.sliding_surface = "sliding.tif";
+  EXPECT_EQ(faults_of(options),
+            "[preprocess]: after_vertical_unit is given without after_dem (there are no heights that it speaks of). "
+            "Leave it out, or use vertical_unit, which is for all elevation models\n");
 }
 
 TEST(options, tables_of_two_models_need_two_models) {

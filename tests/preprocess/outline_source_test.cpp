@@ -21,12 +21,6 @@ struct OutlineScene : Scene {
 
 constexpr double outline_area = 16318.5;  // of that rectangle, by its corners [m2]
 
-double volume_of_points(const Prepared& prepared) {
-  Sum sum;
-  for (double v : prepared.domain.points.volume) sum.add(v);
-  return sum.value();
-}
-
 TEST(outline_source, releases_the_volume_asked_for) {
   TALUS_SEEDED(seed);
   OutlineScene scene(seed);
@@ -81,6 +75,98 @@ TEST(outline_source, goes_through_depth_points_given_as_elevation_or_as_depth) {
   for (std::size_t c = 0; c < before.values.size(); ++c)
     ASSERT_NEAR(by_depth.domain.terrain.values[c], by_elevation.domain.terrain.values[c], 1e-4);
   EXPECT_EQ(by_depth.inputs.back(), scene.surface().depth_points);
+}
+
+/// The surface through two depths, 12 and 9 m, given in metres by place on the map.
+struct KnownDepths : OutlineScene {
+  static constexpr double x = 500140, y = 5100180, x2 = 500110, y2 = 5100150;
+  const std::string crs = crs_by_name("EPSG:32633");
+
+  KnownDepths() {
+    before.grid.crs_wkt = crs;
+    rewrite_before(before);
+  }
+  /// So deep is the surface there, whatever the points say it in.
+  void expect_depths(const std::string& what) const {
+    const Prepared prepared = prepare();
+    const auto depth = [&](double px, double py) {
+      return value_at(before, px, py) - value_at(prepared.sliding_surface->surface, px, py);
+    };
+    // The files are written to 1e-5 m and 1e-10 degrees (1e-5 m), on slopes of less than one.
+    EXPECT_NEAR(depth(x, y), 12, 1e-4) << what;
+    EXPECT_NEAR(depth(x2, y2), 9, 1e-4) << what;
+  }
+  std::string in_degrees(const std::string& form, double z, double z2) const {
+    std::vector<double> longitude{x, x2}, latitude{y, y2};
+    transform_places(crs, crs_by_name("EPSG:4326"), longitude, latitude);
+    return fmt::format(fmt::runtime(form), longitude[0], latitude[0], z, longitude[1], latitude[1], z2);
+  }
+};
+
+TEST(outline_source, a_column_named_depth_holds_depths_whatever_its_case) {
+  KnownDepths scene;
+  for (const char* name : {"depth", "Depth", "DEPTH_M", "depth_m", "\"Depth (m)\"", "depth[m]"}) {
+    scene.points(fmt::format("id,x,{},y\n1,500140,12,5100180\n2,500110,9,5100150\n", name));
+    scene.expect_depths(name);
+  }
+}
+
+TEST(outline_source, a_column_of_depths_goes_before_the_elevation_of_the_ground) {
+  KnownDepths scene;
+  for (const char* header : {"x,y,elevation,depth", "x,y,depth,elevation"}) {
+    const bool depth_last = std::string(header).ends_with("depth");
+    scene.points(fmt::format("{}\n500140,5100180,{}\n500110,5100150,{}\n", header, depth_last ? "1010,12" : "12,1010",
+                             depth_last ? "1005,9" : "9,1005"));
+    scene.expect_depths(header);
+  }
+}
+
+TEST(outline_source, depths_and_elevations_of_points_are_in_the_vertical_unit) {
+  KnownDepths scene;
+  const double foot = 0.3048;
+  Raster feet = scene.before;
+  for (double& z : feet.values) z /= foot;
+  scene.rewrite_before(feet);
+  scene.options.vertical_unit = VerticalUnit::foot;
+  scene.points(fmt::format("x,y,depth\n500140,5100180,{:.5f}\n500110,5100150,{:.5f}\n", 12 / foot, 9 / foot));
+  scene.expect_depths("depths in feet");
+  scene.points(fmt::format("x,y,z\n500140,5100180,{:.5f}\n500110,5100150,{:.5f}\n",
+                           (value_at(scene.before, 500140, 5100180) - 12) / foot,
+                           (value_at(scene.before, 500110, 5100150) - 9) / foot));
+  scene.expect_depths("elevations in feet");
+}
+
+TEST(outline_source, the_unit_in_the_name_of_the_column_goes_before_the_vertical_unit) {
+  KnownDepths scene;
+  scene.points(fmt::format("x,y,depth_ft\n500140,5100180,{:.5f}\n500110,5100150,{:.5f}\n", 12 / 0.3048, 9 / 0.3048));
+  scene.expect_depths("depth_ft beside metres");
+  Raster feet = scene.before;
+  for (double& z : feet.values) z /= 0.3048;
+  scene.rewrite_before(feet);
+  scene.options.vertical_unit = VerticalUnit::foot;
+  scene.points("x,y,depth_m\n500140,5100180,12\n500110,5100150,9\n");
+  scene.expect_depths("depth_m beside feet");
+}
+
+TEST(outline_source, depth_points_in_degrees_come_to_the_crs_of_the_ground) {
+  KnownDepths scene;
+  scene.points(scene.in_degrees("longitude,latitude,depth\n{:.10f},{:.10f},{}\n{:.10f},{:.10f},{}\n", 12, 9));
+  scene.expect_depths("a table");
+  const std::string feature =
+      R"({{"type":"Feature","properties":{{"depth_m":{2}}},"geometry":{{"type":"Point","coordinates":[{0:.10f},{1:.10f},700]}}}},
+{{"type":"Feature","properties":{{"depth_m":{5}}},"geometry":{{"type":"Point","coordinates":[{3:.10f},{4:.10f},700]}}}})";
+  scene.surface().depth_points = scene.scratch.write(
+      "boreholes.geojson", R"({"type":"FeatureCollection","features":[)" + scene.in_degrees(feature, 12, 9) + "]}");
+  scene.expect_depths("vector points that also carry the ground's elevation");
+}
+
+TEST(outline_source, depth_points_in_degrees_are_refused_where_the_ground_has_no_crs) {
+  OutlineScene scene;
+  scene.surface().depth_points = scene.scratch.write(
+      "boreholes.geojson",
+      R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{"depth":12},"geometry":{"type":"Point","coordinates":[15,46]}}]})");
+  EXPECT_EQ(scene.data_fault().find(scene.path("boreholes.geojson") + ": CRS is EPSG:4326 (this stage needs metres)"), 0U)
+      << scene.data_fault();
 }
 
 TEST(outline_source, refuses_depth_points_outside_and_above_the_ground_all_at_once) {

@@ -9,12 +9,7 @@ namespace talus::preprocess {
 namespace {
 
 using test::Scene;
-
-double volume_of_points(const Prepared& prepared) {
-  Sum sum;
-  for (double v : prepared.domain.points.volume) sum.add(v);
-  return sum.value();
-}
+using test::volume_of_points;
 
 void expect_near(const Raster& a, const Raster& b, double tolerance) {
   ASSERT_EQ(a.values.size(), b.values.size());

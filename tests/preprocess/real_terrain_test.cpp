@@ -6,10 +6,12 @@
 #include "preprocess/release/sliding_surface.hpp"
 #include "preprocess/sum.hpp"
 #include "tests/preprocess/outlines.hpp"
-#include "tests/preprocess/terrain.hpp"
+#include "tests/preprocess/scene.hpp"
 
 namespace talus::preprocess {
 namespace {
+
+using test::volume_of_points;
 
 std::filesystem::path data(const std::string& scene) {
   const char* given = std::getenv("TALUS_DATA");
@@ -22,12 +24,6 @@ std::filesystem::path data(const std::string& scene) {
     std::cerr << "SKIPPED: " << (folder).string() << " is missing (set TALUS_DATA)\n"; \
     GTEST_SKIP() << (folder).string() << " is missing";                                \
   }
-
-double volume_of_points(const Prepared& prepared) {
-  Sum sum;
-  for (double v : prepared.domain.points.volume) sum.add(v);
-  return sum.value();
-}
 
 TEST(real_terrain, frank_slide_has_36_million_cubic_metres) {
   const auto folder = data("frank_slide");

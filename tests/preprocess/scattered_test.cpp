@@ -1,6 +1,7 @@
 #include "preprocess/terrain/scattered.hpp"
 
 #include "preprocess/terrain/geo_input.hpp"
+#include "preprocess/terrain/point_table.hpp"
 #include "tests/preprocess/terrain.hpp"
 
 namespace talus::preprocess {
@@ -86,6 +87,29 @@ TEST(point_table, reads_columns_by_name_in_any_order) {
   EXPECT_EQ(points.x, (std::vector<double>{10, 11}));
   EXPECT_EQ(points.y, (std::vector<double>{20, 21}));
   EXPECT_EQ(points.z, (std::vector<double>{100.5, 101}));
+}
+
+TEST(point_table, knows_units_behind_the_names_of_columns) {
+  Scratch scratch;
+  const auto file = scratch.write("p.csv", "X (m); Y (m); Elevation (ft)\n10;20;100\n");
+  const ScatteredPoints given = read_points_as_given(file);
+  EXPECT_EQ(given.unit, "ft");
+  EXPECT_EQ(given.y, std::vector<double>{20});
+  EXPECT_NEAR(read_points(file).z.front(), 30.48, 1e-12);
+  EXPECT_NEAR(read_points(file, {"", "metre", ""}).z.front(), 30.48, 1e-12);
+  EXPECT_NEAR(read_points(scratch.write("q.csv", "x,y,z\n1,2,100\n"), {"", "foot", ""}).z.front(), 30.48, 1e-12);
+  EXPECT_EQ(height_name("Z_US_ft")->unit, "us ft");
+  for (const char* name : {"depth of bedrock", "depth_error_m", "zone", "height_s", "x"})
+    EXPECT_FALSE(height_name(name)) << name;
+}
+
+TEST(point_table, takes_no_depths_for_elevations) {
+  Scratch scratch;
+  EXPECT_NE(fault_of<DataError>([&] { read_points(scratch.write("p.csv", "x,y,depth\n1,2,3\n")); }).find("line 1"),
+            std::string::npos);
+  const ScatteredPoints both = read_points(scratch.write("q.csv", "x,y,z,depth\n1,2,3,4\n"));
+  EXPECT_EQ(both.z, std::vector<double>{3});
+  EXPECT_FALSE(both.are_depths);
 }
 
 TEST(point_table, reads_blanks_semicolons_and_comments) {

@@ -6,6 +6,30 @@
 
 namespace talus::test {
 
+/// All material points together [m3].
+inline double volume_of_points(const preprocess::Prepared& prepared) {
+  preprocess::Sum sum;
+  for (double v : prepared.domain.points.volume) sum.add(v);
+  return sum.value();
+}
+
+/// What is wrong with options before any file is read, one fault a line.
+inline std::string faults_of(const preprocess::Options& options) {
+  std::vector<Fault> faults;
+  options.check(faults);
+  std::string text;
+  for (const Fault& fault : faults) text += to_string(fault) + "\n";
+  return text;
+}
+
+/// Options come back from the recipe that is written of them.
+inline void expect_read_as_written(const preprocess::Options& options) {
+  const std::string text = recipe::to_toml(options, "preprocess", false);
+  const Scratch scratch;
+  const recipe::Recipe recipe(scratch.write("recipe.toml", text));
+  EXPECT_EQ(recipe::to_toml(recipe.read<preprocess::Options>("preprocess"), "preprocess", false), text);
+}
+
 struct Scene {
   Scratch scratch;
   MapGrid grid = grid_of(40, 30, 10);

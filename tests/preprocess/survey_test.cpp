@@ -108,7 +108,46 @@ TEST(survey, says_so_when_one_model_looks_like_feet) {
   Raster feet = scene.after;
   for (double& z : feet.values) z /= 0.3048;
   scene.rewrite_after(feet);
-  EXPECT_NE(scene.data_fault().find("look like feet"), std::string::npos) << scene.data_fault();
+  const std::string fault = scene.data_fault();
+  EXPECT_NE(fault.find("look like feet"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("after_vertical_unit = \"foot\""), std::string::npos) << fault;
+  scene.options.after_vertical_unit = VerticalUnit::foot;
+  EXPECT_EQ(scene.data_fault(), "") << "what it says helps";
+}
+
+/// Heights of a scene in another unit than the file says, which is none.
+void rewrite_in(test::Scene& scene, double before_metres, double after_metres) {
+  Raster before = scene.before, after = scene.after;
+  for (double& z : before.values) z /= before_metres;
+  for (double& z : after.values) z /= after_metres;
+  scene.rewrite_before(before);
+  scene.rewrite_after(after);
+}
+
+TEST(survey, one_model_in_feet_and_one_in_metres_are_compared_in_metres) {
+  constexpr double ft = 0.3048, us_ft = 1200.0 / 3937.0;
+  struct Case {
+    double before, after;
+    VerticalUnit all, only_before, only_after;
+  };
+  using enum VerticalUnit;
+  for (const Case& c : {Case{1, ft, declared, same, foot}, {us_ft, 1, declared, us_survey_foot, same}, {ft, 1, foot, same, metre}, {ft, 1, foot, same, declared},
+                        {us_ft, ft, foot, us_survey_foot, same}}) {
+    test::Scene scene;
+    rewrite_in(scene, c.before, c.after);
+    scene.options.vertical_unit = c.all;
+    scene.options.before_vertical_unit = c.only_before;
+    scene.options.after_vertical_unit = c.only_after;
+    const Prepared prepared = scene.prepare();
+    const auto& difference = prepared.slide->change;
+    for (std::size_t i = 0; i < difference.values.size(); ++i) {
+      const double change = scene.after.values[i] - scene.before.values[i];
+      if (!(scene.bowl.values[i] > 0)) continue;
+      ASSERT_NEAR(difference.values[i], change, 1e-9);  // rounding of heights of 1000 m
+    }
+    EXPECT_NEAR(prepared.slide->volumes[0].volume.volume / test::volume_of(scene.bowl), 1, 1e-6);
+    EXPECT_NEAR(prepared.total.volume / test::volume_of(scene.bowl), 1, 1e-6);
+  }
 }
 
 /// Two cells: one beyond its level, one not.
@@ -194,14 +233,36 @@ TEST(robust, statistics_ignore_a_few_wild_values) {
   EXPECT_TRUE(std::isnan(median({})));
 }
 
+const char* const eastern_half = "POLYGON((500300 5100000, 500400 5100000, 500400 5100300, 500300 5100300, 500300 5100000))";
+
 TEST(delineation, deposit_is_what_rose_beside_the_source_or_inside_its_polygon) {
   test::Scene scene;
   const double heap = test::volume_of(scene.heap);
   EXPECT_NEAR(scene.prepare().slide->volumes[1].volume.volume / heap, 1, 0.02);  // rim thinner than threshold_m left out
-  scene.options.deposit.polygon = test::write_polygon(scene.scratch, "heap.csv", "POLYGON((500300 5100000, 500400 5100000, 500400 5100300, 500300 5100300, 500300 5100000))");
+  scene.options.deposit.polygon = test::write_polygon(scene.scratch, "heap.csv", eastern_half);
   const double part = scene.prepare().slide->volumes[1].volume.volume;
   EXPECT_GT(part, 0.3 * heap);
   EXPECT_LT(part, 0.7 * heap);  // the polygon begins at the heap's middle
+}
+
+/// What tells the alignment and what is delineated is the same outline: the file may be gone by then.
+TEST(delineation, outlines_are_read_once) {
+  test::Scene scene;
+  scene.options.deposit.polygon = test::write_polygon(scene.scratch, "heap.csv", eastern_half);
+  const Prepared whole = scene.prepare();
+  const Survey survey = survey_of(scene.options);
+  std::filesystem::remove(scene.scratch / "heap.csv");
+  SurveyedSlide slide = slide_on(survey, scene.before, {});
+  delineate(survey, {scene.before, scene.after, scene.bowl}, scene.options, slide);
+  EXPECT_EQ(slide.volumes[1].volume.volume, whole.slide->volumes[1].volume.volume);
+  EXPECT_GT(slide.volumes[1].volume.volume, 0);
+}
+
+TEST(delineation, an_outline_that_crosses_itself_is_refused_before_anything_is_compared) {
+  test::Scene scene;
+  scene.options.deposit.polygon =
+      test::write_polygon(scene.scratch, "heap.csv", "POLYGON((500100 5100100, 500300 5100200, 500300 5100100, 500100 5100200, 500100 5100100))");
+  EXPECT_NE(test::fault_of<DataError>([&] { survey_of(scene.options); }).find("heap.csv: polygon 1: its outline crosses"), std::string::npos);
 }
 
 /// The polygon runs between cell centres, so that cells on it count in part.
