@@ -135,7 +135,6 @@ KernelRun time_kernels(const KernelSetting& k, On on) {
   const auto timed = [&](int steps) {
     const auto begun = WallClock::now();
     const Taken taken = take(*solver, steps);
-    run.cg_iterations = taken.linear;
     run.steps = taken.steps;
     return std::chrono::duration<double>(WallClock::now() - begun).count() / taken.steps;
   };
@@ -152,14 +151,26 @@ KernelRun time_kernels(const KernelSetting& k, On on) {
   run.pass = run.check < (k.newmark ? 2e-3 : k.precision == Precision::double_ ? 1e-9 : 1e-3);
   for (const auto& [owner, bytes] : solver->memory()) run.memory.emplace_back(owner, static_cast<double>(bytes));
   Profile& profile = Profile::of_run();
-  profile.clear();
-  profile.turn_on();
-  const int profiled = take(*solver, few).steps;
-  profile.turn_off();
-  for (const auto& phase : profile.phases()) {
-    if (phase.seconds > 0) run.phases.emplace_back(phase.name, phase.seconds / profiled);
+  const auto profiled = [&](bool kernels) {
+    profile.clear();
+    profile.turn_on(kernels);
+    const Taken taken = take(*solver, kernels ? few : 20);
+    profile.turn_off();
+    return taken;
+  };
+  const auto keep_phases = [&](int over) {
+    for (const auto& phase : profile.phases()) {
+      if (phase.seconds > 0) run.phases.emplace_back(phase.name, phase.seconds / over);
+    }
+  };
+  if (k.newmark) {  // whose phases hold many kernels each: marks around every one would be in the way
+    const Taken taken = profiled(false);
+    run.cg_iterations = static_cast<double>(taken.linear) / taken.steps;
+    keep_phases(taken.steps);
   }
-  for (const auto& kernel : profile.kernels()) run.kernels.push_back({kernel.name, kernel.seconds / profiled, kernel.bytes / profiled});
+  const int steps_profiled = profiled(true).steps;
+  if (!k.newmark) keep_phases(steps_profiled);
+  for (const auto& kernel : profile.kernels()) run.kernels.push_back({kernel.name, kernel.seconds / steps_profiled, kernel.bytes / steps_profiled});
   std::sort(run.kernels.begin(), run.kernels.end(), [](const auto& a, const auto& b) { return a.seconds > b.seconds; });
   return run;
 }

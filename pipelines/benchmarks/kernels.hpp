@@ -17,7 +17,7 @@ struct KernelRun {
   int steps = 0;           // timed, in each of three rounds
   double step_seconds = 0;  // median of the rounds
   double bytes = 0;        // of points, grid and solver
-  double cg_iterations = 0;  // newmark: in the timed steps of a round
+  double cg_iterations = 0;  // newmark: a step, in those whose phases are told
   double check = 0;        // how far the momentum is off the closed form, over that at 0.36 m/s
   bool pass = false;
   std::vector<std::pair<std::string, double>> phases;  // seconds a step, in a round of its own

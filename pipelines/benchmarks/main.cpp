@@ -54,7 +54,7 @@ std::string csv_of(const std::vector<KernelRun>& runs, double copy) {
     return all;
   };
   for (const KernelRun& r : runs) {
-    const double iterations = r.cg_iterations / r.steps;
+    const double iterations = r.cg_iterations;
     double cg = 0;
     for (const auto& [name, seconds] : r.phases) cg += name == "conjugate gradients" ? seconds : 0;
     std::vector<KernelRun::Kernel> longest(r.kernels.begin(), r.kernels.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(r.kernels.size(), 12)));

@@ -12,10 +12,18 @@ template <class Real>
 struct MakeKeys {
   ParticleView<Real> points;
   int blocks_x;
+  bool by_lowest_node;  // of hats; else by the nearest one
   std::uint64_t* keys;
   TALUS_HD void operator()(int p) const {
-    const int octant = (points.offset_x[p] < Real(0) ? 0 : 1) + (points.offset_y[p] < Real(0) ? 0 : 2) + (points.offset_z[p] < Real(0) ? 0 : 4);
-    keys[p] = points.cell_x[p] < 0 ? ~std::uint64_t{0} : home_key(blocks_x, points.cell_x[p], points.cell_y[p], points.cell_z[p], octant);
+    const int i = points.cell_x[p], j = points.cell_y[p], k = points.cell_z[p];
+    const bool x = points.offset_x[p] < Real(0), y = points.offset_y[p] < Real(0), z = points.offset_z[p] < Real(0);
+    if (i < 0) {
+      keys[p] = ~std::uint64_t{0};
+    } else if (by_lowest_node) {
+      keys[p] = home_key(blocks_x, i - (x && i > 0), j - (y && j > 0), k - (z && k > 0));
+    } else {
+      keys[p] = home_key(blocks_x, i, j, k, (x ? 0 : 1) + (y ? 0 : 2) + (z ? 0 : 4));
+    }
   }
 };
 
@@ -82,7 +90,8 @@ struct GiveStorage {
 }  // namespace
 
 template <class Real, class Place>
-SparseGrid<Real, Place>::SparseGrid(const GridShape& shape, int drift, bool in_order) : shape_(shape), drift_(drift), ground_(make_ground_tables(shape)) {
+SparseGrid<Real, Place>::SparseGrid(const GridShape& shape, int drift, bool in_order, bool by_lowest_node)
+    : shape_(shape), drift_(drift), by_lowest_node_(by_lowest_node && Place::is_gpu && !in_order), ground_(make_ground_tables(shape)) {
   groups_.in_order = in_order;
   blocks_x_ = (shape.columns + block_side - 1) / block_side;
   blocks_y_ = (shape.rows + block_side - 1) / block_side;
@@ -106,6 +115,7 @@ GridView<Real> SparseGrid<Real, Place>::view() const {
   v.layer_height = static_cast<Real>(shape_.layer_height);
   v.lowest_weighed = static_cast<Real>(shape_.lowest_weighed);
   v.drift = drift_;
+  v.homes_below = by_lowest_node_;
   v.walls = walls_;
   v.mapping = shape_.mapping;
   v.ground = shape_.ground;
@@ -120,7 +130,7 @@ GridView<Real> SparseGrid<Real, Place>::view() const {
 template <class Real, class Place>
 void SparseGrid<Real, Place>::fit(Particles<Real, Place>& points, int gone) {
   keys_.resize(static_cast<std::size_t>(points.count()));
-  for_each(Place{}, points.count(), MakeKeys<Real>{points.view(), blocks_x_, keys_.data()});
+  for_each(Place{}, points.count(), MakeKeys<Real>{points.view(), blocks_x_, by_lowest_node_, keys_.data()});
   sort_order(Place{}, keys_, order_);
   points.reorder(order_, points.count() - gone);
   measure_extents(points);

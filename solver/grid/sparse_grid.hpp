@@ -39,7 +39,8 @@ class SparseGrid {
  public:
   /// `drift`: how far a point may go from home before it is sorted again [cells]. At most one on the CPU, where blocks of the same colour stand four columns apart.
   /// `in_order`: scatters give the same bits on every run on a GPU too; a drift of at most one there as well.
-  SparseGrid(const GridShape& shape, int drift, bool in_order = false);
+  /// `by_lowest_node`: points are sorted by the lowest of their nodes, where no order asks for more: with hats, those of one cell do not have the same nodes.
+  SparseGrid(const GridShape& shape, int drift, bool in_order = false, bool by_lowest_node = false);
 
   /// Sort the points by home cell, drop those that left (the `gone` last ones after sorting), and give storage to every
   /// column and layer they reach until they have drifted too far.
@@ -64,6 +65,7 @@ class SparseGrid {
 
   GridShape shape_;
   int drift_;
+  bool by_lowest_node_;
   GroundTables ground_;
   WallNodes walls_;
   int blocks_x_ = 0, blocks_y_ = 0, nodes_ = 0, active_ = 0;

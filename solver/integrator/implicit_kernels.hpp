@@ -5,6 +5,7 @@
 #include "solver/contact/walls.hpp"
 #include "solver/grid/bicubic.hpp"
 #include "solver/integrator/clock.hpp"
+#include "solver/linear/conjugate_gradient.hpp"
 #include "solver/linear/mean_dilation.hpp"
 #include "solver/material/tangent.hpp"
 #include "solver/transfer/point_gradients.hpp"
@@ -151,6 +152,7 @@ struct ScatterForces : PointScatter<Real, Shape> {
   static constexpr int parts = 3;
   Law law;
   Vec3<double>* forces;
+  const CgState* loop = nullptr;  // that it is part of; does nothing once it is over
 
   double bytes(int count) const { return law.bytes(count) + count * (this->points.place_bytes + sizeof(Real)) + this->grid.nodes * 3.0 * sizeof(*forces); }
 
@@ -165,6 +167,7 @@ struct ScatterForces : PointScatter<Real, Shape> {
   using Sums = Vec3<double>;
 
   TALUS_HD void operator()(int p) const { scatter_point(*this, p); }
+  TALUS_HD bool counts(int p) const { return Base::counts(p) && (!loop || loop->halt == CgState::no); }
   TALUS_HD void add(const Source& g, int q, Sums (&sums)[Base::deep]) const {
     TALUS_UNROLL
     for (int c = 0; c < Base::deep; ++c) sums[c] += widen(g.pull * g.gradient(Base::along_x(q), Base::along_y(q), c));

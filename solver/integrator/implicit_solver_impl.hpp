@@ -470,8 +470,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   /// The tangent of the step as conjugate gradients take it.
   struct LinearSystem {
     ImplicitSolverOf& solver;
-    void product(const NodeVector<Place>& x, NodeVector<Place>& y) {
-      solver.operator_.apply(x, y);
+    void product(const NodeVector<Place>& x, NodeVector<Place>& y, const CgState* state = nullptr) {
+      solver.operator_.apply(x, y, state);
       if (!solver.contact_.on()) return;
       solver.contact_.each(ApplyContacts<Real, Shape>{solver.grid_.view(), solver.contact_.view(), solver.mass_.data(), solver.contact_stiffness_.data(), x.data(), y.data()});
     }
@@ -479,6 +479,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
       return {solver.nodes(), solver.held(), solver.scheme_.inertia(), x.data(), y.data()};
     }
     void precondition(const NodeVector<Place>& r, NodeVector<Place>& z, CgState* state) { solver.preconditioner_.apply(r, z, state); }
+    void precondition_after(const talus::detail::StepAlong& step, const NodeVector<Place>& r, NodeVector<Place>& z, CgState* state) { solver.preconditioner_.apply_after(step, r, z, state); }
   };
 
   /// How far the points move [cells]. Shape functions stand still during a step, and points must not outrun them: one cell at most.

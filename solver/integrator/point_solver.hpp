@@ -52,7 +52,7 @@ class PointSolver : public Solver {
         materials_(make_materials<Real>(options, scene.grid.spacing, scene.grid.layer_height)),
         dilatant_(fields.plastic_volume),
         points_(fields),
-        grid_(scene.grid, drift, options.deterministic),
+        grid_(scene.grid, drift, options.deterministic, Shape::width == 2),
         bed_(make_base_friction<Real>(options), scene.bed),
         contact_(scene.contacts, options.obstacles, bed_.view(), scene.grid, state.contacts, options.deterministic),
         frame_{{scene.map.x(0), scene.map.y(0), grid_.ground().datum},

@@ -72,6 +72,13 @@ struct FinishResidual {
     if (state->halt == CgState::no) state->take_residual(*total);
   }
 };
+struct FinishResidualAndAngle {
+  CgState* state;
+  TALUS_HD void operator()(const double* total) const {
+    if (state->halt == CgState::no) state->take_residual(total[0]);
+    if (state->halt == CgState::no) state->take_angle(total[1]);
+  }
+};
 struct FinishAngle {
   CgState* state;
   TALUS_HD void operator()(const double* total) const {
@@ -104,17 +111,18 @@ struct CloseProductOf {
   }
 };
 
+/// A node's part of the step along p, while the loop goes on. Returns its share of r . r.
 struct StepAlong {
-  const CgState* state;
+  CgState* state;
   const Vec3<double>*p, *ap;
   Vec3<double>*x, *r;
   double bytes(int count) const { return 6.0 * count * sizeof(Vec3<double>); }
-  TALUS_HD Terms<1> operator()(int n) const {
-    if (state->halt != CgState::no) return {};
+  TALUS_HD double operator()(int n) const {
     const double alpha = state->angle / state->curvature;
     x[n] += p[n] * alpha;
-    r[n] = r[n] - ap[n] * alpha;
-    return {{dot(r[n], r[n])}};
+    const Vec3<double> rest = r[n] - ap[n] * alpha;
+    r[n] = rest;
+    return dot(rest, rest);
   }
 };
 
@@ -134,8 +142,9 @@ struct TurnDirection {
 template <class Place>
 class ConjugateGradient {
  public:
-  /// Solves A x = b from x = 0. `system` has three members: product(p, ap), which adds to ap what takes more than one node; close(p, ap), a kernel over the nodes that
-  /// completes ap; precondition(r, z, state), which leaves z and r . z (detail::FinishAngle).
+  /// Solves A x = b from x = 0. `system` has four members: product(p, ap, state), which adds to ap what takes more than one node and may do nothing once `state` has halted;
+  /// close(p, ap), a kernel over the nodes that completes ap; precondition(r, z, state), which leaves z and r . z (detail::FinishAngle);
+  /// precondition_after(step, r, z, state), which does the same after detail::StepAlong, and leaves r . r too.
   template <class System>
   LinearReport solve(const NodeVector<Place>& b, NodeVector<Place>& x, double tolerance, int most, System&& system) {
     const int count = static_cast<int>(b.size());
@@ -153,10 +162,9 @@ class ConjugateGradient {
     for (;;) {
       loop_.repeat(ahead, [&] {
         for_each(Place{}, count, detail::TurnDirection{s, z_.data(), p_.data(), ap_.data()});
-        system.product(p_, ap_);
+        system.product(p_, ap_, s);
         sum_each<1>(Place{}, count, sums_, close_product(system.close(p_, ap_)), detail::FinishCurvature{s});
-        sum_each<1>(Place{}, count, sums_, detail::StepAlong{s, p_.data(), ap_.data(), x.data(), r_.data()}, detail::FinishResidual{s});
-        system.precondition(r_, z_, s);
+        system.precondition_after(detail::StepAlong{s, p_.data(), ap_.data(), x.data(), r_.data()}, r_, z_, s);
       });
       state = state_.download().front();
       if (state.halt != CgState::no) break;

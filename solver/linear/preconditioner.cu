@@ -101,6 +101,11 @@ struct InvertBlocks {
   TALUS_HD static double safe(double d) { return d > 0 ? 1 / d : 0; }
 };
 
+/// Nothing is done with a node before it is preconditioned.
+struct Stay {
+  TALUS_HD double operator()(int) const { return 0; }
+};
+
 /// One thread: one node. z = P inverse P r. Returns r . z.
 struct ApplyBlocks {
   HeldNodes held;
@@ -108,7 +113,9 @@ struct ApplyBlocks {
   const Vec3<double>* r;
   Vec3<double>* z;
   double bytes(int count) const { return count * static_cast<double>(sizeof(*inverse) + sizeof(*held.freed) + sizeof(*r) + sizeof(*z)); }
-  TALUS_HD double operator()(int n) const {
+  template <class Before>
+  TALUS_HD double operator()(int n, const Before& before, double& stepped) const {
+    stepped = before(n);
     z[n] = held.freed[n] * (inverse[n] * (held.freed[n] * r[n]));
     return dot(r[n], z[n]);
   }
@@ -137,9 +144,13 @@ struct SolveColumns {
   const Vec3<double>* r;
   Vec3<double>* z;
   double bytes(int) const { return held.count * static_cast<double>(sizeof(Sym3<double>) + reach * sizeof(Mat3<double>) + sizeof(*held.freed) + sizeof(*r) + sizeof(*z)); }
-  TALUS_HD double operator()(int c) const {
+  template <class Before>
+  TALUS_HD double operator()(int c, const Before& before, double& stepped) const {
     const ColumnNodes<Real> node(columns, c);
-    for (int k = 0; k < node.layers; ++k) z[node[k]] = held.freed[node[k]] * r[node[k]];
+    for (int k = 0; k < node.layers; ++k) {
+      stepped += before(node[k]);
+      z[node[k]] = held.freed[node[k]] * r[node[k]];
+    }
     solve_column<Real, reach>(node, factors, z, z);
     double angle = 0;
     for (int k = 0; k < node.layers; ++k) {
@@ -154,17 +165,56 @@ struct SolveColumns {
 /// One thread: one node's share of r . z.
 struct TakeAngle {
   const Vec3<double>*r, *z;
-  TALUS_HD double operator()(int n) const { return dot(r[n], z[n]); }
+  template <class Before>
+  TALUS_HD double operator()(int n, const Before&, double&) const { return dot(r[n], z[n]); }
 };
 
-/// A preconditioner's kernel in a loop that may be over.
+/// A preconditioner's kernel by itself.
+template <class Kernel>
+struct Alone {
+  using Named = Kernel;
+  double bytes(int count) const { return kernel_bytes(kernel, count); }
+  Kernel kernel;
+  TALUS_HD void operator()(int i) const {
+    double stepped = 0;
+    kernel(i, Stay{}, stepped);
+  }
+};
+
+/// The same in a loop that may be over.
 template <class Kernel>
 struct Measured {
   using Named = Kernel;
   double bytes(int count) const { return kernel_bytes(kernel, count); }
   Kernel kernel;
   const CgState* state;
-  TALUS_HD Terms<1> operator()(int i) const { return state->halt == CgState::no ? Terms<1>{{kernel(i)}} : Terms<1>{}; }
+  TALUS_HD Terms<1> operator()(int i) const {
+    double stepped = 0;
+    return state->halt == CgState::no ? Terms<1>{{kernel(i, Stay{}, stepped)}} : Terms<1>{};
+  }
+};
+
+/// After the step of that loop. Both sums are of its nodes.
+template <class Kernel>
+struct MeasuredAfter {
+  using Named = Kernel;
+  double bytes(int count) const { return kernel_bytes(kernel, count) + step.bytes(kernel.held.count) - kernel.held.count * static_cast<double>(sizeof(*step.r)); }
+  Kernel kernel;
+  talus::detail::StepAlong step;
+  TALUS_HD Terms<2> operator()(int i) const {
+    if (step.state->halt != CgState::no) return {};
+    Terms<2> terms;
+    terms.value[1] = kernel(i, step, terms.value[0]);
+    return terms;
+  }
+};
+
+/// The step alone, where the preconditioner needs all of it first.
+struct MeasuredStep {
+  using Named = talus::detail::StepAlong;
+  double bytes(int count) const { return step.bytes(count); }
+  talus::detail::StepAlong step;
+  TALUS_HD Terms<1> operator()(int n) const { return step.state->halt == CgState::no ? Terms<1>{{step(n)}} : Terms<1>{}; }
 };
 
 }  // namespace
@@ -198,8 +248,14 @@ void NodePreconditioner<Real, Place, Shape>::refresh(const PointTangents<Real>& 
 template <class Real, class Place, class Shape>
 template <class Kernel>
 void NodePreconditioner<Real, Place, Shape>::run(int count, const Kernel& kernel, CgState* state) {
-  if (!state) return for_each(Place{}, count, kernel);
+  if (!state) return for_each(Place{}, count, Alone<Kernel>{kernel});
   sum_each<1>(Place{}, count, sums_, Measured<Kernel>{kernel, state}, talus::detail::FinishAngle{state});
+}
+
+template <class Real, class Place, class Shape>
+template <class Kernel>
+void NodePreconditioner<Real, Place, Shape>::run_after(const talus::detail::StepAlong& step, int count, const Kernel& kernel, CgState* state) {
+  sum_each<2>(Place{}, count, sums_, MeasuredAfter<Kernel>{kernel, step}, talus::detail::FinishResidualAndAngle{state});
 }
 
 template <class Real, class Place, class Shape>
@@ -211,6 +267,18 @@ void NodePreconditioner<Real, Place, Shape>::apply(const NodeVector<Place>& r, N
     run(columns_.count(), SolveColumns<Real, reach>{columns_, held_, factors(), r.data(), z.data()}, state);
   } else {
     run(held_.count, ApplyBlocks{held_, blocks_.data(), r.data(), z.data()}, state);
+  }
+}
+
+template <class Real, class Place, class Shape>
+void NodePreconditioner<Real, Place, Shape>::apply_after(const talus::detail::StepAlong& step, const NodeVector<Place>& r, NodeVector<Place>& z, CgState* state) {
+  if (by_elements(kind_)) {
+    sum_each<1>(Place{}, held_.count, sums_, MeasuredStep{step}, talus::detail::FinishResidual{state});
+    apply(r, z, state);
+  } else if (kind_ == Preconditioner::column) {
+    run_after(step, columns_.count(), SolveColumns<Real, reach>{columns_, held_, factors(), r.data(), z.data()}, state);
+  } else {
+    run_after(step, held_.count, ApplyBlocks{held_, blocks_.data(), r.data(), z.data()}, state);
   }
 }
 

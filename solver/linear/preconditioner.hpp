@@ -28,11 +28,15 @@ class NodePreconditioner {
                const HeldNodes& held);
   /// z = B^-1 r; hands r . z to `state`, and does nothing where that has halted. Without one: z alone.
   void apply(const NodeVector<Place>& r, NodeVector<Place>& z, CgState* state = nullptr);
+  /// The same after a step, in one sweep where a node or a column is preconditioned by itself; hands over r . r too.
+  void apply_after(const talus::detail::StepAlong& step, const NodeVector<Place>& r, NodeVector<Place>& z, CgState* state);
   std::size_t bytes() const { return blocks_.bytes() + above_[0].bytes() + above_[1].bytes() + grids_.bytes(); }
 
  private:
   template <class Kernel>
   void run(int count, const Kernel& kernel, CgState* state);
+  template <class Kernel>
+  void run_after(const talus::detail::StepAlong& step, int count, const Kernel& kernel, CgState* state);
 
   ColumnFactors factors() { return {blocks_.data(), {above_[0].data(), above_[1].data()}}; }
 

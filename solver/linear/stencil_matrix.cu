@@ -81,9 +81,11 @@ struct ApplyRow {
   View matrix;
   const Vec3<double>* x;
   Vec3<double>* y;
+  const CgState* state;
   double bytes(int rows) const {
     return rows * static_cast<double>(View::neighbours * (9 * sizeof(*matrix.blocks) + sizeof(int)) + sizeof(*x) + 2 * sizeof(*y));
   }
+  TALUS_HD bool idle() const { return state && state->halt != CgState::no; }
   TALUS_HD Vec3<double> term(int row, int q) const { return matrix.product(row, q, x); }
   TALUS_HD void finish(int row, const Vec3<double>& sum) const { y[matrix.node_of[row]] += sum; }
 };
@@ -120,8 +122,8 @@ void StencilMatrix<Real, Place, Shape, Number>::assemble(const ElementList<Real,
 }
 
 template <class Real, class Place, class Shape, class Number>
-void StencilMatrix<Real, Place, Shape, Number>::apply(const NodeVector<Place>& x, NodeVector<Place>& y) {
-  sum_rows<View::neighbours>(Place{}, rows_, ApplyRow<View>{view(), x.data(), y.data()});
+void StencilMatrix<Real, Place, Shape, Number>::apply(const NodeVector<Place>& x, NodeVector<Place>& y, const CgState* state) {
+  sum_rows<View::neighbours>(Place{}, rows_, ApplyRow<View>{view(), x.data(), y.data(), state});
 }
 
 #define TALUS_INSTANTIATE(Real, Place, Shape) template class StencilMatrix<Real, Place, Shape>;

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "solver/linear/element_sums.hpp"
-#include "solver/linear/vectors.hpp"
+#include "solver/linear/conjugate_gradient.hpp"
 
 namespace talus::solver {
 
@@ -60,8 +60,8 @@ class StencilMatrix {
   /// Sums the points' tangents; `build` came before.
   void assemble(const ElementList<Real, Place, Shape>& list, const PointTangents<Real>& from);
 
-  /// y += K x
-  void apply(const NodeVector<Place>& x, NodeVector<Place>& y);
+  /// y += K x; nothing in a loop that is over.
+  void apply(const NodeVector<Place>& x, NodeVector<Place>& y, const CgState* state = nullptr);
 
   View view() { return {rows_, node_of_.data(), row_of_.data(), table_.data(), blocks_.data()}; }
   int rows() const { return rows_; }

@@ -36,14 +36,14 @@ class TangentOperator {
     }
   }
 
-  /// y += K x
-  void apply(const NodeVector<Place>& x, NodeVector<Place>& y) {
+  /// y += K x. Stencil and points do nothing in a loop that is over.
+  void apply(const NodeVector<Place>& x, NodeVector<Place>& y, const CgState* state = nullptr) {
     if (form_ == Operator::elements) return stored_.apply(*list_, x, y);
-    if (single_) return single_stencil_.apply(x, y);
-    if (form_ == Operator::stencil) return stencil_.apply(x, y);
+    if (single_) return single_stencil_.apply(x, y, state);
+    if (form_ == Operator::stencil) return stencil_.apply(x, y, state);
     using Product = TangentTimes<Real, Shape>;
     scatter_points(Place{}, from_.points.count, *groups_,
-                   ScatterForces<Real, Shape, Product>{{from_.grid, from_.points}, Product{from_.tangents, x.data()}, y.data()});
+                   ScatterForces<Real, Shape, Product>{{from_.grid, from_.points}, Product{from_.tangents, x.data()}, y.data(), state});
     if (from_.means.on()) apply_means(*list_, from_.means, x, y);
     if (from_.springs.on()) apply_springs(*list_, from_.springs, x, y);
   }

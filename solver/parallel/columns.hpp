@@ -36,6 +36,7 @@ inline constexpr int column_shares = 8;
 
 template <class Kernel>
 __global__ void run_columns(Kernel kernel) {
+  begin_kernel();
   using Sums = typename Kernel::Sums;
   __shared__ alignas(16) unsigned char room[column_shares * block_columns * sizeof(Sums)];
   auto* const shared = reinterpret_cast<Sums*>(room);
@@ -57,8 +58,7 @@ template <class Kernel>
 void for_each_column(OnGpu, int blocks, const Kernel& kernel) {
   if (blocks <= 0) return;
   const KernelTime<OnGpu> time(kernel, blocks * block_columns);
-  detail::run_columns<<<blocks, detail::column_shares * block_columns, 0, detail::gpu_stream()>>>(kernel);
-  detail::gpu_check_launch(__PRETTY_FUNCTION__);
+  detail::gpu_launch(__PRETTY_FUNCTION__, detail::run_columns<Kernel>, blocks, detail::column_shares * block_columns, kernel);
 }
 #endif
 

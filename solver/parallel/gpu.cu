@@ -1,4 +1,5 @@
 // Device memory and error handling. Without a CUDA compiler this file says that there is no GPU.
+#include <cstdlib>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -66,6 +67,14 @@ void gpu_download(void* host, const void* device, std::size_t bytes) {
 void gpu_fill_zero(void* device, std::size_t bytes) { check(cudaMemsetAsync(device, 0, bytes, gpu_stream()), "fill"); }
 void gpu_synchronise() { check(cudaDeviceSynchronize(), "kernel"); }
 void gpu_check_launch(const char* where) { check(cudaGetLastError(), where); }
+
+bool gpu_starts_early() {
+  static const bool early = [] {
+    cudaFuncAttributes attributes;  // code made for older devices does not wait
+    return cudaFuncGetAttributes(&attributes, probe) == cudaSuccess && attributes.binaryVersion >= 90 && attributes.ptxVersion >= 90 && !std::getenv("TALUS_LATE");
+  }();
+  return early;
+}
 
 cudaStream_t gpu_stream() { return recording ? recorded : nullptr; }
 
@@ -138,6 +147,7 @@ void gpu_download(void*, const void*, std::size_t) { absent(); }
 void gpu_fill_zero(void*, std::size_t) { absent(); }
 void gpu_synchronise() {}
 void gpu_check_launch(const char*) {}
+bool gpu_starts_early() { return false; }
 CUstream_st* gpu_stream() { absent(); }
 void gpu_begin_recording() { absent(); }
 void* gpu_end_recording(void*) { absent(); }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -39,6 +40,7 @@ void gpu_upload(void* device, const void* host, std::size_t bytes);
 void gpu_download(void* host, const void* device, std::size_t bytes);
 void gpu_fill_zero(void* device, std::size_t bytes);
 void gpu_check_launch(const char* where);
+bool gpu_starts_early();    // whether a kernel may come onto the device before the one before it has ended
 CUstream_st* gpu_stream();  // where kernels are started: the default stream, or the one that is being recorded
 void gpu_begin_recording();
 void* gpu_end_recording(void* graph);  // what was recorded; takes the place of an earlier recording, if any
@@ -189,11 +191,38 @@ inline constexpr int points_that_keep_a_gpu_busy = 65536;
 
 #if defined(__CUDACC__)
 namespace detail {
+/// Every kernel's first words. From compute capability 9.0 on a kernel comes onto the device while the one before it is ending (programmatic dependent launch), and waits here until
+/// that has written all it had to; its own successor may come then.
+__device__ inline void begin_kernel() {
+#if __CUDA_ARCH__ >= 900
+  asm volatile("griddepcontrol.wait;" ::: "memory");
+  asm volatile("griddepcontrol.launch_dependents;");
+#endif
+}
+
+/// Starts a kernel that opens with begin_kernel().
+template <class... Parameters>
+void gpu_launch(const char* where, void (*kernel)(Parameters...), int blocks, int threads, const std::type_identity_t<Parameters>&... arguments) {
+  cudaLaunchAttribute early{};
+  early.id = cudaLaunchAttributeProgrammaticStreamSerialization;
+  early.val.programmaticStreamSerializationAllowed = 1;
+  cudaLaunchConfig_t config{};
+  config.gridDim = dim3(static_cast<unsigned>(blocks));
+  config.blockDim = dim3(static_cast<unsigned>(threads));
+  config.stream = gpu_stream();
+  config.attrs = &early;
+  constexpr int small = 200000;  // threads; with more, those that wait are in the way
+  config.numAttrs = gpu_starts_early() && blocks * static_cast<long>(threads) < small ? 1 : 0;
+  static_cast<void>(cudaLaunchKernelEx(&config, kernel, arguments...));  // gpu_check_launch tells
+  gpu_check_launch(where);
+}
+
 /// Threads of a block: few where there is little to do, so that every multiprocessor gets some of it.
 inline int threads_for(int count) { return count < 65536 ? 32 : 128; }
 
 template <class Kernel>
 __global__ void run_kernel(int count, Kernel kernel) {
+  begin_kernel();
   const int i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
   if (i < count) kernel(i);
 }
@@ -201,6 +230,7 @@ __global__ void run_kernel(int count, Kernel kernel) {
 /// The same in as many registers as let this number of blocks of 128 threads share a multiprocessor.
 template <int blocks, class Kernel>
 __global__ __launch_bounds__(128, blocks) void run_dense(int count, Kernel kernel) {
+  begin_kernel();
   const int i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
   if (i < count) kernel(i);
 }
@@ -212,13 +242,11 @@ void for_each(OnGpu, int count, const Kernel& kernel) {
   const KernelTime<OnGpu> time(kernel, count);
   if constexpr (requires { Kernel::dense; }) {
     if (Kernel::dense > 0 && count >= points_that_keep_a_gpu_busy) {
-      detail::run_dense<Kernel::dense><<<(count + 127) / 128, 128, 0, detail::gpu_stream()>>>(count, kernel);
-      return detail::gpu_check_launch(__PRETTY_FUNCTION__);
+      return detail::gpu_launch(__PRETTY_FUNCTION__, detail::run_dense<Kernel::dense, Kernel>, (count + 127) / 128, 128, count, kernel);
     }
   }
   const int threads = detail::threads_for(count);
-  detail::run_kernel<<<(count + threads - 1) / threads, threads, 0, detail::gpu_stream()>>>(count, kernel);
-  detail::gpu_check_launch(__PRETTY_FUNCTION__);
+  detail::gpu_launch(__PRETTY_FUNCTION__, detail::run_kernel<Kernel>, (count + threads - 1) / threads, threads, count, kernel);
 }
 
 /// One thread: the points of a block, one after the other.

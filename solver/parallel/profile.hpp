@@ -38,7 +38,11 @@ class Profile {
   };
 
   static Profile& of_run();
-  void turn_on() { on_ = true; }
+  /// `kernels`: not phases alone. What is marked kernel by kernel does not overlap, and takes longer.
+  void turn_on(bool kernels = true) {
+    on_ = true;
+    kernels_too_ = kernels;
+  }
   void turn_off() { on_ = false; }
   /// Forgets what was measured so far; between phases.
   void clear() {
@@ -46,6 +50,7 @@ class Profile {
     kernels_.clear();
   }
   bool on() const { return on_; }
+  bool with_kernels() const { return on_ && kernels_too_; }
   void enter(const char* name);
   void leave();
   bool within_phase() const { return !open_.empty(); }
@@ -70,7 +75,7 @@ class Profile {
   using WallClock = std::chrono::steady_clock;
   std::size_t find_phase(const char* name);
   void charge();
-  bool on_ = false, recording_ = false;
+  bool on_ = false, kernels_too_ = false, recording_ = false;
   std::vector<Phase> phases_;
   std::vector<Kernel> kernels_;
   std::vector<std::size_t> open_;
@@ -135,7 +140,7 @@ template <class Place>
 class KernelTime {
  public:
   template <class Kernel>
-  KernelTime(const Kernel& kernel, int count) : on_(Profile::of_run().on()) {
+  KernelTime(const Kernel& kernel, int count) : on_(Profile::of_run().with_kernels()) {
     if (!on_) return;
     Profile& profile = Profile::of_run();
     mark_.kernel = profile.kernel(kernel_name<Kernel>());

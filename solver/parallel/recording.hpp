@@ -37,12 +37,12 @@ class Recording<OnGpu> {
   template <class Body>
   void repeat(int times, const Body& body) {
     Profile& profile = Profile::of_run();
-    if (marked_ != profile.on()) recorded_ = false;
+    if (marked_ != profile.with_kernels()) recorded_ = false;
     if (!recorded_ && times > 0) {
       body();
       --times;
     }
-    if (times > 0 && profile.on()) return repeat_measured(times, body);
+    if (times > 0 && profile.with_kernels()) return repeat_measured(times, body);
     if (!recorded_ && times > 0) record(body);
     for (int t = 0; t < times; ++t) detail::gpu_replay(graph_);
   }
@@ -52,11 +52,14 @@ class Recording<OnGpu> {
  private:
   template <class Body>
   void record(const Body& body) {
+    Profile& profile = Profile::of_run();
+    profile.begin_recording();
     detail::gpu_begin_recording();
     body();
     graph_ = detail::gpu_end_recording(graph_);
+    marks_ = profile.end_recording();
     recorded_ = true;
-    marked_ = Profile::of_run().on();
+    marked_ = profile.with_kernels();
   }
   /// With marks around its kernels, each time waited for.
   template <class Body>
@@ -68,9 +71,7 @@ class Recording<OnGpu> {
       detail::gpu_synchronise();
       profile.settle();  // what was started one by one until here
       Profile::forget(marks_);
-      profile.begin_recording();
       record(body);
-      marks_ = profile.end_recording();
     }
     for (int t = 0; t < times; ++t) {
       detail::gpu_replay(graph_);

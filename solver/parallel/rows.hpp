@@ -7,12 +7,23 @@
 namespace talus {
 
 /// Calls kernel.finish(i, sum of kernel.term(i, part) for part in [0, parts)) for i in [0, count). Terms are Vec3<double>; their order is fixed.
+/// Where the kernel says that it is idle(), nothing is done; it may say nothing.
+template <class Kernel>
+TALUS_HD bool is_idle(const Kernel& kernel) {
+  if constexpr (requires { kernel.idle(); }) {
+    return kernel.idle();
+  } else {
+    return false;
+  }
+}
+
 template <int parts, class Kernel>
 struct WholeRow {
   using Named = Kernel;
   Kernel kernel;
   double bytes(int rows) const { return kernel_bytes(kernel, rows); }
   void operator()(int i) const {
+    if (is_idle(kernel)) return;
     Vec3<double> sum{};
     for (int part = 0; part < parts; ++part) sum += kernel.term(i, part);
     kernel.finish(i, sum);
@@ -30,9 +41,10 @@ namespace detail {
 /// A warp for each row, so that its loads are under way together.
 template <int parts, class Kernel>
 __global__ void sum_row(int count, Kernel kernel) {
+  begin_kernel();
   constexpr int warp_size = 32;
   const int i = static_cast<int>((blockIdx.x * blockDim.x + threadIdx.x) / warp_size), lane = static_cast<int>(threadIdx.x % warp_size);
-  if (i >= count) return;
+  if (i >= count || is_idle(kernel)) return;
   Vec3<double> sum{};
   for (int part = lane; part < parts; part += warp_size) sum += kernel.term(i, part);
   for (unsigned apart = warp_size / 2; apart > 0; apart /= 2) {
@@ -50,8 +62,7 @@ void sum_rows(OnGpu, int count, const Kernel& kernel) {
   if (count <= 0) return;
   const KernelTime<OnGpu> time(kernel, count);
   constexpr int threads = 128, each = threads / 32;
-  detail::sum_row<parts><<<(count + each - 1) / each, threads, 0, detail::gpu_stream()>>>(count, kernel);
-  detail::gpu_check_launch(__PRETTY_FUNCTION__);
+  detail::gpu_launch(__PRETTY_FUNCTION__, detail::sum_row<parts, Kernel>, (count + each - 1) / each, threads, count, kernel);
 }
 #endif
 

@@ -100,6 +100,7 @@ __device__ void sum_block(double (&sums)[K]) {
 
 template <int K, class Body, class Finish>
 __global__ void sum_kernel(int count, Body body, Finish finish, double* partial, unsigned* ticket) {
+  begin_kernel();
   double sums[K] = {};
   const int stride = static_cast<int>(gridDim.x * blockDim.x);
   for (int i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x); i < count; i += stride) {
@@ -131,8 +132,7 @@ void sum_each(OnGpu, int count, SumSpace<OnGpu>& space, const Body& body, const 
   constexpr int most_blocks = 512, threads = 256;  // the last block adds up what all have found: few blocks, many threads
   const int blocks = std::clamp((count + threads - 1) / threads, 1, most_blocks);
   const KernelTime<OnGpu> time(body, count);
-  detail::sum_kernel<K><<<blocks, threads, 0, detail::gpu_stream()>>>(count, body, finish, space.partial(K * most_blocks), space.ticket());
-  detail::gpu_check_launch(__PRETTY_FUNCTION__);
+  detail::gpu_launch(__PRETTY_FUNCTION__, detail::sum_kernel<K, Body, Finish>, blocks, threads, count, body, finish, space.partial(K * most_blocks), space.ticket());
 }
 #endif
 

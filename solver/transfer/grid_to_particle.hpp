@@ -185,8 +185,9 @@ struct GridToParticle {
 
   TALUS_HD bool strayed(std::uint64_t key, int i, int j, int k) const {
     const HomeCell at(grid.block_columns_x, key);
-    const int most = grid.drift;
-    return i - at.i > most || at.i - i > most || j - at.j > most || at.j - j > most || k - at.k > most || at.k - k > most;
+    const int most = grid.drift, least = grid.homes_below ? 1 - most : -most;  // storage goes by where a point was, a cell above its home at most
+    const int di = i - at.i, dj = j - at.j, dk = k - at.k;
+    return di > most || di < least || dj > most || dj < least || dk > most || dk < least;
   }
   TALUS_HD void request_sort() const { replace_if(&clock->request, running, wants_sort); }
 };

@@ -78,10 +78,10 @@ struct ParticleToGrid {
   TALUS_HD void operator()(int p) const { scatter_point(*this, p); }
 
   // As scatter_points has it.
-  TALUS_HD static bool same_nodes(const Source& s, const Source& t) { return s.i == t.i && s.j == t.j && s.k == t.k; }
+  TALUS_HD static const Source& nodes_of(const Source& s) { return s; }
   TALUS_HD int column_of(const Source& s, int q) const { return s.column(grid, q % width, q / width); }
-  TALUS_HD static int node_in(int column, const Source& s, int c) { return s.node(column, c); }
-  TALUS_HD static bool gives(const Source& s, int c) { return s.k + c >= 0; }  // below the ground there is none
+  TALUS_HD static int node_in(int column, int k, int c) { return Source::node(column, k, c); }
+  TALUS_HD static bool gives(int k, int c) { return k + c >= 0; }  // below the ground there is none
   TALUS_HD static void store(const Sums& sums, Real* to) {
     to[0] = sums.mass;
     to[1] = sums.momentum.x;

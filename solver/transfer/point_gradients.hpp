@@ -57,10 +57,10 @@ struct PointScatter {
   TALUS_HD static int along_x(int q) { return q % width; }
   TALUS_HD static int along_y(int q) { return q / width; }
   TALUS_HD static bool counts(int) { return true; }
-  TALUS_HD static bool same_nodes(const Gradients& g, const Gradients& h) { return g.s.i == h.s.i && g.s.j == h.s.j && g.s.k == h.s.k; }
+  TALUS_HD static const Stencil<Real, Shape>& nodes_of(const Gradients& g) { return g.s; }
   TALUS_HD int column_of(const Gradients& g, int q) const { return g.s.column(grid, along_x(q), along_y(q)); }
-  TALUS_HD static int node_in(int column, const Gradients& g, int c) { return g.s.node(column, c); }
-  TALUS_HD static bool gives(const Gradients& g, int c) { return g.s.k + c >= 0; }  // below the ground there is none
+  TALUS_HD static int node_in(int column, int k, int c) { return Stencil<Real, Shape>::node(column, k, c); }
+  TALUS_HD static bool gives(int k, int c) { return k + c >= 0; }  // below the ground there is none
 };
 
 }  // namespace talus::solver

@@ -39,7 +39,8 @@ struct Stencil {
 
   /// Where layer 0 of a column of its nodes is stored, or would be; and a node of that column.
   TALUS_HD int column(const GridView<Real>& grid, int a, int b) const { return GridView<Real>::node(grid.slot(i + a, j + b), i + a, j + b, 0); }
-  TALUS_HD int node(int column, int c) const { return column + (k + c > 0 ? k + c : 0) * block_columns; }
+  TALUS_HD int node(int column, int c) const { return node(column, k, c); }
+  TALUS_HD static int node(int column, int k, int c) { return column + (k + c > 0 ? k + c : 0) * block_columns; }
 
   /// Velocity change per cell that a point keeps, from the grid's velocity about it (APIC; Jiang et al. 2015): its moment times the inverse of the
   /// weights' second moment, 4 per cell for splines; for hats, and so beside edges, that is its gradient.

@@ -278,9 +278,10 @@ struct LinearBench {
       TangentOperator<Real, Place, Shape>& op;
       NodePreconditioner<Real, Place, Shape>& preconditioner;
       HeldNodes held;
-      void product(const NodeVector<Place>& p, NodeVector<Place>& ap) { op.apply(p, ap); }
+      void product(const NodeVector<Place>& p, NodeVector<Place>& ap, const CgState* state) { op.apply(p, ap, state); }
       CloseSystem close(const NodeVector<Place>& p, NodeVector<Place>& ap) { return {held, p.data(), ap.data()}; }
       void precondition(const NodeVector<Place>& r, NodeVector<Place>& z, CgState* state) { preconditioner.apply(r, z, state); }
+      void precondition_after(const talus::detail::StepAlong& step, const NodeVector<Place>& r, NodeVector<Place>& z, CgState* state) { preconditioner.apply_after(step, r, z, state); }
     };
     const LinearReport report = cg.solve(b, x, tolerance, 5000, System{op, preconditioner, held()});
     EXPECT_TRUE(report.converged) << "residual " << report.residual;
