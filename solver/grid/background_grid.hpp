@@ -30,19 +30,22 @@ struct BlockSlot {
   int layers = 0;
 };
 
-/// What points are sorted by: block in the high word, then column within the block, then layer, then octant of the cell, so that those that will leave it together lie together.
+/// Where the block begins in a key.
+inline constexpr int key_block_shift = 28;
+
+/// What points are sorted by: block in the high bits, then column within the block, then layer, then octant of the cell, so that those that will leave it together lie together.
 TALUS_HD std::uint64_t home_key(int block_columns_x, int i, int j, int k, int octant = 0) {
   constexpr int most = (1 << 21) - 1;
   const auto block = static_cast<std::uint64_t>((j >> 2) * block_columns_x + (i >> 2));
   const auto inside = static_cast<std::uint64_t>(((j & 3) << 2) + (i & 3)), layer = static_cast<std::uint64_t>(k > most ? most : k);
-  return (block << 32) | (inside << 24) | (layer << 3) | static_cast<std::uint64_t>(octant);
+  return (block << key_block_shift) | (inside << 24) | (layer << 3) | static_cast<std::uint64_t>(octant);
 }
 
 /// The cell of a key.
 struct HomeCell {
   int i, j, k;
   TALUS_HD HomeCell(int block_columns_x, std::uint64_t key) {
-    const auto block = static_cast<unsigned>(key >> 32), across = static_cast<unsigned>(block_columns_x);  // divided faster without a sign
+    const auto block = static_cast<unsigned>(key >> key_block_shift), across = static_cast<unsigned>(block_columns_x);  // divided faster without a sign
     const int inside = static_cast<int>((key >> 24) & 15);
     i = static_cast<int>(block % across) * block_side + (inside & 3);
     j = static_cast<int>(block / across) * block_side + (inside >> 2);

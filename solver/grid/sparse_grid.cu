@@ -1,5 +1,7 @@
 #include "solver/grid/sparse_grid.hpp"
 
+#include <bit>
+
 #include "solver/parallel/algorithms.hpp"
 
 namespace talus {
@@ -131,7 +133,7 @@ template <class Real, class Place>
 void SparseGrid<Real, Place>::fit(Particles<Real, Place>& points, int gone) {
   keys_.resize(static_cast<std::size_t>(points.count()));
   for_each(Place{}, points.count(), MakeKeys<Real>{points.view(), blocks_x_, by_lowest_node_, keys_.data()});
-  sort_order(Place{}, keys_, order_);
+  sort_order(Place{}, keys_, order_, key_block_shift + static_cast<int>(std::bit_width(slots_.size())));
   points.reorder(order_, points.count() - gone);
   measure_extents(points);
   give_storage();
@@ -149,8 +151,9 @@ template <class Real, class Place>
 void SparseGrid<Real, Place>::give_storage() {
   const int blocks = static_cast<int>(lowest_.size());
   for_each(Place{}, blocks, CountNodes{lowest_.data(), highest_.data(), sizes_.data(), places_.data()});
-  nodes_ = exclusive_sum(Place{}, sizes_.data(), sizes_.data(), blocks);
-  active_ = exclusive_sum(Place{}, places_.data(), places_.data(), blocks);
+  const auto totals = exclusive_sums(Place{}, sizes_.data(), places_.data(), blocks);
+  nodes_ = totals[0];
+  active_ = totals[1];
   for_each(Place{}, blocks, GiveStorage{lowest_.data(), highest_.data(), sizes_.data(), places_.data(), slots_.data(),
                                         active_list_.data()});
 }
@@ -163,9 +166,9 @@ void SparseGrid<Real, Place>::group_points(int count) {
   const std::uint64_t* const keys = Place::is_gpu ? copy.data() : keys_.data();
   for (auto& ranges : groups_.ranges) ranges.clear();
   for (int begin = 0; begin < count;) {
-    const auto block = keys[begin] >> 32;
+    const auto block = keys[begin] >> key_block_shift;
     int end = begin + 1;
-    while (end < count && keys[end] >> 32 == block) ++end;
+    while (end < count && keys[end] >> key_block_shift == block) ++end;
     const auto width = static_cast<std::uint64_t>(blocks_x_);
     const std::uint64_t colour = (block % width & 1) + 2 * (block / width & 1);
     groups_.ranges[colour].emplace_back(begin, end);

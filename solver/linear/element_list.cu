@@ -1,5 +1,7 @@
 #include "solver/linear/element_list.hpp"
 
+#include <bit>
+
 #include "solver/grid/sparse_grid.hpp"
 #include "solver/linear/instances.hpp"
 #include "solver/linear/runs.hpp"
@@ -50,7 +52,8 @@ void ElementList<Real, Place, Shape>::build(const GridView<Real>& grid, const Pa
   ++serial_;
   keys_.resize(static_cast<std::size_t>(points.count));
   for_each(Place{}, points.count, MakeElementKeys<Real, Shape>{grid, points, keys_.data()});
-  sort_order(Place{}, keys_, order_);
+  const int blocks = grid.block_columns_x * ((grid.rows + block_side - 1) / block_side);
+  sort_order(Place{}, keys_, order_, key_block_shift + static_cast<int>(std::bit_width(static_cast<unsigned>(blocks))));
   count_ = find_runs(keys_, starts_, scratch_);
   nodes_.resize(static_cast<std::size_t>(count_) * nodes_each);
   for_each(Place{}, count_, FindNodes<Real, Shape>{grid, keys_.data(), starts_.data(), nodes_.data()});
@@ -60,7 +63,7 @@ void ElementList<Real, Place, Shape>::build(const GridView<Real>& grid, const Pa
 template <class Real, class Place, class Shape>
 void ElementList<Real, Place, Shape>::group_elements(int block_columns_x) {
   if constexpr (!Place::is_gpu) {
-    const auto block_of = [&](int e) { return static_cast<int>(keys_.data()[starts_.data()[e]] >> 32); };
+    const auto block_of = [&](int e) { return static_cast<int>(keys_.data()[starts_.data()[e]] >> key_block_shift); };
     for (auto& ranges : groups_.ranges) ranges.clear();
     for (int begin = 0; begin < count_;) {
       const int block = block_of(begin);

@@ -1,18 +1,19 @@
 #include <cstddef>
 #include <map>
 #include <stdexcept>
+#include <string>
 
 #include "solver/parallel/algorithms.hpp"
 #include "solver/parallel/sums.hpp"
 
 #if defined(__CUDACC__)
+#include <cub/device/device_radix_sort.cuh>
 #include <thrust/device_ptr.h>
 #include <thrust/execution_policy.h>
 #include <thrust/gather.h>
 #include <thrust/scan.h>
 #include <thrust/scatter.h>
 #include <thrust/sequence.h>
-#include <thrust/sort.h>
 #include <thrust/system/cuda/execution_policy.h>
 
 namespace talus {
@@ -54,24 +55,78 @@ struct Products {
   TALUS_HD Terms<1> operator()(int i) const { return {{a[i] * b[i]}}; }
 };
 
+/// The other side that a radix sort writes to by turns; grows with the largest sort.
+struct SortSpace {
+  Buffer<std::uint64_t, OnGpu> keys;
+  Buffer<int, OnGpu> order;
+  Buffer<char, OnGpu> rest;
+};
+
+void check_cub(cudaError_t code) {
+  if (code != cudaSuccess) throw std::runtime_error(std::string("CUDA: sort: ") + cudaGetErrorString(code));
+}
+
+/// What is behind a list's sums is its last value and its last sum.
+struct TakeLast {
+  const int* values;
+  int at;
+  int* last;
+  TALUS_HD void operator()(int) const { *last = values[at]; }
+};
+struct AddLast {
+  const int* sums;
+  int at;
+  int* total;
+  TALUS_HD void operator()(int) const { *total += sums[at]; }
+};
+
+void start_sum(const int* values, int* sums, int count, int* total) {
+  for_each(OnGpu{}, 1, TakeLast{values, count - 1, total});  // before it is written over
+  thrust::exclusive_scan(policy(), thrust::device_ptr<const int>(values), thrust::device_ptr<const int>(values) + count, thrust::device_ptr<int>(sums));
+  for_each(OnGpu{}, 1, AddLast{sums, count - 1, total});
+}
+
+Buffer<int, OnGpu>& totals() {
+  static auto* const kept = new Buffer<int, OnGpu>(2);  // until the process ends, as above
+  return *kept;
+}
+
 }  // namespace
 
-void sort_order(OnGpu, Buffer<std::uint64_t, OnGpu>& keys, Buffer<int, OnGpu>& order) {
-  order.resize(keys.size());
-  const thrust::device_ptr<std::uint64_t> k(keys.data());
+void sort_order(OnGpu, Buffer<std::uint64_t, OnGpu>& keys, Buffer<int, OnGpu>& order, int bits) {
+  static auto* const space = new SortSpace;
+  const std::size_t count = keys.size();
+  order.resize(count);
+  if (count == 0) return;
+  space->keys.resize(count);
+  space->order.resize(count);
   const thrust::device_ptr<int> o(order.data());
-  thrust::sequence(policy(), o, o + static_cast<std::ptrdiff_t>(order.size()));
-  thrust::stable_sort_by_key(policy(), k, k + static_cast<std::ptrdiff_t>(keys.size()), o);
+  thrust::sequence(policy(), o, o + static_cast<std::ptrdiff_t>(count));
+  cub::DoubleBuffer<std::uint64_t> k(keys.data(), space->keys.data());
+  cub::DoubleBuffer<int> v(order.data(), space->order.data());
+  std::size_t bytes = 0;
+  check_cub(cub::DeviceRadixSort::SortPairs(nullptr, bytes, k, v, static_cast<int>(count), 0, bits, detail::gpu_stream()));
+  space->rest.resize(bytes);
+  check_cub(cub::DeviceRadixSort::SortPairs(space->rest.data(), bytes, k, v, static_cast<int>(count), 0, bits, detail::gpu_stream()));
+  if (k.Current() != keys.data()) keys.swap(space->keys);
+  if (v.Current() != order.data()) order.swap(space->order);
 }
 
 int exclusive_sum(OnGpu, const int* values, int* sums, int count) {
   if (count == 0) return 0;
-  int last_value = 0, last_sum = 0;
-  detail::gpu_download(&last_value, values + count - 1, sizeof(int));
-  thrust::exclusive_scan(policy(), thrust::device_ptr<const int>(values),
-                         thrust::device_ptr<const int>(values) + count, thrust::device_ptr<int>(sums));
-  detail::gpu_download(&last_sum, sums + count - 1, sizeof(int));
-  return last_value + last_sum;
+  int total = 0;
+  start_sum(values, sums, count, totals().data());
+  detail::gpu_download(&total, totals().data(), sizeof total);
+  return total;
+}
+
+std::array<int, 2> exclusive_sums(OnGpu, int* first, int* second, int count) {
+  std::array<int, 2> both{};
+  if (count == 0) return both;
+  start_sum(first, first, count, totals().data());
+  start_sum(second, second, count, totals().data() + 1);
+  detail::gpu_download(both.data(), totals().data(), sizeof both);
+  return both;
 }
 
 double inner_product(OnGpu place, const double* a, const double* b, int count) {
@@ -102,8 +157,9 @@ double free_memory(OnGpu) {
 #else
 
 namespace talus {
-void sort_order(OnGpu, Buffer<std::uint64_t, OnGpu>&, Buffer<int, OnGpu>&) { throw std::logic_error("no CUDA"); }
+void sort_order(OnGpu, Buffer<std::uint64_t, OnGpu>&, Buffer<int, OnGpu>&, int) { throw std::logic_error("no CUDA"); }
 int exclusive_sum(OnGpu, const int*, int*, int) { throw std::logic_error("no CUDA"); }
+std::array<int, 2> exclusive_sums(OnGpu, int*, int*, int) { throw std::logic_error("no CUDA"); }
 double inner_product(OnGpu, const double*, const double*, int) { throw std::logic_error("no CUDA"); }
 void gather(OnGpu, const double*, const int*, double*, int) { throw std::logic_error("no CUDA"); }
 void scatter(OnGpu, const double*, const int*, double*, int) { throw std::logic_error("no CUDA"); }

@@ -1,19 +1,23 @@
-// Sort and scan in either place: oneTBB on the CPU, Thrust on the GPU.
+// Sort and scan in either place: oneTBB on the CPU, CUB and Thrust on the GPU.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "solver/parallel/place.hpp"
 
 namespace talus {
 
-/// order[] becomes the stable permutation that sorts keys[]; keys[] is left sorted. Sizes equal.
-void sort_order(OnCpu, Buffer<std::uint64_t, OnCpu>& keys, Buffer<int, OnCpu>& order);
-void sort_order(OnGpu, Buffer<std::uint64_t, OnGpu>& keys, Buffer<int, OnGpu>& order);
+/// order[] becomes the stable permutation that sorts keys[]; keys[] is left sorted. Sizes equal. `bits`: the lowest ones, beyond which keys do not differ but for a key of ones alone.
+void sort_order(OnCpu, Buffer<std::uint64_t, OnCpu>& keys, Buffer<int, OnCpu>& order, int bits = 64);
+void sort_order(OnGpu, Buffer<std::uint64_t, OnGpu>& keys, Buffer<int, OnGpu>& order, int bits = 64);
 
 /// sums[i] = values[0] + ... + values[i-1], for count values; returns the total. In place when both are the same.
 int exclusive_sum(OnCpu, const int* values, int* sums, int count);
 int exclusive_sum(OnGpu, const int* values, int* sums, int count);
+/// The same for two lists of one length, each in its place; the device is waited for once.
+std::array<int, 2> exclusive_sums(OnCpu, int* first, int* second, int count);
+std::array<int, 2> exclusive_sums(OnGpu, int* first, int* second, int count);
 
 /// Sum of a[i] * b[i], in a fixed order on the CPU whatever the number of threads.
 double inner_product(OnCpu, const double* a, const double* b, int count);

@@ -14,7 +14,7 @@
 
 namespace talus {
 
-void sort_order(OnCpu, Buffer<std::uint64_t, OnCpu>& keys, Buffer<int, OnCpu>& order) {
+void sort_order(OnCpu, Buffer<std::uint64_t, OnCpu>& keys, Buffer<int, OnCpu>& order, int) {
   const int count = static_cast<int>(keys.size());
   order.resize(keys.size());
   std::vector<std::pair<std::uint64_t, int>> pairs(keys.size());
@@ -34,6 +34,10 @@ int exclusive_sum(OnCpu, const int* values, int* sums, int count) {
     total += value;
   }
   return total;
+}
+
+std::array<int, 2> exclusive_sums(OnCpu place, int* first, int* second, int count) {
+  return {exclusive_sum(place, first, first, count), exclusive_sum(place, second, second, count)};
 }
 
 double inner_product(OnCpu, const double* a, const double* b, int count) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <bit>
-#include <cstdlib>
 #include <new>
 
 #include "solver/parallel/place.hpp"
