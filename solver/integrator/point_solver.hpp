@@ -66,6 +66,10 @@ class PointSolver : public Solver {
     arrival_.upload(state.maps.arrival);
   }
 
+  ~PointSolver() override { drop_sort_space(Place{}); }
+  PointSolver(const PointSolver&) = delete;
+  PointSolver& operator=(const PointSolver&) = delete;
+
   void set_next_event(double time) override {
     Clock clock = read_clock();
     clock.next_event = time;
@@ -113,6 +117,7 @@ class PointSolver : public Solver {
     MemoryShares shares{{"points", points_.bytes()},
                         {"grid", grid_.bytes() + bed_.bytes()},
                         {"maps and records", sums_.bytes() + column_volumes_.bytes() + thickness_.bytes() + peak_thickness_.bytes() + peak_speed_.bytes() + peak_pressure_.bytes() + arrival_.bytes()}};
+    if (const std::size_t sorting = sort_space_bytes(Place{}); sorting > 0) shares.emplace_back("sorting", sorting);
     if (contact_.on()) shares.emplace_back("contact points", contact_.bytes() + impulses_.bytes());
     return shares;
   }

@@ -1,6 +1,8 @@
 // The grid's part of an explicit step: new velocities from momentum, force and gravity, damping, the bed, and the maps.
 #pragma once
 
+#include <type_traits>
+
 #include "solver/contact/walls.hpp"
 #include "solver/grid/background_grid.hpp"
 #include "solver/integrator/clock.hpp"
@@ -44,18 +46,25 @@ struct UpdateColumns {
   /// Of kinetic energy, over a column [J]; what the points give to the grid and get back counts with signs. And what bed and walls gave it [N s].
   struct Losses {
     double contact = 0, damping = 0, transfer = 0, reaction[3] = {0, 0, 0};
+    TALUS_HD void operator+=(const Losses& o) {
+      contact += o.contact;
+      damping += o.damping;
+      transfer += o.transfer;
+      for (int a = 0; a < 3; ++a) reaction[a] += o.reaction[a];
+    }
   };
+  struct NoLosses {
+    TALUS_HD void operator+=(const NoLosses&) {}
+  };
+  static constexpr bool may_count = content != NodeContent::impulse;  // a budget wants forces apart
   struct Sums {
     Real mass = 0;
     Vec3<Real> momentum{};
-    Losses losses;
+    std::conditional_t<may_count, Losses, NoLosses> losses;
     TALUS_HD Sums& operator+=(const Sums& o) {
       mass += o.mass;
       momentum += o.momentum;
-      losses.contact += o.losses.contact;
-      losses.damping += o.losses.damping;
-      losses.transfer += o.losses.transfer;
-      for (int a = 0; a < 3; ++a) losses.reaction[a] += o.losses.reaction[a];
+      losses += o.losses;
       return *this;
     }
   };
@@ -89,11 +98,13 @@ struct UpdateColumns {
   TALUS_HD void finish(const Column& at, const Sums& sums) const {
     if constexpr (content == NodeContent::remapped) return;
     if (!(sums.mass > Real(0))) return;
-    if (clock->keeps_budget) {
-      atomic_add(&clock->bed_loss, sums.losses.contact);
-      atomic_add(&clock->damping_loss, sums.losses.damping);
-      atomic_add(&clock->transfer_loss, sums.losses.transfer);
-      for (int a = 0; a < 3; ++a) atomic_add(&clock->reaction[a], sums.losses.reaction[a]);
+    if constexpr (may_count) {
+      if (clock->keeps_budget) {
+        atomic_add(&clock->bed_loss, sums.losses.contact);
+        atomic_add(&clock->damping_loss, sums.losses.damping);
+        atomic_add(&clock->transfer_loss, sums.losses.transfer);
+        for (int a = 0; a < 3; ++a) atomic_add(&clock->reaction[a], sums.losses.reaction[a]);
+      }
     }
     const double mass = static_cast<double>(sums.mass);
     const double mean = volumes && volumes[at.column] > 0 ? mass / volumes[at.column] : static_cast<double>(density);
@@ -101,7 +112,7 @@ struct UpdateColumns {
   }
 
  private:
-  TALUS_HD Vec3<Real> update(int n, const Vec4<Real>& node, bool on_ground, int column, int i, int j, int k, Losses& losses) const {
+  TALUS_HD Vec3<Real> update(int n, const Vec4<Real>& node, bool on_ground, int column, int i, int j, int k, decltype(Sums::losses)& losses) const {
     const Real dt = Real(clock->step_size);
     const bool growing = gravity_ramp > 0 && clock->time < gravity_ramp;
     const Vec3<Real> g = growing ? gravity * Real(clock->time / gravity_ramp) : gravity;
@@ -128,16 +139,18 @@ struct UpdateColumns {
       v = meet_ground(law, law.at(column), v, sx, sy, grip);
     }
     if (walls.count > 0) v = meet_walls(walls, i, j, k, v, content != NodeContent::remapped);
-    if (clock->keeps_budget) {
-      // Forces and impulses of a step act together, on the mean of its velocities: what rests loses nothing.
-      const Vec3<Real> mean = (before + v) * Real(0.5);
-      const double mass = static_cast<double>(node.w);
-      if (content == NodeContent::force && damping > Real(0)) losses.damping += mass * static_cast<double>(dot(undamped - free, mean));
-      losses.contact += mass * static_cast<double>(dot(free - v, mean));
-      losses.transfer += mass * static_cast<double>(dot(v - before, mean));
-      losses.reaction[0] += mass * static_cast<double>(v.x - free.x);
-      losses.reaction[1] += mass * static_cast<double>(v.y - free.y);
-      losses.reaction[2] += mass * static_cast<double>(v.z - free.z);
+    if constexpr (may_count) {
+      if (clock->keeps_budget) {
+        // Forces and impulses of a step act together, on the mean of its velocities: what rests loses nothing.
+        const Vec3<Real> mean = (before + v) * Real(0.5);
+        const double mass = static_cast<double>(node.w);
+        if (content == NodeContent::force && damping > Real(0)) losses.damping += mass * static_cast<double>(dot(undamped - free, mean));
+        losses.contact += mass * static_cast<double>(dot(free - v, mean));
+        losses.transfer += mass * static_cast<double>(dot(v - before, mean));
+        losses.reaction[0] += mass * static_cast<double>(v.x - free.x);
+        losses.reaction[1] += mass * static_cast<double>(v.y - free.y);
+        losses.reaction[2] += mass * static_cast<double>(v.z - free.z);
+      }
     }
     if constexpr (content == NodeContent::force) {
       const Vec3<Real> change = v - before;

@@ -62,6 +62,11 @@ struct SortSpace {
   Buffer<char, OnGpu> rest;
 };
 
+SortSpace& sort_space() {
+  static auto* const kept = new SortSpace;  // until the process ends, as above
+  return *kept;
+}
+
 void check_cub(cudaError_t code) {
   if (code != cudaSuccess) throw std::runtime_error(std::string("CUDA: sort: ") + cudaGetErrorString(code));
 }
@@ -94,23 +99,26 @@ Buffer<int, OnGpu>& totals() {
 }  // namespace
 
 void sort_order(OnGpu, Buffer<std::uint64_t, OnGpu>& keys, Buffer<int, OnGpu>& order, int bits) {
-  static auto* const space = new SortSpace;
+  SortSpace& space = sort_space();
   const std::size_t count = keys.size();
   order.resize(count);
   if (count == 0) return;
-  space->keys.resize(count);
-  space->order.resize(count);
+  space.keys.resize(count);
+  space.order.resize(count);
   const thrust::device_ptr<int> o(order.data());
   thrust::sequence(policy(), o, o + static_cast<std::ptrdiff_t>(count));
-  cub::DoubleBuffer<std::uint64_t> k(keys.data(), space->keys.data());
-  cub::DoubleBuffer<int> v(order.data(), space->order.data());
+  cub::DoubleBuffer<std::uint64_t> k(keys.data(), space.keys.data());
+  cub::DoubleBuffer<int> v(order.data(), space.order.data());
   std::size_t bytes = 0;
   check_cub(cub::DeviceRadixSort::SortPairs(nullptr, bytes, k, v, static_cast<int>(count), 0, bits, detail::gpu_stream()));
-  space->rest.resize(bytes);
-  check_cub(cub::DeviceRadixSort::SortPairs(space->rest.data(), bytes, k, v, static_cast<int>(count), 0, bits, detail::gpu_stream()));
-  if (k.Current() != keys.data()) keys.swap(space->keys);
-  if (v.Current() != order.data()) order.swap(space->order);
+  space.rest.resize(bytes);
+  check_cub(cub::DeviceRadixSort::SortPairs(space.rest.data(), bytes, k, v, static_cast<int>(count), 0, bits, detail::gpu_stream()));
+  if (k.Current() != keys.data()) keys.swap(space.keys);
+  if (v.Current() != order.data()) order.swap(space.order);
 }
+
+std::size_t sort_space_bytes(OnGpu) { return sort_space().keys.bytes() + sort_space().order.bytes() + sort_space().rest.bytes(); }
+void drop_sort_space(OnGpu) { sort_space() = SortSpace{}; }
 
 int exclusive_sum(OnGpu, const int* values, int* sums, int count) {
   if (count == 0) return 0;
@@ -159,6 +167,8 @@ double free_memory(OnGpu) {
 namespace talus {
 void sort_order(OnGpu, Buffer<std::uint64_t, OnGpu>&, Buffer<int, OnGpu>&, int) { throw std::logic_error("no CUDA"); }
 int exclusive_sum(OnGpu, const int*, int*, int) { throw std::logic_error("no CUDA"); }
+std::size_t sort_space_bytes(OnGpu) { return 0; }
+void drop_sort_space(OnGpu) {}
 std::array<int, 2> exclusive_sums(OnGpu, int*, int*, int) { throw std::logic_error("no CUDA"); }
 double inner_product(OnGpu, const double*, const double*, int) { throw std::logic_error("no CUDA"); }
 void gather(OnGpu, const double*, const int*, double*, int) { throw std::logic_error("no CUDA"); }

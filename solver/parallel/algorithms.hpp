@@ -12,6 +12,12 @@ namespace talus {
 void sort_order(OnCpu, Buffer<std::uint64_t, OnCpu>& keys, Buffer<int, OnCpu>& order, int bits = 64);
 void sort_order(OnGpu, Buffer<std::uint64_t, OnGpu>& keys, Buffer<int, OnGpu>& order, int bits = 64);
 
+/// What sorts keep for the next one [bytes].
+std::size_t sort_space_bytes(OnCpu);
+std::size_t sort_space_bytes(OnGpu);
+void drop_sort_space(OnCpu);
+void drop_sort_space(OnGpu);
+
 /// sums[i] = values[0] + ... + values[i-1], for count values; returns the total. In place when both are the same.
 int exclusive_sum(OnCpu, const int* values, int* sums, int count);
 int exclusive_sum(OnGpu, const int* values, int* sums, int count);

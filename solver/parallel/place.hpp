@@ -48,7 +48,7 @@ void gpu_replay(void* graph);
 void gpu_drop(void* graph);
 }  // namespace detail
 
-/// Owned memory in a place. Grows, never shrinks; contents are lost on growth unless kept by resize_keep.
+/// Owned memory in a place. Grows, never shrinks; contents are lost on growth. First as large as asked for: what never grows takes no more.
 template <class T, class Place>
 class Buffer {
  public:
@@ -71,8 +71,8 @@ class Buffer {
   /// New size; contents undefined.
   void resize(std::size_t size) {
     if (size > capacity_) {
+      const std::size_t wanted = capacity_ == 0 ? size : size + size / 8;
       release();
-      const std::size_t wanted = size + size / 8;
       if constexpr (Place::is_gpu) {
         data_ = static_cast<T*>(detail::gpu_allocate(wanted * sizeof(T)));
       } else {
