@@ -149,7 +149,7 @@ struct ScatterForces : PointScatter<Real, Shape> {
   using Base = PointScatter<Real, Shape>;
   using Named = Law;
   using Number = double;
-  static constexpr int parts = 3;
+  static constexpr int parts = 3, tiles_at_once = Law::tiles_at_once;
   Law law;
   Vec3<double>* forces;
   const CgState* loop = nullptr;  // that it is part of; does nothing once it is over
@@ -180,6 +180,7 @@ struct ScatterForces : PointScatter<Real, Shape> {
 /// Stress for the displacement u; the tangent as well where there is a store for it.
 template <class Real, class Shape>
 struct StressAt {
+  static constexpr int tiles_at_once = 0;
   Materials<Real> materials;
   bool dilatant;
   bool definite;  // without the part of the tangent that compression makes negative
@@ -201,6 +202,7 @@ struct StressAt {
 /// Change of the stress for a displacement x, by the tangents: K x, point by point, never assembled.
 template <class Real, class Shape>
 struct TangentTimes {
+  static constexpr int tiles_at_once = 8;  // worth the few registers that go through memory
   TangentStore<Real> tangents;
   const Vec3<double>* x;
 

@@ -25,6 +25,7 @@ namespace talus {
 ///   store(sums, to)     puts the parts side by side
 ///   part(node, q)       where part q of a stored node is
 ///   has(q)              whether there is such a part; may be left out where all are
+///   tiles_at_once       blocks of two tiles that a multiprocessor must have registers for; 0, or left out, where any number will do
 template <class Kernel>
 TALUS_HD void scatter_point(const Kernel& kernel, int p) {
   if (!kernel.counts(p)) return;
@@ -76,8 +77,7 @@ __device__ inline std::uint64_t sort_lanes(std::uint64_t key) {
 /// long as the next point has the same nodes; where its nodes are those a layer up, only the lowest layer is given away, by one atomic a node (after Gao et al. 2018). With 32 points
 /// a block takes 33 kB of shared memory for P2G in double precision.
 template <int each, class Kernel>
-__global__ void run_tiles(int count, Kernel kernel) {
-  begin_kernel();
+__device__ void take_tile(int count, const Kernel& kernel) {
   using Source = typename Kernel::Source;
   constexpr unsigned all = 0xffffffffu;
   constexpr int columns = Kernel::columns_each, deep = Kernel::deep, teams = warp_size / columns, share = (each + teams - 1) / teams;
@@ -167,9 +167,28 @@ __global__ void run_tiles(int count, Kernel kernel) {
 }
 
 template <int each, class Kernel>
+__global__ void run_tiles(int count, Kernel kernel) {
+  begin_kernel();
+  take_tile<each>(count, kernel);
+}
+
+/// The same in as many registers as let this number of blocks share a multiprocessor.
+template <int each, int blocks, class Kernel>
+__global__ __launch_bounds__(tile_warps * warp_size, blocks) void run_tiles_densely(int count, Kernel kernel) {
+  begin_kernel();
+  take_tile<each>(count, kernel);
+}
+
+template <int each, class Kernel>
 void start_tiles(int count, const Kernel& kernel) {
   constexpr int points = tile_warps * each;
-  gpu_launch(__PRETTY_FUNCTION__, run_tiles<each, Kernel>, (count + points - 1) / points, tile_warps * warp_size, count, kernel);
+  const int blocks = (count + points - 1) / points;
+  if constexpr (requires { Kernel::tiles_at_once; }) {
+    if constexpr (Kernel::tiles_at_once > 0) {
+      return gpu_launch(__PRETTY_FUNCTION__, run_tiles_densely<each, Kernel::tiles_at_once, Kernel>, blocks, tile_warps * warp_size, count, kernel);
+    }
+  }
+  gpu_launch(__PRETTY_FUNCTION__, run_tiles<each, Kernel>, blocks, tile_warps * warp_size, count, kernel);
 }
 
 /// A warp takes the points of a block of columns one after the other, a lane for every column of nodes.

@@ -35,15 +35,29 @@ struct ParticleToGrid {
     return count * (points.place_bytes + (4 + (affine ? 9 : 0) + state) * static_cast<double>(sizeof(Real))) + grid.nodes * static_cast<double>((what == Scatter::force ? 4 : 2) * sizeof(*nodes));
   }
 
-  /// A point as its nodes see it.
-  struct Source : Stencil<Real, Shape> {
+  /// A point as its nodes see it: of its stencil, what they need. As small as can be, for it decides how many a GPU holds at once.
+  struct Source {
+    int i, j, k;
+    Real wx[width], wy[width], wz[width], gx[width], gy[width], gz[width];
     Real mass;
     Vec3<Real> corner;    // velocity at the first node
     Mat3<Real> turn{};    // its change per node
     Mat3<Real> pull{};    // columns of -V tau, mapped to reference coordinates and per cell
     Vec3<Real> pulled{};  // by its load, in the units of `pull`
 
-    TALUS_HD Source(const ParticleToGrid& kernel, int p) : Stencil<Real, Shape>(kernel.grid, kernel.points, p) {
+    TALUS_HD Source(const ParticleToGrid& kernel, int p) : Source(kernel, p, Stencil<Real, Shape>(kernel.grid, kernel.points, p)) {}
+
+   private:
+    TALUS_HD Source(const ParticleToGrid& kernel, int p, const Stencil<Real, Shape>& s) : i(s.i), j(s.j), k(s.k) {
+      TALUS_UNROLL
+      for (int a = 0; a < width; ++a) {
+        wx[a] = s.wx[a];
+        wy[a] = s.wy[a];
+        wz[a] = s.wz[a];
+        gx[a] = s.gx[a];
+        gy[a] = s.gy[a];
+        gz[a] = s.gz[a];
+      }
       const ParticleView<Real>& points = kernel.points;
       const Real volume = points.volume[p];
       mass = volume * kernel.materials.density(points.material, p);
@@ -54,7 +68,7 @@ struct ParticleToGrid {
         const Real across = -volume * dt / kernel.grid.spacing, up = -volume * dt / kernel.grid.layer_height;
         pull.a = Vec3<Real>{tau.xx, tau.xy, tau.xz} * across;
         pull.b = Vec3<Real>{tau.xy, tau.yy, tau.yz} * across;
-        pull.c = (Vec3<Real>{tau.xz, tau.yz, tau.zz} - Vec3<Real>{tau.xx, tau.xy, tau.xz} * this->slope_x - Vec3<Real>{tau.xy, tau.yy, tau.yz} * this->slope_y) * up;
+        pull.c = (Vec3<Real>{tau.xz, tau.yz, tau.zz} - Vec3<Real>{tau.xx, tau.xy, tau.xz} * s.slope_x - Vec3<Real>{tau.xy, tau.yy, tau.yz} * s.slope_y) * up;
         if (kernel.loads && points.load[p] >= 0) {
           const Vec3<double> f = kernel.loads[points.load[p]];
           pulled = Vec3<Real>{Real(f.x), Real(f.y), Real(f.z)} * (volume * dt);
@@ -63,7 +77,7 @@ struct ParticleToGrid {
       corner = points.velocity_of(p);
       if (kernel.affine) {
         turn = points.affine_of(p);
-        corner += turn * Vec3<Real>{this->near_x, this->near_y, this->near_z};
+        corner += turn * Vec3<Real>{s.near_x, s.near_y, s.near_z};
       }
     }
   };
@@ -79,8 +93,8 @@ struct ParticleToGrid {
 
   // As scatter_points has it.
   TALUS_HD static const Source& nodes_of(const Source& s) { return s; }
-  TALUS_HD int column_of(const Source& s, int q) const { return s.column(grid, q % width, q / width); }
-  TALUS_HD static int node_in(int column, int k, int c) { return Source::node(column, k, c); }
+  TALUS_HD int column_of(const Source& s, int q) const { return Stencil<Real, Shape>::column_at(grid, s.i + q % width, s.j + q / width); }
+  TALUS_HD static int node_in(int column, int k, int c) { return Stencil<Real, Shape>::node(column, k, c); }
   TALUS_HD static bool gives(int k, int c) { return k + c >= 0; }  // below the ground there is none
   TALUS_HD static void store(const Sums& sums, Real* to) {
     to[0] = sums.mass;

@@ -38,7 +38,8 @@ struct Stencil {
   }
 
   /// Where layer 0 of a column of its nodes is stored, or would be; and a node of that column.
-  TALUS_HD int column(const GridView<Real>& grid, int a, int b) const { return GridView<Real>::node(grid.slot(i + a, j + b), i + a, j + b, 0); }
+  TALUS_HD int column(const GridView<Real>& grid, int a, int b) const { return column_at(grid, i + a, j + b); }
+  TALUS_HD static int column_at(const GridView<Real>& grid, int i, int j) { return GridView<Real>::node(grid.slot(i, j), i, j, 0); }
   TALUS_HD int node(int column, int c) const { return node(column, k, c); }
   TALUS_HD static int node(int column, int k, int c) { return column + (k + c > 0 ? k + c : 0) * block_columns; }
 
