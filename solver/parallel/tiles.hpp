@@ -75,7 +75,7 @@ __device__ inline std::uint64_t sort_lanes(std::uint64_t key) {
 
 /// A warp reads `each` points, one a lane, and puts them in the order of their nodes. Then teams take a share of them each, a lane for every column of nodes: sums stay in registers for as
 /// long as the next point has the same nodes; where its nodes are those a layer up, only the lowest layer is given away, by one atomic a node (after Gao et al. 2018). With 32 points
-/// a block takes 33 kB of shared memory for P2G in double precision.
+/// a block takes 31 kB of shared memory for P2G in double precision.
 template <int each, class Kernel>
 __device__ void take_tile(int count, const Kernel& kernel) {
   using Source = typename Kernel::Source;
@@ -98,6 +98,7 @@ __device__ void take_tile(int count, const Kernel& kernel) {
     }
   }
   if (__all_sync(all, key >> 63)) return;
+  __syncwarp();  // votes order no memory: what other lanes have written is read from here on
   key = sort_lanes(key);
   const int who = static_cast<int>(key & ((1u << lane_bits) - 1));
   const std::uint64_t nodes = key >> lane_bits, nodes_after = __shfl_down_sync(all, nodes, 1);
