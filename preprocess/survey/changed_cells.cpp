@@ -16,17 +16,12 @@ constexpr int rim = 3;                  // cells around a change, where it thins
 
 /// The share of the 3 x 3 cells around each that are marked, of those that the map has: a single cell of noise has no
 /// company.
-Raster company(const MapGrid& grid, const std::vector<char>& marked) {
+Raster company_share(const MapGrid& grid, const std::vector<double>& marked) {
   Raster share{grid, std::vector<double>(grid.count(), 0.0)};
   for (int row = 0; row < grid.rows; ++row) {
-    const int south = std::max(0, row - 1), north = std::min(grid.rows - 1, row + 1);
     for (int column = 0; column < grid.columns; ++column) {
-      const int west = std::max(0, column - 1), east = std::min(grid.columns - 1, column + 1);
-      int count = 0;
-      for (int r = south; r <= north; ++r) {
-        for (int c = west; c <= east; ++c) count += marked[grid.index(c, r)];
-      }
-      share.at(column, row) = static_cast<double>(count) / ((north - south + 1) * (east - west + 1));
+      const Company company = company_of(grid, marked, column, row);
+      share.at(column, row) = static_cast<double>(company.marked) / company.cells;
     }
   }
   return share;
@@ -56,9 +51,9 @@ void leave_out_changed(std::vector<Patch>& patches, const Placement& placement) 
   const double centre = median(all), limit = beyond * std::max(nmad(all), 1e-6);
   for (std::size_t p = 0; p < patches.size(); ++p) {
     const MapGrid& grid = patches[p].before.grid;
-    std::vector<char> marked(grid.count());
+    std::vector<double> marked(grid.count());
     for (std::size_t i = 0; i < marked.size(); ++i) marked[i] = std::abs(misfits[p][i] - centre) > limit;  // false for NaN
-    for (const Region& region : lowering_regions(company(grid, marked), 0.5)) {
+    for (const Region& region : lowering_regions(company_share(grid, marked), 0.5)) {
       if (region.cells.size() < least_region) continue;
       leave_out(region, grid, patches[p].stable);
       leave_out(region, grid, patches[p].unchanged);
