@@ -11,8 +11,8 @@ double quantile(std::vector<double> values, double q);
 
 double median(const std::vector<double>& values);
 
-/// 1.4826 median(|v - median(v)|): the standard deviation of a normal distribution, unmoved by outliers (Hoehle & Hoehle
-/// 2009, Tab. 2). NaN where there is no value.
+/// 1.4826 median(|v - median(v)|): the standard deviation of a normal distribution, unmoved by outliers (Hoehle &
+/// Hoehle 2009, Tab. 2). NaN where there is no value.
 double nmad(const std::vector<double>& values);
 
 /// Mean, standard deviation (over n - 1; 0 for a single value) and quantiles of what is not NaN.

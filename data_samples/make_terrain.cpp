@@ -12,11 +12,12 @@ namespace {
 
 using talus::samples::Sample;
 
-const std::map<std::string, Sample (*)(double)> kinds{{"inclined-plane", talus::samples::inclined_plane},
-                                                      {"parabolic-chute", talus::samples::parabolic_chute},
-                                                      {"raw-valley", [](double cell) { return talus::samples::raw_valley(cell, 1); }},
-                                                      {"rock-slope", talus::samples::rock_slope},
-                                                      {"valley", talus::samples::valley}};
+const std::map<std::string, Sample (*)(double)> kinds{
+    {"inclined-plane", talus::samples::inclined_plane},
+    {"parabolic-chute", talus::samples::parabolic_chute},
+    {"raw-valley", [](double cell) { return talus::samples::raw_valley(cell, 1); }},
+    {"rock-slope", talus::samples::rock_slope},
+    {"valley", talus::samples::valley}};
 
 }  // namespace
 
@@ -24,7 +25,9 @@ int main(int argc, char** argv) {
   CLI::App app{"Makes a small synthetic terrain: elevation models, outlines and release thickness."};
   std::string kind, out;
   double cell = 10;
-  app.add_option("kind", kind, "inclined-plane, parabolic-chute, raw-valley, rock-slope or valley")->required()->check(CLI::IsMember(kinds));
+  app.add_option("kind", kind, "inclined-plane, parabolic-chute, raw-valley, rock-slope or valley")
+      ->required()
+      ->check(CLI::IsMember(kinds));
   app.add_option("--out", out, "folder to write to")->required();
   app.add_option("--cell", cell, "cell size [m]")->check(CLI::Range(0.5, 50.0))->capture_default_str();
   try {

@@ -13,8 +13,8 @@ constexpr double crest = 350, run = 2600, top = 3431, river = 2250;  // [m]
 double ground(double x, double y) {
   const double s = std::clamp((x - crest) / run, 0.0, 1.0), aside = y - middle;
   double z = river + (top - river) * std::pow(1 - s, 2.2);
-  z -= 0.35 * std::max(0.0, crest - x);                            // the far side of the crest
-  z += 0.45 * std::max(0.0, x - crest - run - 80);                 // the other bank
+  z -= 0.35 * std::max(0.0, crest - x);                                                 // the far side of the crest
+  z += 0.45 * std::max(0.0, x - crest - run - 80);                                      // the other bank
   z += 70 * std::sin(M_PI * s) * (1 - std::exp(-aside * aside / (2 * 260.0 * 260.0)));  // a gully down the middle
   return z + 7 * noise(x / 320, y / 320, 11) + 2.5 * noise(x / 95, y / 95, 12);
 }

@@ -40,12 +40,13 @@ Sample parabolic_chute(double cell);
 /// of the same volume), outlines "source" and "surveyed_outline" (all ground the slide went over).
 Sample valley(double cell);
 
-/// The same valley as two surveys see it: both with noise, the later one 0.4 cells too far east, 0.7 too far south and 1.3 m
-/// too high, with holes: "before_dem", "after_dem". Another seed is another noise.
+/// The same valley as two surveys see it: both with noise, the later one 0.4 cells too far east, 0.7 too far south
+/// and 1.3 m too high, with holes: "before_dem", "after_dem". Another seed is another noise.
 Sample raw_valley(double cell, unsigned seed);
 
-/// A rock slope of the proportions of Xinmo 2017: 3600 m x 1600 m, crest at 3431 m, river at 2250 m 2.6 km away; "before_dem", and "after_dem" from which a
-/// scar of 4.2 million m3 below the crest (area A) and 1.6 million m3 of the ground on the way (area B, at most 8 m deep) are missing.
+/// A rock slope of the proportions of Xinmo 2017: 3600 m x 1600 m, crest at 3431 m, river at 2250 m 2.6 km away;
+/// "before_dem", and "after_dem" from which a scar of 4.2 million m3 below the crest (area A) and 1.6 million m3 of the
+/// ground on the way (area B, at most 8 m deep) are missing.
 Sample rock_slope(double cell);
 
 /// Smooth noise in -1..1 (Perlin's gradient noise, 2002 weights) at (x, y), in wavelengths; the same for the same seed.

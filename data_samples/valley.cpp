@@ -163,10 +163,13 @@ class SurveyError {
   std::mt19937 random_;
 };
 
-/// Where the later survey saw nothing: one hole in the scar, one in the deposit, three elsewhere (along the valley's axes).
+/// Where the later survey saw nothing: one hole in the scar, one in the deposit, three elsewhere (along the valley's
+/// axes).
 bool unseen(double x, double y) {
-  constexpr std::array<std::array<double, 3>, 5> holes{{{310, 330, 19}, {640, 380, 22}, {160, 400, 26}, {480, 150, 24}, {840, 560, 21}}};
-  return std::any_of(holes.begin(), holes.end(), [&](const auto& hole) { return std::hypot(x - hole[0], y - hole[1]) < hole[2]; });
+  constexpr std::array<std::array<double, 3>, 5> holes{
+      {{310, 330, 19}, {640, 380, 22}, {160, 400, 26}, {480, 150, 24}, {840, 560, 21}}};
+  return std::any_of(holes.begin(), holes.end(),
+                     [&](const auto& hole) { return std::hypot(x - hole[0], y - hole[1]) < hole[2]; });
 }
 
 }  // namespace

@@ -30,7 +30,8 @@ void SurveyOptions::find_in(const std::filesystem::path& out) {
   for (const auto& file : {difference, sigma}) {
     if (!std::filesystem::exists(file))
       throw DataError({file.string() + ": no such file",
-                       "[postprocess.survey] from_preprocess = true, and talus-preprocess writes it where before_dem and after_dem are given",
+                       "[postprocess.survey] from_preprocess = true, and talus-preprocess writes it where before_dem "
+                       "and after_dem are given",
                        "Run talus-preprocess with the same --out, or name the survey otherwise"});
   }
 }
@@ -39,7 +40,8 @@ void SurveyOptions::describe(recipe::Visitor& v) {
   v.text("name", name, "how map and table call it: a survey, or another model's name");
   v.path("thickness", thickness, "raster of the deposit's thickness [m]");
   v.path("peak_thickness", peak_thickness, "raster of the peak thickness [m]; gives the footprint");
-  recipe::choice(v, "direction", direction, {{"vertical", Direction::vertical}, {"slope-normal", Direction::slope_normal}},
+  recipe::choice(v, "direction", direction,
+                 {{"vertical", Direction::vertical}, {"slope-normal", Direction::slope_normal}},
                  "which way these two measure thickness; slope-normal: brought to vertical with the run's ground");
   v.path("after_dem", after_dem, "elevations after the event: deposit where they lie above those before");
   v.path("before_dem", before_dem,
@@ -47,15 +49,17 @@ void SurveyOptions::describe(recipe::Visitor& v) {
   v.path("difference", difference,
          "raster of elevations after - before the event [m], aligned: deposit where it is positive");
   v.flag("from_preprocess", from_preprocess,
-         "score against the change of surface that talus-preprocess found between before_dem and after_dem, with its error (OUT/survey)");
+         "score against the change of surface that talus-preprocess found between before_dem and after_dem, with its "
+         "error (OUT/survey)");
   v.path("polygon", polygon, "outline of the affected area (any vector format); gives the footprint");
   v.flag("nodata_is_zero", nodata_is_zero,
          "thickness and difference rasters: no data means no deposit (otherwise: not surveyed, left out)");
   v.path("sigma", sigma, "raster of the standard error (1 sigma) of thickness or change [m]");
   v.number("sigma_m", sigma_m, recipe::not_negative, "the same error for all cells, instead of a raster; 0: not known");
-  v.number("correlation_length_m", correlation_length, recipe::not_negative,
-           "distance within which errors are alike (range of a spherical variogram); 0: CORRELATION_LENGTH_M of the sigma "
-           "raster, else every cell for itself");
+  v.number(
+      "correlation_length_m", correlation_length, recipe::not_negative,
+      "distance within which errors are alike (range of a spherical variogram); 0: CORRELATION_LENGTH_M of the sigma "
+      "raster, else every cell for itself");
   v.number("detection", detection, recipe::not_negative,
            "with a sigma: thickness or change below this times sigma counts as none (1.96: 95 %); 0: off");
   v.integer("resamples", resamples, {0, 100000},
@@ -74,7 +78,8 @@ void SurveyOptions::check(std::vector<Fault>& faults) const {
   }
   if (from_preprocess) given += (count++ > 0 ? " and " : "") + std::string("from_preprocess");
   if (count > 1)
-    faults.push_back({"[postprocess.survey] gives " + given, "one deposit can be scored at a time", "Leave one of them out"});
+    faults.push_back(
+        {"[postprocess.survey] gives " + given, "one deposit can be scored at a time", "Leave one of them out"});
   if (!peak_thickness.empty() && !polygon.empty()) {
     faults.push_back({"[postprocess.survey] gives peak_thickness and polygon", "both say what the footprint is",
                       "Leave one of them out"});
@@ -88,10 +93,12 @@ void SurveyOptions::check(std::vector<Fault>& faults) const {
                       "Leave one of them out"});
   }
   if (from_preprocess && (!sigma.empty() || sigma_m > 0)) {
-    faults.push_back({"[postprocess.survey] gives from_preprocess and an error", "the error comes with the change that talus-preprocess found",
+    faults.push_back({"[postprocess.survey] gives from_preprocess and an error",
+                      "the error comes with the change that talus-preprocess found",
                       "Leave sigma out; [preprocess.difference] takes the surveys' own"});
   } else if ((!sigma.empty() || sigma_m > 0) && !measures()) {
-    faults.push_back({"[postprocess.survey] gives an error without a measurement", "an outline or a peak thickness has none",
+    faults.push_back({"[postprocess.survey] gives an error without a measurement",
+                      "an outline or a peak thickness has none",
                       "Give thickness, difference or after_dem, or leave sigma out"});
   }
 }
@@ -106,7 +113,8 @@ void Options::describe(recipe::Visitor& v) {
       "deposit is thinner than 12 m");
   v.text("institution", institution, "who made this, for the NetCDF file");
   v.flag("report", report, "write report.html: maps, profiles, scores and settings on one page to send on");
-  recipe::choice(v, "animation", animation, {{"none", Animation::none}, {"mp4", Animation::mp4}, {"gif", Animation::gif}},
+  recipe::choice(v, "animation", animation,
+                 {{"none", Animation::none}, {"mp4", Animation::mp4}, {"gif", Animation::gif}},
                  "a film of the flow on the map; needs the program ffmpeg and a run with frames");
   v.text("start_time", start_time,
          "when the failure began, UTC, as 1903-04-29 04:10:00, for the time axis of the NetCDF file; empty: not known");
@@ -120,7 +128,8 @@ void Options::describe(recipe::Visitor& v) {
          "centre of mass");
   recipe::choice(v, "avaframe_format", avaframe_format, {{"tif", AvaFrameFormat::tif}, {"asc", AvaFrameFormat::asc}},
                  "format of these; every version of AvaFrame, and ISeeSnow, reads asc");
-  v.enter("survey", "what the run is scored against: thickness, or difference, or after_dem, or polygon; all empty: no scores");
+  v.enter("survey",
+          "what the run is scored against: thickness, or difference, or after_dem, or polygon; all empty: no scores");
   survey.describe(v);
   v.leave();
 }

@@ -22,19 +22,21 @@ struct SurveyOptions {
   std::filesystem::path peak_thickness;  // raster of peak thickness, vertical [m]: the footprint
   std::filesystem::path before_dem;      // with after_dem: surveyed change; empty = the run's own surface before
   std::filesystem::path after_dem;
-  std::filesystem::path difference;  // raster of after - before, aligned [m]
-  bool from_preprocess = false;      // difference and sigma are what talus-preprocess wrote into OUT/survey
-  std::filesystem::path polygon;     // outline of the affected area
+  std::filesystem::path difference;           // raster of after - before, aligned [m]
+  bool from_preprocess = false;               // difference and sigma are what talus-preprocess wrote into OUT/survey
+  std::filesystem::path polygon;              // outline of the affected area
   Direction direction = Direction::vertical;  // of thickness and peak_thickness
-  bool nodata_is_zero = false;    // thickness and difference rasters: no data means no deposit, no change
-  std::filesystem::path sigma;    // raster of the standard error of thickness or change [m]
-  double sigma_m = 0;             // the same, one number for all cells [m]; 0 = not known
-  double correlation_length = 0;  // range within which errors are alike [m]; 0 = as the sigma raster says
-  double detection = 1.96;        // level of detection over sigma
-  int resamples = 200;            // of the survey, within its error
+  bool nodata_is_zero = false;                // thickness and difference rasters: no data means no deposit, no change
+  std::filesystem::path sigma;                // raster of the standard error of thickness or change [m]
+  double sigma_m = 0;                         // the same, one number for all cells [m]; 0 = not known
+  double correlation_length = 0;              // range within which errors are alike [m]; 0 = as the sigma raster says
+  double detection = 1.96;                    // level of detection over sigma
+  int resamples = 200;                        // of the survey, within its error
   int resample_seed = 1;
 
-  bool measures() const { return !(thickness.empty() && difference.empty() && after_dem.empty()); }  ///< not an outline only
+  bool measures() const {
+    return !(thickness.empty() && difference.empty() && after_dem.empty());
+  }  ///< not an outline only
   /// Names the files under `out` where from_preprocess asks for them. Throws DataError when they are not there.
   void find_in(const std::filesystem::path& out);
   bool given() const { return measures() || !peak_thickness.empty() || !polygon.empty(); }
@@ -53,9 +55,9 @@ struct Options {
   std::string institution;
   Animation animation = Animation::none;
   bool report = true;             // write report.html
-  std::string start_time;            // when the failure began, UTC; empty = not known
-  bool nodata_zero = false;          // GeoTIFFs: 0 outside the domain too
-  bool avaframe = false;             // aliases for AvaFrame beside the maps
+  std::string start_time;         // when the failure began, UTC; empty = not known
+  bool nodata_zero = false;       // GeoTIFFs: 0 outside the domain too
+  bool avaframe = false;          // aliases for AvaFrame beside the maps
   std::filesystem::path thalweg;  // line along which run-out is measured; empty = found from the run
   AvaFrameFormat avaframe_format = AvaFrameFormat::tif;
   SurveyOptions survey;

@@ -71,7 +71,8 @@ std::string history_table(const RunHistory& history) {
   const std::size_t rows = history.columns.empty() ? 0 : history.columns[0].size();
   for (std::size_t row = 0; row < rows; ++row) {
     text += "\n";
-    for (const std::size_t c : order) text += fmt::format("{}{:.9g}", c == order.front() ? "" : ",", history.columns[c][row]);
+    for (const std::size_t c : order)
+      text += fmt::format("{}{:.9g}", c == order.front() ? "" : ",", history.columns[c][row]);
   }
   return text + "\n";
 }
@@ -85,7 +86,8 @@ std::optional<std::string> text_of(const fs::path& file) {
 /// What preprocess and solve left beside the run about themselves.
 std::vector<StageText> texts_of_stages(const fs::path& folder) {
   std::vector<StageText> texts;
-  for (const auto* stage : {"preprocess", "solve"}) texts.push_back({stage, text_of(folder / (std::string(stage) + ".used.toml"))});
+  for (const auto* stage : {"preprocess", "solve"})
+    texts.push_back({stage, text_of(folder / (std::string(stage) + ".used.toml"))});
   return texts;
 }
 
@@ -176,7 +178,8 @@ Stage stage() {
   stage.table = "postprocess";
   stage.summary = "Write maps, NetCDF, picture and scores of a run (run.h5 of talus-solve)";
   stage.examples =
-      "  talus-postprocess scene.toml --out out/scene    maps/ (with a QGIS project), map.png, report.html, history.csv, score.json, score.txt\n"
+      "  talus-postprocess scene.toml --out out/scene    maps/ (with a QGIS project), map.png, report.html, "
+      "history.csv, score.json, score.txt\n"
       "  talus-postprocess scene.toml --out out/scene --check    read run and survey, write nothing\n"
       "  talus-postprocess --template >> scene.toml    all keys with their defaults\n";
   stage.template_toml = [] { return recipe::to_toml(Options{}, "postprocess", true); };

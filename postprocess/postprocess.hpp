@@ -1,5 +1,5 @@
-// The stage talus-postprocess: run.h5 -> maps/ (GeoTIFF, NetCDF, outlines, QGIS project), map.png, report.html, history.csv,
-// score.json, score.txt.
+// The stage talus-postprocess: run.h5 -> maps/ (GeoTIFF, NetCDF, outlines, QGIS project), map.png, report.html,
+// history.csv, score.json, score.txt.
 #pragma once
 
 #include "common/stage/stage.hpp"

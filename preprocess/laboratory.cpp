@@ -109,7 +109,8 @@ class Checker {
       add("grid.west_m or its like is given with a laboratory", "there is no elevation model to crop",
           "Use laboratory.west_m, south_m, columns and rows");
     if (g.minimum_thickness_m > 0)
-      add("grid.minimum_thickness_m is given with a laboratory", "boxes are filled by a regular lattice", "Leave it out");
+      add("grid.minimum_thickness_m is given with a laboratory", "boxes are filled by a regular lattice",
+          "Leave it out");
   }
 
   bool grid() {
@@ -171,7 +172,8 @@ class Checker {
         const auto a = sides_of(o_.box[i]), b = sides_of(o_.box[j]);
         bool shared = true;
         for (std::size_t s = 0; s < 3; ++s) {
-          shared = shared && std::min(a[s].high, b[s].high) - std::max(a[s].low, b[s].low) > rounding * o_.grid.spacing_m;
+          shared =
+              shared && std::min(a[s].high, b[s].high) - std::max(a[s].low, b[s].low) > rounding * o_.grid.spacing_m;
         }
         if (shared)
           add(fmt::format("{} and {} overlap", name_of(o_.box[i], i), name_of(o_.box[j], j)),

@@ -9,8 +9,9 @@
 
 namespace talus::preprocess {
 
-/// What a laboratory needs beyond the ranges of its keys: a spacing, boxes inside the grid that the lattice of points fills
-/// exactly and that do not overlap, and nothing of the other three ways. Expects grid.points_per_cell to be in order.
+/// What a laboratory needs beyond the ranges of its keys: a spacing, boxes inside the grid that the lattice of points
+/// fills exactly and that do not overlap, and nothing of the other three ways. Expects grid.points_per_cell to be in
+/// order.
 void check_laboratory(const Options& options, std::vector<Fault>& faults);
 
 // The rest expects options that check_laboratory() found nothing in.

@@ -27,8 +27,11 @@ Facts facts_of(const preprocess::Prepared& prepared) {
               {"material_points", std::to_string(prepared.point_count)}};
   for (auto& fact : preprocess::as_facts(prepared.total)) facts.push_back(std::move(fact));
   if (prepared.sliding_surface) {
-    facts.emplace_back("sliding_surface", fmt::format("computed from the outline, curvature {:.4g} 1/m, at most {:.4g} m deep, follows the ground in {} cells", prepared.sliding_surface->curvature,
-                                                      prepared.sliding_surface->depth, prepared.sliding_surface->touching));
+    facts.emplace_back(
+        "sliding_surface",
+        fmt::format(
+            "computed from the outline, curvature {:.4g} 1/m, at most {:.4g} m deep, follows the ground in {} cells",
+            prepared.sliding_surface->curvature, prepared.sliding_surface->depth, prepared.sliding_surface->touching));
   }
   if (prepared.by_release.size() < 2) return facts;
   for (const auto& [name, volumes] : prepared.by_release) {
@@ -89,13 +92,15 @@ void write_survey_files(StageContext& context, const preprocess::Prepared& prepa
 /// --difference: the two surveys alone, block by block, however large they are.
 void run_difference(StageContext& context, const preprocess::Options& options) {
   if (options.way() != preprocess::Way::before_and_after)
-    throw RecipeError(Fault{"--difference: [preprocess] does not give before_dem and after_dem", "there is nothing to compare", "Give both, or leave --difference out"});
+    throw RecipeError(Fault{"--difference: [preprocess] does not give before_dem and after_dem",
+                            "there is nothing to compare", "Give both, or leave --difference out"});
   const preprocess::Survey survey = preprocess::survey_of(options);
   std::vector<std::string> lines = preprocess::as_lines(survey);
   if (!context.check_only) context.results = preprocess::write_survey(context.out / "survey", survey, nullptr, lines);
   for (const std::string& line : lines) log_info(line);
   if (!context.check_only)
-    write_used_recipe(context, stage(), recipe::to_toml(options, "preprocess", false), {options.before_dem, options.after_dem}, {{"crs", crs_name(survey.grid.crs_wkt)}});
+    write_used_recipe(context, stage(), recipe::to_toml(options, "preprocess", false),
+                      {options.before_dem, options.after_dem}, {{"crs", crs_name(survey.grid.crs_wkt)}});
 }
 
 void run(StageContext& context) {
@@ -130,7 +135,8 @@ Stage stage() {
   stage.examples =
       "  talus-preprocess recipe.toml --out out/scene    read, align, seed the material points, write domain.vdb\n"
       "  talus-preprocess recipe.toml --check            say volumes and counts, write nothing\n"
-      "  talus-preprocess recipe.toml --difference       compare the two surveys block by block, write OUT/survey and stop\n"
+      "  talus-preprocess recipe.toml --difference       compare the two surveys block by block, write OUT/survey and "
+      "stop\n"
       "  talus-preprocess --template > recipe.toml       every key with its meaning and range";
   stage.has_difference = true;
   stage.template_toml = [] { return recipe::to_toml(preprocess::Options{}, "preprocess", true); };

@@ -23,53 +23,69 @@ void ReleaseOptions::describe(recipe::Visitor& v) {
 }
 
 void ErodibleOptions::describe(recipe::Visitor& v) {
-  v.flag("lowering", lowering, "with before_dem and after_dem: the layer is what went down outside the source; no raster, no polygons");
+  v.flag("lowering", lowering,
+         "with before_dem and after_dem: the layer is what went down outside the source; no raster, no polygons");
   ReleaseOptions::describe(v);
 }
 
 void SlidingSurfaceOptions::describe(recipe::Visitor& v) {
   v.number("depth_m", depth_m, recipe::not_negative, "largest vertical depth below before_dem; 0 = not given");
   v.number("volume_m3", volume_m3, recipe::not_negative, "volume between it and before_dem; 0 = not given");
-  v.path("depth_points", depth_points, "places where it is known (boreholes): vector points, or a table of x, y and z or depth, heights in vertical_unit; none of the three: volume from the polygon's area (Guzzetti et al. 2009)");
-  recipe::choice(v, "depth_points_hold", depth_points_hold, {{"elevation", PointValue::elevation}, {"depth", PointValue::depth}},
-                 "what the z of these points is where it is not named depth: elevation of the sliding surface, or its vertical depth below before_dem");
-  v.number("depth_points_error_m", depth_points_error_m, recipe::not_negative, "standard error of these points; 0 = met exactly");
+  v.path("depth_points", depth_points,
+         "places where it is known (boreholes): vector points, or a table of x, y and z or depth, heights in "
+         "vertical_unit; none of the three: volume from the polygon's area (Guzzetti et al. 2009)");
+  recipe::choice(v, "depth_points_hold", depth_points_hold,
+                 {{"elevation", PointValue::elevation}, {"depth", PointValue::depth}},
+                 "what the z of these points is where it is not named depth: elevation of the sliding surface, or its "
+                 "vertical depth below before_dem");
+  v.number("depth_points_error_m", depth_points_error_m, recipe::not_negative,
+           "standard error of these points; 0 = met exactly");
 }
 
 void SourceOptions::describe(recipe::Visitor& v) {
-  v.path("polygon", polygon, "outline of the source; empty = found as the connected region of lowering; needed for (5)");
+  v.path("polygon", polygon,
+         "outline of the source; empty = found as the connected region of lowering; needed for (5)");
   v.number("threshold_m", threshold_m, recipe::not_negative, "lowering beyond which a cell belongs to such a region");
   v.optional_number("seed_x_m", seed_x_m, recipe::any,
                     "take the region that holds this point (its easting); else the largest by volume");
   v.optional_number("seed_y_m", seed_y_m, recipe::any, "its northing");
-  v.enter("sliding_surface", "(5) how deep the surface lies that is computed under the polygon: give one of the first three");
+  v.enter("sliding_surface",
+          "(5) how deep the surface lies that is computed under the polygon: give one of the first three");
   sliding_surface.describe(v);
   v.leave();
 }
 
 void CoregistrationOptions::describe(recipe::Visitor& v) {
   recipe::choice(v, "mode", mode, {{"check", Alignment::check}, {"apply", Alignment::apply}, {"off", Alignment::off}},
-                 "bring after_dem onto before_dem where nothing moved: check = find shift, height and tilt, and warn; apply = correct them");
+                 "bring after_dem onto before_dem where nothing moved: check = find shift, height and tilt, and warn; "
+                 "apply = correct them");
   v.flag("tilt", tilt, "look for a tilt too; one within its error is left out");
   v.number("steepest_deg", steepest_deg, recipe::Range{0, 90, true, false}, "steeper ground is left out of the fit");
-  v.path("changed", changed, "polygons of ground to leave out of the fit, besides source and deposit; changes that stand out are found by themselves");
+  v.path("changed", changed,
+         "polygons of ground to leave out of the fit, besides source and deposit; changes that stand out are found by "
+         "themselves");
 }
 
 void DifferenceOptions::describe(recipe::Visitor& v) {
   recipe::choice(v, "threshold", threshold,
-                 {{"probabilistic", Threshold::probabilistic}, {"propagated-error", Threshold::propagated_error}, {"minimum-level", Threshold::minimum_level}},
+                 {{"probabilistic", Threshold::probabilistic},
+                  {"propagated-error", Threshold::propagated_error},
+                  {"minimum-level", Threshold::minimum_level}},
                  "level of detection: confidence times the error; the error itself; or minimum_level_m alone");
   v.number("confidence", confidence, recipe::Range{0.5, 0.9999}, "of the probabilistic level, two-sided");
   v.number("minimum_level_m", minimum_level_m, recipe::not_negative, "the least level of detection in any case");
-  v.number("before_sigma_m", before_sigma_m, recipe::not_negative, "standard error of before_dem; 0 for both = the difference's, by slope, from stable ground");
+  v.number("before_sigma_m", before_sigma_m, recipe::not_negative,
+           "standard error of before_dem; 0 for both = the difference's, by slope, from stable ground");
   v.number("after_sigma_m", after_sigma_m, recipe::not_negative, "that of after_dem");
 }
 
 double DifferenceOptions::given_sigma() const { return std::hypot(before_sigma_m, after_sigma_m); }
 
 void DepositOptions::describe(recipe::Visitor& v) {
-  v.path("polygon", polygon, "outline of the surveyed deposit; empty = what rose in the region of change that holds the source");
-  v.number("threshold_m", threshold_m, recipe::not_negative, "rise beyond which (and beyond the level of detection) a cell belongs to it");
+  v.path("polygon", polygon,
+         "outline of the surveyed deposit; empty = what rose in the region of change that holds the source");
+  v.number("threshold_m", threshold_m, recipe::not_negative,
+           "rise beyond which (and beyond the level of detection) a cell belongs to it");
 }
 
 void GridOptions::describe(recipe::Visitor& v) {
@@ -94,10 +110,10 @@ void GridOptions::describe(recipe::Visitor& v) {
 void VoidOptions::describe(recipe::Visitor& v) {
   v.flag("fill", fill, "fill voids inside the elevation models by natural neighbours; else they are refused by place");
   v.number("largest_m2", largest_m2, recipe::not_negative, "area of the largest void that is filled");
-  recipe::choice(v, "spikes", spikes,
-                 {{"ignore", Spikes::ignore}, {"report", Spikes::report}, {"remove", Spikes::remove}},
-                 "cells that stand out from their neighbours (ten times the usual around): remove = make them voids and fill "
-                 "them");
+  recipe::choice(
+      v, "spikes", spikes, {{"ignore", Spikes::ignore}, {"report", Spikes::report}, {"remove", Spikes::remove}},
+      "cells that stand out from their neighbours (ten times the usual around): remove = make them voids and fill "
+      "them");
 }
 
 void LaboratoryOptions::describe(recipe::Visitor& v) {
@@ -125,11 +141,14 @@ void ObstacleOptions::describe(recipe::Visitor& v) {
   v.path("polygons", polygons, "vector file of footprints");
   v.text("attribute", attribute, "the polygons' attribute that holds their height above the ground [m]");
   v.number("height_m", height_m, recipe::not_negative, "one height for all of them; 0 = that of the attribute");
-  v.number("voxel_m", voxel_m, recipe::not_negative, "voxels of obstacles.vdb: the smallest given counts; 0 = a quarter of the smaller of spacing_m and layer_height_m");
+  v.number("voxel_m", voxel_m, recipe::not_negative,
+           "voxels of obstacles.vdb: the smallest given counts; 0 = a quarter of the smaller of spacing_m and "
+           "layer_height_m");
 }
 
 void BedRasters::describe(recipe::Visitor& v) {
-  for (auto& [name, file] : files) v.path(name, file, "raster that takes the place of [solve.base] " + name + "; no data: that number");
+  for (auto& [name, file] : files)
+    v.path(name, file, "raster that takes the place of [solve.base] " + name + "; no data: that number");
 }
 
 namespace {
@@ -148,21 +167,27 @@ void describe_unit(recipe::Visitor& v, const char* key, VerticalUnit& unit, cons
 }  // namespace
 
 void Options::describe(recipe::Visitor& v) {
-  v.path("before_dem", before_dem, "surface before the slide (1: with after_dem, 2: with sliding_surface, 5: with source.polygon alone)");
+  v.path("before_dem", before_dem,
+         "surface before the slide (1: with after_dem, 2: with sliding_surface, 5: with source.polygon alone)");
   v.path("after_dem", after_dem, "surface after it; only the lowering inside the source is taken out");
   v.path("sliding_surface", sliding_surface, "surface it slides on; no data = no sliding surface there");
   v.path("base_dem", base_dem, "ground under the releases (3: with [[preprocess.release]])");
-  v.text("working_crs", working_crs,
-         "metric CRS to work in, \"EPSG:32149\", or \"utm\": the UTM zone of the first DEM; files in degrees or feet are "
-         "reprojected to it; empty = the CRS of the first DEM");
-  recipe::choice(v, "vertical_unit", vertical_unit,
-                 {{"declared", VerticalUnit::declared},
-                  {"metre", VerticalUnit::metre},
-                  {"foot", VerticalUnit::foot},
-                  {"us-survey-foot", VerticalUnit::us_survey_foot}},
-                 "what the elevation models' heights are in; declared = what each file says, metres where it says nothing");
-  describe_unit(v, "before_vertical_unit", before_vertical_unit, "what the heights of before_dem are in, where it differs from the others; same = as vertical_unit says");
-  describe_unit(v, "after_vertical_unit", after_vertical_unit, "what the heights of after_dem are in, where it differs from the others; same = as vertical_unit says");
+  v.text(
+      "working_crs", working_crs,
+      "metric CRS to work in, \"EPSG:32149\", or \"utm\": the UTM zone of the first DEM; files in degrees or feet are "
+      "reprojected to it; empty = the CRS of the first DEM");
+  recipe::choice(
+      v, "vertical_unit", vertical_unit,
+      {{"declared", VerticalUnit::declared},
+       {"metre", VerticalUnit::metre},
+       {"foot", VerticalUnit::foot},
+       {"us-survey-foot", VerticalUnit::us_survey_foot}},
+      "what the elevation models' heights are in; declared = what each file says, metres where it says nothing");
+  describe_unit(
+      v, "before_vertical_unit", before_vertical_unit,
+      "what the heights of before_dem are in, where it differs from the others; same = as vertical_unit says");
+  describe_unit(v, "after_vertical_unit", after_vertical_unit,
+                "what the heights of after_dem are in, where it differs from the others; same = as vertical_unit says");
   v.enter("coregistration", "for (1): after_dem brought onto before_dem");
   coregistration.describe(v);
   v.leave();
@@ -182,12 +207,16 @@ void Options::describe(recipe::Visitor& v) {
   voids.describe(v);
   v.leave();
   recipe::list(v, "release", release, "what is released onto base_dem; may be repeated");
-  recipe::list(v, "erodible", erodible, "a layer of ground that the slide can take along: material points with a strength of their own; may be repeated");
+  recipe::list(
+      v, "erodible", erodible,
+      "a layer of ground that the slide can take along: material points with a strength of their own; may be repeated");
   v.enter("laboratory", "(4) a plane instead of elevation models, with [[preprocess.box]]");
   laboratory.describe(v);
   v.leave();
   recipe::list(v, "box", box, "a block of material on or above that plane; may be repeated");
-  recipe::list(v, "obstacle", obstacle, "a body in the way, from polygons: written into OUT/obstacles.vdb for [[solve.obstacle]]; may be repeated");
+  recipe::list(
+      v, "obstacle", obstacle,
+      "a body in the way, from polygons: written into OUT/obstacles.vdb for [[solve.obstacle]]; may be repeated");
   v.enter("bed", "friction of the bed from place to place");
   bed.describe(v);
   v.leave();
@@ -244,13 +273,17 @@ void check_release(const char* kind, const ReleaseOptions& r, std::size_t item, 
 void check_depth(const Options& o, std::vector<Fault>& faults) {
   const SlidingSurfaceOptions& s = o.source.sliding_surface;
   if (s.ways_given() > 1) {
-    faults.push_back(fault("source.sliding_surface: more than one of depth_m, volume_m3 and depth_points is given", "each says by itself how deep the surface lies", "Leave the others out"));
+    faults.push_back(fault("source.sliding_surface: more than one of depth_m, volume_m3 and depth_points is given",
+                           "each says by itself how deep the surface lies", "Leave the others out"));
   }
   if (s.depth_points.empty() && (s.depth_points_error_m > 0 || s.depth_points_hold != PointValue::elevation)) {
-    faults.push_back(fault("source.sliding_surface: depth_points_hold or depth_points_error_m is given without depth_points", "there are no points to read", "Give depth_points"));
+    faults.push_back(
+        fault("source.sliding_surface: depth_points_hold or depth_points_error_m is given without depth_points",
+              "there are no points to read", "Give depth_points"));
   }
   if (s.ways_given() > 0 && (o.before_dem.empty() || !o.after_dem.empty() || !o.sliding_surface.empty())) {
-    faults.push_back(fault("source.sliding_surface is given, but not before_dem and source.polygon alone", "only there is a sliding surface computed; elsewhere the files hold it",
+    faults.push_back(fault("source.sliding_surface is given, but not before_dem and source.polygon alone",
+                           "only there is a sliding surface computed; elsewhere the files hold it",
                            "Leave it out, or leave after_dem, sliding_surface and base_dem out"));
   }
 }
@@ -288,11 +321,14 @@ namespace {
 void check_comparison(const Options& o, std::vector<Fault>& faults) {
   if (!o.after_dem.empty()) return;
   const auto refuse = [&](bool given, const char* what) {
-    if (given) faults.push_back(fault(std::string(what) + " is given without after_dem", "it speaks of a second elevation model", "Give after_dem, or leave it out"));
+    if (given)
+      faults.push_back(fault(std::string(what) + " is given without after_dem", "it speaks of a second elevation model",
+                             "Give after_dem, or leave it out"));
   };
   refuse(o.coregistration.mode == Alignment::apply, "coregistration.mode = \"apply\"");
   refuse(!o.coregistration.changed.empty(), "coregistration.changed");
-  refuse(o.difference.given_sigma() > 0 || o.difference.minimum_level_m > 0, "an error or level in [preprocess.difference]");
+  refuse(o.difference.given_sigma() > 0 || o.difference.minimum_level_m > 0,
+         "an error or level in [preprocess.difference]");
   refuse(!o.deposit.polygon.empty(), "deposit.polygon");
 }
 
@@ -304,7 +340,8 @@ namespace {
 void check_units(const Options& o, std::vector<Fault>& faults) {
   const auto refuse = [&](VerticalUnit unit, const std::filesystem::path& dem, const std::string& name) {
     if (unit == VerticalUnit::same || !dem.empty()) return;
-    faults.push_back(fault(name + "_vertical_unit is given without " + name + "_dem", "there are no heights that it speaks of",
+    faults.push_back(fault(name + "_vertical_unit is given without " + name + "_dem",
+                           "there are no heights that it speaks of",
                            "Leave it out, or use vertical_unit, which is for all elevation models"));
   };
   refuse(o.before_vertical_unit, o.before_dem, "before");
@@ -317,14 +354,18 @@ void Options::check(std::vector<Fault>& faults) const {
   std::set<std::string> bodies;
   for (std::size_t i = 0; i < obstacle.size(); ++i) {
     const std::string place = fmt::format("obstacle {}", i + 1);
-    if (obstacle[i].polygons.empty()) faults.push_back(fault(place + ": polygons is not given", "its footprint is not known", "Name a vector file"));
+    if (obstacle[i].polygons.empty())
+      faults.push_back(fault(place + ": polygons is not given", "its footprint is not known", "Name a vector file"));
     if (obstacle[i].name.empty() || !bodies.insert(obstacle[i].name).second) {
-      faults.push_back(fault(fmt::format("{}: name = \"{}\" is {}", place, obstacle[i].name, obstacle[i].name.empty() ? "empty" : "taken"), "[[solve.obstacle]] finds it by name",
-                             "Give it a name of its own"));
+      faults.push_back(fault(
+          fmt::format("{}: name = \"{}\" is {}", place, obstacle[i].name, obstacle[i].name.empty() ? "empty" : "taken"),
+          "[[solve.obstacle]] finds it by name", "Give it a name of its own"));
     }
   }
   if (laboratory.given() || !box.empty()) {
-    if (!erodible.empty()) faults.push_back(fault("erodible does not go with a laboratory", "its boxes are not read from maps", "Give the layer as a box"));
+    if (!erodible.empty())
+      faults.push_back(fault("erodible does not go with a laboratory", "its boxes are not read from maps",
+                             "Give the layer as a box"));
     check_grid(grid, faults);
     if (faults.empty()) check_laboratory(*this, faults);
     return;
@@ -336,14 +377,16 @@ void Options::check(std::vector<Fault>& faults) const {
     for (std::size_t i = 0; i < list.size(); ++i) {
       if (!given_otherwise(list[i])) check_release(kind, list[i], i, faults);
       if (!list[i].name.empty() && !names.insert(list[i].name).second) {
-        faults.push_back(fault(fmt::format("{} {}: name \"{}\" is taken", kind, i + 1, list[i].name), "results are told apart by name", "Name it otherwise"));
+        faults.push_back(fault(fmt::format("{} {}: name \"{}\" is taken", kind, i + 1, list[i].name),
+                               "results are told apart by name", "Name it otherwise"));
       }
     }
   };
   check_list("release", release, [](const ReleaseOptions&) { return false; });
   check_list("erodible", erodible, [&](const ErodibleOptions& e) {
     if (e.lowering && (after_dem.empty() || !e.thickness_raster.empty() || !e.polygons.empty())) {
-      faults.push_back(fault("erodible: lowering = true beside a raster or polygons, or without after_dem", "the layer is the difference of two elevation models",
+      faults.push_back(fault("erodible: lowering = true beside a raster or polygons, or without after_dem",
+                             "the layer is the difference of two elevation models",
                              "Give before_dem and after_dem and nothing else, or leave lowering out"));
     }
     return e.lowering;

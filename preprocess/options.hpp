@@ -19,7 +19,8 @@ enum class Threshold { minimum_level, propagated_error, probabilistic };
 /// What becomes of cells without elevation.
 enum class EdgeNodata { refuse, outside };
 
-/// What the heights of elevation models are in: what the files say, or this. `same`: of one model, as of all the others.
+/// What the heights of elevation models are in: what the files say, or this. `same`: of one model, as of all the
+/// others.
 enum class VerticalUnit { declared, metre, foot, us_survey_foot, same };
 
 /// One [[preprocess.release]]: a raster of thickness, or polygons with a thickness.
@@ -135,8 +136,9 @@ struct LaboratoryOptions {
 /// Rasters of the bed's friction, under the names of the numbers in [solve.base] that they take the place of.
 struct BedRasters {
   std::vector<std::pair<std::string, std::filesystem::path>> files{
-      {"friction_angle_deg", {}}, {"peak_coefficient", {}}, {"steady_coefficient", {}}, {"characteristic_speed_m_s", {}},
-      {"turbulence_m_s2", {}},    {"cohesion_Pa", {}},      {"pore_pressure_ratio", {}}};
+      {"friction_angle_deg", {}},       {"peak_coefficient", {}}, {"steady_coefficient", {}},
+      {"characteristic_speed_m_s", {}}, {"turbulence_m_s2", {}},  {"cohesion_Pa", {}},
+      {"pore_pressure_ratio", {}}};
 
   void describe(recipe::Visitor& v);
 };

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "common/error.hpp"
+#include "common/raster/slope.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/laboratory.hpp"
 #include "preprocess/obstacle/obstacles.hpp"
@@ -17,7 +18,6 @@
 #include "preprocess/release/releases.hpp"
 #include "preprocess/release/source.hpp"
 #include "preprocess/terrain/elevation.hpp"
-#include "common/raster/slope.hpp"
 #include "preprocess/terrain/surfaces.hpp"
 
 namespace talus::preprocess {
@@ -27,7 +27,7 @@ namespace {
 struct Scene {
   Raster before, bed;
   std::vector<Release> releases;
-  std::vector<double> lowering = {};  // before less after [m]; where both are given
+  std::vector<double> lowering = {};                   // before less after [m]; where both are given
   std::optional<SlidingSurface> sliding_surface = {};  // where it was computed
   std::optional<Survey> survey = {};
   std::optional<SurveyedSlide> slide = {};
@@ -44,10 +44,13 @@ Scene from_before_and_after(const Options& options) {
   std::vector<Filled> filled;
   std::vector<Raster> surfaces = align({&survey.before, &survey.after}, options, &filled);
   SurveyedSlide slide = slide_on(survey, surfaces[0], filled);
-  Source source = find_source({surfaces[0], surfaces[1], options.after_dem, false, survey.source, levels_of(survey, slide.sigma)}, options.source);
+  Source source =
+      find_source({surfaces[0], surfaces[1], options.after_dem, false, survey.source, levels_of(survey, slide.sigma)},
+                  options.source);
   delineate(survey, {surfaces[0], surfaces[1], source.thickness}, options, slide);
   std::vector<double> lowering;
-  for (std::size_t c = 0; c < surfaces[0].values.size(); ++c) lowering.push_back(surfaces[0].values[c] - surfaces[1].values[c]);
+  for (std::size_t c = 0; c < surfaces[0].values.size(); ++c)
+    lowering.push_back(surfaces[0].values[c] - surfaces[1].values[c]);
   Scene scene = from_source(std::move(surfaces[0]), std::move(source));
   scene.lowering = std::move(lowering);
   scene.survey = std::move(survey);
@@ -56,7 +59,8 @@ Scene from_before_and_after(const Options& options) {
 }
 
 Scene from_sliding_surface(const Options& options) {
-  Elevation before = read_elevation("before_dem", options.before_dem, dem_reading(options, options.before_vertical_unit));
+  Elevation before =
+      read_elevation("before_dem", options.before_dem, dem_reading(options, options.before_vertical_unit));
   Elevation sliding = read_elevation("sliding_surface", options.sliding_surface, dem_reading(options));
   share_crs({&before, &sliding}, options.working_crs);
   require_comparable_crs(sliding.crs_wkt(), sliding.file, before.crs_wkt(), before.file.string());
@@ -65,13 +69,15 @@ Scene from_sliding_surface(const Options& options) {
   const Raster under = onto_grid(sliding, surfaces[0].grid);
   require_data(under, sliding.file);
   SurfacePair pair{surfaces[0], under, options.sliding_surface, true};
-  if (!options.source.polygon.empty()) pair.outline = read_valid_polygons(options.source.polygon, under.grid.crs_wkt, "source");
+  if (!options.source.polygon.empty())
+    pair.outline = read_valid_polygons(options.source.polygon, under.grid.crs_wkt, "source");
   Source source = find_source(pair, options.source);
   return from_source(std::move(surfaces[0]), std::move(source));
 }
 
 Scene from_outline(const Options& options) {
-  Elevation before = read_elevation("before_dem", options.before_dem, dem_reading(options, options.before_vertical_unit));
+  Elevation before =
+      read_elevation("before_dem", options.before_dem, dem_reading(options, options.before_vertical_unit));
   share_crs({&before}, options.working_crs);
   Raster ground = align({&before}, options).front();
   ComputedSource computed = source_by_outline(ground, options.source, dem_reading(options));
@@ -125,7 +131,9 @@ Release lowered_outside_source(const Scene& scene, const std::string& name) {
     layer.thickness.values[c] = scene.lowering[c];
     any = true;
   }
-  if (!any) throw DataError(Fault{"[[preprocess.erodible]] lowering = true: nothing lies lower outside the source", "no ground was eroded", "Leave it out, or raise source.threshold_m"});
+  if (!any)
+    throw DataError(Fault{"[[preprocess.erodible]] lowering = true: nothing lies lower outside the source",
+                          "no ground was eroded", "Leave it out, or raise source.threshold_m"});
   return layer;
 }
 
@@ -140,7 +148,8 @@ void lay_erodible(const Options& options, Scene& scene) {
   for (const Release& layer : layers) {
     for (std::size_t c = 0; c < scene.bed.values.size(); ++c) scene.bed.values[c] -= layer.thickness.values[c];
   }
-  scene.releases.insert(scene.releases.begin(), std::make_move_iterator(layers.begin()), std::make_move_iterator(layers.end()));
+  scene.releases.insert(scene.releases.begin(), std::make_move_iterator(layers.begin()),
+                        std::make_move_iterator(layers.end()));
 }
 
 Scene read_scene(const Options& options) {
@@ -160,14 +169,17 @@ std::vector<std::pair<std::string, Raster>> read_bed(const Options& options, con
   std::vector<std::pair<std::string, Raster>> rasters;
   for (const auto& [name, file] : options.bed.files) {
     if (file.empty()) continue;
-    const Elevation values = read_elevation("bed." + name, file, {reproject ? grid.crs_wkt : "", "", dem_reading({}).or_else});
+    const Elevation values =
+        read_elevation("bed." + name, file, {reproject ? grid.crs_wkt : "", "", dem_reading({}).or_else});
     require_comparable_crs(values.crs_wkt(), values.file, grid.crs_wkt, "the working grid");
     log_resampling(values, grid);
     Raster raster = onto_grid(values, grid);
     require_data(raster, file);
     std::vector<char> negative(raster.values.size());
     for (std::size_t i = 0; i < negative.size(); ++i) negative[i] = raster.values[i] < 0;  // false for nodata
-    refuse_cells(grid, negative, {file, "negative values of " + name, "it has none", "Mend the raster; no data means the number in [solve.base]"});
+    refuse_cells(grid, negative,
+                 {file, "negative values of " + name, "it has none",
+                  "Mend the raster; no data means the number in [solve.base]"});
     rasters.emplace_back(name, std::move(raster));
   }
   return rasters;
@@ -208,8 +220,8 @@ std::vector<std::filesystem::path> inputs_of(const Options& options) {
     if (!file.empty()) inputs.push_back(file);
   };
   for (const auto& file :
-       {options.before_dem, options.after_dem, options.sliding_surface, options.base_dem, options.source.polygon, options.source.sliding_surface.depth_points,
-        options.coregistration.changed, options.deposit.polygon})
+       {options.before_dem, options.after_dem, options.sliding_surface, options.base_dem, options.source.polygon,
+        options.source.sliding_surface.depth_points, options.coregistration.changed, options.deposit.polygon})
     add(file);
   for (const ReleaseOptions& layer : options.erodible) {
     add(layer.thickness_raster);
@@ -228,7 +240,8 @@ std::vector<std::filesystem::path> inputs_of(const Options& options) {
 
 Survey survey_of(const Options& given) {
   const Options options = with_utm_zone(given);
-  Elevation before = read_elevation("before_dem", options.before_dem, dem_reading(options, options.before_vertical_unit));
+  Elevation before =
+      read_elevation("before_dem", options.before_dem, dem_reading(options, options.before_vertical_unit));
   Elevation after = read_elevation("after_dem", options.after_dem, dem_reading(options, options.after_vertical_unit));
   share_crs({&before, &after}, options.working_crs);
   return compare_surveys(std::move(before), std::move(after), options);

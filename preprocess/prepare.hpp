@@ -23,7 +23,7 @@ struct Prepared {
   std::vector<std::pair<std::string, Volumes>> by_release;
   std::vector<std::filesystem::path> inputs;
   std::vector<SolidBody> obstacles;
-  double obstacle_voxel = 0;  // [m]
+  double obstacle_voxel = 0;                           // [m]
   std::optional<SlidingSurface> sliding_surface = {};  // where it was computed from an outline
   std::optional<Survey> survey = {};                   // where before and after are given
   std::optional<SurveyedSlide> slide = {};
@@ -36,8 +36,8 @@ enum class Points { seeded, counted };
 Survey survey_of(const Options& options);
 
 /// Reads the files, aligns them, finds or reads the release and seeds its points. Throws RecipeError and DataError.
-/// Bed: under the released mass the sliding surface (given or computed), min(before, after), or the base DEM itself (snow lies on it, so
-/// the surface before is base + thickness); elsewhere the ground as it is.
+/// Bed: under the released mass the sliding surface (given or computed), min(before, after), or the base DEM itself
+/// (snow lies on it, so the surface before is base + thickness); elsewhere the ground as it is.
 Prepared prepare(const Options& options, Points points);
 
 }  // namespace talus::preprocess

@@ -54,8 +54,9 @@ void log_plan(const Domain& domain, const SolveOptions& o, On on) {
   const double wave_speed = fastest_wave(o);
   const double step = std::min(o.courant / first_rate(scene.grid, ground, scene.points, wave_speed, 0), o.largest_step);
   const double volume = std::accumulate(scene.points.volume.begin(), scene.points.volume.end(), 0.0);
-  log_info(fmt::format("{} material points, {:.0f} m3; grid {} x {} columns of {:g} m, layers of {:g} m", scene.points.size(),
-                       volume, scene.grid.columns, scene.grid.rows, scene.grid.spacing, scene.grid.layer_height));
+  log_info(fmt::format("{} material points, {:.0f} m3; grid {} x {} columns of {:g} m, layers of {:g} m",
+                       scene.points.size(), volume, scene.grid.columns, scene.grid.rows, scene.grid.spacing,
+                       scene.grid.layer_height));
   log_info(fmt::format("wave speed {:.0f} m/s, first step {:.3g} s, about {:.0f} steps, on the {}", wave_speed, step,
                        o.end_time / step, on == On::gpu ? "GPU" : "CPU"));
 }
@@ -65,13 +66,14 @@ SolveOptions settle_stiffness(const Domain& domain, SolveOptions o) {
   if (o.material.stiffness != StiffnessKind::automatic) return o;
   const StiffnessDemand demand = lowest_stiffness(domain, o);
   const double full = o.material.youngs_modulus;
-  log_info(fmt::format("stiffness: {:.3g} Pa instead of {:.3g} Pa, steps {:.3g} times as long: {}", demand.modulus, full, std::sqrt(full / demand.modulus),
-                       demand.reason));
+  log_info(fmt::format("stiffness: {:.3g} Pa instead of {:.3g} Pa, steps {:.3g} times as long: {}", demand.modulus,
+                       full, std::sqrt(full / demand.modulus), demand.reason));
   return with_stiffness(o, demand);
 }
 
 /// The run once more, twice as stiff, and the difference of the deposits as a share of the volume.
-void check_stiffness(const Domain& domain, SolveOptions o, On on, const StageContext& context, const std::filesystem::path& first) {
+void check_stiffness(const Domain& domain, SolveOptions o, On on, const StageContext& context,
+                     const std::filesystem::path& first) {
   o.transfer_time *= std::sqrt(2.0);
   o.material.youngs_modulus *= 2;
   for (PartOptions& part : o.parts) part.material.youngs_modulus *= 2;
@@ -89,7 +91,8 @@ void check_stiffness(const Domain& domain, SolveOptions o, On on, const StageCon
       all += b;
     }
   }
-  log_info(fmt::format("stiffness check: {:.2f} % of the deposit lies elsewhere with {:.3g} Pa", all > 0 ? 100 * moved / all : 0, o.material.youngs_modulus));
+  log_info(fmt::format("stiffness check: {:.2f} % of the deposit lies elsewhere with {:.3g} Pa",
+                       all > 0 ? 100 * moved / all : 0, o.material.youngs_modulus));
 }
 
 /// Obstacles without a level set of their own are those of talus-preprocess.
@@ -120,15 +123,16 @@ void solve(StageContext& context) {
   std::vector<std::filesystem::path> inputs{context.recipe.file(), domain_file};
   for (const ObstacleOptions& obstacle : options.obstacles) {
     fingerprint += sha256(obstacle.level_set) + "\n";
-    if (std::find(inputs.begin(), inputs.end(), obstacle.level_set) == inputs.end()) inputs.push_back(obstacle.level_set);
+    if (std::find(inputs.begin(), inputs.end(), obstacle.level_set) == inputs.end())
+      inputs.push_back(obstacle.level_set);
   }
   const RunPaths paths(context.out);
   if (context.profile) Profile::of_run().turn_on();
   Simulation simulation(domain, options, on, paths, fingerprint);
   if (context.restart) simulation.resume(context.restart->empty() ? paths.checkpoint : *context.restart);
   const RunSummary summary = simulation.run(context.recipe.scene_name(), context.recipe.title());
-  log_info(fmt::format("{} at t = {:.2f} s after {} steps in {:.1f} s", summary.stop_reason, summary.time_end, summary.steps,
-                       summary.wall_time));
+  log_info(fmt::format("{} at t = {:.2f} s after {} steps in {:.1f} s", summary.stop_reason, summary.time_end,
+                       summary.steps, summary.wall_time));
   if (context.profile) report_profile(summary, on, context.out);
   if (options.material.stiffness_check) check_stiffness(domain, options, on, context, paths.run);
   context.results.push_back(paths.run);

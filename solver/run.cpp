@@ -14,12 +14,24 @@
 namespace talus::solver {
 namespace {
 
-const std::vector<std::string> history_names = {"time_s",     "step",       "step_size_s",    "kinetic_J",
-                                                "potential_J", "elastic_J", "volume_m3",      "outflow_m3",
-                                                "speed_max_m_s", "momentum_x_kg_m_s", "momentum_y_kg_m_s", "momentum_z_kg_m_s",
-                                                "newton_iterations", "linear_iterations", "step_cuts", "step_over_cfl"};
+const std::vector<std::string> history_names = {"time_s",
+                                                "step",
+                                                "step_size_s",
+                                                "kinetic_J",
+                                                "potential_J",
+                                                "elastic_J",
+                                                "volume_m3",
+                                                "outflow_m3",
+                                                "speed_max_m_s",
+                                                "momentum_x_kg_m_s",
+                                                "momentum_y_kg_m_s",
+                                                "momentum_z_kg_m_s",
+                                                "newton_iterations",
+                                                "linear_iterations",
+                                                "step_cuts",
+                                                "step_over_cfl"};
 
-const std::vector<std::string> budget_names = {"bed_loss_J", "damping_loss_J", "plastic_loss_J", "transfer_loss_J",
+const std::vector<std::string> budget_names = {"bed_loss_J",     "damping_loss_J", "plastic_loss_J", "transfer_loss_J",
                                                "reaction_x_N_s", "reaction_y_N_s", "reaction_z_N_s"};
 
 std::string duration(double seconds) {
@@ -30,7 +42,8 @@ std::string duration(double seconds) {
 
 }  // namespace
 
-Simulation::Simulation(const Domain& domain, const SolveOptions& options, On on, RunPaths paths, std::string fingerprint)
+Simulation::Simulation(const Domain& domain, const SolveOptions& options, On on, RunPaths paths,
+                       std::string fingerprint)
     : domain_(domain),
       options_(with_preset(options)),
       on_(on),
@@ -39,7 +52,8 @@ Simulation::Simulation(const Domain& domain, const SolveOptions& options, On on,
       scene_(make_scene(domain, options_)),
       frames_(paths_.frames) {
   released_ = std::accumulate(scene_.points.volume.begin(), scene_.points.volume.end(), 0.0);
-  if (options_.integrator == Integrator::automatic) choice_.emplace(std::min(scene_.grid.spacing, scene_.grid.layer_height), options_.largest_step);
+  if (options_.integrator == Integrator::automatic)
+    choice_.emplace(std::min(scene_.grid.spacing, scene_.grid.layer_height), options_.largest_step);
 }
 
 /// For the integrator of the hour.
@@ -100,9 +114,11 @@ void Simulation::start() {
   if (options_.gravity_loading_steps > 0) load_by_gravity();
   build_solver(first_state(scene_, options_));
   memory_.history.names = history_names;
-  if (options_.energy_budget) memory_.history.names.insert(memory_.history.names.end(), budget_names.begin(), budget_names.end());
+  if (options_.energy_budget)
+    memory_.history.names.insert(memory_.history.names.end(), budget_names.begin(), budget_names.end());
   for (const ObstacleOptions& o : options_.obstacles) {
-    for (const char* axis : {"x", "y", "z"}) memory_.history.names.push_back(fmt::format("obstacle_{}_impulse_{}_N_s", o.name, axis));
+    for (const char* axis : {"x", "y", "z"})
+      memory_.history.names.push_back(fmt::format("obstacle_{}_impulse_{}_N_s", o.name, axis));
   }
   for (const std::string& note : scene_.contacts.notes) log_info(note);
   memory_.history.columns.resize(memory_.history.names.size());
@@ -112,7 +128,8 @@ void Simulation::start() {
 void Simulation::load_by_gravity() {
   SolveOptions o = options_;
   o.integrator = Integrator::quasi_static;
-  // Elastic and held at its bed: what is about to slide has no other equilibrium. The first step brings it to its own strength.
+  // Elastic and held at its bed: what is about to slide has no other equilibrium. The first step brings it to its own
+  // strength.
   const auto hold = [](MaterialOptions& m) {
     if (m.model == MaterialModel::drucker_prager) m.model = MaterialModel::hencky;
   };
@@ -141,14 +158,16 @@ void Simulation::load_by_gravity() {
     const auto p = static_cast<std::size_t>(loaded.id[q]);
     double mean = 0;
     const int material = scene_.points.material[p];
-    const MaterialOptions& own = material > 0 ? options_.parts[static_cast<std::size_t>(material) - 1].material : options_.material;
+    const MaterialOptions& own =
+        material > 0 ? options_.parts[static_cast<std::size_t>(material) - 1].material : options_.material;
     if (own.model == MaterialModel::drucker_prager) {
       mean = (loaded.elastic[0][q] + loaded.elastic[1][q] + loaded.elastic[2][q]) / 3;
     }
     for (std::size_t a = 0; a < 6; ++a) start.elastic[a][p] = loaded.elastic[a][q] - (a < 3 ? mean : 0);
     start.log_volume[p] = loaded.log_volume[q];
   }
-  log_info(fmt::format("gravity loading: {} steps, {} Newton and {} linear iterations", loader->clock().step, newton, linear));
+  log_info(fmt::format("gravity loading: {} steps, {} Newton and {} linear iterations", loader->clock().step, newton,
+                       linear));
 }
 
 double Simulation::next_event() const {
@@ -188,25 +207,27 @@ void Simulation::record(double time) {
   kinetic_ = e.kinetic;
   memory_.peak_kinetic = std::max(memory_.peak_kinetic, e.kinetic);
   std::vector<double> row{time,
-                        static_cast<double>(clock.step),
-                        clock.step_size,
-                        e.kinetic,
-                        e.potential,
-                        e.elastic,
-                        e.volume,
-                        memory_.outflow_volume,
-                        static_cast<double>(positive_from_bits(clock.speed_bits)),
-                        e.momentum.x,
-                        e.momentum.y,
-                        e.momentum.z,
-                        static_cast<double>(memory_.newton),
-                        static_cast<double>(memory_.linear),
-                        static_cast<double>(memory_.cuts),
-                        over_cfl_};
+                          static_cast<double>(clock.step),
+                          clock.step_size,
+                          e.kinetic,
+                          e.potential,
+                          e.elastic,
+                          e.volume,
+                          memory_.outflow_volume,
+                          static_cast<double>(positive_from_bits(clock.speed_bits)),
+                          e.momentum.x,
+                          e.momentum.y,
+                          e.momentum.z,
+                          static_cast<double>(memory_.newton),
+                          static_cast<double>(memory_.linear),
+                          static_cast<double>(memory_.cuts),
+                          over_cfl_};
   if (options_.energy_budget) {
-    row.insert(row.end(), {clock.bed_loss, clock.damping_loss, clock.plastic_loss, clock.transfer_loss, clock.reaction[0], clock.reaction[1], clock.reaction[2]});
+    row.insert(row.end(), {clock.bed_loss, clock.damping_loss, clock.plastic_loss, clock.transfer_loss,
+                           clock.reaction[0], clock.reaction[1], clock.reaction[2]});
   }
-  for (const Vec3<double>& impulse : solver_->obstacle_impulses()) row.insert(row.end(), {impulse.x, impulse.y, impulse.z});
+  for (const Vec3<double>& impulse : solver_->obstacle_impulses())
+    row.insert(row.end(), {impulse.x, impulse.y, impulse.z});
   for (std::size_t c = 0; c < memory_.history.columns.size(); ++c) memory_.history.columns[c].push_back(row[c]);
 }
 
@@ -223,7 +244,9 @@ PointFrame Simulation::point_frame(double time, const ParticleState& s) const {
         {s.elastic[0][p], s.elastic[1][p], s.elastic[2][p], s.elastic[3][p], s.elastic[4][p], s.elastic[5][p]},
         s.log_volume[p],
         s.plastic_log_volume[p]};
-    frame.pressure.push_back(static_cast<float>(-trace(kirchhoff_stress(materials.of(s.material.data(), s.plastic_shear.data(), static_cast<int>(p)), state)) / 3));
+    frame.pressure.push_back(static_cast<float>(
+        -trace(kirchhoff_stress(materials.of(s.material.data(), s.plastic_shear.data(), static_cast<int>(p)), state)) /
+        3));
   }
   frame.id = s.id;
   frame.release = s.release;
@@ -233,9 +256,11 @@ PointFrame Simulation::point_frame(double time, const ParticleState& s) const {
 /// The state is taken at once; the file is written while the run goes on.
 void Simulation::put_frame(double time) {
   const bool points = options_.point_frames || options_.vdb_frames;
-  writing_.start([this, time, number = memory_.frames, thickness = solver_->thickness(), state = points ? solver_->shown() : ParticleState{}] {
+  writing_.start([this, time, number = memory_.frames, thickness = solver_->thickness(),
+                  state = points ? solver_->shown() : ParticleState{}] {
     PointFrame frame = point_frame(time, state);
-    if (options_.vdb_frames) write_points_vdb(paths_.vdb_frames / fmt::format("points_{:05}.vdb", number), frame, scene_.map.cell);
+    if (options_.vdb_frames)
+      write_points_vdb(paths_.vdb_frames / fmt::format("points_{:05}.vdb", number), frame, scene_.map.cell);
     if (!options_.point_frames) {
       frame = {};
       frame.time = time;
@@ -269,8 +294,9 @@ void Simulation::report(Progress& progress, const Clock& clock) const {
   const double balance = (memory_.history.columns.empty() || memory_.history.columns[6].empty())
                              ? 0
                              : (memory_.history.columns[6].back() + memory_.history.columns[7].back()) / released_ - 1;
-  progress.update(fmt::format("t {:.2f}/{:g} s  step {}  dt {:.3g} s  v_max {:.1f} m/s  mass error {:.1e}  eta {}", clock.time,
-                              options_.end_time, clock.step, clock.step_size, positive_from_bits(clock.speed_bits), balance,
+  progress.update(fmt::format("t {:.2f}/{:g} s  step {}  dt {:.3g} s  v_max {:.1f} m/s  mass error {:.1e}  eta {}",
+                              clock.time, options_.end_time, clock.step, clock.step_size,
+                              positive_from_bits(clock.speed_bits), balance,
                               done > 0 ? duration(wall_time() * (1 - done) / done) : "?"));
 }
 
@@ -282,12 +308,12 @@ void Simulation::fail(const Clock& clock) const {
     const auto p = static_cast<std::size_t>(found - s.id.begin());
     where = fmt::format("({:.1f}, {:.1f})", scene_.map.x(s.cell[0][p]), scene_.map.y(s.cell[1][p]));
   }
-  throw NumericalError({fmt::format("step {}, t = {:.4f} s: material point {} near {} lost its state (not a number, or faster "
-                                    "than 1000 km/s)",
-                                    clock.step, clock.time, clock.failed_point, where),
-                        fmt::format("the step of {:.3g} s is too long for it", clock.step_size),
-                        fmt::format("Lower cfl (now {:g}), or use shape = \"quadratic\" with transfer = \"apic\"",
-                                    options_.courant)});
+  throw NumericalError(
+      {fmt::format("step {}, t = {:.4f} s: material point {} near {} lost its state (not a number, or faster "
+                   "than 1000 km/s)",
+                   clock.step, clock.time, clock.failed_point, where),
+       fmt::format("the step of {:.3g} s is too long for it", clock.step_size),
+       fmt::format("Lower cfl (now {:g}), or use shape = \"quadratic\" with transfer = \"apic\"", options_.courant)});
 }
 
 RunSummary Simulation::run(const std::string& scene, const std::string& title) {
@@ -346,10 +372,10 @@ void Simulation::count(const BatchReport& batch) {
   memory_.linear += batch.stats.linear;
   memory_.cuts += batch.stats.cuts;
   over_cfl_ = batch.stats.over_cfl;
-  log_detail(fmt::format("step {}  t {:.6g} s  dt {:.3g} s ({:.3g} CFL)  newton {}  cg {}  unbalanced {:.1e}  cuts {}{}", batch.clock.step,
-                         batch.clock.time, batch.clock.step_size, over_cfl_, batch.stats.newton, batch.stats.linear,
-                         batch.stats.residual, batch.stats.cuts,
-                         batch.stats.indefinite ? "  indefinite tangent, convex part taken" : ""));
+  log_detail(fmt::format(
+      "step {}  t {:.6g} s  dt {:.3g} s ({:.3g} CFL)  newton {}  cg {}  unbalanced {:.1e}  cuts {}{}", batch.clock.step,
+      batch.clock.time, batch.clock.step_size, over_cfl_, batch.stats.newton, batch.stats.linear, batch.stats.residual,
+      batch.stats.cuts, batch.stats.indefinite ? "  indefinite tangent, convex part taken" : ""));
 }
 
 RunMaps Simulation::final_maps() const {
@@ -376,17 +402,22 @@ RunMaps Simulation::final_maps() const {
 bool Simulation::went_along(const ParticleState& s, std::size_t p) const {
   if (s.release[p] >= domain_.erodible) return true;
   const auto first = static_cast<std::size_t>(s.id[p]);
-  const auto moved = [&](int a) { return s.cell[a][p] + s.offset[a][p] - scene_.points.cell[a][first] - scene_.points.offset[a][first]; };
+  const auto moved = [&](int a) {
+    return s.cell[a][p] + s.offset[a][p] - scene_.points.cell[a][first] - scene_.points.offset[a][first];
+  };
   return std::hypot(moved(0), moved(1)) > 1;
 }
 
 void Simulation::tell_apart(RunMaps& maps) const {
   const ParticleState end = solver_->state().points;
   const ParticleState& start = scene_.points;
-  const auto map_of = [&](const ParticleState& s, const std::function<bool(std::size_t)>& counts) { return thickness_of(scene_, options_, s, counts); };
+  const auto map_of = [&](const ParticleState& s, const std::function<bool(std::size_t)>& counts) {
+    return thickness_of(scene_, options_, s, counts);
+  };
   for (std::size_t r = 0; r < domain_.release_names.size(); ++r) {
-    maps.deposit_of.emplace_back(domain_.release_names[r],
-                                 map_of(end, [&](std::size_t p) { return end.release[p] == static_cast<int>(r) && went_along(end, p); }));
+    maps.deposit_of.emplace_back(domain_.release_names[r], map_of(end, [&](std::size_t p) {
+                                   return end.release[p] == static_cast<int>(r) && went_along(end, p);
+                                 }));
   }
   if (domain_.erodible == 0) return;
   maps.initial_thickness = map_of(start, [&](std::size_t p) { return start.release[p] >= domain_.erodible; });
@@ -404,7 +435,9 @@ void Simulation::report_obstacles() const {
   const std::vector<double>& time = history.columns[0];
   const std::size_t count = options_.obstacles.size();
   for (std::size_t o = 0; o < count; ++o) {
-    const auto impulse = [&](std::size_t axis, std::size_t row) { return history.columns[history.columns.size() - 3 * (count - o) + axis][row]; };
+    const auto impulse = [&](std::size_t axis, std::size_t row) {
+      return history.columns[history.columns.size() - 3 * (count - o) + axis][row];
+    };
     double peak = 0, when = 0;
     for (std::size_t row = 1; row < time.size(); ++row) {
       const double span = time[row] - time[row - 1];
@@ -414,8 +447,10 @@ void Simulation::report_obstacles() const {
       peak = std::max(peak, force);
     }
     const std::size_t last = time.size() - 1;
-    log_info(fmt::format("obstacle {}: impulse ({:.4g}, {:.4g}, {:.4g}) N s, largest mean force over {:g} s {:.4g} N until t = {:.2f} s", options_.obstacles[o].name, impulse(0, last),
-                         impulse(1, last), impulse(2, last), options_.history_interval, peak, when));
+    log_info(fmt::format(
+        "obstacle {}: impulse ({:.4g}, {:.4g}, {:.4g}) N s, largest mean force over {:g} s {:.4g} N until t = {:.2f} s",
+        options_.obstacles[o].name, impulse(0, last), impulse(1, last), impulse(2, last), options_.history_interval,
+        peak, when));
   }
 }
 
@@ -431,7 +466,8 @@ void Simulation::finish(RunSummary& summary) {
   summary.time_end = time_;
   summary.wall_time = memory_.wall_time;
   summary.memory = static_cast<double>(solver_->bytes());
-  for (const auto& [owner, bytes] : solver_->memory()) summary.memory_of.emplace_back(owner, static_cast<double>(bytes));
+  for (const auto& [owner, bytes] : solver_->memory())
+    summary.memory_of.emplace_back(owner, static_cast<double>(bytes));
   for (const Profile::Phase& p : Profile::of_run().phases()) summary.profile.emplace_back(p.name, p.seconds);
   summary.density = options_.material.density;
   summary.volume_released = released_;

@@ -8,9 +8,10 @@
 namespace talus::solver {
 namespace {
 
-/// A lone point on the very ground would leave next to no mass on the node above it, and no explicit step would be short enough. At a tenth
-/// of a layer sum N'^2/N is 11, which the default cfl of 0.5 still covers (docs/theory.md, T11). Implicit steps can do with less, and statics with none; but a node with next to no mass
-/// moves as it likes in a material without tension, and hands the point next to it a spin out of all measure.
+/// A lone point on the very ground would leave next to no mass on the node above it, and no explicit step would be
+/// short enough. At a tenth of a layer sum N'^2/N is 11, which the default cfl of 0.5 still covers (docs/theory.md,
+/// T11). Implicit steps can do with less, and statics with none; but a node with next to no mass moves as it likes in a
+/// material without tension, and hands the point next to it a spin out of all measure.
 constexpr double explicit_lowest_weighed = 0.1, newmark_lowest_weighed = 0.01;
 
 /// Nearest node and offset from it of a position in cells.
@@ -47,7 +48,8 @@ void attach_loads(const Domain& domain, const SolveOptions& options, Scene& scen
     }
     if (!(volume > 0)) {
       throw RecipeError({fmt::format("[[solve.load]] number {}: no material point starts inside its box", l + 1),
-                         "the load would pull at nothing", "Widen box_m (west, east, south, north, bottom, top above the ground)"});
+                         "the load would pull at nothing",
+                         "Widen box_m (west, east, south, north, bottom, top above the ground)"});
     }
     scene.load_volumes.push_back(volume);
   }
@@ -65,7 +67,8 @@ void attach_materials(const Domain& domain, const SolveOptions& options, Scene& 
     }
     if (found) continue;
     throw RecipeError({fmt::format("[[solve.part]] release = \"{}\": no material point is of that release", name),
-                       fmt::format("domain.vdb has {}", fmt::join(domain.release_names, ", ")), "Name one of those, or leave the part out"});
+                       fmt::format("domain.vdb has {}", fmt::join(domain.release_names, ", ")),
+                       "Name one of those, or leave the part out"});
   }
 }
 
@@ -77,7 +80,8 @@ std::vector<Bed<double>> make_bed(const Domain& domain, const SolveOptions& opti
   for (std::size_t column = 0; column < domain.grid.count(); ++column) {
     here.base = options.base;
     for (const auto& [name, raster] : domain.bed) {
-      if (double* value = here.base.named(name); value && std::isfinite(raster.values[column])) *value = raster.values[column];
+      if (double* value = here.base.named(name); value && std::isfinite(raster.values[column]))
+        *value = raster.values[column];
     }
     bed.push_back(make_base_friction<double>(here).uniform);
   }
@@ -88,7 +92,8 @@ std::vector<Bed<double>> make_bed(const Domain& domain, const SolveOptions& opti
 void check_bed(const Domain& domain, const SolveOptions& options) {
   for (const auto& [name, raster] : domain.bed) {
     if (options.base.uses(name)) continue;
-    throw RecipeError({fmt::format("[preprocess.bed] {} is given, but [solve.base] law does not use it", name), "the raster would have no effect",
+    throw RecipeError({fmt::format("[preprocess.bed] {} is given, but [solve.base] law does not use it", name),
+                       "the raster would have no effect",
                        "Name the law that does, or leave the raster out and run talus-preprocess again"});
   }
 }
@@ -108,7 +113,9 @@ Scene make_scene(const Domain& domain, const SolveOptions& options) {
   shape.quadratic = options.shape == ShapeKind::quadratic;
   // With "auto" the same for both integrators: what has next to no weight has next to no say in a change.
   const bool some_explicit = options.integrator == Integrator::explicit_ || options.integrator == Integrator::automatic;
-  shape.lowest_weighed = some_explicit ? explicit_lowest_weighed : options.integrator == Integrator::newmark ? newmark_lowest_weighed : 0;
+  shape.lowest_weighed = some_explicit                               ? explicit_lowest_weighed
+                         : options.integrator == Integrator::newmark ? newmark_lowest_weighed
+                                                                     : 0;
   shape.terrain = domain.terrain.values;
   const GroundTables ground = make_ground_tables(shape);
 
@@ -123,8 +130,8 @@ Scene make_scene(const Domain& domain, const SolveOptions& options) {
     const int i = s.cell[0][p], j = s.cell[1][p];
     const bool inside = i >= 0 && j >= 0 && i < shape.columns && j < shape.rows;
     if (!inside || !ground.open[domain.grid.index(i, j)]) {
-      throw DataError({fmt::format("domain.vdb: point {} at ({:.2f}, {:.2f}) stands outside the ground or at its edge", p,
-                                   domain.points.x[p], domain.points.y[p]),
+      throw DataError({fmt::format("domain.vdb: point {} at ({:.2f}, {:.2f}) stands outside the ground or at its edge",
+                                   p, domain.points.x[p], domain.points.y[p]),
                        "a point needs known ground one cell around it",
                        "Give a larger elevation model, or a smaller source, and run talus-preprocess again"});
     }

@@ -10,7 +10,8 @@
 namespace talus::solver {
 namespace {
 
-/// Of the dynamic pressure. The energy line begins above what is released, so its weight makes no more than half of that.
+/// Of the dynamic pressure. The energy line begins above what is released, so its weight makes no more than half of
+/// that.
 constexpr double impact_strain = 0.02;
 
 /// The least friction the flow can meet: on its bed, or inside where the bed holds it.
@@ -48,7 +49,8 @@ StiffnessDemand lowest_stiffness(const Domain& domain, const SolveOptions& o) {
     for (int column = 0; column < domain.grid.columns; ++column) {
       const double ground = domain.terrain.at(column, row);
       if (!std::isfinite(ground)) continue;
-      head = std::max(head, top.z - ground - mu * std::hypot(domain.grid.x(column) - top.x, domain.grid.y(row) - top.y));
+      head =
+          std::max(head, top.z - ground - mu * std::hypot(domain.grid.x(column) - top.x, domain.grid.y(row) - top.y));
     }
   }
   const double start = std::hypot(o.initial_velocity[0], o.initial_velocity[1], o.initial_velocity[2]);
@@ -56,16 +58,19 @@ StiffnessDemand lowest_stiffness(const Domain& domain, const SolveOptions& o) {
 
   const MaterialOptions& m = o.material;
   const double wave_speed = make_material<double>(m).wave_speed;
-  const double confined = m.density * wave_speed * wave_speed / m.youngs_modulus;  // modulus of confined compression over Young's
+  const double confined =
+      m.density * wave_speed * wave_speed / m.youngs_modulus;  // modulus of confined compression over Young's
   struct Need {
     double modulus;
     std::string why;
-  } needs[] = {
-      {m.density * demand.speed * demand.speed / impact_strain / confined,
-       fmt::format("the dynamic pressure at {:.3g} m/s, which the energy line allows, strains it by 2 %", demand.speed)},
-      // Its decay time in seconds stays; where that is no more than a step, it would no longer be resolved.
-      {o.transfer_time > 0 ? m.youngs_modulus * std::pow(o.courant / o.transfer_time, 2) : 0, "velocity finer than the grid decays within a step"}};
-  const Need& most = *std::max_element(std::begin(needs), std::end(needs), [](const Need& a, const Need& b) { return a.modulus < b.modulus; });
+  } needs[] = {{m.density * demand.speed * demand.speed / impact_strain / confined,
+                fmt::format("the dynamic pressure at {:.3g} m/s, which the energy line allows, strains it by 2 %",
+                            demand.speed)},
+               // Its decay time in seconds stays; where that is no more than a step, it would no longer be resolved.
+               {o.transfer_time > 0 ? m.youngs_modulus * std::pow(o.courant / o.transfer_time, 2) : 0,
+                "velocity finer than the grid decays within a step"}};
+  const Need& most = *std::max_element(std::begin(needs), std::end(needs),
+                                       [](const Need& a, const Need& b) { return a.modulus < b.modulus; });
   if (most.modulus >= m.youngs_modulus) {
     demand.modulus = m.youngs_modulus;
     demand.reason = fmt::format("it is no more than is needed: at {:.3g} Pa {}", most.modulus, most.why);
@@ -80,7 +85,8 @@ StiffnessDemand lowest_stiffness(const Domain& domain, const SolveOptions& o) {
 SolveOptions with_stiffness(SolveOptions o, const StiffnessDemand& demand) {
   o.material.youngs_modulus = demand.modulus;
   o.material.stiffness = StiffnessKind::as_given;
-  for (PartOptions& part : o.parts) part.material.youngs_modulus = std::min(part.material.youngs_modulus, demand.modulus);
+  for (PartOptions& part : o.parts)
+    part.material.youngs_modulus = std::min(part.material.youngs_modulus, demand.modulus);
   o.transfer_time = demand.transfer_time;
   return o;
 }

@@ -25,7 +25,8 @@ double bicubic(const Raster& source, double x, double y) {
   double sum = 0;
   for (int j = 0; j < 4; ++j) {
     const double* line = &source.values[grid.index(column - 1, row - 1 + j)];
-    sum += in_y[static_cast<std::size_t>(j)] * (in_x[0] * line[0] + in_x[1] * line[1] + in_x[2] * line[2] + in_x[3] * line[3]);
+    sum += in_y[static_cast<std::size_t>(j)] *
+           (in_x[0] * line[0] + in_x[1] * line[1] + in_x[2] * line[2] + in_x[3] * line[3]);
   }
   return std::isnan(sum) ? bilinear(source, x, y) : sum;  // a cell without a value makes the sum NaN
 }

@@ -30,7 +30,8 @@ std::vector<char> cells_inside(const std::vector<MapPolygon>& polygons, const Ma
       const auto places = crossings(polygon, grid.y(row));
       for (std::size_t k = 0; k + 1 < places.size(); k += 2) {
         const auto column = [&](double x) {
-          return static_cast<std::ptrdiff_t>(std::clamp(std::ceil((x - grid.west) / grid.cell - 0.5), 0.0, static_cast<double>(grid.columns)));
+          return static_cast<std::ptrdiff_t>(
+              std::clamp(std::ceil((x - grid.west) / grid.cell - 0.5), 0.0, static_cast<double>(grid.columns)));
         };
         const auto line = inside.begin() + static_cast<std::ptrdiff_t>(grid.index(0, row));
         std::fill(line + column(places[k]), line + column(places[k + 1]), 1);

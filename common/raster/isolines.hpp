@@ -14,8 +14,8 @@ using Polyline = std::vector<std::array<double, 2>>;  // map coordinates [m]; cl
 enum class AtEdge { close, end };
 
 /// Lines of equal value by marching squares between cell centres, saddles decided by the mean of the four corners. No
-/// line touches itself or another one. `close`: NaN and everything outside counts as 0, so that outlines of areas above `level` > 0 are closed; `end`:
-/// lines end there.
+/// line touches itself or another one. `close`: NaN and everything outside counts as 0, so that outlines of areas above
+/// `level` > 0 are closed; `end`: lines end there.
 std::vector<Polyline> isolines(const MapGrid& grid, const std::vector<double>& values, double level, AtEdge at_edge);
 
 }  // namespace talus

@@ -28,7 +28,7 @@ bool holds_points(const std::filesystem::path& file);
 
 /// Which attributes hold z, by their names.
 struct ZAttributes {
-  std::function<bool(std::string_view)> known;                            // where the geometry has none
+  std::function<bool(std::string_view)> known;                               // where the geometry has none
   std::function<bool(std::string_view)> first = [](auto) { return false; };  // whatever the geometry has
 };
 

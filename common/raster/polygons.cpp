@@ -86,9 +86,9 @@ void carry(const fs::path& file, OGRCoordinateTransformation* transform, OGRGeom
            const gdal::QuietErrors& errors) {
   if (transform == nullptr || shape.transform(transform) == OGRERR_NONE) return;
   const char* what = wkbFlatten(shape.getGeometryType()) == wkbPolygon ? "a polygon" : "a shape";
-  throw DataError({fmt::format("{}: {} cannot be brought to the working CRS", file.string(), what), errors.text(),
-                   "Its coordinates do not fit its CRS. Name the true one: ogr2ogr -a_srs EPSG:<code> out.gpkg " +
-                       file.string()});
+  throw DataError(
+      {fmt::format("{}: {} cannot be brought to the working CRS", file.string(), what), errors.text(),
+       "Its coordinates do not fit its CRS. Name the true one: ogr2ogr -a_srs EPSG:<code> out.gpkg " + file.string()});
 }
 
 void add_lines(const OGRGeometry& shape, const fs::path& file, std::vector<MapLine>& lines) {

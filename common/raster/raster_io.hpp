@@ -13,8 +13,9 @@
 
 namespace talus {
 
-/// RasterFile(file).read(), see raster_file.hpp: band 1 of any GDAL raster, in metres, NaN for nodata. A file without CRS is
-/// taken as local metric coordinates; degrees, feet in the map's plane, and rasters without any value are refused.
+/// RasterFile(file).read(), see raster_file.hpp: band 1 of any GDAL raster, in metres, NaN for nodata. A file without
+/// CRS is taken as local metric coordinates; degrees, feet in the map's plane, and rasters without any value are
+/// refused.
 Raster read_raster(const std::filesystem::path& file);
 
 /// True when both name the same CRS (an empty one is local and equals only an empty one).
@@ -25,9 +26,10 @@ std::string crs_name(const std::string& wkt);
 
 enum class Interpolation { bilinear, cubic };
 
-/// Warp onto `grid` (another CRS, extent, registration or cell size). Elevations: interpolated where the target is finer,
-/// area mean where it is coarser; NaN where the source has no data.
-Raster resample_elevation(const Raster& source, const MapGrid& grid, Interpolation interpolation = Interpolation::bilinear);
+/// Warp onto `grid` (another CRS, extent, registration or cell size). Elevations: interpolated where the target is
+/// finer, area mean where it is coarser; NaN where the source has no data.
+Raster resample_elevation(const Raster& source, const MapGrid& grid,
+                          Interpolation interpolation = Interpolation::bilinear);
 
 /// Bring a thickness onto `grid` by exact area weights (same CRS only), so that the volume inside both extents is kept
 /// to rounding. NaN counts as zero thickness but cells wholly outside the source are NaN.
@@ -40,8 +42,10 @@ struct MapPolygon {
   std::string name;                                     ///< attribute "name", if any
 };
 
-/// All polygons of the layer `named`, or of the first one where a vector file has none of that name (multipolygons split), transformed to `crs_wkt` when both have a CRS.
-std::vector<MapPolygon> read_polygons(const std::filesystem::path& file, const std::string& crs_wkt, const std::string& named = "");
+/// All polygons of the layer `named`, or of the first one where a vector file has none of that name (multipolygons
+/// split), transformed to `crs_wkt` when both have a CRS.
+std::vector<MapPolygon> read_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
+                                      const std::string& named = "");
 
 /// A line of points (x, y) [m], at least two, none repeated.
 using MapLine = std::vector<std::array<double, 2>>;
@@ -57,8 +61,8 @@ struct RasterTags {
   std::vector<std::pair<std::string, std::string>> metadata;
 };
 
-/// A number among the metadata items of a raster file (as RasterTags writes them); empty where the item is missing or no
-/// number. Throws DataError when the file cannot be opened.
+/// A number among the metadata items of a raster file (as RasterTags writes them); empty where the item is missing or
+/// no number. Throws DataError when the file cannot be opened.
 std::optional<double> raster_item(const std::filesystem::path& file, const std::string& name);
 
 /// Write a cloud-optimised GeoTIFF (COG driver, deflate, overviews, nodata -9999, Float64 so that volumes close to

@@ -17,8 +17,14 @@ constexpr int large = 2048;  // cells from which a map is looked at through over
 
 CPLStringList creation_options() {
   CPLStringList options;
-  for (const auto& [name, value] : {std::pair{"TILED", "YES"}, {"BLOCKXSIZE", "256"}, {"BLOCKYSIZE", "256"}, {"COMPRESS", "DEFLATE"}, {"PREDICTOR", "3"}, {"ZLEVEL", "1"},
-                                    {"NUM_THREADS", "ALL_CPUS"}, {"BIGTIFF", "IF_SAFER"}})
+  for (const auto& [name, value] : {std::pair{"TILED", "YES"},
+                                    {"BLOCKXSIZE", "256"},
+                                    {"BLOCKYSIZE", "256"},
+                                    {"COMPRESS", "DEFLATE"},
+                                    {"PREDICTOR", "3"},
+                                    {"ZLEVEL", "1"},
+                                    {"NUM_THREADS", "ALL_CPUS"},
+                                    {"BIGTIFF", "IF_SAFER"}})
     options.SetNameValue(name, value);
   return options;
 }
@@ -30,7 +36,9 @@ struct RasterWriter::Open {
   MapGrid grid;
   gdal::Dataset dataset;
 
-  [[noreturn]] void fail(const gdal::QuietErrors& errors) const { throw DataError(write_fault(pending.final_path(), errors.text())); }
+  [[noreturn]] void fail(const gdal::QuietErrors& errors) const {
+    throw DataError(write_fault(pending.final_path(), errors.text()));
+  }
 };
 
 RasterWriter::RasterWriter(const std::filesystem::path& file, const MapGrid& grid, const RasterTags& tags)
@@ -38,7 +46,8 @@ RasterWriter::RasterWriter(const std::filesystem::path& file, const MapGrid& gri
   const gdal::QuietErrors errors;
   auto* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
   const CPLStringList options = creation_options();
-  open_->dataset.reset(driver->Create(open_->pending.path().c_str(), grid.columns, grid.rows, 1, GDT_Float32, const_cast<char**>(options.List())));
+  open_->dataset.reset(driver->Create(open_->pending.path().c_str(), grid.columns, grid.rows, 1, GDT_Float32,
+                                      const_cast<char**>(options.List())));
   if (!open_->dataset) open_->fail(errors);
   std::array<double, 6> corner{grid.west, grid.cell, 0, grid.north(), 0, -grid.cell};
   open_->dataset->SetGeoTransform(corner.data());
@@ -56,7 +65,9 @@ RasterWriter::RasterWriter(const std::filesystem::path& file, const MapGrid& gri
 
 RasterWriter::~RasterWriter() = default;
 
-void RasterWriter::say(const std::string& name, const std::string& value) { open_->dataset->SetMetadataItem(name.c_str(), value.c_str()); }
+void RasterWriter::say(const std::string& name, const std::string& value) {
+  open_->dataset->SetMetadataItem(name.c_str(), value.c_str());
+}
 
 void RasterWriter::write(const Raster& part) {
   const gdal::QuietErrors errors;
@@ -70,7 +81,8 @@ void RasterWriter::write(const Raster& part) {
       values[g.index(c, g.rows - 1 - row)] = std::isnan(value) ? nodata : static_cast<float>(value);
     }
   }
-  if (open_->dataset->GetRasterBand(1)->RasterIO(GF_Write, column, line, g.columns, g.rows, values.data(), g.columns, g.rows, GDT_Float32, 0, 0, nullptr) != CE_None)
+  if (open_->dataset->GetRasterBand(1)->RasterIO(GF_Write, column, line, g.columns, g.rows, values.data(), g.columns,
+                                                 g.rows, GDT_Float32, 0, 0, nullptr) != CE_None)
     open_->fail(errors);
 }
 
@@ -79,7 +91,9 @@ void RasterWriter::finish() {
   if (std::max(open_->grid.columns, open_->grid.rows) >= large) {
     std::vector<int> factors;
     for (int f = 2; std::max(open_->grid.columns, open_->grid.rows) / f >= 256; f *= 2) factors.push_back(f);
-    if (open_->dataset->BuildOverviews("AVERAGE", static_cast<int>(factors.size()), factors.data(), 0, nullptr, nullptr, nullptr) != CE_None) open_->fail(errors);
+    if (open_->dataset->BuildOverviews("AVERAGE", static_cast<int>(factors.size()), factors.data(), 0, nullptr, nullptr,
+                                       nullptr) != CE_None)
+      open_->fail(errors);
   }
   open_->dataset.reset();  // closing flushes, and reports through `errors` alone
   if (errors.failed()) open_->fail(errors);

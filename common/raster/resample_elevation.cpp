@@ -34,9 +34,10 @@ Raster area_mean(const Raster& source, const MapGrid& grid) {
   return result;
 }
 
-/// Mean over n x n interpolated samples a cell, the samples carried into the source's CRS row by row. `transform` may be
-/// null.
-Raster sampled(const Raster& source, const MapGrid& grid, OGRCoordinateTransformation* transform, int n, Interpolation interpolation) {
+/// Mean over n x n interpolated samples a cell, the samples carried into the source's CRS row by row. `transform` may
+/// be null.
+Raster sampled(const Raster& source, const MapGrid& grid, OGRCoordinateTransformation* transform, int n,
+               Interpolation interpolation) {
   const auto at = interpolation == Interpolation::cubic ? bicubic : bilinear;
   Raster result{grid, std::vector<double>(grid.count(), 0)};
   const auto samples = static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(n);

@@ -105,7 +105,10 @@ File File::open(const std::filesystem::path& path, Naming naming) {
 }
 
 File::File(File&& other) noexcept
-    : id_(std::exchange(other.id_, hid_t{-1})), naming_(std::move(other.naming_)), writing_(other.writing_), plain_(other.plain_) {}
+    : id_(std::exchange(other.id_, hid_t{-1})),
+      naming_(std::move(other.naming_)),
+      writing_(other.writing_),
+      plain_(other.plain_) {}
 
 File::~File() {
   if (id_ >= 0) H5Fclose(id_);

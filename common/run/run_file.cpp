@@ -43,7 +43,8 @@ void write_maps(h5::File& file, const RunMaps& maps) {
     file.set_text(path, "unit", "m");
     file.set_text(path, "long_name", long_name);
   };
-  if (!maps.eroded_depth.empty()) extra("/maps/eroded_depth", maps.eroded_depth, "depth of ground that went along, vertical");
+  if (!maps.eroded_depth.empty())
+    extra("/maps/eroded_depth", maps.eroded_depth, "depth of ground that went along, vertical");
   if (maps.deposit_of.empty()) return;
   file.make_group("/maps/deposit_of");
   for (std::size_t r = 0; r < maps.deposit_of.size(); ++r) {

@@ -25,9 +25,10 @@ struct RunMaps {
   std::vector<double> peak_speed;         // running maximum of the depth-mean speed [m/s]
   std::vector<double> peak_pressure;      // running maximum of rho v^2 [kPa]
   std::vector<double> arrival_time;       // [s], NaN where it never came
-  std::vector<std::pair<std::string, std::vector<double>>> deposit_of;  // deposit_thickness by release, where there are several [m]
-  std::vector<double> eroded_depth;       // of the ground that went along [m]; empty where nothing can be eroded
-  double threshold = 0;                   // thickness from which speed, pressure and arrival count [m]
+  std::vector<std::pair<std::string, std::vector<double>>>
+      deposit_of;                    // deposit_thickness by release, where there are several [m]
+  std::vector<double> eroded_depth;  // of the ground that went along [m]; empty where nothing can be eroded
+  double threshold = 0;              // thickness from which speed, pressure and arrival count [m]
 };
 
 /// Thickness maps over time.
@@ -46,15 +47,15 @@ struct RunHistory {
 struct RunSummary {
   std::string scene, title, on, precision, version, stop_reason;
   std::int64_t particles = 0, particles_outflow = 0, steps = 0;
-  double time_end = 0;         // [s]
-  double wall_time = 0;        // step loop [s]
-  double memory = 0;           // points, grid and linear solver, at the end [bytes]
-  double density = 0;          // [kg/m3]
-  double volume_released = 0;  // [m3]
-  double volume_entrained = 0; // eroded from the ground on the way [m3]
-  double volume_final = 0;     // [m3]
-  double volume_outflow = 0;   // [m3]
-  std::vector<std::pair<std::string, double>> profile;  // phases of the step loop [s]; empty unless measured
+  double time_end = 0;                                    // [s]
+  double wall_time = 0;                                   // step loop [s]
+  double memory = 0;                                      // points, grid and linear solver, at the end [bytes]
+  double density = 0;                                     // [kg/m3]
+  double volume_released = 0;                             // [m3]
+  double volume_entrained = 0;                            // eroded from the ground on the way [m3]
+  double volume_final = 0;                                // [m3]
+  double volume_outflow = 0;                              // [m3]
+  std::vector<std::pair<std::string, double>> profile;    // phases of the step loop [s]; empty unless measured
   std::vector<std::pair<std::string, double>> memory_of;  // its owners [bytes]
   std::vector<std::pair<std::string, std::string>> provenance;
 };

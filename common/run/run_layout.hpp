@@ -44,11 +44,14 @@ inline constexpr SummaryItem<std::int64_t> summary_integers[] = {{"particles", &
                                                                  {"particles_outflow", &RunSummary::particles_outflow},
                                                                  {"steps", &RunSummary::steps}};
 inline constexpr SummaryItem<double> summary_numbers[] = {
-    {"time_end_s", &RunSummary::time_end},          {"wall_time_s", &RunSummary::wall_time},
+    {"time_end_s", &RunSummary::time_end},
+    {"wall_time_s", &RunSummary::wall_time},
     {"memory_bytes", &RunSummary::memory},
-    {"density_kg_m3", &RunSummary::density},        {"volume_released_m3", &RunSummary::volume_released},
+    {"density_kg_m3", &RunSummary::density},
+    {"volume_released_m3", &RunSummary::volume_released},
     {"volume_entrained_m3", &RunSummary::volume_entrained},
-    {"volume_final_m3", &RunSummary::volume_final}, {"volume_outflow_m3", &RunSummary::volume_outflow},
+    {"volume_final_m3", &RunSummary::volume_final},
+    {"volume_outflow_m3", &RunSummary::volume_outflow},
 };
 
 }  // namespace talus::run_layout

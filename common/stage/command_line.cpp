@@ -33,9 +33,16 @@ void declare(CLI::App& app, const Stage& stage, CommandLine& line, Words& words)
     app.add_option("--restart", words.restart, "Go on from a checkpoint (default: checkpoint.h5 in the results)")
         ->type_name("[FILE]")
         ->expected(0, 1);
-  if (stage.has_profile) app.add_flag("--profile", line.profile, "Measure where the time goes, phase by phase and kernel by kernel; say it at the end, and in profile.csv");
-  if (stage.has_profile) app.add_flag("--plan", line.plan, "Say what is on, points, memory, steps and the time to expect; run and write nothing");
-  if (stage.has_difference) app.add_flag("--difference", line.difference, "Compare before_dem and after_dem, write what changed with its error (OUT/survey), and stop");
+  if (stage.has_profile)
+    app.add_flag(
+        "--profile", line.profile,
+        "Measure where the time goes, phase by phase and kernel by kernel; say it at the end, and in profile.csv");
+  if (stage.has_profile)
+    app.add_flag("--plan", line.plan,
+                 "Say what is on, points, memory, steps and the time to expect; run and write nothing");
+  if (stage.has_difference)
+    app.add_flag("--difference", line.difference,
+                 "Compare before_dem and after_dem, write what changed with its error (OUT/survey), and stop");
   auto* verbose = app.add_flag("-v,--verbose", words.verbose, "Say more");
   app.add_flag("-q,--quiet", words.quiet, "Say nothing but errors")->excludes(verbose);
   app.add_flag("--version", words.version, "Print the version and its commit");
@@ -57,7 +64,8 @@ void untangle_restart(const CLI::App& app, CommandLine& line, Words& words) {
 
 std::string usage(const Stage& stage) {
   return fmt::format(
-      "Usage: {} recipe.toml [--out DIR] [--check] [--template] [--on auto|cpu|gpu]{}{}{} [-v|-q] (all of it: {} --help)",
+      "Usage: {} recipe.toml [--out DIR] [--check] [--template] [--on auto|cpu|gpu]{}{}{} [-v|-q] (all of it: {} "
+      "--help)",
       stage.name, stage.has_restart ? " [--restart [FILE]]" : "", stage.has_profile ? " [--profile] [--plan]" : "",
       stage.has_difference ? " [--difference]" : "", stage.name);
 }

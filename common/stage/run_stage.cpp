@@ -66,7 +66,16 @@ void run(const CommandLine& line, const std::string& command, const Stage& stage
     return;
   }
   if (line.recipe.empty()) throw RecipeError(Fault{"no recipe was given", "", usage(stage)});
-  StageContext context{recipe::Recipe(line.recipe), {}, line.on, line.check_only, line.restart, line.profile, line.plan, line.difference, command, {}};
+  StageContext context{recipe::Recipe(line.recipe),
+                       {},
+                       line.on,
+                       line.check_only,
+                       line.restart,
+                       line.profile,
+                       line.plan,
+                       line.difference,
+                       command,
+                       {}};
   const fs::path beside = context.recipe.file().parent_path() / "out";
   context.out = line.out.empty() ? beside : fs::absolute(line.out).lexically_normal();
   line.check_only || line.plan ? check_output_folder(context.out) : prepare_output_folder(context.out);

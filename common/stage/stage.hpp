@@ -24,8 +24,8 @@ struct StageContext {
   bool check_only = false;                       ///< --check: read and test everything cheap, compute and write nothing
   std::optional<std::filesystem::path> restart;  ///< talus-solve --restart [FILE]; empty path = OUT/checkpoint.h5
   bool profile = false;                          ///< talus-solve --profile
-  bool plan = false;                             ///< talus-solve --plan: say what would run, and what it would cost; write nothing
-  bool difference = false;                       ///< talus-preprocess --difference: compare the surveys and stop
+  bool plan = false;        ///< talus-solve --plan: say what would run, and what it would cost; write nothing
+  bool difference = false;  ///< talus-preprocess --difference: compare the surveys and stop
   std::string command_line;
   std::vector<std::filesystem::path> results;  ///< printed on stdout, one a line, at the end
 };
@@ -44,8 +44,8 @@ struct Stage {
 };
 
 /// Parses the command line, runs the stage, prints faults on stderr and result paths on stdout. Returns the exit code.
-/// Options: recipe.toml, --out DIR (default: the recipe's folder / "out"), --check, --template, --on, --restart, --profile, --plan, --difference,
-/// -v, -q,
+/// Options: recipe.toml, --out DIR (default: the recipe's folder / "out"), --check, --template, --on, --restart,
+/// --profile, --plan, --difference, -v, -q,
 /// --help (exit codes and examples included), --version (with the commit).
 int run_stage(int argc, char** argv, const Stage& stage);
 

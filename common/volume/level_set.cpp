@@ -22,12 +22,15 @@ using Vector = openvdb::Vec3d;
 
 constexpr double band = 3;  // of a level set on either side of its surface, in voxels
 
-[[noreturn]] void refuse(const fs::path& file, const std::string& what, const std::string& why, const std::string& mend) {
+[[noreturn]] void refuse(const fs::path& file, const std::string& what, const std::string& why,
+                         const std::string& mend) {
   throw DataError({file.string() + ": " + what, why, mend});
 }
 
 openvdb::FloatGrid::Ptr open_grid(const fs::path& file, const std::string& name) {
-  if (!fs::exists(file)) refuse(file, "no such file", "", "Check [[solve.obstacle]] level_set; talus-preprocess writes obstacles.vdb from [[preprocess.obstacle]]");
+  if (!fs::exists(file))
+    refuse(file, "no such file", "",
+           "Check [[solve.obstacle]] level_set; talus-preprocess writes obstacles.vdb from [[preprocess.obstacle]]");
   try {
     openvdb::io::File archive(file.string());
     archive.open();
@@ -36,13 +39,15 @@ openvdb::FloatGrid::Ptr open_grid(const fs::path& file, const std::string& name)
     std::sort(names.begin(), names.end());
     const bool known = std::find(names.begin(), names.end(), name) != names.end();
     if ((name.empty() && names.size() != 1) || (!name.empty() && !known)) {
-      refuse(file, name.empty() ? fmt::format("holds {} grids", names.size()) : fmt::format("holds no grid \"{}\"", name),
+      refuse(file,
+             name.empty() ? fmt::format("holds {} grids", names.size()) : fmt::format("holds no grid \"{}\"", name),
              fmt::format("its grids are: {}", fmt::join(names, ", ")), "Name one of them: grid = \"...\"");
     }
     const auto grid = archive.readGrid(name.empty() ? names.front() : name);
     const auto typed = openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
     if (!typed || typed->getGridClass() != openvdb::GRID_LEVEL_SET) {
-      refuse(file, fmt::format("the grid \"{}\" is no level set", grid->getName()), "a level set is a float grid of class \"level set\", negative inside the body",
+      refuse(file, fmt::format("the grid \"{}\" is no level set", grid->getName()),
+             "a level set is a float grid of class \"level set\", negative inside the body",
              "Write it as one (Houdini: VDB from Polygons; OpenVDB: tools::meshToLevelSet)");
     }
     return typed;
@@ -52,11 +57,13 @@ openvdb::FloatGrid::Ptr open_grid(const fs::path& file, const std::string& name)
 }
 
 /// Adds a triangle in pieces that are small enough.
-void add_triangle(BodySurface& surface, const std::array<double, 3>& largest, const Vector& a, const Vector& b, const Vector& c) {
+void add_triangle(BodySurface& surface, const std::array<double, 3>& largest, const Vector& a, const Vector& b,
+                  const Vector& c) {
   const Vector ab = b - a, bc = c - b, ca = a - c;
   const auto over = [&](const Vector& edge) {
     double most = 0;
-    for (int axis = 0; axis < 3; ++axis) most = std::max(most, std::abs(edge[axis]) / largest[static_cast<std::size_t>(axis)]);
+    for (int axis = 0; axis < 3; ++axis)
+      most = std::max(most, std::abs(edge[axis]) / largest[static_cast<std::size_t>(axis)]);
     return most;
   };
   const double longest = std::max({over(ab), over(bc), over(ca)});
@@ -105,7 +112,8 @@ BodySurface read_level_set(const fs::path& file, const std::string& name, const 
     add_triangle(surface, largest, at(q[0]), at(q[3]), at(q[2]));
   }
   if (surface.facets.empty() || !(surface.volume > 0)) {
-    refuse(file, fmt::format("the level set \"{}\" encloses nothing", grid->getName()), fmt::format("its surface has {} pieces", surface.facets.size()),
+    refuse(file, fmt::format("the level set \"{}\" encloses nothing", grid->getName()),
+           fmt::format("its surface has {} pieces", surface.facets.size()),
            "A level set is negative inside the body; write it with smaller voxels if the body is thinner than one");
   }
   return surface;
@@ -119,7 +127,9 @@ void write_level_sets(const fs::path& file, const std::vector<SolidBody>& bodies
     auto grid = openvdb::FloatGrid::create(far);
     auto transform = openvdb::math::Transform::createLinearTransform(voxel);
     transform->postTranslate(Vector(body.low[0], body.low[1], body.low[2]));
-    const auto last = [&](std::size_t axis) { return static_cast<int>(std::ceil((body.high[axis] - body.low[axis]) / voxel + band)); };
+    const auto last = [&](std::size_t axis) {
+      return static_cast<int>(std::ceil((body.high[axis] - body.low[axis]) / voxel + band));
+    };
     const int margin = static_cast<int>(band);
     auto accessor = grid->getAccessor();
     bool any = false;
@@ -132,7 +142,9 @@ void write_level_sets(const fs::path& file, const std::vector<SolidBody>& bodies
         }
       }
     }
-    if (!any) refuse(file, fmt::format("the body \"{}\" lies between the voxels", body.name), fmt::format("they are {:g} m wide", voxel), "Take smaller ones");
+    if (!any)
+      refuse(file, fmt::format("the body \"{}\" lies between the voxels", body.name),
+             fmt::format("they are {:g} m wide", voxel), "Take smaller ones");
     openvdb::tools::signedFloodFill(grid->tree());
     grid->setTransform(transform);
     grid->setGridClass(openvdb::GRID_LEVEL_SET);

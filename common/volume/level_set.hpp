@@ -1,5 +1,5 @@
-// Bodies given as OpenVDB level sets: signed distance to their surface [m], negative inside, over map coordinates and elevation. OpenVDB stays behind
-// level_set.cpp.
+// Bodies given as OpenVDB level sets: signed distance to their surface [m], negative inside, over map coordinates and
+// elevation. OpenVDB stays behind level_set.cpp.
 #pragma once
 
 #include <array>
@@ -19,22 +19,26 @@ struct Facet {
 /// The surface of a body.
 struct BodySurface {
   std::vector<Facet> facets;
-  double volume = 0;                                       // enclosed [m3]
+  double volume = 0;                                                             // enclosed [m3]
   std::array<double, 3> low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};  // bounding box [m]
 };
 
-/// The zero surface of the level set called `grid` in `file`; with an empty name, of the only one there is. Facets are no longer than
-/// `largest` along each axis [m]. Throws DataError: no such file or grid, several grids and no name, not a level set, no surface.
-BodySurface read_level_set(const std::filesystem::path& file, const std::string& grid, const std::array<double, 3>& largest);
+/// The zero surface of the level set called `grid` in `file`; with an empty name, of the only one there is. Facets are
+/// no longer than `largest` along each axis [m]. Throws DataError: no such file or grid, several grids and no name, not
+/// a level set, no surface.
+BodySurface read_level_set(const std::filesystem::path& file, const std::string& grid,
+                           const std::array<double, 3>& largest);
 
-/// A body to be written: within `low` to `high`, where `distance` from a place is negative. Distances need be exact beside the surface alone.
+/// A body to be written: within `low` to `high`, where `distance` from a place is negative. Distances need be exact
+/// beside the surface alone.
 struct SolidBody {
   std::string name;
-  std::array<double, 3> low, high;                        // [m]
+  std::array<double, 3> low, high;                         // [m]
   std::function<double(double, double, double)> distance;  // [m]
 };
 
-/// All of them into one file (aside, renamed), in voxels of `voxel` [m]. Throws DataError: a body that no voxel lies in; disk full, not writable.
+/// All of them into one file (aside, renamed), in voxels of `voxel` [m]. Throws DataError: a body that no voxel lies
+/// in; disk full, not writable.
 void write_level_sets(const std::filesystem::path& file, const std::vector<SolidBody>& bodies, double voxel);
 
 }  // namespace talus

@@ -139,7 +139,8 @@ SeedPoints seed_points(const fs::path& file, const Contents& contents, const Map
   const auto grid = grid_named<PointDataGrid>(file, contents, layout::points);
   std::size_t found = 0;
   for (auto leaf = grid->tree().cbeginLeaf(); leaf; ++leaf) {
-    for (const char* name : {"P", layout::volume, layout::height, layout::extent_x, layout::extent_y, layout::release, layout::id})
+    for (const char* name :
+         {"P", layout::volume, layout::height, layout::extent_x, layout::extent_y, layout::release, layout::id})
       if (!leaf->hasAttribute(name))
         refuse(file, "not a whole domain", std::string("points have no attribute \"") + name + "\"");
     found += leaf->onPointCount();
@@ -147,7 +148,8 @@ SeedPoints seed_points(const fs::path& file, const Contents& contents, const Map
   if (found != count)
     refuse(file, "holds " + std::to_string(found) + " points", "its header names " + std::to_string(count));
   SeedPoints points;
-  for (auto* values : {&points.x, &points.y, &points.height, &points.volume, &points.extent_x, &points.extent_y}) values->resize(count);
+  for (auto* values : {&points.x, &points.y, &points.height, &points.volume, &points.extent_x, &points.extent_y})
+    values->resize(count);
   points.release.resize(count);
   for (auto leaf = grid->tree().cbeginLeaf(); leaf; ++leaf) take_leaf(file, *leaf, map, points);
   return points;
@@ -169,7 +171,8 @@ Domain assemble(const fs::path& file, const Contents& contents) {
   for (const auto& grid : *contents.grids) {
     const std::string name = grid->getName();
     if (name.rfind(layout::bed_prefix, 0) != 0) continue;
-    domain.bed.emplace_back(name.substr(std::string(layout::bed_prefix).size()), sheet(file, contents, name.c_str(), domain.grid));
+    domain.bed.emplace_back(name.substr(std::string(layout::bed_prefix).size()),
+                            sheet(file, contents, name.c_str(), domain.grid));
   }
   for (std::size_t i = 0; i < facts.count("releases"); ++i)
     domain.release_names.push_back(facts.text(layout::numbered("release_name", i)));

@@ -63,7 +63,8 @@ PointDataGrid::Ptr point_grid(const Domain& domain) {
   attach<std::int32_t>(*grid, *order, layout::release, domain.points.release);
   attach<std::int64_t>(*grid, *order, layout::id, ids);
   grid->setName(layout::points);
-  grid->insertMeta("units", openvdb::StringMetadata("position m, volume m3, height m above the bed, vertical, extent m"));
+  grid->insertMeta("units",
+                   openvdb::StringMetadata("position m, volume m3, height m above the bed, vertical, extent m"));
   return grid;
 }
 
@@ -145,7 +146,8 @@ void write_domain(const fs::path& file, const Domain& domain) {
         value_sheet(domain, domain.release_thickness, layout::release_thickness),
         sheet<openvdb::MaskGrid>(domain, domain.terrain, layout::active, [](double) { return true; })};
     for (const auto& [name, raster] : domain.bed) {
-      grids.push_back(sheet<openvdb::DoubleGrid>(domain, raster, (layout::bed_prefix + name).c_str(), [](double cell) { return cell; }));
+      grids.push_back(sheet<openvdb::DoubleGrid>(domain, raster, (layout::bed_prefix + name).c_str(),
+                                                 [](double cell) { return cell; }));
     }
     openvdb::io::File(pending.path().string()).write(grids, metadata_of(domain));
   } catch (const openvdb::Exception& error) {

@@ -15,16 +15,18 @@ namespace {
 
 using namespace solver;
 
-/// Velocity of the block [m/s]: some metres in the time of a run. With hats it rests, and in explicit steps weighs nothing: where points cross cells, nodes with next to no mass throw them away.
+/// Velocity of the block [m/s]: some metres in the time of a run. With hats it rests, and in explicit steps weighs
+/// nothing: where points cross cells, nodes with next to no mass throw them away.
 struct Way {
   double x, y;
 };
 Way way_of(ShapeKind shape) { return shape == ShapeKind::linear ? Way{0, 0} : Way{0.3, 0.2}; }
-constexpr double density = 2000;            // [kg/m3]
+constexpr double density = 2000;  // [kg/m3]
 
 /// A block of sand 8 points to a cell, four times as wide as high, on level ground without friction, on its way.
 Scene block(double points, const SolveOptions& options) {
-  const int high = std::max(4, static_cast<int>(std::lround(std::cbrt(points / 8 / 16)))), wide = std::max(4, static_cast<int>(std::lround(std::sqrt(points / 8 / high))));
+  const int high = std::max(4, static_cast<int>(std::lround(std::cbrt(points / 8 / 16)))),
+            wide = std::max(4, static_cast<int>(std::lround(std::sqrt(points / 8 / high))));
   constexpr int margin = 12;
   Scene scene;
   GridShape& shape = scene.grid;
@@ -35,7 +37,8 @@ Scene block(double points, const SolveOptions& options) {
   shape.terrain.assign(static_cast<std::size_t>(shape.columns) * static_cast<std::size_t>(shape.rows), 0.0);
   scene.map = {shape.columns, shape.rows, 0, 0, 1, ""};
   ParticleState& s = scene.points;
-  const auto count = static_cast<std::size_t>(8) * static_cast<std::size_t>(wide) * static_cast<std::size_t>(wide) * static_cast<std::size_t>(high);
+  const auto count = static_cast<std::size_t>(8) * static_cast<std::size_t>(wide) * static_cast<std::size_t>(wide) *
+                     static_cast<std::size_t>(high);
   for (auto* list : {&s.cell[0], &s.cell[1], &s.cell[2], &s.id}) list->reserve(count);
   for (int k = 0; k < 2 * high; ++k) {
     for (int j = 0; j < 2 * wide; ++j) {
@@ -100,7 +103,10 @@ Taken take(Solver& solver, int steps) {
   const auto first = solver.clock().step;
   while (taken.steps < steps) {
     const BatchReport batch = solver.advance();
-    if (batch.clock.halt == failed) throw NumericalError({fmt::format("point {} of the block lost its state in step {}", batch.clock.failed_point, batch.clock.step), "the steps timed are not those of a body that holds together", ""});
+    if (batch.clock.halt == failed)
+      throw NumericalError(
+          {fmt::format("point {} of the block lost its state in step {}", batch.clock.failed_point, batch.clock.step),
+           "the steps timed are not those of a body that holds together", ""});
     taken.linear += batch.stats.linear;
     taken.steps = static_cast<int>(batch.clock.step - first);
   }
@@ -113,7 +119,9 @@ std::string precision_of(const KernelSetting& k) { return k.precision == Precisi
 
 }  // namespace
 
-std::string name_of(const KernelSetting& k) { return fmt::format("{} {} {}", method_of(k), shape_of(k), precision_of(k)); }
+std::string name_of(const KernelSetting& k) {
+  return fmt::format("{} {} {}", method_of(k), shape_of(k), precision_of(k));
+}
 
 KernelRun time_kernels(const KernelSetting& k, On on) {
   const SolveOptions options = options_for(k);
@@ -170,7 +178,8 @@ KernelRun time_kernels(const KernelSetting& k, On on) {
   }
   const int steps_profiled = profiled(true).steps;
   if (!k.newmark) keep_phases(steps_profiled);
-  for (const auto& kernel : profile.kernels()) run.kernels.push_back({kernel.name, kernel.seconds / steps_profiled, kernel.bytes / steps_profiled});
+  for (const auto& kernel : profile.kernels())
+    run.kernels.push_back({kernel.name, kernel.seconds / steps_profiled, kernel.bytes / steps_profiled});
   std::sort(run.kernels.begin(), run.kernels.end(), [](const auto& a, const auto& b) { return a.seconds > b.seconds; });
   return run;
 }

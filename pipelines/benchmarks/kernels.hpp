@@ -11,21 +11,21 @@ namespace talus::benchmarks {
 
 /// One way of stepping, at one size.
 struct KernelRun {
-  std::string method;      // "explicit", "newmark"
+  std::string method;  // "explicit", "newmark"
   std::string shape, precision, place;
   double points = 0;
-  int steps = 0;           // timed, in each of three rounds
-  double step_seconds = 0;  // median of the rounds
-  double bytes = 0;        // of points, grid and solver
+  int steps = 0;             // timed, in each of three rounds
+  double step_seconds = 0;   // median of the rounds
+  double bytes = 0;          // of points, grid and solver
   double cg_iterations = 0;  // newmark: a step, in those whose phases are told
-  double check = 0;        // how far the momentum is off the closed form, over that at 0.36 m/s
+  double check = 0;          // how far the momentum is off the closed form, over that at 0.36 m/s
   bool pass = false;
   std::vector<std::pair<std::string, double>> phases;  // seconds a step, in a round of its own
   struct Kernel {
     std::string name;
     double seconds = 0, bytes = 0;  // a step
   };
-  std::vector<Kernel> kernels;                            // of that round, the longest first
+  std::vector<Kernel> kernels;                         // of that round, the longest first
   std::vector<std::pair<std::string, double>> memory;  // bytes by owner
 
   double eta() const { return step_seconds / points; }

@@ -37,7 +37,8 @@ Words parse(int argc, char** argv) {
   app.add_option("--out", w.out, "Folder for CSV and pictures");
   app.add_option("--most", w.most, "Largest number of points (default: 1e4 on a CPU, 1e7 on a GPU)");
   app.add_option("--least", w.least, "Smallest number of points");
-  app.add_option("--only", w.only, "Rows that contain this, of \"METHOD SHAPE PRECISION\", as in \"explicit quadratic\"");
+  app.add_option("--only", w.only,
+                 "Rows that contain this, of \"METHOD SHAPE PRECISION\", as in \"explicit quadratic\"");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -47,7 +48,10 @@ Words parse(int argc, char** argv) {
 }
 
 std::string csv_of(const std::vector<KernelRun>& runs, double copy) {
-  std::string text = "method,shape,precision,place,points,steps,step_us,seconds_per_point_and_step,bytes_per_point,cg_iterations_per_step,seconds_per_point_and_cg_iteration,momentum_error,phases_us,kernels_us_and_share_of_copy,memory_bytes_per_point\n";
+  std::string text =
+      "method,shape,precision,place,points,steps,step_us,seconds_per_point_and_step,bytes_per_point,cg_iterations_per_"
+      "step,seconds_per_point_and_cg_iteration,momentum_error,phases_us,kernels_us_and_share_of_copy,memory_bytes_per_"
+      "point\n";
   const auto join = [](const auto& list, auto&& word) {
     std::string all;
     for (const auto& item : list) all += (all.empty() ? "" : "; ") + word(item);
@@ -57,24 +61,34 @@ std::string csv_of(const std::vector<KernelRun>& runs, double copy) {
     const double iterations = r.cg_iterations;
     double cg = 0;
     for (const auto& [name, seconds] : r.phases) cg += name == "conjugate gradients" ? seconds : 0;
-    std::vector<KernelRun::Kernel> longest(r.kernels.begin(), r.kernels.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(r.kernels.size(), 12)));
-    text += fmt::format("{},{},{},{},{:.0f},{},{:.3f},{:.4g},{:.1f},{:.1f},{},{:.2g},\"{}\",\"{}\",\"{}\"\n", r.method, r.shape, r.precision, r.place, r.points, r.steps, 1e6 * r.step_seconds, r.eta(),
-                        r.bytes / r.points, iterations, iterations > 0 ? fmt::format("{:.3g}", cg / iterations / r.points) : "", r.check,
-                        join(r.phases, [](const auto& p) { return fmt::format("{}: {:.2f}", p.first, 1e6 * p.second); }),
-                        join(longest, [&](const auto& k) { return fmt::format("{}: {:.2f}", k.name, 1e6 * k.seconds) + (k.bytes > 0 ? fmt::format(" {:.0f} %", 100 * k.bytes / k.seconds / copy) : ""); }),
-                        join(r.memory, [&](const auto& m) { return fmt::format("{}: {:.0f}", m.first, m.second / r.points); }));
+    std::vector<KernelRun::Kernel> longest(
+        r.kernels.begin(),
+        r.kernels.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(r.kernels.size(), 12)));
+    text += fmt::format(
+        "{},{},{},{},{:.0f},{},{:.3f},{:.4g},{:.1f},{:.1f},{},{:.2g},\"{}\",\"{}\",\"{}\"\n", r.method, r.shape,
+        r.precision, r.place, r.points, r.steps, 1e6 * r.step_seconds, r.eta(), r.bytes / r.points, iterations,
+        iterations > 0 ? fmt::format("{:.3g}", cg / iterations / r.points) : "", r.check,
+        join(r.phases, [](const auto& p) { return fmt::format("{}: {:.2f}", p.first, 1e6 * p.second); }),
+        join(longest,
+             [&](const auto& k) {
+               return fmt::format("{}: {:.2f}", k.name, 1e6 * k.seconds) +
+                      (k.bytes > 0 ? fmt::format(" {:.0f} %", 100 * k.bytes / k.seconds / copy) : "");
+             }),
+        join(r.memory, [&](const auto& m) { return fmt::format("{}: {:.0f}", m.first, m.second / r.points); }));
   }
   return text;
 }
 
 /// One quantity over the number of points, a line for each way of stepping.
 template <class Quantity>
-std::string picture(const std::string& title, const std::string& label, const std::vector<KernelRun>& runs, Quantity&& quantity) {
+std::string picture(const std::string& title, const std::string& label, const std::vector<KernelRun>& runs,
+                    Quantity&& quantity) {
   validation::Chart chart = validation::log_chart(title, "material points", label);
   std::map<std::string, validation::Series> lines;
   for (const KernelRun& r : runs) {
     const std::string name = fmt::format("{}, {}, {}", r.method, r.shape, r.precision);
-    auto& line = lines.try_emplace(name, validation::Series{name, {}, {}, static_cast<int>(lines.size()) + 1}).first->second;
+    auto& line =
+        lines.try_emplace(name, validation::Series{name, {}, {}, static_cast<int>(lines.size()) + 1}).first->second;
     line.marks = true;
     line.x.push_back(r.points);
     line.y.push_back(quantity(r));
@@ -105,16 +119,23 @@ int kernels(const Words& words, On on) {
           }
           const KernelRun& r = runs.back();
           pass = pass && r.pass;
-          fmt::print(stderr, "{:8} {:9} {:6} {:9.0f} points {:10.1f} us a step {:9.3g} s a point and step {:6.0f} B a point{}\n", r.method, r.shape, r.precision, r.points, 1e6 * r.step_seconds,
-                     r.eta(), r.bytes / r.points, r.pass ? "" : fmt::format("  WRONG: momentum off by {:.2g}", r.check));
+          fmt::print(
+              stderr,
+              "{:8} {:9} {:6} {:9.0f} points {:10.1f} us a step {:9.3g} s a point and step {:6.0f} B a point{}\n",
+              r.method, r.shape, r.precision, r.points, 1e6 * r.step_seconds, r.eta(), r.bytes / r.points,
+              r.pass ? "" : fmt::format("  WRONG: momentum off by {:.2g}", r.check));
           write_text(words.out / "kernels.csv", csv_of(runs, copy));
         }
       }
     }
   }
-  if (runs.empty()) throw RecipeError({"no row of the bench contains \"" + words.only + "\" between --least and --most", "", ""});
-  write_text(words.out / "kernels-time.png", picture("Time per point and step, " + runs.front().place, "time per point and step [s]", runs, [](const KernelRun& r) { return r.eta(); }));
-  write_text(words.out / "kernels-memory.png", picture("Memory of points, grid and solver, " + runs.front().place, "memory [B]", runs, [](const KernelRun& r) { return r.bytes; }));
+  if (runs.empty())
+    throw RecipeError({"no row of the bench contains \"" + words.only + "\" between --least and --most", "", ""});
+  write_text(words.out / "kernels-time.png",
+             picture("Time per point and step, " + runs.front().place, "time per point and step [s]", runs,
+                     [](const KernelRun& r) { return r.eta(); }));
+  write_text(words.out / "kernels-memory.png", picture("Memory of points, grid and solver, " + runs.front().place,
+                                                       "memory [B]", runs, [](const KernelRun& r) { return r.bytes; }));
   return pass ? 0 : 1;
 }
 
@@ -124,7 +145,9 @@ int main(int argc, char** argv) {
   const Words words = parse(argc, argv);
   try {
     fs::create_directories(words.out);
-    return kernels(words, solver::choose_place(words.on == "cpu" ? On::cpu : words.on == "gpu" ? On::gpu : On::automatic));
+    return kernels(words, solver::choose_place(words.on == "cpu"   ? On::cpu
+                                               : words.on == "gpu" ? On::gpu
+                                                                   : On::automatic));
   } catch (const std::exception& error) {
     fmt::print(stderr, "talus-bench: {}\n", error.what());
     return 2;

@@ -7,7 +7,8 @@ namespace talus::postprocess {
 
 const std::vector<Field>& product_fields() {
   static const std::vector<Field> fields = {
-      {"deposit_thickness", &RunMaps::deposit_thickness, "m", "deposit thickness at the end, vertical", "area: mean", true},
+      {"deposit_thickness", &RunMaps::deposit_thickness, "m", "deposit thickness at the end, vertical", "area: mean",
+       true},
       {"peak_thickness", &RunMaps::peak_thickness, "m", "peak thickness, vertical", "area: mean time: maximum", true},
       {"peak_speed", &RunMaps::peak_speed, "m s-1", "peak of the depth-mean speed", "time: maximum", true},
       {"peak_pressure", &RunMaps::peak_pressure, "kPa", "peak flow pressure, density times speed squared",
@@ -44,7 +45,8 @@ Raster values_raster(const RunMaps& maps, const std::vector<double>& values, boo
 std::string file_word(const std::string& name) {
   std::string word = name;
   for (char& c : word) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_';
+    const bool plain =
+        (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_';
     if (!plain) c = '-';
   }
   return word;

@@ -19,11 +19,14 @@ std::string meaning_of_nodata(bool zero_inside, Outside outside) {
 
 }  // namespace
 
-std::vector<std::filesystem::path> write_geotiffs(const std::filesystem::path& folder, const Run& run, Outside outside) {
+std::vector<std::filesystem::path> write_geotiffs(const std::filesystem::path& folder, const Run& run,
+                                                  Outside outside) {
   std::vector<std::filesystem::path> files;
-  const auto put = [&](const std::string& name, const char* long_name, const char* unit, bool zero_inside, Raster raster) {
+  const auto put = [&](const std::string& name, const char* long_name, const char* unit, bool zero_inside,
+                       Raster raster) {
     if (zero_inside && outside == Outside::zero)
-      std::replace_if(raster.values.begin(), raster.values.end(), [](double v) { return std::isnan(v); }, 0.0);
+      std::replace_if(
+          raster.values.begin(), raster.values.end(), [](double v) { return std::isnan(v); }, 0.0);
     RasterTags tags{fmt::format("{} [{}]", long_name, unit), unit, {}};
     tags.metadata = {
         {"TITLE", run.summary.title},
@@ -37,11 +40,13 @@ std::vector<std::filesystem::path> write_geotiffs(const std::filesystem::path& f
     files.push_back(folder / (name + ".tif"));
     write_cog(files.back(), raster, tags);
   };
-  for (const auto& field : product_fields()) put(field.name, field.long_name, field.unit, field.zero_inside, field_raster(run.maps, field));
+  for (const auto& field : product_fields())
+    put(field.name, field.long_name, field.unit, field.zero_inside, field_raster(run.maps, field));
   const auto thickness = [&](const std::string& name, const char* long_name, const std::vector<double>& values) {
     put(name, long_name, "m", true, values_raster(run.maps, values, true));
   };
-  if (!run.maps.eroded_depth.empty()) thickness("eroded_depth", "depth of ground that went along, vertical", run.maps.eroded_depth);
+  if (!run.maps.eroded_depth.empty())
+    thickness("eroded_depth", "depth of ground that went along, vertical", run.maps.eroded_depth);
   for (const auto& [release, values] : run.maps.deposit_of) {
     thickness("deposit_thickness_" + file_word(release), "deposit thickness of one release, vertical", values);
   }

@@ -88,7 +88,8 @@ struct MapVariable {
 /// Letters, digits and underscores, as CF asks of names.
 std::string nc_name(const std::string& name) {
   std::string word = file_word(name);
-  std::replace_if(word.begin(), word.end(), [](char c) { return c == '-' || c == '.'; }, '_');
+  std::replace_if(
+      word.begin(), word.end(), [](char c) { return c == '-' || c == '.'; }, '_');
   return word;
 }
 
@@ -96,15 +97,18 @@ std::vector<MapVariable> map_variables(const RunMaps& maps) {
   std::vector<MapVariable> all;
   for (const auto& f : product_fields())
     all.push_back({f.name, f.long_name, f.unit, f.cell_methods, &(maps.*(f.values)), f.zero_inside});
-  all.push_back({"initial_thickness", "thickness at the start, vertical", "m", "area: mean", &maps.initial_thickness, true});
+  all.push_back(
+      {"initial_thickness", "thickness at the start, vertical", "m", "area: mean", &maps.initial_thickness, true});
   all.push_back({"bed_elevation", "elevation of the bed", "m", "area: mean", &maps.terrain, false});
   if (!maps.eroded_depth.empty())
-    all.push_back({"eroded_depth", "depth of ground that went along, vertical", "m", "area: mean", &maps.eroded_depth, true});
+    all.push_back(
+        {"eroded_depth", "depth of ground that went along, vertical", "m", "area: mean", &maps.eroded_depth, true});
   for (const auto& [release, values] : maps.deposit_of) {
     std::string name = "deposit_thickness_" + nc_name(release);
     const auto taken = [&](const MapVariable& other) { return other.name == name; };
     while (std::any_of(all.begin(), all.end(), taken)) name += "_";  // "a-b" after "a b"
-    all.push_back({name, "deposit thickness at the end of release " + release + ", vertical", "m", "area: mean", &values, true});
+    all.push_back(
+        {name, "deposit thickness at the end of release " + release + ", vertical", "m", "area: mean", &values, true});
   }
   return all;
 }

@@ -14,8 +14,9 @@ struct NetcdfNotes {
 };
 
 /// Write `file` (aside, renamed): NetCDF-4 after CF-1.8, dimensions (time, y, x), y rising with row (south first).
-/// Variables: the product fields, bed elevation, thickness at the start and over time, depth of erosion and the deposit of
-/// each release where there are any, bounds of the cells, grid mapping `crs` where the run has a CRS. All double with _FillValue -9999 and deflate. Throws DataError (disk full).
+/// Variables: the product fields, bed elevation, thickness at the start and over time, depth of erosion and the deposit
+/// of each release where there are any, bounds of the cells, grid mapping `crs` where the run has a CRS. All double
+/// with _FillValue -9999 and deflate. Throws DataError (disk full).
 void write_netcdf(const std::filesystem::path& file, const Run& run, const NetcdfNotes& notes);
 
 }  // namespace talus::postprocess

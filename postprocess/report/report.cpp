@@ -98,7 +98,9 @@ std::string report_html(const ReportInput& input) {
   data["score"] = score_json(input.score);
   data["volumes"] = volumes_json(input.run, input.options.deposit_threshold);
   data["surveys"] = input.comparison ? Json::parse(*input.comparison, nullptr, false) : Json(nullptr);
-  if (data["surveys"].is_discarded()) throw DataError({"survey/survey.json beside the run is no JSON", "it was cut short or edited", "Run talus-preprocess again"});
+  if (data["surveys"].is_discarded())
+    throw DataError(
+        {"survey/survey.json beside the run is no JSON", "it was cut short or edited", "Run talus-preprocess again"});
   data["stages"] = stages_json(input.stages);
   data["profile"] = profile_json(input);
   data["series"] = series_json(input);

@@ -37,8 +37,8 @@ double Contingency::spi(double runout_ratio) const {
   if (!(runout_ratio > 0)) return std::numeric_limits<double>::quiet_NaN();
   Contingency even = *this;
   even.true_negative = std::max(0.0, 5 * (true_positive + false_negative) - false_positive);
-  const double sum = std::max(0.0, csi()) + std::max(0.0, even.hss()) + std::max(0.0, 1 - even.d2pc()) + likeness(foc()) +
-                     likeness(runout_ratio);
+  const double sum = std::max(0.0, csi()) + std::max(0.0, even.hss()) + std::max(0.0, 1 - even.d2pc()) +
+                     likeness(foc()) + likeness(runout_ratio);
   return true_positive + false_negative > 0 ? sum / 5 : std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -69,7 +69,8 @@ ThicknessError thickness_error(const std::vector<double>& simulated, const std::
     differences.push_back(difference);
   }
   const auto count = static_cast<double>(differences.size());
-  return {std::sqrt(ratio(square, count)), ratio(sum, count), ratio(absolute, count), median(differences), nmad(differences)};
+  return {std::sqrt(ratio(square, count)), ratio(sum, count), ratio(absolute, count), median(differences),
+          nmad(differences)};
 }
 
 }  // namespace talus::postprocess

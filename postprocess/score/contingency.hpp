@@ -25,10 +25,10 @@ struct Contingency {
   double d2pc() const;
   /// Factor of conservativeness: simulated over surveyed area, (TP + FP) / (TP + FN) (r.avaflow's FoC).
   double foc() const;
-  /// Synthetic performance index of r.avaflow (2.3, evaluation scores), 1 = perfect, 0 = nothing right: the mean of CSI,
-  /// HSS, 1 - D2PC, sin^5(pi/2 min(FoC, 1/FoC)) and sin^5(pi/2 min(R, 1/R)), each not below 0, where R is the simulated
-  /// run-out along the thalweg over the surveyed one. As there, HSS and D2PC are taken with TN = 5 (TP + FN) - FP, so that
-  /// the extent of the map has no part in it. NaN where the survey has no area or R is not positive.
+  /// Synthetic performance index of r.avaflow (2.3, evaluation scores), 1 = perfect, 0 = nothing right: the mean of
+  /// CSI, HSS, 1 - D2PC, sin^5(pi/2 min(FoC, 1/FoC)) and sin^5(pi/2 min(R, 1/R)), each not below 0, where R is the
+  /// simulated run-out along the thalweg over the surveyed one. As there, HSS and D2PC are taken with TN = 5 (TP + FN)
+  /// - FP, so that the extent of the map has no part in it. NaN where the survey has no area or R is not positive.
   double spi(double runout_ratio) const;
 };
 

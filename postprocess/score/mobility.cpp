@@ -24,7 +24,9 @@ Place nearest_to_middle(const std::vector<Place>& places) {
     middle.x += p.x / static_cast<double>(places.size());
     middle.y += p.y / static_cast<double>(places.size());
   }
-  return *std::min_element(places.begin(), places.end(), [&](const Place& a, const Place& b) { return plan_distance(a, middle) < plan_distance(b, middle); });
+  return *std::min_element(places.begin(), places.end(), [&](const Place& a, const Place& b) {
+    return plan_distance(a, middle) < plan_distance(b, middle);
+  });
 }
 
 }  // namespace

@@ -1,14 +1,17 @@
 // The numbers of a run, and how well it agrees with a survey.
 //
 // Definitions (the same words stand under score.txt; those of single scores with the functions that compute them):
-// - footprint: peak thickness above footprint_threshold_m; the survey's is its peak thickness above the same threshold, or
+// - footprint: peak thickness above footprint_threshold_m; the survey's is its peak thickness above the same threshold,
+// or
 //   the inside of its polygon, or |after - before| above the threshold.
-// - deposit: final thickness above deposit_threshold_m. Against a surveyed change (after - before), both sides are the rise
-//   of the surface: max(0, after - before) and max(0, final - initial thickness), because in the source area the slide's own
-//   scar is not deposit.
-// - run-out L: distance in plan from the crown (highest cell of the release), straight to the farthest deposit cell, or along
-//   the thalweg to the deposit cell farthest along it; H: drop of the surface before the failure between the two; H/L is the
-//   tangent of the Fahrboeschung (Heim 1932).
+// - deposit: final thickness above deposit_threshold_m. Against a surveyed change (after - before), both sides are the
+// rise
+//   of the surface: max(0, after - before) and max(0, final - initial thickness), because in the source area the
+//   slide's own scar is not deposit.
+// - run-out L: distance in plan from the crown (highest cell of the release), straight to the farthest deposit cell, or
+// along
+//   the thalweg to the deposit cell farthest along it; H: drop of the surface before the failure between the two; H/L
+//   is the tangent of the Fahrboeschung (Heim 1932).
 #pragma once
 
 #include <cstdint>

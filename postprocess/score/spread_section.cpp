@@ -1,8 +1,8 @@
 // How much of a score hangs on the survey's own error.
 #include <fmt/format.h>
 
-#include "postprocess/score/resample.hpp"
 #include "common/statistics.hpp"
+#include "postprocess/score/resample.hpp"
 
 namespace talus::postprocess {
 namespace {

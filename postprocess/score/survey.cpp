@@ -128,7 +128,8 @@ std::optional<Survey> read_survey(const SurveyOptions& options, const RunMaps& m
 OnSurveyGrid bring_to_survey_grid(const RunMaps& maps, const Survey& survey) {
   const auto bring = [&](const std::vector<double>& values) { return on_grid({maps.grid, values}, survey.grid); };
   OnSurveyGrid simulated{bring(maps.deposit_thickness), {}, bring(maps.peak_thickness), 0};
-  auto initial = survey.deposit_is_change ? bring(maps.initial_thickness) : std::vector<double>(survey.grid.count(), 0.0);
+  auto initial =
+      survey.deposit_is_change ? bring(maps.initial_thickness) : std::vector<double>(survey.grid.count(), 0.0);
   if (survey.deposit_is_change && !maps.eroded_depth.empty()) {
     const auto eroded = bring(maps.eroded_depth);
     for (std::size_t i = 0; i < eroded.size(); ++i) {

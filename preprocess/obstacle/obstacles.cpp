@@ -25,8 +25,9 @@ double height_of(const MapPolygon& polygon, std::size_t number, const ObstacleOp
   for (const auto& [name, value] : polygon.numbers) {
     if (name == o.attribute && value > 0 && std::isfinite(value)) return value;
   }
-  throw DataError(Fault{fmt::format("{}: polygon {} has no positive number \"{}\"", o.polygons.string(), number, o.attribute), "the obstacle's height is not known",
-                        "Name the attribute in the recipe (attribute = ...), or give height_m"});
+  throw DataError(Fault{
+      fmt::format("{}: polygon {} has no positive number \"{}\"", o.polygons.string(), number, o.attribute),
+      "the obstacle's height is not known", "Name the attribute in the recipe (attribute = ...), or give height_m"});
 }
 
 /// Distance to the polygon's edge [m], negative inside.
@@ -61,8 +62,10 @@ SolidBody stand(const ObstacleOptions& o, const std::shared_ptr<const Raster>& s
     for (const auto& corner : polygons[p].rings.front()) {
       const double z = bilinear(ground, corner[0], corner[1]);
       if (std::isnan(z)) {
-        throw DataError(Fault{fmt::format("{}: polygon {} reaches ({:.1f}, {:.1f}), where there is no ground", o.polygons.string(), p + 1, corner[0], corner[1]),
-                              "an obstacle stands on known ground", "Clip the polygon, or give a larger elevation model"});
+        throw DataError(Fault{fmt::format("{}: polygon {} reaches ({:.1f}, {:.1f}), where there is no ground",
+                                          o.polygons.string(), p + 1, corner[0], corner[1]),
+                              "an obstacle stands on known ground",
+                              "Clip the polygon, or give a larger elevation model"});
       }
       for (std::size_t a = 0; a < 2; ++a) {
         body.low[a] = std::min(body.low[a], corner[a]);
@@ -76,8 +79,11 @@ SolidBody stand(const ObstacleOptions& o, const std::shared_ptr<const Raster>& s
   // Between the corners the ground may rise and fall.
   for (int row = 0; row < ground.grid.rows; ++row) {
     for (int column = 0; column < ground.grid.columns; ++column) {
-      const double x = ground.grid.x(column), y = ground.grid.y(row), z = ground.at(column, row), margin = ground.grid.cell;
-      if (x < body.low[0] - margin || x > body.high[0] + margin || y < body.low[1] - margin || y > body.high[1] + margin) continue;
+      const double x = ground.grid.x(column), y = ground.grid.y(row), z = ground.at(column, row),
+                   margin = ground.grid.cell;
+      if (x < body.low[0] - margin || x > body.high[0] + margin || y < body.low[1] - margin ||
+          y > body.high[1] + margin)
+        continue;
       for (const Footprint& f : *footprints) {
         if (std::isnan(z) || signed_distance(f.polygon, x, y) > margin) continue;
         body.low[2] = std::min(body.low[2], z - depth);
@@ -90,11 +96,13 @@ SolidBody stand(const ObstacleOptions& o, const std::shared_ptr<const Raster>& s
     if (x != column->x || y != column->y) {
       const double here = bilinear(*shared_ground, x, y);
       *column = {x, y, std::isnan(here) ? 0 : here, {}};
-      for (const Footprint& f : *footprints) column->across.push_back(std::isnan(here) ? 1e30 : signed_distance(f.polygon, x, y));
+      for (const Footprint& f : *footprints)
+        column->across.push_back(std::isnan(here) ? 1e30 : signed_distance(f.polygon, x, y));
     }
     double nearest = 1e30;
     for (std::size_t f = 0; f < footprints->size(); ++f) {
-      nearest = std::min(nearest, std::max({column->across[f], z - column->ground - (*footprints)[f].height, column->ground - depth - z}));
+      nearest = std::min(nearest, std::max({column->across[f], z - column->ground - (*footprints)[f].height,
+                                            column->ground - depth - z}));
     }
     return nearest;
   };
@@ -103,7 +111,8 @@ SolidBody stand(const ObstacleOptions& o, const std::shared_ptr<const Raster>& s
 
 }  // namespace
 
-std::vector<SolidBody> stand_obstacles(const std::vector<ObstacleOptions>& obstacles, const Raster& ground, double depth) {
+std::vector<SolidBody> stand_obstacles(const std::vector<ObstacleOptions>& obstacles, const Raster& ground,
+                                       double depth) {
   std::vector<SolidBody> bodies;
   if (obstacles.empty()) return bodies;
   const auto shared_ground = std::make_shared<const Raster>(ground);  // the bodies outlive the caller's

@@ -47,7 +47,8 @@ void seed_column(const Column& column, const Seeding& s, Shift& shift, SeedPoint
 }
 
 void reserve(SeedPoints& points, std::size_t count) {
-  for (auto* values : {&points.x, &points.y, &points.height, &points.volume, &points.extent_x, &points.extent_y}) values->reserve(count);
+  for (auto* values : {&points.x, &points.y, &points.height, &points.volume, &points.extent_x, &points.extent_y})
+    values->reserve(count);
   points.release.reserve(count);
 }
 

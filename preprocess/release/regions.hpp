@@ -23,7 +23,8 @@ struct Company {
 };
 Company company_of(const MapGrid& grid, const std::vector<double>& marks, int column, int row);
 
-/// Noise gives a region a fringe: marked cells (above 0) with fewer than four of their eight neighbours marked become 0.
+/// Noise gives a region a fringe: marked cells (above 0) with fewer than four of their eight neighbours marked become
+/// 0.
 void cut_fringe(const MapGrid& grid, std::vector<double>& marked);
 
 }  // namespace talus::preprocess

@@ -7,10 +7,10 @@
 
 #include "common/error.hpp"
 #include "common/raster/raster_io.hpp"
+#include "common/raster/slope.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/release/polygon_cover.hpp"
 #include "preprocess/terrain/elevation.hpp"
-#include "common/raster/slope.hpp"
 #include "preprocess/terrain/surfaces.hpp"
 
 namespace talus::preprocess {

@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "preprocess/release/regions.hpp"
 #include "common/statistics.hpp"
+#include "preprocess/release/regions.hpp"
 
 namespace talus::preprocess {
 
 namespace {
 
-constexpr double beyond = 3;            // NMAD
+constexpr double beyond = 3;              // NMAD
 constexpr std::size_t least_region = 20;  // cells: fewer are noise
-constexpr int rim = 3;                  // cells around a change, where it thins out
+constexpr int rim = 3;                    // cells around a change, where it thins out
 
 /// The share of the 3 x 3 cells around each that are marked, of those that the map has: a single cell of noise has no
 /// company.
@@ -32,7 +32,8 @@ void leave_out(const Region& region, const MapGrid& grid, std::vector<char>& kep
   for (const std::size_t cell : region.cells) {
     const int column = static_cast<int>(cell % columns), row = static_cast<int>(cell / columns);
     for (int r = std::max(0, row - rim); r <= std::min(grid.rows - 1, row + rim); ++r) {
-      for (int c = std::max(0, column - rim); c <= std::min(grid.columns - 1, column + rim); ++c) kept[grid.index(c, r)] = 0;
+      for (int c = std::max(0, column - rim); c <= std::min(grid.columns - 1, column + rim); ++c)
+        kept[grid.index(c, r)] = 0;
     }
   }
 }
@@ -52,7 +53,8 @@ void leave_out_changed(std::vector<Patch>& patches, const Placement& placement) 
   for (std::size_t p = 0; p < patches.size(); ++p) {
     const MapGrid& grid = patches[p].before.grid;
     std::vector<double> marked(grid.count());
-    for (std::size_t i = 0; i < marked.size(); ++i) marked[i] = std::abs(misfits[p][i] - centre) > limit;  // false for NaN
+    for (std::size_t i = 0; i < marked.size(); ++i)
+      marked[i] = std::abs(misfits[p][i] - centre) > limit;  // false for NaN
     for (const Region& region : lowering_regions(company_share(grid, marked), 0.5)) {
       if (region.cells.size() < least_region) continue;
       leave_out(region, grid, patches[p].stable);

@@ -16,8 +16,8 @@ namespace talus::preprocess {
 namespace {
 
 constexpr int most_iterations = 50;
-constexpr double still = 1e-3;           // cells: what is left of a shift at the end
-constexpr int free_iterations = 3;       // after which no cell comes back
+constexpr double still = 1e-3;      // cells: what is left of a shift at the end
+constexpr int free_iterations = 3;  // after which no cell comes back
 
 void move(Placement& placement, const ShiftFit& fit, double length) {
   placement.x += fit.value[shift_x];
@@ -28,7 +28,8 @@ void move(Placement& placement, const ShiftFit& fit, double length) {
 }
 
 /// Heights in feet stretch relief, not only lift it: spreads differ by that factor.
-void refuse_feet(const std::vector<Patch>& patches, const Placement& placement, const std::filesystem::path& after_file) {
+void refuse_feet(const std::vector<Patch>& patches, const Placement& placement,
+                 const std::filesystem::path& after_file) {
   std::vector<double> before, after;
   for (const Patch& p : patches) {
     const std::vector<double> d = misfit(p, placement);
@@ -42,10 +43,12 @@ void refuse_feet(const std::vector<Patch>& patches, const Placement& placement, 
   for (const double feet : {1 / 0.3048, 0.3048}) {
     if (!(std::abs(ratio / feet - 1) < 0.15)) continue;  // no slide changes the relief of a map threefold
     const bool later = feet > 1;
-    throw DataError(Fault{fmt::format("{}: its relief is {:.3f} times that of the survey before", after_file.string(), ratio),
-                          later ? "its heights look like feet" : "the heights of the survey before look like feet",
-                          fmt::format("Say so in [preprocess]: {0}_vertical_unit = \"foot\" or \"us-survey-foot\"; or, where the other one is said to be in feet and is not, {1}_vertical_unit = \"metre\"",
-                                      later ? "after" : "before", later ? "before" : "after")});
+    throw DataError(
+        Fault{fmt::format("{}: its relief is {:.3f} times that of the survey before", after_file.string(), ratio),
+              later ? "its heights look like feet" : "the heights of the survey before look like feet",
+              fmt::format("Say so in [preprocess]: {0}_vertical_unit = \"foot\" or \"us-survey-foot\"; or, where the "
+                          "other one is said to be in feet and is not, {1}_vertical_unit = \"metre\"",
+                          later ? "after" : "before", later ? "before" : "after")});
   }
 }
 
@@ -72,8 +75,9 @@ void leave_out_unshared(std::vector<Patch>& patches, const Placement& placement)
   }
 }
 
-/// Iterates the fit of what is sought until it stands still; leaves the last errors. Near a shift by whole cells, a row at the
-/// rim is shared at one iterate and not at the next, each the answer of the other: after the first iterations, who is out stays out.
+/// Iterates the fit of what is sought until it stands still; leaves the last errors. Near a shift by whole cells, a row
+/// at the rim is shared at one iterate and not at the next, each the answer of the other: after the first iterations,
+/// who is out stays out.
 ShiftFit settle(std::vector<Patch>& patches, const std::vector<int>& sought, double length, Coregistration& result) {
   ShiftFit last;
   const double cell = patches.front().before.grid.cell;
@@ -85,7 +89,8 @@ ShiftFit settle(std::vector<Patch>& patches, const std::vector<int>& sought, dou
     last = fit_shift(rows, sought);
     move(result.placement, last, length);
     ++result.iterations;
-    result.converged = std::hypot(last.value[0], last.value[1]) < still * cell && std::abs(last.value[2]) < still * std::max(nmad(rows.misfit), 1e-6);
+    result.converged = std::hypot(last.value[0], last.value[1]) < still * cell &&
+                       std::abs(last.value[2]) < still * std::max(nmad(rows.misfit), 1e-6);
   }
   return last;
 }
@@ -96,7 +101,9 @@ void fit_tilt(std::vector<Patch>& patches, std::vector<int> sought, double lengt
   sought.insert(sought.end(), {ShiftUnknown::tilt_x, ShiftUnknown::tilt_y});
   const ShiftFit last = settle(patches, sought, length, tilted);
   const auto clear = [&](double tilt, double error) { return std::abs(tilt * length) > 3 * 10 * error + 1e-9; };
-  if (tilted.converged && (clear(tilted.placement.tilt_x, last.error[ShiftUnknown::tilt_x]) || clear(tilted.placement.tilt_y, last.error[ShiftUnknown::tilt_y]))) result = tilted;
+  if (tilted.converged && (clear(tilted.placement.tilt_x, last.error[ShiftUnknown::tilt_x]) ||
+                           clear(tilted.placement.tilt_y, last.error[ShiftUnknown::tilt_y])))
+    result = tilted;
 }
 
 /// The rectangle around all patches.
@@ -104,7 +111,8 @@ Extent extent_of(const std::vector<Patch>& patches) {
   Extent all{INFINITY, INFINITY, -INFINITY, -INFINITY};
   for (const Patch& p : patches) {
     const MapGrid& grid = p.before.grid;
-    all = {std::min(all.west, grid.west), std::min(all.south, grid.south), std::max(all.east, grid.east()), std::max(all.north, grid.north())};
+    all = {std::min(all.west, grid.west), std::min(all.south, grid.south), std::max(all.east, grid.east()),
+           std::max(all.north, grid.north())};
   }
   return all;
 }
@@ -118,11 +126,13 @@ std::size_t shared_cells(const std::vector<Patch>& patches, const Placement& pla
   return count;
 }
 
-/// What is said of the ground in the end. A placement at which the surveys share less than half of what they did is not believed.
+/// What is said of the ground in the end. A placement at which the surveys share less than half of what they did is not
+/// believed.
 Coregistration told(const std::vector<Patch>& patches, const Placement& start, Coregistration result) {
   result.unaligned = residuals_of(stable_misfit(patches, start));
   const std::vector<double> rest = stable_misfit(patches, result.placement);
-  result.known = rest.size() >= least_cells && 2 * shared_cells(patches, result.placement) > shared_cells(patches, start);
+  result.known =
+      rest.size() >= least_cells && 2 * shared_cells(patches, result.placement) > shared_cells(patches, start);
   result.aligned = residuals_of(rest);
   std::size_t cells = 0;
   for (const Patch& p : patches) cells += p.stable.size();
@@ -130,7 +140,8 @@ Coregistration told(const std::vector<Patch>& patches, const Placement& start, C
   return result;
 }
 
-/// Most cells differ by one and the same number: the later model was made from the earlier one, and there is no more to fit.
+/// Most cells differ by one and the same number: the later model was made from the earlier one, and there is no more to
+/// fit.
 Coregistration lifted(std::vector<Patch>& patches, Coregistration result) {
   const Placement start = result.placement;
   result.placement.z = -median(stable_misfit(patches, start));
@@ -161,7 +172,8 @@ Coregistration coregister(std::vector<Patch>& patches, bool tilt, const std::fil
   settle(patches, sought, length, result);
   for (int round = 0; round < 2; ++round) {
     leave_out_changed(patches, result.placement);
-    if (stable_misfit(patches, result.placement).size() < std::max<std::size_t>(least_cells, at_first / 2)) return result;
+    if (stable_misfit(patches, result.placement).size() < std::max<std::size_t>(least_cells, at_first / 2))
+      return result;
     settle(patches, sought, length, result);
   }
   if (tilt) fit_tilt(patches, sought, length, result);

@@ -21,8 +21,8 @@ struct Coregistration {
   Residuals unaligned, aligned;  ///< after less before on stable ground [m]
   int iterations = 0;
   bool converged = false;
-  bool shift_known = true;   ///< false on ground too level, or sloping one way only, to tell a horizontal shift
-  double stable_share = 0;   ///< of the cells that both surveys hold
+  bool shift_known = true;  ///< false on ground too level, or sloping one way only, to tell a horizontal shift
+  double stable_share = 0;  ///< of the cells that both surveys hold
 };
 
 inline constexpr std::size_t least_cells = 100;
@@ -31,16 +31,16 @@ inline constexpr std::size_t least_cells = 100;
 /// from the mean of the eight neighbours.
 void find_stable(std::vector<Patch>& patches, const StableGround& limits);
 
-/// Shift, vertical offset and (if asked for) tilt of the later survey, found on stable ground after Nuth & Kaeaeb (2011),
-/// The Cryosphere 5, 271: the misfit of a shifted surface is the scalar product of shift and slope,
+/// Shift, vertical offset and (if asked for) tilt of the later survey, found on stable ground after Nuth & Kaeaeb
+/// (2011), The Cryosphere 5, 271: the misfit of a shifted surface is the scalar product of shift and slope,
 ///   dh = dx dz/dx + dy dz/dy - dz - (tilt),
 /// their eq. 2 times tan(slope), so that level ground weighs nothing instead of infinitely much. Fitted by least
 /// squares with Tukey's biweights on the NMAD, the later survey resampled anew (cubic convolution) at every
 /// iteration, until it moves by less than a thousandth of a cell. Starts from the whole-cell shift of least NMAD
 /// within 16 cells. In between, connected cells that changed by more than three NMAD are taken out of the stable
 /// ground, so that an unmapped slide does not pull. A tilt smaller than three times its error is left out. Throws
-/// DataError where heights look like feet. Not known where fewer than least_cells are stable, or where changes take more than half of
-/// what is neither steep nor rough nor in a polygon.
+/// DataError where heights look like feet. Not known where fewer than least_cells are stable, or where changes take
+/// more than half of what is neither steep nor rough nor in a polygon.
 Coregistration coregister(std::vector<Patch>& patches, bool tilt, const std::filesystem::path& after_file);
 
 /// Residuals of the stable cells with the later survey placed as told.

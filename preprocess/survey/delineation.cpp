@@ -17,29 +17,32 @@ struct Change {
   std::vector<double> levels;  // from which it counts [m]
 };
 
-constexpr int bridge = 10;           // cells: a thin sheet between scar and deposit may lie below the level of detection
-constexpr double sure = 3;           // levels: no noise
+constexpr int bridge = 10;  // cells: a thin sheet between scar and deposit may lie below the level of detection
+constexpr double sure = 3;  // levels: no noise
 constexpr std::size_t sure_cells = 5;
 
 /// Connected regions of believed change, up or down, without their fringe.
 std::vector<Region> changed_regions(const Change& change) {
   const MapGrid& grid = change.rise.grid;
   Raster marked{grid, std::vector<double>(grid.count(), 0.0)};
-  for (std::size_t i = 0; i < grid.count(); ++i) marked.values[i] = std::abs(change.rise.values[i]) > change.levels[i] ? 1 : 0;
+  for (std::size_t i = 0; i < grid.count(); ++i)
+    marked.values[i] = std::abs(change.rise.values[i]) > change.levels[i] ? 1 : 0;
   cut_fringe(grid, marked.values);
   return lowering_regions(marked, 0.5);
 }
 
 /// No noise: enough of it stands out by several levels.
 bool is_sure(const Region& region, const Change& change) {
-  return static_cast<std::size_t>(std::count_if(region.cells.begin(), region.cells.end(), [&](std::size_t c) { return std::abs(change.rise.values[c]) > sure * change.levels[c]; })) >=
-         sure_cells;
+  return static_cast<std::size_t>(std::count_if(region.cells.begin(), region.cells.end(), [&](std::size_t c) {
+           return std::abs(change.rise.values[c]) > sure * change.levels[c];
+         })) >= sure_cells;
 }
 
 /// True when a cell of the slide lies within the bridge's length of a region.
 bool near_slide(const Region& region, const MapGrid& grid, const std::vector<char>& slide) {
   for (const std::size_t cell : region.cells) {
-    const int column = static_cast<int>(cell % static_cast<std::size_t>(grid.columns)), row = static_cast<int>(cell / static_cast<std::size_t>(grid.columns));
+    const int column = static_cast<int>(cell % static_cast<std::size_t>(grid.columns)),
+              row = static_cast<int>(cell / static_cast<std::size_t>(grid.columns));
     for (int r = std::max(0, row - bridge); r <= std::min(grid.rows - 1, row + bridge); ++r) {
       for (int c = std::max(0, column - bridge); c <= std::min(grid.columns - 1, column + bridge); ++c) {
         if (slide[grid.index(c, r)]) return true;
@@ -71,7 +74,8 @@ std::vector<char> changed_beside(const Change& change, const Raster& source) {
 
 std::vector<char> largest_rise(const Change& change) {
   Raster risen = change.rise;
-  for (std::size_t i = 0; i < risen.values.size(); ++i) risen.values[i] = risen.values[i] > change.levels[i] ? risen.values[i] : 0;
+  for (std::size_t i = 0; i < risen.values.size(); ++i)
+    risen.values[i] = risen.values[i] > change.levels[i] ? risen.values[i] : 0;
   const std::vector<Region> regions = lowering_regions(risen, 0);
   std::vector<char> inside(risen.values.size(), 0);
   if (regions.empty()) return inside;
@@ -79,11 +83,13 @@ std::vector<char> largest_rise(const Change& change) {
   return inside;
 }
 
-std::vector<char> deposit_cells(const Change& change, const std::vector<MapPolygon>& outline, std::vector<char> slide, const std::filesystem::path& file) {
+std::vector<char> deposit_cells(const Change& change, const std::vector<MapPolygon>& outline, std::vector<char> slide,
+                                const std::filesystem::path& file) {
   if (!outline.empty()) {
     std::vector<char> inside = cells_inside(outline, change.rise.grid);
     if (std::none_of(inside.begin(), inside.end(), [](char c) { return c != 0; }))
-      throw DataError(Fault{file.string() + ": no polygon covers a cell of the working grid", "the deposit would be empty", "Check the CRS of both with ogrinfo and gdalinfo"});
+      throw DataError(Fault{file.string() + ": no polygon covers a cell of the working grid",
+                            "the deposit would be empty", "Check the CRS of both with ogrinfo and gdalinfo"});
     for (std::size_t i = 0; i < inside.size(); ++i) inside[i] = inside[i] && change.rise.values[i] > 0;
     return inside;
   }
@@ -92,8 +98,8 @@ std::vector<char> deposit_cells(const Change& change, const std::vector<MapPolyg
   return any ? slide : largest_rise(change);
 }
 
-/// What would come or go at the edge of a region if the level of detection were one standard error lower or higher, half of it
-/// [m3]: cells of the region not that far above their level, and neighbours of it not that far below.
+/// What would come or go at the edge of a region if the level of detection were one standard error lower or higher,
+/// half of it [m3]: cells of the region not that far above their level, and neighbours of it not that far below.
 double edge_error(const Raster& thickness, const Change& change, const Raster& sigma) {
   const MapGrid& grid = thickness.grid;
   Sum sum;
@@ -104,7 +110,8 @@ double edge_error(const Raster& thickness, const Change& change, const Raster& s
       if (!(std::abs(beyond) < sigma.values[i]) || (beyond > 0) != (thickness.values[i] > 0)) continue;
       bool beside = false;
       for (int r = std::max(0, row - 1); r <= std::min(grid.rows - 1, row + 1); ++r) {
-        for (int c = std::max(0, column - 1); c <= std::min(grid.columns - 1, column + 1); ++c) beside = beside || thickness.at(c, r) > 0;
+        for (int c = std::max(0, column - 1); c <= std::min(grid.columns - 1, column + 1); ++c)
+          beside = beside || thickness.at(c, r) > 0;
       }
       if (beside) sum.add(size);
     }
@@ -113,7 +120,8 @@ double edge_error(const Raster& thickness, const Change& change, const Raster& s
 }
 
 /// What was filled errs as one: a hole bridged too high is too high throughout.
-VolumeWithError volume_in(const Raster& thickness, const SurveyedSlide& slide, const Change* change, const ErrorModel& errors) {
+VolumeWithError volume_in(const Raster& thickness, const SurveyedSlide& slide, const Change* change,
+                          const ErrorModel& errors) {
   Sum sum, squares, filled;
   std::size_t cells = 0;
   for (std::size_t i = 0; i < thickness.values.size(); ++i) {
@@ -140,7 +148,8 @@ void delineate(const Survey& survey, const SlideSurfaces& surfaces, const Option
     change.rise.values[i] -= before.values[i];
     change.levels[i] = std::max(change.levels[i], options.deposit.threshold_m);
   }
-  const std::vector<char> moved = changed_beside(change, source), deposit = deposit_cells(change, survey.deposit, moved, options.deposit.polygon);
+  const std::vector<char> moved = changed_beside(change, source),
+                          deposit = deposit_cells(change, survey.deposit, moved, options.deposit.polygon);
   slide.deposit.values.assign(deposit.size(), 0.0);
   slide.change.values.assign(deposit.size(), 0.0);
   for (std::size_t i = 0; i < deposit.size(); ++i) {
@@ -149,8 +158,9 @@ void delineate(const Survey& survey, const SlideSurfaces& surfaces, const Option
     if (deposit[i] || moved[i] || source.values[i] > 0 || std::isnan(rise)) slide.change.values[i] = rise;
     if (!slide.filled.values.empty() && slide.filled.values[i] > 0) slide.change.values[i] = std::nan("");
   }
-  slide.volumes = {{"source", volume_in(source, slide, survey.source.empty() ? &change : nullptr, survey.errors)},
-                   {"deposit", volume_in(slide.deposit, slide, survey.deposit.empty() ? &change : nullptr, survey.errors)}};
+  slide.volumes = {
+      {"source", volume_in(source, slide, survey.source.empty() ? &change : nullptr, survey.errors)},
+      {"deposit", volume_in(slide.deposit, slide, survey.deposit.empty() ? &change : nullptr, survey.errors)}};
 }
 
 }  // namespace talus::preprocess

@@ -12,9 +12,13 @@ namespace {
 constexpr int block_cells = 1024;
 
 Block block_of(const Elevation& before, const Elevation& after, const MapGrid& part, const ErrorModel& model) {
-  const Raster wide = onto_grid(before, cut(part, {-1, -1, part.columns + 2, part.rows + 2}));  // so that blocks do not show in the slopes
+  const Raster wide = onto_grid(
+      before, cut(part, {-1, -1, part.columns + 2, part.rows + 2}));  // so that blocks do not show in the slopes
   const CellWindow inner{1, 1, part.columns, part.rows};
-  Block block{cut(wide, inner), onto_grid(after, part), {part, std::vector<double>(part.count())}, cut(Raster{wide.grid, model.sigmas(wide)}, inner)};
+  Block block{cut(wide, inner),
+              onto_grid(after, part),
+              {part, std::vector<double>(part.count())},
+              cut(Raster{wide.grid, model.sigmas(wide)}, inner)};
   for (std::size_t i = 0; i < part.count(); ++i) {
     const double d = block.after.values[i] - block.before.values[i];
     block.difference.values[i] = d;
@@ -59,10 +63,12 @@ Budget BudgetSum::budget(const ErrorModel& model, double cell) const {
   return budget;
 }
 
-void for_each_block(const Elevation& before, const Elevation& after, const MapGrid& grid, const ErrorModel& model, const std::function<void(const Block&)>& visit) {
+void for_each_block(const Elevation& before, const Elevation& after, const MapGrid& grid, const ErrorModel& model,
+                    const std::function<void(const Block&)>& visit) {
   for (int row = 0; row < grid.rows; row += block_cells) {
     for (int column = 0; column < grid.columns; column += block_cells) {
-      const CellWindow window{column, row, std::min(block_cells, grid.columns - column), std::min(block_cells, grid.rows - row)};
+      const CellWindow window{column, row, std::min(block_cells, grid.columns - column),
+                              std::min(block_cells, grid.rows - row)};
       visit(block_of(before, after, cut(grid, window), model));
     }
   }

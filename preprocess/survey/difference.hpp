@@ -54,7 +54,8 @@ struct Block {
 
 /// Walks over a grid block by block (1024 cells wide and high), reading both surveys only there. `visit` sees every
 /// block once, from the south-west to the north-east.
-void for_each_block(const Elevation& before, const Elevation& after, const MapGrid& grid, const ErrorModel& model, const std::function<void(const Block&)>& visit);
+void for_each_block(const Elevation& before, const Elevation& after, const MapGrid& grid, const ErrorModel& model,
+                    const std::function<void(const Block&)>& visit);
 
 /// Both budgets of one pair.
 struct Budgets {

@@ -23,7 +23,8 @@ std::vector<Sample> samples_of(const std::vector<Patch>& patches, const std::vec
   std::vector<Sample> samples;
   for (std::size_t p = 0; p < patches.size(); ++p) {
     for (std::size_t i = 0; i < misfits[p].size(); ++i) {
-      if (patches[p].unchanged[i] && !std::isnan(misfits[p][i])) samples.push_back({std::hypot(patches[p].slope_x[i], patches[p].slope_y[i]), misfits[p][i]});
+      if (patches[p].unchanged[i] && !std::isnan(misfits[p][i]))
+        samples.push_back({std::hypot(patches[p].slope_x[i], patches[p].slope_y[i]), misfits[p][i]});
     }
   }
   return samples;
@@ -56,12 +57,14 @@ ErrorModel ErrorModel::learnt(const std::vector<Patch>& patches, const Placement
   for (std::size_t p = 0; p < patches.size(); ++p) {
     for (std::size_t i = 0; i < misfits[p].size(); ++i) {
       const double sigma = model.sigma(std::hypot(patches[p].slope_x[i], patches[p].slope_y[i]));
-      misfits[p][i] = patches[p].unchanged[i] && sigma > 0 ? misfits[p][i] / sigma : std::numeric_limits<double>::quiet_NaN();
+      misfits[p][i] =
+          patches[p].unchanged[i] && sigma > 0 ? misfits[p][i] / sigma : std::numeric_limits<double>::quiet_NaN();
     }
   }
   model.variogram_ = variogram_of(patches, misfits);
   const double cell = patches.front().before.grid.cell;
-  model.offset_ = model.typical_ * std::sqrt(model.variogram_.of_mean(static_cast<double>(samples.size()) * cell * cell, cell));
+  model.offset_ =
+      model.typical_ * std::sqrt(model.variogram_.of_mean(static_cast<double>(samples.size()) * cell * cell, cell));
   return model;
 }
 
@@ -84,7 +87,8 @@ double ErrorModel::sigma(double slope) const {
 
 std::vector<double> ErrorModel::sigmas(const Raster& surface) const {
   std::vector<double> values;
-  for (const double cosine : slope_cosine(surface)) values.push_back(sigma(std::sqrt(std::max(0.0, 1 / (cosine * cosine) - 1))));
+  for (const double cosine : slope_cosine(surface))
+    values.push_back(sigma(std::sqrt(std::max(0.0, 1 / (cosine * cosine) - 1))));
   return values;
 }
 

@@ -12,8 +12,9 @@ class ErrorModel {
  public:
   ErrorModel() = default;
 
-  /// From the misfit of the unchanged cells, steep and rough ones too: NMAD in classes of slope (steeper ground errs more; Hugonnet et al. 2022, IEEE
-  /// JSTARS 15, 6456), and the variogram of the misfit over it. `given` [m] > 0 takes the place of the NMAD.
+  /// From the misfit of the unchanged cells, steep and rough ones too: NMAD in classes of slope (steeper ground errs
+  /// more; Hugonnet et al. 2022, IEEE JSTARS 15, 6456), and the variogram of the misfit over it. `given` [m] > 0 takes
+  /// the place of the NMAD.
   static ErrorModel learnt(const std::vector<Patch>& patches, const Placement& placement, double given);
 
   /// Without stable ground: `given` alone [m], errors of cells independent.
@@ -30,8 +31,8 @@ class ErrorModel {
   double of_mean(double mean_square, double area, double cell) const;
 
   const Variogram& variogram() const { return variogram_; }
-  double typical() const { return typical_; }    ///< over all stable ground [m]
-  double offset() const { return offset_; }      ///< of the mean height of stable ground [m]
+  double typical() const { return typical_; }  ///< over all stable ground [m]
+  double offset() const { return offset_; }    ///< of the mean height of stable ground [m]
   bool is_given() const { return given_; }
 
  private:

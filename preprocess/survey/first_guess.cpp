@@ -9,7 +9,7 @@ namespace talus::preprocess {
 
 namespace {
 
-constexpr int farthest = 16;                   // cells
+constexpr int farthest = 16;  // cells
 constexpr std::size_t most_samples = 20000;
 constexpr double clearly_better = 0.9;
 

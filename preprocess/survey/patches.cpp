@@ -36,7 +36,8 @@ void find_slopes(Patch& patch) {
 Patch patch_of(const Elevation& before, const Elevation& after, const MapGrid& part) {
   const double margin = patch_margin * std::max(part.cell, after.cell());
   Patch patch{onto_grid(before, part), {}, {}, {}, {}, {}};
-  patch.after = part_of(after, {part.west - margin, part.south - margin, part.east() + margin, part.north() + margin}, part.crs_wkt);
+  patch.after = part_of(after, {part.west - margin, part.south - margin, part.east() + margin, part.north() + margin},
+                        part.crs_wkt);
   patch.unchanged.assign(part.count(), 1);
   patch.stable = patch.unchanged;
   find_slopes(patch);
@@ -57,7 +58,8 @@ std::vector<Patch> patches_of(const Elevation& before, const Elevation& after, c
       const auto first = [](int cells, int size, int k) { return (cells * (2 * k + 1) / lattice - size) / 2; };
       const int width = std::min(side, grid.columns / lattice), height = std::min(side, grid.rows / lattice);
       if (width < 3 || height < 3) continue;
-      patches.push_back(patch_of(before, after, cut(grid, {first(grid.columns, width, i), first(grid.rows, height, j), width, height})));
+      patches.push_back(patch_of(
+          before, after, cut(grid, {first(grid.columns, width, i), first(grid.rows, height, j), width, height})));
     }
   }
   return patches;

@@ -21,7 +21,8 @@ struct NormalEquations {
   double weights = 0, squares = 0;
 };
 
-NormalEquations sum_up(const ShiftRows& rows, const std::vector<int>& sought, const std::vector<double>& rest, double centre, double scale) {
+NormalEquations sum_up(const ShiftRows& rows, const std::vector<int>& sought, const std::vector<double>& rest,
+                       double centre, double scale) {
   const auto n = static_cast<Eigen::Index>(sought.size());
   NormalEquations sum{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
   Eigen::VectorXd row(n);
@@ -29,7 +30,8 @@ NormalEquations sum_up(const ShiftRows& rows, const std::vector<int>& sought, co
     const double far = scale > 0 ? (rest[k] - centre) / (cut * scale) : 0;
     if (std::abs(far) >= 1) continue;
     const double weight = (1 - far * far) * (1 - far * far);
-    for (Eigen::Index j = 0; j < n; ++j) row[j] = rows.row[k][static_cast<std::size_t>(sought[static_cast<std::size_t>(j)])];
+    for (Eigen::Index j = 0; j < n; ++j)
+      row[j] = rows.row[k][static_cast<std::size_t>(sought[static_cast<std::size_t>(j)])];
     sum.matrix += weight * row * row.transpose();
     sum.right += weight * row * rows.misfit[k];
     sum.weights += weight;
@@ -53,7 +55,8 @@ ShiftRows rows_of(const std::vector<Patch>& patches, const Placement& placement,
       for (int c = 0; c < grid.columns; ++c) {
         const std::size_t i = grid.index(c, r);
         if (!p.stable[i] || std::isnan(d[i]) || seen++ % stride != 0) continue;
-        rows.row.push_back({p.slope_x[i], p.slope_y[i], -1, -(grid.x(c) - placement.centre_x) / length, -(grid.y(r) - placement.centre_y) / length});
+        rows.row.push_back({p.slope_x[i], p.slope_y[i], -1, -(grid.x(c) - placement.centre_x) / length,
+                            -(grid.y(r) - placement.centre_y) / length});
         rows.misfit.push_back(d[i]);
       }
     }
@@ -70,7 +73,8 @@ ShiftFit fit_shift(const ShiftRows& rows, const std::vector<int>& sought) {
     const NormalEquations sum = sum_up(rows, sought, rest, centre, scale);
     const Eigen::LDLT<Eigen::MatrixXd> factor(sum.matrix);
     const Eigen::VectorXd value = factor.solve(sum.right);
-    const Eigen::VectorXd variance = factor.solve(Eigen::MatrixXd::Identity(n, n)).diagonal() * (sum.squares / sum.weights);
+    const Eigen::VectorXd variance =
+        factor.solve(Eigen::MatrixXd::Identity(n, n)).diagonal() * (sum.squares / sum.weights);
     for (Eigen::Index j = 0; j < n; ++j) {
       const auto place = static_cast<std::size_t>(sought[static_cast<std::size_t>(j)]);
       fit.value[place] = value[j];

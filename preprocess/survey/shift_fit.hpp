@@ -26,8 +26,8 @@ struct ShiftFit {
   std::array<double, 5> error{};  // standard errors, cells taken as independent
 };
 
-/// Least squares for the unknowns sought, with Tukey's biweights (cut at 4.685 NMAD, which keeps 95 % of the efficiency),
-/// reweighted five times.
+/// Least squares for the unknowns sought, with Tukey's biweights (cut at 4.685 NMAD, which keeps 95 % of the
+/// efficiency), reweighted five times.
 ShiftFit fit_shift(const ShiftRows& rows, const std::vector<int>& sought);
 
 /// Slopes must differ along every direction, else a shift along the one in which they do not is not told.

@@ -30,7 +30,8 @@ double normal_quantile(double confidence) {
 
 void read_outlines(Survey& s, const Options& options) {
   if (!options.source.polygon.empty()) s.source = read_valid_polygons(options.source.polygon, s.grid.crs_wkt, "source");
-  if (!options.deposit.polygon.empty()) s.deposit = read_valid_polygons(options.deposit.polygon, s.grid.crs_wkt, "deposit");
+  if (!options.deposit.polygon.empty())
+    s.deposit = read_valid_polygons(options.deposit.polygon, s.grid.crs_wkt, "deposit");
 }
 
 /// The polygons of what changed: named ones, source and deposit.
@@ -51,30 +52,43 @@ MapGrid whole_overlap(const Elevation& before, const Elevation& after, const Opt
 }
 
 [[noreturn]] void refuse_alignment(const Survey& s, std::size_t shared) {
-  throw DataError(Fault{fmt::format("{}: no stable ground to align it on ({} cells are shared with {})", s.after.file.string(), grouped(static_cast<double>(shared)), s.before.file.string()),
-                        fmt::format("{} cells are needed that are neither steep nor rough nor part of the slide, and more of them than changed", least_cells),
-                        "Give elevation models that reach further beyond the slide, raise steepest_deg in [preprocess.coregistration], name the changed ground there, or align the models "
-                        "beforehand and set mode = \"off\""});
+  throw DataError(Fault{
+      fmt::format("{}: no stable ground to align it on ({} cells are shared with {})", s.after.file.string(),
+                  grouped(static_cast<double>(shared)), s.before.file.string()),
+      fmt::format(
+          "{} cells are needed that are neither steep nor rough nor part of the slide, and more of them than changed",
+          least_cells),
+      "Give elevation models that reach further beyond the slide, raise steepest_deg in [preprocess.coregistration], "
+      "name the changed ground there, or align the models "
+      "beforehand and set mode = \"off\""});
 }
 
 bool noticeable(const Survey& s) {
   const Placement& p = s.fit.placement;
-  return std::hypot(p.x, p.y) > noticeable_shift * s.grid.cell || std::abs(p.z) > std::max(noticeable_height, s.fit.aligned.nmad) || p.tilt_x != 0 || p.tilt_y != 0;
+  return std::hypot(p.x, p.y) > noticeable_shift * s.grid.cell ||
+         std::abs(p.z) > std::max(noticeable_height, s.fit.aligned.nmad) || p.tilt_x != 0 || p.tilt_y != 0;
 }
 
 std::string placement_words(const Survey& s) {
   const Placement& p = s.fit.placement;
-  std::string words = fmt::format("{:+.2f} m east, {:+.2f} m north ({:+.2f}, {:+.2f} cells), {:+.2f} m high", -p.x, -p.y, -p.x / s.grid.cell, -p.y / s.grid.cell, -p.z);
-  if (p.tilt_x != 0 || p.tilt_y != 0) words += fmt::format(", tilted by {:+.2f} m/km towards the east and {:+.2f} m/km towards the north", -1000 * p.tilt_x, -1000 * p.tilt_y);
+  std::string words = fmt::format("{:+.2f} m east, {:+.2f} m north ({:+.2f}, {:+.2f} cells), {:+.2f} m high", -p.x,
+                                  -p.y, -p.x / s.grid.cell, -p.y / s.grid.cell, -p.z);
+  if (p.tilt_x != 0 || p.tilt_y != 0)
+    words += fmt::format(", tilted by {:+.2f} m/km towards the east and {:+.2f} m/km towards the north",
+                         -1000 * p.tilt_x, -1000 * p.tilt_y);
   return words;
 }
 
 void say_alignment(const Survey& s) {
   if (!s.fit.known) {
-    log_info(fmt::format("{}: too little ground shared with {} is stable to tell how they lie on one another, or how large their error is", s.after.file.string(), s.before.file.string()));
+    log_info(
+        fmt::format("{}: too little ground shared with {} is stable to tell how they lie on one another, or how large "
+                    "their error is",
+                    s.after.file.string(), s.before.file.string()));
     return;
   }
-  const std::string where = fmt::format("{}: on stable ground it lies {} of {}", s.after.file.string(), placement_words(s), s.before.file.string());
+  const std::string where = fmt::format("{}: on stable ground it lies {} of {}", s.after.file.string(),
+                                        placement_words(s), s.before.file.string());
   if (s.applied) {
     log_info(where + "; corrected");
   } else if (noticeable(s)) {
@@ -91,7 +105,8 @@ Survey compare_surveys(Elevation before, Elevation after, const Options& options
   s.after = std::move(after);
   s.grid = whole_overlap(s.before, s.after, options);
   read_outlines(s, options);
-  s.detection = {options.difference.threshold, options.difference.minimum_level_m, normal_quantile(options.difference.confidence)};
+  s.detection = {options.difference.threshold, options.difference.minimum_level_m,
+                 normal_quantile(options.difference.confidence)};
   const double given = options.difference.given_sigma();
   s.errors = ErrorModel::of(given);
   if (how.mode == Alignment::off && given > 0) return s;
@@ -114,15 +129,21 @@ Survey compare_surveys(Elevation before, Elevation after, const Options& options
 std::vector<std::string> as_lines(const Survey& s) {
   if (!s.fit.known) return {};
   const Residuals &was = s.fit.unaligned, &is = s.applied ? s.fit.aligned : s.fit.unaligned;
-  std::vector<std::string> lines{fmt::format("stable ground: {} cells, {:.0f} % of what both surveys hold", grouped(static_cast<double>(is.count)), 100 * s.fit.stable_share)};
+  std::vector<std::string> lines{fmt::format("stable ground: {} cells, {:.0f} % of what both surveys hold",
+                                             grouped(static_cast<double>(is.count)), 100 * s.fit.stable_share)};
   if (s.applied)
-    lines.push_back(fmt::format("after - before there: median {:+.3f} -> {:+.3f} m, NMAD {:.3f} -> {:.3f} m, median |dz| {:.3f} -> {:.3f} m", was.median, is.median, was.nmad, is.nmad,
-                                was.median_absolute, is.median_absolute));
+    lines.push_back(fmt::format(
+        "after - before there: median {:+.3f} -> {:+.3f} m, NMAD {:.3f} -> {:.3f} m, median |dz| {:.3f} -> {:.3f} m",
+        was.median, is.median, was.nmad, is.nmad, was.median_absolute, is.median_absolute));
   else
     lines.push_back(fmt::format("after - before there: median {:+.3f} m, NMAD {:.3f} m", is.median, is.nmad));
   const Variogram& v = s.errors.variogram();
-  std::string line = fmt::format("error of the difference: {:.3f} m a cell{}; {:.0f} % of its variance independent", s.errors.typical(),
-                                 s.errors.is_given() ? " (given)" : s.errors.sigma(1) > 1.1 * s.errors.sigma(0) ? " (more on steep ground)" : "", 100 * v.nugget);
+  std::string line = fmt::format("error of the difference: {:.3f} m a cell{}; {:.0f} % of its variance independent",
+                                 s.errors.typical(),
+                                 s.errors.is_given()                           ? " (given)"
+                                 : s.errors.sigma(1) > 1.1 * s.errors.sigma(0) ? " (more on steep ground)"
+                                                                               : "",
+                                 100 * v.nugget);
   for (const auto& [sill, range] : {std::pair{v.short_sill, v.short_range}, {v.long_sill, v.long_range}}) {
     if (sill > 0) line += fmt::format(", {:.0f} % alike over {:.0f} m", 100 * sill, range);
   }
@@ -137,7 +158,9 @@ SurveyedSlide slide_on(const Survey& s, const Raster& before, const std::vector<
     if (filled[k].count() == 0) continue;
     slide.filled.values.resize(before.grid.count(), 0.0);
     slide.fill_error.resize(before.grid.count(), 0.0);
-    const double unknown = std::isnan(filled[k].rmse()) ? 0.0 : filled[k].rmse();  // where a hole found no place to be tried: as the others
+    const double unknown = std::isnan(filled[k].rmse())
+                               ? 0.0
+                               : filled[k].rmse();  // where a hole found no place to be tried: as the others
     for (std::size_t i = 0; i < slide.sigma.values.size(); ++i) {
       if (!filled[k].filled[i]) continue;
       const double error = std::isnan(filled[k].sigma[i]) ? unknown : filled[k].sigma[i];

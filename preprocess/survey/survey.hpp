@@ -20,13 +20,13 @@ struct Survey {
   bool applied = false;
   ErrorModel errors;
   Detection detection;
-  std::vector<MapPolygon> source, deposit;  // outlines, where the recipe gives them
+  std::vector<MapPolygon> source, deposit;                    // outlines, where the recipe gives them
   std::vector<std::pair<MapGrid, std::vector<char>>> stable;  // of each patch that was looked at
 };
 
 /// Finds how the later survey lies on the earlier one, corrects it where the options say so, and learns the error of
-/// their difference from stable ground. Throws DataError where an alignment is asked for and there is no stable ground to
-/// find it on, where the surveys do not overlap, where one looks like feet, and where an outline is not valid.
+/// their difference from stable ground. Throws DataError where an alignment is asked for and there is no stable ground
+/// to find it on, where the surveys do not overlap, where one looks like feet, and where an outline is not valid.
 Survey compare_surveys(Elevation before, Elevation after, const Options& options);
 
 /// What a Survey says, as people read it.
@@ -41,15 +41,16 @@ struct SurveyedVolume {
 /// What is known of the slide on the working grid.
 struct SurveyedSlide {
   Raster deposit;  // rise of the surface in the deposit, 0 outside, NaN where not surveyed [m]
-  Raster change;   // after less before in the slide, where it is believed; 0 outside, NaN where not surveyed or filled [m]
-  Raster sigma;    // standard error of the difference, that of filled voids taken in [m]
+  Raster
+      change;  // after less before in the slide, where it is believed; 0 outside, NaN where not surveyed or filled [m]
+  Raster sigma;                    // standard error of the difference, that of filled voids taken in [m]
   std::vector<double> fill_error;  // of what was filled alone, as much of sigma [m]; empty where nothing was
-  Raster filled;   // 1 where the survey before was filled, 2 the one after, 3 both, else 0; no values where none was
+  Raster filled;  // 1 where the survey before was filled, 2 the one after, 3 both, else 0; no values where none was
   std::vector<SurveyedVolume> volumes;
 };
 
-/// Standard error of every cell of a surface, and what was filled (in the order of the two surveys; empty = nothing); the rest is
-/// left to delineate().
+/// Standard error of every cell of a surface, and what was filled (in the order of the two surveys; empty = nothing);
+/// the rest is left to delineate().
 SurveyedSlide slide_on(const Survey& survey, const Raster& before, const std::vector<Filled>& filled);
 
 /// Level of detection of every cell.
@@ -60,9 +61,10 @@ struct SlideSurfaces {
   const Raster &before, &after, &source;
 };
 
-/// The deposit: within its polygon; else what rose beyond threshold and level of detection in regions of change that are
-/// no noise (five cells beyond three levels) and lie within ten cells of the source or of one another; else, where nothing rose there, the largest
-/// region that rose. Volumes of source and deposit with their errors: of the surveys, of what was filled, and of where the edge is drawn.
+/// The deposit: within its polygon; else what rose beyond threshold and level of detection in regions of change that
+/// are no noise (five cells beyond three levels) and lie within ten cells of the source or of one another; else, where
+/// nothing rose there, the largest region that rose. Volumes of source and deposit with their errors: of the surveys,
+/// of what was filled, and of where the edge is drawn.
 void delineate(const Survey& survey, const SlideSurfaces& surfaces, const Options& options, SurveyedSlide& slide);
 
 }  // namespace talus::preprocess

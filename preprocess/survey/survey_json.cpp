@@ -10,7 +10,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json json_of(const Residuals& r) {
-  return {{"cells", r.count}, {"median_m", r.median}, {"nmad_m", r.nmad}, {"rmse_m", r.rmse}, {"median_absolute_m", r.median_absolute}};
+  return {{"cells", r.count},
+          {"median_m", r.median},
+          {"nmad_m", r.nmad},
+          {"rmse_m", r.rmse},
+          {"median_absolute_m", r.median_absolute}};
 }
 
 Json json_of(const VolumeWithError& v) { return {{"volume_m3", v.volume}, {"error_m3", v.error}, {"area_m2", v.area}}; }
@@ -41,9 +45,15 @@ Json alignment_of(const Survey& s) {
 Json error_of(const Survey& s) {
   const Variogram& v = s.errors.variogram();
   Json json{{"cell_m", s.errors.typical()}, {"given", s.errors.is_given()}, {"mean_height_m", s.errors.offset()}};
-  for (int deg = 0; deg <= 60; deg += 10) json["by_slope_m"][std::to_string(deg) + "_deg"] = s.errors.sigma(std::tan(deg * 0.017453292519943295));
-  json["variogram"] = {{"nugget", v.nugget}, {"short_sill", v.short_sill}, {"short_range_m", v.short_range}, {"long_sill", v.long_sill}, {"long_range_m", v.long_range},
-                       {"lags_m", v.lags}, {"semivariance", v.semivariance}};
+  for (int deg = 0; deg <= 60; deg += 10)
+    json["by_slope_m"][std::to_string(deg) + "_deg"] = s.errors.sigma(std::tan(deg * 0.017453292519943295));
+  json["variogram"] = {{"nugget", v.nugget},
+                       {"short_sill", v.short_sill},
+                       {"short_range_m", v.short_range},
+                       {"long_sill", v.long_sill},
+                       {"long_range_m", v.long_range},
+                       {"lags_m", v.lags},
+                       {"semivariance", v.semivariance}};
   json["level_of_detection_m"] = s.detection.level(s.errors.sigma(0));
   return json;
 }
@@ -51,7 +61,11 @@ Json error_of(const Survey& s) {
 }  // namespace
 
 std::string survey_json(const Survey& s, const Budgets& budgets, const std::optional<SurveyedSlide>& slide) {
-  Json json{{"before", s.before.file.string()}, {"after", s.after.file.string()}, {"cell_m", s.grid.cell}, {"columns", s.grid.columns}, {"rows", s.grid.rows}};
+  Json json{{"before", s.before.file.string()},
+            {"after", s.after.file.string()},
+            {"cell_m", s.grid.cell},
+            {"columns", s.grid.columns},
+            {"rows", s.grid.rows}};
   json["alignment"] = alignment_of(s);
   json["error"] = error_of(s);
   json["volumes"] = {{"raw", json_of(budgets.raw)}, {"beyond_level_of_detection", json_of(budgets.thresholded)}};

@@ -58,8 +58,10 @@ class Sampling {
       const auto [p, i] = cells_.places[any(random_)];
       const MapGrid& grid = patches_[p].before.grid;
       const double lag = from + (to - from) * part(random_), angle = 2 * std::numbers::pi * part(random_);
-      const int column = static_cast<int>(i % static_cast<std::size_t>(grid.columns)) + static_cast<int>(std::lround(lag * std::cos(angle)));
-      const int row = static_cast<int>(i / static_cast<std::size_t>(grid.columns)) + static_cast<int>(std::lround(lag * std::sin(angle)));
+      const int column = static_cast<int>(i % static_cast<std::size_t>(grid.columns)) +
+                         static_cast<int>(std::lround(lag * std::cos(angle)));
+      const int row = static_cast<int>(i / static_cast<std::size_t>(grid.columns)) +
+                      static_cast<int>(std::lround(lag * std::sin(angle)));
       if (column < 0 || row < 0 || column >= grid.columns || row >= grid.rows) continue;
       const std::size_t j = grid.index(column, row);
       if (j == i || std::isnan(normalised_[p][j])) continue;
@@ -81,7 +83,8 @@ struct Sills {
   double error = INFINITY;
 };
 
-/// Non-negative least squares for nugget and sills over two ranges, by trying which of them are zero; `allowed` has a bit for each that may be used.
+/// Non-negative least squares for nugget and sills over two ranges, by trying which of them are zero; `allowed` has a
+/// bit for each that may be used.
 Sills best_sills(const Variogram& v, double short_range, double long_range, int allowed) {
   const auto n = static_cast<Eigen::Index>(v.lags.size());
   Eigen::MatrixXd all(n, 3);
@@ -109,7 +112,8 @@ Sills best_sills(const Variogram& v, double short_range, double long_range, int 
   return best;
 }
 
-/// A second range has to explain what the first one leaves: semivariances of long lags scatter, and would be taken for one.
+/// A second range has to explain what the first one leaves: semivariances of long lags scatter, and would be taken for
+/// one.
 constexpr double worth_a_range = 0.5;
 
 void fit_model(Variogram& v) {
@@ -143,7 +147,8 @@ void fit_model(Variogram& v) {
 
 double Variogram::correlation(double lag) const {
   if (lag <= 0) return 1;
-  return (short_sill > 0 ? short_sill * spherical(lag, short_range) : 0) + (long_sill > 0 ? long_sill * spherical(lag, long_range) : 0);
+  return (short_sill > 0 ? short_sill * spherical(lag, short_range) : 0) +
+         (long_sill > 0 ? long_sill * spherical(lag, long_range) : 0);
 }
 
 double Variogram::of_mean(double area, double cell) const {

@@ -7,8 +7,8 @@
 
 namespace talus::preprocess {
 
-/// Shares of the variance (their sum is 1): without correlation, and correlated over a shorter and a longer range by the
-/// spherical model 1 - 1.5 h/r + 0.5 (h/r)^3.
+/// Shares of the variance (their sum is 1): without correlation, and correlated over a shorter and a longer range by
+/// the spherical model 1 - 1.5 h/r + 0.5 (h/r)^3.
 struct Variogram {
   double nugget = 1, short_sill = 0, short_range = 0, long_sill = 0, long_range = 0;  // ranges in m
   std::vector<double> lags, semivariance;  // the empirical one, of the normalised misfit
@@ -28,8 +28,9 @@ struct Variogram {
 
 /// From the misfit on stable ground, each cell's over its own standard deviation: semivariance after Dowd (1984),
 /// 2.198 median|a - b|^2 / 2, in fifteen classes of distance from a cell to half a patch, 4,000 random pairs in
-/// each; nugget and sills by non-negative least squares for the best range, or the best two where the second halves what is left. `normalised` has a vector for every patch,
-/// NaN where not stable. A pure nugget where there are too few cells. Same data, same result.
+/// each; nugget and sills by non-negative least squares for the best range, or the best two where the second halves
+/// what is left. `normalised` has a vector for every patch, NaN where not stable. A pure nugget where there are too few
+/// cells. Same data, same result.
 Variogram variogram_of(const std::vector<Patch>& patches, const std::vector<std::vector<double>>& normalised);
 
 }  // namespace talus::preprocess

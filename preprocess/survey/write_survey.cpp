@@ -29,7 +29,8 @@ const std::vector<double> sigma_classes{0.05, 0.1, 0.2, 0.5, 1, 2, 5};
 void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) throw DataError({folder.string() + ": cannot be made", error.message(), "Choose another folder with --out"});
+  if (error)
+    throw DataError({folder.string() + ": cannot be made", error.message(), "Choose another folder with --out"});
 }
 
 RasterTags tags_of(const char* description) {
@@ -55,7 +56,9 @@ class BlockFiles {
         difference_(folder / "difference.tif", survey.grid, tags_of("surface after less surface before")),
         sigma_(folder / "difference_sigma.tif", survey.grid, tags_of("standard error of the difference")) {
     sigma_.say("CORRELATION_LENGTH_M", fmt::format("{:.6g}", length));
-    if (survey.applied) unaligned_.emplace(folder / "difference_unaligned.tif", survey.grid, tags_of("surface after as it came less surface before"));
+    if (survey.applied)
+      unaligned_.emplace(folder / "difference_unaligned.tif", survey.grid,
+                         tags_of("surface after as it came less surface before"));
   }
 
   Budgets walk() {
@@ -94,7 +97,8 @@ class BlockFiles {
 
 /// 1 where ground counted as stable, 0 where not, nodata where nobody looked.
 void write_stable(const fs::path& file, const Survey& survey) {
-  RasterWriter writer(file, survey.grid, {"ground that counted as stable [1]", "1", {{"SOURCE", "Talus " + version()}}});
+  RasterWriter writer(file, survey.grid,
+                      {"ground that counted as stable [1]", "1", {{"SOURCE", "Talus " + version()}}});
   for (const auto& [grid, stable] : survey.stable) {
     const MapGrid part = shared_part(grid, survey.grid);  // the rest of it was shared only before the later model moved
     if (part.count() > 0) writer.write(cut_to({grid, std::vector<double>(stable.begin(), stable.end())}, part));
@@ -104,19 +108,27 @@ void write_stable(const fs::path& file, const Survey& survey) {
 
 std::string words(const VolumeWithError& v) { return fmt::format("{} +- {} m3", grouped(v.volume), grouped(v.error)); }
 
-void say_volumes(const Survey& survey, const Budgets& budgets, const Prepared* prepared, std::vector<std::string>& lines) {
+void say_volumes(const Survey& survey, const Budgets& budgets, const Prepared* prepared,
+                 std::vector<std::string>& lines) {
   const auto line = [&](const std::string& what, const Budget& b) {
-    lines.push_back(fmt::format("{}: erosion {}, deposition {}, net {}", what, words(b.erosion), words(b.deposition), words(b.net)));
+    lines.push_back(fmt::format("{}: erosion {}, deposition {}, net {}", what, words(b.erosion), words(b.deposition),
+                                words(b.net)));
   };
   line("difference, all cells", budgets.raw);
-  line(fmt::format("difference beyond its level of detection ({:.2f} m at least)", survey.detection.level(survey.errors.sigma(0))), budgets.thresholded);
+  line(fmt::format("difference beyond its level of detection ({:.2f} m at least)",
+                   survey.detection.level(survey.errors.sigma(0))),
+       budgets.thresholded);
   if (!prepared || !prepared->slide) return;
-  for (const auto& side : prepared->slide->volumes) lines.push_back(fmt::format("{} as surveyed: {} on {} m2", side.name, words(side.volume), grouped(side.volume.area)));
+  for (const auto& side : prepared->slide->volumes)
+    lines.push_back(
+        fmt::format("{} as surveyed: {} on {} m2", side.name, words(side.volume), grouped(side.volume.area)));
 }
 
-void put(std::vector<fs::path>& files, const fs::path& file, const Raster& raster, const char* description, const RasterStyle& style) {
+void put(std::vector<fs::path>& files, const fs::path& file, const Raster& raster, const char* description,
+         const RasterStyle& style) {
   RasterTags tags = tags_of(description);
-  tags.metadata.emplace_back("THICKNESS_CONVENTION", "vertical, measured along the plumb line (not normal to the slope)");
+  tags.metadata.emplace_back("THICKNESS_CONVENTION",
+                             "vertical, measured along the plumb line (not normal to the slope)");
   write_cog(file, raster, tags);
   write_qgis_style(file, style);
   files.push_back(file);
@@ -133,12 +145,19 @@ Raster bed_of_source(const Domain& domain) {
 
 /// Everything at once: outlines over differences over the ground.
 void write_project(const fs::path& folder, const Survey& survey, std::vector<fs::path>& files) {
-  const auto is_there = [&](const char* name) { return std::find(files.begin(), files.end(), folder / name) != files.end(); };
-  QgisProject project{"Surveyed change", survey.grid.crs_wkt, {survey.grid.west, survey.grid.south, survey.grid.east(), survey.grid.north()}, {}};
+  const auto is_there = [&](const char* name) {
+    return std::find(files.begin(), files.end(), folder / name) != files.end();
+  };
+  QgisProject project{"Surveyed change",
+                      survey.grid.crs_wkt,
+                      {survey.grid.west, survey.grid.south, survey.grid.east(), survey.grid.north()},
+                      {}};
   ProjectGroup outlines{"Outlines", {}}, change{"Change", {}}, ground{"Ground", {}};
   if (is_there("outlines.gpkg")) {
-    outlines.layers.push_back({"source", "outlines.gpkg|layername=source", true, OutlineStyle{{0.0, 0.45, 0.35}, 0.6, false}});
-    outlines.layers.push_back({"deposit", "outlines.gpkg|layername=deposit", true, OutlineStyle{{0.05, 0.25, 0.65}, 0.6, true}});
+    outlines.layers.push_back(
+        {"source", "outlines.gpkg|layername=source", true, OutlineStyle{{0.0, 0.45, 0.35}, 0.6, false}});
+    outlines.layers.push_back(
+        {"deposit", "outlines.gpkg|layername=deposit", true, OutlineStyle{{0.05, 0.25, 0.65}, 0.6, true}});
     project.groups.push_back(outlines);
   }
   const auto add = [&](const char* name, const char* words, bool shown, const RasterStyle& style) {
@@ -150,7 +169,8 @@ void write_project(const fs::path& folder, const Survey& survey, std::vector<fs:
   add("difference_sigma.tif", "standard error of the difference", false, class_style(sigma_classes, "m"));
   add("source_thickness.tif", "source, thickness", false, class_style(thickness_classes, "m"));
   add("deposit_surveyed.tif", "deposit, rise of the surface", false, class_style(thickness_classes, "m"));
-  ground.layers = {{"surface after", "after_aligned.tif", false, HillshadeStyle{}}, {"surface before", "before_aligned.tif", true, HillshadeStyle{}}};
+  ground.layers = {{"surface after", "after_aligned.tif", false, HillshadeStyle{}},
+                   {"surface before", "before_aligned.tif", true, HillshadeStyle{}}};
   project.groups.push_back(change);
   project.groups.push_back(ground);
   files.push_back(folder / "survey.qgs");
@@ -163,22 +183,29 @@ std::vector<fs::path> write_source(const fs::path& folder, const Prepared& prepa
   make_folder(folder);
   std::vector<fs::path> files;
   const Domain& domain = prepared.domain;
-  put(files, folder / "source_thickness.tif", domain.release_thickness, "thickness of the source, vertical", class_style(thickness_classes, "m"));
+  put(files, folder / "source_thickness.tif", domain.release_thickness, "thickness of the source, vertical",
+      class_style(thickness_classes, "m"));
   files.push_back(folder / "sliding_surface.tif");
   write_cog(files.back(), bed_of_source(domain), tags_of("surface that the source slides on"));
   write_qgis_hillshade_style(files.back());
-  std::vector<OutlineLayer> layers{{"source", {{"source", outline_above(domain.release_thickness, 0), {{"volume_m3", prepared.total.volume}}}}}};
+  std::vector<OutlineLayer> layers{
+      {"source", {{"source", outline_above(domain.release_thickness, 0), {{"volume_m3", prepared.total.volume}}}}}};
   if (prepared.slide) {
     const auto& [name, volume] = prepared.slide->volumes.back();
-    layers.front().features.front().numbers.emplace_back("volume_error_m3", prepared.slide->volumes.front().volume.error);
-    layers.push_back({name, {{name, outline_above(prepared.slide->deposit, 0), {{"volume_m3", volume.volume}, {"volume_error_m3", volume.error}}}}});
+    layers.front().features.front().numbers.emplace_back("volume_error_m3",
+                                                         prepared.slide->volumes.front().volume.error);
+    layers.push_back({name,
+                      {{name,
+                        outline_above(prepared.slide->deposit, 0),
+                        {{"volume_m3", volume.volume}, {"volume_error_m3", volume.error}}}}});
   }
   files.push_back(folder / "outlines.gpkg");
   write_outlines(files.back(), domain.grid.crs_wkt, layers);
   return files;
 }
 
-std::vector<fs::path> write_survey(const fs::path& folder, const Survey& survey, const Prepared* prepared, std::vector<std::string>& lines) {
+std::vector<fs::path> write_survey(const fs::path& folder, const Survey& survey, const Prepared* prepared,
+                                   std::vector<std::string>& lines) {
   make_folder(folder);
   BlockFiles blocks(folder, survey, correlation_length(survey, prepared));
   const Budgets budgets = blocks.walk();
@@ -201,12 +228,16 @@ std::vector<fs::path> write_survey(const fs::path& folder, const Survey& survey,
   }
   if (prepared && prepared->slide) {
     for (const auto& file : write_source(folder, *prepared)) files.push_back(file);
-    put(files, folder / "deposit_surveyed.tif", prepared->slide->deposit, "surveyed rise of the surface in the deposit", class_style(thickness_classes, "m"));
+    put(files, folder / "deposit_surveyed.tif", prepared->slide->deposit, "surveyed rise of the surface in the deposit",
+        class_style(thickness_classes, "m"));
   }
-  if (prepared && prepared->slide) put(files, folder / "slide_difference.tif", prepared->slide->change, "surface after less surface before, in the slide alone", difference_style(change_classes, "m"));
+  if (prepared && prepared->slide)
+    put(files, folder / "slide_difference.tif", prepared->slide->change,
+        "surface after less surface before, in the slide alone", difference_style(change_classes, "m"));
   if (prepared && prepared->slide && !prepared->slide->filled.values.empty()) {
     files.push_back(folder / "filled.tif");
-    write_cog(files.back(), prepared->slide->filled, {"voids filled: 1 before, 2 after, 3 both", "1", {{"SOURCE", "Talus " + version()}}});
+    write_cog(files.back(), prepared->slide->filled,
+              {"voids filled: 1 before, 2 after, 3 both", "1", {{"SOURCE", "Talus " + version()}}});
   }
   say_volumes(survey, budgets, prepared, lines);
   write_project(folder, survey, files);

@@ -146,7 +146,9 @@ Elevation read_elevation(std::string key, const std::filesystem::path& file, con
     if (!elevation.reprojected) options.to_crs.clear();
     elevation.on_disk = std::make_shared<RasterFile>(file, options);
     elevation.raster.grid = elevation.on_disk->grid();
-    if (!elevation.key.starts_with("bed.")) warn_of_steps(file, std::max(elevation.on_disk->step(), whole_metres(middle_of(*elevation.on_disk)) ? 1.0 : 0.0), elevation.cell());
+    if (!elevation.key.starts_with("bed."))
+      warn_of_steps(file, std::max(elevation.on_disk->step(), whole_metres(middle_of(*elevation.on_disk)) ? 1.0 : 0.0),
+                    elevation.cell());
   }
   return elevation;
 }
@@ -157,11 +159,13 @@ namespace {
 Raster read_off(const Elevation& elevation, const MapGrid& grid) {
   const bool one_crs = same_crs(elevation.crs_wkt(), grid.crs_wkt);
   if (elevation.scattered)
-    return interpolate_scattered(one_crs ? elevation.points : transform_points(elevation.points, grid.crs_wkt), grid, elevation.file);
+    return interpolate_scattered(one_crs ? elevation.points : transform_points(elevation.points, grid.crs_wkt), grid,
+                                 elevation.file);
   if (one_crs && same_lattice(elevation.raster.grid, grid)) return cut_to(elevation.raster, grid);
   const bool coarser = grid.cell > elevation.cell() * (1 + 1e-6);
   if (one_crs && coarser) return coarsened(elevation.raster, grid);
-  return resample_elevation(elevation.raster, grid, elevation.placement.moves() ? Interpolation::cubic : Interpolation::bilinear);
+  return resample_elevation(elevation.raster, grid,
+                            elevation.placement.moves() ? Interpolation::cubic : Interpolation::bilinear);
 }
 
 }  // namespace
@@ -169,7 +173,8 @@ Raster read_off(const Elevation& elevation, const MapGrid& grid) {
 Raster onto_grid(const Elevation& elevation, const MapGrid& grid) {
   const Placement& placement = elevation.placement;
   if (elevation.on_disk) {
-    const Extent needed{grid.west - placement.x, grid.south - placement.y, grid.east() - placement.x, grid.north() - placement.y};
+    const Extent needed{grid.west - placement.x, grid.south - placement.y, grid.east() - placement.x,
+                        grid.north() - placement.y};
     return onto_grid(part_of(elevation, needed, grid.crs_wkt), grid);
   }
   MapGrid from = grid;
@@ -179,7 +184,8 @@ Raster onto_grid(const Elevation& elevation, const MapGrid& grid) {
   result.grid = grid;
   if (!placement.given()) return result;
   for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column) result.at(column, row) += placement.rise(grid.x(column), grid.y(row));
+    for (int column = 0; column < grid.columns; ++column)
+      result.at(column, row) += placement.rise(grid.x(column), grid.y(row));
   }
   return result;
 }
@@ -187,9 +193,11 @@ Raster onto_grid(const Elevation& elevation, const MapGrid& grid) {
 void log_resampling(const Elevation& elevation, const MapGrid& grid) {
   const bool one_crs = same_crs(elevation.crs_wkt(), grid.crs_wkt);
   if (elevation.scattered) {
-    log_info(fmt::format("{}: {} points triangulated onto the working grid", elevation.file.string(), elevation.points.x.size()));
+    log_info(fmt::format("{}: {} points triangulated onto the working grid", elevation.file.string(),
+                         elevation.points.x.size()));
   } else if (!one_crs || !same_lattice(elevation.raster.grid, grid)) {
-    log_info(fmt::format("{}: {:g} m cells in {}{} resampled onto the working grid", elevation.file.string(), elevation.cell(), crs_name(elevation.crs_wkt()),
+    log_info(fmt::format("{}: {:g} m cells in {}{} resampled onto the working grid", elevation.file.string(),
+                         elevation.cell(), crs_name(elevation.crs_wkt()),
                          one_crs && elevation.cell() == grid.cell ? ", registered otherwise," : ""));
   }
 }
@@ -197,9 +205,12 @@ void log_resampling(const Elevation& elevation, const MapGrid& grid) {
 Elevation part_of(const Elevation& elevation, const Extent& extent, const std::string& crs_wkt) {
   Elevation part = elevation;
   if (elevation.scattered) return part;
-  const Extent own = same_crs(crs_wkt, elevation.crs_wkt()) ? extent : transform_extent(extent, crs_wkt, elevation.crs_wkt());
+  const Extent own =
+      same_crs(crs_wkt, elevation.crs_wkt()) ? extent : transform_extent(extent, crs_wkt, elevation.crs_wkt());
   const MapGrid& grid = elevation.raster.grid;
-  const auto cell_at = [&](double from, int count) { return std::clamp(static_cast<int>(std::floor(from / grid.cell)), 0, count - 1); };
+  const auto cell_at = [&](double from, int count) {
+    return std::clamp(static_cast<int>(std::floor(from / grid.cell)), 0, count - 1);
+  };
   const double rim = 2 * grid.cell;
   CellWindow w;
   w.column = cell_at(own.west - grid.west - rim, grid.columns);

@@ -19,7 +19,7 @@ struct Elevation {
   std::string key;  // its key in the recipe: "after_dem"
   std::filesystem::path file;
   bool scattered = false;
-  bool reprojected = false;  // as it was read: its data end in slanting lines
+  bool reprojected = false;                   // as it was read: its data end in slanting lines
   Raster raster;                              // its cells, or of one that stays in its file, nothing but the grid
   std::shared_ptr<const RasterFile> on_disk;  // read by parts, as they are needed
   ScatteredPoints points;
@@ -31,8 +31,8 @@ struct Elevation {
 };
 
 /// What the recipe says of reading: what degrees and feet become, and the unit of heights. `to_crs` is used for files
-/// in degrees or feet alone; those in metres are brought onto the working grid in one step, later. `of_model` is the unit
-/// that the recipe gives for one model alone.
+/// in degrees or feet alone; those in metres are brought onto the working grid in one step, later. `of_model` is the
+/// unit that the recipe gives for one model alone.
 ReadOptions dem_reading(const Options& options, VerticalUnit of_model = VerticalUnit::same);
 
 /// The options with working_crs = "utm" replaced by the UTM zone that holds the centre of the first DEM. Throws
@@ -42,8 +42,8 @@ Options with_utm_zone(Options options);
 /// Read a raster by any GDAL format, or points (see is_point_file). Throws DataError.
 Elevation read_elevation(std::string key, const std::filesystem::path& file, const ReadOptions& how = {});
 
-/// Copied where its cells are the grid's cells, resampled or triangulated otherwise (moved by less than a cell: by cubic
-/// convolution, which does not flatten crests); NaN where it has no data.
+/// Copied where its cells are the grid's cells, resampled or triangulated otherwise (moved by less than a cell: by
+/// cubic convolution, which does not flatten crests); NaN where it has no data.
 Raster onto_grid(const Elevation& elevation, const MapGrid& grid);
 
 /// Says in the log how it comes onto the working grid, where its cells are not copied.

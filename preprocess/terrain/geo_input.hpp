@@ -30,9 +30,9 @@ std::string metric_crs(const std::string& name);
 bool is_point_file(const std::filesystem::path& file);
 
 /// Points as they lie in their file, whatever their CRS. A header line names the columns x, y, z (any order and case;
-/// also easting, northing, longitude, latitude, elevation, height, and depth where it is wanted), with or without a unit
-/// behind them; without one they are the first three. Vector points carry z in their geometry or in such an attribute;
-/// an attribute of depth goes before the geometry. Throws DataError with the line.
+/// also easting, northing, longitude, latitude, elevation, height, and depth where it is wanted), with or without a
+/// unit behind them; without one they are the first three. Vector points carry z in their geometry or in such an
+/// attribute; an attribute of depth goes before the geometry. Throws DataError with the line.
 ScatteredPoints read_points_as_given(const std::filesystem::path& file,
                                      PointHeights heights = PointHeights::elevations);
 

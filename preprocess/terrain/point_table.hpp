@@ -16,8 +16,8 @@ struct HeightName {
   std::string unit;    // "m", "ft", "us ft", as metres_in() knows them; "" = not said
 };
 
-/// Reads z, elevation, elev, height, altitude or depth, in any case, alone or with a unit behind it ("depth_m", "Z (ft)");
-/// nullopt for any other name.
+/// Reads z, elevation, elev, height, altitude or depth, in any case, alone or with a unit behind it ("depth_m", "Z
+/// (ft)"); nullopt for any other name.
 std::optional<HeightName> height_name(std::string_view name);
 
 /// Columns separated by commas, semicolons, tabs or blanks; '#' starts a comment. Throws DataError with the line.

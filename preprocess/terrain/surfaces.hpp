@@ -34,8 +34,8 @@ void require_data(const Raster& raster, const std::filesystem::path& file);
 /// Bring DEMs onto the working grid (the first gives CRS, registration and cell). Where one was reprojected or
 /// triangulated, the grid is trimmed to where it has data. Other cells without data are refused by name and place; with
 /// edge_nodata = "outside" those that reach the edge become nodata in every raster returned. All are on one grid, in
-/// the order of `dems`. Before that, spikes and pits are reported or removed and voids filled, as [preprocess.voids] asks;
-/// `filled`, where wanted, receives for every DEM what was filled and how well (empty without voids.fill).
+/// the order of `dems`. Before that, spikes and pits are reported or removed and voids filled, as [preprocess.voids]
+/// asks; `filled`, where wanted, receives for every DEM what was filled and how well (empty without voids.fill).
 std::vector<Raster> align(const std::vector<const Elevation*>& dems, const Options& options,
                           std::vector<Filled>* filled = nullptr);
 

@@ -34,22 +34,24 @@ struct BaseFriction {
     }
     return Real(0);
   }
-  /// Traction that does not depend on the normal stress, at slip speed v [Pa]: cohesion, and rho g v^2 / xi (Voellmy 1955).
+  /// Traction that does not depend on the normal stress, at slip speed v [Pa]: cohesion, and rho g v^2 / xi (Voellmy
+  /// 1955).
   TALUS_HD static Real traction(const Bed<Real>& bed, Real speed) { return bed.cohesion + bed.drag * speed * speed; }
   /// Whether there is any; else nobody needs the area on which it acts.
   TALUS_HD bool has_traction() const { return columns || uniform.cohesion > Real(0) || uniform.drag > Real(0); }
 };
 
-/// Bed that the mass of a base node lies on, along the slope [m2]: that of its column, as far as the mass makes up a `full` base node.
+/// Bed that the mass of a base node lies on, along the slope [m2]: that of its column, as far as the mass makes up a
+/// `full` base node.
 template <class Real>
 TALUS_HD Real bed_area(Real mass, Real full, Real spacing, Real sx, Real sy) {
   const Real filled = mass < full ? mass / full : Real(1);
   return filled * spacing * spacing * sqrt(Real(1) + sx * sx + sy * sy);
 }
 
-/// Velocity of a node after contact with a surface of this normal and friction coefficient. A node moving into the surface loses its normal
-/// velocity; the impulse that takes it away bounds the friction impulse, |dv_t| <= mu dv_n, so that stick holds exactly. `more` is the speed that
-/// other tractions take beside it.
+/// Velocity of a node after contact with a surface of this normal and friction coefficient. A node moving into the
+/// surface loses its normal velocity; the impulse that takes it away bounds the friction impulse, |dv_t| <= mu dv_n, so
+/// that stick holds exactly. `more` is the speed that other tractions take beside it.
 template <class Real>
 TALUS_HD Vec3<Real> meet_surface(const Vec3<Real>& v, const Vec3<Real>& normal, Real coefficient, Real more = Real(0)) {
   const Real approach = -dot(v, normal);
@@ -59,9 +61,11 @@ TALUS_HD Vec3<Real> meet_surface(const Vec3<Real>& v, const Vec3<Real>& normal, 
   return loss < speed ? slip * (Real(1) - loss / speed) : Vec3<Real>{};
 }
 
-/// Velocity of a base node after contact with ground of slopes (sx, sy). `grip` is the time over the node's mass per area of bed [m2 s/kg].
+/// Velocity of a base node after contact with ground of slopes (sx, sy). `grip` is the time over the node's mass per
+/// area of bed [m2 s/kg].
 template <class Real>
-TALUS_HD Vec3<Real> meet_ground(const BaseFriction<Real>& friction, const Bed<Real>& bed, const Vec3<Real>& v, Real sx, Real sy, Real grip = Real(0)) {
+TALUS_HD Vec3<Real> meet_ground(const BaseFriction<Real>& friction, const Bed<Real>& bed, const Vec3<Real>& v, Real sx,
+                                Real sy, Real grip = Real(0)) {
   const Real scale = Real(1) / sqrt(Real(1) + sx * sx + sy * sy);
   const Vec3<Real> normal{-sx * scale, -sy * scale, scale};
   const Real along = dot(v, normal);

@@ -1,5 +1,6 @@
-// Contact points in an implicit step: springs that push the mass off the surface and hold it back along it, up to friction's limit (penalty with return to Coulomb's cone;
-// Simo & Laursen 1992). Their force goes on from that of the last step, so that what rests stays where it is, whatever the stiffness.
+// Contact points in an implicit step: springs that push the mass off the surface and hold it back along it, up to
+// friction's limit (penalty with return to Coulomb's cone; Simo & Laursen 1992). Their force goes on from that of the
+// last step, so that what rests stays where it is, whatever the stiffness.
 #pragma once
 
 #include "solver/contact/surface_contact.hpp"
@@ -7,18 +8,19 @@
 
 namespace talus::solver {
 
-/// How much stiffer than a cell of the mass the contact points before it are: a surface gives way by a thirtieth of that cell's strain. Conjugate gradients take a third
-/// less with ten and half more with a hundred.
+/// How much stiffer than a cell of the mass the contact points before it are: a surface gives way by a thirtieth of
+/// that cell's strain. Conjugate gradients take a third less with ten and half more with a hundred.
 inline constexpr double contact_stiffness = 30;
 
 /// Numbers of the step at the contact points.
 struct ContactNumbers {
-  double* spring;            // stiffness, as far as the place is filled [N/m]
-  double* coefficient;       // of friction, at the speed the step begins with
-  double* traction;          // what holds slip besides friction [N]
-  double* limit;             // what holds slip, for the push found last: held while Newton goes on, so that the force has a potential [N]
-  Sym3<double>* stiffness;   // minus the force's derivative by the displacement [N/m]
-  double modulus;            // of the springs under a full layer, over area [Pa/m]
+  double* spring;       // stiffness, as far as the place is filled [N/m]
+  double* coefficient;  // of friction, at the speed the step begins with
+  double* traction;     // what holds slip besides friction [N]
+  double* limit;        // what holds slip, for the push found last: held while Newton goes on, so that the force has a
+                        // potential [N]
+  Sym3<double>* stiffness;  // minus the force's derivative by the displacement [N/m]
+  double modulus;           // of the springs under a full layer, over area [Pa/m]
 };
 
 /// The nodes' masses, for ContactView::around.
@@ -46,10 +48,13 @@ struct MeasureGrip {
       return;
     }
     Vec3<double> v{};
-    if (dynamic) contacts.template around<Shape>(grid, masses, c, [&](int n, Real share) { v += nodes.velocity[n] * static_cast<double>(share); });
+    if (dynamic)
+      contacts.template around<Shape>(grid, masses, c,
+                                      [&](int n, Real share) { v += nodes.velocity[n] * static_cast<double>(share); });
     const Vec3<double> normal = widen(contacts.normal[c]);
     const auto grip = contacts.grip(grid, c, static_cast<Real>(length(v - normal * dot(v, normal))));
-    const double filled = static_cast<double>(contacts.filled(grid, c, layer_mass)), area = static_cast<double>(contacts.area[c]);
+    const double filled = static_cast<double>(contacts.filled(grid, c, layer_mass)),
+                 area = static_cast<double>(contacts.area[c]);
     numbers.spring[c] = numbers.modulus * area * filled;
     numbers.coefficient[c] = static_cast<double>(grip.coefficient);
     numbers.traction[c] = static_cast<double>(grip.traction) * area * filled;
@@ -57,9 +62,11 @@ struct MeasureGrip {
   }
 };
 
-/// The force of contact point c for a displacement of the grid and, with `stiffness`, minus its derivative, friction's limit held.
+/// The force of contact point c for a displacement of the grid and, with `stiffness`, minus its derivative, friction's
+/// limit held.
 template <class Real>
-TALUS_HD Vec3<double> contact_force(const ContactView<Real>& contacts, const ContactNumbers& numbers, int c, const Vec3<double>& u, Sym3<double>* stiffness) {
+TALUS_HD Vec3<double> contact_force(const ContactView<Real>& contacts, const ContactNumbers& numbers, int c,
+                                    const Vec3<double>& u, Sym3<double>* stiffness) {
   const double k = numbers.spring[c];
   const Vec3<double> n = widen(contacts.normal[c]), wanted = contacts.force[c] - u * k;
   const double push = dot(wanted, n);
@@ -76,7 +83,9 @@ TALUS_HD Vec3<double> contact_force(const ContactView<Real>& contacts, const Con
   const Vec3<double> t = along * (1 / size);
   if (stiffness) {
     const double s = k * limit / size;  // across the slip; none along it
-    const auto entry = [&](double na, double nb, double ta, double tb, double same) { return k * na * nb + s * (same - na * nb - ta * tb); };
+    const auto entry = [&](double na, double nb, double ta, double tb, double same) {
+      return k * na * nb + s * (same - na * nb - ta * tb);
+    };
     *stiffness = Sym3<double>{entry(n.x, n.x, t.x, t.x, 1), entry(n.y, n.y, t.y, t.y, 1), entry(n.z, n.z, t.z, t.z, 1),
                               entry(n.x, n.y, t.x, t.y, 0), entry(n.y, n.z, t.y, t.z, 0), entry(n.x, n.z, t.x, t.z, 0)};
   }
@@ -85,15 +94,20 @@ TALUS_HD Vec3<double> contact_force(const ContactView<Real>& contacts, const Con
 
 /// Displacement of contact point c.
 template <class Real, class Shape>
-TALUS_HD Vec3<double> contact_move(const GridView<Real>& grid, const ContactView<Real>& contacts, const double* mass, const Vec3<double>* u, int c) {
+TALUS_HD Vec3<double> contact_move(const GridView<Real>& grid, const ContactView<Real>& contacts, const double* mass,
+                                   const Vec3<double>* u, int c) {
   Vec3<double> sum{};
-  contacts.template around<Shape>(grid, NodeMass<Real>{mass}, c, [&](int n, Real share) { sum += u[n] * static_cast<double>(share); });
+  contacts.template around<Shape>(grid, NodeMass<Real>{mass}, c,
+                                  [&](int n, Real share) { sum += u[n] * static_cast<double>(share); });
   return sum;
 }
 /// Spreads a force at contact point c over the nodes.
 template <class Real, class Shape>
-TALUS_HD void spread(const GridView<Real>& grid, const ContactView<Real>& contacts, const double* mass, int c, const Vec3<double>& force, Vec3<double>* nodes) {
-  contacts.template around<Shape>(grid, NodeMass<Real>{mass}, c, [&](int n, Real share) { scatter_add(&nodes[n], force * static_cast<double>(share)); });
+TALUS_HD void spread(const GridView<Real>& grid, const ContactView<Real>& contacts, const double* mass, int c,
+                     const Vec3<double>& force, Vec3<double>* nodes) {
+  contacts.template around<Shape>(grid, NodeMass<Real>{mass}, c, [&](int n, Real share) {
+    scatter_add(&nodes[n], force * static_cast<double>(share));
+  });
 }
 
 /// One thread: one contact point. Its force for the displacement u goes off the internal force.
@@ -113,7 +127,8 @@ struct ScatterContacts {
   }
 };
 
-/// One thread: one contact point. What friction holds there follows the push for the displacement u, and the internal force with it.
+/// One thread: one contact point. What friction holds there follows the push for the displacement u, and the internal
+/// force with it.
 template <class Real, class Shape>
 struct RenewLimits {
   GridView<Real> grid;
@@ -142,7 +157,8 @@ struct ApplyContacts {
   Vec3<double>* y;
   TALUS_HD void operator()(int c) const {
     if (trace(stiffness[c]) == 0) return;
-    spread<Real, Shape>(grid, contacts, mass, c, stiffness[c] * contact_move<Real, Shape>(grid, contacts, mass, x, c), y);
+    spread<Real, Shape>(grid, contacts, mass, c, stiffness[c] * contact_move<Real, Shape>(grid, contacts, mass, x, c),
+                        y);
   }
 };
 

@@ -1,8 +1,11 @@
-// Contact points in velocities: impulses that let no surface be run through, with friction, found by sweeps over all points at once.
+// Contact points in velocities: impulses that let no surface be run through, with friction, found by sweeps over all
+// points at once.
 //
-// With shares M of a point in the nodes (ContactView::around), its velocity is v = sum M_i v_i, and an impulse p there changes that by sum M_i^2 / m_i p. In a sweep all points
-// act at once on what the last one left, each divided by the sum of what all together do to it, sum_i M_i Q_i with Q_i = sum M_i / m_i over the points (Jacobi's
-// method with absolute row sums, which cannot overshoot): a uniform approach is taken away by one sweep. Forces are kept from step to step (warm start), so that what rests stays.
+// With shares M of a point in the nodes (ContactView::around), its velocity is v = sum M_i v_i, and an impulse p there
+// changes that by sum M_i^2 / m_i p. In a sweep all points act at once on what the last one left, each divided by the
+// sum of what all together do to it, sum_i M_i Q_i with Q_i = sum M_i / m_i over the points (Jacobi's method with
+// absolute row sums, which cannot overshoot): a uniform approach is taken away by one sweep. Forces are kept from step
+// to step (warm start), so that what rests stays.
 #pragma once
 
 #include "solver/contact/surface_contact.hpp"
@@ -30,7 +33,8 @@ struct PackedNodes {
   }
 };
 
-/// One thread: one contact point. What stands before it, and how much the points together move each node. The impulse of the last step's force once more.
+/// One thread: one contact point. What stands before it, and how much the points together move each node. The impulse
+/// of the last step's force once more.
 template <class Real, class Shape, class Nodes>
 struct BeginContacts {
   GridView<Real> grid;
@@ -43,7 +47,8 @@ struct BeginContacts {
 
   TALUS_HD void operator()(int c) const {
     if (clock && clock->halt != running) return;
-    const Real mass = contacts.template mass_before<Shape>(grid, nodes, c), inverse = mass > Real(0) ? Real(1) / mass : Real(0);
+    const Real mass = contacts.template mass_before<Shape>(grid, nodes, c),
+               inverse = mass > Real(0) ? Real(1) / mass : Real(0);
     contacts.inverse_mass[c] = inverse;
     Vec3<Real> p{};
     if (clock && inverse > Real(0)) {
@@ -66,11 +71,11 @@ struct SweepContacts {
   ContactView<Real> contacts;
   Nodes nodes;
   const Real* yielding;
-  double layer_mass;    // of a full layer over a square metre [kg/m2]
+  double layer_mass;  // of a full layer over a square metre [kg/m2]
   const Clock* clock;
-  double step;          // [s]; the clock's where it has one
-  bool grips;           // with friction
-  bool keeps;           // the last sweep of the step: force and impulse are kept
+  double step;  // [s]; the clock's where it has one
+  bool grips;   // with friction
+  bool keeps;   // the last sweep of the step: force and impulse are kept
   Vec3<Real>* impulse;
   Vec3<Real>* given;
 
@@ -81,7 +86,8 @@ struct SweepContacts {
     if (contacts.inverse_mass[c] > Real(0)) {
       p = push_back(c, static_cast<Real>(dt));
       const Vec3<Real> before = impulse[c], change = p - before;
-      contacts.template around<Shape>(grid, nodes, c, [&](int n, Real share) { talus::scatter_add(&given[n], change * share); });
+      contacts.template around<Shape>(grid, nodes, c,
+                                      [&](int n, Real share) { talus::scatter_add(&given[n], change * share); });
       impulse[c] = p;
     }
     if (!keeps) return;
@@ -127,14 +133,16 @@ struct TakeImpulses {
 template <class Real, class Place, class Shape>
 class ContactImpulses {
  public:
-  /// `clock` null: of `step` seconds, and nothing is kept but the impulse. Without `grips`, and without history, the surfaces are merely kept from being run through.
+  /// `clock` null: of `step` seconds, and nothing is kept but the impulse. Without `grips`, and without history, the
+  /// surfaces are merely kept from being run through.
   struct Pass {
     const Clock* clock;
     double step;
     bool grips, remembers;
   };
   template <class Nodes>
-  void run(SurfaceContact<Real, Place, Shape>& contact, const GridView<Real>& grid, const Nodes& nodes, int node_count, double layer_mass, const Pass& pass) {
+  void run(SurfaceContact<Real, Place, Shape>& contact, const GridView<Real>& grid, const Nodes& nodes, int node_count,
+           double layer_mass, const Pass& pass) {
     impulse_.resize(static_cast<std::size_t>(contact.count()));
     yielding_.resize(static_cast<std::size_t>(node_count));
     yielding_.fill_zero();
@@ -142,12 +150,17 @@ class ContactImpulses {
       given_.resize(static_cast<std::size_t>(node_count));
       given_.fill_zero();
     }
-    const auto take = [&] { for_each(Place{}, node_count, TakeImpulses<Real, Nodes>{nodes, pass.clock, given_.data()}); };
-    contact.each(BeginContacts<Real, Shape, Nodes>{grid, contact.view(), nodes, pass.remembers ? pass.clock : nullptr, impulse_.data(), given_.data(), yielding_.data()});
+    const auto take = [&] {
+      for_each(Place{}, node_count, TakeImpulses<Real, Nodes>{nodes, pass.clock, given_.data()});
+    };
+    contact.each(BeginContacts<Real, Shape, Nodes>{grid, contact.view(), nodes, pass.remembers ? pass.clock : nullptr,
+                                                   impulse_.data(), given_.data(), yielding_.data()});
     if (pass.remembers) take();
     for (int s = 0; s < contact_sweeps; ++s) {
       const bool last = pass.remembers && s + 1 == contact_sweeps;
-      contact.each(SweepContacts<Real, Shape, Nodes>{grid, contact.view(), nodes, yielding_.data(), layer_mass, pass.clock, pass.step, pass.grips, last, impulse_.data(), given_.data()});
+      contact.each(SweepContacts<Real, Shape, Nodes>{grid, contact.view(), nodes, yielding_.data(), layer_mass,
+                                                     pass.clock, pass.step, pass.grips, last, impulse_.data(),
+                                                     given_.data()});
       take();
     }
   }

@@ -1,4 +1,5 @@
-// Contact points where the kernels run (see contact_points.hpp): their arrays, what they gave so far, and how kernels go over those beside the mass.
+// Contact points where the kernels run (see contact_points.hpp): their arrays, what they gave so far, and how kernels
+// go over those beside the mass.
 #pragma once
 
 #include <algorithm>
@@ -14,18 +15,19 @@ namespace talus::solver {
 /// Contact points as a kernel sees them.
 template <class Real>
 struct ContactView {
-  ParticleView<Real> places;         // cells and offsets, nothing else
+  ParticleView<Real> places;  // cells and offsets, nothing else
   const Vec3<Real>* normal;
-  const Real* area;                  // [m2]
+  const Real* area;  // [m2]
   const int* body;
-  const Real* body_friction;         // coefficient of each obstacle
+  const Real* body_friction;  // coefficient of each obstacle
   BaseFriction<Real> ground;
-  Real* inverse_mass;                // over what stands before it in this step [1/kg]; 0: nothing
-  Vec3<double>* force;               // see ContactState
+  Real* inverse_mass;   // over what stands before it in this step [1/kg]; 0: nothing
+  Vec3<double>* force;  // see ContactState
   Vec3<double>* impulse;
 
-  /// Calls f(node, share) for the nodes with any mass around point c, which the mass stands before. Shares are weights times masses over their sum: they add up to one,
-  /// and an impulse at the point changes the velocity of a node with next to no mass by no more than that of the others.
+  /// Calls f(node, share) for the nodes with any mass around point c, which the mass stands before. Shares are weights
+  /// times masses over their sum: they add up to one, and an impulse at the point changes the velocity of a node with
+  /// next to no mass by no more than that of the others.
   template <class Shape, class Nodes, class F>
   TALUS_HD void around(const GridView<Real>& grid, const Nodes& nodes, int c, F&& f) const {
     const Stencil<Real, Shape> s(grid, places, c);
@@ -41,8 +43,9 @@ struct ContactView {
     }
   }
 
-  /// What stands before point c: its mass by weight [kg], 0 where that falls off along the normal. A surface stops what comes from the side it looks to, not what
-  /// a wall thinner than a cell keeps on its other side, whose nodes are the same. The ground has but one side.
+  /// What stands before point c: its mass by weight [kg], 0 where that falls off along the normal. A surface stops what
+  /// comes from the side it looks to, not what a wall thinner than a cell keeps on its other side, whose nodes are the
+  /// same. The ground has but one side.
   template <class Shape, class Nodes>
   TALUS_HD Real mass_before(const GridView<Real>& grid, const Nodes& nodes, int c) const {
     const Stencil<Real, Shape> s(grid, places, c);
@@ -76,13 +79,15 @@ struct ContactView {
     return {ground.coefficient(bed, speed), ground.traction(bed, speed)};
   }
 
-  /// How far the bed at point c is covered: a layer's worth of mass makes it a full one, of which half lies within the weights of a point on a surface.
+  /// How far the bed at point c is covered: a layer's worth of mass makes it a full one, of which half lies within the
+  /// weights of a point on a surface.
   TALUS_HD Real filled(const GridView<Real>& grid, int c, double layer_mass) const {
     const Real share = Real(1) / (inverse_mass[c] * Real(0.5 * layer_mass) * grid.spacing * grid.spacing);
     return share < Real(1) ? share : Real(1);
   }
 
-  /// A force or impulse within what the surface can give: it pushes, and holds back slip up to `coefficient` times the push and `more`.
+  /// A force or impulse within what the surface can give: it pushes, and holds back slip up to `coefficient` times the
+  /// push and `more`.
   TALUS_HD static Vec3<Real> hold(const Vec3<Real>& wanted, const Vec3<Real>& normal, Real coefficient, Real more) {
     const Real push = dot(wanted, normal);
     if (!(push > Real(0))) return {};
@@ -116,7 +121,8 @@ struct ForgetForces {
 template <class Real, class Place, class Shape>
 class SurfaceContact {
  public:
-  SurfaceContact(const ContactPoints& points, const std::vector<ObstacleOptions>& obstacles, const BaseFriction<Real>& ground, const GridShape& shape, const ContactState& state, bool in_order)
+  SurfaceContact(const ContactPoints& points, const std::vector<ObstacleOptions>& obstacles,
+                 const BaseFriction<Real>& ground, const GridShape& shape, const ContactState& state, bool in_order)
       : count_(static_cast<int>(points.size())), blocks_x_((shape.columns + block_side - 1) / block_side) {
     groups_.in_order = in_order;
     if (count_ == 0) return;
@@ -127,7 +133,8 @@ class SurfaceContact {
       none_.upload(std::vector<Real>(points.size()));
     }
     std::vector<Vec3<Real>> normals;
-    for (const Vec3<double>& n : points.normal) normals.push_back({static_cast<Real>(n.x), static_cast<Real>(n.y), static_cast<Real>(n.z)});
+    for (const Vec3<double>& n : points.normal)
+      normals.push_back({static_cast<Real>(n.x), static_cast<Real>(n.y), static_cast<Real>(n.z)});
     normal_.upload(normals);
     upload_as(area_, points.area);
     inverse_mass_.upload(std::vector<Real>(points.size()));
@@ -209,7 +216,8 @@ class SurfaceContact {
   ContactState state() const { return {download_vectors(force_), download_vectors(impulse_)}; }
 
   std::size_t bytes() const {
-    std::size_t total = none_.bytes() + normal_.bytes() + area_.bytes() + body_.bytes() + friction_.bytes() + force_.bytes() + impulse_.bytes() + beside_.bytes() + inverse_mass_.bytes();
+    std::size_t total = none_.bytes() + normal_.bytes() + area_.bytes() + body_.bytes() + friction_.bytes() +
+                        force_.bytes() + impulse_.bytes() + beside_.bytes() + inverse_mass_.bytes();
     for (std::size_t a = 0; a < 3; ++a) total += cell_[a].bytes() + offset_[a].bytes();
     return total;
   }
@@ -218,7 +226,8 @@ class SurfaceContact {
   bool by_list() const { return Place::is_gpu && !groups_.in_order; }
   void upload_vectors(Buffer<Vec3<double>, Place>& to, const std::vector<double>& from) {
     std::vector<Vec3<double>> vectors(static_cast<std::size_t>(count_));
-    for (std::size_t c = 0; 3 * c + 2 < from.size() && c < vectors.size(); ++c) vectors[c] = {from[3 * c], from[3 * c + 1], from[3 * c + 2]};
+    for (std::size_t c = 0; 3 * c + 2 < from.size() && c < vectors.size(); ++c)
+      vectors[c] = {from[3 * c], from[3 * c + 1], from[3 * c + 2]};
     to.upload(vectors);
   }
   static std::vector<double> download_vectors(const Buffer<Vec3<double>, Place>& from) {
@@ -228,7 +237,8 @@ class SurfaceContact {
   }
   void list_blocks(const ContactPoints& points, int blocks_y) {
     first_.assign(static_cast<std::size_t>(blocks_x_) * static_cast<std::size_t>(blocks_y) + 1, 0);
-    for (std::size_t c = 0; c < points.size(); ++c) ++first_[static_cast<std::size_t>((points.cell[1][c] >> 2) * blocks_x_ + (points.cell[0][c] >> 2)) + 1];
+    for (std::size_t c = 0; c < points.size(); ++c)
+      ++first_[static_cast<std::size_t>((points.cell[1][c] >> 2) * blocks_x_ + (points.cell[0][c] >> 2)) + 1];
     for (std::size_t b = 1; b < first_.size(); ++b) first_[b] += first_[b - 1];
   }
 

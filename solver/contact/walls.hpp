@@ -14,12 +14,12 @@ enum class WallKind { roller, fixed, frictional };
 /// A wall as a kernel sees it: nodes at or behind `position` belong to it.
 template <class Real>
 struct Wall {
-  int axis = 0;        // 0 x, 1 y, 2 zeta
-  int side = 1;        // +1: the material is on the side of growing coordinates
-  Real position = 0;   // in cells from node 0
+  int axis = 0;       // 0 x, 1 y, 2 zeta
+  int side = 1;       // +1: the material is on the side of growing coordinates
+  Real position = 0;  // in cells from node 0
   WallKind kind = WallKind::roller;
-  Real friction = 0;   // coefficient of a frictional wall
-  Real speed = 0;      // of the wall along its axis [m/s]
+  Real friction = 0;  // coefficient of a frictional wall
+  Real speed = 0;     // of the wall along its axis [m/s]
 
   TALUS_HD bool holds(int i, int j, int k) const {
     const int coordinate = axis == 0 ? i : axis == 1 ? j : k;

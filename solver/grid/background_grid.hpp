@@ -1,12 +1,13 @@
 // The background grid as a kernel sees it: which columns hold storage, where a node lies in it, and the terrain below.
 //
-// Reference coordinates are (x, y, zeta), zeta = z - b(x, y) over the terrain b (terrain-following mapping) or z - datum
-// (Cartesian). Node (i, j, k) stands at the centre of map cell (i, j), k layers up. Storage is given to blocks of 4 x 4
-// columns that hold material, each over its own range of layers; inside a block, layers are the slow index, so that the 16
-// columns of a layer are neighbours in memory.
+// Reference coordinates are (x, y, zeta), zeta = z - b(x, y) over the terrain b (terrain-following mapping) or z -
+// datum (Cartesian). Node (i, j, k) stands at the centre of map cell (i, j), k layers up. Storage is given to blocks of
+// 4 x 4 columns that hold material, each over its own range of layers; inside a block, layers are the slow index, so
+// that the 16 columns of a layer are neighbours in memory.
 //
-// There is no layer below 0: near the ground, quadratic functions go over into hats (shape_functions.hpp), so that the base node carries
-// the value on the ground and the traction of the bed alone. Upright walls that stand on nodes are met in the same way.
+// There is no layer below 0: near the ground, quadratic functions go over into hats (shape_functions.hpp), so that the
+// base node carries the value on the ground and the traction of the bed alone. Upright walls that stand on nodes are
+// met in the same way.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +26,7 @@ enum class GroundContact { nodes, points };
 
 /// Where the nodes of a block of columns are stored.
 struct BlockSlot {
-  int offset = -1;     // first node; -1: no storage
+  int offset = -1;  // first node; -1: no storage
   int first_layer = 0;
   int layers = 0;
 };
@@ -33,11 +34,13 @@ struct BlockSlot {
 /// Where the block begins in a key.
 inline constexpr int key_block_shift = 28;
 
-/// What points are sorted by: block in the high bits, then column within the block, then layer, then octant of the cell, so that those that will leave it together lie together.
+/// What points are sorted by: block in the high bits, then column within the block, then layer, then octant of the
+/// cell, so that those that will leave it together lie together.
 TALUS_HD std::uint64_t home_key(int block_columns_x, int i, int j, int k, int octant = 0) {
   constexpr int most = (1 << 21) - 1;
   const auto block = static_cast<std::uint64_t>((j >> 2) * block_columns_x + (i >> 2));
-  const auto inside = static_cast<std::uint64_t>(((j & 3) << 2) + (i & 3)), layer = static_cast<std::uint64_t>(k > most ? most : k);
+  const auto inside = static_cast<std::uint64_t>(((j & 3) << 2) + (i & 3)),
+             layer = static_cast<std::uint64_t>(k > most ? most : k);
   return (block << key_block_shift) | (inside << 24) | (layer << 3) | static_cast<std::uint64_t>(octant);
 }
 
@@ -45,7 +48,8 @@ TALUS_HD std::uint64_t home_key(int block_columns_x, int i, int j, int k, int oc
 struct HomeCell {
   int i, j, k;
   TALUS_HD HomeCell(int block_columns_x, std::uint64_t key) {
-    const auto block = static_cast<unsigned>(key >> key_block_shift), across = static_cast<unsigned>(block_columns_x);  // divided faster without a sign
+    const auto block = static_cast<unsigned>(key >> key_block_shift),
+               across = static_cast<unsigned>(block_columns_x);  // divided faster without a sign
     const int inside = static_cast<int>((key >> 24) & 15);
     i = static_cast<int>(block % across) * block_side + (inside & 3);
     j = static_cast<int>(block / across) * block_side + (inside >> 2);
@@ -61,25 +65,27 @@ struct WallNodes {
 
 template <class Real>
 struct GridView {
-  int columns = 0, rows = 0;                // nodes in x and y
-  int block_columns_x = 0;                  // blocks in x
-  int nodes = 0;                            // stored
-  Real spacing = 0, layer_height = 0;       // [m]
-  Real lowest_weighed = 0;                  // cells from the ground or a wall within which weights no longer change
-  int drift = 1;                            // cells that a point may be from home before it is sorted again
-  bool homes_below = false;                 // home is the cell of the lowest of its nodes, its own or the one below, not of the nearest
+  int columns = 0, rows = 0;           // nodes in x and y
+  int block_columns_x = 0;             // blocks in x
+  int nodes = 0;                       // stored
+  Real spacing = 0, layer_height = 0;  // [m]
+  Real lowest_weighed = 0;             // cells from the ground or a wall within which weights no longer change
+  int drift = 1;                       // cells that a point may be from home before it is sorted again
+  bool homes_below =
+      false;  // home is the cell of the lowest of its nodes, its own or the one below, not of the nearest
   WallNodes walls;
   Mapping mapping = Mapping::terrain_following;
   GroundContact ground = GroundContact::nodes;
-  const BlockSlot* slots = nullptr;         // [blocks in y * blocks in x]
-  const Real* terrain = nullptr;            // spline coefficients of the ground at the nodes, from `datum` [m]
-  const Real* slope_x = nullptr;            // slope of the ground at the nodes [-]
+  const BlockSlot* slots = nullptr;  // [blocks in y * blocks in x]
+  const Real* terrain = nullptr;     // spline coefficients of the ground at the nodes, from `datum` [m]
+  const Real* slope_x = nullptr;     // slope of the ground at the nodes [-]
   const Real* slope_y = nullptr;
-  const unsigned char* open = nullptr;      // 1 where a point may be: its whole stencil lies in the domain
+  const unsigned char* open = nullptr;  // 1 where a point may be: its whole stencil lies in the domain
 
   TALUS_HD int column(int i, int j) const { return j * columns + i; }
   TALUS_HD const BlockSlot& slot(int i, int j) const { return slots[(j >> 2) * block_columns_x + (i >> 2)]; }
-  /// Highest layer whose node touches the ground: the base layer, or on a Cartesian grid the last one not above the terrain; -1 where points do.
+  /// Highest layer whose node touches the ground: the base layer, or on a Cartesian grid the last one not above the
+  /// terrain; -1 where points do.
   TALUS_HD int contact_layer(int column) const {
     if (mapping == Mapping::terrain_following) return 0;
     return ground == GroundContact::points ? -1 : static_cast<int>(floor(terrain[column] / layer_height + Real(1e-4)));

@@ -1,4 +1,5 @@
-// The ground between the nodes of a Cartesian grid where it is met by points: bicubic through the terrain (Catmull & Rom 1974).
+// The ground between the nodes of a Cartesian grid where it is met by points: bicubic through the terrain (Catmull &
+// Rom 1974).
 #pragma once
 
 #include "solver/particles/particles.hpp"
@@ -26,7 +27,8 @@ TALUS_HD void catmull_rom(Real s, Real weight[4], Real slope[4]) {
 
 /// Ground `x`, `y` cells from node (i, j), -1 <= x, y <= 1, of a terrain [rows * columns] of this spacing.
 template <class Real>
-TALUS_HD GroundPoint<Real> bicubic_ground(const Real* terrain, int columns, int rows, Real spacing, int i, int j, Real x, Real y) {
+TALUS_HD GroundPoint<Real> bicubic_ground(const Real* terrain, int columns, int rows, Real spacing, int i, int j,
+                                          Real x, Real y) {
   if (x < Real(0)) {
     --i;
     x += Real(1);
@@ -57,13 +59,15 @@ TALUS_HD GroundPoint<Real> bicubic_ground(const Real* terrain, int columns, int 
   return g;
 }
 
-/// A material point that got below ground met by points is put onto it: contact holds the mean about a point of the ground, and on rough ground single ones slip through. Their
-/// velocity is left to the contact, which knows of friction.
+/// A material point that got below ground met by points is put onto it: contact holds the mean about a point of the
+/// ground, and on rough ground single ones slip through. Their velocity is left to the contact, which knows of
+/// friction.
 template <class Real>
 TALUS_HD void keep_above_ground(const GridView<Real>& grid, const ParticleView<Real>& points, int p) {
   const int i = points.cell_x[p], j = points.cell_y[p];
   if (i < 1 || j < 1 || i + 1 >= grid.columns || j + 1 >= grid.rows) return;
-  const GroundPoint<Real> ground = bicubic_ground(grid.terrain, grid.columns, grid.rows, grid.spacing, i, j, points.offset_x[p], points.offset_y[p]);
+  const GroundPoint<Real> ground =
+      bicubic_ground(grid.terrain, grid.columns, grid.rows, grid.spacing, i, j, points.offset_x[p], points.offset_y[p]);
   const Real to = ground.height / grid.layer_height, nearest = floor(to + Real(0.5));
   if (Real(points.cell_z[p]) - nearest + points.offset_z[p] >= to - nearest) return;
   points.cell_z[p] = static_cast<int>(nearest);

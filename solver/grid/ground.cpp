@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/grid/shape_functions.hpp"
 #include "solver/grid/bicubic.hpp"
+#include "solver/grid/shape_functions.hpp"
 #include "solver/grid/sparse_grid.hpp"
 
 namespace talus {
@@ -18,9 +18,12 @@ NodeWeights node_weights(bool quadratic) {
   return {{0.0, 1.0, 0.0}, {-0.5, 0.0, 0.5}};  // mean of the slopes of the two cells
 }
 
-/// Nodes without ground beside known ones get the mean of those, which only curves beyond the places where points may be look at.
+/// Nodes without ground beside known ones get the mean of those, which only curves beyond the places where points may
+/// be look at.
 void fill_rim(const GridShape& shape, std::vector<double>& terrain) {
-  const auto at = [&](int i, int j) { return static_cast<std::size_t>(j) * static_cast<std::size_t>(shape.columns) + static_cast<std::size_t>(i); };
+  const auto at = [&](int i, int j) {
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(shape.columns) + static_cast<std::size_t>(i);
+  };
   for (int j = 0; j < shape.rows; ++j) {
     for (int i = 0; i < shape.columns; ++i) {
       if (std::isfinite(shape.terrain[at(i, j)])) continue;
@@ -42,7 +45,9 @@ void fill_rim(const GridShape& shape, std::vector<double>& terrain) {
 
 GroundTables make_ground_tables(const GridShape& shape) {
   GroundTables tables;
-  const auto at = [&](int i, int j) { return static_cast<std::size_t>(j) * static_cast<std::size_t>(shape.columns) + static_cast<std::size_t>(i); };
+  const auto at = [&](int i, int j) {
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(shape.columns) + static_cast<std::size_t>(i);
+  };
   tables.datum = std::numeric_limits<double>::infinity();
   for (double z : shape.terrain) {
     if (std::isfinite(z)) tables.datum = std::min(tables.datum, z);
@@ -73,7 +78,8 @@ GroundTables make_ground_tables(const GridShape& shape) {
       tables.open[at(i, j)] = 1;
     }
   }
-  // A node beside the domain's edge, which stencils reach but where no slope can be measured, leans as its neighbour does.
+  // A node beside the domain's edge, which stencils reach but where no slope can be measured, leans as its neighbour
+  // does.
   const auto measured = tables.open;
   for (int j = 0; j < shape.rows; ++j) {
     for (int i = 0; i < shape.columns; ++i) {
@@ -99,7 +105,8 @@ GroundTables make_ground_tables(const GridShape& shape) {
 
 GroundPoint<double> bicubic_ground(const GridShape& shape, const GroundTables& ground, double xi, double eta) {
   const double i = std::floor(xi), j = std::floor(eta);
-  return bicubic_ground(ground.terrain.data(), shape.columns, shape.rows, shape.spacing, static_cast<int>(i), static_cast<int>(j), xi - i, eta - j);
+  return bicubic_ground(ground.terrain.data(), shape.columns, shape.rows, shape.spacing, static_cast<int>(i),
+                        static_cast<int>(j), xi - i, eta - j);
 }
 
 double ground_at(const GridShape& shape, const GroundTables& ground, double xi, double eta) {
@@ -115,7 +122,9 @@ double ground_at(const GridShape& shape, const GroundTables& ground, double xi, 
     for (int b = 0; b < Shape::width; ++b) {
       for (int a = 0; a < Shape::width; ++a) {
         const int ii = std::clamp(i + a, 0, shape.columns - 1), jj = std::clamp(j + b, 0, shape.rows - 1);
-        z += wx[a] * wy[b] * ground.terrain[static_cast<std::size_t>(jj) * static_cast<std::size_t>(shape.columns) + static_cast<std::size_t>(ii)];
+        z += wx[a] * wy[b] *
+             ground.terrain[static_cast<std::size_t>(jj) * static_cast<std::size_t>(shape.columns) +
+                            static_cast<std::size_t>(ii)];
       }
     }
     return z;

@@ -1,7 +1,7 @@
-// Weights of a material point on the nodes around it, one direction at a time. The offset is the distance from the nearest
-// node in cells, -0.5 <= offset < 0.5; node `first(offset)` cells away from the nearest one carries weight[0]. `half` is half the side of the
-// box that the point stands for, in cells; only functions that are `averaged` over it look at it.
-// `edge_share` is the integral of a node's function where the material ends at it, in cells.
+// Weights of a material point on the nodes around it, one direction at a time. The offset is the distance from the
+// nearest node in cells, -0.5 <= offset < 0.5; node `first(offset)` cells away from the nearest one carries weight[0].
+// `half` is half the side of the box that the point stands for, in cells; only functions that are `averaged` over it
+// look at it. `edge_share` is the integral of a node's function where the material ends at it, in cells.
 #pragma once
 
 #include "solver/parallel/macros.hpp"
@@ -14,9 +14,13 @@ struct Linear {
   static constexpr double edge_share = 0.5;
   static constexpr bool averaged = false, spline = false;
   template <class Real>
-  TALUS_HD static int first(Real offset) { return offset < Real(0) ? -1 : 0; }
+  TALUS_HD static int first(Real offset) {
+    return offset < Real(0) ? -1 : 0;
+  }
   template <class Real>
-  TALUS_HD static Real weigh_edge(Real offset, int, Real, Real, Real[2], Real[2]) { return offset; }  // hats end at an edge as they are
+  TALUS_HD static Real weigh_edge(Real offset, int, Real, Real, Real[2], Real[2]) {
+    return offset;
+  }  // hats end at an edge as they are
   template <class Real>
   TALUS_HD static void weigh(Real offset, Real, Real weight[2], Real slope[2]) {
     const Real s = offset - Real(first(offset));
@@ -33,11 +37,14 @@ struct Quadratic {
   static constexpr double edge_share = 13.0 / 24;
   static constexpr bool averaged = false, spline = true;
   template <class Real>
-  TALUS_HD static int first(Real) { return -1; }
-  /// Weights in the half cell beside an edge of the material (the ground, a wall) that stands on the nearest node, where the function of
-  /// the node behind would reach through it. The field goes on there in a straight line (v_-1 = 2 v_0 - v_1), which leaves hats on the
-  /// edge's node and the next: slopes stay continuous, linear fields exact, and the value on the edge is its node's. `inward` is +1 or -1;
-  /// nearer than `lowest` the weights are those at `lowest`. Returns the offset they stand for.
+  TALUS_HD static int first(Real) {
+    return -1;
+  }
+  /// Weights in the half cell beside an edge of the material (the ground, a wall) that stands on the nearest node,
+  /// where the function of the node behind would reach through it. The field goes on there in a straight line (v_-1 = 2
+  /// v_0 - v_1), which leaves hats on the edge's node and the next: slopes stay continuous, linear fields exact, and
+  /// the value on the edge is its node's. `inward` is +1 or -1; nearer than `lowest` the weights are those at `lowest`.
+  /// Returns the offset they stand for.
   template <class Real>
   TALUS_HD static Real weigh_edge(Real offset, int inward, Real lowest, Real, Real weight[3], Real slope[3]) {
     const Real away = offset * Real(inward);
@@ -63,14 +70,16 @@ struct Quadratic {
   }
 };
 
-/// Hats averaged over the point's box (generalised interpolation; Bardenhagen & Kober 2004): three nodes, 0 < half <= 0.5. Boxes that tile a body
-/// integrate the slopes of its nodes exactly, wherever the points have gone.
+/// Hats averaged over the point's box (generalised interpolation; Bardenhagen & Kober 2004): three nodes, 0 < half <=
+/// 0.5. Boxes that tile a body integrate the slopes of its nodes exactly, wherever the points have gone.
 struct Gimp {
   static constexpr int width = 3;
   static constexpr double edge_share = 0.5;
   static constexpr bool averaged = true, spline = false;
   template <class Real>
-  TALUS_HD static int first(Real) { return -1; }
+  TALUS_HD static int first(Real) {
+    return -1;
+  }
   /// The box ends at the edge: a point nearer to it stands half a box inside. Returns the offset its weights stand for.
   template <class Real>
   TALUS_HD static Real weigh_edge(Real offset, int inward, Real, Real half, Real weight[3], Real slope[3]) {
@@ -82,7 +91,8 @@ struct Gimp {
   template <class Real>
   TALUS_HD static void weigh(Real offset, Real half, Real weight[3], Real slope[3]) {
     const Real low = offset - half, high = offset + half;
-    const Real below = high < Real(0) ? high : Real(0), above = low > Real(0) ? low : Real(0);  // where the parts beside the node end
+    const Real below = high < Real(0) ? high : Real(0),
+               above = low > Real(0) ? low : Real(0);  // where the parts beside the node end
     slope[0] = low < below ? (low - below) / (high - low) : Real(0);
     slope[2] = high > above ? (high - above) / (high - low) : Real(0);
     slope[1] = -(slope[0] + slope[2]);

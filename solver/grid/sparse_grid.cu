@@ -93,7 +93,10 @@ struct GiveStorage {
 
 template <class Real, class Place>
 SparseGrid<Real, Place>::SparseGrid(const GridShape& shape, int drift, bool in_order, bool by_lowest_node)
-    : shape_(shape), drift_(drift), by_lowest_node_(by_lowest_node && Place::is_gpu && !in_order), ground_(make_ground_tables(shape)) {
+    : shape_(shape),
+      drift_(drift),
+      by_lowest_node_(by_lowest_node && Place::is_gpu && !in_order),
+      ground_(make_ground_tables(shape)) {
   groups_.in_order = in_order;
   blocks_x_ = (shape.columns + block_side - 1) / block_side;
   blocks_y_ = (shape.rows + block_side - 1) / block_side;
@@ -143,8 +146,9 @@ void SparseGrid<Real, Place>::fit(Particles<Real, Place>& points, int gone) {
 template <class Real, class Place>
 void SparseGrid<Real, Place>::measure_extents(Particles<Real, Place>& points) {
   for_each(Place{}, static_cast<int>(lowest_.size()), ForgetExtents{lowest_.data(), highest_.data()});
-  for_each(Place{}, points.count(), MeasureExtents<Real>{points.view(), shape_.columns, shape_.rows, blocks_x_, 1 + drift_, lowest_.data(),
-                                                         highest_.data()});
+  for_each(Place{}, points.count(),
+           MeasureExtents<Real>{points.view(), shape_.columns, shape_.rows, blocks_x_, 1 + drift_, lowest_.data(),
+                                highest_.data()});
 }
 
 template <class Real, class Place>
@@ -154,8 +158,9 @@ void SparseGrid<Real, Place>::give_storage() {
   const auto totals = exclusive_sums(Place{}, sizes_.data(), places_.data(), blocks);
   nodes_ = totals[0];
   active_ = totals[1];
-  for_each(Place{}, blocks, GiveStorage{lowest_.data(), highest_.data(), sizes_.data(), places_.data(), slots_.data(),
-                                        active_list_.data()});
+  for_each(
+      Place{}, blocks,
+      GiveStorage{lowest_.data(), highest_.data(), sizes_.data(), places_.data(), slots_.data(), active_list_.data()});
 }
 
 template <class Real, class Place>

@@ -12,17 +12,17 @@ namespace talus {
 /// What the grid is made of, on the host.
 struct GridShape {
   int columns = 0, rows = 0;
-  double spacing = 0, layer_height = 0;       // [m]
+  double spacing = 0, layer_height = 0;  // [m]
   Mapping mapping = Mapping::terrain_following;
   GroundContact ground = GroundContact::nodes;
   bool quadratic = true;
-  double lowest_weighed = 0;                  // see GridView
-  std::vector<double> terrain;                // ground at the nodes [m], NaN outside the domain; [rows * columns]
+  double lowest_weighed = 0;    // see GridView
+  std::vector<double> terrain;  // ground at the nodes [m], NaN outside the domain; [rows * columns]
 };
 
 /// Terrain as the kernels use it, from a GridShape: coefficients, slopes at the nodes, where points may be.
 struct GroundTables {
-  double datum = 0;                           // lowest ground [m]; heights below are from here
+  double datum = 0;  // lowest ground [m]; heights below are from here
   std::vector<double> terrain, slope_x, slope_y;
   std::vector<unsigned char> open;
 };
@@ -31,15 +31,17 @@ GroundTables make_ground_tables(const GridShape& shape);
 /// The same between nodes on the host, at (xi, eta) in cells from node (0, 0).
 GroundPoint<double> bicubic_ground(const GridShape& shape, const GroundTables& ground, double xi, double eta);
 
-/// Ground elevation at (xi, eta), in cells from node (0, 0), as the grid's own functions interpolate it, or bicubic where it is met by points [m above datum].
+/// Ground elevation at (xi, eta), in cells from node (0, 0), as the grid's own functions interpolate it, or bicubic
+/// where it is met by points [m above datum].
 double ground_at(const GridShape& shape, const GroundTables& ground, double xi, double eta);
 
 template <class Real, class Place>
 class SparseGrid {
  public:
-  /// `drift`: how far a point may go from home before it is sorted again [cells]. At most one on the CPU, where blocks of the same colour stand four columns apart.
-  /// `in_order`: scatters give the same bits on every run on a GPU too; a drift of at most one there as well.
-  /// `by_lowest_node`: points are sorted by the lowest of their nodes, where no order asks for more: with hats, those of one cell do not have the same nodes.
+  /// `drift`: how far a point may go from home before it is sorted again [cells]. At most one on the CPU, where blocks
+  /// of the same colour stand four columns apart. `in_order`: scatters give the same bits on every run on a GPU too; a
+  /// drift of at most one there as well. `by_lowest_node`: points are sorted by the lowest of their nodes, where no
+  /// order asks for more: with hats, those of one cell do not have the same nodes.
   SparseGrid(const GridShape& shape, int drift, bool in_order = false, bool by_lowest_node = false);
 
   /// Sort the points by home cell, drop those that left (the `gone` last ones after sorting), and give storage to every

@@ -1,4 +1,5 @@
-// The explicit step, written once for both places, both precisions and both shapes. Included by the files that instantiate it.
+// The explicit step, written once for both places, both precisions and both shapes. Included by the files that
+// instantiate it.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +22,8 @@ inline constexpr int gpu_steps_between_sorts = 256;
 inline constexpr int busy_gpu_steps_between_sorts = 32;
 template <class Shape>
 int steps_between_sorts_on_gpu(int points) {
-  return Shape::width > 2 && points >= points_that_keep_a_gpu_busy ? busy_gpu_steps_between_sorts : gpu_steps_between_sorts;
+  return Shape::width > 2 && points >= points_that_keep_a_gpu_busy ? busy_gpu_steps_between_sorts
+                                                                   : gpu_steps_between_sorts;
 }
 /// Cells that points may drift before they are sorted: a sort takes as long as a dozen steps of a small scene.
 template <class Place>
@@ -52,7 +54,8 @@ struct BeginStep {
 template <class Real, class Place, class Shape>
 class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   using Base = PointSolver<Real, Place, Shape>;
-  using Base::bed_, Base::clock_, Base::contact_, Base::dilatant_, Base::grid_, Base::impulses_, Base::materials_, Base::options_, Base::points_, Base::read_clock;
+  using Base::bed_, Base::clock_, Base::contact_, Base::dilatant_, Base::grid_, Base::impulses_, Base::materials_,
+      Base::options_, Base::points_, Base::read_clock;
 
  public:
   ExplicitSolverOf(const Scene& scene, const SolveOptions& options, const SolverState& state)
@@ -76,10 +79,13 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     walls_ = this->template stand_walls<Real>(clock.time);
     loads_now_ = this->upload_loads(clock.time);
     if (!options_.walls.empty()) recording_.forget();  // they come, go and move
-    // One more than the steps left: the last one's begin halts the clock at the sort. As many as lay between the last two sorts or lead to the next event, and then a few at a time:
-    // what is started after the clock has halted does nothing but take its time.
-    const double to_event = clock.step_size > 0 ? std::ceil((clock.next_event - clock.time) / clock.step_size) + 1 : most_batch_steps;
-    const int ahead = std::clamp(static_cast<int>(std::min<double>(expected_ - clock.steps_since_sort, to_event)), 2, most_batch_steps);
+    // One more than the steps left: the last one's begin halts the clock at the sort. As many as lay between the last
+    // two sorts or lead to the next event, and then a few at a time: what is started after the clock has halted does
+    // nothing but take its time.
+    const double to_event =
+        clock.step_size > 0 ? std::ceil((clock.next_event - clock.time) / clock.step_size) + 1 : most_batch_steps;
+    const int ahead = std::clamp(static_cast<int>(std::min<double>(expected_ - clock.steps_since_sort, to_event)), 2,
+                                 most_batch_steps);
     recording_.repeat(std::min(left + 1, ahead), [&] { step(); });
     BatchReport report;
     clock = read_clock();
@@ -144,16 +150,17 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   void clear(bool opens) {
     const ProfilePhase<Place> phase("clear the grid");
     const int count = grid_.nodes();
-    for_each(Place{}, std::max(count, 1),
-             BeginStep<Real>{clock_.data(), nodes_.data(), forces_apart_ && opens ? forces_.data() : nullptr, count, opens});
+    for_each(
+        Place{}, std::max(count, 1),
+        BeginStep<Real>{clock_.data(), nodes_.data(), forces_apart_ && opens ? forces_.data() : nullptr, count, opens});
   }
 
   template <Scatter what>
   void scatter() {
     const ProfilePhase<Place> phase("points to grid");
     scatter_points(Place{}, points_.count(), grid_.groups(),
-                   ParticleToGrid<Real, Shape, what>{grid_.view(), points_.view(), materials_, clock_.data(), nodes_.data(),
-                                                     forces_.data(), loads_now_, affine_, dilatant_});
+                   ParticleToGrid<Real, Shape, what>{grid_.view(), points_.view(), materials_, clock_.data(),
+                                                     nodes_.data(), forces_.data(), loads_now_, affine_, dilatant_});
   }
 
   template <NodeContent content>
@@ -162,14 +169,17 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     const ProfilePhase<Place> phase("grid");
     const Vec3<Real> g{static_cast<Real>(options_.gravity[0]), static_cast<Real>(options_.gravity[1]),
                        static_cast<Real>(options_.gravity[2])};
-    for_each_column(Place{}, grid_.active_blocks(),
-             UpdateColumns<Real, content>{grid_.view(), grid_.active_list(), clock_.data(), nodes_.data(), forces_.data(), g,
-                                          options_.gravity_ramp, walls_,
-                                          bed_.view(), static_cast<Real>(this->full_base()), static_cast<Real>(options_.damping), materials_.list[0].density, this->column_volumes(), this->maps()});
+    for_each_column(
+        Place{}, grid_.active_blocks(),
+        UpdateColumns<Real, content>{grid_.view(), grid_.active_list(), clock_.data(), nodes_.data(), forces_.data(), g,
+                                     options_.gravity_ramp, walls_, bed_.view(), static_cast<Real>(this->full_base()),
+                                     static_cast<Real>(options_.damping), materials_.list[0].density,
+                                     this->column_volumes(), this->maps()});
     if (contact_.on()) meet_surfaces<content>();
   }
 
-  /// Obstacles, and ground between the nodes. What is mapped back a second time is merely kept from running through them.
+  /// Obstacles, and ground between the nodes. What is mapped back a second time is merely kept from running through
+  /// them.
   template <NodeContent content>
   void meet_surfaces() {
     const ProfilePhase<Place> phase("contact");
@@ -183,8 +193,9 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     const ProfilePhase<Place> phase("grid to points");
     const auto run = [&](auto budget) {
       for_each(Place{}, points_.count(),
-               GridToParticle<Real, Shape, part, decltype(budget)::value>{grid_.view(), points_.view(), materials_, clock_.data(), nodes_.data(),
-                                                                          keeps_ ? forces_.data() : nullptr, grid_.home(), affine_, dilatant_});
+               GridToParticle<Real, Shape, part, decltype(budget)::value>{
+                   grid_.view(), points_.view(), materials_, clock_.data(), nodes_.data(),
+                   keeps_ ? forces_.data() : nullptr, grid_.home(), affine_, dilatant_});
     };
     if (options_.energy_budget) {
       run(std::true_type{});
@@ -214,7 +225,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 /// A solver of one precision in the place asked for.
 template <class Real>
 std::unique_ptr<Solver> make_explicit_solver_of(const Scene& scene, const SolveOptions& options, On on,
-                                               const SolverState& state) {
+                                                const SolverState& state) {
   return with_shape(options.shape, [&](auto shape) -> std::unique_ptr<Solver> {
     using Shape = decltype(shape);
 #if TALUS_FOR_GPU

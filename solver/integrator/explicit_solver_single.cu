@@ -3,6 +3,7 @@
 
 namespace talus::solver {
 
-template std::unique_ptr<Solver> make_explicit_solver_of<float>(const Scene&, const SolveOptions&, On, const SolverState&);
+template std::unique_ptr<Solver> make_explicit_solver_of<float>(const Scene&, const SolveOptions&, On,
+                                                                const SolverState&);
 
 }  // namespace talus::solver

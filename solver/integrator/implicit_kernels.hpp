@@ -1,5 +1,5 @@
-// Kernels of an implicit step: inertia and loads to the grid, stress and tangent of the points for a displacement of the grid, the
-// tangent's product with a vector, its diagonal blocks, and the way back to the points.
+// Kernels of an implicit step: inertia and loads to the grid, stress and tangent of the points for a displacement of
+// the grid, the tangent's product with a vector, its diagonal blocks, and the way back to the points.
 #pragma once
 
 #include "solver/contact/walls.hpp"
@@ -12,14 +12,16 @@
 
 namespace talus::solver {
 
-/// Where a node stands with the surface it can touch (ground or a frictional wall): away from it, slipping along it, or stuck to it.
+/// Where a node stands with the surface it can touch (ground or a frictional wall): away from it, slipping along it, or
+/// stuck to it.
 enum class Touch : unsigned char { none, open, slips, sticks };
 
 /// Arrays over the stored nodes, double whatever the precision of the points.
 struct NodeArrays {
-  double* mass = nullptr;                // [kg]
-  Vec3<double>* velocity = nullptr;      // at the start of the step, from the points [m/s]
-  Vec3<double>* arrival = nullptr;       // what the ground takes from it at once, where it points into the ground; null in statics [m/s]
+  double* mass = nullptr;            // [kg]
+  Vec3<double>* velocity = nullptr;  // at the start of the step, from the points [m/s]
+  Vec3<double>* arrival =
+      nullptr;  // what the ground takes from it at once, where it points into the ground; null in statics [m/s]
   Vec3<double>* acceleration = nullptr;  // at the start of the step [m/s2]
   Vec3<double>* external = nullptr;      // at the end of the step [N]
   Vec3<double>* internal = nullptr;      // for the displacement u [N]
@@ -56,7 +58,9 @@ struct ScatterInertia : PointScatter<Real, Shape> {
         turn = points.affine_of(p);
         corner += turn * Vec3<Real>{this->s.near_x, this->s.near_y, this->s.near_z};
       }
-      if (k.accelerated) acceleration = widen(Vec3<Real>{points.acceleration[0][p], points.acceleration[1][p], points.acceleration[2][p]});
+      if (k.accelerated)
+        acceleration =
+            widen(Vec3<Real>{points.acceleration[0][p], points.acceleration[1][p], points.acceleration[2][p]});
       if (k.loads && points.load[p] >= 0) load = k.loads[points.load[p]] * static_cast<double>(points.volume[p]);
     }
   };
@@ -91,7 +95,10 @@ struct ScatterInertia : PointScatter<Real, Shape> {
   }
   TALUS_HD bool has(int q) const { return q < 4 || (q < 7 ? accelerated : loads != nullptr); }
   TALUS_HD double* part(int node, int q) const {
-    return q == 0 ? &nodes.mass[node] : q < 4 ? &nodes.velocity[node].x + (q - 1) : q < 7 ? &nodes.acceleration[node].x + (q - 4) : &nodes.external[node].x + (q - 7);
+    return q == 0  ? &nodes.mass[node]
+           : q < 4 ? &nodes.velocity[node].x + (q - 1)
+           : q < 7 ? &nodes.acceleration[node].x + (q - 4)
+                   : &nodes.external[node].x + (q - 7);
   }
 };
 
@@ -137,13 +144,15 @@ TALUS_HD MaterialState<Real> state_of(const ParticleView<Real>& points, int p, b
 
 /// Displacement gradient of a point over the start of the step.
 template <class Real, class Shape>
-TALUS_HD Mat3<Real> displacement_gradient(const GridView<Real>& grid, const PointGradients<Real, Shape>& g, const Vec3<double>* u) {
+TALUS_HD Mat3<Real> displacement_gradient(const GridView<Real>& grid, const PointGradients<Real, Shape>& g,
+                                          const Vec3<double>* u) {
   Mat3<Real> gradient{};
   around(grid, g, [&](int n, int a, int b, int c) { add_outer(gradient, narrow<Real>(u[n]), g.gradient(a, b, c)); });
   return gradient;
 }
 
-/// What the points' stresses, or their changes, give to the nodes: V P grad N, P = law(p, its gradients), which may keep what belongs to the point.
+/// What the points' stresses, or their changes, give to the nodes: V P grad N, P = law(p, its gradients), which may
+/// keep what belongs to the point.
 template <class Real, class Shape, class Law>
 struct ScatterForces : PointScatter<Real, Shape> {
   using Base = PointScatter<Real, Shape>;
@@ -154,7 +163,10 @@ struct ScatterForces : PointScatter<Real, Shape> {
   Vec3<double>* forces;
   const CgState* loop = nullptr;  // that it is part of; does nothing once it is over
 
-  double bytes(int count) const { return law.bytes(count) + count * (this->points.place_bytes + sizeof(Real)) + this->grid.nodes * 3.0 * sizeof(*forces); }
+  double bytes(int count) const {
+    return law.bytes(count) + count * (this->points.place_bytes + sizeof(Real)) +
+           this->grid.nodes * 3.0 * sizeof(*forces);
+  }
 
   struct Source : PointGradients<Real, Shape> {
     Mat3<Real> pull;
@@ -189,10 +201,12 @@ struct StressAt {
   const Vec3<double>* u;
 
   double bytes(int count) const { return count * (7.0 * sizeof(Real) + tangents.bytes_each()); }
-  TALUS_HD Mat3<Real> operator()(const GridView<Real>& grid, const ParticleView<Real>& points, int p, const PointGradients<Real, Shape>& g) const {
+  TALUS_HD Mat3<Real> operator()(const GridView<Real>& grid, const ParticleView<Real>& points, int p,
+                                 const PointGradients<Real, Shape>& g) const {
     PointTangent<Real> tangent;
-    const Mat3<Real> stress = nominal_stress(materials.of(points.material, points.plastic_shear, p), state_of(points, p, dilatant), displacement_gradient(grid, g, u),
-                                             tangents.on() ? &tangent : nullptr, means.at_point(p));
+    const Mat3<Real> stress =
+        nominal_stress(materials.of(points.material, points.plastic_shear, p), state_of(points, p, dilatant),
+                       displacement_gradient(grid, g, u), tangents.on() ? &tangent : nullptr, means.at_point(p));
     if (tangents.on() && definite) make_definite(tangent);
     if (tangents.on()) tangents.put(p, tangent);
     return stress;
@@ -207,14 +221,15 @@ struct TangentTimes {
   const Vec3<double>* x;
 
   double bytes(int count) const { return count * tangents.bytes_each(); }
-  TALUS_HD Mat3<Real> operator()(const GridView<Real>& grid, const ParticleView<Real>&, int p, const PointGradients<Real, Shape>& g) const {
+  TALUS_HD Mat3<Real> operator()(const GridView<Real>& grid, const ParticleView<Real>&, int p,
+                                 const PointGradients<Real, Shape>& g) const {
     return apply(tangents.get(p), displacement_gradient(grid, g, x));
   }
 };
 
-/// One thread: one point. How far it goes for the displacement u, over how far it may: the largest over all points, as float bits. In a dynamic step,
-/// and on sloping ground, it may go a cell. Statics over level ground are exact however far it goes, short of going half a cell through an edge that
-/// it was too far from to meet.
+/// One thread: one point. How far it goes for the displacement u, over how far it may: the largest over all points, as
+/// float bits. In a dynamic step, and on sloping ground, it may go a cell. Statics over level ground are exact however
+/// far it goes, short of going half a cell through an edge that it was too far from to meet.
 template <class Real, class Shape>
 struct MeasureMotion {
   GridView<Real> grid;
@@ -233,7 +248,8 @@ struct MeasureMotion {
       const double x = points.cell_x[p] + static_cast<double>(points.offset_x[p]) + way.x * across;
       const double y = points.cell_y[p] + static_cast<double>(points.offset_y[p]) + way.y * across;
       const double z = points.cell_z[p] + static_cast<double>(points.offset_z[p]) + rise * up;
-      const double through_x = fmax(grid.walls.west - x, x - grid.walls.east), through_y = fmax(grid.walls.south - y, y - grid.walls.north);
+      const double through_x = fmax(grid.walls.west - x, x - grid.walls.east),
+                   through_y = fmax(grid.walls.south - y, y - grid.walls.north);
       cells = 2 * fmax(fmax(through_x, through_y), fmax(-z, 0.0));
     }
     atomic_max_positive(farthest, cells < 1e30 ? static_cast<float>(cells) : 1e30f);
@@ -247,14 +263,14 @@ struct AcceptStep {
   ParticleView<Real> points;
   Materials<Real> materials;
   Clock* clock;
-  NodeArrays nodes;                       // velocity, acceleration: at the start
-  const Vec3<double>* new_velocity;       // at the end; null in statics
+  NodeArrays nodes;                  // velocity, acceleration: at the start
+  const Vec3<double>* new_velocity;  // at the end; null in statics
   const Vec3<double>* new_acceleration;
   const Vec3<double>* strain_displacement;  // what the strain comes from: u, or dt times the remapped velocity
-  double kept;                            // share of the points' velocity finer than the grid that stays
+  double kept;                              // share of the points' velocity finer than the grid that stays
   bool affine, dilatant;
-  bool speeds, deforms;                   // MUSL takes the velocity first and the rest later
-  MeanDilationView<Real> means;           // of strain_displacement
+  bool speeds, deforms;          // MUSL takes the velocity first and the rest later
+  MeanDilationView<Real> means;  // of strain_displacement
 
   TALUS_HD void operator()(int p) const {
     const PointGradients<Real, Shape> g(grid, points, p);
@@ -333,7 +349,8 @@ struct AcceptStep {
       return;
     }
     const Real steep = Real(1) + g.s.slope_x * g.s.slope_x + g.s.slope_y * g.s.slope_y;
-    const Real wave_speed = points.material ? materials.list[points.material[p]].wave_speed : materials.list[0].wave_speed;
+    const Real wave_speed =
+        points.material ? materials.list[points.material[p]].wave_speed : materials.list[0].wave_speed;
     const Real waves = wave_speed * sqrt(Real(2) * g.across * g.across + steep * g.up * g.up);
     atomic_max_positive(&clock->rate_bits, static_cast<float>(waves + speed * (g.across + g.across + g.up)));
     atomic_max_positive(&clock->speed_bits, static_cast<float>(speed));
@@ -352,7 +369,8 @@ struct ScatterVelocity : PointScatter<Real, Shape> {
   struct Source : PointGradients<Real, Shape> {
     Vec3<double> momentum;
     TALUS_HD Source(const ScatterVelocity& k, int p) : PointGradients<Real, Shape>(k.grid, k.points, p) {
-      momentum = widen(k.points.velocity_of(p)) * static_cast<double>(k.points.volume[p] * k.materials.density(k.points.material, p));
+      momentum = widen(k.points.velocity_of(p)) *
+                 static_cast<double>(k.points.volume[p] * k.materials.density(k.points.material, p));
     }
   };
   using Sums = Vec3<double>;
@@ -360,7 +378,8 @@ struct ScatterVelocity : PointScatter<Real, Shape> {
   TALUS_HD void operator()(int p) const { scatter_point(*this, p); }
   TALUS_HD void add(const Source& g, int q, Sums (&sums)[Base::deep]) const {
     TALUS_UNROLL
-    for (int c = 0; c < Base::deep; ++c) sums[c] += g.momentum * static_cast<double>(g.weight(Base::along_x(q), Base::along_y(q), c));
+    for (int c = 0; c < Base::deep; ++c)
+      sums[c] += g.momentum * static_cast<double>(g.weight(Base::along_x(q), Base::along_y(q), c));
   }
   TALUS_HD void give_to(int at, const Sums& sums) const { scatter_add(&momentum[at], sums); }
   TALUS_HD static void store(const Sums& sums, double* to) { put(sums, to); }

@@ -23,28 +23,33 @@ TALUS_HD Sym3<double> without(const Sym3<double>& projector, const Vec3<double>&
 
 /// What a node is held by.
 struct Constraints {
-  Sym3<double>* walls = nullptr;    // directions that rollers and fixed walls leave free
-  Vec3<double>* normal = nullptr;   // of the surface it can touch
-  double* friction = nullptr;       // coefficient there
-  double* traction = nullptr;       // of the bed, besides friction [N]; null where the law knows none
-  double* limit = nullptr;          // what friction can hold: the coefficient times the reaction found last, and the traction [N]
-  Vec3<double>* along = nullptr;    // where it would slip, or began to; zero once it has changed its mind too often. `once`: its way in the step at the velocity it begins with [m]
+  Sym3<double>* walls = nullptr;   // directions that rollers and fixed walls leave free
+  Vec3<double>* normal = nullptr;  // of the surface it can touch
+  double* friction = nullptr;      // coefficient there
+  double* traction = nullptr;      // of the bed, besides friction [N]; null where the law knows none
+  double* limit =
+      nullptr;  // what friction can hold: the coefficient times the reaction found last, and the traction [N]
+  Vec3<double>* along = nullptr;     // where it would slip, or began to; zero once it has changed its mind too often.
+                                     // `once`: its way in the step at the velocity it begins with [m]
   unsigned char* changes = nullptr;  // in this step: between stick and slip, and sixteen for every time it closed
-  double slip = 0;                  // slip over which friction grows to its limit, for nodes that changed too often [m]
-  double nudge = 0;                 // slip that a node which starts to slip is ahead [m]
-  bool coupled = false;             // the derivative of the reaction stands in the friction's: not symmetric
-  bool once = false;                // one linear solve: friction is that of `along`, and its derivative the one there
-  const double* pull = nullptr;     // a contact opens when it would have to pull by more than this, or rounding would open it [N]
+  double slip = 0;       // slip over which friction grows to its limit, for nodes that changed too often [m]
+  double nudge = 0;      // slip that a node which starts to slip is ahead [m]
+  bool coupled = false;  // the derivative of the reaction stands in the friction's: not symmetric
+  bool once = false;     // one linear solve: friction is that of `along`, and its derivative the one there
+  const double* pull =
+      nullptr;  // a contact opens when it would have to pull by more than this, or rounding would open it [N]
 
-  /// A node may change between stick and slip so often in a step (more made more cuts: decision 0006); then its friction is smoothed instead. One that has closed so often stays closed to the step's end.
+  /// A node may change between stick and slip so often in a step (more made more cuts: decision 0006); then its
+  /// friction is smoothed instead. One that has closed so often stays closed to the step's end.
   static constexpr int most_changes = 1, closing = 16, most_closings = 3;
   TALUS_HD bool wavers(int n) const { return changes[n] % closing > most_changes; }
   /// Whether anything but the normal acts on node n at the surface it can touch.
   TALUS_HD bool grips(int n) const { return friction[n] > 0 || (traction && traction[n] > 0); }
   TALUS_HD bool stays_closed(int n) const { return changes[n] / closing >= most_closings; }
 
-  /// Friction force of a slipping node for the displacement u and, with `stiffness`, minus its derivative: Coulomb's cone over the displacement of the step, its limit held
-  /// (Tresca), so that it has a potential and its derivative is symmetric. A node that starts to slip has its direction before it has moved.
+  /// Friction force of a slipping node for the displacement u and, with `stiffness`, minus its derivative: Coulomb's
+  /// cone over the displacement of the step, its limit held (Tresca), so that it has a potential and its derivative is
+  /// symmetric. A node that starts to slip has its direction before it has moved.
   TALUS_HD Vec3<double> friction_force(int n, const Vec3<double>& u, Sym3<double>* stiffness) const {
     const double ahead = once ? 1 : wavers(n) ? 0 : nudge, smooth = once ? 1e-12 : wavers(n) ? slip : 1e-3 * nudge;
     const Vec3<double> way = u - normal[n] * dot(u, normal[n]) + along[n] * ahead;
@@ -52,7 +57,7 @@ struct Constraints {
     if (stiffness) {
       const double k = limit[n] / size, l = k / (size * size);
       *stiffness = Sym3<double>{k - l * way.x * way.x, k - l * way.y * way.y, k - l * way.z * way.z,
-                                -l * way.x * way.y, -l * way.y * way.z, -l * way.x * way.z};
+                                -l * way.x * way.y,    -l * way.y * way.z,    -l * way.x * way.z};
     }
     return way * (-limit[n] / size);
   }
@@ -77,7 +82,8 @@ struct PrepareNodes {
     const int i = (block % grid.block_columns_x) * block_side + (inside & 3);
     const int j = (block / grid.block_columns_x) * block_side + (inside >> 2);
     const BlockSlot slot = grid.slots[block];
-    for (int k = slot.first_layer; k < slot.first_layer + slot.layers; ++k) prepare(GridView<Real>::node(slot, i, j, k), i, j, k);
+    for (int k = slot.first_layer; k < slot.first_layer + slot.layers; ++k)
+      prepare(GridView<Real>::node(slot, i, j, k), i, j, k);
   }
 
  private:
@@ -132,8 +138,9 @@ struct PrepareNodes {
     return Touch::slips;
   }
 
-  /// Where the ground bends, or is met, a node comes with a velocity into it. The ground takes that at once, and friction its share of the same
-  /// impulse, as in an explicit step; spread over the step by Newmark's rule it would count four times.
+  /// Where the ground bends, or is met, a node comes with a velocity into it. The ground takes that at once, and
+  /// friction its share of the same impulse, as in an explicit step; spread over the step by Newmark's rule it would
+  /// count four times.
   TALUS_HD static Vec3<double> arrive(const Vec3<double>& v, const Vec3<double>& normal, double friction) {
     return meet_surface(v, normal, friction) - v;
   }
@@ -163,8 +170,8 @@ struct PrepareNodes {
     return true;
   }
 
-  TALUS_HD void meet(const Wall<double>& wall, int i, int j, int k, bool grounded, Vec3<double>& normal, double& friction,
-                     Sym3<double>& freed, Vec3<double>& u) const {
+  TALUS_HD void meet(const Wall<double>& wall, int i, int j, int k, bool grounded, Vec3<double>& normal,
+                     double& friction, Sym3<double>& freed, Vec3<double>& u) const {
     if (!wall.holds(i, j, k)) return;
     Vec3<double> axis{};
     component(axis, wall.axis) = 1;
@@ -207,11 +214,15 @@ struct SquareMomentum {
 /// One thread: one node. Squares of the forces that balance.
 struct SquareForces {
   NodeArrays nodes;
-  TALUS_HD Terms<1> operator()(int n) const { return {{dot(nodes.internal[n], nodes.internal[n]) + dot(nodes.external[n], nodes.external[n])}}; }
+  TALUS_HD Terms<1> operator()(int n) const {
+    return {{dot(nodes.internal[n], nodes.internal[n]) + dot(nodes.external[n], nodes.external[n])}};
+  }
 };
-/// What the unbalanced force is measured against: the forces that balance, and a little of what it takes to stop the body, whose rounding is all that is
-/// unbalanced where no force acts or the step is tiny [N].
-TALUS_HD double force_size(const Balance& balance, double stopping_share) { return sqrt(balance.forces) + stopping_share * sqrt(balance.momentum) + 1e-300; }
+/// What the unbalanced force is measured against: the forces that balance, and a little of what it takes to stop the
+/// body, whose rounding is all that is unbalanced where no force acts or the step is tiny [N].
+TALUS_HD double force_size(const Balance& balance, double stopping_share) {
+  return sqrt(balance.forces) + stopping_share * sqrt(balance.momentum) + 1e-300;
+}
 struct FinishForces {
   Balance* balance;
   double stopping_share, tolerance;  // of a node: the body's by the square root of their number
@@ -226,11 +237,13 @@ struct FirstAcceleration {
   NodeArrays nodes;
   TALUS_HD void operator()(int n) const {
     const double m = nodes.mass[n];
-    nodes.acceleration[n] = m > 0 ? nodes.freed[n] * ((nodes.external[n] - nodes.internal[n]) * (1 / m)) : Vec3<double>{};
+    nodes.acceleration[n] =
+        m > 0 ? nodes.freed[n] * ((nodes.external[n] - nodes.internal[n]) * (1 / m)) : Vec3<double>{};
   }
 };
 
-/// One thread: one node. Local non-viscous damping (Cundall 1987) against the velocity at the start, from the force at the start.
+/// One thread: one node. Local non-viscous damping (Cundall 1987) against the velocity at the start, from the force at
+/// the start.
 struct AddDamping {
   NodeArrays nodes;
   double damping;
@@ -238,10 +251,13 @@ struct AddDamping {
     const Vec3<double> pull = nodes.external[n] - nodes.internal[n], v = nodes.velocity[n];
     nodes.external[n] += Vec3<double>{against(pull.x, v.x), against(pull.y, v.y), against(pull.z, v.z)};
   }
-  TALUS_HD double against(double pull, double v) const { return v == 0 ? 0 : v > 0 ? -damping * fabs(pull) : damping * fabs(pull); }
+  TALUS_HD double against(double pull, double v) const {
+    return v == 0 ? 0 : v > 0 ? -damping * fabs(pull) : damping * fabs(pull);
+  }
 };
 
-/// A slipping node that turns back sticks; true if so. One that has changed too often goes on with smoothed friction instead.
+/// A slipping node that turns back sticks; true if so. One that has changed too often goes on with smoothed friction
+/// instead.
 TALUS_HD bool stick_reversed(const NodeArrays& nodes, const Constraints& held, int n) {
   ++held.changes[n];
   if (held.wavers(n)) return false;
@@ -251,8 +267,8 @@ TALUS_HD bool stick_reversed(const NodeArrays& nodes, const Constraints& held, i
   return true;
 }
 
-/// One thread: one node. The unbalanced force for the displacement u; with `decide` the state of its contact as well. Sums: the force squared, the
-/// force along `change` (where there is one), contacts that changed.
+/// One thread: one node. The unbalanced force for the displacement u; with `decide` the state of its contact as well.
+/// Sums: the force squared, the force along `change` (where there is one), contacts that changed.
 struct MeasureResidual {
   NodeArrays nodes;
   Constraints held;
@@ -285,8 +301,8 @@ struct MeasureResidual {
   }
 
  private:
-  /// What the surface has to balance: forces, and what it takes to bring the velocity at the start to that of the displacement over the step. Velocity into the surface has been
-  /// taken at the start (PrepareNodes).
+  /// What the surface has to balance: forces, and what it takes to bring the velocity at the start to that of the
+  /// displacement over the step. Velocity into the surface has been taken at the start (PrepareNodes).
   TALUS_HD Vec3<double> stopping_force(int n, const Vec3<double>& force) const {
     if (!scheme.dynamic) return force;
     const double dt = scheme.step;
@@ -303,8 +319,8 @@ struct MeasureResidual {
     return true;
   }
 
-  /// The active set: contact opens when it would have to pull, and closes when the node moves in; a stuck node slips when friction cannot hold it, and a slipping one sticks
-  /// when it turns back. True where it changed.
+  /// The active set: contact opens when it would have to pull, and closes when the node moves in; a stuck node slips
+  /// when friction cannot hold it, and a slipping one sticks when it turns back. True where it changed.
   TALUS_HD bool settle_contact(int n, const Vec3<double>& force) const {
     const Vec3<double> normal = held.normal[n];
     const Vec3<double> stop = stopping_force(n, force);
@@ -348,13 +364,15 @@ struct ForgetChanges {
   TALUS_HD void operator()(int) const { balance->changes = 0; }
 };
 
-/// One thread: one node. A trial of the line search that turns a slip back makes the node stick, there and then: beyond that point friction would push it.
+/// One thread: one node. A trial of the line search that turns a slip back makes the node stick, there and then: beyond
+/// that point friction would push it.
 struct StickReversed {
   NodeArrays nodes;
   Constraints held;
   Vec3<double>* start;  // displacement that the line search sets out from
   TALUS_HD Terms<1> operator()(int n) const {
-    if (nodes.touch[n] != Touch::slips || !held.grips(n) || held.wavers(n) || !(dot(nodes.u[n], held.along[n]) < 0)) return {};
+    if (nodes.touch[n] != Touch::slips || !held.grips(n) || held.wavers(n) || !(dot(nodes.u[n], held.along[n]) < 0))
+      return {};
     if (stick_reversed(nodes, held, n)) start[n] = {};
     return {{1.0}};
   }
@@ -371,14 +389,18 @@ struct CloseProduct {
   double inertia;
   const Vec3<double>* x;
   Vec3<double>* y;
-  double bytes(int count) const { return count * static_cast<double>(3 * sizeof(*y) + sizeof(*nodes.mass) + sizeof(*nodes.touch) + sizeof(*nodes.freed)); }
+  double bytes(int count) const {
+    return count *
+           static_cast<double>(3 * sizeof(*y) + sizeof(*nodes.mass) + sizeof(*nodes.touch) + sizeof(*nodes.freed));
+  }
   TALUS_HD void operator()(int n) const {
     Vec3<double> sum = y[n] + x[n] * (nodes.mass[n] * inertia);
     if (nodes.touch[n] == Touch::slips && held.limit[n] > 0) {
       Sym3<double> stiffness;
       const Vec3<double> force = held.friction_force(n, nodes.u[n], &stiffness);
       // The reaction changes by n . sum, and the friction with it.
-      const Vec3<double> share = held.coupled ? force * (dot(held.normal[n], sum) * held.friction[n] / held.limit[n]) : Vec3<double>{};
+      const Vec3<double> share =
+          held.coupled ? force * (dot(held.normal[n], sum) * held.friction[n] / held.limit[n]) : Vec3<double>{};
       sum += stiffness * x[n] - share;
     }
     y[n] = nodes.freed[n] * sum;

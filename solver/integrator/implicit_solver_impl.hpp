@@ -1,5 +1,5 @@
-// Implicit steps: Newton on the unbalanced force of the end of the step, shape functions held at its start. Included by the files
-// that instantiate it.
+// Implicit steps: Newton on the unbalanced force of the end of the step, shape functions held at its start. Included by
+// the files that instantiate it.
 #pragma once
 
 #include <algorithm>
@@ -19,8 +19,8 @@
 
 namespace talus::solver {
 
-/// Statics on few points per cell leaves modes of the splines that no point's gradient sees: the share of the diagonal that holds them in a
-/// factorisation. The change it makes to a step is undone by the next Newton iteration.
+/// Statics on few points per cell leaves modes of the splines that no point's gradient sees: the share of the diagonal
+/// that holds them in a factorisation. The change it makes to a step is undone by the next Newton iteration.
 inline constexpr double static_shift = 1e-12;
 
 /// One thread: one column. Maps of the end of a step.
@@ -30,8 +30,8 @@ struct RecordColumns {
   const int* active;
   const double* mass;
   const Vec3<double>* velocity;  // null in statics
-  double density;         // where all points have the same [kg/m3]
-  const double* volumes;  // of the matter over each column, where they differ [m3]; else null
+  double density;                // where all points have the same [kg/m3]
+  const double* volumes;         // of the matter over each column, where they differ [m3]; else null
   double time;
   MapView maps;
   TALUS_HD void operator()(int c) const {
@@ -57,7 +57,8 @@ struct RecordColumns {
 template <class Real, class Place, class Shape>
 class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   using Base = PointSolver<Real, Place, Shape>;
-  using Base::clock_, Base::contact_, Base::dilatant_, Base::impulses_, Base::grid_, Base::materials_, Base::options_, Base::points_, Base::read_clock, Base::sums_;
+  using Base::clock_, Base::contact_, Base::dilatant_, Base::impulses_, Base::grid_, Base::materials_, Base::options_,
+      Base::points_, Base::read_clock, Base::sums_;
 
  public:
   ImplicitSolverOf(const Scene& scene, const SolveOptions& options, const SolverState& state)
@@ -68,7 +69,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
         step_(options.implicit.step),
         first_(state.clock.accelerated == 0),
         midway_(state.clock.step > 0),
-        single_(std::is_same_v<Real, double> && options.implicit.newton_iterations > 1 && options.implicit.linear_solver != LinearSolver::cholesky),
+        single_(std::is_same_v<Real, double> && options.implicit.newton_iterations > 1 &&
+                options.implicit.linear_solver != LinearSolver::cholesky),
         operator_(options.implicit.form, single_),
         preconditioner_(options.implicit.preconditioner) {
     balance_.upload({Balance{}});
@@ -123,15 +125,19 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   MemoryShares memory() const override {
     const auto sum = [](const auto&... buffers) { return (buffers.bytes() + ... + std::size_t{0}); };
     MemoryShares shares = Base::memory();
-    shares.emplace_back("nodes", sum(mass_, velocity_, arrival_, acceleration_, external_, internal_, u_, residual_, velocity_end_, acceleration_end_, change_, saved_u_, freed_, touch_));
-    shares.emplace_back("bed and walls", sum(node_bed_, normal_, wall_freed_, contact_friction_, traction_, friction_limit_, along_, wavers_, stiffness_));
-    if (contact_.on()) shares.emplace_back("contact forces", sum(springs_, grips_, tractions_, limits_, contact_stiffness_));
+    shares.emplace_back("nodes", sum(mass_, velocity_, arrival_, acceleration_, external_, internal_, u_, residual_,
+                                     velocity_end_, acceleration_end_, change_, saved_u_, freed_, touch_));
+    shares.emplace_back("bed and walls", sum(node_bed_, normal_, wall_freed_, contact_friction_, traction_,
+                                             friction_limit_, along_, wavers_, stiffness_));
+    if (contact_.on())
+      shares.emplace_back("contact forces", sum(springs_, grips_, tractions_, limits_, contact_stiffness_));
     shares.emplace_back("tangents", sum(tangents_, single_tangents_, means_));
     shares.emplace_back("elements", sum(elements_));
     shares.emplace_back("operator", sum(operator_));
     shares.emplace_back("preconditioner", sum(preconditioner_));
     shares.emplace_back("Krylov vectors", sum(cg_, bicgstab_));
-    shares.emplace_back("factor and its matrix", cholesky_.bytes() + static_cast<std::size_t>(cholesky_.factor().factor_bytes()));
+    shares.emplace_back("factor and its matrix",
+                        cholesky_.bytes() + static_cast<std::size_t>(cholesky_.factor().factor_bytes()));
     std::erase_if(shares, [](const auto& share) { return share.second == 0; });
     return shares;
   }
@@ -169,8 +175,18 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     return n;
   }
   Constraints held() {
-    return {wall_freed_.data(), normal_.data(), contact_friction_.data(), traction_.data(), friction_limit_.data(), along_.data(), wavers_.data(), corner_.slip(), corner_.nudge(),
-            options_.implicit.tangent == Tangent::exact, options_.implicit.newton_iterations == 1, &balance_.data()->pull};
+    return {wall_freed_.data(),
+            normal_.data(),
+            contact_friction_.data(),
+            traction_.data(),
+            friction_limit_.data(),
+            along_.data(),
+            wavers_.data(),
+            corner_.slip(),
+            corner_.nudge(),
+            options_.implicit.tangent == Tangent::exact,
+            options_.implicit.newton_iterations == 1,
+            &balance_.data()->pull};
   }
 
   void size_nodes() {
@@ -193,7 +209,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     touch_.resize(n);
     along_.resize(n);
     wavers_.resize(n);
-    const auto numbers = static_cast<std::size_t>(TangentStore<Real>::numbers) * static_cast<std::size_t>(points_.count());
+    const auto numbers =
+        static_cast<std::size_t>(TangentStore<Real>::numbers) * static_cast<std::size_t>(points_.count());
     if (single_) {
       single_tangents_.resize(numbers);
     } else {
@@ -220,15 +237,17 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     corner_.fall = fall(step);
     const Vec3<double>* loads = this->upload_loads(time);
     scatter_points(Place{}, points_.count(), this->grid_.groups(),
-                   ScatterInertia<Real, Shape>{{this->grid_.view(), points_.view()}, materials_, affine_, dynamic_, loads, nodes()});
+                   ScatterInertia<Real, Shape>{
+                       {this->grid_.view(), points_.view()}, materials_, affine_, dynamic_, loads, nodes()});
     const double ramp = options_.gravity_ramp > 0 ? std::min(1.0, time / options_.gravity_ramp) : 1.0;
     const Vec3<double> g{options_.gravity[0] * ramp, options_.gravity[1] * ramp, options_.gravity[2] * ramp};
     const bool predict = dynamic_ && options_.implicit.newton_iterations > 1;
     for_each(Place{}, this->grid_.active_blocks() * block_columns,
-             PrepareNodes<Real>{this->grid_.view(), this->grid_.active_list(), nodes(), held(),
-                                walls_, node_bed_.view(), this->full_base(), g, scheme_, predict});
+             PrepareNodes<Real>{this->grid_.view(), this->grid_.active_list(), nodes(), held(), walls_,
+                                node_bed_.view(), this->full_base(), g, scheme_, predict});
     if (contact_.on()) prepare_surfaces(step, predict);
-    if (dynamic_) sum_each<1>(Place{}, count_, sums_, SquareMomentum{nodes()}, KeepTotals<1>{&balance_.data()->momentum});
+    if (dynamic_)
+      sum_each<1>(Place{}, count_, sums_, SquareMomentum{nodes()}, KeepTotals<1>{&balance_.data()->momentum});
     if (!dynamic_) return;
     const bool accelerates = first_ && !midway_, damps = options_.damping > 0;
     if (!accelerates && !damps) return;
@@ -249,14 +268,19 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     limits_.resize(n);
     contact_stiffness_.resize(n);
     contact_stiffness_.fill_zero();
-    contact_.each(MeasureGrip<Real, Shape>{this->grid_.view(), contact_.view(), nodes(), this->layer_mass(), dynamic_, contact_numbers()});
+    contact_.each(MeasureGrip<Real, Shape>{this->grid_.view(), contact_.view(), nodes(), this->layer_mass(), dynamic_,
+                                           contact_numbers()});
     if (!dynamic_) return;
-    impulses_.run(contact_, this->grid_.view(), ArrivingNodes<Real>{nodes(), predict ? step : 0}, count_, this->layer_mass(), {nullptr, step, true, false});
+    impulses_.run(contact_, this->grid_.view(), ArrivingNodes<Real>{nodes(), predict ? step : 0}, count_,
+                  this->layer_mass(), {nullptr, step, true, false});
   }
   ContactNumbers contact_numbers() {
     const double wave = static_cast<double>(materials_.list[0].wave_speed);
     const double modulus = static_cast<double>(materials_.list[0].density) * wave * wave;  // of uniaxial strain
-    return {springs_.data(), grips_.data(), tractions_.data(), limits_.data(), contact_stiffness_.data(), contact_stiffness * modulus / std::min(this->frame_.cell[0], this->frame_.cell[2])};
+    return {
+        springs_.data(),           grips_.data(),
+        tractions_.data(),         limits_.data(),
+        contact_stiffness_.data(), contact_stiffness * modulus / std::min(this->frame_.cell[0], this->frame_.cell[2])};
   }
 
   /// See FrictionCorner.
@@ -272,19 +296,24 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     internal_.fill_zero();
     average(u_);
     using Stress = StressAt<Real, Shape>;
-    scatter_points(Place{}, points_.count(), this->grid_.groups(),
-                   ScatterForces<Real, Shape, Stress>{{this->grid_.view(), points_.view()},
-                                                      Stress{materials_, dilatant_, definite, means(), with_tangent ? tangents() : TangentStore<Real>{}, u_.data()},
-                                                      internal_.data()});
+    scatter_points(
+        Place{}, points_.count(), this->grid_.groups(),
+        ScatterForces<Real, Shape, Stress>{{this->grid_.view(), points_.view()},
+                                           Stress{materials_, dilatant_, definite, means(),
+                                                  with_tangent ? tangents() : TangentStore<Real>{}, u_.data()},
+                                           internal_.data()});
     if (springs().on()) apply_springs(elements_, springs(), u_, internal_);
-    if (contact_.on()) contact_.each(ScatterContacts<Real, Shape>{this->grid_.view(), contact_.view(), nodes(), contact_numbers(), with_tangent});
+    if (contact_.on())
+      contact_.each(
+          ScatterContacts<Real, Shape>{this->grid_.view(), contact_.view(), nodes(), contact_numbers(), with_tangent});
   }
 
   MeanDilationView<Real> means() const { return options_.implicit.b_bar ? means_.view() : MeanDilationView<Real>{}; }
 
   /// B-bar: means over the elements for a displacement.
   void average(const NodeVector<Place>& u) {
-    if (options_.implicit.b_bar) means_.measure(elements_, this->grid_.view(), points_.view(), materials_, dilatant_, u.data());
+    if (options_.implicit.b_bar)
+      means_.measure(elements_, this->grid_.view(), points_.view(), materials_, dilatant_, u.data());
   }
 
   /// On nodes with less than a tenth of a full one's mass, in statics.
@@ -292,18 +321,22 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     if (dynamic_) return {};
     const double h = this->frame_.cell[0], hz = this->frame_.cell[2];
     const double full = static_cast<double>(materials_.list[0].density) * h * h * hz;
-    return {mass_.data(), 0.1 * full, options_.implicit.filler * 2 * static_cast<double>(materials_.list[0].shear_modulus) * std::min(h, hz)};
+    return {mass_.data(), 0.1 * full,
+            options_.implicit.filler * 2 * static_cast<double>(materials_.list[0].shear_modulus) * std::min(h, hz)};
   }
 
   /// The unbalanced force for u_, with what `held` and the contacts' states say about it.
   Balance measure_residual(bool decide) {
     const ProfilePhase<Place> phase("residual and contact");
     if (decide) {
-      if (contact_.on()) contact_.each(RenewLimits<Real, Shape>{this->grid_.view(), contact_.view(), nodes(), contact_numbers()});
+      if (contact_.on())
+        contact_.each(RenewLimits<Real, Shape>{this->grid_.view(), contact_.view(), nodes(), contact_numbers()});
       const double each = options_.implicit.newton_tolerance / std::sqrt(static_cast<double>(std::max(count_, 1)));
       sum_each<1>(Place{}, count_, sums_, SquareForces{nodes()}, FinishForces{balance_.data(), stopping_share(), each});
     }
-    sum_each<3>(Place{}, count_, sums_, MeasureResidual{nodes(), held(), scheme_, decide, decide ? nullptr : change_.data()}, FinishResidual{balance_.data()});
+    sum_each<3>(Place{}, count_, sums_,
+                MeasureResidual{nodes(), held(), scheme_, decide, decide ? nullptr : change_.data()},
+                FinishResidual{balance_.data()});
     const Balance balance = balance_.download().front();
     for_each(Place{}, 1, ForgetChanges{balance_.data()});
     return balance;
@@ -329,7 +362,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     const ImplicitOptions& o = options_.implicit;
     const bool direct = o.linear_solver == LinearSolver::cholesky;
     const bool preconditioned = !direct && NodePreconditioner<Real, Place, Shape>::by_elements(o.preconditioner);
-    if (dynamic_ && !direct && !preconditioned && o.form == Operator::points && !o.b_bar) return;  // nothing goes by elements
+    if (dynamic_ && !direct && !preconditioned && o.form == Operator::points && !o.b_bar)
+      return;  // nothing goes by elements
     elements_.build(this->grid_.view(), points_.view());
     if (o.b_bar) means_.begin_step(elements_, points_.count());
     if (direct) {
@@ -394,16 +428,17 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     return solved && farthest_move() <= 1;
   }
 
-  /// u += s change with the largest s = 1, 1/2, 1/4 ... after which less force is unbalanced, or less of it along the change: a
-  /// sheet that must turn passes through larger forces on its way, but downhill in energy. Leaves the tangents there too: the first share is nearly always taken,
-  /// and the next iteration begins with them.
+  /// u += s change with the largest s = 1, 1/2, 1/4 ... after which less force is unbalanced, or less of it along the
+  /// change: a sheet that must turn passes through larger forces on its way, but downhill in energy. Leaves the
+  /// tangents there too: the first share is nearly always taken, and the next iteration begins with them.
   bool search(double before, double size) {
     copy(u_, saved_u_);
     const double downhill = std::abs(dot(residual_, change_));
     double share = 1;
     for (int halving = 0; halving < 10; ++halving, share *= 0.5) {
       axpby(share, change_, 1.0, u_);
-      sum_each<1>(Place{}, count_, sums_, StickReversed{nodes(), held(), saved_u_.data()}, FinishReversals{balance_.data()});
+      sum_each<1>(Place{}, count_, sums_, StickReversed{nodes(), held(), saved_u_.data()},
+                  FinishReversals{balance_.data()});
       measure_stress(true);
       const Balance balance = measure_residual(false);
       const bool stuck = balance.changes > 0;
@@ -423,8 +458,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     stats.linear += report.iterations;
     if (report.indefinite) {
       stats.indefinite = true;
-      // Compression makes the tangent of a sparsely filled cell indefinite; without that part it is one of a convex energy, slower but
-      // sure to lead downhill.
+      // Compression makes the tangent of a sparsely filled cell indefinite; without that part it is one of a convex
+      // energy, slower but sure to lead downhill.
       measure_stress(true, true);
       report = direct ? factorise() : iterate(tolerance);
       stats.linear += report.iterations;
@@ -439,7 +474,9 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   HeldNodes held_nodes() {
     stiffness_.resize(static_cast<std::size_t>(count_));
     for_each(Place{}, count_, FrictionStiffness{nodes(), held(), stiffness_.data()});
-    if (contact_.on()) contact_.each(AddContactDiagonal<Real, Shape>{this->grid_.view(), contact_.view(), mass_.data(), contact_stiffness_.data(), stiffness_.data()});
+    if (contact_.on())
+      contact_.each(AddContactDiagonal<Real, Shape>{this->grid_.view(), contact_.view(), mass_.data(),
+                                                    contact_stiffness_.data(), stiffness_.data()});
     return {count_, mass_.data(), freed_.data(), scheme_.inertia(), dynamic_ ? 0 : static_shift, stiffness_.data()};
   }
 
@@ -456,7 +493,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     refresh_operator();
     const ProfilePhase<Place> phase("conjugate gradients");
     const ImplicitOptions& o = options_.implicit;
-    if (o.linear_solver == LinearSolver::pcg) return cg_.solve(residual_, change_, tolerance, o.linear_iterations, LinearSystem{*this});
+    if (o.linear_solver == LinearSolver::pcg)
+      return cg_.solve(residual_, change_, tolerance, o.linear_iterations, LinearSystem{*this});
     LinearSystem system{*this};
     const auto multiply = [&](const NodeVector<Place>& x, NodeVector<Place>& y) {
       y.fill_zero();
@@ -473,31 +511,51 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     void product(const NodeVector<Place>& x, NodeVector<Place>& y, const CgState* state = nullptr) {
       solver.operator_.apply(x, y, state);
       if (!solver.contact_.on()) return;
-      solver.contact_.each(ApplyContacts<Real, Shape>{solver.grid_.view(), solver.contact_.view(), solver.mass_.data(), solver.contact_stiffness_.data(), x.data(), y.data()});
+      solver.contact_.each(ApplyContacts<Real, Shape>{solver.grid_.view(), solver.contact_.view(), solver.mass_.data(),
+                                                      solver.contact_stiffness_.data(), x.data(), y.data()});
     }
     CloseProduct close(const NodeVector<Place>& x, NodeVector<Place>& y) {
       return {solver.nodes(), solver.held(), solver.scheme_.inertia(), x.data(), y.data()};
     }
-    void precondition(const NodeVector<Place>& r, NodeVector<Place>& z, CgState* state) { solver.preconditioner_.apply(r, z, state); }
-    void precondition_after(const talus::detail::StepAlong& step, const NodeVector<Place>& r, NodeVector<Place>& z, CgState* state) { solver.preconditioner_.apply_after(step, r, z, state); }
+    void precondition(const NodeVector<Place>& r, NodeVector<Place>& z, CgState* state) {
+      solver.preconditioner_.apply(r, z, state);
+    }
+    void precondition_after(const talus::detail::StepAlong& step, const NodeVector<Place>& r, NodeVector<Place>& z,
+                            CgState* state) {
+      solver.preconditioner_.apply_after(step, r, z, state);
+    }
   };
 
-  /// How far the points move [cells]. Shape functions stand still during a step, and points must not outrun them: one cell at most.
+  /// How far the points move [cells]. Shape functions stand still during a step, and points must not outrun them: one
+  /// cell at most.
   double farthest_move() {
     farthest_.upload({0});
-    for_each(Place{}, points_.count(), MeasureMotion<Real, Shape>{this->grid_.view(), points_.view(), u_.data(), dynamic_, farthest_.data()});
+    for_each(Place{}, points_.count(),
+             MeasureMotion<Real, Shape>{this->grid_.view(), points_.view(), u_.data(), dynamic_, farthest_.data()});
     return static_cast<double>(positive_from_bits(farthest_.download().front()));
   }
 
   void accept(const Clock& clock, double step) {
     const ProfilePhase<Place> phase("grid to points");
     if (contact_.on()) {
-      contact_.each(KeepContacts<Real, Shape>{this->grid_.view(), contact_.view(), nodes(), contact_numbers(), step, dynamic_ ? impulses_.impulses() : nullptr});
+      contact_.each(KeepContacts<Real, Shape>{this->grid_.view(), contact_.view(), nodes(), contact_numbers(), step,
+                                              dynamic_ ? impulses_.impulses() : nullptr});
     }
     for_each(Place{}, count_, EndOfStep{nodes(), scheme_, velocity_end_.data(), acceleration_end_.data()});
-    AcceptStep<Real, Shape> step_kernel{this->grid_.view(), points_.view(), materials_, clock_.data(), nodes(),
-                                        dynamic_ ? velocity_end_.data() : nullptr, acceleration_end_.data(), u_.data(),
-                                        clock.share_kept(step, rate_), affine_, dilatant_, true, true, means()};
+    AcceptStep<Real, Shape> step_kernel{this->grid_.view(),
+                                        points_.view(),
+                                        materials_,
+                                        clock_.data(),
+                                        nodes(),
+                                        dynamic_ ? velocity_end_.data() : nullptr,
+                                        acceleration_end_.data(),
+                                        u_.data(),
+                                        clock.share_kept(step, rate_),
+                                        affine_,
+                                        dilatant_,
+                                        true,
+                                        true,
+                                        means()};
     const bool musl = dynamic_ && options_.stress_update == StressUpdate::modified;
     if (musl) {
       step_kernel.deforms = false;
@@ -516,10 +574,9 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     for_each(Place{}, points_.count(), step_kernel);
     this->measure_columns();
     for_each(Place{}, this->grid_.active_blocks() * block_columns,
-             RecordColumns<Real>{this->grid_.view(), this->grid_.active_list(), mass_.data(),
-                                 dynamic_ ? velocity_end_.data() : nullptr, static_cast<double>(materials_.list[0].density),
-                                 this->column_volumes(), clock.time,
-                                 this->maps()});
+             RecordColumns<Real>{
+                 this->grid_.view(), this->grid_.active_list(), mass_.data(), dynamic_ ? velocity_end_.data() : nullptr,
+                 static_cast<double>(materials_.list[0].density), this->column_volumes(), clock.time, this->maps()});
   }
 
   bool affine_, dynamic_;
@@ -538,8 +595,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   ElementList<Real, Place, Shape> elements_;
   MeanDilation<Real, Place, Shape> means_;
   Walls<double> walls_;
-  NodeVector<Place> velocity_, arrival_, acceleration_, external_, internal_, u_, residual_, normal_, along_, velocity_end_,
-      acceleration_end_, change_, saved_u_;
+  NodeVector<Place> velocity_, arrival_, acceleration_, external_, internal_, u_, residual_, normal_, along_,
+      velocity_end_, acceleration_end_, change_, saved_u_;
   Buffer<Sym3<double>, Place> freed_, wall_freed_, stiffness_;
   Buffer<Touch, Place> touch_;
   Buffer<unsigned char, Place> wavers_;  // changes between stick and slip
@@ -556,7 +613,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
 /// A solver of one precision in the place asked for.
 template <class Real>
-std::unique_ptr<Solver> make_implicit_solver_of(const Scene& scene, const SolveOptions& options, On on, const SolverState& state) {
+std::unique_ptr<Solver> make_implicit_solver_of(const Scene& scene, const SolveOptions& options, On on,
+                                                const SolverState& state) {
   return with_shape(options.shape, [&](auto shape) -> std::unique_ptr<Solver> {
     using Shape = decltype(shape);
 #if TALUS_FOR_GPU

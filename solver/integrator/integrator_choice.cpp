@@ -9,12 +9,12 @@
 namespace talus::solver {
 namespace {
 
-constexpr double flow_cfl = 10;     // CFL steps of an implicit step in a flow
-constexpr double still = 1e-3;      // cells that nothing moves further than in such a step: at rest, or nearly
-constexpr double reach = 0.25;      // cells that a point may move in an implicit step
-constexpr double least_cfl = 3;     // shorter implicit steps cannot pay
-constexpr double first_price = 3;   // batches of explicit steps that the first trial is taken to cost
-constexpr double hopeless = 4;      // times as dear: the trial ends after its first step
+constexpr double flow_cfl = 10;    // CFL steps of an implicit step in a flow
+constexpr double still = 1e-3;     // cells that nothing moves further than in such a step: at rest, or nearly
+constexpr double reach = 0.25;     // cells that a point may move in an implicit step
+constexpr double least_cfl = 3;    // shorter implicit steps cannot pay
+constexpr double first_price = 3;  // batches of explicit steps that the first trial is taken to cost
+constexpr double hopeless = 4;     // times as dear: the trial ends after its first step
 
 const char* name_of(Integrator i) { return i == Integrator::explicit_ ? "explicit" : "newmark"; }
 
@@ -63,7 +63,8 @@ bool IntegratorChoice::end_trial() {
   const bool stays = tried < better * before;
   if (stays) {
     patience_ = 1;
-    news_ = fmt::format("{} steps from here on: {:.3g} s of wall time per simulated second instead of {:.3g} s{}", name_of(current_), tried, before,
+    news_ = fmt::format("{} steps from here on: {:.3g} s of wall time per simulated second instead of {:.3g} s{}",
+                        name_of(current_), tried, before,
                         current_ == Integrator::newmark ? fmt::format(", in steps of {:.3g} s", implicit_step_) : "");
   } else {
     patience_ = std::min(2 * patience_, most_patience);

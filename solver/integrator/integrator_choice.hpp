@@ -1,4 +1,5 @@
-// integrator = "auto": explicit or Newmark steps, whichever take less wall time per simulated time, found by trying both now and then.
+// integrator = "auto": explicit or Newmark steps, whichever take less wall time per simulated time, found by trying
+// both now and then.
 #pragma once
 
 #include <string>
@@ -14,19 +15,20 @@ struct BatchCost {
   double speed = 0;                // of the fastest point [m/s]
 };
 
-/// Runs one integrator, tries the other for a few steps, and goes on with the cheaper. Trials take no more than a twentieth of the time, less where they keep
-/// turning out the same.
+/// Runs one integrator, tries the other for a few steps, and goes on with the cheaper. Trials take no more than a
+/// twentieth of the time, less where they keep turning out the same.
 class IntegratorChoice {
  public:
   /// `cell`: the smaller of spacing and layer height [m]; `largest_step` [s].
   IntegratorChoice(double cell, double largest_step) : cell_(cell), largest_step_(largest_step) {}
 
   Integrator current() const { return current_; }
-  /// Length of implicit steps from here on: ten CFL steps in a flow, where longer ones miss its way; at rest, or nearly, as long as nothing moves by more than
-  /// a quarter of a cell [s].
+  /// Length of implicit steps from here on: ten CFL steps in a flow, where longer ones miss its way; at rest, or
+  /// nearly, as long as nothing moves by more than a quarter of a cell [s].
   double implicit_step() const { return implicit_step_; }
 
-  /// Takes note of a batch. True when the solver must be built anew: for the other integrator, or for implicit steps of another length.
+  /// Takes note of a batch. True when the solver must be built anew: for the other integrator, or for implicit steps of
+  /// another length.
   bool note(const BatchCost& batch);
   /// The implicit step failed beyond rescue: back to explicit ones.
   void note_failure(double wall);
@@ -55,10 +57,10 @@ class IntegratorChoice {
   Integrator current_ = Integrator::explicit_;
   bool trying_ = false;
   Cost explicit_, implicit_;
-  double trial_wall_ = 0;     // what the trial under way, or the last one, took [s]
-  double wall_since_ = 0;     // the last trial [s]
-  double patience_ = 1;       // grows while trials change nothing
-  int batches_ = 0;           // since the last turn
+  double trial_wall_ = 0;                                       // what the trial under way, or the last one, took [s]
+  double wall_since_ = 0;                                       // the last trial [s]
+  double patience_ = 1;                                         // grows while trials change nothing
+  int batches_ = 0;                                             // since the last turn
   double implicit_step_ = 0, wanted_step_ = 0, wave_step_ = 0;  // [s]
   double speed_at_trial_ = -1, speed_ = 0;
   std::string news_;

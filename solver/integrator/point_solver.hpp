@@ -30,8 +30,9 @@ class BedOn {
     if (columns.empty()) return;
     std::vector<Bed<Number>> beds;
     for (const Bed<double>& b : columns) {
-      beds.push_back({static_cast<Number>(b.coefficient), static_cast<Number>(b.peak), static_cast<Number>(b.characteristic_speed),
-                      static_cast<Number>(b.drag), static_cast<Number>(b.cohesion)});
+      beds.push_back({static_cast<Number>(b.coefficient), static_cast<Number>(b.peak),
+                      static_cast<Number>(b.characteristic_speed), static_cast<Number>(b.drag),
+                      static_cast<Number>(b.cohesion)});
     }
     columns_.upload(beds);
     friction_.columns = columns_.data();
@@ -47,7 +48,8 @@ class BedOn {
 template <class Real, class Place, class Shape>
 class PointSolver : public Solver {
  public:
-  PointSolver(const Scene& scene, const SolveOptions& options, const SolverState& state, ParticleFields fields, int drift)
+  PointSolver(const Scene& scene, const SolveOptions& options, const SolverState& state, ParticleFields fields,
+              int drift)
       : options_(options),
         materials_(make_materials<Real>(options, scene.grid.spacing, scene.grid.layer_height)),
         dilatant_(fields.plastic_volume),
@@ -92,7 +94,8 @@ class PointSolver : public Solver {
     constexpr int rows = MeasureEnergies<Real, Shape>::rows;
     totals_.resize(rows);
     const Vec3<double> g{options_.gravity[0], options_.gravity[1], options_.gravity[2]};
-    sum_each<rows>(Place{}, points_.count(), sums_, MeasureEnergies<Real, Shape>{grid_.view(), points_.view(), materials_, g, dilatant_},
+    sum_each<rows>(Place{}, points_.count(), sums_,
+                   MeasureEnergies<Real, Shape>{grid_.view(), points_.view(), materials_, g, dilatant_},
                    KeepTotals<rows>{totals_.data()});
     const std::vector<double> total = totals_.download();
     return {total[0], total[1], total[2], total[3], {total[4], total[5], total[6]}};
@@ -114,9 +117,11 @@ class PointSolver : public Solver {
   const GroundTables& ground() const override { return grid_.ground(); }
   int particle_count() const override { return points_.count(); }
   MemoryShares memory() const override {
-    MemoryShares shares{{"points", points_.bytes()},
-                        {"grid", grid_.bytes() + bed_.bytes()},
-                        {"maps and records", sums_.bytes() + column_volumes_.bytes() + thickness_.bytes() + peak_thickness_.bytes() + peak_speed_.bytes() + peak_pressure_.bytes() + arrival_.bytes()}};
+    MemoryShares shares{
+        {"points", points_.bytes()},
+        {"grid", grid_.bytes() + bed_.bytes()},
+        {"maps and records", sums_.bytes() + column_volumes_.bytes() + thickness_.bytes() + peak_thickness_.bytes() +
+                                 peak_speed_.bytes() + peak_pressure_.bytes() + arrival_.bytes()}};
     if (const std::size_t sorting = sort_space_bytes(Place{}); sorting > 0) shares.emplace_back("sorting", sorting);
     if (contact_.on()) shares.emplace_back("contact points", contact_.bytes() + impulses_.bytes());
     return shares;
@@ -124,7 +129,8 @@ class PointSolver : public Solver {
 
  protected:
   static bool needs_plastic_volume(const SolveOptions& o) {
-    return o.any_material([](const MaterialOptions& m) { return m.model == MaterialModel::drucker_prager && m.dilatancy_angle > 0; });
+    return o.any_material(
+        [](const MaterialOptions& m) { return m.model == MaterialModel::drucker_prager && m.dilatancy_angle > 0; });
   }
   /// Arrays that the scene's materials and loads need.
   static void add_fields(const SolveOptions& o, ParticleFields& f) {
@@ -135,7 +141,8 @@ class PointSolver : public Solver {
   /// Where densities differ, mass does not tell the thickness: volumes over the columns, for the maps.
   void measure_columns() {
     if (!options_.densities_differ()) return;
-    column_volumes_.resize(static_cast<std::size_t>(grid_.shape().columns) * static_cast<std::size_t>(grid_.shape().rows));
+    column_volumes_.resize(static_cast<std::size_t>(grid_.shape().columns) *
+                           static_cast<std::size_t>(grid_.shape().rows));
     column_volumes_.fill_zero();
     for_each_grouped(Place{}, points_.count(), grid_.groups(),
                      ScatterThickness<Real, Shape>{points_.view(), grid_.shape().columns, column_volumes_.data()});
@@ -152,7 +159,8 @@ class PointSolver : public Solver {
 
   /// Mass of a base node under a full layer [kg].
   double full_base() const {
-    return Shape::edge_share * static_cast<double>(materials_.list[0].density) * frame_.cell[0] * frame_.cell[1] * frame_.cell[2];
+    return Shape::edge_share * static_cast<double>(materials_.list[0].density) * frame_.cell[0] * frame_.cell[1] *
+           frame_.cell[2];
   }
   Clock read_clock() const { return clock_.download().front(); }
   MapView maps() {

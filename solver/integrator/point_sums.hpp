@@ -43,13 +43,10 @@ struct MeasureEnergies {
     const double x = (points.cell_x[p] + static_cast<double>(points.offset_x[p])) * grid.spacing;
     const double y = (points.cell_y[p] + static_cast<double>(points.offset_y[p])) * grid.spacing;
     const double z = height(p);
-    return {{0.5 * mass * (vx * vx + vy * vy + vz * vz),
-             -mass * (gravity.x * x + gravity.y * y + gravity.z * z),
-             volume * static_cast<double>(elastic_energy(materials.of(points.material, points.plastic_shear, p), state)),
-             volume,
-             mass * vx,
-             mass * vy,
-             mass * vz}};
+    return {
+        {0.5 * mass * (vx * vx + vy * vy + vz * vz), -mass * (gravity.x * x + gravity.y * y + gravity.z * z),
+         volume * static_cast<double>(elastic_energy(materials.of(points.material, points.plastic_shear, p), state)),
+         volume, mass * vx, mass * vy, mass * vz}};
   }
 
  private:
@@ -60,7 +57,8 @@ struct MeasureEnergies {
     const MapWeights<Real, Shape> w(points, p);
     double ground = 0;
     for (int b = 0; b < Shape::width; ++b) {
-      for (int a = 0; a < Shape::width; ++a) ground += w.x[a] * w.y[b] * static_cast<double>(grid.terrain[grid.column(w.i + a, w.j + b)]);
+      for (int a = 0; a < Shape::width; ++a)
+        ground += w.x[a] * w.y[b] * static_cast<double>(grid.terrain[grid.column(w.i + a, w.j + b)]);
     }
     return zeta + ground;
   }

@@ -11,10 +11,14 @@ std::unique_ptr<Solver> make_explicit_solver_of(const Scene&, const SolveOptions
 template <class Real>
 std::unique_ptr<Solver> make_implicit_solver_of(const Scene&, const SolveOptions&, On, const SolverState&);
 // Instantiated in {ex,im}plicit_solver_{single,double}.cu.
-extern template std::unique_ptr<Solver> make_explicit_solver_of<float>(const Scene&, const SolveOptions&, On, const SolverState&);
-extern template std::unique_ptr<Solver> make_explicit_solver_of<double>(const Scene&, const SolveOptions&, On, const SolverState&);
-extern template std::unique_ptr<Solver> make_implicit_solver_of<float>(const Scene&, const SolveOptions&, On, const SolverState&);
-extern template std::unique_ptr<Solver> make_implicit_solver_of<double>(const Scene&, const SolveOptions&, On, const SolverState&);
+extern template std::unique_ptr<Solver> make_explicit_solver_of<float>(const Scene&, const SolveOptions&, On,
+                                                                       const SolverState&);
+extern template std::unique_ptr<Solver> make_explicit_solver_of<double>(const Scene&, const SolveOptions&, On,
+                                                                        const SolverState&);
+extern template std::unique_ptr<Solver> make_implicit_solver_of<float>(const Scene&, const SolveOptions&, On,
+                                                                       const SolverState&);
+extern template std::unique_ptr<Solver> make_implicit_solver_of<double>(const Scene&, const SolveOptions&, On,
+                                                                        const SolverState&);
 
 SolverState first_state(const Scene& scene, const SolveOptions& options) {
   SolverState state;
@@ -26,10 +30,10 @@ SolverState first_state(const Scene& scene, const SolveOptions& options) {
   state.clock.largest_step = options.largest_step;
   state.clock.transfer_time = options.transfer_time;
   state.clock.keeps_budget = options.energy_budget ? 1 : 0;
-  const double speed = std::hypot(options.initial_velocity[0], options.initial_velocity[1], options.initial_velocity[2]);
+  const double speed =
+      std::hypot(options.initial_velocity[0], options.initial_velocity[1], options.initial_velocity[2]);
   const GroundTables ground = make_ground_tables(scene.grid);
-  const auto rate = static_cast<float>(
-      first_rate(scene.grid, ground, scene.points, fastest_wave(options), speed));
+  const auto rate = static_cast<float>(first_rate(scene.grid, ground, scene.points, fastest_wave(options), speed));
   atomic_max_positive(&state.clock.rate_bits, rate);
   return state;
 }
@@ -39,7 +43,7 @@ std::unique_ptr<Solver> make_solver(const Scene& scene, const SolveOptions& opti
 }
 
 std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolveOptions& options, On on,
-                                                       const SolverState& state) {
+                                      const SolverState& state) {
   const bool single = options.precision == Precision::single_;
   if (options.integrator == Integrator::explicit_) {
     return single ? make_explicit_solver_of<float>(scene, options, on, state)

@@ -35,19 +35,20 @@ struct SolverState {
 
 /// What an implicit step took.
 struct StepStats {
-  int newton = 0, linear = 0, cuts = 0;         // iterations; halvings of the step
-  double residual = 0, linear_residual = 0;     // unbalanced force over the forces' size; residual of the last linear solve
-  double over_cfl = 0;                          // step over the CFL step
+  int newton = 0, linear = 0, cuts = 0;  // iterations; halvings of the step
+  double residual = 0,
+         linear_residual = 0;  // unbalanced force over the forces' size; residual of the last linear solve
+  double over_cfl = 0;         // step over the CFL step
   bool indefinite = false;
 };
 
 /// What a batch of steps ended with.
 struct BatchReport {
   Clock clock;
-  bool sorted = false;              // the points have just been sorted: a checkpoint may be taken here
-  double outflow_volume = 0;        // left the domain in this batch [m3]
+  bool sorted = false;        // the points have just been sorted: a checkpoint may be taken here
+  double outflow_volume = 0;  // left the domain in this batch [m3]
   int outflow_count = 0;
-  StepStats stats;                  // implicit: of the step
+  StepStats stats;  // implicit: of the step
 };
 
 using MemoryShares = std::vector<std::pair<std::string, std::size_t>>;
@@ -64,8 +65,8 @@ class Solver {
   /// The points as frames show them: without affine velocity, acceleration, boxes and loads, whose lists are empty.
   virtual ParticleState shown() const = 0;
   virtual Energies energies() = 0;
-  /// Vertical thickness, initial volume over cell area, [rows * columns] [m]; its sum times the cell area is the volume of
-  /// the points to rounding.
+  /// Vertical thickness, initial volume over cell area, [rows * columns] [m]; its sum times the cell area is the volume
+  /// of the points to rounding.
   virtual std::vector<double> thickness() = 0;
   /// What every obstacle was given so far, along x, y and z [N s].
   virtual std::vector<Vec3<double>> obstacle_impulses() const = 0;
@@ -87,8 +88,7 @@ SolverState first_state(const Scene& scene, const SolveOptions& options);
 std::unique_ptr<Solver> make_solver(const Scene& scene, const SolveOptions& options, On on);
 
 /// From a checkpoint; the scene gives the grid only.
-std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolveOptions& options, On on,
-                                                       const SolverState& state);
+std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolveOptions& options, On on, const SolverState& state);
 
 /// cpu or gpu for automatic; throws RecipeError when a GPU is asked for and there is none.
 On choose_place(On wanted);

@@ -6,17 +6,18 @@ namespace talus::solver {
 
 void refuse_step(const Clock& clock, double step, const StepStats& stats, bool dynamic) {
   if (!dynamic && stats.indefinite) {
-    throw NumericalError({fmt::format("step {}, t = {:.6g} s: the equations of equilibrium are singular or unstable", clock.step + 1,
-                                      clock.time),
+    throw NumericalError({fmt::format("step {}, t = {:.6g} s: the equations of equilibrium are singular or unstable",
+                                      clock.step + 1, clock.time),
                           "a body without support, or one that must fall, has no equilibrium",
                           "Hold it with walls or a base law, or use integrator = \"newmark\""});
   }
-  throw NumericalError({fmt::format("step {}, t = {:.6g} s: no convergence even with a step of {:.3g} s (unbalanced force {:.2g} of "
-                                    "the forces, {} Newton and {} linear iterations)",
-                                    clock.step + 1, clock.time, step, stats.residual, stats.newton, stats.linear),
-                        dynamic ? "the step is too long, or the mass tears apart" : "there may be no equilibrium to find",
-                        dynamic ? "Lower [solve.implicit] step_s, or allow more step_cuts"
-                                : "Hold the body with walls, ramp the load more slowly, or use integrator = \"newmark\""});
+  throw NumericalError(
+      {fmt::format("step {}, t = {:.6g} s: no convergence even with a step of {:.3g} s (unbalanced force {:.2g} of "
+                   "the forces, {} Newton and {} linear iterations)",
+                   clock.step + 1, clock.time, step, stats.residual, stats.newton, stats.linear),
+       dynamic ? "the step is too long, or the mass tears apart" : "there may be no equilibrium to find",
+       dynamic ? "Lower [solve.implicit] step_s, or allow more step_cuts"
+               : "Hold the body with walls, ramp the load more slowly, or use integrator = \"newmark\""});
 }
 
 }  // namespace talus::solver

@@ -24,18 +24,20 @@ struct UpdateColumns {
   const int* active;
   Clock* clock;
   Vec4<Real>* nodes;
-  Vec4<Real>* forces;        // in: internal force; out: velocity change of the step (FLIP)
-  Vec3<Real> gravity;        // full [m/s2]
-  double gravity_ramp;       // time over which it grows [s]
+  Vec4<Real>* forces;   // in: internal force; out: velocity change of the step (FLIP)
+  Vec3<Real> gravity;   // full [m/s2]
+  double gravity_ramp;  // time over which it grows [s]
   Walls<Real> walls;
   BaseFriction<Real> friction;
-  Real full_base;            // mass of a base node under a full layer [kg]
-  Real damping;              // Cundall's local factor [-]
-  Real density;              // where all points have the same [kg/m3]
-  const double* volumes;     // of the matter over each column, where they differ [m3]; else null
+  Real full_base;         // mass of a base node under a full layer [kg]
+  Real damping;           // Cundall's local factor [-]
+  Real density;           // where all points have the same [kg/m3]
+  const double* volumes;  // of the matter over each column, where they differ [m3]; else null
   MapView maps;
 
-  double bytes(int) const { return grid.nodes * static_cast<double>((content == NodeContent::force ? 4 : 2) * sizeof(*nodes)); }
+  double bytes(int) const {
+    return grid.nodes * static_cast<double>((content == NodeContent::force ? 4 : 2) * sizeof(*nodes));
+  }
 
   struct Column {
     bool inside = false;
@@ -43,7 +45,8 @@ struct UpdateColumns {
     int column = 0, top_contact = 0;
     BlockSlot slot;
   };
-  /// Of kinetic energy, over a column [J]; what the points give to the grid and get back counts with signs. And what bed and walls gave it [N s].
+  /// Of kinetic energy, over a column [J]; what the points give to the grid and get back counts with signs. And what
+  /// bed and walls gave it [N s].
   struct Losses {
     double contact = 0, damping = 0, transfer = 0, reaction[3] = {0, 0, 0};
     TALUS_HD void operator+=(const Losses& o) {
@@ -108,11 +111,13 @@ struct UpdateColumns {
     }
     const double mass = static_cast<double>(sums.mass);
     const double mean = volumes && volumes[at.column] > 0 ? mass / volumes[at.column] : static_cast<double>(density);
-    record_column(maps, at.column, mass, static_cast<double>(length(sums.momentum)), mean, static_cast<double>(grid.spacing), clock->time);
+    record_column(maps, at.column, mass, static_cast<double>(length(sums.momentum)), mean,
+                  static_cast<double>(grid.spacing), clock->time);
   }
 
  private:
-  TALUS_HD Vec3<Real> update(int n, const Vec4<Real>& node, bool on_ground, int column, int i, int j, int k, decltype(Sums::losses)& losses) const {
+  TALUS_HD Vec3<Real> update(int n, const Vec4<Real>& node, bool on_ground, int column, int i, int j, int k,
+                             decltype(Sums::losses)& losses) const {
     const Real dt = Real(clock->step_size);
     const bool growing = gravity_ramp > 0 && clock->time < gravity_ramp;
     const Vec3<Real> g = growing ? gravity * Real(clock->time / gravity_ramp) : gravity;
@@ -144,7 +149,8 @@ struct UpdateColumns {
         // Forces and impulses of a step act together, on the mean of its velocities: what rests loses nothing.
         const Vec3<Real> mean = (before + v) * Real(0.5);
         const double mass = static_cast<double>(node.w);
-        if (content == NodeContent::force && damping > Real(0)) losses.damping += mass * static_cast<double>(dot(undamped - free, mean));
+        if (content == NodeContent::force && damping > Real(0))
+          losses.damping += mass * static_cast<double>(dot(undamped - free, mean));
         losses.contact += mass * static_cast<double>(dot(free - v, mean));
         losses.transfer += mass * static_cast<double>(dot(v - before, mean));
         losses.reaction[0] += mass * static_cast<double>(v.x - free.x);

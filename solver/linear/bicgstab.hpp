@@ -1,4 +1,5 @@
-// Stabilised bi-conjugate gradients (van der Vorst 1992), preconditioned from the right, for tangents that are not symmetric.
+// Stabilised bi-conjugate gradients (van der Vorst 1992), preconditioned from the right, for tangents that are not
+// symmetric.
 #pragma once
 
 #include "solver/linear/conjugate_gradient.hpp"

@@ -40,7 +40,8 @@ int BlockLayout::most_layers() const {
 LayoutExtent extent_of(const BlockLayout& layout) {
   Range x{1 << 30, -1}, y = x;
   for (const int b : layout.active) {
-    const Range i = columns_of(b % layout.blocks_x(), layout.columns), j = columns_of(b / layout.blocks_x(), layout.rows);
+    const Range i = columns_of(b % layout.blocks_x(), layout.columns),
+                j = columns_of(b / layout.blocks_x(), layout.rows);
     x = {std::min(x.first, i.first), std::max(x.last, i.last)};
     y = {std::min(y.first, j.first), std::max(y.last, j.last)};
   }
@@ -81,9 +82,11 @@ ColumnColours colour_columns(const BlockLayout& layout, int pitch) {
   for (std::size_t a = 0; a < layout.active.size(); ++a) {
     const int block = layout.active[a];
     for (int inside = 0; inside < block_columns; ++inside) {
-      const int i = block % layout.blocks_x() * block_side + (inside & 3), j = block / layout.blocks_x() * block_side + (inside >> 2);
+      const int i = block % layout.blocks_x() * block_side + (inside & 3),
+                j = block / layout.blocks_x() * block_side + (inside >> 2);
       if (i >= layout.columns || j >= layout.rows) continue;
-      of[static_cast<std::size_t>(j % pitch * pitch + i % pitch)].push_back(static_cast<int>(a) * block_columns + inside);
+      of[static_cast<std::size_t>(j % pitch * pitch + i % pitch)].push_back(static_cast<int>(a) * block_columns +
+                                                                            inside);
     }
   }
   ColumnColours colours;

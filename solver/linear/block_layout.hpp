@@ -9,9 +9,9 @@
 namespace talus::solver {
 
 struct BlockLayout {
-  int columns = 0, rows = 0;       // nodes in x and y
-  std::vector<BlockSlot> slots;    // [blocks in y * blocks in x]
-  std::vector<int> active;         // blocks with storage
+  int columns = 0, rows = 0;     // nodes in x and y
+  std::vector<BlockSlot> slots;  // [blocks in y * blocks in x]
+  std::vector<int> active;       // blocks with storage
 
   int blocks_x() const { return (columns + block_side - 1) / block_side; }
   int blocks_y() const { return (rows + block_side - 1) / block_side; }
@@ -28,7 +28,8 @@ LayoutExtent extent_of(const BlockLayout& layout);
 /// Storage for the coarse functions that the stored fine ones are part of, over the same layers.
 BlockLayout coarse_layout(const BlockLayout& fine, TwoScale x, TwoScale y);
 
-/// Columns by colour: those of one colour are `pitch` columns apart in either direction. As numbers in StoredColumns; colour c ends at ends[c].
+/// Columns by colour: those of one colour are `pitch` columns apart in either direction. As numbers in StoredColumns;
+/// colour c ends at ends[c].
 struct ColumnColours {
   std::vector<int> columns, ends;
 };

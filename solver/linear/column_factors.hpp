@@ -32,14 +32,15 @@ struct ColumnNodes {
   TALUS_HD int operator[](int layer) const { return first + layer * block_columns; }
 };
 
-/// Arrays over the stored nodes: D's inverses, and L of the nodes one and two layers higher. Before the factorisation the blocks of the nodes, and those that couple
-/// them to the nodes higher up.
+/// Arrays over the stored nodes: D's inverses, and L of the nodes one and two layers higher. Before the factorisation
+/// the blocks of the nodes, and those that couple them to the nodes higher up.
 struct ColumnFactors {
   Sym3<double>* pivots = nullptr;
   Mat3<double>* above[2] = {};
 };
 
-/// One thread: one column. A pivot that compression has made indefinite is replaced: whatever positive pivots stand, the product is one of conjugate gradients' kind.
+/// One thread: one column. A pivot that compression has made indefinite is replaced: whatever positive pivots stand,
+/// the product is one of conjugate gradients' kind.
 template <class Real, int reach>
 struct FactoriseColumns {
   StoredColumns<Real> columns;
@@ -67,7 +68,8 @@ struct FactoriseColumns {
         Mat3<double> coupling = l;
         if (up == 1 && reach == 2 && k > 0) {  // both reach back to the layer below
           const int below = node[k - 1];
-          coupling = difference(coupling, product_transposed(product(factors.above[1][below], last[0]), factors.above[0][below]));
+          coupling = difference(coupling,
+                                product_transposed(product(factors.above[1][below], last[0]), factors.above[0][below]));
         }
         l = product(coupling, inverse);
       }
@@ -78,9 +80,11 @@ struct FactoriseColumns {
   }
 };
 
-/// z = (L D L^T)^-1 r over one column; r and z may be the same. What some layers need is fetched before they are solved: the loads are then under way together.
+/// z = (L D L^T)^-1 r over one column; r and z may be the same. What some layers need is fetched before they are
+/// solved: the loads are then under way together.
 template <class Real, int reach>
-TALUS_HD void solve_column(const ColumnNodes<Real>& node, const ColumnFactors& factors, const Vec3<double>* r, Vec3<double>* z) {
+TALUS_HD void solve_column(const ColumnNodes<Real>& node, const ColumnFactors& factors, const Vec3<double>* r,
+                           Vec3<double>* z) {
   constexpr int ahead = 4;
   Vec3<double> near[2], v[ahead];  // `near`: of the layers just passed
   Mat3<double> l[ahead][reach];
@@ -94,7 +98,8 @@ TALUS_HD void solve_column(const ColumnNodes<Real>& node, const ColumnFactors& f
     for (int c = 0; c < ahead; ++c) {
       const int k = first + c;
       v[c] = k < node.layers ? r[node[k]] : Vec3<double>{};
-      for (int d = 0; d < reach; ++d) l[c][d] = k < node.layers && k > d ? factors.above[d][node[k - d - 1]] : Mat3<double>{};
+      for (int d = 0; d < reach; ++d)
+        l[c][d] = k < node.layers && k > d ? factors.above[d][node[k - d - 1]] : Mat3<double>{};
     }
     for (int c = 0; c < ahead; ++c) take(c, v[c]);
     for (int c = 0; c < ahead && first + c < node.layers; ++c) z[node[first + c]] = v[c];
@@ -106,7 +111,8 @@ TALUS_HD void solve_column(const ColumnNodes<Real>& node, const ColumnFactors& f
       const int k = last - c;
       v[c] = k >= 0 ? z[node[k]] : Vec3<double>{};
       inverse[c] = k >= 0 ? factors.pivots[node[k]] : Sym3<double>{};
-      for (int u = 0; u < reach; ++u) l[c][u] = k >= 0 && k + u + 1 < node.layers ? transposed(factors.above[u][node[k]]) : Mat3<double>{};
+      for (int u = 0; u < reach; ++u)
+        l[c][u] = k >= 0 && k + u + 1 < node.layers ? transposed(factors.above[u][node[k]]) : Mat3<double>{};
     }
     for (int c = 0; c < ahead; ++c) take(c, inverse[c] * v[c]);
     for (int c = 0; c < ahead && last - c >= 0; ++c) z[node[last - c]] = v[c];

@@ -1,5 +1,5 @@
-// Preconditioned conjugate gradients (Hestenes & Stiefel 1952). Step lengths and the end of the loop are found where the vectors are: the host only looks,
-// now and then, whether it is over.
+// Preconditioned conjugate gradients (Hestenes & Stiefel 1952). Step lengths and the end of the loop are found where
+// the vectors are: the host only looks, now and then, whether it is over.
 #pragma once
 
 #include <algorithm>
@@ -13,9 +13,9 @@ namespace talus {
 
 struct LinearReport {
   int iterations = 0;
-  double residual = 0;        // |b - A x| / |b|
+  double residual = 0;  // |b - A x| / |b|
   bool converged = false;
-  bool indefinite = false;    // met a direction of negative curvature: the tangent is no minimum's
+  bool indefinite = false;  // met a direction of negative curvature: the tangent is no minimum's
 };
 
 /// Where a solve stands, kept beside the vectors.
@@ -87,7 +87,7 @@ struct FinishAngle {
 };
 
 struct BeginCg {
-  const Vec3<double>*b;
+  const Vec3<double>* b;
   Vec3<double>*x, *r, *z, *p, *ap;
   double bytes(int count) const { return 6.0 * count * sizeof(Vec3<double>); }
   TALUS_HD Terms<1> operator()(int n) const {
@@ -142,9 +142,10 @@ struct TurnDirection {
 template <class Place>
 class ConjugateGradient {
  public:
-  /// Solves A x = b from x = 0. `system` has four members: product(p, ap, state), which adds to ap what takes more than one node and may do nothing once `state` has halted;
-  /// close(p, ap), a kernel over the nodes that completes ap; precondition(r, z, state), which leaves z and r . z (detail::FinishAngle);
-  /// precondition_after(step, r, z, state), which does the same after detail::StepAlong, and leaves r . r too.
+  /// Solves A x = b from x = 0. `system` has four members: product(p, ap, state), which adds to ap what takes more than
+  /// one node and may do nothing once `state` has halted; close(p, ap), a kernel over the nodes that completes ap;
+  /// precondition(r, z, state), which leaves z and r . z (detail::FinishAngle); precondition_after(step, r, z, state),
+  /// which does the same after detail::StepAlong, and leaves r . r too.
   template <class System>
   LinearReport solve(const NodeVector<Place>& b, NodeVector<Place>& x, double tolerance, int most, System&& system) {
     const int count = static_cast<int>(b.size());
@@ -154,9 +155,11 @@ class ConjugateGradient {
     state.most = most;
     state_.upload({state});
     CgState* const s = state_.data();
-    sum_each<1>(Place{}, count, sums_, detail::BeginCg{b.data(), x.data(), r_.data(), z_.data(), p_.data(), ap_.data()}, detail::FinishBegin{s});
+    sum_each<1>(Place{}, count, sums_, detail::BeginCg{b.data(), x.data(), r_.data(), z_.data(), p_.data(), ap_.data()},
+                detail::FinishBegin{s});
     system.precondition(r_, z_, s);
-    // As many as the last solve took, then a few at a time: what is started after the end does nothing but take its time.
+    // As many as the last solve took, then a few at a time: what is started after the end does nothing but take its
+    // time.
     loop_.forget();
     int ahead = Place::is_gpu ? std::clamp(last_, 2, 64) : 1;
     for (;;) {

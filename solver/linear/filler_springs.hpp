@@ -1,10 +1,11 @@
-// Statics on a body that does not fill its cells: nodes at its rim carry next to no material, and compression makes the tangent there
-// indefinite (a rim cell turns about a point like a hinge). Weak springs hold such nodes to where the nodes further in say they
-// belong, in each of their elements (cf. the extension of Hoellig, Reif & Wipper 2001).
+// Statics on a body that does not fill its cells: nodes at its rim carry next to no material, and compression makes the
+// tangent there indefinite (a rim cell turns about a point like a hinge). Weak springs hold such nodes to where the
+// nodes further in say they belong, in each of their elements (cf. the extension of Hoellig, Reif & Wipper 2001).
 //
-// Quadratic functions: node n is held to the straight line through its neighbours a and b inwards, k |u_n - 2 u_a + u_b|^2 / 2, which an
-// affine motion, a turn too, does not feel. Linear ones have no third node: n is held to the fullest node of the element, a hundred
-// times more weakly, for a turn does feel that. All act on the displacement of the step, so that no force builds up from step to step.
+// Quadratic functions: node n is held to the straight line through its neighbours a and b inwards, k |u_n - 2 u_a +
+// u_b|^2 / 2, which an affine motion, a turn too, does not feel. Linear ones have no third node: n is held to the
+// fullest node of the element, a hundred times more weakly, for a turn does feel that. All act on the displacement of
+// the step, so that no force builds up from step to step.
 #pragma once
 
 #include "solver/linear/element_list.hpp"
@@ -69,10 +70,11 @@ struct FillerSprings {
 
 /// y += K_springs x
 template <class Real, class Place, class Shape>
-void apply_springs(const ElementList<Real, Place, Shape>& list, const FillerSprings& springs, const NodeVector<Place>& x,
-                   NodeVector<Place>& y);
+void apply_springs(const ElementList<Real, Place, Shape>& list, const FillerSprings& springs,
+                   const NodeVector<Place>& x, NodeVector<Place>& y);
 /// Adds the diagonal blocks of K_springs.
 template <class Real, class Place, class Shape>
-void add_spring_blocks(const ElementList<Real, Place, Shape>& list, const FillerSprings& springs, Buffer<Sym3<double>, Place>& blocks);
+void add_spring_blocks(const ElementList<Real, Place, Shape>& list, const FillerSprings& springs,
+                       Buffer<Sym3<double>, Place>& blocks);
 
 }  // namespace talus::solver

@@ -1,4 +1,5 @@
-// Templates of the linear algebra are compiled once, at the foot of their .cu: for both precisions, both places and all shapes.
+// Templates of the linear algebra are compiled once, at the foot of their .cu: for both precisions, both places and all
+// shapes.
 #pragma once
 
 #include "solver/grid/shape_functions.hpp"
@@ -11,7 +12,8 @@
 
 /// instantiate(Real, Place, Shape) for all there are.
 #if TALUS_FOR_GPU
-#define TALUS_FOR_EACH_INSTANCE(instantiate) TALUS_FOR_EACH_PRECISION(instantiate, OnCpu) TALUS_FOR_EACH_PRECISION(instantiate, OnGpu)
+#define TALUS_FOR_EACH_INSTANCE(instantiate) \
+  TALUS_FOR_EACH_PRECISION(instantiate, OnCpu) TALUS_FOR_EACH_PRECISION(instantiate, OnGpu)
 #else
 #define TALUS_FOR_EACH_INSTANCE(instantiate) TALUS_FOR_EACH_PRECISION(instantiate, OnCpu)
 #endif

@@ -49,14 +49,16 @@ struct MeasureMeans {
         b[n] += Vec3<Real>{dot(pull.a, grad), dot(pull.b, grad), dot(pull.c, grad)} * v;
       }
     }
-    for (int n = 0; n < nodes; ++n) gradient[static_cast<std::size_t>(e) * nodes + static_cast<std::size_t>(n)] = b[n] * (1 / volume);
+    for (int n = 0; n < nodes; ++n)
+      gradient[static_cast<std::size_t>(e) * nodes + static_cast<std::size_t>(n)] = b[n] * (1 / volume);
     increment[e] = dilation / volume;
     Real mean = 0, bulk = 0;
     for (int s = elements.starts[e]; s < elements.starts[e + 1]; ++s) {
       const int p = elements.order[s];
       const PointGradients<Real, Shape> g(grid, points, p);
       const VolumeResponse<Real> r =
-          volume_response(materials.of(points.material, points.plastic_shear, p), state_of(points, p, dilatant), displacement_gradient(grid, g, u), increment[e]);
+          volume_response(materials.of(points.material, points.plastic_shear, p), state_of(points, p, dilatant),
+                          displacement_gradient(grid, g, u), increment[e]);
       mean += points.volume[p] * r.stress;
       bulk += points.volume[p] * r.bulk;
     }
@@ -116,18 +118,19 @@ void MeanDilation<Real, Place, Shape>::begin_step(const ElementList<Real, Place,
 
 template <class Real, class Place, class Shape>
 void MeanDilation<Real, Place, Shape>::measure(const ElementList<Real, Place, Shape>& list, const GridView<Real>& grid,
-                                               const ParticleView<Real>& points, const Materials<Real>& materials, bool dilatant,
-                                               const Vec3<double>* u) {
+                                               const ParticleView<Real>& points, const Materials<Real>& materials,
+                                               bool dilatant, const Vec3<double>* u) {
   for_each(Place{}, list.count(),
-           MeasureMeans<Real, Shape>{grid, points, materials, dilatant, list.view(), u, increment_.data(), stress_.data(),
-                                     stiffness_.data(), gradient_.data()});
+           MeasureMeans<Real, Shape>{grid, points, materials, dilatant, list.view(), u, increment_.data(),
+                                     stress_.data(), stiffness_.data(), gradient_.data()});
 }
 
 template <class Real, class Place, class Shape>
-void apply_means(const ElementList<Real, Place, Shape>& list, const MeanDilationView<Real>& means, const NodeVector<Place>& x,
-                 NodeVector<Place>& y) {
+void apply_means(const ElementList<Real, Place, Shape>& list, const MeanDilationView<Real>& means,
+                 const NodeVector<Place>& x, NodeVector<Place>& y) {
   constexpr int nodes = ElementList<Real, Place, Shape>::nodes_each;
-  for_each_grouped(Place{}, list.count(), list.groups(), ApplyMeans<Real, nodes>{list.view(), means, x.data(), y.data()});
+  for_each_grouped(Place{}, list.count(), list.groups(),
+                   ApplyMeans<Real, nodes>{list.view(), means, x.data(), y.data()});
 }
 
 template <class Real, class Place, class Shape>
@@ -137,11 +140,12 @@ void add_mean_blocks(const ElementList<Real, Place, Shape>& list, const MeanDila
   for_each_grouped(Place{}, list.count(), list.groups(), AddMeanBlocks<Real, nodes>{list.view(), means, blocks.data()});
 }
 
-#define TALUS_INSTANTIATE(Real, Place, Shape)                                                                                      \
-  template class MeanDilation<Real, Place, Shape>;                                                                                 \
-  template void apply_means(const ElementList<Real, Place, Shape>&, const MeanDilationView<Real>&, const NodeVector<Place>&,       \
-                            NodeVector<Place>&);                                                                                   \
-  template void add_mean_blocks(const ElementList<Real, Place, Shape>&, const MeanDilationView<Real>&, Buffer<Sym3<double>, Place>&);
+#define TALUS_INSTANTIATE(Real, Place, Shape)                                                          \
+  template class MeanDilation<Real, Place, Shape>;                                                     \
+  template void apply_means(const ElementList<Real, Place, Shape>&, const MeanDilationView<Real>&,     \
+                            const NodeVector<Place>&, NodeVector<Place>&);                             \
+  template void add_mean_blocks(const ElementList<Real, Place, Shape>&, const MeanDilationView<Real>&, \
+                                Buffer<Sym3<double>, Place>&);
 TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
 
 }  // namespace talus::solver

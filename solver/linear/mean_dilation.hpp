@@ -1,9 +1,10 @@
-// B-bar: the volume change of an element's points replaced by their mean, in stress, tangent and state (Hughes 1980; for
-// finite strain Simo, Taylor & Pister 1985). Without it nearly incompressible material locks.
+// B-bar: the volume change of an element's points replaced by their mean, in stress, tangent and state (Hughes 1980;
+// for finite strain Simo, Taylor & Pister 1985). Without it nearly incompressible material locks.
 //
-// With the mean increment t = sum V_p ln det(I + G_p) / sum V_p of the step, a point's pressure follows from its own history and t; the
-// force uses the element's mean of it, p. So the residual is the derivative of an energy, and its tangent is that of the points
-// without their bulk part, plus kappa V b b^T for each element, b the mean of the gradients of ln det(I + G_p).
+// With the mean increment t = sum V_p ln det(I + G_p) / sum V_p of the step, a point's pressure follows from its own
+// history and t; the force uses the element's mean of it, p. So the residual is the derivative of an energy, and its
+// tangent is that of the points without their bulk part, plus kappa V b b^T for each element, b the mean of the
+// gradients of ln det(I + G_p).
 #pragma once
 
 #include "solver/linear/element_list.hpp"
@@ -15,11 +16,11 @@ namespace talus::solver {
 /// What kernels read of it; null where the scene does not average.
 template <class Real>
 struct MeanDilationView {
-  const int* element_of = nullptr;      // [points]
-  const Real* increment = nullptr;      // mean of ln det(I + G) over the step, [elements]
-  const Real* stress = nullptr;         // mean of the mean Kirchhoff stress [Pa], [elements]
-  const Real* stiffness = nullptr;      // kappa V: volume times the mean bulk response [N m], [elements]
-  const Vec3<Real>* gradient = nullptr; // b [1/m], [elements * W^3]
+  const int* element_of = nullptr;       // [points]
+  const Real* increment = nullptr;       // mean of ln det(I + G) over the step, [elements]
+  const Real* stress = nullptr;          // mean of the mean Kirchhoff stress [Pa], [elements]
+  const Real* stiffness = nullptr;       // kappa V: volume times the mean bulk response [N m], [elements]
+  const Vec3<Real>* gradient = nullptr;  // b [1/m], [elements * W^3]
 
   TALUS_HD bool on() const { return element_of != nullptr; }
   TALUS_HD MeanVolume<Real> at_point(int p) const {
@@ -37,9 +38,11 @@ class MeanDilation {
   /// The points have moved, or have been sorted, and `list` is their elements anew.
   void begin_step(const ElementList<Real, Place, Shape>& list, int points);
 
-  /// Means for the displacement u. Stress and tangent are measured with `materials`, points dilating plastically or not.
-  void measure(const ElementList<Real, Place, Shape>& list, const GridView<Real>& grid, const ParticleView<Real>& points,
-               const Materials<Real>& materials, bool dilatant, const Vec3<double>* u);
+  /// Means for the displacement u. Stress and tangent are measured with `materials`, points dilating plastically or
+  /// not.
+  void measure(const ElementList<Real, Place, Shape>& list, const GridView<Real>& grid,
+               const ParticleView<Real>& points, const Materials<Real>& materials, bool dilatant,
+               const Vec3<double>* u);
 
   MeanDilationView<Real> view() const {
     return {element_of_.data(), increment_.data(), stress_.data(), stiffness_.data(), gradient_.data()};
@@ -56,8 +59,8 @@ class MeanDilation {
 
 /// y += sum kappa V b (b . x)
 template <class Real, class Place, class Shape>
-void apply_means(const ElementList<Real, Place, Shape>& list, const MeanDilationView<Real>& means, const NodeVector<Place>& x,
-                 NodeVector<Place>& y);
+void apply_means(const ElementList<Real, Place, Shape>& list, const MeanDilationView<Real>& means,
+                 const NodeVector<Place>& x, NodeVector<Place>& y);
 /// Adds the diagonal blocks of that.
 template <class Real, class Place, class Shape>
 void add_mean_blocks(const ElementList<Real, Place, Shape>& list, const MeanDilationView<Real>& means,

@@ -13,14 +13,15 @@ struct KeepFree {
   TALUS_HD void operator()(int n) const { to[n] = freed[n] * from[n]; }
 };
 
-constexpr int small_enough = 8;        // columns along a side, in whole blocks
-constexpr int sweeps_at_the_end = 4;   // on the coarsest grid
+constexpr int small_enough = 8;       // columns along a side, in whole blocks
+constexpr int sweeps_at_the_end = 4;  // on the coarsest grid
 constexpr std::size_t most_grids = 12;
 
 }  // namespace
 
 template <class Real, class Place, class Shape>
-void Multigrid<Real, Place, Shape>::build(const ElementList<Real, Place, Shape>& list, const StoredColumns<Real>& columns, int nodes) {
+void Multigrid<Real, Place, Shape>::build(const ElementList<Real, Place, Shape>& list,
+                                          const StoredColumns<Real>& columns, int nodes) {
   constexpr auto kind = Shape::spline ? TwoScale::splines : TwoScale::hats;
   const auto grid = [&](std::size_t g) -> Grid& {  // those of the last step are used again, with their memory
     if (g == grids_.size()) grids_.push_back(std::make_unique<Grid>());
@@ -49,8 +50,9 @@ void Multigrid<Real, Place, Shape>::build(const ElementList<Real, Place, Shape>&
 }
 
 template <class Real, class Place, class Shape>
-void Multigrid<Real, Place, Shape>::refresh(const PointTangents<Real>& from, const ElementList<Real, Place, Shape>& list, const StoredColumns<Real>& columns,
-                                            const HeldNodes& held) {
+void Multigrid<Real, Place, Shape>::refresh(const PointTangents<Real>& from,
+                                            const ElementList<Real, Place, Shape>& list,
+                                            const StoredColumns<Real>& columns, const HeldNodes& held) {
   held_ = held;
   if (serial_ != list.serial()) build(list, columns, held.count);
   serial_ = list.serial();
@@ -100,7 +102,8 @@ void Multigrid<Real, Place, Shape>::apply(const NodeVector<Place>& r, NodeVector
 template <class Real, class Place, class Shape>
 std::size_t Multigrid<Real, Place, Shape>::bytes() const {
   std::size_t total = 0;
-  for (const auto& g : grids_) total += g->level.bytes() + g->between.bytes() + g->b.bytes() + g->u.bytes() + g->r.bytes();
+  for (const auto& g : grids_)
+    total += g->level.bytes() + g->between.bytes() + g->b.bytes() + g->u.bytes() + g->r.bytes();
   return total;
 }
 

@@ -1,5 +1,6 @@
-// Gauss-Seidel over columns of nodes, forth and back, on one grid or on a hierarchy of them (V cycle; Trottenberg, Oosterlee & Schueller 2001). Columns are solved whole, so
-// grids grow coarse along x and y alone; coarse operators are the fine one's on the coarse functions (Galerkin), which the fine grid's functions hold exactly (two_scale.hpp).
+// Gauss-Seidel over columns of nodes, forth and back, on one grid or on a hierarchy of them (V cycle; Trottenberg,
+// Oosterlee & Schueller 2001). Columns are solved whole, so grids grow coarse along x and y alone; coarse operators are
+// the fine one's on the coarse functions (Galerkin), which the fine grid's functions hold exactly (two_scale.hpp).
 //
 // Both are symmetric and positive definite where the tangent is, as conjugate gradients need it.
 #pragma once
@@ -18,7 +19,8 @@ class Multigrid {
   explicit Multigrid(bool coarser) : coarser_(coarser) {}
 
   /// From the points' tangents and what holds the nodes; `held` must stay until the next call.
-  void refresh(const PointTangents<Real>& from, const ElementList<Real, Place, Shape>& list, const StoredColumns<Real>& columns, const HeldNodes& held);
+  void refresh(const PointTangents<Real>& from, const ElementList<Real, Place, Shape>& list,
+               const StoredColumns<Real>& columns, const HeldNodes& held);
   /// z = B^-1 r
   void apply(const NodeVector<Place>& r, NodeVector<Place>& z);
 

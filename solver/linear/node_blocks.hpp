@@ -22,7 +22,9 @@ TALUS_HD Mat3<double> product(const Mat3<double>& m, const Sym3<double>& s) {
   return {m * Vec3<double>{s.xx, s.xy, s.xz}, m * Vec3<double>{s.xy, s.yy, s.yz}, m * Vec3<double>{s.xz, s.yz, s.zz}};
 }
 TALUS_HD Mat3<double> product(const Sym3<double>& s, const Mat3<double>& m) { return {s * m.a, s * m.b, s * m.c}; }
-TALUS_HD Mat3<double> transposed(const Mat3<double>& m) { return {{m.a.x, m.b.x, m.c.x}, {m.a.y, m.b.y, m.c.y}, {m.a.z, m.b.z, m.c.z}}; }
+TALUS_HD Mat3<double> transposed(const Mat3<double>& m) {
+  return {{m.a.x, m.b.x, m.c.x}, {m.a.y, m.b.y, m.c.y}, {m.a.z, m.b.z, m.c.z}};
+}
 /// m n^T
 TALUS_HD Mat3<double> product_transposed(const Mat3<double>& m, const Mat3<double>& n) {
   Mat3<double> out{};
@@ -31,11 +33,18 @@ TALUS_HD Mat3<double> product_transposed(const Mat3<double>& m, const Mat3<doubl
   add_outer(out, m.c, n.c);
   return out;
 }
-TALUS_HD Mat3<double> difference(const Mat3<double>& m, const Mat3<double>& n) { return {m.a - n.a, m.b - n.b, m.c - n.c}; }
+TALUS_HD Mat3<double> difference(const Mat3<double>& m, const Mat3<double>& n) {
+  return {m.a - n.a, m.b - n.b, m.c - n.c};
+}
 /// s - m n^T, which is symmetric
 TALUS_HD Sym3<double> less(const Sym3<double>& s, const Mat3<double>& m, const Mat3<double>& n) {
   const Mat3<double> t = product_transposed(m, n);
-  return {s.xx - t.a.x, s.yy - t.b.y, s.zz - t.c.z, s.xy - 0.5 * (t.a.y + t.b.x), s.yz - 0.5 * (t.b.z + t.c.y), s.xz - 0.5 * (t.a.z + t.c.x)};
+  return {s.xx - t.a.x,
+          s.yy - t.b.y,
+          s.zz - t.c.z,
+          s.xy - 0.5 * (t.a.y + t.b.x),
+          s.yz - 0.5 * (t.b.z + t.c.y),
+          s.xz - 0.5 * (t.a.z + t.c.x)};
 }
 
 }  // namespace talus::solver

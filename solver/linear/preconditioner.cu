@@ -7,7 +7,8 @@
 namespace talus::solver {
 namespace {
 
-/// The points' 3 x 3 blocks of K for every node, and for pairs of nodes in one column where `above` is there. `Tangent`: as it serves the place.
+/// The points' 3 x 3 blocks of K for every node, and for pairs of nodes in one column where `above` is there.
+/// `Tangent`: as it serves the place.
 template <class Real, class Shape, class Tangent>
 struct ScatterBlocks : PointScatter<Real, Shape> {
   using Base = PointScatter<Real, Shape>;
@@ -17,13 +18,15 @@ struct ScatterBlocks : PointScatter<Real, Shape> {
   ColumnFactors into;
 
   double bytes(int count) const {
-    return count * (tangents.bytes_each() + this->points.place_bytes + sizeof(Real)) + 2.0 * this->grid.nodes * (sizeof(*into.pivots) + (into.above[0] ? reach : 0) * sizeof(*into.above[0]));
+    return count * (tangents.bytes_each() + this->points.place_bytes + sizeof(Real)) +
+           2.0 * this->grid.nodes * (sizeof(*into.pivots) + (into.above[0] ? reach : 0) * sizeof(*into.above[0]));
   }
 
   struct Source : PointGradients<Real, Shape> {
     Tangent tangent;
     Real volume;
-    TALUS_HD Source(const ScatterBlocks& k, int p) : PointGradients<Real, Shape>(k.grid, k.points, p), tangent(k.tangents.get(p)), volume(k.points.volume[p]) {}
+    TALUS_HD Source(const ScatterBlocks& k, int p)
+        : PointGradients<Real, Shape>(k.grid, k.points, p), tangent(k.tangents.get(p)), volume(k.points.volume[p]) {}
   };
   struct Sums {
     Sym3<double> own;
@@ -64,7 +67,10 @@ struct ScatterBlocks : PointScatter<Real, Shape> {
     Mat3<Real> change[3];
     along(g.tangent, gradient * g.volume, change);
     const Mat3<double> own = block(change, gradient);
-    sums.own = sums.own + Sym3<double>{own.a.x, own.b.y, own.c.z, 0.5 * (own.a.y + own.b.x), 0.5 * (own.b.z + own.c.y), 0.5 * (own.a.z + own.c.x)};
+    sums.own =
+        sums.own +
+        Sym3<double>{
+            own.a.x, own.b.y, own.c.z, 0.5 * (own.a.y + own.b.x), 0.5 * (own.b.z + own.c.y), 0.5 * (own.a.z + own.c.x)};
     if (!into.above[0]) return;
     for (int up = 1; up <= reach; ++up) {
       if (c + up >= Shape::width) break;
@@ -112,7 +118,9 @@ struct ApplyBlocks {
   const Sym3<double>* inverse;
   const Vec3<double>* r;
   Vec3<double>* z;
-  double bytes(int count) const { return count * static_cast<double>(sizeof(*inverse) + sizeof(*held.freed) + sizeof(*r) + sizeof(*z)); }
+  double bytes(int count) const {
+    return count * static_cast<double>(sizeof(*inverse) + sizeof(*held.freed) + sizeof(*r) + sizeof(*z));
+  }
   template <class Before>
   TALUS_HD double operator()(int n, const Before& before, double& stepped) const {
     stepped = before(n);
@@ -143,7 +151,10 @@ struct SolveColumns {
   ColumnFactors factors;
   const Vec3<double>* r;
   Vec3<double>* z;
-  double bytes(int) const { return held.count * static_cast<double>(sizeof(Sym3<double>) + reach * sizeof(Mat3<double>) + sizeof(*held.freed) + sizeof(*r) + sizeof(*z)); }
+  double bytes(int) const {
+    return held.count * static_cast<double>(sizeof(Sym3<double>) + reach * sizeof(Mat3<double>) + sizeof(*held.freed) +
+                                            sizeof(*r) + sizeof(*z));
+  }
   template <class Before>
   TALUS_HD double operator()(int c, const Before& before, double& stepped) const {
     const ColumnNodes<Real> node(columns, c);
@@ -166,7 +177,9 @@ struct SolveColumns {
 struct TakeAngle {
   const Vec3<double>*r, *z;
   template <class Before>
-  TALUS_HD double operator()(int n, const Before&, double&) const { return dot(r[n], z[n]); }
+  TALUS_HD double operator()(int n, const Before&, double&) const {
+    return dot(r[n], z[n]);
+  }
 };
 
 /// A preconditioner's kernel by itself.
@@ -198,7 +211,10 @@ struct Measured {
 template <class Kernel>
 struct MeasuredAfter {
   using Named = Kernel;
-  double bytes(int count) const { return kernel_bytes(kernel, count) + step.bytes(kernel.held.count) - kernel.held.count * static_cast<double>(sizeof(*step.r)); }
+  double bytes(int count) const {
+    return kernel_bytes(kernel, count) + step.bytes(kernel.held.count) -
+           kernel.held.count * static_cast<double>(sizeof(*step.r));
+  }
   Kernel kernel;
   talus::detail::StepAlong step;
   TALUS_HD Terms<2> operator()(int i) const {
@@ -214,15 +230,17 @@ struct MeasuredStep {
   using Named = talus::detail::StepAlong;
   double bytes(int count) const { return step.bytes(count); }
   talus::detail::StepAlong step;
-  TALUS_HD Terms<1> operator()(int n) const { return step.state->halt == CgState::no ? Terms<1>{{step(n)}} : Terms<1>{}; }
+  TALUS_HD Terms<1> operator()(int n) const {
+    return step.state->halt == CgState::no ? Terms<1>{{step(n)}} : Terms<1>{};
+  }
 };
 
 }  // namespace
 
 template <class Real, class Place, class Shape>
 void NodePreconditioner<Real, Place, Shape>::refresh(const PointTangents<Real>& from, const PointGroups& groups,
-                                                     const ElementList<Real, Place, Shape>& list, const StoredColumns<Real>& columns,
-                                                     const HeldNodes& held) {
+                                                     const ElementList<Real, Place, Shape>& list,
+                                                     const StoredColumns<Real>& columns, const HeldNodes& held) {
   held_ = held;
   columns_ = columns;
   if (by_elements(kind_)) return grids_.refresh(from, list, columns, held);
@@ -254,7 +272,8 @@ void NodePreconditioner<Real, Place, Shape>::run(int count, const Kernel& kernel
 
 template <class Real, class Place, class Shape>
 template <class Kernel>
-void NodePreconditioner<Real, Place, Shape>::run_after(const talus::detail::StepAlong& step, int count, const Kernel& kernel, CgState* state) {
+void NodePreconditioner<Real, Place, Shape>::run_after(const talus::detail::StepAlong& step, int count,
+                                                       const Kernel& kernel, CgState* state) {
   sum_each<2>(Place{}, count, sums_, MeasuredAfter<Kernel>{kernel, step}, talus::detail::FinishResidualAndAngle{state});
 }
 
@@ -271,7 +290,9 @@ void NodePreconditioner<Real, Place, Shape>::apply(const NodeVector<Place>& r, N
 }
 
 template <class Real, class Place, class Shape>
-void NodePreconditioner<Real, Place, Shape>::apply_after(const talus::detail::StepAlong& step, const NodeVector<Place>& r, NodeVector<Place>& z, CgState* state) {
+void NodePreconditioner<Real, Place, Shape>::apply_after(const talus::detail::StepAlong& step,
+                                                         const NodeVector<Place>& r, NodeVector<Place>& z,
+                                                         CgState* state) {
   if (by_elements(kind_)) {
     sum_each<1>(Place{}, held_.count, sums_, MeasuredStep{step}, talus::detail::FinishResidual{state});
     apply(r, z, state);

@@ -50,13 +50,14 @@ struct MeetRows {
   TALUS_HD void operator()(int index) const {
     const int row = index / View::neighbours, q = index % View::neighbours;
     const NodePlace at = places[row];
-    const int n = grid.find(at.i + q / View::side % View::side - View::reach, at.j + q / (View::side * View::side) - View::reach,
-                            at.k + q % View::side - View::reach);
+    const int n = grid.find(at.i + q / View::side % View::side - View::reach,
+                            at.j + q / (View::side * View::side) - View::reach, at.k + q % View::side - View::reach);
     matrix.table[matrix.table_at(row, q)] = n >= 0 && matrix.row_of[n] >= 0 ? n : -1;
   }
 };
 
-/// One thread: one row and one neighbour. The block between what is free at either end; at the node itself with its mass and what else holds it.
+/// One thread: one row and one neighbour. The block between what is free at either end; at the node itself with its
+/// mass and what else holds it.
 template <class Real, class Place, class Shape>
 struct HoldRows {
   using View = StencilView<Real, Place, Shape>;
@@ -71,7 +72,8 @@ struct HoldRows {
     Mat3<double> block;  // columns
     Vec3<double>* const columns[3] = {&block.a, &block.b, &block.c};
     for (int j = 0; j < 3; ++j) {
-      *columns[j] = {static_cast<double>(matrix.blocks[matrix.at(row, 0, q, j)]), static_cast<double>(matrix.blocks[matrix.at(row, 1, q, j)]),
+      *columns[j] = {static_cast<double>(matrix.blocks[matrix.at(row, 0, q, j)]),
+                     static_cast<double>(matrix.blocks[matrix.at(row, 1, q, j)]),
                      static_cast<double>(matrix.blocks[matrix.at(row, 2, q, j)])};
     }
     if (q == View::own) {
@@ -108,7 +110,8 @@ struct SumFineBlocks {
     double sum[9] = {};
     if (coarse.table[coarse.table_at(row, q)] >= 0) {
       const NodePlace at = places[row];
-      const int dx = q / View::side % View::side - View::reach, dy = q / (View::side * View::side) - View::reach, dz = q % View::side - View::reach;
+      const int dx = q / View::side % View::side - View::reach, dy = q / (View::side * View::side) - View::reach,
+                dz = q % View::side - View::reach;
       for (int b = 0; b < y.children(); ++b) {
         for (int a = 0; a < x.children(); ++a) {
           const int i = x.first(at.i) + a, j = y.first(at.j) + b;
@@ -149,7 +152,8 @@ struct TakeColumns {
     for (int up = 1; up <= View::reach; ++up) factors.above[up - 1][n] = {};
     if (row < 0) return;
     const Mat3<double> own = block(row, View::own);
-    factors.pivots[n] = {own.a.x, own.b.y, own.c.z, 0.5 * (own.a.y + own.b.x), 0.5 * (own.b.z + own.c.y), 0.5 * (own.a.z + own.c.x)};
+    factors.pivots[n] = {
+        own.a.x, own.b.y, own.c.z, 0.5 * (own.a.y + own.b.x), 0.5 * (own.b.z + own.c.y), 0.5 * (own.a.z + own.c.x)};
     for (int up = 1; up <= View::reach; ++up) {
       const int higher = matrix.table[matrix.table_at(row, View::neighbour(0, 0, up))];
       if (higher >= 0) factors.above[up - 1][n] = block(matrix.row_of[higher], View::neighbour(0, 0, -up));
@@ -173,7 +177,9 @@ struct NodeResidual {
     const int row = matrix.row_of[n];
     return row < 0 ? Vec3<double>{} : matrix.product(row, q, x);
   }
-  TALUS_HD void finish(int n, const Vec3<double>& sum) const { r[n] = matrix.row_of[n] < 0 ? Vec3<double>{} : b[n] - sum; }
+  TALUS_HD void finish(int n, const Vec3<double>& sum) const {
+    r[n] = matrix.row_of[n] < 0 ? Vec3<double>{} : b[n] - sum;
+  }
 };
 
 /// A layer of a column of a colour.
@@ -272,7 +278,8 @@ BlockLayout layout_of(Place place, const StoredColumns<Real>& columns) {
 }  // namespace
 
 template <class Real, class Place, class Shape>
-void StencilLevel<Real, Place, Shape>::build(const ElementList<Real, Place, Shape>& list, const StoredColumns<Real>& columns, int nodes) {
+void StencilLevel<Real, Place, Shape>::build(const ElementList<Real, Place, Shape>& list,
+                                             const StoredColumns<Real>& columns, int nodes) {
   layout_ = layout_of(Place{}, columns);
   columns_ = columns;
   nodes_ = nodes;
@@ -299,7 +306,8 @@ void StencilLevel<Real, Place, Shape>::build(const StencilLevel& fine, TwoScale 
   for_each(Place{}, fine.matrix_.rows(), FlagParents<Real>{columns_.grid, x, y, fine.places_.data(), flags_.data()});
   matrix_.number_rows(flags_);
   place_rows();
-  for_each(Place{}, matrix_.rows() * neighbours, MeetRows<Real, Place, Shape>{columns_.grid, matrix_.view(), places_.data()});
+  for_each(Place{}, matrix_.rows() * neighbours,
+           MeetRows<Real, Place, Shape>{columns_.grid, matrix_.view(), places_.data()});
   colour();
 }
 
@@ -318,15 +326,17 @@ void StencilLevel<Real, Place, Shape>::colour() {
 }
 
 template <class Real, class Place, class Shape>
-void StencilLevel<Real, Place, Shape>::assemble(const ElementList<Real, Place, Shape>& list, const PointTangents<Real>& from, const HeldNodes& held) {
+void StencilLevel<Real, Place, Shape>::assemble(const ElementList<Real, Place, Shape>& list,
+                                                const PointTangents<Real>& from, const HeldNodes& held) {
   matrix_.assemble(list, from);
   for_each(Place{}, matrix_.rows() * neighbours, HoldRows<Real, Place, Shape>{matrix_.view(), held});
 }
 
 template <class Real, class Place, class Shape>
 void StencilLevel<Real, Place, Shape>::assemble(StencilLevel& fine, TwoScale x, TwoScale y) {
-  for_each(Place{}, matrix_.rows() * neighbours,
-           SumFineBlocks<Real, Place, Shape>{matrix_.view(), fine.matrix_.view(), fine.columns_.grid, x, y, places_.data()});
+  for_each(
+      Place{}, matrix_.rows() * neighbours,
+      SumFineBlocks<Real, Place, Shape>{matrix_.view(), fine.matrix_.view(), fine.columns_.grid, x, y, places_.data()});
 }
 
 template <class Real, class Place, class Shape>
@@ -344,36 +354,43 @@ void StencilLevel<Real, Place, Shape>::sweep(const NodeVector<Place>& b, NodeVec
   const int colours = static_cast<int>(colour_ends_.size());
   for (int turn = 0; turn < colours; ++turn) {
     const int c = forward ? turn : colours - 1 - turn;
-    const int begin = c > 0 ? colour_ends_[static_cast<std::size_t>(c - 1)] : 0, count = colour_ends_[static_cast<std::size_t>(c)] - begin;
+    const int begin = c > 0 ? colour_ends_[static_cast<std::size_t>(c - 1)] : 0,
+              count = colour_ends_[static_cast<std::size_t>(c)] - begin;
     const int* const of_colour = coloured_.data() + begin;
     const NodeResidual<Real, Place, Shape> residual{matrix_.view(), b.data(), x.data(), left_.data()};
-    sum_rows<neighbours>(Place{}, count * layers_, ColourResidual<Real, Place, Shape>{columns_, of_colour, count, residual});
+    sum_rows<neighbours>(Place{}, count * layers_,
+                         ColourResidual<Real, Place, Shape>{columns_, of_colour, count, residual});
     for_each(Place{}, count, CorrectColumns<Real, reach>{columns_, of_colour, factors(), left_.data(), x.data()});
   }
 }
 
 template <class Real, class Place, class Shape>
-void StencilLevel<Real, Place, Shape>::measure_residual(const NodeVector<Place>& b, const NodeVector<Place>& x, NodeVector<Place>& r) {
+void StencilLevel<Real, Place, Shape>::measure_residual(const NodeVector<Place>& b, const NodeVector<Place>& x,
+                                                        NodeVector<Place>& r) {
   sum_rows<neighbours>(Place{}, nodes_, NodeResidual<Real, Place, Shape>{matrix_.view(), b.data(), x.data(), r.data()});
 }
 
 template <class Real, class Place, class Shape>
-void StencilLevel<Real, Place, Shape>::restrict_from(const StencilLevel& fine, TwoScale x, TwoScale y, const NodeVector<Place>& from, NodeVector<Place>& to) {
+void StencilLevel<Real, Place, Shape>::restrict_from(const StencilLevel& fine, TwoScale x, TwoScale y,
+                                                     const NodeVector<Place>& from, NodeVector<Place>& to) {
   to.fill_zero();
-  for_each(Place{}, matrix_.rows(),
-           RestrictRows<Real>{fine.columns_.grid, x, y, places_.data(), matrix_.view().node_of, from.data(), to.data()});
+  for_each(
+      Place{}, matrix_.rows(),
+      RestrictRows<Real>{fine.columns_.grid, x, y, places_.data(), matrix_.view().node_of, from.data(), to.data()});
 }
 
 template <class Real, class Place, class Shape>
-void StencilLevel<Real, Place, Shape>::prolong_to(StencilLevel& fine, TwoScale x, TwoScale y, const NodeVector<Place>& from, NodeVector<Place>& to) {
-  for_each(Place{}, fine.matrix_.rows(),
-           ProlongRows<Real>{columns_.grid, x, y, fine.places_.data(), fine.matrix_.view().node_of, from.data(), to.data()});
+void StencilLevel<Real, Place, Shape>::prolong_to(StencilLevel& fine, TwoScale x, TwoScale y,
+                                                  const NodeVector<Place>& from, NodeVector<Place>& to) {
+  for_each(
+      Place{}, fine.matrix_.rows(),
+      ProlongRows<Real>{columns_.grid, x, y, fine.places_.data(), fine.matrix_.view().node_of, from.data(), to.data()});
 }
 
 template <class Real, class Place, class Shape>
 std::size_t StencilLevel<Real, Place, Shape>::bytes() const {
-  return slots_.bytes() + active_.bytes() + coloured_.bytes() + flags_.bytes() + matrix_.bytes() + places_.bytes() + pivots_.bytes() + above_[0].bytes() +
-         above_[1].bytes() + left_.bytes();
+  return slots_.bytes() + active_.bytes() + coloured_.bytes() + flags_.bytes() + matrix_.bytes() + places_.bytes() +
+         pivots_.bytes() + above_[0].bytes() + above_[1].bytes() + left_.bytes();
 }
 
 #define TALUS_INSTANTIATE(Real, Place, Shape) template class StencilLevel<Real, Place, Shape>;

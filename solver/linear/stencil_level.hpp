@@ -1,8 +1,9 @@
-// One grid of a multigrid hierarchy: the tangent as a stencil of blocks, its columns' factors, and Gauss-Seidel over whole columns.
+// One grid of a multigrid hierarchy: the tangent as a stencil of blocks, its columns' factors, and Gauss-Seidel over
+// whole columns.
 //
-// Gauss-Seidel by columns (Trottenberg, Oosterlee & Schueller 2001, section 5.1) goes over them colour by colour; those of one colour share no block, so that
-// they are solved at once, and in one order on every run. Beside the stiffness upright it takes care of what neighbouring columns share of it through the
-// functions' Gram matrix.
+// Gauss-Seidel by columns (Trottenberg, Oosterlee & Schueller 2001, section 5.1) goes over them colour by colour; those
+// of one colour share no block, so that they are solved at once, and in one order on every run. Beside the stiffness
+// upright it takes care of what neighbouring columns share of it through the functions' Gram matrix.
 #pragma once
 
 #include "solver/linear/block_layout.hpp"
@@ -38,7 +39,8 @@ class StencilLevel {
   /// r = b - A x
   void measure_residual(const NodeVector<Place>& b, const NodeVector<Place>& x, NodeVector<Place>& r);
   /// r of this grid = the finer one's tested with the coarse functions.
-  void restrict_from(const StencilLevel& fine, TwoScale x, TwoScale y, const NodeVector<Place>& from, NodeVector<Place>& to);
+  void restrict_from(const StencilLevel& fine, TwoScale x, TwoScale y, const NodeVector<Place>& from,
+                     NodeVector<Place>& to);
   /// u of the finer grid += this grid's.
   void prolong_to(StencilLevel& fine, TwoScale x, TwoScale y, const NodeVector<Place>& from, NodeVector<Place>& to);
 
@@ -54,14 +56,14 @@ class StencilLevel {
   BlockLayout layout_;
   StoredColumns<Real> columns_;
   int nodes_ = 0, layers_ = 0;
-  Buffer<BlockSlot, Place> slots_;      // of a coarse grid
+  Buffer<BlockSlot, Place> slots_;  // of a coarse grid
   Buffer<int, Place> active_, coloured_, flags_;
   std::vector<int> colour_ends_;
   StencilMatrix<Real, Place, Shape> matrix_;
-  Buffer<NodePlace, Place> places_;     // of the rows
+  Buffer<NodePlace, Place> places_;  // of the rows
   Buffer<Sym3<double>, Place> pivots_;
   Buffer<Mat3<double>, Place> above_[2];
-  NodeVector<Place> left_;              // residual of a colour, then its change
+  NodeVector<Place> left_;  // residual of a colour, then its change
 };
 
 }  // namespace talus::solver

@@ -13,7 +13,8 @@ template <class Shape>
 TALUS_HD int neighbour_of(int a, int b, bool folded) {
   constexpr int w = Shape::width;
   const auto layer = [&](int local) { return folded && local % w == 0 ? 1 : local % w; };
-  return StencilView<float, OnCpu, Shape>::neighbour(b / w % w - a / w % w, b / (w * w) - a / (w * w), layer(b) - layer(a));
+  return StencilView<float, OnCpu, Shape>::neighbour(b / w % w - a / w % w, b / (w * w) - a / (w * w),
+                                                     layer(b) - layer(a));
 }
 
 /// One thread: one entry of the elements' node table.
@@ -70,7 +71,8 @@ struct AddToStencil {
     const int row = matrix.row_of[mine[a]], q = neighbour_of<Shape>(a, b, mine[0] == mine[1]);
     using Number = std::remove_pointer_t<decltype(View::blocks)>;
     for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) talus::scatter_add(&matrix.blocks[matrix.at(row, i, q, j)], static_cast<Number>(block[3 * i + j]));
+      for (int j = 0; j < 3; ++j)
+        talus::scatter_add(&matrix.blocks[matrix.at(row, i, q, j)], static_cast<Number>(block[3 * i + j]));
     }
   }
 };
@@ -83,7 +85,8 @@ struct ApplyRow {
   Vec3<double>* y;
   const CgState* state;
   double bytes(int rows) const {
-    return rows * static_cast<double>(View::neighbours * (9 * sizeof(*matrix.blocks) + sizeof(int)) + sizeof(*x) + 2 * sizeof(*y));
+    return rows * static_cast<double>(View::neighbours * (9 * sizeof(*matrix.blocks) + sizeof(int)) + sizeof(*x) +
+                                      2 * sizeof(*y));
   }
   TALUS_HD bool idle() const { return state && state->halt != CgState::no; }
   TALUS_HD Vec3<double> term(int row, int q) const { return matrix.product(row, q, x); }
@@ -116,13 +119,14 @@ void StencilMatrix<Real, Place, Shape, Number>::number_rows(const Buffer<int, Pl
 
 template <class Real, class Place, class Shape, class Number>
 void StencilMatrix<Real, Place, Shape, Number>::assemble(const ElementList<Real, Place, Shape>& list,
-                                                 const PointTangents<Real>& from) {
+                                                         const PointTangents<Real>& from) {
   blocks_.fill_zero();
   sum_elements<Real, Place, Shape>(list, from, AddToStencil<View, Shape>{view(), list.view()});
 }
 
 template <class Real, class Place, class Shape, class Number>
-void StencilMatrix<Real, Place, Shape, Number>::apply(const NodeVector<Place>& x, NodeVector<Place>& y, const CgState* state) {
+void StencilMatrix<Real, Place, Shape, Number>::apply(const NodeVector<Place>& x, NodeVector<Place>& y,
+                                                      const CgState* state) {
   sum_rows<View::neighbours>(Place{}, rows_, ApplyRow<View>{view(), x.data(), y.data(), state});
 }
 

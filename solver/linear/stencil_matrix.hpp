@@ -3,8 +3,8 @@
 // column indices. Rows only gather, so y += K x has no race and the same sums on every run, in either place.
 #pragma once
 
-#include "solver/linear/element_sums.hpp"
 #include "solver/linear/conjugate_gradient.hpp"
+#include "solver/linear/element_sums.hpp"
 
 namespace talus::solver {
 
@@ -28,7 +28,9 @@ struct StencilView {
     return line * (3 * neighbours) + entry;
   }
   /// Neighbour at (dx, dy, dz) nodes.
-  TALUS_HD static int neighbour(int dx, int dy, int dz) { return ((dy + reach) * side + dx + reach) * side + dz + reach; }
+  TALUS_HD static int neighbour(int dx, int dy, int dz) {
+    return ((dy + reach) * side + dx + reach) * side + dz + reach;
+  }
   static constexpr int own = neighbours / 2;  // the node itself
 
   /// What neighbour q gives to K x at the node of a row.
@@ -65,7 +67,9 @@ class StencilMatrix {
 
   View view() { return {rows_, node_of_.data(), row_of_.data(), table_.data(), blocks_.data()}; }
   int rows() const { return rows_; }
-  std::size_t bytes() const { return blocks_.bytes() + table_.bytes() + row_of_.bytes() + node_of_.bytes() + flags_.bytes(); }
+  std::size_t bytes() const {
+    return blocks_.bytes() + table_.bytes() + row_of_.bytes() + node_of_.bytes() + flags_.bytes();
+  }
 
  private:
   int rows_ = 0;

@@ -11,10 +11,11 @@ template <class Real, class Place, class Shape>
 class TangentOperator {
  public:
   /// `single`: the stencil is stored in single precision.
-  explicit TangentOperator(Operator form, bool single = false) : form_(form), single_(single && form == Operator::stencil) {}
+  explicit TangentOperator(Operator form, bool single = false)
+      : form_(form), single_(single && form == Operator::stencil) {}
 
-  /// The points have moved, or have been sorted, and `list` is their elements anew; it must stay until the next call. The form `points`
-  /// needs it for what couples the points of an element.
+  /// The points have moved, or have been sorted, and `list` is their elements anew; it must stay until the next call.
+  /// The form `points` needs it for what couples the points of an element.
   void begin_step(const ElementList<Real, Place, Shape>& list, int nodes) {
     list_ = &list;
     if (single_) {
@@ -43,7 +44,8 @@ class TangentOperator {
     if (form_ == Operator::stencil) return stencil_.apply(x, y, state);
     using Product = TangentTimes<Real, Shape>;
     scatter_points(Place{}, from_.points.count, *groups_,
-                   ScatterForces<Real, Shape, Product>{{from_.grid, from_.points}, Product{from_.tangents, x.data()}, y.data(), state});
+                   ScatterForces<Real, Shape, Product>{
+                       {from_.grid, from_.points}, Product{from_.tangents, x.data()}, y.data(), state});
     if (from_.means.on()) apply_means(*list_, from_.means, x, y);
     if (from_.springs.on()) apply_springs(*list_, from_.springs, x, y);
   }

@@ -1,5 +1,5 @@
-// Functions of twice the spacing as sums of those of one (subdivision; Lane & Riesenfeld 1980), one direction at a time. Spaces are nested, so that a coarse
-// displacement is one of the fine grid, to the digit.
+// Functions of twice the spacing as sums of those of one (subdivision; Lane & Riesenfeld 1980), one direction at a
+// time. Spaces are nested, so that a coarse displacement is one of the fine grid, to the digit.
 #pragma once
 
 #include "solver/parallel/macros.hpp"
@@ -12,16 +12,20 @@ struct TwoScale {
   /// Coarse functions over so many fine ones.
   TALUS_HD int count(int fine) const { return kind == same ? fine : kind == hats ? fine / 2 + 1 : fine / 2 + 2; }
 
-  /// Coarse function c is the sum of weight(n) times fine function first(c) + n, n < children(), as far as that is there.
+  /// Coarse function c is the sum of weight(n) times fine function first(c) + n, n < children(), as far as that is
+  /// there.
   TALUS_HD int children() const { return kind == same ? 1 : kind == hats ? 3 : 4; }
-  TALUS_HD int first(int coarse) const { return kind == same ? coarse : kind == hats ? 2 * coarse - 1 : 2 * coarse - 3; }
+  TALUS_HD int first(int coarse) const {
+    return kind == same ? coarse : kind == hats ? 2 * coarse - 1 : 2 * coarse - 3;
+  }
   TALUS_HD double weight(int child) const {
     if (kind == same) return 1;
     if (kind == hats) return child == 1 ? 1 : 0.5;
     return child == 0 || child == 3 ? 0.25 : 0.75;
   }
 
-  /// The coarse functions that a fine one is part of, and its weights in them, which add up to 1. Returns how many there are.
+  /// The coarse functions that a fine one is part of, and its weights in them, which add up to 1. Returns how many
+  /// there are.
   TALUS_HD int parents(int fine, int (&coarse)[2], double (&weights)[2]) const {
     const int half = fine / 2;
     const bool odd = fine % 2 != 0;

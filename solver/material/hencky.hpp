@@ -1,4 +1,5 @@
-// Logarithmic (Hencky) strain: to and from the left Cauchy-Green tensor's deviation B = b - I, and its update over a step.
+// Logarithmic (Hencky) strain: to and from the left Cauchy-Green tensor's deviation B = b - I, and its update over a
+// step.
 #pragma once
 
 #include "solver/parallel/math.hpp"
@@ -12,7 +13,8 @@ TALUS_HD bool is_small(const Sym3<Real>& s, Real limit) {
          fabs(s.xz) < limit;
 }
 
-/// exp(2 strain) - I, without cancellation for small strain: the series of a strain halved often enough, squared as often.
+/// exp(2 strain) - I, without cancellation for small strain: the series of a strain halved often enough, squared as
+/// often.
 template <class Real>
 TALUS_HD Sym3<Real> stretch_deviation(const Sym3<Real>& strain) {
   int halvings = 0;
@@ -39,8 +41,9 @@ TALUS_RARE Sym3<Real> large_hencky_strain(const Sym3<Real> deviation) {
   return compose(values, directions);
 }
 
-/// ln(I + deviation) / 2. Strains of some percent, which soft grains carry, by the series of artanh z, z = deviation (2 I + deviation)^-1 (Gregory's; Higham 2008, chapter 11):
-/// its rest is 1e-11 of the strain at the limit, and it takes a tenth of the work of eigenvalues.
+/// ln(I + deviation) / 2. Strains of some percent, which soft grains carry, by the series of artanh z, z = deviation (2
+/// I + deviation)^-1 (Gregory's; Higham 2008, chapter 11): its rest is 1e-11 of the strain at the limit, and it takes a
+/// tenth of the work of eigenvalues.
 template <class Real>
 TALUS_HD Sym3<Real> hencky_strain(const Sym3<Real>& deviation) {
   const Sym3<Real>& b = deviation;
@@ -59,8 +62,8 @@ TALUS_HD Sym3<Real> hencky_strain(const Sym3<Real>& deviation) {
   return z + commuting_product(z, commuting_product(rest, z2));
 }
 
-/// Deviation of the left Cauchy-Green tensor after the displacement gradient `g` of the step: b' = (I + g) b (I + g)^T, written
-/// for deviations so that single precision keeps strains of 1e-6 (Simo 1992, trial state).
+/// Deviation of the left Cauchy-Green tensor after the displacement gradient `g` of the step: b' = (I + g) b (I + g)^T,
+/// written for deviations so that single precision keeps strains of 1e-6 (Simo 1992, trial state).
 template <class Real>
 TALUS_HD Sym3<Real> advance_deviation(const Sym3<Real>& strain, const Mat3<Real>& g) {
   const Sym3<Real> d = stretch_deviation(strain);

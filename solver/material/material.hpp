@@ -1,9 +1,11 @@
 // Constitutive laws. What a point keeps in `elastic`:
 //   linear-elastic  Cauchy stress [Pa], advanced by Hooke's law and the Jaumann rate (the paper's stress update)
-//   hencky          elastic logarithmic strain; Kirchhoff stress is linear in it (Hencky 1928; de Souza Neto et al. 2008, ch. 13)
-//   corotated       the same strain; the stress is linear in the stretch, P = R (2G (U - I) + lambda tr(U - I) I), so that a bar keeps
+//   hencky          elastic logarithmic strain; Kirchhoff stress is linear in it (Hencky 1928; de Souza Neto et al.
+//   2008, ch. 13) corotated       the same strain; the stress is linear in the stretch, P = R (2G (U - I) + lambda tr(U
+//   - I) I), so that a bar keeps
 //                   force = E times engineering strain (Chao et al. 2010)
-//   drucker-prager  its deviator; the pressure is a function of the total volume alone, so that a grain that has opened must
+//   drucker-prager  its deviator; the pressure is a function of the total volume alone, so that a grain that has opened
+//   must
 //                   close again before it carries load (cf. Tampubolon et al. 2017, volume correction)
 #pragma once
 
@@ -17,17 +19,17 @@ enum class MaterialModel { linear_elastic, hencky, corotated, drucker_prager };
 template <class Real>
 struct Material {
   MaterialModel model = MaterialModel::drucker_prager;
-  Real density = 0;          // [kg/m3]
-  Real shear_modulus = 0;    // G [Pa]
-  Real bulk_modulus = 0;     // K [Pa]
-  Real wave_speed = 0;       // sqrt((K + 4G/3) / density) [m/s]
-  Real friction = 0;         // slope alpha of sqrt(J2) = alpha p + shear_cohesion [-]
-  Real dilatancy = 0;        // slope beta of the plastic potential [-]
-  Real shear_cohesion = 0;   // [Pa]
-  Real tension = 0;          // largest -p carried [Pa]
+  Real density = 0;                                   // [kg/m3]
+  Real shear_modulus = 0;                             // G [Pa]
+  Real bulk_modulus = 0;                              // K [Pa]
+  Real wave_speed = 0;                                // sqrt((K + 4G/3) / density) [m/s]
+  Real friction = 0;                                  // slope alpha of sqrt(J2) = alpha p + shear_cohesion [-]
+  Real dilatancy = 0;                                 // slope beta of the plastic potential [-]
+  Real shear_cohesion = 0;                            // [Pa]
+  Real tension = 0;                                   // largest -p carried [Pa]
   Real residual_friction = 0, residual_cohesion = 0;  // slope and shear cohesion once softened
-  Real softening = 0;        // share of the way there per plastic shear strain; 0: does not soften [-]
-  Real apex = 0;             // pressure over which the tip of the cone is rounded [Pa]
+  Real softening = 0;          // share of the way there per plastic shear strain; 0: does not soften [-]
+  Real apex = 0;               // pressure over which the tip of the cone is rounded [Pa]
   bool exact_tangent = false;  // with what the volume change does to a yielding point's friction: not symmetric
 };
 
@@ -53,7 +55,8 @@ TALUS_HD Material<Real> softened(Material<Real> m, Real plastic_shear) {
   return m;
 }
 
-/// The materials of a scene. A scene of one that does not soften has no arrays on its points, and they all take the first.
+/// The materials of a scene. A scene of one that does not soften has no arrays on its points, and they all take the
+/// first.
 template <class Real>
 struct Materials {
   Material<Real> list[most_materials];
@@ -80,7 +83,8 @@ TALUS_HD Real free_pressure(const Material<Real>& m, Real log_volume, Real plast
   return m.tension - m.bulk_modulus * (log_volume - plastic_log_volume);
 }
 
-/// The cut-off: what is left of a free pressure, max(y, 0), rounded over `apex` to (y + sqrt(y^2 + apex^2)) / 2, and its derivative.
+/// The cut-off: what is left of a free pressure, max(y, 0), rounded over `apex` to (y + sqrt(y^2 + apex^2)) / 2, and
+/// its derivative.
 template <class Real>
 struct CutPressure {
   Real value, slope;
@@ -107,8 +111,7 @@ TALUS_HD Real granular_pressure(const Material<Real>& m, const MaterialState<Rea
 template <class Real>
 TALUS_HD Sym3<Real> kirchhoff_stress(const Material<Real>& m, const MaterialState<Real>& s) {
   switch (m.model) {
-    case MaterialModel::linear_elastic:
-      return s.elastic * exp(s.log_volume);
+    case MaterialModel::linear_elastic: return s.elastic * exp(s.log_volume);
     case MaterialModel::hencky: {
       const Real lame = m.bulk_modulus - Real(2.0 / 3) * m.shear_modulus;
       return (s.elastic * (Real(2) * m.shear_modulus)).plus_identity(lame * trace(s.elastic));
@@ -119,8 +122,7 @@ TALUS_HD Sym3<Real> kirchhoff_stress(const Material<Real>& m, const MaterialStat
       const Sym3<Real> linear = (d * (Real(2) * m.shear_modulus)).plus_identity(lame * trace(d));
       return linear + commuting_product(d, linear);
     }
-    default:
-      return (s.elastic * (Real(2) * m.shear_modulus)).plus_identity(-granular_pressure(m, s));
+    default: return (s.elastic * (Real(2) * m.shear_modulus)).plus_identity(-granular_pressure(m, s));
   }
 }
 
@@ -153,27 +155,25 @@ TALUS_HD Real elastic_energy(const Material<Real>& m, const MaterialState<Real>&
 /// Hooke's law on the strain increment, stress turned with the spin (Jaumann rate).
 template <class Real>
 TALUS_HD void advance_linear(const Material<Real>& m, const Mat3<Real>& g, Sym3<Real>& stress) {
-  const Sym3<Real> strain{g.a.x, g.b.y, g.c.z, Real(0.5) * (g.a.y + g.b.x), Real(0.5) * (g.b.z + g.c.y),
-                          Real(0.5) * (g.a.z + g.c.x)};
+  const Sym3<Real> strain{
+      g.a.x, g.b.y, g.c.z, Real(0.5) * (g.a.y + g.b.x), Real(0.5) * (g.b.z + g.c.y), Real(0.5) * (g.a.z + g.c.x)};
   const Real wxy = Real(0.5) * (g.b.x - g.a.y), wyz = Real(0.5) * (g.c.y - g.b.z), wxz = Real(0.5) * (g.c.x - g.a.z);
   const Sym3<Real> s = stress;
-  const Sym3<Real> turned{Real(2) * (wxy * s.xy + wxz * s.xz),
-                          Real(2) * (-wxy * s.xy + wyz * s.yz),
-                          Real(-2) * (wxz * s.xz + wyz * s.yz),
-                          wxy * (s.yy - s.xx) + wxz * s.yz + wyz * s.xz,
-                          wyz * (s.zz - s.yy) - wxy * s.xz - wxz * s.xy,
-                          wxz * (s.zz - s.xx) + wxy * s.yz - wyz * s.xy};
+  const Sym3<Real> turned{Real(2) * (wxy * s.xy + wxz * s.xz),           Real(2) * (-wxy * s.xy + wyz * s.yz),
+                          Real(-2) * (wxz * s.xz + wyz * s.yz),          wxy * (s.yy - s.xx) + wxz * s.yz + wyz * s.xz,
+                          wyz * (s.zz - s.yy) - wxy * s.xz - wxz * s.xy, wxz * (s.zz - s.xx) + wxy * s.yz - wyz * s.xy};
   const Real lame = m.bulk_modulus - Real(2.0 / 3) * m.shear_modulus;
   stress = s + turned + (strain * (Real(2) * m.shear_modulus)).plus_identity(lame * trace(strain));
 }
 
-/// Where a trial of the Drucker-Prager cone ends (de Souza Neto et al. 2008, box 8.8, non-associated): shear - G g = alpha p(g) + k with
-/// dilatancy raising the pressure by K beta g. The pressure is convex in g, so Newton's steps come from one side.
+/// Where a trial of the Drucker-Prager cone ends (de Souza Neto et al. 2008, box 8.8, non-associated): shear - G g =
+/// alpha p(g) + k with dilatancy raising the pressure by K beta g. The pressure is convex in g, so Newton's steps come
+/// from one side.
 template <class Real>
 struct ConeReturn {
-  Real left;            // sqrt(J2) [Pa]
-  Real dilation = 0;    // plastic volume change
-  Real pressure, give;  // pressure [Pa] and the slope of its cut-off there
+  Real left;                         // sqrt(J2) [Pa]
+  Real dilation = 0;                 // plastic volume change
+  Real pressure, give;               // pressure [Pa] and the slope of its cut-off there
   bool yields = false, tip = false;  // has yielded; no shear strength is left
 
   TALUS_HD ConeReturn(const Material<Real>& m, Real shear, Real y) : left(shear) {
@@ -217,7 +217,8 @@ TALUS_HD void return_to_cone(const Material<Real>& m, MaterialState<Real>& s) {
 
 /// Advance the state over a step with displacement gradient g = dt grad v, and the mean volume change where that is on.
 template <class Real>
-TALUS_HD void advance_material(const Material<Real>& m, const Mat3<Real>& g, MaterialState<Real>& s, const MeanVolume<Real>& mean = {}) {
+TALUS_HD void advance_material(const Material<Real>& m, const Mat3<Real>& g, MaterialState<Real>& s,
+                               const MeanVolume<Real>& mean = {}) {
   const Real own = log_volume_change(g), change = mean.on ? mean.increment : own;
   s.log_volume += change;
   if (m.model == MaterialModel::linear_elastic) return advance_linear(m, g, s.elastic);

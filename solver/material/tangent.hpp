@@ -1,9 +1,10 @@
 // Trial stress of a point for a displacement of the grid, and its consistent tangent in principal axes.
 //
-// u gives the point the gradient G = sum u_i grad N_i over the configuration at the start of the step, F = I + G. The force on a
-// node is V P grad N with P = tau F^-T. A change dG of G changes it by dP = (d tau - tau dl^T) F^-T, dl = dG F^-1 (Simo 1992;
-// de Souza Neto et al. 2008, section 14.5). In the principal axes n_a of the trial b, dl splits: its diagonal moves the
-// principal stresses through the 3 x 3 matrix D = d tau_a / d eps_b, each pair (a, b) of its off-diagonal through
+// u gives the point the gradient G = sum u_i grad N_i over the configuration at the start of the step, F = I + G. The
+// force on a node is V P grad N with P = tau F^-T. A change dG of G changes it by dP = (d tau - tau dl^T) F^-T, dl = dG
+// F^-1 (Simo 1992; de Souza Neto et al. 2008, section 14.5). In the principal axes n_a of the trial b, dl splits: its
+// diagonal moves the principal stresses through the 3 x 3 matrix D = d tau_a / d eps_b, each pair (a, b) of its
+// off-diagonal through
 //   c_ab = s l_b dl_ab + (s l_a - tau_a) dl_ba,   s = (tau_a - tau_b) / (l_a - l_b),  l_a the eigenvalues of b.
 #pragma once
 
@@ -14,10 +15,10 @@ namespace talus {
 /// The tangent of one point, 36 numbers.
 template <class Real>
 struct PointTangent {
-  Real axes[9];      // principal axes n_a, one after the other
-  Real pull[9];      // rows n_a^T F^-T: maps a gradient of the start to principal axes of now
-  Real direct[9];    // D_ab - delta_ab tau_a, row-major
-  Real pairs[9];     // for (0,1), (1,2), (0,2): s l_b, s l_a, s l_a - tau_a
+  Real axes[9];    // principal axes n_a, one after the other
+  Real pull[9];    // rows n_a^T F^-T: maps a gradient of the start to principal axes of now
+  Real direct[9];  // D_ab - delta_ab tau_a, row-major
+  Real pairs[9];   // for (0,1), (1,2), (0,2): s l_b, s l_a, s l_a - tau_a
 };
 
 /// dP for dG, both as columns by direction of the gradient.
@@ -95,14 +96,15 @@ TALUS_HD void make_definite(PointTangent<Real>& t) {
   }
 }
 
-/// The paper's linear step: stress at the start plus Hooke's law on the strain of the step, over the volume at the start.
+/// The paper's linear step: stress at the start plus Hooke's law on the strain of the step, over the volume at the
+/// start.
 template <class Real>
 TALUS_HD Mat3<Real> linear_stress(const Material<Real>& m, const MaterialState<Real>& start, const Mat3<Real>& g,
                                   PointTangent<Real>* tangent) {
   const Real volume = exp(start.log_volume);
   const Real lame = m.bulk_modulus - Real(2.0 / 3) * m.shear_modulus;
-  const Sym3<Real> strain{g.a.x, g.b.y, g.c.z, Real(0.5) * (g.a.y + g.b.x), Real(0.5) * (g.b.z + g.c.y),
-                          Real(0.5) * (g.a.z + g.c.x)};
+  const Sym3<Real> strain{
+      g.a.x, g.b.y, g.c.z, Real(0.5) * (g.a.y + g.b.x), Real(0.5) * (g.b.z + g.c.y), Real(0.5) * (g.a.z + g.c.x)};
   const Sym3<Real> s =
       (start.elastic + (strain * (Real(2) * m.shear_modulus)).plus_identity(lame * trace(strain))) * volume;
   if (tangent) {
@@ -116,11 +118,12 @@ TALUS_HD Mat3<Real> linear_stress(const Material<Real>& m, const MaterialState<R
   return {{s.xx, s.xy, s.xz}, {s.xy, s.yy, s.yz}, {s.xz, s.yz, s.zz}};
 }
 
-/// Principal Kirchhoff stresses of the trial strains `e` and D_ab = d tau_a / d e_b. `log_volume` is the trial's. Unless the material asks for
-/// its exact tangent, the friction of a yielding point is held at its current pressure in D (frozen yield), which keeps D symmetric.
+/// Principal Kirchhoff stresses of the trial strains `e` and D_ab = d tau_a / d e_b. `log_volume` is the trial's.
+/// Unless the material asks for its exact tangent, the friction of a yielding point is held at its current pressure in
+/// D (frozen yield), which keeps D symmetric.
 template <class Real>
-TALUS_HD void principal_response(const Material<Real>& m, const Real e[3], Real log_volume, Real plastic_log_volume, Real tau[3],
-                                 Real d[9]) {
+TALUS_HD void principal_response(const Material<Real>& m, const Real e[3], Real log_volume, Real plastic_log_volume,
+                                 Real tau[3], Real d[9]) {
   const Real twice = Real(2) * m.shear_modulus;
   if (m.model == MaterialModel::hencky) {
     const Real lame = m.bulk_modulus - Real(2.0 / 3) * m.shear_modulus;
@@ -141,7 +144,8 @@ TALUS_HD void principal_response(const Material<Real>& m, const Real e[3], Real 
     }
     for (int a = 0; a < 3; ++a) {
       tau[a] = stretch[a] * (twice * excess[a] + lame * volume);
-      for (int b = 0; b < 3; ++b) d[3 * a + b] = stretch[a] * stretch[b] * lame + (a == b ? tau[a] + twice * stretch[a] * stretch[a] : Real(0));
+      for (int b = 0; b < 3; ++b)
+        d[3 * a + b] = stretch[a] * stretch[b] * lame + (a == b ? tau[a] + twice * stretch[a] * stretch[a] : Real(0));
     }
     return;
   }
@@ -172,20 +176,23 @@ TALUS_HD void principal_response(const Material<Real>& m, const Real e[3], Real 
     tau[a] = twice * ratio * s[a] - pressure;
     for (int b = 0; b < 3; ++b) {
       const Real along = square > Real(0) ? s[a] * s[b] / square : Real(0);
-      d[3 * a + b] = m.bulk_modulus * hold + twice * (ratio * ((a == b ? Real(1) : Real(0)) - Real(1.0 / 3)) + (slope - ratio) * along);
+      d[3 * a + b] = m.bulk_modulus * hold +
+                     twice * (ratio * ((a == b ? Real(1) : Real(0)) - Real(1.0 / 3)) + (slope - ratio) * along);
       if (size > Real(0)) d[3 * a + b] -= pull * m.bulk_modulus * s[a] / size + lift * m.shear_modulus * s[b] / size;
     }
   }
 }
 
-/// Stress and stiffness of a point in the principal axes of its trial, `mean` volume change instead of its own where that is on.
+/// Stress and stiffness of a point in the principal axes of its trial, `mean` volume change instead of its own where
+/// that is on.
 template <class Real>
 struct PrincipalState {
   Real stretch[3];  // eigenvalues of b, less one
   Mat3<Real> axes;
   Real tau[3], d[9];
 
-  TALUS_HD PrincipalState(const Material<Real>& m, const MaterialState<Real>& start, const Mat3<Real>& g, const MeanVolume<Real>& mean) {
+  TALUS_HD PrincipalState(const Material<Real>& m, const MaterialState<Real>& start, const Mat3<Real>& g,
+                          const MeanVolume<Real>& mean) {
     eigen_symmetric(advance_deviation(start.elastic, g), stretch, axes);
     const Real own = log_volume_change(g), change = mean.on ? mean.increment : own;
     Real e[3];
@@ -207,7 +214,8 @@ struct VolumeResponse {
   Real stress, bulk;
 };
 template <class Real>
-TALUS_HD VolumeResponse<Real> volume_response(const Material<Real>& m, const MaterialState<Real>& start, const Mat3<Real>& g, Real increment) {
+TALUS_HD VolumeResponse<Real> volume_response(const Material<Real>& m, const MaterialState<Real>& start,
+                                              const Mat3<Real>& g, Real increment) {
   const PrincipalState<Real> state(m, start, g, {true, increment, Real(0)});
   return {state.mean_stress(), state.bulk()};
 }
@@ -220,19 +228,21 @@ TALUS_HD Mat3<Real> inverse_deformation(const Mat3<Real>& g) {
 
 /// The same stress without principal axes, which small strains can do without.
 template <class Real>
-TALUS_HD Mat3<Real> nominal_stress_alone(const Material<Real>& m, const MaterialState<Real>& start, const Mat3<Real>& g, const MeanVolume<Real>& mean) {
+TALUS_HD Mat3<Real> nominal_stress_alone(const Material<Real>& m, const MaterialState<Real>& start, const Mat3<Real>& g,
+                                         const MeanVolume<Real>& mean) {
   MaterialState<Real> end = start;
   advance_material(m, g, end, mean);
   Sym3<Real> tau = kirchhoff_stress(m, end);
   if (mean.on) tau = deviator(tau).plus_identity(mean.stress);
   const Mat3<Real> inverse = inverse_deformation(g);  // column b of P is tau times row b of F^-1
-  return {tau * Vec3<Real>{inverse.a.x, inverse.b.x, inverse.c.x}, tau * Vec3<Real>{inverse.a.y, inverse.b.y, inverse.c.y},
+  return {tau * Vec3<Real>{inverse.a.x, inverse.b.x, inverse.c.x},
+          tau * Vec3<Real>{inverse.a.y, inverse.b.y, inverse.c.y},
           tau * Vec3<Real>{inverse.a.z, inverse.b.z, inverse.c.z}};
 }
 
-/// Nominal stress P of a point whose state at the start of the step is `start`, for the displacement gradient g of the step; with
-/// `tangent` not null also the derivative of P by g. With `mean` on (B-bar) its mean stress is the element's, and the tangent is
-/// without the bulk part, which couples the element's points (mean_dilation.hpp).
+/// Nominal stress P of a point whose state at the start of the step is `start`, for the displacement gradient g of the
+/// step; with `tangent` not null also the derivative of P by g. With `mean` on (B-bar) its mean stress is the
+/// element's, and the tangent is without the bulk part, which couples the element's points (mean_dilation.hpp).
 template <class Real>
 TALUS_HD Mat3<Real> nominal_stress(const Material<Real>& m, const MaterialState<Real>& start, const Mat3<Real>& g,
                                    PointTangent<Real>* tangent, const MeanVolume<Real>& mean = {}) {
@@ -252,7 +262,9 @@ TALUS_HD Mat3<Real> nominal_stress(const Material<Real>& m, const MaterialState<
   const Vec3<Real> n[3] = {axes.a, axes.b, axes.c};
   Vec3<Real> pull[3];  // n^T F^-T = F^-1 n
   for (int a = 0; a < 3; ++a) pull[a] = inverse * n[a];
-  const auto column = [&](Real p0, Real p1, Real p2) { return n[0] * (tau[0] * p0) + n[1] * (tau[1] * p1) + n[2] * (tau[2] * p2); };
+  const auto column = [&](Real p0, Real p1, Real p2) {
+    return n[0] * (tau[0] * p0) + n[1] * (tau[1] * p1) + n[2] * (tau[2] * p2);
+  };
   for (int a = 0; a < 3; ++a) {
     tangent->axes[3 * a] = n[a].x;
     tangent->axes[3 * a + 1] = n[a].y;

@@ -96,13 +96,19 @@ void write_checkpoint(const std::filesystem::path& path, const Checkpoint& check
   file.make_group("/points");
   visit_points(
       checkpoint.state.points,
-      [&](const std::string& name, const std::vector<int>& v) { file.write<std::int32_t>("/points/" + name, dims_of(v.size()), v); },
-      [&](const std::string& name, const std::vector<double>& v) { file.write<double>("/points/" + name, dims_of(v.size()), v); });
+      [&](const std::string& name, const std::vector<int>& v) {
+        file.write<std::int32_t>("/points/" + name, dims_of(v.size()), v);
+      },
+      [&](const std::string& name, const std::vector<double>& v) {
+        file.write<double>("/points/" + name, dims_of(v.size()), v);
+      });
   file.make_group("/maps");
   visit_maps(checkpoint.state.maps, [&](const std::string& name, const std::vector<double>& v) {
     file.write<double>("/maps/" + name, dims_of(v.size()), v);
   });
-  visit_contacts(checkpoint.state.contacts, [&](const std::string& name, const std::vector<double>& v) { file.write<double>("/" + name, dims_of(v.size()), v); });
+  visit_contacts(checkpoint.state.contacts, [&](const std::string& name, const std::vector<double>& v) {
+    file.write<double>("/" + name, dims_of(v.size()), v);
+  });
   std::vector<std::uint8_t> clock(sizeof(Clock));
   std::memcpy(clock.data(), &checkpoint.state.clock, sizeof(Clock));
   file.write<std::uint8_t>("/clock", dims_of(clock.size()), clock);
@@ -113,7 +119,8 @@ void write_checkpoint(const std::filesystem::path& path, const Checkpoint& check
 
 Checkpoint read_checkpoint(const std::filesystem::path& path, const std::string& fingerprint) {
   const h5::File file = h5::File::open(path, {path, "Run talus-solve again without --restart"});
-  if (!file.has_attribute("/", "kind") || file.text("/", "kind") != kind) file.fail("this is no checkpoint of this program");
+  if (!file.has_attribute("/", "kind") || file.text("/", "kind") != kind)
+    file.fail("this is no checkpoint of this program");
   Checkpoint c;
   c.fingerprint = file.text("/", "fingerprint");
   if (c.fingerprint != fingerprint) {
@@ -122,11 +129,13 @@ Checkpoint read_checkpoint(const std::filesystem::path& path, const std::string&
                      "Restore the recipe and domain.vdb it was made with, or run talus-solve without --restart"});
   }
   visit_points(
-      c.state.points, [&](const std::string& name, std::vector<int>& v) { v = file.read<std::int32_t>("/points/" + name); },
+      c.state.points,
+      [&](const std::string& name, std::vector<int>& v) { v = file.read<std::int32_t>("/points/" + name); },
       [&](const std::string& name, std::vector<double>& v) { v = file.read<double>("/points/" + name); });
   visit_maps(c.state.maps,
              [&](const std::string& name, std::vector<double>& v) { v = file.read<double>("/maps/" + name); });
-  visit_contacts(c.state.contacts, [&](const std::string& name, std::vector<double>& v) { v = file.read<double>("/" + name); });
+  visit_contacts(c.state.contacts,
+                 [&](const std::string& name, std::vector<double>& v) { v = file.read<double>("/" + name); });
   const auto clock = file.read<std::uint8_t>("/clock", dims_of(sizeof(Clock)));
   std::memcpy(static_cast<void*>(&c.state.clock), clock.data(), sizeof(Clock));
   c.memory = read_memory(file);

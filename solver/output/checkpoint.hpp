@@ -12,12 +12,12 @@ namespace talus::solver {
 /// What the run itself remembers between steps.
 struct RunMemory {
   std::int64_t frames = 0, records = 0, checkpoints = 0;  // events passed
-  std::int64_t newton = 0, linear = 0, cuts = 0;           // iterations and step cuts so far
+  std::int64_t newton = 0, linear = 0, cuts = 0;          // iterations and step cuts so far
   double peak_kinetic = 0;                                // [J]
   double outflow_volume = 0;                              // [m3]
   std::int64_t outflow_count = 0;
-  double wall_time = 0;                                   // [s]
-  std::vector<double> initial_thickness;                  // [m]
+  double wall_time = 0;                   // [s]
+  std::vector<double> initial_thickness;  // [m]
   RunHistory history;
 };
 

@@ -27,14 +27,20 @@ void FrameStore::clear() {
   std::filesystem::remove_all(folder_, ignored);
 }
 
-std::filesystem::path FrameStore::file(std::int64_t number) const { return folder_ / fmt::format("frame_{:05}.h5", number); }
+std::filesystem::path FrameStore::file(std::int64_t number) const {
+  return folder_ / fmt::format("frame_{:05}.h5", number);
+}
 
-void FrameStore::put(std::int64_t number, const PointFrame& f, const MapGrid& grid, const std::vector<double>& thickness) {
+void FrameStore::put(std::int64_t number, const PointFrame& f, const MapGrid& grid,
+                     const std::vector<double>& thickness) {
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
-  if (error) throw DataError({folder_.string() + ": the folder cannot be made", error.message(), "Name another one with --out DIR"});
+  if (error)
+    throw DataError(
+        {folder_.string() + ": the folder cannot be made", error.message(), "Name another one with --out DIR"});
   PendingFile pending(file(number));
-  h5::File out = h5::File::create(pending.path(), {file(number), "Free some space, or name another folder with --out DIR"});
+  h5::File out =
+      h5::File::create(pending.path(), {file(number), "Free some space, or name another folder with --out DIR"});
   out.leave_plain();  // to compress takes longer than the steps between two frames; run.h5 is compressed
   const auto count = static_cast<hsize_t>(f.id.size());
   out.set_number("/", "time", f.time);

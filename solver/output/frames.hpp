@@ -1,5 +1,5 @@
-// Frames: the points and the thickness at chosen times, one file each in a folder of their own while the run goes on, so
-// that a run broken off and resumed ends with the same run.h5.
+// Frames: the points and the thickness at chosen times, one file each in a folder of their own while the run goes on,
+// so that a run broken off and resumed ends with the same run.h5.
 #pragma once
 
 #include <filesystem>
@@ -23,7 +23,8 @@ class FrameStore {
   std::filesystem::path folder_;
 };
 
-/// Points of a frame as `file` (OpenVDB PointDataGrid with velocity, volume, pressure, id), for Houdini, Blender, ParaView.
+/// Points of a frame as `file` (OpenVDB PointDataGrid with velocity, volume, pressure, id), for Houdini, Blender,
+/// ParaView.
 void write_points_vdb(const std::filesystem::path& file, const PointFrame& frame, double spacing);
 
 }  // namespace talus::solver

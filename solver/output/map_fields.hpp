@@ -15,8 +15,8 @@ struct MapView {
 };
 
 /// Running maxima of one column from its mass [kg] and momentum [kg m/s] at `time` [s].
-TALUS_HD void record_column(const MapView& maps, int column, double mass, double momentum, double density, double spacing,
-                            double time) {
+TALUS_HD void record_column(const MapView& maps, int column, double mass, double momentum, double density,
+                            double spacing, double time) {
   const double thickness = mass / (density * spacing * spacing);
   if (thickness > maps.peak_thickness[column]) maps.peak_thickness[column] = thickness;
   if (thickness < maps.threshold) return;

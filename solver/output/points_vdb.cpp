@@ -46,7 +46,8 @@ void write_points_vdb(const std::filesystem::path& path, const PointFrame& frame
     file.close();
     pending.commit();
   } catch (const openvdb::Exception& e) {
-    throw DataError({path.string() + ": the frame cannot be written", e.what(), "Free some space, or set vdb_frames = false"});
+    throw DataError(
+        {path.string() + ": the frame cannot be written", e.what(), "Free some space, or set vdb_frames = false"});
   }
 }
 

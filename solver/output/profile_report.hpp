@@ -12,7 +12,8 @@ namespace talus::solver {
 /// Lines of text. `copy` is the bandwidth of a copy where the run was [B/s].
 std::vector<std::string> profile_lines(const RunSummary& summary, const Profile& profile, double copy);
 
-/// A row for every kernel: kernel, phase, calls, seconds, bytes it has to move (each read or written once; empty where it does not say), share of the copy's bandwidth.
+/// A row for every kernel: kernel, phase, calls, seconds, bytes it has to move (each read or written once; empty where
+/// it does not say), share of the copy's bandwidth.
 std::string profile_csv(const Profile& profile, double copy);
 
 }  // namespace talus::solver

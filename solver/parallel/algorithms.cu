@@ -7,7 +7,6 @@
 #include "solver/parallel/sums.hpp"
 
 #if defined(__CUDACC__)
-#include <cub/device/device_radix_sort.cuh>
 #include <thrust/device_ptr.h>
 #include <thrust/execution_policy.h>
 #include <thrust/gather.h>
@@ -15,6 +14,7 @@
 #include <thrust/scatter.h>
 #include <thrust/sequence.h>
 #include <thrust/system/cuda/execution_policy.h>
+#include <cub/device/device_radix_sort.cuh>
 
 namespace talus {
 namespace {
@@ -87,7 +87,8 @@ struct AddLast {
 
 void start_sum(const int* values, int* sums, int count, int* total) {
   for_each(OnGpu{}, 1, TakeLast{values, count - 1, total});  // before it is written over
-  thrust::exclusive_scan(policy(), thrust::device_ptr<const int>(values), thrust::device_ptr<const int>(values) + count, thrust::device_ptr<int>(sums));
+  thrust::exclusive_scan(policy(), thrust::device_ptr<const int>(values), thrust::device_ptr<const int>(values) + count,
+                         thrust::device_ptr<int>(sums));
   for_each(OnGpu{}, 1, AddLast{sums, count - 1, total});
 }
 
@@ -110,14 +111,18 @@ void sort_order(OnGpu, Buffer<std::uint64_t, OnGpu>& keys, Buffer<int, OnGpu>& o
   cub::DoubleBuffer<std::uint64_t> k(keys.data(), space.keys.data());
   cub::DoubleBuffer<int> v(order.data(), space.order.data());
   std::size_t bytes = 0;
-  check_cub(cub::DeviceRadixSort::SortPairs(nullptr, bytes, k, v, static_cast<int>(count), 0, bits, detail::gpu_stream()));
+  check_cub(
+      cub::DeviceRadixSort::SortPairs(nullptr, bytes, k, v, static_cast<int>(count), 0, bits, detail::gpu_stream()));
   space.rest.resize(bytes);
-  check_cub(cub::DeviceRadixSort::SortPairs(space.rest.data(), bytes, k, v, static_cast<int>(count), 0, bits, detail::gpu_stream()));
+  check_cub(cub::DeviceRadixSort::SortPairs(space.rest.data(), bytes, k, v, static_cast<int>(count), 0, bits,
+                                            detail::gpu_stream()));
   if (k.Current() != keys.data()) keys.swap(space.keys);
   if (v.Current() != order.data()) order.swap(space.order);
 }
 
-std::size_t sort_space_bytes(OnGpu) { return sort_space().keys.bytes() + sort_space().order.bytes() + sort_space().rest.bytes(); }
+std::size_t sort_space_bytes(OnGpu) {
+  return sort_space().keys.bytes() + sort_space().order.bytes() + sort_space().rest.bytes();
+}
 void drop_sort_space(OnGpu) { sort_space() = SortSpace{}; }
 
 int exclusive_sum(OnGpu, const int* values, int* sums, int count) {

@@ -8,7 +8,8 @@
 
 namespace talus {
 
-/// order[] becomes the stable permutation that sorts keys[]; keys[] is left sorted. Sizes equal. `bits`: the lowest ones, beyond which keys do not differ but for a key of ones alone.
+/// order[] becomes the stable permutation that sorts keys[]; keys[] is left sorted. Sizes equal. `bits`: the lowest
+/// ones, beyond which keys do not differ but for a key of ones alone.
 void sort_order(OnCpu, Buffer<std::uint64_t, OnCpu>& keys, Buffer<int, OnCpu>& order, int bits = 64);
 void sort_order(OnGpu, Buffer<std::uint64_t, OnGpu>& keys, Buffer<int, OnGpu>& order, int bits = 64);
 
@@ -42,8 +43,12 @@ double free_memory(OnGpu);
 
 /// A few bytes out of a place, and into it.
 inline void copy_to_host(OnCpu, void* host, const void* from, std::size_t bytes) { std::memcpy(host, from, bytes); }
-inline void copy_to_host(OnGpu, void* host, const void* from, std::size_t bytes) { detail::gpu_download(host, from, bytes); }
+inline void copy_to_host(OnGpu, void* host, const void* from, std::size_t bytes) {
+  detail::gpu_download(host, from, bytes);
+}
 inline void copy_from_host(OnCpu, void* to, const void* host, std::size_t bytes) { std::memcpy(to, host, bytes); }
-inline void copy_from_host(OnGpu, void* to, const void* host, std::size_t bytes) { detail::gpu_upload(to, host, bytes); }
+inline void copy_from_host(OnGpu, void* to, const void* host, std::size_t bytes) {
+  detail::gpu_upload(to, host, bytes);
+}
 
 }  // namespace talus

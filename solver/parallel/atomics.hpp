@@ -10,8 +10,8 @@
 
 namespace talus {
 
-/// Largest of the values seen, for floats >= 0: their bit patterns order as the numbers do. The lanes of a warp that meet here name the same place: one of them speaks for all,
-/// for atomics at one address come one after the other.
+/// Largest of the values seen, for floats >= 0: their bit patterns order as the numbers do. The lanes of a warp that
+/// meet here name the same place: one of them speaks for all, for atomics at one address come one after the other.
 TALUS_HD void atomic_max_positive(std::uint32_t* bits, float value) {
 #if defined(__CUDA_ARCH__)
   const unsigned together = __activemask(), most = __reduce_max_sync(together, __float_as_uint(value));
@@ -101,8 +101,8 @@ TALUS_HD void raise_flag(int* flag, int value) {
 #endif
 }
 
-/// Adding to a grid node while points are scattered. On the CPU the scatter runs by colours of column blocks that share no
-/// node (for_each_grouped), so a plain sum is enough and its order is always the same; on the GPU the sum is atomic.
+/// Adding to a grid node while points are scattered. On the CPU the scatter runs by colours of column blocks that share
+/// no node (for_each_grouped), so a plain sum is enough and its order is always the same; on the GPU the sum is atomic.
 template <class Real>
 TALUS_HD void scatter_add(Real* target, Real value) {
 #if defined(__CUDA_ARCH__)

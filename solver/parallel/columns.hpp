@@ -1,4 +1,5 @@
-// Loops over the columns of the grid's blocks: one thread a column on the CPU; on a GPU eight threads share a column's layers, of which a small scene has more than it has columns.
+// Loops over the columns of the grid's blocks: one thread a column on the CPU; on a GPU eight threads share a column's
+// layers, of which a small scene has more than it has columns.
 #pragma once
 
 #include "solver/grid/background_grid.hpp"
@@ -7,10 +8,9 @@
 namespace talus {
 
 /// Runs kernel over the columns of `blocks` blocks in use. The kernel has
-///   Column                    a column as it sees it: bool inside, int first, last (one behind the last layer); made by locate(c), c = block * 16 + column in it
-///   Sums                      of its layers, with +=
-///   layer(column, k, sums)    what happens in a layer
-///   finish(column, sums)      what happens once all layers are done
+///   Column                    a column as it sees it: bool inside, int first, last (one behind the last layer); made
+///   by locate(c), c = block * 16 + column in it Sums                      of its layers, with += layer(column, k,
+///   sums)    what happens in a layer finish(column, sums)      what happens once all layers are done
 template <class Kernel>
 struct WholeColumn {
   using Named = Kernel;
@@ -41,7 +41,8 @@ __global__ void run_columns(Kernel kernel) {
   __shared__ alignas(16) unsigned char room[column_shares * block_columns * sizeof(Sums)];
   auto* const shared = reinterpret_cast<Sums*>(room);
   const int thread = static_cast<int>(threadIdx.x), share = thread / block_columns;
-  const typename Kernel::Column column = kernel.locate(static_cast<int>(blockIdx.x) * block_columns + thread % block_columns);
+  const typename Kernel::Column column =
+      kernel.locate(static_cast<int>(blockIdx.x) * block_columns + thread % block_columns);
   Sums sums;
   if (column.inside) {
     for (int k = column.first + share; k < column.last; k += column_shares) kernel.layer(column, k, sums);
@@ -58,7 +59,8 @@ template <class Kernel>
 void for_each_column(OnGpu, int blocks, const Kernel& kernel) {
   if (blocks <= 0) return;
   const KernelTime<OnGpu> time(kernel, blocks * block_columns);
-  detail::gpu_launch(__PRETTY_FUNCTION__, detail::run_columns<Kernel>, blocks, detail::column_shares * block_columns, kernel);
+  detail::gpu_launch(__PRETTY_FUNCTION__, detail::run_columns<Kernel>, blocks, detail::column_shares * block_columns,
+                     kernel);
 }
 #endif
 

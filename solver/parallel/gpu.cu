@@ -82,7 +82,8 @@ void gpu_check_launch(const char* where) { check(cudaGetLastError(), where); }
 bool gpu_starts_early() {
   static const bool early = [] {
     cudaFuncAttributes attributes;  // code made for older devices does not wait
-    return cudaFuncGetAttributes(&attributes, probe) == cudaSuccess && attributes.binaryVersion >= 90 && attributes.ptxVersion >= 90;
+    return cudaFuncGetAttributes(&attributes, probe) == cudaSuccess && attributes.binaryVersion >= 90 &&
+           attributes.ptxVersion >= 90;
   }();
   return early;
 }
@@ -122,12 +123,14 @@ void* gpu_mark() {
     event = free_marks.back();
     free_marks.pop_back();
   }
-  check(cudaEventRecordWithFlags(event, gpu_stream(), recording ? cudaEventRecordExternal : cudaEventRecordDefault), "event");
+  check(cudaEventRecordWithFlags(event, gpu_stream(), recording ? cudaEventRecordExternal : cudaEventRecordDefault),
+        "event");
   return event;
 }
 double gpu_seconds_between(void* first, void* second) {
   float milliseconds = 0;
-  check(cudaEventElapsedTime(&milliseconds, static_cast<cudaEvent_t>(first), static_cast<cudaEvent_t>(second)), "event");
+  check(cudaEventElapsedTime(&milliseconds, static_cast<cudaEvent_t>(first), static_cast<cudaEvent_t>(second)),
+        "event");
   return 1e-3 * static_cast<double>(milliseconds);
 }
 void gpu_forget_mark(void* mark) { free_marks.push_back(static_cast<cudaEvent_t>(mark)); }

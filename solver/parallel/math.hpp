@@ -111,11 +111,13 @@ template <class Real>
 TALUS_HD Sym3<Real> inverted(const Sym3<Real>& s) {
   const Real xx = s.yy * s.zz - s.yz * s.yz, xy = s.yz * s.xz - s.xy * s.zz, xz = s.xy * s.yz - s.yy * s.xz;
   const Real scale = Real(1) / (s.xx * xx + s.xy * xy + s.xz * xz);
-  return Sym3<Real>{xx, s.xx * s.zz - s.xz * s.xz, s.xx * s.yy - s.xy * s.xy, xy, s.xy * s.xz - s.xx * s.yz, xz} * scale;
+  return Sym3<Real>{xx, s.xx * s.zz - s.xz * s.xz, s.xx * s.yy - s.xy * s.xy, xy, s.xy * s.xz - s.xx * s.yz, xz} *
+         scale;
 }
 
-/// A unit vector along the eigenvector of s whose eigenvalue lies furthest from the other two, good to the square root of rounding (Eberly 2014, A robust
-/// eigensolver for 3 x 3 symmetric matrices); zero where s is a multiple of the identity.
+/// A unit vector along the eigenvector of s whose eigenvalue lies furthest from the other two, good to the square root
+/// of rounding (Eberly 2014, A robust eigensolver for 3 x 3 symmetric matrices); zero where s is a multiple of the
+/// identity.
 template <class Real>
 TALUS_HD Vec3<Real> outlying_eigenvector(const Sym3<Real>& s) {
   const Real mean = trace(s) / Real(3);
@@ -140,8 +142,9 @@ TALUS_HD Vec3<Real> outlying_eigenvector(const Sym3<Real>& s) {
   return most > Real(0) ? best * (Real(1) / sqrt(most)) : Vec3<Real>{};
 }
 
-/// Eigenvalues of s, and its eigenvectors as the columns of `vectors`, by cyclic Jacobi rotations (Golub & Van Loan 2013, section 8.5): accurate for nearly equal
-/// eigenvalues too. They begin in axes of which one is an eigenvector but for rounding, so that one sweep does nearly always.
+/// Eigenvalues of s, and its eigenvectors as the columns of `vectors`, by cyclic Jacobi rotations (Golub & Van Loan
+/// 2013, section 8.5): accurate for nearly equal eigenvalues too. They begin in axes of which one is an eigenvector but
+/// for rounding, so that one sweep does nearly always.
 template <class Real>
 TALUS_HD void eigen_symmetric(const Sym3<Real>& s, Real values[3], Mat3<Real>& vectors) {
   Real m[3][3] = {{s.xx, s.xy, s.xz}, {s.xy, s.yy, s.yz}, {s.xz, s.yz, s.zz}};

@@ -1,5 +1,5 @@
-// The two places a kernel runs: OnCpu (oneTBB) and OnGpu (CUDA), both in one binary, chosen at run time. A kernel is a plain
-// struct of pointers and numbers with operator()(int index) const.
+// The two places a kernel runs: OnCpu (oneTBB) and OnGpu (CUDA), both in one binary, chosen at run time. A kernel is a
+// plain struct of pointers and numbers with operator()(int index) const.
 #pragma once
 
 #include <cstddef>
@@ -48,7 +48,8 @@ void gpu_replay(void* graph);
 void gpu_drop(void* graph);
 }  // namespace detail
 
-/// Owned memory in a place. Grows, never shrinks; contents are lost on growth. First as large as asked for: what never grows takes no more.
+/// Owned memory in a place. Grows, never shrinks; contents are lost on growth. First as large as asked for: what never
+/// grows takes no more.
 template <class T, class Place>
 class Buffer {
  public:
@@ -153,15 +154,16 @@ void for_each(OnCpu, int count, const Kernel& kernel) {
 struct PointGroups {
   using Range = std::pair<int, int>;  // [begin, end) into the points
   std::vector<Range> ranges[4];
-  bool in_order = false;              // a GPU goes by them too, so that sums are the same on every run
+  bool in_order = false;  // a GPU goes by them too, so that sums are the same on every run
   Buffer<Range, OnGpu> on_gpu[4];
   void upload() {
     for (int c = 0; in_order && c < 4; ++c) on_gpu[c].upload(ranges[c]);
   }
 };
 
-/// Runs kernel(p) over all points such that scatter_add never meets itself. CPU: colour by colour, each block in order, so
-/// sums are the same on every run. GPU: all at once, with atomics; with groups.in_order as the CPU, a thread for every block.
+/// Runs kernel(p) over all points such that scatter_add never meets itself. CPU: colour by colour, each block in order,
+/// so sums are the same on every run. GPU: all at once, with atomics; with groups.in_order as the CPU, a thread for
+/// every block.
 template <class Kernel>
 void for_each_grouped(OnCpu, int count, const PointGroups& groups, const Kernel& kernel) {
   const KernelTime<OnCpu> time(kernel, count);
@@ -186,13 +188,15 @@ void for_each_grouped(OnCpu, int count, const PointGroups& groups, const Kernel&
 inline void synchronise(OnCpu) {}
 inline void synchronise(OnGpu) { detail::gpu_synchronise(); }
 
-/// From so many points on every multiprocessor has more to do than it can hold: what counts then is how much gets through, not how soon.
+/// From so many points on every multiprocessor has more to do than it can hold: what counts then is how much gets
+/// through, not how soon.
 inline constexpr int points_that_keep_a_gpu_busy = 65536;
 
 #if defined(__CUDACC__)
 namespace detail {
-/// Every kernel's first words. From compute capability 9.0 on a kernel comes onto the device while the one before it is ending (programmatic dependent launch), and waits here until
-/// that has written all it had to; its own successor may come then.
+/// Every kernel's first words. From compute capability 9.0 on a kernel comes onto the device while the one before it is
+/// ending (programmatic dependent launch), and waits here until that has written all it had to; its own successor may
+/// come then.
 __device__ inline void begin_kernel() {
 #if __CUDA_ARCH__ >= 900
   asm volatile("griddepcontrol.wait;" ::: "memory");
@@ -202,7 +206,8 @@ __device__ inline void begin_kernel() {
 
 /// Starts a kernel that opens with begin_kernel().
 template <class... Parameters>
-void gpu_launch(const char* where, void (*kernel)(Parameters...), int blocks, int threads, const std::type_identity_t<Parameters>&... arguments) {
+void gpu_launch(const char* where, void (*kernel)(Parameters...), int blocks, int threads,
+                const std::type_identity_t<Parameters>&... arguments) {
   cudaLaunchAttribute early{};
   early.id = cudaLaunchAttributeProgrammaticStreamSerialization;
   early.val.programmaticStreamSerializationAllowed = 1;
@@ -242,11 +247,13 @@ void for_each(OnGpu, int count, const Kernel& kernel) {
   const KernelTime<OnGpu> time(kernel, count);
   if constexpr (requires { Kernel::dense; }) {
     if (Kernel::dense > 0 && count >= points_that_keep_a_gpu_busy) {
-      return detail::gpu_launch(__PRETTY_FUNCTION__, detail::run_dense<Kernel::dense, Kernel>, (count + 127) / 128, 128, count, kernel);
+      return detail::gpu_launch(__PRETTY_FUNCTION__, detail::run_dense<Kernel::dense, Kernel>, (count + 127) / 128, 128,
+                                count, kernel);
     }
   }
   const int threads = detail::threads_for(count);
-  detail::gpu_launch(__PRETTY_FUNCTION__, detail::run_kernel<Kernel>, (count + threads - 1) / threads, threads, count, kernel);
+  detail::gpu_launch(__PRETTY_FUNCTION__, detail::run_kernel<Kernel>, (count + threads - 1) / threads, threads, count,
+                     kernel);
 }
 
 /// One thread: the points of a block, one after the other.
@@ -264,7 +271,8 @@ struct InOrder {
 template <class Kernel>
 void for_each_grouped(OnGpu place, int count, const PointGroups& groups, const Kernel& kernel) {
   if (!groups.in_order) return for_each(place, count, kernel);
-  for (const auto& ranges : groups.on_gpu) for_each(place, static_cast<int>(ranges.size()), InOrder<Kernel>{kernel, ranges.data()});
+  for (const auto& ranges : groups.on_gpu)
+    for_each(place, static_cast<int>(ranges.size()), InOrder<Kernel>{kernel, ranges.data()});
 }
 #endif
 

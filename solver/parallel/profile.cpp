@@ -35,7 +35,8 @@ void Profile::leave() {
 
 std::size_t Profile::kernel(std::string_view name) {
   const std::size_t phase = open_.empty() ? find_phase("between phases") : open_.back();
-  auto found = std::find_if(kernels_.begin(), kernels_.end(), [&](const Kernel& k) { return k.phase == phase && k.name == name; });
+  auto found = std::find_if(kernels_.begin(), kernels_.end(),
+                            [&](const Kernel& k) { return k.phase == phase && k.name == name; });
   if (found == kernels_.end()) found = kernels_.insert(kernels_.end(), {std::string(name), phase, 0, 0, 0});
   return static_cast<std::size_t>(found - kernels_.begin());
 }

@@ -1,4 +1,5 @@
-// Where the time of a run goes: named phases of a step and the kernels in them, measured when asked for (--profile) and free of cost otherwise.
+// Where the time of a run goes: named phases of a step and the kernels in them, measured when asked for (--profile) and
+// free of cost otherwise.
 #pragma once
 
 #include <chrono>
@@ -10,7 +11,7 @@ namespace talus {
 
 namespace detail {
 void gpu_synchronise();
-void* gpu_mark();                                   // an event behind all that was started; part of the recording while there is one
+void* gpu_mark();  // an event behind all that was started; part of the recording while there is one
 double gpu_seconds_between(void* first, void* second);
 void gpu_forget_mark(void* mark);
 }  // namespace detail
@@ -25,9 +26,9 @@ class Profile {
   };
   struct Kernel {
     std::string name;
-    std::size_t phase = 0;     // index into phases()
-    double seconds = 0;        // on a GPU: of the device alone
-    double bytes = 0;          // that it has to move, each read or written once; 0 where it does not say
+    std::size_t phase = 0;  // index into phases()
+    double seconds = 0;     // on a GPU: of the device alone
+    double bytes = 0;       // that it has to move, each read or written once; 0 where it does not say
     long calls = 0;
   };
   /// A kernel between two marks on the device.
@@ -54,18 +55,20 @@ class Profile {
   void enter(const char* name);
   void leave();
   bool within_phase() const { return !open_.empty(); }
-  const std::vector<Phase>& phases() const { return phases_; }   // in the order met
+  const std::vector<Phase>& phases() const { return phases_; }  // in the order met
   const std::vector<Kernel>& kernels() const { return kernels_; }
 
-  /// Work of a recording is named while it is recorded, and timed by its marks when it runs: nothing can wait for the device in between.
+  /// Work of a recording is named while it is recorded, and timed by its marks when it runs: nothing can wait for the
+  /// device in between.
   void begin_recording() { recording_ = true; }
   std::vector<Mark> end_recording();
   bool recording() const { return recording_; }
-  /// Seconds between the marks, the device being done with them, to their kernels; and to their phases, out of the one that is open.
+  /// Seconds between the marks, the device being done with them, to their kernels; and to their phases, out of the one
+  /// that is open.
   void take(const std::vector<Mark>& marks);
   static void forget(std::vector<Mark>& marks);
 
-  std::size_t kernel(std::string_view name);       // of the present phase
+  std::size_t kernel(std::string_view name);  // of the present phase
   void add(std::size_t kernel, double seconds, double bytes);
   void add(const Mark& mark) { marks_.push_back(mark); }
   /// Takes the marks outside of recordings; the device is done with them.
@@ -83,7 +86,8 @@ class Profile {
   WallClock::time_point since_;
 };
 
-/// A phase for as long as it lives. Waits for the GPU at both ends, so that its kernels are counted and no others; in a recording it only names them.
+/// A phase for as long as it lives. Waits for the GPU at both ends, so that its kernels are counted and no others; in a
+/// recording it only names them.
 template <class Place>
 class ProfilePhase {
  public:

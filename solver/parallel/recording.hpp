@@ -1,5 +1,5 @@
-// Work that is given to the device again and again: recorded once, and then started as a whole (a CUDA graph), which takes a fraction of the time of starting its kernels one
-// by one.
+// Work that is given to the device again and again: recorded once, and then started as a whole (a CUDA graph), which
+// takes a fraction of the time of starting its kernels one by one.
 #pragma once
 
 #include <optional>
@@ -32,8 +32,8 @@ class Recording<OnGpu> {
     Profile::forget(marks_);
   }
 
-  /// Does body() as often as said. It must start the same kernels with the same arguments every time, until forget() is called. The first is done as it is, so that
-  /// buffers find their sizes.
+  /// Does body() as often as said. It must start the same kernels with the same arguments every time, until forget() is
+  /// called. The first is done as it is, so that buffers find their sizes.
   template <class Body>
   void repeat(int times, const Body& body) {
     Profile& profile = Profile::of_run();

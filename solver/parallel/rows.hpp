@@ -6,8 +6,8 @@
 
 namespace talus {
 
-/// Calls kernel.finish(i, sum of kernel.term(i, part) for part in [0, parts)) for i in [0, count). Terms are Vec3<double>; their order is fixed.
-/// Where the kernel says that it is idle(), nothing is done; it may say nothing.
+/// Calls kernel.finish(i, sum of kernel.term(i, part) for part in [0, parts)) for i in [0, count). Terms are
+/// Vec3<double>; their order is fixed. Where the kernel says that it is idle(), nothing is done; it may say nothing.
 template <class Kernel>
 TALUS_HD bool is_idle(const Kernel& kernel) {
   if constexpr (requires { kernel.idle(); }) {
@@ -43,7 +43,8 @@ template <int parts, class Kernel>
 __global__ void sum_row(int count, Kernel kernel) {
   begin_kernel();
   constexpr int warp_size = 32;
-  const int i = static_cast<int>((blockIdx.x * blockDim.x + threadIdx.x) / warp_size), lane = static_cast<int>(threadIdx.x % warp_size);
+  const int i = static_cast<int>((blockIdx.x * blockDim.x + threadIdx.x) / warp_size),
+            lane = static_cast<int>(threadIdx.x % warp_size);
   if (i >= count || is_idle(kernel)) return;
   Vec3<double> sum{};
   for (int part = lane; part < parts; part += warp_size) sum += kernel.term(i, part);
@@ -62,7 +63,8 @@ void sum_rows(OnGpu, int count, const Kernel& kernel) {
   if (count <= 0) return;
   const KernelTime<OnGpu> time(kernel, count);
   constexpr int threads = 128, each = threads / 32;
-  detail::gpu_launch(__PRETTY_FUNCTION__, detail::sum_row<parts, Kernel>, (count + each - 1) / each, threads, count, kernel);
+  detail::gpu_launch(__PRETTY_FUNCTION__, detail::sum_row<parts, Kernel>, (count + each - 1) / each, threads, count,
+                     kernel);
 }
 #endif
 

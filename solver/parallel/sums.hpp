@@ -1,4 +1,5 @@
-// Sums over a range of indices that are finished in the place where they are made: a loop on the device needs no word from the host.
+// Sums over a range of indices that are finished in the place where they are made: a loop on the device needs no word
+// from the host.
 #pragma once
 
 #include <algorithm>
@@ -42,8 +43,8 @@ class SumSpace {
   Buffer<unsigned, Place> ticket_;
 };
 
-/// Sums body(i), Terms<K>, for i in [0, count), and calls finish(const double* total) once, by one thread. The order is fixed by count alone, so that a run
-/// repeats to the bit. A body may as well write what belongs to its index.
+/// Sums body(i), Terms<K>, for i in [0, count), and calls finish(const double* total) once, by one thread. The order is
+/// fixed by count alone, so that a run repeats to the bit. A body may as well write what belongs to its index.
 template <int K, class Body, class Finish>
 void sum_each(OnCpu, int count, SumSpace<OnCpu>& space, const Body& body, const Finish& finish) {
   const KernelTime<OnCpu> time(body, count);
@@ -129,10 +130,12 @@ __global__ void sum_kernel(int count, Body body, Finish finish, double* partial,
 
 template <int K, class Body, class Finish>
 void sum_each(OnGpu, int count, SumSpace<OnGpu>& space, const Body& body, const Finish& finish) {
-  constexpr int most_blocks = 512, threads = 256;  // the last block adds up what all have found: few blocks, many threads
+  constexpr int most_blocks = 512,
+                threads = 256;  // the last block adds up what all have found: few blocks, many threads
   const int blocks = std::clamp((count + threads - 1) / threads, 1, most_blocks);
   const KernelTime<OnGpu> time(body, count);
-  detail::gpu_launch(__PRETTY_FUNCTION__, detail::sum_kernel<K, Body, Finish>, blocks, threads, count, body, finish, space.partial(K * most_blocks), space.ticket());
+  detail::gpu_launch(__PRETTY_FUNCTION__, detail::sum_kernel<K, Body, Finish>, blocks, threads, count, body, finish,
+                     space.partial(K * most_blocks), space.ticket());
 }
 #endif
 

@@ -1,4 +1,5 @@
-// Scatters by tiles: points that stand side by side in memory mostly share their nodes, so that a GPU can sum what they give before it goes to memory.
+// Scatters by tiles: points that stand side by side in memory mostly share their nodes, so that a GPU can sum what they
+// give before it goes to memory.
 #pragma once
 
 #include <bit>
@@ -8,7 +9,8 @@
 
 namespace talus {
 
-/// Runs a scatter over points. The kernel is one for_each_grouped can run (scatter_point below), with the parts of its work as members:
+/// Runs a scatter over points. The kernel is one for_each_grouped can run (scatter_point below), with the parts of its
+/// work as members:
 ///   columns_each, deep  columns of nodes that a point has, and nodes of each
 ///   Source              a point as its nodes see it, made from (kernel, point)
 ///   Sums                what a node receives, zero to begin with
@@ -21,11 +23,10 @@ namespace talus {
 ///   give_to(place, sums)   passes sums on to a stored node
 /// and, for the lanes of a warp to pass on together what lies together in memory:
 ///   Number, parts       what sums are made of, and of how many
-///   gives(k, c)         false where node c of such a column is none of its own: two may be stored in one place, but only one of them gives
-///   store(sums, to)     puts the parts side by side
-///   part(node, q)       where part q of a stored node is
-///   has(q)              whether there is such a part; may be left out where all are
-///   tiles_at_once       blocks of two tiles that a multiprocessor must have registers for; 0, or left out, where any number will do
+///   gives(k, c)         false where node c of such a column is none of its own: two may be stored in one place, but
+///   only one of them gives store(sums, to)     puts the parts side by side part(node, q)       where part q of a
+///   stored node is has(q)              whether there is such a part; may be left out where all are tiles_at_once
+///   blocks of two tiles that a multiprocessor must have registers for; 0, or left out, where any number will do
 template <class Kernel>
 TALUS_HD void scatter_point(const Kernel& kernel, int p) {
   if (!kernel.counts(p)) return;
@@ -34,7 +35,8 @@ TALUS_HD void scatter_point(const Kernel& kernel, int p) {
     typename Kernel::Sums sums[Kernel::deep];
     kernel.add(source, q, sums);
     const int column = kernel.column_of(source, q);
-    for (int c = 0; c < Kernel::deep; ++c) kernel.give_to(kernel.node_in(column, kernel.nodes_of(source).k, c), sums[c]);
+    for (int c = 0; c < Kernel::deep; ++c)
+      kernel.give_to(kernel.node_in(column, kernel.nodes_of(source).k, c), sums[c]);
   }
 }
 
@@ -73,28 +75,37 @@ __device__ inline std::uint64_t sort_lanes(std::uint64_t key) {
   return key;
 }
 
-/// A warp reads `each` points, one a lane, and puts them in the order of their nodes. Then teams take a share of them each, a lane for every column of nodes: sums stay in registers for as
-/// long as the next point has the same nodes; where its nodes are those a layer up, only the lowest layer is given away, by one atomic a node (after Gao et al. 2018). With 32 points
-/// a block takes 31 kB of shared memory for P2G in double precision.
+/// A warp reads `each` points, one a lane, and puts them in the order of their nodes. Then teams take a share of them
+/// each, a lane for every column of nodes: sums stay in registers for as long as the next point has the same nodes;
+/// where its nodes are those a layer up, only the lowest layer is given away, by one atomic a node (after Gao et al.
+/// 2018). With 32 points a block takes 31 kB of shared memory for P2G in double precision.
 template <int each, class Kernel>
 __device__ void take_tile(int count, const Kernel& kernel) {
   using Source = typename Kernel::Source;
   constexpr unsigned all = 0xffffffffu;
-  constexpr int columns = Kernel::columns_each, deep = Kernel::deep, teams = warp_size / columns, share = (each + teams - 1) / teams;
-  constexpr std::size_t apart_by = alignof(Source) * (sizeof(Source) / alignof(Source) | 1);  // an odd number of words: neighbouring lanes meet different banks
+  constexpr int columns = Kernel::columns_each, deep = Kernel::deep, teams = warp_size / columns,
+                share = (each + teams - 1) / teams;
+  constexpr std::size_t apart_by =
+      alignof(Source) *
+      (sizeof(Source) / alignof(Source) | 1);  // an odd number of words: neighbouring lanes meet different banks
   __shared__ alignas(16) unsigned char room[tile_warps * each * apart_by];
   __shared__ int bases[tile_warps * each][columns];
   const int lane = static_cast<int>(threadIdx.x) % warp_size, warp = static_cast<int>(threadIdx.x) / warp_size;
-  const auto at = [&](int q) -> Source& { return *reinterpret_cast<Source*>(room + static_cast<std::size_t>(warp * each + q) * apart_by); };
+  const auto at = [&](int q) -> Source& {
+    return *reinterpret_cast<Source*>(room + static_cast<std::size_t>(warp * each + q) * apart_by);
+  };
   constexpr int lane_bits = 5, layer_bits = 20;
-  std::uint64_t key = ~std::uint64_t{0} << lane_bits | static_cast<unsigned>(lane);  // of a lane whose point does not count: behind all others
+  std::uint64_t key = ~std::uint64_t{0} << lane_bits |
+                      static_cast<unsigned>(lane);  // of a lane whose point does not count: behind all others
   if (lane < each) {
     const int p = (static_cast<int>(blockIdx.x) * tile_warps + warp) * each + lane;
     if (p < count && kernel.counts(p)) {
       const Source& source = *new (&at(lane)) Source(kernel, p);
       for (int q = 0; q < columns; ++q) bases[warp * each + lane][q] = kernel.column_of(source, q);
       const auto& n = kernel.nodes_of(source);
-      key = (static_cast<std::uint64_t>(kernel.grid.column(n.i, n.j)) << layer_bits | static_cast<unsigned>(n.k + 1)) << lane_bits | static_cast<unsigned>(lane);
+      key = (static_cast<std::uint64_t>(kernel.grid.column(n.i, n.j)) << layer_bits | static_cast<unsigned>(n.k + 1))
+                << lane_bits |
+            static_cast<unsigned>(lane);
     }
   }
   if (__all_sync(all, key >> 63)) return;
@@ -103,14 +114,17 @@ __device__ void take_tile(int count, const Kernel& kernel) {
   const int who = static_cast<int>(key & ((1u << lane_bits) - 1));
   const std::uint64_t nodes = key >> lane_bits, nodes_after = __shfl_down_sync(all, nodes, 1);
   const unsigned counting = __ballot_sync(all, !(key >> 63));
-  const unsigned staying = __ballot_sync(all, nodes_after == nodes), climbing = __ballot_sync(all, nodes_after == nodes + 1);  // the next point, that is
-  const int team = lane / columns, column = lane % columns;  // lanes beyond the last team help to give
+  const unsigned staying = __ballot_sync(all, nodes_after == nodes),
+                 climbing = __ballot_sync(all, nodes_after == nodes + 1);  // the next point, that is
+  const int team = lane / columns, column = lane % columns;                // lanes beyond the last team help to give
   const int first = team * share, last = team >= teams ? 0 : first + share < each ? first + share : each;
-  // In single precision there is an atomic of 16 bytes. One of 8 takes as long as the 32 around it: there, neighbouring lanes add neighbouring parts of one node, not the same
-  // part of many nodes, and all lanes give what one team has found.
+  // In single precision there is an atomic of 16 bytes. One of 8 takes as long as the 32 around it: there, neighbouring
+  // lanes add neighbouring parts of one node, not the same part of many nodes, and all lanes give what one team has
+  // found.
   constexpr bool together = sizeof(typename Kernel::Number) == 8;
   constexpr int parts = Kernel::parts, apart = static_cast<int>(std::bit_ceil(static_cast<unsigned>(parts)));
-  constexpr int at_once = parts <= 10 ? deep : 1, given = columns * at_once;  // nodes of a column, and of a team, that there is room for
+  constexpr int at_once = parts <= 10 ? deep : 1,
+                given = columns * at_once;  // nodes of a column, and of a team, that there is room for
   __shared__ typename Kernel::Number all_values[together ? tile_warps * teams * given * parts : 1];
   __shared__ int all_places[together ? tile_warps * teams * given : 1];
   const int part = lane % apart;
@@ -126,7 +140,8 @@ __device__ void take_tile(int count, const Kernel& kernel) {
       if (!ends) continue;
       TALUS_UNROLL
       for (int c = 0; c < deep; ++c) {
-        if (c == 0 || !climbs) kernel.give_to(kernel.node_in(bases[warp * each + point][column], kernel.nodes_of(at(point)).k, c), sums[c]);
+        if (c == 0 || !climbs)
+          kernel.give_to(kernel.node_in(bases[warp * each + point][column], kernel.nodes_of(at(point)).k, c), sums[c]);
       }
     } else {
       const unsigned whole = __ballot_sync(all, ends && !climbs);
@@ -150,7 +165,8 @@ __device__ void take_tile(int count, const Kernel& kernel) {
           const int* const places = all_places + (warp * teams + g) * given;
           const int to_give = (whole >> (g * columns) & 1u) != 0 ? given : columns;
           if (!mine_to_give) continue;
-          for (int n = lane / apart; n < to_give; n += warp_size / apart) atomicAdd(kernel.part(places[n], part), values[n * parts + part]);
+          for (int n = lane / apart; n < to_give; n += warp_size / apart)
+            atomicAdd(kernel.part(places[n], part), values[n * parts + part]);
         }
         __syncwarp();
       }
@@ -175,7 +191,7 @@ __global__ void run_tiles(int count, Kernel kernel) {
 
 /// The same in as many registers as let this number of blocks share a multiprocessor.
 template <int each, int blocks, class Kernel>
-__global__ __launch_bounds__(tile_warps * warp_size, blocks) void run_tiles_densely(int count, Kernel kernel) {
+__global__ __launch_bounds__(tile_warps* warp_size, blocks) void run_tiles_densely(int count, Kernel kernel) {
   begin_kernel();
   take_tile<each>(count, kernel);
 }
@@ -186,7 +202,8 @@ void start_tiles(int count, const Kernel& kernel) {
   const int blocks = (count + points - 1) / points;
   if constexpr (requires { Kernel::tiles_at_once; }) {
     if constexpr (Kernel::tiles_at_once > 0) {
-      return gpu_launch(__PRETTY_FUNCTION__, run_tiles_densely<each, Kernel::tiles_at_once, Kernel>, blocks, tile_warps * warp_size, count, kernel);
+      return gpu_launch(__PRETTY_FUNCTION__, run_tiles_densely<each, Kernel::tiles_at_once, Kernel>, blocks,
+                        tile_warps * warp_size, count, kernel);
     }
   }
   gpu_launch(__PRETTY_FUNCTION__, run_tiles<each, Kernel>, blocks, tile_warps * warp_size, count, kernel);
@@ -237,11 +254,13 @@ void scatter_points(OnGpu, int count, const PointGroups& groups, const Kernel& k
   if (groups.in_order) {
     for (const auto& ranges : groups.on_gpu) {
       if (ranges.size() == 0) continue;
-      detail::gpu_launch(__PRETTY_FUNCTION__, detail::run_tiles_in_order<Kernel>, static_cast<int>(ranges.size()), detail::warp_size, ranges.data(), kernel);
+      detail::gpu_launch(__PRETTY_FUNCTION__, detail::run_tiles_in_order<Kernel>, static_cast<int>(ranges.size()),
+                         detail::warp_size, ranges.data(), kernel);
     }
     return;
   }
-  constexpr bool fits = 2 * detail::tile_warps * detail::warp_size * sizeof(typename Kernel::Source) <= 65536;  // two blocks of 32 points a warp, and room beside them
+  constexpr bool fits = 2 * detail::tile_warps * detail::warp_size * sizeof(typename Kernel::Source) <=
+                        65536;  // two blocks of 32 points a warp, and room beside them
   if constexpr (fits) {
     if (count >= points_that_keep_a_gpu_busy) return detail::start_tiles<32>(count, kernel);
   }

@@ -82,7 +82,8 @@ ParticleState Particles<Real, Place>::download_shown() const {
   }
   state.id = ints_[3].download();
   state.release = ints_[4].download();
-  state.material = fields_.material ? ints_[material_slot].download() : std::vector<int>(static_cast<std::size_t>(count_), 0);
+  state.material =
+      fields_.material ? ints_[material_slot].download() : std::vector<int>(static_cast<std::size_t>(count_), 0);
   state.plastic_shear = fields_.plastic_shear ? download_as(reals_[shear_slot]) : zeros;
   for (int a = 0; a < 6; ++a) state.elastic[a] = download_as(reals_[elastic_slot + a]);
   state.log_volume = download_as(reals_[log_slot]);

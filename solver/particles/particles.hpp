@@ -10,27 +10,28 @@
 
 namespace talus {
 
-/// Positions are the nearest node and the offset from it in cells, so that single precision keeps 1e-8 of a cell anywhere.
-/// A point whose cell_x is negative has left the domain.
+/// Positions are the nearest node and the offset from it in cells, so that single precision keeps 1e-8 of a cell
+/// anywhere. A point whose cell_x is negative has left the domain.
 template <class Real>
 struct ParticleView {
   int count = 0;
-  int *cell_x, *cell_y, *cell_z;          // nearest node
-  Real *offset_x, *offset_y, *offset_z;   // from it, in cells [-0.5, 0.5)
-  Real* velocity[3];                      // [m/s]
-  Real* affine[9];                        // velocity change per cell, columns x, y, zeta [m/s]; null without APIC
-  Real* elastic[6];                       // what the material keeps: xx yy zz xy yz xz (see material.hpp)
-  Real* log_volume;                       // ln(volume / initial volume) [-]
-  Real* plastic_log_volume;               // the part of it that is plastic dilation; null when there is none
-  Real* volume;                           // initial [m3]; mass is volume times the density of the scene
-  Real* extent[3];                        // sides of the box it stands for, along x, y, zeta, in cells; null unless functions are averaged over it
-  Real* move[3];                          // displacement of this step in cells; null unless MUSL
-  Real* acceleration[3];                  // [m/s2]; null unless Newmark
-  int* id;                                // order of seeding
-  int* release;                           // which release it belongs to
-  int* load;                              // which load pulls at it, -1: none; null without loads
-  int* material;                          // which it is of; null in a scene of one
-  Real* plastic_shear;                    // equivalent plastic shear strain so far [-]; null unless a material softens
+  int *cell_x, *cell_y, *cell_z;         // nearest node
+  Real *offset_x, *offset_y, *offset_z;  // from it, in cells [-0.5, 0.5)
+  Real* velocity[3];                     // [m/s]
+  Real* affine[9];                       // velocity change per cell, columns x, y, zeta [m/s]; null without APIC
+  Real* elastic[6];                      // what the material keeps: xx yy zz xy yz xz (see material.hpp)
+  Real* log_volume;                      // ln(volume / initial volume) [-]
+  Real* plastic_log_volume;              // the part of it that is plastic dilation; null when there is none
+  Real* volume;                          // initial [m3]; mass is volume times the density of the scene
+  Real* extent[3];  // sides of the box it stands for, along x, y, zeta, in cells; null unless functions are averaged
+                    // over it
+  Real* move[3];    // displacement of this step in cells; null unless MUSL
+  Real* acceleration[3];  // [m/s2]; null unless Newmark
+  int* id;                // order of seeding
+  int* release;           // which release it belongs to
+  int* load;              // which load pulls at it, -1: none; null without loads
+  int* material;          // which it is of; null in a scene of one
+  Real* plastic_shear;    // equivalent plastic shear strain so far [-]; null unless a material softens
 
   static constexpr double place_bytes = 3 * (sizeof(int) + sizeof(Real));  // of a position
 
@@ -48,7 +49,9 @@ struct ParticleView {
   }
 
   TALUS_HD Mat3<Real> affine_of(int p) const {
-    return {{affine[0][p], affine[1][p], affine[2][p]}, {affine[3][p], affine[4][p], affine[5][p]}, {affine[6][p], affine[7][p], affine[8][p]}};
+    return {{affine[0][p], affine[1][p], affine[2][p]},
+            {affine[3][p], affine[4][p], affine[5][p]},
+            {affine[6][p], affine[7][p], affine[8][p]}};
   }
   template <class Number>
   TALUS_HD void set_affine(int p, const Mat3<Number>& m) const {
@@ -61,7 +64,8 @@ struct ParticleView {
     const Real half = Real(0.5) * extent[axis][p];
     return half < Real(0.5) ? (half > least ? half : least) : Real(0.5);
   }
-  /// The box after a step with displacement gradient g over ground of these slopes: its sides grow with what happens along them.
+  /// The box after a step with displacement gradient g over ground of these slopes: its sides grow with what happens
+  /// along them.
   TALUS_HD void stretch_box(int p, const Mat3<Real>& g, Real slope_x, Real slope_y) const {
     const Real rise = slope_x * g.c.x + slope_y * g.c.y;
     extent[0][p] *= Real(1) + g.a.x + slope_x * g.c.x;
@@ -99,13 +103,15 @@ struct ParticleView {
 /// Host copy of the whole state, in double.
 struct ParticleState {
   std::vector<int> cell[3], id, release, load, material;
-  std::vector<double> offset[3], extent[3], velocity[3], acceleration[3], affine[9], elastic[6], log_volume, plastic_log_volume, plastic_shear, volume;
+  std::vector<double> offset[3], extent[3], velocity[3], acceleration[3], affine[9], elastic[6], log_volume,
+      plastic_log_volume, plastic_shear, volume;
   std::size_t size() const { return id.size(); }
 };
 
 /// Which optional arrays a scene needs.
 struct ParticleFields {
-  bool affine = false, plastic_volume = false, extent = false, move = false, acceleration = false, load = false, material = false, plastic_shear = false;
+  bool affine = false, plastic_volume = false, extent = false, move = false, acceleration = false, load = false,
+       material = false, plastic_shear = false;
 };
 
 template <class Real, class Place>
@@ -127,7 +133,8 @@ class Particles {
 
  private:
   static constexpr int offset_slot = 0, velocity_slot = 3, elastic_slot = 6, log_slot = 12, volume_slot = 13,
-                       plastic_slot = 14, affine_slot = 15, acceleration_slot = 24, extent_slot = 27, shear_slot = 30, move_slot = 31, real_slots = 34;
+                       plastic_slot = 14, affine_slot = 15, acceleration_slot = 24, extent_slot = 27, shear_slot = 30,
+                       move_slot = 31, real_slots = 34;
   static constexpr int load_slot = 5, material_slot = 6, int_slots = 7;
   bool in_use(int slot) const;
   bool int_in_use(int slot) const;
@@ -135,7 +142,7 @@ class Particles {
   ParticleFields fields_;
   int count_ = 0;
   Buffer<Real, Place> reals_[real_slots];
-  Buffer<int, Place> ints_[int_slots];  // cell x y z, id, release, load, material
+  Buffer<int, Place> ints_[int_slots];         // cell x y z, id, release, load, material
   Buffer<Real, Place> real_twins_[move_slot];  // of as many points as may be kept twice
   Buffer<int, Place> int_twins_[int_slots];
   Buffer<Real, Place> real_scratch_;

@@ -10,13 +10,13 @@ namespace talus {
 
 /// Which part of the gather a kernel does.
 enum class Gather {
-  all,           // USL: everything at once
-  motion,        // MUSL, first half: velocity and displacement, kept in points.move
-  deformation    // MUSL, second half: gradient from the remapped momentum, stress, and the kept displacement
+  all,         // USL: everything at once
+  motion,      // MUSL, first half: velocity and displacement, kept in points.move
+  deformation  // MUSL, second half: gradient from the remapped momentum, stress, and the kept displacement
 };
 
-/// One thread: one point. nodes[] holds mass and new velocity; changes[] the velocity change of the step, null where points keep
-/// nothing of their own velocity. `budget`: adds up what is lost, for the clock.
+/// One thread: one point. nodes[] holds mass and new velocity; changes[] the velocity change of the step, null where
+/// points keep nothing of their own velocity. `budget`: adds up what is lost, for the clock.
 template <class Real, class Shape, Gather part, bool budget>
 struct GridToParticle {
   static constexpr int dense = part == Gather::all && !budget ? (sizeof(Real) == 8 ? 4 : 6) : 1;  // see run_dense
@@ -31,16 +31,18 @@ struct GridToParticle {
   bool dilatant;
 
   double bytes(int count) const {
-    const int moved = part == Gather::deformation ? 0 : 3 + (affine ? 9 : 0), deformed = part == Gather::motion ? 0 : 2 * (dilatant ? 8 : 7);
-    return count * (2 * points.place_bytes + (moved + deformed) * sizeof(Real) + sizeof(*home)) + grid.nodes * static_cast<double>((changes ? 2 : 1) * sizeof(*nodes));
+    const int moved = part == Gather::deformation ? 0 : 3 + (affine ? 9 : 0),
+              deformed = part == Gather::motion ? 0 : 2 * (dilatant ? 8 : 7);
+    return count * (2 * points.place_bytes + (moved + deformed) * sizeof(Real) + sizeof(*home)) +
+           grid.nodes * static_cast<double>((changes ? 2 : 1) * sizeof(*nodes));
   }
 
   struct Sums {
-    Vec3<Real> velocity;             // [m/s]
-    Mat3<Real> gradient;             // by reference coordinates, per cell
-    Real climb = 0;                  // rate of zeta [m/s]
-    Mat3<Real> moment;               // of velocity about the point, in cells
-    Vec3<Real> change;               // of the velocity in the step, where points keep some of their own [m/s]
+    Vec3<Real> velocity;  // [m/s]
+    Mat3<Real> gradient;  // by reference coordinates, per cell
+    Real climb = 0;       // rate of zeta [m/s]
+    Mat3<Real> moment;    // of velocity about the point, in cells
+    Vec3<Real> change;    // of the velocity in the step, where points keep some of their own [m/s]
   };
 
   TALUS_HD void operator()(int p) const {
@@ -60,7 +62,7 @@ struct GridToParticle {
     Sums sums;
     const bool follows = grid.mapping == Mapping::terrain_following;
     TALUS_UNROLL  // weights looked up by a loop's counter would go through memory
-    for (int b = 0; b < Shape::width; ++b) {
+        for (int b = 0; b < Shape::width; ++b) {
       TALUS_UNROLL
       for (int a = 0; a < Shape::width; ++a) {
         const int i = s.i + a, j = s.j + b;
@@ -109,7 +111,8 @@ struct GridToParticle {
     if constexpr (budget) {
       const Vec3<Real> old = points.velocity_of(p);
       const double mass = static_cast<double>(points.volume[p] * materials.density(points.material, p));
-      atomic_add(&clock->transfer_loss, 0.5 * mass * (static_cast<double>(dot(old, old)) - static_cast<double>(dot(v, v))));
+      atomic_add(&clock->transfer_loss,
+                 0.5 * mass * (static_cast<double>(dot(old, old)) - static_cast<double>(dot(v, v))));
     }
     points.velocity[0][p] = v.x;
     points.velocity[1][p] = v.y;
@@ -147,14 +150,17 @@ struct GridToParticle {
   }
 
   /// The work of the stress, less what is kept as elastic energy.
-  TALUS_HD void lose_to_flow(const Material<Real>& m, const MaterialState<Real>& before, const MaterialState<Real>& after, const Mat3<Real>& g, Real volume) const {
+  TALUS_HD void lose_to_flow(const Material<Real>& m, const MaterialState<Real>& before,
+                             const MaterialState<Real>& after, const Mat3<Real>& g, Real volume) const {
     const Sym3<Real> tau = (kirchhoff_stress(m, before) + kirchhoff_stress(m, after)) * Real(0.5);
-    const Real work = tau.xx * g.a.x + tau.yy * g.b.y + tau.zz * g.c.z + tau.xy * (g.a.y + g.b.x) + tau.yz * (g.b.z + g.c.y) + tau.xz * (g.a.z + g.c.x);
+    const Real work = tau.xx * g.a.x + tau.yy * g.b.y + tau.zz * g.c.z + tau.xy * (g.a.y + g.b.x) +
+                      tau.yz * (g.b.z + g.c.y) + tau.xz * (g.a.z + g.c.x);
     const Real kept = elastic_energy(m, after) - elastic_energy(m, before);
     atomic_add(&clock->plastic_loss, static_cast<double>(volume) * static_cast<double>(work - kept));
   }
 
-  /// Alarms of the clock: not a number, left the domain, left the home cell's neighbourhood; step size of the next step.
+  /// Alarms of the clock: not a number, left the domain, left the home cell's neighbourhood; step size of the next
+  /// step.
   TALUS_HD void settle(int p, const Stencil<Real, Shape>& s, const Sums& sums) const {
     const Vec3<Real> v = points.velocity_of(p);
     const Real speed = length(v);
@@ -175,7 +181,8 @@ struct GridToParticle {
     }
     const Real steep = Real(1) + s.slope_x * s.slope_x + s.slope_y * s.slope_y;
     const Real hx = Real(1) / grid.spacing, hz = Real(1) / grid.layer_height;
-    const Real wave_speed = points.material ? materials.list[points.material[p]].wave_speed : materials.list[0].wave_speed;
+    const Real wave_speed =
+        points.material ? materials.list[points.material[p]].wave_speed : materials.list[0].wave_speed;
     const Real waves = wave_speed * sqrt(Real(2) * hx * hx + steep * hz * hz);
     const Real flow = fabs(v.x) * hx + fabs(v.y) * hx + fabs(sums.climb) * hz;
     atomic_max_positive(&clock->rate_bits, static_cast<float>(waves + flow));
@@ -185,7 +192,9 @@ struct GridToParticle {
 
   TALUS_HD bool strayed(std::uint64_t key, int i, int j, int k) const {
     const HomeCell at(grid.block_columns_x, key);
-    const int most = grid.drift, least = grid.homes_below ? 1 - most : -most;  // storage goes by where a point was, a cell above its home at most
+    const int most = grid.drift,
+              least = grid.homes_below ? 1 - most
+                                       : -most;  // storage goes by where a point was, a cell above its home at most
     const int di = i - at.i, dj = j - at.j, dk = k - at.k;
     return di > most || di < least || dj > most || dj < least || dk > most || dk < least;
   }

@@ -10,16 +10,17 @@ namespace talus {
 
 /// What P2G scatters.
 enum class Scatter {
-  impulse,         // momentum + dt * internal force, in one
-  force,           // momentum and internal force apart (FLIP, damping, MUSL)
-  momentum         // momentum alone (second mapping of MUSL)
+  impulse,  // momentum + dt * internal force, in one
+  force,    // momentum and internal force apart (FLIP, damping, MUSL)
+  momentum  // momentum alone (second mapping of MUSL)
 };
 
 /// Adds the points to nodes[] (mass, momentum) and, for Scatter::force, forces[].
 template <class Real, class Shape, Scatter what>
 struct ParticleToGrid {
   using Number = Real;
-  static constexpr int width = Shape::width, columns_each = width * width, deep = width, parts = what == Scatter::force ? 7 : 4;
+  static constexpr int width = Shape::width, columns_each = width * width, deep = width,
+                       parts = what == Scatter::force ? 7 : 4;
   GridView<Real> grid;
   ParticleView<Real> points;
   Materials<Real> materials;
@@ -32,10 +33,12 @@ struct ParticleToGrid {
 
   double bytes(int count) const {
     const int state = what == Scatter::momentum ? 0 : dilatant ? 8 : 7;
-    return count * (points.place_bytes + (4 + (affine ? 9 : 0) + state) * static_cast<double>(sizeof(Real))) + grid.nodes * static_cast<double>((what == Scatter::force ? 4 : 2) * sizeof(*nodes));
+    return count * (points.place_bytes + (4 + (affine ? 9 : 0) + state) * static_cast<double>(sizeof(Real))) +
+           grid.nodes * static_cast<double>((what == Scatter::force ? 4 : 2) * sizeof(*nodes));
   }
 
-  /// A point as its nodes see it: of its stencil, what they need. As small as can be, for it decides how many a GPU holds at once.
+  /// A point as its nodes see it: of its stencil, what they need. As small as can be, for it decides how many a GPU
+  /// holds at once.
   struct Source {
     int i, j, k;
     Real wx[width], wy[width], wz[width], gx[width], gy[width], gz[width];
@@ -45,7 +48,8 @@ struct ParticleToGrid {
     Mat3<Real> pull{};    // columns of -V tau, mapped to reference coordinates and per cell
     Vec3<Real> pulled{};  // by its load, in the units of `pull`
 
-    TALUS_HD Source(const ParticleToGrid& kernel, int p) : Source(kernel, p, Stencil<Real, Shape>(kernel.grid, kernel.points, p)) {}
+    TALUS_HD Source(const ParticleToGrid& kernel, int p)
+        : Source(kernel, p, Stencil<Real, Shape>(kernel.grid, kernel.points, p)) {}
 
    private:
     TALUS_HD Source(const ParticleToGrid& kernel, int p, const Stencil<Real, Shape>& s) : i(s.i), j(s.j), k(s.k) {
@@ -62,13 +66,16 @@ struct ParticleToGrid {
       const Real volume = points.volume[p];
       mass = volume * kernel.materials.density(points.material, p);
       if constexpr (what != Scatter::momentum) {
-        const MaterialState<Real> state{points.elastic_of(p), points.log_volume[p], kernel.dilatant ? points.plastic_log_volume[p] : Real(0)};
+        const MaterialState<Real> state{points.elastic_of(p), points.log_volume[p],
+                                        kernel.dilatant ? points.plastic_log_volume[p] : Real(0)};
         const Sym3<Real> tau = kirchhoff_stress(kernel.materials.of(points.material, points.plastic_shear, p), state);
         const Real dt = what == Scatter::impulse ? Real(kernel.clock->step_size) : Real(1);
         const Real across = -volume * dt / kernel.grid.spacing, up = -volume * dt / kernel.grid.layer_height;
         pull.a = Vec3<Real>{tau.xx, tau.xy, tau.xz} * across;
         pull.b = Vec3<Real>{tau.xy, tau.yy, tau.yz} * across;
-        pull.c = (Vec3<Real>{tau.xz, tau.yz, tau.zz} - Vec3<Real>{tau.xx, tau.xy, tau.xz} * s.slope_x - Vec3<Real>{tau.xy, tau.yy, tau.yz} * s.slope_y) * up;
+        pull.c = (Vec3<Real>{tau.xz, tau.yz, tau.zz} - Vec3<Real>{tau.xx, tau.xy, tau.xz} * s.slope_x -
+                  Vec3<Real>{tau.xy, tau.yy, tau.yz} * s.slope_y) *
+                 up;
         if (kernel.loads && points.load[p] >= 0) {
           const Vec3<double> f = kernel.loads[points.load[p]];
           pulled = Vec3<Real>{Real(f.x), Real(f.y), Real(f.z)} * (volume * dt);
@@ -93,7 +100,9 @@ struct ParticleToGrid {
 
   // As scatter_points has it.
   TALUS_HD static const Source& nodes_of(const Source& s) { return s; }
-  TALUS_HD int column_of(const Source& s, int q) const { return Stencil<Real, Shape>::column_at(grid, s.i + q % width, s.j + q / width); }
+  TALUS_HD int column_of(const Source& s, int q) const {
+    return Stencil<Real, Shape>::column_at(grid, s.i + q % width, s.j + q / width);
+  }
   TALUS_HD static int node_in(int column, int k, int c) { return Stencil<Real, Shape>::node(column, k, c); }
   TALUS_HD static bool gives(int k, int c) { return k + c >= 0; }  // below the ground there is none
   TALUS_HD static void store(const Sums& sums, Real* to) {

@@ -1,4 +1,5 @@
-// Interpolation at the points of an implicit step: gradients by position, and how what they give to the nodes is scattered.
+// Interpolation at the points of an implicit step: gradients by position, and how what they give to the nodes is
+// scattered.
 #pragma once
 
 #include "solver/parallel/tiles.hpp"
@@ -16,7 +17,8 @@ struct PointGradients {
   TALUS_HD Real weight(int a, int b, int c) const { return s.wx[a] * s.wy[b] * s.wz[c]; }
   TALUS_HD Vec3<Real> gradient(int a, int b, int c) const {
     const Real gz = s.wx[a] * s.wy[b] * s.gz[c] * up;
-    return {s.gx[a] * s.wy[b] * s.wz[c] * across - s.slope_x * gz, s.wx[a] * s.gy[b] * s.wz[c] * across - s.slope_y * gz, gz};
+    return {s.gx[a] * s.wy[b] * s.wz[c] * across - s.slope_x * gz,
+            s.wx[a] * s.gy[b] * s.wz[c] * across - s.slope_y * gz, gz};
   }
   TALUS_HD int node(const GridView<Real>& grid, int a, int b, int c) const { return s.node(s.column(grid, a, b), c); }
 };

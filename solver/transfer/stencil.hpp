@@ -10,12 +10,12 @@ namespace talus {
 template <class Real, class Shape>
 struct Stencil {
   static constexpr int width = Shape::width;
-  int i, j, k;                                     // first node; k may be -1, with no weight
-  Real wx[width], wy[width], wz[width];            // weights
-  Real gx[width], gy[width], gz[width];            // their slopes, per cell
-  Real near_x, near_y, near_z;                     // first node minus point, in cells
+  int i, j, k;                                          // first node; k may be -1, with no weight
+  Real wx[width], wy[width], wz[width];                 // weights
+  Real gx[width], gy[width], gz[width];                 // their slopes, per cell
+  Real near_x, near_y, near_z;                          // first node minus point, in cells
   bool edge_x = false, edge_y = false, edge_z = false;  // hats beside the ground or a wall
-  Real slope_x = 0, slope_y = 0;                   // of the terrain at the point
+  Real slope_x = 0, slope_y = 0;                        // of the terrain at the point
 
   TALUS_HD Stencil(const GridView<Real>& grid, const ParticleView<Real>& points, int p) {
     const Real fx = points.offset_x[p], fy = points.offset_y[p], fz = points.offset_z[p];
@@ -33,30 +33,38 @@ struct Stencil {
     if (grid.mapping == Mapping::terrain_following) measure_slope(grid);
     const Real lowest = grid.lowest_weighed;
     near_x = Real(ax) - beside(points.cell_x[p], grid.walls.west, grid.walls.east, fx, lowest, half[0], wx, gx, edge_x);
-    near_y = Real(ay) - beside(points.cell_y[p], grid.walls.south, grid.walls.north, fy, lowest, half[1], wy, gy, edge_y);
+    near_y =
+        Real(ay) - beside(points.cell_y[p], grid.walls.south, grid.walls.north, fy, lowest, half[1], wy, gy, edge_y);
     near_z = Real(az) - beside(points.cell_z[p], 0, WallNodes::far, fz, lowest, half[2], wz, gz, edge_z);
   }
 
   /// Where layer 0 of a column of its nodes is stored, or would be; and a node of that column.
   TALUS_HD int column(const GridView<Real>& grid, int a, int b) const { return column_at(grid, i + a, j + b); }
-  TALUS_HD static int column_at(const GridView<Real>& grid, int i, int j) { return GridView<Real>::node(grid.slot(i, j), i, j, 0); }
+  TALUS_HD static int column_at(const GridView<Real>& grid, int i, int j) {
+    return GridView<Real>::node(grid.slot(i, j), i, j, 0);
+  }
   TALUS_HD int node(int column, int c) const { return node(column, k, c); }
   TALUS_HD static int node(int column, int k, int c) { return column + (k + c > 0 ? k + c : 0) * block_columns; }
 
-  /// Velocity change per cell that a point keeps, from the grid's velocity about it (APIC; Jiang et al. 2015): its moment times the inverse of the
-  /// weights' second moment, 4 per cell for splines; for hats, and so beside edges, that is its gradient.
+  /// Velocity change per cell that a point keeps, from the grid's velocity about it (APIC; Jiang et al. 2015): its
+  /// moment times the inverse of the weights' second moment, 4 per cell for splines; for hats, and so beside edges,
+  /// that is its gradient.
   template <class Number>
   TALUS_HD Mat3<Number> affine_velocity(const Mat3<Number>& moment, const Mat3<Number>& gradient) const {
-    return {Shape::spline && !edge_x ? moment.a * Number(4) : gradient.a, Shape::spline && !edge_y ? moment.b * Number(4) : gradient.b,
+    return {Shape::spline && !edge_x ? moment.a * Number(4) : gradient.a,
+            Shape::spline && !edge_y ? moment.b * Number(4) : gradient.b,
             Shape::spline && !edge_z ? moment.c * Number(4) : gradient.c};
   }
 
  private:
   /// Boxes shrink no further in explicit steps, which have to be shorter the smaller they are; and never to nothing.
-  TALUS_HD static Real least_half(const GridView<Real>& grid) { return grid.lowest_weighed > Real(1e-3) ? grid.lowest_weighed : Real(1e-3); }
+  TALUS_HD static Real least_half(const GridView<Real>& grid) {
+    return grid.lowest_weighed > Real(1e-3) ? grid.lowest_weighed : Real(1e-3);
+  }
 
   /// Weights of one direction once more where the point is beside an edge; the offset they stand for.
-  TALUS_HD static Real beside(int cell, int first, int last, Real offset, Real lowest, Real half, Real* weight, Real* slope, bool& edge) {
+  TALUS_HD static Real beside(int cell, int first, int last, Real offset, Real lowest, Real half, Real* weight,
+                              Real* slope, bool& edge) {
     edge = width == 3 && (cell == first || cell == last);
     return edge ? Shape::weigh_edge(offset, cell == first ? 1 : -1, lowest, half, weight, slope) : offset;
   }

@@ -37,7 +37,8 @@ TEST(Cut, gives_the_cells_of_a_window_inside) {
 
 TEST(Cut, holds_nothing_beyond_any_edge) {
   const Raster whole = test::random_raster(grid, 2);
-  for (const CellWindow& w : {CellWindow{-2, -1, 9, 7}, {3, 1, 6, 2}, {-3, 2, 5, 6}, {7, 7, 2, 2}, {-4, -4, 2, 2}, {0, 0, 5, 4}})
+  for (const CellWindow& w :
+       {CellWindow{-2, -1, 9, 7}, {3, 1, 6, 2}, {-3, 2, 5, 6}, {7, 7, 2, 2}, {-4, -4, 2, 2}, {0, 0, 5, 4}})
     expect_same_places(cut(whole, w), whole);
 }
 
@@ -68,7 +69,8 @@ TEST(Cut, knows_one_lattice_from_another) {
   EXPECT_TRUE(same_lattice(grid, {900, 700, 400000, 5300000, 2.5, ""}));
   EXPECT_FALSE(same_lattice(grid, {5, 4, 500001, 5400000, 2.5, ""})) << "0.4 of a cell off";
   EXPECT_FALSE(same_lattice(grid, {5, 4, 500000, 5400000, 5, ""}));
-  EXPECT_FALSE(same_lattice(grid, {5000, 4, 500000, 5400000, 2.5 * (1 + 1e-7), ""})) << "off by 5e-4 of a cell at the far end";
+  EXPECT_FALSE(same_lattice(grid, {5000, 4, 500000, 5400000, 2.5 * (1 + 1e-7), ""}))
+      << "off by 5e-4 of a cell at the far end";
 }
 
 }  // namespace

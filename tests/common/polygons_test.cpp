@@ -95,16 +95,20 @@ TEST(ReadLines, splits_multilines_drops_repeated_points_and_carries_them_to_the_
   ASSERT_EQ(lines.size(), 2u);
   ASSERT_EQ(lines[0].size(), 2u);
   EXPECT_EQ(lines[1].size(), 3u);
-  EXPECT_NEAR(lines[0][0][0], 500000, 1e-3);                     // on the central meridian
-  EXPECT_NEAR(lines[0][1][1] - lines[0][0][1], 1111.6, 1.0);     // a hundredth of a degree of latitude, times 0.9996
+  EXPECT_NEAR(lines[0][0][0], 500000, 1e-3);                  // on the central meridian
+  EXPECT_NEAR(lines[0][1][1] - lines[0][0][1], 1111.6, 1.0);  // a hundredth of a degree of latitude, times 0.9996
 }
 
 TEST(ReadLines, refuses_files_without_a_line) {
   const Scratch scratch;
-  const auto file = scratch.write("a.geojson", collection(R"({"type":"Feature","properties":{},"geometry":{"type":"Polygon","coordinates":
-[[[0,0],[1,0],[1,1],[0,0]]]}})", utm_11));
-  EXPECT_NE(fault_of<DataError>([&] { read_lines(file, ""); }).find("no line in its first layer (it holds POLYGON)"), std::string::npos);
-  EXPECT_NE(fault_of<DataError>([&] { read_lines(scratch / "none.gpkg", ""); }).find("no such file"), std::string::npos);
+  const auto file = scratch.write(
+      "a.geojson", collection(R"({"type":"Feature","properties":{},"geometry":{"type":"Polygon","coordinates":
+[[[0,0],[1,0],[1,1],[0,0]]]}})",
+                              utm_11));
+  EXPECT_NE(fault_of<DataError>([&] { read_lines(file, ""); }).find("no line in its first layer (it holds POLYGON)"),
+            std::string::npos);
+  EXPECT_NE(fault_of<DataError>([&] { read_lines(scratch / "none.gpkg", ""); }).find("no such file"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -12,7 +12,9 @@ namespace {
 
 /// What of a raster lies in a window.
 Raster part_of(const Raster& whole, int column, int row, int columns, int rows) {
-  Raster part{{columns, rows, whole.grid.west + column * whole.grid.cell, whole.grid.south + row * whole.grid.cell, whole.grid.cell, whole.grid.crs_wkt}, {}};
+  Raster part{{columns, rows, whole.grid.west + column * whole.grid.cell, whole.grid.south + row * whole.grid.cell,
+               whole.grid.cell, whole.grid.crs_wkt},
+              {}};
   for (int r = 0; r < rows; ++r)
     for (int c = 0; c < columns; ++c) part.values.push_back(whole.at(column + c, row + r));
   return part;

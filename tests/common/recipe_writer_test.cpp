@@ -120,7 +120,8 @@ TEST(UsedRecipe, reads_back_facts_values_and_defaults_whatever_stands_in_the_tex
   options.label = "\xc3\xbc \" # default: no\nlonger";
   options.times = {1, 2};
   const auto used = recipe::read_used_recipe("# What: was used\n# input: /a: b  sha256 0\n\n[scene]\nname = \"s\"\n\n" +
-                                                 recipe::to_used_toml(options, "solve"), "x");
+                                                 recipe::to_used_toml(options, "solve"),
+                                             "x");
   ASSERT_EQ(used.facts.size(), 2U);
   EXPECT_EQ(used.facts[1], (std::pair<std::string, std::string>{"input", "/a: b  sha256 0"}));
   const auto label = key_of(used, "solve", "label");
@@ -134,8 +135,9 @@ TEST(UsedRecipe, reads_back_facts_values_and_defaults_whatever_stands_in_the_tex
 }
 
 TEST(UsedRecipe, refuses_what_is_not_toml) {
-  EXPECT_NE(test::fault_of<DataError>([] { recipe::read_used_recipe("\n[solve\n", "solve.used.toml"); })
-                .find("solve.used.toml:2: not TOML"),
+  EXPECT_NE(test::fault_of<DataError>([] {
+              recipe::read_used_recipe("\n[solve\n", "solve.used.toml");
+            }).find("solve.used.toml:2: not TOML"),
             std::string::npos);
 }
 

@@ -41,8 +41,8 @@ TEST(ResampleThickness, keeps_the_volume_on_random_grids) {
     to.columns = static_cast<int>(std::ceil((from.east() - to.west) / cell)) + 1;
     to.rows = static_cast<int>(std::ceil((from.north() - to.south) / cell)) + 1;
     const Raster result = resample_thickness(source, to);
-    // Coordinates of 5e6 m are known to 1e-9 m, so an overlap of cells of 0.3 m to 3e-9 of itself; hundreds of them average out (largest of
-    // 20,000 trials: 7e-12).
+    // Coordinates of 5e6 m are known to 1e-9 m, so an overlap of cells of 0.3 m to 3e-9 of itself; hundreds of them
+    // average out (largest of 20,000 trials: 7e-12).
     EXPECT_NEAR(volume(result) / volume(source), 1, 1e-10) << "trial " << trial;
   }
 }
@@ -148,9 +148,11 @@ TEST(ResampleElevation, keeps_a_quadratic_surface_when_moved_by_part_of_a_cell) 
   const MapGrid own{30, 30, -150, -150, 10, ""};
   Raster source{own, std::vector<double>(own.count())};
   for (int row = 0; row < 30; ++row)
-    for (int column = 0; column < 30; ++column) source.at(column, row) = bowl(source.grid.x(column), source.grid.y(row));
+    for (int column = 0; column < 30; ++column)
+      source.at(column, row) = bowl(source.grid.x(column), source.grid.y(row));
   MapGrid moved{20, 20, -97, -104, 10, ""};
-  const Raster cubic = resample_elevation(source, moved, Interpolation::cubic), linear = resample_elevation(source, moved);
+  const Raster cubic = resample_elevation(source, moved, Interpolation::cubic),
+               linear = resample_elevation(source, moved);
   double worst = 0;
   for (int row = 0; row < 20; ++row)
     for (int column = 0; column < 20; ++column) {

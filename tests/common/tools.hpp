@@ -28,9 +28,10 @@ inline bool has_tool(const std::string& check) { return std::system((check + " >
 /// What GDAL's own validator says of a cloud-optimised GeoTIFF; needs TALUS_NEED_TOOL(TALUS_COG_VALIDATOR).
 inline void expect_valid_cog(const std::filesystem::path& file) {
   int code = -1;
-  const auto said = output_of(
-      "/usr/bin/python3 -m osgeo_utils.samples.validate_cloud_optimized_geotiff --full-check=yes '" + file.string() + "'",
-      &code);
+  const auto said =
+      output_of("/usr/bin/python3 -m osgeo_utils.samples.validate_cloud_optimized_geotiff --full-check=yes '" +
+                    file.string() + "'",
+                &code);
   EXPECT_EQ(code, 0) << said;
   EXPECT_NE(said.find("is a valid cloud optimized GeoTIFF"), std::string::npos) << said;
 }

@@ -20,7 +20,8 @@ Run full_run(const std::string& crs, double west, double south) {
   run.maps.grid.west = west;
   run.maps.grid.south = south;
   run.maps.eroded_depth = test::block(run.maps.grid, 8, 12, 10, 20, 0.5);
-  run.maps.deposit_of = {{"upper scar", run.maps.deposit_thickness}, {"bed-2.5", run.maps.eroded_depth},
+  run.maps.deposit_of = {{"upper scar", run.maps.deposit_thickness},
+                         {"bed-2.5", run.maps.eroded_depth},
                          {"bed 2.5", run.maps.eroded_depth}};
   return run;
 }
@@ -132,9 +133,9 @@ TEST_F(Cf, gives_releases_names_that_netcdf_can_hold) {
   TALUS_NEED_TOOL("command -v ncdump", "netcdf-bin");
   write_netcdf(file_, full_run(test::epsg(32632), 600000, 5100000), {});
   const auto header = output_of("ncdump -h '" + file_.string() + "'");
-  for (const auto* words : {"double deposit_thickness_upper_scar(y, x)", "double deposit_thickness_bed_2_5(y, x)",
-                            "double deposit_thickness_bed_2_5_(y, x)",
-                            "double eroded_depth(y, x)", "end of release bed-2.5, vertical"})
+  for (const auto* words :
+       {"double deposit_thickness_upper_scar(y, x)", "double deposit_thickness_bed_2_5(y, x)",
+        "double deposit_thickness_bed_2_5_(y, x)", "double eroded_depth(y, x)", "end of release bed-2.5, vertical"})
     EXPECT_NE(header.find(words), std::string::npos) << words << "\n" << header;
 }
 

@@ -48,7 +48,8 @@ TEST(Contingency, makes_a_synthetic_index_of_five_parts) {
   const double csi = 60.0 / 120, tn = 5 * 100 - 20;
   const double hss = 2 * (60 * tn - 20 * 40) / (100 * (40 + tn) + 80 * (20 + tn));
   const double d2pc = std::hypot(0.4, 20.0 / 500);
-  const double foc = std::pow(std::sin(1.5707963267948966 * 0.8), 5), reach = std::pow(std::sin(1.5707963267948966 * 0.9), 5);
+  const double foc = std::pow(std::sin(1.5707963267948966 * 0.8), 5),
+               reach = std::pow(std::sin(1.5707963267948966 * 0.9), 5);
   EXPECT_DOUBLE_EQ(c.spi(0.9), (csi + hss + 1 - d2pc + foc + reach) / 5);
   EXPECT_DOUBLE_EQ(c.spi(0.9), c.spi(1 / 0.9)) << "too far counts as too short by the same ratio";
   EXPECT_TRUE(std::isnan(c.spi(nan)));

@@ -111,9 +111,10 @@ TEST_F(MapFiles, netcdf_speaks_cf_as_ncdump_sees_it) {
   const auto header = output_of("ncdump -h '" + file.string() + "'");
   for (const auto* words :
        {":Conventions = \"CF-1.8\"", ":institution = \"A test\"", ":source = \"Talus", ": talus-postprocess x.toml\"",
-        "double thickness(time, y, x)", "x:standard_name = \"projection_x_coordinate\"", "time:units = \"seconds since 1970-01-01 00:00:00\"",
-        "peak_speed:units = \"m s-1\"", "peak_thickness:cell_methods = \"area: mean time: maximum\"",
-        "deposit_thickness:grid_mapping = \"crs\"", "deposit_thickness:_FillValue = -9999.", "crs:crs_wkt = \"PROJCRS",
+        "double thickness(time, y, x)", "x:standard_name = \"projection_x_coordinate\"",
+        "time:units = \"seconds since 1970-01-01 00:00:00\"", "peak_speed:units = \"m s-1\"",
+        "peak_thickness:cell_methods = \"area: mean time: maximum\"", "deposit_thickness:grid_mapping = \"crs\"",
+        "deposit_thickness:_FillValue = -9999.", "crs:crs_wkt = \"PROJCRS",
         "crs:grid_mapping_name = \"transverse_mercator\"", "crs:longitude_of_central_meridian = 9.",
         "crs:scale_factor_at_central_meridian = 0.9996", "vertical"}) {
     EXPECT_NE(header.find(words), std::string::npos) << words << "\n" << header;

@@ -22,7 +22,8 @@ TEST(Mobility, takes_the_middle_of_a_level_crown) {
   auto run = test::small_run();
   for (double& z : run.maps.before) z = 100;
   for (int row = 0; row < run.maps.grid.rows; ++row) {
-    for (int column = 0; column < run.maps.grid.columns; ++column) run.maps.before[run.maps.grid.index(column, row)] -= column;
+    for (int column = 0; column < run.maps.grid.columns; ++column)
+      run.maps.before[run.maps.grid.index(column, row)] -= column;
   }
   const auto place = crown(run.maps, 1.0);
   ASSERT_TRUE(place);

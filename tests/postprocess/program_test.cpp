@@ -16,8 +16,16 @@ class Program : public ::testing::Test {
  protected:
   Program() { fs::create_directories(out_); }
   void run_it(bool check_only = false) {
-    StageContext context{
-        recipe::Recipe(scratch_.write("recipe.toml", recipe_)), out_, On::automatic, check_only, {}, false, false, false, "test", {}};
+    StageContext context{recipe::Recipe(scratch_.write("recipe.toml", recipe_)),
+                         out_,
+                         On::automatic,
+                         check_only,
+                         {},
+                         false,
+                         false,
+                         false,
+                         "test",
+                         {}};
     run(context);
     results_ = context.results;
   }
@@ -34,8 +42,9 @@ TEST_F(Program, writes_every_result_and_names_it) {
   run_it();
   for (const auto* name :
        {"maps/deposit_thickness.tif", "maps/peak_thickness.tif", "maps/peak_speed.tif", "maps/peak_pressure.tif",
-        "maps/arrival_time.tif", "maps/results.nc", "maps/deposit_thickness.qml", "maps/peak_pressure.qml", "maps/terrain.tif",
-        "maps/terrain.qml", "maps/outlines.gpkg", "maps/small.qgs", "map.png", "report.html", "history.csv", "score.json", "score.txt"}) {
+        "maps/arrival_time.tif", "maps/results.nc", "maps/deposit_thickness.qml", "maps/peak_pressure.qml",
+        "maps/terrain.tif", "maps/terrain.qml", "maps/outlines.gpkg", "maps/small.qgs", "map.png", "report.html",
+        "history.csv", "score.json", "score.txt"}) {
     EXPECT_TRUE(fs::exists(out_ / name)) << name;
     EXPECT_NE(std::find(results_.begin(), results_.end(), out_ / name), results_.end()) << name << " is not announced";
   }
@@ -127,14 +136,16 @@ TEST_F(Program, reports_all_faults_of_its_table_at_once) {
       "\"b.tif\"\npolygon = \"c.gpkg\"\n"
       "peak_thickness = \"d.tif\"\nsigma = \"e.tif\"\nsigma_m = 0.3\n";
   const auto fault = test::fault_of<RecipeError>([&] { run_it(); });
-  for (const auto* words : {"classes_m does not rise", "thickness and after_dem", "peak_thickness and polygon", "sigma and sigma_m"}) {
+  for (const auto* words :
+       {"classes_m does not rise", "thickness and after_dem", "peak_thickness and polygon", "sigma and sigma_m"}) {
     EXPECT_NE(fault.find(words), std::string::npos) << fault;
   }
 }
 
 TEST_F(Program, refuses_an_error_of_nothing_measured) {
   recipe_ += "[postprocess.survey]\npolygon = \"c.gpkg\"\nsigma_m = 0.3\n";
-  EXPECT_NE(test::fault_of<RecipeError>([&] { run_it(); }).find("gives an error without a measurement"), std::string::npos);
+  EXPECT_NE(test::fault_of<RecipeError>([&] { run_it(); }).find("gives an error without a measurement"),
+            std::string::npos);
 }
 
 TEST_F(Program, scores_with_the_surveys_error_along_a_line_named_in_the_recipe) {
@@ -145,10 +156,13 @@ TEST_F(Program, scores_with_the_surveys_error_along_a_line_named_in_the_recipe) 
   write_geotiff(scratch_ / "difference.tif", {run.maps.grid, change}, {"", "m", {}});
   write_geotiff(scratch_ / "sigma.tif", {run.maps.grid, std::vector<double>(change.size(), 0.4)},
                 {"", "m", {{"CORRELATION_LENGTH_M", "50"}}});
-  scratch_.write("line.geojson", R"({"type":"FeatureCollection","crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::32632"}},
+  scratch_.write(
+      "line.geojson",
+      R"({"type":"FeatureCollection","crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::32632"}},
 "features":[{"type":"Feature","properties":{},"geometry":{"type":"LineString","coordinates":[[600390,5100150],[600010,5100150]]}}]})");
   recipe_ +=
-      "[postprocess]\nthalweg = \"line.geojson\"\n[postprocess.survey]\ndifference = \"difference.tif\"\nsigma = \"sigma.tif\"\n";
+      "[postprocess]\nthalweg = \"line.geojson\"\n[postprocess.survey]\ndifference = \"difference.tif\"\nsigma = "
+      "\"sigma.tif\"\n";
   run_it();
   EXPECT_EQ(score().at("deposit_csi"), 1);
   EXPECT_EQ(score().at("residual_chi2"), 0);
@@ -160,7 +174,8 @@ TEST_F(Program, scores_with_the_surveys_error_along_a_line_named_in_the_recipe) 
   EXPECT_EQ(score().at("thalweg"), "line of line.geojson");
   EXPECT_EQ(score().at("thalweg_runout_m"), 310) << "columns 3 to 34";
   const auto used = test::text_of(out_ / "postprocess.used.toml");
-  for (const auto* name : {"line.geojson", "difference.tif", "sigma.tif"}) EXPECT_NE(used.find(name), std::string::npos) << used;
+  for (const auto* name : {"line.geojson", "difference.tif", "sigma.tif"})
+    EXPECT_NE(used.find(name), std::string::npos) << used;
 }
 
 TEST_F(Program, prints_a_template_that_it_accepts) {

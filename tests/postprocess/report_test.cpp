@@ -116,7 +116,8 @@ class Report : public ::testing::Test {
     thalweg_ = thalweg_of(run_, options_);
   }
   ReportInput input() {
-    return {run_, options_, survey_, score_ = make_score(run_, options_, survey_, thalweg_), thalweg_, stages_, comparison_, file_};
+    return {run_,     options_, survey_,     score_ = make_score(run_, options_, survey_, thalweg_),
+            thalweg_, stages_,  comparison_, file_};
   }
 
   /// A survey on a grid of its own, half as fine, that has 1 m less than the simulation everywhere.

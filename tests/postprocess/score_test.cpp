@@ -69,8 +69,8 @@ TEST(Score, agrees_with_a_survey_made_by_hand) {
   EXPECT_NEAR(json.at("thickness_bias_m").get<double>(), (20 * 1.5 - 20 * 2.0 + 18 * 4.5 - 62 * 0.5) / 120, 1e-12);
   EXPECT_NEAR(json.at("deposit_volume_ratio").get<double>(), 24000.0 / 20000, 1e-12);
   EXPECT_NEAR(json.at("runout_difference_m").get<double>(), -20, 1.0) << "two columns short";
-  // 100 cells the survey says yes to against 1100: the 80 in both outrank 1080 dry ones, the 20 missed tie with them; against
-  // the 20 false ones of 1.5 m the 18 of 6.5 m win, the 62 of 1.5 m tie and the missed lose.
+  // 100 cells the survey says yes to against 1100: the 80 in both outrank 1080 dry ones, the 20 missed tie with them;
+  // against the 20 false ones of 1.5 m the 18 of 6.5 m win, the 62 of 1.5 m tie and the missed lose.
   EXPECT_NEAR(json.at("deposit_auroc").get<double>(),
               (80 * 1080 + 20 * 0.5 * 1080 + 18 * 20 + 62 * 0.5 * 20) / (100 * 1100.0), 1e-12);
   EXPECT_EQ(json.at("not_scored").size(), 4u);
@@ -81,7 +81,8 @@ TEST(Score, agrees_with_a_survey_made_by_hand) {
 
 TEST(Score, compares_along_a_line) {
   const auto run = small_run();
-  const Thalweg line{.line = {{600000, 5100150}, {600400, 5100150}}, .distance = {0, 400}, .given = true, .origin = "line"};
+  const Thalweg line{
+      .line = {{600000, 5100150}, {600400, 5100150}}, .distance = {0, 400}, .given = true, .origin = "line"};
   const std::optional<Survey> survey = shifted_survey();
   const auto json = nlohmann::json::parse(to_json(make_score(run, {}, survey, line)));
   EXPECT_DOUBLE_EQ(json.at("thalweg_runout_m").get<double>(), 310) << "from the crown in column 3 to column 34";
@@ -99,10 +100,12 @@ TEST(Score, says_the_release_by_both_conventions) {
   auto run = small_run();
   const auto& grid = run.maps.grid;
   for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column) run.maps.terrain[grid.index(column, row)] = 1000 - 0.75 * grid.cell * column;
+    for (int column = 0; column < grid.columns; ++column)
+      run.maps.terrain[grid.index(column, row)] = 1000 - 0.75 * grid.cell * column;
   }
   const auto json = json_of(run, {});
-  EXPECT_NEAR(json.at("volume_if_thickness_were_slope_normal_m3").get<double>(), 24000 * 1.25, 1e-6) << "slope 3 : 4 : 5";
+  EXPECT_NEAR(json.at("volume_if_thickness_were_slope_normal_m3").get<double>(), 24000 * 1.25, 1e-6)
+      << "slope 3 : 4 : 5";
   EXPECT_EQ(json.at("release_area_m2"), 4000);
   EXPECT_NEAR(json.at("release_true_area_m2").get<double>(), 5000, 1e-6);
   EXPECT_NEAR(json.at("max_release_thickness_slope_normal_m").get<double>(), 4.8, 1e-9);
@@ -112,7 +115,8 @@ TEST(Score, measures_runout_along_the_thalweg) {
   const auto run = small_run();
   const auto json = json_of(run, {});
   EXPECT_NEAR(json.at("thalweg_runout_m").get<double>(), 310, 45) << "31 columns, and a way of up to 9 rows across";
-  EXPECT_GE(json.at("thalweg_runout_m").get<double>(), json.at("runout_m").get<double>() - 1e-9) << "a bend is no shorter";
+  EXPECT_GE(json.at("thalweg_runout_m").get<double>(), json.at("runout_m").get<double>() - 1e-9)
+      << "a bend is no shorter";
   EXPECT_NEAR(json.at("thalweg_fahrboeschung_deg").get<double>(),
               std::atan(json.at("thalweg_h_over_l").get<double>()) * 180 / 3.14159265358979, 1e-9);
   EXPECT_NEAR(json.at("max_drop_m").get<double>(), 31 * 5 + 6 + 4, 6) << "the last column's lowest row";
@@ -129,7 +133,8 @@ TEST(Score, measures_residuals_by_the_surveys_error) {
   EXPECT_NEAR(json.at("residual_within_95").get<double>(), 62.0 / 120, 1e-12);
   EXPECT_NEAR(json.at("residual_chi2").get<double>(), (20 * 9 + 20 * 16 + 18 * 81 + 62 * 1) / 120.0, 1e-12);
   EXPECT_GT(json.at("deposit_csi_sd").get<double>(), 0);
-  EXPECT_EQ(json.at("not_scored").at("footprint_csi_sd"), "the footprint is not a surveyed change, its error is not known");
+  EXPECT_EQ(json.at("not_scored").at("footprint_csi_sd"),
+            "the footprint is not a surveyed change, its error is not known");
 }
 
 TEST(Score, warns_where_the_level_of_detection_hides_deposit) {

@@ -79,7 +79,8 @@ TEST_F(SurveyTest, leaves_out_what_was_not_surveyed_and_says_how_much) {
 TEST_F(SurveyTest, brings_thickness_normal_to_the_slope_to_the_vertical) {
   auto& grid = run_.maps.grid;
   for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column) run_.maps.terrain[grid.index(column, row)] = 1000 - 0.75 * grid.cell * column;
+    for (int column = 0; column < grid.columns; ++column)
+      run_.maps.terrain[grid.index(column, row)] = 1000 - 0.75 * grid.cell * column;
   }
   options_.thickness = raster("normal.tif", grid, std::vector<double>(grid.count(), 2.0));
   options_.direction = Direction::slope_normal;
@@ -154,7 +155,8 @@ TEST_F(SurveyTest, counts_what_lies_below_the_level_of_detection_as_no_change) {
 }
 
 TEST_F(SurveyTest, brings_sigma_to_its_grid_with_the_range_its_file_names) {
-  const MapGrid coarse{.columns = 20, .rows = 15, .west = 600000, .south = 5100000, .cell = 20, .crs_wkt = test::utm32n};
+  const MapGrid coarse{
+      .columns = 20, .rows = 15, .west = 600000, .south = 5100000, .cell = 20, .crs_wkt = test::utm32n};
   write_geotiff(scratch_ / "sigma.tif", {coarse, std::vector<double>(coarse.count(), 0.3)},
                 {"sigma", "m", {{"CORRELATION_LENGTH_M", "45.5"}}});
   options_.difference = raster("difference.tif", small_grid(), some_change());
@@ -191,7 +193,8 @@ TEST_F(SurveyTest, leaves_out_what_was_measured_without_a_sigma) {
   EXPECT_EQ(survey->notes, std::vector<std::string>{"1 surveyed cells without a sigma are left out."});
   sigma[3] = -0.1;
   options_.sigma = raster("negative.tif", small_grid(), sigma);
-  EXPECT_NE(fault().find("negative.tif: a standard error of -0.1 m (it cannot be negative)"), std::string::npos) << fault();
+  EXPECT_NE(fault().find("negative.tif: a standard error of -0.1 m (it cannot be negative)"), std::string::npos)
+      << fault();
 }
 
 TEST_F(SurveyTest, compares_the_change_itself_with_what_was_measured) {
@@ -260,7 +263,8 @@ TEST_F(SurveyTest, finds_what_preprocess_left_or_says_what_is_missing) {
   options_.from_preprocess = true;
   EXPECT_THROW(options_.find_in(scratch_ / "out"), DataError);
   std::filesystem::create_directories(scratch_ / "out" / "survey");
-  for (const char* name : {"slide_difference.tif", "difference_sigma.tif"}) std::filesystem::copy_file(raster(name, small_grid(), some_change()), scratch_ / "out" / "survey" / name);
+  for (const char* name : {"slide_difference.tif", "difference_sigma.tif"})
+    std::filesystem::copy_file(raster(name, small_grid(), some_change()), scratch_ / "out" / "survey" / name);
   options_.find_in(scratch_ / "out");
   EXPECT_EQ(options_.difference, scratch_ / "out" / "survey" / "slide_difference.tif");
   EXPECT_EQ(options_.sigma, scratch_ / "out" / "survey" / "difference_sigma.tif");

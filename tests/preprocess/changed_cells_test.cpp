@@ -23,14 +23,15 @@ std::vector<Patch> raised(const CellWindow& w, unsigned seed) {
   return patches_of(before, after, grid);
 }
 
-/// The change is out, what is further than four cells from it stays: three cells are left out around it, and noise at its
-/// side may widen it by one.
+/// The change is out, what is further than four cells from it stays: three cells are left out around it, and noise at
+/// its side may widen it by one.
 void expect_left_out(const CellWindow& w) {
   std::vector<Patch> patches = raised(w, 1);
   leave_out_changed(patches, {});
   for (int row = 0; row < height; ++row) {
     for (int column = 0; column < width; ++column) {
-      const int far = std::max({w.column - column, column - (w.column + w.columns - 1), w.row - row, row - (w.row + w.rows - 1)});
+      const int far =
+          std::max({w.column - column, column - (w.column + w.columns - 1), w.row - row, row - (w.row + w.rows - 1)});
       const std::size_t i = grid.index(column, row);
       if (far > 0 && far <= 4) continue;
       EXPECT_EQ(patches[0].unchanged[i] + patches[0].stable[i], far > 0 ? 2 : 0) << column << ", " << row;

@@ -19,8 +19,8 @@ class Relief {
     std::uniform_real_distribution<double> part(0, 1);
     for (int i = 0; i < 60; ++i) {
       const double number = std::exp(part(random) * std::log(40.0)), angle = 6.2831853 * part(random);
-      waves_.push_back({6.2831853 * number / longest * std::cos(angle), 6.2831853 * number / longest * std::sin(angle), 6.2831853 * part(random),
-                        0.02 * longest / std::pow(number, 1.2)});
+      waves_.push_back({6.2831853 * number / longest * std::cos(angle), 6.2831853 * number / longest * std::sin(angle),
+                        6.2831853 * part(random), 0.02 * longest / std::pow(number, 1.2)});
     }
   }
   double operator()(double x, double y) const {
@@ -53,9 +53,11 @@ Pair pair_of(std::mt19937& random, int cells, const Change& change) {
   const Relief relief(random, cells * 5.0);
   std::normal_distribution<double> noise(0, change.noise > 0 ? change.noise : 1);
   const double middle_x = (pair.grid.west + pair.grid.east()) / 2, middle_y = (pair.grid.south + pair.grid.north()) / 2;
-  pair.before.raster = raster_of(pair.grid, [&](double x, double y) { return relief(x, y) + (change.noise > 0 ? noise(random) : 0); });
+  pair.before.raster =
+      raster_of(pair.grid, [&](double x, double y) { return relief(x, y) + (change.noise > 0 ? noise(random) : 0); });
   pair.after.raster = raster_of(pair.grid, [&](double x, double y) {
-    double z = relief(x - change.x, y - change.y) + change.z + change.tilt * (x - middle_x) + (change.noise > 0 ? noise(random) : 0);
+    double z = relief(x - change.x, y - change.y) + change.z + change.tilt * (x - middle_x) +
+               (change.noise > 0 ? noise(random) : 0);
     const double far = std::hypot(x - middle_x, y - middle_y) / (0.18 * cells * 5);
     if (change.slide && far < 1) z += (x > middle_x ? 25 : -30) * (1 - far * far);
     if (change.voids && std::fmod(x * 0.37 + y * 0.11, 60) < 4) z = std::nan("");
@@ -72,7 +74,8 @@ Coregistration found(const Pair& pair, bool tilt = false) {
   return coregister(patches, tilt, "after.tif");
 }
 
-/// Share of the variance of noise that cubic convolution (Keys 1981) leaves `shift` cells along one axis off the cell centres.
+/// Share of the variance of noise that cubic convolution (Keys 1981) leaves `shift` cells along one axis off the cell
+/// centres.
 double kept_variance(double shift) {
   double sum = 0;
   for (int k = -1; k <= 2; ++k) {
@@ -93,9 +96,12 @@ TEST(coregistration, finds_a_known_sub_pixel_shift_to_a_twentieth_of_a_cell) {
     EXPECT_TRUE(result.converged);
     EXPECT_NEAR(result.placement.x, -change.x, 0.05 * 5);
     EXPECT_NEAR(result.placement.y, -change.y, 0.05 * 5);
-    EXPECT_NEAR(result.placement.z, -change.z, 0.05);  // 0.42 m of noise on twenty thousand cells, and the shift's share
-    const double noise = 0.3 * std::sqrt(1 + kept_variance(result.placement.x / 5) * kept_variance(result.placement.y / 5));
-    EXPECT_NEAR(result.aligned.nmad / noise, 1, 0.08);  // within 4 % in 450 draws: cells are few and the rims of the slide blur
+    EXPECT_NEAR(result.placement.z, -change.z,
+                0.05);  // 0.42 m of noise on twenty thousand cells, and the shift's share
+    const double noise =
+        0.3 * std::sqrt(1 + kept_variance(result.placement.x / 5) * kept_variance(result.placement.y / 5));
+    EXPECT_NEAR(result.aligned.nmad / noise, 1,
+                0.08);  // within 4 % in 450 draws: cells are few and the rims of the slide blur
     EXPECT_GT(result.unaligned.nmad, result.aligned.nmad);
   }
 }
@@ -140,7 +146,9 @@ TEST(coregistration, finds_no_horizontal_shift_on_a_plain) {
 /// D4 of the validation list: SRTM against itself, blurred and shifted by whole cells and some part of one.
 TEST(coregistration, brings_a_shifted_srtm_pair_from_57_m_to_3_m) {
   const char* given = std::getenv("TALUS_DATA");
-  const auto folder = (given ? std::filesystem::path(given) : std::filesystem::path(TALUS_SOURCE_DIR) / ".." / "shared" / "data") / "coreg_srtm";
+  const auto folder =
+      (given ? std::filesystem::path(given) : std::filesystem::path(TALUS_SOURCE_DIR) / ".." / "shared" / "data") /
+      "coreg_srtm";
   if (!std::filesystem::exists(folder)) {
     std::cerr << "SKIPPED: " << folder.string() << " is missing (set TALUS_DATA)\n";
     GTEST_SKIP() << folder.string() << " is missing";
@@ -152,9 +160,10 @@ TEST(coregistration, brings_a_shifted_srtm_pair_from_57_m_to_3_m) {
   auto patches = patches_of(before, after, before.raster.grid);
   find_stable(patches, {});
   const Coregistration result = coregister(patches, true, after.file);
-  std::cerr << "shift " << result.placement.x << " " << result.placement.y << " " << result.placement.z << " m, median |dz| " << result.unaligned.median_absolute << " -> "
-            << result.aligned.median_absolute << " m, nmad " << result.unaligned.nmad << " -> " << result.aligned.nmad << ", " << result.iterations << " iterations, cell "
-            << before.cell() << ", stable " << result.stable_share << "\n";
+  std::cerr << "shift " << result.placement.x << " " << result.placement.y << " " << result.placement.z
+            << " m, median |dz| " << result.unaligned.median_absolute << " -> " << result.aligned.median_absolute
+            << " m, nmad " << result.unaligned.nmad << " -> " << result.aligned.nmad << ", " << result.iterations
+            << " iterations, cell " << before.cell() << ", stable " << result.stable_share << "\n";
   EXPECT_TRUE(result.converged);
   EXPECT_NEAR(result.unaligned.median_absolute, 57, 10);  // of stable ground, in metres instead of degrees
   EXPECT_LE(result.aligned.median_absolute, 3);

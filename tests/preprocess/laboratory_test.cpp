@@ -126,9 +126,10 @@ TEST(laboratory, counts_what_it_would_seed_and_jitters_inside_the_spacing) {
 TEST(laboratory, refuses_a_box_that_the_points_would_not_fill) {
   Options o = bench();
   o.box[0].east_m = 6.7;
-  EXPECT_EQ(faults_of(o),
-            "[preprocess]: box 1: west_m to east_m is 3.2 m (it is no multiple of the points' spacing of 0.5 m, so that they "
-            "would not fill it). Take east_m = 6.5 or 7, or other grid.points_per_cell\n");
+  EXPECT_EQ(
+      faults_of(o),
+      "[preprocess]: box 1: west_m to east_m is 3.2 m (it is no multiple of the points' spacing of 0.5 m, so that they "
+      "would not fill it). Take east_m = 6.5 or 7, or other grid.points_per_cell\n");
 }
 
 TEST(laboratory, refuses_boxes_without_extent_outside_the_grid_or_inside_one_another) {
@@ -138,14 +139,16 @@ TEST(laboratory, refuses_boxes_without_extent_outside_the_grid_or_inside_one_ano
             "[preprocess]: box 1: bottom_m = 0, top_m = 0 (the box has no extent). top_m must be the larger\n");
   o = bench();
   o.box[0].west_m = 0.5;
-  EXPECT_EQ(faults_of(o),
-            "[preprocess]: box 1: west_m = 0.5, east_m = 6.5 (the grid reaches from 0 to 12 m, and points need an open cell "
-            "around them). Add columns or rows, or move the box: a margin of three cells, and room for it to flow into\n");
+  EXPECT_EQ(
+      faults_of(o),
+      "[preprocess]: box 1: west_m = 0.5, east_m = 6.5 (the grid reaches from 0 to 12 m, and points need an open cell "
+      "around them). Add columns or rows, or move the box: a margin of three cells, and room for it to flow into\n");
   o = bench();
   o.box.push_back({"lid", 4, 5, 4, 5, 2, 3});
-  EXPECT_EQ(faults_of(o),
-            "[preprocess]: box-1 and lid overlap (the material there would count twice). Move one, or cut it into boxes that "
-            "only touch\n");
+  EXPECT_EQ(
+      faults_of(o),
+      "[preprocess]: box-1 and lid overlap (the material there would count twice). Move one, or cut it into boxes that "
+      "only touch\n");
   o.box[1].name = "box-1";
   EXPECT_EQ(faults_of(o),
             "[preprocess]: box 2: name \"box-1\" is taken (results are told apart by name). Name it otherwise\n");
@@ -159,29 +162,33 @@ TEST(laboratory, refuses_what_belongs_to_the_other_ways) {
   o.grid.east_m = 9;
   o.grid.minimum_thickness_m = 1;
   const std::string mend = "Leave it out, or give elevation models instead of [preprocess.laboratory]\n";
-  EXPECT_EQ(faults_of(o),
-            "[preprocess]: base_dem is given with a laboratory (they belong to different ways). " + mend +
-                "[preprocess]: [[preprocess.release]] is given with a laboratory (they belong to different ways). " + mend +
-                "[preprocess]: working_crs is given with a laboratory (a laboratory lies in local coordinates). Leave it "
-                "out\n"
-                "[preprocess]: grid.west_m or its like is given with a laboratory (there is no elevation model to crop). Use "
-                "laboratory.west_m, south_m, columns and rows\n"
-                "[preprocess]: grid.minimum_thickness_m is given with a laboratory (boxes are filled by a regular lattice). "
-                "Leave it out\n");
+  EXPECT_EQ(
+      faults_of(o),
+      "[preprocess]: base_dem is given with a laboratory (they belong to different ways). " + mend +
+          "[preprocess]: [[preprocess.release]] is given with a laboratory (they belong to different ways). " + mend +
+          "[preprocess]: working_crs is given with a laboratory (a laboratory lies in local coordinates). Leave it "
+          "out\n"
+          "[preprocess]: grid.west_m or its like is given with a laboratory (there is no elevation model to crop). Use "
+          "laboratory.west_m, south_m, columns and rows\n"
+          "[preprocess]: grid.minimum_thickness_m is given with a laboratory (boxes are filled by a regular lattice). "
+          "Leave it out\n");
 }
 
 TEST(laboratory, refuses_half_a_laboratory) {
   Options o = bench();
   o.laboratory.rows = 0;
   o.grid.spacing_m = 0;
-  EXPECT_EQ(faults_of(o),
-            "[preprocess]: laboratory.columns = 12, rows = 0 (both must be positive). Give the number of cells along x and y\n"
-            "[preprocess]: grid.spacing_m is not given (a laboratory has no elevation model to take it from). Give the width "
-            "of a cell in metres\n");
+  EXPECT_EQ(
+      faults_of(o),
+      "[preprocess]: laboratory.columns = 12, rows = 0 (both must be positive). Give the number of cells along x and "
+      "y\n"
+      "[preprocess]: grid.spacing_m is not given (a laboratory has no elevation model to take it from). Give the width "
+      "of a cell in metres\n");
   o = bench();
   o.box.clear();
   EXPECT_EQ(faults_of(o),
-            "[preprocess]: a laboratory without [[preprocess.box]] (nothing would move). Give at least one box of material\n");
+            "[preprocess]: a laboratory without [[preprocess.box]] (nothing would move). Give at least one box of "
+            "material\n");
 }
 
 TEST(laboratory, reads_what_it_writes) {

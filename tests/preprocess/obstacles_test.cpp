@@ -26,7 +26,9 @@ TEST(Obstacles, stand_on_their_polygons_with_holes_and_follow_the_ground) {
   ObstacleOptions o;
   o.name = "house";
   o.height_m = 6;
-  o.polygons = test::write_polygon(scratch, "house.csv", "POLYGON((1020 2020,1040 2020,1040 2030,1020 2030,1020 2020),(1025 2023,1035 2023,1035 2027,1025 2027,1025 2023))");
+  o.polygons = test::write_polygon(scratch, "house.csv",
+                                   "POLYGON((1020 2020,1040 2020,1040 2030,1020 2030,1020 2020),(1025 2023,1035 "
+                                   "2023,1035 2027,1025 2027,1025 2023))");
   const BodySurface surface = stood(scratch, o);
   EXPECT_NEAR(surface.volume, (20 * 10 - 10 * 4) * (6 + 4), 0.03 * 1600);  // edges are rounded by a voxel
   EXPECT_NEAR(surface.low[0], 1020, 0.25);
@@ -49,7 +51,8 @@ TEST(Obstacles, need_a_height_and_ground_under_them) {
   ObstacleOptions o;
   o.name = "house";
   o.polygons = test::write_polygon(scratch, "house.csv", "POLYGON((1020 2020,1040 2020,1040 2030,1020 2020))");
-  EXPECT_NE(test::fault_of<DataError>([&] { stood(scratch, o); }).find("has no positive number \"height\""), std::string::npos);
+  EXPECT_NE(test::fault_of<DataError>([&] { stood(scratch, o); }).find("has no positive number \"height\""),
+            std::string::npos);
   o.height_m = 6;
   o.polygons = test::write_polygon(scratch, "off.csv", "POLYGON((900 2020,1040 2020,1040 2030,900 2020))");
   EXPECT_NE(test::fault_of<DataError>([&] { stood(scratch, o); }).find("where there is no ground"), std::string::npos);

@@ -129,7 +129,8 @@ TEST(options, units_of_one_model_come_back_and_wrong_ones_are_refused_by_word) {
   const test::Scratch scratch;
   const recipe::Recipe recipe(scratch.write("recipe.toml", "[preprocess]\nafter_vertical_unit = \"fot\"\n"));
   const std::string fault = test::fault_of<RecipeError>([&] { recipe.read<Options>("preprocess"); });
-  EXPECT_NE(fault.find("after_vertical_unit = \"fot\" (no such choice). Did you mean \"foot\"?"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("after_vertical_unit = \"fot\" (no such choice). Did you mean \"foot\"?"), std::string::npos)
+      << fault;
 }
 
 TEST(options, units_of_models_that_are_not_there_are_refused) {

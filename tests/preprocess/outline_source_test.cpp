@@ -165,7 +165,8 @@ TEST(outline_source, depth_points_in_degrees_are_refused_where_the_ground_has_no
   scene.surface().depth_points = scene.scratch.write(
       "boreholes.geojson",
       R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{"depth":12},"geometry":{"type":"Point","coordinates":[15,46]}}]})");
-  EXPECT_EQ(scene.data_fault().find(scene.path("boreholes.geojson") + ": CRS is EPSG:4326 (this stage needs metres)"), 0U)
+  EXPECT_EQ(scene.data_fault().find(scene.path("boreholes.geojson") + ": CRS is EPSG:4326 (this stage needs metres)"),
+            0U)
       << scene.data_fault();
 }
 

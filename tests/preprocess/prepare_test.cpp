@@ -1,8 +1,8 @@
 #include "preprocess/prepare.hpp"
 
+#include "common/raster/slope.hpp"
 #include "preprocess/sum.hpp"
 #include "preprocess/terrain/geo_input.hpp"
-#include "common/raster/slope.hpp"
 #include "tests/preprocess/scene.hpp"
 
 namespace talus::preprocess {
@@ -190,7 +190,8 @@ TEST(prepare, brings_rasters_of_the_bed_onto_the_grid) {
   const MapGrid coarse = test::grid_of(25, 20, 20, scene.grid.west - 40, scene.grid.south - 40);
   for (auto& [name, file] : scene.options.bed.files) {
     if (name == "friction_angle_deg") {
-      file = test::write(scene.scratch, "angle.tif", test::raster_of(coarse, [&](double x, double) { return 10 + 0.02 * (x - coarse.west); }));
+      file = test::write(scene.scratch, "angle.tif",
+                         test::raster_of(coarse, [&](double x, double) { return 10 + 0.02 * (x - coarse.west); }));
     }
   }
   const Domain d = scene.prepare().domain;

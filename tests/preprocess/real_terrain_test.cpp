@@ -78,7 +78,8 @@ struct FrankSource {
   Raster before, truth;
   Outline outline;
 
-  explicit FrankSource(const std::filesystem::path& folder) : before(read_raster(folder / "before_dem.tif")), truth(read_raster(folder / "sliding_surface.tif")) {
+  explicit FrankSource(const std::filesystem::path& folder)
+      : before(read_raster(folder / "before_dem.tif")), truth(read_raster(folder / "sliding_surface.tif")) {
     const Raster release = read_raster(folder / "release_thickness.tif");
     std::vector<char> source(release.values.size());
     for (std::size_t c = 0; c < source.size(); ++c) source[c] = release.values[c] > 0;
@@ -99,8 +100,8 @@ struct FrankSource {
   }
 };
 
-// The figures are those of docs/validation.md, and the tolerances a tenth of what was measured: room for another factorisation's
-// rounding in which cells touch the ground, none for another method.
+// The figures are those of docs/validation.md, and the tolerances a tenth of what was measured: room for another
+// factorisation's rounding in which cells touch the ground, none for another method.
 TEST(real_terrain, frank_slides_surface_is_near_the_true_one_by_outline_and_volume) {
   const auto folder = data("frank_slide");
   TALUS_NEEDS(folder);
@@ -122,7 +123,8 @@ TEST(real_terrain, frank_slides_surface_is_twice_as_near_with_five_boreholes) {
   const Distance distance = distance_between(s.surface, frank.truth, frank.outline);
   EXPECT_NEAR(distance.median, -3.7, 0.5);
   EXPECT_NEAR(distance.nmad, 10.7, 1.1);
-  EXPECT_NEAR(s.volume, 40.9e6, 4e6);  // truly 36.0: it is too deep along the rim, where the true surface is tangent to the ground
+  EXPECT_NEAR(s.volume, 40.9e6,
+              4e6);  // truly 36.0: it is too deep along the rim, where the true surface is tangent to the ground
   for (double misfit : s.misfit) EXPECT_NEAR(misfit, 0, 1e-6);
 }
 

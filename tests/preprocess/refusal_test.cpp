@@ -177,7 +177,8 @@ TEST(refusal, release_that_does_not_overlap) {
 TEST(refusal, all_nodata) {
   Scene scene;
   scene.rewrite_after(test::raster_of(scene.grid, [](double, double) { return std::nan(""); }));
-  EXPECT_EQ(scene.data_fault().find(scene.path("after.tif") + ": has no data at all in the working grid"), 0u) << scene.data_fault();
+  EXPECT_EQ(scene.data_fault().find(scene.path("after.tif") + ": has no data at all in the working grid"), 0u)
+      << scene.data_fault();
 }
 
 TEST(refusal, nodata_inside_the_working_area) {

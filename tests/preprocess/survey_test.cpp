@@ -19,7 +19,8 @@ using test::Scratch;
 double clean_volume() {
   const samples::Sample clean = samples::valley(10);
   double sum = 0;
-  for (std::size_t i = 0; i < clean.rasters[0].second.values.size(); ++i) sum += std::max(0.0, clean.rasters[0].second.values[i] - clean.rasters[1].second.values[i]);
+  for (std::size_t i = 0; i < clean.rasters[0].second.values.size(); ++i)
+    sum += std::max(0.0, clean.rasters[0].second.values[i] - clean.rasters[1].second.values[i]);
   return sum * 100;
 }
 
@@ -33,8 +34,8 @@ Options raw_options(const Scratch& scratch, unsigned seed) {
   return options;
 }
 
-/// Eight surveys of the same slide. Their holes are the same, so that errors of filling do not average out: the errors are
-/// not expected to be centred, but to be as large as said.
+/// Eight surveys of the same slide. Their holes are the same, so that errors of filling do not average out: the errors
+/// are not expected to be centred, but to be as large as said.
 TEST(survey, recovers_shift_and_volumes_of_a_raw_pair_within_their_stated_errors) {
   const double truth = clean_volume();
   double squares = 0, worst = 0, shift = 0;
@@ -54,7 +55,8 @@ TEST(survey, recovers_shift_and_volumes_of_a_raw_pair_within_their_stated_errors
       worst = std::max(worst, std::abs(off));
     }
   }
-  std::cerr << "volumes off by " << std::sqrt(squares) << " stated errors (rms), at most " << worst << "; shift by at most " << shift << " cells\n";
+  std::cerr << "volumes off by " << std::sqrt(squares) << " stated errors (rms), at most " << worst
+            << "; shift by at most " << shift << " cells\n";
   EXPECT_GT(std::sqrt(squares), 0.4);  // errors neither far too large
   EXPECT_LT(std::sqrt(squares), 1.5);  // nor far too small
 }
@@ -79,14 +81,16 @@ TEST(survey, has_no_error_where_the_later_model_was_made_from_the_earlier_one) {
   const Prepared prepared = scene.prepare();
   EXPECT_EQ(prepared.survey->errors.typical(), 0);
   EXPECT_EQ(prepared.slide->volumes[0].volume.error, 0);
-  EXPECT_NEAR(prepared.slide->volumes[0].volume.volume, test::volume_of(scene.bowl), 1e-6 * test::volume_of(scene.bowl));
+  EXPECT_NEAR(prepared.slide->volumes[0].volume.volume, test::volume_of(scene.bowl),
+              1e-6 * test::volume_of(scene.bowl));
 }
 
 TEST(survey, refuses_to_align_without_stable_ground) {
   test::Scene scene;
   MapGrid small = grid_of(9, 9, 10);
   scene.rewrite_before(raster_of(small, [](double x, double y) { return 0.3 * (x - 500000) + 0.1 * (y - 5100000); }));
-  scene.rewrite_after(raster_of(small, [](double x, double y) { return 0.3 * (x - 500000) + 0.1 * (y - 5100000) - 5; }));
+  scene.rewrite_after(
+      raster_of(small, [](double x, double y) { return 0.3 * (x - 500000) + 0.1 * (y - 5100000) - 5; }));
   scene.options.coregistration.mode = Alignment::apply;
   EXPECT_NE(scene.data_fault().find("no stable ground"), std::string::npos) << scene.data_fault();
 }
@@ -131,7 +135,10 @@ TEST(survey, one_model_in_feet_and_one_in_metres_are_compared_in_metres) {
     VerticalUnit all, only_before, only_after;
   };
   using enum VerticalUnit;
-  for (const Case& c : {Case{1, ft, declared, same, foot}, {us_ft, 1, declared, us_survey_foot, same}, {ft, 1, foot, same, metre}, {ft, 1, foot, same, declared},
+  for (const Case& c : {Case{1, ft, declared, same, foot},
+                        {us_ft, 1, declared, us_survey_foot, same},
+                        {ft, 1, foot, same, metre},
+                        {ft, 1, foot, same, declared},
                         {us_ft, ft, foot, us_survey_foot, same}}) {
     test::Scene scene;
     rewrite_in(scene, c.before, c.after);
@@ -152,7 +159,8 @@ TEST(survey, one_model_in_feet_and_one_in_metres_are_compared_in_metres) {
 
 /// Two cells: one beyond its level, one not.
 TEST(difference, believes_what_lies_beyond_the_level_of_detection) {
-  const Detection probabilistic{Threshold::probabilistic, 0.2, 1.96}, propagated{Threshold::propagated_error, 0.2, 1.96}, minimum{Threshold::minimum_level, 0.2, 1.96};
+  const Detection probabilistic{Threshold::probabilistic, 0.2, 1.96},
+      propagated{Threshold::propagated_error, 0.2, 1.96}, minimum{Threshold::minimum_level, 0.2, 1.96};
   EXPECT_DOUBLE_EQ(probabilistic.level(0.5), 0.98);
   EXPECT_DOUBLE_EQ(probabilistic.level(0.05), 0.2);
   EXPECT_DOUBLE_EQ(propagated.level(0.5), 0.5);
@@ -168,7 +176,8 @@ TEST(difference, budget_adds_up_with_errors_of_independent_cells) {
   EXPECT_DOUBLE_EQ(budget.erosion.volume, 20000);
   EXPECT_DOUBLE_EQ(budget.deposition.volume, 2500);
   EXPECT_DOUBLE_EQ(budget.net.volume, -17500);
-  EXPECT_NEAR(budget.erosion.error, 0.3 * 100 * std::sqrt(100.0), 1e-9);  // sigma times the cell's area times sqrt(cells)
+  EXPECT_NEAR(budget.erosion.error, 0.3 * 100 * std::sqrt(100.0),
+              1e-9);  // sigma times the cell's area times sqrt(cells)
   EXPECT_NEAR(budget.net.error, 0.3 * 100 * std::sqrt(125.0), 1e-9);
 }
 
@@ -205,7 +214,8 @@ TEST(variogram, finds_range_and_nugget_of_a_made_field) {
     for (int column = 0; column < size; ++column) {
       double sum = 0;
       for (int j = 0; j < window; ++j) {
-        for (int i = 0; i < window; ++i) sum += white[static_cast<std::size_t>((row + j) * (size + window) + column + i)];
+        for (int i = 0; i < window; ++i)
+          sum += white[static_cast<std::size_t>((row + j) * (size + window) + column + i)];
       }
       field[patch.before.grid.index(column, row)] = std::sqrt(0.7) * sum / window + std::sqrt(0.3) * normal(random);
     }
@@ -213,9 +223,11 @@ TEST(variogram, finds_range_and_nugget_of_a_made_field) {
   const Variogram v = variogram_of({patch}, {field});
   EXPECT_NEAR(v.nugget, 0.3, 0.1);
   EXPECT_NEAR(v.correlation(window * 5 * 1.5), 0, 0.1);
-  EXPECT_NEAR(v.correlation(window * 5 * 0.5), 0.7 * 0.25 * 1.5, 0.15);  // (1 - h/w)^2 along the diagonal, 1 - h/w along a side
+  EXPECT_NEAR(v.correlation(window * 5 * 0.5), 0.7 * 0.25 * 1.5,
+              0.15);  // (1 - h/w)^2 along the diagonal, 1 - h/w along a side
   const double area = 400.0 * 400.0;
-  const double expected = 0.7 * (window * 5.0) * (window * 5.0) / area + 0.3 * 25 / area;  // each side's window counts once
+  const double expected =
+      0.7 * (window * 5.0) * (window * 5.0) / area + 0.3 * 25 / area;  // each side's window counts once
   EXPECT_NEAR(v.of_mean(area, 5) / expected, 1, 0.5);
   const double range = v.equivalent_range(area, 5);
   Variogram one{0, 1, range, 0, 0, {}, {}};
@@ -233,12 +245,14 @@ TEST(robust, statistics_ignore_a_few_wild_values) {
   EXPECT_TRUE(std::isnan(median({})));
 }
 
-const char* const eastern_half = "POLYGON((500300 5100000, 500400 5100000, 500400 5100300, 500300 5100300, 500300 5100000))";
+const char* const eastern_half =
+    "POLYGON((500300 5100000, 500400 5100000, 500400 5100300, 500300 5100300, 500300 5100000))";
 
 TEST(delineation, deposit_is_what_rose_beside_the_source_or_inside_its_polygon) {
   test::Scene scene;
   const double heap = test::volume_of(scene.heap);
-  EXPECT_NEAR(scene.prepare().slide->volumes[1].volume.volume / heap, 1, 0.02);  // rim thinner than threshold_m left out
+  EXPECT_NEAR(scene.prepare().slide->volumes[1].volume.volume / heap, 1,
+              0.02);  // rim thinner than threshold_m left out
   scene.options.deposit.polygon = test::write_polygon(scene.scratch, "heap.csv", eastern_half);
   const double part = scene.prepare().slide->volumes[1].volume.volume;
   EXPECT_GT(part, 0.3 * heap);
@@ -261,8 +275,11 @@ TEST(delineation, outlines_are_read_once) {
 TEST(delineation, an_outline_that_crosses_itself_is_refused_before_anything_is_compared) {
   test::Scene scene;
   scene.options.deposit.polygon =
-      test::write_polygon(scene.scratch, "heap.csv", "POLYGON((500100 5100100, 500300 5100200, 500300 5100100, 500100 5100200, 500100 5100100))");
-  EXPECT_NE(test::fault_of<DataError>([&] { survey_of(scene.options); }).find("heap.csv: polygon 1: its outline crosses"), std::string::npos);
+      test::write_polygon(scene.scratch, "heap.csv",
+                          "POLYGON((500100 5100100, 500300 5100200, 500300 5100100, 500100 5100200, 500100 5100100))");
+  EXPECT_NE(
+      test::fault_of<DataError>([&] { survey_of(scene.options); }).find("heap.csv: polygon 1: its outline crosses"),
+      std::string::npos);
 }
 
 /// The polygon runs between cell centres, so that cells on it count in part.
@@ -282,12 +299,16 @@ TEST(write_survey, leaves_rasters_outlines_and_styles_for_a_gis) {
   const Prepared prepared = scene.prepare();
   std::vector<std::string> lines;
   const auto files = write_survey(scene.scratch / "survey", *prepared.survey, &prepared, lines);
-  for (const char* name : {"before_aligned.tif", "after_aligned.tif", "difference.tif", "difference_sigma.tif", "stable_ground.tif", "source_thickness.tif", "sliding_surface.tif",
-                           "deposit_surveyed.tif", "slide_difference.tif", "outlines.gpkg", "survey.qgs", "survey.json", "difference.qml", "source_thickness.qml"})
+  for (const char* name :
+       {"before_aligned.tif", "after_aligned.tif", "difference.tif", "difference_sigma.tif", "stable_ground.tif",
+        "source_thickness.tif", "sliding_surface.tif", "deposit_surveyed.tif", "slide_difference.tif", "outlines.gpkg",
+        "survey.qgs", "survey.json", "difference.qml", "source_thickness.qml"})
     EXPECT_TRUE(std::filesystem::exists(scene.scratch / "survey" / name)) << name;
   const Raster difference = read_raster(scene.scratch / "survey" / "difference.tif");
-  for (std::size_t i = 0; i < difference.values.size(); ++i) ASSERT_NEAR(difference.values[i], scene.after.values[i] - scene.before.values[i], 1e-4);
-  EXPECT_NEAR(test::volume_of(read_raster(scene.scratch / "survey" / "source_thickness.tif")), prepared.total.volume, 1e-6 * prepared.total.volume);
+  for (std::size_t i = 0; i < difference.values.size(); ++i)
+    ASSERT_NEAR(difference.values[i], scene.after.values[i] - scene.before.values[i], 1e-4);
+  EXPECT_NEAR(test::volume_of(read_raster(scene.scratch / "survey" / "source_thickness.tif")), prepared.total.volume,
+              1e-6 * prepared.total.volume);
   EXPECT_EQ(read_polygons(scene.scratch / "survey" / "outlines.gpkg", "").front().name, "source");
 }
 

@@ -37,7 +37,7 @@ TEST(MeetGround, leaves_a_sloping_bed_tangentially) {
 
 TEST(MeetGround, adds_cohesion_and_drag_to_friction) {
   BaseFriction<double> f{FrictionLaw::voellmy, {0.5, 0, 1, 3, 10}};  // 3 Pa s2/m2, 10 Pa
-  const double grip = 0.01;                                           // 10 ms on 1 kg per m2
+  const double grip = 0.01;                                          // 10 ms on 1 kg per m2
   const Vec3<double> v = meet(f, Vec3<double>{4, 0, -2}, 0.0, 0.0, grip);
   EXPECT_DOUBLE_EQ(v.x, 4 - 0.5 * 2 - (10 + 3 * 16) * grip);
   EXPECT_DOUBLE_EQ(meet(f, Vec3<double>{4, 0, 1}, 0.0, 0.0, grip).x, 4);  // it has left: nothing holds it

@@ -107,7 +107,8 @@ TEST_P(BlockOnIncline, weakens_with_speed) {
   EXPECT_LT(std::abs(error), 0.01);  // validation.md B2
 }
 
-/// Tractions that do not depend on the normal stress, in explicit and in implicit steps: a plate, so that they act on its whole mass at once.
+/// Tractions that do not depend on the normal stress, in explicit and in implicit steps: a plate, so that they act on
+/// its whole mass at once.
 TEST_P(BlockOnIncline, is_slowed_by_drag_and_cohesion) {
   const Incline c{30, 25, 15, 2};
   const double across = 2 * std::cos(c.angle * degree);  // thickness along the normal [m]
@@ -137,8 +138,9 @@ TEST_P(BlockOnIncline, is_slowed_by_drag_and_cohesion) {
       run_to(*solver, time);
       const double error = way(start, centre(*solver, scene)) / (expected * std::cos(c.angle * degree)) - 1;
       const double unhindered = 0.5 * pull * time * time;
-      std::printf("  %s, %s: error %.3f %% (without it %.0f %%)\n", integrator == Integrator::newmark ? "newmark" : "explicit",
-                  drag ? "drag" : "cohesion", 100 * error, 100 * (unhindered / expected - 1));
+      std::printf("  %s, %s: error %.3f %% (without it %.0f %%)\n",
+                  integrator == Integrator::newmark ? "newmark" : "explicit", drag ? "drag" : "cohesion", 100 * error,
+                  100 * (unhindered / expected - 1));
       EXPECT_LT(std::abs(error), 0.02);  // validation.md B1 at two cells
       EXPECT_GT(unhindered / expected, 1.2);
     }
@@ -151,7 +153,8 @@ TEST_P(BlockOnIncline, is_held_by_cohesion_alone) {
     const Domain d = domain(c, 6);
     SolveOptions o = options(c);
     o.integrator = integrator;
-    o.base.cohesion = 2 * 2 * o.material.density * 9.81 * std::sin(c.angle * degree) * std::cos(c.angle * degree);  // twice what is needed
+    o.base.cohesion = 2 * 2 * o.material.density * 9.81 * std::sin(c.angle * degree) *
+                      std::cos(c.angle * degree);  // twice what is needed
     o.material.youngs_modulus = 1e8;
     const Scene scene = make_scene(d, o);
     const auto solver = make_solver(scene, o, GetParam());
@@ -163,8 +166,8 @@ TEST_P(BlockOnIncline, is_held_by_cohesion_alone) {
 }
 
 TEST_P(BlockOnIncline, takes_the_bed_from_rasters) {
-  // The block runs from a smooth bed onto a rough one; a raster of one value is the uniform bed to the last bit; where there is no data the
-  // recipe's number holds; water that carries half the weight halves the friction.
+  // The block runs from a smooth bed onto a rough one; a raster of one value is the uniform bed to the last bit; where
+  // there is no data the recipe's number holds; water that carries half the weight halves the friction.
   const Incline c{30, 0, 20, 2};
   const auto way_with = [&](const std::function<double(double)>& angle, double uniform, double pore_pressure) {
     Domain d = domain(c, 6);

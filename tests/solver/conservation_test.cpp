@@ -1,4 +1,5 @@
-// What an explicit step must keep: mass, momentum, angular momentum, a body in free fall, the same bits on every CPU run.
+// What an explicit step must keep: mass, momentum, angular momentum, a body in free fall, the same bits on every CPU
+// run.
 #include <numeric>
 #include <random>
 
@@ -95,14 +96,16 @@ Vec3<double> angular_momentum(const Solver& solver, const Scene& scene, double d
     total += Vec3<double>{r.y * v.z - r.z * v.y, r.z * v.x - r.x * v.z, r.x * v.y - r.y * v.x} * m;
     // The affine part carries m D C per point, D = 1/4 cell squared; affine is per cell.
     const double d = 0.25 * m * scene.grid.spacing;
-    total += Vec3<double>{s.affine[5][p] - s.affine[7][p], s.affine[6][p] - s.affine[2][p], s.affine[1][p] - s.affine[3][p]} * d;
+    total += Vec3<double>{s.affine[5][p] - s.affine[7][p], s.affine[6][p] - s.affine[2][p],
+                          s.affine[1][p] - s.affine[3][p]} *
+             d;
   }
   return total;
 }
 
 TEST_P(Conservation, spins_an_elastic_body_without_loss_of_angular_momentum) {
-  // APIC keeps it exactly in space; symplectic Euler about the moving points costs O(dt) of the stress's moment. What points keep of their own
-  // velocity (transfer_time) is not that of the grid where they go: a hundredth in a turn.
+  // APIC keeps it exactly in space; symplectic Euler about the moving points costs O(dt) of the stress's moment. What
+  // points keep of their own velocity (transfer_time) is not that of the grid where they go: a hundredth in a turn.
   for (const double transfer_time : {0.0, SolveOptions{}.transfer_time}) {
     const Domain d = cube();
     SolveOptions o = options();
@@ -343,7 +346,8 @@ TEST(Places, agree_on_a_slide) {
   }
 }
 
-/// A slide of sand from its start to its rest: what it had is what it has and what was lost on the way, each loss counted where it happens.
+/// A slide of sand from its start to its rest: what it had is what it has and what was lost on the way, each loss
+/// counted where it happens.
 TEST_P(Conservation, closes_the_energy_budget_of_a_slide) {
   Domain d = ground(40, 16, 1.0, 0.5, [](double x, double) { return x < 20 ? 0.03 * (20 - x) * (20 - x) : 0.0; });
   fill(d, {4, 9, 5, 11, 0, 2});
@@ -366,8 +370,11 @@ TEST_P(Conservation, closes_the_energy_budget_of_a_slide) {
     EXPECT_GT(clock.bed_loss, 0.2 * gone);
     EXPECT_GT(clock.plastic_loss, 0);
     EXPECT_EQ(clock.damping_loss > 0, damping > 0);
-    std::printf("  of %.4g J: bed %.1f %%, plastic flow %.1f %%, damping %.1f %%, between points and grid %.1f %%, not accounted for %.2f %%\n", gone,
-                100 * clock.bed_loss / gone, 100 * clock.plastic_loss / gone, 100 * clock.damping_loss / gone, 100 * clock.transfer_loss / gone, 100 * (gone - lost) / gone);
+    std::printf(
+        "  of %.4g J: bed %.1f %%, plastic flow %.1f %%, damping %.1f %%, between points and grid %.1f %%, not "
+        "accounted for %.2f %%\n",
+        gone, 100 * clock.bed_loss / gone, 100 * clock.plastic_loss / gone, 100 * clock.damping_loss / gone,
+        100 * clock.transfer_loss / gone, 100 * (gone - lost) / gone);
   }
 }
 

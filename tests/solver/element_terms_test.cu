@@ -20,7 +20,9 @@ struct SetAffinely {
 
 class ElementTerms : public InEachPlace {
  protected:
-  static constexpr Setting with(ShapeKind shape, MaterialModel model) { return {shape, Mapping::terrain_following, model, true, true}; }
+  static constexpr Setting with(ShapeKind shape, MaterialModel model) {
+    return {shape, Mapping::terrain_following, model, true, true};
+  }
 
   template <class Real, class Place, class Shape>
   static void compare_forms() {
@@ -34,7 +36,8 @@ class ElementTerms : public InEachPlace {
     }
   }
 
-  /// Central differences of the force against the product, for elastic points: a yielding one holds its friction's pressure.
+  /// Central differences of the force against the product, for elastic points: a yielding one holds its friction's
+  /// pressure.
   template <class Real, class Place, class Shape>
   static void differentiate() {
     LinearBench<Real, Place, Shape> bench(with(kind_of<Shape>, MaterialModel::hencky));
@@ -63,7 +66,8 @@ class ElementTerms : public InEachPlace {
     SolveOptions o;
     o.shape = kind_of<Shape>;
     o.mapping = Mapping::cartesian;
-    LinearBench<Real, Place, Shape> bench(make_scene(d, o), {kind_of<Shape>, Mapping::cartesian, MaterialModel::hencky, false, true});
+    LinearBench<Real, Place, Shape> bench(make_scene(d, o),
+                                          {kind_of<Shape>, Mapping::cartesian, MaterialModel::hencky, false, true});
     std::vector<Vec3<double>> x(static_cast<std::size_t>(bench.count)), none(x.size());
     NodeVector<Place> u, y;
     u.upload(none);

@@ -59,7 +59,9 @@ TYPED_TEST(Weights, beside_an_edge_end_on_its_node) {
           EXPECT_TRUE(w[a] == 0 || inward * (first + a) >= 0) << "weight behind the edge";
         }
       }
-      const double expected = TypeParam::averaged ? std::max(away, half) : TypeParam::spline ? std::max(away, lowest) : away;
+      const double expected = TypeParam::averaged ? std::max(away, half)
+                              : TypeParam::spline ? std::max(away, lowest)
+                                                  : away;
       EXPECT_NEAR(one, 1, 1e-15);
       EXPECT_NEAR(stands_for, inward * expected, 1e-15);
       EXPECT_NEAR(position, stands_for, 1e-15);
@@ -69,7 +71,8 @@ TYPED_TEST(Weights, beside_an_edge_end_on_its_node) {
 }
 
 TEST(Gimp, slopes_of_boxes_that_tile_a_body_integrate_exactly) {
-  // Boxes of different sides end to end from -1 to 1: the slopes of the hat at 0 sum to nothing, and its weights to its area.
+  // Boxes of different sides end to end from -1 to 1: the slopes of the hat at 0 sum to nothing, and its weights to its
+  // area.
   const double sides[] = {0.3, 0.05, 0.45, 0.2, 0.4, 0.11, 0.49};
   double left = -1, slopes = 0, area = 0;
   for (const double side : sides) {
@@ -98,12 +101,12 @@ TEST(WallNodes, are_the_innermost_upright_walls_that_stand_still_on_nodes) {
     w.speed = speed;
   };
   add(0, 3, 1, 0);
-  add(0, 5, 1, 0);      // inside the first
-  add(0, 9.5, -1, 0);   // between nodes
-  add(1, 2, 1, 0.1);    // moves
+  add(0, 5, 1, 0);     // inside the first
+  add(0, 9.5, -1, 0);  // between nodes
+  add(1, 2, 1, 0.1);   // moves
   add(1, 20, -1, 0);
   add(1, 18, -1, 0);
-  add(2, 4, -1, 0);     // level
+  add(2, 4, -1, 0);  // level
   const WallNodes nodes = wall_nodes(walls);
   EXPECT_EQ(nodes.west, 5);
   EXPECT_EQ(nodes.east, WallNodes::far);
@@ -117,7 +120,8 @@ TEST(Sorting, is_stable_and_sums_are_exclusive_on_the_cpu) {
   for (auto& key : keys) key = engine() % 97;
   std::vector<int> expected(keys.size());
   std::iota(expected.begin(), expected.end(), 0);
-  std::stable_sort(expected.begin(), expected.end(), [&](int a, int b) { return keys[static_cast<std::size_t>(a)] < keys[static_cast<std::size_t>(b)]; });
+  std::stable_sort(expected.begin(), expected.end(),
+                   [&](int a, int b) { return keys[static_cast<std::size_t>(a)] < keys[static_cast<std::size_t>(b)]; });
   Buffer<std::uint64_t, OnCpu> sorted;
   Buffer<int, OnCpu> order;
   sorted.upload(keys);
@@ -168,7 +172,8 @@ TEST(SparseGrid, stores_every_node_a_point_can_reach_before_the_next_sort) {
       std::set<std::pair<int, int>> mine;
       for (int p = begin; p < end; ++p) {
         for (int b = -2; b <= 2; ++b) {
-          for (int a = -2; a <= 2; ++a) mine.insert({s.cell[0][static_cast<std::size_t>(p)] + a, s.cell[1][static_cast<std::size_t>(p)] + b});
+          for (int a = -2; a <= 2; ++a)
+            mine.insert({s.cell[0][static_cast<std::size_t>(p)] + a, s.cell[1][static_cast<std::size_t>(p)] + b});
         }
       }
       for (const auto& column : mine) EXPECT_TRUE(columns.insert(column).second);

@@ -31,7 +31,8 @@ class HardCases : public InEachPlace {
  protected:
   /// Runs to `end` and gives `look` the energies every `interval`.
   template <class Look>
-  static std::unique_ptr<Solver> watch(const Scene& scene, const SolveOptions& o, double end, double interval, Look&& look) {
+  static std::unique_ptr<Solver> watch(const Scene& scene, const SolveOptions& o, double end, double interval,
+                                       Look&& look) {
     auto solver = make_solver(scene, o, GetParam());
     for (double next = interval; next < end + 0.5 * interval; next += interval) {
       run_to(*solver, next);
@@ -148,7 +149,8 @@ TEST_P(HardCases, impact_on_rock_and_wall_balances_momentum) {
 TEST_P(HardCases, cliffs_spikes_and_pits_hold_nothing_inside_the_ground) {  // C7
   // A cliff of 80 degrees, one-cell spikes and pits at its foot.
   Domain d = ground(60, 16, 2.0, 1.0, [](double x, double y) {
-    const double cliff = std::clamp((40 - x) * 5.67, 0.0, 45.0), bump = x > 44 ? 3 * std::sin(1.7 * x) * std::sin(2.3 * y) : 0.0;
+    const double cliff = std::clamp((40 - x) * 5.67, 0.0, 45.0),
+                 bump = x > 44 ? 3 * std::sin(1.7 * x) * std::sin(2.3 * y) : 0.0;
     return cliff + bump;
   });
   fill(d, {24, 32, 12, 20, 0, 4});
@@ -173,7 +175,9 @@ TEST_P(HardCases, cliffs_spikes_and_pits_hold_nothing_inside_the_ground) {  // C
       const ParticleState s = solver->state().points;
       const auto places = positions(scene.map, scene.grid, solver->ground(), s);
       for (std::size_t p = 0; p < s.size(); ++p) {
-        const double ground_here = solver->ground().datum + ground_at(scene.grid, solver->ground(), s.cell[0][p] + s.offset[0][p], s.cell[1][p] + s.offset[1][p]);
+        const double ground_here =
+            solver->ground().datum +
+            ground_at(scene.grid, solver->ground(), s.cell[0][p] + s.offset[0][p], s.cell[1][p] + s.offset[1][p]);
         ASSERT_TRUE(std::isfinite(places[p][2]));
         if (mapping == Mapping::cartesian) continue;  // its ground is stairs between nodes
         ASSERT_GE(places[p][2], ground_here - 0.1);
@@ -186,7 +190,8 @@ TEST_P(HardCases, a_deposit_stays_where_it_came_to_rest) {  // C8
   Domain d = ground(30, 30, 2.0, 2.0, [](double, double) { return 0.0; });
   fill(d, {24, 36, 24, 36, 0, 10});
   SolveOptions o;
-  o.material.youngs_modulus = 2e6;  // the weight of 10 m strains it by a tenth: the softest that is still at rest as a solid is
+  o.material.youngs_modulus =
+      2e6;  // the weight of 10 m strains it by a tenth: the softest that is still at rest as a solid is
   const Scene scene = make_scene(d, o);
   const auto solver = make_solver(scene, o, GetParam());
   run_to(*solver, 60);
@@ -201,8 +206,9 @@ TEST_P(HardCases, a_deposit_stays_where_it_came_to_rest) {  // C8
 }
 
 TEST_P(HardCases, a_slab_below_its_friction_angle_rests_in_long_steps_too) {
-  // On 20 degrees with a bed of 25; from zero stress and from geostatic stress, in steps of 10 CFL, and of 200, where Newton finds its way on smoothed friction
-  // first and may not stay there. 1e-4 of its length in 60 s, so a sixth of that in 10 s.
+  // On 20 degrees with a bed of 25; from zero stress and from geostatic stress, in steps of 10 CFL, and of 200, where
+  // Newton finds its way on smoothed friction first and may not stay there. 1e-4 of its length in 60 s, so a sixth of
+  // that in 10 s.
   constexpr double length = 12;
   Domain d = ground(40, 16, 1.0, 1.0, [](double x, double) { return -std::tan(20 * M_PI / 180) * x; });
   fill(d, {10, 10 + length, 5, 11, 0, 2});
@@ -239,7 +245,8 @@ TEST_P(HardCases, a_slab_below_its_friction_angle_rests_in_long_steps_too) {
     run_to(*solver, 65);
     const Centre end = centre(*solver, scene);
     const double creep = std::hypot(end.x - start.x, end.z - start.z);
-    std::printf("  slab at rest, %s stress, %g CFL: %.1e of its length in 60 s\n", geostatic ? "geostatic" : "zero", cfl, creep / length);
+    std::printf("  slab at rest, %s stress, %g CFL: %.1e of its length in 60 s\n", geostatic ? "geostatic" : "zero",
+                cfl, creep / length);
     EXPECT_LT(creep, 1e-4 * length);
   }
 }
@@ -303,7 +310,8 @@ TEST_P(HardCases, single_precision_ends_within_the_discretisation_error) {  // C
     return moved / all;
   };
   const auto whole = deposit(Precision::double_, 0.5);
-  const double single = elsewhere(deposit(Precision::single_, 0.5), whole), step = elsewhere(deposit(Precision::double_, 0.25), whole);
+  const double single = elsewhere(deposit(Precision::single_, 0.5), whole),
+               step = elsewhere(deposit(Precision::double_, 0.25), whole);
   std::printf("  deposit elsewhere: single precision %.2f %%, half the step %.2f %%\n", 100 * single, 100 * step);
   EXPECT_LT(single, step);
   EXPECT_LT(single, 0.01);

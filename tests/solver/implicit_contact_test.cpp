@@ -44,7 +44,8 @@ TEST_P(ImplicitContact, tells_a_body_without_support_from_equilibrium) {
 }
 
 TEST_P(ImplicitContact, meets_an_indefinite_tangent_and_says_so) {
-  // A slender column under twenty times its buckling load: compression has made its tangent indefinite before the points have moved.
+  // A slender column under twenty times its buckling load: compression has made its tangent indefinite before the
+  // points have moved.
   for (const auto linear_solver : {LinearSolver::pcg, LinearSolver::cholesky}) {
     Domain d = ground(8, 8, 1.0, 1.0, [](double, double) { return 0.0; });
     fill(d, {3, 5, 3, 5, 0, 16});
@@ -77,7 +78,8 @@ TEST_P(ImplicitContact, meets_an_indefinite_tangent_and_says_so) {
 }
 
 TEST_P(ImplicitContact, carries_a_single_point_and_nodes_without_mass) {
-  // Alone in its cells, at a node (so that splines leave layers without weight) and beside one: it falls as the parabola says.
+  // Alone in its cells, at a node (so that splines leave layers without weight) and beside one: it falls as the
+  // parabola says.
   for (const double x : {5.0, 5.37}) {
     for (const auto shape : {ShapeKind::linear, ShapeKind::quadratic, ShapeKind::gimp}) {
       for (const auto integrator : {Integrator::newmark, Integrator::explicit_}) {
@@ -106,8 +108,9 @@ TEST_P(ImplicitContact, carries_a_single_point_and_nodes_without_mass) {
 }
 
 TEST_P(ImplicitContact, turns_on_curved_ground_with_one_solve_a_step) {
-  // Released on the flank of a channel, a slab slides across it as it comes down. The reference paper's single solve must not take friction for
-  // something that holds a node to the direction it came in: it did, and lost a third of the energy.
+  // Released on the flank of a channel, a slab slides across it as it comes down. The reference paper's single solve
+  // must not take friction for something that holds a node to the direction it came in: it did, and lost a third of the
+  // energy.
   Domain d = ground(40, 24, 1.0, 1.0, [](double x, double y) { return 60 - 0.5 * x + 0.04 * (y - 12) * (y - 12); });
   fill(d, {4, 8, 3, 7, 0, 2});
   SolveOptions o;
@@ -142,7 +145,7 @@ TEST_P(ImplicitContact, slides_down_an_incline_with_friction) {
   fill(d, {4, 10, 5, 11, 0, 2});
   SolveOptions o;
   o.integrator = Integrator::newmark;
-  o.implicit.beta = 1;      // backward Euler in velocity
+  o.implicit.beta = 1;  // backward Euler in velocity
   o.implicit.alpha = 0.5;
   o.implicit.step = 0.02;
   o.material.model = MaterialModel::hencky;
@@ -164,7 +167,8 @@ TEST_P(ImplicitContact, slides_down_an_incline_with_friction) {
   const double a = 9.81 * (std::sin(angle) - std::tan(20 * std::numbers::pi / 180) * std::cos(angle));
   // Backward Euler: s = a t (t + dt) / 2.
   const double expected = 0.5 * a * 1.5 * (1.5 + 0.02) * std::cos(angle);
-  std::printf("  implicit incline: %.2f CFL steps, error %.3f %%, %.1f Newton a step\n", cfl, 100 * ((end.x - start.x) / expected - 1),
+  std::printf("  implicit incline: %.2f CFL steps, error %.3f %%, %.1f Newton a step\n", cfl,
+              100 * ((end.x - start.x) / expected - 1),
               static_cast<double>(newton) / static_cast<double>(solver->clock().step));
   EXPECT_NEAR((end.x - start.x) / expected, 1, 0.02);
 }
@@ -203,7 +207,8 @@ TEST_P(ImplicitContact, slides_through_a_hollow_as_explicit_steps_do) {
 }
 
 TEST_P(ImplicitContact, lets_a_heap_of_sand_collapse_at_ten_times_the_cfl_step) {
-  // A column 1.5 times as high as wide, no cohesion, on a rough floor: yielding, opening, stick and slip in one. Against explicit steps.
+  // A column 1.5 times as high as wide, no cohesion, on a rough floor: yielding, opening, stick and slip in one.
+  // Against explicit steps.
   Domain d = ground(26, 6, 0.1, 0.1, [](double, double) { return 0.0; });
   fill(d, {0.35, 0.95, 0.25, 0.35, 0, 0.9});
   SolveOptions o;
@@ -243,8 +248,9 @@ TEST_P(ImplicitContact, lets_a_heap_of_sand_collapse_at_ten_times_the_cfl_step) 
   for (const auto tangent : {Tangent::frozen_yield, Tangent::exact}) {
     StepStats sums;
     const double got = collapse(Integrator::newmark, tangent, sums);
-    std::printf("  sand at %.0f CFL, %s tangent: centre %.4f m, explicit %.4f m; %d Newton in 56 steps, %d cuts\n", sums.over_cfl,
-                tangent == Tangent::exact ? "exact" : "frozen-yield", got, expected, sums.newton, sums.cuts);
+    std::printf("  sand at %.0f CFL, %s tangent: centre %.4f m, explicit %.4f m; %d Newton in 56 steps, %d cuts\n",
+                sums.over_cfl, tangent == Tangent::exact ? "exact" : "frozen-yield", got, expected, sums.newton,
+                sums.cuts);
     EXPECT_NEAR(got / expected, 1, 0.05);
     EXPECT_GT(sums.over_cfl, 8);
     EXPECT_LE(sums.cuts, 5);

@@ -43,7 +43,8 @@ inline int steps_to(Solver& solver, double time, StepStats* last = nullptr) {
   }
 }
 
-/// validation.md A2 at two cells over the depth: a cantilever of 10 x 1 x 1 m, E = 1 GPa, held at x = 0, its last points pulled down.
+/// validation.md A2 at two cells over the depth: a cantilever of 10 x 1 x 1 m, E = 1 GPa, held at x = 0, its last
+/// points pulled down.
 struct Cantilever {
   Domain domain = ground(28, 10, 0.5, 0.5, [](double, double) { return 0.0; });
   SolveOptions options;

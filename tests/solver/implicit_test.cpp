@@ -13,8 +13,8 @@ class Implicit : public InEachPlace {};
 struct ColumnResult {
   double stress_error = 0, top = 0, top_height = 0;
 };
-ColumnResult measure_column(const Solver& solver, const Scene& scene, const Domain& d, const SolveOptions& o, double weight,
-                            double height) {
+ColumnResult measure_column(const Solver& solver, const Scene& scene, const Domain& d, const SolveOptions& o,
+                            double weight, double height) {
   const ParticleState s = solver.state().points;
   const auto x = positions(scene.map, scene.grid, solver.ground(), s);
   const auto m = make_material<double>(o.material);
@@ -23,7 +23,9 @@ ColumnResult measure_column(const Solver& solver, const Scene& scene, const Doma
   for (std::size_t p = 0; p < s.size(); ++p) {
     const double start = d.points.height[static_cast<std::size_t>(s.id[p])];
     const MaterialState<double> state{
-        {s.elastic[0][p], s.elastic[1][p], s.elastic[2][p], s.elastic[3][p], s.elastic[4][p], s.elastic[5][p]}, s.log_volume[p], 0};
+        {s.elastic[0][p], s.elastic[1][p], s.elastic[2][p], s.elastic[3][p], s.elastic[4][p], s.elastic[5][p]},
+        s.log_volume[p],
+        0};
     // Lateral strain is nil, so the first Piola stress is the Kirchhoff stress over the stretch.
     const double piola = kirchhoff_stress(m, state).zz / std::exp(s.log_volume[p]);
     const double error = (piola + weight * (height - start)) / (weight * height);
@@ -35,7 +37,8 @@ ColumnResult measure_column(const Solver& solver, const Scene& scene, const Doma
 }
 
 TEST_P(Implicit, carries_a_columns_own_weight) {
-  // validation.md A1: H = 50 m, E = 1 MPa, body force to 200 N/m3 in 20 steps. In a corotated bar P = E (F - 1) exactly.
+  // validation.md A1: H = 50 m, E = 1 MPa, body force to 200 N/m3 in 20 steps. In a corotated bar P = E (F - 1)
+  // exactly.
   const Domain d = column(50, 1);
   SolveOptions o = column_options();
   o.material.model = MaterialModel::corotated;
@@ -52,10 +55,11 @@ TEST_P(Implicit, carries_a_columns_own_weight) {
     const int newton = steps_to(*solver, 1.0, &stats);
     const ColumnResult r = measure_column(*solver, scene, d, o, 200, 50);
     const double exact = 200 / 1e6 * (50 * r.top_height - 0.5 * r.top_height * r.top_height);
-    std::printf("  A1 %s: stress error (rms) %.2e, top displacement %.6f (%.3f %%), %d Newton, %d linear in the last step\n",
-                name_of(shape), r.stress_error, r.top, 100 * (r.top / exact - 1), newton,
-                stats.linear);
-    // validation.md A1: 0.2 %. Hats lose 0.3 % as points near the top cross cells and leave a cell with one of its two layers.
+    std::printf(
+        "  A1 %s: stress error (rms) %.2e, top displacement %.6f (%.3f %%), %d Newton, %d linear in the last step\n",
+        name_of(shape), r.stress_error, r.top, 100 * (r.top / exact - 1), newton, stats.linear);
+    // validation.md A1: 0.2 %. Hats lose 0.3 % as points near the top cross cells and leave a cell with one of its two
+    // layers.
     EXPECT_LT(std::abs(r.top / exact - 1), shape == ShapeKind::quadratic ? 0.002 : 0.005);
     EXPECT_EQ(solver->clock().step, 20);
     EXPECT_LE(newton, 3 * 20);  // quadratic convergence
@@ -63,8 +67,9 @@ TEST_P(Implicit, carries_a_columns_own_weight) {
 }
 
 TEST_P(Implicit, leans_on_a_wall_as_on_the_ground) {
-  // The same column laid on its side, its weight along the axis towards a fixed wall: the functions meet walls as they meet the ground.
-  // Tolerance: the springs that hold nearly empty nodes lie elsewhere (splines that reached through the wall were 6 % softer).
+  // The same column laid on its side, its weight along the axis towards a fixed wall: the functions meet walls as they
+  // meet the ground. Tolerance: the springs that hold nearly empty nodes lie elsewhere (splines that reached through
+  // the wall were 6 % softer).
   SolveOptions o = column_options();
   o.shape = ShapeKind::quadratic;
   o.material.youngs_modulus = 1e5;
@@ -85,7 +90,8 @@ TEST_P(Implicit, leans_on_a_wall_as_on_the_ground) {
   Domain d = ground(16, 6, 1.0, 1.0, [](double, double) { return 0.0; });
   fill(d, {3.5, 11.5, 2.5, 3.5, 0, 1});
   o.base.law = FrictionLaw::none;
-  o.walls = {{Axis::y, 2.5, Side::above, WallKind::roller}, {Axis::y, 3.5, Side::below, WallKind::roller},
+  o.walls = {{Axis::y, 2.5, Side::above, WallKind::roller},
+             {Axis::y, 3.5, Side::below, WallKind::roller},
              {Axis::z, 0.0, Side::above, WallKind::roller},  // the floor alone would let it go
              {Axis::x, 3.5, Side::above, WallKind::fixed}};
   EXPECT_NEAR(settlement(d, {-0.1, 0, 0}), upright, 1e-4 * upright);
@@ -115,7 +121,8 @@ TEST_P(Implicit, refines_a_strongly_compacted_column) {
     const auto solver = make_solver(scene, o, GetParam());
     const int newton = steps_to(*solver, 1.0);
     const double error = measure_column(*solver, scene, d, o, 800, 50).stress_error;
-    std::printf("  A1b h = %.3f m: stress error (rms) %.3e, order %.2f, %d Newton\n", h, error, last > 0 ? std::log2(last / error) : 0.0, newton);
+    std::printf("  A1b h = %.3f m: stress error (rms) %.3e, order %.2f, %d Newton\n", h, error,
+                last > 0 ? std::log2(last / error) : 0.0, newton);
     EXPECT_TRUE(last == 0 || std::log2(last / error) > 1.0) << std::log2(last / error);  // validation.md A1b
     last = error;
   }
@@ -252,7 +259,8 @@ TEST_P(Implicit, takes_the_reference_papers_steps) {
 }
 
 TEST_P(Implicit, bends_a_cantilever_until_points_leave_their_cells) {
-  // 16 % of strain in the outer fibres, the tip moves by 13 cells. Without the filler neither shape gets past a quarter of the load.
+  // 16 % of strain in the outer fibres, the tip moves by 13 cells. Without the filler neither shape gets past a quarter
+  // of the load.
   for (const auto shape : {ShapeKind::linear, ShapeKind::quadratic, ShapeKind::gimp}) {
     Cantilever beam(shape, 3.6);
     beam.options.implicit.step = 0.05;
@@ -267,7 +275,8 @@ TEST_P(Implicit, bends_a_cantilever_until_points_leave_their_cells) {
 }
 
 TEST_P(Implicit, does_not_lock_at_poissons_ratio_of_nearly_one_half) {
-  // validation.md C2: a slender beam bends by P L^3 / (3 E I) whatever Poisson's ratio is, 0.6 % more for shear; at most 5 % from locking.
+  // validation.md C2: a slender beam bends by P L^3 / (3 E I) whatever Poisson's ratio is, 0.6 % more for shear; at
+  // most 5 % from locking.
   const auto bend = [&](ShapeKind shape, double poisson, bool b_bar) {
     Cantilever beam(shape, 0.2);
     beam.options.material.model = MaterialModel::hencky;
@@ -297,7 +306,9 @@ double checkerboard(const Solver& solver, const SolveOptions& o) {
   double alternating = 0, sum = 0;
   for (std::size_t p = 0; p < s.size(); ++p) {
     const MaterialState<double> state{
-        {s.elastic[0][p], s.elastic[1][p], s.elastic[2][p], s.elastic[3][p], s.elastic[4][p], s.elastic[5][p]}, s.log_volume[p], 0};
+        {s.elastic[0][p], s.elastic[1][p], s.elastic[2][p], s.elastic[3][p], s.elastic[4][p], s.elastic[5][p]},
+        s.log_volume[p],
+        0};
     const double pressure = -trace(kirchhoff_stress(m, state)) / 3 * s.volume[p];
     // Cells lie between nodes; the columns' nodes stand at the centres of map cells.
     int cell = 0;
@@ -309,7 +320,8 @@ double checkerboard(const Solver& solver, const SolveOptions& o) {
 }
 
 TEST_P(Implicit, keeps_the_pressure_of_nearly_incompressible_blocks_smooth) {
-  // validation.md C2: a soft block bulges under its own weight on a bed that holds it; no checkerboard beyond 10 % of the mean pressure.
+  // validation.md C2: a soft block bulges under its own weight on a bed that holds it; no checkerboard beyond 10 % of
+  // the mean pressure.
   Domain d = ground(14, 14, 1.0, 1.0, [](double, double) { return 0.0; });
   fill(d, {4.5, 9.5, 4.5, 9.5, 0, 5});
   SolveOptions o;
@@ -332,7 +344,8 @@ TEST_P(Implicit, keeps_the_pressure_of_nearly_incompressible_blocks_smooth) {
         const auto solver = make_solver(scene, o, GetParam());
         steps_to(*solver, 1.0);
         const double amplitude = checkerboard(*solver, o);
-        std::printf("  nu = %.3f, %s%s: checkerboard %.2f %% of the mean pressure\n", poisson, name_of(shape), b_bar ? ", B-bar" : "", 100 * amplitude);
+        std::printf("  nu = %.3f, %s%s: checkerboard %.2f %% of the mean pressure\n", poisson, name_of(shape),
+                    b_bar ? ", B-bar" : "", 100 * amplitude);
         if (b_bar) {
           EXPECT_LT(amplitude, 0.1);
         }

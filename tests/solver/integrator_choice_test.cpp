@@ -37,7 +37,9 @@ TEST(IntegratorChoice, turns_to_cheaper_implicit_steps_and_says_why) {
   EXPECT_EQ(choice.current(), Integrator::newmark);
   EXPECT_GT(run.implicit_time, 0.95 * run.time);
   EXPECT_LT(run.wall, 1.1 * 0.1 * run.time + 2);
-  EXPECT_NE(said.find("newmark steps from here on: 0.1 s of wall time per simulated second instead of 1 s"), std::string::npos) << said;
+  EXPECT_NE(said.find("newmark steps from here on: 0.1 s of wall time per simulated second instead of 1 s"),
+            std::string::npos)
+      << said;
   EXPECT_NEAR(choice.implicit_step(), 0.01, 1e-12) << "ten CFL steps in a flow";
 }
 

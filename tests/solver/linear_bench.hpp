@@ -124,7 +124,8 @@ struct LinearBench {
     elements.build(grid.view(), points.view());
     refresh();
     if (setting.springs) {
-      const double full = static_cast<double>(materials.list[0].density) * scene.grid.spacing * scene.grid.spacing * scene.grid.layer_height;
+      const double full = static_cast<double>(materials.list[0].density) * scene.grid.spacing * scene.grid.spacing *
+                          scene.grid.layer_height;
       springs = {mass.data(), 0.5 * full, 1e6};
     }
     hold();
@@ -154,7 +155,9 @@ struct LinearBench {
     mass.resize(n);
     mass.fill_zero();
     tangents.resize(static_cast<std::size_t>(TangentStore<Real>::numbers) * static_cast<std::size_t>(points.count()));
-    scatter_points(Place{}, points.count(), grid.groups(), ScatterInertia<Real, Shape>{{grid.view(), points.view()}, materials, false, false, nullptr, nodes()});
+    scatter_points(
+        Place{}, points.count(), grid.groups(),
+        ScatterInertia<Real, Shape>{{grid.view(), points.view()}, materials, false, false, nullptr, nodes()});
     if (b_bar) means.begin_step(elements, points.count());
     measure_stress();
   }
@@ -165,7 +168,9 @@ struct LinearBench {
     if (b_bar) means.measure(elements, grid.view(), points.view(), materials, false, u.data());
     using Stress = StressAt<Real, Shape>;
     scatter_points(Place{}, points.count(), grid.groups(),
-                   ScatterForces<Real, Shape, Stress>{{grid.view(), points.view()}, Stress{materials, false, false, mean_view(), store(), u.data()}, internal.data()});
+                   ScatterForces<Real, Shape, Stress>{{grid.view(), points.view()},
+                                                      Stress{materials, false, false, mean_view(), store(), u.data()},
+                                                      internal.data()});
     if (springs.on()) apply_springs(elements, springs, u, internal);
     synchronise(Place{});
   }
@@ -265,11 +270,13 @@ struct LinearBench {
     return b;
   }
 
-  std::vector<Vec3<double>> by_gradients(Preconditioner kind = Preconditioner::block, int* iterations = nullptr, double tolerance = 1e-12) {
+  std::vector<Vec3<double>> by_gradients(Preconditioner kind = Preconditioner::block, int* iterations = nullptr,
+                                         double tolerance = 1e-12) {
     NodeVector<Place> x;
     const NodeVector<Place> b = right_side();
     NodePreconditioner<Real, Place, Shape> preconditioner(kind);
-    preconditioner.refresh(from(), grid.groups(), elements, {grid.view(), grid.active_list(), grid.active_blocks()}, held());
+    preconditioner.refresh(from(), grid.groups(), elements, {grid.view(), grid.active_list(), grid.active_blocks()},
+                           held());
     TangentOperator<Real, Place, Shape> op(Operator::points);
     op.begin_step(elements, count);
     op.refresh(from(), grid.groups());
@@ -280,8 +287,13 @@ struct LinearBench {
       HeldNodes held;
       void product(const NodeVector<Place>& p, NodeVector<Place>& ap, const CgState* state) { op.apply(p, ap, state); }
       CloseSystem close(const NodeVector<Place>& p, NodeVector<Place>& ap) { return {held, p.data(), ap.data()}; }
-      void precondition(const NodeVector<Place>& r, NodeVector<Place>& z, CgState* state) { preconditioner.apply(r, z, state); }
-      void precondition_after(const talus::detail::StepAlong& step, const NodeVector<Place>& r, NodeVector<Place>& z, CgState* state) { preconditioner.apply_after(step, r, z, state); }
+      void precondition(const NodeVector<Place>& r, NodeVector<Place>& z, CgState* state) {
+        preconditioner.apply(r, z, state);
+      }
+      void precondition_after(const talus::detail::StepAlong& step, const NodeVector<Place>& r, NodeVector<Place>& z,
+                              CgState* state) {
+        preconditioner.apply_after(step, r, z, state);
+      }
     };
     const LinearReport report = cg.solve(b, x, tolerance, 5000, System{op, preconditioner, held()});
     EXPECT_TRUE(report.converged) << "residual " << report.residual;
@@ -301,16 +313,16 @@ struct LinearBench {
 };
 
 #if TALUS_FOR_GPU
-#define TALUS_RUN(function, ...)                                           \
-  (GetParam() == On::gpu ? function<double, OnGpu, Linear>(__VA_ARGS__)    \
-                         : function<double, OnCpu, Linear>(__VA_ARGS__),   \
-   GetParam() == On::gpu ? function<double, OnGpu, Quadratic>(__VA_ARGS__) \
+#define TALUS_RUN(function, ...)                                            \
+  (GetParam() == On::gpu ? function<double, OnGpu, Linear>(__VA_ARGS__)     \
+                         : function<double, OnCpu, Linear>(__VA_ARGS__),    \
+   GetParam() == On::gpu ? function<double, OnGpu, Quadratic>(__VA_ARGS__)  \
                          : function<double, OnCpu, Quadratic>(__VA_ARGS__), \
-   GetParam() == On::gpu ? function<double, OnGpu, Gimp>(__VA_ARGS__)      \
-                         : function<double, OnCpu, Gimp>(__VA_ARGS__))
+   GetParam() == On::gpu ? function<double, OnGpu, Gimp>(__VA_ARGS__) : function<double, OnCpu, Gimp>(__VA_ARGS__))
 #else
-#define TALUS_RUN(function, ...) \
-  (function<double, OnCpu, Linear>(__VA_ARGS__), function<double, OnCpu, Quadratic>(__VA_ARGS__), function<double, OnCpu, Gimp>(__VA_ARGS__))
+#define TALUS_RUN(function, ...)                                                                  \
+  (function<double, OnCpu, Linear>(__VA_ARGS__), function<double, OnCpu, Quadratic>(__VA_ARGS__), \
+   function<double, OnCpu, Gimp>(__VA_ARGS__))
 #endif
 
 }  // namespace talus::solver::testing

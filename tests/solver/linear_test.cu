@@ -168,13 +168,18 @@ TEST(BiCgStab, solves_a_system_that_is_not_symmetric) {
   b.resize(nodes);
   multiply(expected, b);
   BiCgStab<OnCpu> solver;
-  const auto report = solver.solve(b, x, 1e-12, 500, multiply, [](const NodeVector<OnCpu>& r, NodeVector<OnCpu>& z) { copy(r, z); });
+  const auto report =
+      solver.solve(b, x, 1e-12, 500, multiply, [](const NodeVector<OnCpu>& r, NodeVector<OnCpu>& z) { copy(r, z); });
   EXPECT_TRUE(report.converged);
   EXPECT_LT(difference(x.download(), expected.download()), 1e-11);
   // It says so when it runs out of iterations, and takes a right-hand side of nothing.
-  EXPECT_FALSE(solver.solve(b, x, 1e-12, 2, multiply, [](const NodeVector<OnCpu>& r, NodeVector<OnCpu>& z) { copy(r, z); }).converged);
+  EXPECT_FALSE(
+      solver.solve(b, x, 1e-12, 2, multiply, [](const NodeVector<OnCpu>& r, NodeVector<OnCpu>& z) { copy(r, z); })
+          .converged);
   b.fill_zero();
-  EXPECT_TRUE(solver.solve(b, x, 1e-12, 2, multiply, [](const NodeVector<OnCpu>& r, NodeVector<OnCpu>& z) { copy(r, z); }).converged);
+  EXPECT_TRUE(
+      solver.solve(b, x, 1e-12, 2, multiply, [](const NodeVector<OnCpu>& r, NodeVector<OnCpu>& z) { copy(r, z); })
+          .converged);
 }
 
 TEST_P(LinearSystem, cholesky_keeps_its_analysis_while_the_pattern_stands) { TALUS_RUN(keep_analysis); }

@@ -183,7 +183,8 @@ TEST(DruckerPrager, meets_mohr_coulomb_in_triaxial_compression) {
 }
 
 TEST(DruckerPrager, meets_mohr_coulomb_in_plane_strain_for_its_own_flow) {
-  // Sheared in a plane, nothing across it: the circle in the plane must touch the line of 31 degrees whatever the dilatancy is.
+  // Sheared in a plane, nothing across it: the circle in the plane must touch the line of 31 degrees whatever the
+  // dilatancy is.
   const double sine = std::sin(31 * std::numbers::pi / 180), cohesion = 2e3;
   for (const double dilatancy : {0.0, 1.0, 15.0, 31.0}) {
     MaterialOptions o;

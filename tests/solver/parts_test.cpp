@@ -69,7 +69,8 @@ TEST_P(Parts, give_each_release_its_own_material) {
     run_to(*solver, 1.5);
     const auto after = heights(*solver, scene);
     EXPECT_GT(before[0] - after[0], 0.01);
-    EXPECT_NEAR((before[1] - after[1]) / (before[0] - after[0]), 0.25, 0.25 * 0.03);  // strains of 1 % are not quite linear
+    EXPECT_NEAR((before[1] - after[1]) / (before[0] - after[0]), 0.25,
+                0.25 * 0.03);  // strains of 1 % are not quite linear
     // Maps take volume, not mass.
     const auto peak = solver->state().maps.peak_thickness;
     const double first = peak[d.grid.index(6, 6)], second = peak[d.grid.index(16, 6)];
@@ -102,8 +103,8 @@ TEST_P(Parts, change_nothing_where_they_are_the_same) {
 }
 
 TEST_P(Parts, soften_as_they_slip) {
-  // Cohesion that holds a steep block, and none left after a decimetre of slip: the block stands where it does not soften, and falls apart where it
-  // does, nearly as one that never had any.
+  // Cohesion that holds a steep block, and none left after a decimetre of slip: the block stands where it does not
+  // soften, and falls apart where it does, nearly as one that never had any.
   const auto height_after = [&](double cohesion, double slip) {
     Domain d = ground(24, 20, 1.0, 1.0, [](double, double) { return 0.0; });
     fill(d, {10, 14, 8, 12, 0, 6});
@@ -151,7 +152,7 @@ TEST(ErodibleGround, rests_until_it_is_loaded_and_is_told_apart) {
     o.parts[0].material.softening_slip = 0.3;
     o.parts[0].material.residual_friction_angle = 20;
     o.base.law = FrictionLaw::velocity_weakening;
-    o.base.peak_coefficient = 0.8;   // holds the sheet at rest on a slope of 0.6
+    o.base.peak_coefficient = 0.8;  // holds the sheet at rest on a slope of 0.6
     o.base.steady_coefficient = 0.2;
     o.base.characteristic_speed = 0.5;
     const RunPaths paths(folder / name);
@@ -212,7 +213,8 @@ TEST(Softening, falls_from_peak_to_residual_over_the_slip_whatever_the_cell) {
       EXPECT_NEAR(now.shear_cohesion, (1 - way) * m.shear_cohesion, 1e-9);
     }
   }
-  // A simple shear strain adds what a slip over a cell of that thickness makes: d(plastic) = dgamma / sqrt(3), once the elastic part is over.
+  // A simple shear strain adds what a slip over a cell of that thickness makes: d(plastic) = dgamma / sqrt(3), once the
+  // elastic part is over.
   MaterialOptions plain;
   plain.friction_angle = 30;
   const Material<double> m = make_material<double>(plain);

@@ -21,7 +21,8 @@ class Preconditioners : public InEachPlace {
   template <class Real, class Place, class Shape>
   static void give_one_solution() {
     for (const bool b_bar : {false, true}) {
-      LinearBench<Real, Place, Shape> bench({kind_of<Shape>, Mapping::terrain_following, MaterialModel::hencky, b_bar, true});
+      LinearBench<Real, Place, Shape> bench(
+          {kind_of<Shape>, Mapping::terrain_following, MaterialModel::hencky, b_bar, true});
       const auto expected = bench.by_cholesky();
       for (const Named& n : kinds) EXPECT_LT(difference(bench.by_gradients(n.kind), expected), 1e-8) << n.name;
     }
@@ -41,7 +42,8 @@ class Preconditioners : public InEachPlace {
     EXPECT_GT(iterations, 5) << "the test shows nothing";
   }
 
-  /// Iterations to a thousandth for a slab of four layers h / aspect high on 32 x 28 cells, in steps of so many horizontal CFL steps.
+  /// Iterations to a thousandth for a slab of four layers h / aspect high on 32 x 28 cells, in steps of so many
+  /// horizontal CFL steps.
   template <class Real, class Place, class Shape>
   static int iterations(Preconditioner kind, double over_cfl, double aspect) {
     constexpr double h = 2;
@@ -60,10 +62,12 @@ class Preconditioners : public InEachPlace {
 
   template <class Real, class Place, class Shape>
   static void count_in_thin_layers() {
-    // What columns leave is that neighbours share their upright stiffness: the Gram matrix of the functions along x and y, summed over 2 x 2 points. Over its diagonal its
-    // condition is 16 for hats and 51 for splines, however thin the layers; under a sweep of Gauss-Seidel 3 and 6. But at the rim of the material, where few points
-    // see the outer splines, it is 500 (hats: still 3), which is why splines do not end within 1.5 times.
-    std::printf("  CG iterations at 5 horizontal CFL steps, %s functions; vertical: 5, 15, 50\n", name_of(kind_of<Shape>));
+    // What columns leave is that neighbours share their upright stiffness: the Gram matrix of the functions along x and
+    // y, summed over 2 x 2 points. Over its diagonal its condition is 16 for hats and 51 for splines, however thin the
+    // layers; under a sweep of Gauss-Seidel 3 and 6. But at the rim of the material, where few points see the outer
+    // splines, it is 500 (hats: still 3), which is why splines do not end within 1.5 times.
+    std::printf("  CG iterations at 5 horizontal CFL steps, %s functions; vertical: 5, 15, 50\n",
+                name_of(kind_of<Shape>));
     int of_blocks = 0;
     for (const Named& n : kinds) {
       int count[3];
@@ -86,7 +90,8 @@ class Preconditioners : public InEachPlace {
 
   template <class Real, class Place, class Shape>
   static void count_in_long_steps() {
-    std::printf("  CG iterations at 5, 15, 50 CFL steps, horizontal and vertical, %s functions\n", name_of(kind_of<Shape>));
+    std::printf("  CG iterations at 5, 15, 50 CFL steps, horizontal and vertical, %s functions\n",
+                name_of(kind_of<Shape>));
     for (const Named& n : kinds) {
       int count[3];
       const double steps[3] = {5, 15, 50};
@@ -100,7 +105,8 @@ class Preconditioners : public InEachPlace {
     }
   }
 
-  /// validation.md C3: half of a slab 1e4 times as stiff, or 100 times as heavy, or both, in steps of five CFL steps of the soft half.
+  /// validation.md C3: half of a slab 1e4 times as stiff, or 100 times as heavy, or both, in steps of five CFL steps of
+  /// the soft half.
   template <class Real, class Place, class Shape>
   static void count_with_contrasts() {
     constexpr double h = 2;
@@ -113,7 +119,10 @@ class Preconditioners : public InEachPlace {
       double stiffness, density;
     };
     constexpr Contrast contrasts[] = {{1, 1}, {1e4, 1}, {1, 100}, {1e4, 100}};
-    std::printf("  CG iterations to 1e-8, %s functions; stiffness and density of one half: 1 and 1, 1e4 and 1, 1 and 100, 1e4 and 100\n", name_of(kind_of<Shape>));
+    std::printf(
+        "  CG iterations to 1e-8, %s functions; stiffness and density of one half: 1 and 1, 1e4 and 1, 1 and 100, 1e4 "
+        "and 100\n",
+        name_of(kind_of<Shape>));
     for (const Named& n : kinds) {
       std::printf("    %-12s", n.name);
       for (const Contrast& c : contrasts) {

@@ -56,9 +56,12 @@ TEST_P(ProfileOf, a_slide_names_its_kernels_and_takes_no_longer_than_the_run) {
   EXPECT_LT(seconds_of(profile.phases()) - phases, 1.01 * wall);
   EXPECT_LT(seconds_of(profile.kernels()) - kernels, 1.01 * wall);
   EXPECT_GT(seconds_of(profile.kernels()) - kernels, 0);
-  const auto gather = std::find_if(profile.kernels().begin(), profile.kernels().end(), [](const auto& k) { return k.name == "GridToParticle"; });
-  // Position twice, velocity and affine velocity, strain and volume twice, the home key: 12 B + 46 numbers + 8 B; and the nodes.
-  EXPECT_GT(gather->bytes / static_cast<double>(gather->calls), static_cast<double>(solver->particle_count()) * (2 * 12 + 32 * 8 + 8));
+  const auto gather = std::find_if(profile.kernels().begin(), profile.kernels().end(),
+                                   [](const auto& k) { return k.name == "GridToParticle"; });
+  // Position twice, velocity and affine velocity, strain and volume twice, the home key: 12 B + 46 numbers + 8 B; and
+  // the nodes.
+  EXPECT_GT(gather->bytes / static_cast<double>(gather->calls),
+            static_cast<double>(solver->particle_count()) * (2 * 12 + 32 * 8 + 8));
   EXPECT_EQ(profile.phases()[gather->phase].name, "grid to points");
   const std::string csv = profile_csv(profile, 1e9);
   EXPECT_NE(csv.find("ParticleToGrid,points to grid,"), std::string::npos) << csv;

@@ -43,17 +43,20 @@ TEST_P(Repeatable, gives_the_same_bits_on_every_run) {
 }
 
 TEST_P(Repeatable, differs_from_the_usual_order_by_rounding_alone) {
-  const SolverState a = collapse(true, Precision::double_, ShapeKind::quadratic), b = collapse(false, Precision::double_, ShapeKind::quadratic);
+  const SolverState a = collapse(true, Precision::double_, ShapeKind::quadratic),
+                    b = collapse(false, Precision::double_, ShapeKind::quadratic);
   const auto moments = [](const SolverState& s) {
     std::vector<double> sums(4);
     for (std::size_t p = 0; p < s.points.size(); ++p) {
-      for (int q = 0; q < 3; ++q) sums[static_cast<std::size_t>(q)] += (s.points.cell[q][p] + s.points.offset[q][p]) * s.points.volume[p];
+      for (int q = 0; q < 3; ++q)
+        sums[static_cast<std::size_t>(q)] += (s.points.cell[q][p] + s.points.offset[q][p]) * s.points.volume[p];
       sums[3] += s.points.volume[p];
     }
     return sums;
   };
   const auto x = moments(a), y = moments(b);
-  for (std::size_t q = 0; q < 3; ++q) EXPECT_NEAR(x[q] / x[3], y[q] / y[3], 1e-6);  // cells; rounding grows as sand flows
+  for (std::size_t q = 0; q < 3; ++q)
+    EXPECT_NEAR(x[q] / x[3], y[q] / y[3], 1e-6);  // cells; rounding grows as sand flows
 }
 
 TALUS_IN_EACH_PLACE(Repeatable);

@@ -30,7 +30,9 @@ inline Domain ground(int columns, int rows, double cell, double layer_height,
 
 /// The recipe's name of shape functions.
 template <class Shape>
-inline constexpr ShapeKind kind_of = Shape::averaged ? ShapeKind::gimp : Shape::spline ? ShapeKind::quadratic : ShapeKind::linear;
+inline constexpr ShapeKind kind_of = Shape::averaged ? ShapeKind::gimp
+                                     : Shape::spline ? ShapeKind::quadratic
+                                                     : ShapeKind::linear;
 
 inline const char* name_of(ShapeKind shape) {
   return shape == ShapeKind::linear ? "linear" : shape == ShapeKind::gimp ? "gimp" : "quadratic";
@@ -82,7 +84,9 @@ class InEachPlace : public ::testing::TestWithParam<On> {
   }
 };
 
-inline std::string place_name(const ::testing::TestParamInfo<On>& info) { return info.param == On::gpu ? "gpu" : "cpu"; }
+inline std::string place_name(const ::testing::TestParamInfo<On>& info) {
+  return info.param == On::gpu ? "gpu" : "cpu";
+}
 
 #define TALUS_IN_EACH_PLACE(suite) \
   INSTANTIATE_TEST_SUITE_P(places, suite, ::testing::Values(On::cpu, On::gpu), place_name)

@@ -9,10 +9,12 @@
 namespace talus::solver::testing {
 namespace {
 
-/// A slope that eases from 35 degrees to a level over 400 m, with a slab of 80 x 40 m on its upper end, four layers deep at 20 m.
+/// A slope that eases from 35 degrees to a level over 400 m, with a slab of 80 x 40 m on its upper end, four layers
+/// deep at 20 m.
 Domain slope(double thickness) {
   constexpr double foot = 400;
-  Domain d = ground(80, 12, 10, 5, [](double x, double) { return x < foot ? 0.35 * (foot - x) * (foot - x) / foot : 0.0; });
+  Domain d =
+      ground(80, 12, 10, 5, [](double x, double) { return x < foot ? 0.35 * (foot - x) * (foot - x) / foot : 0.0; });
   for (int row = 4; row < 8; ++row) {
     for (int column = 6; column < 14; ++column) d.release_thickness.at(column, row) = thickness;
   }
@@ -32,7 +34,8 @@ SolveOptions sliding(double modulus) {
 TEST(Stiffness, follows_the_energy_line_of_the_scene) {
   const Domain d = slope(5);
   const StiffnessDemand demand = lowest_stiffness(d, sliding(1e9));
-  // Ground 0.35 (400 - x)^2 / 400 against an energy line that falls by tan 20: furthest apart where the ground is as steep as the line.
+  // Ground 0.35 (400 - x)^2 / 400 against an energy line that falls by tan 20: furthest apart where the ground is as
+  // steep as the line.
   const auto height = [](double x) { return 0.35 * (400 - x) * (400 - x) / 400; };
   const double mu = std::tan(20 * std::numbers::pi / 180), x = 400 - mu * 400 / 0.7;
   const double head = height(65) + 5 - height(x) - mu * (x - 65);
@@ -96,8 +99,11 @@ TEST_P(StiffnessRuns, leave_the_deposit_where_it_was) {
     way_stiff += stiff[n] * from_start;
     way_soft += soft[n] * from_start;
   }
-  std::printf("  stiffness %.2g Pa instead of 1e9 Pa: %.2f %% of the deposit elsewhere, centre's way %+.2f %%, %lld steps instead of %lld\n", demand.modulus,
-              100 * moved / all, 100 * (way_soft / way_stiff - 1), static_cast<long long>(few), static_cast<long long>(many));
+  std::printf(
+      "  stiffness %.2g Pa instead of 1e9 Pa: %.2f %% of the deposit elsewhere, centre's way %+.2f %%, %lld steps "
+      "instead of %lld\n",
+      demand.modulus, 100 * moved / all, 100 * (way_soft / way_stiff - 1), static_cast<long long>(few),
+      static_cast<long long>(many));
   EXPECT_NEAR(way_soft, way_stiff, 0.01 * way_stiff);
   EXPECT_LT(moved, 0.02 * all);
   EXPECT_LT(few * 3, many);

@@ -15,7 +15,8 @@ constexpr double degree = std::numbers::pi / 180, g = 9.81;
 ObstacleOptions box_obstacle(const std::string& name, const Box& b, double voxel) {
   const auto file = std::filesystem::temp_directory_path() / ("talus_" + name + ".vdb");
   const auto distance = [b](double x, double y, double z) {
-    const double dx = std::max(b.x0 - x, x - b.x1), dy = std::max(b.y0 - y, y - b.y1), dz = std::max(b.bottom - z, z - b.top);
+    const double dx = std::max(b.x0 - x, x - b.x1), dy = std::max(b.y0 - y, y - b.y1),
+                 dz = std::max(b.bottom - z, z - b.top);
     return std::max({dx, dy, dz});
   };
   write_level_sets(file, {{name, {b.x0, b.y0, b.bottom}, {b.x1, b.y1, b.top}, distance}}, voxel);
@@ -44,9 +45,11 @@ TEST_P(SurfaceContactTest, block_slides_on_ground_between_the_nodes) {  // valid
     int layers;
   };
   for (const Integrator integrator : both) {
-    for (const Incline c : {Incline{30, 0, 20, 4}, Incline{30, 37, 20, 4}, Incline{45, 60, 25, 2}, Incline{20, 200, 5, 1}}) {
+    for (const Incline c :
+         {Incline{30, 0, 20, 4}, Incline{30, 37, 20, 4}, Incline{45, 60, 25, 2}, Incline{20, 200, 5, 1}}) {
       if (integrator == Integrator::newmark && c.layers == 4) continue;  // minutes
-      const double down_x = std::cos(c.direction * degree), down_y = std::sin(c.direction * degree), slope = std::tan(c.angle * degree);
+      const double down_x = std::cos(c.direction * degree), down_y = std::sin(c.direction * degree),
+                   slope = std::tan(c.angle * degree);
       Domain d = ground(60, 60, 1.0, 1.0, [&](double x, double y) { return 100 - slope * (x * down_x + y * down_y); });
       const double x0 = std::floor(30 - 14 * down_x - 3), y0 = std::floor(30 - 14 * down_y - 3);
       fill(d, {x0, x0 + 6, y0, y0 + 6, 0, c.layers * 1.0});
@@ -60,12 +63,17 @@ TEST_P(SurfaceContactTest, block_slides_on_ground_between_the_nodes) {  // valid
       constexpr double time = 2;
       run_to(*solver, time);
       const Centre end = centre(*solver, scene);
-      const double expected = 0.5 * g * (std::sin(c.angle * degree) - std::tan(c.friction * degree) * std::cos(c.angle * degree)) * time * time;
+      const double expected =
+          0.5 * g * (std::sin(c.angle * degree) - std::tan(c.friction * degree) * std::cos(c.angle * degree)) * time *
+          time;
       const double way = std::hypot(end.x - start.x, end.y - start.y), drop = start.z - end.z;
-      // validation.md B1: 1 % at four cells, 3 % at one. The body may rest a tenth of a cell higher or lower than it was put.
+      // validation.md B1: 1 % at four cells, 3 % at one. The body may rest a tenth of a cell higher or lower than it
+      // was put.
       const double tolerance = c.layers >= 4 ? 0.01 : c.layers >= 2 ? 0.02 : 0.03;
-      const double error = way / (expected * std::cos(c.angle * degree)) - 1, sunk = (drop - way * slope) * std::cos(c.angle * degree);
-      std::printf("  %s, %g deg towards %g, bed %g deg, %d cells: error %.3f %%, sunk %.3f m\n", name_of(integrator), c.angle, c.direction, c.friction, c.layers, 100 * error, sunk);
+      const double error = way / (expected * std::cos(c.angle * degree)) - 1,
+                   sunk = (drop - way * slope) * std::cos(c.angle * degree);
+      std::printf("  %s, %g deg towards %g, bed %g deg, %d cells: error %.3f %%, sunk %.3f m\n", name_of(integrator),
+                  c.angle, c.direction, c.friction, c.layers, 100 * error, sunk);
       EXPECT_LT(std::abs(error), tolerance);
       EXPECT_LT(std::abs(sunk), 0.1);
     }
@@ -109,7 +117,8 @@ TEST_P(SurfaceContactTest, wall_takes_the_momentum_of_what_it_stops) {
     double farthest = 0;
     const ParticleState s = solver->state().points;
     for (const auto& x : positions(scene.map, scene.grid, solver->ground(), s)) farthest = std::max(farthest, x[0]);
-    std::printf("  %s: came with %.6g, left with %.6g, wall was given %.6g; farthest %.2f m\n", name_of(integrator), came, left, given, farthest);
+    std::printf("  %s: came with %.6g, left with %.6g, wall was given %.6g; farthest %.2f m\n", name_of(integrator),
+                came, left, given, farthest);
     EXPECT_NEAR(came - left, given, (integrator == Integrator::newmark ? o.implicit.newton_tolerance : 1e-9) * came);
     EXPECT_LT(left, 0);  // elastic: it comes back
     EXPECT_LT(farthest, 24.3);
@@ -125,7 +134,9 @@ TEST_P(SurfaceContactTest, thin_wall_carries_earth_pressure) {
     SolveOptions o = rigid(integrator);
     o.damping = 0.3;
     o.base.law = FrictionLaw::none;
-    o.walls = {{Axis::x, 5, Side::above, WallKind::roller}, {Axis::y, 5, Side::above, WallKind::roller}, {Axis::y, 11, Side::below, WallKind::roller}};
+    o.walls = {{Axis::x, 5, Side::above, WallKind::roller},
+               {Axis::y, 5, Side::above, WallKind::roller},
+               {Axis::y, 11, Side::below, WallKind::roller}};
     o.obstacles = {box_obstacle("thin", {11.5, 11.8, 2, 14, -2, 8}, 0.1)};
     const Scene scene = make_scene(d, o);
     const auto solver = make_solver(scene, o, GetParam());
@@ -135,8 +146,10 @@ TEST_P(SurfaceContactTest, thin_wall_carries_earth_pressure) {
     const Vec3<double> after = solver->obstacle_impulses().at(0);
     const double force = (after.x - before.x) / 2, k0 = o.material.poisson_ratio / (1 - o.material.poisson_ratio);
     const double expected = 0.5 * k0 * o.material.density * g * 16 * 6;
-    std::printf("  %s: force %.5g N, closed form %.5g N (%.2f %%)\n", name_of(integrator), force, expected, 100 * (force / expected - 1));
-    // The wall holds the mean about its points, a tenth of a cell before it: 1.5 % of six cells. The springs of implicit steps give way besides.
+    std::printf("  %s: force %.5g N, closed form %.5g N (%.2f %%)\n", name_of(integrator), force, expected,
+                100 * (force / expected - 1));
+    // The wall holds the mean about its points, a tenth of a cell before it: 1.5 % of six cells. The springs of
+    // implicit steps give way besides.
     EXPECT_NEAR(force, expected, (integrator == Integrator::newmark ? 0.03 : 0.02) * expected);
   }
 }
@@ -165,7 +178,8 @@ TEST_P(SurfaceContactTest, sand_stays_before_a_wall_thinner_than_a_cell) {
       farthest = std::max(farthest, where[p][0]);
       if (where[p][0] > 22.5) beyond += s.volume[p];
     }
-    std::printf("  %s: %.2f %% beyond the wall, farthest %.2f m; wall was given %.4g N s\n", name_of(integrator), 100 * beyond / all, farthest, solver->obstacle_impulses().at(0).x);
+    std::printf("  %s: %.2f %% beyond the wall, farthest %.2f m; wall was given %.4g N s\n", name_of(integrator),
+                100 * beyond / all, farthest, solver->obstacle_impulses().at(0).x);
     EXPECT_EQ(beyond, 0);
     EXPECT_GT(farthest, 20.5);  // it got there
   }

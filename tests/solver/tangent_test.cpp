@@ -27,7 +27,8 @@ M sum(const M& a, const M& b, double t) { return {a.a + b.a * t, a.b + b.b * t, 
 double inner(const M& a, const M& b) { return dot(a.a, b.a) + dot(a.b, b.b) + dot(a.c, b.c); }
 double norm(const M& a) { return std::sqrt(inner(a, a)); }
 
-double worst_error(const Material<double>& m, const MaterialState<double>& start, const M& g, const M& direction, double step) {
+double worst_error(const Material<double>& m, const MaterialState<double>& start, const M& g, const M& direction,
+                   double step) {
   PointTangent<double> t;
   nominal_stress(m, start, g, &t);
   const M exact = apply(t, direction);
@@ -51,16 +52,16 @@ Material<double> material(MaterialModel model, double dilatancy = 0) {
 TEST(Tangent, of_hencky_elasticity_matches_finite_differences) {
   Random random(1);
   for (const auto model : {MaterialModel::hencky, MaterialModel::corotated}) {
-  const auto m = material(model);
-  for (const double size : {1e-6, 1e-3, 0.1}) {
-    for (int n = 0; n < 50; ++n) {
-      MaterialState<double> start;
-      start.elastic = {0.1 * size, -0.3 * size, 0.2 * size, 0.05 * size, -0.1 * size, 0.15 * size};
-      if (n % 5 == 0) start.elastic = {};  // equal stretches at the start
-      const M g = n % 7 == 0 ? M{} : random.matrix(size);
-      EXPECT_LT(worst_error(m, start, g, random.matrix(1), 1e-6), 2e-7) << "size " << size;
+    const auto m = material(model);
+    for (const double size : {1e-6, 1e-3, 0.1}) {
+      for (int n = 0; n < 50; ++n) {
+        MaterialState<double> start;
+        start.elastic = {0.1 * size, -0.3 * size, 0.2 * size, 0.05 * size, -0.1 * size, 0.15 * size};
+        if (n % 5 == 0) start.elastic = {};  // equal stretches at the start
+        const M g = n % 7 == 0 ? M{} : random.matrix(size);
+        EXPECT_LT(worst_error(m, start, g, random.matrix(1), 1e-6), 2e-7) << "size " << size;
+      }
     }
-  }
   }
 }
 
@@ -138,7 +139,10 @@ TEST(Tangent, of_a_yielding_point_is_exact_where_that_is_asked_for) {
         if (apex == 0 && open >= -1e-4) continue;  // the corner itself has no derivative
         MaterialState<double> end = start;
         advance_material(m, g, end);
-        yielding += end.plastic_log_volume > 0 || norm_squared(end.elastic) < 0.999 * norm_squared(deviator(advance_strain(start.elastic, g))) ? 1 : 0;
+        yielding += end.plastic_log_volume > 0 ||
+                            norm_squared(end.elastic) < 0.999 * norm_squared(deviator(advance_strain(start.elastic, g)))
+                        ? 1
+                        : 0;
         worst = std::max(worst, worst_error(m, start, g, random.matrix(1), 1e-8));
       }
       EXPECT_LT(worst, 2e-5) << "dilatancy " << dilatancy << ", apex " << apex;
@@ -161,7 +165,8 @@ TEST(CutPressure, is_rounded_over_the_apex_alone) {
       EXPECT_LT(round.value - sharp, 0.6);
     }
     constexpr double e = 1e-3;
-    EXPECT_NEAR(round.slope, (CutPressure<double>(m, y + e).value - CutPressure<double>(m, y - e).value) / (2 * e), 1e-8);
+    EXPECT_NEAR(round.slope, (CutPressure<double>(m, y + e).value - CutPressure<double>(m, y - e).value) / (2 * e),
+                1e-8);
   }
 }
 

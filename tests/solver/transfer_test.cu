@@ -1,7 +1,7 @@
 // P2G and G2P against a plain reference: dense sums in double, written from the definitions.
-#include <numeric>
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <random>
 #include <tuple>
 
@@ -23,8 +23,11 @@ Weight weight(ShapeKind shape, double x, int n, double extent) {
   const auto hat = [](double q) { return std::max(0.0, 1 - std::abs(q)); };
   if (shape == ShapeKind::linear) return s < 1 ? Weight{1 - s, -sign} : Weight{0, 0};
   if (shape == ShapeKind::gimp) {
-    const auto area = [](double q) { return q < -1 ? 0 : q < 0 ? 0.5 * (1 + q) * (1 + q) : q < 1 ? 0.5 + q - 0.5 * q * q : 1.0; };  // of the hat
-    return {(area(r + 0.5 * extent) - area(r - 0.5 * extent)) / extent, (hat(r + 0.5 * extent) - hat(r - 0.5 * extent)) / extent};
+    const auto area = [](double q) {
+      return q < -1 ? 0 : q < 0 ? 0.5 * (1 + q) * (1 + q) : q < 1 ? 0.5 + q - 0.5 * q * q : 1.0;
+    };  // of the hat
+    return {(area(r + 0.5 * extent) - area(r - 0.5 * extent)) / extent,
+            (hat(r + 0.5 * extent) - hat(r - 0.5 * extent)) / extent};
   }
   if (s < 0.5) return {0.75 - r * r, -2 * r};
   if (s < 1.5) return {0.5 * (1.5 - s) * (1.5 - s), -sign * (1.5 - s)};
@@ -45,7 +48,8 @@ class Transfers : public InEachPlace {
     for (std::size_t p = 0; p < s.points.size(); ++p) {
       for (int a = 0; a < 3; ++a) {
         s.points.velocity[a][p] = u(engine);
-        s.points.offset[a][p] = std::clamp(s.points.offset[a][p] + 0.2 * u(engine), a == 2 && s.points.cell[2][p] == 0 ? 0.0 : -0.5, 0.499);
+        s.points.offset[a][p] =
+            std::clamp(s.points.offset[a][p] + 0.2 * u(engine), a == 2 && s.points.cell[2][p] == 0 ? 0.0 : -0.5, 0.499);
       }
       for (int a = 0; a < 3; ++a) s.points.extent[a][p] *= 1 + 0.4 * u(engine);
       for (int a = 0; a < 9; ++a) s.points.affine[a][p] = 0.3 * u(engine);
@@ -70,8 +74,8 @@ class Transfers : public InEachPlace {
           by += along(0, i).value * along(1, j).slope * z;
         }
       }
-      // In the lowest half layer quadratic functions are hats, and their weights stop changing a tenth of a layer above the ground; the box of
-      // an averaged one ends on the ground.
+      // In the lowest half layer quadratic functions are hats, and their weights stop changing a tenth of a layer above
+      // the ground; the box of an averaged one ends on the ground.
       const bool on_base = shape != ShapeKind::linear && s.points.cell[2][p] == 0;
       const double nearest = shape == ShapeKind::gimp ? 0.5 * s.points.extent[2][p] : s.grid.lowest_weighed;
       const double height = on_base ? std::max(x[2], nearest) : x[2];
@@ -113,7 +117,10 @@ class Transfers : public InEachPlace {
   template <class Real, class Place, class Shape>
   static void compare(double tolerance) {
     compare<Real, Place, Shape>(tolerance, false);
-    if (Place::is_gpu) compare<Real, Place, Shape>(tolerance, true);  // tiles find those with the same nodes wherever they have drifted; the CPU goes by the order
+    if (Place::is_gpu)
+      compare<Real, Place, Shape>(
+          tolerance,
+          true);  // tiles find those with the same nodes wherever they have drifted; the CPU goes by the order
   }
 
   template <class Real, class Place, class Shape>
@@ -144,8 +151,9 @@ class Transfers : public InEachPlace {
     Buffer<Clock, Place> clock;
     clock.upload({c});
     scatter_points(Place{}, points.count(), grid.groups(),
-                   ParticleToGrid<Real, Shape, Scatter::impulse>{grid.view(), points.view(), Materials<Real>{{make_material<Real>(mo)}}, clock.data(),
-                                                                 nodes.data(), nullptr, nullptr, true, false});
+                   ParticleToGrid<Real, Shape, Scatter::impulse>{
+                       grid.view(), points.view(), Materials<Real>{{make_material<Real>(mo)}}, clock.data(),
+                       nodes.data(), nullptr, nullptr, true, false});
     synchronise(Place{});
     const auto got = nodes.download();
     const auto slots = slots_of(grid);
@@ -156,8 +164,9 @@ class Transfers : public InEachPlace {
       const int i = std::get<0>(where), j = std::get<1>(where), k = std::get<2>(where);
       const auto& slot = slots[static_cast<std::size_t>((j >> 2) * ((s.grid.columns + 3) / 4) + (i >> 2))];
       const auto& mine = got[static_cast<std::size_t>(GridView<Real>::node(slot, i, j, k))];
-      worst = std::max({worst, std::abs(static_cast<double>(mine.w) - node.w), std::abs(static_cast<double>(mine.x) - node.x),
-                        std::abs(static_cast<double>(mine.y) - node.y), std::abs(static_cast<double>(mine.z) - node.z)});
+      worst = std::max({worst, std::abs(static_cast<double>(mine.w) - node.w),
+                        std::abs(static_cast<double>(mine.x) - node.x), std::abs(static_cast<double>(mine.y) - node.y),
+                        std::abs(static_cast<double>(mine.z) - node.z)});
       ++found;
     }
     EXPECT_GT(found, 100u);
@@ -173,7 +182,8 @@ class Transfers : public InEachPlace {
     points.upload(s.points);
     SparseGrid<Real, Place> grid(s.grid, 1);
     grid.fit(points, 0);
-    const double slope[3][3] = {{0.3, -0.1, 0.2}, {0.05, 0.4, -0.3}, {-0.2, 0.1, 0.25}};  // per cell, [component][direction]
+    const double slope[3][3] = {
+        {0.3, -0.1, 0.2}, {0.05, 0.4, -0.3}, {-0.2, 0.1, 0.25}};  // per cell, [component][direction]
     std::vector<Vec4<Real>> field(static_cast<std::size_t>(grid.nodes()));
     const auto slots = slots_of(grid);
     const int blocks_x = (s.grid.columns + 3) / 4;
@@ -182,7 +192,9 @@ class Transfers : public InEachPlace {
         const auto& slot = slots[static_cast<std::size_t>((j >> 2) * blocks_x + (i >> 2))];
         for (int k = slot.first_layer; slot.offset >= 0 && k < slot.first_layer + slot.layers; ++k) {
           auto& node = field[static_cast<std::size_t>(GridView<Real>::node(slot, i, j, k))];
-          const auto value = [&](int a) { return static_cast<Real>(slope[a][0] * i + slope[a][1] * j + slope[a][2] * k); };
+          const auto value = [&](int a) {
+            return static_cast<Real>(slope[a][0] * i + slope[a][1] * j + slope[a][2] * k);
+          };
           node = {Real(1), value(0), value(1), value(2)};
         }
       }
@@ -196,8 +208,9 @@ class Transfers : public InEachPlace {
     MaterialOptions mo;
     mo.model = MaterialModel::hencky;
     for_each(Place{}, points.count(),
-             GridToParticle<Real, Shape, Gather::all, false>{grid.view(), points.view(), Materials<Real>{{make_material<Real>(mo)}}, clock.data(),
-                                                      nodes.data(), nullptr, grid.home(), true, false});
+             GridToParticle<Real, Shape, Gather::all, false>{grid.view(), points.view(),
+                                                             Materials<Real>{{make_material<Real>(mo)}}, clock.data(),
+                                                             nodes.data(), nullptr, grid.home(), true, false});
     synchronise(Place{});
     const ParticleState got = points.download();
     double worst = 0;

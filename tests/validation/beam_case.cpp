@@ -17,8 +17,8 @@ constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 constexpr double length = 10, depth = 1, lift = 10, modulus = 1e9;
 
 struct Beam {
-  double h = 0.2;       // cells [m]
-  int per_cell = 4;     // points along each side of a cell
+  double h = 0.2;    // cells [m]
+  int per_cell = 4;  // points along each side of a cell
   std::string shape = "quadratic";
   double k = 3.6;
   int steps = 20;
@@ -80,14 +80,16 @@ const Points* frame_at(const Outcome& o, const Beam& b, double k) {
   return nullptr;
 }
 
-/// Adds the rows of load k and returns w/L: against the elastica (the goal of validation.md), and against a beam that shears and
-/// stretches, which is what the solid itself converges to; at this depth it bends 0.6 % (k = 1) to 1.4 % (k = 10) further.
+/// Adds the rows of load k and returns w/L: against the elastica (the goal of validation.md), and against a beam that
+/// shears and stretches, which is what the solid itself converges to; at this depth it bends 0.6 % (k = 1) to 1.4 % (k
+/// = 10) further.
 double judge(Bench& bench, const Outcome& outcome, const Beam& b, double k, double tolerance) {
   const Points* frame = frame_at(outcome, b, k);
   const double deflection = frame ? sections_of(outcome, *frame).w.back() / b.arm() : nothing;
   const std::string at = k == b.k ? "" : fmt::format(", k = {:g}", k);
   bench.compare(outcome, "tip deflection" + at, deflection, elastica(k).across, tolerance);
-  bench.compare(outcome, "tip deflection, beam with shear" + at, deflection, solid_beam(k, depth / b.arm(), Law::corotated).across, tolerance);
+  bench.compare(outcome, "tip deflection, beam with shear" + at, deflection,
+                solid_beam(k, depth / b.arm(), Law::corotated).across, tolerance);
   return deflection;
 }
 
@@ -98,7 +100,7 @@ double bend(Bench& bench, const Beam& b, const LinearScheme& scheme, double tole
 /// The outermost points of the beam's near face: its outline, which hides no other.
 bool on_outline(const std::array<double, 3>& start, const Beam& b) {
   const double s = b.point_spacing();
-  const bool near = start[1] < s, low = start[2] < lift + s, high = start[2] > lift + depth - s, end = start[0] > length - s;
+  const bool near = start[1]<s, low = start[2]<lift + s, high = start[2]> lift + depth - s, end = start[0]> length - s;
   return near && (low || high || end);
 }
 
@@ -148,7 +150,8 @@ Chart deflection_chart() {
   return chart;
 }
 
-/// w/L for several loads on one grid, passed one after the other as the load grows to k = 10 in 50 steps, and the deflected beams.
+/// w/L for several loads on one grid, passed one after the other as the load grows to k = 10 in 50 steps, and the
+/// deflected beams.
 void load_study(Bench& bench, Beam b, double tolerance, Chart& curve, int colour) {
   b.k = 10;
   b.steps = 50;
@@ -161,7 +164,8 @@ void load_study(Bench& bench, Beam b, double tolerance, Chart& curve, int colour
   beams.y = Limits{-9, 1};
   const LinearScheme& scheme = linear_schemes().back();
   const Outcome outcome =
-      bench.run(name_of(b, scheme.name), overrides_of(b) + Overrides{{"solve.frame_interval_s", 1.0 / b.steps}} + scheme.overrides);
+      bench.run(name_of(b, scheme.name),
+                overrides_of(b) + Overrides{{"solve.frame_interval_s", 1.0 / b.steps}} + scheme.overrides);
   Series s{fmt::format("{}, h = {:g} m", b.shape, b.h), {}, {}, colour};
   s.line = false;
   s.marks = true;
@@ -177,8 +181,8 @@ void load_study(Bench& bench, Beam b, double tolerance, Chart& curve, int colour
 
 /// Error at k = 3.6 over cell size, 2 x 2 x 2 points per cell (the paper's Fig. 10).
 void refinement(Bench& bench, const std::vector<double>& cells) {
-  Chart chart = log_chart("A2: error of the tip deflection over cell size, k = 3.6, 8 points per cell",
-                            "cell size [m]", "error against the beam with shear and stretch");
+  Chart chart = log_chart("A2: error of the tip deflection over cell size, k = 3.6, 8 points per cell", "cell size [m]",
+                          "error against the beam with shear and stretch");
   int colour = 1;
   for (const char* shape : {"quadratic", "linear"}) {
     std::vector<double> h, error;
@@ -187,9 +191,11 @@ void refinement(Bench& bench, const std::vector<double>& cells) {
       b.h = size;
       b.per_cell = 2;
       b.shape = shape;
-      // Tolerance of the coarse grids: the error of linear functions in bending, (h / depth)^2 / 2, and as much for the clamp.
+      // Tolerance of the coarse grids: the error of linear functions in bending, (h / depth)^2 / 2, and as much for the
+      // clamp.
       const double tolerance = std::max(0.01, size * size);
-      const double deflection = bend(bench, b, linear_schemes()[size < 0.2 ? 0 : 1], tolerance);  // factors of the finest fill memory
+      const double deflection =
+          bend(bench, b, linear_schemes()[size < 0.2 ? 0 : 1], tolerance);  // factors of the finest fill memory
       h.push_back(size);
       error.push_back(std::abs(deflection / solid_beam(b.k, depth / b.arm(), Law::corotated).across - 1));
     }
@@ -201,15 +207,16 @@ void refinement(Bench& bench, const std::vector<double>& cells) {
 
 }  // namespace
 
-/// Error of the tip deflection over the points along a side of a cell, and over the load steps (against twice as many as the most; of fewer
-/// than ten the solver makes ten, nothing moving by more than a cell), h = 0.2 m, k = 3.6.
+/// Error of the tip deflection over the points along a side of a cell, and over the load steps (against twice as many
+/// as the most; of fewer than ten the solver makes ten, nothing moving by more than a cell), h = 0.2 m, k = 3.6.
 void cantilever_studies(Bench& bench) {
   Chart points = log_chart("A2: error over points per cell, h = 0.2 m, k = 3.6, 20 load steps",
-                             "distance of the points over cell size", "error against the beam with shear and stretch");
+                           "distance of the points over cell size", "error against the beam with shear and stretch");
   Chart steps = log_chart("A2: error over load steps, h = 0.2 m, k = 3.6, 8 points per cell",
-                            "share of the load in a step", "difference to 160 load steps");
+                          "share of the load in a step", "difference to 160 load steps");
   const auto tip = [&](const Beam& b, const std::string& name) {
-    const Outcome o = bench.run(fmt::format("{}, {}", b.shape, name), overrides_of(b) + linear_schemes().front().overrides);
+    const Outcome o =
+        bench.run(fmt::format("{}, {}", b.shape, name), overrides_of(b) + linear_schemes().front().overrides);
     const Points* frame = frame_at(o, b, b.k);
     const double deflection = frame ? sections_of(o, *frame).w.back() / b.arm() : nothing;
     bench.note(o, "tip deflection", deflection);

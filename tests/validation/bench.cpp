@@ -69,7 +69,8 @@ std::string folder_of(const std::string& variant) {
 std::vector<double> Outcome::history(const std::string& name) const {
   const auto& names = run.history.names;
   const auto found = std::find(names.begin(), names.end(), name);
-  return found == names.end() ? std::vector<double>{} : run.history.columns[static_cast<std::size_t>(found - names.begin())];
+  return found == names.end() ? std::vector<double>{}
+                              : run.history.columns[static_cast<std::size_t>(found - names.begin())];
 }
 
 double Outcome::last_of(const std::string& name) const {

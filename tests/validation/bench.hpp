@@ -55,13 +55,14 @@ class Bench {
   bool complete() const { return request_.complete; }
   bool on_gpu() const { return request_.on == "gpu"; }
 
-  /// Run the case's recipe with these overrides; results lie in OUT/CASE/VARIANT. Says on stderr what it does. With `profile` the run
-  /// measures its phases (RunSummary::profile).
+  /// Run the case's recipe with these overrides; results lie in OUT/CASE/VARIANT. Says on stderr what it does. With
+  /// `profile` the run measures its phases (RunSummary::profile).
   Outcome run(const std::string& variant, const Overrides& overrides, bool profile = false);
 
-  /// A row whose error is |computed / reference - 1|, or |computed| where the reference is 0. A run without a result is a
-  /// failed row without numbers.
-  void compare(const Outcome& outcome, const std::string& quantity, double computed, double reference, double tolerance);
+  /// A row whose error is |computed / reference - 1|, or |computed| where the reference is 0. A run without a result is
+  /// a failed row without numbers.
+  void compare(const Outcome& outcome, const std::string& quantity, double computed, double reference,
+               double tolerance);
   /// A row whose error is `computed` itself: norms, distances between two results.
   void measure(const Outcome& outcome, const std::string& quantity, double computed, double tolerance) {
     compare(outcome, quantity, computed, 0, tolerance);

@@ -21,11 +21,15 @@ struct Incline {
 };
 
 Overrides overrides_of(const Incline& c) {
-  const double slope = std::tan(c.angle * degree), x = std::cos(c.direction * degree), y = std::sin(c.direction * degree);
+  const double slope = std::tan(c.angle * degree), x = std::cos(c.direction * degree),
+               y = std::sin(c.direction * degree);
   const double west = std::floor(27 - 14 * x), south = std::floor(27 - 14 * y);  // 6 m square, uphill of the middle
-  return {{"preprocess.laboratory.slope_x", -slope * x}, {"preprocess.laboratory.slope_y", -slope * y},
-          {"preprocess.box[0].west_m", west},            {"preprocess.box[0].east_m", west + 6},
-          {"preprocess.box[0].south_m", south},          {"preprocess.box[0].north_m", south + 6},
+  return {{"preprocess.laboratory.slope_x", -slope * x},
+          {"preprocess.laboratory.slope_y", -slope * y},
+          {"preprocess.box[0].west_m", west},
+          {"preprocess.box[0].east_m", west + 6},
+          {"preprocess.box[0].south_m", south},
+          {"preprocess.box[0].north_m", south + 6},
           {"preprocess.box[0].top_m", static_cast<double>(c.layers)},
           {"solve.base.friction_angle_deg", c.friction}};
 }
@@ -60,13 +64,15 @@ double way_of(const Outcome& o) {
 void block_on_incline(Bench& bench) {
   std::vector<Incline> slopes{{30, 0, 20, 4}, {30, 37, 20, 4}, {45, 60, 25, 2}, {20, 200, 5, 1}};
   if (bench.complete()) {
-    for (const Incline& more : {Incline{30, 90, 20, 1}, Incline{30, 0, 20, 1}, Incline{45, 135, 10, 4}, Incline{25, 300, 15, 2}}) {
+    for (const Incline& more :
+         {Incline{30, 90, 20, 1}, Incline{30, 0, 20, 1}, Incline{45, 135, 10, 4}, Incline{25, 300, 15, 2}}) {
       slopes.push_back(more);
     }
   }
   for (const Grid& grid : grids(bench)) {
     for (const Incline& c : slopes) {
-      const Outcome o = bench.run(fmt::format("{:g} deg towards {:g}, bed {:g} deg, {} cells{}", c.angle, c.direction, c.friction, c.layers, grid.words),
+      const Outcome o = bench.run(fmt::format("{:g} deg towards {:g}, bed {:g} deg, {} cells{}", c.angle, c.direction,
+                                              c.friction, c.layers, grid.words),
                                   overrides_of(c) + grid.overrides);
       const double mu = std::tan(c.friction * degree);
       const double exact = SlidingBlock{c.angle * degree, mu, mu}.way(0, 2) * std::cos(c.angle * degree);
@@ -74,14 +80,15 @@ void block_on_incline(Bench& bench) {
       bench.compare(o, "distance", way_of(o), exact, c.layers >= 4 ? 0.01 : c.layers >= 2 ? 0.02 : 0.03);
     }
   }
-  // Less than 1e-4 of its length in 60 s, after the jolt of sudden gravity has died down; ten seconds where time is short.
+  // Less than 1e-4 of its length in 60 s, after the jolt of sudden gravity has died down; ten seconds where time is
+  // short.
   const double time = bench.complete() ? 60 : 10;
-  const Outcome still = bench.run("25 deg, bed 30 deg: at rest", overrides_of({25, 30, 30, 2}) +
-                                                                 Overrides{{"solve.material.youngs_modulus_Pa", 1e7},
-                                                                           {"solve.end_time_s", time + 1}});
+  const Outcome still = bench.run("25 deg, bed 30 deg: at rest",
+                                  overrides_of({25, 30, 30, 2}) + Overrides{{"solve.material.youngs_modulus_Pa", 1e7},
+                                                                            {"solve.end_time_s", time + 1}});
   if (still.ok()) {
-    bench.measure(still, fmt::format("creep over length in {:g} s", time), way_between(still.frames.at(1), still.last()) / 6,
-                  1e-4 * time / 60);
+    bench.measure(still, fmt::format("creep over length in {:g} s", time),
+                  way_between(still.frames.at(1), still.last()) / 6, 1e-4 * time / 60);
   } else {
     bench.measure(still, "creep over length", 0, 1e-4);
   }

@@ -8,8 +8,8 @@
 
 namespace talus::validation {
 
-/// One way of solving the linear systems. A1 runs with each of them and compares; the studies of A2 take the last, the systems of slender
-/// bodies being hard on iterations.
+/// One way of solving the linear systems. A1 runs with each of them and compares; the studies of A2 take the last, the
+/// systems of slender bodies being hard on iterations.
 struct LinearScheme {
   std::string name;
   Overrides overrides;
@@ -17,37 +17,38 @@ struct LinearScheme {
 
 /// What there is to compare, in one place.
 inline const std::vector<LinearScheme>& linear_schemes() {
-  static const std::vector<LinearScheme> schemes = {{"pcg", {{"solve.implicit.linear_solver", words("pcg")}}},
-                                                    {"cholesky", {{"solve.implicit.linear_solver", words("cholesky")}}}};
+  static const std::vector<LinearScheme> schemes = {
+      {"pcg", {{"solve.implicit.linear_solver", words("pcg")}}},
+      {"cholesky", {{"solve.implicit.linear_solver", words("cholesky")}}}};
   return schemes;
 }
 
 struct Case {
-  const char* name;   // as in validation.md; up to a hyphen that of its recipe's folder
+  const char* name;  // as in validation.md; up to a hyphen that of its recipe's folder
   const char* title;
-  bool quick;         // has rows that need no LONG=1
+  bool quick;  // has rows that need no LONG=1
   void (*run)(Bench&);
 };
 
 const std::vector<Case>& cases();
 
-void self_weight_column(Bench&);      // A1
-void large_compaction(Bench&);        // A1b
-void cantilever(Bench&);              // A2
-void cantilever_loads(Bench&);        // A2-loads
-void cantilever_studies(Bench&);      // A2-studies
-void sand_column(Bench&);             // A3
-void sand_column_paper(Bench&);       // A3-paper
-void sand_column_studies(Bench&);     // A3-studies
-void sand_column_friction(Bench&);    // A3-friction
-void sand_column_aspects(Bench&);     // A3b
-void step_cost(Bench&);               // A4
-void block_on_incline(Bench&);        // B1
-void velocity_weakening(Bench&);      // B2
-void energy_line(Bench&);             // B3
-void parabolic_cap(Bench&);           // B4
-void dam_break(Bench&);               // B5
-void elastic_motion(Bench&);          // B6
-void large_steps(Bench&);             // C1
+void self_weight_column(Bench&);    // A1
+void large_compaction(Bench&);      // A1b
+void cantilever(Bench&);            // A2
+void cantilever_loads(Bench&);      // A2-loads
+void cantilever_studies(Bench&);    // A2-studies
+void sand_column(Bench&);           // A3
+void sand_column_paper(Bench&);     // A3-paper
+void sand_column_studies(Bench&);   // A3-studies
+void sand_column_friction(Bench&);  // A3-friction
+void sand_column_aspects(Bench&);   // A3b
+void step_cost(Bench&);             // A4
+void block_on_incline(Bench&);      // B1
+void velocity_weakening(Bench&);    // B2
+void energy_line(Bench&);           // B3
+void parabolic_cap(Bench&);         // B4
+void dam_break(Bench&);             // B5
+void elastic_motion(Bench&);        // B6
+void large_steps(Bench&);           // C1
 
 }  // namespace talus::validation

@@ -35,8 +35,8 @@ Colour colour_of(int number) { return palette[static_cast<std::size_t>(number) %
 /// One axis: values to pixels, ticks.
 struct Axis {
   bool log = false;
-  double low = 0, high = 1;        // values, or their logarithms
-  double from = 0, to = 1;         // pixels
+  double low = 0, high = 1;  // values, or their logarithms
+  double from = 0, to = 1;   // pixels
   double part(double value) const { return ((log ? std::log10(value) : value) - low) / (high - low); }
   double pixel(double value) const { return from + part(value) * (to - from); }
   bool holds(double value) const {
@@ -297,7 +297,8 @@ Chart log_chart(const std::string& title, const std::string& x_label, const std:
   return chart;
 }
 
-Series convergence(const std::string& name, const std::vector<double>& h, const std::vector<double>& error, int colour) {
+Series convergence(const std::string& name, const std::vector<double>& h, const std::vector<double>& error,
+                   int colour) {
   std::vector<double> x, y;
   for (std::size_t i = 0; i < h.size(); ++i) {
     if (!std::isfinite(error[i]) || !(error[i] > 0)) continue;

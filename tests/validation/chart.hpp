@@ -28,8 +28,8 @@ struct Limits {
 struct Chart {
   std::string title, x_label, y_label;
   bool log_x = false, log_y = false;
-  bool equal_scales = false;  // one metre is as long across as up
-  std::optional<Limits> x, y; // else what the series span
+  bool equal_scales = false;   // one metre is as long across as up
+  std::optional<Limits> x, y;  // else what the series span
   std::vector<Series> series;
 };
 

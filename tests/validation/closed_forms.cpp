@@ -65,7 +65,8 @@ struct Section {
       const Forces f = forces(e, c);
       const double rn = normal - f.normal, rm = moment - f.moment;
       const double det = f.normal_by_e * f.moment_by_c - f.normal_by_c * f.normal_by_c;
-      const double de = (rn * f.moment_by_c - rm * f.normal_by_c) / det, dc = (rm * f.normal_by_e - rn * f.normal_by_c) / det;
+      const double de = (rn * f.moment_by_c - rm * f.normal_by_c) / det,
+                   dc = (rm * f.normal_by_e - rn * f.normal_by_c) / det;
       e += de;
       c += dc;
       if (std::abs(de) + depth * std::abs(dc) < 1e-14) break;
@@ -111,8 +112,8 @@ BeamState integrate(const Section& section, double load, double clamp_moment, Ax
 Tip beam(const Section& section, double k, AxisPoint* axis, int points) {
   const double load = k * section.inertia;
   // The moment at the tip grows with that at the clamp, which no lever longer than the beam can exceed by much.
-  const double moment = root_of(
-      [&](double m) { return integrate(section, load, m, nullptr, 0).moment; }, 0, 1.1 * load);
+  const double moment =
+      root_of([&](double m) { return integrate(section, load, m, nullptr, 0).moment; }, 0, 1.1 * load);
   const BeamState tip = integrate(section, load, moment, axis, points);
   return {tip.w, 1 - tip.x};
 }
@@ -180,8 +181,9 @@ double GroundLine::elevation(double x) const {
     const double left = std::max(run - x, 0.0) / run;
     return fall * left * left;
   }
-  const double slope = std::numbers::pi / 6, foot = fall / std::tan(slope);  // where the straight slope would meet level ground
-  const double half = radius * std::tan(slope / 2);                         // the arc's reach beyond it, and before it along the slope
+  const double slope = std::numbers::pi / 6,
+               foot = fall / std::tan(slope);        // where the straight slope would meet level ground
+  const double half = radius * std::tan(slope / 2);  // the arc's reach beyond it, and before it along the slope
   if (x >= foot + half) return 0;
   if (x <= foot - half * std::cos(slope)) return (foot - x) * std::tan(slope);
   const double from_end = foot + half - x;
@@ -205,7 +207,8 @@ double GroundLine::reach(double x, double mu) const {
 }
 
 ParabolicCap::State ParabolicCap::at(double time) const {
-  const double pull = gravity * (std::sin(slope) - std::cos(slope) * std::tan(bed)), size = 2 * gravity * std::cos(slope) * depth / (radius * radius);
+  const double pull = gravity * (std::sin(slope) - std::cos(slope) * std::tan(bed)),
+               size = 2 * gravity * std::cos(slope) * depth / (radius * radius);
   // f'^2 = size (1 - 1 / f^2), so that f^2 = 1 + size t^2.
   const double width = std::sqrt(1 + size * time * time);
   return {0.5 * pull * time * time, pull * time, width, size * time / width};

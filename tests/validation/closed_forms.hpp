@@ -15,13 +15,13 @@ double stretch_of_piola(Law law, double piola);
 /// First Piola stress over E of a Kirchhoff stress over E (what run.h5 keeps).
 double piola_of_kirchhoff(Law law, double kirchhoff);
 
-/// A column under its own weight, its foot held, its sides on rollers. Reference coordinates count from the foot. The first
-/// Piola stress is -weight (height - X) whatever the law (validation.md A1).
+/// A column under its own weight, its foot held, its sides on rollers. Reference coordinates count from the foot. The
+/// first Piola stress is -weight (height - X) whatever the law (validation.md A1).
 struct Column {
   Law law;
-  double modulus;  // E [Pa]
-  double weight;   // body force over reference volume [N/m3]
-  double height;   // [m]
+  double modulus;                                                  // E [Pa]
+  double weight;                                                   // body force over reference volume [N/m3]
+  double height;                                                   // [m]
   double piola(double x) const { return -weight * (height - x); }  // [Pa]
   double settlement(double x) const;                               // downwards [m]
 };
@@ -42,8 +42,8 @@ struct AxisPoint {
 };
 Tip solid_beam(double k, double depth, Law law, AxisPoint* axis = nullptr, int points = 0);
 
-/// A block on an incline of `angle` [rad]: mu(v) = steady + (peak - steady) / (1 + v / characteristic) (Lucas, Mangeney &
-/// Ampuero 2014); peak = steady is Coulomb.
+/// A block on an incline of `angle` [rad]: mu(v) = steady + (peak - steady) / (1 + v / characteristic) (Lucas, Mangeney
+/// & Ampuero 2014); peak = steady is Coulomb.
 struct SlidingBlock {
   double angle, peak, steady, characteristic = 1, gravity = 9.81;
   double acceleration(double speed) const;
@@ -51,18 +51,20 @@ struct SlidingBlock {
   double way(double speed, double time) const;
 };
 
-/// Ground that falls along a line from `fall` to level: as a parabola over `run`, or at 30 degrees into an arc of `radius`. Lengths in m.
+/// Ground that falls along a line from `fall` to level: as a parabola over `run`, or at 30 degrees into an arc of
+/// `radius`. Lengths in m.
 struct GroundLine {
   enum Kind { parabola, bend } kind;
   double fall, run, radius;
   double elevation(double x) const;
-  /// Where a point stops that starts at rest from x, with Coulomb friction mu, pressed on by the ground's curvature as well:
-  /// d(v^2)/ds = 2 g (sin t - mu cos t) - 2 mu v^2 dt/ds.
+  /// Where a point stops that starts at rest from x, with Coulomb friction mu, pressed on by the ground's curvature as
+  /// well: d(v^2)/ds = 2 g (sin t - mu cos t) - 2 mu v^2 dt/ds.
   double reach(double x, double mu) const;
 };
 
-/// A cap h = depth (1 - r^2 / radius^2) that slides down a plane and spreads (Hutter, Siegel, Savage & Nohguchi 1993, with as much stress along the slope as across it): it stays a
-/// paraboloid, f times as wide, f'' = 2 g cos(slope) depth / (radius^2 f^3). Angles in rad.
+/// A cap h = depth (1 - r^2 / radius^2) that slides down a plane and spreads (Hutter, Siegel, Savage & Nohguchi 1993,
+/// with as much stress along the slope as across it): it stays a paraboloid, f times as wide, f'' = 2 g cos(slope)
+/// depth / (radius^2 f^3). Angles in rad.
 struct ParabolicCap {
   double slope, bed, depth, radius, gravity = 9.81;
   struct State {
@@ -74,8 +76,8 @@ struct ParabolicCap {
   double thickness(const State& s, double along, double across) const;
 };
 
-/// A layer upslope of x = 0 that lets go at once (Mangeney, Heinrich & Roche 2000): depth-averaged, Coulomb on its bed, as much stress along the slope as
-/// across it. Angles in rad, x along the slope downhill, depth across it [m].
+/// A layer upslope of x = 0 that lets go at once (Mangeney, Heinrich & Roche 2000): depth-averaged, Coulomb on its bed,
+/// as much stress along the slope as across it. Angles in rad, x along the slope downhill, depth across it [m].
 struct DamBreak {
   double slope, bed, depth, gravity = 9.81;
   double thickness(double x, double time) const;  ///< across the slope [m]

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "tests/validation/recipe_text.hpp"
 #include "tests/common/scratch.hpp"
+#include "tests/validation/recipe_text.hpp"
 
 namespace talus::validation {
 namespace {
@@ -62,7 +62,8 @@ TEST(closed_forms, column_settles_as_linear_theory_says_where_it_is_stiff) {
 }
 
 TEST(closed_forms, column_has_the_papers_stress_in_current_coordinates) {
-  // sigma(x) = E (sqrt(2 rho b (D - x) / E + 1) - 1), tension positive and b upwards; here the weight presses, so b < 0.
+  // sigma(x) = E (sqrt(2 rho b (D - x) / E + 1) - 1), tension positive and b upwards; here the weight presses, so b <
+  // 0.
   const Column c{Law::corotated, 1e6, 200, 50};
   const double top = 50 - c.settlement(50);
   for (const double x : {0.0, 10.0, 30.0, 49.0}) {
@@ -83,7 +84,8 @@ TEST(closed_forms, sand_column_has_lubes_run_out_and_height) {
 }
 
 TEST(closed_forms, ground_line_takes_its_share_in_a_tight_bend) {
-  // Through a bend much shorter than the way, Coulomb's friction on the centripetal force leaves exp(-2 mu angle) of the square of the speed.
+  // Through a bend much shorter than the way, Coulomb's friction on the centripetal force leaves exp(-2 mu angle) of
+  // the square of the speed.
   const GroundLine line{GroundLine::bend, 1000, 0, 1};
   const double slope = M_PI / 6, mu = 0.4, foot = 1000 / std::tan(slope), start = 400;
   const double square = 2 * 9.81 * (std::sin(slope) - mu * std::cos(slope)) * (foot - start) / std::cos(slope);
@@ -93,7 +95,8 @@ TEST(closed_forms, ground_line_takes_its_share_in_a_tight_bend) {
   EXPECT_EQ(line.elevation(foot + 10), 0);
   // On a parabola the drop over the way exceeds mu by what the bend takes.
   const GroundLine parabola{GroundLine::parabola, 1000, 2250, 0};
-  const double end = parabola.reach(start, mu), drop = (parabola.elevation(start) - parabola.elevation(end)) / (end - start);
+  const double end = parabola.reach(start, mu),
+               drop = (parabola.elevation(start) - parabola.elevation(end)) / (end - start);
   EXPECT_GT(drop, mu);
   EXPECT_LT(drop, 1.3 * mu);
   EXPECT_EQ(parabola.reach(2000, mu), 2000);  // too gentle to start
@@ -103,7 +106,8 @@ TEST(closed_forms, parabolic_cap_spreads_by_its_own_pressure) {
   const ParabolicCap cap{0.6, 0.4, 4, 80};
   const double t = 5, dt = 1e-3;
   const auto before = cap.at(t - dt), now = cap.at(t), after = cap.at(t + dt);
-  EXPECT_NEAR((after.width - 2 * now.width + before.width) / (dt * dt), 2 * 9.81 * std::cos(0.6) * 4 / (6400 * std::pow(now.width, 3)), 1e-6);
+  EXPECT_NEAR((after.width - 2 * now.width + before.width) / (dt * dt),
+              2 * 9.81 * std::cos(0.6) * 4 / (6400 * std::pow(now.width, 3)), 1e-6);
   EXPECT_NEAR((after.width - before.width) / (2 * dt), now.spread, 1e-8);
   EXPECT_NEAR((after.way - before.way) / (2 * dt), now.speed, 1e-9);
   double volume = 0;
@@ -121,7 +125,8 @@ TEST(closed_forms, dam_break_keeps_its_volume_and_momentum_balance) {
     volume += dx * dam.thickness(x, 3);
     momentum += dx * dam.thickness(x, 3) * dam.speed(x, 3);
   }
-  // What came in over x = -40 with the speed of the reservoir; weight less friction, the inflow's momentum and the pressure at x = -40.
+  // What came in over x = -40 with the speed of the reservoir; weight less friction, the inflow's momentum and the
+  // pressure at x = -40.
   EXPECT_NEAR(volume, 40 * 1.5 + 0.5 * pull * 9 * 1.5, 1e-3);
   double impulse = 0;
   const double dt = 1e-3;
@@ -140,8 +145,11 @@ TEST(closed_forms, order_is_the_slope_in_logarithms) {
 TEST(recipe_text, overrides_keys_and_adds_tables) {
   test::Scratch scratch;
   const auto base = scratch.write("recipe.toml", "[a]\nx = 1.0\n[[b]]\nname = \"one\"\n");
-  const std::string text = recipe_with(base, {{"a.x", 2.5}, {"a.c.y", whole(3)}, {"b[0].name", words("first")},
-                                              {"b[1].name", words("second")}, {"a.list", std::vector<double>{0, 0.5, 0.0225}}});
+  const std::string text = recipe_with(base, {{"a.x", 2.5},
+                                              {"a.c.y", whole(3)},
+                                              {"b[0].name", words("first")},
+                                              {"b[1].name", words("second")},
+                                              {"a.list", std::vector<double>{0, 0.5, 0.0225}}});
   for (const char* part : {"x = 2.5", "y = 3", "name = 'first'", "name = 'second'", "list = [ 0.0, 0.5, 0.0225 ]"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " is not in\n" << text;
   }

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-/// First Piola stress of the points over their height in the first frame [Pa]. With nu = 0 and no lateral strain the pressure
-/// of the file, minus the mean Kirchhoff stress, is a third of the vertical one.
+/// First Piola stress of the points over their height in the first frame [Pa]. With nu = 0 and no lateral strain the
+/// pressure of the file, minus the mean Kirchhoff stress, is a third of the vertical one.
 std::vector<double> piola_of(const Outcome& o, const Column& column) {
   std::vector<double> piola;
   for (const float p : o.last().pressure) {
@@ -78,8 +78,8 @@ Chart stress_chart(const Column& column, const std::string& title) {
 
 constexpr Column self_weight{Law::corotated, 1e6, 200, 50};
 
-/// The paper's dynamic set-up: linear functions, local damping 0.05, 4 s. The body force grows over the first 2 s, ten periods: grown
-/// "in 20 time steps" of 1e-4 s it is a blow, of which this damping leaves a tenth after 4 s.
+/// The paper's dynamic set-up: linear functions, local damping 0.05, 4 s. The body force grows over the first 2 s, ten
+/// periods: grown "in 20 time steps" of 1e-4 s it is a blow, of which this damping leaves a tenth after 4 s.
 Overrides paper_dynamics(const char* integrator, double step) {
   return {{"solve.integrator", words(integrator)},
           {"solve.shape", words("linear")},
@@ -102,7 +102,8 @@ void add_top(Bench& bench, const Outcome& o, double tolerance) {
 }
 
 /// Twenty load steps with every linear solver, and how far these are from one another.
-void add_statics(Bench& bench, Chart& profile, const char* shape, double top_tolerance, double stress_tolerance, int colour) {
+void add_statics(Bench& bench, Chart& profile, const char* shape, double top_tolerance, double stress_tolerance,
+                 int colour) {
   std::vector<Outcome> runs;
   for (const LinearScheme& scheme : linear_schemes()) {
     runs.push_back(bench.run(fmt::format("quasi-static, {}, {}", shape, scheme.name),
@@ -118,8 +119,8 @@ void add_statics(Bench& bench, Chart& profile, const char* shape, double top_tol
 
 /// The paper's Table 1 in one run, and its Fig. 6b.
 void paper_table(Bench& bench, Chart& profile) {
-  Chart steps = log_chart("A1: error of the top displacement over the step (paper's scheme, t = 4 s)",
-                            "step [s]", "error");
+  Chart steps =
+      log_chart("A1: error of the top displacement over the step (paper's scheme, t = 4 s)", "step [s]", "error");
   const auto study = [&](const std::string& name, const char* integrator, const Overrides& more,
                          const std::vector<std::pair<double, double>>& steps_and_tolerances, int colour) {
     Series s{name, {}, {}, colour};
@@ -147,20 +148,23 @@ void paper_table(Bench& bench, Chart& profile) {
 
 Overrides refined_column(int level, const char* shape, int per_cell) {
   const double h = 50 / std::pow(2, level);
-  Overrides o{{"preprocess.grid.spacing_m", h},     {"preprocess.laboratory.west_m", -3.5 * h},
+  Overrides o{{"preprocess.grid.spacing_m", h},
+              {"preprocess.laboratory.west_m", -3.5 * h},
               {"preprocess.grid.points_per_cell", std::vector<std::int64_t>(3, per_cell)},
-              {"preprocess.laboratory.south_m", -3.5 * h}, {"preprocess.box[0].east_m", h},
-              {"preprocess.box[0].north_m", h},     {"solve.shape", words(shape)}};
+              {"preprocess.laboratory.south_m", -3.5 * h},
+              {"preprocess.box[0].east_m", h},
+              {"preprocess.box[0].north_m", h},
+              {"solve.shape", words(shape)}};
   o.push_back({"solve.wall[1].position_m", h});
   o.push_back({"solve.wall[3].position_m", h});
   return o;
 }
 
-/// Error over the load steps, h = 50 m / 2^4: the stress against the closed form, which the grid bounds from below, and how far the top is
-/// from where twice as many steps as the most shown leave it.
+/// Error over the load steps, h = 50 m / 2^4: the stress against the closed form, which the grid bounds from below, and
+/// how far the top is from where twice as many steps as the most shown leave it.
 void load_step_study(Bench& bench, const Column& column) {
   Chart chart = log_chart("A1b: error over load steps, h = 50 m / 2⁴, 8 points per cell",
-                            "share of the weight in a step", "error");
+                          "share of the weight in a step", "error");
   chart.y = Limits{1e-6, 0.5};  // room for the legend
   const int most = bench.complete() ? 160 : 40;
   int colour = 1;
@@ -193,8 +197,8 @@ void load_step_study(Bench& bench, const Column& column) {
 
 void self_weight_column(Bench& bench) {
   Chart profile = stress_chart(self_weight, "A1: stress in a column under its own weight, 1 m grid, 400 points");
-  // validation.md A1 for the solver's own functions. Of the paper's, the tolerance is its best error; there a cell has one stress, so
-  // that points are off by a quarter of its weight.
+  // validation.md A1 for the solver's own functions. Of the paper's, the tolerance is its best error; there a cell has
+  // one stress, so that points are off by a quarter of its weight.
   add_statics(bench, profile, "quadratic", 0.002, 0.002, 1);
   add_statics(bench, profile, "linear", 0.012, 0.006, 3);
   if (bench.complete()) paper_table(bench, profile);
@@ -218,18 +222,26 @@ void large_compaction(Bench& bench) {
     bool always;
   };
   int colour = 1;
-  for (const Study& study : {Study{"gimp", 2, true}, {"gimp", 3, false}, {"quadratic", 2, true}, {"quadratic", 3, false}, {"quadratic", 4, false}, {"linear", 2, true}}) {
+  for (const Study& study : {Study{"gimp", 2, true},
+                             {"gimp", 3, false},
+                             {"quadratic", 2, true},
+                             {"quadratic", 3, false},
+                             {"quadratic", 4, false},
+                             {"linear", 2, true}}) {
     if (!study.always && !bench.complete()) continue;
-    const std::string name = fmt::format("{}, {} points per cell", study.shape, study.per_cell * study.per_cell * study.per_cell);
+    const std::string name =
+        fmt::format("{}, {} points per cell", study.shape, study.per_cell * study.per_cell * study.per_cell);
     std::vector<double> h, error;
     Outcome o;
     for (int level = 2; level <= finest; ++level) {
-      o = bench.run(fmt::format("{}, h = 50 / {}", name, 1 << level), refined_column(level, study.shape, study.per_cell));
+      o = bench.run(fmt::format("{}, h = 50 / {}", name, 1 << level),
+                    refined_column(level, study.shape, study.per_cell));
       h.push_back(50 / std::pow(2, level));
       error.push_back(stress_error(o, soft));
       if (level == 5 && study.always) profile.series.push_back(stresses(study.shape, o, soft, colour));
     }
-    // Splines integrate at points, and their error goes flat; hats stall when points cross cells: both are shown, and promise no order.
+    // Splines integrate at points, and their error goes flat; hats stall when points cross cells: both are shown, and
+    // promise no order.
     o.variant = name;
     const std::string range = fmt::format("order of the stress error, h = 12.5 to {:.1f} m", h.back());
     if (std::string(study.shape) == "gimp") {

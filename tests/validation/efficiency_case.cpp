@@ -1,4 +1,5 @@
-// A4: time and memory of a step over the number of points, and the share of its parts (the paper's Tables 3 and 4, Figs 14 and 15).
+// A4: time and memory of a step over the number of points, and the share of its parts (the paper's Tables 3 and 4, Figs
+// 14 and 15).
 #include <fmt/format.h>
 
 #include <map>
@@ -14,7 +15,8 @@ constexpr double h = 0.01, step = 5e-5;
 /// What the paper measured on an RTX 3060 Ti: bytes of device memory in all, by thickness in cells; 0: not told.
 double pcg_memory(int cells) {
   switch (cells) {
-    case 1: case 2: return 0.7e9;
+    case 1:
+    case 2: return 0.7e9;
     case 4: return 0.9e9;
     case 8: return 1.1e9;
     case 16: return 1.4e9;
@@ -27,19 +29,26 @@ double no_memory(int) { return 0; }
 struct Scheme {
   std::string name;
   Overrides overrides;
-  double paper_time;              // per point and step [s]
+  double paper_time;  // per point and step [s]
   double (*paper_memory)(int);
   std::vector<int> quick, complete, gpu;  // thickness in cells; `gpu`: beyond the paper's sizes
 };
 
 std::vector<Scheme> schemes() {
-  const Overrides explicit_steps{{"solve.preset", words("none")},        {"solve.integrator", words("explicit")},
-                                 {"solve.shape", words("linear")},       {"solve.transfer", words("flip")},
-                                 {"solve.transfer_time", 1e30},          {"solve.stress_update", words("musl")},
-                                 {"solve.largest_step_s", step},         {"solve.cfl", 0.8}};
-  return {{"PCG", {{"solve.implicit.linear_solver", words("pcg")}}, 2e-7, pcg_memory, {1, 2}, {1, 2, 4, 8, 16, 32}, {128}},
-          {"Cholesky", {{"solve.implicit.linear_solver", words("cholesky")}}, 5e-6, cholesky_memory, {1, 2}, {1, 2, 4, 8}, {16}},
-          {"explicit", explicit_steps, 1.6e-8, no_memory, {1, 2}, {1, 2, 4, 8, 16, 32}, {128}}};
+  const Overrides explicit_steps{{"solve.preset", words("none")},  {"solve.integrator", words("explicit")},
+                                 {"solve.shape", words("linear")}, {"solve.transfer", words("flip")},
+                                 {"solve.transfer_time", 1e30},    {"solve.stress_update", words("musl")},
+                                 {"solve.largest_step_s", step},   {"solve.cfl", 0.8}};
+  return {
+      {"PCG", {{"solve.implicit.linear_solver", words("pcg")}}, 2e-7, pcg_memory, {1, 2}, {1, 2, 4, 8, 16, 32}, {128}},
+      {"Cholesky",
+       {{"solve.implicit.linear_solver", words("cholesky")}},
+       5e-6,
+       cholesky_memory,
+       {1, 2},
+       {1, 2, 4, 8},
+       {16}},
+      {"explicit", explicit_steps, 1.6e-8, no_memory, {1, 2}, {1, 2, 4, 8, 16, 32}, {128}}};
 }
 
 Overrides thick(int cells, int steps) {
@@ -87,7 +96,8 @@ void step_cost(Bench& bench) {
   memory.y_label = "memory [GB]";
   int colour = 1;
   for (const Scheme& scheme : schemes()) {
-    Series eta{scheme.name, {}, {}, colour}, bytes{scheme.name, {}, {}, colour}, paper{scheme.name + ", paper (RTX 3060 Ti)", {}, {}, colour};
+    Series eta{scheme.name, {}, {}, colour}, bytes{scheme.name, {}, {}, colour},
+        paper{scheme.name + ", paper (RTX 3060 Ti)", {}, {}, colour};
     eta.marks = bytes.marks = paper.dashed = true;
     ++colour;
     std::vector<Outcome> profiled;
@@ -97,7 +107,8 @@ void step_cost(Bench& bench) {
       const std::string variant = fmt::format("{}, {} points", scheme.name, 36288 * cells);
       const Outcome o = bench.run(variant, thick(cells, steps) + scheme.overrides);
       const RunSummary& s = o.run.summary;
-      const double points = static_cast<double>(s.particles), each = s.wall_time / (points * static_cast<double>(s.steps));
+      const double points = static_cast<double>(s.particles),
+                   each = s.wall_time / (points * static_cast<double>(s.steps));
       bench.note(o, "time per point and step [s]", each);
       if (const double published = scheme.paper_memory(cells); published > 0) {
         bench.at_most(o, "memory [GB]", s.memory / 1e9, published / 1e9);

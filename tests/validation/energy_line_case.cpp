@@ -22,7 +22,8 @@ struct Terrain {
 };
 
 /// Fall 1000 m over 2250 m, then level: as a parabola, or at 30 degrees until an arc of 400 m leads over.
-constexpr Terrain terrains[] = {{"parabola", {GroundLine::parabola, 1000, 2250, 0}}, {"hockey stick", {GroundLine::bend, 1000, 0, 400}}};
+constexpr Terrain terrains[] = {{"parabola", {GroundLine::parabola, 1000, 2250, 0}},
+                                {"hockey stick", {GroundLine::bend, 1000, 0, 400}}};
 
 constexpr double first = 400, length = 120, width = 100, thickness = 10;  // of the heap: its middle along the line [m]
 constexpr double mu = 0.4;
@@ -51,10 +52,13 @@ Overrides lay_out(const Bench& bench, const Terrain& terrain, const Facing& faci
   grid.rows = static_cast<int>(std::ceil((north - grid.south) / cell));
   Raster ground{grid, std::vector<double>(grid.count())};
   for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column) ground.at(column, row) = terrain.line.elevation(facing.along(grid.x(column), grid.y(row)));
+    for (int column = 0; column < grid.columns; ++column)
+      ground.at(column, row) = terrain.line.elevation(facing.along(grid.x(column), grid.y(row)));
   }
   const Raster heap = cell_means(grid, [&](double x, double y) {
-    return std::abs(facing.along(x, y) - first) < 0.5 * length && std::abs(facing.across(x, y)) < 0.5 * width ? thickness : 0.0;
+    return std::abs(facing.along(x, y) - first) < 0.5 * length && std::abs(facing.across(x, y)) < 0.5 * width
+               ? thickness
+               : 0.0;
   });
   const char* line = terrain.line.kind == GroundLine::parabola ? "parabola" : "bend";
   return write_scene(bench, fmt::format("{}-{:g}-{:g}", line, facing.angle, cell), ground, heap);
@@ -93,10 +97,11 @@ void energy_line(Bench& bench) {
         double eastwards = nothing;
         for (const double angle : {0.0, 120.0, 225.0}) {
           const Facing facing{angle};
-          const Outcome o = bench.run(fmt::format("{}, {}, {:g} m, towards {:g} deg", terrain.name, mapping, cell, angle),
-                                      lay_out(bench, terrain, facing, cell) + Overrides{{"preprocess.grid.spacing_m", cell},
-                                                                                            {"preprocess.grid.layer_height_m", 0.25 * cell},
-                                                                                            {"solve.mapping", words(mapping)}});
+          const Outcome o = bench.run(
+              fmt::format("{}, {}, {:g} m, towards {:g} deg", terrain.name, mapping, cell, angle),
+              lay_out(bench, terrain, facing, cell) + Overrides{{"preprocess.grid.spacing_m", cell},
+                                                                {"preprocess.grid.layer_height_m", 0.25 * cell},
+                                                                {"solve.mapping", words(mapping)}});
           double way = nothing, aside = nothing, fall = nothing, expected = terrain.line.reach(first, mu) - first;
           if (o.ok()) {
             const Place start = place_of(o.first(), facing), end = place_of(o.last(), facing);

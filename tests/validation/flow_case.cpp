@@ -18,7 +18,8 @@ constexpr double degree = std::numbers::pi / 180;
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 struct Norms {
-  double mean = nothing, most = nothing;  // root of the mean square over that of the reference; largest over the largest
+  double mean = nothing,
+         most = nothing;  // root of the mean square over that of the reference; largest over the largest
 };
 
 Norms norms(const std::vector<double>& computed, const std::vector<double>& exact) {
@@ -36,11 +37,13 @@ Norms norms(const std::vector<double>& computed, const std::vector<double>& exac
 constexpr const char* mappings[] = {"terrain-following", "cartesian"};
 
 /// Layers over the thickness; cells are four layers wide.
-std::vector<int> layer_counts(const Bench& bench) { return bench.complete() ? std::vector<int>{2, 4, 8} : std::vector<int>{2, 4}; }
+std::vector<int> layer_counts(const Bench& bench) {
+  return bench.complete() ? std::vector<int>{2, 4, 8} : std::vector<int>{2, 4};
+}
 
 Chart error_chart(const Bench& bench) {
   return log_chart(bench.name() + ": error over layer height, cells four times as wide", "layer height [m]",
-                     "error, root mean square over the reference's");
+                   "error, root mean square over the reference's");
 }
 
 void note(Bench& bench, const Outcome& o, const std::string& what, const Norms& n) {
@@ -52,7 +55,8 @@ void note(Bench& bench, const Outcome& o, const std::string& what, const Norms& 
 
 constexpr ParabolicCap cap{35 * degree, 25 * degree, 4, 80};
 
-/// Upright thickness over a point of the map [m]: where the upright line from the plane meets the surface, which leans downhill against it.
+/// Upright thickness over a point of the map [m]: where the upright line from the plane meets the surface, which leans
+/// downhill against it.
 double upright(const ParabolicCap::State& s, double x, double y) {
   const double along = x / std::cos(cap.slope);
   double h = 0;
@@ -70,7 +74,8 @@ Overrides lay_out(const Bench& bench, double cell) {
   grid.south = -0.5 * grid.rows * cell;
   Raster plane{grid, std::vector<double>(grid.count())};
   for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column) plane.at(column, row) = 500 - std::tan(cap.slope) * grid.x(column);
+    for (int column = 0; column < grid.columns; ++column)
+      plane.at(column, row) = 500 - std::tan(cap.slope) * grid.x(column);
   }
   const Raster thickness = cell_means(grid, [](double x, double y) { return upright(cap.at(0), x, y); });
   return write_scene(bench, fmt::format("{:g}", cell), plane, thickness);
@@ -79,8 +84,8 @@ Overrides lay_out(const Bench& bench, double cell) {
 // B5 ---------------------------------------------------------------------------------------------------------------
 
 constexpr double slope = 22 * degree, bed = 21 * degree;
-constexpr double height = 1.08;                          // of the dam, upright [m]
-constexpr double west = -30, east = 36;                  // along the slope: what the upper end of the reservoir does not reach [m]
+constexpr double height = 1.08;          // of the dam, upright [m]
+constexpr double west = -30, east = 36;  // along the slope: what the upper end of the reservoir does not reach [m]
 
 /// Thickness across the slope and discharge along it, at the columns of the grid.
 struct Profile {
@@ -95,9 +100,12 @@ Profile profile_of(const Points& points, double cell) {
   const auto count = static_cast<std::size_t>(last - first + 1);
   p.thickness.assign(count, 0);
   p.discharge.assign(count, 0);
-  for (std::size_t c = 0; c < count; ++c) p.x.push_back((static_cast<double>(first) + static_cast<double>(c)) * cell / along);
+  for (std::size_t c = 0; c < count; ++c)
+    p.x.push_back((static_cast<double>(first) + static_cast<double>(c)) * cell / along);
   for (std::size_t q = 0; q < points.size(); ++q) {
-    const double place = points.position[q][0] / cell, speed = static_cast<double>(points.velocity[q][0]) * along - static_cast<double>(points.velocity[q][2]) * std::sin(slope);
+    const double place = points.position[q][0] / cell,
+                 speed = static_cast<double>(points.velocity[q][0]) * along -
+                         static_cast<double>(points.velocity[q][2]) * std::sin(slope);
     const double volume = static_cast<double>(points.volume[q]) * along / (cell * cell);  // of a slice one cell deep
     const long left = std::lround(std::floor(place));
     for (const long column : {left, left + 1}) {
@@ -114,7 +122,8 @@ Profile exact_at(const std::vector<double>& x, double time) {
   const DamBreak dam{slope, bed, height * std::cos(slope)};
   Profile p;
   p.x = x;
-  const double middle = 0.5 * height * std::sin(slope);  // the dam is upright: its face leans downhill against the slope
+  const double middle =
+      0.5 * height * std::sin(slope);  // the dam is upright: its face leans downhill against the slope
   for (const double at : x) {
     p.thickness.push_back(dam.thickness(at - middle, time));
     p.discharge.push_back(p.thickness.back() * dam.speed(at - middle, time));
@@ -139,8 +148,8 @@ void parabolic_cap(Bench& bench) {
       const double layer = layer_of(layers), cell = 4 * layer;
       const Outcome o = bench.run(fmt::format("{}, {} layers", mapping, layers),
                                   scenes[layers] + Overrides{{"preprocess.grid.spacing_m", cell},
-                                                                       {"preprocess.grid.layer_height_m", layer},
-                                                                       {"solve.mapping", words(mapping)}});
+                                                             {"preprocess.grid.layer_height_m", layer},
+                                                             {"solve.mapping", words(mapping)}});
       Norms of_thickness, of_speed;
       double way = nothing;
       if (o.ok()) {
@@ -166,8 +175,11 @@ void parabolic_cap(Bench& bench) {
           const auto& x = o.last().position[p];
           const auto& v = o.last().velocity[p];
           travelled += (x[0] - o.first().position[p][0]) / std::cos(cap.slope);
-          speed.push_back(static_cast<double>(v[0]) * std::cos(cap.slope) - static_cast<double>(v[2]) * std::sin(cap.slope));
-          expected.push_back(state.speed + (x[0] * std::cos(cap.slope) + (500 - x[2]) * std::sin(cap.slope) - state.way) * state.spread / state.width);
+          speed.push_back(static_cast<double>(v[0]) * std::cos(cap.slope) -
+                          static_cast<double>(v[2]) * std::sin(cap.slope));
+          expected.push_back(state.speed +
+                             (x[0] * std::cos(cap.slope) + (500 - x[2]) * std::sin(cap.slope) - state.way) *
+                                 state.spread / state.width);
         }
         of_speed = norms(speed, expected);
         way = travelled / static_cast<double>(speed.size()) / state.way - 1;

@@ -1,4 +1,5 @@
-// talus-validate: runs the validation cases through the programs, prints the table, writes validation.json and the pictures.
+// talus-validate: runs the validation cases through the programs, prints the table, writes validation.json and the
+// pictures.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -28,8 +29,11 @@ Words parse(int argc, char** argv) {
   Words w;
   app.add_option("case", w.names, "Cases to run (default: all)")->type_name("A1 B2 ...");
   app.add_flag("--long", w.complete, "With the runs that take minutes to hours");
-  app.add_option("--on", w.on, "Where talus-solve runs")->type_name("auto|cpu|gpu")->check(CLI::IsMember({"auto", "cpu", "gpu"}));
-  app.add_option("--out", w.out, "Folder for runs, pictures and table (default: validation beside the programs' folder)");
+  app.add_option("--on", w.on, "Where talus-solve runs")
+      ->type_name("auto|cpu|gpu")
+      ->check(CLI::IsMember({"auto", "cpu", "gpu"}));
+  app.add_option("--out", w.out,
+                 "Folder for runs, pictures and table (default: validation beside the programs' folder)");
   app.add_option("--programs", w.programs, "Folder of the programs (default: that of this one)");
   app.add_option("--recipes", w.recipes, "Folder with the cases' recipes");
   app.add_flag("--list", w.list, "Name the cases and stop");

@@ -28,13 +28,15 @@ Raster cell_means(const MapGrid& grid, Value value) {
 }
 
 /// Writes OUT/CASE/ground-PLACE.tif and release-PLACE.tif; returns what names them in a recipe of base and one release.
-inline Overrides write_scene(const Bench& bench, const std::string& place, const Raster& ground, const Raster& thickness) {
+inline Overrides write_scene(const Bench& bench, const std::string& place, const Raster& ground,
+                             const Raster& thickness) {
   const auto folder = bench.request().out / bench.name();
   std::filesystem::create_directories(folder);
   const auto ground_file = folder / ("ground-" + place + ".tif"), release_file = folder / ("release-" + place + ".tif");
   write_geotiff(ground_file, ground, {"ground", "m", {}});
   write_geotiff(release_file, thickness, {"thickness, vertical", "m", {}});
-  return {{"preprocess.base_dem", words(ground_file.string())}, {"preprocess.release[0].thickness_raster", words(release_file.string())}};
+  return {{"preprocess.base_dem", words(ground_file.string())},
+          {"preprocess.release[0].thickness_raster", words(release_file.string())}};
 }
 
 }  // namespace talus::validation

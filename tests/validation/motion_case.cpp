@@ -24,7 +24,6 @@ double period_of(const std::vector<double>& time, const std::vector<double>& mom
   return 2 * last / zeros;
 }
 
-
 std::vector<double> energy_drift(const Outcome& o) {
   const auto kinetic = o.history("kinetic_J"), elastic = o.history("elastic_J"), potential = o.history("potential_J");
   double peak = 0;
@@ -91,8 +90,8 @@ void free_fall(Bench& bench) {
         }
       }
     }
-    // The trapezoid is exact but for what the linear solver leaves; an explicit step keeps momentum to rounding, and moves with the
-    // velocity of its end, so it is half a step ahead.
+    // The trapezoid is exact but for what the linear solver leaves; an explicit step keeps momentum to rounding, and
+    // moves with the velocity of its end, so it is half a step ahead.
     const bool exact = std::string(integrator) == "newmark";
     bench.measure(o, "momentum of the fall", worst, 1e-9);
     const double steps = o.ok() ? static_cast<double>(o.run.summary.steps) : 1;
@@ -100,9 +99,10 @@ void free_fall(Bench& bench) {
   }
 }
 
-/// A block between rollers, one of which moves by 1 % in a single step: the strain is the same everywhere, whatever the lattice of
-/// the points, as long as their gradients integrate exactly: full cells of linear functions. (One point per cell leaves hourglass
-/// motions free, and quadratic functions held at nodes cannot follow a uniform strain: those layouts the functions do not allow.)
+/// A block between rollers, one of which moves by 1 % in a single step: the strain is the same everywhere, whatever the
+/// lattice of the points, as long as their gradients integrate exactly: full cells of linear functions. (One point per
+/// cell leaves hourglass motions free, and quadratic functions held at nodes cannot follow a uniform strain: those
+/// layouts the functions do not allow.)
 void patch_test(Bench& bench) {
   for (const long points : {2L, 3L, 4L}) {
     Overrides overrides{{"preprocess.grid.points_per_cell", std::vector<std::int64_t>(3, points)},
@@ -123,8 +123,10 @@ void patch_test(Bench& bench) {
     int walls = 0;
     const auto wall = [&](const char* axis, double position, const char* side, double speed) {
       const std::string key = fmt::format("solve.wall[{}].", walls++);
-      overrides = overrides + Overrides{{key + "axis", words(axis)}, {key + "position_m", position},
-                                        {key + "material_is", words(side)}, {key + "kind", words("roller")},
+      overrides = overrides + Overrides{{key + "axis", words(axis)},
+                                        {key + "position_m", position},
+                                        {key + "material_is", words(side)},
+                                        {key + "kind", words("roller")},
                                         {key + "speed_m_s", speed}};
     };
     wall("x", 0, "above", 0);
@@ -133,8 +135,10 @@ void patch_test(Bench& bench) {
     wall("y", 1, "below", 0);
     wall("z", 2, "below", 0);
     const Outcome o = bench.run(fmt::format("patch, {} per cell", points * points * points), overrides);
-    const double stiffness = 1e8 * 0.75 / (1.25 * 0.5), strain = std::log(0.99), volume = 2 * 1 * 2;  // E (1-nu) / ((1+nu)(1-2nu))
-    bench.compare(o, "elastic energy of uniform strain", o.last_of("elastic_J"), 0.5 * stiffness * strain * strain * volume, 1e-9);
+    const double stiffness = 1e8 * 0.75 / (1.25 * 0.5), strain = std::log(0.99),
+                 volume = 2 * 1 * 2;  // E (1-nu) / ((1+nu)(1-2nu))
+    bench.compare(o, "elastic energy of uniform strain", o.last_of("elastic_J"),
+                  0.5 * stiffness * strain * strain * volume, 1e-9);
     double worst = o.ok() ? 0 : nothing;
     const double pressure = -1e8 / (3 * 0.5) * strain;
     if (o.ok()) {

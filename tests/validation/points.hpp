@@ -20,11 +20,12 @@ struct Points {
 /// From group VTKHDF of run.h5. Throws DataError.
 std::vector<Points> read_points(const std::filesystem::path& run);
 
-/// Where a deposit along x ends: the last point before a gap of one cell, and half a point more (single grains roll on) [m].
+/// Where a deposit along x ends: the last point before a gap of one cell, and half a point more (single grains roll on)
+/// [m].
 double front_of(const Points& points, double cell, double point_spacing);
 
-/// How far along x 99 of 100 points got [m]. Where a deposit ends is less: its tip is strings of points a cell apart, and chance says where
-/// they tear. Points that left do not count; there must be one.
+/// How far along x 99 of 100 points got [m]. Where a deposit ends is less: its tip is strings of points a cell apart,
+/// and chance says where they tear. Points that left do not count; there must be one.
 double reach_of(const Points& points);
 
 }  // namespace talus::validation

@@ -13,14 +13,15 @@ namespace talus::validation {
 
 using Value = std::variant<bool, std::int64_t, double, std::string, std::vector<std::int64_t>, std::vector<double>>;
 
-/// Key and value: "solve.implicit.step_s", "preprocess.box[0].top_m". Tables that are missing are made; the index one past the
-/// end of an array of tables adds a table.
+/// Key and value: "solve.implicit.step_s", "preprocess.box[0].top_m". Tables that are missing are made; the index one
+/// past the end of an array of tables adds a table.
 using Overrides = std::vector<std::pair<std::string, Value>>;
 
 inline Value words(std::string text) { return Value(std::move(text)); }
 inline Value whole(long number) { return Value(static_cast<std::int64_t>(number)); }
 
-/// Text of the recipe `base` with the overrides. Throws std::runtime_error: no such file, no TOML, a key that leads nowhere.
+/// Text of the recipe `base` with the overrides. Throws std::runtime_error: no such file, no TOML, a key that leads
+/// nowhere.
 std::string recipe_with(const std::filesystem::path& base, const Overrides& overrides);
 
 /// a, then b.

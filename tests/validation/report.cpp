@@ -16,12 +16,10 @@ std::string number(double value, const char* format = "{:.5g}") {
 
 using Cells = std::array<std::string, 14>;
 
-const Cells header{"case",      "quantity", "computed", "reference", "error",        "tolerance", "pass",
-                   "wall [s]", "points",   "steps",    "Newton",    "CG", "dt/CFL", "place"};
+const Cells header{"case",     "quantity", "computed", "reference", "error", "tolerance", "pass",
+                   "wall [s]", "points",   "steps",    "Newton",    "CG",    "dt/CFL",    "place"};
 
-std::string shortened(const std::string& place) {
-  return place.size() <= 28 ? place : place.substr(0, 27) + "~";
-}
+std::string shortened(const std::string& place) { return place.size() <= 28 ? place : place.substr(0, 27) + "~"; }
 
 Cells cells_of(const Row& r) {
   return {r.name,

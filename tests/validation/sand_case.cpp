@@ -22,8 +22,9 @@ double top_of(const Points& points, const Sand& s) {
   return top + 0.5 * s.point_spacing();
 }
 
-/// Thickness over x from the map of a frame, all rows of the slice together. What the functions spread behind the wall at x = 0 is
-/// folded back; the mean of three columns, for the strings of points of a stretched lattice lie further apart than a cell.
+/// Thickness over x from the map of a frame, all rows of the slice together. What the functions spread behind the wall
+/// at x = 0 is folded back; the mean of three columns, for the strings of points of a stretched lattice lie further
+/// apart than a cell.
 Series outline_of(const Outcome& o, std::size_t frame, const Sand& s, int colour) {
   const MapGrid& grid = o.run.maps.grid;
   const auto column_at = [&](int column) {
@@ -78,8 +79,10 @@ std::string outlines(const Outcome& o, const Sand& s, const std::string& title) 
     panel.series.push_back(outline_of(o, frame, s, 2));
     if (time > 1) {
       panel.x_label = "x [m]";
-      Series lube{"Lube et al. 2005: height, run-out", {0, s.width * (1 + lube_run_out(s.height / s.width))},
-                  {s.width * lube_height(s.height / s.width), 0}, 1};
+      Series lube{"Lube et al. 2005: height, run-out",
+                  {0, s.width * (1 + lube_run_out(s.height / s.width))},
+                  {s.width * lube_height(s.height / s.width), 0},
+                  1};
       lube.line = false;
       lube.marks = true;
       lube.mark_size = 11;
@@ -119,18 +122,20 @@ double unrest(const Outcome& o) {
 }
 
 void refinement(Bench& bench, const std::vector<int>& levels) {
-  Chart chart = log_chart("A3: error over cell size, 27 points per cell",
-                            "cell size [m]", "error against Lube et al. 2005");
+  Chart chart =
+      log_chart("A3: error over cell size, 27 points per cell", "cell size [m]", "error against Lube et al. 2005");
   int colour = 1;
   for (const char* shape : {"quadratic", "linear"}) {
     std::vector<double> h, run_out, height;
     for (const int level : levels) {
       Sand s;
       s.h = 0.09 / (1 << level);
-      s.per_cell = 3;  // with two, points of the stretched sand lie further apart than cells and pack by a fifth too densely
+      s.per_cell =
+          3;  // with two, points of the stretched sand lie further apart than cells and pack by a fifth too densely
       // Coarse grids: two cells of run-out, one of height.
       const Goals goals{std::max(0.01, 2 * s.h / 0.8145), std::max(0.03, s.h / 0.196)};
-      const Collapse c = collapse(bench, fmt::format("{}, h = 0.09 / {}", shape, 1 << level), s, {{"solve.shape", words(shape)}}, goals);
+      const Collapse c = collapse(bench, fmt::format("{}, h = 0.09 / {}", shape, 1 << level), s,
+                                  {{"solve.shape", words(shape)}}, goals);
       h.push_back(s.h);
       run_out.push_back(std::abs(c.front / 0.8145 - 1));
       height.push_back(std::abs(c.top / 0.196 - 1));
@@ -147,7 +152,9 @@ void refinement(Bench& bench, const std::vector<int>& levels) {
 
 }  // namespace
 
-void sand_column(Bench& bench) { refinement(bench, bench.complete() ? std::vector<int>{1, 2, 3, 4} : std::vector<int>{1, 2}); }
+void sand_column(Bench& bench) {
+  refinement(bench, bench.complete() ? std::vector<int>{1, 2, 3, 4} : std::vector<int>{1, 2});
+}
 
 /// The paper's grid with 64 points per cell, explicit and implicit.
 void sand_column_paper(Bench& bench) {
@@ -164,25 +171,28 @@ void sand_column_paper(Bench& bench) {
   }
 }
 
-/// Reach of 99 % over points per cell and over the step, cells of 0.0225 m: against the most points and the shortest steps.
+/// Reach of 99 % over points per cell and over the step, cells of 0.0225 m: against the most points and the shortest
+/// steps.
 void sand_column_studies(Bench& bench) {
-  Chart points = log_chart("A3: reach over points per cell, h = 0.0225 m",
-                             "distance of the points over cell size", "difference of the reach of 99 % to 343 points per cell");
-  Chart steps = log_chart("A3: reach over the step, h = 0.0225 m, 27 points per cell",
-                            "step over the CFL step", "difference of the reach of 99 % to explicit steps of 0.02 CFL");
+  Chart points = log_chart("A3: reach over points per cell, h = 0.0225 m", "distance of the points over cell size",
+                           "difference of the reach of 99 % to 343 points per cell");
+  Chart steps = log_chart("A3: reach over the step, h = 0.0225 m, 27 points per cell", "step over the CFL step",
+                          "difference of the reach of 99 % to explicit steps of 0.02 CFL");
   const double cfl_step = 4.27e-4;  // cell over the wave speed and the square root of three [s]
   int colour = 1;
   for (const char* shape : {"quadratic", "gimp", "linear"}) {
     Sand s;
     s.h = 0.09 / 4;
     const auto reach = [&](const std::string& name, const Overrides& more) {
-      const Outcome o = bench.run(fmt::format("{}, {}", shape, name), overrides_of(s) + Overrides{{"solve.shape", words(shape)}} + more);
+      const Outcome o = bench.run(fmt::format("{}, {}", shape, name),
+                                  overrides_of(s) + Overrides{{"solve.shape", words(shape)}} + more);
       const double x = o.ok() ? reach_of(o.last()) : nothing;
       bench.note(o, "reach of 99 % [m]", x);
       return x;
     };
     const auto explicit_steps = [&](double cfl) {
-      return reach(fmt::format("{} points per cell, explicit, {:g} CFL", s.per_cell * s.per_cell * s.per_cell, cfl), {{"solve.cfl", cfl}});
+      return reach(fmt::format("{} points per cell, explicit, {:g} CFL", s.per_cell * s.per_cell * s.per_cell, cfl),
+                   {{"solve.cfl", cfl}});
     };
     s.per_cell = 7;
     const double most_points = explicit_steps(0.25);
@@ -202,12 +212,13 @@ void sand_column_studies(Bench& bench) {
     }
     for (const double step : {1.0, 3.0, 10.0, 30.0}) {
       over_cfl.push_back(step);
-      by_implicit_step.push_back(std::abs(reach(fmt::format("newmark, {:g} CFL", step),
-                                                {{"solve.integrator", words("newmark")},
-                                                 {"solve.implicit.step_s", step * cfl_step},
-                                                 {"solve.implicit.newton_tolerance", 1e-4},
-                                                 {"solve.implicit.linear_tolerance", 1e-3}}) /
-                                              shortest - 1));
+      by_implicit_step.push_back(
+          std::abs(reach(fmt::format("newmark, {:g} CFL", step), {{"solve.integrator", words("newmark")},
+                                                                  {"solve.implicit.step_s", step * cfl_step},
+                                                                  {"solve.implicit.newton_tolerance", 1e-4},
+                                                                  {"solve.implicit.linear_tolerance", 1e-3}}) /
+                       shortest -
+                   1));
     }
     steps.series.push_back(convergence(fmt::format("{}, explicit", shape), cfl, by_step, colour));
     Series implicit = convergence(fmt::format("{}, newmark", shape), over_cfl, by_implicit_step, colour++);
@@ -233,9 +244,10 @@ void sand_column_friction(Bench& bench) {
       Sand s;
       s.h = 0.015;
       s.per_cell = 2;
-      const Outcome o = bench.run(fmt::format("damping {:g}, floor {:g}", damping, mu),
-                                  overrides_of(s) + Overrides{{"solve.damping", damping},
-                                                              {"solve.base.friction_angle_deg", std::atan(mu) * 180 / M_PI}});
+      const Outcome o =
+          bench.run(fmt::format("damping {:g}, floor {:g}", damping, mu),
+                    overrides_of(s) + Overrides{{"solve.damping", damping},
+                                                {"solve.base.friction_angle_deg", std::atan(mu) * 180 / M_PI}});
       line.x.push_back(mu);
       line.y.push_back(o.ok() ? front_of(o.last(), s) : nothing);
       bench.note(o, "run-out [m]", line.y.back());
@@ -246,8 +258,8 @@ void sand_column_friction(Bench& bench) {
 }
 
 void sand_column_aspects(Bench& bench) {
-  Chart chart = log_chart("A3b: run-out over aspect ratio, one set of parameters",
-                            "aspect ratio, height over width", "(d end − d start) / d start");
+  Chart chart = log_chart("A3b: run-out over aspect ratio, one set of parameters", "aspect ratio, height over width",
+                          "(d end − d start) / d start");
   Series low{"Lube et al. 2005: 1.6 a, 2.2 a²ᐟ³", {}, {}, 0}, high{"", {}, {}, 0};
   for (double a = 0.4; a < 1.8; a += 0.1) low.x.push_back(a), low.y.push_back(lube_run_out(a));
   for (double a = 2.81; a < 11; a += 0.5) high.x.push_back(a), high.y.push_back(lube_run_out(a));

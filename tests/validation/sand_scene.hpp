@@ -12,8 +12,8 @@ namespace talus::validation {
 inline constexpr double gate_opens = 0.3;  // [s]
 
 struct Sand {
-  double h = 0.01;      // cells [m]
-  int per_cell = 4;     // points along each side of a cell
+  double h = 0.01;   // cells [m]
+  int per_cell = 4;  // points along each side of a cell
   double height = 0.63, width = 0.09;
   double flow_time = 1.2;  // after the gate [s]
   double point_spacing() const { return h / per_cell; }

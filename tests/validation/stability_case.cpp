@@ -23,7 +23,9 @@ double centre_of(const Outcome& o) {
 
 double reach_of(const Outcome& o) { return o.ok() ? reach_of(o.last()) : std::numeric_limits<double>::quiet_NaN(); }
 
-double end_of(const Outcome& o, const Sand& s) { return o.ok() ? front_of(o.last(), s) : std::numeric_limits<double>::quiet_NaN(); }
+double end_of(const Outcome& o, const Sand& s) {
+  return o.ok() ? front_of(o.last(), s) : std::numeric_limits<double>::quiet_NaN();
+}
 
 struct Scheme {
   const char* tangent;
@@ -34,7 +36,9 @@ struct Scheme {
 void compare_steps(Bench& bench, const Sand& s, const std::vector<double>& lengths) {
   const double cfl_step = 4.27e-4 * s.h / 0.0225;  // cell over the wave speed and the square root of three [s]
   const std::string grid = fmt::format(", h = {:g} m", s.h);
-  const auto run = [&](const std::string& name, const Overrides& more) { return bench.run(name + grid, overrides_of(s) + more); };
+  const auto run = [&](const std::string& name, const Overrides& more) {
+    return bench.run(name + grid, overrides_of(s) + more);
+  };
   const Outcome reference = run("explicit, 0.1 CFL", {{"solve.integrator", words("explicit")}, {"solve.cfl", 0.1}});
   const double expected = centre_of(reference), reach = reach_of(reference);
   const auto judge = [&](const Outcome& o, double tolerance) {
@@ -53,9 +57,10 @@ void compare_steps(Bench& bench, const Sand& s, const std::vector<double>& lengt
     Series line{fmt::format("newmark, {} tangent", scheme.tangent), {}, {}, colour++};
     line.marks = true;
     for (const double over_cfl : lengths) {
-      const Outcome o = run(fmt::format("{}, {:g} CFL", scheme.tangent, over_cfl), {{"solve.implicit.step_s", over_cfl * cfl_step},
-                                                                                 {"solve.implicit.tangent", words(scheme.tangent)},
-                                                                                 {"solve.implicit.linear_solver", words(scheme.linear_solver)}});
+      const Outcome o = run(fmt::format("{}, {:g} CFL", scheme.tangent, over_cfl),
+                            {{"solve.implicit.step_s", over_cfl * cfl_step},
+                             {"solve.implicit.tangent", words(scheme.tangent)},
+                             {"solve.implicit.linear_solver", words(scheme.linear_solver)}});
       const double cuts = o.last_of("step_cuts"), steps = static_cast<double>(o.run.summary.steps);
       judge(o, over_cfl > 20 ? 0.1 : 0.03);  // 30 CFL need only finish (validation.md C1)
       bench.note(o, "Newton iterations a step", o.last_of("newton_iterations") / steps);
@@ -72,7 +77,8 @@ void compare_steps(Bench& bench, const Sand& s, const std::vector<double>& lengt
   Series few{"explicit", {0.1}, {0}, 0};
   few.marks = true;
   for (const double cfl : {0.25, 0.5}) {
-    const Outcome o = run(fmt::format("explicit, {:g} CFL", cfl), {{"solve.integrator", words("explicit")}, {"solve.cfl", cfl}});
+    const Outcome o =
+        run(fmt::format("explicit, {:g} CFL", cfl), {{"solve.integrator", words("explicit")}, {"solve.cfl", cfl}});
     judge(o, 0.02);
     few.x.push_back(cfl);
     few.y.push_back(100 * (centre_of(o) / expected - 1));
