@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "common/raster/raster_io.hpp"
+#include "common/gis/raster_io.hpp"
 #include "common/run/run_file.hpp"
 #include "postprocess/maps/avaframe.hpp"
 #include "postprocess/maps/fields.hpp"

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "common/volume/domain.hpp"
+#include "common/domain/domain.hpp"
 #include "preprocess/options.hpp"
 #include "preprocess/release/releases.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "common/raster/raster_io.hpp"
+#include "common/gis/raster_io.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/prepare.hpp"
 #include "preprocess/sum.hpp"

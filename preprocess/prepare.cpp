@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "common/error.hpp"
-#include "common/raster/slope.hpp"
+#include "common/map/slope.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/laboratory.hpp"
 #include "preprocess/obstacle/obstacles.hpp"

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "common/volume/domain.hpp"
-#include "common/volume/level_set.hpp"
+#include "common/domain/domain.hpp"
+#include "common/domain/level_set.hpp"
 #include "preprocess/options.hpp"
 #include "preprocess/release/sliding_surface.hpp"
 #include "preprocess/release/volumes.hpp"

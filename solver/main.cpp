@@ -5,14 +5,18 @@
 
 #include <fmt/format.h>
 
+#include "common/domain/domain.hpp"
 #include "common/run/run_file.hpp"
 #include "common/stage/stage.hpp"
-#include "common/volume/domain.hpp"
-#include "solver/output/profile_report.hpp"
+#include "solver/integrator/scene.hpp"
+#include "solver/options/options.hpp"
 #include "solver/parallel/bandwidth.hpp"
-#include "solver/plan.hpp"
-#include "solver/run.hpp"
-#include "solver/stiffness.hpp"
+#include "solver/run/plan.hpp"
+#include "solver/run/profile_report.hpp"
+#include "solver/run/simulation.hpp"
+#include "solver/run/stiffness.hpp"
+#include "solver/scene/make_scene.hpp"
+#include "solver/scene/make_solver.hpp"
 
 namespace {
 

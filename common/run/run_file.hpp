@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/raster/raster.hpp"
+#include "common/map/raster.hpp"
 
 namespace talus {
 

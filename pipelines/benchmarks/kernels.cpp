@@ -7,8 +7,11 @@
 #include <fmt/format.h>
 
 #include "common/error.hpp"
+#include "solver/integrator/scene.hpp"
 #include "solver/integrator/solver.hpp"
+#include "solver/options/options.hpp"
 #include "solver/parallel/profile.hpp"
+#include "solver/scene/make_solver.hpp"
 
 namespace talus::benchmarks {
 namespace {

@@ -13,6 +13,7 @@
 #include "pipelines/benchmarks/kernels.hpp"
 #include "solver/integrator/solver.hpp"
 #include "solver/parallel/bandwidth.hpp"
+#include "solver/scene/make_solver.hpp"
 #include "tests/validation/chart.hpp"
 
 namespace {

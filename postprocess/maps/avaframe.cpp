@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "common/raster/raster_io.hpp"
-#include "common/raster/slope.hpp"
+#include "common/gis/raster_io.hpp"
+#include "common/map/slope.hpp"
 #include "common/stage/stage.hpp"
 #include "postprocess/maps/fields.hpp"
 

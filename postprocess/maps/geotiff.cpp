@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/raster/raster_io.hpp"
+#include "common/gis/raster_io.hpp"
 #include "postprocess/maps/fields.hpp"
 
 namespace talus::postprocess {

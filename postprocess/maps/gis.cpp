@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "common/raster/outlines.hpp"
-#include "common/raster/qgis_project.hpp"
-#include "common/raster/raster_io.hpp"
+#include "common/gis/outlines.hpp"
+#include "common/gis/raster_io.hpp"
+#include "common/qgis/qgis_project.hpp"
 #include "postprocess/maps/fields.hpp"
 #include "postprocess/maps/outlines.hpp"
 #include "postprocess/maps/styles.hpp"

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "common/raster/outlines.hpp"
+#include "common/gis/outlines.hpp"
 #include "common/run/run_file.hpp"
 #include "postprocess/options.hpp"
 #include "postprocess/score/survey.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "common/raster/qgis_style.hpp"
+#include "common/qgis/qgis_style.hpp"
 #include "common/run/run_file.hpp"
 
 namespace talus::postprocess {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "common/raster/colours.hpp"
+#include "common/map/colours.hpp"
 
 namespace talus::postprocess {
 

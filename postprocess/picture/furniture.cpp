@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "common/raster/raster_io.hpp"
+#include "common/gis/raster_io.hpp"
 
 namespace talus::postprocess {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "common/raster/raster.hpp"
+#include "common/map/raster.hpp"
 
 namespace talus::postprocess {
 

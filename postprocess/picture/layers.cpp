@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "common/raster/isolines.hpp"
+#include "common/map/isolines.hpp"
 #include "postprocess/picture/hillshade.hpp"
 
 namespace talus::postprocess {

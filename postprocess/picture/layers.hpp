@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "common/raster/isolines.hpp"
+#include "common/map/isolines.hpp"
 #include "postprocess/picture/canvas.hpp"
 #include "postprocess/picture/map_picture.hpp"
 #include "postprocess/picture/view.hpp"

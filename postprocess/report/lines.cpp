@@ -1,7 +1,7 @@
 // The lines of the report's map.
 #include <cmath>
 
-#include "common/raster/isolines.hpp"
+#include "common/map/isolines.hpp"
 #include "postprocess/picture/layers.hpp"
 #include "postprocess/report/parts.hpp"
 

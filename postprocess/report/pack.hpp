@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/raster/raster.hpp"
+#include "common/map/raster.hpp"
 #include "postprocess/picture/view.hpp"
 
 namespace talus::postprocess {

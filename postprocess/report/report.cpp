@@ -7,7 +7,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include "common/raster/raster_io.hpp"
+#include "common/gis/raster_io.hpp"
 #include "common/stage/stage.hpp"
 #include "postprocess/picture/view.hpp"
 #include "postprocess/report/page.hpp"

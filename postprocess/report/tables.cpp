@@ -1,7 +1,7 @@
 // Tables of the report: scores, volumes read both ways, what each stage used.
 #include <cmath>
 
-#include "common/raster/slope.hpp"
+#include "common/map/slope.hpp"
 #include "common/recipe/used.hpp"
 #include "postprocess/report/parts.hpp"
 #include "postprocess/score/mobility.hpp"

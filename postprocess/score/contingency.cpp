@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "common/statistics.hpp"
+#include "common/map/statistics.hpp"
 
 namespace talus::postprocess {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "common/raster/raster.hpp"
+#include "common/map/raster.hpp"
 #include "postprocess/score/mobility.hpp"
 #include "postprocess/score/polyline.hpp"
 

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "common/raster/raster.hpp"
+#include "common/map/raster.hpp"
 
 namespace talus::postprocess {
 

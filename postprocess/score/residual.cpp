@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/statistics.hpp"
+#include "common/map/statistics.hpp"
 
 namespace talus::postprocess {
 

@@ -1,7 +1,7 @@
 // What the run itself says: volumes, cost, extent.
 #include <algorithm>
 
-#include "common/raster/slope.hpp"
+#include "common/map/slope.hpp"
 #include "postprocess/maps/fields.hpp"
 #include "postprocess/score/sections.hpp"
 

@@ -1,7 +1,7 @@
 // How much of a score hangs on the survey's own error.
 #include <fmt/format.h>
 
-#include "common/statistics.hpp"
+#include "common/map/statistics.hpp"
 #include "postprocess/score/resample.hpp"
 
 namespace talus::postprocess {

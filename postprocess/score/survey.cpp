@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "common/error.hpp"
-#include "common/raster/inside.hpp"
-#include "common/raster/raster_file.hpp"
+#include "common/gis/inside.hpp"
+#include "common/gis/raster_file.hpp"
 #include "postprocess/score/survey_error.hpp"
 #include "postprocess/score/survey_grid.hpp"
 

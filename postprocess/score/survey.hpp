@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/raster/raster_io.hpp"
+#include "common/gis/raster_io.hpp"
 #include "common/run/run_file.hpp"
 #include "postprocess/options.hpp"
 

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "common/error.hpp"
-#include "common/raster/slope.hpp"
+#include "common/map/slope.hpp"
 
 namespace talus::postprocess {
 

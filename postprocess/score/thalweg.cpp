@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "common/error.hpp"
-#include "common/raster/bilinear.hpp"
-#include "common/raster/raster_io.hpp"
+#include "common/gis/raster_io.hpp"
+#include "common/map/bilinear.hpp"
 #include "postprocess/score/flow_path.hpp"
 #include "postprocess/score/mobility.hpp"
 #include "postprocess/score/polyline.hpp"

@@ -7,8 +7,8 @@
 #include <memory>
 
 #include "common/error.hpp"
-#include "common/raster/bilinear.hpp"
-#include "common/raster/raster_io.hpp"
+#include "common/gis/raster_io.hpp"
+#include "common/map/bilinear.hpp"
 #include "preprocess/release/polygon_cover.hpp"
 
 namespace talus::preprocess {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "common/raster/raster.hpp"
-#include "common/volume/level_set.hpp"
+#include "common/domain/level_set.hpp"
+#include "common/map/raster.hpp"
 #include "preprocess/options.hpp"
 
 namespace talus::preprocess {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/volume/domain.hpp"
+#include "common/domain/domain.hpp"
 #include "preprocess/options.hpp"
 #include "preprocess/release/releases.hpp"
 

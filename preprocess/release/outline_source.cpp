@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "common/error.hpp"
-#include "common/raster/raster_io.hpp"
+#include "common/gis/raster_io.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/release/polygon_cover.hpp"
 #include "preprocess/sum.hpp"

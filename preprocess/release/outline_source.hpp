@@ -2,8 +2,8 @@
 // for.
 #pragma once
 
-#include "common/raster/raster.hpp"
-#include "common/raster/raster_file.hpp"
+#include "common/gis/raster_file.hpp"
+#include "common/map/raster.hpp"
 #include "preprocess/options.hpp"
 #include "preprocess/release/sliding_surface.hpp"
 #include "preprocess/release/source.hpp"

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "common/raster/raster.hpp"
-#include "common/raster/raster_io.hpp"
+#include "common/gis/raster_io.hpp"
+#include "common/map/raster.hpp"
 
 namespace talus::preprocess {
 

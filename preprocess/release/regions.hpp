@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "common/raster/raster.hpp"
+#include "common/map/raster.hpp"
 
 namespace talus::preprocess {
 

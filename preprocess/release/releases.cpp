@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "common/error.hpp"
-#include "common/raster/raster_io.hpp"
-#include "common/raster/slope.hpp"
+#include "common/gis/raster_io.hpp"
+#include "common/map/slope.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/release/polygon_cover.hpp"
 #include "preprocess/terrain/elevation.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "common/raster/raster.hpp"
+#include "common/map/raster.hpp"
 #include "preprocess/options.hpp"
 
 namespace talus::preprocess {

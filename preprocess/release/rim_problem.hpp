@@ -5,7 +5,7 @@
 #include <Eigen/SparseCore>
 #include <vector>
 
-#include "common/raster/raster.hpp"
+#include "common/map/raster.hpp"
 #include "preprocess/release/outline.hpp"
 
 namespace talus::preprocess {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "common/raster/raster.hpp"
+#include "common/map/raster.hpp"
 #include "preprocess/release/outline.hpp"
 
 namespace talus::preprocess {

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "common/raster/raster.hpp"
-#include "common/raster/raster_io.hpp"
+#include "common/gis/raster_io.hpp"
+#include "common/map/raster.hpp"
 #include "preprocess/options.hpp"
 
 namespace talus::preprocess {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "common/raster/raster_io.hpp"
+#include "common/gis/raster_io.hpp"
 #include "preprocess/survey/patches.hpp"
 #include "preprocess/survey/residuals.hpp"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "common/error.hpp"
-#include "common/raster/inside.hpp"
+#include "common/gis/inside.hpp"
 #include "preprocess/release/regions.hpp"
 #include "preprocess/sum.hpp"
 #include "preprocess/survey/survey.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/raster/crop.hpp"
+#include "common/map/crop.hpp"
 
 namespace talus::preprocess {
 

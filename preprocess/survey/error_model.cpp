@@ -5,8 +5,8 @@
 #include <limits>
 #include <numbers>
 
-#include "common/raster/slope.hpp"
-#include "common/statistics.hpp"
+#include "common/map/slope.hpp"
+#include "common/map/statistics.hpp"
 
 namespace talus::preprocess {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/raster/crop.hpp"
+#include "common/map/crop.hpp"
 
 namespace talus::preprocess {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "common/statistics.hpp"
+#include "common/map/statistics.hpp"
 
 namespace talus::preprocess {
 

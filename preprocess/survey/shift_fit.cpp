@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/statistics.hpp"
+#include "common/map/statistics.hpp"
 
 namespace talus::preprocess {
 

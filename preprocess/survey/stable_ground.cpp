@@ -2,8 +2,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/raster/inside.hpp"
-#include "common/statistics.hpp"
+#include "common/gis/inside.hpp"
+#include "common/map/statistics.hpp"
 #include "preprocess/survey/coregistration.hpp"
 
 namespace talus::preprocess {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "common/statistics.hpp"
+#include "common/map/statistics.hpp"
 
 namespace talus::preprocess {
 

@@ -7,11 +7,11 @@
 #include <limits>
 
 #include "common/error.hpp"
-#include "common/raster/crop.hpp"
-#include "common/raster/outlines.hpp"
-#include "common/raster/qgis_project.hpp"
-#include "common/raster/qgis_style.hpp"
-#include "common/raster/raster_writer.hpp"
+#include "common/gis/outlines.hpp"
+#include "common/gis/raster_writer.hpp"
+#include "common/map/crop.hpp"
+#include "common/qgis/qgis_project.hpp"
+#include "common/qgis/qgis_style.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/sum.hpp"
 #include "preprocess/survey/survey_json.hpp"

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "common/error.hpp"
-#include "common/raster/crop.hpp"
-#include "common/raster/raster_io.hpp"
+#include "common/gis/raster_io.hpp"
+#include "common/map/crop.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/sum.hpp"
 #include "preprocess/terrain/scattered.hpp"

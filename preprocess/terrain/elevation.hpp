@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "common/raster/raster.hpp"
-#include "common/raster/raster_file.hpp"
+#include "common/gis/raster_file.hpp"
+#include "common/map/raster.hpp"
 #include "preprocess/options.hpp"
 #include "preprocess/terrain/geo_input.hpp"
 #include "preprocess/terrain/placement.hpp"

@@ -6,9 +6,9 @@
 #include <cctype>
 
 #include "common/error.hpp"
-#include "common/raster/point_layer.hpp"
-#include "common/raster/raster_io.hpp"
-#include "common/raster/vertical_unit.hpp"
+#include "common/gis/point_layer.hpp"
+#include "common/gis/raster_io.hpp"
+#include "common/gis/vertical_unit.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/terrain/point_table.hpp"
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "common/raster/coordinates.hpp"
-#include "common/raster/raster_file.hpp"
+#include "common/gis/coordinates.hpp"
+#include "common/gis/raster_file.hpp"
 
 namespace talus::preprocess {
 

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "common/raster/raster.hpp"
+#include "common/map/raster.hpp"
 #include "preprocess/terrain/geo_input.hpp"
 
 namespace talus::preprocess {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/raster/raster.hpp"
+#include "common/map/raster.hpp"
 #include "preprocess/options.hpp"
 #include "preprocess/terrain/elevation.hpp"
 #include "preprocess/terrain/voids.hpp"

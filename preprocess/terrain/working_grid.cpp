@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "common/error.hpp"
-#include "common/raster/raster_io.hpp"
+#include "common/gis/raster_io.hpp"
 
 namespace talus::preprocess {
 

@@ -2,7 +2,7 @@
 // Rom 1974).
 #pragma once
 
-#include "solver/particles/particles.hpp"
+#include "solver/state/particles.hpp"
 
 namespace talus {
 

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "solver/grid/background_grid.hpp"
 #include "solver/grid/bicubic.hpp"
-#include "solver/particles/particles.hpp"
+#include "solver/state/grid_view.hpp"
+#include "solver/state/particles.hpp"
 
 namespace talus {
 

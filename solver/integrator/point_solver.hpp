@@ -3,12 +3,14 @@
 
 #include <algorithm>
 
-#include "solver/contact/contact_impulses.hpp"
+#include "solver/boundary/contact_impulses.hpp"
 #include "solver/integrator/point_sums.hpp"
+#include "solver/integrator/scene.hpp"
 #include "solver/integrator/solver.hpp"
-#include "solver/output/map_fields.hpp"
+#include "solver/options/options.hpp"
 #include "solver/parallel/algorithms.hpp"
 #include "solver/parallel/profile.hpp"
+#include "solver/state/map_view.hpp"
 
 namespace talus::solver {
 

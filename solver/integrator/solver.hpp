@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "common/stage/stage.hpp"
-#include "solver/contact/contact_state.hpp"
-#include "solver/integrator/clock.hpp"
-#include "solver/scene.hpp"
+#include "solver/integrator/scene.hpp"
+#include "solver/state/clock.hpp"
+#include "solver/state/contact_state.hpp"
 
 namespace talus::solver {
 
@@ -80,17 +80,5 @@ class Solver {
   }
   virtual int particle_count() const = 0;
 };
-
-/// State of a scene at the start.
-SolverState first_state(const Scene& scene, const SolveOptions& options);
-
-/// From a scene at the start. `on` must be cpu or gpu.
-std::unique_ptr<Solver> make_solver(const Scene& scene, const SolveOptions& options, On on);
-
-/// From a checkpoint; the scene gives the grid only.
-std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolveOptions& options, On on, const SolverState& state);
-
-/// cpu or gpu for automatic; throws RecipeError when a GPU is asked for and there is none.
-On choose_place(On wanted);
 
 }  // namespace talus::solver

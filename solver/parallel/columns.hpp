@@ -2,8 +2,8 @@
 // layers, of which a small scene has more than it has columns.
 #pragma once
 
-#include "solver/grid/background_grid.hpp"
 #include "solver/parallel/place.hpp"
+#include "solver/state/grid_view.hpp"
 
 namespace talus {
 

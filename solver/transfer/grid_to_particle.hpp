@@ -2,8 +2,8 @@
 #pragma once
 
 #include "solver/grid/bicubic.hpp"
-#include "solver/integrator/clock.hpp"
 #include "solver/material/material.hpp"
+#include "solver/state/clock.hpp"
 #include "solver/transfer/stencil.hpp"
 
 namespace talus {

@@ -1,9 +1,9 @@
 // Particle to grid (P2G): mass, momentum and force of the points onto the nodes around them.
 #pragma once
 
-#include "solver/integrator/clock.hpp"
 #include "solver/material/material.hpp"
 #include "solver/parallel/tiles.hpp"
+#include "solver/state/clock.hpp"
 #include "solver/transfer/stencil.hpp"
 
 namespace talus {

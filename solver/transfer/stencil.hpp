@@ -1,9 +1,9 @@
 // A point's weights on the nodes around it, and the slope of the terrain under it from the same weights.
 #pragma once
 
-#include "solver/grid/background_grid.hpp"
 #include "solver/grid/shape_functions.hpp"
-#include "solver/particles/particles.hpp"
+#include "solver/state/grid_view.hpp"
+#include "solver/state/particles.hpp"
 
 namespace talus {
 

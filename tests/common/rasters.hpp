@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-#include "common/raster/raster.hpp"
+#include "common/map/raster.hpp"
 
 namespace talus::test {
 

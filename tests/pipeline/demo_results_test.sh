@@ -81,7 +81,7 @@ test_ncdump_reads_the_netcdf() {
 
 test_netcdf_follows_cf() {
   /usr/bin/python3 -c 'import netCDF4, osgeo.gdal, ctypes; ctypes.CDLL("libudunits2.so.0")' 2>/dev/null || need_tool python3-netcdf4
-  expect_exit 0 /usr/bin/python3 "$TALUS_SOURCE/tests/postprocess/check_cf.py" "$out/maps/results.nc"
+  expect_exit 0 /usr/bin/python3 "$TALUS_SOURCE/tests/postprocess/maps/check_cf.py" "$out/maps/results.nc"
   need_tool cdo
   expect_exit 0 cdo -s infon "$out/maps/results.nc"
   if grep -qiE 'warning|error' stdout stderr; then fail "cdo complains: $(<stderr)"; fi

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/raster/raster_io.hpp"
+#include "common/gis/raster_io.hpp"
 #include "postprocess/postprocess.hpp"
 #include "tests/postprocess/scene.hpp"
 

@@ -1,6 +1,6 @@
 #include "preprocess/prepare.hpp"
 
-#include "common/raster/slope.hpp"
+#include "common/map/slope.hpp"
 #include "preprocess/sum.hpp"
 #include "preprocess/terrain/geo_input.hpp"
 #include "tests/preprocess/scene.hpp"

@@ -1,7 +1,10 @@
 // What the tests of implicit steps share: a column between rollers, a cantilever, and steps to a time.
 #pragma once
 
-#include "scenes.hpp"
+#include "solver/integrator/scene.hpp"
+#include "solver/options/options.hpp"
+#include "solver/scene/make_scene.hpp"
+#include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
 

@@ -3,10 +3,13 @@
 
 #include <random>
 
-#include "scenes.hpp"
-#include "solver/linear/cholesky_solver.hpp"
-#include "solver/linear/preconditioner.hpp"
-#include "solver/linear/tangent_operator.hpp"
+#include "solver/integrator/scene.hpp"
+#include "solver/linear/direct/cholesky_solver.hpp"
+#include "solver/linear/operator/tangent_operator.hpp"
+#include "solver/linear/preconditioner/preconditioner.hpp"
+#include "solver/options/options.hpp"
+#include "solver/scene/make_scene.hpp"
+#include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
 

@@ -9,8 +9,10 @@
 #include <vector>
 
 #include "solver/grid/sparse_grid.hpp"
+#include "solver/integrator/scene.hpp"
 #include "solver/integrator/solver.hpp"
 #include "solver/parallel/place.hpp"
+#include "solver/scene/make_scene.hpp"
 
 namespace talus::solver::testing {
 

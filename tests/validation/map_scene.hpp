@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "common/raster/raster_io.hpp"
+#include "common/gis/raster_io.hpp"
 #include "tests/validation/bench.hpp"
 
 namespace talus::validation {

@@ -1,0 +1,50 @@
+// domain.vdb: what talus-preprocess hands to talus-solve. OpenVDB stays behind domain.cpp.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/map/raster.hpp"
+
+namespace talus {
+
+/// Material points as seeded: positions in map coordinates, height measured from the bed.
+struct SeedPoints {
+  std::vector<double> x, y;    // map coordinates [m]
+  std::vector<double> height;  // above the bed, vertical [m]
+  std::vector<double> volume;  // [m3]; the sum is the release's volume to 1e-12
+  std::vector<double> extent_x,
+      extent_y;              // sides of the box that a point stands for; its height follows from the volume [m]
+  std::vector<int> release;  // index into Domain::release_names
+  std::size_t size() const { return x.size(); }
+};
+
+/// The scene as the solver sees it. One column of the background grid stands over each map cell.
+struct Domain {
+  MapGrid grid;
+  double layer_height = 0;   // h_z, vertical spacing of the background grid [m]
+  Raster terrain;            // bed under the release, ground elsewhere [m]; NaN outside the domain
+  Raster before;             // surface before the failure [m]
+  Raster release_thickness;  // vertical [m], 0 where nothing is released
+  std::vector<std::pair<std::string, Raster>>
+      bed;  // numbers of the bed's friction by the names of [solve.base]; NaN: the recipe's
+  std::vector<std::string> release_names;
+  int erodible = 0;  // of these, the first so many lie in the ground until something takes them along
+  SeedPoints points;
+  std::vector<std::pair<std::string, std::string>> provenance;  // version, command, inputs and checksums
+};
+
+/// Write `file` (aside, renamed): PointDataGrid "points" (attributes volume, height, extent_x, extent_y, release),
+/// FloatGrids "terrain", "before", "release_thickness", and "bed.NAME" for rasters of the bed, as DoubleGrids one voxel
+/// thick, MaskGrid "active" of the cells inside the domain; grid, CRS, units and provenance as metadata. Throws
+/// DataError (disk full, not writable).
+void write_domain(const std::filesystem::path& file, const Domain& domain);
+
+/// Read it back. Coordinates keep 1e-6 of a cell, volumes and heights are exact. Throws DataError: missing, truncated,
+/// not a domain of this program.
+Domain read_domain(const std::filesystem::path& file);
+
+}  // namespace talus

@@ -1,0 +1,41 @@
+// Names inside domain.vdb, shared by its writer and its reader.
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <string>
+
+#include "common/domain/domain.hpp"
+
+namespace talus::layout {
+
+inline constexpr int format = 3;  ///< raised when a reader of today would misread the file
+inline constexpr auto kind = "talus-domain";
+
+inline constexpr auto points = "points";
+inline constexpr auto terrain = "terrain";
+inline constexpr auto before = "before";
+inline constexpr auto release_thickness = "release_thickness";
+inline constexpr auto active = "active";
+inline constexpr auto bed_prefix = "bed.";  ///< and the name of a number of [solve.base]
+
+inline constexpr auto volume = "volume";
+inline constexpr auto height = "height";
+inline constexpr auto extent_x = "extent_x";
+inline constexpr auto extent_y = "extent_y";
+inline constexpr auto release = "release";
+inline constexpr auto id = "id";  ///< place in SeedPoints, so that reading gives the order of writing
+
+/// "release_name.3"
+inline std::string numbered(const std::string& name, std::size_t i) { return name + "." + std::to_string(i); }
+
+/// Index (column, row, 0) is the centre of a map cell, at `bottom` in z. The origin is the grid's corner, so that
+/// points keep their digits wherever on Earth it is.
+inline openvdb::math::Transform::Ptr transform(const MapGrid& grid, double layer_height, double bottom) {
+  openvdb::math::Mat4d matrix = openvdb::math::Mat4d::identity();
+  matrix.preScale(openvdb::Vec3d(grid.cell, grid.cell, layer_height));
+  matrix.postTranslate(openvdb::Vec3d(grid.x(0), grid.y(0), bottom));
+  return openvdb::math::Transform::createLinearTransform(matrix);
+}
+
+}  // namespace talus::layout

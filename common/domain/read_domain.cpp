@@ -1,0 +1,200 @@
+#include <openvdb/io/Stream.h>
+#include <openvdb/points/PointAttribute.h>
+#include <openvdb/points/PointConversion.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "common/domain/domain.hpp"
+#include "common/domain/domain_layout.hpp"
+#include "common/error.hpp"
+
+#ifdef __SANITIZE_ADDRESS__
+// OpenVDB drops the tree at hand when its stream ends within it; the leak sanitizer is told so here.
+extern "C" const char* __lsan_default_suppressions() { return "leak:readTopology\nleak:PagedInputStream\n"; }
+#endif
+
+namespace talus {
+namespace fs = std::filesystem;
+namespace {
+
+using openvdb::points::AttributeHandle;
+using openvdb::points::PointDataGrid;
+
+constexpr auto make_it = "Make it with talus-preprocess";
+
+[[noreturn]] void refuse(const fs::path& file, const std::string& what, const std::string& why,
+                         const std::string& mend = make_it) {
+  throw DataError({file.string() + ": " + what, why, mend});
+}
+
+struct Contents {
+  openvdb::GridPtrVecPtr grids;
+  openvdb::MetaMap::Ptr meta;
+};
+
+/// Through a stream that throws at the end of the file: OpenVDB itself would go on with whatever it has.
+Contents read_all(const fs::path& file) {
+  if (!fs::exists(file)) refuse(file, "no such file", "", "Run talus-preprocess first, with the same --out");
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream || fs::is_directory(file))
+    refuse(file, "cannot be read", fs::is_directory(file) ? "it is a folder" : "no permission", "Check the path");
+  char magic[8] = {};
+  stream.read(magic, sizeof magic);
+  constexpr char of_openvdb[8] = {0x20, 0x42, 0x44, 0x56, 0, 0, 0, 0};
+  if (stream.gcount() == 8 && !std::equal(magic, magic + 8, of_openvdb))
+    refuse(file, "not an OpenVDB file", "its first bytes say so");
+  stream.clear();
+  stream.seekg(0);
+  stream.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
+  try {
+    openvdb::io::Stream archive(stream, false);
+    return {archive.getGrids(), archive.getMetadata()};
+  } catch (const std::ios_base::failure&) {
+    refuse(file, "ends too early", "the file is truncated: its writing or copying was cut short",
+           "Run talus-preprocess again, or copy it again");
+  } catch (const std::exception& error) {  // OpenVDB throws its own and std:: kinds on bytes that make no sense
+    refuse(file, "cannot be read", std::string("the file is damaged: ") + error.what(),
+           "Run talus-preprocess again, or copy it again");
+  }
+}
+
+/// Metadata by name, with a fault that says which is missing.
+class Facts {
+ public:
+  Facts(const fs::path& file, const openvdb::MetaMap& meta) : file_(file), meta_(meta) {}
+
+  template <class T>
+  T get(const std::string& name) const {
+    const auto typed = meta_.getMetadata<openvdb::TypedMetadata<T>>(name);
+    if (!typed) refuse(file_, "not a domain of talus-preprocess", "the entry \"" + name + "\" is missing");
+    return typed->value();
+  }
+  std::size_t count(const std::string& name) const {
+    const auto value = get<std::int64_t>(name);
+    if (value < 0) refuse(file_, "not a domain of talus-preprocess", "the entry \"" + name + "\" is negative");
+    return static_cast<std::size_t>(value);
+  }
+  std::string text(const std::string& name) const { return get<std::string>(name); }
+
+ private:
+  const fs::path& file_;
+  const openvdb::MetaMap& meta_;
+};
+
+void check_kind(const fs::path& file, const openvdb::MetaMap& meta) {
+  const auto kind = meta.getMetadata<openvdb::StringMetadata>("kind");
+  if (!kind || kind->value() != layout::kind)
+    refuse(file, "not a domain of talus-preprocess", "an OpenVDB file of another program");
+  const auto format = Facts(file, meta).count("format");
+  if (format != layout::format)
+    refuse(file, "its format is " + std::to_string(format),
+           "this program reads format " + std::to_string(layout::format), "Run the talus-preprocess of this version");
+}
+
+template <class Grid>
+typename Grid::Ptr grid_named(const fs::path& file, const Contents& contents, const char* name) {
+  for (const auto& grid : *contents.grids)
+    if (grid->getName() == name)
+      if (auto typed = openvdb::gridPtrCast<Grid>(grid)) return typed;
+  refuse(file, "not a whole domain", std::string("the grid \"") + name + "\" is missing");
+}
+
+Raster sheet(const fs::path& file, const Contents& contents, const char* name, const MapGrid& map) {
+  const auto grid = grid_named<openvdb::DoubleGrid>(file, contents, name);
+  const auto accessor = grid->getConstAccessor();
+  Raster raster{map, std::vector<double>(map.count(), std::nan(""))};
+  double value = 0;
+  for (int row = 0; row < map.rows; ++row)
+    for (int column = 0; column < map.columns; ++column)
+      if (accessor.probeValue(openvdb::Coord(column, row, 0), value)) raster.at(column, row) = value;
+  return raster;
+}
+
+/// Points of one leaf, each to the place its id names.
+void take_leaf(const fs::path& file, const PointDataGrid::TreeType::LeafNodeType& leaf, const MapGrid& map,
+               SeedPoints& points) {
+  const AttributeHandle<openvdb::Vec3f> position(leaf.constAttributeArray("P"));
+  const AttributeHandle<double> volume(leaf.constAttributeArray(layout::volume)),
+      height(leaf.constAttributeArray(layout::height)), extent_x(leaf.constAttributeArray(layout::extent_x)),
+      extent_y(leaf.constAttributeArray(layout::extent_y));
+  const AttributeHandle<std::int32_t> release(leaf.constAttributeArray(layout::release));
+  const AttributeHandle<std::int64_t> id(leaf.constAttributeArray(layout::id));
+  for (auto point = leaf.beginIndexOn(); point; ++point) {
+    const auto p = static_cast<std::size_t>(id.get(*point));
+    if (p >= points.size()) refuse(file, "not a whole domain", "a point has an id beyond the count of points");
+    const openvdb::Coord voxel = point.getCoord();
+    const openvdb::Vec3f offset = position.get(*point);  // from the voxel's centre, in voxels
+    points.x[p] = map.west + (voxel.x() + 0.5 + static_cast<double>(offset.x())) * map.cell;
+    points.y[p] = map.south + (voxel.y() + 0.5 + static_cast<double>(offset.y())) * map.cell;
+    points.height[p] = height.get(*point);
+    points.volume[p] = volume.get(*point);
+    points.extent_x[p] = extent_x.get(*point);
+    points.extent_y[p] = extent_y.get(*point);
+    points.release[p] = release.get(*point);
+  }
+}
+
+SeedPoints seed_points(const fs::path& file, const Contents& contents, const MapGrid& map, std::size_t count) {
+  const auto grid = grid_named<PointDataGrid>(file, contents, layout::points);
+  std::size_t found = 0;
+  for (auto leaf = grid->tree().cbeginLeaf(); leaf; ++leaf) {
+    for (const char* name :
+         {"P", layout::volume, layout::height, layout::extent_x, layout::extent_y, layout::release, layout::id})
+      if (!leaf->hasAttribute(name))
+        refuse(file, "not a whole domain", std::string("points have no attribute \"") + name + "\"");
+    found += leaf->onPointCount();
+  }
+  if (found != count)
+    refuse(file, "holds " + std::to_string(found) + " points", "its header names " + std::to_string(count));
+  SeedPoints points;
+  for (auto* values : {&points.x, &points.y, &points.height, &points.volume, &points.extent_x, &points.extent_y})
+    values->resize(count);
+  points.release.resize(count);
+  for (auto leaf = grid->tree().cbeginLeaf(); leaf; ++leaf) take_leaf(file, *leaf, map, points);
+  return points;
+}
+
+Domain assemble(const fs::path& file, const Contents& contents) {
+  const Facts facts(file, *contents.meta);
+  Domain domain;
+  domain.grid = {static_cast<int>(facts.count("columns")),
+                 static_cast<int>(facts.count("rows")),
+                 facts.get<double>("west_m"),
+                 facts.get<double>("south_m"),
+                 facts.get<double>("cell_m"),
+                 facts.text("crs_wkt")};
+  domain.layer_height = facts.get<double>("layer_height_m");
+  domain.terrain = sheet(file, contents, layout::terrain, domain.grid);
+  domain.before = sheet(file, contents, layout::before, domain.grid);
+  domain.release_thickness = sheet(file, contents, layout::release_thickness, domain.grid);
+  for (const auto& grid : *contents.grids) {
+    const std::string name = grid->getName();
+    if (name.rfind(layout::bed_prefix, 0) != 0) continue;
+    domain.bed.emplace_back(name.substr(std::string(layout::bed_prefix).size()),
+                            sheet(file, contents, name.c_str(), domain.grid));
+  }
+  for (std::size_t i = 0; i < facts.count("releases"); ++i)
+    domain.release_names.push_back(facts.text(layout::numbered("release_name", i)));
+  domain.erodible = static_cast<int>(facts.count("erodible"));
+  for (std::size_t i = 0; i < facts.count("facts"); ++i)
+    domain.provenance.emplace_back(facts.text(layout::numbered("fact_name", i)),
+                                   facts.text(layout::numbered("fact_value", i)));
+  domain.points = seed_points(file, contents, domain.grid, facts.count("points"));
+  return domain;
+}
+
+}  // namespace
+
+Domain read_domain(const fs::path& file) {
+  openvdb::initialize();
+  const Contents contents = read_all(file);
+  check_kind(file, *contents.meta);
+  try {
+    return assemble(file, contents);
+  } catch (const openvdb::Exception& error) {
+    refuse(file, "not a whole domain", error.what());
+  }
+}
+
+}  // namespace talus

@@ -1,0 +1,160 @@
+#include <openvdb/points/PointAttribute.h>
+#include <openvdb/points/PointConversion.h>
+#include <openvdb/tools/PointIndexGrid.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "common/domain/domain.hpp"
+#include "common/domain/domain_layout.hpp"
+#include "common/map/bilinear.hpp"
+#include "common/stage/stage.hpp"
+#include "common/stage/write_fault.hpp"
+
+namespace talus {
+namespace fs = std::filesystem;
+namespace {
+
+using openvdb::points::PointDataGrid;
+using openvdb::tools::PointIndexGrid;
+
+/// Lowest ground: the local origin of heights.
+double bottom_of(const Raster& terrain) {
+  double bottom = std::numeric_limits<double>::infinity();
+  for (const double value : terrain.values)
+    if (!std::isnan(value)) bottom = std::min(bottom, value);
+  return std::isfinite(bottom) ? bottom : 0;
+}
+
+/// Where the points stand in space, for those who look at the file; the solver takes x, y and the height attribute.
+std::vector<openvdb::Vec3d> positions_of(const Domain& domain) {
+  const SeedPoints& points = domain.points;
+  std::vector<openvdb::Vec3d> positions(points.size());
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const double ground = bilinear(domain.terrain, points.x[p], points.y[p]);
+    positions[p] = {points.x[p], points.y[p],
+                    (std::isnan(ground) ? bottom_of(domain.terrain) : ground) + points.height[p]};
+  }
+  return positions;
+}
+
+template <class Stored, class Values>
+void attach(PointDataGrid& grid, const PointIndexGrid& order, const char* name, const Values& values) {
+  const std::vector<Stored> stored(values.begin(), values.end());
+  openvdb::points::appendAttribute<Stored>(grid.tree(), name);
+  const openvdb::points::PointAttributeVector<Stored> wrapped(stored);
+  openvdb::points::populateAttribute(grid.tree(), order.tree(), name, wrapped);
+}
+
+PointDataGrid::Ptr point_grid(const Domain& domain) {
+  const auto transform = layout::transform(domain.grid, domain.layer_height, bottom_of(domain.terrain));
+  const auto positions = positions_of(domain);
+  const openvdb::points::PointAttributeVector<openvdb::Vec3d> wrapped(positions);
+  const auto order = openvdb::tools::createPointIndexGrid<PointIndexGrid>(wrapped, *transform);
+  auto grid =
+      openvdb::points::createPointDataGrid<openvdb::points::NullCodec, PointDataGrid>(*order, wrapped, *transform);
+  std::vector<std::int64_t> ids(positions.size());
+  std::iota(ids.begin(), ids.end(), 0);
+  attach<double>(*grid, *order, layout::volume, domain.points.volume);
+  attach<double>(*grid, *order, layout::height, domain.points.height);
+  attach<double>(*grid, *order, layout::extent_x, domain.points.extent_x);
+  attach<double>(*grid, *order, layout::extent_y, domain.points.extent_y);
+  attach<std::int32_t>(*grid, *order, layout::release, domain.points.release);
+  attach<std::int64_t>(*grid, *order, layout::id, ids);
+  grid->setName(layout::points);
+  grid->insertMeta("units",
+                   openvdb::StringMetadata("position m, volume m3, height m above the bed, vertical, extent m"));
+  return grid;
+}
+
+template <class Grid, class Value>
+openvdb::GridBase::Ptr sheet(const Domain& domain, const Raster& raster, const char* name, Value&& value) {
+  auto grid = Grid::create();
+  auto accessor = grid->getAccessor();
+  for (int row = 0; row < raster.grid.rows; ++row)
+    for (int column = 0; column < raster.grid.columns; ++column)
+      if (const double cell = raster.at(column, row); !std::isnan(cell))
+        accessor.setValueOn(openvdb::Coord(column, row, 0), value(cell));
+  grid->setName(name);
+  grid->setTransform(layout::transform(domain.grid, domain.layer_height, bottom_of(domain.terrain)));
+  return grid;
+}
+
+openvdb::GridBase::Ptr value_sheet(const Domain& domain, const Raster& raster, const char* name) {
+  auto grid = sheet<openvdb::DoubleGrid>(domain, raster, name, [](double cell) { return cell; });
+  grid->insertMeta("units", openvdb::StringMetadata("m"));
+  return grid;
+}
+
+openvdb::MetaMap metadata_of(const Domain& domain) {
+  openvdb::MetaMap meta;
+  const auto number = [&](const std::string& name, double value) {
+    meta.insertMeta(name, openvdb::DoubleMetadata(value));
+  };
+  const auto text = [&](const std::string& name, const std::string& value) {
+    meta.insertMeta(name, openvdb::StringMetadata(value));
+  };
+  const auto count = [&](const std::string& name, std::size_t value) {
+    meta.insertMeta(name, openvdb::Int64Metadata(static_cast<std::int64_t>(value)));
+  };
+  text("kind", layout::kind);
+  count("format", layout::format);
+  text("units", "SI; elevations and thicknesses vertical, m; volumes m3");
+  count("columns", static_cast<std::size_t>(domain.grid.columns));
+  count("rows", static_cast<std::size_t>(domain.grid.rows));
+  number("west_m", domain.grid.west);
+  number("south_m", domain.grid.south);
+  number("cell_m", domain.grid.cell);
+  number("layer_height_m", domain.layer_height);
+  text("crs_wkt", domain.grid.crs_wkt);
+  count("points", domain.points.size());
+  count("releases", domain.release_names.size());
+  count("erodible", static_cast<std::size_t>(domain.erodible));
+  for (std::size_t i = 0; i < domain.release_names.size(); ++i)
+    text(layout::numbered("release_name", i), domain.release_names[i]);
+  count("facts", domain.provenance.size());
+  for (std::size_t i = 0; i < domain.provenance.size(); ++i) {
+    text(layout::numbered("fact_name", i), domain.provenance[i].first);
+    text(layout::numbered("fact_value", i), domain.provenance[i].second);
+  }
+  return meta;
+}
+
+/// OpenVDB does not look whether its stream still writes, so a full disk shows only on reading back.
+void verify(const fs::path& partial, const fs::path& file, const Domain& domain) {
+  bool same = false;
+  std::string reason = "it does not read back as written";
+  try {
+    const Domain back = read_domain(partial);
+    same = back.points.size() == domain.points.size() && back.points.volume == domain.points.volume;
+  } catch (const DataError& error) {
+    reason += ": " + error.faults().front().why;
+  }
+  if (!same) throw DataError(write_fault(file, reason));
+}
+
+}  // namespace
+
+void write_domain(const fs::path& file, const Domain& domain) {
+  openvdb::initialize();
+  PendingFile pending(file);
+  try {
+    openvdb::GridPtrVec grids{
+        point_grid(domain), value_sheet(domain, domain.terrain, layout::terrain),
+        value_sheet(domain, domain.before, layout::before),
+        value_sheet(domain, domain.release_thickness, layout::release_thickness),
+        sheet<openvdb::MaskGrid>(domain, domain.terrain, layout::active, [](double) { return true; })};
+    for (const auto& [name, raster] : domain.bed) {
+      grids.push_back(sheet<openvdb::DoubleGrid>(domain, raster, (layout::bed_prefix + name).c_str(),
+                                                 [](double cell) { return cell; }));
+    }
+    openvdb::io::File(pending.path().string()).write(grids, metadata_of(domain));
+  } catch (const openvdb::Exception& error) {
+    throw DataError(write_fault(file, error.what()));
+  }
+  verify(pending.path(), file, domain);
+  pending.commit();
+}
+
+}  // namespace talus

@@ -1,0 +1,63 @@
+// What every file that calls GDAL shares: start-up, quiet errors, handles, coordinate systems. Nobody else includes it.
+#pragma once
+
+#include <cpl_error.h>
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/error.hpp"
+#include "common/map/raster.hpp"
+
+namespace talus::gdal {
+
+/// Starts GDAL on first use, and while it lives keeps GDAL's errors off stderr and collects them instead.
+class QuietErrors {
+ public:
+  QuietErrors();
+  QuietErrors(const QuietErrors&) = delete;
+  QuietErrors& operator=(const QuietErrors&) = delete;
+  ~QuietErrors();
+  bool failed() const { return !failures_.empty(); }  ///< some call failed, also one that returns nothing (GDALClose)
+  std::string text() const;                           ///< the first failures, joined; "GDAL gave no reason" if none
+
+ private:
+  static void CPL_STDCALL collect(CPLErr kind, CPLErrorNum number, const char* message);
+  std::vector<std::string> failures_;
+};
+
+struct CloseDataset {
+  void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
+};
+using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
+
+struct DestroyTransformation {
+  void operator()(OGRCoordinateTransformation* t) const { OGRCoordinateTransformation::DestroyCT(t); }
+};
+using Transformation = std::unique_ptr<OGRCoordinateTransformation, DestroyTransformation>;
+
+/// A CRS from WKT, x before y. Throws DataError when PROJ does not understand it.
+OGRSpatialReference spatial_reference(const std::string& wkt);
+
+/// WKT2 of the horizontal part of a CRS (heights are metres in all of this project); "" for none.
+std::string horizontal_wkt(const OGRSpatialReference* srs);
+
+/// Short name for messages: "EPSG:32149", else the CRS's own name.
+std::string short_name(const OGRSpatialReference& srs);
+
+/// From one CRS to another. Throws DataError when there is no way between them.
+Transformation transformation(const OGRSpatialReference& from, const OGRSpatialReference& to);
+
+/// "EPSG:32611", the UTM zone of a point given in `srs`; "EPSG:<a metric one>" when it cannot be told.
+std::string utm_zone(const OGRSpatialReference& srs, double x, double y);
+
+/// The raster as a GDAL dataset in memory: Float64, north first, NaN as `nodata`.
+Dataset in_memory(const Raster& raster, double nodata);
+
+}  // namespace talus::gdal

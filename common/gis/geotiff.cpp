@@ -1,0 +1,83 @@
+// Rasters out: GeoTIFF, plain or cloud-optimised, written aside, read back and renamed.
+#include <cpl_string.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "common/gis/gdal_support.hpp"
+#include "common/gis/raster_io.hpp"
+#include "common/stage/stage.hpp"
+#include "common/stage/write_fault.hpp"
+
+namespace talus {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr double nodata = -9999;
+
+gdal::Dataset tagged(const Raster& raster, const RasterTags& tags) {
+  gdal::Dataset dataset = gdal::in_memory(raster, nodata);
+  auto* band = dataset->GetRasterBand(1);
+  band->SetDescription(tags.description.c_str());
+  band->SetUnitType(tags.unit.c_str());
+  dataset->SetMetadataItem(GDALMD_AREA_OR_POINT, GDALMD_AOP_AREA);
+  for (const auto& [name, value] : tags.metadata) dataset->SetMetadataItem(name.c_str(), value.c_str());
+  return dataset;
+}
+
+/// True when the file holds the very bytes of `expected`. A full disk or a lost mount shows here at the latest.
+bool reads_back(const fs::path& written, GDALDataset& expected) {
+  const gdal::Dataset dataset(GDALDataset::Open(written.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
+  if (!dataset) return false;
+  const int columns = expected.GetRasterXSize(), rows = expected.GetRasterYSize();
+  std::vector<double> ours(static_cast<std::size_t>(columns)), theirs(ours.size());
+  const auto line_of = [&](GDALDataset& from, int line, std::vector<double>& values) {
+    return from.GetRasterBand(1)->RasterIO(GF_Read, 0, line, columns, 1, values.data(), columns, 1, GDT_Float64, 0, 0,
+                                           nullptr) == CE_None;
+  };
+  for (int line = 0; line < rows; ++line) {
+    if (!line_of(expected, line, ours) || !line_of(*dataset, line, theirs)) return false;
+    if (std::memcmp(ours.data(), theirs.data(), ours.size() * sizeof(double)) != 0) return false;
+  }
+  return true;
+}
+
+void write(const fs::path& file, const Raster& raster, const RasterTags& tags, const char* driver_name,
+           const CPLStringList& options) {
+  PendingFile pending(file);
+  const gdal::QuietErrors errors;
+  const gdal::Dataset source = tagged(raster, tags);
+  auto* driver = GetGDALDriverManager()->GetDriverByName(driver_name);
+  if (driver == nullptr)
+    throw DataError({file.string() + ": cannot be written", std::string("this GDAL has no ") + driver_name + " driver",
+                     "Install GDAL 3.1 or newer"});
+  gdal::Dataset written(driver->CreateCopy(pending.path().c_str(), source.get(), TRUE,
+                                           const_cast<char**>(options.List()), nullptr, nullptr));
+  const bool made = written != nullptr;
+  written.reset();  // closing flushes, and reports through `errors` alone
+  if (!made || errors.failed()) throw DataError(write_fault(file, errors.text()));
+  if (!reads_back(pending.path(), *source)) throw DataError(write_fault(file, "it does not read back as written"));
+  pending.commit();
+}
+
+}  // namespace
+
+void write_cog(const fs::path& file, const Raster& raster, const RasterTags& tags) {
+  CPLStringList options;
+  options.SetNameValue("COMPRESS", "DEFLATE");
+  options.SetNameValue("PREDICTOR", "YES");
+  options.SetNameValue("OVERVIEWS", "AUTO");
+  options.SetNameValue("OVERVIEW_RESAMPLING", "AVERAGE");
+  options.SetNameValue("BIGTIFF", "IF_SAFER");
+  write(file, raster, tags, "COG", options);
+}
+
+void write_geotiff(const fs::path& file, const Raster& raster, const RasterTags& tags) {
+  CPLStringList options;
+  options.SetNameValue("COMPRESS", "DEFLATE");
+  options.SetNameValue("PREDICTOR", "3");
+  options.SetNameValue("BIGTIFF", "IF_SAFER");
+  write(file, raster, tags, "GTiff", options);
+}
+
+}  // namespace talus

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <vector>
+
+#include "common/gis/raster_io.hpp"
+
+namespace talus {
+
+/// 1 where the cell centre lies inside any of the polygons (holes counted out), else 0 [rows * columns]. Polygons may
+/// reach beyond the grid.
+std::vector<char> cells_inside(const std::vector<MapPolygon>& polygons, const MapGrid& grid);
+
+}  // namespace talus

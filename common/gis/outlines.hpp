@@ -1,0 +1,37 @@
+// Outlines of what lies above a threshold, and vector files of them.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/gis/raster_io.hpp"
+#include "common/map/raster.hpp"
+
+namespace talus {
+
+/// Area above `threshold` (not negative) as polygons with holes, interpolated between cell centres; nodata and what
+/// lies beyond the raster count as 0. The polygons are valid and disjoint: outer ring counter-clockwise, holes
+/// clockwise.
+std::vector<MapPolygon> outline_above(const Raster& raster, double threshold);
+
+/// Several polygons that are one thing, written as one multipolygon.
+struct OutlineFeature {
+  std::string name;
+  std::vector<MapPolygon> polygons;
+  std::vector<std::pair<std::string, double>> numbers;  ///< further attributes; keys carry their unit
+};
+
+struct OutlineLayer {
+  std::string name;
+  std::vector<OutlineFeature> features;
+};
+
+/// Write a GeoPackage (aside, renamed): a layer of multipolygons for each of `layers`, with the attributes `name`,
+/// `area_m2` (on the map, holes taken off) and the features' numbers. Features without a polygon are left out. An empty
+/// CRS stays none. Throws DataError when anything fails on the way (disk full, a name twice).
+void write_outlines(const std::filesystem::path& gpkg, const std::string& crs_wkt,
+                    const std::vector<OutlineLayer>& layers);
+
+}  // namespace talus

@@ -1,0 +1,63 @@
+// The one door for rasters: every file is opened, checked and read here, whole or by windows, in metres and north up.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "common/map/raster.hpp"
+
+namespace talus {
+
+struct ReadOptions {
+  /// WKT of a CRS in metres. A raster in degrees, in feet or in another CRS is reprojected to it as its cells are read
+  /// (bilinear; square cells about as large as the file's, on whole multiples of their size). Empty: as the file is,
+  /// and degrees and feet are refused. A raster without CRS is never reprojected.
+  std::string to_crs;
+  /// What the values are in: "metre", "foot" or "us-survey-foot"; "" = what the file says, metres where it says
+  /// nothing.
+  std::string vertical_unit;
+  /// Another way out, for the end of a refusal of degrees and feet: "or set working_crs = "utm" in the recipe".
+  std::string or_else;
+};
+
+/// Band 1 of any GDAL raster. Scale and offset are applied; nodata (declared, masked, NaN, or the customary -9999 and
+/// the like where none is declared) becomes NaN; declared feet and other lengths become metres. The constructor reads
+/// the header only. Refused with the command that mends it (DataError): missing or unreadable file, degrees or feet
+/// (see ReadOptions), a unit of length that is not known, rotated or non-square cells. Not for use by two threads at
+/// once.
+class RasterFile {
+ public:
+  explicit RasterFile(const std::filesystem::path& file, const ReadOptions& options = {});
+  RasterFile(RasterFile&&) noexcept;
+  RasterFile& operator=(RasterFile&&) noexcept;
+  ~RasterFile();
+
+  const std::filesystem::path& file() const;
+  const MapGrid& grid() const;
+
+  /// Between one value that the file can hold and the next, where it holds integers [m]; 0 for real numbers.
+  double step() const;
+
+  /// The cells of a window, which must lie inside the grid (std::out_of_range). All may be NaN. Throws DataError when
+  /// they cannot be read (file cut short) and where one is infinite, naming its place.
+  Raster read(const CellWindow& window) const;
+
+  /// All cells. Throws DataError also when none holds a value.
+  Raster read() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+/// A raster whole: as it is where it is in metres, else reprojected to `crs_wkt`.
+Raster read_raster_in_metres(const std::filesystem::path& file, const std::string& crs_wkt);
+
+/// True when a raster's CRS is projected and in metres, or when it names none. Throws DataError as RasterFile does.
+bool in_metres(const std::filesystem::path& file);
+
+/// WKT2 of the UTM zone (on WGS 84) that holds the centre of a raster. Throws DataError: no CRS, or beyond 84 degrees.
+std::string utm_crs_of(const std::filesystem::path& file);
+
+}  // namespace talus

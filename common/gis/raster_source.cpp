@@ -1,0 +1,175 @@
+#include "common/gis/raster_source.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "common/gis/gdal_support.hpp"
+#include "common/gis/vertical_unit.hpp"
+#include "common/stage/stage.hpp"
+
+namespace talus::gdal {
+namespace fs = std::filesystem;
+namespace {
+
+/// Cells of ASCII grids in double precision: GDAL would keep seven digits, and 2345.678 m have as many.
+Dataset open_any(const fs::path& file, const AsciiGrid& ascii) {
+  constexpr unsigned how = GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR;
+  if (!ascii.is_one()) return Dataset(GDALDataset::Open(file.c_str(), how));
+  const std::array<const char*, 2> drivers{"AAIGrid", nullptr}, options{"DATATYPE=Float64", nullptr};
+  return Dataset(GDALDataset::Open(ascii.path().c_str(), how, drivers.data(), options.data()));
+}
+
+Dataset open(const fs::path& file, const AsciiGrid& ascii) {
+  const QuietErrors errors;
+  Dataset dataset = open_any(file, ascii);
+  if (!dataset) {
+    const bool plain = file.is_absolute() && !file.string().starts_with("/vsi");
+    if (plain && !fs::exists(file))
+      throw DataError({file.string() + ": no such file", "", "Check the path in the recipe"});
+    throw DataError(
+        {file.string() + ": not a raster that can be read", errors.text(), "Look at it: gdalinfo " + file.string()});
+  }
+  if (dataset->GetRasterCount() == 0) {
+    const char* first = CSLFetchNameValue(dataset->GetMetadata("SUBDATASETS"), "SUBDATASET_1_NAME");
+    throw DataError({file.string() + ": holds no raster of its own",
+                     first == nullptr ? "no band in it" : "several rasters are inside",
+                     first == nullptr ? "Look at it: gdalinfo " + file.string()
+                                      : fmt::format("Name one of them in the recipe, such as {}", first)});
+  }
+  return dataset;
+}
+
+std::unique_ptr<AsciiGrid> ascii_grid(const fs::path& file) {
+  const QuietErrors errors;
+  return std::make_unique<AsciiGrid>(file);
+}
+
+/// The unit that a band names, else that of the vertical part of its CRS.
+std::string declared_unit(GDALRasterBand& band, const OGRSpatialReference* srs) {
+  const std::string unit = band.GetUnitType();
+  if (!unit.empty() || srs == nullptr || !srs->IsCompound()) return unit;
+  const char* name = nullptr;
+  srs->GetTargetLinearUnits("VERT_CS", &name);
+  return name == nullptr ? "" : name;
+}
+
+/// No height, and no other quantity of a slide, is as large; grids use such values for nodata without always saying so.
+bool beyond_all_heights(double value) { return std::isfinite(value) && std::abs(value) >= 1e30; }
+
+}  // namespace
+
+std::string mended(const fs::path& file, const char* suffix) { return file.stem().string() + suffix + ".tif"; }
+
+RasterSource::RasterSource(fs::path file, const std::string& vertical_unit)
+    : file_(std::move(file)),
+      ascii_(ascii_grid(file_)),
+      dataset_(open(file_, *ascii_)),
+      band_(dataset_->GetRasterBand(1)) {
+  const QuietErrors errors;
+  placed_ = dataset_->GetGeoTransform(transform_.data()) == CE_None;
+  scale_ = band_->GetScale();
+  offset_ = band_->GetOffset();
+  take_unit(vertical_unit);
+}
+
+void RasterSource::take_unit(const std::string& vertical_unit) {
+  const bool given = !vertical_unit.empty();
+  const std::string unit = given ? vertical_unit : declared_unit(*band_, srs());
+  const auto metres = metres_in(unit);
+  if (!metres)
+    throw DataError({fmt::format("{}: its values are in \"{}\"", file_.string(), unit),
+                     "this unit of length is not known, and this stage needs metres",
+                     fmt::format("If they are metres, say so: gdal_edit.py -units m {}", file_.string())});
+  if (*metres == 1.0) return;
+  scale_ *= *metres;
+  offset_ *= *metres;
+  log_info(fmt::format("{}: heights {} {}, converted to metres (x {:.10g})", file_.string(),
+                       given ? "taken as" : "are in", unit, *metres));
+}
+
+int RasterSource::columns() const { return dataset_->GetRasterXSize(); }
+int RasterSource::lines() const { return dataset_->GetRasterYSize(); }
+
+const OGRSpatialReference* RasterSource::srs() const {
+  const OGRSpatialReference* srs = dataset_->GetSpatialRef();
+  return srs == nullptr || srs->IsEmpty() ? nullptr : srs;
+}
+
+bool RasterSource::in_metres() const {
+  const QuietErrors errors;
+  const OGRSpatialReference* own = srs();
+  return own == nullptr || (!own->IsGeographic() && std::abs(own->GetLinearUnits() - 1) <= 1e-9);
+}
+
+double RasterSource::step() const {
+  return GDALDataTypeIsInteger(band_->GetRasterDataType()) != 0 ? std::abs(scale_) : 0.0;
+}
+
+std::array<double, 2> RasterSource::centre() const {
+  const double column = 0.5 * columns(), line = 0.5 * lines();
+  const auto& g = transform_;
+  return {g[0] + g[1] * column + g[2] * line, g[3] + g[4] * column + g[5] * line};
+}
+
+std::array<int, 2> RasterSource::block() const {
+  std::array<int, 2> size{};
+  band_->GetBlockSize(&size[0], &size[1]);
+  return size;
+}
+
+std::vector<double> RasterSource::read(int column, int line, int columns, int lines) {
+  const QuietErrors errors;
+  std::vector<double> values(static_cast<std::size_t>(columns) * static_cast<std::size_t>(lines));
+  const bool read = band_->RasterIO(GF_Read, column, line, columns, lines, values.data(), columns, lines, GDT_Float64,
+                                    0, 0, nullptr) == CE_None;
+  if (read) drop_masked(values, column, line, columns, lines);
+  if (!read || errors.failed())
+    throw DataError({file_.string() + ": its cells cannot be read", errors.text(),
+                     "The file may be cut short; copy or download it again"});
+  drop_undeclared(values);
+  if (scale_ != 1 || offset_ != 0)
+    for (double& value : values) value = value * scale_ + offset_;
+  refuse_infinite(values, column, line, columns);
+  return values;
+}
+
+/// Everything that the file masks: nodata, mask band, alpha.
+void RasterSource::drop_masked(std::vector<double>& values, int column, int line, int columns, int lines) {
+  if ((band_->GetMaskFlags() & GMF_ALL_VALID) != 0) return;
+  std::vector<GByte> mask(values.size());
+  if (band_->GetMaskBand()->RasterIO(GF_Read, column, line, columns, lines, mask.data(), columns, lines, GDT_Byte, 0, 0,
+                                     nullptr) != CE_None)
+    return;  // the failure is collected by whoever reads
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (mask[i] == 0) values[i] = std::nan("");
+}
+
+/// Grids whose header forgot to name the nodata value still use the customary ones.
+void RasterSource::drop_undeclared(std::vector<double>& values) {
+  int declared = 0;
+  band_->GetNoDataValue(&declared);
+  for (double& value : values) {
+    const bool customary = declared == 0 && (value == -9999 || value == -32768);
+    if (!customary && !beyond_all_heights(value)) continue;
+    value = std::nan("");
+    ++undeclared_;
+  }
+}
+
+void RasterSource::refuse_infinite(const std::vector<double>& values, int column, int line, int columns) const {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!std::isinf(values[i])) continue;
+    const int c = column + static_cast<int>(i % static_cast<std::size_t>(columns)),
+              l = line + static_cast<int>(i / static_cast<std::size_t>(columns));
+    const auto& g = transform_;
+    throw DataError(
+        {fmt::format("{}: column {}, line {} (x {:.2f}, y {:.2f}) is infinite", file_.string(), c + 1, l + 1,
+                     g[0] + g[1] * (c + 0.5) + g[2] * (l + 0.5), g[3] + g[4] * (c + 0.5) + g[5] * (l + 0.5)),
+         "no elevation or thickness is",
+         "Make such cells nodata: gdal_calc.py -A in.tif --calc=\"where(isfinite(A),A,-9999)\" "
+         "--NoDataValue=-9999 --outfile=out.tif"});
+  }
+}
+
+}  // namespace talus::gdal

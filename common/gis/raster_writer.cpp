@@ -1,0 +1,103 @@
+#include "common/gis/raster_writer.hpp"
+
+#include <cpl_string.h>
+
+#include <cmath>
+#include <vector>
+
+#include "common/gis/gdal_support.hpp"
+#include "common/stage/stage.hpp"
+#include "common/stage/write_fault.hpp"
+
+namespace talus {
+namespace {
+
+constexpr float nodata = -9999;
+constexpr int large = 2048;  // cells from which a map is looked at through overviews
+
+CPLStringList creation_options() {
+  CPLStringList options;
+  for (const auto& [name, value] : {std::pair{"TILED", "YES"},
+                                    {"BLOCKXSIZE", "256"},
+                                    {"BLOCKYSIZE", "256"},
+                                    {"COMPRESS", "DEFLATE"},
+                                    {"PREDICTOR", "3"},
+                                    {"ZLEVEL", "1"},
+                                    {"NUM_THREADS", "ALL_CPUS"},
+                                    {"BIGTIFF", "IF_SAFER"}})
+    options.SetNameValue(name, value);
+  return options;
+}
+
+}  // namespace
+
+struct RasterWriter::Open {
+  PendingFile pending;
+  MapGrid grid;
+  gdal::Dataset dataset;
+
+  [[noreturn]] void fail(const gdal::QuietErrors& errors) const {
+    throw DataError(write_fault(pending.final_path(), errors.text()));
+  }
+};
+
+RasterWriter::RasterWriter(const std::filesystem::path& file, const MapGrid& grid, const RasterTags& tags)
+    : open_(new Open{PendingFile(file), grid, nullptr}) {
+  const gdal::QuietErrors errors;
+  auto* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+  const CPLStringList options = creation_options();
+  open_->dataset.reset(driver->Create(open_->pending.path().c_str(), grid.columns, grid.rows, 1, GDT_Float32,
+                                      const_cast<char**>(options.List())));
+  if (!open_->dataset) open_->fail(errors);
+  std::array<double, 6> corner{grid.west, grid.cell, 0, grid.north(), 0, -grid.cell};
+  open_->dataset->SetGeoTransform(corner.data());
+  if (!grid.crs_wkt.empty()) {
+    const OGRSpatialReference srs = gdal::spatial_reference(grid.crs_wkt);
+    open_->dataset->SetSpatialRef(&srs);
+  }
+  auto* band = open_->dataset->GetRasterBand(1);
+  band->SetNoDataValue(nodata);
+  band->SetDescription(tags.description.c_str());
+  band->SetUnitType(tags.unit.c_str());
+  open_->dataset->SetMetadataItem(GDALMD_AREA_OR_POINT, GDALMD_AOP_AREA);
+  for (const auto& [name, value] : tags.metadata) say(name, value);
+}
+
+RasterWriter::~RasterWriter() = default;
+
+void RasterWriter::say(const std::string& name, const std::string& value) {
+  open_->dataset->SetMetadataItem(name.c_str(), value.c_str());
+}
+
+void RasterWriter::write(const Raster& part) {
+  const gdal::QuietErrors errors;
+  const MapGrid& g = part.grid;
+  const int column = static_cast<int>(std::lround((g.west - open_->grid.west) / g.cell));
+  const int line = static_cast<int>(std::lround((open_->grid.north() - g.north()) / g.cell));
+  std::vector<float> values(g.count());
+  for (int row = 0; row < g.rows; ++row) {
+    for (int c = 0; c < g.columns; ++c) {
+      const double value = part.at(c, row);
+      values[g.index(c, g.rows - 1 - row)] = std::isnan(value) ? nodata : static_cast<float>(value);
+    }
+  }
+  if (open_->dataset->GetRasterBand(1)->RasterIO(GF_Write, column, line, g.columns, g.rows, values.data(), g.columns,
+                                                 g.rows, GDT_Float32, 0, 0, nullptr) != CE_None)
+    open_->fail(errors);
+}
+
+void RasterWriter::finish() {
+  const gdal::QuietErrors errors;
+  if (std::max(open_->grid.columns, open_->grid.rows) >= large) {
+    std::vector<int> factors;
+    for (int f = 2; std::max(open_->grid.columns, open_->grid.rows) / f >= 256; f *= 2) factors.push_back(f);
+    if (open_->dataset->BuildOverviews("AVERAGE", static_cast<int>(factors.size()), factors.data(), 0, nullptr, nullptr,
+                                       nullptr) != CE_None)
+      open_->fail(errors);
+  }
+  open_->dataset.reset();  // closing flushes, and reports through `errors` alone
+  if (errors.failed()) open_->fail(errors);
+  open_->pending.commit();
+}
+
+}  // namespace talus

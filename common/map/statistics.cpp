@@ -1,0 +1,40 @@
+#include "common/map/statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace talus {
+
+double quantile(std::vector<double> values, double q) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const double place = q * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<std::ptrdiff_t>(std::floor(place));
+  std::nth_element(values.begin(), values.begin() + below, values.end());
+  const double low = values[static_cast<std::size_t>(below)];
+  if (below + 1 == static_cast<std::ptrdiff_t>(values.size())) return low;
+  const double high = *std::min_element(values.begin() + below + 1, values.end());
+  return low + (place - static_cast<double>(below)) * (high - low);
+}
+
+double median(const std::vector<double>& values) { return quantile(values, 0.5); }
+
+double nmad(const std::vector<double>& values) {
+  const double middle = median(values);
+  auto distances = values;
+  for (double& v : distances) v = std::abs(v - middle);
+  constexpr double of_a_normal_distribution = 1.4826;  // 1 / quantile of 3/4
+  return of_a_normal_distribution * median(distances);
+}
+
+Spread spread_of(std::vector<double> values) {
+  std::erase_if(values, [](double v) { return std::isnan(v); });
+  const auto count = static_cast<double>(values.size());
+  double sum = 0, square = 0;
+  for (const double v : values) sum += v;
+  const double mean = values.empty() ? std::numeric_limits<double>::quiet_NaN() : sum / count;
+  for (const double v : values) square += (v - mean) * (v - mean);
+  return {mean, std::sqrt(square / std::max(1.0, count - 1)), quantile(values, 0.05), quantile(values, 0.95)};
+}
+
+}  // namespace talus

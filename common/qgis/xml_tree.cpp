@@ -1,0 +1,34 @@
+#include "common/qgis/xml_tree.hpp"
+
+#include <cpl_conv.h>
+#include <cpl_minixml.h>
+
+namespace talus {
+
+XmlElement XmlElement::add(const char* name, Attributes attributes) {
+  XmlElement child(CPLCreateXMLNode(node_, CXT_Element, name));
+  for (const auto& [key, value] : attributes) child.set(key, value);
+  return child;
+}
+
+XmlElement XmlElement::add_text(const char* name, const std::string& text) {
+  return XmlElement(CPLCreateXMLElementAndValue(node_, name, text.c_str()));
+}
+
+void XmlElement::set(const char* key, const std::string& value) {
+  CPLAddXMLAttributeAndValue(node_, key, value.c_str());
+}
+
+XmlDocument::XmlDocument(const char* root, XmlElement::Attributes attributes)
+    : tree_(CPLCreateXMLNode(nullptr, CXT_Element, root)) {
+  for (const auto& [key, value] : attributes) this->root().set(key, value);
+}
+
+std::string XmlDocument::text(const std::string& doctype) const {
+  const std::unique_ptr<char, void (*)(void*)> text(CPLSerializeXMLTree(tree_.get()), CPLFree);
+  return doctype + "\n" + text.get();
+}
+
+void XmlDocument::Destroy::operator()(CPLXMLNode* node) const { CPLDestroyXMLNode(node); }
+
+}  // namespace talus

@@ -1,0 +1,175 @@
+// Contact points in velocities: impulses that let no surface be run through, with friction, found by sweeps over all
+// points at once.
+//
+// With shares M of a point in the nodes (ContactView::around), its velocity is v = sum M_i v_i, and an impulse p there
+// changes that by sum M_i^2 / m_i p. In a sweep all points act at once on what the last one left, each divided by the
+// sum of what all together do to it, sum_i M_i Q_i with Q_i = sum M_i / m_i over the points (Jacobi's method with
+// absolute row sums, which cannot overshoot): a uniform approach is taken away by one sweep. Forces are kept from step
+// to step (warm start), so that what rests stays.
+#pragma once
+
+#include "solver/boundary/surface_contact.hpp"
+#include "solver/state/clock.hpp"
+
+namespace talus::solver {
+
+inline constexpr int contact_sweeps = 4;
+
+/// Nodes of an explicit step.
+template <class Real>
+struct PackedNodes {
+  Vec4<Real>* nodes;
+  Vec4<Real>* changes;  // of the velocity in the step; null where nobody asks
+  TALUS_HD Real mass(int n) const { return nodes[n].w; }
+  TALUS_HD Vec3<Real> velocity(int n) const { return {nodes[n].x, nodes[n].y, nodes[n].z}; }
+  TALUS_HD void add(int n, const Vec3<Real>& v) const {
+    nodes[n].x += v.x;
+    nodes[n].y += v.y;
+    nodes[n].z += v.z;
+    if (!changes) return;
+    changes[n].x += v.x;
+    changes[n].y += v.y;
+    changes[n].z += v.z;
+  }
+};
+
+/// One thread: one contact point. What stands before it, and how much the points together move each node. The impulse
+/// of the last step's force once more.
+template <class Real, class Shape, class Nodes>
+struct BeginContacts {
+  GridView<Real> grid;
+  ContactView<Real> contacts;
+  Nodes nodes;
+  const Clock* clock;   // null: no history
+  Vec3<Real>* impulse;  // of this step [N s]
+  Vec3<Real>* given;    // to the nodes, not yet in their velocity [N s]
+  Real* yielding;       // of the nodes to all points: Q_i [1/kg]
+
+  TALUS_HD void operator()(int c) const {
+    if (clock && clock->halt != running) return;
+    const Real mass = contacts.template mass_before<Shape>(grid, nodes, c),
+               inverse = mass > Real(0) ? Real(1) / mass : Real(0);
+    contacts.inverse_mass[c] = inverse;
+    Vec3<Real> p{};
+    if (clock && inverse > Real(0)) {
+      const Vec3<double> f = contacts.force[c] * clock->step_size;
+      p = {static_cast<Real>(f.x), static_cast<Real>(f.y), static_cast<Real>(f.z)};
+    }
+    impulse[c] = p;
+    if (!(inverse > Real(0))) return;
+    contacts.template around<Shape>(grid, nodes, c, [&](int n, Real share) {
+      talus::scatter_add(&yielding[n], share / nodes.mass(n));
+      talus::scatter_add(&given[n], p * share);
+    });
+  }
+};
+
+/// One thread: one contact point. One sweep.
+template <class Real, class Shape, class Nodes>
+struct SweepContacts {
+  GridView<Real> grid;
+  ContactView<Real> contacts;
+  Nodes nodes;
+  const Real* yielding;
+  double layer_mass;  // of a full layer over a square metre [kg/m2]
+  const Clock* clock;
+  double step;  // [s]; the clock's where it has one
+  bool grips;   // with friction
+  bool keeps;   // the last sweep of the step: force and impulse are kept
+  Vec3<Real>* impulse;
+  Vec3<Real>* given;
+
+  TALUS_HD void operator()(int c) const {
+    if (clock && clock->halt != running) return;
+    const double dt = clock ? clock->step_size : step;
+    Vec3<Real> p{};
+    if (contacts.inverse_mass[c] > Real(0)) {
+      p = push_back(c, static_cast<Real>(dt));
+      const Vec3<Real> before = impulse[c], change = p - before;
+      contacts.template around<Shape>(grid, nodes, c,
+                                      [&](int n, Real share) { talus::scatter_add(&given[n], change * share); });
+      impulse[c] = p;
+    }
+    if (!keeps) return;
+    const Vec3<double> total{static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
+    contacts.force[c] = total * (1 / dt);
+    contacts.impulse[c] += total;
+  }
+
+ private:
+  /// The impulse of the step at point c, for the velocity that the others leave it.
+  TALUS_HD Vec3<Real> push_back(int c, Real dt) const {
+    Vec3<Real> v{};
+    Real yield = 0;
+    contacts.template around<Shape>(grid, nodes, c, [&](int n, Real share) {
+      v += nodes.velocity(n) * share;
+      yield += share * yielding[n];
+    });
+    const Vec3<Real> normal = contacts.normal[c];
+    typename ContactView<Real>::Grip grip;
+    if (grips) grip = contacts.grip(grid, c, length(v - normal * dot(v, normal)));
+    Real more = 0;
+    if (grip.traction > Real(0)) more = grip.traction * contacts.area[c] * contacts.filled(grid, c, layer_mass) * dt;
+    return ContactView<Real>::hold(impulse[c] - v * (Real(1) / yield), normal, grip.coefficient, more);
+  }
+};
+
+/// One thread: one node. What it was given goes into its velocity.
+template <class Real, class Nodes>
+struct TakeImpulses {
+  Nodes nodes;
+  const Clock* clock;
+  Vec3<Real>* given;
+  TALUS_HD void operator()(int n) const {
+    if (clock && clock->halt != running) return;
+    const Vec3<Real> p = given[n];
+    if (p.x == Real(0) && p.y == Real(0) && p.z == Real(0)) return;
+    given[n] = {};
+    nodes.add(n, p * (Real(1) / nodes.mass(n)));
+  }
+};
+
+/// The sweeps of a step.
+template <class Real, class Place, class Shape>
+class ContactImpulses {
+ public:
+  /// `clock` null: of `step` seconds, and nothing is kept but the impulse. Without `grips`, and without history, the
+  /// surfaces are merely kept from being run through.
+  struct Pass {
+    const Clock* clock;
+    double step;
+    bool grips, remembers;
+  };
+  template <class Nodes>
+  void run(SurfaceContact<Real, Place, Shape>& contact, const GridView<Real>& grid, const Nodes& nodes, int node_count,
+           double layer_mass, const Pass& pass) {
+    impulse_.resize(static_cast<std::size_t>(contact.count()));
+    yielding_.resize(static_cast<std::size_t>(node_count));
+    yielding_.fill_zero();
+    if (given_.size() != static_cast<std::size_t>(node_count)) {
+      given_.resize(static_cast<std::size_t>(node_count));
+      given_.fill_zero();
+    }
+    const auto take = [&] {
+      for_each(Place{}, node_count, TakeImpulses<Real, Nodes>{nodes, pass.clock, given_.data()});
+    };
+    contact.each(BeginContacts<Real, Shape, Nodes>{grid, contact.view(), nodes, pass.remembers ? pass.clock : nullptr,
+                                                   impulse_.data(), given_.data(), yielding_.data()});
+    if (pass.remembers) take();
+    for (int s = 0; s < contact_sweeps; ++s) {
+      const bool last = pass.remembers && s + 1 == contact_sweeps;
+      contact.each(SweepContacts<Real, Shape, Nodes>{grid, contact.view(), nodes, yielding_.data(), layer_mass,
+                                                     pass.clock, pass.step, pass.grips, last, impulse_.data(),
+                                                     given_.data()});
+      take();
+    }
+  }
+  const Vec3<Real>* impulses() const { return impulse_.data(); }
+  std::size_t bytes() const { return impulse_.bytes() + given_.bytes() + yielding_.bytes(); }
+
+ private:
+  Buffer<Vec3<Real>, Place> impulse_, given_;
+  Buffer<Real, Place> yielding_;
+};
+
+}  // namespace talus::solver

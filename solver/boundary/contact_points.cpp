@@ -1,0 +1,148 @@
+#include "solver/boundary/contact_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "common/domain/level_set.hpp"
+#include "common/error.hpp"
+
+namespace talus::solver {
+namespace {
+
+/// A place in cells from node (0, 0, 0), with the surface there.
+struct Sample {
+  double at[3];
+  Vec3<double> normal;
+  double area;
+  int body;
+};
+
+bool open_at(const GridShape& shape, const GroundTables& ground, double xi, double eta) {
+  const int i = static_cast<int>(std::floor(xi + 0.5)), j = static_cast<int>(std::floor(eta + 0.5));
+  return i >= 0 && j >= 0 && i < shape.columns && j < shape.rows &&
+         ground
+             .open[static_cast<std::size_t>(j) * static_cast<std::size_t>(shape.columns) + static_cast<std::size_t>(i)];
+}
+
+/// Two points to a cell and direction, more where the ground is so steep that they would lie further apart than half a
+/// layer.
+void add_ground(const GridShape& shape, const GroundTables& ground, std::vector<Sample>& samples) {
+  constexpr int most = 8;
+  for (int j = 0; j < shape.rows; ++j) {
+    for (int i = 0; i < shape.columns; ++i) {
+      if (!open_at(shape, ground, i, j)) continue;
+      const GroundPoint<double> middle = bicubic_ground(shape, ground, i, j);
+      const double steep =
+          std::max(std::abs(middle.slope_x), std::abs(middle.slope_y)) * shape.spacing / shape.layer_height;
+      const int n = std::clamp(static_cast<int>(std::ceil(2 * steep)), 2, most);
+      for (int b = 0; b < n; ++b) {
+        for (int a = 0; a < n; ++a) {
+          const double xi = i - 0.5 + (a + 0.5) / n, eta = j - 0.5 + (b + 0.5) / n;
+          const GroundPoint<double> g = bicubic_ground(shape, ground, xi, eta);
+          const double length = std::sqrt(1 + g.slope_x * g.slope_x + g.slope_y * g.slope_y);
+          const double side = shape.spacing / n;
+          samples.push_back({{xi, eta, g.height / shape.layer_height},
+                             {-g.slope_x / length, -g.slope_y / length, 1 / length},
+                             side * side * length,
+                             ContactPoints::ground});
+        }
+      }
+    }
+  }
+}
+
+/// The six ways a piece of surface can mainly look.
+int facing(const std::array<double, 3>& area) {
+  std::size_t axis = 0;
+  for (std::size_t a = 1; a < 3; ++a) {
+    if (std::abs(area[a]) > std::abs(area[axis])) axis = a;
+  }
+  return static_cast<int>(2 * axis) + (area[axis] > 0 ? 1 : 0);
+}
+
+/// The facets above the ground, those of half a cell that look the same way as one: both faces of a wall thinner than a
+/// cell stay apart.
+void add_obstacle(const MapGrid& map, const GridShape& shape, const GroundTables& ground, const ObstacleOptions& o,
+                  int body, std::vector<Sample>& samples, std::vector<std::string>& notes) {
+  const double half = 0.5 * shape.spacing, half_layer = 0.5 * shape.layer_height;
+  const BodySurface surface = read_level_set(o.level_set, o.grid, {half, half, half_layer});
+  struct Bin {
+    double area = 0, at[3] = {};
+    Vec3<double> sum;
+  };
+  std::map<std::tuple<int, int, int, int>, Bin> bins;
+  for (const Facet& facet : surface.facets) {
+    const double xi = (facet.centre[0] - map.west) / shape.spacing - 0.5,
+                 eta = (facet.centre[1] - map.south) / shape.spacing - 0.5;
+    if (!open_at(shape, ground, xi, eta)) continue;
+    const double under = ground.datum + ground_at(shape, ground, xi, eta),
+                 bottom = shape.mapping == Mapping::cartesian ? ground.datum : under;
+    if (facet.centre[2] < under) continue;
+    const double at[3] = {xi, eta, (facet.centre[2] - bottom) / shape.layer_height};
+    const double size = std::hypot(facet.area[0], facet.area[1], facet.area[2]);
+    Bin& bin = bins[{static_cast<int>(std::floor(2 * at[0])), static_cast<int>(std::floor(2 * at[1])),
+                     static_cast<int>(std::floor(2 * at[2])), facing(facet.area)}];
+    bin.area += size;
+    bin.sum += Vec3<double>{facet.area[0], facet.area[1], facet.area[2]};
+    for (int a = 0; a < 3; ++a) bin.at[a] += size * at[a];
+  }
+  double exposed = 0;
+  std::size_t points = 0;
+  for (const auto& [key, bin] : bins) {
+    const double size = length(bin.sum);
+    if (!(size > 1e-9 * bin.area) || !(bin.area > 0)) continue;
+    samples.push_back(
+        {{bin.at[0] / bin.area, bin.at[1] / bin.area, bin.at[2] / bin.area}, bin.sum * (1 / size), size, body});
+    exposed += bin.area;
+    ++points;
+  }
+  if (points == 0) {
+    throw DataError(
+        {fmt::format("{}: the obstacle \"{}\" stands nowhere above the ground of the scene", o.level_set.string(),
+                     o.name),
+         fmt::format("it reaches from ({:.1f}, {:.1f}, {:.1f}) to ({:.1f}, {:.1f}, {:.1f}); the scene from ({:.1f}, "
+                     "{:.1f}) to ({:.1f}, {:.1f})",
+                     surface.low[0], surface.low[1], surface.low[2], surface.high[0], surface.high[1], surface.high[2],
+                     map.west, map.south, map.west + map.columns * map.cell, map.south + map.rows * map.cell),
+         "Give the level set in the map's coordinates [m], elevations in the terrain's datum"});
+  }
+  notes.push_back(fmt::format("obstacle {}: {:.4g} m3, {:.4g} m2 above the ground, {} contact points", o.name,
+                              surface.volume, exposed, points));
+}
+
+}  // namespace
+
+ContactPoints make_contact_points(const MapGrid& map, const GridShape& shape, const GroundTables& ground,
+                                  const std::vector<ObstacleOptions>& obstacles) {
+  ContactPoints points;
+  std::vector<Sample> samples;
+  if (shape.ground == GroundContact::points) add_ground(shape, ground, samples);
+  for (std::size_t o = 0; o < obstacles.size(); ++o)
+    add_obstacle(map, shape, ground, obstacles[o], static_cast<int>(o), samples, points.notes);
+  const int blocks_x = (shape.columns + block_side - 1) / block_side;
+  const auto node = [](double position) { return static_cast<int>(std::floor(position + 0.5)); };
+  const auto key = [&](std::size_t s) {
+    return home_key(blocks_x, node(samples[s].at[0]), node(samples[s].at[1]), node(samples[s].at[2]));
+  };
+  std::vector<std::size_t> order(samples.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
+  for (const std::size_t s : order) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      const int nearest = node(samples[s].at[a]);
+      points.cell[a].push_back(nearest);
+      points.offset[a].push_back(samples[s].at[a] - nearest);
+    }
+    points.normal.push_back(samples[s].normal);
+    points.area.push_back(samples[s].area);
+    points.body.push_back(samples[s].body);
+  }
+  return points;
+}
+
+}  // namespace talus::solver

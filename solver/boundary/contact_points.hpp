@@ -1,0 +1,31 @@
+// Surfaces that the mass meets between the nodes of the grid: obstacles, and on a Cartesian grid the ground. They are
+// points with a normal and an area, finer than the nodes; contact_impulses.hpp and contact_forces.hpp act on them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/map/raster.hpp"
+#include "solver/grid/sparse_grid.hpp"
+#include "solver/options/options.hpp"
+
+namespace talus::solver {
+
+/// Points of the surfaces, on the host. They lie still and are sorted by the grid's blocks of columns.
+struct ContactPoints {
+  static constexpr int ground = -1;
+  std::vector<int> cell[3];          // nearest node
+  std::vector<double> offset[3];     // from it, in cells [-0.5, 0.5)
+  std::vector<Vec3<double>> normal;  // outward, where the mass is
+  std::vector<double> area;          // [m2]
+  std::vector<int> body;             // index of the obstacle, or `ground`
+  std::vector<std::string> notes;    // a line on every obstacle
+  std::size_t size() const { return body.size(); }
+};
+
+/// The obstacles' surfaces, at most half a cell apart along each axis, and the ground's where `shape` says that it is
+/// met by points. Throws DataError: a level set that cannot be read or stands wholly outside the ground.
+ContactPoints make_contact_points(const MapGrid& map, const GridShape& shape, const GroundTables& ground,
+                                  const std::vector<ObstacleOptions>& obstacles);
+
+}  // namespace talus::solver

@@ -1,0 +1,89 @@
+#include "solver/elements/element_list.hpp"
+
+#include <bit>
+
+#include "solver/grid/instances.hpp"
+#include "solver/grid/sparse_grid.hpp"
+#include "solver/parallel/runs.hpp"
+
+namespace talus::solver {
+namespace {
+
+/// One thread: one point. Where its stencil starts; layers count from -1.
+template <class Real, class Shape>
+struct MakeElementKeys {
+  GridView<Real> grid;
+  ParticleView<Real> points;
+  std::uint64_t* keys;
+  TALUS_HD void operator()(int p) const {
+    const int i = points.cell_x[p] + Shape::first(points.offset_x[p]);
+    const int j = points.cell_y[p] + Shape::first(points.offset_y[p]);
+    const int k = points.cell_z[p] + Shape::first(points.offset_z[p]);
+    keys[p] = home_key(grid.block_columns_x, i, j, k + 1);
+  }
+};
+
+/// One thread: one element. Its nodes, from its key.
+template <class Real, class Shape>
+struct FindNodes {
+  GridView<Real> grid;
+  const std::uint64_t* keys;
+  const int* starts;
+  int* nodes;
+  TALUS_HD void operator()(int e) const {
+    constexpr int w = Shape::width;
+    const std::uint64_t key = keys[starts[e]];
+    const HomeCell first(grid.block_columns_x, key);
+    const int i = first.i, j = first.j, k = first.k - 1;
+    int* mine = nodes + static_cast<std::size_t>(e) * (w * w * w);
+    for (int b = 0; b < w; ++b) {
+      for (int a = 0; a < w; ++a) {
+        const BlockSlot& slot = grid.slot(i + a, j + b);
+        for (int c = 0; c < w; ++c) *mine++ = GridView<Real>::node(slot, i + a, j + b, k + c > 0 ? k + c : 0);
+      }
+    }
+  }
+};
+
+}  // namespace
+
+template <class Real, class Place, class Shape>
+void ElementList<Real, Place, Shape>::build(const GridView<Real>& grid, const ParticleView<Real>& points) {
+  ++serial_;
+  keys_.resize(static_cast<std::size_t>(points.count));
+  for_each(Place{}, points.count, MakeElementKeys<Real, Shape>{grid, points, keys_.data()});
+  const int blocks = grid.block_columns_x * ((grid.rows + block_side - 1) / block_side);
+  sort_order(Place{}, keys_, order_, key_block_shift + static_cast<int>(std::bit_width(static_cast<unsigned>(blocks))));
+  count_ = find_runs(keys_, starts_, scratch_);
+  nodes_.resize(static_cast<std::size_t>(count_) * nodes_each);
+  for_each(Place{}, count_, FindNodes<Real, Shape>{grid, keys_.data(), starts_.data(), nodes_.data()});
+  group_elements(grid.block_columns_x);
+}
+
+template <class Real, class Place, class Shape>
+void ElementList<Real, Place, Shape>::group_elements(int block_columns_x) {
+  if constexpr (!Place::is_gpu) {
+    const auto block_of = [&](int e) { return static_cast<int>(keys_.data()[starts_.data()[e]] >> key_block_shift); };
+    for (auto& ranges : groups_.ranges) ranges.clear();
+    for (int begin = 0; begin < count_;) {
+      const int block = block_of(begin);
+      int end = begin + 1;
+      while (end < count_ && block_of(end) == block) ++end;
+      const int colour = (block % block_columns_x & 1) + 2 * (block / block_columns_x & 1);
+      groups_.ranges[colour].emplace_back(begin, end);
+      begin = end;
+    }
+  } else {
+    static_cast<void>(block_columns_x);
+  }
+}
+
+template <class Real, class Place, class Shape>
+std::size_t ElementList<Real, Place, Shape>::bytes() const {
+  return keys_.bytes() + order_.bytes() + starts_.bytes() + nodes_.bytes() + scratch_.bytes();
+}
+
+#define TALUS_INSTANTIATE(Real, Place, Shape) template class ElementList<Real, Place, Shape>;
+TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
+
+}  // namespace talus::solver

@@ -1,0 +1,50 @@
+// Elements: the points whose stencils start at the same node, with the W^3 nodes they share (W = Shape::width).
+//
+// Elements are sorted by the column block of their first node. Their nodes lie in that block and the next one along x
+// and y, so elements of every other block share none: for_each_grouped(..., groups(), ...) runs them race-free on the
+// CPU, in one order.
+#pragma once
+
+#include <cstdint>
+
+#include "solver/grid/shape_functions.hpp"
+#include "solver/state/grid_view.hpp"
+#include "solver/state/particles.hpp"
+
+namespace talus::solver {
+
+/// Local nodes are numbered as around() visits them: layer fastest, then x, then y. Where layer -1 is folded onto layer
+/// 0, local nodes (a, b, 0) and (a, b, 1) are one and the same.
+struct ElementView {
+  int count = 0;
+  const int* starts = nullptr;  // element e holds points order[starts[e]] ... order[starts[e + 1] - 1]
+  const int* order = nullptr;
+  const int* nodes = nullptr;  // [element * W^3 + local node]
+};
+
+template <class Real, class Place, class Shape>
+class ElementList {
+ public:
+  static constexpr int width = Shape::width;
+  static constexpr int nodes_each = width * width * width;
+
+  /// Groups the points of a grid that has been fitted to them. Serial numbers count the builds.
+  void build(const GridView<Real>& grid, const ParticleView<Real>& points);
+
+  ElementView view() const { return {count_, starts_.data(), order_.data(), nodes_.data()}; }
+  int count() const { return count_; }
+  int serial() const { return serial_; }
+  /// Ranges of elements by colour of their column block; empty on the GPU, where sums are atomic.
+  const PointGroups& groups() const { return groups_; }
+  std::size_t bytes() const;
+
+ private:
+  void group_elements(int block_columns_x);
+
+  int count_ = 0, serial_ = 0;
+  Buffer<std::uint64_t, Place> keys_;
+  Buffer<int, Place> order_, starts_, nodes_, scratch_;
+  PointGroups groups_;
+};
+
+}  // namespace talus::solver

@@ -1,0 +1,69 @@
+// B-bar: the volume change of an element's points replaced by their mean, in stress, tangent and state (Hughes 1980;
+// for finite strain Simo, Taylor & Pister 1985). Without it nearly incompressible material locks.
+//
+// With the mean increment t = sum V_p ln det(I + G_p) / sum V_p of the step, a point's pressure follows from its own
+// history and t; the force uses the element's mean of it, p. So the residual is the derivative of an energy, and its
+// tangent is that of the points without their bulk part, plus kappa V b b^T for each element, b the mean of the
+// gradients of ln det(I + G_p).
+#pragma once
+
+#include "solver/elements/element_list.hpp"
+#include "solver/material/tangent.hpp"
+#include "solver/parallel/vectors.hpp"
+
+namespace talus::solver {
+
+/// What kernels read of it; null where the scene does not average.
+template <class Real>
+struct MeanDilationView {
+  const int* element_of = nullptr;       // [points]
+  const Real* increment = nullptr;       // mean of ln det(I + G) over the step, [elements]
+  const Real* stress = nullptr;          // mean of the mean Kirchhoff stress [Pa], [elements]
+  const Real* stiffness = nullptr;       // kappa V: volume times the mean bulk response [N m], [elements]
+  const Vec3<Real>* gradient = nullptr;  // b [1/m], [elements * W^3]
+
+  TALUS_HD bool on() const { return element_of != nullptr; }
+  TALUS_HD MeanVolume<Real> at_point(int p) const {
+    if (!on()) return {};
+    const int e = element_of[p];
+    return {true, increment[e], stress[e]};
+  }
+};
+
+template <class Real, class Place, class Shape>
+class MeanDilation {
+ public:
+  static constexpr int nodes_each = ElementList<Real, Place, Shape>::nodes_each;
+
+  /// The points have moved, or have been sorted, and `list` is their elements anew.
+  void begin_step(const ElementList<Real, Place, Shape>& list, int points);
+
+  /// Means for the displacement u. Stress and tangent are measured with `materials`, points dilating plastically or
+  /// not.
+  void measure(const ElementList<Real, Place, Shape>& list, const GridView<Real>& grid,
+               const ParticleView<Real>& points, const Materials<Real>& materials, bool dilatant,
+               const Vec3<double>* u);
+
+  MeanDilationView<Real> view() const {
+    return {element_of_.data(), increment_.data(), stress_.data(), stiffness_.data(), gradient_.data()};
+  }
+  std::size_t bytes() const {
+    return element_of_.bytes() + increment_.bytes() + stress_.bytes() + stiffness_.bytes() + gradient_.bytes();
+  }
+
+ private:
+  Buffer<int, Place> element_of_;
+  Buffer<Real, Place> increment_, stress_, stiffness_;
+  Buffer<Vec3<Real>, Place> gradient_;
+};
+
+/// y += sum kappa V b (b . x)
+template <class Real, class Place, class Shape>
+void apply_means(const ElementList<Real, Place, Shape>& list, const MeanDilationView<Real>& means,
+                 const NodeVector<Place>& x, NodeVector<Place>& y);
+/// Adds the diagonal blocks of that.
+template <class Real, class Place, class Shape>
+void add_mean_blocks(const ElementList<Real, Place, Shape>& list, const MeanDilationView<Real>& means,
+                     Buffer<Sym3<double>, Place>& blocks);
+
+}  // namespace talus::solver

@@ -1,0 +1,242 @@
+// The explicit step, written once for both places, both precisions and both shapes. Included by the files that
+// instantiate it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+#include "solver/explicit/update_columns.hpp"
+#include "solver/integrator/point_solver.hpp"
+#include "solver/integrator/scene.hpp"
+#include "solver/options/options.hpp"
+#include "solver/parallel/algorithms.hpp"
+#include "solver/parallel/columns.hpp"
+#include "solver/parallel/recording.hpp"
+#include "solver/transfer/grid_to_particle.hpp"
+#include "solver/transfer/particle_to_grid.hpp"
+
+namespace talus::solver {
+
+/// A GPU gains little by order within the cells, and sorting there takes as long as ten steps.
+inline constexpr int gpu_steps_between_sorts = 256;
+/// But many points keep it busy, and then what lies apart costs more than that.
+inline constexpr int busy_gpu_steps_between_sorts = 32;
+template <class Shape>
+int steps_between_sorts_on_gpu(int points) {
+  return Shape::width > 2 && points >= points_that_keep_a_gpu_busy ? busy_gpu_steps_between_sorts
+                                                                   : gpu_steps_between_sorts;
+}
+/// Cells that points may drift before they are sorted: a sort takes as long as a dozen steps of a small scene.
+template <class Place>
+inline constexpr int drift_between_sorts = Place::is_gpu ? 3 : 1;
+inline constexpr int most_batch_steps = 64;  // given to the device before the host looks at the clock
+
+/// One thread: one node. The first one also opens the step.
+template <class Real>
+struct BeginStep {
+  Clock* clock;
+  Vec4<Real>* nodes;
+  Vec4<Real>* forces;  // null when forces are folded into the momentum
+  int count;
+  bool opens;
+  double bytes(int) const { return count * static_cast<double>((forces ? 2 : 1) * sizeof(*nodes)); }
+  TALUS_HD void operator()(int n) const {
+    if (n == 0 && opens) {
+      Clock now = *clock;  // read at once, not number by number as it is needed
+      now.begin_step();
+      *clock = now;
+    }
+    if (n >= count) return;
+    nodes[n] = Vec4<Real>{};
+    if (forces) forces[n] = Vec4<Real>{};
+  }
+};
+
+template <class Real, class Place, class Shape>
+class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
+  using Base = PointSolver<Real, Place, Shape>;
+  using Base::bed_, Base::clock_, Base::contact_, Base::dilatant_, Base::grid_, Base::impulses_, Base::materials_,
+      Base::options_, Base::points_, Base::read_clock;
+
+ public:
+  ExplicitSolverOf(const Scene& scene, const SolveOptions& options, const SolverState& state)
+      : Base(scene, options, state, fields(options), options.deterministic ? 1 : drift_between_sorts<Place>),
+        affine_(options.transfer == Transfer::apic),
+        musl_(options.stress_update == StressUpdate::modified),
+        keeps_(options.transfer_time > options.courant),
+        forces_apart_(musl_ || options.damping > 0 || keeps_ || options.energy_budget) {
+    Clock clock = read_clock();
+    clock.accelerated = 0;
+    if (Place::is_gpu) clock.steps_between_sorts = steps_between_sorts_on_gpu<Shape>(points_.count());
+    clock_.upload({clock});
+    sort(0);
+  }
+
+  BatchReport advance() override {
+    Clock clock = read_clock();
+    clock.halt = clock.request = running;
+    const int left = clock.steps_between_sorts - clock.steps_since_sort;
+    clock_.upload({clock});
+    walls_ = this->template stand_walls<Real>(clock.time);
+    loads_now_ = this->upload_loads(clock.time);
+    if (!options_.walls.empty()) recording_.forget();  // they come, go and move
+    // One more than the steps left: the last one's begin halts the clock at the sort. As many as lay between the last
+    // two sorts or lead to the next event, and then a few at a time: what is started after the clock has halted does
+    // nothing but take its time.
+    const double to_event =
+        clock.step_size > 0 ? std::ceil((clock.next_event - clock.time) / clock.step_size) + 1 : most_batch_steps;
+    const int ahead = std::clamp(static_cast<int>(std::min<double>(expected_ - clock.steps_since_sort, to_event)), 2,
+                                 most_batch_steps);
+    recording_.repeat(std::min(left + 1, ahead), [&] { step(); });
+    BatchReport report;
+    clock = read_clock();
+    // What the last step of the batch asked for, no further one has answered.
+    const int halt = clock.halt == running ? clock.request : clock.halt;
+    // A sort comes before an event of the same time (Clock::begin_step), so that the event's records see who has left.
+    if (halt == wants_sort) {
+      report.outflow_volume = clock.outflow_volume;
+      report.outflow_count = clock.outflow_count;
+      expected_ = clock.steps_since_sort + 1;
+      sort(clock.outflow_count);
+      clock.outflow_volume = 0;
+      clock.outflow_count = 0;
+      clock.steps_since_sort = 0;
+      clock.halt = clock.request = running;
+      report.sorted = true;
+    }
+    clock_.upload({clock});
+    report.clock = clock;
+    report.clock.halt = halt;
+    return report;
+  }
+
+  MemoryShares memory() const override {
+    MemoryShares shares = Base::memory();
+    shares.emplace_back("nodes", nodes_.bytes() + forces_.bytes());
+    return shares;
+  }
+
+ private:
+  static ParticleFields fields(const SolveOptions& o) {
+    ParticleFields f;
+    f.affine = o.transfer == Transfer::apic;
+    f.plastic_volume = Base::needs_plastic_volume(o);
+    f.move = o.stress_update == StressUpdate::modified;
+    f.extent = o.shape == ShapeKind::gimp;
+    Base::add_fields(o, f);
+    return f;
+  }
+
+  /// Four verbs: clear, scatter, update, gather. MUSL maps the points' new momentum back before the stress.
+  void step() {
+    clear(true);
+    if (forces_apart_) {
+      scatter<Scatter::force>();
+      update<NodeContent::force>();
+    } else {
+      scatter<Scatter::impulse>();
+      update<NodeContent::impulse>();
+    }
+    if (!musl_) {
+      gather<Gather::all>();
+      return;
+    }
+    gather<Gather::motion>();
+    clear(false);
+    scatter<Scatter::momentum>();
+    update<NodeContent::remapped>();
+    gather<Gather::deformation>();
+  }
+
+  void clear(bool opens) {
+    const ProfilePhase<Place> phase("clear the grid");
+    const int count = grid_.nodes();
+    for_each(
+        Place{}, std::max(count, 1),
+        BeginStep<Real>{clock_.data(), nodes_.data(), forces_apart_ && opens ? forces_.data() : nullptr, count, opens});
+  }
+
+  template <Scatter what>
+  void scatter() {
+    const ProfilePhase<Place> phase("points to grid");
+    scatter_points(Place{}, points_.count(), grid_.groups(),
+                   ParticleToGrid<Real, Shape, what>{grid_.view(), points_.view(), materials_, clock_.data(),
+                                                     nodes_.data(), forces_.data(), loads_now_, affine_, dilatant_});
+  }
+
+  template <NodeContent content>
+  void update() {
+    if (content != NodeContent::remapped) this->measure_columns();
+    const ProfilePhase<Place> phase("grid");
+    const Vec3<Real> g{static_cast<Real>(options_.gravity[0]), static_cast<Real>(options_.gravity[1]),
+                       static_cast<Real>(options_.gravity[2])};
+    for_each_column(
+        Place{}, grid_.active_blocks(),
+        UpdateColumns<Real, content>{grid_.view(), grid_.active_list(), clock_.data(), nodes_.data(), forces_.data(), g,
+                                     options_.gravity_ramp, walls_, bed_.view(), static_cast<Real>(this->full_base()),
+                                     static_cast<Real>(options_.damping), materials_.list[0].density,
+                                     this->column_volumes(), this->maps()});
+    if (contact_.on()) meet_surfaces<content>();
+  }
+
+  /// Obstacles, and ground between the nodes. What is mapped back a second time is merely kept from running through
+  /// them.
+  template <NodeContent content>
+  void meet_surfaces() {
+    const ProfilePhase<Place> phase("contact");
+    constexpr bool first = content != NodeContent::remapped;
+    const PackedNodes<Real> nodes{nodes_.data(), content == NodeContent::force ? forces_.data() : nullptr};
+    impulses_.run(contact_, grid_.view(), nodes, grid_.nodes(), this->layer_mass(), {clock_.data(), 0, first, first});
+  }
+
+  template <Gather part>
+  void gather() {
+    const ProfilePhase<Place> phase("grid to points");
+    const auto run = [&](auto budget) {
+      for_each(Place{}, points_.count(),
+               GridToParticle<Real, Shape, part, decltype(budget)::value>{
+                   grid_.view(), points_.view(), materials_, clock_.data(), nodes_.data(),
+                   keeps_ ? forces_.data() : nullptr, grid_.home(), affine_, dilatant_});
+    };
+    if (options_.energy_budget) {
+      run(std::true_type{});
+    } else {
+      run(std::false_type{});
+    }
+  }
+
+  void sort(int gone) {
+    const ProfilePhase<Place> phase("sort and storage");
+    recording_.forget();
+    this->fit(gone);
+    nodes_.resize(static_cast<std::size_t>(grid_.nodes()));
+    if (forces_apart_) forces_.resize(static_cast<std::size_t>(grid_.nodes()));
+  }
+
+  Recording<Place> recording_;  // of a step
+  int expected_ = 32;           // steps between sorts
+  bool affine_, musl_;
+  bool keeps_;  // points keep some of the velocity that is finer than the grid
+  bool forces_apart_;
+  Walls<Real> walls_;
+  const Vec3<double>* loads_now_ = nullptr;
+  Buffer<Vec4<Real>, Place> nodes_, forces_;
+};
+
+/// A solver of one precision in the place asked for.
+template <class Real>
+std::unique_ptr<Solver> make_explicit_solver_of(const Scene& scene, const SolveOptions& options, On on,
+                                                const SolverState& state) {
+  return with_shape(options.shape, [&](auto shape) -> std::unique_ptr<Solver> {
+    using Shape = decltype(shape);
+#if TALUS_FOR_GPU
+    if (on == On::gpu) return std::make_unique<ExplicitSolverOf<Real, OnGpu, Shape>>(scene, options, state);
+#else
+    static_cast<void>(on);
+#endif
+    return std::make_unique<ExplicitSolverOf<Real, OnCpu, Shape>>(scene, options, state);
+  });
+}
+
+}  // namespace talus::solver

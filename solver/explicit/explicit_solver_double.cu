@@ -1,0 +1,11 @@
+// The explicit solver in double precision.
+#include "solver/explicit/explicit_solver.hpp"
+#include "solver/integrator/scene.hpp"
+#include "solver/options/options.hpp"
+
+namespace talus::solver {
+
+template std::unique_ptr<Solver> make_explicit_solver_of<double>(const Scene&, const SolveOptions&, On,
+                                                                 const SolverState&);
+
+}  // namespace talus::solver

@@ -1,0 +1,175 @@
+// The grid's part of an explicit step: new velocities from momentum, force and gravity, damping, the bed, and the maps.
+#pragma once
+
+#include <type_traits>
+
+#include "solver/boundary/walls.hpp"
+#include "solver/state/clock.hpp"
+#include "solver/state/grid_view.hpp"
+#include "solver/state/map_view.hpp"
+
+namespace talus {
+
+/// What the nodes hold when a column is updated.
+enum class NodeContent {
+  impulse,  // momentum with the internal force's impulse in it
+  force,    // momentum and internal force apart
+  remapped  // momentum of the points' new velocities (MUSL): no forces, no friction, the ground alone
+};
+
+/// For for_each_column. Mass stays, momentum becomes velocity.
+template <class Real, NodeContent content>
+struct UpdateColumns {
+  GridView<Real> grid;
+  const int* active;
+  Clock* clock;
+  Vec4<Real>* nodes;
+  Vec4<Real>* forces;   // in: internal force; out: velocity change of the step (FLIP)
+  Vec3<Real> gravity;   // full [m/s2]
+  double gravity_ramp;  // time over which it grows [s]
+  Walls<Real> walls;
+  BaseFriction<Real> friction;
+  Real full_base;         // mass of a base node under a full layer [kg]
+  Real damping;           // Cundall's local factor [-]
+  Real density;           // where all points have the same [kg/m3]
+  const double* volumes;  // of the matter over each column, where they differ [m3]; else null
+  MapView maps;
+
+  double bytes(int) const {
+    return grid.nodes * static_cast<double>((content == NodeContent::force ? 4 : 2) * sizeof(*nodes));
+  }
+
+  struct Column {
+    bool inside = false;
+    int i = 0, j = 0, first = 0, last = 0;
+    int column = 0, top_contact = 0;
+    BlockSlot slot;
+  };
+  /// Of kinetic energy, over a column [J]; what the points give to the grid and get back counts with signs. And what
+  /// bed and walls gave it [N s].
+  struct Losses {
+    double contact = 0, damping = 0, transfer = 0, reaction[3] = {0, 0, 0};
+    TALUS_HD void operator+=(const Losses& o) {
+      contact += o.contact;
+      damping += o.damping;
+      transfer += o.transfer;
+      for (int a = 0; a < 3; ++a) reaction[a] += o.reaction[a];
+    }
+  };
+  struct NoLosses {
+    TALUS_HD void operator+=(const NoLosses&) {}
+  };
+  static constexpr bool may_count = content != NodeContent::impulse;  // a budget wants forces apart
+  struct Sums {
+    Real mass = 0;
+    Vec3<Real> momentum{};
+    std::conditional_t<may_count, Losses, NoLosses> losses;
+    TALUS_HD Sums& operator+=(const Sums& o) {
+      mass += o.mass;
+      momentum += o.momentum;
+      losses += o.losses;
+      return *this;
+    }
+  };
+
+  TALUS_HD Column locate(int c) const {
+    Column at;
+    const int halt = clock->halt;  // looked at once all is on its way
+    const int block = active[c / block_columns], in_block = c % block_columns;
+    at.slot = grid.slots[block];
+    at.i = (block % grid.block_columns_x) * block_side + (in_block & 3);
+    at.j = (block / grid.block_columns_x) * block_side + (in_block >> 2);
+    at.inside = halt == running && at.i < grid.columns && at.j < grid.rows;
+    if (!at.inside) return at;
+    at.first = at.slot.first_layer;
+    at.last = at.first + at.slot.layers;
+    at.column = grid.column(at.i, at.j);
+    at.top_contact = grid.contact_layer(at.column);
+    return at;
+  }
+
+  TALUS_HD void layer(const Column& at, int k, Sums& sums) const {
+    const int n = GridView<Real>::node(at.slot, at.i, at.j, k);
+    Vec4<Real> node = nodes[n];
+    if (!(node.w > Real(0))) return;
+    const Vec3<Real> v = update(n, node, k <= at.top_contact, at.column, at.i, at.j, k, sums.losses);
+    nodes[n] = {node.w, v.x, v.y, v.z};
+    sums.mass += node.w;
+    sums.momentum += v * node.w;
+  }
+
+  TALUS_HD void finish(const Column& at, const Sums& sums) const {
+    if constexpr (content == NodeContent::remapped) return;
+    if (!(sums.mass > Real(0))) return;
+    if constexpr (may_count) {
+      if (clock->keeps_budget) {
+        atomic_add(&clock->bed_loss, sums.losses.contact);
+        atomic_add(&clock->damping_loss, sums.losses.damping);
+        atomic_add(&clock->transfer_loss, sums.losses.transfer);
+        for (int a = 0; a < 3; ++a) atomic_add(&clock->reaction[a], sums.losses.reaction[a]);
+      }
+    }
+    const double mass = static_cast<double>(sums.mass);
+    const double mean = volumes && volumes[at.column] > 0 ? mass / volumes[at.column] : static_cast<double>(density);
+    record_column(maps, at.column, mass, static_cast<double>(length(sums.momentum)), mean,
+                  static_cast<double>(grid.spacing), clock->time);
+  }
+
+ private:
+  TALUS_HD Vec3<Real> update(int n, const Vec4<Real>& node, bool on_ground, int column, int i, int j, int k,
+                             decltype(Sums::losses)& losses) const {
+    const Real dt = Real(clock->step_size);
+    const bool growing = gravity_ramp > 0 && clock->time < gravity_ramp;
+    const Vec3<Real> g = growing ? gravity * Real(clock->time / gravity_ramp) : gravity;
+    const Vec3<Real> before{node.x / node.w, node.y / node.w, node.z / node.w};
+    Vec3<Real> v = before, undamped = before;
+    if constexpr (content == NodeContent::impulse) v += g * dt;
+    if constexpr (content == NodeContent::force) {
+      const Vec4<Real> f = forces[n];
+      Vec3<Real> pull = Vec3<Real>{f.x, f.y, f.z} * (Real(1) / node.w) + g;
+      undamped += pull * dt;
+      if (damping > Real(0)) {
+        pull = {damped(pull.x, before.x), damped(pull.y, before.y), damped(pull.z, before.z)};
+      }
+      v += pull * dt;
+    }
+    const Vec3<Real> free = v;
+    if (on_ground) {
+      BaseFriction<Real> law = friction;
+      if (content == NodeContent::remapped && law.law != FrictionLaw::stick) law.law = FrictionLaw::none;
+      const Real sx = grid.slope_x[column], sy = grid.slope_y[column];
+      // On a Cartesian grid the nodes inside the ground touch no bed of their own.
+      const bool grips = content != NodeContent::remapped && friction.has_traction() && k == grid.contact_layer(column);
+      const Real grip = grips ? bed_area(node.w, full_base, grid.spacing, sx, sy) * dt / node.w : Real(0);
+      v = meet_ground(law, law.at(column), v, sx, sy, grip);
+    }
+    if (walls.count > 0) v = meet_walls(walls, i, j, k, v, content != NodeContent::remapped);
+    if constexpr (may_count) {
+      if (clock->keeps_budget) {
+        // Forces and impulses of a step act together, on the mean of its velocities: what rests loses nothing.
+        const Vec3<Real> mean = (before + v) * Real(0.5);
+        const double mass = static_cast<double>(node.w);
+        if (content == NodeContent::force && damping > Real(0))
+          losses.damping += mass * static_cast<double>(dot(undamped - free, mean));
+        losses.contact += mass * static_cast<double>(dot(free - v, mean));
+        losses.transfer += mass * static_cast<double>(dot(v - before, mean));
+        losses.reaction[0] += mass * static_cast<double>(v.x - free.x);
+        losses.reaction[1] += mass * static_cast<double>(v.y - free.y);
+        losses.reaction[2] += mass * static_cast<double>(v.z - free.z);
+      }
+    }
+    if constexpr (content == NodeContent::force) {
+      const Vec3<Real> change = v - before;
+      forces[n] = {Real(0), change.x, change.y, change.z};
+    }
+    return v;
+  }
+
+  /// Local non-viscous damping (Cundall 1987): a share of the unbalanced force against the velocity.
+  TALUS_HD Real damped(Real pull, Real velocity) const {
+    if (velocity == Real(0)) return pull;
+    return pull - damping * (velocity > Real(0) ? fabs(pull) : -fabs(pull));
+  }
+};
+
+}  // namespace talus

@@ -1,0 +1,11 @@
+// The implicit solver in double precision.
+#include "solver/implicit/implicit_solver.hpp"
+#include "solver/integrator/scene.hpp"
+#include "solver/options/options.hpp"
+
+namespace talus::solver {
+
+template std::unique_ptr<Solver> make_implicit_solver_of<double>(const Scene&, const SolveOptions&, On,
+                                                                 const SolverState&);
+
+}  // namespace talus::solver

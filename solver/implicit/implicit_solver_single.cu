@@ -1,0 +1,11 @@
+// The implicit solver in single precision.
+#include "solver/implicit/implicit_solver.hpp"
+#include "solver/integrator/scene.hpp"
+#include "solver/options/options.hpp"
+
+namespace talus::solver {
+
+template std::unique_ptr<Solver> make_implicit_solver_of<float>(const Scene&, const SolveOptions&, On,
+                                                                const SolverState&);
+
+}  // namespace talus::solver

@@ -1,0 +1,22 @@
+// What an integrator starts from: the grid's shape, the material points, their loads and what they can touch.
+#pragma once
+
+#include <vector>
+
+#include "common/map/raster.hpp"
+#include "solver/boundary/base_friction.hpp"
+#include "solver/boundary/contact_points.hpp"
+#include "solver/grid/sparse_grid.hpp"
+
+namespace talus::solver {
+
+struct Scene {
+  MapGrid map;
+  GridShape grid;
+  ParticleState points;
+  std::vector<double> load_volumes;  // volume of the points each load pulls at [m3]
+  std::vector<Bed<double>> bed;      // of every column; empty where it is the same everywhere
+  ContactPoints contacts;
+};
+
+}  // namespace talus::solver

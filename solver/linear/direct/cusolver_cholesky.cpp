@@ -1,0 +1,142 @@
+#include <numeric>
+#include <stdexcept>
+
+#include "solver/linear/direct/cholesky.hpp"
+#include "solver/linear/direct/cusolver.hpp"
+#include "solver/linear/direct/elimination_order.hpp"
+
+namespace talus {
+namespace {
+
+void check(int status, const char* what) {
+  if (status == Cusolver::out_of_memory) {
+    const double free = free_memory(OnGpu{});
+    refuse_matrix(std::string(what) + " needs more than", free, free, true);
+  }
+  if (status != 0)
+    throw std::runtime_error(std::string("cuSOLVER: ") + what + " failed with status " + std::to_string(status));
+}
+
+/// cuSOLVER's factor of the matrix renumbered by nested dissection.
+class GpuCholesky final : public Cholesky<OnGpu> {
+ public:
+  explicit GpuCholesky(double memory_limit) : limit_(memory_limit) {}
+  GpuCholesky(const GpuCholesky&) = delete;
+  GpuCholesky& operator=(const GpuCholesky&) = delete;
+  ~GpuCholesky() override {
+    forget();
+    if (descriptor_) cusolver().destroy_descriptor(descriptor_);
+    if (handle_) cusolver().destroy(handle_);
+  }
+
+  bool solve(const CsrMatrix<OnGpu>& a, const Buffer<double, OnGpu>& b, Buffer<double, OnGpu>& x) override {
+    if (!handle_) check(cusolver().create(&handle_), "cusolverSpCreate");
+    if (!descriptor_) check(cusolver().create_descriptor(&descriptor_), "cusparseCreateMatDescr");
+    if (pattern_ != a.pattern) analyse(a);
+    if (!factorise(a)) return false;
+    for (auto* v : {&right_, &solution_, &x}) v->resize(static_cast<std::size_t>(a.rows));
+    gather(OnGpu{}, b.data(), order_.data(), right_.data(), a.rows);
+    check(cusolver().solve(handle_, a.rows, right_.data(), solution_.data(), info_, workspace_.data()),
+          "cusolverSpDcsrcholSolve");
+    scatter(OnGpu{}, solution_.data(), order_.data(), x.data(), a.rows);
+    return true;
+  }
+
+  int analyses() const override { return analyses_; }
+  double factor_bytes() const override { return held_; }
+  const char* name() const override { return "cuSOLVER"; }
+
+ private:
+  /// The factor itself lives in info_.
+  void forget() {
+    if (info_) cusolver().destroy_info(info_);
+    info_ = nullptr;
+    pattern_ = 0;
+    held_ = 0;
+  }
+
+  std::vector<int> order_nodes(const HostPattern& graph) const {
+    const int nodes = static_cast<int>(graph.starts.size()) - 1, entries = static_cast<int>(graph.columns.size());
+    std::vector<int> found(static_cast<std::size_t>(nodes));
+    std::iota(found.begin(), found.end(), 0);
+    if (nodes < 3) return found;  // nothing to gain
+    const Cusolver& c = cusolver();
+    const int* starts = graph.starts.data();
+    const int* columns = graph.columns.data();
+    if (c.order_by_dissection(handle_, nodes, entries, descriptor_, starts, columns, nullptr, found.data()) != 0) {
+      check(c.order_by_degree(handle_, nodes, entries, descriptor_, starts, columns, found.data()),
+            "cusolverSpXcsrsymamdHost");
+    }
+    return found;
+  }
+
+  void renumber_matrix(const CsrMatrix<OnGpu>& a) {
+    const HostPattern host{a.starts.download(), a.columns.download()};
+    const Renumbered r = renumber(host, order_nodes(graph_of_nodes(host)));
+    starts_.upload(r.pattern.starts);
+    columns_.upload(r.pattern.columns);
+    source_.upload(r.source);
+    order_.upload(r.order);
+    values_.resize(r.source.size());
+    fill_values(a);
+  }
+
+  void analyse(const CsrMatrix<OnGpu>& a) {
+    ++analyses_;
+    forget();
+    renumber_matrix(a);
+    const Cusolver& c = cusolver();
+    check(c.create_info(&info_), "cusolverSpCreateCsrcholInfo");
+    check(c.analyse(handle_, a.rows, a.entries(), descriptor_, starts_.data(), columns_.data(), info_),
+          "cusolverSpXcsrcholAnalysis");
+    std::size_t internal = 0, scratch = 0;
+    check(c.sizes(handle_, a.rows, a.entries(), descriptor_, values_.data(), starts_.data(), columns_.data(), info_,
+                  &internal, &scratch),
+          "cusolverSpDcsrcholBufferInfo");
+    held_ = static_cast<double>(internal) + static_cast<double>(scratch);
+    const double free = limit_ > 0 ? limit_ : free_memory(OnGpu{}) + static_cast<double>(workspace_.bytes());
+    if (held_ > free) refuse(free);
+    workspace_.resize(scratch);
+    pattern_ = a.pattern;
+  }
+
+  bool factorise(const CsrMatrix<OnGpu>& a) {
+    fill_values(a);
+    const Cusolver& c = cusolver();
+    const int status = c.factorise(handle_, a.rows, a.entries(), descriptor_, values_.data(), starts_.data(),
+                                   columns_.data(), info_, workspace_.data());
+    if (status == Cusolver::out_of_memory) refuse(free_memory(OnGpu{}));
+    check(status, "cusolverSpDcsrcholFactor");
+    int pivot = -1;
+    check(c.zero_pivot(handle_, info_, 0.0, &pivot), "cusolverSpDcsrcholZeroPivot");
+    return pivot < 0;
+  }
+
+  void fill_values(const CsrMatrix<OnGpu>& a) {
+    gather(OnGpu{}, a.values.data(), source_.data(), values_.data(), a.entries());
+  }
+
+  [[noreturn]] void refuse(double free) {
+    const double wanted = held_;
+    forget();
+    refuse_matrix("the factor of the matrix would take", wanted, free, true);
+  }
+
+  double limit_, held_ = 0;  // [bytes]
+  long pattern_ = 0;
+  int analyses_ = 0;
+  Cusolver::Handle handle_ = nullptr;
+  Cusolver::Descriptor descriptor_ = nullptr;  // as made: a general matrix, indices from 0
+  Cusolver::Info info_ = nullptr;
+  Buffer<int, OnGpu> starts_, columns_, source_, order_;
+  Buffer<double, OnGpu> values_, right_, solution_;
+  Buffer<unsigned char, OnGpu> workspace_;
+};
+
+}  // namespace
+
+std::unique_ptr<Cholesky<OnGpu>> make_cholesky(OnGpu, double memory_limit) {
+  return std::make_unique<GpuCholesky>(memory_limit);
+}
+
+}  // namespace talus

@@ -1,0 +1,49 @@
+// Dense element matrices (Bathe 1996, section 4.2): K x element by element, never assembled.
+#pragma once
+
+#include "solver/elements/element_sums.hpp"
+#include "solver/parallel/vectors.hpp"
+
+namespace talus::solver {
+
+/// Element matrices as kernels see them: 3 W^3 rows and columns each. Row by row on the CPU; entry by entry on the GPU,
+/// so that the threads of neighbouring rows read neighbouring numbers.
+template <class Real, class Place, class Shape>
+struct ElementMatrices {
+  static constexpr int nodes = Shape::width * Shape::width * Shape::width;
+  static constexpr int size = 3 * nodes;
+  Real* data = nullptr;
+  std::size_t rows = 0;  // of all elements
+
+  TALUS_HD std::size_t at(int e, int row, int column) const {
+    const std::size_t r = static_cast<std::size_t>(e) * size + static_cast<std::size_t>(row);
+    if constexpr (Place::is_gpu) return static_cast<std::size_t>(column) * rows + r;
+    return r * size + static_cast<std::size_t>(column);
+  }
+  TALUS_HD void put(int e, int a, int b, const Real* block) const {
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) data[at(e, 3 * a + i, 3 * b + j)] = block[3 * i + j];
+    }
+  }
+};
+
+template <class Real, class Place, class Shape>
+class StoredElements {
+ public:
+  using Matrices = ElementMatrices<Real, Place, Shape>;
+
+  /// Sums the points' tangents into the elements' matrices.
+  void assemble(const ElementList<Real, Place, Shape>& list, const PointTangents<Real>& from);
+
+  /// y += K x. CPU: elements by colour, the same sums on every run; GPU: one thread per row, atomic sums.
+  void apply(const ElementList<Real, Place, Shape>& list, const NodeVector<Place>& x, NodeVector<Place>& y);
+
+  Matrices view() { return {values_.data(), rows_}; }
+  std::size_t bytes() const { return values_.bytes(); }
+
+ private:
+  Buffer<Real, Place> values_;
+  std::size_t rows_ = 0;
+};
+
+}  // namespace talus::solver

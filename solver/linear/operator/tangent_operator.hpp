@@ -1,0 +1,67 @@
+// y = K x in the three forms of [solve.implicit] operator: per point, stored elements, assembled stencil.
+#pragma once
+
+#include "solver/linear/operator/stencil_matrix.hpp"
+#include "solver/linear/operator/stored_elements.hpp"
+#include "solver/options/options.hpp"
+
+namespace talus::solver {
+
+template <class Real, class Place, class Shape>
+class TangentOperator {
+ public:
+  /// `single`: the stencil is stored in single precision.
+  explicit TangentOperator(Operator form, bool single = false)
+      : form_(form), single_(single && form == Operator::stencil) {}
+
+  /// The points have moved, or have been sorted, and `list` is their elements anew; it must stay until the next call.
+  /// The form `points` needs it for what couples the points of an element.
+  void begin_step(const ElementList<Real, Place, Shape>& list, int nodes) {
+    list_ = &list;
+    if (single_) {
+      single_stencil_.build(list, nodes);
+    } else if (form_ == Operator::stencil) {
+      stencil_.build(list, nodes);
+    }
+  }
+
+  /// The points' tangents have changed. `groups` are the points' (SparseGrid::groups()).
+  void refresh(const PointTangents<Real>& from, const PointGroups& groups) {
+    from_ = from;
+    groups_ = &groups;
+    if (form_ == Operator::elements) stored_.assemble(*list_, from);
+    if (single_) {
+      single_stencil_.assemble(*list_, from);
+    } else if (form_ == Operator::stencil) {
+      stencil_.assemble(*list_, from);
+    }
+  }
+
+  /// y += K x. Stencil and points do nothing in a loop that is over.
+  void apply(const NodeVector<Place>& x, NodeVector<Place>& y, const CgState* state = nullptr) {
+    if (form_ == Operator::elements) return stored_.apply(*list_, x, y);
+    if (single_) return single_stencil_.apply(x, y, state);
+    if (form_ == Operator::stencil) return stencil_.apply(x, y, state);
+    using Product = TangentTimes<Real, Shape>;
+    scatter_points(Place{}, from_.points.count, *groups_,
+                   ScatterForces<Real, Shape, Product>{
+                       {from_.grid, from_.points}, Product{from_.tangents, x.data()}, y.data(), state});
+    if (from_.means.on()) apply_means(*list_, from_.means, x, y);
+    if (from_.springs.on()) apply_springs(*list_, from_.springs, x, y);
+  }
+
+  /// What the form stores beside the points and their tangents.
+  std::size_t bytes() const { return stored_.bytes() + stencil_.bytes() + single_stencil_.bytes(); }
+
+ private:
+  Operator form_;
+  bool single_;
+  PointTangents<Real> from_{};
+  const PointGroups* groups_ = nullptr;
+  const ElementList<Real, Place, Shape>* list_ = nullptr;
+  StoredElements<Real, Place, Shape> stored_;
+  StencilMatrix<Real, Place, Shape> stencil_;
+  StencilMatrix<Real, Place, Shape, float> single_stencil_;
+};
+
+}  // namespace talus::solver

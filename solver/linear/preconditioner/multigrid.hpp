@@ -1,0 +1,47 @@
+// Gauss-Seidel over columns of nodes, forth and back, on one grid or on a hierarchy of them (V cycle; Trottenberg,
+// Oosterlee & Schueller 2001). Columns are solved whole, so grids grow coarse along x and y alone; coarse operators are
+// the fine one's on the coarse functions (Galerkin), which the fine grid's functions hold exactly (two_scale.hpp).
+//
+// Both are symmetric and positive definite where the tangent is, as conjugate gradients need it.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "solver/linear/preconditioner/stencil_level.hpp"
+
+namespace talus::solver {
+
+template <class Real, class Place, class Shape>
+class Multigrid {
+ public:
+  /// Without `coarser` grids: Gauss-Seidel alone.
+  explicit Multigrid(bool coarser) : coarser_(coarser) {}
+
+  /// From the points' tangents and what holds the nodes; `held` must stay until the next call.
+  void refresh(const PointTangents<Real>& from, const ElementList<Real, Place, Shape>& list,
+               const StoredColumns<Real>& columns, const HeldNodes& held);
+  /// z = B^-1 r
+  void apply(const NodeVector<Place>& r, NodeVector<Place>& z);
+
+  int grids() const { return static_cast<int>(grids_.size()); }
+  std::size_t bytes() const;
+
+ private:
+  /// A grid with its right-hand side, solution and what is left; how it follows from the one before.
+  struct Grid {
+    StencilLevel<Real, Place, Shape> level, between;  // `between`: coarse along x alone
+    TwoScale x, y;
+    NodeVector<Place> b, u, r;
+    bool by_two_steps() const { return x.kind != TwoScale::same && y.kind != TwoScale::same; }
+  };
+  void build(const ElementList<Real, Place, Shape>& list, const StoredColumns<Real>& columns, int nodes);
+  void cycle(std::size_t g);
+
+  bool coarser_;
+  int serial_ = -1;  // of the elements that the grids were built for
+  HeldNodes held_;
+  std::vector<std::unique_ptr<Grid>> grids_;
+};
+
+}  // namespace talus::solver

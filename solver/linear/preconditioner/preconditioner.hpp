@@ -1,0 +1,58 @@
+// z = B^-1 r for Krylov methods: the diagonal, a node's own 3 x 3 block, a whole column of nodes at once, Gauss-Seidel
+// over columns, multigrid.
+//
+// A column is solved exactly over its layers, so that how stiff it is upright - thin layers under wide cells - counts
+// no longer in itself, only in so far as neighbouring columns share it; Gauss-Seidel takes care of that too, and
+// multigrid of how many columns lie side by side.
+#pragma once
+
+#include "solver/elements/element_sums.hpp"
+#include "solver/elements/held_nodes.hpp"
+#include "solver/linear/krylov/conjugate_gradient.hpp"
+#include "solver/linear/preconditioner/column_factors.hpp"
+#include "solver/linear/preconditioner/multigrid.hpp"
+#include "solver/options/options.hpp"
+#include "solver/parallel/vectors.hpp"
+
+namespace talus::solver {
+
+template <class Real, class Place, class Shape>
+class NodePreconditioner {
+ public:
+  explicit NodePreconditioner(Preconditioner kind) : kind_(kind), grids_(kind == Preconditioner::multigrid) {}
+
+  /// Whether refresh() goes by elements.
+  static bool by_elements(Preconditioner kind) {
+    return kind == Preconditioner::gauss_seidel || kind == Preconditioner::multigrid;
+  }
+
+  /// From the points' tangents and what holds the nodes; `held` must stay until the next call. `list` are the elements,
+  /// for what couples the points of one (only its diagonal is taken where a kind does not go by elements).
+  void refresh(const PointTangents<Real>& from, const PointGroups& groups, const ElementList<Real, Place, Shape>& list,
+               const StoredColumns<Real>& columns, const HeldNodes& held);
+  /// z = B^-1 r; hands r . z to `state`, and does nothing where that has halted. Without one: z alone.
+  void apply(const NodeVector<Place>& r, NodeVector<Place>& z, CgState* state = nullptr);
+  /// The same after a step, in one sweep where a node or a column is preconditioned by itself; hands over r . r too.
+  void apply_after(const talus::detail::StepAlong& step, const NodeVector<Place>& r, NodeVector<Place>& z,
+                   CgState* state);
+  std::size_t bytes() const { return blocks_.bytes() + above_[0].bytes() + above_[1].bytes() + grids_.bytes(); }
+
+ private:
+  template <class Kernel>
+  void run(int count, const Kernel& kernel, CgState* state);
+  template <class Kernel>
+  void run_after(const talus::detail::StepAlong& step, int count, const Kernel& kernel, CgState* state);
+
+  ColumnFactors factors() { return {blocks_.data(), {above_[0].data(), above_[1].data()}}; }
+
+  static constexpr int reach = Shape::width - 1;  // layers that a column's nodes are coupled over
+  Preconditioner kind_;
+  Multigrid<Real, Place, Shape> grids_;
+  HeldNodes held_;
+  StoredColumns<Real> columns_;
+  Buffer<Sym3<double>, Place> blocks_;    // inverses: of the blocks, or of the columns' pivots
+  Buffer<Mat3<double>, Place> above_[2];  // L of the nodes one and two layers higher
+  SumSpace<Place> sums_;
+};
+
+}  // namespace talus::solver

@@ -1,0 +1,69 @@
+// One grid of a multigrid hierarchy: the tangent as a stencil of blocks, its columns' factors, and Gauss-Seidel over
+// whole columns.
+//
+// Gauss-Seidel by columns (Trottenberg, Oosterlee & Schueller 2001, section 5.1) goes over them colour by colour; those
+// of one colour share no block, so that they are solved at once, and in one order on every run. Beside the stiffness
+// upright it takes care of what neighbouring columns share of it through the functions' Gram matrix.
+#pragma once
+
+#include "solver/elements/held_nodes.hpp"
+#include "solver/linear/operator/stencil_matrix.hpp"
+#include "solver/linear/preconditioner/block_layout.hpp"
+#include "solver/linear/preconditioner/column_factors.hpp"
+
+namespace talus::solver {
+
+struct NodePlace {
+  int i, j, k;
+};
+
+template <class Real, class Place, class Shape>
+class StencilLevel {
+ public:
+  static constexpr int reach = Shape::width - 1, neighbours = StencilView<Real, Place, Shape>::neighbours;
+
+  /// The finest grid: rows of the elements' nodes.
+  void build(const ElementList<Real, Place, Shape>& list, const StoredColumns<Real>& columns, int nodes);
+  /// Functions of twice the spacing along x, y or both.
+  void build(const StencilLevel& fine, TwoScale x, TwoScale y);
+
+  /// K of the points' tangents with all that holds the nodes: P (K + mass inertia + stiffness) P + I - P.
+  void assemble(const ElementList<Real, Place, Shape>& list, const PointTangents<Real>& from, const HeldNodes& held);
+  /// The coarse operator of the finer grid's (Galerkin); both were built with the same scales.
+  void assemble(StencilLevel& fine, TwoScale x, TwoScale y);
+  /// Factors of the columns, for the sweeps.
+  void factorise();
+
+  /// One sweep over the columns, first colour first or last: x comes nearer to A x = b.
+  void sweep(const NodeVector<Place>& b, NodeVector<Place>& x, bool forward);
+  /// r = b - A x
+  void measure_residual(const NodeVector<Place>& b, const NodeVector<Place>& x, NodeVector<Place>& r);
+  /// r of this grid = the finer one's tested with the coarse functions.
+  void restrict_from(const StencilLevel& fine, TwoScale x, TwoScale y, const NodeVector<Place>& from,
+                     NodeVector<Place>& to);
+  /// u of the finer grid += this grid's.
+  void prolong_to(StencilLevel& fine, TwoScale x, TwoScale y, const NodeVector<Place>& from, NodeVector<Place>& to);
+
+  const BlockLayout& layout() const { return layout_; }
+  int nodes() const { return nodes_; }
+  std::size_t bytes() const;
+
+ private:
+  void place_rows();
+  void colour();
+  ColumnFactors factors() { return {pivots_.data(), {above_[0].data(), above_[1].data()}}; }
+
+  BlockLayout layout_;
+  StoredColumns<Real> columns_;
+  int nodes_ = 0, layers_ = 0;
+  Buffer<BlockSlot, Place> slots_;  // of a coarse grid
+  Buffer<int, Place> active_, coloured_, flags_;
+  std::vector<int> colour_ends_;
+  StencilMatrix<Real, Place, Shape> matrix_;
+  Buffer<NodePlace, Place> places_;  // of the rows
+  Buffer<Sym3<double>, Place> pivots_;
+  Buffer<Mat3<double>, Place> above_[2];
+  NodeVector<Place> left_;  // residual of a colour, then its change
+};
+
+}  // namespace talus::solver

@@ -1,0 +1,69 @@
+// integrator = "auto": explicit or Newmark steps, whichever take less wall time per simulated time, found by trying
+// both now and then.
+#pragma once
+
+#include <string>
+
+#include "solver/options/options.hpp"
+
+namespace talus::solver {
+
+/// What the steps from one sort of the points to the next did.
+struct BatchCost {
+  double simulated = 0, wall = 0;  // [s]
+  double wave_step = 0;            // the CFL step [s]
+  double speed = 0;                // of the fastest point [m/s]
+};
+
+/// Runs one integrator, tries the other for a few steps, and goes on with the cheaper. Trials take no more than a
+/// twentieth of the time, less where they keep turning out the same.
+class IntegratorChoice {
+ public:
+  /// `cell`: the smaller of spacing and layer height [m]; `largest_step` [s].
+  IntegratorChoice(double cell, double largest_step) : cell_(cell), largest_step_(largest_step) {}
+
+  Integrator current() const { return current_; }
+  /// Length of implicit steps from here on: ten CFL steps in a flow, where longer ones miss its way; at rest, or
+  /// nearly, as long as nothing moves by more than a quarter of a cell [s].
+  double implicit_step() const { return implicit_step_; }
+
+  /// Takes note of a batch. True when the solver must be built anew: for the other integrator, or for implicit steps of
+  /// another length.
+  bool note(const BatchCost& batch);
+  /// The implicit step failed beyond rescue: back to explicit ones.
+  void note_failure(double wall);
+
+  /// What was decided last and why; empty when nothing is new. Taken once.
+  std::string news();
+
+ private:
+  static constexpr double trial_share = 0.05, better = 0.9, most_patience = 16;
+  struct Cost {
+    double simulated = 0, wall = 0;
+    void add(const BatchCost& batch, double memory);
+    double rate() const { return simulated > 0 ? wall / simulated : 0; }
+  };
+
+  Integrator other() const { return current_ == Integrator::explicit_ ? Integrator::newmark : Integrator::explicit_; }
+  Cost& cost_of(Integrator i) { return i == Integrator::explicit_ ? explicit_ : implicit_; }
+  int trial_batches() const { return current_ == Integrator::explicit_ ? 3 : 4; }
+  void measure(const BatchCost& batch);
+  bool worth_trying() const;
+  void begin_trial();
+  bool end_trial();
+  void turn_to(Integrator to);
+
+  double cell_, largest_step_;
+  Integrator current_ = Integrator::explicit_;
+  bool trying_ = false;
+  Cost explicit_, implicit_;
+  double trial_wall_ = 0;                                       // what the trial under way, or the last one, took [s]
+  double wall_since_ = 0;                                       // the last trial [s]
+  double patience_ = 1;                                         // grows while trials change nothing
+  int batches_ = 0;                                             // since the last turn
+  double implicit_step_ = 0, wanted_step_ = 0, wave_step_ = 0;  // [s]
+  double speed_at_trial_ = -1, speed_ = 0;
+  std::string news_;
+};
+
+}  // namespace talus::solver

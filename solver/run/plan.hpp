@@ -1,0 +1,21 @@
+// talus-solve --plan: what a recipe switches on, and what it will cost.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/domain/domain.hpp"
+#include "common/stage/stage.hpp"
+#include "solver/options/options.hpp"
+
+namespace talus::solver {
+
+/// What is on, one item a line: only what the recipe names or cannot do without.
+std::vector<std::string> features(const Domain& domain, const SolveOptions& options);
+
+/// Lines for `--plan`: the features, points, nodes, memory, step, steps and time. The time is measured on steps that
+/// are forgotten; how many there will be lies between those of a mass at rest and those of one as fast as the energy
+/// line allows. Throws what the run would throw at its start.
+std::vector<std::string> plan(const Domain& domain, const SolveOptions& options, On on);
+
+}  // namespace talus::solver

@@ -1,0 +1,95 @@
+#include "solver/run/stiffness.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "solver/boundary/base_friction.hpp"
+#include "solver/options/options.hpp"
+
+namespace talus::solver {
+namespace {
+
+/// Of the dynamic pressure. The energy line begins above what is released, so its weight makes no more than half of
+/// that.
+constexpr double impact_strain = 0.02;
+
+/// The least friction the flow can meet: on its bed, or inside where the bed holds it.
+double least_friction(const SolveOptions& o) {
+  if (o.base.law == FrictionLaw::stick) return std::tan(o.material.friction_angle * M_PI / 180);
+  const auto base = make_base_friction<double>(o);
+  return base.coefficient(base.uniform, 1e30);  // friction weakens with speed, if it changes at all
+}
+
+struct Summit {
+  double x = 0, y = 0, z = -1e30;
+};
+
+/// Highest place of what is released.
+Summit summit_of(const Domain& domain) {
+  Summit top;
+  for (int row = 0; row < domain.grid.rows; ++row) {
+    for (int column = 0; column < domain.grid.columns; ++column) {
+      const double thickness = domain.release_thickness.at(column, row), ground = domain.terrain.at(column, row);
+      if (!(thickness > 0) || !std::isfinite(ground)) continue;
+      if (ground + thickness > top.z) top = {domain.grid.x(column), domain.grid.y(row), ground + thickness};
+    }
+  }
+  return top;
+}
+
+}  // namespace
+
+StiffnessDemand lowest_stiffness(const Domain& domain, const SolveOptions& o) {
+  StiffnessDemand demand;
+  const Summit top = summit_of(domain);
+  const double g = std::hypot(o.gravity[0], o.gravity[1], o.gravity[2]), mu = least_friction(o);
+  double head = 0;  // between the energy line and the ground [m]
+  for (int row = 0; row < domain.grid.rows; ++row) {
+    for (int column = 0; column < domain.grid.columns; ++column) {
+      const double ground = domain.terrain.at(column, row);
+      if (!std::isfinite(ground)) continue;
+      head =
+          std::max(head, top.z - ground - mu * std::hypot(domain.grid.x(column) - top.x, domain.grid.y(row) - top.y));
+    }
+  }
+  const double start = std::hypot(o.initial_velocity[0], o.initial_velocity[1], o.initial_velocity[2]);
+  demand.speed = std::sqrt(2 * g * head) + start;
+
+  const MaterialOptions& m = o.material;
+  const double wave_speed = make_material<double>(m).wave_speed;
+  const double confined =
+      m.density * wave_speed * wave_speed / m.youngs_modulus;  // modulus of confined compression over Young's
+  struct Need {
+    double modulus;
+    std::string why;
+  } needs[] = {{m.density * demand.speed * demand.speed / impact_strain / confined,
+                fmt::format("the dynamic pressure at {:.3g} m/s, which the energy line allows, strains it by 2 %",
+                            demand.speed)},
+               // Its decay time in seconds stays; where that is no more than a step, it would no longer be resolved.
+               {o.transfer_time > 0 ? m.youngs_modulus * std::pow(o.courant / o.transfer_time, 2) : 0,
+                "velocity finer than the grid decays within a step"}};
+  const Need& most = *std::max_element(std::begin(needs), std::end(needs),
+                                       [](const Need& a, const Need& b) { return a.modulus < b.modulus; });
+  if (most.modulus >= m.youngs_modulus) {
+    demand.modulus = m.youngs_modulus;
+    demand.reason = fmt::format("it is no more than is needed: at {:.3g} Pa {}", most.modulus, most.why);
+  } else {
+    demand.modulus = most.modulus;
+    demand.reason = most.why;
+  }
+  demand.transfer_time = o.transfer_time * std::sqrt(demand.modulus / m.youngs_modulus);
+  return demand;
+}
+
+SolveOptions with_stiffness(SolveOptions o, const StiffnessDemand& demand) {
+  o.material.youngs_modulus = demand.modulus;
+  o.material.stiffness = StiffnessKind::as_given;
+  for (PartOptions& part : o.parts)
+    part.material.youngs_modulus = std::min(part.material.youngs_modulus, demand.modulus);
+  o.transfer_time = demand.transfer_time;
+  return o;
+}
+
+}  // namespace talus::solver

@@ -1,0 +1,28 @@
+#include "solver/run/thickness.hpp"
+
+#include "solver/integrator/point_solver.hpp"
+#include "solver/integrator/scene.hpp"
+#include "solver/options/options.hpp"
+
+namespace talus::solver {
+
+std::vector<double> thickness_of(const Scene& scene, const SolveOptions& options, const ParticleState& points,
+                                 const std::function<bool(std::size_t)>& counts) {
+  const GridShape& shape = scene.grid;
+  std::vector<double> thickness(static_cast<std::size_t>(shape.columns) * static_cast<std::size_t>(shape.rows), 0.0);
+  ParticleFields fields;
+  fields.extent = options.shape == ShapeKind::gimp;
+  Particles<double, OnCpu> held(fields);
+  held.upload(points);
+  with_shape(options.shape, [&](auto kind) {
+    const ScatterThickness<double, decltype(kind)> scatter{held.view(), shape.columns, thickness.data()};
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      if (counts(p)) scatter(static_cast<int>(p));
+    }
+    return 0;
+  });
+  for (double& value : thickness) value /= shape.spacing * shape.spacing;
+  return thickness;
+}
+
+}  // namespace talus::solver

@@ -1,0 +1,187 @@
+#include "solver/scene/make_scene.hpp"
+#include "solver/integrator/scene.hpp"
+#include "solver/options/options.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace talus::solver {
+namespace {
+
+/// A lone point on the very ground would leave next to no mass on the node above it, and no explicit step would be
+/// short enough. At a tenth of a layer sum N'^2/N is 11, which the default cfl of 0.5 still covers (docs/theory.md,
+/// T11). Implicit steps can do with less, and statics with none; but a node with next to no mass moves as it likes in a
+/// material without tension, and hands the point next to it a spin out of all measure.
+constexpr double explicit_lowest_weighed = 0.1, newmark_lowest_weighed = 0.01;
+
+/// Nearest node and offset from it of a position in cells.
+void place(double position, int& cell, double& offset) {
+  const double nearest = std::floor(position + 0.5);
+  cell = static_cast<int>(nearest);
+  offset = position - nearest;
+}
+
+void size_state(ParticleState& s, std::size_t count) {
+  for (auto* list : {&s.cell[0], &s.cell[1], &s.cell[2], &s.id, &s.release}) list->assign(count, 0);
+  for (auto& list : s.offset) list.assign(count, 0);
+  for (auto& list : s.extent) list.assign(count, 0);
+  for (auto& list : s.velocity) list.assign(count, 0);
+  for (auto& list : s.acceleration) list.assign(count, 0);
+  s.load.assign(count, -1);
+  s.material.assign(count, 0);
+  s.plastic_shear.assign(count, 0);
+  for (auto& list : s.affine) list.assign(count, 0);
+  for (auto& list : s.elastic) list.assign(count, 0);
+  for (auto* list : {&s.log_volume, &s.plastic_log_volume, &s.volume}) list->assign(count, 0);
+}
+
+/// Marks the points that start inside a load's box.
+void attach_loads(const Domain& domain, const SolveOptions& options, Scene& scene) {
+  for (std::size_t l = 0; l < options.loads.size(); ++l) {
+    const auto& b = options.loads[l].box;
+    double volume = 0;
+    for (std::size_t p = 0; p < domain.points.size(); ++p) {
+      const double x = domain.points.x[p], y = domain.points.y[p], z = domain.points.height[p];
+      if (x < b[0] || x > b[1] || y < b[2] || y > b[3] || z < b[4] || z > b[5]) continue;
+      scene.points.load[p] = static_cast<int>(l);
+      volume += domain.points.volume[p];
+    }
+    if (!(volume > 0)) {
+      throw RecipeError({fmt::format("[[solve.load]] number {}: no material point starts inside its box", l + 1),
+                         "the load would pull at nothing",
+                         "Widen box_m (west, east, south, north, bottom, top above the ground)"});
+    }
+    scene.load_volumes.push_back(volume);
+  }
+}
+
+/// Gives the points of each part its material.
+void attach_materials(const Domain& domain, const SolveOptions& options, Scene& scene) {
+  for (std::size_t part = 0; part < options.parts.size(); ++part) {
+    const std::string& name = options.parts[part].release;
+    bool found = false;
+    for (std::size_t p = 0; p < scene.points.size(); ++p) {
+      if (domain.release_names[static_cast<std::size_t>(scene.points.release[p])] != name) continue;
+      scene.points.material[p] = static_cast<int>(part) + 1;
+      found = true;
+    }
+    if (found) continue;
+    throw RecipeError({fmt::format("[[solve.part]] release = \"{}\": no material point is of that release", name),
+                       fmt::format("domain.vdb has {}", fmt::join(domain.release_names, ", ")),
+                       "Name one of those, or leave the part out"});
+  }
+}
+
+/// The bed where domain.vdb has rasters of it: their values, the recipe's elsewhere.
+std::vector<Bed<double>> make_bed(const Domain& domain, const SolveOptions& options) {
+  if (domain.bed.empty()) return {};
+  std::vector<Bed<double>> bed;
+  SolveOptions here = options;
+  for (std::size_t column = 0; column < domain.grid.count(); ++column) {
+    here.base = options.base;
+    for (const auto& [name, raster] : domain.bed) {
+      if (double* value = here.base.named(name); value && std::isfinite(raster.values[column]))
+        *value = raster.values[column];
+    }
+    bed.push_back(make_base_friction<double>(here).uniform);
+  }
+  return bed;
+}
+
+/// Rasters that the law does not look at are a slip of whoever wrote the recipe.
+void check_bed(const Domain& domain, const SolveOptions& options) {
+  for (const auto& [name, raster] : domain.bed) {
+    if (options.base.uses(name)) continue;
+    throw RecipeError({fmt::format("[preprocess.bed] {} is given, but [solve.base] law does not use it", name),
+                       "the raster would have no effect",
+                       "Name the law that does, or leave the raster out and run talus-preprocess again"});
+  }
+}
+
+}  // namespace
+
+Scene make_scene(const Domain& domain, const SolveOptions& options) {
+  Scene scene;
+  scene.map = domain.grid;
+  GridShape& shape = scene.grid;
+  shape.columns = domain.grid.columns;
+  shape.rows = domain.grid.rows;
+  shape.spacing = domain.grid.cell;
+  shape.layer_height = domain.layer_height;
+  shape.mapping = options.mapping;
+  shape.ground = options.ground;
+  shape.quadratic = options.shape == ShapeKind::quadratic;
+  // With "auto" the same for both integrators: what has next to no weight has next to no say in a change.
+  const bool some_explicit = options.integrator == Integrator::explicit_ || options.integrator == Integrator::automatic;
+  shape.lowest_weighed = some_explicit                               ? explicit_lowest_weighed
+                         : options.integrator == Integrator::newmark ? newmark_lowest_weighed
+                                                                     : 0;
+  shape.terrain = domain.terrain.values;
+  const GroundTables ground = make_ground_tables(shape);
+
+  ParticleState& s = scene.points;
+  const std::size_t count = domain.points.size();
+  size_state(s, count);
+  for (std::size_t p = 0; p < count; ++p) {
+    const double xi = (domain.points.x[p] - domain.grid.west) / shape.spacing - 0.5;
+    const double eta = (domain.points.y[p] - domain.grid.south) / shape.spacing - 0.5;
+    place(xi, s.cell[0][p], s.offset[0][p]);
+    place(eta, s.cell[1][p], s.offset[1][p]);
+    const int i = s.cell[0][p], j = s.cell[1][p];
+    const bool inside = i >= 0 && j >= 0 && i < shape.columns && j < shape.rows;
+    if (!inside || !ground.open[domain.grid.index(i, j)]) {
+      throw DataError({fmt::format("domain.vdb: point {} at ({:.2f}, {:.2f}) stands outside the ground or at its edge",
+                                   p, domain.points.x[p], domain.points.y[p]),
+                       "a point needs known ground one cell around it",
+                       "Give a larger elevation model, or a smaller source, and run talus-preprocess again"});
+    }
+    double height = domain.points.height[p];
+    if (shape.mapping == Mapping::cartesian) height += ground_at(shape, ground, xi, eta);
+    place(height / shape.layer_height, s.cell[2][p], s.offset[2][p]);
+    for (int a = 0; a < 3; ++a) s.velocity[a][p] = options.initial_velocity[static_cast<std::size_t>(a)];
+    s.volume[p] = domain.points.volume[p];
+    const double wide = domain.points.extent_x[p], deep = domain.points.extent_y[p];
+    s.extent[0][p] = wide / shape.spacing;
+    s.extent[1][p] = deep / shape.spacing;
+    s.extent[2][p] = s.volume[p] / (wide * deep * shape.layer_height);
+    s.id[p] = static_cast<int>(p);
+    s.release[p] = domain.points.release[p];
+  }
+  attach_loads(domain, options, scene);
+  attach_materials(domain, options, scene);
+  check_bed(domain, options);
+  scene.bed = make_bed(domain, options);
+  scene.contacts = make_contact_points(domain.grid, shape, ground, options.obstacles);
+  return scene;
+}
+
+std::vector<std::array<double, 3>> positions(const MapGrid& map, const GridShape& shape, const GroundTables& ground,
+                                             const ParticleState& s) {
+  std::vector<std::array<double, 3>> result(s.size());
+  for (std::size_t p = 0; p < s.size(); ++p) {
+    const double xi = s.cell[0][p] + s.offset[0][p], eta = s.cell[1][p] + s.offset[1][p];
+    double z = ground.datum + (s.cell[2][p] + s.offset[2][p]) * shape.layer_height;
+    if (shape.mapping == Mapping::terrain_following) z += ground_at(shape, ground, xi, eta);
+    result[p] = {map.west + (xi + 0.5) * shape.spacing, map.south + (eta + 0.5) * shape.spacing, z};
+  }
+  return result;
+}
+
+double first_rate(const GridShape& shape, const GroundTables& ground, const ParticleState& points, double wave_speed,
+                  double speed) {
+  double steepest = 0;
+  if (shape.mapping == Mapping::terrain_following) {
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      const auto n = static_cast<std::size_t>(points.cell[1][p]) * static_cast<std::size_t>(shape.columns) +
+                     static_cast<std::size_t>(points.cell[0][p]);
+      steepest = std::max(steepest, ground.slope_x[n] * ground.slope_x[n] + ground.slope_y[n] * ground.slope_y[n]);
+    }
+  }
+  const double hx = 1 / shape.spacing, hz = 1 / shape.layer_height;
+  return wave_speed * std::sqrt(2 * hx * hx + (1 + steepest) * hz * hz) +
+         speed * (2 * hx + hz * std::sqrt(1 + steepest));
+}
+
+}  // namespace talus::solver

@@ -1,0 +1,25 @@
+// From a domain and a recipe to the scene that an integrator starts from.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "common/domain/domain.hpp"
+#include "solver/integrator/scene.hpp"
+#include "solver/options/options.hpp"
+
+namespace talus::solver {
+
+/// Places the seeds of a domain on the background grid. Throws DataError when a seed stands outside the ground.
+Scene make_scene(const Domain& domain, const SolveOptions& options);
+
+/// Positions of points in map coordinates [m].
+std::vector<std::array<double, 3>> positions(const MapGrid& map, const GridShape& shape, const GroundTables& ground,
+                                             const ParticleState& points);
+
+/// An upper bound of (wave speed + speed) over cell size for points at rest or moving at `speed`, for the first step
+/// [1/s].
+double first_rate(const GridShape& shape, const GroundTables& ground, const ParticleState& points, double wave_speed,
+                  double speed);
+
+}  // namespace talus::solver

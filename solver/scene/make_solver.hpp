@@ -1,0 +1,25 @@
+// The choice among the integrators: of a scene at its start, or from a checkpoint.
+#pragma once
+
+#include <memory>
+
+#include "common/stage/stage.hpp"
+#include "solver/integrator/scene.hpp"
+#include "solver/integrator/solver.hpp"
+#include "solver/options/options.hpp"
+
+namespace talus::solver {
+
+/// State of a scene at the start.
+SolverState first_state(const Scene& scene, const SolveOptions& options);
+
+/// From a scene at the start. `on` must be cpu or gpu.
+std::unique_ptr<Solver> make_solver(const Scene& scene, const SolveOptions& options, On on);
+
+/// From a checkpoint; the scene gives the grid only.
+std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolveOptions& options, On on, const SolverState& state);
+
+/// cpu or gpu for automatic; throws RecipeError when a GPU is asked for and there is none.
+On choose_place(On wanted);
+
+}  // namespace talus::solver

@@ -1,0 +1,130 @@
+#include "common/domain/domain.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "common/error.hpp"
+#include "tests/common/rasters.hpp"
+#include "tests/common/scratch.hpp"
+
+namespace talus {
+namespace {
+
+using test::fault_of;
+using test::Scratch;
+using test::text_of;
+
+/// A sloping domain far from the origin, one corner of it without ground, with random points.
+Domain sample(std::size_t count, unsigned seed = 1) {
+  Domain domain;
+  domain.grid = {30, 20, 512345.25, 5432100.5, 20, "LOCAL_CS[\"test\"]"};
+  domain.layer_height = 5;
+  domain.terrain = test::random_raster(domain.grid, seed);
+  domain.before = test::random_raster(domain.grid, seed + 1);
+  domain.release_thickness = test::random_raster(domain.grid, seed + 2);
+  domain.terrain.at(0, 0) = domain.before.at(0, 0) = domain.release_thickness.at(0, 0) = std::nan("");
+  domain.release_names = {"upper", "lower"};
+  domain.provenance = {{"version", "0.1.0"}, {"input", "before.tif sha256 abc"}, {"empty", ""}};
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (std::size_t p = 0; p < count; ++p) {
+    domain.points.x.push_back(domain.grid.west + 600 * unit(random));
+    domain.points.y.push_back(domain.grid.south + 400 * unit(random));
+    domain.points.height.push_back(40 * unit(random));
+    domain.points.volume.push_back(250 / 3.0 * unit(random));
+    domain.points.extent_x.push_back(20 * unit(random));
+    domain.points.extent_y.push_back(20 * unit(random));
+    domain.points.release.push_back(static_cast<int>(p % 2));
+  }
+  return domain;
+}
+
+TEST(DomainFile, round_trip_keeps_everything) {
+  const Scratch scratch;
+  const Domain domain = sample(20000);
+  write_domain(scratch / "domain.vdb", domain);
+  EXPECT_EQ(scratch.files(), 1u);
+  const Domain back = read_domain(scratch / "domain.vdb");
+  EXPECT_TRUE(test::identical(back.terrain, domain.terrain));
+  EXPECT_TRUE(test::identical(back.before, domain.before));
+  EXPECT_TRUE(test::identical(back.release_thickness, domain.release_thickness));
+  EXPECT_EQ(back.grid.crs_wkt, domain.grid.crs_wkt);
+  EXPECT_EQ(back.layer_height, domain.layer_height);
+  EXPECT_EQ(back.release_names, domain.release_names);
+  EXPECT_EQ(back.provenance, domain.provenance);
+  EXPECT_EQ(back.points.volume, domain.points.volume);
+  EXPECT_EQ(back.points.height, domain.points.height);
+  EXPECT_EQ(back.points.extent_x, domain.points.extent_x);
+  EXPECT_EQ(back.points.extent_y, domain.points.extent_y);
+  EXPECT_EQ(back.points.release, domain.points.release);
+  ASSERT_EQ(back.points.size(), domain.points.size());
+  for (std::size_t p = 0; p < back.points.size(); ++p) {
+    ASSERT_NEAR(back.points.x[p], domain.points.x[p], 1e-6 * domain.grid.cell);
+    ASSERT_NEAR(back.points.y[p], domain.points.y[p], 1e-6 * domain.grid.cell);
+  }
+}
+
+TEST(DomainFile, a_domain_without_points_can_be_written) {
+  const Scratch scratch;
+  write_domain(scratch / "domain.vdb", sample(0));
+  EXPECT_EQ(read_domain(scratch / "domain.vdb").points.size(), 0u);
+}
+
+TEST(DomainFile, vdb_print_lists_it) {
+  const Scratch scratch;
+  write_domain(scratch / "domain.vdb", sample(100));
+  const std::string command =
+      "vdb_print -l -m " + (scratch / "domain.vdb").string() + " > " + (scratch / "list.txt").string() + " 2>&1";
+  ASSERT_EQ(std::system(command.c_str()), 0)
+      << text_of(scratch / "list.txt") << "\nvdb_print is in the Debian package libopenvdb-tools";
+  const std::string list = text_of(scratch / "list.txt");
+  for (const char* expected :
+       {"Name: points", "Name: terrain", "Name: before", "Name: release_thickness", "Name: active", "ptdataidx32",
+        "kind: talus-domain", "crs_wkt: LOCAL_CS", "release_name.0: upper", "cell_m: 20"})
+    EXPECT_NE(list.find(expected), std::string::npos) << expected << " is not in\n" << list;
+}
+
+TEST(DomainFile, every_truncation_is_noticed) {
+  const Scratch scratch;
+  write_domain(scratch / "domain.vdb", sample(50));
+  const std::string whole = text_of(scratch / "domain.vdb");
+  for (std::size_t length = 0; length < whole.size(); length += length < 200 ? 1 : 211) {
+    const auto cut = scratch.write("cut.vdb", whole.substr(0, length));
+    EXPECT_EQ(
+        fault_of<DataError>([&] { read_domain(cut); }),
+        cut.string() +
+            ": ends too early (the file is truncated: its writing or copying was cut short). Run talus-preprocess "
+            "again, or copy it again")
+        << length << " of " << whole.size() << " bytes";
+  }
+  const auto last = scratch.write("cut.vdb", whole.substr(0, whole.size() - 1));
+  EXPECT_NE(fault_of<DataError>([&] { read_domain(last); }), "");
+}
+
+TEST(DomainFile, foreign_files_are_refused) {
+  const Scratch scratch;
+  const auto words = scratch.write("words.vdb", "these are words, not volumes");
+  EXPECT_EQ(fault_of<DataError>([&] { read_domain(words); }),
+            words.string() + ": not an OpenVDB file (its first bytes say so). Make it with talus-preprocess");
+  const auto missing = scratch / "none.vdb";
+  EXPECT_EQ(fault_of<DataError>([&] { read_domain(missing); }),
+            missing.string() + ": no such file. Run talus-preprocess first, with the same --out");
+  EXPECT_EQ(fault_of<DataError>([&] { read_domain(scratch.folder()); }),
+            scratch.folder().string() + ": cannot be read (it is a folder). Check the path");
+}
+
+TEST(DomainFile, a_full_disk_leaves_no_half_file) {
+  const Scratch scratch;
+  const Domain domain = sample(20000);
+  const std::string text = fault_of<DataError>([&] {
+    const test::SmallFiles limit(200000);
+    write_domain(scratch / "domain.vdb", domain);
+  });
+  EXPECT_TRUE(text.starts_with((scratch / "domain.vdb").string() + ": cannot be written (")) << text;
+  EXPECT_EQ(scratch.files(), 0u);
+}
+
+}  // namespace
+}  // namespace talus

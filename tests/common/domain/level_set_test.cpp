@@ -1,0 +1,77 @@
+#include "common/domain/level_set.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "common/domain/domain.hpp"
+#include "common/error.hpp"
+#include "tests/common/scratch.hpp"
+
+namespace talus {
+namespace {
+
+using test::fault_of;
+using test::Scratch;
+
+SolidBody ball(const std::string& name, double x, double y, double z, double radius) {
+  return {name,
+          {x - radius, y - radius, z - radius},
+          {x + radius, y + radius, z + radius},
+          [=](double px, double py, double pz) { return std::hypot(px - x, py - y, pz - z) - radius; }};
+}
+
+TEST(LevelSet, surface_of_a_ball_far_from_the_origin) {
+  const Scratch scratch;
+  write_level_sets(scratch / "ball.vdb", {ball("ball", 512345.3, 5432100.7, 1234.5, 10)}, 0.5);
+  for (const double largest : {5.0, 0.3}) {  // with and without facets to be cut
+    const BodySurface surface = read_level_set(scratch / "ball.vdb", "", {largest, largest, largest});
+    EXPECT_NEAR(surface.volume, 4 * std::numbers::pi / 3 * 1000,
+                0.01 * 4189);  // facets cut corners: (voxel / radius)^2
+    double area = 0, radius_error = 0;
+    for (const Facet& f : surface.facets) {
+      const double out[3] = {f.centre[0] - 512345.3, f.centre[1] - 5432100.7, f.centre[2] - 1234.5};
+      const double size = std::hypot(f.area[0], f.area[1], f.area[2]), distance = std::hypot(out[0], out[1], out[2]);
+      EXPECT_GT(out[0] * f.area[0] + out[1] * f.area[1] + out[2] * f.area[2], 0.9 * distance * size)
+          << "normals point outward";
+      area += size;
+      radius_error = std::max(radius_error, std::abs(distance - 10));
+    }
+    EXPECT_NEAR(area, 4 * std::numbers::pi * 100, 0.02 * 1257);
+    EXPECT_LT(radius_error, 0.1);
+  }
+}
+
+TEST(LevelSet, several_bodies_are_told_apart_by_name) {
+  const Scratch scratch;
+  write_level_sets(scratch / "two.vdb", {ball("small", 0, 0, 0, 3), ball("large", 20, 0, 0, 6)}, 0.5);
+  EXPECT_NEAR(read_level_set(scratch / "two.vdb", "large", {9, 9, 9}).volume, 904.8, 18);
+  EXPECT_NE(fault_of<DataError>([&] {
+              read_level_set(scratch / "two.vdb", "", {9, 9, 9});
+            }).find("holds 2 grids"),
+            std::string::npos);
+  EXPECT_NE(fault_of<DataError>([&] {
+              read_level_set(scratch / "two.vdb", "medium", {9, 9, 9});
+            }).find("large, small"),
+            std::string::npos);
+}
+
+TEST(LevelSet, refuses_what_is_none) {
+  const Scratch scratch;
+  EXPECT_THROW(read_level_set(scratch / "none.vdb", "", {1, 1, 1}), DataError);
+  Domain domain;
+  domain.grid = {4, 4, 0, 0, 1, ""};
+  domain.layer_height = 1;
+  domain.terrain = domain.before = domain.release_thickness = {domain.grid, std::vector<double>(16, 1.0)};
+  write_domain(scratch / "domain.vdb", domain);
+  EXPECT_NE(fault_of<DataError>([&] {
+              read_level_set(scratch / "domain.vdb", "terrain", {1, 1, 1});
+            }).find("is no level set"),
+            std::string::npos);
+  EXPECT_THROW(write_level_sets(scratch / "thin.vdb", {ball("dust", 0.26, 0.26, 0.26, 0.1)}, 1), DataError);
+  EXPECT_FALSE(std::filesystem::exists(scratch / "thin.vdb"));
+}
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,34 @@
+#include "common/map/statistics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace talus {
+namespace {
+
+TEST(Statistics, takes_quantiles_between_the_sorted_values) {
+  EXPECT_DOUBLE_EQ(quantile({4, 1, 3, 2, 5}, 0.5), 3);
+  EXPECT_DOUBLE_EQ(quantile({4, 1, 3, 2}, 0.5), 2.5);
+  EXPECT_DOUBLE_EQ(quantile({10, 0}, 0.05), 0.5);
+  EXPECT_DOUBLE_EQ(quantile({7, 8, 9}, 1), 9);
+  EXPECT_TRUE(std::isnan(quantile({}, 0.5)));
+}
+
+TEST(Statistics, nmad_does_not_see_an_outlier) {
+  EXPECT_DOUBLE_EQ(nmad({1, 2, 3, 4, 1000}), 1.4826) << "median 3, distances 2 1 0 1 997";
+  EXPECT_TRUE(std::isnan(nmad({})));
+}
+
+TEST(Statistics, spread_leaves_out_draws_without_a_value) {
+  const auto spread = spread_of({1, std::nan(""), 3});
+  EXPECT_DOUBLE_EQ(spread.mean, 2);
+  EXPECT_DOUBLE_EQ(spread.deviation, std::sqrt(2.0));
+  EXPECT_DOUBLE_EQ(spread.low, 1.1);
+  EXPECT_DOUBLE_EQ(spread.high, 2.9);
+  EXPECT_EQ(spread_of({5}).deviation, 0);
+  EXPECT_TRUE(std::isnan(spread_of({}).mean));
+}
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,177 @@
+// GeoTIFF and NetCDF: what they hold, read by our reader and by tools that are not ours.
+#include <gtest/gtest.h>
+#include <netcdf.h>
+
+#include "common/gis/raster_io.hpp"
+#include "postprocess/maps/cf_projection.hpp"
+#include "postprocess/maps/fields.hpp"
+#include "postprocess/maps/geotiff.hpp"
+#include "postprocess/maps/netcdf.hpp"
+#include "tests/postprocess/scene.hpp"
+
+namespace talus::postprocess {
+namespace {
+
+using test::output_of;
+using test::small_run;
+
+TEST(Fields, hold_nodata_outside_the_domain_and_zero_inside) {
+  const auto run = small_run();
+  const auto& grid = run.maps.grid;
+  for (const auto& field : product_fields()) {
+    const auto raster = field_raster(run.maps, field);
+    EXPECT_TRUE(std::isnan(raster.at(20, 1))) << field.name << " outside";
+    const bool arrival = std::string(field.name) == "arrival_time";
+    EXPECT_EQ(std::isnan(raster.at(20, 25)), arrival) << field.name << " inside, never reached";
+    if (!arrival) {
+      EXPECT_EQ(raster.values[grid.index(20, 25)], 0);
+    }
+  }
+}
+
+TEST(Fields, lose_no_volume_that_left_the_ground) {
+  auto run = small_run();
+  run.maps.deposit_thickness[run.maps.grid.index(20, 1)] = 2;  // where there is no terrain
+  const auto raster = field_raster(run.maps, product_fields().front());
+  EXPECT_EQ(volume_under(raster.values, 10), 24200);
+}
+
+class MapFiles : public ::testing::Test {
+ protected:
+  test::Scratch scratch_;
+  const talus::Run run_ = small_run();
+};
+
+TEST_F(MapFiles, geotiffs_keep_the_volume_and_say_what_they_are) {
+  const auto files = write_geotiffs(scratch_.folder(), run_);
+  ASSERT_EQ(files.size(), 5U);
+  const auto deposit = read_raster(scratch_ / "deposit_thickness.tif");
+  EXPECT_NEAR(volume_under(deposit.values, deposit.grid.cell), run_.summary.volume_final,
+              1e-9 * run_.summary.volume_final);
+  EXPECT_TRUE(same_crs(deposit.grid.crs_wkt, test::utm32n));
+  EXPECT_EQ(deposit.grid.south, run_.maps.grid.south);
+  EXPECT_EQ(deposit.at(29, 15), 6.5);
+  TALUS_NEED_TOOL("command -v gdalinfo", "gdal-bin");
+  const auto info = output_of("gdalinfo '" + files.front().string() + "'");
+  for (const auto* words :
+       {"LAYOUT=COG", "vertical thickness", "Unit Type: m", "NoData Value=-9999", "Float64", "32632"}) {
+    EXPECT_NE(info.find(words), std::string::npos) << words << "\n" << info;
+  }
+}
+
+TEST_F(MapFiles, geotiffs_pass_gdals_own_cog_validator) {
+  TALUS_NEED_TOOL(TALUS_COG_VALIDATOR);
+  for (const auto& file : write_geotiffs(scratch_.folder(), run_)) test::expect_valid_cog(file);
+}
+
+std::vector<double> read_variable(const std::filesystem::path& file, const char* name, std::size_t count) {
+  std::vector<double> values(count, test::nan);
+  int id = 0, variable = 0;
+  EXPECT_EQ(nc_open(file.c_str(), NC_NOWRITE, &id), NC_NOERR);
+  EXPECT_EQ(nc_inq_varid(id, name, &variable), NC_NOERR) << name;
+  EXPECT_EQ(nc_get_var_double(id, variable, values.data()), NC_NOERR) << name;
+  nc_close(id);
+  return values;
+}
+
+TEST_F(MapFiles, netcdf_holds_the_same_values_and_the_frames) {
+  const auto file = scratch_ / "results.nc";
+  write_netcdf(file, run_, {"A test", "talus-postprocess x.toml"});
+  const auto n = run_.maps.grid.count();
+  const auto deposit = read_variable(file, "deposit_thickness", n);
+  EXPECT_EQ(deposit[run_.maps.grid.index(29, 15)], 6.5);
+  EXPECT_EQ(deposit[0], -9999) << "outside the domain";
+  double volume = 0;
+  for (const double h : deposit) volume += h == -9999 ? 0 : h * 100;
+  EXPECT_NEAR(volume, run_.summary.volume_final, 1e-9 * volume);
+  const auto frames = read_variable(file, "thickness", 2 * n);
+  EXPECT_EQ(frames[run_.maps.grid.index(4, 15)], 6) << "the release at time 0";
+  EXPECT_EQ(frames[n + run_.maps.grid.index(29, 15)], 6.5) << "the deposit at the end";
+  EXPECT_EQ(read_variable(file, "time", 2), (std::vector<double>{0, 20}));
+  EXPECT_EQ(read_variable(file, "y", 30).front(), 5100005);
+}
+
+TEST_F(MapFiles, netcdf_is_written_without_frames_and_without_crs) {
+  auto run = run_;
+  run.frames = {};
+  run.maps.grid.crs_wkt.clear();
+  const auto file = scratch_ / "results.nc";
+  write_netcdf(file, run, {});
+  TALUS_NEED_TOOL("command -v ncdump", "netcdf-bin");
+  const auto header = output_of("ncdump -h '" + file.string() + "'");
+  EXPECT_NE(header.find("double deposit_thickness(y, x)"), std::string::npos) << header;
+  EXPECT_EQ(header.find("grid_mapping"), std::string::npos) << header;
+  EXPECT_EQ(header.find("time ="), std::string::npos) << header;
+}
+
+TEST_F(MapFiles, netcdf_speaks_cf_as_ncdump_sees_it) {
+  TALUS_NEED_TOOL("command -v ncdump", "netcdf-bin");
+  const auto file = scratch_ / "results.nc";
+  write_netcdf(file, run_, {"A test", "talus-postprocess x.toml"});
+  const auto header = output_of("ncdump -h '" + file.string() + "'");
+  for (const auto* words :
+       {":Conventions = \"CF-1.8\"", ":institution = \"A test\"", ":source = \"Talus", ": talus-postprocess x.toml\"",
+        "double thickness(time, y, x)", "x:standard_name = \"projection_x_coordinate\"",
+        "time:units = \"seconds since 1970-01-01 00:00:00\"", "peak_speed:units = \"m s-1\"",
+        "peak_thickness:cell_methods = \"area: mean time: maximum\"", "deposit_thickness:grid_mapping = \"crs\"",
+        "deposit_thickness:_FillValue = -9999.", "crs:crs_wkt = \"PROJCRS",
+        "crs:grid_mapping_name = \"transverse_mercator\"", "crs:longitude_of_central_meridian = 9.",
+        "crs:scale_factor_at_central_meridian = 0.9996", "vertical"}) {
+    EXPECT_NE(header.find(words), std::string::npos) << words << "\n" << header;
+  }
+}
+
+TEST_F(MapFiles, netcdf_and_geotiff_lie_in_the_same_place_for_gdal) {
+  TALUS_NEED_TOOL("gdalinfo --format netCDF", "gdal-bin with the netCDF driver");
+  const auto file = scratch_ / "results.nc";
+  write_netcdf(file, run_, {});
+  write_geotiffs(scratch_.folder(), run_);
+  const auto netcdf = read_raster("NETCDF:\"" + file.string() + "\":deposit_thickness");
+  const auto geotiff = read_raster(scratch_ / "deposit_thickness.tif");
+  EXPECT_EQ(netcdf.grid.west, geotiff.grid.west);
+  EXPECT_EQ(netcdf.grid.south, geotiff.grid.south);
+  EXPECT_EQ(netcdf.grid.cell, geotiff.grid.cell);
+  EXPECT_TRUE(same_crs(netcdf.grid.crs_wkt, geotiff.grid.crs_wkt));
+  for (std::size_t i = 0; i < geotiff.values.size(); ++i) {
+    ASSERT_TRUE(netcdf.values[i] == geotiff.values[i] ||
+                (std::isnan(netcdf.values[i]) && std::isnan(geotiff.values[i])))
+        << i;
+  }
+}
+
+TEST_F(MapFiles, a_netcdf_that_cannot_be_written_is_named_and_leaves_nothing) {
+  std::string fault;
+  {
+    const test::SmallFiles limit(4096);
+    fault = test::fault_of<DataError>([&] { write_netcdf(scratch_ / "results.nc", run_, {}); });
+  }
+  EXPECT_NE(fault.find("results.nc: cannot be written"), std::string::npos) << fault;
+  EXPECT_EQ(scratch_.files(), 0U);
+}
+
+TEST(CfProjection, reads_both_parallels_of_a_lambert_cone) {
+  const auto cone = cf_projection(
+      R"wkt(PROJCRS["x",BASEGEOGCRS["y",DATUM["z",ELLIPSOID["GRS 1980",6378137,298.257222101]]],CONVERSION["c",)wkt"
+      R"wkt(METHOD["Lambert Conic Conformal (2SP)"],PARAMETER["Latitude of false origin",45.5],)wkt"
+      R"wkt(PARAMETER["Longitude of false origin",-120.5],PARAMETER["Latitude of 1st standard parallel",47.3],)wkt"
+      R"wkt(PARAMETER["Latitude of 2nd standard parallel",45.8],PARAMETER["Easting at false origin",500000]]])wkt");
+  EXPECT_EQ(cone.grid_mapping_name, "lambert_conformal_conic");
+  const auto find = [&](const std::string& name) {
+    for (const auto& [key, values] : cone.numbers) {
+      if (key == name) return values;
+    }
+    return std::vector<double>{};
+  };
+  EXPECT_EQ(find("standard_parallel"), (std::vector<double>{47.3, 45.8}));
+  EXPECT_EQ(find("longitude_of_central_meridian"), std::vector<double>{-120.5});
+  EXPECT_EQ(find("false_easting"), std::vector<double>{500000});
+  EXPECT_EQ(find("semi_major_axis"), std::vector<double>{6378137});
+}
+
+TEST(CfProjection, names_nothing_it_does_not_know) {
+  EXPECT_TRUE(cf_projection(R"wkt(PROJCRS["x",CONVERSION["c",METHOD["Krovak"]]])wkt").grid_mapping_name.empty());
+  EXPECT_TRUE(cf_projection("").grid_mapping_name.empty());
+}
+
+}  // namespace
+}  // namespace talus::postprocess

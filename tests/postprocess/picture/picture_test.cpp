@@ -1,0 +1,179 @@
+#include <cairo.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+#include "common/gis/inside.hpp"
+#include "common/map/isolines.hpp"
+#include "postprocess/picture/classes.hpp"
+#include "postprocess/picture/furniture.hpp"
+#include "postprocess/picture/hillshade.hpp"
+#include "postprocess/picture/map_picture.hpp"
+#include "postprocess/picture/view.hpp"
+#include "tests/postprocess/scene.hpp"
+
+namespace talus::postprocess {
+namespace {
+
+using test::small_grid;
+using test::small_run;
+
+TEST(Classes, fall_in_lightness_by_equal_steps) {
+  constexpr std::size_t count = 6;
+  for (std::size_t i = 0; i + 1 < count; ++i) {
+    const double step = oklab_lightness(class_colour(i, count)) - oklab_lightness(class_colour(i + 1, count));
+    EXPECT_NEAR(step, 0.68 / 5, 0.02) << "between class " << i << " and the next: equal steps must look equal";
+  }
+}
+
+TEST(Classes, follow_the_deposits_thickness_unless_they_are_given) {
+  EXPECT_EQ(class_limits({}, 80).at(1), 5);
+  EXPECT_EQ(class_limits({}, 11.9).at(1), 0.5);
+  EXPECT_EQ(class_limits({1, 3}, 80), (std::vector<double>{1, 3}));
+  const std::vector<double> limits{0.1, 5, 10};
+  EXPECT_EQ(class_of(0.05, limits), -1);
+  EXPECT_EQ(class_of(5, limits), 1);
+  EXPECT_EQ(class_of(1000, limits), 2);
+  EXPECT_EQ(class_of(test::nan, limits), -1);
+  EXPECT_EQ(class_label(0, limits), "0.1 \u2013 5");
+  EXPECT_EQ(class_label(2, limits), "> 10");
+}
+
+TEST(Hillshade, lights_slopes_that_face_the_north_west) {
+  MapGrid grid{.columns = 21, .rows = 21, .west = 0, .south = 0, .cell = 10, .crs_wkt = ""};
+  std::vector<double> cone;
+  for (int row = 0; row < 21; ++row) {
+    for (int column = 0; column < 21; ++column) cone.push_back(-5.0 * std::hypot(column - 10, row - 10));
+  }
+  const auto shades = hillshade(grid, cone);
+  EXPECT_GT(shades[grid.index(4, 16)], 0.8) << "north-west flank";
+  EXPECT_LT(shades[grid.index(16, 4)], 0.2) << "south-east flank";
+  EXPECT_TRUE(std::isnan(hillshade(grid, std::vector<double>(grid.count(), test::nan))[0]));
+}
+
+TEST(Isolines, close_around_an_area_even_at_the_edge) {
+  const MapGrid grid{.columns = 4, .rows = 4, .west = 0, .south = 0, .cell = 1, .crs_wkt = ""};
+  const auto lines = isolines(grid, test::block(grid, 0, 2, 0, 2, 2.0), 1, AtEdge::close);
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].front(), lines[0].back());
+  for (const auto& [x, y] : lines[0]) EXPECT_TRUE(x >= 0 && y >= 0 && x <= 2 && y <= 2) << x << " " << y;
+}
+
+TEST(Isolines, lie_at_the_level_on_a_plane_and_end_at_the_edge) {
+  const MapGrid grid{.columns = 5, .rows = 3, .west = 0, .south = 0, .cell = 10, .crs_wkt = ""};
+  std::vector<double> plane;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 5; ++column) plane.push_back(grid.x(column));
+  }
+  const auto lines = isolines(grid, plane, 17.5, AtEdge::end);
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].size(), 3U);
+  for (const auto& point : lines[0]) EXPECT_DOUBLE_EQ(point[0], 17.5);
+}
+
+TEST(View, shows_what_is_affected_with_a_margin_inside_the_grid) {
+  const auto run = small_run();
+  const auto window = affected_window(run.maps, {}, {});
+  EXPECT_LT(window.west, 600030);
+  EXPECT_GT(window.east, 600350);
+  EXPECT_GE(window.west, run.maps.grid.west);
+  EXPECT_LE(window.north, run.maps.grid.north());
+  EXPECT_EQ(round_below(7.4), 5);
+  EXPECT_EQ(round_below(0.2), 0.2);
+  EXPECT_EQ(round_below(1999), 1000);
+}
+
+TEST(Words, give_volumes_in_three_figures) {
+  EXPECT_EQ(volume_words(36.0004e6), "36.0 million m\u00b3");
+  EXPECT_EQ(volume_words(5.8e6), "5.80 million m\u00b3");
+  EXPECT_EQ(volume_words(22481), "22\u2009500 m\u00b3");
+  EXPECT_EQ(volume_words(0), "0 m\u00b3");
+}
+
+struct Reading {
+  const std::string* bytes;
+  std::size_t place = 0;
+};
+
+/// Colours of a PNG and how often each occurs.
+std::map<std::uint32_t, int> colours_of(const std::string& png) {
+  Reading reading{&png};
+  const auto read = [](void* closure, unsigned char* data, unsigned length) {
+    auto& from = *static_cast<Reading*>(closure);
+    if (from.place + length > from.bytes->size()) return CAIRO_STATUS_READ_ERROR;
+    std::copy_n(from.bytes->begin() + static_cast<std::ptrdiff_t>(from.place), length, data);
+    from.place += length;
+    return CAIRO_STATUS_SUCCESS;
+  };
+  auto* surface = cairo_image_surface_create_from_png_stream(read, &reading);
+  EXPECT_EQ(cairo_surface_status(surface), CAIRO_STATUS_SUCCESS);
+  std::map<std::uint32_t, int> colours;
+  const int width = cairo_image_surface_get_width(surface), height = cairo_image_surface_get_height(surface);
+  EXPECT_GT(width, 1000);
+  EXPECT_GT(height, 1000);
+  for (int row = 0; row < height; ++row) {
+    const auto* line = reinterpret_cast<const std::uint32_t*>(cairo_image_surface_get_data(surface) +
+                                                              row * cairo_image_surface_get_stride(surface));
+    for (int column = 0; column < width; ++column) ++colours[line[column] & 0xffffffU];
+  }
+  cairo_surface_destroy(surface);
+  return colours;
+}
+
+/// Pixels as strongly coloured (red well above blue) as the classes are; the rest of the map is grey, blue or green.
+int coloured_pixels(const std::map<std::uint32_t, int>& colours, int least_lightness, int most_lightness) {
+  int count = 0;
+  for (const auto& [colour, times] : colours) {
+    const int red = static_cast<int>(colour >> 16U), blue = static_cast<int>(colour & 0xffU);
+    if (red - blue > 35 && red >= least_lightness && red <= most_lightness) count += times;
+  }
+  return count;
+}
+
+TEST(Picture, shows_the_deposit_in_its_classes) {
+  const auto run = small_run();
+  const std::optional<Survey> no_survey;
+  const auto png = map_picture({run, {}, no_survey, make_score(run, {}, no_survey)});
+  const auto colours = colours_of(png);
+  // Two classes lie on the ground: 1 - 2 m (orange) and 5 - 10 m (dark red), each over thousands of pixels.
+  EXPECT_GT(coloured_pixels(colours, 170, 255), 20000);
+  EXPECT_GT(coloured_pixels(colours, 60, 150), 10000);
+  auto empty = run;
+  empty.maps.deposit_thickness.assign(run.maps.grid.count(), 0.0);
+  const auto bare = colours_of(map_picture({empty, {}, no_survey, make_score(empty, {}, no_survey)}));
+  EXPECT_LT(coloured_pixels(bare, 60, 150), 10000) << "no deposit: only the legend is coloured";
+}
+
+int blue_pixels(const talus::Run& run, const std::optional<Survey>& survey) {
+  int count = 0;
+  for (const auto& [colour, times] : colours_of(map_picture({run, {}, survey, make_score(run, {}, survey)}))) {
+    if (static_cast<int>(colour & 0xffU) - static_cast<int>(colour >> 16U) > 120) count += times;
+  }
+  return count;
+}
+
+TEST(Picture, draws_the_surveys_outline_in_blue) {
+  const auto run = small_run();
+  std::optional<Survey> survey = Survey{};
+  survey->name = "survey";
+  survey->grid = small_grid();
+  survey->deposit = test::block(survey->grid, 27, 37, 10, 20, 2.0);
+  EXPECT_EQ(blue_pixels(run, {}), 0);
+  EXPECT_GT(blue_pixels(run, survey), 2000);
+}
+
+TEST(Picture, draws_a_bare_polygon_and_shortens_a_long_name) {
+  const auto run = small_run();
+  std::optional<Survey> survey = Survey{};
+  survey->name = "Outline mapped in the field by a commission whose name is longer than any legend";
+  survey->grid = small_grid();
+  survey->footprint_threshold = 0.5;
+  survey->polygons.push_back({{{{600040, 5100080}, {600360, 5100080}, {600360, 5100220}, {600040, 5100220}}}, {}, ""});
+  const auto inside = cells_inside(survey->polygons, survey->grid);
+  survey->footprint.assign(inside.begin(), inside.end());
+  EXPECT_GT(blue_pixels(run, survey), 2000);
+}
+
+}  // namespace
+}  // namespace talus::postprocess

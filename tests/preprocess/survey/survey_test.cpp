@@ -1,0 +1,316 @@
+// Difference of two surveys: its error, its volumes, what of it is the slide.
+#include "preprocess/survey/survey.hpp"
+
+#include <iostream>
+
+#include "common/map/statistics.hpp"
+#include "data_samples/terrains.hpp"
+#include "preprocess/survey/write_survey.hpp"
+#include "tests/preprocess/scene.hpp"
+
+namespace talus::preprocess {
+namespace {
+
+using test::grid_of;
+using test::raster_of;
+using test::Scratch;
+
+/// The valley's volume, which its formula gives: cells of 10 m sum a smooth scar and lobe to 0.2 %.
+double clean_volume() {
+  const samples::Sample clean = samples::valley(10);
+  double sum = 0;
+  for (std::size_t i = 0; i < clean.rasters[0].second.values.size(); ++i)
+    sum += std::max(0.0, clean.rasters[0].second.values[i] - clean.rasters[1].second.values[i]);
+  return sum * 100;
+}
+
+Options raw_options(const Scratch& scratch, unsigned seed) {
+  const samples::Sample raw = samples::raw_valley(10, seed);
+  Options options;
+  options.before_dem = test::write(scratch, "before.tif", raw.rasters[0].second);
+  options.after_dem = test::write(scratch, "after.tif", raw.rasters[1].second);
+  options.coregistration.mode = Alignment::apply;
+  options.voids.fill = true;
+  return options;
+}
+
+/// Eight surveys of the same slide. Their holes are the same, so that errors of filling do not average out: the errors
+/// are not expected to be centred, but to be as large as said.
+TEST(survey, recovers_shift_and_volumes_of_a_raw_pair_within_their_stated_errors) {
+  const double truth = clean_volume();
+  double squares = 0, worst = 0, shift = 0;
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    Scratch scratch;
+    const Prepared prepared = prepare(raw_options(scratch, seed), Points::counted);
+    const Placement& p = prepared.survey->fit.placement;
+    EXPECT_NEAR(p.x, -4, 0.1 * 10) << "seed " << seed;
+    EXPECT_NEAR(p.y, 7, 0.1 * 10);
+    EXPECT_NEAR(p.z, -1.3, 0.1);
+    shift = std::max(shift, std::hypot(p.x + 4, p.y - 7) / 10);
+    for (const SurveyedVolume& side : prepared.slide->volumes) {
+      const double off = (side.volume.volume - truth) / side.volume.error;
+      EXPECT_LT(std::abs(off), 2.6) << side.name << ", seed " << seed;  // 1 in 100 by chance
+      EXPECT_LT(side.volume.error, 0.02 * truth);
+      squares += off * off / 16;
+      worst = std::max(worst, std::abs(off));
+    }
+  }
+  std::cerr << "volumes off by " << std::sqrt(squares) << " stated errors (rms), at most " << worst
+            << "; shift by at most " << shift << " cells\n";
+  EXPECT_GT(std::sqrt(squares), 0.4);  // errors neither far too large
+  EXPECT_LT(std::sqrt(squares), 1.5);  // nor far too small
+}
+
+TEST(survey, warns_and_leaves_the_later_model_where_it_is_unless_told) {
+  Scratch scratch;
+  Options options = raw_options(scratch, 1);
+  options.coregistration.mode = Alignment::check;
+  const Survey survey = survey_of(options);
+  EXPECT_FALSE(survey.after.placement.given());
+  EXPECT_TRUE(survey.fit.known);
+  options.coregistration.mode = Alignment::off;
+  options.difference.before_sigma_m = 0.3;
+  options.difference.after_sigma_m = 0.4;
+  const Survey given = survey_of(options);
+  EXPECT_FALSE(given.fit.known);
+  EXPECT_DOUBLE_EQ(given.errors.sigma(0.7), 0.5);
+}
+
+TEST(survey, has_no_error_where_the_later_model_was_made_from_the_earlier_one) {
+  test::Scene scene;
+  const Prepared prepared = scene.prepare();
+  EXPECT_EQ(prepared.survey->errors.typical(), 0);
+  EXPECT_EQ(prepared.slide->volumes[0].volume.error, 0);
+  EXPECT_NEAR(prepared.slide->volumes[0].volume.volume, test::volume_of(scene.bowl),
+              1e-6 * test::volume_of(scene.bowl));
+}
+
+TEST(survey, refuses_to_align_without_stable_ground) {
+  test::Scene scene;
+  MapGrid small = grid_of(9, 9, 10);
+  scene.rewrite_before(raster_of(small, [](double x, double y) { return 0.3 * (x - 500000) + 0.1 * (y - 5100000); }));
+  scene.rewrite_after(
+      raster_of(small, [](double x, double y) { return 0.3 * (x - 500000) + 0.1 * (y - 5100000) - 5; }));
+  scene.options.coregistration.mode = Alignment::apply;
+  EXPECT_NE(scene.data_fault().find("no stable ground"), std::string::npos) << scene.data_fault();
+}
+
+/// They share a strip of eleven columns, but lie twelve apart.
+TEST(survey, refuses_to_align_models_that_do_not_overlap_once_moved) {
+  std::mt19937 random(4);
+  test::Scene scene;
+  const MapGrid grid = grid_of(120, 90, 10), later = grid_of(120, 90, 10, grid.east() - 110);
+  const test::Hills hills(grid_of(240, 90, 10), random);
+  scene.rewrite_before(raster_of(grid, hills));
+  scene.rewrite_after(raster_of(later, [&](double x, double y) { return hills(x + 120, y); }));
+  scene.options.coregistration.mode = Alignment::apply;
+  EXPECT_NE(scene.data_fault().find("no stable ground"), std::string::npos) << scene.data_fault();
+}
+
+TEST(survey, says_so_when_one_model_looks_like_feet) {
+  test::Scene scene;
+  Raster feet = scene.after;
+  for (double& z : feet.values) z /= 0.3048;
+  scene.rewrite_after(feet);
+  const std::string fault = scene.data_fault();
+  EXPECT_NE(fault.find("look like feet"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("after_vertical_unit = \"foot\""), std::string::npos) << fault;
+  scene.options.after_vertical_unit = VerticalUnit::foot;
+  EXPECT_EQ(scene.data_fault(), "") << "what it says helps";
+}
+
+/// Heights of a scene in another unit than the file says, which is none.
+void rewrite_in(test::Scene& scene, double before_metres, double after_metres) {
+  Raster before = scene.before, after = scene.after;
+  for (double& z : before.values) z /= before_metres;
+  for (double& z : after.values) z /= after_metres;
+  scene.rewrite_before(before);
+  scene.rewrite_after(after);
+}
+
+TEST(survey, one_model_in_feet_and_one_in_metres_are_compared_in_metres) {
+  constexpr double ft = 0.3048, us_ft = 1200.0 / 3937.0;
+  struct Case {
+    double before, after;
+    VerticalUnit all, only_before, only_after;
+  };
+  using enum VerticalUnit;
+  for (const Case& c : {Case{1, ft, declared, same, foot},
+                        {us_ft, 1, declared, us_survey_foot, same},
+                        {ft, 1, foot, same, metre},
+                        {ft, 1, foot, same, declared},
+                        {us_ft, ft, foot, us_survey_foot, same}}) {
+    test::Scene scene;
+    rewrite_in(scene, c.before, c.after);
+    scene.options.vertical_unit = c.all;
+    scene.options.before_vertical_unit = c.only_before;
+    scene.options.after_vertical_unit = c.only_after;
+    const Prepared prepared = scene.prepare();
+    const auto& difference = prepared.slide->change;
+    for (std::size_t i = 0; i < difference.values.size(); ++i) {
+      const double change = scene.after.values[i] - scene.before.values[i];
+      if (!(scene.bowl.values[i] > 0)) continue;
+      ASSERT_NEAR(difference.values[i], change, 1e-9);  // rounding of heights of 1000 m
+    }
+    EXPECT_NEAR(prepared.slide->volumes[0].volume.volume / test::volume_of(scene.bowl), 1, 1e-6);
+    EXPECT_NEAR(prepared.total.volume / test::volume_of(scene.bowl), 1, 1e-6);
+  }
+}
+
+/// Two cells: one beyond its level, one not.
+TEST(difference, believes_what_lies_beyond_the_level_of_detection) {
+  const Detection probabilistic{Threshold::probabilistic, 0.2, 1.96},
+      propagated{Threshold::propagated_error, 0.2, 1.96}, minimum{Threshold::minimum_level, 0.2, 1.96};
+  EXPECT_DOUBLE_EQ(probabilistic.level(0.5), 0.98);
+  EXPECT_DOUBLE_EQ(probabilistic.level(0.05), 0.2);
+  EXPECT_DOUBLE_EQ(propagated.level(0.5), 0.5);
+  EXPECT_DOUBLE_EQ(minimum.level(0.5), 0.2);
+}
+
+TEST(difference, budget_adds_up_with_errors_of_independent_cells) {
+  const ErrorModel model = ErrorModel::of(0.3);
+  BudgetSum sum;
+  for (int i = 0; i < 100; ++i) sum.add(-2, 0.3);
+  for (int i = 0; i < 25; ++i) sum.add(1, 0.3);
+  const Budget budget = sum.budget(model, 10);
+  EXPECT_DOUBLE_EQ(budget.erosion.volume, 20000);
+  EXPECT_DOUBLE_EQ(budget.deposition.volume, 2500);
+  EXPECT_DOUBLE_EQ(budget.net.volume, -17500);
+  EXPECT_NEAR(budget.erosion.error, 0.3 * 100 * std::sqrt(100.0),
+              1e-9);  // sigma times the cell's area times sqrt(cells)
+  EXPECT_NEAR(budget.net.error, 0.3 * 100 * std::sqrt(125.0), 1e-9);
+}
+
+TEST(difference, is_the_same_by_blocks_of_any_grid) {
+  std::mt19937 random(11);
+  Elevation before, after;
+  const MapGrid grid = grid_of(1100, 1050, 2);  // four blocks
+  before.raster = raster_of(grid, test::Hills(grid, random));
+  after.raster = raster_of(grid, test::Hills(grid, random));
+  const ErrorModel model = ErrorModel::of(0.1);
+  std::size_t cells = 0;
+  double sum = 0;
+  for_each_block(before, after, grid, model, [&](const Block& block) {
+    cells += block.difference.values.size();
+    for (const double d : block.difference.values) sum += d;
+  });
+  double whole = 0;
+  for (std::size_t i = 0; i < grid.count(); ++i) whole += after.raster.values[i] - before.raster.values[i];
+  EXPECT_EQ(cells, grid.count());
+  EXPECT_NEAR(sum, whole, 1e-9 * std::abs(whole) + 1e-6);
+}
+
+/// White noise averaged over a window of known width has a variogram of that range.
+TEST(variogram, finds_range_and_nugget_of_a_made_field) {
+  std::mt19937 random(2);
+  std::normal_distribution<double> normal;
+  const int size = 300, window = 12;
+  std::vector<double> white((size + window) * (size + window));
+  for (double& w : white) w = normal(random);
+  Patch patch;
+  patch.before = raster_of(grid_of(size, size, 5), [](double, double) { return 0.0; });
+  std::vector<double> field(patch.before.values.size());
+  for (int row = 0; row < size; ++row) {
+    for (int column = 0; column < size; ++column) {
+      double sum = 0;
+      for (int j = 0; j < window; ++j) {
+        for (int i = 0; i < window; ++i)
+          sum += white[static_cast<std::size_t>((row + j) * (size + window) + column + i)];
+      }
+      field[patch.before.grid.index(column, row)] = std::sqrt(0.7) * sum / window + std::sqrt(0.3) * normal(random);
+    }
+  }
+  const Variogram v = variogram_of({patch}, {field});
+  EXPECT_NEAR(v.nugget, 0.3, 0.1);
+  EXPECT_NEAR(v.correlation(window * 5 * 1.5), 0, 0.1);
+  EXPECT_NEAR(v.correlation(window * 5 * 0.5), 0.7 * 0.25 * 1.5,
+              0.15);  // (1 - h/w)^2 along the diagonal, 1 - h/w along a side
+  const double area = 400.0 * 400.0;
+  const double expected =
+      0.7 * (window * 5.0) * (window * 5.0) / area + 0.3 * 25 / area;  // each side's window counts once
+  EXPECT_NEAR(v.of_mean(area, 5) / expected, 1, 0.5);
+  const double range = v.equivalent_range(area, 5);
+  Variogram one{0, 1, range, 0, 0, {}, {}};
+  EXPECT_NEAR(one.of_mean(area, 5) / v.of_mean(area, 5), 1, 0.01);
+}
+
+TEST(robust, statistics_ignore_a_few_wild_values) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal(3, 2);
+  std::vector<double> values;
+  for (int i = 0; i < 20001; ++i) values.push_back(i % 10 == 0 ? 1e6 : normal(random));
+  EXPECT_NEAR(median(values), 3, 0.4);  // a tenth on one side moves the middle by 0.14 standard deviations
+  EXPECT_NEAR(nmad(values), 2, 0.4);
+  EXPECT_EQ(median({1, 2, 4, 9}), 3);
+  EXPECT_TRUE(std::isnan(median({})));
+}
+
+const char* const eastern_half =
+    "POLYGON((500300 5100000, 500400 5100000, 500400 5100300, 500300 5100300, 500300 5100000))";
+
+TEST(delineation, deposit_is_what_rose_beside_the_source_or_inside_its_polygon) {
+  test::Scene scene;
+  const double heap = test::volume_of(scene.heap);
+  EXPECT_NEAR(scene.prepare().slide->volumes[1].volume.volume / heap, 1,
+              0.02);  // rim thinner than threshold_m left out
+  scene.options.deposit.polygon = test::write_polygon(scene.scratch, "heap.csv", eastern_half);
+  const double part = scene.prepare().slide->volumes[1].volume.volume;
+  EXPECT_GT(part, 0.3 * heap);
+  EXPECT_LT(part, 0.7 * heap);  // the polygon begins at the heap's middle
+}
+
+/// What tells the alignment and what is delineated is the same outline: the file may be gone by then.
+TEST(delineation, outlines_are_read_once) {
+  test::Scene scene;
+  scene.options.deposit.polygon = test::write_polygon(scene.scratch, "heap.csv", eastern_half);
+  const Prepared whole = scene.prepare();
+  const Survey survey = survey_of(scene.options);
+  std::filesystem::remove(scene.scratch / "heap.csv");
+  SurveyedSlide slide = slide_on(survey, scene.before, {});
+  delineate(survey, {scene.before, scene.after, scene.bowl}, scene.options, slide);
+  EXPECT_EQ(slide.volumes[1].volume.volume, whole.slide->volumes[1].volume.volume);
+  EXPECT_GT(slide.volumes[1].volume.volume, 0);
+}
+
+TEST(delineation, an_outline_that_crosses_itself_is_refused_before_anything_is_compared) {
+  test::Scene scene;
+  scene.options.deposit.polygon =
+      test::write_polygon(scene.scratch, "heap.csv",
+                          "POLYGON((500100 5100100, 500300 5100200, 500300 5100100, 500100 5100200, 500100 5100100))");
+  EXPECT_NE(
+      test::fault_of<DataError>([&] { survey_of(scene.options); }).find("heap.csv: polygon 1: its outline crosses"),
+      std::string::npos);
+}
+
+/// The polygon runs between cell centres, so that cells on it count in part.
+TEST(write_survey, outlines_given_back_give_the_same_slide) {
+  test::Scene scene;
+  const Prepared prepared = scene.prepare();
+  std::vector<std::string> lines;
+  write_survey(scene.scratch / "survey", *prepared.survey, &prepared, lines);
+  scene.options.source.polygon = scene.options.deposit.polygon = scene.scratch / "survey" / "outlines.gpkg";
+  const Prepared again = scene.prepare();
+  EXPECT_NEAR(again.total.volume / prepared.total.volume, 1, 0.02);
+  EXPECT_NEAR(again.slide->volumes[1].volume.volume / prepared.slide->volumes[1].volume.volume, 1, 0.02);
+}
+
+TEST(write_survey, leaves_rasters_outlines_and_styles_for_a_gis) {
+  test::Scene scene;
+  const Prepared prepared = scene.prepare();
+  std::vector<std::string> lines;
+  const auto files = write_survey(scene.scratch / "survey", *prepared.survey, &prepared, lines);
+  for (const char* name :
+       {"before_aligned.tif", "after_aligned.tif", "difference.tif", "difference_sigma.tif", "stable_ground.tif",
+        "source_thickness.tif", "sliding_surface.tif", "deposit_surveyed.tif", "slide_difference.tif", "outlines.gpkg",
+        "survey.qgs", "survey.json", "difference.qml", "source_thickness.qml"})
+    EXPECT_TRUE(std::filesystem::exists(scene.scratch / "survey" / name)) << name;
+  const Raster difference = read_raster(scene.scratch / "survey" / "difference.tif");
+  for (std::size_t i = 0; i < difference.values.size(); ++i)
+    ASSERT_NEAR(difference.values[i], scene.after.values[i] - scene.before.values[i], 1e-4);
+  EXPECT_NEAR(test::volume_of(read_raster(scene.scratch / "survey" / "source_thickness.tif")), prepared.total.volume,
+              1e-6 * prepared.total.volume);
+  EXPECT_EQ(read_polygons(scene.scratch / "survey" / "outlines.gpkg", "").front().name, "source");
+}
+
+}  // namespace
+}  // namespace talus::preprocess

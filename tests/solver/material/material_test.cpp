@@ -1,0 +1,272 @@
+// Constitutive laws against plain references: eigenvalue forms by Eigen, finite differences of the energy, the cone.
+#include "solver/material/material.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <numbers>
+#include <random>
+
+#include "solver/options/options.hpp"
+
+namespace talus::solver {
+namespace {
+
+using Matrix = Eigen::Matrix3d;
+
+Matrix to_eigen(const Sym3<double>& s) {
+  Matrix m;
+  m << s.xx, s.xy, s.xz, s.xy, s.yy, s.yz, s.xz, s.yz, s.zz;
+  return m;
+}
+
+Sym3<double> from_eigen(const Matrix& m) { return {m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(1, 2), m(0, 2)}; }
+
+Mat3<double> columns(const Matrix& m) {
+  return {{m(0, 0), m(1, 0), m(2, 0)}, {m(0, 1), m(1, 1), m(2, 1)}, {m(0, 2), m(1, 2), m(2, 2)}};
+}
+
+/// f of a symmetric matrix through its eigenvalues.
+template <class F>
+Matrix spectral(const Matrix& m, F f) {
+  const Eigen::SelfAdjointEigenSolver<Matrix> solver(m);
+  return solver.eigenvectors() * solver.eigenvalues().unaryExpr(f).asDiagonal() * solver.eigenvectors().transpose();
+}
+
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+  Matrix matrix(double size) {
+    Matrix m;
+    for (int i = 0; i < 9; ++i) m.data()[i] = size * uniform_(engine_);
+    return m;
+  }
+  Matrix symmetric(double size) {
+    const Matrix m = matrix(size);
+    return 0.5 * (m + m.transpose());
+  }
+
+ private:
+  std::mt19937 engine_;
+  std::uniform_real_distribution<double> uniform_{-1, 1};
+};
+
+Material<double> sand(double friction = 30, double dilatancy = 0, double cohesion = 0, double cutoff = 0) {
+  MaterialOptions o;
+  o.youngs_modulus = 1e7;
+  o.poisson_ratio = 0.3;
+  o.friction_angle = friction;
+  o.dilatancy_angle = dilatancy;
+  o.cohesion = cohesion;
+  o.tension_cutoff = cutoff;
+  return make_material<double>(o);
+}
+
+TEST(HenckyStrain, agrees_with_the_matrix_logarithm_for_small_and_large_strain) {
+  Random random(1);
+  for (const double size : {1e-7, 1e-4, 4e-3, 9e-3, 0.02, 0.3}) {
+    for (int n = 0; n < 50; ++n) {
+      const Matrix strain = random.symmetric(size), g = random.matrix(size);
+      const Matrix b = spectral(strain, [](double e) { return std::exp(2 * e); });
+      const Matrix f = Matrix::Identity() + g;
+      const Matrix trial = f * b * f.transpose();
+      const Matrix expected = spectral(0.5 * (trial + trial.transpose()), [](double l) { return 0.5 * std::log(l); });
+      const Matrix got = to_eigen(advance_strain(from_eigen(strain), columns(g)));
+      // Series of five terms: relative 1e-8 at the size where they hand over; the reference itself loses 1e-16.
+      EXPECT_LT((got - expected).norm(), 1e-8 * size + 2e-15) << "strain size " << size;
+    }
+  }
+}
+
+TEST(HenckyStrain, knows_the_volume_change) {
+  Random random(2);
+  for (const double size : {1e-8, 1e-3, 0.2}) {
+    const Matrix g = random.matrix(size);
+    const double expected = std::log((Matrix::Identity() + g).determinant());
+    EXPECT_NEAR(log_volume_change(columns(g)), expected, 1e-15 + 1e-9 * size * size);
+  }
+}
+
+TEST(EigenSymmetric, finds_values_and_directions) {
+  Random random(3);
+  for (int n = 0; n < 100; ++n) {
+    Matrix m = random.symmetric(1);
+    if (n % 3 == 0) m = Matrix::Identity() * 2 + 1e-9 * m;  // nearly equal
+    double values[3];
+    Mat3<double> vectors;
+    eigen_symmetric(from_eigen(m), values, vectors);
+    EXPECT_LT((to_eigen(compose(values, vectors)) - m).norm(), 1e-14 * m.norm());
+  }
+}
+
+TEST(Hencky, has_the_stress_that_its_energy_asks_for) {
+  Material<double> m = sand();
+  m.model = MaterialModel::hencky;
+  Random random(4);
+  const Matrix strain = random.symmetric(0.01), direction = random.symmetric(1);
+  const auto energy = [&](double t) {
+    MaterialState<double> s;
+    s.elastic = from_eigen(strain + t * direction);
+    return elastic_energy(m, s);
+  };
+  MaterialState<double> s;
+  s.elastic = from_eigen(strain);
+  const double slope = (energy(1e-6) - energy(-1e-6)) / 2e-6;
+  const double work = (to_eigen(kirchhoff_stress(m, s)).cwiseProduct(direction)).sum();
+  EXPECT_NEAR(slope / work, 1, 1e-8);
+}
+
+TEST(Hencky, does_not_feel_a_rotation) {
+  Material<double> m = sand();
+  m.model = MaterialModel::hencky;
+  Random random(5);
+  MaterialState<double> s;
+  s.elastic = from_eigen(random.symmetric(0.05));
+  const Matrix before = to_eigen(kirchhoff_stress(m, s));
+  const Matrix turn = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  advance_material(m, columns(turn - Matrix::Identity()), s);
+  EXPECT_LT((to_eigen(kirchhoff_stress(m, s)) - turn * before * turn.transpose()).norm(), 1e-10 * before.norm());
+  EXPECT_NEAR(s.log_volume, 0, 1e-14);
+}
+
+TEST(LinearElastic, follows_hookes_law_and_turns_with_the_body) {
+  Material<double> m = sand();
+  m.model = MaterialModel::linear_elastic;
+  MaterialState<double> s;
+  Matrix g = Matrix::Zero();
+  g(2, 2) = -1e-5;
+  advance_material(m, columns(g), s);
+  const double oedometric = m.bulk_modulus + 4 * m.shear_modulus / 3;
+  EXPECT_NEAR(s.elastic.zz, -1e-5 * oedometric, 1e-9 * oedometric);
+  // A quarter turn about x in small steps carries zz to yy; the Jaumann rate errs by the square of the step.
+  constexpr int steps = 20000;
+  Matrix spin = Matrix::Zero();
+  spin(1, 2) = -std::numbers::pi / 2 / steps;
+  spin(2, 1) = -spin(1, 2);
+  const double carried = s.elastic.zz, side = s.elastic.yy;
+  for (int n = 0; n < steps; ++n) advance_material(m, columns(spin), s);
+  EXPECT_NEAR(s.elastic.yy / carried, 1, 1e-3);
+  EXPECT_NEAR(s.elastic.zz / side, 1, 1e-3);
+}
+
+double shear_measure(const Sym3<double>& tau) { return std::sqrt(0.5 * norm_squared(deviator(tau))); }
+double pressure_of(const Sym3<double>& tau) { return -trace(tau) / 3; }
+
+TEST(DruckerPrager, ends_on_or_inside_the_cone) {
+  for (const double cohesion : {0.0, 1e4}) {
+    for (const double dilatancy : {0.0, 10.0}) {
+      const auto m = sand(30, dilatancy, cohesion, 5e3);
+      Random random(6);
+      for (int n = 0; n < 500; ++n) {
+        MaterialState<double> s;
+        for (int k = 0; k < 5; ++k) advance_material(m, columns(random.matrix(2e-3)), s);
+        const auto tau = kirchhoff_stress(m, s);
+        const double p = pressure_of(tau);
+        EXPECT_LE(shear_measure(tau), m.friction * p + m.shear_cohesion + 1e-6);
+        EXPECT_GE(p, -m.tension - 1e-6);
+      }
+    }
+  }
+}
+
+TEST(DruckerPrager, meets_mohr_coulomb_in_triaxial_compression) {
+  const auto m = sand(31);
+  MaterialState<double> s;
+  advance_material(m, columns(Matrix(-1e-3 * Matrix::Identity())), s);
+  Matrix g = Matrix::Zero();
+  g(2, 2) = -1e-4;
+  g(0, 0) = g(1, 1) = 0.5e-4;
+  for (int n = 0; n < 200; ++n) advance_material(m, columns(g), s);
+  const auto tau = kirchhoff_stress(m, s);
+  const double sine = std::sin(31 * std::numbers::pi / 180);
+  EXPECT_NEAR(tau.zz / tau.xx, (1 + sine) / (1 - sine), 1e-3);
+}
+
+TEST(DruckerPrager, meets_mohr_coulomb_in_plane_strain_for_its_own_flow) {
+  // Sheared in a plane, nothing across it: the circle in the plane must touch the line of 31 degrees whatever the
+  // dilatancy is.
+  const double sine = std::sin(31 * std::numbers::pi / 180), cohesion = 2e3;
+  for (const double dilatancy : {0.0, 1.0, 15.0, 31.0}) {
+    MaterialOptions o;
+    o.model = MaterialModel::drucker_prager;
+    o.cone = Cone::plane_strain;
+    o.friction_angle = 31;
+    o.dilatancy_angle = dilatancy;
+    o.cohesion = cohesion;
+    o.tension_cutoff = 1e6;
+    const auto m = make_material<double>(o);
+    MaterialState<double> s;
+    advance_material(m, columns(Matrix(-1e-3 * Matrix::Identity())), s);
+    Matrix g = Matrix::Zero();
+    g(2, 2) = -1e-5;
+    g(0, 0) = 1e-5;
+    const double start = pressure_of(kirchhoff_stress(m, s));
+    for (int n = 0; n < 4000; ++n) {  // it may widen in the plane, so that the pressure stays
+      advance_material(m, columns(g), s);
+      g(0, 0) = 1e-5 + (pressure_of(kirchhoff_stress(m, s)) - start) / m.bulk_modulus;
+    }
+    const auto tau = kirchhoff_stress(m, s);
+    const double radius = 0.5 * (tau.xx - tau.zz), mean = -0.5 * (tau.xx + tau.zz);
+    EXPECT_NEAR(radius / (mean * sine + cohesion * std::sqrt(1 - sine * sine)), 1, 2e-3) << "dilatancy " << dilatancy;
+  }
+}
+
+TEST(DruckerPrager, opened_grain_must_close_before_it_carries_load) {
+  const auto m = sand();
+  MaterialState<double> s;
+  const Matrix open = 0.01 * Matrix::Identity(), close = -0.006 * Matrix::Identity();
+  advance_material(m, columns(open), s);
+  EXPECT_EQ(pressure_of(kirchhoff_stress(m, s)), 0);
+  advance_material(m, columns(close), s);
+  EXPECT_EQ(pressure_of(kirchhoff_stress(m, s)), 0) << "still open by 0.4 %";
+  EXPECT_EQ(shear_measure(kirchhoff_stress(m, s)), 0);
+  advance_material(m, columns(close), s);
+  EXPECT_GT(pressure_of(kirchhoff_stress(m, s)), 0);
+}
+
+TEST(DruckerPrager, dilates_as_it_shears_only_when_asked) {
+  Matrix shear = Matrix::Zero();
+  shear(0, 1) = 1e-4;
+  for (const double dilatancy : {0.0, 5.0}) {
+    const auto m = sand(30, dilatancy);
+    MaterialState<double> s;
+    advance_material(m, columns(Matrix(-1e-3 * Matrix::Identity())), s);
+    const double before = pressure_of(kirchhoff_stress(m, s));
+    for (int n = 0; n < 100; ++n) advance_material(m, columns(shear), s);  // at constant volume
+    const double after = pressure_of(kirchhoff_stress(m, s));
+    if (dilatancy > 0) {
+      EXPECT_GT(after, 1.05 * before);
+      EXPECT_GT(s.plastic_log_volume, 0);
+    } else {
+      EXPECT_NEAR(after / before, 1, 1e-4);
+      EXPECT_EQ(s.plastic_log_volume, 0);
+    }
+  }
+}
+
+TEST(DruckerPrager, keeps_small_stress_in_single_precision) {
+  MaterialOptions o;
+  o.youngs_modulus = 8e9;  // strains of 1e-5
+  const auto exact = make_material<double>(o);
+  const auto coarse = make_material<float>(o);
+  MaterialState<double> a;
+  MaterialState<float> b;
+  Random random(8);
+  for (int n = 0; n < 1000; ++n) {
+    const Matrix g = random.matrix(1e-7) - 2e-8 * Matrix::Identity();
+    advance_material(exact, columns(g), a);
+    const auto c = columns(g);
+    const auto to_float = [](const Vec3<double>& v) {
+      return Vec3<float>{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+    };
+    advance_material(coarse, Mat3<float>{to_float(c.a), to_float(c.b), to_float(c.c)}, b);
+  }
+  const auto tau = kirchhoff_stress(exact, a);
+  const auto single = kirchhoff_stress(coarse, b);
+  // A thousand roundings of 6e-8 of the strain itself, not of 1.
+  EXPECT_NEAR(static_cast<double>(single.xx) / tau.xx, 1, 1e-4);
+  EXPECT_NEAR(static_cast<double>(single.zz) / tau.zz, 1, 1e-4);
+}
+
+}  // namespace
+}  // namespace talus::solver

@@ -1,0 +1,388 @@
+// What an explicit step must keep: mass, momentum, angular momentum, a body in free fall, the same bits on every CPU
+// run.
+#include <numeric>
+#include <random>
+
+#include "solver/integrator/scene.hpp"
+#include "solver/options/options.hpp"
+#include "solver/scene/make_scene.hpp"
+#include "solver/scene/make_solver.hpp"
+#include "tests/solver/scenes.hpp"
+
+namespace talus::solver::testing {
+namespace {
+
+class Conservation : public InEachPlace {
+ protected:
+  /// An elastic cube in the air over flat ground, Cartesian grid.
+  static Domain cube() {
+    Domain d = ground(24, 24, 1.0, 1.0, [](double, double) { return 0.0; });
+    fill(d, {8, 14, 9, 15, 10, 16});
+    return d;
+  }
+  static SolveOptions options() {
+    SolveOptions o;
+    o.mapping = Mapping::cartesian;
+    o.material.model = MaterialModel::hencky;
+    o.material.youngs_modulus = 1e6;
+    o.material.density = 1000;
+    o.gravity = {0, 0, 0};
+    return o;
+  }
+};
+
+TEST_P(Conservation, falls_freely) {
+  for (const auto transfer : {Transfer::apic, Transfer::flip}) {
+    for (const auto shape : {ShapeKind::quadratic, ShapeKind::gimp, ShapeKind::linear}) {
+      for (const auto update : {StressUpdate::last, StressUpdate::modified}) {
+        const Domain d = cube();
+        SolveOptions o = options();
+        o.gravity = {0, 0, -9.81};
+        o.initial_velocity = {1.5, -0.5, 2};
+        o.transfer = transfer;
+        o.shape = shape;
+        o.stress_update = update;
+        const Scene scene = make_scene(d, o);
+        const auto solver = make_solver(scene, o, GetParam());
+        const Centre start = centre(*solver, scene);
+        constexpr double time = 1;
+        run_to(*solver, time);
+        const Centre end = centre(*solver, scene);
+        // Symplectic Euler moves with the new velocity: its fall leads the parabola by g dt t / 2, dt the mean step.
+        const double lead = 0.5 * 9.81 * time * time / static_cast<double>(solver->clock().step);
+        EXPECT_NEAR(end.x - start.x, 1.5 * time, 1e-9);
+        EXPECT_NEAR(end.y - start.y, -0.5 * time, 1e-9);
+        EXPECT_NEAR(end.z - start.z, 2 * time - 0.5 * 9.81 * time * time, 1.1 * lead);
+        const Energies e = solver->energies();
+        EXPECT_NEAR(e.momentum.z / (216 * 1000), 2 - 9.81 * time, 1e-9);
+        EXPECT_LT(e.elastic, 1e-9);
+      }
+    }
+  }
+}
+
+TEST_P(Conservation, keeps_momentum_and_mass_of_a_shaken_body) {
+  for (const auto transfer : {Transfer::apic, Transfer::flip}) {
+    const Domain d = cube();
+    SolveOptions o = options();
+    o.transfer = transfer;
+    Scene scene = make_scene(d, o);
+    for (std::size_t p = 0; p < scene.points.size(); ++p) {  // a shaking that is smooth on the grid
+      const double x = scene.points.cell[0][p] + scene.points.offset[0][p];
+      scene.points.velocity[0][p] = 3 * std::sin(0.7 * x);
+      scene.points.velocity[2][p] = 2 * std::cos(0.5 * x) + 1;
+    }
+    const auto solver = make_solver(scene, o, GetParam());
+    const Energies start = solver->energies();
+    run_to(*solver, 0.5);
+    const Energies end = solver->energies();
+    const double scale = 216 * 1000 * 3.0;
+    EXPECT_NEAR(end.momentum.x, start.momentum.x, 1e-12 * scale);
+    EXPECT_NEAR(end.momentum.y, start.momentum.y, 1e-12 * scale);
+    EXPECT_NEAR(end.momentum.z, start.momentum.z, 1e-12 * scale);
+    EXPECT_DOUBLE_EQ(end.volume, start.volume);
+    // No more energy than at the start: the grid's functions filter, they do not feed.
+    EXPECT_LT(end.kinetic + end.elastic, 1.001 * (start.kinetic + start.elastic));
+    EXPECT_GT(end.elastic, 0);
+  }
+}
+
+/// Angular momentum about the centre, from points and their affine velocity.
+Vec3<double> angular_momentum(const Solver& solver, const Scene& scene, double density) {
+  const ParticleState s = solver.state().points;
+  const auto x = positions(scene.map, scene.grid, solver.ground(), s);
+  const Centre c = centre(solver, scene);
+  Vec3<double> total;
+  for (std::size_t p = 0; p < s.size(); ++p) {
+    const double m = s.volume[p] * density;
+    const Vec3<double> r{x[p][0] - c.x, x[p][1] - c.y, x[p][2] - c.z};
+    const Vec3<double> v{s.velocity[0][p], s.velocity[1][p], s.velocity[2][p]};
+    total += Vec3<double>{r.y * v.z - r.z * v.y, r.z * v.x - r.x * v.z, r.x * v.y - r.y * v.x} * m;
+    // The affine part carries m D C per point, D = 1/4 cell squared; affine is per cell.
+    const double d = 0.25 * m * scene.grid.spacing;
+    total += Vec3<double>{s.affine[5][p] - s.affine[7][p], s.affine[6][p] - s.affine[2][p],
+                          s.affine[1][p] - s.affine[3][p]} *
+             d;
+  }
+  return total;
+}
+
+TEST_P(Conservation, spins_an_elastic_body_without_loss_of_angular_momentum) {
+  // APIC keeps it exactly in space; symplectic Euler about the moving points costs O(dt) of the stress's moment. What
+  // points keep of their own velocity (transfer_time) is not that of the grid where they go: a hundredth in a turn.
+  for (const double transfer_time : {0.0, SolveOptions{}.transfer_time}) {
+    const Domain d = cube();
+    SolveOptions o = options();
+    o.transfer_time = transfer_time;
+    Scene scene = make_scene(d, o);
+    constexpr double spin = 2;  // about z [rad/s]
+    for (std::size_t p = 0; p < scene.points.size(); ++p) {
+      const double x = scene.points.cell[0][p] + scene.points.offset[0][p] - 10.5;
+      const double y = scene.points.cell[1][p] + scene.points.offset[1][p] - 11.5;
+      scene.points.velocity[0][p] = -spin * y;
+      scene.points.velocity[1][p] = spin * x;
+      scene.points.affine[1][p] = spin;   // dv_y / dx
+      scene.points.affine[3][p] = -spin;  // dv_x / dy
+    }
+    const auto solver = make_solver(scene, o, GetParam());
+    const Vec3<double> start = angular_momentum(*solver, scene, 1000);
+    run_to(*solver, 3);  // nearly one turn
+    const Vec3<double> end = angular_momentum(*solver, scene, 1000);
+    std::printf("  angular momentum, transfer_time %g: relative change %.2e\n", transfer_time, end.z / start.z - 1);
+    const double tolerance = transfer_time > 0 ? 0.02 : 1e-3;
+    EXPECT_NEAR(end.z / start.z, 1, tolerance);
+    EXPECT_NEAR(end.x / start.z, 0, tolerance);
+    EXPECT_NEAR(end.y / start.z, 0, tolerance);
+    const Energies e = solver->energies();
+    EXPECT_LT(e.elastic, 0.05 * e.kinetic);  // turning is no strain
+  }
+}
+
+TEST_P(Conservation, loses_velocity_finer_than_the_grid_by_time_and_not_by_steps) {
+  for (const auto transfer : {Transfer::apic, Transfer::flip}) {
+    const auto left = [&](double courant, double transfer_time) {
+      const Domain d = cube();
+      SolveOptions o = options();
+      o.transfer = transfer;
+      o.transfer_time = transfer_time;
+      o.courant = courant;
+      Scene scene = make_scene(d, o);
+      std::mt19937 engine(11);
+      std::uniform_real_distribution<double> u(-1e-3, 1e-3);
+      for (auto& component : scene.points.velocity) {
+        for (double& v : component) v = u(engine);
+      }
+      const auto solver = make_solver(scene, o, GetParam());
+      const double start = solver->energies().kinetic;
+      run_to(*solver, 0.08);  // about five CFL steps of 1 m over 32 m/s by sqrt(3)
+      return solver->energies().kinetic / start;
+    };
+    const double few = left(0.5, 10), many = left(0.05, 10), at_once = left(0.05, 0);
+    std::printf("  %s: random velocity, energy left %.3f at 0.5 CFL, %.3f at 0.05; %.3f where nothing is kept\n",
+                transfer == Transfer::apic ? "apic" : "flip", few, many, at_once);
+    EXPECT_NEAR(few / many, 1, 0.1);  // (1 - x / n)^n against exp(-x), and what the grid carries swings
+    EXPECT_LT(at_once, 0.5 * many);
+  }
+}
+
+TEST_P(Conservation, deforms_uniformly_under_a_linear_velocity) {
+  // Patch test: a linear velocity field gives every point inside the body the same gradient, whatever the layout.
+  for (const auto shape : {ShapeKind::quadratic, ShapeKind::gimp, ShapeKind::linear}) {
+    Domain d = ground(24, 24, 1.0, 0.5, [](double, double) { return 0.0; });
+    fill(d, {8, 14, 9, 15, 4, 8}, 3, 2);
+    unsigned seed = 7;
+    const auto noise = [&] {
+      seed = seed * 1664525u + 1013904223u;
+      return (seed >> 8) / 16777216.0 - 0.5;
+    };
+    for (std::size_t p = 0; p < d.points.size(); ++p) {
+      d.points.x[p] += 0.2 * noise();
+      d.points.y[p] += 0.2 * noise();
+      d.points.height[p] += 0.1 * noise();
+    }
+    SolveOptions o = options();
+    o.shape = shape;
+    o.largest_step = 1e-3;
+    o.courant = 0.8;
+    Scene scene = make_scene(d, o);
+    const double l[3][3] = {{0.01, 0.02, -0.03}, {0.015, -0.02, 0.01}, {0.005, 0.03, 0.02}};  // grad v [1/s]
+    const double cell[3] = {1.0, 1.0, 0.5};
+    for (std::size_t p = 0; p < scene.points.size(); ++p) {
+      for (int a = 0; a < 3; ++a) {
+        double v = 0;
+        for (int b = 0; b < 3; ++b) {
+          v += l[a][b] * (scene.points.cell[b][p] + scene.points.offset[b][p]) * cell[b];
+          scene.points.affine[3 * b + a][p] = l[a][b] * cell[b];
+        }
+        scene.points.velocity[a][p] = v;
+      }
+    }
+    const auto solver = make_solver(scene, o, GetParam());
+    solver->set_next_event(5e-4);  // one step, from zero stress
+    while (solver->advance().clock.halt != at_event) {
+    }
+    const double dt = 5e-4 / static_cast<double>(solver->clock().step);
+    const double trace = l[0][0] + l[1][1] + l[2][2];
+    const ParticleState s = solver->state().points;
+    double worst = 0;
+    for (std::size_t p = 0; p < s.size(); ++p) {
+      if (solver->clock().step == 1) worst = std::max(worst, std::abs(s.log_volume[p] - std::log1p(trace * dt)));
+      for (int a = 0; a < 3; ++a) {
+        for (int b = 0; b < 3; ++b) worst = std::max(worst, std::abs(s.affine[3 * b + a][p] - l[a][b] * cell[b]) * dt);
+      }
+    }
+    EXPECT_EQ(solver->clock().step, 1);
+    // Rounding: velocities of 0.5 m/s and 27 terms; second order terms of det(I + dt L) are 1e-9.
+    EXPECT_LT(worst, 3e-9);
+  }
+}
+
+TEST_P(Conservation, keeps_horizontal_momentum_on_smooth_ground) {
+  // A thin sheet collapsing on frictionless ground, points down to the very ground.
+  for (const auto transfer : {Transfer::apic, Transfer::flip}) {
+    Domain d = ground(30, 30, 1.0, 1.0, [](double, double) { return 0.0; });
+    fill(d, {10, 18, 10, 18, 0, 2}, 2, 3);
+    for (std::size_t p = 0; p < d.points.size(); p += 5) d.points.height[p] = 0.01;
+    SolveOptions o;
+    o.transfer = transfer;
+    o.base.law = FrictionLaw::none;
+    o.initial_velocity = {2, -1, 0};
+    o.material.youngs_modulus = 1e6;
+    const Scene scene = make_scene(d, o);
+    const auto solver = make_solver(scene, o, GetParam());
+    const Energies start = solver->energies();
+    run_to(*solver, 1.0);
+    const Energies end = solver->energies();
+    EXPECT_NEAR(end.momentum.x / start.momentum.x, 1, 1e-12);
+    EXPECT_NEAR(end.momentum.y / start.momentum.y, 1, 1e-12);
+    EXPECT_LT(end.kinetic + end.potential + end.elastic, 1.001 * (start.kinetic + start.potential + start.elastic));
+  }
+}
+
+TEST_P(Conservation, counts_what_leaves) {
+  Domain d = ground(16, 12, 1.0, 1.0, [](double, double) { return 0.0; });
+  fill(d, {3, 7, 4, 8, 0, 2});
+  SolveOptions o;
+  o.base.law = FrictionLaw::none;
+  o.initial_velocity = {8, 0, 0};
+  o.material.youngs_modulus = 1e6;
+  const Scene scene = make_scene(d, o);
+  const double released = std::accumulate(scene.points.volume.begin(), scene.points.volume.end(), 0.0);
+  const auto solver = make_solver(scene, o, GetParam());
+  solver->set_next_event(1.0);
+  double left = 0;
+  for (;;) {
+    const BatchReport batch = solver->advance();
+    left += batch.outflow_volume;
+    if (batch.clock.halt == at_event) break;
+  }
+  EXPECT_GT(left, 0);
+  EXPECT_GT(solver->particle_count(), 0);
+  EXPECT_NEAR(left + solver->energies().volume, released, 1e-12 * released);
+}
+
+TEST_P(Conservation, maps_the_points_volume) {
+  Domain d = ground(20, 20, 2.0, 1.0, [](double x, double y) { return 0.1 * x + 0.05 * y; });
+  fill(d, {10, 20, 10, 20, 0, 3});
+  for (const auto precision : {Precision::double_, Precision::single_}) {
+    for (const auto shape : {ShapeKind::quadratic, ShapeKind::gimp, ShapeKind::linear}) {
+      SolveOptions o;
+      o.precision = precision;
+      o.shape = shape;
+      const Scene scene = make_scene(d, o);
+      const auto solver = make_solver(scene, o, GetParam());
+      run_to(*solver, 0.3);
+      const auto map = solver->thickness();
+      const double on_map = 4.0 * std::accumulate(map.begin(), map.end(), 0.0);
+      EXPECT_NEAR(on_map, solver->energies().volume, 1e-12 * on_map);
+    }
+  }
+}
+
+TEST(Repeatability, gives_the_same_bits_on_every_cpu_run) {
+  Domain d = ground(30, 20, 1.0, 0.5, [](double x, double) { return 12 - 0.6 * x; });
+  fill(d, {4, 9, 6, 12, 0, 2});
+  const SolveOptions o;
+  const Scene scene = make_scene(d, o);
+  const auto once = make_solver(scene, o, On::cpu), again = make_solver(scene, o, On::cpu);
+  run_to(*once, 1.0);
+  run_to(*again, 1.0);
+  const ParticleState a = once->state().points, b = again->state().points;
+  ASSERT_EQ(a.id, b.id);
+  EXPECT_EQ(a.velocity[0], b.velocity[0]);
+  EXPECT_EQ(a.offset[2], b.offset[2]);
+  EXPECT_EQ(a.log_volume, b.log_volume);
+}
+
+TEST(Repeatability, resumes_to_the_same_bits) {
+  Domain d = ground(30, 20, 1.0, 0.5, [](double x, double) { return 12 - 0.6 * x; });
+  fill(d, {4, 9, 6, 12, 0, 2});
+  for (const auto precision : {Precision::double_, Precision::single_}) {
+    SolveOptions o;
+    o.precision = precision;
+    const Scene scene = make_scene(d, o);
+    const auto unbroken = make_solver(scene, o, On::cpu);
+    unbroken->set_next_event(1.0);
+    BatchReport batch;
+    do {
+      batch = unbroken->advance();
+    } while (!batch.sorted || batch.clock.time < 0.4);
+    const auto resumed = resume_solver(scene, o, On::cpu, unbroken->state());
+    run_to(*unbroken, 1.0);
+    run_to(*resumed, 1.0);
+    const ParticleState a = unbroken->state().points, b = resumed->state().points;
+    ASSERT_EQ(a.id, b.id);
+    EXPECT_EQ(a.velocity[2], b.velocity[2]);
+    EXPECT_EQ(a.offset[0], b.offset[0]);
+    EXPECT_EQ(a.elastic[5], b.elastic[5]);
+    EXPECT_EQ(unbroken->state().maps.peak_speed, resumed->state().maps.peak_speed);
+  }
+}
+
+TEST(Places, agree_on_a_slide) {
+  if (!gpu_available()) {
+    if (std::getenv("TALUS_REQUIRE_GPU") != nullptr) FAIL() << "TALUS_REQUIRE_GPU is set, but no GPU can be used";
+    GTEST_SKIP() << "no GPU on this machine";
+  }
+  Domain d = ground(30, 20, 1.0, 0.5, [](double x, double y) { return 12 - 0.6 * x + 0.3 * std::sin(0.4 * y); });
+  fill(d, {4, 9, 6, 12, 0, 2});
+  for (const auto shape : {ShapeKind::quadratic, ShapeKind::gimp, ShapeKind::linear}) {
+    for (const auto transfer : {Transfer::apic, Transfer::flip}) {
+      SolveOptions o;
+      o.shape = shape;
+      o.transfer = transfer;
+      if (transfer == Transfer::flip) o.stress_update = StressUpdate::modified;
+      const Scene scene = make_scene(d, o);
+      const auto cpu = make_solver(scene, o, On::cpu), gpu = make_solver(scene, o, On::gpu);
+      // Before rounding has had time to grow in the flow: the same numbers.
+      run_to(*cpu, 0.2);
+      run_to(*gpu, 0.2);
+      const Energies a = cpu->energies(), b = gpu->energies();
+      EXPECT_NEAR(b.kinetic / a.kinetic, 1, 1e-9);
+      EXPECT_NEAR(b.potential / a.potential, 1, 1e-9);
+      // Later: the same slide.
+      run_to(*cpu, 2.0);
+      run_to(*gpu, 2.0);
+      const Centre ca = centre(*cpu, scene), cb = centre(*gpu, scene);
+      EXPECT_NEAR(cb.x, ca.x, 0.01);
+      EXPECT_NEAR(cb.z, ca.z, 0.01);
+    }
+  }
+}
+
+/// A slide of sand from its start to its rest: what it had is what it has and what was lost on the way, each loss
+/// counted where it happens.
+TEST_P(Conservation, closes_the_energy_budget_of_a_slide) {
+  Domain d = ground(40, 16, 1.0, 0.5, [](double x, double) { return x < 20 ? 0.03 * (20 - x) * (20 - x) : 0.0; });
+  fill(d, {4, 9, 5, 11, 0, 2});
+  for (const double damping : {0.0, 0.05}) {
+    SolveOptions o;
+    o.energy_budget = true;
+    o.damping = damping;
+    o.material.cohesion = 1000;
+    o.material.dilatancy_angle = 1;
+    const Scene scene = make_scene(d, o);
+    const auto solver = make_solver(scene, o, GetParam());
+    const Energies start = solver->energies();
+    run_to(*solver, 6.0);
+    const Energies end = solver->energies();
+    const Clock clock = solver->clock();
+    const double gone = start.kinetic + start.potential + start.elastic - end.kinetic - end.potential - end.elastic;
+    const double lost = clock.bed_loss + clock.damping_loss + clock.plastic_loss + clock.transfer_loss;
+    EXPECT_GT(gone, 0.5 * start.potential);
+    EXPECT_NEAR(lost, gone, 0.01 * gone);
+    EXPECT_GT(clock.bed_loss, 0.2 * gone);
+    EXPECT_GT(clock.plastic_loss, 0);
+    EXPECT_EQ(clock.damping_loss > 0, damping > 0);
+    std::printf(
+        "  of %.4g J: bed %.1f %%, plastic flow %.1f %%, damping %.1f %%, between points and grid %.1f %%, not "
+        "accounted for %.2f %%\n",
+        gone, 100 * clock.bed_loss / gone, 100 * clock.plastic_loss / gone, 100 * clock.damping_loss / gone,
+        100 * clock.transfer_loss / gone, 100 * (gone - lost) / gone);
+  }
+}
+
+TALUS_IN_EACH_PLACE(Conservation);
+
+}  // namespace
+}  // namespace talus::solver::testing

@@ -1,0 +1,327 @@
+// Scenes that are hard on purpose (docs/validation.md, C): each ends with the invariant it names.
+#include <cmath>
+#include <cstdio>
+#include <random>
+
+#include "solver/integrator/scene.hpp"
+#include "solver/options/options.hpp"
+#include "solver/scene/make_scene.hpp"
+#include "solver/scene/make_solver.hpp"
+#include "tests/solver/scenes.hpp"
+
+namespace talus::solver::testing {
+namespace {
+
+struct Way {
+  const char* name;
+  Integrator integrator;
+  ShapeKind shape;
+};
+constexpr Way ways[] = {{"explicit, quadratic", Integrator::explicit_, ShapeKind::quadratic},
+                        {"explicit, gimp", Integrator::explicit_, ShapeKind::gimp},
+                        {"newmark, quadratic", Integrator::newmark, ShapeKind::quadratic}};
+
+SolveOptions options_for(const Way& way) {
+  SolveOptions o;
+  o.integrator = way.integrator;
+  o.shape = way.shape;
+  o.implicit.newton_tolerance = 1e-4;
+  return o;
+}
+
+double total(const Energies& e) { return e.kinetic + e.potential + e.elastic; }
+
+class HardCases : public InEachPlace {
+ protected:
+  /// Runs to `end` and gives `look` the energies every `interval`.
+  template <class Look>
+  static std::unique_ptr<Solver> watch(const Scene& scene, const SolveOptions& o, double end, double interval,
+                                       Look&& look) {
+    auto solver = make_solver(scene, o, GetParam());
+    for (double next = interval; next < end + 0.5 * interval; next += interval) {
+      run_to(*solver, next);
+      look(*solver);
+    }
+    return solver;
+  }
+};
+
+/// Points that carry a billionth of the others' mass, in a body and alone.
+Domain with_slivers(double height) {
+  Domain d = ground(24, 24, 1.0, 1.0, [](double, double) { return 0.0; });
+  fill(d, {8, 12, 8, 12, height, height + 4});
+  for (std::size_t p = 0; p < d.points.size(); p += 3) d.points.volume[p] *= 1e-9;
+  fill(d, {15, 15.5, 15, 15.5, height, height + 0.5});  // one alone in its cells
+  return d;
+}
+
+TEST_P(HardCases, slivers_fly_with_the_body) {  // C4
+  const Domain d = with_slivers(6);
+  for (const Way& way : ways) {
+    SCOPED_TRACE(way.name);
+    SolveOptions o = options_for(way);
+    o.gravity = {0, 0, 0};
+    o.initial_velocity = {3, -2, 1};
+    o.implicit.step = 0.02;
+    const Scene scene = make_scene(d, o);
+    const auto solver = make_solver(scene, o, GetParam());
+    run_to(*solver, 0.5);
+    const ParticleState s = solver->state().points;
+    double worst = 0;
+    for (std::size_t p = 0; p < s.size(); ++p) {
+      for (std::size_t a = 0; a < 3; ++a) worst = std::max(worst, std::abs(s.velocity[a][p] - o.initial_velocity[a]));
+    }
+    // Rounding of the velocity's differences times stiffness over mass, as far as the step allows.
+    EXPECT_LT(worst, 1e-9);
+  }
+}
+
+TEST_P(HardCases, energy_never_grows_where_slivers_fall_with_sand) {  // C4, C6
+  const Domain d = with_slivers(1);
+  for (const Way& way : ways) {
+    SCOPED_TRACE(way.name);
+    SolveOptions o = options_for(way);
+    o.material.youngs_modulus = 1e6;
+    o.implicit.step = 0.01;
+    const Scene scene = make_scene(d, o);
+    double last = total(make_solver(scene, o, GetParam())->energies());
+    const double first = last;
+    watch(scene, o, 2, 0.1, [&](Solver& solver) {
+      const double now = total(solver.energies());
+      EXPECT_LT(now, last + 2e-3 * first) << "at " << solver.clock().time << " s";
+      EXPECT_TRUE(std::isfinite(now));
+      last = now;
+    });
+  }
+}
+
+TEST_P(HardCases, impact_at_fifty_metres_a_second_stays_above_the_rock) {  // C5
+  Domain d = ground(48, 48, 1.0, 1.0, [](double, double) { return 0.0; });
+  fill(d, {22, 26, 22, 26, 1, 5});
+  for (const Way& way : ways) {
+    SCOPED_TRACE(way.name);
+    SolveOptions o = options_for(way);
+    o.initial_velocity = {2, 0, -50};
+    o.base.law = FrictionLaw::none;
+    o.implicit.step = 0.004;
+    const Scene scene = make_scene(d, o);
+    const Energies before = make_solver(scene, o, GetParam())->energies();
+    const auto solver = watch(scene, o, 0.2, 0.05, [&](Solver& s) {
+      const Energies e = s.energies();
+      EXPECT_LT(total(e), total(before) * (1 + 1e-3));
+      EXPECT_NEAR(e.volume, before.volume, 1e-12 * before.volume);
+      // The smooth rock gives no impulse along x or y.
+      EXPECT_NEAR(e.momentum.x, before.momentum.x, 1e-6 * std::abs(before.momentum.z));
+      EXPECT_NEAR(e.momentum.y, 0, 1e-6 * std::abs(before.momentum.z));
+    });
+    const ParticleState s = solver->state().points;
+    for (std::size_t p = 0; p < s.size(); ++p) ASSERT_GE(s.cell[2][p] + s.offset[2][p], -0.1);
+    EXPECT_LT(std::abs(solver->energies().momentum.z), 0.5 * std::abs(before.momentum.z)) << "it was stopped";
+  }
+}
+
+/// What weight, rock and wall gave is what the mass has: 1e-6 of what it came with (validation.md C5).
+TEST_P(HardCases, impact_on_rock_and_wall_balances_momentum) {
+  Domain d = ground(48, 120, 1.0, 1.0, [](double x, double) { return 0.1 * x; });
+  fill(d, {22, 26, 58, 62, 1, 5});
+  for (const auto law : {FrictionLaw::coulomb, FrictionLaw::stick}) {
+    SolveOptions o;
+    o.energy_budget = true;
+    o.initial_velocity = {50, 5, -20};
+    o.base.law = law;
+    o.base.friction_angle = 20;
+    o.walls.push_back({Axis::x, 34.5, Side::below, WallKind::frictional, 15});
+    const Scene scene = make_scene(d, o);
+    const auto solver = make_solver(scene, o, GetParam());
+    const Energies start = solver->energies();
+    const double came = std::abs(start.momentum.x), mass = start.volume * o.material.density;
+    double stopped = 0;
+    for (double time = 0.1; time < 0.75; time += 0.1) {
+      run_to(*solver, time);
+      const Energies now = solver->energies();
+      const Clock clock = solver->clock();
+      ASSERT_NEAR(now.volume, start.volume, 1e-9) << "something left";
+      EXPECT_NEAR(now.momentum.x, start.momentum.x + clock.reaction[0], 1e-6 * came) << time;
+      EXPECT_NEAR(now.momentum.y, start.momentum.y + clock.reaction[1], 1e-6 * came) << time;
+      EXPECT_NEAR(now.momentum.z, start.momentum.z + clock.reaction[2] - mass * 9.81 * clock.time, 1e-6 * came) << time;
+      stopped = -clock.reaction[0] / came;
+    }
+    EXPECT_GT(stopped, 0.8) << "the wall was not met";
+  }
+}
+
+TEST_P(HardCases, cliffs_spikes_and_pits_hold_nothing_inside_the_ground) {  // C7
+  // A cliff of 80 degrees, one-cell spikes and pits at its foot.
+  Domain d = ground(60, 16, 2.0, 1.0, [](double x, double y) {
+    const double cliff = std::clamp((40 - x) * 5.67, 0.0, 45.0),
+                 bump = x > 44 ? 3 * std::sin(1.7 * x) * std::sin(2.3 * y) : 0.0;
+    return cliff + bump;
+  });
+  fill(d, {24, 32, 12, 20, 0, 4});
+  for (const auto mapping : {Mapping::terrain_following, Mapping::cartesian}) {
+    for (const Way& way : ways) {
+      SCOPED_TRACE(std::string(way.name) + (mapping == Mapping::cartesian ? ", cartesian" : ""));
+      SolveOptions o = options_for(way);
+      o.mapping = mapping;
+      o.initial_velocity = {8, 0, 0};
+      o.implicit.step = 0.02;
+      const Scene scene = make_scene(d, o);
+      const double released = make_solver(scene, o, GetParam())->energies().volume;
+      auto solver = make_solver(scene, o, GetParam());
+      solver->set_next_event(4);
+      double left = 0;
+      for (BatchReport batch; batch.clock.halt != at_event;) {
+        batch = solver->advance();
+        ASSERT_NE(batch.clock.halt, failed) << "at " << batch.clock.time << " s";
+        left += batch.outflow_volume;
+      }
+      EXPECT_NEAR(solver->energies().volume + left, released, 1e-12 * released);
+      const ParticleState s = solver->state().points;
+      const auto places = positions(scene.map, scene.grid, solver->ground(), s);
+      for (std::size_t p = 0; p < s.size(); ++p) {
+        const double ground_here =
+            solver->ground().datum +
+            ground_at(scene.grid, solver->ground(), s.cell[0][p] + s.offset[0][p], s.cell[1][p] + s.offset[1][p]);
+        ASSERT_TRUE(std::isfinite(places[p][2]));
+        if (mapping == Mapping::cartesian) continue;  // its ground is stairs between nodes
+        ASSERT_GE(places[p][2], ground_here - 0.1);
+      }
+    }
+  }
+}
+
+TEST_P(HardCases, a_deposit_stays_where_it_came_to_rest) {  // C8
+  Domain d = ground(30, 30, 2.0, 2.0, [](double, double) { return 0.0; });
+  fill(d, {24, 36, 24, 36, 0, 10});
+  SolveOptions o;
+  o.material.youngs_modulus =
+      2e6;  // the weight of 10 m strains it by a tenth: the softest that is still at rest as a solid is
+  const Scene scene = make_scene(d, o);
+  const auto solver = make_solver(scene, o, GetParam());
+  run_to(*solver, 60);
+  const Centre settled = centre(*solver, scene);
+  const double volume = solver->energies().volume;
+  run_to(*solver, 660);
+  const Centre later = centre(*solver, scene);
+  const double creep = std::hypot(later.x - settled.x, later.y - settled.y, later.z - settled.z);
+  std::printf("  at rest for 600 s: centre of mass moved by %.1e cells\n", creep / 2);
+  EXPECT_LT(creep, 0.01 * 2);
+  EXPECT_EQ(solver->energies().volume, volume);
+}
+
+TEST_P(HardCases, a_slab_below_its_friction_angle_rests_in_long_steps_too) {
+  // On 20 degrees with a bed of 25; from zero stress and from geostatic stress, in steps of 10 CFL, and of 200, where
+  // Newton finds its way on smoothed friction first and may not stay there. 1e-4 of its length in 60 s, so a sixth of
+  // that in 10 s.
+  constexpr double length = 12;
+  Domain d = ground(40, 16, 1.0, 1.0, [](double x, double) { return -std::tan(20 * M_PI / 180) * x; });
+  fill(d, {10, 10 + length, 5, 11, 0, 2});
+  struct Rest {
+    bool geostatic;
+    double cfl;
+  };
+  for (const auto& [geostatic, cfl] : {Rest{false, 10}, Rest{true, 10}, Rest{true, 200}}) {
+    SolveOptions o;
+    o.integrator = Integrator::newmark;
+    o.base.friction_angle = 25;
+    o.material.youngs_modulus = 1e8;
+    o.material.cohesion = 5e4;  // its upright faces stand
+    o.material.tension_cutoff = 1e4;
+    o.implicit.newton_tolerance = 1e-6;
+    const double wave = make_material<double>(o.material).wave_speed;
+    o.implicit.step = cfl / (wave * std::sqrt(3.0));
+    o.gravity_ramp = geostatic ? 0 : 1;  // from zero stress the weight comes within a second, not as a blow
+    Scene scene = make_scene(d, o);
+    if (geostatic) {
+      // Normal stress of the weight above; confined sideways, shear by the slope.
+      const auto m = make_material<double>(o.material);
+      for (std::size_t p = 0; p < scene.points.size(); ++p) {
+        const double above = 2 - (scene.points.cell[2][p] + scene.points.offset[2][p]);
+        const double weight = o.material.density * 9.81 * above;
+        scene.points.log_volume[p] = -weight / (m.bulk_modulus + 4 * m.shear_modulus / 3);
+        scene.points.elastic[2][p] = 2.0 / 3 * scene.points.log_volume[p];
+        scene.points.elastic[0][p] = scene.points.elastic[1][p] = -0.5 * scene.points.elastic[2][p];
+      }
+    }
+    const auto solver = make_solver(scene, o, GetParam());
+    run_to(*solver, 5);
+    const Centre start = centre(*solver, scene);
+    run_to(*solver, 65);
+    const Centre end = centre(*solver, scene);
+    const double creep = std::hypot(end.x - start.x, end.z - start.z);
+    std::printf("  slab at rest, %s stress, %g CFL: %.1e of its length in 60 s\n", geostatic ? "geostatic" : "zero",
+                cfl, creep / length);
+    EXPECT_LT(creep, 1e-4 * length);
+  }
+}
+
+TEST_P(HardCases, far_coordinates_and_other_sizes_change_nothing) {  // C10
+  const auto slide = [&](double west, double south, double scale) {
+    Domain d = ground(40, 20, scale, 0.5 * scale, [&](double x, double) { return scale * 20 - 0.5 * (x - west); });
+    d.grid.west = west;
+    d.grid.south = south;
+    for (Raster* raster : {&d.terrain, &d.before, &d.release_thickness}) raster->grid = d.grid;
+    for (int i = 0; i < 40; ++i) {
+      for (int j = 0; j < 20; ++j) d.terrain.at(i, j) = d.before.at(i, j) = scale * 20 - 0.5 * (d.grid.x(i) - west);
+    }
+    fill(d, {6 * scale, 12 * scale, 6 * scale, 12 * scale, 0, 2 * scale});
+    for (std::size_t p = 0; p < d.points.size(); ++p) {
+      d.points.x[p] += west;
+      d.points.y[p] += south;
+    }
+    SolveOptions o;
+    o.material.youngs_modulus = 1e6 * scale;  // the same in the scale of its own weight, and of time
+    o.largest_step = 1e3;
+    const Scene scene = make_scene(d, o);
+    const auto solver = make_solver(scene, o, GetParam());
+    run_to(*solver, 2 * std::sqrt(scale));
+    std::vector<double> map = solver->thickness();
+    for (double& t : map) t /= scale;
+    return map;
+  };
+  const auto here = slide(0, 0, 1);
+  const auto compare = [&](const std::vector<double>& there) {
+    double worst = 0, most = 0;
+    for (std::size_t n = 0; n < here.size(); ++n) {
+      worst = std::max(worst, std::abs(here[n] - there[n]));
+      most = std::max(most, here[n]);
+    }
+    return worst / most;
+  };
+  EXPECT_LT(compare(slide(512000, 5000000, 1)), 1e-6) << "northing of 5,000,000 m";
+  EXPECT_LT(compare(slide(0, 0, 0.0625)), 1e-6) << "cells of 6 cm";
+  EXPECT_LT(compare(slide(0, 0, 64)), 1e-6) << "cells of 64 m";
+}
+
+TEST_P(HardCases, single_precision_ends_within_the_discretisation_error) {  // C11
+  Domain d = ground(60, 20, 2.0, 1.0, [](double x, double) { return x < 70 ? 0.4 * (70 - x) * (70 - x) / 70 : 0.0; });
+  fill(d, {10, 26, 12, 28, 0, 4});
+  const auto deposit = [&](Precision precision, double courant) {
+    SolveOptions o;
+    o.precision = precision;
+    o.courant = courant;
+    const Scene scene = make_scene(d, o);
+    const auto solver = make_solver(scene, o, GetParam());
+    run_to(*solver, 15);
+    return solver->thickness();
+  };
+  const auto elsewhere = [](const std::vector<double>& a, const std::vector<double>& b) {
+    double moved = 0, all = 0;
+    for (std::size_t n = 0; n < a.size(); ++n) {
+      moved += 0.5 * std::abs(a[n] - b[n]);
+      all += b[n];
+    }
+    return moved / all;
+  };
+  const auto whole = deposit(Precision::double_, 0.5);
+  const double single = elsewhere(deposit(Precision::single_, 0.5), whole),
+               step = elsewhere(deposit(Precision::double_, 0.25), whole);
+  std::printf("  deposit elsewhere: single precision %.2f %%, half the step %.2f %%\n", 100 * single, 100 * step);
+  EXPECT_LT(single, step);
+  EXPECT_LT(single, 0.01);
+}
+
+TALUS_IN_EACH_PLACE(HardCases);
+
+}  // namespace
+}  // namespace talus::solver::testing

@@ -1,0 +1,281 @@
+// P2G and G2P against a plain reference: dense sums in double, written from the definitions.
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <random>
+#include <tuple>
+
+#include "solver/integrator/scene.hpp"
+#include "solver/options/options.hpp"
+#include "solver/scene/make_scene.hpp"
+#include "solver/transfer/grid_to_particle.hpp"
+#include "solver/transfer/particle_to_grid.hpp"
+#include "tests/solver/scenes.hpp"
+
+namespace talus::solver::testing {
+namespace {
+
+using Node = std::tuple<int, int, int>;
+
+/// One-dimensional weight of node n at position x, from the definition of the functions, and its slope.
+struct Weight {
+  double value, slope;
+};
+Weight weight(ShapeKind shape, double x, int n, double extent) {
+  const double r = x - n, s = std::abs(r), sign = r < 0 ? -1 : 1;
+  const auto hat = [](double q) { return std::max(0.0, 1 - std::abs(q)); };
+  if (shape == ShapeKind::linear) return s < 1 ? Weight{1 - s, -sign} : Weight{0, 0};
+  if (shape == ShapeKind::gimp) {
+    const auto area = [](double q) {
+      return q < -1 ? 0 : q < 0 ? 0.5 * (1 + q) * (1 + q) : q < 1 ? 0.5 + q - 0.5 * q * q : 1.0;
+    };  // of the hat
+    return {(area(r + 0.5 * extent) - area(r - 0.5 * extent)) / extent,
+            (hat(r + 0.5 * extent) - hat(r - 0.5 * extent)) / extent};
+  }
+  if (s < 0.5) return {0.75 - r * r, -2 * r};
+  if (s < 1.5) return {0.5 * (1.5 - s) * (1.5 - s), -sign * (1.5 - s)};
+  return {0, 0};
+}
+
+class Transfers : public InEachPlace {
+ protected:
+  /// Points with random velocity, affine velocity and strain on wavy ground.
+  static Scene scene(ShapeKind shape, Domain& d) {
+    d = ground(14, 12, 2.0, 1.0, [](double x, double y) { return 30 - 0.4 * x + 0.2 * std::sin(y); });
+    fill(d, {8, 16, 8, 16, 0, 4});
+    SolveOptions o;
+    o.shape = shape;
+    Scene s = make_scene(d, o);
+    std::mt19937 engine(11);
+    std::uniform_real_distribution<double> u(-1, 1);
+    for (std::size_t p = 0; p < s.points.size(); ++p) {
+      for (int a = 0; a < 3; ++a) {
+        s.points.velocity[a][p] = u(engine);
+        s.points.offset[a][p] =
+            std::clamp(s.points.offset[a][p] + 0.2 * u(engine), a == 2 && s.points.cell[2][p] == 0 ? 0.0 : -0.5, 0.499);
+      }
+      for (int a = 0; a < 3; ++a) s.points.extent[a][p] *= 1 + 0.4 * u(engine);
+      for (int a = 0; a < 9; ++a) s.points.affine[a][p] = 0.3 * u(engine);
+      for (int a = 0; a < 6; ++a) s.points.elastic[a][p] = 1e-3 * u(engine);
+    }
+    return s;
+  }
+
+  /// Momentum after one scatter, by the definitions: m (v + C (xi - xi_p)) w - dt V tau grad w.
+  static std::map<Node, Vec4<double>> reference(const Scene& s, const Material<double>& m, double dt, ShapeKind shape) {
+    std::map<Node, Vec4<double>> nodes;
+    const GroundTables ground = make_ground_tables(s.grid);
+    for (std::size_t p = 0; p < s.points.size(); ++p) {
+      double x[3];
+      for (int a = 0; a < 3; ++a) x[a] = s.points.cell[a][p] + s.points.offset[a][p];
+      const auto along = [&](int a, int n) { return weight(shape, x[a], n, s.points.extent[a][p]); };
+      double bx = 0, by = 0;  // slope of the ground there
+      for (int i = s.points.cell[0][p] - 1; i <= s.points.cell[0][p] + 1; ++i) {
+        for (int j = s.points.cell[1][p] - 1; j <= s.points.cell[1][p] + 1; ++j) {
+          const double z = ground.terrain[static_cast<std::size_t>(j * s.grid.columns + i)] / s.grid.spacing;
+          bx += along(0, i).slope * along(1, j).value * z;
+          by += along(0, i).value * along(1, j).slope * z;
+        }
+      }
+      // In the lowest half layer quadratic functions are hats, and their weights stop changing a tenth of a layer above
+      // the ground; the box of an averaged one ends on the ground.
+      const bool on_base = shape != ShapeKind::linear && s.points.cell[2][p] == 0;
+      const double nearest = shape == ShapeKind::gimp ? 0.5 * s.points.extent[2][p] : s.grid.lowest_weighed;
+      const double height = on_base ? std::max(x[2], nearest) : x[2];
+      MaterialState<double> state;
+      state.elastic = {s.points.elastic[0][p], s.points.elastic[1][p], s.points.elastic[2][p],
+                       s.points.elastic[3][p], s.points.elastic[4][p], s.points.elastic[5][p]};
+      const Sym3<double> tau = kirchhoff_stress(m, state);
+      const double volume = s.points.volume[p], mass = volume * m.density;
+      for (int i = s.points.cell[0][p] - 2; i <= s.points.cell[0][p] + 2; ++i) {
+        for (int j = s.points.cell[1][p] - 2; j <= s.points.cell[1][p] + 2; ++j) {
+          for (int k = s.points.cell[2][p] - 2; k <= s.points.cell[2][p] + 2; ++k) {
+            const Weight wx = along(0, i), wy = along(1, j);
+            const ShapeKind upright = on_base && shape == ShapeKind::quadratic ? ShapeKind::linear : shape;
+            const Weight wz = weight(upright, height, k, s.points.extent[2][p]);
+            const double w = wx.value * wy.value * wz.value;
+            if (w == 0) continue;
+            const double gz = wx.value * wy.value * wz.slope / s.grid.layer_height;
+            const Vec3<double> gradient{wx.slope * wy.value * wz.value / s.grid.spacing - bx * gz,
+                                        wx.value * wy.slope * wz.value / s.grid.spacing - by * gz, gz};
+            const Vec3<double> force = tau * gradient * (-volume * dt);
+            const double r[3] = {i - x[0], j - x[1], k - height};
+            double v[3];
+            for (int a = 0; a < 3; ++a) {
+              v[a] = s.points.velocity[a][p];
+              for (int b = 0; b < 3; ++b) v[a] += s.points.affine[3 * b + a][p] * r[b];
+            }
+            Vec4<double>& node = nodes[{i, j, k}];
+            node.w += w * mass;
+            node.x += w * mass * v[0] + force.x;
+            node.y += w * mass * v[1] + force.y;
+            node.z += w * mass * v[2] + force.z;
+          }
+        }
+      }
+    }
+    return nodes;
+  }
+
+  template <class Real, class Place, class Shape>
+  static void compare(double tolerance) {
+    compare<Real, Place, Shape>(tolerance, false);
+    if (Place::is_gpu)
+      compare<Real, Place, Shape>(
+          tolerance,
+          true);  // tiles find those with the same nodes wherever they have drifted; the CPU goes by the order
+  }
+
+  template <class Real, class Place, class Shape>
+  static void compare(double tolerance, bool shuffled) {
+    Domain d;
+    const Scene s = scene(kind_of<Shape>, d);
+    MaterialOptions mo;
+    mo.model = MaterialModel::hencky;
+    const double dt = 1e-3;
+    const auto expected = reference(s, make_material<double>(mo), dt, kind_of<Shape>);
+    Particles<Real, Place> points({true, false, Shape::averaged});
+    points.upload(s.points);
+    SparseGrid<Real, Place> grid(s.grid, 1, false, Shape::width == 2);
+    grid.fit(points, 0);
+    if (shuffled) {
+      std::vector<int> order(static_cast<std::size_t>(points.count()));
+      std::iota(order.begin(), order.end(), 0);
+      std::shuffle(order.begin(), order.end(), std::mt19937(11));
+      Buffer<int, Place> shuffle;
+      shuffle.upload(order);
+      points.reorder(shuffle, points.count());
+    }
+    Buffer<Vec4<Real>, Place> nodes;
+    nodes.resize(static_cast<std::size_t>(grid.nodes()));
+    nodes.fill_zero();
+    Clock c;
+    c.step_size = dt;
+    Buffer<Clock, Place> clock;
+    clock.upload({c});
+    scatter_points(Place{}, points.count(), grid.groups(),
+                   ParticleToGrid<Real, Shape, Scatter::impulse>{
+                       grid.view(), points.view(), Materials<Real>{{make_material<Real>(mo)}}, clock.data(),
+                       nodes.data(), nullptr, nullptr, true, false});
+    synchronise(Place{});
+    const auto got = nodes.download();
+    const auto slots = slots_of(grid);
+    double scale = 0, worst = 0;
+    for (const auto& [where, node] : expected) scale = std::max(scale, std::abs(node.x));
+    std::size_t found = 0;
+    for (const auto& [where, node] : expected) {
+      const int i = std::get<0>(where), j = std::get<1>(where), k = std::get<2>(where);
+      const auto& slot = slots[static_cast<std::size_t>((j >> 2) * ((s.grid.columns + 3) / 4) + (i >> 2))];
+      const auto& mine = got[static_cast<std::size_t>(GridView<Real>::node(slot, i, j, k))];
+      worst = std::max({worst, std::abs(static_cast<double>(mine.w) - node.w),
+                        std::abs(static_cast<double>(mine.x) - node.x), std::abs(static_cast<double>(mine.y) - node.y),
+                        std::abs(static_cast<double>(mine.z) - node.z)});
+      ++found;
+    }
+    EXPECT_GT(found, 100u);
+    EXPECT_LT(worst, tolerance * scale);
+  }
+
+  /// Velocity gather of a linear field in reference coordinates, and the climb, by the definitions.
+  template <class Real, class Place, class Shape>
+  static void gather_linear_field(double tolerance) {
+    Domain d;
+    const Scene s = scene(kind_of<Shape>, d);
+    Particles<Real, Place> points({true, false, Shape::averaged});
+    points.upload(s.points);
+    SparseGrid<Real, Place> grid(s.grid, 1);
+    grid.fit(points, 0);
+    const double slope[3][3] = {
+        {0.3, -0.1, 0.2}, {0.05, 0.4, -0.3}, {-0.2, 0.1, 0.25}};  // per cell, [component][direction]
+    std::vector<Vec4<Real>> field(static_cast<std::size_t>(grid.nodes()));
+    const auto slots = slots_of(grid);
+    const int blocks_x = (s.grid.columns + 3) / 4;
+    for (int j = 0; j < s.grid.rows; ++j) {
+      for (int i = 0; i < s.grid.columns; ++i) {
+        const auto& slot = slots[static_cast<std::size_t>((j >> 2) * blocks_x + (i >> 2))];
+        for (int k = slot.first_layer; slot.offset >= 0 && k < slot.first_layer + slot.layers; ++k) {
+          auto& node = field[static_cast<std::size_t>(GridView<Real>::node(slot, i, j, k))];
+          const auto value = [&](int a) {
+            return static_cast<Real>(slope[a][0] * i + slope[a][1] * j + slope[a][2] * k);
+          };
+          node = {Real(1), value(0), value(1), value(2)};
+        }
+      }
+    }
+    Buffer<Vec4<Real>, Place> nodes;
+    nodes.upload(field);
+    Clock c;
+    c.step_size = 0;  // nothing moves
+    Buffer<Clock, Place> clock;
+    clock.upload({c});
+    MaterialOptions mo;
+    mo.model = MaterialModel::hencky;
+    for_each(Place{}, points.count(),
+             GridToParticle<Real, Shape, Gather::all, false>{grid.view(), points.view(),
+                                                             Materials<Real>{{make_material<Real>(mo)}}, clock.data(),
+                                                             nodes.data(), nullptr, grid.home(), true, false});
+    synchronise(Place{});
+    const ParticleState got = points.download();
+    double worst = 0;
+    int checked = 0;
+    for (std::size_t p = 0; p < got.size(); ++p) {
+      const double nearest = Shape::averaged ? 0.5 * got.extent[2][p] : s.grid.lowest_weighed;
+      if (got.cell[2][p] == 0 && got.offset[2][p] < nearest) continue;
+      ++checked;
+      for (int a = 0; a < 3; ++a) {
+        double v = 0;
+        for (int b = 0; b < 3; ++b) {
+          v += slope[a][b] * (got.cell[b][p] + got.offset[b][p]);
+          worst = std::max(worst, std::abs(got.affine[3 * b + a][p] - slope[a][b]));
+        }
+        worst = std::max(worst, std::abs(got.velocity[a][p] - v));
+      }
+    }
+    EXPECT_GT(checked, 100);
+    EXPECT_LT(worst, tolerance);
+  }
+};
+
+// Double precision to rounding of the sums; single precision rounds 27 terms at 6e-8.
+TEST_P(Transfers, scatters_mass_momentum_and_force_as_defined) {
+#if TALUS_FOR_GPU
+  if (GetParam() == On::gpu) {
+    compare<double, OnGpu, Linear>(1e-12);
+    compare<double, OnGpu, Quadratic>(1e-12);
+    compare<double, OnGpu, Gimp>(1e-12);
+    compare<float, OnGpu, Linear>(1e-5);
+    compare<float, OnGpu, Quadratic>(1e-5);
+    compare<float, OnGpu, Gimp>(1e-5);
+    return;
+  }
+#endif
+  compare<double, OnCpu, Linear>(1e-12);
+  compare<double, OnCpu, Quadratic>(1e-12);
+  compare<double, OnCpu, Gimp>(1e-12);
+  compare<float, OnCpu, Linear>(1e-5);
+  compare<float, OnCpu, Quadratic>(1e-5);
+  compare<float, OnCpu, Gimp>(1e-5);
+}
+
+TEST_P(Transfers, gathers_a_linear_field_exactly) {
+#if TALUS_FOR_GPU
+  if (GetParam() == On::gpu) {
+    gather_linear_field<double, OnGpu, Linear>(1e-12);
+    gather_linear_field<double, OnGpu, Quadratic>(1e-12);
+    gather_linear_field<double, OnGpu, Gimp>(1e-12);
+    gather_linear_field<float, OnGpu, Quadratic>(1e-5);
+    gather_linear_field<float, OnGpu, Gimp>(1e-5);
+    return;
+  }
+#endif
+  gather_linear_field<double, OnCpu, Linear>(1e-12);
+  gather_linear_field<double, OnCpu, Quadratic>(1e-12);
+  gather_linear_field<double, OnCpu, Gimp>(1e-12);
+  gather_linear_field<float, OnCpu, Quadratic>(1e-5);
+  gather_linear_field<float, OnCpu, Gimp>(1e-5);
+}
+
+TALUS_IN_EACH_PLACE(Transfers);
+
+}  // namespace
+}  // namespace talus::solver::testing
