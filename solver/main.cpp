@@ -46,7 +46,7 @@ Stage stage() {
 void report_profile(const RunSummary& summary, On on, const std::filesystem::path& out) {
   Profile& profile = Profile::of_run();
   profile.turn_off();
-  const double copy = on == On::gpu ? copy_bandwidth(OnGpu{}) : copy_bandwidth(OnCpu{});
+  const double copy = on == On::gpu ? copy_bandwidth(GpuDevice{}) : copy_bandwidth(CpuDevice{});
   for (const std::string& text : profile_lines(summary, profile, copy)) log_info(text);
   write_text(out / "profile.csv", profile_csv(profile, copy));
 }
@@ -111,7 +111,7 @@ void find_obstacles(SolveOptions& o, const std::filesystem::path& out) {
 void solve(StageContext& context) {
   auto options = with_preset(context.recipe.read<SolveOptions>("solve"));
   find_obstacles(options, context.out);
-  const On on = choose_place(context.on);
+  const On on = choose_device(context.on);
   const auto domain_file = options.domain.empty() ? context.out / "domain.vdb" : options.domain;
   const Domain domain = read_domain(domain_file);
   options = settle_stiffness(domain, options);

@@ -100,7 +100,7 @@ std::string picture(const std::string& title, const std::string& label, const st
 
 int kernels(const Words& words, On on) {
   const double most = words.most > 0 ? words.most : on == On::gpu ? 1e7 : 1e4;
-  const double copy = on == On::gpu ? copy_bandwidth(OnGpu{}) : copy_bandwidth(OnCpu{});
+  const double copy = on == On::gpu ? copy_bandwidth(GpuDevice{}) : copy_bandwidth(CpuDevice{});
   std::vector<KernelRun> runs;
   bool pass = true;
   for (const bool newmark : {false, true}) {
@@ -146,9 +146,9 @@ int main(int argc, char** argv) {
   const Words words = parse(argc, argv);
   try {
     fs::create_directories(words.out);
-    return kernels(words, solver::choose_place(words.on == "cpu"   ? On::cpu
-                                               : words.on == "gpu" ? On::gpu
-                                                                   : On::automatic));
+    return kernels(words, solver::choose_device(words.on == "cpu"   ? On::cpu
+                                                : words.on == "gpu" ? On::gpu
+                                                                    : On::automatic));
   } catch (const std::exception& error) {
     fmt::print(stderr, "talus-bench: {}\n", error.what());
     return 2;

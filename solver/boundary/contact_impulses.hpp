@@ -130,7 +130,7 @@ struct TakeImpulses {
 };
 
 /// The sweeps of a step.
-template <class Real, class Place, class Shape>
+template <class Real, class Device, class Shape>
 class ContactImpulses {
  public:
   /// `clock` null: of `step` seconds, and nothing is kept but the impulse. Without `grips`, and without history, the
@@ -141,7 +141,7 @@ class ContactImpulses {
     bool grips, remembers;
   };
   template <class Nodes>
-  void run(SurfaceContact<Real, Place, Shape>& contact, const GridView<Real>& grid, const Nodes& nodes, int node_count,
+  void run(SurfaceContact<Real, Device, Shape>& contact, const GridView<Real>& grid, const Nodes& nodes, int node_count,
            double layer_mass, const Pass& pass) {
     impulse_.resize(static_cast<std::size_t>(contact.count()));
     yielding_.resize(static_cast<std::size_t>(node_count));
@@ -151,7 +151,7 @@ class ContactImpulses {
       given_.fill_zero();
     }
     const auto take = [&] {
-      for_each(Place{}, node_count, TakeImpulses<Real, Nodes>{nodes, pass.clock, given_.data()});
+      for_each(Device{}, node_count, TakeImpulses<Real, Nodes>{nodes, pass.clock, given_.data()});
     };
     contact.each(BeginContacts<Real, Shape, Nodes>{grid, contact.view(), nodes, pass.remembers ? pass.clock : nullptr,
                                                    impulse_.data(), given_.data(), yielding_.data()});
@@ -168,8 +168,8 @@ class ContactImpulses {
   std::size_t bytes() const { return impulse_.bytes() + given_.bytes() + yielding_.bytes(); }
 
  private:
-  Buffer<Vec3<Real>, Place> impulse_, given_;
-  Buffer<Real, Place> yielding_;
+  Buffer<Vec3<Real>, Device> impulse_, given_;
+  Buffer<Real, Device> yielding_;
 };
 
 }  // namespace talus::solver

@@ -118,7 +118,7 @@ struct ForgetForces {
   }
 };
 
-template <class Real, class Place, class Shape>
+template <class Real, class Device, class Shape>
 class SurfaceContact {
  public:
   SurfaceContact(const ContactPoints& points, const std::vector<ObstacleOptions>& obstacles,
@@ -178,7 +178,7 @@ class SurfaceContact {
     if (!on()) return;
     for (auto& ranges : groups_.ranges) ranges.clear();
     std::vector<int> beside, active(static_cast<std::size_t>(grid.active_blocks()));
-    copy_to_host(Place{}, active.data(), grid.active_list(), active.size() * sizeof(int));
+    copy_to_host(Device{}, active.data(), grid.active_list(), active.size() * sizeof(int));
     for (const int block : active) {
       const int begin = first_[static_cast<std::size_t>(block)], end = first_[static_cast<std::size_t>(block) + 1];
       if (begin == end) continue;
@@ -189,17 +189,17 @@ class SurfaceContact {
       }
     }
     beside_.upload(beside);
-    if constexpr (Place::is_gpu) groups_.upload();
-    for_each(Place{}, count_, ForgetForces<Real>{grid.view(), view()});
+    if constexpr (Device::is_gpu) groups_.upload();
+    for_each(Device{}, count_, ForgetForces<Real>{grid.view(), view()});
   }
 
   /// Runs kernel(c) for every contact point of the blocks in use, such that scatter_add never meets itself.
   template <class Kernel>
   void each(const Kernel& kernel) {
     if (by_list()) {
-      for_each(Place{}, static_cast<int>(beside_.size()), OverList<Kernel>{kernel, beside_.data()});
+      for_each(Device{}, static_cast<int>(beside_.size()), OverList<Kernel>{kernel, beside_.data()});
     } else {
-      for_each_grouped(Place{}, count_, groups_, kernel);
+      for_each_grouped(Device{}, count_, groups_, kernel);
     }
   }
 
@@ -223,14 +223,14 @@ class SurfaceContact {
   }
 
  private:
-  bool by_list() const { return Place::is_gpu && !groups_.in_order; }
-  void upload_vectors(Buffer<Vec3<double>, Place>& to, const std::vector<double>& from) {
+  bool by_list() const { return Device::is_gpu && !groups_.in_order; }
+  void upload_vectors(Buffer<Vec3<double>, Device>& to, const std::vector<double>& from) {
     std::vector<Vec3<double>> vectors(static_cast<std::size_t>(count_));
     for (std::size_t c = 0; 3 * c + 2 < from.size() && c < vectors.size(); ++c)
       vectors[c] = {from[3 * c], from[3 * c + 1], from[3 * c + 2]};
     to.upload(vectors);
   }
-  static std::vector<double> download_vectors(const Buffer<Vec3<double>, Place>& from) {
+  static std::vector<double> download_vectors(const Buffer<Vec3<double>, Device>& from) {
     std::vector<double> numbers;
     for (const Vec3<double>& v : from.download()) numbers.insert(numbers.end(), {v.x, v.y, v.z});
     return numbers;
@@ -247,11 +247,11 @@ class SurfaceContact {
   std::vector<int> first_;  // contact point of every block, and the count behind the last
   std::size_t obstacles_ = 0;
   ContactView<Real> view_{};
-  Buffer<int, Place> cell_[3], body_;
-  Buffer<int, Place> beside_;  // the contact points of the blocks in use; on the CPU groups_ has them
-  Buffer<Real, Place> offset_[3], none_, area_, friction_, inverse_mass_;
-  Buffer<Vec3<Real>, Place> normal_;
-  Buffer<Vec3<double>, Place> force_, impulse_;
+  Buffer<int, Device> cell_[3], body_;
+  Buffer<int, Device> beside_;  // the contact points of the blocks in use; on the CPU groups_ has them
+  Buffer<Real, Device> offset_[3], none_, area_, friction_, inverse_mass_;
+  Buffer<Vec3<Real>, Device> normal_;
+  Buffer<Vec3<double>, Device> force_, impulse_;
   PointGroups groups_;
 };
 

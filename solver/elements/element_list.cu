@@ -47,22 +47,23 @@ struct FindNodes {
 
 }  // namespace
 
-template <class Real, class Place, class Shape>
-void ElementList<Real, Place, Shape>::build(const GridView<Real>& grid, const ParticleView<Real>& points) {
+template <class Real, class Device, class Shape>
+void ElementList<Real, Device, Shape>::build(const GridView<Real>& grid, const ParticleView<Real>& points) {
   ++serial_;
   keys_.resize(static_cast<std::size_t>(points.count));
-  for_each(Place{}, points.count, MakeElementKeys<Real, Shape>{grid, points, keys_.data()});
+  for_each(Device{}, points.count, MakeElementKeys<Real, Shape>{grid, points, keys_.data()});
   const int blocks = grid.block_columns_x * ((grid.rows + block_side - 1) / block_side);
-  sort_order(Place{}, keys_, order_, key_block_shift + static_cast<int>(std::bit_width(static_cast<unsigned>(blocks))));
+  sort_order(Device{}, keys_, order_,
+             key_block_shift + static_cast<int>(std::bit_width(static_cast<unsigned>(blocks))));
   count_ = find_runs(keys_, starts_, scratch_);
   nodes_.resize(static_cast<std::size_t>(count_) * nodes_each);
-  for_each(Place{}, count_, FindNodes<Real, Shape>{grid, keys_.data(), starts_.data(), nodes_.data()});
+  for_each(Device{}, count_, FindNodes<Real, Shape>{grid, keys_.data(), starts_.data(), nodes_.data()});
   group_elements(grid.block_columns_x);
 }
 
-template <class Real, class Place, class Shape>
-void ElementList<Real, Place, Shape>::group_elements(int block_columns_x) {
-  if constexpr (!Place::is_gpu) {
+template <class Real, class Device, class Shape>
+void ElementList<Real, Device, Shape>::group_elements(int block_columns_x) {
+  if constexpr (!Device::is_gpu) {
     const auto block_of = [&](int e) { return static_cast<int>(keys_.data()[starts_.data()[e]] >> key_block_shift); };
     for (auto& ranges : groups_.ranges) ranges.clear();
     for (int begin = 0; begin < count_;) {
@@ -78,12 +79,12 @@ void ElementList<Real, Place, Shape>::group_elements(int block_columns_x) {
   }
 }
 
-template <class Real, class Place, class Shape>
-std::size_t ElementList<Real, Place, Shape>::bytes() const {
+template <class Real, class Device, class Shape>
+std::size_t ElementList<Real, Device, Shape>::bytes() const {
   return keys_.bytes() + order_.bytes() + starts_.bytes() + nodes_.bytes() + scratch_.bytes();
 }
 
-#define TALUS_INSTANTIATE(Real, Place, Shape) template class ElementList<Real, Place, Shape>;
+#define TALUS_INSTANTIATE(Real, Device, Shape) template class ElementList<Real, Device, Shape>;
 TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
 
 }  // namespace talus::solver

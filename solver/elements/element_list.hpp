@@ -22,7 +22,7 @@ struct ElementView {
   const int* nodes = nullptr;  // [element * W^3 + local node]
 };
 
-template <class Real, class Place, class Shape>
+template <class Real, class Device, class Shape>
 class ElementList {
  public:
   static constexpr int width = Shape::width;
@@ -42,8 +42,8 @@ class ElementList {
   void group_elements(int block_columns_x);
 
   int count_ = 0, serial_ = 0;
-  Buffer<std::uint64_t, Place> keys_;
-  Buffer<int, Place> order_, starts_, nodes_, scratch_;
+  Buffer<std::uint64_t, Device> keys_;
+  Buffer<int, Device> order_, starts_, nodes_, scratch_;
   PointGroups groups_;
 };
 

@@ -50,23 +50,24 @@ struct AddSpringBlocks {
 
 }  // namespace
 
-template <class Real, class Place, class Shape>
-void apply_springs(const ElementList<Real, Place, Shape>& list, const FillerSprings& springs,
-                   const NodeVector<Place>& x, NodeVector<Place>& y) {
-  for_each_grouped(Place{}, list.count(), list.groups(), ApplySprings<Shape>{list.view(), springs, x.data(), y.data()});
+template <class Real, class Device, class Shape>
+void apply_springs(const ElementList<Real, Device, Shape>& list, const FillerSprings& springs,
+                   const NodeVector<Device>& x, NodeVector<Device>& y) {
+  for_each_grouped(Device{}, list.count(), list.groups(),
+                   ApplySprings<Shape>{list.view(), springs, x.data(), y.data()});
 }
 
-template <class Real, class Place, class Shape>
-void add_spring_blocks(const ElementList<Real, Place, Shape>& list, const FillerSprings& springs,
-                       Buffer<Sym3<double>, Place>& blocks) {
-  for_each_grouped(Place{}, list.count(), list.groups(), AddSpringBlocks<Shape>{list.view(), springs, blocks.data()});
+template <class Real, class Device, class Shape>
+void add_spring_blocks(const ElementList<Real, Device, Shape>& list, const FillerSprings& springs,
+                       Buffer<Sym3<double>, Device>& blocks) {
+  for_each_grouped(Device{}, list.count(), list.groups(), AddSpringBlocks<Shape>{list.view(), springs, blocks.data()});
 }
 
-#define TALUS_INSTANTIATE(Real, Place, Shape)                                                                         \
-  template void apply_springs(const ElementList<Real, Place, Shape>&, const FillerSprings&, const NodeVector<Place>&, \
-                              NodeVector<Place>&);                                                                    \
-  template void add_spring_blocks(const ElementList<Real, Place, Shape>&, const FillerSprings&,                       \
-                                  Buffer<Sym3<double>, Place>&);
+#define TALUS_INSTANTIATE(Real, Device, Shape)                                                   \
+  template void apply_springs(const ElementList<Real, Device, Shape>&, const FillerSprings&,     \
+                              const NodeVector<Device>&, NodeVector<Device>&);                   \
+  template void add_spring_blocks(const ElementList<Real, Device, Shape>&, const FillerSprings&, \
+                                  Buffer<Sym3<double>, Device>&);
 TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
 
 }  // namespace talus::solver

@@ -69,12 +69,12 @@ struct FillerSprings {
 };
 
 /// y += K_springs x
-template <class Real, class Place, class Shape>
-void apply_springs(const ElementList<Real, Place, Shape>& list, const FillerSprings& springs,
-                   const NodeVector<Place>& x, NodeVector<Place>& y);
+template <class Real, class Device, class Shape>
+void apply_springs(const ElementList<Real, Device, Shape>& list, const FillerSprings& springs,
+                   const NodeVector<Device>& x, NodeVector<Device>& y);
 /// Adds the diagonal blocks of K_springs.
-template <class Real, class Place, class Shape>
-void add_spring_blocks(const ElementList<Real, Place, Shape>& list, const FillerSprings& springs,
-                       Buffer<Sym3<double>, Place>& blocks);
+template <class Real, class Device, class Shape>
+void add_spring_blocks(const ElementList<Real, Device, Shape>& list, const FillerSprings& springs,
+                       Buffer<Sym3<double>, Device>& blocks);
 
 }  // namespace talus::solver

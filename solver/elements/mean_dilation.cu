@@ -107,45 +107,47 @@ struct AddMeanBlocks {
 
 }  // namespace
 
-template <class Real, class Place, class Shape>
-void MeanDilation<Real, Place, Shape>::begin_step(const ElementList<Real, Place, Shape>& list, int points) {
+template <class Real, class Device, class Shape>
+void MeanDilation<Real, Device, Shape>::begin_step(const ElementList<Real, Device, Shape>& list, int points) {
   const auto count = static_cast<std::size_t>(list.count());
   element_of_.resize(static_cast<std::size_t>(points));
   for (auto* buffer : {&increment_, &stress_, &stiffness_}) buffer->resize(count);
   gradient_.resize(count * nodes_each);
-  for_each(Place{}, list.count(), NumberPoints{list.view(), element_of_.data()});
+  for_each(Device{}, list.count(), NumberPoints{list.view(), element_of_.data()});
 }
 
-template <class Real, class Place, class Shape>
-void MeanDilation<Real, Place, Shape>::measure(const ElementList<Real, Place, Shape>& list, const GridView<Real>& grid,
-                                               const ParticleView<Real>& points, const Materials<Real>& materials,
-                                               bool dilatant, const Vec3<double>* u) {
-  for_each(Place{}, list.count(),
+template <class Real, class Device, class Shape>
+void MeanDilation<Real, Device, Shape>::measure(const ElementList<Real, Device, Shape>& list,
+                                                const GridView<Real>& grid, const ParticleView<Real>& points,
+                                                const Materials<Real>& materials, bool dilatant,
+                                                const Vec3<double>* u) {
+  for_each(Device{}, list.count(),
            MeasureMeans<Real, Shape>{grid, points, materials, dilatant, list.view(), u, increment_.data(),
                                      stress_.data(), stiffness_.data(), gradient_.data()});
 }
 
-template <class Real, class Place, class Shape>
-void apply_means(const ElementList<Real, Place, Shape>& list, const MeanDilationView<Real>& means,
-                 const NodeVector<Place>& x, NodeVector<Place>& y) {
-  constexpr int nodes = ElementList<Real, Place, Shape>::nodes_each;
-  for_each_grouped(Place{}, list.count(), list.groups(),
+template <class Real, class Device, class Shape>
+void apply_means(const ElementList<Real, Device, Shape>& list, const MeanDilationView<Real>& means,
+                 const NodeVector<Device>& x, NodeVector<Device>& y) {
+  constexpr int nodes = ElementList<Real, Device, Shape>::nodes_each;
+  for_each_grouped(Device{}, list.count(), list.groups(),
                    ApplyMeans<Real, nodes>{list.view(), means, x.data(), y.data()});
 }
 
-template <class Real, class Place, class Shape>
-void add_mean_blocks(const ElementList<Real, Place, Shape>& list, const MeanDilationView<Real>& means,
-                     Buffer<Sym3<double>, Place>& blocks) {
-  constexpr int nodes = ElementList<Real, Place, Shape>::nodes_each;
-  for_each_grouped(Place{}, list.count(), list.groups(), AddMeanBlocks<Real, nodes>{list.view(), means, blocks.data()});
+template <class Real, class Device, class Shape>
+void add_mean_blocks(const ElementList<Real, Device, Shape>& list, const MeanDilationView<Real>& means,
+                     Buffer<Sym3<double>, Device>& blocks) {
+  constexpr int nodes = ElementList<Real, Device, Shape>::nodes_each;
+  for_each_grouped(Device{}, list.count(), list.groups(),
+                   AddMeanBlocks<Real, nodes>{list.view(), means, blocks.data()});
 }
 
-#define TALUS_INSTANTIATE(Real, Place, Shape)                                                          \
-  template class MeanDilation<Real, Place, Shape>;                                                     \
-  template void apply_means(const ElementList<Real, Place, Shape>&, const MeanDilationView<Real>&,     \
-                            const NodeVector<Place>&, NodeVector<Place>&);                             \
-  template void add_mean_blocks(const ElementList<Real, Place, Shape>&, const MeanDilationView<Real>&, \
-                                Buffer<Sym3<double>, Place>&);
+#define TALUS_INSTANTIATE(Real, Device, Shape)                                                          \
+  template class MeanDilation<Real, Device, Shape>;                                                     \
+  template void apply_means(const ElementList<Real, Device, Shape>&, const MeanDilationView<Real>&,     \
+                            const NodeVector<Device>&, NodeVector<Device>&);                            \
+  template void add_mean_blocks(const ElementList<Real, Device, Shape>&, const MeanDilationView<Real>&, \
+                                Buffer<Sym3<double>, Device>&);
 TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
 
 }  // namespace talus::solver

@@ -30,17 +30,17 @@ struct MeanDilationView {
   }
 };
 
-template <class Real, class Place, class Shape>
+template <class Real, class Device, class Shape>
 class MeanDilation {
  public:
-  static constexpr int nodes_each = ElementList<Real, Place, Shape>::nodes_each;
+  static constexpr int nodes_each = ElementList<Real, Device, Shape>::nodes_each;
 
   /// The points have moved, or have been sorted, and `list` is their elements anew.
-  void begin_step(const ElementList<Real, Place, Shape>& list, int points);
+  void begin_step(const ElementList<Real, Device, Shape>& list, int points);
 
   /// Means for the displacement u. Stress and tangent are measured with `materials`, points dilating plastically or
   /// not.
-  void measure(const ElementList<Real, Place, Shape>& list, const GridView<Real>& grid,
+  void measure(const ElementList<Real, Device, Shape>& list, const GridView<Real>& grid,
                const ParticleView<Real>& points, const Materials<Real>& materials, bool dilatant,
                const Vec3<double>* u);
 
@@ -52,18 +52,18 @@ class MeanDilation {
   }
 
  private:
-  Buffer<int, Place> element_of_;
-  Buffer<Real, Place> increment_, stress_, stiffness_;
-  Buffer<Vec3<Real>, Place> gradient_;
+  Buffer<int, Device> element_of_;
+  Buffer<Real, Device> increment_, stress_, stiffness_;
+  Buffer<Vec3<Real>, Device> gradient_;
 };
 
 /// y += sum kappa V b (b . x)
-template <class Real, class Place, class Shape>
-void apply_means(const ElementList<Real, Place, Shape>& list, const MeanDilationView<Real>& means,
-                 const NodeVector<Place>& x, NodeVector<Place>& y);
+template <class Real, class Device, class Shape>
+void apply_means(const ElementList<Real, Device, Shape>& list, const MeanDilationView<Real>& means,
+                 const NodeVector<Device>& x, NodeVector<Device>& y);
 /// Adds the diagonal blocks of that.
-template <class Real, class Place, class Shape>
-void add_mean_blocks(const ElementList<Real, Place, Shape>& list, const MeanDilationView<Real>& means,
-                     Buffer<Sym3<double>, Place>& blocks);
+template <class Real, class Device, class Shape>
+void add_mean_blocks(const ElementList<Real, Device, Shape>& list, const MeanDilationView<Real>& means,
+                     Buffer<Sym3<double>, Device>& blocks);
 
 }  // namespace talus::solver

@@ -28,8 +28,8 @@ int steps_between_sorts_on_gpu(int points) {
                                                                    : gpu_steps_between_sorts;
 }
 /// Cells that points may drift before they are sorted: a sort takes as long as a dozen steps of a small scene.
-template <class Place>
-inline constexpr int drift_between_sorts = Place::is_gpu ? 3 : 1;
+template <class Device>
+inline constexpr int drift_between_sorts = Device::is_gpu ? 3 : 1;
 inline constexpr int most_batch_steps = 64;  // given to the device before the host looks at the clock
 
 /// One thread: one node. The first one also opens the step.
@@ -53,22 +53,22 @@ struct BeginStep {
   }
 };
 
-template <class Real, class Place, class Shape>
-class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
-  using Base = PointSolver<Real, Place, Shape>;
+template <class Real, class Device, class Shape>
+class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
+  using Base = PointSolver<Real, Device, Shape>;
   using Base::bed_, Base::clock_, Base::contact_, Base::dilatant_, Base::grid_, Base::impulses_, Base::materials_,
       Base::options_, Base::points_, Base::read_clock;
 
  public:
   ExplicitSolverOf(const Scene& scene, const SolveOptions& options, const SolverState& state)
-      : Base(scene, options, state, fields(options), options.deterministic ? 1 : drift_between_sorts<Place>),
+      : Base(scene, options, state, fields(options), options.deterministic ? 1 : drift_between_sorts<Device>),
         affine_(options.transfer == Transfer::apic),
         musl_(options.stress_update == StressUpdate::modified),
         keeps_(options.transfer_time > options.courant),
         forces_apart_(musl_ || options.damping > 0 || keeps_ || options.energy_budget) {
     Clock clock = read_clock();
     clock.accelerated = 0;
-    if (Place::is_gpu) clock.steps_between_sorts = steps_between_sorts_on_gpu<Shape>(points_.count());
+    if (Device::is_gpu) clock.steps_between_sorts = steps_between_sorts_on_gpu<Shape>(points_.count());
     clock_.upload({clock});
     sort(0);
   }
@@ -150,17 +150,17 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   }
 
   void clear(bool opens) {
-    const ProfilePhase<Place> phase("clear the grid");
+    const ProfilePhase<Device> phase("clear the grid");
     const int count = grid_.nodes();
     for_each(
-        Place{}, std::max(count, 1),
+        Device{}, std::max(count, 1),
         BeginStep<Real>{clock_.data(), nodes_.data(), forces_apart_ && opens ? forces_.data() : nullptr, count, opens});
   }
 
   template <Scatter what>
   void scatter() {
-    const ProfilePhase<Place> phase("points to grid");
-    scatter_points(Place{}, points_.count(), grid_.groups(),
+    const ProfilePhase<Device> phase("points to grid");
+    scatter_points(Device{}, points_.count(), grid_.groups(),
                    ParticleToGrid<Real, Shape, what>{grid_.view(), points_.view(), materials_, clock_.data(),
                                                      nodes_.data(), forces_.data(), loads_now_, affine_, dilatant_});
   }
@@ -168,11 +168,11 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   template <NodeContent content>
   void update() {
     if (content != NodeContent::remapped) this->measure_columns();
-    const ProfilePhase<Place> phase("grid");
+    const ProfilePhase<Device> phase("grid");
     const Vec3<Real> g{static_cast<Real>(options_.gravity[0]), static_cast<Real>(options_.gravity[1]),
                        static_cast<Real>(options_.gravity[2])};
     for_each_column(
-        Place{}, grid_.active_blocks(),
+        Device{}, grid_.active_blocks(),
         UpdateColumns<Real, content>{grid_.view(), grid_.active_list(), clock_.data(), nodes_.data(), forces_.data(), g,
                                      options_.gravity_ramp, walls_, bed_.view(), static_cast<Real>(this->full_base()),
                                      static_cast<Real>(options_.damping), materials_.list[0].density,
@@ -184,7 +184,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   /// them.
   template <NodeContent content>
   void meet_surfaces() {
-    const ProfilePhase<Place> phase("contact");
+    const ProfilePhase<Device> phase("contact");
     constexpr bool first = content != NodeContent::remapped;
     const PackedNodes<Real> nodes{nodes_.data(), content == NodeContent::force ? forces_.data() : nullptr};
     impulses_.run(contact_, grid_.view(), nodes, grid_.nodes(), this->layer_mass(), {clock_.data(), 0, first, first});
@@ -192,9 +192,9 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
   template <Gather part>
   void gather() {
-    const ProfilePhase<Place> phase("grid to points");
+    const ProfilePhase<Device> phase("grid to points");
     const auto run = [&](auto budget) {
-      for_each(Place{}, points_.count(),
+      for_each(Device{}, points_.count(),
                GridToParticle<Real, Shape, part, decltype(budget)::value>{
                    grid_.view(), points_.view(), materials_, clock_.data(), nodes_.data(),
                    keeps_ ? forces_.data() : nullptr, grid_.home(), affine_, dilatant_});
@@ -207,21 +207,21 @@ class ExplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   }
 
   void sort(int gone) {
-    const ProfilePhase<Place> phase("sort and storage");
+    const ProfilePhase<Device> phase("sort and storage");
     recording_.forget();
     this->fit(gone);
     nodes_.resize(static_cast<std::size_t>(grid_.nodes()));
     if (forces_apart_) forces_.resize(static_cast<std::size_t>(grid_.nodes()));
   }
 
-  Recording<Place> recording_;  // of a step
-  int expected_ = 32;           // steps between sorts
+  Recording<Device> recording_;  // of a step
+  int expected_ = 32;            // steps between sorts
   bool affine_, musl_;
   bool keeps_;  // points keep some of the velocity that is finer than the grid
   bool forces_apart_;
   Walls<Real> walls_;
   const Vec3<double>* loads_now_ = nullptr;
-  Buffer<Vec4<Real>, Place> nodes_, forces_;
+  Buffer<Vec4<Real>, Device> nodes_, forces_;
 };
 
 /// A solver of one precision in the place asked for.
@@ -231,11 +231,11 @@ std::unique_ptr<Solver> make_explicit_solver_of(const Scene& scene, const SolveO
   return with_shape(options.shape, [&](auto shape) -> std::unique_ptr<Solver> {
     using Shape = decltype(shape);
 #if TALUS_FOR_GPU
-    if (on == On::gpu) return std::make_unique<ExplicitSolverOf<Real, OnGpu, Shape>>(scene, options, state);
+    if (on == On::gpu) return std::make_unique<ExplicitSolverOf<Real, GpuDevice, Shape>>(scene, options, state);
 #else
     static_cast<void>(on);
 #endif
-    return std::make_unique<ExplicitSolverOf<Real, OnCpu, Shape>>(scene, options, state);
+    return std::make_unique<ExplicitSolverOf<Real, CpuDevice, Shape>>(scene, options, state);
   });
 }
 

@@ -3,17 +3,17 @@
 #pragma once
 
 #include "solver/grid/shape_functions.hpp"
-#include "solver/parallel/place.hpp"
+#include "solver/parallel/device.hpp"
 
-#define TALUS_FOR_EACH_SHAPE(instantiate, Real, Place) \
-  instantiate(Real, Place, Linear) instantiate(Real, Place, Quadratic) instantiate(Real, Place, Gimp)
-#define TALUS_FOR_EACH_PRECISION(instantiate, Place) \
-  TALUS_FOR_EACH_SHAPE(instantiate, float, Place) TALUS_FOR_EACH_SHAPE(instantiate, double, Place)
+#define TALUS_FOR_EACH_SHAPE(instantiate, Real, Device) \
+  instantiate(Real, Device, Linear) instantiate(Real, Device, Quadratic) instantiate(Real, Device, Gimp)
+#define TALUS_FOR_EACH_PRECISION(instantiate, Device) \
+  TALUS_FOR_EACH_SHAPE(instantiate, float, Device) TALUS_FOR_EACH_SHAPE(instantiate, double, Device)
 
-/// instantiate(Real, Place, Shape) for all there are.
+/// instantiate(Real, Device, Shape) for all there are.
 #if TALUS_FOR_GPU
 #define TALUS_FOR_EACH_INSTANCE(instantiate) \
-  TALUS_FOR_EACH_PRECISION(instantiate, OnCpu) TALUS_FOR_EACH_PRECISION(instantiate, OnGpu)
+  TALUS_FOR_EACH_PRECISION(instantiate, CpuDevice) TALUS_FOR_EACH_PRECISION(instantiate, GpuDevice)
 #else
-#define TALUS_FOR_EACH_INSTANCE(instantiate) TALUS_FOR_EACH_PRECISION(instantiate, OnCpu)
+#define TALUS_FOR_EACH_INSTANCE(instantiate) TALUS_FOR_EACH_PRECISION(instantiate, CpuDevice)
 #endif

@@ -91,11 +91,11 @@ struct GiveStorage {
 
 }  // namespace
 
-template <class Real, class Place>
-SparseGrid<Real, Place>::SparseGrid(const GridShape& shape, int drift, bool in_order, bool by_lowest_node)
+template <class Real, class Device>
+SparseGrid<Real, Device>::SparseGrid(const GridShape& shape, int drift, bool in_order, bool by_lowest_node)
     : shape_(shape),
       drift_(drift),
-      by_lowest_node_(by_lowest_node && Place::is_gpu && !in_order),
+      by_lowest_node_(by_lowest_node && Device::is_gpu && !in_order),
       ground_(make_ground_tables(shape)) {
   groups_.in_order = in_order;
   blocks_x_ = (shape.columns + block_side - 1) / block_side;
@@ -109,8 +109,8 @@ SparseGrid<Real, Place>::SparseGrid(const GridShape& shape, int drift, bool in_o
   slots_.resize(blocks);
 }
 
-template <class Real, class Place>
-GridView<Real> SparseGrid<Real, Place>::view() const {
+template <class Real, class Device>
+GridView<Real> SparseGrid<Real, Device>::view() const {
   GridView<Real> v;
   v.columns = shape_.columns;
   v.rows = shape_.rows;
@@ -132,43 +132,43 @@ GridView<Real> SparseGrid<Real, Place>::view() const {
   return v;
 }
 
-template <class Real, class Place>
-void SparseGrid<Real, Place>::fit(Particles<Real, Place>& points, int gone) {
+template <class Real, class Device>
+void SparseGrid<Real, Device>::fit(Particles<Real, Device>& points, int gone) {
   keys_.resize(static_cast<std::size_t>(points.count()));
-  for_each(Place{}, points.count(), MakeKeys<Real>{points.view(), blocks_x_, by_lowest_node_, keys_.data()});
-  sort_order(Place{}, keys_, order_, key_block_shift + static_cast<int>(std::bit_width(slots_.size())));
+  for_each(Device{}, points.count(), MakeKeys<Real>{points.view(), blocks_x_, by_lowest_node_, keys_.data()});
+  sort_order(Device{}, keys_, order_, key_block_shift + static_cast<int>(std::bit_width(slots_.size())));
   points.reorder(order_, points.count() - gone);
   measure_extents(points);
   give_storage();
   group_points(points.count());
 }
 
-template <class Real, class Place>
-void SparseGrid<Real, Place>::measure_extents(Particles<Real, Place>& points) {
-  for_each(Place{}, static_cast<int>(lowest_.size()), ForgetExtents{lowest_.data(), highest_.data()});
-  for_each(Place{}, points.count(),
+template <class Real, class Device>
+void SparseGrid<Real, Device>::measure_extents(Particles<Real, Device>& points) {
+  for_each(Device{}, static_cast<int>(lowest_.size()), ForgetExtents{lowest_.data(), highest_.data()});
+  for_each(Device{}, points.count(),
            MeasureExtents<Real>{points.view(), shape_.columns, shape_.rows, blocks_x_, 1 + drift_, lowest_.data(),
                                 highest_.data()});
 }
 
-template <class Real, class Place>
-void SparseGrid<Real, Place>::give_storage() {
+template <class Real, class Device>
+void SparseGrid<Real, Device>::give_storage() {
   const int blocks = static_cast<int>(lowest_.size());
-  for_each(Place{}, blocks, CountNodes{lowest_.data(), highest_.data(), sizes_.data(), places_.data()});
-  const auto totals = exclusive_sums(Place{}, sizes_.data(), places_.data(), blocks);
+  for_each(Device{}, blocks, CountNodes{lowest_.data(), highest_.data(), sizes_.data(), places_.data()});
+  const auto totals = exclusive_sums(Device{}, sizes_.data(), places_.data(), blocks);
   nodes_ = totals[0];
   active_ = totals[1];
   for_each(
-      Place{}, blocks,
+      Device{}, blocks,
       GiveStorage{lowest_.data(), highest_.data(), sizes_.data(), places_.data(), slots_.data(), active_list_.data()});
 }
 
-template <class Real, class Place>
-void SparseGrid<Real, Place>::group_points(int count) {
-  if (Place::is_gpu && !groups_.in_order) return;
+template <class Real, class Device>
+void SparseGrid<Real, Device>::group_points(int count) {
+  if (Device::is_gpu && !groups_.in_order) return;
   std::vector<std::uint64_t> copy;
-  if (Place::is_gpu) copy = keys_.download();
-  const std::uint64_t* const keys = Place::is_gpu ? copy.data() : keys_.data();
+  if (Device::is_gpu) copy = keys_.download();
+  const std::uint64_t* const keys = Device::is_gpu ? copy.data() : keys_.data();
   for (auto& ranges : groups_.ranges) ranges.clear();
   for (int begin = 0; begin < count;) {
     const auto block = keys[begin] >> key_block_shift;
@@ -179,20 +179,20 @@ void SparseGrid<Real, Place>::group_points(int count) {
     groups_.ranges[colour].emplace_back(begin, end);
     begin = end;
   }
-  if constexpr (Place::is_gpu) groups_.upload();
+  if constexpr (Device::is_gpu) groups_.upload();
 }
 
-template <class Real, class Place>
-std::size_t SparseGrid<Real, Place>::bytes() const {
+template <class Real, class Device>
+std::size_t SparseGrid<Real, Device>::bytes() const {
   return terrain_.bytes() + slope_x_.bytes() + slope_y_.bytes() + open_.bytes() + slots_.bytes() + lowest_.bytes() +
          highest_.bytes() + sizes_.bytes() + places_.bytes() + active_list_.bytes() + order_.bytes() + keys_.bytes();
 }
 
-template class SparseGrid<float, OnCpu>;
-template class SparseGrid<double, OnCpu>;
+template class SparseGrid<float, CpuDevice>;
+template class SparseGrid<double, CpuDevice>;
 #if TALUS_FOR_GPU
-template class SparseGrid<float, OnGpu>;
-template class SparseGrid<double, OnGpu>;
+template class SparseGrid<float, GpuDevice>;
+template class SparseGrid<double, GpuDevice>;
 #endif
 
 }  // namespace talus

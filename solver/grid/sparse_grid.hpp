@@ -35,7 +35,7 @@ GroundPoint<double> bicubic_ground(const GridShape& shape, const GroundTables& g
 /// where it is met by points [m above datum].
 double ground_at(const GridShape& shape, const GroundTables& ground, double xi, double eta);
 
-template <class Real, class Place>
+template <class Real, class Device>
 class SparseGrid {
  public:
   /// `drift`: how far a point may go from home before it is sorted again [cells]. At most one on the CPU, where blocks
@@ -46,7 +46,7 @@ class SparseGrid {
 
   /// Sort the points by home cell, drop those that left (the `gone` last ones after sorting), and give storage to every
   /// column and layer they reach until they have drifted too far.
-  void fit(Particles<Real, Place>& points, int gone);
+  void fit(Particles<Real, Device>& points, int gone);
 
   GridView<Real> view() const;
   /// From now on material is met at these nodes.
@@ -61,7 +61,7 @@ class SparseGrid {
   std::size_t bytes() const;
 
  private:
-  void measure_extents(Particles<Real, Place>& points);
+  void measure_extents(Particles<Real, Device>& points);
   void give_storage();
   void group_points(int count);
 
@@ -71,11 +71,11 @@ class SparseGrid {
   GroundTables ground_;
   WallNodes walls_;
   int blocks_x_ = 0, blocks_y_ = 0, nodes_ = 0, active_ = 0;
-  Buffer<Real, Place> terrain_, slope_x_, slope_y_;
-  Buffer<unsigned char, Place> open_;
-  Buffer<BlockSlot, Place> slots_;
-  Buffer<int, Place> lowest_, highest_, sizes_, places_, active_list_, order_;
-  Buffer<std::uint64_t, Place> keys_;
+  Buffer<Real, Device> terrain_, slope_x_, slope_y_;
+  Buffer<unsigned char, Device> open_;
+  Buffer<BlockSlot, Device> slots_;
+  Buffer<int, Device> lowest_, highest_, sizes_, places_, active_list_, order_;
+  Buffer<std::uint64_t, Device> keys_;
   PointGroups groups_;
 };
 

@@ -56,9 +56,9 @@ struct RecordColumns {
   }
 };
 
-template <class Real, class Place, class Shape>
-class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
-  using Base = PointSolver<Real, Place, Shape>;
+template <class Real, class Device, class Shape>
+class ImplicitSolverOf final : public PointSolver<Real, Device, Shape> {
+  using Base = PointSolver<Real, Device, Shape>;
   using Base::clock_, Base::contact_, Base::dilatant_, Base::impulses_, Base::grid_, Base::materials_, Base::options_,
       Base::points_, Base::read_clock, Base::sums_;
 
@@ -221,7 +221,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   }
 
   void fit_grid(double time) {
-    const ProfilePhase<Place> phase("sort and storage");
+    const ProfilePhase<Device> phase("sort and storage");
     this->fit(0);
     walls_ = this->template stand_walls<double>(time);
     group_elements();
@@ -229,7 +229,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
   /// Everything that does not change with the displacement.
   void prepare(double start, double step) {
-    const ProfilePhase<Place> phase("points to grid");
+    const ProfilePhase<Device> phase("points to grid");
     const double time = start + step;  // loads are those at the end of the step, walls those that stand at its start
     size_nodes();
     scheme_ = {dynamic_, options_.implicit.alpha, options_.implicit.beta, step};
@@ -238,26 +238,26 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     corner_.smooths = dynamic_;
     corner_.fall = fall(step);
     const Vec3<double>* loads = this->upload_loads(time);
-    scatter_points(Place{}, points_.count(), this->grid_.groups(),
+    scatter_points(Device{}, points_.count(), this->grid_.groups(),
                    ScatterInertia<Real, Shape>{
                        {this->grid_.view(), points_.view()}, materials_, affine_, dynamic_, loads, nodes()});
     const double ramp = options_.gravity_ramp > 0 ? std::min(1.0, time / options_.gravity_ramp) : 1.0;
     const Vec3<double> g{options_.gravity[0] * ramp, options_.gravity[1] * ramp, options_.gravity[2] * ramp};
     const bool predict = dynamic_ && options_.implicit.newton_iterations > 1;
-    for_each(Place{}, this->grid_.active_blocks() * block_columns,
+    for_each(Device{}, this->grid_.active_blocks() * block_columns,
              PrepareNodes<Real>{this->grid_.view(), this->grid_.active_list(), nodes(), held(), walls_,
                                 node_bed_.view(), this->full_base(), g, scheme_, predict});
     if (contact_.on()) prepare_surfaces(step, predict);
     if (dynamic_)
-      sum_each<1>(Place{}, count_, sums_, SquareMomentum{nodes()}, KeepTotals<1>{&balance_.data()->momentum});
+      sum_each<1>(Device{}, count_, sums_, SquareMomentum{nodes()}, KeepTotals<1>{&balance_.data()->momentum});
     if (!dynamic_) return;
     const bool accelerates = first_ && !midway_, damps = options_.damping > 0;
     if (!accelerates && !damps) return;
     copy(u_, saved_u_);  // both are of the start of the step
     u_.fill_zero();
     measure_stress(false);
-    if (accelerates) for_each(Place{}, count_, FirstAcceleration{nodes()});
-    if (damps) for_each(Place{}, count_, AddDamping{nodes(), options_.damping});
+    if (accelerates) for_each(Device{}, count_, FirstAcceleration{nodes()});
+    if (damps) for_each(Device{}, count_, AddDamping{nodes(), options_.damping});
     copy(saved_u_, u_);
   }
 
@@ -294,12 +294,12 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   TangentStore<Real> tangents() { return {tangents_.data(), points_.count(), single_tangents_.data()}; }
 
   void measure_stress(bool with_tangent, bool definite = false) {
-    const ProfilePhase<Place> phase("stress and tangent");
+    const ProfilePhase<Device> phase("stress and tangent");
     internal_.fill_zero();
     average(u_);
     using Stress = StressAt<Real, Shape>;
     scatter_points(
-        Place{}, points_.count(), this->grid_.groups(),
+        Device{}, points_.count(), this->grid_.groups(),
         ScatterForces<Real, Shape, Stress>{{this->grid_.view(), points_.view()},
                                            Stress{materials_, dilatant_, definite, means(),
                                                   with_tangent ? tangents() : TangentStore<Real>{}, u_.data()},
@@ -313,7 +313,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   MeanDilationView<Real> means() const { return options_.implicit.b_bar ? means_.view() : MeanDilationView<Real>{}; }
 
   /// B-bar: means over the elements for a displacement.
-  void average(const NodeVector<Place>& u) {
+  void average(const NodeVector<Device>& u) {
     if (options_.implicit.b_bar)
       means_.measure(elements_, this->grid_.view(), points_.view(), materials_, dilatant_, u.data());
   }
@@ -329,18 +329,19 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
   /// The unbalanced force for u_, with what `held` and the contacts' states say about it.
   Balance measure_residual(bool decide) {
-    const ProfilePhase<Place> phase("residual and contact");
+    const ProfilePhase<Device> phase("residual and contact");
     if (decide) {
       if (contact_.on())
         contact_.each(RenewLimits<Real, Shape>{this->grid_.view(), contact_.view(), nodes(), contact_numbers()});
       const double each = options_.implicit.newton_tolerance / std::sqrt(static_cast<double>(std::max(count_, 1)));
-      sum_each<1>(Place{}, count_, sums_, SquareForces{nodes()}, FinishForces{balance_.data(), stopping_share(), each});
+      sum_each<1>(Device{}, count_, sums_, SquareForces{nodes()},
+                  FinishForces{balance_.data(), stopping_share(), each});
     }
-    sum_each<3>(Place{}, count_, sums_,
+    sum_each<3>(Device{}, count_, sums_,
                 MeasureResidual{nodes(), held(), scheme_, decide, decide ? nullptr : change_.data()},
                 FinishResidual{balance_.data()});
     const Balance balance = balance_.download().front();
-    for_each(Place{}, 1, ForgetChanges{balance_.data()});
+    for_each(Device{}, 1, ForgetChanges{balance_.data()});
     return balance;
   }
 
@@ -363,7 +364,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   void group_elements() {
     const ImplicitOptions& o = options_.implicit;
     const bool direct = o.linear_solver == LinearSolver::cholesky;
-    const bool preconditioned = !direct && NodePreconditioner<Real, Place, Shape>::by_elements(o.preconditioner);
+    const bool preconditioned = !direct && NodePreconditioner<Real, Device, Shape>::by_elements(o.preconditioner);
     if (dynamic_ && !direct && !preconditioned && o.form == Operator::points && !o.b_bar)
       return;  // nothing goes by elements
     elements_.build(this->grid_.view(), points_.view());
@@ -439,7 +440,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     double share = 1;
     for (int halving = 0; halving < 10; ++halving, share *= 0.5) {
       axpby(share, change_, 1.0, u_);
-      sum_each<1>(Place{}, count_, sums_, StickReversed{nodes(), held(), saved_u_.data()},
+      sum_each<1>(Device{}, count_, sums_, StickReversed{nodes(), held(), saved_u_.data()},
                   FinishReversals{balance_.data()});
       measure_stress(true);
       const Balance balance = measure_residual(false);
@@ -475,7 +476,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   /// What stands on the diagonal beside the points' stiffness.
   HeldNodes held_nodes() {
     stiffness_.resize(static_cast<std::size_t>(count_));
-    for_each(Place{}, count_, FrictionStiffness{nodes(), held(), stiffness_.data()});
+    for_each(Device{}, count_, FrictionStiffness{nodes(), held(), stiffness_.data()});
     if (contact_.on())
       contact_.each(AddContactDiagonal<Real, Shape>{this->grid_.view(), contact_.view(), mass_.data(),
                                                     contact_stiffness_.data(), stiffness_.data()});
@@ -485,7 +486,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   LinearReport factorise() { return cholesky_.solve(point_tangents(), held_nodes(), residual_, change_); }
 
   void refresh_operator() {
-    const ProfilePhase<Place> phase("operator and preconditioner");
+    const ProfilePhase<Device> phase("operator and preconditioner");
     preconditioner_.refresh(point_tangents(), this->grid_.groups(), elements_,
                             {this->grid_.view(), this->grid_.active_list(), this->grid_.active_blocks()}, held_nodes());
     operator_.refresh(point_tangents(), this->grid_.groups());
@@ -493,36 +494,36 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
 
   LinearReport iterate(double tolerance) {
     refresh_operator();
-    const ProfilePhase<Place> phase("conjugate gradients");
+    const ProfilePhase<Device> phase("conjugate gradients");
     const ImplicitOptions& o = options_.implicit;
     if (o.linear_solver == LinearSolver::pcg)
       return cg_.solve(residual_, change_, tolerance, o.linear_iterations, LinearSystem{*this});
     LinearSystem system{*this};
-    const auto multiply = [&](const NodeVector<Place>& x, NodeVector<Place>& y) {
+    const auto multiply = [&](const NodeVector<Device>& x, NodeVector<Device>& y) {
       y.fill_zero();
       system.product(x, y);
-      for_each(Place{}, count_, system.close(x, y));
+      for_each(Device{}, count_, system.close(x, y));
     };
-    const auto precondition = [&](const NodeVector<Place>& r, NodeVector<Place>& z) { preconditioner_.apply(r, z); };
+    const auto precondition = [&](const NodeVector<Device>& r, NodeVector<Device>& z) { preconditioner_.apply(r, z); };
     return bicgstab_.solve(residual_, change_, tolerance, o.linear_iterations, multiply, precondition);
   }
 
   /// The tangent of the step as conjugate gradients take it.
   struct LinearSystem {
     ImplicitSolverOf& solver;
-    void product(const NodeVector<Place>& x, NodeVector<Place>& y, const CgState* state = nullptr) {
+    void product(const NodeVector<Device>& x, NodeVector<Device>& y, const CgState* state = nullptr) {
       solver.operator_.apply(x, y, state);
       if (!solver.contact_.on()) return;
       solver.contact_.each(ApplyContacts<Real, Shape>{solver.grid_.view(), solver.contact_.view(), solver.mass_.data(),
                                                       solver.contact_stiffness_.data(), x.data(), y.data()});
     }
-    CloseProduct close(const NodeVector<Place>& x, NodeVector<Place>& y) {
+    CloseProduct close(const NodeVector<Device>& x, NodeVector<Device>& y) {
       return {solver.nodes(), solver.held(), solver.scheme_.inertia(), x.data(), y.data()};
     }
-    void precondition(const NodeVector<Place>& r, NodeVector<Place>& z, CgState* state) {
+    void precondition(const NodeVector<Device>& r, NodeVector<Device>& z, CgState* state) {
       solver.preconditioner_.apply(r, z, state);
     }
-    void precondition_after(const talus::detail::StepAlong& step, const NodeVector<Place>& r, NodeVector<Place>& z,
+    void precondition_after(const talus::detail::StepAlong& step, const NodeVector<Device>& r, NodeVector<Device>& z,
                             CgState* state) {
       solver.preconditioner_.apply_after(step, r, z, state);
     }
@@ -532,18 +533,18 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
   /// cell at most.
   double farthest_move() {
     farthest_.upload({0});
-    for_each(Place{}, points_.count(),
+    for_each(Device{}, points_.count(),
              MeasureMotion<Real, Shape>{this->grid_.view(), points_.view(), u_.data(), dynamic_, farthest_.data()});
     return static_cast<double>(positive_from_bits(farthest_.download().front()));
   }
 
   void accept(const Clock& clock, double step) {
-    const ProfilePhase<Place> phase("grid to points");
+    const ProfilePhase<Device> phase("grid to points");
     if (contact_.on()) {
       contact_.each(KeepContacts<Real, Shape>{this->grid_.view(), contact_.view(), nodes(), contact_numbers(), step,
                                               dynamic_ ? impulses_.impulses() : nullptr});
     }
-    for_each(Place{}, count_, EndOfStep{nodes(), scheme_, velocity_end_.data(), acceleration_end_.data()});
+    for_each(Device{}, count_, EndOfStep{nodes(), scheme_, velocity_end_.data(), acceleration_end_.data()});
     AcceptStep<Real, Shape> step_kernel{this->grid_.view(),
                                         points_.view(),
                                         materials_,
@@ -561,11 +562,11 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     const bool musl = dynamic_ && options_.stress_update == StressUpdate::modified;
     if (musl) {
       step_kernel.deforms = false;
-      for_each(Place{}, points_.count(), step_kernel);
+      for_each(Device{}, points_.count(), step_kernel);
       change_.fill_zero();
-      scatter_points(Place{}, points_.count(), this->grid_.groups(),
+      scatter_points(Device{}, points_.count(), this->grid_.groups(),
                      ScatterVelocity<Real, Shape>{{this->grid_.view(), points_.view()}, materials_, change_.data()});
-      for_each(Place{}, count_, RemapDisplacement{nodes(), step, change_.data()});
+      for_each(Device{}, count_, RemapDisplacement{nodes(), step, change_.data()});
       average(change_);
       step_kernel.strain_displacement = change_.data();
       step_kernel.deforms = true;
@@ -573,44 +574,44 @@ class ImplicitSolverOf final : public PointSolver<Real, Place, Shape> {
     } else {
       average(u_);
     }
-    for_each(Place{}, points_.count(), step_kernel);
+    for_each(Device{}, points_.count(), step_kernel);
     this->measure_columns();
-    for_each(Place{}, this->grid_.active_blocks() * block_columns,
+    for_each(Device{}, this->grid_.active_blocks() * block_columns,
              RecordColumns<Real>{
                  this->grid_.view(), this->grid_.active_list(), mass_.data(), dynamic_ ? velocity_end_.data() : nullptr,
                  static_cast<double>(materials_.list[0].density), this->column_volumes(), clock.time, this->maps()});
   }
 
   bool affine_, dynamic_;
-  BedOn<double, Place> node_bed_;
+  BedOn<double, Device> node_bed_;
   double step_;
   int count_ = 0;
   bool first_;   // no acceleration is known yet
   bool midway_;  // the run began with explicit steps
   bool single_;  // tangents and operator in single precision: Newton's steps correct what that rounds off
   TimeScheme scheme_;
-  Buffer<double, Place> springs_, grips_, tractions_, limits_;  // of the contact points
-  Buffer<Sym3<double>, Place> contact_stiffness_;
-  Buffer<double, Place> mass_, contact_friction_, traction_, friction_limit_;
+  Buffer<double, Device> springs_, grips_, tractions_, limits_;  // of the contact points
+  Buffer<Sym3<double>, Device> contact_stiffness_;
+  Buffer<double, Device> mass_, contact_friction_, traction_, friction_limit_;
   double rate_ = 0;  // CFL steps per time, as the last step ended [1/s]
   FrictionCorner corner_;
-  ElementList<Real, Place, Shape> elements_;
-  MeanDilation<Real, Place, Shape> means_;
+  ElementList<Real, Device, Shape> elements_;
+  MeanDilation<Real, Device, Shape> means_;
   Walls<double> walls_;
-  NodeVector<Place> velocity_, arrival_, acceleration_, external_, internal_, u_, residual_, normal_, along_,
+  NodeVector<Device> velocity_, arrival_, acceleration_, external_, internal_, u_, residual_, normal_, along_,
       velocity_end_, acceleration_end_, change_, saved_u_;
-  Buffer<Sym3<double>, Place> freed_, wall_freed_, stiffness_;
-  Buffer<Touch, Place> touch_;
-  Buffer<unsigned char, Place> wavers_;  // changes between stick and slip
-  Buffer<Real, Place> tangents_;
-  Buffer<float, Place> single_tangents_;
-  Buffer<Balance, Place> balance_;
-  Buffer<std::uint32_t, Place> farthest_;
-  ConjugateGradient<Place> cg_;
-  BiCgStab<Place> bicgstab_;
-  TangentOperator<Real, Place, Shape> operator_;
-  NodePreconditioner<Real, Place, Shape> preconditioner_;
-  CholeskySolver<Real, Place, Shape> cholesky_;
+  Buffer<Sym3<double>, Device> freed_, wall_freed_, stiffness_;
+  Buffer<Touch, Device> touch_;
+  Buffer<unsigned char, Device> wavers_;  // changes between stick and slip
+  Buffer<Real, Device> tangents_;
+  Buffer<float, Device> single_tangents_;
+  Buffer<Balance, Device> balance_;
+  Buffer<std::uint32_t, Device> farthest_;
+  ConjugateGradient<Device> cg_;
+  BiCgStab<Device> bicgstab_;
+  TangentOperator<Real, Device, Shape> operator_;
+  NodePreconditioner<Real, Device, Shape> preconditioner_;
+  CholeskySolver<Real, Device, Shape> cholesky_;
 };
 
 /// A solver of one precision in the place asked for.
@@ -620,11 +621,11 @@ std::unique_ptr<Solver> make_implicit_solver_of(const Scene& scene, const SolveO
   return with_shape(options.shape, [&](auto shape) -> std::unique_ptr<Solver> {
     using Shape = decltype(shape);
 #if TALUS_FOR_GPU
-    if (on == On::gpu) return std::make_unique<ImplicitSolverOf<Real, OnGpu, Shape>>(scene, options, state);
+    if (on == On::gpu) return std::make_unique<ImplicitSolverOf<Real, GpuDevice, Shape>>(scene, options, state);
 #else
     static_cast<void>(on);
 #endif
-    return std::make_unique<ImplicitSolverOf<Real, OnCpu, Shape>>(scene, options, state);
+    return std::make_unique<ImplicitSolverOf<Real, CpuDevice, Shape>>(scene, options, state);
   });
 }
 

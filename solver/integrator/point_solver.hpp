@@ -25,7 +25,7 @@ auto with_shape(ShapeKind kind, F&& f) {
 }
 
 /// The bed's friction and, where it changes from place to place, its numbers beside the grid.
-template <class Number, class Place>
+template <class Number, class Device>
 class BedOn {
  public:
   BedOn(const BaseFriction<Number>& friction, const std::vector<Bed<double>>& columns) : friction_(friction) {
@@ -44,10 +44,10 @@ class BedOn {
 
  private:
   BaseFriction<Number> friction_;
-  Buffer<Bed<Number>, Place> columns_;
+  Buffer<Bed<Number>, Device> columns_;
 };
 
-template <class Real, class Place, class Shape>
+template <class Real, class Device, class Shape>
 class PointSolver : public Solver {
  public:
   PointSolver(const Scene& scene, const SolveOptions& options, const SolverState& state, ParticleFields fields,
@@ -70,7 +70,7 @@ class PointSolver : public Solver {
     arrival_.upload(state.maps.arrival);
   }
 
-  ~PointSolver() override { drop_sort_space(Place{}); }
+  ~PointSolver() override { drop_sort_space(Device{}); }
   PointSolver(const PointSolver&) = delete;
   PointSolver& operator=(const PointSolver&) = delete;
 
@@ -92,11 +92,11 @@ class PointSolver : public Solver {
   ParticleState shown() const override { return points_.download_shown(); }
 
   Energies energies() override {
-    const ProfilePhase<Place> phase("records and frames");
+    const ProfilePhase<Device> phase("records and frames");
     constexpr int rows = MeasureEnergies<Real, Shape>::rows;
     totals_.resize(rows);
     const Vec3<double> g{options_.gravity[0], options_.gravity[1], options_.gravity[2]};
-    sum_each<rows>(Place{}, points_.count(), sums_,
+    sum_each<rows>(Device{}, points_.count(), sums_,
                    MeasureEnergies<Real, Shape>{grid_.view(), points_.view(), materials_, g, dilatant_},
                    KeepTotals<rows>{totals_.data()});
     const std::vector<double> total = totals_.download();
@@ -104,11 +104,11 @@ class PointSolver : public Solver {
   }
 
   std::vector<double> thickness() override {
-    const ProfilePhase<Place> phase("records and frames");
+    const ProfilePhase<Device> phase("records and frames");
     const GridShape& shape = grid_.shape();
     thickness_.resize(static_cast<std::size_t>(shape.columns) * static_cast<std::size_t>(shape.rows));
     thickness_.fill_zero();
-    for_each_grouped(Place{}, points_.count(), grid_.groups(),
+    for_each_grouped(Device{}, points_.count(), grid_.groups(),
                      ScatterThickness<Real, Shape>{points_.view(), shape.columns, thickness_.data()});
     std::vector<double> result = thickness_.download();
     for (double& value : result) value /= shape.spacing * shape.spacing;
@@ -124,7 +124,7 @@ class PointSolver : public Solver {
         {"grid", grid_.bytes() + bed_.bytes()},
         {"maps and records", sums_.bytes() + column_volumes_.bytes() + thickness_.bytes() + peak_thickness_.bytes() +
                                  peak_speed_.bytes() + peak_pressure_.bytes() + arrival_.bytes()}};
-    if (const std::size_t sorting = sort_space_bytes(Place{}); sorting > 0) shares.emplace_back("sorting", sorting);
+    if (const std::size_t sorting = sort_space_bytes(Device{}); sorting > 0) shares.emplace_back("sorting", sorting);
     if (contact_.on()) shares.emplace_back("contact points", contact_.bytes() + impulses_.bytes());
     return shares;
   }
@@ -146,7 +146,7 @@ class PointSolver : public Solver {
     column_volumes_.resize(static_cast<std::size_t>(grid_.shape().columns) *
                            static_cast<std::size_t>(grid_.shape().rows));
     column_volumes_.fill_zero();
-    for_each_grouped(Place{}, points_.count(), grid_.groups(),
+    for_each_grouped(Device{}, points_.count(), grid_.groups(),
                      ScatterThickness<Real, Shape>{points_.view(), grid_.shape().columns, column_volumes_.data()});
   }
   const double* column_volumes() const { return column_volumes_.data(); }
@@ -195,18 +195,18 @@ class PointSolver : public Solver {
   SolveOptions options_;
   Materials<Real> materials_;
   bool dilatant_;
-  Particles<Real, Place> points_;
-  SparseGrid<Real, Place> grid_;
-  BedOn<Real, Place> bed_;
-  SurfaceContact<Real, Place, Shape> contact_;
-  ContactImpulses<Real, Place, Shape> impulses_;
+  Particles<Real, Device> points_;
+  SparseGrid<Real, Device> grid_;
+  BedOn<Real, Device> bed_;
+  SurfaceContact<Real, Device, Shape> contact_;
+  ContactImpulses<Real, Device, Shape> impulses_;
   WallFrame frame_;
   std::vector<double> load_volumes_;  // [m3]
-  Buffer<Vec3<double>, Place> loads_;
-  Buffer<Clock, Place> clock_;
-  Buffer<double, Place> column_volumes_;
-  Buffer<double, Place> peak_thickness_, peak_speed_, peak_pressure_, arrival_, totals_, thickness_;
-  SumSpace<Place> sums_;
+  Buffer<Vec3<double>, Device> loads_;
+  Buffer<Clock, Device> clock_;
+  Buffer<double, Device> column_volumes_;
+  Buffer<double, Device> peak_thickness_, peak_speed_, peak_pressure_, arrival_, totals_, thickness_;
+  SumSpace<Device> sums_;
 };
 
 }  // namespace talus::solver

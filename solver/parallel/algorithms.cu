@@ -57,9 +57,9 @@ struct Products {
 
 /// The other side that a radix sort writes to by turns; grows with the largest sort.
 struct SortSpace {
-  Buffer<std::uint64_t, OnGpu> keys;
-  Buffer<int, OnGpu> order;
-  Buffer<char, OnGpu> rest;
+  Buffer<std::uint64_t, GpuDevice> keys;
+  Buffer<int, GpuDevice> order;
+  Buffer<char, GpuDevice> rest;
 };
 
 SortSpace& sort_space() {
@@ -86,20 +86,20 @@ struct AddLast {
 };
 
 void start_sum(const int* values, int* sums, int count, int* total) {
-  for_each(OnGpu{}, 1, TakeLast{values, count - 1, total});  // before it is written over
+  for_each(GpuDevice{}, 1, TakeLast{values, count - 1, total});  // before it is written over
   thrust::exclusive_scan(policy(), thrust::device_ptr<const int>(values), thrust::device_ptr<const int>(values) + count,
                          thrust::device_ptr<int>(sums));
-  for_each(OnGpu{}, 1, AddLast{sums, count - 1, total});
+  for_each(GpuDevice{}, 1, AddLast{sums, count - 1, total});
 }
 
-Buffer<int, OnGpu>& totals() {
-  static auto* const kept = new Buffer<int, OnGpu>(2);  // until the process ends, as above
+Buffer<int, GpuDevice>& totals() {
+  static auto* const kept = new Buffer<int, GpuDevice>(2);  // until the process ends, as above
   return *kept;
 }
 
 }  // namespace
 
-void sort_order(OnGpu, Buffer<std::uint64_t, OnGpu>& keys, Buffer<int, OnGpu>& order, int bits) {
+void sort_order(GpuDevice, Buffer<std::uint64_t, GpuDevice>& keys, Buffer<int, GpuDevice>& order, int bits) {
   SortSpace& space = sort_space();
   const std::size_t count = keys.size();
   order.resize(count);
@@ -120,12 +120,12 @@ void sort_order(OnGpu, Buffer<std::uint64_t, OnGpu>& keys, Buffer<int, OnGpu>& o
   if (v.Current() != order.data()) order.swap(space.order);
 }
 
-std::size_t sort_space_bytes(OnGpu) {
+std::size_t sort_space_bytes(GpuDevice) {
   return sort_space().keys.bytes() + sort_space().order.bytes() + sort_space().rest.bytes();
 }
-void drop_sort_space(OnGpu) { sort_space() = SortSpace{}; }
+void drop_sort_space(GpuDevice) { sort_space() = SortSpace{}; }
 
-int exclusive_sum(OnGpu, const int* values, int* sums, int count) {
+int exclusive_sum(GpuDevice, const int* values, int* sums, int count) {
   if (count == 0) return 0;
   int total = 0;
   start_sum(values, sums, count, totals().data());
@@ -133,7 +133,7 @@ int exclusive_sum(OnGpu, const int* values, int* sums, int count) {
   return total;
 }
 
-std::array<int, 2> exclusive_sums(OnGpu, int* first, int* second, int count) {
+std::array<int, 2> exclusive_sums(GpuDevice, int* first, int* second, int count) {
   std::array<int, 2> both{};
   if (count == 0) return both;
   start_sum(first, first, count, totals().data());
@@ -142,24 +142,24 @@ std::array<int, 2> exclusive_sums(OnGpu, int* first, int* second, int count) {
   return both;
 }
 
-double inner_product(OnGpu place, const double* a, const double* b, int count) {
-  static SumSpace<OnGpu> space;
-  static Buffer<double, OnGpu> total(1);
+double inner_product(GpuDevice place, const double* a, const double* b, int count) {
+  static SumSpace<GpuDevice> space;
+  static Buffer<double, GpuDevice> total(1);
   sum_each<1>(place, count, space, Products{a, b}, KeepTotals<1>{total.data()});
   return total.download().front();
 }
 
-void gather(OnGpu, const double* from, const int* order, double* to, int count) {
+void gather(GpuDevice, const double* from, const int* order, double* to, int count) {
   const thrust::device_ptr<const int> o(order);
   thrust::gather(policy(), o, o + count, thrust::device_ptr<const double>(from), thrust::device_ptr<double>(to));
 }
 
-void scatter(OnGpu, const double* from, const int* order, double* to, int count) {
+void scatter(GpuDevice, const double* from, const int* order, double* to, int count) {
   const thrust::device_ptr<const double> f(from);
   thrust::scatter(policy(), f, f + count, thrust::device_ptr<const int>(order), thrust::device_ptr<double>(to));
 }
 
-double free_memory(OnGpu) {
+double free_memory(GpuDevice) {
   std::size_t free = 0, total = 0;
   if (cudaMemGetInfo(&free, &total) != cudaSuccess) throw std::runtime_error("CUDA: cudaMemGetInfo failed");
   return static_cast<double>(free);
@@ -170,15 +170,17 @@ double free_memory(OnGpu) {
 #else
 
 namespace talus {
-void sort_order(OnGpu, Buffer<std::uint64_t, OnGpu>&, Buffer<int, OnGpu>&, int) { throw std::logic_error("no CUDA"); }
-int exclusive_sum(OnGpu, const int*, int*, int) { throw std::logic_error("no CUDA"); }
-std::size_t sort_space_bytes(OnGpu) { return 0; }
-void drop_sort_space(OnGpu) {}
-std::array<int, 2> exclusive_sums(OnGpu, int*, int*, int) { throw std::logic_error("no CUDA"); }
-double inner_product(OnGpu, const double*, const double*, int) { throw std::logic_error("no CUDA"); }
-void gather(OnGpu, const double*, const int*, double*, int) { throw std::logic_error("no CUDA"); }
-void scatter(OnGpu, const double*, const int*, double*, int) { throw std::logic_error("no CUDA"); }
-double free_memory(OnGpu) { throw std::logic_error("no CUDA"); }
+void sort_order(GpuDevice, Buffer<std::uint64_t, GpuDevice>&, Buffer<int, GpuDevice>&, int) {
+  throw std::logic_error("no CUDA");
+}
+int exclusive_sum(GpuDevice, const int*, int*, int) { throw std::logic_error("no CUDA"); }
+std::size_t sort_space_bytes(GpuDevice) { return 0; }
+void drop_sort_space(GpuDevice) {}
+std::array<int, 2> exclusive_sums(GpuDevice, int*, int*, int) { throw std::logic_error("no CUDA"); }
+double inner_product(GpuDevice, const double*, const double*, int) { throw std::logic_error("no CUDA"); }
+void gather(GpuDevice, const double*, const int*, double*, int) { throw std::logic_error("no CUDA"); }
+void scatter(GpuDevice, const double*, const int*, double*, int) { throw std::logic_error("no CUDA"); }
+double free_memory(GpuDevice) { throw std::logic_error("no CUDA"); }
 }  // namespace talus
 
 #endif

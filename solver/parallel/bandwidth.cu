@@ -15,10 +15,10 @@ struct CopyNumbers {
   TALUS_HD void operator()(int i) const { to[i] = from[i]; }
 };
 
-template <class Place>
-double measure_copy(Place place) {
+template <class Device>
+double measure_copy(Device place) {
   constexpr std::size_t count = 1 << 23;
-  Buffer<Vec4<double>, Place> from(count), to(count);
+  Buffer<Vec4<double>, Device> from(count), to(count);
   from.fill_zero();
   to.fill_zero();
   synchronise(place);
@@ -35,11 +35,11 @@ double measure_copy(Place place) {
 
 }  // namespace
 
-double copy_bandwidth(OnCpu place) { return measure_copy(place); }
+double copy_bandwidth(CpuDevice place) { return measure_copy(place); }
 #if defined(__CUDACC__)
-double copy_bandwidth(OnGpu place) { return measure_copy(place); }
+double copy_bandwidth(GpuDevice place) { return measure_copy(place); }
 #else
-double copy_bandwidth(OnGpu) { throw std::logic_error("this binary was built without CUDA"); }
+double copy_bandwidth(GpuDevice) { throw std::logic_error("this binary was built without CUDA"); }
 #endif
 
 }  // namespace talus

@@ -1,12 +1,12 @@
 // How fast memory can be copied: what the bytes of a kernel are held against.
 #pragma once
 
-#include "solver/parallel/place.hpp"
+#include "solver/parallel/device.hpp"
 
 namespace talus {
 
 /// Bytes read and written per second by a copy of a quarter of a gigabyte, the best of five [B/s].
-double copy_bandwidth(OnCpu);
-double copy_bandwidth(OnGpu);
+double copy_bandwidth(CpuDevice);
+double copy_bandwidth(GpuDevice);
 
 }  // namespace talus

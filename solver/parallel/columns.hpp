@@ -2,7 +2,7 @@
 // layers, of which a small scene has more than it has columns.
 #pragma once
 
-#include "solver/parallel/place.hpp"
+#include "solver/parallel/device.hpp"
 #include "solver/state/grid_view.hpp"
 
 namespace talus {
@@ -26,7 +26,7 @@ struct WholeColumn {
 };
 
 template <class Kernel>
-void for_each_column(OnCpu place, int blocks, const Kernel& kernel) {
+void for_each_column(CpuDevice place, int blocks, const Kernel& kernel) {
   for_each(place, blocks * block_columns, WholeColumn<Kernel>{kernel});
 }
 
@@ -56,9 +56,9 @@ __global__ void run_columns(Kernel kernel) {
 }  // namespace detail
 
 template <class Kernel>
-void for_each_column(OnGpu, int blocks, const Kernel& kernel) {
+void for_each_column(GpuDevice, int blocks, const Kernel& kernel) {
   if (blocks <= 0) return;
-  const KernelTime<OnGpu> time(kernel, blocks * block_columns);
+  const KernelTime<GpuDevice> time(kernel, blocks * block_columns);
   detail::gpu_launch(__PRETTY_FUNCTION__, detail::run_columns<Kernel>, blocks, detail::column_shares * block_columns,
                      kernel);
 }

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "solver/parallel/place.hpp"
+#include "solver/parallel/device.hpp"
 
 namespace talus::detail {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/error.hpp"
-#include "solver/parallel/place.hpp"
+#include "solver/parallel/device.hpp"
 
 #if defined(__CUDACC__)
 #include <cuda_runtime.h>

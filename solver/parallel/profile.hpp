@@ -88,7 +88,7 @@ class Profile {
 
 /// A phase for as long as it lives. Waits for the GPU at both ends, so that its kernels are counted and no others; in a
 /// recording it only names them.
-template <class Place>
+template <class Device>
 class ProfilePhase {
  public:
   explicit ProfilePhase(const char* name) : on_(Profile::of_run().on()) {
@@ -106,7 +106,7 @@ class ProfilePhase {
 
  private:
   static void wait() {
-    if constexpr (Place::is_gpu) {
+    if constexpr (Device::is_gpu) {
       if (Profile::of_run().recording()) return;
       detail::gpu_synchronise();
       Profile::of_run().settle();
@@ -140,7 +140,7 @@ double kernel_bytes(const Kernel& kernel, int count) {
 }
 
 /// Around the start of one kernel.
-template <class Place>
+template <class Device>
 class KernelTime {
  public:
   template <class Kernel>
@@ -149,13 +149,13 @@ class KernelTime {
     Profile& profile = Profile::of_run();
     mark_.kernel = profile.kernel(kernel_name<Kernel>());
     mark_.bytes = kernel_bytes(kernel, count);
-    if constexpr (Place::is_gpu) mark_.begin = detail::gpu_mark();
+    if constexpr (Device::is_gpu) mark_.begin = detail::gpu_mark();
     begun_ = WallClock::now();
   }
   ~KernelTime() {
     if (!on_) return;
     Profile& profile = Profile::of_run();
-    if constexpr (Place::is_gpu) {
+    if constexpr (Device::is_gpu) {
       mark_.end = detail::gpu_mark();
       profile.add(mark_);
     } else {

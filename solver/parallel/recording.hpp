@@ -4,15 +4,15 @@
 
 #include <optional>
 
-#include "solver/parallel/place.hpp"
+#include "solver/parallel/device.hpp"
 
 namespace talus {
 
-template <class Place>
+template <class Device>
 class Recording;
 
 template <>
-class Recording<OnCpu> {
+class Recording<CpuDevice> {
  public:
   template <class Body>
   void repeat(int times, const Body& body) {
@@ -22,7 +22,7 @@ class Recording<OnCpu> {
 };
 
 template <>
-class Recording<OnGpu> {
+class Recording<GpuDevice> {
  public:
   Recording() = default;
   Recording(const Recording&) = delete;
@@ -65,7 +65,7 @@ class Recording<OnGpu> {
   template <class Body>
   void repeat_measured(int times, const Body& body) {
     Profile& profile = Profile::of_run();
-    std::optional<ProfilePhase<OnGpu>> phase;
+    std::optional<ProfilePhase<GpuDevice>> phase;
     if (!profile.within_phase()) phase.emplace("between kernels");
     if (!recorded_) {
       detail::gpu_synchronise();

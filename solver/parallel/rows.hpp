@@ -1,8 +1,8 @@
 // Sums of many terms for each of many indices, a row of a matrix times a vector say.
 #pragma once
 
+#include "solver/parallel/device.hpp"
 #include "solver/parallel/math.hpp"
-#include "solver/parallel/place.hpp"
 
 namespace talus {
 
@@ -31,7 +31,7 @@ struct WholeRow {
 };
 
 template <int parts, class Kernel>
-void sum_rows(OnCpu place, int count, const Kernel& kernel) {
+void sum_rows(CpuDevice place, int count, const Kernel& kernel) {
   for_each(place, count, WholeRow<parts, Kernel>{kernel});
 }
 
@@ -59,9 +59,9 @@ __global__ void sum_row(int count, Kernel kernel) {
 }  // namespace detail
 
 template <int parts, class Kernel>
-void sum_rows(OnGpu, int count, const Kernel& kernel) {
+void sum_rows(GpuDevice, int count, const Kernel& kernel) {
   if (count <= 0) return;
-  const KernelTime<OnGpu> time(kernel, count);
+  const KernelTime<GpuDevice> time(kernel, count);
   constexpr int threads = 128, each = threads / 32;
   detail::gpu_launch(__PRETTY_FUNCTION__, detail::sum_row<parts, Kernel>, (count + each - 1) / each, threads, count,
                      kernel);

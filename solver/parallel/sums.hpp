@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "solver/parallel/place.hpp"
+#include "solver/parallel/device.hpp"
 
 namespace talus {
 
@@ -24,7 +24,7 @@ struct KeepTotals {
 };
 
 /// Room for the partial sums; one for every stream of work.
-template <class Place>
+template <class Device>
 class SumSpace {
  public:
   double* partial(int count) {
@@ -39,15 +39,15 @@ class SumSpace {
   std::size_t bytes() const { return partial_.bytes() + ticket_.bytes(); }
 
  private:
-  Buffer<double, Place> partial_;
-  Buffer<unsigned, Place> ticket_;
+  Buffer<double, Device> partial_;
+  Buffer<unsigned, Device> ticket_;
 };
 
 /// Sums body(i), Terms<K>, for i in [0, count), and calls finish(const double* total) once, by one thread. The order is
 /// fixed by count alone, so that a run repeats to the bit. A body may as well write what belongs to its index.
 template <int K, class Body, class Finish>
-void sum_each(OnCpu, int count, SumSpace<OnCpu>& space, const Body& body, const Finish& finish) {
-  const KernelTime<OnCpu> time(body, count);
+void sum_each(CpuDevice, int count, SumSpace<CpuDevice>& space, const Body& body, const Finish& finish) {
+  const KernelTime<CpuDevice> time(body, count);
   constexpr int grain = 512;
   const int chunks = (count + grain - 1) / grain;
   struct Job {
@@ -129,11 +129,11 @@ __global__ void sum_kernel(int count, Body body, Finish finish, double* partial,
 }  // namespace detail
 
 template <int K, class Body, class Finish>
-void sum_each(OnGpu, int count, SumSpace<OnGpu>& space, const Body& body, const Finish& finish) {
+void sum_each(GpuDevice, int count, SumSpace<GpuDevice>& space, const Body& body, const Finish& finish) {
   constexpr int most_blocks = 512,
                 threads = 256;  // the last block adds up what all have found: few blocks, many threads
   const int blocks = std::clamp((count + threads - 1) / threads, 1, most_blocks);
-  const KernelTime<OnGpu> time(body, count);
+  const KernelTime<GpuDevice> time(body, count);
   detail::gpu_launch(__PRETTY_FUNCTION__, detail::sum_kernel<K, Body, Finish>, blocks, threads, count, body, finish,
                      space.partial(K * most_blocks), space.ticket());
 }

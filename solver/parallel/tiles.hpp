@@ -5,7 +5,7 @@
 #include <bit>
 #include <new>
 
-#include "solver/parallel/place.hpp"
+#include "solver/parallel/device.hpp"
 
 namespace talus {
 
@@ -41,7 +41,7 @@ TALUS_HD void scatter_point(const Kernel& kernel, int p) {
 }
 
 template <class Kernel>
-void scatter_points(OnCpu place, int count, const PointGroups& groups, const Kernel& kernel) {
+void scatter_points(CpuDevice place, int count, const PointGroups& groups, const Kernel& kernel) {
   for_each_grouped(place, count, groups, kernel);
 }
 
@@ -248,9 +248,9 @@ __global__ void run_tiles_in_order(const PointGroups::Range* ranges, Kernel kern
 }  // namespace detail
 
 template <class Kernel>
-void scatter_points(OnGpu, int count, const PointGroups& groups, const Kernel& kernel) {
+void scatter_points(GpuDevice, int count, const PointGroups& groups, const Kernel& kernel) {
   if (count <= 0) return;
-  const KernelTime<OnGpu> time(kernel, count);
+  const KernelTime<GpuDevice> time(kernel, count);
   if (groups.in_order) {
     for (const auto& ranges : groups.on_gpu) {
       if (ranges.size() == 0) continue;

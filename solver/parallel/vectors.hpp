@@ -6,8 +6,8 @@
 
 namespace talus {
 
-template <class Place>
-using NodeVector = Buffer<Vec3<double>, Place>;
+template <class Device>
+using NodeVector = Buffer<Vec3<double>, Device>;
 
 namespace detail {
 struct Axpby {  // y = a x + b y
@@ -24,20 +24,20 @@ struct Copy {
 }  // namespace detail
 
 /// y = a x + b y
-template <class Place>
-void axpby(double a, const NodeVector<Place>& x, double b, NodeVector<Place>& y) {
-  for_each(Place{}, static_cast<int>(y.size()), detail::Axpby{a, b, x.data(), y.data()});
+template <class Device>
+void axpby(double a, const NodeVector<Device>& x, double b, NodeVector<Device>& y) {
+  for_each(Device{}, static_cast<int>(y.size()), detail::Axpby{a, b, x.data(), y.data()});
 }
 
-template <class Place>
-void copy(const NodeVector<Place>& x, NodeVector<Place>& y) {
+template <class Device>
+void copy(const NodeVector<Device>& x, NodeVector<Device>& y) {
   y.resize(x.size());
-  for_each(Place{}, static_cast<int>(x.size()), detail::Copy{x.data(), y.data()});
+  for_each(Device{}, static_cast<int>(x.size()), detail::Copy{x.data(), y.data()});
 }
 
-template <class Place>
-double dot(const NodeVector<Place>& x, const NodeVector<Place>& y) {
-  return inner_product(Place{}, reinterpret_cast<const double*>(x.data()), reinterpret_cast<const double*>(y.data()),
+template <class Device>
+double dot(const NodeVector<Device>& x, const NodeVector<Device>& y) {
+  return inner_product(Device{}, reinterpret_cast<const double*>(x.data()), reinterpret_cast<const double*>(y.data()),
                        3 * static_cast<int>(x.size()));
 }
 

@@ -9,7 +9,7 @@
 
 #include "solver/integrator/scene.hpp"
 #include "solver/options/options.hpp"
-#include "solver/parallel/place.hpp"
+#include "solver/parallel/device.hpp"
 #include "solver/parallel/profile.hpp"
 #include "solver/run/thickness.hpp"
 #include "solver/scene/make_scene.hpp"

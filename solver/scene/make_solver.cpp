@@ -4,7 +4,7 @@
 
 #include "solver/integrator/scene.hpp"
 #include "solver/options/options.hpp"
-#include "solver/parallel/place.hpp"
+#include "solver/parallel/device.hpp"
 #include "solver/scene/make_scene.hpp"
 
 namespace talus::solver {
@@ -56,7 +56,7 @@ std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolveOptions& op
                 : make_implicit_solver_of<double>(scene, options, on, state);
 }
 
-On choose_place(On wanted) {
+On choose_device(On wanted) {
   if (wanted == On::gpu && !gpu_available()) {
     throw RecipeError({"--on gpu", "this machine has no GPU that the program can use", "Use --on cpu or --on auto"});
   }

@@ -20,6 +20,6 @@ std::unique_ptr<Solver> make_solver(const Scene& scene, const SolveOptions& opti
 std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolveOptions& options, On on, const SolverState& state);
 
 /// cpu or gpu for automatic; throws RecipeError when a GPU is asked for and there is none.
-On choose_place(On wanted);
+On choose_device(On wanted);
 
 }  // namespace talus::solver

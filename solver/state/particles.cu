@@ -26,8 +26,8 @@ struct GatherAll {
   }
 };
 
-template <class Real, class Place>
-std::vector<double> download_as(const Buffer<Real, Place>& from) {
+template <class Real, class Device>
+std::vector<double> download_as(const Buffer<Real, Device>& from) {
   std::vector<Real> values = from.download();
   if constexpr (std::is_same_v<Real, double>) {
     return values;
@@ -38,8 +38,8 @@ std::vector<double> download_as(const Buffer<Real, Place>& from) {
 
 }  // namespace
 
-template <class Real, class Place>
-bool Particles<Real, Place>::in_use(int slot) const {
+template <class Real, class Device>
+bool Particles<Real, Device>::in_use(int slot) const {
   if (slot >= move_slot) return fields_.move;
   if (slot >= shear_slot) return fields_.plastic_shear;
   if (slot >= extent_slot) return fields_.extent;
@@ -48,8 +48,8 @@ bool Particles<Real, Place>::in_use(int slot) const {
   return slot != plastic_slot || fields_.plastic_volume;
 }
 
-template <class Real, class Place>
-void Particles<Real, Place>::upload(const ParticleState& state) {
+template <class Real, class Device>
+void Particles<Real, Device>::upload(const ParticleState& state) {
   count_ = static_cast<int>(state.size());
   for (int a = 0; a < 3; ++a) {
     ints_[a].upload(state.cell[a]);
@@ -71,8 +71,8 @@ void Particles<Real, Place>::upload(const ParticleState& state) {
   if (fields_.plastic_volume) upload_as(reals_[plastic_slot], state.plastic_log_volume);
 }
 
-template <class Real, class Place>
-ParticleState Particles<Real, Place>::download_shown() const {
+template <class Real, class Device>
+ParticleState Particles<Real, Device>::download_shown() const {
   ParticleState state;
   const auto zeros = std::vector<double>(static_cast<std::size_t>(count_), 0.0);
   for (int a = 0; a < 3; ++a) {
@@ -92,8 +92,8 @@ ParticleState Particles<Real, Place>::download_shown() const {
   return state;
 }
 
-template <class Real, class Place>
-ParticleState Particles<Real, Place>::download() const {
+template <class Real, class Device>
+ParticleState Particles<Real, Device>::download() const {
   ParticleState state = download_shown();
   const auto zeros = std::vector<double>(static_cast<std::size_t>(count_), 0.0);
   for (int a = 0; a < 3; ++a) {
@@ -105,8 +105,8 @@ ParticleState Particles<Real, Place>::download() const {
   return state;
 }
 
-template <class Real, class Place>
-ParticleView<Real> Particles<Real, Place>::view() {
+template <class Real, class Device>
+ParticleView<Real> Particles<Real, Device>::view() {
   ParticleView<Real> v;
   v.count = count_;
   v.cell_x = ints_[0].data();
@@ -132,8 +132,8 @@ ParticleView<Real> Particles<Real, Place>::view() {
   return v;
 }
 
-template <class Real, class Place>
-std::size_t Particles<Real, Place>::bytes() const {
+template <class Real, class Device>
+std::size_t Particles<Real, Device>::bytes() const {
   std::size_t total = real_scratch_.bytes() + int_scratch_.bytes();
   for (const auto& array : reals_) total += array.bytes();
   for (const auto& array : ints_) total += array.bytes();
@@ -142,14 +142,14 @@ std::size_t Particles<Real, Place>::bytes() const {
   return total;
 }
 
-template <class Real, class Place>
-bool Particles<Real, Place>::int_in_use(int slot) const {
+template <class Real, class Device>
+bool Particles<Real, Device>::int_in_use(int slot) const {
   return (slot != load_slot || fields_.load) && (slot != material_slot || fields_.material);
 }
 
 /// Every array at once, into a second set of them.
-template <class Real, class Place>
-void Particles<Real, Place>::reorder_together(const Buffer<int, Place>& order, int count) {
+template <class Real, class Device>
+void Particles<Real, Device>::reorder_together(const Buffer<int, Device>& order, int count) {
   GatherAll<Real, move_slot> reals;
   reals.order = order.data();
   GatherAll<int, int_slots> ints;
@@ -165,8 +165,8 @@ void Particles<Real, Place>::reorder_together(const Buffer<int, Place>& order, i
   for (int slot = 0; slot < int_slots; ++slot) {
     if (int_in_use(slot)) add(ints, ints_[slot], int_twins_[slot]);
   }
-  for_each(Place{}, count, reals);
-  for_each(Place{}, count, ints);
+  for_each(Device{}, count, reals);
+  for_each(Device{}, count, ints);
   for (int slot = 0; slot < move_slot; ++slot) {
     if (in_use(slot)) reals_[slot].swap(real_twins_[slot]);
   }
@@ -176,31 +176,31 @@ void Particles<Real, Place>::reorder_together(const Buffer<int, Place>& order, i
   count_ = count;
 }
 
-template <class Real, class Place>
-void Particles<Real, Place>::reorder(const Buffer<int, Place>& order, int count) {
+template <class Real, class Device>
+void Particles<Real, Device>::reorder(const Buffer<int, Device>& order, int count) {
   constexpr int few = 1 << 19;  // points whose state may be kept twice: thirty kernels take longer than what they do
-  if (Place::is_gpu && count_ <= few) return reorder_together(order, count);
+  if (Device::is_gpu && count_ <= few) return reorder_together(order, count);
   for (int slot = 0; slot < real_slots; ++slot) {
     if (!in_use(slot) || slot >= move_slot) continue;  // the displacement lives within one step only
     real_scratch_.resize(static_cast<std::size_t>(count));
-    for_each(Place{}, count, Gather<Real>{order.data(), reals_[slot].data(), real_scratch_.data()});
+    for_each(Device{}, count, Gather<Real>{order.data(), reals_[slot].data(), real_scratch_.data()});
     reals_[slot].swap(real_scratch_);
   }
   for (int slot = 0; slot < int_slots; ++slot) {
     if (!int_in_use(slot)) continue;
     auto& array = ints_[slot];
     int_scratch_.resize(static_cast<std::size_t>(count));
-    for_each(Place{}, count, Gather<int>{order.data(), array.data(), int_scratch_.data()});
+    for_each(Device{}, count, Gather<int>{order.data(), array.data(), int_scratch_.data()});
     array.swap(int_scratch_);
   }
   count_ = count;
 }
 
-template class Particles<float, OnCpu>;
-template class Particles<double, OnCpu>;
+template class Particles<float, CpuDevice>;
+template class Particles<double, CpuDevice>;
 #if TALUS_FOR_GPU
-template class Particles<float, OnGpu>;
-template class Particles<double, OnGpu>;
+template class Particles<float, GpuDevice>;
+template class Particles<double, GpuDevice>;
 #endif
 
 }  // namespace talus

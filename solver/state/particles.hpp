@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "solver/parallel/device.hpp"
 #include "solver/parallel/math.hpp"
-#include "solver/parallel/place.hpp"
 #include "solver/state/grid_view.hpp"
 
 namespace talus {
@@ -114,7 +114,7 @@ struct ParticleFields {
        material = false, plastic_shear = false;
 };
 
-template <class Real, class Place>
+template <class Real, class Device>
 class Particles {
  public:
   explicit Particles(ParticleFields fields) : fields_(fields) {}
@@ -126,10 +126,10 @@ class Particles {
   ParticleView<Real> view();
   int count() const { return count_; }
   std::size_t bytes() const;
-  const Buffer<Real, Place>& volume() const { return reals_[volume_slot]; }
+  const Buffer<Real, Device>& volume() const { return reals_[volume_slot]; }
 
   /// New order: point order[p] becomes point p; only the first `count` are kept.
-  void reorder(const Buffer<int, Place>& order, int count);
+  void reorder(const Buffer<int, Device>& order, int count);
 
  private:
   static constexpr int offset_slot = 0, velocity_slot = 3, elastic_slot = 6, log_slot = 12, volume_slot = 13,
@@ -138,15 +138,15 @@ class Particles {
   static constexpr int load_slot = 5, material_slot = 6, int_slots = 7;
   bool in_use(int slot) const;
   bool int_in_use(int slot) const;
-  void reorder_together(const Buffer<int, Place>& order, int count);
+  void reorder_together(const Buffer<int, Device>& order, int count);
   ParticleFields fields_;
   int count_ = 0;
-  Buffer<Real, Place> reals_[real_slots];
-  Buffer<int, Place> ints_[int_slots];         // cell x y z, id, release, load, material
-  Buffer<Real, Place> real_twins_[move_slot];  // of as many points as may be kept twice
-  Buffer<int, Place> int_twins_[int_slots];
-  Buffer<Real, Place> real_scratch_;
-  Buffer<int, Place> int_scratch_;
+  Buffer<Real, Device> reals_[real_slots];
+  Buffer<int, Device> ints_[int_slots];         // cell x y z, id, release, load, material
+  Buffer<Real, Device> real_twins_[move_slot];  // of as many points as may be kept twice
+  Buffer<int, Device> int_twins_[int_slots];
+  Buffer<Real, Device> real_scratch_;
+  Buffer<int, Device> int_scratch_;
 };
 
 }  // namespace talus

@@ -100,20 +100,20 @@ struct CopyTangent {
 };
 
 /// Everything a linear solve takes: grid, points, tangents, mass and constraints.
-template <class Real, class Place, class Shape>
+template <class Real, class Device, class Shape>
 struct LinearBench {
-  Particles<Real, Place> points{{false, false, Shape::averaged}};
-  SparseGrid<Real, Place> grid;
-  ElementList<Real, Place, Shape> elements;
+  Particles<Real, Device> points{{false, false, Shape::averaged}};
+  SparseGrid<Real, Device> grid;
+  ElementList<Real, Device, Shape> elements;
   Materials<Real> materials;
   int count = 0;
-  Buffer<Real, Place> tangents;
-  Buffer<double, Place> mass;
-  Buffer<Sym3<double>, Place> freed, stiffness;
-  MeanDilation<Real, Place, Shape> means;
+  Buffer<Real, Device> tangents;
+  Buffer<double, Device> mass;
+  Buffer<Sym3<double>, Device> freed, stiffness;
+  MeanDilation<Real, Device, Shape> means;
   bool b_bar;
   FillerSprings springs;
-  NodeVector<Place> velocity, internal, u;
+  NodeVector<Device> velocity, internal, u;
   double inertia = 1e3;
 
   explicit LinearBench(const Setting& setting) : LinearBench(random_scene(setting), setting) {}
@@ -159,7 +159,7 @@ struct LinearBench {
     mass.fill_zero();
     tangents.resize(static_cast<std::size_t>(TangentStore<Real>::numbers) * static_cast<std::size_t>(points.count()));
     scatter_points(
-        Place{}, points.count(), grid.groups(),
+        Device{}, points.count(), grid.groups(),
         ScatterInertia<Real, Shape>{{grid.view(), points.view()}, materials, false, false, nullptr, nodes()});
     if (b_bar) means.begin_step(elements, points.count());
     measure_stress();
@@ -170,12 +170,12 @@ struct LinearBench {
     internal.fill_zero();
     if (b_bar) means.measure(elements, grid.view(), points.view(), materials, false, u.data());
     using Stress = StressAt<Real, Shape>;
-    scatter_points(Place{}, points.count(), grid.groups(),
+    scatter_points(Device{}, points.count(), grid.groups(),
                    ScatterForces<Real, Shape, Stress>{{grid.view(), points.view()},
                                                       Stress{materials, false, false, mean_view(), store(), u.data()},
                                                       internal.data()});
     if (springs.on()) apply_springs(elements, springs, u, internal);
-    synchronise(Place{});
+    synchronise(Device{});
   }
 
   /// Held, slipping on a tilted plane, sliding along a line, free; some on springs.
@@ -235,7 +235,7 @@ struct LinearBench {
 
   /// Points from column `from` on are so many times as stiff, and their nodes as heavy.
   void contrast(int from, double stiffer, double heavier) {
-    for_each(Place{}, points.count(), Stiffen<Real>{points.view(), store(), from, static_cast<Real>(stiffer)});
+    for_each(Device{}, points.count(), Stiffen<Real>{points.view(), store(), from, static_cast<Real>(stiffer)});
     auto m = mass.download();
     for_nodes([&](int i, int, int, std::size_t n) {
       if (i >= from) m[n] *= heavier;
@@ -245,27 +245,27 @@ struct LinearBench {
 
   /// K x in one form. `single`: tangents or stencil stored in single precision.
   std::vector<Vec3<double>> product(Operator form, bool single = false) {
-    TangentOperator<Real, Place, Shape> op(form, single);
+    TangentOperator<Real, Device, Shape> op(form, single);
     op.begin_step(elements, count);
     PointTangents<Real> tangents_of_points = from();
-    Buffer<float, Place> narrow;
+    Buffer<float, Device> narrow;
     if (single && form == Operator::points) {
       narrow.resize(tangents.size());
       tangents_of_points.tangents = {nullptr, points.count(), narrow.data()};
-      for_each(Place{}, points.count(), CopyTangent<Real>{store(), tangents_of_points.tangents});
+      for_each(Device{}, points.count(), CopyTangent<Real>{store(), tangents_of_points.tangents});
     }
     op.refresh(tangents_of_points, grid.groups());
-    NodeVector<Place> x, y;
+    NodeVector<Device> x, y;
     x.upload(random_vectors(count, 1, 5));
     y.resize(x.size());
     y.fill_zero();
     op.apply(x, y);
-    synchronise(Place{});
+    synchronise(Device{});
     return y.download();
   }
 
-  NodeVector<Place> right_side() {
-    NodeVector<Place> b;
+  NodeVector<Device> right_side() {
+    NodeVector<Device> b;
     const auto p = freed.download();
     auto v = random_vectors(count, 1e4, 9);
     for (std::size_t n = 0; n < v.size(); ++n) v[n] = p[n] * v[n];
@@ -275,25 +275,27 @@ struct LinearBench {
 
   std::vector<Vec3<double>> by_gradients(Preconditioner kind = Preconditioner::block, int* iterations = nullptr,
                                          double tolerance = 1e-12) {
-    NodeVector<Place> x;
-    const NodeVector<Place> b = right_side();
-    NodePreconditioner<Real, Place, Shape> preconditioner(kind);
+    NodeVector<Device> x;
+    const NodeVector<Device> b = right_side();
+    NodePreconditioner<Real, Device, Shape> preconditioner(kind);
     preconditioner.refresh(from(), grid.groups(), elements, {grid.view(), grid.active_list(), grid.active_blocks()},
                            held());
-    TangentOperator<Real, Place, Shape> op(Operator::points);
+    TangentOperator<Real, Device, Shape> op(Operator::points);
     op.begin_step(elements, count);
     op.refresh(from(), grid.groups());
-    ConjugateGradient<Place> cg;
+    ConjugateGradient<Device> cg;
     struct System {
-      TangentOperator<Real, Place, Shape>& op;
-      NodePreconditioner<Real, Place, Shape>& preconditioner;
+      TangentOperator<Real, Device, Shape>& op;
+      NodePreconditioner<Real, Device, Shape>& preconditioner;
       HeldNodes held;
-      void product(const NodeVector<Place>& p, NodeVector<Place>& ap, const CgState* state) { op.apply(p, ap, state); }
-      CloseSystem close(const NodeVector<Place>& p, NodeVector<Place>& ap) { return {held, p.data(), ap.data()}; }
-      void precondition(const NodeVector<Place>& r, NodeVector<Place>& z, CgState* state) {
+      void product(const NodeVector<Device>& p, NodeVector<Device>& ap, const CgState* state) {
+        op.apply(p, ap, state);
+      }
+      CloseSystem close(const NodeVector<Device>& p, NodeVector<Device>& ap) { return {held, p.data(), ap.data()}; }
+      void precondition(const NodeVector<Device>& r, NodeVector<Device>& z, CgState* state) {
         preconditioner.apply(r, z, state);
       }
-      void precondition_after(const talus::detail::StepAlong& step, const NodeVector<Place>& r, NodeVector<Place>& z,
+      void precondition_after(const talus::detail::StepAlong& step, const NodeVector<Device>& r, NodeVector<Device>& z,
                               CgState* state) {
         preconditioner.apply_after(step, r, z, state);
       }
@@ -305,9 +307,9 @@ struct LinearBench {
   }
 
   std::vector<Vec3<double>> by_cholesky() {
-    CholeskySolver<Real, Place, Shape> solver;
+    CholeskySolver<Real, Device, Shape> solver;
     solver.begin_step(elements);
-    NodeVector<Place> x;
+    NodeVector<Device> x;
     const LinearReport report = solver.solve(from(), held(), right_side(), x);
     EXPECT_TRUE(report.converged) << solver.factor().name() << ": residual " << report.residual;
     EXPECT_FALSE(report.indefinite);
@@ -316,16 +318,17 @@ struct LinearBench {
 };
 
 #if TALUS_FOR_GPU
-#define TALUS_RUN(function, ...)                                            \
-  (GetParam() == On::gpu ? function<double, OnGpu, Linear>(__VA_ARGS__)     \
-                         : function<double, OnCpu, Linear>(__VA_ARGS__),    \
-   GetParam() == On::gpu ? function<double, OnGpu, Quadratic>(__VA_ARGS__)  \
-                         : function<double, OnCpu, Quadratic>(__VA_ARGS__), \
-   GetParam() == On::gpu ? function<double, OnGpu, Gimp>(__VA_ARGS__) : function<double, OnCpu, Gimp>(__VA_ARGS__))
+#define TALUS_RUN(function, ...)                                                \
+  (GetParam() == On::gpu ? function<double, GpuDevice, Linear>(__VA_ARGS__)     \
+                         : function<double, CpuDevice, Linear>(__VA_ARGS__),    \
+   GetParam() == On::gpu ? function<double, GpuDevice, Quadratic>(__VA_ARGS__)  \
+                         : function<double, CpuDevice, Quadratic>(__VA_ARGS__), \
+   GetParam() == On::gpu ? function<double, GpuDevice, Gimp>(__VA_ARGS__)       \
+                         : function<double, CpuDevice, Gimp>(__VA_ARGS__))
 #else
-#define TALUS_RUN(function, ...)                                                                  \
-  (function<double, OnCpu, Linear>(__VA_ARGS__), function<double, OnCpu, Quadratic>(__VA_ARGS__), \
-   function<double, OnCpu, Gimp>(__VA_ARGS__))
+#define TALUS_RUN(function, ...)                                                                          \
+  (function<double, CpuDevice, Linear>(__VA_ARGS__), function<double, CpuDevice, Quadratic>(__VA_ARGS__), \
+   function<double, CpuDevice, Gimp>(__VA_ARGS__))
 #endif
 
 }  // namespace talus::solver::testing

@@ -11,7 +11,7 @@
 #include "solver/grid/sparse_grid.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/integrator/solver.hpp"
-#include "solver/parallel/place.hpp"
+#include "solver/parallel/device.hpp"
 #include "solver/scene/make_scene.hpp"
 
 namespace talus::solver::testing {
@@ -63,12 +63,12 @@ inline void fill(Domain& d, const Box& box, int across = 2, int up = 2) {
 }
 
 /// Where the blocks of columns are stored.
-template <class Real, class Place>
-std::vector<BlockSlot> slots_of(const SparseGrid<Real, Place>& grid) {
+template <class Real, class Device>
+std::vector<BlockSlot> slots_of(const SparseGrid<Real, Device>& grid) {
   const auto view = grid.view();
   const auto count = static_cast<std::size_t>(((view.columns + 3) / 4) * ((view.rows + 3) / 4));
   std::vector<BlockSlot> slots(count);
-  if constexpr (Place::is_gpu) {
+  if constexpr (Device::is_gpu) {
     detail::gpu_download(slots.data(), view.slots, count * sizeof(BlockSlot));
   } else {
     std::copy(view.slots, view.slots + count, slots.begin());

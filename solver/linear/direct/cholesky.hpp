@@ -12,14 +12,14 @@ namespace talus {
 /// Ends with a NumericalError that states the size, the limit and the way out.
 [[noreturn]] void refuse_matrix(const std::string& what, double bytes, double limit, bool gpu);
 
-template <class Place>
+template <class Device>
 class Cholesky {
  public:
   virtual ~Cholesky() = default;
 
   /// Solves A x = b. False when A is not positive definite; x is then undefined. Throws NumericalError when the factor
   /// would not fit, before it is made, and when a GPU has no cuSOLVER.
-  virtual bool solve(const CsrMatrix<Place>& a, const Buffer<double, Place>& b, Buffer<double, Place>& x) = 0;
+  virtual bool solve(const CsrMatrix<Device>& a, const Buffer<double, Device>& b, Buffer<double, Device>& x) = 0;
 
   virtual int analyses() const = 0;         // orderings and symbolic factorisations so far
   virtual double factor_bytes() const = 0;  // of the present factor
@@ -27,7 +27,7 @@ class Cholesky {
 };
 
 /// The factor may take `memory_limit` bytes; 0: what is free where it will stand.
-std::unique_ptr<Cholesky<OnCpu>> make_cholesky(OnCpu, double memory_limit = 0);
-std::unique_ptr<Cholesky<OnGpu>> make_cholesky(OnGpu, double memory_limit = 0);
+std::unique_ptr<Cholesky<CpuDevice>> make_cholesky(CpuDevice, double memory_limit = 0);
+std::unique_ptr<Cholesky<GpuDevice>> make_cholesky(GpuDevice, double memory_limit = 0);
 
 }  // namespace talus

@@ -14,7 +14,7 @@ constexpr const char* too_large = "the factor of the matrix would take";
 
 #if TALUS_WITH_CHOLMOD
 
-cholmod_sparse as_cholmod(const CsrMatrix<OnCpu>& a) {  // our rows are its columns: the matrix is symmetric
+cholmod_sparse as_cholmod(const CsrMatrix<CpuDevice>& a) {  // our rows are its columns: the matrix is symmetric
   cholmod_sparse m{};
   m.nrow = m.ncol = static_cast<std::size_t>(a.rows);
   m.nzmax = static_cast<std::size_t>(a.entries());
@@ -30,7 +30,7 @@ cholmod_sparse as_cholmod(const CsrMatrix<OnCpu>& a) {  // our rows are its colu
 }
 
 /// CHOLMOD's supernodal factor.
-class CpuCholesky final : public Cholesky<OnCpu> {
+class CpuCholesky final : public Cholesky<CpuDevice> {
  public:
   explicit CpuCholesky(double memory_limit) : limit_(memory_limit) {
     cholmod_start(&common_);
@@ -46,13 +46,13 @@ class CpuCholesky final : public Cholesky<OnCpu> {
     cholmod_finish(&common_);
   }
 
-  bool solve(const CsrMatrix<OnCpu>& a, const Buffer<double, OnCpu>& b, Buffer<double, OnCpu>& x) override {
+  bool solve(const CsrMatrix<CpuDevice>& a, const Buffer<double, CpuDevice>& b, Buffer<double, CpuDevice>& x) override {
     cholmod_sparse matrix = as_cholmod(a);
     if (pattern_ != a.pattern) analyse(matrix);
     pattern_ = a.pattern;
     common_.status = CHOLMOD_OK;
     cholmod_factorize(&matrix, factor_, &common_);
-    if (common_.status < 0) refuse(factor_bytes(), free_memory(OnCpu{}));
+    if (common_.status < 0) refuse(factor_bytes(), free_memory(CpuDevice{}));
     if (factor_->minor < factor_->n) return false;
     cholmod_dense right{};
     right.nrow = right.d = right.nzmax = static_cast<std::size_t>(a.rows);
@@ -61,7 +61,7 @@ class CpuCholesky final : public Cholesky<OnCpu> {
     right.xtype = CHOLMOD_REAL;
     right.dtype = CHOLMOD_DOUBLE;
     cholmod_dense* solution = cholmod_solve(CHOLMOD_A, factor_, &right, &common_);
-    if (!solution) refuse(factor_bytes(), free_memory(OnCpu{}));
+    if (!solution) refuse(factor_bytes(), free_memory(CpuDevice{}));
     x.resize(static_cast<std::size_t>(a.rows));
     std::memcpy(x.data(), solution->x, static_cast<std::size_t>(a.rows) * sizeof(double));
     cholmod_free_dense(&solution, &common_);
@@ -78,7 +78,8 @@ class CpuCholesky final : public Cholesky<OnCpu> {
     pattern_ = 0;
     cholmod_free_factor(&factor_, &common_);
     factor_ = cholmod_analyze(&matrix, &common_);
-    const double wanted = factor_ ? factor_bytes() : 8 * common_.lnz, free = limit_ > 0 ? limit_ : free_memory(OnCpu{});
+    const double wanted = factor_ ? factor_bytes() : 8 * common_.lnz,
+                 free = limit_ > 0 ? limit_ : free_memory(CpuDevice{});
     if (!factor_ || wanted > free) refuse(wanted, free);
   }
 
@@ -98,12 +99,12 @@ class CpuCholesky final : public Cholesky<OnCpu> {
 #else
 
 /// Eigen's up-looking factor, for builds without CHOLMOD.
-class CpuCholesky final : public Cholesky<OnCpu>,
+class CpuCholesky final : public Cholesky<CpuDevice>,
                           private Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Upper> {
  public:
   explicit CpuCholesky(double memory_limit) : limit_(memory_limit) {}
 
-  bool solve(const CsrMatrix<OnCpu>& a, const Buffer<double, OnCpu>& b, Buffer<double, OnCpu>& x) override {
+  bool solve(const CsrMatrix<CpuDevice>& a, const Buffer<double, CpuDevice>& b, Buffer<double, CpuDevice>& x) override {
     const MatrixType matrix =
         Eigen::Map<const MatrixType>(a.rows, a.rows, a.entries(), a.starts.data(), a.columns.data(), a.values.data());
     try {
@@ -111,7 +112,7 @@ class CpuCholesky final : public Cholesky<OnCpu>,
       pattern_ = a.pattern;
       factorize(matrix);
     } catch (const std::bad_alloc&) {
-      refuse_matrix(too_large, factor_bytes(), free_memory(OnCpu{}), false);
+      refuse_matrix(too_large, factor_bytes(), free_memory(CpuDevice{}), false);
     }
     if (info() != Eigen::Success) return false;
     x.resize(static_cast<std::size_t>(a.rows));
@@ -142,7 +143,7 @@ class CpuCholesky final : public Cholesky<OnCpu>,
 
 }  // namespace
 
-std::unique_ptr<Cholesky<OnCpu>> make_cholesky(OnCpu, double memory_limit) {
+std::unique_ptr<Cholesky<CpuDevice>> make_cholesky(CpuDevice, double memory_limit) {
   return std::make_unique<CpuCholesky>(memory_limit);
 }
 

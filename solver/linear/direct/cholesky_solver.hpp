@@ -8,24 +8,24 @@
 
 namespace talus::solver {
 
-template <class Real, class Place, class Shape>
+template <class Real, class Device, class Shape>
 class CholeskySolver {
  public:
   /// `memory_limit` [bytes] stands for what is free in the place; 0: ask.
   explicit CholeskySolver(double memory_limit = 0)
-      : limit_(memory_limit), cholesky_(make_cholesky(Place{}, memory_limit)) {}
+      : limit_(memory_limit), cholesky_(make_cholesky(Device{}, memory_limit)) {}
 
   /// The points have moved, or have been sorted, and `list` is their elements anew; it must stay until the next call.
-  void begin_step(const ElementList<Real, Place, Shape>& list) { list_ = &list; }
+  void begin_step(const ElementList<Real, Device, Shape>& list) { list_ = &list; }
 
   /// Solves freed (K + mass inertia + stiffness) freed x = freed b; x is 0 on held nodes. One iteration, residual |b -
   /// A x| / |b|; `indefinite` when the matrix is not positive definite to working precision, and x is then 0. Throws
   /// NumericalError, before it allocates, when the matrix or its factor would not fit.
-  LinearReport solve(const PointTangents<Real>& from, const HeldNodes& nodes, const NodeVector<Place>& b,
-                     NodeVector<Place>& x);
+  LinearReport solve(const PointTangents<Real>& from, const HeldNodes& nodes, const NodeVector<Device>& b,
+                     NodeVector<Device>& x);
 
-  const Cholesky<Place>& factor() const { return *cholesky_; }
-  const CsrAssembly<Real, Place, Shape>& assembly() const { return assembly_; }
+  const Cholesky<Device>& factor() const { return *cholesky_; }
+  const CsrAssembly<Real, Device, Shape>& assembly() const { return assembly_; }
   /// Matrix, triples and element matrices; the factor's own are factor().factor_bytes().
   std::size_t bytes() const;
 
@@ -33,11 +33,11 @@ class CholeskySolver {
   void check_memory(int nodes) const;
 
   double limit_;
-  const ElementList<Real, Place, Shape>* list_ = nullptr;
-  StoredElements<Real, Place, Shape> stored_;
-  CsrAssembly<Real, Place, Shape> assembly_;
-  std::unique_ptr<Cholesky<Place>> cholesky_;
-  Buffer<double, Place> right_, solution_, left_over_;
+  const ElementList<Real, Device, Shape>* list_ = nullptr;
+  StoredElements<Real, Device, Shape> stored_;
+  CsrAssembly<Real, Device, Shape> assembly_;
+  std::unique_ptr<Cholesky<Device>> cholesky_;
+  Buffer<double, Device> right_, solution_, left_over_;
 };
 
 }  // namespace talus::solver

@@ -20,12 +20,12 @@ struct Differ {
   }
 };
 
-template <class Place>
-bool same(const Buffer<int, Place>& a, const Buffer<int, Place>& b, Buffer<int, Place>& differs) {
+template <class Device>
+bool same(const Buffer<int, Device>& a, const Buffer<int, Device>& b, Buffer<int, Device>& differs) {
   if (a.size() != b.size()) return false;
   differs.resize(1);
   differs.fill_zero();
-  for_each(Place{}, static_cast<int>(a.size()), Differ{a.data(), b.data(), differs.data()});
+  for_each(Device{}, static_cast<int>(a.size()), Differ{a.data(), b.data(), differs.data()});
   return differs.download().front() == 0;
 }
 
@@ -63,85 +63,85 @@ bool assembly_countable(int elements, int freed_nodes) {
   return std::max(most.triples, 9 * most.blocks) < static_cast<double>(std::numeric_limits<int>::max());
 }
 
-template <class Real, class Place, class Shape>
-int CsrAssembly<Real, Place, Shape>::number_nodes(const HeldNodes& nodes) {
+template <class Real, class Device, class Shape>
+int CsrAssembly<Real, Device, Shape>::number_nodes(const HeldNodes& nodes) {
   new_flags_.resize(static_cast<std::size_t>(nodes.count));
-  for_each(Place{}, nodes.count, FlagUnknowns{nodes.mass, nodes.freed, new_flags_.data()});
+  for_each(Device{}, nodes.count, FlagUnknowns{nodes.mass, nodes.freed, new_flags_.data()});
   if (same(new_flags_, flags_, differs_)) return unknown_;
   renumbered_ = true;
   flags_.swap(new_flags_);
   number_of_.resize(flags_.size());
   node_of_.resize(flags_.size());
-  unknown_ = exclusive_sum(Place{}, flags_.data(), number_of_.data(), nodes.count);
-  for_each(Place{}, nodes.count, MapUnknowns{flags_.data(), number_of_.data(), node_of_.data()});
+  unknown_ = exclusive_sum(Device{}, flags_.data(), number_of_.data(), nodes.count);
+  for_each(Device{}, nodes.count, MapUnknowns{flags_.data(), number_of_.data(), node_of_.data()});
   return unknown_;
 }
 
-template <class Real, class Place, class Shape>
-void CsrAssembly<Real, Place, Shape>::sort_triples(const ElementList<Real, Place, Shape>& list) {
+template <class Real, class Device, class Shape>
+void CsrAssembly<Real, Device, Shape>::sort_triples(const ElementList<Real, Device, Shape>& list) {
   constexpr int each = Shape::width * Shape::width * Shape::width;
   ++sorts_;
   keys_.resize(static_cast<std::size_t>(list.count()) * each * each);
-  for_each(Place{}, list.count() * each * each,
+  for_each(Device{}, list.count() * each * each,
            MakeTripleKeys{list.view().nodes, number_of_.data(), each, keys_.data()});
-  sort_order(Place{}, keys_, order_);
+  sort_order(Device{}, keys_, order_);
   blocks_ = find_runs(keys_, runs_, scratch_);
   std::uint64_t last = 0;
-  if (blocks_ > 0) copy_to_host(Place{}, &last, keys_.data() + keys_.size() - 1, sizeof last);
+  if (blocks_ > 0) copy_to_host(Device{}, &last, keys_.data() + keys_.size() - 1, sizeof last);
   if (last == held_key) --blocks_;
 }
 
-template <class Real, class Place, class Shape>
-void CsrAssembly<Real, Place, Shape>::make_pattern() {
+template <class Real, class Device, class Shape>
+void CsrAssembly<Real, Device, Shape>::make_pattern() {
   old_starts_.swap(matrix_.starts);
   old_columns_.swap(matrix_.columns);
   matrix_.rows = 3 * unknown_;
   block_starts_.resize(static_cast<std::size_t>(unknown_) + 1);
-  copy_from_host(Place{}, block_starts_.data() + unknown_, &blocks_, sizeof blocks_);
-  for_each(Place{}, blocks_, MarkRows{keys_.data(), runs_.data(), blocks_, block_starts_.data()});
+  copy_from_host(Device{}, block_starts_.data() + unknown_, &blocks_, sizeof blocks_);
+  for_each(Device{}, blocks_, MarkRows{keys_.data(), runs_.data(), blocks_, block_starts_.data()});
   matrix_.starts.resize(static_cast<std::size_t>(matrix_.rows) + 1);
   matrix_.columns.resize(static_cast<std::size_t>(blocks_) * 9);
   matrix_.values.resize(matrix_.columns.size());
   const int entries = matrix_.entries();
-  copy_from_host(Place{}, matrix_.starts.data() + matrix_.rows, &entries, sizeof entries);
+  copy_from_host(Device{}, matrix_.starts.data() + matrix_.rows, &entries, sizeof entries);
   for_each(
-      Place{}, blocks_,
+      Device{}, blocks_,
       MakeColumns{keys_.data(), runs_.data(), block_starts_.data(), matrix_.starts.data(), matrix_.columns.data()});
   const bool kept = matrix_.pattern != 0 && same(matrix_.starts, old_starts_, differs_) &&
                     same(matrix_.columns, old_columns_, differs_);
   if (!kept) matrix_.pattern = next_pattern();
 }
 
-template <class Real, class Place, class Shape>
-void CsrAssembly<Real, Place, Shape>::assemble(const ElementList<Real, Place, Shape>& list,
-                                               StoredElements<Real, Place, Shape>& stored, const HeldNodes& nodes) {
+template <class Real, class Device, class Shape>
+void CsrAssembly<Real, Device, Shape>::assemble(const ElementList<Real, Device, Shape>& list,
+                                                StoredElements<Real, Device, Shape>& stored, const HeldNodes& nodes) {
   if (renumbered_ || list_serial_ != list.serial()) {
     sort_triples(list);
     make_pattern();
     renumbered_ = false;
     list_serial_ = list.serial();
   }
-  for_each(Place{}, blocks_,
-           ReduceTriples<Real, Place, Shape>{stored.view(), keys_.data(), order_.data(), runs_.data(),
-                                             block_starts_.data(), node_of_.data(), nodes, matrix_.values.data()});
+  for_each(Device{}, blocks_,
+           ReduceTriples<Real, Device, Shape>{stored.view(), keys_.data(), order_.data(), runs_.data(),
+                                              block_starts_.data(), node_of_.data(), nodes, matrix_.values.data()});
 }
 
-template <class Real, class Place, class Shape>
-void CsrAssembly<Real, Place, Shape>::to_unknowns(const HeldNodes& nodes, const NodeVector<Place>& from,
-                                                  Buffer<double, Place>& to) {
+template <class Real, class Device, class Shape>
+void CsrAssembly<Real, Device, Shape>::to_unknowns(const HeldNodes& nodes, const NodeVector<Device>& from,
+                                                   Buffer<double, Device>& to) {
   to.resize(3 * static_cast<std::size_t>(unknown_));
-  for_each(Place{}, unknown_, ToUnknowns{node_of_.data(), nodes.freed, from.data(), to.data()});
+  for_each(Device{}, unknown_, ToUnknowns{node_of_.data(), nodes.freed, from.data(), to.data()});
 }
 
-template <class Real, class Place, class Shape>
-void CsrAssembly<Real, Place, Shape>::to_nodes(const HeldNodes& nodes, const Buffer<double, Place>& from,
-                                               NodeVector<Place>& to) {
+template <class Real, class Device, class Shape>
+void CsrAssembly<Real, Device, Shape>::to_nodes(const HeldNodes& nodes, const Buffer<double, Device>& from,
+                                                NodeVector<Device>& to) {
   to.resize(static_cast<std::size_t>(nodes.count));
-  for_each(Place{}, nodes.count, ToNodes{number_of_.data(), nodes.freed, from.data(), to.data()});
+  for_each(Device{}, nodes.count, ToNodes{number_of_.data(), nodes.freed, from.data(), to.data()});
 }
 
-template <class Real, class Place, class Shape>
-std::size_t CsrAssembly<Real, Place, Shape>::bytes() const {
+template <class Real, class Device, class Shape>
+std::size_t CsrAssembly<Real, Device, Shape>::bytes() const {
   std::size_t total = keys_.bytes() + matrix_.bytes();
   for (const auto* b : {&flags_, &new_flags_, &number_of_, &node_of_, &order_, &runs_, &scratch_, &block_starts_,
                         &differs_, &old_starts_, &old_columns_}) {
@@ -163,7 +163,7 @@ template double assembly_bytes<double, Gimp>(int, int);
 template bool assembly_countable<double, Quadratic>(int, int);
 template bool assembly_countable<double, Gimp>(int, int);
 
-#define TALUS_INSTANTIATE(Real, Place, Shape) template class CsrAssembly<Real, Place, Shape>;
+#define TALUS_INSTANTIATE(Real, Device, Shape) template class CsrAssembly<Real, Device, Shape>;
 TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
 
 }  // namespace talus::solver

@@ -17,7 +17,7 @@ double assembly_bytes(int elements, int freed_nodes);
 template <class Real, class Shape>
 bool assembly_countable(int elements, int freed_nodes);
 
-template <class Real, class Place, class Shape>
+template <class Real, class Device, class Shape>
 class CsrAssembly {
  public:
   /// Finds the unknowns: nodes with mass and a free direction. Returns their number; three degrees of freedom each.
@@ -26,28 +26,28 @@ class CsrAssembly {
   /// Freed degrees of freedom only: P (K + mass inertia + stiffness) P, and on the diagonal blocks (I - P) times their
   /// own size, so that held directions of a node that moves stand alone. Sorting is left out while elements and
   /// unknowns are the same.
-  void assemble(const ElementList<Real, Place, Shape>& list, StoredElements<Real, Place, Shape>& stored,
+  void assemble(const ElementList<Real, Device, Shape>& list, StoredElements<Real, Device, Shape>& stored,
                 const HeldNodes& nodes);
 
-  const CsrMatrix<Place>& matrix() const { return matrix_; }
+  const CsrMatrix<Device>& matrix() const { return matrix_; }
   int unknown_nodes() const { return unknown_; }
   /// Vector over the nodes to one over the degrees of freedom, and back (0 where there is none), through the
   /// projectors.
-  void to_unknowns(const HeldNodes& nodes, const NodeVector<Place>& from, Buffer<double, Place>& to);
-  void to_nodes(const HeldNodes& nodes, const Buffer<double, Place>& from, NodeVector<Place>& to);
+  void to_unknowns(const HeldNodes& nodes, const NodeVector<Device>& from, Buffer<double, Device>& to);
+  void to_nodes(const HeldNodes& nodes, const Buffer<double, Device>& from, NodeVector<Device>& to);
   int sorts() const { return sorts_; }
   std::size_t bytes() const;
 
  private:
-  void sort_triples(const ElementList<Real, Place, Shape>& list);
+  void sort_triples(const ElementList<Real, Device, Shape>& list);
   void make_pattern();
 
   int unknown_ = 0, blocks_ = 0, list_serial_ = 0, sorts_ = 0;
   bool renumbered_ = true;
-  Buffer<int, Place> flags_, new_flags_, number_of_, node_of_;  // the paper's two mapping lists
-  Buffer<std::uint64_t, Place> keys_;
-  Buffer<int, Place> order_, runs_, scratch_, block_starts_, differs_, old_starts_, old_columns_;
-  CsrMatrix<Place> matrix_;
+  Buffer<int, Device> flags_, new_flags_, number_of_, node_of_;  // the paper's two mapping lists
+  Buffer<std::uint64_t, Device> keys_;
+  Buffer<int, Device> order_, runs_, scratch_, block_starts_, differs_, old_starts_, old_columns_;
+  CsrMatrix<Device> matrix_;
 };
 
 }  // namespace talus::solver

@@ -86,9 +86,9 @@ struct MakeColumns {
 };
 
 /// One thread: one run of keys. Sums its triples in their order and applies the projectors.
-template <class Real, class Place, class Shape>
+template <class Real, class Device, class Shape>
 struct ReduceTriples {
-  ElementMatrices<Real, Place, Shape> matrices;
+  ElementMatrices<Real, Device, Shape> matrices;
   const std::uint64_t* keys;
   const int* order;
   const int* runs;
@@ -119,7 +119,7 @@ struct ReduceTriples {
 
  private:
   TALUS_HD void add(int triple, Mat3<double>& k) const {
-    constexpr int each = ElementMatrices<Real, Place, Shape>::nodes;
+    constexpr int each = ElementMatrices<Real, Device, Shape>::nodes;
     const int e = triple / (each * each), a = triple / each % each, b = triple % each;
     const auto column = [&](int j) {
       const auto at = [&](int i) { return static_cast<double>(matrices.data[matrices.at(e, 3 * a + i, 3 * b + j)]); };

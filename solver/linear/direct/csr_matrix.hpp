@@ -7,12 +7,12 @@ namespace talus {
 
 /// A symmetric matrix, both triangles stored, columns ascending in each row. Rows come in threes that share their
 /// columns.
-template <class Place>
+template <class Device>
 struct CsrMatrix {
   int rows = 0;
-  Buffer<int, Place> starts;  // [rows + 1]
-  Buffer<int, Place> columns;
-  Buffer<double, Place> values;
+  Buffer<int, Device> starts;  // [rows + 1]
+  Buffer<int, Device> columns;
+  Buffer<double, Device> values;
   long pattern = 0;  // changes when starts or columns do, and only then; no two matrices share one
 
   int entries() const { return static_cast<int>(columns.size()); }

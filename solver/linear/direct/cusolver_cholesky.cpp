@@ -10,7 +10,7 @@ namespace {
 
 void check(int status, const char* what) {
   if (status == Cusolver::out_of_memory) {
-    const double free = free_memory(OnGpu{});
+    const double free = free_memory(GpuDevice{});
     refuse_matrix(std::string(what) + " needs more than", free, free, true);
   }
   if (status != 0)
@@ -18,7 +18,7 @@ void check(int status, const char* what) {
 }
 
 /// cuSOLVER's factor of the matrix renumbered by nested dissection.
-class GpuCholesky final : public Cholesky<OnGpu> {
+class GpuCholesky final : public Cholesky<GpuDevice> {
  public:
   explicit GpuCholesky(double memory_limit) : limit_(memory_limit) {}
   GpuCholesky(const GpuCholesky&) = delete;
@@ -29,16 +29,16 @@ class GpuCholesky final : public Cholesky<OnGpu> {
     if (handle_) cusolver().destroy(handle_);
   }
 
-  bool solve(const CsrMatrix<OnGpu>& a, const Buffer<double, OnGpu>& b, Buffer<double, OnGpu>& x) override {
+  bool solve(const CsrMatrix<GpuDevice>& a, const Buffer<double, GpuDevice>& b, Buffer<double, GpuDevice>& x) override {
     if (!handle_) check(cusolver().create(&handle_), "cusolverSpCreate");
     if (!descriptor_) check(cusolver().create_descriptor(&descriptor_), "cusparseCreateMatDescr");
     if (pattern_ != a.pattern) analyse(a);
     if (!factorise(a)) return false;
     for (auto* v : {&right_, &solution_, &x}) v->resize(static_cast<std::size_t>(a.rows));
-    gather(OnGpu{}, b.data(), order_.data(), right_.data(), a.rows);
+    gather(GpuDevice{}, b.data(), order_.data(), right_.data(), a.rows);
     check(cusolver().solve(handle_, a.rows, right_.data(), solution_.data(), info_, workspace_.data()),
           "cusolverSpDcsrcholSolve");
-    scatter(OnGpu{}, solution_.data(), order_.data(), x.data(), a.rows);
+    scatter(GpuDevice{}, solution_.data(), order_.data(), x.data(), a.rows);
     return true;
   }
 
@@ -70,7 +70,7 @@ class GpuCholesky final : public Cholesky<OnGpu> {
     return found;
   }
 
-  void renumber_matrix(const CsrMatrix<OnGpu>& a) {
+  void renumber_matrix(const CsrMatrix<GpuDevice>& a) {
     const HostPattern host{a.starts.download(), a.columns.download()};
     const Renumbered r = renumber(host, order_nodes(graph_of_nodes(host)));
     starts_.upload(r.pattern.starts);
@@ -81,7 +81,7 @@ class GpuCholesky final : public Cholesky<OnGpu> {
     fill_values(a);
   }
 
-  void analyse(const CsrMatrix<OnGpu>& a) {
+  void analyse(const CsrMatrix<GpuDevice>& a) {
     ++analyses_;
     forget();
     renumber_matrix(a);
@@ -94,26 +94,26 @@ class GpuCholesky final : public Cholesky<OnGpu> {
                   &internal, &scratch),
           "cusolverSpDcsrcholBufferInfo");
     held_ = static_cast<double>(internal) + static_cast<double>(scratch);
-    const double free = limit_ > 0 ? limit_ : free_memory(OnGpu{}) + static_cast<double>(workspace_.bytes());
+    const double free = limit_ > 0 ? limit_ : free_memory(GpuDevice{}) + static_cast<double>(workspace_.bytes());
     if (held_ > free) refuse(free);
     workspace_.resize(scratch);
     pattern_ = a.pattern;
   }
 
-  bool factorise(const CsrMatrix<OnGpu>& a) {
+  bool factorise(const CsrMatrix<GpuDevice>& a) {
     fill_values(a);
     const Cusolver& c = cusolver();
     const int status = c.factorise(handle_, a.rows, a.entries(), descriptor_, values_.data(), starts_.data(),
                                    columns_.data(), info_, workspace_.data());
-    if (status == Cusolver::out_of_memory) refuse(free_memory(OnGpu{}));
+    if (status == Cusolver::out_of_memory) refuse(free_memory(GpuDevice{}));
     check(status, "cusolverSpDcsrcholFactor");
     int pivot = -1;
     check(c.zero_pivot(handle_, info_, 0.0, &pivot), "cusolverSpDcsrcholZeroPivot");
     return pivot < 0;
   }
 
-  void fill_values(const CsrMatrix<OnGpu>& a) {
-    gather(OnGpu{}, a.values.data(), source_.data(), values_.data(), a.entries());
+  void fill_values(const CsrMatrix<GpuDevice>& a) {
+    gather(GpuDevice{}, a.values.data(), source_.data(), values_.data(), a.entries());
   }
 
   [[noreturn]] void refuse(double free) {
@@ -128,14 +128,14 @@ class GpuCholesky final : public Cholesky<OnGpu> {
   Cusolver::Handle handle_ = nullptr;
   Cusolver::Descriptor descriptor_ = nullptr;  // as made: a general matrix, indices from 0
   Cusolver::Info info_ = nullptr;
-  Buffer<int, OnGpu> starts_, columns_, source_, order_;
-  Buffer<double, OnGpu> values_, right_, solution_;
-  Buffer<unsigned char, OnGpu> workspace_;
+  Buffer<int, GpuDevice> starts_, columns_, source_, order_;
+  Buffer<double, GpuDevice> values_, right_, solution_;
+  Buffer<unsigned char, GpuDevice> workspace_;
 };
 
 }  // namespace
 
-std::unique_ptr<Cholesky<OnGpu>> make_cholesky(OnGpu, double memory_limit) {
+std::unique_ptr<Cholesky<GpuDevice>> make_cholesky(GpuDevice, double memory_limit) {
   return std::make_unique<GpuCholesky>(memory_limit);
 }
 

@@ -6,13 +6,13 @@
 
 namespace talus {
 
-template <class Place>
+template <class Device>
 struct BiCgStab {
-  NodeVector<Place> r, shadow, p, v, t, direction;
+  NodeVector<Device> r, shadow, p, v, t, direction;
 
   /// Solves A x = b from x = 0. `apply(p, ap)`, `precondition(r, z)`. An iteration takes two products.
   template <class Apply, class Precondition>
-  LinearReport solve(const NodeVector<Place>& b, NodeVector<Place>& x, double tolerance, int most, Apply&& apply,
+  LinearReport solve(const NodeVector<Device>& b, NodeVector<Device>& x, double tolerance, int most, Apply&& apply,
                      Precondition&& precondition) {
     LinearReport report;
     x.resize(b.size());
@@ -27,7 +27,7 @@ struct BiCgStab {
     }
     copy(b, shadow);
     // Goes along `direction`, whose product is `product`; true when that was the last half step.
-    const auto go = [&](double way, const NodeVector<Place>& product) {
+    const auto go = [&](double way, const NodeVector<Device>& product) {
       axpby(way, direction, 1.0, x);
       axpby(-way, product, 1.0, r);
       ++report.iterations;

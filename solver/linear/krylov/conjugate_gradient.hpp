@@ -139,7 +139,7 @@ struct TurnDirection {
 
 }  // namespace detail
 
-template <class Place>
+template <class Device>
 class ConjugateGradient {
  public:
   /// Solves A x = b from x = 0. `system` has four members: product(p, ap, state), which adds to ap what takes more than
@@ -147,7 +147,7 @@ class ConjugateGradient {
   /// precondition(r, z, state), which leaves z and r . z (detail::FinishAngle); precondition_after(step, r, z, state),
   /// which does the same after detail::StepAlong, and leaves r . r too.
   template <class System>
-  LinearReport solve(const NodeVector<Place>& b, NodeVector<Place>& x, double tolerance, int most, System&& system) {
+  LinearReport solve(const NodeVector<Device>& b, NodeVector<Device>& x, double tolerance, int most, System&& system) {
     const int count = static_cast<int>(b.size());
     for (auto* v : {&x, &r_, &z_, &p_, &ap_}) v->resize(b.size());
     CgState state;
@@ -155,23 +155,24 @@ class ConjugateGradient {
     state.most = most;
     state_.upload({state});
     CgState* const s = state_.data();
-    sum_each<1>(Place{}, count, sums_, detail::BeginCg{b.data(), x.data(), r_.data(), z_.data(), p_.data(), ap_.data()},
+    sum_each<1>(Device{}, count, sums_,
+                detail::BeginCg{b.data(), x.data(), r_.data(), z_.data(), p_.data(), ap_.data()},
                 detail::FinishBegin{s});
     system.precondition(r_, z_, s);
     // As many as the last solve took, then a few at a time: what is started after the end does nothing but take its
     // time.
     loop_.forget();
-    int ahead = Place::is_gpu ? std::clamp(last_, 2, 64) : 1;
+    int ahead = Device::is_gpu ? std::clamp(last_, 2, 64) : 1;
     for (;;) {
       loop_.repeat(ahead, [&] {
-        for_each(Place{}, count, detail::TurnDirection{s, z_.data(), p_.data(), ap_.data()});
+        for_each(Device{}, count, detail::TurnDirection{s, z_.data(), p_.data(), ap_.data()});
         system.product(p_, ap_, s);
-        sum_each<1>(Place{}, count, sums_, close_product(system.close(p_, ap_)), detail::FinishCurvature{s});
+        sum_each<1>(Device{}, count, sums_, close_product(system.close(p_, ap_)), detail::FinishCurvature{s});
         system.precondition_after(detail::StepAlong{s, p_.data(), ap_.data(), x.data(), r_.data()}, r_, z_, s);
       });
       state = state_.download().front();
       if (state.halt != CgState::no) break;
-      ahead = Place::is_gpu ? std::max(2, ahead / 4) : 1;
+      ahead = Device::is_gpu ? std::max(2, ahead / 4) : 1;
     }
     last_ = state.iterations;
     LinearReport report;
@@ -190,10 +191,10 @@ class ConjugateGradient {
     return {close, state_.data(), p_.data(), ap_.data()};
   }
 
-  NodeVector<Place> r_, z_, p_, ap_;
-  Buffer<CgState, Place> state_;
-  SumSpace<Place> sums_;
-  Recording<Place> loop_;
+  NodeVector<Device> r_, z_, p_, ap_;
+  Buffer<CgState, Device> state_;
+  SumSpace<Device> sums_;
+  Recording<Device> loop_;
   int last_ = 0;
 };
 

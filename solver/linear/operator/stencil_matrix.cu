@@ -13,8 +13,8 @@ template <class Shape>
 TALUS_HD int neighbour_of(int a, int b, bool folded) {
   constexpr int w = Shape::width;
   const auto layer = [&](int local) { return folded && local % w == 0 ? 1 : local % w; };
-  return StencilView<float, OnCpu, Shape>::neighbour(b / w % w - a / w % w, b / (w * w) - a / (w * w),
-                                                     layer(b) - layer(a));
+  return StencilView<float, CpuDevice, Shape>::neighbour(b / w % w - a / w % w, b / (w * w) - a / (w * w),
+                                                         layer(b) - layer(a));
 }
 
 /// One thread: one entry of the elements' node table.
@@ -95,47 +95,47 @@ struct ApplyRow {
 
 }  // namespace
 
-template <class Real, class Place, class Shape, class Number>
-void StencilMatrix<Real, Place, Shape, Number>::build(const ElementList<Real, Place, Shape>& list, int nodes) {
-  constexpr int each = ElementList<Real, Place, Shape>::nodes_each;
+template <class Real, class Device, class Shape, class Number>
+void StencilMatrix<Real, Device, Shape, Number>::build(const ElementList<Real, Device, Shape>& list, int nodes) {
+  constexpr int each = ElementList<Real, Device, Shape>::nodes_each;
   flags_.resize(static_cast<std::size_t>(nodes));
   flags_.fill_zero();
-  for_each(Place{}, list.count() * each, FlagNodes{list.view().nodes, flags_.data()});
+  for_each(Device{}, list.count() * each, FlagNodes{list.view().nodes, flags_.data()});
   number_rows(flags_);
-  for_each(Place{}, rows_ * View::neighbours, Forget{table_.data()});
-  for_each_grouped(Place{}, list.count(), list.groups(), MeetNeighbours<View, Shape>{view(), list.view()});
+  for_each(Device{}, rows_ * View::neighbours, Forget{table_.data()});
+  for_each_grouped(Device{}, list.count(), list.groups(), MeetNeighbours<View, Shape>{view(), list.view()});
 }
 
-template <class Real, class Place, class Shape, class Number>
-void StencilMatrix<Real, Place, Shape, Number>::number_rows(const Buffer<int, Place>& flags) {
+template <class Real, class Device, class Shape, class Number>
+void StencilMatrix<Real, Device, Shape, Number>::number_rows(const Buffer<int, Device>& flags) {
   const int nodes = static_cast<int>(flags.size());
   row_of_.resize(flags.size());
   node_of_.resize(flags.size());
-  rows_ = exclusive_sum(Place{}, flags.data(), row_of_.data(), nodes);
-  for_each(Place{}, nodes, NumberRows{row_of_.data(), node_of_.data(), flags.data()});
+  rows_ = exclusive_sum(Device{}, flags.data(), row_of_.data(), nodes);
+  for_each(Device{}, nodes, NumberRows{row_of_.data(), node_of_.data(), flags.data()});
   table_.resize(static_cast<std::size_t>(rows_) * View::neighbours);
   blocks_.resize(static_cast<std::size_t>(rows_) * View::neighbours * 9);
 }
 
-template <class Real, class Place, class Shape, class Number>
-void StencilMatrix<Real, Place, Shape, Number>::assemble(const ElementList<Real, Place, Shape>& list,
-                                                         const PointTangents<Real>& from) {
+template <class Real, class Device, class Shape, class Number>
+void StencilMatrix<Real, Device, Shape, Number>::assemble(const ElementList<Real, Device, Shape>& list,
+                                                          const PointTangents<Real>& from) {
   blocks_.fill_zero();
-  sum_elements<Real, Place, Shape>(list, from, AddToStencil<View, Shape>{view(), list.view()});
+  sum_elements<Real, Device, Shape>(list, from, AddToStencil<View, Shape>{view(), list.view()});
 }
 
-template <class Real, class Place, class Shape, class Number>
-void StencilMatrix<Real, Place, Shape, Number>::apply(const NodeVector<Place>& x, NodeVector<Place>& y,
-                                                      const CgState* state) {
-  sum_rows<View::neighbours>(Place{}, rows_, ApplyRow<View>{view(), x.data(), y.data(), state});
+template <class Real, class Device, class Shape, class Number>
+void StencilMatrix<Real, Device, Shape, Number>::apply(const NodeVector<Device>& x, NodeVector<Device>& y,
+                                                       const CgState* state) {
+  sum_rows<View::neighbours>(Device{}, rows_, ApplyRow<View>{view(), x.data(), y.data(), state});
 }
 
-#define TALUS_INSTANTIATE(Real, Place, Shape) template class StencilMatrix<Real, Place, Shape>;
+#define TALUS_INSTANTIATE(Real, Device, Shape) template class StencilMatrix<Real, Device, Shape>;
 TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
-#define TALUS_INSTANTIATE_SINGLE(Real, Place, Shape) template class StencilMatrix<double, Place, Shape, float>;
-TALUS_FOR_EACH_SHAPE(TALUS_INSTANTIATE_SINGLE, double, OnCpu)
+#define TALUS_INSTANTIATE_SINGLE(Real, Device, Shape) template class StencilMatrix<double, Device, Shape, float>;
+TALUS_FOR_EACH_SHAPE(TALUS_INSTANTIATE_SINGLE, double, CpuDevice)
 #if TALUS_FOR_GPU
-TALUS_FOR_EACH_SHAPE(TALUS_INSTANTIATE_SINGLE, double, OnGpu)
+TALUS_FOR_EACH_SHAPE(TALUS_INSTANTIATE_SINGLE, double, GpuDevice)
 #endif
 
 }  // namespace talus::solver

@@ -9,7 +9,7 @@
 namespace talus::solver {
 
 /// The matrix as kernels see it, row by row.
-template <class Real, class Place, class Shape, class Number = Real>
+template <class Real, class Device, class Shape, class Number = Real>
 struct StencilView {
   static constexpr int reach = Shape::width - 1, side = 2 * reach + 1, neighbours = side * side * side;
   int rows = 0;
@@ -48,22 +48,22 @@ struct StencilView {
 };
 
 /// `Number` is what the blocks are stored in.
-template <class Real, class Place, class Shape, class Number = Real>
+template <class Real, class Device, class Shape, class Number = Real>
 class StencilMatrix {
  public:
-  using View = StencilView<Real, Place, Shape, Number>;
+  using View = StencilView<Real, Device, Shape, Number>;
 
   /// Rows and neighbours of the nodes that the elements touch, out of `nodes` stored ones.
-  void build(const ElementList<Real, Place, Shape>& list, int nodes);
+  void build(const ElementList<Real, Device, Shape>& list, int nodes);
 
   /// Rows for those of the stored nodes that `flags` names. Whoever named them fills table and blocks.
-  void number_rows(const Buffer<int, Place>& flags);
+  void number_rows(const Buffer<int, Device>& flags);
 
   /// Sums the points' tangents; `build` came before.
-  void assemble(const ElementList<Real, Place, Shape>& list, const PointTangents<Real>& from);
+  void assemble(const ElementList<Real, Device, Shape>& list, const PointTangents<Real>& from);
 
   /// y += K x; nothing in a loop that is over.
-  void apply(const NodeVector<Place>& x, NodeVector<Place>& y, const CgState* state = nullptr);
+  void apply(const NodeVector<Device>& x, NodeVector<Device>& y, const CgState* state = nullptr);
 
   View view() { return {rows_, node_of_.data(), row_of_.data(), table_.data(), blocks_.data()}; }
   int rows() const { return rows_; }
@@ -73,8 +73,8 @@ class StencilMatrix {
 
  private:
   int rows_ = 0;
-  Buffer<int, Place> row_of_, node_of_, table_, flags_;
-  Buffer<Number, Place> blocks_;
+  Buffer<int, Device> row_of_, node_of_, table_, flags_;
+  Buffer<Number, Device> blocks_;
 };
 
 }  // namespace talus::solver

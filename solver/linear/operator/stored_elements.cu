@@ -6,14 +6,14 @@ namespace talus::solver {
 namespace {
 
 /// One thread: one element. y += K x.
-template <class Real, class Place, class Shape>
+template <class Real, class Device, class Shape>
 struct ApplyElement {
-  ElementMatrices<Real, Place, Shape> matrices;
+  ElementMatrices<Real, Device, Shape> matrices;
   ElementView elements;
   const Vec3<double>* x;
   Vec3<double>* y;
   TALUS_HD void operator()(int e) const {
-    constexpr int nodes = ElementMatrices<Real, Place, Shape>::nodes;
+    constexpr int nodes = ElementMatrices<Real, Device, Shape>::nodes;
     const int* mine = elements.nodes + static_cast<std::size_t>(e) * nodes;
     double local[3 * nodes];
     for (int n = 0; n < nodes; ++n) {
@@ -34,14 +34,14 @@ struct ApplyElement {
 };
 
 /// One thread: one row of one element's matrix. y += K x.
-template <class Real, class Place, class Shape>
+template <class Real, class Device, class Shape>
 struct ApplyElementRow {
-  ElementMatrices<Real, Place, Shape> matrices;
+  ElementMatrices<Real, Device, Shape> matrices;
   ElementView elements;
   const Vec3<double>* x;
   Vec3<double>* y;
   TALUS_HD void operator()(int index) const {
-    constexpr int nodes = ElementMatrices<Real, Place, Shape>::nodes;
+    constexpr int nodes = ElementMatrices<Real, Device, Shape>::nodes;
     const int e = index / (3 * nodes), row = index % (3 * nodes);
     const int* mine = elements.nodes + static_cast<std::size_t>(e) * nodes;
     double sum = 0;
@@ -58,27 +58,27 @@ struct ApplyElementRow {
 
 }  // namespace
 
-template <class Real, class Place, class Shape>
-void StoredElements<Real, Place, Shape>::assemble(const ElementList<Real, Place, Shape>& list,
-                                                  const PointTangents<Real>& from) {
+template <class Real, class Device, class Shape>
+void StoredElements<Real, Device, Shape>::assemble(const ElementList<Real, Device, Shape>& list,
+                                                   const PointTangents<Real>& from) {
   rows_ = static_cast<std::size_t>(list.count()) * Matrices::size;
   values_.resize(rows_ * Matrices::size);
-  sum_elements<Real, Place, Shape>(list, from, view());
+  sum_elements<Real, Device, Shape>(list, from, view());
 }
 
-template <class Real, class Place, class Shape>
-void StoredElements<Real, Place, Shape>::apply(const ElementList<Real, Place, Shape>& list, const NodeVector<Place>& x,
-                                               NodeVector<Place>& y) {
-  if constexpr (Place::is_gpu) {
-    for_each(Place{}, list.count() * Matrices::size,
-             ApplyElementRow<Real, Place, Shape>{view(), list.view(), x.data(), y.data()});
+template <class Real, class Device, class Shape>
+void StoredElements<Real, Device, Shape>::apply(const ElementList<Real, Device, Shape>& list,
+                                                const NodeVector<Device>& x, NodeVector<Device>& y) {
+  if constexpr (Device::is_gpu) {
+    for_each(Device{}, list.count() * Matrices::size,
+             ApplyElementRow<Real, Device, Shape>{view(), list.view(), x.data(), y.data()});
   } else {
-    for_each_grouped(Place{}, list.count(), list.groups(),
-                     ApplyElement<Real, Place, Shape>{view(), list.view(), x.data(), y.data()});
+    for_each_grouped(Device{}, list.count(), list.groups(),
+                     ApplyElement<Real, Device, Shape>{view(), list.view(), x.data(), y.data()});
   }
 }
 
-#define TALUS_INSTANTIATE(Real, Place, Shape) template class StoredElements<Real, Place, Shape>;
+#define TALUS_INSTANTIATE(Real, Device, Shape) template class StoredElements<Real, Device, Shape>;
 TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
 
 }  // namespace talus::solver

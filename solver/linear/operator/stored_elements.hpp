@@ -8,7 +8,7 @@ namespace talus::solver {
 
 /// Element matrices as kernels see them: 3 W^3 rows and columns each. Row by row on the CPU; entry by entry on the GPU,
 /// so that the threads of neighbouring rows read neighbouring numbers.
-template <class Real, class Place, class Shape>
+template <class Real, class Device, class Shape>
 struct ElementMatrices {
   static constexpr int nodes = Shape::width * Shape::width * Shape::width;
   static constexpr int size = 3 * nodes;
@@ -17,7 +17,7 @@ struct ElementMatrices {
 
   TALUS_HD std::size_t at(int e, int row, int column) const {
     const std::size_t r = static_cast<std::size_t>(e) * size + static_cast<std::size_t>(row);
-    if constexpr (Place::is_gpu) return static_cast<std::size_t>(column) * rows + r;
+    if constexpr (Device::is_gpu) return static_cast<std::size_t>(column) * rows + r;
     return r * size + static_cast<std::size_t>(column);
   }
   TALUS_HD void put(int e, int a, int b, const Real* block) const {
@@ -27,22 +27,22 @@ struct ElementMatrices {
   }
 };
 
-template <class Real, class Place, class Shape>
+template <class Real, class Device, class Shape>
 class StoredElements {
  public:
-  using Matrices = ElementMatrices<Real, Place, Shape>;
+  using Matrices = ElementMatrices<Real, Device, Shape>;
 
   /// Sums the points' tangents into the elements' matrices.
-  void assemble(const ElementList<Real, Place, Shape>& list, const PointTangents<Real>& from);
+  void assemble(const ElementList<Real, Device, Shape>& list, const PointTangents<Real>& from);
 
   /// y += K x. CPU: elements by colour, the same sums on every run; GPU: one thread per row, atomic sums.
-  void apply(const ElementList<Real, Place, Shape>& list, const NodeVector<Place>& x, NodeVector<Place>& y);
+  void apply(const ElementList<Real, Device, Shape>& list, const NodeVector<Device>& x, NodeVector<Device>& y);
 
   Matrices view() { return {values_.data(), rows_}; }
   std::size_t bytes() const { return values_.bytes(); }
 
  private:
-  Buffer<Real, Place> values_;
+  Buffer<Real, Device> values_;
   std::size_t rows_ = 0;
 };
 

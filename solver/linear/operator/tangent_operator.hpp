@@ -7,7 +7,7 @@
 
 namespace talus::solver {
 
-template <class Real, class Place, class Shape>
+template <class Real, class Device, class Shape>
 class TangentOperator {
  public:
   /// `single`: the stencil is stored in single precision.
@@ -16,7 +16,7 @@ class TangentOperator {
 
   /// The points have moved, or have been sorted, and `list` is their elements anew; it must stay until the next call.
   /// The form `points` needs it for what couples the points of an element.
-  void begin_step(const ElementList<Real, Place, Shape>& list, int nodes) {
+  void begin_step(const ElementList<Real, Device, Shape>& list, int nodes) {
     list_ = &list;
     if (single_) {
       single_stencil_.build(list, nodes);
@@ -38,12 +38,12 @@ class TangentOperator {
   }
 
   /// y += K x. Stencil and points do nothing in a loop that is over.
-  void apply(const NodeVector<Place>& x, NodeVector<Place>& y, const CgState* state = nullptr) {
+  void apply(const NodeVector<Device>& x, NodeVector<Device>& y, const CgState* state = nullptr) {
     if (form_ == Operator::elements) return stored_.apply(*list_, x, y);
     if (single_) return single_stencil_.apply(x, y, state);
     if (form_ == Operator::stencil) return stencil_.apply(x, y, state);
     using Product = TangentTimes<Real, Shape>;
-    scatter_points(Place{}, from_.points.count, *groups_,
+    scatter_points(Device{}, from_.points.count, *groups_,
                    ScatterForces<Real, Shape, Product>{
                        {from_.grid, from_.points}, Product{from_.tangents, x.data()}, y.data(), state});
     if (from_.means.on()) apply_means(*list_, from_.means, x, y);
@@ -58,10 +58,10 @@ class TangentOperator {
   bool single_;
   PointTangents<Real> from_{};
   const PointGroups* groups_ = nullptr;
-  const ElementList<Real, Place, Shape>* list_ = nullptr;
-  StoredElements<Real, Place, Shape> stored_;
-  StencilMatrix<Real, Place, Shape> stencil_;
-  StencilMatrix<Real, Place, Shape, float> single_stencil_;
+  const ElementList<Real, Device, Shape>* list_ = nullptr;
+  StoredElements<Real, Device, Shape> stored_;
+  StencilMatrix<Real, Device, Shape> stencil_;
+  StencilMatrix<Real, Device, Shape, float> single_stencil_;
 };
 
 }  // namespace talus::solver

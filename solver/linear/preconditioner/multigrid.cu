@@ -19,9 +19,9 @@ constexpr std::size_t most_grids = 12;
 
 }  // namespace
 
-template <class Real, class Place, class Shape>
-void Multigrid<Real, Place, Shape>::build(const ElementList<Real, Place, Shape>& list,
-                                          const StoredColumns<Real>& columns, int nodes) {
+template <class Real, class Device, class Shape>
+void Multigrid<Real, Device, Shape>::build(const ElementList<Real, Device, Shape>& list,
+                                           const StoredColumns<Real>& columns, int nodes) {
   constexpr auto kind = Shape::spline ? TwoScale::splines : TwoScale::hats;
   const auto grid = [&](std::size_t g) -> Grid& {  // those of the last step are used again, with their memory
     if (g == grids_.size()) grids_.push_back(std::make_unique<Grid>());
@@ -30,7 +30,7 @@ void Multigrid<Real, Place, Shape>::build(const ElementList<Real, Place, Shape>&
   grid(0).level.build(list, columns, nodes);
   std::size_t count = 1;
   for (; coarser_ && count < most_grids; ++count) {
-    const StencilLevel<Real, Place, Shape>& fine = grids_[count - 1]->level;
+    const StencilLevel<Real, Device, Shape>& fine = grids_[count - 1]->level;
     const LayoutExtent extent = extent_of(fine.layout());
     if (extent.x <= small_enough && extent.y <= small_enough) break;
     Grid& next = grid(count);
@@ -49,10 +49,10 @@ void Multigrid<Real, Place, Shape>::build(const ElementList<Real, Place, Shape>&
   }
 }
 
-template <class Real, class Place, class Shape>
-void Multigrid<Real, Place, Shape>::refresh(const PointTangents<Real>& from,
-                                            const ElementList<Real, Place, Shape>& list,
-                                            const StoredColumns<Real>& columns, const HeldNodes& held) {
+template <class Real, class Device, class Shape>
+void Multigrid<Real, Device, Shape>::refresh(const PointTangents<Real>& from,
+                                             const ElementList<Real, Device, Shape>& list,
+                                             const StoredColumns<Real>& columns, const HeldNodes& held) {
   held_ = held;
   if (serial_ != list.serial()) build(list, columns, held.count);
   serial_ = list.serial();
@@ -70,8 +70,8 @@ void Multigrid<Real, Place, Shape>::refresh(const PointTangents<Real>& from,
   }
 }
 
-template <class Real, class Place, class Shape>
-void Multigrid<Real, Place, Shape>::cycle(std::size_t g) {
+template <class Real, class Device, class Shape>
+void Multigrid<Real, Device, Shape>::cycle(std::size_t g) {
   Grid& grid = *grids_[g];
   grid.u.fill_zero();
   const bool last = g + 1 == grids_.size();
@@ -86,28 +86,28 @@ void Multigrid<Real, Place, Shape>::cycle(std::size_t g) {
     coarse.level.restrict_from(grid.level, coarse.x, coarse.y, grid.r, coarse.b);
     cycle(g + 1);
     coarse.level.prolong_to(grid.level, coarse.x, coarse.y, coarse.u, grid.u);
-    if (g == 0) for_each(Place{}, held_.count, KeepFree{held_.freed, grid.u.data(), grid.u.data()});
+    if (g == 0) for_each(Device{}, held_.count, KeepFree{held_.freed, grid.u.data(), grid.u.data()});
   }
   grid.level.sweep(grid.b, grid.u, false);
 }
 
-template <class Real, class Place, class Shape>
-void Multigrid<Real, Place, Shape>::apply(const NodeVector<Place>& r, NodeVector<Place>& z) {
+template <class Real, class Device, class Shape>
+void Multigrid<Real, Device, Shape>::apply(const NodeVector<Device>& r, NodeVector<Device>& z) {
   Grid& finest = *grids_[0];
-  for_each(Place{}, held_.count, KeepFree{held_.freed, r.data(), finest.b.data()});
+  for_each(Device{}, held_.count, KeepFree{held_.freed, r.data(), finest.b.data()});
   cycle(0);
-  for_each(Place{}, held_.count, KeepFree{held_.freed, finest.u.data(), z.data()});
+  for_each(Device{}, held_.count, KeepFree{held_.freed, finest.u.data(), z.data()});
 }
 
-template <class Real, class Place, class Shape>
-std::size_t Multigrid<Real, Place, Shape>::bytes() const {
+template <class Real, class Device, class Shape>
+std::size_t Multigrid<Real, Device, Shape>::bytes() const {
   std::size_t total = 0;
   for (const auto& g : grids_)
     total += g->level.bytes() + g->between.bytes() + g->b.bytes() + g->u.bytes() + g->r.bytes();
   return total;
 }
 
-#define TALUS_INSTANTIATE(Real, Place, Shape) template class Multigrid<Real, Place, Shape>;
+#define TALUS_INSTANTIATE(Real, Device, Shape) template class Multigrid<Real, Device, Shape>;
 TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
 
 }  // namespace talus::solver

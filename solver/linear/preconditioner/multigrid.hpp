@@ -12,17 +12,17 @@
 
 namespace talus::solver {
 
-template <class Real, class Place, class Shape>
+template <class Real, class Device, class Shape>
 class Multigrid {
  public:
   /// Without `coarser` grids: Gauss-Seidel alone.
   explicit Multigrid(bool coarser) : coarser_(coarser) {}
 
   /// From the points' tangents and what holds the nodes; `held` must stay until the next call.
-  void refresh(const PointTangents<Real>& from, const ElementList<Real, Place, Shape>& list,
+  void refresh(const PointTangents<Real>& from, const ElementList<Real, Device, Shape>& list,
                const StoredColumns<Real>& columns, const HeldNodes& held);
   /// z = B^-1 r
-  void apply(const NodeVector<Place>& r, NodeVector<Place>& z);
+  void apply(const NodeVector<Device>& r, NodeVector<Device>& z);
 
   int grids() const { return static_cast<int>(grids_.size()); }
   std::size_t bytes() const;
@@ -30,12 +30,12 @@ class Multigrid {
  private:
   /// A grid with its right-hand side, solution and what is left; how it follows from the one before.
   struct Grid {
-    StencilLevel<Real, Place, Shape> level, between;  // `between`: coarse along x alone
+    StencilLevel<Real, Device, Shape> level, between;  // `between`: coarse along x alone
     TwoScale x, y;
-    NodeVector<Place> b, u, r;
+    NodeVector<Device> b, u, r;
     bool by_two_steps() const { return x.kind != TwoScale::same && y.kind != TwoScale::same; }
   };
-  void build(const ElementList<Real, Place, Shape>& list, const StoredColumns<Real>& columns, int nodes);
+  void build(const ElementList<Real, Device, Shape>& list, const StoredColumns<Real>& columns, int nodes);
   void cycle(std::size_t g);
 
   bool coarser_;

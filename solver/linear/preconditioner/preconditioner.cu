@@ -237,10 +237,10 @@ struct MeasuredStep {
 
 }  // namespace
 
-template <class Real, class Place, class Shape>
-void NodePreconditioner<Real, Place, Shape>::refresh(const PointTangents<Real>& from, const PointGroups& groups,
-                                                     const ElementList<Real, Place, Shape>& list,
-                                                     const StoredColumns<Real>& columns, const HeldNodes& held) {
+template <class Real, class Device, class Shape>
+void NodePreconditioner<Real, Device, Shape>::refresh(const PointTangents<Real>& from, const PointGroups& groups,
+                                                      const ElementList<Real, Device, Shape>& list,
+                                                      const StoredColumns<Real>& columns, const HeldNodes& held) {
   held_ = held;
   columns_ = columns;
   if (by_elements(kind_)) return grids_.refresh(from, list, columns, held);
@@ -251,34 +251,36 @@ void NodePreconditioner<Real, Place, Shape>::refresh(const PointTangents<Real>& 
     above_[up].resize(static_cast<std::size_t>(held.count));
     above_[up].fill_zero();
   }
-  using Blocks = ScatterBlocks<Real, Shape, std::conditional_t<Place::is_gpu, PointTangent<Real>, WholeTangent<Real>>>;
-  scatter_points(Place{}, from.points.count, groups, Blocks{{from.grid, from.points}, from.tangents, factors()});
+  using Blocks = ScatterBlocks<Real, Shape, std::conditional_t<Device::is_gpu, PointTangent<Real>, WholeTangent<Real>>>;
+  scatter_points(Device{}, from.points.count, groups, Blocks{{from.grid, from.points}, from.tangents, factors()});
   if (from.means.on()) add_mean_blocks(list, from.means, blocks_);
   if (from.springs.on()) add_spring_blocks(list, from.springs, blocks_);
   if (whole_columns) {
-    for_each(Place{}, held.count, HoldColumns{held, reach, factors()});
-    for_each(Place{}, columns.count(), FactoriseColumns<Real, reach>{columns, factors()});
+    for_each(Device{}, held.count, HoldColumns{held, reach, factors()});
+    for_each(Device{}, columns.count(), FactoriseColumns<Real, reach>{columns, factors()});
   } else {
-    for_each(Place{}, held.count, InvertBlocks{held, kind_ == Preconditioner::block, blocks_.data()});
+    for_each(Device{}, held.count, InvertBlocks{held, kind_ == Preconditioner::block, blocks_.data()});
   }
 }
 
-template <class Real, class Place, class Shape>
+template <class Real, class Device, class Shape>
 template <class Kernel>
-void NodePreconditioner<Real, Place, Shape>::run(int count, const Kernel& kernel, CgState* state) {
-  if (!state) return for_each(Place{}, count, Alone<Kernel>{kernel});
-  sum_each<1>(Place{}, count, sums_, Measured<Kernel>{kernel, state}, talus::detail::FinishAngle{state});
+void NodePreconditioner<Real, Device, Shape>::run(int count, const Kernel& kernel, CgState* state) {
+  if (!state) return for_each(Device{}, count, Alone<Kernel>{kernel});
+  sum_each<1>(Device{}, count, sums_, Measured<Kernel>{kernel, state}, talus::detail::FinishAngle{state});
 }
 
-template <class Real, class Place, class Shape>
+template <class Real, class Device, class Shape>
 template <class Kernel>
-void NodePreconditioner<Real, Place, Shape>::run_after(const talus::detail::StepAlong& step, int count,
-                                                       const Kernel& kernel, CgState* state) {
-  sum_each<2>(Place{}, count, sums_, MeasuredAfter<Kernel>{kernel, step}, talus::detail::FinishResidualAndAngle{state});
+void NodePreconditioner<Real, Device, Shape>::run_after(const talus::detail::StepAlong& step, int count,
+                                                        const Kernel& kernel, CgState* state) {
+  sum_each<2>(Device{}, count, sums_, MeasuredAfter<Kernel>{kernel, step},
+              talus::detail::FinishResidualAndAngle{state});
 }
 
-template <class Real, class Place, class Shape>
-void NodePreconditioner<Real, Place, Shape>::apply(const NodeVector<Place>& r, NodeVector<Place>& z, CgState* state) {
+template <class Real, class Device, class Shape>
+void NodePreconditioner<Real, Device, Shape>::apply(const NodeVector<Device>& r, NodeVector<Device>& z,
+                                                    CgState* state) {
   if (by_elements(kind_)) {
     grids_.apply(r, z);
     if (state) run(held_.count, TakeAngle{r.data(), z.data()}, state);
@@ -289,12 +291,12 @@ void NodePreconditioner<Real, Place, Shape>::apply(const NodeVector<Place>& r, N
   }
 }
 
-template <class Real, class Place, class Shape>
-void NodePreconditioner<Real, Place, Shape>::apply_after(const talus::detail::StepAlong& step,
-                                                         const NodeVector<Place>& r, NodeVector<Place>& z,
-                                                         CgState* state) {
+template <class Real, class Device, class Shape>
+void NodePreconditioner<Real, Device, Shape>::apply_after(const talus::detail::StepAlong& step,
+                                                          const NodeVector<Device>& r, NodeVector<Device>& z,
+                                                          CgState* state) {
   if (by_elements(kind_)) {
-    sum_each<1>(Place{}, held_.count, sums_, MeasuredStep{step}, talus::detail::FinishResidual{state});
+    sum_each<1>(Device{}, held_.count, sums_, MeasuredStep{step}, talus::detail::FinishResidual{state});
     apply(r, z, state);
   } else if (kind_ == Preconditioner::column) {
     run_after(step, columns_.count(), SolveColumns<Real, reach>{columns_, held_, factors(), r.data(), z.data()}, state);
@@ -303,7 +305,7 @@ void NodePreconditioner<Real, Place, Shape>::apply_after(const talus::detail::St
   }
 }
 
-#define TALUS_INSTANTIATE(Real, Place, Shape) template class NodePreconditioner<Real, Place, Shape>;
+#define TALUS_INSTANTIATE(Real, Device, Shape) template class NodePreconditioner<Real, Device, Shape>;
 TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
 
 }  // namespace talus::solver

@@ -16,7 +16,7 @@
 
 namespace talus::solver {
 
-template <class Real, class Place, class Shape>
+template <class Real, class Device, class Shape>
 class NodePreconditioner {
  public:
   explicit NodePreconditioner(Preconditioner kind) : kind_(kind), grids_(kind == Preconditioner::multigrid) {}
@@ -28,12 +28,12 @@ class NodePreconditioner {
 
   /// From the points' tangents and what holds the nodes; `held` must stay until the next call. `list` are the elements,
   /// for what couples the points of one (only its diagonal is taken where a kind does not go by elements).
-  void refresh(const PointTangents<Real>& from, const PointGroups& groups, const ElementList<Real, Place, Shape>& list,
+  void refresh(const PointTangents<Real>& from, const PointGroups& groups, const ElementList<Real, Device, Shape>& list,
                const StoredColumns<Real>& columns, const HeldNodes& held);
   /// z = B^-1 r; hands r . z to `state`, and does nothing where that has halted. Without one: z alone.
-  void apply(const NodeVector<Place>& r, NodeVector<Place>& z, CgState* state = nullptr);
+  void apply(const NodeVector<Device>& r, NodeVector<Device>& z, CgState* state = nullptr);
   /// The same after a step, in one sweep where a node or a column is preconditioned by itself; hands over r . r too.
-  void apply_after(const talus::detail::StepAlong& step, const NodeVector<Place>& r, NodeVector<Place>& z,
+  void apply_after(const talus::detail::StepAlong& step, const NodeVector<Device>& r, NodeVector<Device>& z,
                    CgState* state);
   std::size_t bytes() const { return blocks_.bytes() + above_[0].bytes() + above_[1].bytes() + grids_.bytes(); }
 
@@ -47,12 +47,12 @@ class NodePreconditioner {
 
   static constexpr int reach = Shape::width - 1;  // layers that a column's nodes are coupled over
   Preconditioner kind_;
-  Multigrid<Real, Place, Shape> grids_;
+  Multigrid<Real, Device, Shape> grids_;
   HeldNodes held_;
   StoredColumns<Real> columns_;
-  Buffer<Sym3<double>, Place> blocks_;    // inverses: of the blocks, or of the columns' pivots
-  Buffer<Mat3<double>, Place> above_[2];  // L of the nodes one and two layers higher
-  SumSpace<Place> sums_;
+  Buffer<Sym3<double>, Device> blocks_;    // inverses: of the blocks, or of the columns' pivots
+  Buffer<Mat3<double>, Device> above_[2];  // L of the nodes one and two layers higher
+  SumSpace<Device> sums_;
 };
 
 }  // namespace talus::solver

@@ -41,9 +41,9 @@ struct FlagParents {
 };
 
 /// One thread: one row and one neighbour.
-template <class Real, class Place, class Shape>
+template <class Real, class Device, class Shape>
 struct MeetRows {
-  using View = StencilView<Real, Place, Shape>;
+  using View = StencilView<Real, Device, Shape>;
   GridView<Real> grid;
   View matrix;
   const NodePlace* places;
@@ -58,9 +58,9 @@ struct MeetRows {
 
 /// One thread: one row and one neighbour. The block between what is free at either end; at the node itself with its
 /// mass and what else holds it.
-template <class Real, class Place, class Shape>
+template <class Real, class Device, class Shape>
 struct HoldRows {
-  using View = StencilView<Real, Place, Shape>;
+  using View = StencilView<Real, Device, Shape>;
   View matrix;
   HeldNodes held;
   TALUS_HD void operator()(int index) const {
@@ -97,9 +97,9 @@ struct HoldRows {
 };
 
 /// One thread: one coarse row and one neighbour. Sum over the fine functions that the two coarse ones are made of.
-template <class Real, class Place, class Shape>
+template <class Real, class Device, class Shape>
 struct SumFineBlocks {
-  using View = StencilView<Real, Place, Shape>;
+  using View = StencilView<Real, Device, Shape>;
   View coarse, fine;
   GridView<Real> fine_grid;
   TwoScale x, y;
@@ -141,9 +141,9 @@ struct SumFineBlocks {
 };
 
 /// One thread: one node. Its block, and those that couple it upwards, their symmetric part where tangents have another.
-template <class Real, class Place, class Shape>
+template <class Real, class Device, class Shape>
 struct TakeColumns {
-  using View = StencilView<Real, Place, Shape>;
+  using View = StencilView<Real, Device, Shape>;
   View matrix;
   ColumnFactors factors;
   TALUS_HD void operator()(int n) const {
@@ -168,9 +168,9 @@ struct TakeColumns {
 };
 
 /// A node: r = b - A x, nothing where no row is.
-template <class Real, class Place, class Shape>
+template <class Real, class Device, class Shape>
 struct NodeResidual {
-  StencilView<Real, Place, Shape> matrix;
+  StencilView<Real, Device, Shape> matrix;
   const Vec3<double>*b, *x;
   Vec3<double>* r;
   TALUS_HD Vec3<double> term(int n, int q) const {
@@ -183,12 +183,12 @@ struct NodeResidual {
 };
 
 /// A layer of a column of a colour.
-template <class Real, class Place, class Shape>
+template <class Real, class Device, class Shape>
 struct ColourResidual {
   StoredColumns<Real> columns;
   const int* of_colour;
   int count;
-  NodeResidual<Real, Place, Shape> at;
+  NodeResidual<Real, Device, Shape> at;
   TALUS_HD Vec3<double> term(int index, int q) const {
     const int n = node_of(index);
     return n < 0 ? Vec3<double>{} : at.term(n, q);
@@ -263,8 +263,8 @@ struct ProlongRows {
   }
 };
 
-template <class Real, class Place>
-BlockLayout layout_of(Place place, const StoredColumns<Real>& columns) {
+template <class Real, class Device>
+BlockLayout layout_of(Device place, const StoredColumns<Real>& columns) {
   BlockLayout layout;
   layout.columns = columns.grid.columns;
   layout.rows = columns.grid.rows;
@@ -277,10 +277,10 @@ BlockLayout layout_of(Place place, const StoredColumns<Real>& columns) {
 
 }  // namespace
 
-template <class Real, class Place, class Shape>
-void StencilLevel<Real, Place, Shape>::build(const ElementList<Real, Place, Shape>& list,
-                                             const StoredColumns<Real>& columns, int nodes) {
-  layout_ = layout_of(Place{}, columns);
+template <class Real, class Device, class Shape>
+void StencilLevel<Real, Device, Shape>::build(const ElementList<Real, Device, Shape>& list,
+                                              const StoredColumns<Real>& columns, int nodes) {
+  layout_ = layout_of(Device{}, columns);
   columns_ = columns;
   nodes_ = nodes;
   matrix_.build(list, nodes);
@@ -288,8 +288,8 @@ void StencilLevel<Real, Place, Shape>::build(const ElementList<Real, Place, Shap
   colour();
 }
 
-template <class Real, class Place, class Shape>
-void StencilLevel<Real, Place, Shape>::build(const StencilLevel& fine, TwoScale x, TwoScale y) {
+template <class Real, class Device, class Shape>
+void StencilLevel<Real, Device, Shape>::build(const StencilLevel& fine, TwoScale x, TwoScale y) {
   layout_ = coarse_layout(fine.layout_, x, y);
   slots_.upload(layout_.slots);
   active_.upload(layout_.active);
@@ -303,97 +303,98 @@ void StencilLevel<Real, Place, Shape>::build(const StencilLevel& fine, TwoScale 
   nodes_ = layout_.nodes();
   flags_.resize(static_cast<std::size_t>(nodes_));
   flags_.fill_zero();
-  for_each(Place{}, fine.matrix_.rows(), FlagParents<Real>{columns_.grid, x, y, fine.places_.data(), flags_.data()});
+  for_each(Device{}, fine.matrix_.rows(), FlagParents<Real>{columns_.grid, x, y, fine.places_.data(), flags_.data()});
   matrix_.number_rows(flags_);
   place_rows();
-  for_each(Place{}, matrix_.rows() * neighbours,
-           MeetRows<Real, Place, Shape>{columns_.grid, matrix_.view(), places_.data()});
+  for_each(Device{}, matrix_.rows() * neighbours,
+           MeetRows<Real, Device, Shape>{columns_.grid, matrix_.view(), places_.data()});
   colour();
 }
 
-template <class Real, class Place, class Shape>
-void StencilLevel<Real, Place, Shape>::place_rows() {
+template <class Real, class Device, class Shape>
+void StencilLevel<Real, Device, Shape>::place_rows() {
   places_.resize(static_cast<std::size_t>(matrix_.rows()));
-  for_each(Place{}, columns_.count(), PlaceRows<Real>{columns_, matrix_.view().row_of, places_.data()});
+  for_each(Device{}, columns_.count(), PlaceRows<Real>{columns_, matrix_.view().row_of, places_.data()});
 }
 
-template <class Real, class Place, class Shape>
-void StencilLevel<Real, Place, Shape>::colour() {
+template <class Real, class Device, class Shape>
+void StencilLevel<Real, Device, Shape>::colour() {
   const ColumnColours colours = colour_columns(layout_, reach + 1);
   coloured_.upload(colours.columns);
   colour_ends_ = colours.ends;
   layers_ = layout_.most_layers();
 }
 
-template <class Real, class Place, class Shape>
-void StencilLevel<Real, Place, Shape>::assemble(const ElementList<Real, Place, Shape>& list,
-                                                const PointTangents<Real>& from, const HeldNodes& held) {
+template <class Real, class Device, class Shape>
+void StencilLevel<Real, Device, Shape>::assemble(const ElementList<Real, Device, Shape>& list,
+                                                 const PointTangents<Real>& from, const HeldNodes& held) {
   matrix_.assemble(list, from);
-  for_each(Place{}, matrix_.rows() * neighbours, HoldRows<Real, Place, Shape>{matrix_.view(), held});
+  for_each(Device{}, matrix_.rows() * neighbours, HoldRows<Real, Device, Shape>{matrix_.view(), held});
 }
 
-template <class Real, class Place, class Shape>
-void StencilLevel<Real, Place, Shape>::assemble(StencilLevel& fine, TwoScale x, TwoScale y) {
-  for_each(
-      Place{}, matrix_.rows() * neighbours,
-      SumFineBlocks<Real, Place, Shape>{matrix_.view(), fine.matrix_.view(), fine.columns_.grid, x, y, places_.data()});
+template <class Real, class Device, class Shape>
+void StencilLevel<Real, Device, Shape>::assemble(StencilLevel& fine, TwoScale x, TwoScale y) {
+  for_each(Device{}, matrix_.rows() * neighbours,
+           SumFineBlocks<Real, Device, Shape>{matrix_.view(), fine.matrix_.view(), fine.columns_.grid, x, y,
+                                              places_.data()});
 }
 
-template <class Real, class Place, class Shape>
-void StencilLevel<Real, Place, Shape>::factorise() {
+template <class Real, class Device, class Shape>
+void StencilLevel<Real, Device, Shape>::factorise() {
   const auto n = static_cast<std::size_t>(nodes_);
   pivots_.resize(n);
   left_.resize(n);
   for (int up = 0; up < reach; ++up) above_[up].resize(n);
-  for_each(Place{}, nodes_, TakeColumns<Real, Place, Shape>{matrix_.view(), factors()});
-  for_each(Place{}, columns_.count(), FactoriseColumns<Real, reach>{columns_, factors()});
+  for_each(Device{}, nodes_, TakeColumns<Real, Device, Shape>{matrix_.view(), factors()});
+  for_each(Device{}, columns_.count(), FactoriseColumns<Real, reach>{columns_, factors()});
 }
 
-template <class Real, class Place, class Shape>
-void StencilLevel<Real, Place, Shape>::sweep(const NodeVector<Place>& b, NodeVector<Place>& x, bool forward) {
+template <class Real, class Device, class Shape>
+void StencilLevel<Real, Device, Shape>::sweep(const NodeVector<Device>& b, NodeVector<Device>& x, bool forward) {
   const int colours = static_cast<int>(colour_ends_.size());
   for (int turn = 0; turn < colours; ++turn) {
     const int c = forward ? turn : colours - 1 - turn;
     const int begin = c > 0 ? colour_ends_[static_cast<std::size_t>(c - 1)] : 0,
               count = colour_ends_[static_cast<std::size_t>(c)] - begin;
     const int* const of_colour = coloured_.data() + begin;
-    const NodeResidual<Real, Place, Shape> residual{matrix_.view(), b.data(), x.data(), left_.data()};
-    sum_rows<neighbours>(Place{}, count * layers_,
-                         ColourResidual<Real, Place, Shape>{columns_, of_colour, count, residual});
-    for_each(Place{}, count, CorrectColumns<Real, reach>{columns_, of_colour, factors(), left_.data(), x.data()});
+    const NodeResidual<Real, Device, Shape> residual{matrix_.view(), b.data(), x.data(), left_.data()};
+    sum_rows<neighbours>(Device{}, count * layers_,
+                         ColourResidual<Real, Device, Shape>{columns_, of_colour, count, residual});
+    for_each(Device{}, count, CorrectColumns<Real, reach>{columns_, of_colour, factors(), left_.data(), x.data()});
   }
 }
 
-template <class Real, class Place, class Shape>
-void StencilLevel<Real, Place, Shape>::measure_residual(const NodeVector<Place>& b, const NodeVector<Place>& x,
-                                                        NodeVector<Place>& r) {
-  sum_rows<neighbours>(Place{}, nodes_, NodeResidual<Real, Place, Shape>{matrix_.view(), b.data(), x.data(), r.data()});
+template <class Real, class Device, class Shape>
+void StencilLevel<Real, Device, Shape>::measure_residual(const NodeVector<Device>& b, const NodeVector<Device>& x,
+                                                         NodeVector<Device>& r) {
+  sum_rows<neighbours>(Device{}, nodes_,
+                       NodeResidual<Real, Device, Shape>{matrix_.view(), b.data(), x.data(), r.data()});
 }
 
-template <class Real, class Place, class Shape>
-void StencilLevel<Real, Place, Shape>::restrict_from(const StencilLevel& fine, TwoScale x, TwoScale y,
-                                                     const NodeVector<Place>& from, NodeVector<Place>& to) {
+template <class Real, class Device, class Shape>
+void StencilLevel<Real, Device, Shape>::restrict_from(const StencilLevel& fine, TwoScale x, TwoScale y,
+                                                      const NodeVector<Device>& from, NodeVector<Device>& to) {
   to.fill_zero();
   for_each(
-      Place{}, matrix_.rows(),
+      Device{}, matrix_.rows(),
       RestrictRows<Real>{fine.columns_.grid, x, y, places_.data(), matrix_.view().node_of, from.data(), to.data()});
 }
 
-template <class Real, class Place, class Shape>
-void StencilLevel<Real, Place, Shape>::prolong_to(StencilLevel& fine, TwoScale x, TwoScale y,
-                                                  const NodeVector<Place>& from, NodeVector<Place>& to) {
+template <class Real, class Device, class Shape>
+void StencilLevel<Real, Device, Shape>::prolong_to(StencilLevel& fine, TwoScale x, TwoScale y,
+                                                   const NodeVector<Device>& from, NodeVector<Device>& to) {
   for_each(
-      Place{}, fine.matrix_.rows(),
+      Device{}, fine.matrix_.rows(),
       ProlongRows<Real>{columns_.grid, x, y, fine.places_.data(), fine.matrix_.view().node_of, from.data(), to.data()});
 }
 
-template <class Real, class Place, class Shape>
-std::size_t StencilLevel<Real, Place, Shape>::bytes() const {
+template <class Real, class Device, class Shape>
+std::size_t StencilLevel<Real, Device, Shape>::bytes() const {
   return slots_.bytes() + active_.bytes() + coloured_.bytes() + flags_.bytes() + matrix_.bytes() + places_.bytes() +
          pivots_.bytes() + above_[0].bytes() + above_[1].bytes() + left_.bytes();
 }
 
-#define TALUS_INSTANTIATE(Real, Place, Shape) template class StencilLevel<Real, Place, Shape>;
+#define TALUS_INSTANTIATE(Real, Device, Shape) template class StencilLevel<Real, Device, Shape>;
 TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
 
 }  // namespace talus::solver

@@ -17,32 +17,32 @@ struct NodePlace {
   int i, j, k;
 };
 
-template <class Real, class Place, class Shape>
+template <class Real, class Device, class Shape>
 class StencilLevel {
  public:
-  static constexpr int reach = Shape::width - 1, neighbours = StencilView<Real, Place, Shape>::neighbours;
+  static constexpr int reach = Shape::width - 1, neighbours = StencilView<Real, Device, Shape>::neighbours;
 
   /// The finest grid: rows of the elements' nodes.
-  void build(const ElementList<Real, Place, Shape>& list, const StoredColumns<Real>& columns, int nodes);
+  void build(const ElementList<Real, Device, Shape>& list, const StoredColumns<Real>& columns, int nodes);
   /// Functions of twice the spacing along x, y or both.
   void build(const StencilLevel& fine, TwoScale x, TwoScale y);
 
   /// K of the points' tangents with all that holds the nodes: P (K + mass inertia + stiffness) P + I - P.
-  void assemble(const ElementList<Real, Place, Shape>& list, const PointTangents<Real>& from, const HeldNodes& held);
+  void assemble(const ElementList<Real, Device, Shape>& list, const PointTangents<Real>& from, const HeldNodes& held);
   /// The coarse operator of the finer grid's (Galerkin); both were built with the same scales.
   void assemble(StencilLevel& fine, TwoScale x, TwoScale y);
   /// Factors of the columns, for the sweeps.
   void factorise();
 
   /// One sweep over the columns, first colour first or last: x comes nearer to A x = b.
-  void sweep(const NodeVector<Place>& b, NodeVector<Place>& x, bool forward);
+  void sweep(const NodeVector<Device>& b, NodeVector<Device>& x, bool forward);
   /// r = b - A x
-  void measure_residual(const NodeVector<Place>& b, const NodeVector<Place>& x, NodeVector<Place>& r);
+  void measure_residual(const NodeVector<Device>& b, const NodeVector<Device>& x, NodeVector<Device>& r);
   /// r of this grid = the finer one's tested with the coarse functions.
-  void restrict_from(const StencilLevel& fine, TwoScale x, TwoScale y, const NodeVector<Place>& from,
-                     NodeVector<Place>& to);
+  void restrict_from(const StencilLevel& fine, TwoScale x, TwoScale y, const NodeVector<Device>& from,
+                     NodeVector<Device>& to);
   /// u of the finer grid += this grid's.
-  void prolong_to(StencilLevel& fine, TwoScale x, TwoScale y, const NodeVector<Place>& from, NodeVector<Place>& to);
+  void prolong_to(StencilLevel& fine, TwoScale x, TwoScale y, const NodeVector<Device>& from, NodeVector<Device>& to);
 
   const BlockLayout& layout() const { return layout_; }
   int nodes() const { return nodes_; }
@@ -56,14 +56,14 @@ class StencilLevel {
   BlockLayout layout_;
   StoredColumns<Real> columns_;
   int nodes_ = 0, layers_ = 0;
-  Buffer<BlockSlot, Place> slots_;  // of a coarse grid
-  Buffer<int, Place> active_, coloured_, flags_;
+  Buffer<BlockSlot, Device> slots_;  // of a coarse grid
+  Buffer<int, Device> active_, coloured_, flags_;
   std::vector<int> colour_ends_;
-  StencilMatrix<Real, Place, Shape> matrix_;
-  Buffer<NodePlace, Place> places_;  // of the rows
-  Buffer<Sym3<double>, Place> pivots_;
-  Buffer<Mat3<double>, Place> above_[2];
-  NodeVector<Place> left_;  // residual of a colour, then its change
+  StencilMatrix<Real, Device, Shape> matrix_;
+  Buffer<NodePlace, Device> places_;  // of the rows
+  Buffer<Sym3<double>, Device> pivots_;
+  Buffer<Mat3<double>, Device> above_[2];
+  NodeVector<Device> left_;  // residual of a colour, then its change
 };
 
 }  // namespace talus::solver

@@ -26,12 +26,12 @@ class ElementTerms : public InEachPlace {
     return {shape, Mapping::terrain_following, model, true, true};
   }
 
-  template <class Real, class Place, class Shape>
+  template <class Real, class Device, class Shape>
   static void compare_forms() {
     for (const auto model : {MaterialModel::hencky, MaterialModel::drucker_prager}) {
-      LinearBench<Real, Place, Shape> bench(with(kind_of<Shape>, model));
+      LinearBench<Real, Device, Shape> bench(with(kind_of<Shape>, model));
       const auto expected = bench.product(Operator::points);
-      LinearBench<Real, Place, Shape> plain({kind_of<Shape>, Mapping::terrain_following, model});
+      LinearBench<Real, Device, Shape> plain({kind_of<Shape>, Mapping::terrain_following, model});
       EXPECT_GT(difference(plain.product(Operator::points), expected), 1e-3) << "the terms do nothing";
       EXPECT_LT(difference(bench.product(Operator::elements), expected), 1e-12);
       EXPECT_LT(difference(bench.product(Operator::stencil), expected), 1e-12);
@@ -40,9 +40,9 @@ class ElementTerms : public InEachPlace {
 
   /// Central differences of the force against the product, for elastic points: a yielding one holds its friction's
   /// pressure.
-  template <class Real, class Place, class Shape>
+  template <class Real, class Device, class Shape>
   static void differentiate() {
-    LinearBench<Real, Place, Shape> bench(with(kind_of<Shape>, MaterialModel::hencky));
+    LinearBench<Real, Device, Shape> bench(with(kind_of<Shape>, MaterialModel::hencky));
     const auto product = bench.product(Operator::points);
     const auto start = bench.u.download();
     const auto direction = random_vectors(bench.count, 1, 5);  // that of product()
@@ -61,19 +61,19 @@ class ElementTerms : public InEachPlace {
   }
 
   /// A motion that linear functions hold, turn and strain included, must not feel the springs of quadratic ones.
-  template <class Real, class Place, class Shape>
+  template <class Real, class Device, class Shape>
   static void move_affinely() {
     Domain d = ground(14, 14, 1.0, 1.0, [](double, double) { return 0.0; });
     fill(d, {5, 8, 5, 8, 3, 6});
     SolveOptions o;
     o.shape = kind_of<Shape>;
     o.mapping = Mapping::cartesian;
-    LinearBench<Real, Place, Shape> bench(make_scene(d, o),
-                                          {kind_of<Shape>, Mapping::cartesian, MaterialModel::hencky, false, true});
+    LinearBench<Real, Device, Shape> bench(make_scene(d, o),
+                                           {kind_of<Shape>, Mapping::cartesian, MaterialModel::hencky, false, true});
     std::vector<Vec3<double>> x(static_cast<std::size_t>(bench.count)), none(x.size());
-    NodeVector<Place> u, y;
+    NodeVector<Device> u, y;
     u.upload(none);
-    for_each(Place{}, d.grid.columns * d.grid.rows, SetAffinely<Real>{bench.grid.view(), u.data()});
+    for_each(Device{}, d.grid.columns * d.grid.rows, SetAffinely<Real>{bench.grid.view(), u.data()});
     x = u.download();
     y.upload(none);
     apply_springs(bench.elements, bench.springs, u, y);

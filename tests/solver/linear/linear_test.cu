@@ -14,11 +14,11 @@ namespace {
 
 class LinearSystem : public InEachPlace {
  protected:
-  template <class Real, class Place, class Shape>
+  template <class Real, class Device, class Shape>
   static void compare_forms(double tolerance) {
     for (const auto mapping : {Mapping::terrain_following, Mapping::cartesian}) {
       for (const auto model : {MaterialModel::hencky, MaterialModel::drucker_prager}) {
-        LinearBench<Real, Place, Shape> bench({kind_of<Shape>, mapping, model});
+        LinearBench<Real, Device, Shape> bench({kind_of<Shape>, mapping, model});
         const auto expected = bench.product(Operator::points);
         EXPECT_GT(norm(expected), 0);
         EXPECT_LT(difference(bench.product(Operator::elements), expected), tolerance);
@@ -35,20 +35,20 @@ class LinearSystem : public InEachPlace {
     }
   }
 
-  template <class Real, class Place, class Shape>
+  template <class Real, class Device, class Shape>
   static void compare_solvers() {
     for (const auto mapping : {Mapping::terrain_following, Mapping::cartesian}) {
-      LinearBench<Real, Place, Shape> bench({kind_of<Shape>, mapping});
+      LinearBench<Real, Device, Shape> bench({kind_of<Shape>, mapping});
       EXPECT_LT(difference(bench.by_cholesky(), bench.by_gradients()), 1e-8);
     }
   }
 
-  template <class Real, class Place, class Shape>
+  template <class Real, class Device, class Shape>
   static void keep_analysis() {
-    LinearBench<Real, Place, Shape> bench({kind_of<Shape>});
-    CholeskySolver<Real, Place, Shape> solver;
-    NodeVector<Place> x;
-    const NodeVector<Place> b = bench.right_side();
+    LinearBench<Real, Device, Shape> bench({kind_of<Shape>});
+    CholeskySolver<Real, Device, Shape> solver;
+    NodeVector<Device> x;
+    const NodeVector<Device> b = bench.right_side();
     const auto solve = [&] { EXPECT_TRUE(solver.solve(bench.from(), bench.held(), b, x).converged); };
     solver.begin_step(bench.elements);
     solve();
@@ -66,19 +66,19 @@ class LinearSystem : public InEachPlace {
     bench.free_all();  // more unknowns
     solve();
     EXPECT_EQ(solver.factor().analyses(), 2);
-    ElementList<Real, Place, Shape> list;
+    ElementList<Real, Device, Shape> list;
     list.build(bench.grid.view(), bench.points.view());
     const double foreseen = assembly_bytes<Real, Shape>(list.count(), solver.assembly().unknown_nodes());
     EXPECT_GT(foreseen, static_cast<double>(solver.bytes()));
     EXPECT_LT(foreseen, 2 * static_cast<double>(solver.bytes()));
   }
 
-  template <class Real, class Place, class Shape>
+  template <class Real, class Device, class Shape>
   static void report_indefinite() {
-    LinearBench<Real, Place, Shape> bench({kind_of<Shape>});
-    CholeskySolver<Real, Place, Shape> solver;
-    NodeVector<Place> x;
-    const NodeVector<Place> b = bench.right_side();
+    LinearBench<Real, Device, Shape> bench({kind_of<Shape>});
+    CholeskySolver<Real, Device, Shape> solver;
+    NodeVector<Device> x;
+    const NodeVector<Device> b = bench.right_side();
     solver.begin_step(bench.elements);
     bench.inertia = -1e5;
     const LinearReport report = solver.solve(bench.from(), bench.held(), b, x);
@@ -90,17 +90,17 @@ class LinearSystem : public InEachPlace {
   }
 
   /// A body without support, pulled by a force, has no static equilibrium: its matrix is singular.
-  template <class Real, class Place, class Shape>
+  template <class Real, class Device, class Shape>
   static void report_singular() {
     Setting setting{kind_of<Shape>};
     Scene scene = random_scene(setting);
     for (auto& strain : scene.points.elastic) std::fill(strain.begin(), strain.end(), 0.0);
     std::fill(scene.points.log_volume.begin(), scene.points.log_volume.end(), 0.0);
-    LinearBench<Real, Place, Shape> bench(scene, setting);
+    LinearBench<Real, Device, Shape> bench(scene, setting);
     bench.free_all();
     bench.inertia = 0;
-    CholeskySolver<Real, Place, Shape> solver;
-    NodeVector<Place> b, x;
+    CholeskySolver<Real, Device, Shape> solver;
+    NodeVector<Device> b, x;
     const auto m = bench.mass.download();
     std::vector<Vec3<double>> weight(m.size());
     for (std::size_t n = 0; n < m.size(); ++n) weight[n] = {0, 0, -9.81 * m[n]};
@@ -111,12 +111,12 @@ class LinearSystem : public InEachPlace {
     EXPECT_FALSE(report.converged);
   }
 
-  template <class Real, class Place, class Shape>
+  template <class Real, class Device, class Shape>
   static void refuse(double limit, const std::string& what) {
-    LinearBench<Real, Place, Shape> bench({kind_of<Shape>});
-    CholeskySolver<Real, Place, Shape> solver(limit);
-    NodeVector<Place> x;
-    const NodeVector<Place> b = bench.right_side();
+    LinearBench<Real, Device, Shape> bench({kind_of<Shape>});
+    CholeskySolver<Real, Device, Shape> solver(limit);
+    NodeVector<Device> x;
+    const NodeVector<Device> b = bench.right_side();
     solver.begin_step(bench.elements);
     const std::size_t before = solver.bytes();
     try {
@@ -136,15 +136,15 @@ TEST_P(LinearSystem, products_of_elements_and_stencil_are_those_of_the_points) {
   TALUS_RUN(compare_forms, 1e-12);
 #if TALUS_FOR_GPU
   if (GetParam() == On::gpu) {
-    compare_forms<float, OnGpu, Linear>(1e-5);
-    compare_forms<float, OnGpu, Quadratic>(1e-5);
-    compare_forms<float, OnGpu, Gimp>(1e-5);
+    compare_forms<float, GpuDevice, Linear>(1e-5);
+    compare_forms<float, GpuDevice, Quadratic>(1e-5);
+    compare_forms<float, GpuDevice, Gimp>(1e-5);
     return;
   }
 #endif
-  compare_forms<float, OnCpu, Linear>(1e-5);
-  compare_forms<float, OnCpu, Quadratic>(1e-5);
-  compare_forms<float, OnCpu, Gimp>(1e-5);
+  compare_forms<float, CpuDevice, Linear>(1e-5);
+  compare_forms<float, CpuDevice, Quadratic>(1e-5);
+  compare_forms<float, CpuDevice, Gimp>(1e-5);
 }
 
 TEST_P(LinearSystem, cholesky_finds_the_displacement_that_conjugate_gradients_find) { TALUS_RUN(compare_solvers); }
@@ -156,7 +156,7 @@ TEST(BiCgStab, solves_a_system_that_is_not_symmetric) {
   std::vector<double> a(std::size_t{9} * nodes * nodes);
   for (double& value : a) value = u(engine) / std::sqrt(3.0 * nodes);
   for (std::size_t i = 0; i < 3 * nodes; ++i) a[i * 3 * nodes + i] += 1.5 + 0.01 * static_cast<double>(i);
-  const auto multiply = [&](const NodeVector<OnCpu>& x, NodeVector<OnCpu>& y) {
+  const auto multiply = [&](const NodeVector<CpuDevice>& x, NodeVector<CpuDevice>& y) {
     const auto* from = reinterpret_cast<const double*>(x.data());
     auto* to = reinterpret_cast<double*>(y.data());
     for (std::size_t i = 0; i < 3 * nodes; ++i) {
@@ -164,22 +164,24 @@ TEST(BiCgStab, solves_a_system_that_is_not_symmetric) {
       for (std::size_t j = 0; j < 3 * nodes; ++j) to[i] += a[i * 3 * nodes + j] * from[j];
     }
   };
-  NodeVector<OnCpu> expected, b, x;
+  NodeVector<CpuDevice> expected, b, x;
   expected.upload(random_vectors(nodes, 1, 4));
   b.resize(nodes);
   multiply(expected, b);
-  BiCgStab<OnCpu> solver;
-  const auto report =
-      solver.solve(b, x, 1e-12, 500, multiply, [](const NodeVector<OnCpu>& r, NodeVector<OnCpu>& z) { copy(r, z); });
+  BiCgStab<CpuDevice> solver;
+  const auto report = solver.solve(b, x, 1e-12, 500, multiply,
+                                   [](const NodeVector<CpuDevice>& r, NodeVector<CpuDevice>& z) { copy(r, z); });
   EXPECT_TRUE(report.converged);
   EXPECT_LT(difference(x.download(), expected.download()), 1e-11);
   // It says so when it runs out of iterations, and takes a right-hand side of nothing.
   EXPECT_FALSE(
-      solver.solve(b, x, 1e-12, 2, multiply, [](const NodeVector<OnCpu>& r, NodeVector<OnCpu>& z) { copy(r, z); })
+      solver
+          .solve(b, x, 1e-12, 2, multiply, [](const NodeVector<CpuDevice>& r, NodeVector<CpuDevice>& z) { copy(r, z); })
           .converged);
   b.fill_zero();
   EXPECT_TRUE(
-      solver.solve(b, x, 1e-12, 2, multiply, [](const NodeVector<OnCpu>& r, NodeVector<OnCpu>& z) { copy(r, z); })
+      solver
+          .solve(b, x, 1e-12, 2, multiply, [](const NodeVector<CpuDevice>& r, NodeVector<CpuDevice>& z) { copy(r, z); })
           .converged);
 }
 
@@ -193,9 +195,9 @@ TEST_P(LinearSystem, cholesky_refuses_a_matrix_that_does_not_fit_before_it_is_bu
 TEST_P(LinearSystem, cholesky_refuses_a_factor_that_does_not_fit) {
   // A limit between the matrix's need and the factor's: the factorisation alone, on a full matrix.
   const auto run = [](auto place) {
-    using Place = decltype(place);
+    using Device = decltype(place);
     constexpr int n = 60;
-    CsrMatrix<Place> a;
+    CsrMatrix<Device> a;
     a.rows = n;
     a.pattern = 1;
     std::vector<int> starts{0}, columns;
@@ -210,13 +212,13 @@ TEST_P(LinearSystem, cholesky_refuses_a_factor_that_does_not_fit) {
     a.starts.upload(starts);
     a.columns.upload(columns);
     a.values.upload(values);
-    Buffer<double, Place> b, x;
+    Buffer<double, Device> b, x;
     b.upload(std::vector<double>(n, 1.0));
     EXPECT_THROW(make_cholesky(place, 1000.0)->solve(a, b, x), NumericalError);
     EXPECT_TRUE(make_cholesky(place)->solve(a, b, x));
     EXPECT_NEAR(x.download().front(), 1.0 / (3 * n - 1), 1e-14);
   };
-  GetParam() == On::gpu ? run(OnGpu{}) : run(OnCpu{});
+  GetParam() == On::gpu ? run(GpuDevice{}) : run(CpuDevice{});
 }
 
 TALUS_IN_EACH_PLACE(LinearSystem);
@@ -226,8 +228,8 @@ class BothPlaces : public InEachPlace {
  protected:
   template <class Shape>
   static void compare() {
-    LinearBench<double, OnCpu, Shape> cpu({kind_of<Shape>});
-    LinearBench<double, OnGpu, Shape> gpu({kind_of<Shape>});
+    LinearBench<double, CpuDevice, Shape> cpu({kind_of<Shape>});
+    LinearBench<double, GpuDevice, Shape> gpu({kind_of<Shape>});
     for (const auto form : {Operator::points, Operator::elements, Operator::stencil}) {
       EXPECT_LT(difference(gpu.product(form), cpu.product(form)), 1e-11);
     }
@@ -244,11 +246,11 @@ INSTANTIATE_TEST_SUITE_P(places, BothPlaces, ::testing::Values(On::gpu), place_n
 
 template <class Shape>
 void check_elements() {
-  LinearBench<double, OnCpu, Shape> bench({kind_of<Shape>});
-  ElementList<double, OnCpu, Shape> list;
+  LinearBench<double, CpuDevice, Shape> bench({kind_of<Shape>});
+  ElementList<double, CpuDevice, Shape> list;
   list.build(bench.grid.view(), bench.points.view());
   const ElementView v = list.view();
-  constexpr int each = ElementList<double, OnCpu, Shape>::nodes_each;
+  constexpr int each = ElementList<double, CpuDevice, Shape>::nodes_each;
   std::vector<int> seen(static_cast<std::size_t>(bench.points.count()));
   int folded = 0;
   for (int e = 0; e < v.count; ++e) {
@@ -284,7 +286,7 @@ TEST(Elements, hold_every_point_once_and_share_no_node_within_a_colour) {
 
 /// Column, row and layer of every stored node.
 template <class Shape>
-std::vector<std::array<int, 3>> node_places(const LinearBench<double, OnCpu, Shape>& bench) {
+std::vector<std::array<int, 3>> node_places(const LinearBench<double, CpuDevice, Shape>& bench) {
   const auto grid = bench.grid.view();
   std::vector<std::array<int, 3>> places(static_cast<std::size_t>(bench.count));
   for (int j = 0; j < grid.rows; ++j) {
@@ -301,9 +303,9 @@ std::vector<std::array<int, 3>> node_places(const LinearBench<double, OnCpu, Sha
 template <class Shape>
 void check_neighbours() {
   constexpr int reach = Shape::width - 1, side = 2 * reach + 1;
-  LinearBench<double, OnCpu, Shape> bench({kind_of<Shape>});
-  ElementList<double, OnCpu, Shape> list;
-  StencilMatrix<double, OnCpu, Shape> matrix;
+  LinearBench<double, CpuDevice, Shape> bench({kind_of<Shape>});
+  ElementList<double, CpuDevice, Shape> list;
+  StencilMatrix<double, CpuDevice, Shape> matrix;
   list.build(bench.grid.view(), bench.points.view());
   matrix.build(list, bench.count);
   const auto places = node_places(bench);
@@ -340,12 +342,12 @@ struct Keep {
 template <class Shape>
 void check_tiles() {
   constexpr int w = Shape::width, nodes = w * w * w;
-  LinearBench<double, OnCpu, Shape> bench({kind_of<Shape>});
-  ElementList<double, OnCpu, Shape> list;
+  LinearBench<double, CpuDevice, Shape> bench({kind_of<Shape>});
+  ElementList<double, CpuDevice, Shape> list;
   list.build(bench.grid.view(), bench.points.view());
   const auto size = static_cast<std::size_t>(list.count()) * nodes * nodes * 9;
   std::vector<double> whole(size), slices(size);
-  sum_elements<double, OnCpu, Shape>(list, bench.from(), Keep<nodes>{whole.data()});
+  sum_elements<double, CpuDevice, Shape>(list, bench.from(), Keep<nodes>{whole.data()});
   using Slice = SumElements<double, Shape, 1, w * w, Keep<nodes>>;
   const Slice slice{bench.from(), list.view(), {slices.data()}};
   for (int i = 0; i < list.count() * Slice::tiles; ++i) slice(i);
@@ -364,7 +366,7 @@ TEST(Elements, are_the_same_from_the_tiles_of_the_gpu) {
 }
 
 TEST(Elements, sum_the_same_on_every_run) {
-  LinearBench<double, OnCpu, Quadratic> bench({ShapeKind::quadratic});
+  LinearBench<double, CpuDevice, Quadratic> bench({ShapeKind::quadratic});
   for (const auto form : {Operator::elements, Operator::stencil}) {
     const auto a = bench.product(form), b = bench.product(form);
     for (std::size_t n = 0; n < a.size(); ++n) EXPECT_TRUE(a[n].x == b[n].x && a[n].y == b[n].y && a[n].z == b[n].z);

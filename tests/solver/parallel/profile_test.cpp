@@ -77,7 +77,7 @@ TEST_P(ProfileOf, a_slide_names_its_kernels_and_takes_no_longer_than_the_run) {
 TALUS_IN_EACH_PLACE(ProfileOf);
 
 TEST(CopyBandwidth, is_that_of_a_memory) {
-  const double copy = copy_bandwidth(OnCpu{});
+  const double copy = copy_bandwidth(CpuDevice{});
   EXPECT_GT(copy, 1e8);
   EXPECT_LT(copy, 1e13);
 }

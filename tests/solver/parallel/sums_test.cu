@@ -22,17 +22,17 @@ struct Finish {
 
 class Sums : public InEachPlace {
  protected:
-  template <class Place>
+  template <class Device>
   static void add_up() {
-    SumSpace<Place> space;
+    SumSpace<Device> space;
     for (const int count : {0, 1, 31, 33, 5000, 70000, 300000}) {
-      Buffer<int, Place> seen;
+      Buffer<int, Device> seen;
       seen.upload(std::vector<int>(static_cast<std::size_t>(std::max(count, 1)), 0));
       std::vector<double> first;
       for (int repeat = 0; repeat < 3; ++repeat) {
-        Buffer<double, Place> total;
+        Buffer<double, Device> total;
         total.upload({-1, -1, -1, 0});
-        sum_each<3>(Place{}, count, space, Waves{seen.data()}, Finish{total.data()});
+        sum_each<3>(Device{}, count, space, Waves{seen.data()}, Finish{total.data()});
         const auto got = total.download();
         double expected[3] = {};
         for (int i = 0; i < count; ++i) {
@@ -54,9 +54,9 @@ class Sums : public InEachPlace {
 
 TEST_P(Sums, are_finished_once_and_repeat_to_the_bit) {
 #if TALUS_FOR_GPU
-  if (GetParam() == On::gpu) return add_up<OnGpu>();
+  if (GetParam() == On::gpu) return add_up<GpuDevice>();
 #endif
-  add_up<OnCpu>();
+  add_up<CpuDevice>();
 }
 TALUS_IN_EACH_PLACE(Sums);
 

@@ -117,16 +117,16 @@ class Transfers : public InEachPlace {
     return nodes;
   }
 
-  template <class Real, class Place, class Shape>
+  template <class Real, class Device, class Shape>
   static void compare(double tolerance) {
-    compare<Real, Place, Shape>(tolerance, false);
-    if (Place::is_gpu)
-      compare<Real, Place, Shape>(
+    compare<Real, Device, Shape>(tolerance, false);
+    if (Device::is_gpu)
+      compare<Real, Device, Shape>(
           tolerance,
           true);  // tiles find those with the same nodes wherever they have drifted; the CPU goes by the order
   }
 
-  template <class Real, class Place, class Shape>
+  template <class Real, class Device, class Shape>
   static void compare(double tolerance, bool shuffled) {
     Domain d;
     const Scene s = scene(kind_of<Shape>, d);
@@ -134,30 +134,30 @@ class Transfers : public InEachPlace {
     mo.model = MaterialModel::hencky;
     const double dt = 1e-3;
     const auto expected = reference(s, make_material<double>(mo), dt, kind_of<Shape>);
-    Particles<Real, Place> points({true, false, Shape::averaged});
+    Particles<Real, Device> points({true, false, Shape::averaged});
     points.upload(s.points);
-    SparseGrid<Real, Place> grid(s.grid, 1, false, Shape::width == 2);
+    SparseGrid<Real, Device> grid(s.grid, 1, false, Shape::width == 2);
     grid.fit(points, 0);
     if (shuffled) {
       std::vector<int> order(static_cast<std::size_t>(points.count()));
       std::iota(order.begin(), order.end(), 0);
       std::shuffle(order.begin(), order.end(), std::mt19937(11));
-      Buffer<int, Place> shuffle;
+      Buffer<int, Device> shuffle;
       shuffle.upload(order);
       points.reorder(shuffle, points.count());
     }
-    Buffer<Vec4<Real>, Place> nodes;
+    Buffer<Vec4<Real>, Device> nodes;
     nodes.resize(static_cast<std::size_t>(grid.nodes()));
     nodes.fill_zero();
     Clock c;
     c.step_size = dt;
-    Buffer<Clock, Place> clock;
+    Buffer<Clock, Device> clock;
     clock.upload({c});
-    scatter_points(Place{}, points.count(), grid.groups(),
+    scatter_points(Device{}, points.count(), grid.groups(),
                    ParticleToGrid<Real, Shape, Scatter::impulse>{
                        grid.view(), points.view(), Materials<Real>{{make_material<Real>(mo)}}, clock.data(),
                        nodes.data(), nullptr, nullptr, true, false});
-    synchronise(Place{});
+    synchronise(Device{});
     const auto got = nodes.download();
     const auto slots = slots_of(grid);
     double scale = 0, worst = 0;
@@ -177,13 +177,13 @@ class Transfers : public InEachPlace {
   }
 
   /// Velocity gather of a linear field in reference coordinates, and the climb, by the definitions.
-  template <class Real, class Place, class Shape>
+  template <class Real, class Device, class Shape>
   static void gather_linear_field(double tolerance) {
     Domain d;
     const Scene s = scene(kind_of<Shape>, d);
-    Particles<Real, Place> points({true, false, Shape::averaged});
+    Particles<Real, Device> points({true, false, Shape::averaged});
     points.upload(s.points);
-    SparseGrid<Real, Place> grid(s.grid, 1);
+    SparseGrid<Real, Device> grid(s.grid, 1);
     grid.fit(points, 0);
     const double slope[3][3] = {
         {0.3, -0.1, 0.2}, {0.05, 0.4, -0.3}, {-0.2, 0.1, 0.25}};  // per cell, [component][direction]
@@ -202,19 +202,19 @@ class Transfers : public InEachPlace {
         }
       }
     }
-    Buffer<Vec4<Real>, Place> nodes;
+    Buffer<Vec4<Real>, Device> nodes;
     nodes.upload(field);
     Clock c;
     c.step_size = 0;  // nothing moves
-    Buffer<Clock, Place> clock;
+    Buffer<Clock, Device> clock;
     clock.upload({c});
     MaterialOptions mo;
     mo.model = MaterialModel::hencky;
-    for_each(Place{}, points.count(),
+    for_each(Device{}, points.count(),
              GridToParticle<Real, Shape, Gather::all, false>{grid.view(), points.view(),
                                                              Materials<Real>{{make_material<Real>(mo)}}, clock.data(),
                                                              nodes.data(), nullptr, grid.home(), true, false});
-    synchronise(Place{});
+    synchronise(Device{});
     const ParticleState got = points.download();
     double worst = 0;
     int checked = 0;
@@ -240,39 +240,39 @@ class Transfers : public InEachPlace {
 TEST_P(Transfers, scatters_mass_momentum_and_force_as_defined) {
 #if TALUS_FOR_GPU
   if (GetParam() == On::gpu) {
-    compare<double, OnGpu, Linear>(1e-12);
-    compare<double, OnGpu, Quadratic>(1e-12);
-    compare<double, OnGpu, Gimp>(1e-12);
-    compare<float, OnGpu, Linear>(1e-5);
-    compare<float, OnGpu, Quadratic>(1e-5);
-    compare<float, OnGpu, Gimp>(1e-5);
+    compare<double, GpuDevice, Linear>(1e-12);
+    compare<double, GpuDevice, Quadratic>(1e-12);
+    compare<double, GpuDevice, Gimp>(1e-12);
+    compare<float, GpuDevice, Linear>(1e-5);
+    compare<float, GpuDevice, Quadratic>(1e-5);
+    compare<float, GpuDevice, Gimp>(1e-5);
     return;
   }
 #endif
-  compare<double, OnCpu, Linear>(1e-12);
-  compare<double, OnCpu, Quadratic>(1e-12);
-  compare<double, OnCpu, Gimp>(1e-12);
-  compare<float, OnCpu, Linear>(1e-5);
-  compare<float, OnCpu, Quadratic>(1e-5);
-  compare<float, OnCpu, Gimp>(1e-5);
+  compare<double, CpuDevice, Linear>(1e-12);
+  compare<double, CpuDevice, Quadratic>(1e-12);
+  compare<double, CpuDevice, Gimp>(1e-12);
+  compare<float, CpuDevice, Linear>(1e-5);
+  compare<float, CpuDevice, Quadratic>(1e-5);
+  compare<float, CpuDevice, Gimp>(1e-5);
 }
 
 TEST_P(Transfers, gathers_a_linear_field_exactly) {
 #if TALUS_FOR_GPU
   if (GetParam() == On::gpu) {
-    gather_linear_field<double, OnGpu, Linear>(1e-12);
-    gather_linear_field<double, OnGpu, Quadratic>(1e-12);
-    gather_linear_field<double, OnGpu, Gimp>(1e-12);
-    gather_linear_field<float, OnGpu, Quadratic>(1e-5);
-    gather_linear_field<float, OnGpu, Gimp>(1e-5);
+    gather_linear_field<double, GpuDevice, Linear>(1e-12);
+    gather_linear_field<double, GpuDevice, Quadratic>(1e-12);
+    gather_linear_field<double, GpuDevice, Gimp>(1e-12);
+    gather_linear_field<float, GpuDevice, Quadratic>(1e-5);
+    gather_linear_field<float, GpuDevice, Gimp>(1e-5);
     return;
   }
 #endif
-  gather_linear_field<double, OnCpu, Linear>(1e-12);
-  gather_linear_field<double, OnCpu, Quadratic>(1e-12);
-  gather_linear_field<double, OnCpu, Gimp>(1e-12);
-  gather_linear_field<float, OnCpu, Quadratic>(1e-5);
-  gather_linear_field<float, OnCpu, Gimp>(1e-5);
+  gather_linear_field<double, CpuDevice, Linear>(1e-12);
+  gather_linear_field<double, CpuDevice, Quadratic>(1e-12);
+  gather_linear_field<double, CpuDevice, Gimp>(1e-12);
+  gather_linear_field<float, CpuDevice, Quadratic>(1e-5);
+  gather_linear_field<float, CpuDevice, Gimp>(1e-5);
 }
 
 TALUS_IN_EACH_PLACE(Transfers);

@@ -21,10 +21,10 @@ constexpr Named kinds[] = {{Preconditioner::diagonal, "diagonal"},
 
 class Preconditioners : public InEachPlace {
  protected:
-  template <class Real, class Place, class Shape>
+  template <class Real, class Device, class Shape>
   static void give_one_solution() {
     for (const bool b_bar : {false, true}) {
-      LinearBench<Real, Place, Shape> bench(
+      LinearBench<Real, Device, Shape> bench(
           {kind_of<Shape>, Mapping::terrain_following, MaterialModel::hencky, b_bar, true});
       const auto expected = bench.by_cholesky();
       for (const Named& n : kinds) EXPECT_LT(difference(bench.by_gradients(n.kind), expected), 1e-8) << n.name;
@@ -32,9 +32,9 @@ class Preconditioners : public InEachPlace {
   }
 
   /// Where all columns but those a stencil apart are held, the columns left are the whole system.
-  template <class Real, class Place, class Shape>
+  template <class Real, class Device, class Shape>
   static void solve_lone_columns() {
-    LinearBench<Real, Place, Shape> bench({kind_of<Shape>});
+    LinearBench<Real, Device, Shape> bench({kind_of<Shape>});
     bench.hold_all_columns_but_one_in(Shape::width);
     int iterations = 0;
     for (const auto kind : {Preconditioner::column, Preconditioner::gauss_seidel}) {
@@ -47,14 +47,14 @@ class Preconditioners : public InEachPlace {
 
   /// Iterations to a thousandth for a slab of four layers h / aspect high on 32 x 28 cells, in steps of so many
   /// horizontal CFL steps.
-  template <class Real, class Place, class Shape>
+  template <class Real, class Device, class Shape>
   static int iterations(Preconditioner kind, double over_cfl, double aspect) {
     constexpr double h = 2;
     Domain d = ground(44, 40, h, h / aspect, [](double, double) { return 0.0; });
     fill(d, {10, 74, 10, 66, 0, 4 * h / aspect});
     SolveOptions o;
     o.shape = kind_of<Shape>;
-    LinearBench<Real, Place, Shape> bench(make_scene(d, o), {kind_of<Shape>});
+    LinearBench<Real, Device, Shape> bench(make_scene(d, o), {kind_of<Shape>});
     bench.lay_down();
     const double step = over_cfl * h / static_cast<double>(bench.materials.list[0].wave_speed);
     bench.inertia = 4 / (step * step);
@@ -63,7 +63,7 @@ class Preconditioners : public InEachPlace {
     return count;
   }
 
-  template <class Real, class Place, class Shape>
+  template <class Real, class Device, class Shape>
   static void count_in_thin_layers() {
     // What columns leave is that neighbours share their upright stiffness: the Gram matrix of the functions along x and
     // y, summed over 2 x 2 points. Over its diagonal its condition is 16 for hats and 51 for splines, however thin the
@@ -75,7 +75,7 @@ class Preconditioners : public InEachPlace {
     for (const Named& n : kinds) {
       int count[3];
       const double aspects[3] = {1, 3, 10};
-      for (int a = 0; a < 3; ++a) count[a] = iterations<Real, Place, Shape>(n.kind, 5, aspects[a]);
+      for (int a = 0; a < 3; ++a) count[a] = iterations<Real, Device, Shape>(n.kind, 5, aspects[a]);
       std::printf("    %-12s %4d %4d %4d\n", n.name, count[0], count[1], count[2]);
       if (n.kind == Preconditioner::gauss_seidel) {
         EXPECT_LE(count[2], (Shape::spline ? 3 : 1.5) * count[0]);
@@ -91,14 +91,14 @@ class Preconditioners : public InEachPlace {
     }
   }
 
-  template <class Real, class Place, class Shape>
+  template <class Real, class Device, class Shape>
   static void count_in_long_steps() {
     std::printf("  CG iterations at 5, 15, 50 CFL steps, horizontal and vertical, %s functions\n",
                 name_of(kind_of<Shape>));
     for (const Named& n : kinds) {
       int count[3];
       const double steps[3] = {5, 15, 50};
-      for (int a = 0; a < 3; ++a) count[a] = iterations<Real, Place, Shape>(n.kind, steps[a], 1);
+      for (int a = 0; a < 3; ++a) count[a] = iterations<Real, Device, Shape>(n.kind, steps[a], 1);
       std::printf("    %-12s %4d %4d %4d\n", n.name, count[0], count[1], count[2]);
       if (n.kind == Preconditioner::multigrid) {
         EXPECT_LE(count[2], (Shape::spline ? 3.6 : 1.5) * count[0]);
@@ -110,7 +110,7 @@ class Preconditioners : public InEachPlace {
 
   /// validation.md C3: half of a slab 1e4 times as stiff, or 100 times as heavy, or both, in steps of five CFL steps of
   /// the soft half.
-  template <class Real, class Place, class Shape>
+  template <class Real, class Device, class Shape>
   static void count_with_contrasts() {
     constexpr double h = 2;
     Domain d = ground(24, 20, h, h, [](double, double) { return 0.0; });
@@ -129,7 +129,7 @@ class Preconditioners : public InEachPlace {
     for (const Named& n : kinds) {
       std::printf("    %-12s", n.name);
       for (const Contrast& c : contrasts) {
-        LinearBench<Real, Place, Shape> bench(scene, {kind_of<Shape>});
+        LinearBench<Real, Device, Shape> bench(scene, {kind_of<Shape>});
         bench.lay_down();
         const double step = 5 * h / static_cast<double>(bench.materials.list[0].wave_speed);
         bench.inertia = 4 / (step * step);

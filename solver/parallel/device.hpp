@@ -1,5 +1,5 @@
-// The two places a kernel runs: OnCpu (oneTBB) and OnGpu (CUDA), both in one binary, chosen at run time. A kernel is a
-// plain struct of pointers and numbers with operator()(int index) const.
+// The two places a kernel runs: CpuDevice (oneTBB) and GpuDevice (CUDA), both in one binary, chosen at run time. A
+// kernel is a plain struct of pointers and numbers with operator()(int index) const.
 #pragma once
 
 #include <cstddef>
@@ -18,10 +18,10 @@ struct CUstream_st;  // CUDA's
 
 namespace talus {
 
-struct OnCpu {
+struct CpuDevice {
   static constexpr bool is_gpu = false;
 };
-struct OnGpu {
+struct GpuDevice {
   static constexpr bool is_gpu = true;
 };
 
@@ -50,7 +50,7 @@ void gpu_drop(void* graph);
 
 /// Owned memory in a place. Grows, never shrinks; contents are lost on growth. First as large as asked for: what never
 /// grows takes no more.
-template <class T, class Place>
+template <class T, class Device>
 class Buffer {
  public:
   Buffer() = default;
@@ -74,7 +74,7 @@ class Buffer {
     if (size > capacity_) {
       const std::size_t wanted = capacity_ == 0 ? size : size + size / 8;
       release();
-      if constexpr (Place::is_gpu) {
+      if constexpr (Device::is_gpu) {
         data_ = static_cast<T*>(detail::gpu_allocate(wanted * sizeof(T)));
       } else {
         data_ = static_cast<T*>(detail::cpu_allocate(wanted * sizeof(T)));
@@ -86,7 +86,7 @@ class Buffer {
   void upload(const std::vector<T>& values) {
     resize(values.size());
     if (values.empty()) return;
-    if constexpr (Place::is_gpu) {
+    if constexpr (Device::is_gpu) {
       detail::gpu_upload(data_, values.data(), values.size() * sizeof(T));
     } else {
       std::memcpy(data_, values.data(), values.size() * sizeof(T));
@@ -95,7 +95,7 @@ class Buffer {
   std::vector<T> download() const {
     std::vector<T> values(size_);
     if (values.empty()) return values;
-    if constexpr (Place::is_gpu) {
+    if constexpr (Device::is_gpu) {
       detail::gpu_download(values.data(), data_, size_ * sizeof(T));
     } else {
       std::memcpy(values.data(), data_, size_ * sizeof(T));
@@ -104,7 +104,7 @@ class Buffer {
   }
   void fill_zero() {
     if (size_ == 0) return;
-    if constexpr (Place::is_gpu) {
+    if constexpr (Device::is_gpu) {
       detail::gpu_fill_zero(data_, size_ * sizeof(T));
     } else {
       std::memset(static_cast<void*>(data_), 0, size_ * sizeof(T));
@@ -119,7 +119,7 @@ class Buffer {
  private:
   void release() {
     if (!data_) return;
-    if constexpr (Place::is_gpu) {
+    if constexpr (Device::is_gpu) {
       detail::gpu_free(data_);
     } else {
       detail::cpu_free(data_);
@@ -132,15 +132,15 @@ class Buffer {
 };
 
 /// Upload of values kept in double on the host.
-template <class Real, class Place>
-void upload_as(Buffer<Real, Place>& to, const std::vector<double>& from) {
+template <class Real, class Device>
+void upload_as(Buffer<Real, Device>& to, const std::vector<double>& from) {
   to.upload(std::vector<Real>(from.begin(), from.end()));
 }
 
 /// Runs kernel(i) for i in [0, count), in any order.
 template <class Kernel>
-void for_each(OnCpu, int count, const Kernel& kernel) {
-  const KernelTime<OnCpu> time(kernel, count);
+void for_each(CpuDevice, int count, const Kernel& kernel) {
+  const KernelTime<CpuDevice> time(kernel, count);
   detail::cpu_parallel(
       count, 256,
       [](const void* k, int begin, int end) {
@@ -155,7 +155,7 @@ struct PointGroups {
   using Range = std::pair<int, int>;  // [begin, end) into the points
   std::vector<Range> ranges[4];
   bool in_order = false;  // a GPU goes by them too, so that sums are the same on every run
-  Buffer<Range, OnGpu> on_gpu[4];
+  Buffer<Range, GpuDevice> on_gpu[4];
   void upload() {
     for (int c = 0; in_order && c < 4; ++c) on_gpu[c].upload(ranges[c]);
   }
@@ -165,8 +165,8 @@ struct PointGroups {
 /// so sums are the same on every run. GPU: all at once, with atomics; with groups.in_order as the CPU, a thread for
 /// every block.
 template <class Kernel>
-void for_each_grouped(OnCpu, int count, const PointGroups& groups, const Kernel& kernel) {
-  const KernelTime<OnCpu> time(kernel, count);
+void for_each_grouped(CpuDevice, int count, const PointGroups& groups, const Kernel& kernel) {
+  const KernelTime<CpuDevice> time(kernel, count);
   for (const auto& ranges : groups.ranges) {
     struct Body {
       const Kernel* kernel;
@@ -185,8 +185,8 @@ void for_each_grouped(OnCpu, int count, const PointGroups& groups, const Kernel&
   }
 }
 
-inline void synchronise(OnCpu) {}
-inline void synchronise(OnGpu) { detail::gpu_synchronise(); }
+inline void synchronise(CpuDevice) {}
+inline void synchronise(GpuDevice) { detail::gpu_synchronise(); }
 
 /// From so many points on every multiprocessor has more to do than it can hold: what counts then is how much gets
 /// through, not how soon.
@@ -242,9 +242,9 @@ __global__ __launch_bounds__(128, blocks) void run_dense(int count, Kernel kerne
 }  // namespace detail
 
 template <class Kernel>
-void for_each(OnGpu, int count, const Kernel& kernel) {
+void for_each(GpuDevice, int count, const Kernel& kernel) {
   if (count <= 0) return;
-  const KernelTime<OnGpu> time(kernel, count);
+  const KernelTime<GpuDevice> time(kernel, count);
   if constexpr (requires { Kernel::dense; }) {
     if (Kernel::dense > 0 && count >= points_that_keep_a_gpu_busy) {
       return detail::gpu_launch(__PRETTY_FUNCTION__, detail::run_dense<Kernel::dense, Kernel>, (count + 127) / 128, 128,
@@ -269,7 +269,7 @@ struct InOrder {
 };
 
 template <class Kernel>
-void for_each_grouped(OnGpu place, int count, const PointGroups& groups, const Kernel& kernel) {
+void for_each_grouped(GpuDevice place, int count, const PointGroups& groups, const Kernel& kernel) {
   if (!groups.in_order) return for_each(place, count, kernel);
   for (const auto& ranges : groups.on_gpu)
     for_each(place, static_cast<int>(ranges.size()), InOrder<Kernel>{kernel, ranges.data()});
