@@ -4,8 +4,8 @@
     tools/checksum-results.py --bin build/bin --out DIR [--data DIR] [--only TEXT] > table.txt
     tools/checksum-results.py --compare before.txt after.txt
 
-It runs the laboratory scenes below, the pipelines on the project's samples and, where the data are there, Frank Slide on
-cells of 40 m, all on the CPU, and prints a line for each data set of run.h5, each map, each table and each number of
+It runs the laboratory scenes below, the pipelines on the project's samples and, where the data are there, Frank Slide
+on cells of 40 m, all on the CPU, and prints a line for each data set of run.h5, each map, each table and each number of
 score.json: scene, name, SHA-256 of the values. The bits depend on the machine's mathematical library and on the
 compiler: compare tables of one machine only. Needs python3-h5py, python3-numpy and python3-gdal.
 """
@@ -82,7 +82,8 @@ VARIANTS = {
     "stiffness-check": ("end_time_s = 0.5", "[solve.material]\nstiffness_check = true\n", {}),
     "walls": ("", '[[solve.wall]]\naxis = "x"\nposition_m = 10.0\nkind = "frictional"\nfriction_angle_deg = 25.0\n'
                   '[[solve.wall]]\naxis = "y"\nposition_m = 5.0\nto_s = 0.4\n', {}),
-    "load": ("", "[[solve.load]]\nbox_m = [20.0, 22.0, 5.0, 8.0, 0.0, 3.0]\nforce_N = [1e5, 0.0, 0.0]\nramp_s = 0.5\n", {}),
+    "load": ("", "[[solve.load]]\nbox_m = [20.0, 22.0, 5.0, 8.0, 0.0, 3.0]\nforce_N = [1e5, 0.0, 0.0]\n"
+                 "ramp_s = 0.5\n", {}),
     "gravity-loading": ("gravity_loading_steps = 4", "", {}),
     "initial-velocity": ("initial_velocity_m_s = [-2.0, 0.5, 0.0]", "", {}),
     "fine-layers": ("", "", {"layer": 0.5}),
@@ -93,7 +94,8 @@ VARIANTS = {
     "newmark-weakening": ('integrator = "newmark"', '[solve.base]\nlaw = "velocity-weakening"\n', {}),
     "newmark-musl-flip": ('integrator = "newmark"\nstress_update = "musl"\ntransfer = "flip"\ndamping = 0.05', "", {}),
     "newmark-points": ('integrator = "newmark"\nmapping = "cartesian"\nground_contact = "points"', "", {}),
-    "newmark-exact": ('integrator = "newmark"', '[solve.implicit]\ntangent = "exact"\nlinear_solver = "bicgstab"\n', {}),
+    "newmark-exact": ('integrator = "newmark"', '[solve.implicit]\ntangent = "exact"\n'
+                                                'linear_solver = "bicgstab"\n', {}),
     "newmark-cholesky": ('integrator = "newmark"', '[solve.implicit]\nlinear_solver = "cholesky"\n', {}),
     "newmark-stencil-multigrid": ('integrator = "newmark"', '[solve.implicit]\noperator = "stencil"\n'
                                                             'preconditioner = "multigrid"\n', {}),
@@ -101,16 +103,16 @@ VARIANTS = {
                                                           'preconditioner = "column"\nforcing = "fixed"\n', {}),
     "newmark-gauss-seidel": ('integrator = "newmark"', '[solve.implicit]\npreconditioner = "gauss-seidel"\n', {}),
     "newmark-diagonal": ('integrator = "newmark"', '[solve.implicit]\npreconditioner = "diagonal"\n', {}),
-    "newmark-b-bar": ('integrator = "newmark"', "[solve.implicit]\nb_bar = true\n[solve.material]\npoisson_ratio = 0.45\n",
-                      {}),
+    "newmark-b-bar": ('integrator = "newmark"', "[solve.implicit]\nb_bar = true\n[solve.material]\n"
+                                                "poisson_ratio = 0.45\n", {}),
     "newmark-load-walls": ('integrator = "newmark"', '[[solve.wall]]\naxis = "x"\nposition_m = 12.0\n'
                                                      "[[solve.load]]\nbox_m = [20.0, 22.0, 5.0, 8.0, 0.0, 3.0]\n"
                                                      "force_N = [1e5, 0.0, 0.0]\n", {}),
     "reference": ('preset = "reference"', "[solve.implicit]\nstep_s = 0.005\n", {}),
     "auto": ('integrator = "auto"\nlargest_step_s = 0.05', "", {}),
     "quasi-static": ('integrator = "quasi-static"\ngravity_ramp_s = 1.0\nend_time_s = 1.0\nhistory_interval_s = 0.25',
-                     '[solve.implicit]\nstep_s = 0.1\n[solve.material]\nmodel = "hencky"\n[solve.base]\nlaw = "stick"\n',
-                     {}),
+                     '[solve.implicit]\nstep_s = 0.1\n[solve.material]\nmodel = "hencky"\n'
+                     '[solve.base]\nlaw = "stick"\n', {}),
     "quasi-static-cholesky": ('integrator = "quasi-static"\ngravity_ramp_s = 1.0\nend_time_s = 1.0\nshape = "linear"',
                               '[solve.implicit]\nstep_s = 0.1\nlinear_solver = "cholesky"\n[solve.material]\n'
                               'model = "corotated"\n[solve.base]\nlaw = "stick"\n', {}),
