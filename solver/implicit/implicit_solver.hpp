@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "solver/implicit/contact_forces.hpp"
+#include "solver/implicit/controls.hpp"
 #include "solver/implicit/implicit_nodes.hpp"
 #include "solver/implicit/newton_control.hpp"
 #include "solver/integrator/point_solver.hpp"
@@ -59,28 +60,30 @@ struct RecordColumns {
 template <class Real, class Device, class Shape>
 class ImplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   using Base = PointSolver<Real, Device, Shape>;
-  using Base::clock_, Base::contact_, Base::dilatant_, Base::impulses_, Base::grid_, Base::materials_, Base::options_,
-      Base::points_, Base::read_clock, Base::sums_;
+  using Base::clock_, Base::contact_, Base::dilatant_, Base::impulses_, Base::grid_, Base::materials_, Base::points_,
+      Base::read_clock, Base::sums_;
 
  public:
-  ImplicitSolverOf(const Scene& scene, const SolveOptions& options, const SolverState& state)
+  ImplicitSolverOf(const Scene& scene, const SolveOptions& options, const ImplicitControls& controls,
+                   const SolverState& state)
       : Base(scene, options, state, fields(options), 0),  // sorted before every step
-        affine_(options.transfer == Transfer::apic),
-        dynamic_(options.integrator == Integrator::newmark),
+        controls_(controls),
+        affine_(controls.affine),
+        dynamic_(controls.dynamic),
         node_bed_(make_base_friction<double>(options), scene.bed),
-        step_(options.implicit.step),
+        step_(controls.step),
         first_(state.clock.accelerated == 0),
         midway_(state.clock.step > 0),
-        single_(std::is_same_v<Real, double> && options.implicit.newton_iterations > 1 &&
-                options.implicit.linear_solver != LinearSolver::cholesky),
-        operator_(options.implicit.form, single_),
-        preconditioner_(options.implicit.preconditioner) {
+        single_(std::is_same_v<Real, double> && controls.newton.iterations > 1 &&
+                controls.linear.solver != LinearSolver::cholesky),
+        operator_(controls.linear.form, single_),
+        preconditioner_(controls.linear.preconditioner) {
     balance_.upload({Balance{}});
     this->fit(0);
-    const double g = std::hypot(options.gravity[0], options.gravity[1], options.gravity[2]);
+    const double g = std::hypot(controls.gravity.x, controls.gravity.y, controls.gravity.z);
     for (Material<Real>& m : materials_.list) {
-      m.exact_tangent = options.implicit.tangent == Tangent::exact;
-      m.apex = static_cast<Real>(options.implicit.apex * static_cast<double>(m.density) * g * scene.grid.layer_height);
+      m.exact_tangent = controls.tangent == Tangent::exact;
+      m.apex = static_cast<Real>(controls.apex * static_cast<double>(m.density) * g * scene.grid.layer_height);
     }
   }
 
@@ -98,7 +101,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Device, Shape> {
       report.stats = {};
       report.stats.cuts = cut;
       if (solve_step(clock.time, step, report.stats)) break;
-      if (cut >= options_.implicit.step_cuts) refuse_step(clock, step, report.stats, dynamic_);
+      if (cut >= controls_.step_cuts) refuse_step(clock, step, report.stats, dynamic_);
       step *= 0.5;
       step_ = step;
     }
@@ -109,7 +112,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     ++clock.step;
     clock_.upload({clock});
     accept(clock, step);
-    if (report.stats.cuts == 0) step_ = std::min(step_ * 1.5, options_.implicit.step);
+    if (report.stats.cuts == 0) step_ = std::min(step_ * 1.5, controls_.step);
     clock = read_clock();
     report.outflow_count = clock.outflow_count;
     report.outflow_volume = clock.outflow_volume;
@@ -186,8 +189,8 @@ class ImplicitSolverOf final : public PointSolver<Real, Device, Shape> {
             wavers_.data(),
             corner_.slip(),
             corner_.nudge(),
-            options_.implicit.tangent == Tangent::exact,
-            options_.implicit.newton_iterations == 1,
+            controls_.tangent == Tangent::exact,
+            controls_.newton.iterations == 1,
             &balance_.data()->pull};
   }
 
@@ -232,7 +235,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     const ProfilePhase<Device> phase("points to grid");
     const double time = start + step;  // loads are those at the end of the step, walls those that stand at its start
     size_nodes();
-    scheme_ = {dynamic_, options_.implicit.alpha, options_.implicit.beta, step};
+    scheme_ = {dynamic_, controls_.alpha, controls_.beta, step};
     // After explicit steps, light nodes are far out of balance: backward Euler asks for no acceleration to begin with.
     if (first_ && midway_) scheme_ = {dynamic_, 0.5, 1, step};
     corner_.smooths = dynamic_;
@@ -241,9 +244,9 @@ class ImplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     scatter_points(Device{}, points_.count(), this->grid_.groups(),
                    ScatterInertia<Real, Shape>{
                        {this->grid_.view(), points_.view()}, materials_, affine_, dynamic_, loads, nodes()});
-    const double ramp = options_.gravity_ramp > 0 ? std::min(1.0, time / options_.gravity_ramp) : 1.0;
-    const Vec3<double> g{options_.gravity[0] * ramp, options_.gravity[1] * ramp, options_.gravity[2] * ramp};
-    const bool predict = dynamic_ && options_.implicit.newton_iterations > 1;
+    const double ramp = controls_.gravity_ramp > 0 ? std::min(1.0, time / controls_.gravity_ramp) : 1.0;
+    const Vec3<double> g{controls_.gravity.x * ramp, controls_.gravity.y * ramp, controls_.gravity.z * ramp};
+    const bool predict = dynamic_ && controls_.newton.iterations > 1;
     for_each(Device{}, this->grid_.active_blocks() * block_columns,
              PrepareNodes<Real>{this->grid_.view(), this->grid_.active_list(), nodes(), held(), walls_,
                                 node_bed_.view(), this->full_base(), g, scheme_, predict});
@@ -251,13 +254,13 @@ class ImplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     if (dynamic_)
       sum_each<1>(Device{}, count_, sums_, SquareMomentum{nodes()}, KeepTotals<1>{&balance_.data()->momentum});
     if (!dynamic_) return;
-    const bool accelerates = first_ && !midway_, damps = options_.damping > 0;
+    const bool accelerates = first_ && !midway_, damps = controls_.damping > 0;
     if (!accelerates && !damps) return;
     copy(u_, saved_u_);  // both are of the start of the step
     u_.fill_zero();
     measure_stress(false);
     if (accelerates) for_each(Device{}, count_, FirstAcceleration{nodes()});
-    if (damps) for_each(Device{}, count_, AddDamping{nodes(), options_.damping});
+    if (damps) for_each(Device{}, count_, AddDamping{nodes(), controls_.damping});
     copy(saved_u_, u_);
   }
 
@@ -287,7 +290,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Device, Shape> {
 
   /// See FrictionCorner.
   double fall(double step) const {
-    const double g = std::hypot(options_.gravity[0], options_.gravity[1], options_.gravity[2]);
+    const double g = std::hypot(controls_.gravity.x, controls_.gravity.y, controls_.gravity.z);
     return dynamic_ ? 0.5 * std::max(g, 1e-3) * step * step : 1e-4 * this->frame_.cell[0];
   }
 
@@ -310,12 +313,11 @@ class ImplicitSolverOf final : public PointSolver<Real, Device, Shape> {
           ScatterContacts<Real, Shape>{this->grid_.view(), contact_.view(), nodes(), contact_numbers(), with_tangent});
   }
 
-  MeanDilationView<Real> means() const { return options_.implicit.b_bar ? means_.view() : MeanDilationView<Real>{}; }
+  MeanDilationView<Real> means() const { return controls_.b_bar ? means_.view() : MeanDilationView<Real>{}; }
 
   /// B-bar: means over the elements for a displacement.
   void average(const NodeVector<Device>& u) {
-    if (options_.implicit.b_bar)
-      means_.measure(elements_, this->grid_.view(), points_.view(), materials_, dilatant_, u.data());
+    if (controls_.b_bar) means_.measure(elements_, this->grid_.view(), points_.view(), materials_, dilatant_, u.data());
   }
 
   /// On nodes with less than a tenth of a full one's mass, in statics.
@@ -324,7 +326,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     const double h = this->frame_.cell[0], hz = this->frame_.cell[2];
     const double full = static_cast<double>(materials_.list[0].density) * h * h * hz;
     return {mass_.data(), 0.1 * full,
-            options_.implicit.filler * 2 * static_cast<double>(materials_.list[0].shear_modulus) * std::min(h, hz)};
+            controls_.filler * 2 * static_cast<double>(materials_.list[0].shear_modulus) * std::min(h, hz)};
   }
 
   /// The unbalanced force for u_, with what `held` and the contacts' states say about it.
@@ -333,7 +335,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     if (decide) {
       if (contact_.on())
         contact_.each(RenewLimits<Real, Shape>{this->grid_.view(), contact_.view(), nodes(), contact_numbers()});
-      const double each = options_.implicit.newton_tolerance / std::sqrt(static_cast<double>(std::max(count_, 1)));
+      const double each = controls_.newton.tolerance / std::sqrt(static_cast<double>(std::max(count_, 1)));
       sum_each<1>(Device{}, count_, sums_, SquareForces{nodes()},
                   FinishForces{balance_.data(), stopping_share(), each});
     }
@@ -362,10 +364,11 @@ class ImplicitSolverOf final : public PointSolver<Real, Device, Shape> {
 
   /// Elements and neighbours of the points as they stand.
   void group_elements() {
-    const ImplicitOptions& o = options_.implicit;
-    const bool direct = o.linear_solver == LinearSolver::cholesky;
-    const bool preconditioned = !direct && NodePreconditioner<Real, Device, Shape>::by_elements(o.preconditioner);
-    if (dynamic_ && !direct && !preconditioned && o.form == Operator::points && !o.b_bar)
+    const ImplicitControls& o = controls_;
+    const bool direct = o.linear.solver == LinearSolver::cholesky;
+    const bool preconditioned =
+        !direct && NodePreconditioner<Real, Device, Shape>::by_elements(o.linear.preconditioner);
+    if (dynamic_ && !direct && !preconditioned && o.linear.form == Operator::points && !o.b_bar)
       return;  // nothing goes by elements
     elements_.build(this->grid_.view(), points_.view());
     if (o.b_bar) means_.begin_step(elements_, points_.count());
@@ -379,19 +382,19 @@ class ImplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   /// Newton's iterations of one step; true when it converged.
   bool solve_step(double start, double step, StepStats& stats) {
     prepare(start, step);
-    const ImplicitOptions& o = options_.implicit;
-    if (o.newton_iterations == 1) return solve_once(stats);
+    const ImplicitControls& o = controls_;
+    if (o.newton.iterations == 1) return solve_once(stats);
     double best = 1e300;  // least unbalanced force so far
     int waited = 0;       // iterations since it was halved
     LinearForcing forcing;
     measure_stress(true);
-    for (stats.newton = 0; stats.newton < o.newton_iterations; ++stats.newton) {
+    for (stats.newton = 0; stats.newton < o.newton.iterations; ++stats.newton) {
       bool changed = false;
       Balance balance = decide_contacts(changed);
       const double size = force_size(balance, stopping_share());
       stats.residual = std::sqrt(balance.residual) / size;
       if (!std::isfinite(stats.residual)) return false;
-      if (stats.residual <= o.newton_tolerance && !changed) {
+      if (stats.residual <= o.newton.tolerance && !changed) {
         const double moved = farthest_move();
         if (moved > 1) return false;
         if (!corner_.creeps(moved * std::min(this->frame_.cell[0], this->frame_.cell[2]))) {
@@ -404,7 +407,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Device, Shape> {
         best = 1e300;
         balance = decide_contacts(changed);
         stats.residual = std::sqrt(balance.residual) / size;
-        if (stats.residual <= o.newton_tolerance) continue;
+        if (stats.residual <= o.newton.tolerance) continue;
       }
       waited = stats.residual < 0.5 * best ? 0 : waited + 1;
       best = std::min(best, stats.residual);
@@ -412,7 +415,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Device, Shape> {
         waited = 0;
         best = 1e300;
       }
-      if (!linear_solve(stats, forcing.next(stats.residual, o))) return false;
+      if (!linear_solve(stats, forcing.next(stats.residual, o.newton))) return false;
       if (search(std::sqrt(balance.residual), size)) continue;
       if (!corner_.blunt()) return false;
       measure_stress(true);  // where the search began
@@ -425,7 +428,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     measure_stress(true);
     measure_residual(true);
     stats.newton = 1;
-    const bool solved = linear_solve(stats, options_.implicit.linear_tolerance);
+    const bool solved = linear_solve(stats, controls_.newton.linear_tolerance);
     axpby(1.0, change_, 1.0, u_);
     stats.residual = stats.linear_residual;
     return solved && farthest_move() <= 1;
@@ -456,7 +459,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   }
 
   bool linear_solve(StepStats& stats, double tolerance) {
-    const bool direct = options_.implicit.linear_solver == LinearSolver::cholesky;
+    const bool direct = controls_.linear.solver == LinearSolver::cholesky;
     LinearReport report = direct ? factorise() : iterate(tolerance);
     stats.linear += report.iterations;
     if (report.indefinite) {
@@ -495,9 +498,9 @@ class ImplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   LinearReport iterate(double tolerance) {
     refresh_operator();
     const ProfilePhase<Device> phase("conjugate gradients");
-    const ImplicitOptions& o = options_.implicit;
-    if (o.linear_solver == LinearSolver::pcg)
-      return cg_.solve(residual_, change_, tolerance, o.linear_iterations, LinearSystem{*this});
+    const ImplicitControls& o = controls_;
+    if (o.linear.solver == LinearSolver::pcg)
+      return cg_.solve(residual_, change_, tolerance, o.linear.iterations, LinearSystem{*this});
     LinearSystem system{*this};
     const auto multiply = [&](const NodeVector<Device>& x, NodeVector<Device>& y) {
       y.fill_zero();
@@ -505,7 +508,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Device, Shape> {
       for_each(Device{}, count_, system.close(x, y));
     };
     const auto precondition = [&](const NodeVector<Device>& r, NodeVector<Device>& z) { preconditioner_.apply(r, z); };
-    return bicgstab_.solve(residual_, change_, tolerance, o.linear_iterations, multiply, precondition);
+    return bicgstab_.solve(residual_, change_, tolerance, o.linear.iterations, multiply, precondition);
   }
 
   /// The tangent of the step as conjugate gradients take it.
@@ -559,7 +562,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Device, Shape> {
                                         true,
                                         true,
                                         means()};
-    const bool musl = dynamic_ && options_.stress_update == StressUpdate::modified;
+    const bool musl = dynamic_ && controls_.remaps_velocity;
     if (musl) {
       step_kernel.deforms = false;
       for_each(Device{}, points_.count(), step_kernel);
@@ -582,6 +585,7 @@ class ImplicitSolverOf final : public PointSolver<Real, Device, Shape> {
                  static_cast<double>(materials_.list[0].density), this->column_volumes(), clock.time, this->maps()});
   }
 
+  ImplicitControls controls_;
   bool affine_, dynamic_;
   BedOn<double, Device> node_bed_;
   double step_;
@@ -616,16 +620,17 @@ class ImplicitSolverOf final : public PointSolver<Real, Device, Shape> {
 
 /// A solver of one precision in the place asked for.
 template <class Real>
-std::unique_ptr<Solver> make_implicit_solver_of(const Scene& scene, const SolveOptions& options, On on,
-                                                const SolverState& state) {
+std::unique_ptr<Solver> make_implicit_solver_of(const Scene& scene, const SolveOptions& options,
+                                                const ImplicitControls& controls, On on, const SolverState& state) {
   return with_shape(options.shape, [&](auto shape) -> std::unique_ptr<Solver> {
     using Shape = decltype(shape);
 #if TALUS_FOR_GPU
-    if (on == On::gpu) return std::make_unique<ImplicitSolverOf<Real, GpuDevice, Shape>>(scene, options, state);
+    if (on == On::gpu)
+      return std::make_unique<ImplicitSolverOf<Real, GpuDevice, Shape>>(scene, options, controls, state);
 #else
     static_cast<void>(on);
 #endif
-    return std::make_unique<ImplicitSolverOf<Real, CpuDevice, Shape>>(scene, options, state);
+    return std::make_unique<ImplicitSolverOf<Real, CpuDevice, Shape>>(scene, options, controls, state);
   });
 }
 

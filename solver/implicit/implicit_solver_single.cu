@@ -5,7 +5,7 @@
 
 namespace talus::solver {
 
-template std::unique_ptr<Solver> make_implicit_solver_of<float>(const Scene&, const SolveOptions&, On,
-                                                                const SolverState&);
+template std::unique_ptr<Solver> make_implicit_solver_of<float>(const Scene&, const SolveOptions&,
+                                                                const ImplicitControls&, On, const SolverState&);
 
 }  // namespace talus::solver

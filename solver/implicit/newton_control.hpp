@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "solver/options/options.hpp"
+#include "solver/implicit/controls.hpp"
 
 namespace talus::solver {
 
@@ -12,7 +12,7 @@ namespace talus::solver {
 /// choice 2, with their safeguard), and no further than Newton's own tolerance asks.
 struct LinearForcing {
   double last_residual = 0, last = 0.1;
-  double next(double residual, const ImplicitOptions& o) {
+  double next(double residual, const NewtonControls& o) {
     constexpr double gamma = 0.9, most = 0.1, first = 1e-3;  // a nearly linear step should be done in two
     if (o.forcing == Forcing::fixed) return o.linear_tolerance;
     double wanted = first;
@@ -22,7 +22,7 @@ struct LinearForcing {
     }
     last_residual = residual;
     last = std::clamp(wanted, 1e-12, most);
-    return std::max(o.linear_tolerance, std::min(most, std::max(last, 0.1 * o.newton_tolerance / residual)));
+    return std::max(o.linear_tolerance, std::min(most, std::max(last, 0.1 * o.tolerance / residual)));
   }
 };
 

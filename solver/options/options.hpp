@@ -8,6 +8,7 @@
 #include "common/recipe/recipe.hpp"
 #include "solver/boundary/base_friction.hpp"
 #include "solver/boundary/walls.hpp"
+#include "solver/implicit/controls.hpp"
 #include "solver/material/material.hpp"
 #include "solver/state/grid_view.hpp"
 
@@ -19,11 +20,6 @@ enum class Transfer { apic, flip };
 enum class StressUpdate { last, modified };  // USL, MUSL
 enum class Integrator { explicit_, newmark, quasi_static, automatic };
 enum class Preset { none, reference };
-enum class LinearSolver { pcg, bicgstab, cholesky };
-enum class Tangent { frozen_yield, exact };
-enum class Forcing { fixed, eisenstat_walker };
-enum class Operator { points, elements, stencil };
-enum class Preconditioner { diagonal, block, column, gauss_seidel, multigrid };
 enum class Axis { x, y, z };
 enum class Side { below, above };
 enum class StiffnessKind { as_given, automatic };

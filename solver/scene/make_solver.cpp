@@ -5,6 +5,7 @@
 #include "solver/integrator/scene.hpp"
 #include "solver/options/options.hpp"
 #include "solver/parallel/device.hpp"
+#include "solver/scene/implicit_controls.hpp"
 #include "solver/scene/make_scene.hpp"
 
 namespace talus::solver {
@@ -12,15 +13,17 @@ namespace talus::solver {
 template <class Real>
 std::unique_ptr<Solver> make_explicit_solver_of(const Scene&, const SolveOptions&, On, const SolverState&);
 template <class Real>
-std::unique_ptr<Solver> make_implicit_solver_of(const Scene&, const SolveOptions&, On, const SolverState&);
+std::unique_ptr<Solver> make_implicit_solver_of(const Scene&, const SolveOptions&, const ImplicitControls&, On,
+                                                const SolverState&);
 // Instantiated in {ex,im}plicit_solver_{single,double}.cu.
 extern template std::unique_ptr<Solver> make_explicit_solver_of<float>(const Scene&, const SolveOptions&, On,
                                                                        const SolverState&);
 extern template std::unique_ptr<Solver> make_explicit_solver_of<double>(const Scene&, const SolveOptions&, On,
                                                                         const SolverState&);
-extern template std::unique_ptr<Solver> make_implicit_solver_of<float>(const Scene&, const SolveOptions&, On,
-                                                                       const SolverState&);
-extern template std::unique_ptr<Solver> make_implicit_solver_of<double>(const Scene&, const SolveOptions&, On,
+extern template std::unique_ptr<Solver> make_implicit_solver_of<float>(const Scene&, const SolveOptions&,
+                                                                       const ImplicitControls&, On, const SolverState&);
+extern template std::unique_ptr<Solver> make_implicit_solver_of<double>(const Scene&, const SolveOptions&,
+                                                                        const ImplicitControls&, On,
                                                                         const SolverState&);
 
 SolverState first_state(const Scene& scene, const SolveOptions& options) {
@@ -52,8 +55,9 @@ std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolveOptions& op
     return single ? make_explicit_solver_of<float>(scene, options, on, state)
                   : make_explicit_solver_of<double>(scene, options, on, state);
   }
-  return single ? make_implicit_solver_of<float>(scene, options, on, state)
-                : make_implicit_solver_of<double>(scene, options, on, state);
+  const ImplicitControls controls = make_implicit_controls(options);
+  return single ? make_implicit_solver_of<float>(scene, options, controls, on, state)
+                : make_implicit_solver_of<double>(scene, options, controls, on, state);
 }
 
 On choose_device(On wanted) {

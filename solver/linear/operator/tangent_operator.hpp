@@ -1,9 +1,9 @@
 // y = K x in the three forms of [solve.implicit] operator: per point, stored elements, assembled stencil.
 #pragma once
 
+#include "solver/linear/operator/operator_form.hpp"
 #include "solver/linear/operator/stencil_matrix.hpp"
 #include "solver/linear/operator/stored_elements.hpp"
-#include "solver/options/options.hpp"
 
 namespace talus::solver {
 

@@ -11,7 +11,7 @@
 #include "solver/linear/krylov/conjugate_gradient.hpp"
 #include "solver/linear/preconditioner/column_factors.hpp"
 #include "solver/linear/preconditioner/multigrid.hpp"
-#include "solver/options/options.hpp"
+#include "solver/linear/preconditioner/preconditioner_kind.hpp"
 #include "solver/parallel/vectors.hpp"
 
 namespace talus::solver {

@@ -1,0 +1,31 @@
+#include "solver/scene/implicit_controls.hpp"
+
+namespace talus::solver {
+
+ImplicitControls make_implicit_controls(const SolveOptions& options) {
+  const ImplicitOptions& o = options.implicit;
+  return {.dynamic = options.integrator == Integrator::newmark,
+          .affine = options.transfer == Transfer::apic,
+          .remaps_velocity = options.stress_update == StressUpdate::modified,
+          .step = o.step,
+          .step_cuts = o.step_cuts,
+          .alpha = o.alpha,
+          .beta = o.beta,
+          .newton = {.iterations = o.newton_iterations,
+                     .tolerance = o.newton_tolerance,
+                     .forcing = o.forcing,
+                     .linear_tolerance = o.linear_tolerance},
+          .linear = {.solver = o.linear_solver,
+                     .iterations = o.linear_iterations,
+                     .form = o.form,
+                     .preconditioner = o.preconditioner},
+          .tangent = o.tangent,
+          .apex = o.apex,
+          .b_bar = o.b_bar,
+          .filler = o.filler,
+          .gravity = {options.gravity[0], options.gravity[1], options.gravity[2]},
+          .gravity_ramp = options.gravity_ramp,
+          .damping = options.damping};
+}
+
+}  // namespace talus::solver
