@@ -4,7 +4,6 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
-#include <numeric>
 #include <optional>
 #include <string>
 
@@ -63,16 +62,17 @@ void make_folder(const fs::path& folder) {
 
 /// Time series of the run, a row for every record, time first.
 std::string history_table(const RunHistory& history) {
-  std::vector<std::size_t> order(history.names.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_partition(order.begin(), order.end(), [&](std::size_t c) { return history.names[c] == "time_s"; });
+  std::vector<const HistoryColumn*> order;
+  for (const HistoryColumn& column : history.columns) order.push_back(&column);
+  std::stable_partition(order.begin(), order.end(),
+                        [](const HistoryColumn* column) { return column->name == "time_s"; });
   std::string text;
-  for (const std::size_t c : order) text += (text.empty() ? "" : ",") + history.names[c];
-  const std::size_t rows = history.columns.empty() ? 0 : history.columns[0].size();
+  for (const HistoryColumn* column : order) text += (text.empty() ? "" : ",") + column->name;
+  const std::size_t rows = order.empty() ? 0 : order.front()->values.size();
   for (std::size_t row = 0; row < rows; ++row) {
     text += "\n";
-    for (const std::size_t c : order)
-      text += fmt::format("{}{:.9g}", c == order.front() ? "" : ",", history.columns[c][row]);
+    for (const HistoryColumn* column : order)
+      text += fmt::format("{}{:.9g}", column == order.front() ? "" : ",", column->values[row]);
   }
   return text + "\n";
 }

@@ -4,6 +4,7 @@
 
 #include "common/error.hpp"
 #include "common/run/hdf5.hpp"
+#include "common/run/history_group.hpp"
 #include "common/run/run_file.hpp"
 #include "common/run/run_layout.hpp"
 
@@ -70,17 +71,6 @@ RunFrames read_frames(const h5::File& file, const MapGrid& grid) {
     frames.thickness.emplace_back(start, start + static_cast<std::ptrdiff_t>(grid.count()));
   }
   return frames;
-}
-
-RunHistory read_history(const h5::File& file) {
-  RunHistory history;
-  history.names = file.children("/history");
-  for (const auto& name : history.names) {
-    const auto path = "/history/" + name;
-    const auto dims = history.columns.empty() ? file.dims(path) : h5::Dims{history.columns[0].size()};
-    history.columns.push_back(file.read<double>(path, dims));
-  }
-  return history;
 }
 
 RunSummary read_summary(const h5::File& file) {

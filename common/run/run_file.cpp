@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "common/run/hdf5.hpp"
+#include "common/run/history_group.hpp"
 #include "common/run/run_layout.hpp"
 #include "common/run/vtkhdf.hpp"
 #include "common/stage/stage.hpp"
@@ -51,17 +52,6 @@ void write_maps(h5::File& file, const RunMaps& maps) {
     const auto path = "/maps/deposit_of/" + std::to_string(r);
     extra(path, maps.deposit_of[r].second, "thickness at the end of what came from one release, vertical");
     file.set_text(path, "release", maps.deposit_of[r].first);
-  }
-}
-
-void write_history(h5::File& file, const RunHistory& history) {
-  file.make_group("/history");
-  if (history.names.size() != history.columns.size())
-    throw std::logic_error("RunHistory: names and columns differ in number");
-  for (std::size_t i = 0; i < history.names.size(); ++i) {
-    if (history.columns[i].size() != history.columns[0].size())
-      throw std::logic_error("RunHistory: columns of different lengths");
-    file.write<double>("/history/" + history.names[i], {history.columns[i].size()}, history.columns[i]);
   }
 }
 

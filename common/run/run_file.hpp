@@ -37,10 +37,20 @@ struct RunFrames {
   std::vector<std::vector<double>> thickness;  // one map per time [m]
 };
 
+/// One number of the run over time.
+struct HistoryColumn {
+  std::string name;            ///< with its unit: "time_s", "kinetic_J", ...
+  std::string unit;            ///< as maps have it: "J", "m s-1", "1" for a number of things
+  std::string quantity;        ///< what is measured at a place ("thickness"); empty for a number of the whole run
+  std::string place;           ///< where ("gauge bridge"); empty for a number of the whole run
+  std::vector<double> values;  ///< [records]
+};
+
 /// Columns of equal length, one row per record.
 struct RunHistory {
-  std::vector<std::string> names;            // with unit: "time_s", "kinetic_J", ...
-  std::vector<std::vector<double>> columns;  // [names.size()][records]
+  std::vector<HistoryColumn> columns;
+  /// The column of this name, null where there is none.
+  const HistoryColumn* find(const std::string& name) const;
 };
 
 /// One number or word each; names as in score.json where they meet.

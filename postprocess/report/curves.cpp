@@ -71,7 +71,7 @@ Json series_json(const ReportInput& input) {
   const auto& thalweg = input.thalweg;
   const auto& history = input.run.history;
   Json json{{"history", Json::object()}, {"front", nullptr}, {"motion", nullptr}};
-  for (std::size_t c = 0; c < history.names.size(); ++c) json["history"][history.names[c]] = history.columns[c];
+  for (const HistoryColumn& column : history.columns) json["history"][column.name] = column.values;
   if (thalweg.line.size() >= 2 && !input.run.frames.time.empty()) {
     const auto front = front_over_time(input.run, thalweg, input.options.footprint_threshold);
     json["front"] = {

@@ -117,15 +117,15 @@ void Simulation::start() {
   for (const auto& stale : {paths_.run, paths_.checkpoint}) std::filesystem::remove(stale, ignored);
   if (options_.gravity_loading_steps > 0) load_by_gravity();
   build_solver(first_state(scene_, options_));
-  memory_.history.names = history_names;
-  if (options_.energy_budget)
-    memory_.history.names.insert(memory_.history.names.end(), budget_names.begin(), budget_names.end());
+  const auto add = [&](const std::string& name) { memory_.history.columns.push_back({name, "", "", "", {}}); };
+  for (const std::string& name : history_names) add(name);
+  if (options_.energy_budget) {
+    for (const std::string& name : budget_names) add(name);
+  }
   for (const ObstacleOptions& o : options_.obstacles) {
-    for (const char* axis : {"x", "y", "z"})
-      memory_.history.names.push_back(fmt::format("obstacle_{}_impulse_{}_N_s", o.name, axis));
+    for (const char* axis : {"x", "y", "z"}) add(fmt::format("obstacle_{}_impulse_{}_N_s", o.name, axis));
   }
   for (const std::string& note : scene_.contacts.notes) log_info(note);
-  memory_.history.columns.resize(memory_.history.names.size());
   memory_.initial_thickness = solver_->thickness();
 }
 
@@ -232,7 +232,7 @@ void Simulation::record(double time) {
   }
   for (const Vec3<double>& impulse : solver_->obstacle_impulses())
     row.insert(row.end(), {impulse.x, impulse.y, impulse.z});
-  for (std::size_t c = 0; c < memory_.history.columns.size(); ++c) memory_.history.columns[c].push_back(row[c]);
+  for (std::size_t c = 0; c < memory_.history.columns.size(); ++c) memory_.history.columns[c].values.push_back(row[c]);
 }
 
 PointFrame Simulation::point_frame(double time, const ParticleState& s) const {
@@ -295,9 +295,9 @@ double Simulation::wall_time() const {
 void Simulation::report(Progress& progress, const Clock& clock) const {
   if (!progress.due()) return;
   const double done = clock.time / options_.end_time;
-  const double balance = (memory_.history.columns.empty() || memory_.history.columns[6].empty())
-                             ? 0
-                             : (memory_.history.columns[6].back() + memory_.history.columns[7].back()) / released_ - 1;
+  const HistoryColumn *volume = memory_.history.find("volume_m3"), *outflow = memory_.history.find("outflow_m3");
+  const bool recorded = volume && outflow && !volume->values.empty();
+  const double balance = recorded ? (volume->values.back() + outflow->values.back()) / released_ - 1 : 0;
   progress.update(fmt::format("t {:.2f}/{:g} s  step {}  dt {:.3g} s  v_max {:.1f} m/s  mass error {:.1e}  eta {}",
                               clock.time, options_.end_time, clock.step, clock.step_size,
                               positive_from_bits(clock.speed_bits), balance,
@@ -436,11 +436,11 @@ void Simulation::tell_apart(RunMaps& maps) const {
 
 void Simulation::report_obstacles() const {
   const RunHistory& history = memory_.history;
-  const std::vector<double>& time = history.columns[0];
+  const std::vector<double>& time = history.columns[0].values;
   const std::size_t count = options_.obstacles.size();
   for (std::size_t o = 0; o < count; ++o) {
     const auto impulse = [&](std::size_t axis, std::size_t row) {
-      return history.columns[history.columns.size() - 3 * (count - o) + axis][row];
+      return history.columns[history.columns.size() - 3 * (count - o) + axis].values[row];
     };
     double peak = 0, when = 0;
     for (std::size_t row = 1; row < time.size(); ++row) {

@@ -5,7 +5,6 @@
 #include <spawn.h>
 #include <sys/wait.h>
 
-#include <algorithm>
 #include <cctype>
 #include <cerrno>
 #include <cmath>
@@ -67,10 +66,8 @@ std::string folder_of(const std::string& variant) {
 }  // namespace
 
 std::vector<double> Outcome::history(const std::string& name) const {
-  const auto& names = run.history.names;
-  const auto found = std::find(names.begin(), names.end(), name);
-  return found == names.end() ? std::vector<double>{}
-                              : run.history.columns[static_cast<std::size_t>(found - names.begin())];
+  const HistoryColumn* column = run.history.find(name);
+  return column ? column->values : std::vector<double>{};
 }
 
 double Outcome::last_of(const std::string& name) const {

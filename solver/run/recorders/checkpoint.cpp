@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "common/run/hdf5.hpp"
+#include "common/run/history_group.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus::solver {
@@ -58,10 +59,7 @@ void write_memory(h5::File& file, const RunMemory& m) {
   const double numbers[] = {m.peak_kinetic, m.outflow_volume, m.wall_time};
   file.write<double>("/memory/numbers", {3}, numbers);
   file.write<double>("/memory/initial_thickness", dims_of(m.initial_thickness.size()), m.initial_thickness);
-  file.make_group("/history");
-  for (std::size_t c = 0; c < m.history.names.size(); ++c) {
-    file.write<double>("/history/" + m.history.names[c], dims_of(m.history.columns[c].size()), m.history.columns[c]);
-  }
+  write_history(file, m.history);
 }
 
 RunMemory read_memory(const h5::File& file) {
@@ -79,10 +77,7 @@ RunMemory read_memory(const h5::File& file) {
   m.outflow_volume = numbers[1];
   m.wall_time = numbers[2];
   m.initial_thickness = file.read<double>("/memory/initial_thickness");
-  for (const auto& name : file.children("/history")) {
-    m.history.names.push_back(name);
-    m.history.columns.push_back(file.read<double>("/history/" + name));
-  }
+  m.history = read_history(file);
   return m;
 }
 

@@ -68,7 +68,8 @@ RunSummary some_summary() {
   return summary;
 }
 
-const RunHistory some_history{{"time_s", "kinetic_J", "a"}, {{0, 1}, {5, 6}, {7, 8}}};
+const RunHistory some_history{
+    {{"time_s", "s", "", "", {0, 1}}, {"kinetic_J", "J", "", "", {5, 6}}, {"a", "m", "thickness", "gauge a", {7, 8}}}};
 
 void write_some_run(const fs::path& file) {
   RunWriter writer(file);
@@ -106,8 +107,16 @@ TEST_F(RunFile, brings_back_maps_frames_history_and_summary) {
   EXPECT_EQ(run.maps.threshold, 0.25);
   EXPECT_EQ(run.frames.time, (std::vector<double>{0, 1.5}));
   EXPECT_EQ(run.frames.thickness.at(1), maps.deposit_thickness);
-  EXPECT_EQ(run.history.names, some_history.names);
-  EXPECT_EQ(run.history.columns, some_history.columns);
+  ASSERT_EQ(run.history.columns.size(), some_history.columns.size());
+  for (std::size_t c = 0; c < some_history.columns.size(); ++c) {
+    EXPECT_EQ(run.history.columns[c].name, some_history.columns[c].name);
+    EXPECT_EQ(run.history.columns[c].values, some_history.columns[c].values);
+    EXPECT_EQ(run.history.columns[c].unit, some_history.columns[c].unit);
+    EXPECT_EQ(run.history.columns[c].quantity, some_history.columns[c].quantity);
+    EXPECT_EQ(run.history.columns[c].place, some_history.columns[c].place);
+  }
+  EXPECT_EQ(run.history.find("kinetic_J"), &run.history.columns[1]);
+  EXPECT_EQ(run.history.find("potential_J"), nullptr);
   EXPECT_EQ(run.summary.title, "A title");
   EXPECT_EQ(run.summary.stop_reason, "");
   EXPECT_EQ(run.summary.particles, 1'234'567'890'123);
@@ -128,7 +137,7 @@ TEST_F(RunFile, reads_a_run_without_frames_or_points) {
   RunWriter(file_).finish(some_maps(), {}, {});
   const auto run = read_run(file_);
   EXPECT_TRUE(run.frames.time.empty());
-  EXPECT_TRUE(run.history.names.empty());
+  EXPECT_TRUE(run.history.columns.empty());
 }
 
 TEST_F(RunFile, holds_vtkhdf_as_h5dump_sees_it) {

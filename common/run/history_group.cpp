@@ -1,0 +1,44 @@
+#include "common/run/history_group.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace talus {
+
+const HistoryColumn* RunHistory::find(const std::string& name) const {
+  const auto found =
+      std::find_if(columns.begin(), columns.end(), [&](const HistoryColumn& column) { return column.name == name; });
+  return found == columns.end() ? nullptr : &*found;
+}
+
+void write_history(h5::File& file, const RunHistory& history) {
+  file.make_group("/history");
+  for (const HistoryColumn& column : history.columns) {
+    if (column.values.size() != history.columns[0].values.size())
+      throw std::logic_error("RunHistory: columns of different lengths");
+    const auto path = "/history/" + column.name;
+    file.write<double>(path, {column.values.size()}, column.values);
+    file.set_text(path, "unit", column.unit);
+    if (!column.quantity.empty()) file.set_text(path, "quantity", column.quantity);
+    if (!column.place.empty()) file.set_text(path, "place", column.place);
+  }
+}
+
+RunHistory read_history(const h5::File& file) {
+  RunHistory history;
+  for (const auto& name : file.children("/history")) {
+    const auto path = "/history/" + name;
+    const auto dims = history.columns.empty() ? file.dims(path) : h5::Dims{history.columns[0].values.size()};
+    const auto word = [&](const char* attribute) {
+      return file.has_attribute(path, attribute) ? file.text(path, attribute) : std::string();
+    };
+    history.columns.push_back({.name = name,
+                               .unit = word("unit"),
+                               .quantity = word("quantity"),
+                               .place = word("place"),
+                               .values = file.read<double>(path, dims)});
+  }
+  return history;
+}
+
+}  // namespace talus
