@@ -9,7 +9,7 @@
 #include "common/run/run_file.hpp"
 #include "common/stage/stage.hpp"
 #include "solver/integrator/scene.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 #include "solver/parallel/bandwidth.hpp"
 #include "solver/run/plan.hpp"
 #include "solver/run/profile_report.hpp"

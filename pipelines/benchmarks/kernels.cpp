@@ -9,7 +9,7 @@
 #include "common/error.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/integrator/solver.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 #include "solver/parallel/profile.hpp"
 #include "solver/scene/make_solver.hpp"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/stage/stage.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 
 namespace talus::benchmarks {
 

@@ -7,7 +7,7 @@
 
 #include "common/map/raster.hpp"
 #include "solver/grid/sparse_grid.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 
 namespace talus::solver {
 

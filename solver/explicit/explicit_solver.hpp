@@ -9,7 +9,7 @@
 #include "solver/explicit/update_columns.hpp"
 #include "solver/integrator/point_solver.hpp"
 #include "solver/integrator/scene.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 #include "solver/parallel/algorithms.hpp"
 #include "solver/parallel/columns.hpp"
 #include "solver/parallel/recording.hpp"

@@ -1,7 +1,7 @@
 // The explicit solver in single precision.
 #include "solver/explicit/explicit_solver.hpp"
 #include "solver/integrator/scene.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 
 namespace talus::solver {
 

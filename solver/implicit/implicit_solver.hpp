@@ -18,7 +18,7 @@
 #include "solver/linear/krylov/conjugate_gradient.hpp"
 #include "solver/linear/operator/tangent_operator.hpp"
 #include "solver/linear/preconditioner/preconditioner.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 
 namespace talus::solver {
 

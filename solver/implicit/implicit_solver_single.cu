@@ -1,7 +1,7 @@
 // The implicit solver in single precision.
 #include "solver/implicit/implicit_solver.hpp"
 #include "solver/integrator/scene.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 
 namespace talus::solver {
 

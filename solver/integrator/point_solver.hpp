@@ -7,7 +7,7 @@
 #include "solver/integrator/point_sums.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/integrator/solver.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 #include "solver/parallel/algorithms.hpp"
 #include "solver/parallel/profile.hpp"
 #include "solver/state/map_view.hpp"

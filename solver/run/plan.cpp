@@ -9,7 +9,7 @@
 
 #include "solver/integrator/scene.hpp"
 #include "solver/integrator/solver.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 #include "solver/run/stiffness.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "solver/scene/make_solver.hpp"

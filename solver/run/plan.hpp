@@ -6,7 +6,7 @@
 
 #include "common/domain/domain.hpp"
 #include "common/stage/stage.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 
 namespace talus::solver {
 

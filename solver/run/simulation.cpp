@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "solver/integrator/scene.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 #include "solver/parallel/device.hpp"
 #include "solver/parallel/profile.hpp"
 #include "solver/run/thickness.hpp"

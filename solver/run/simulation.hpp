@@ -8,7 +8,7 @@
 
 #include "common/stage/stage.hpp"
 #include "solver/integrator/scene.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 #include "solver/run/integrator_choice.hpp"
 #include "solver/run/recorders/checkpoint.hpp"
 #include "solver/run/recorders/frames.hpp"

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "solver/boundary/base_friction.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 
 namespace talus::solver {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "common/domain/domain.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 
 namespace talus::solver {
 

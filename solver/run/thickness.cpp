@@ -2,7 +2,7 @@
 
 #include "solver/integrator/point_solver.hpp"
 #include "solver/integrator/scene.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 
 namespace talus::solver {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "solver/integrator/scene.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 #include "solver/scene/make_scene.hpp"
 
 namespace talus::solver {

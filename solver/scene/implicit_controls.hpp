@@ -2,7 +2,7 @@
 #pragma once
 
 #include "solver/implicit/controls.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 
 namespace talus::solver {
 

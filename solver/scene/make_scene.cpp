@@ -1,6 +1,6 @@
 #include "solver/scene/make_scene.hpp"
 #include "solver/integrator/scene.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 
 #include <cmath>
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "solver/integrator/scene.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 #include "solver/parallel/device.hpp"
 #include "solver/scene/implicit_controls.hpp"
 #include "solver/scene/make_scene.hpp"

@@ -6,7 +6,7 @@
 #include "common/stage/stage.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/integrator/solver.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 
 namespace talus::solver {
 

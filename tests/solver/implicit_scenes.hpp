@@ -2,7 +2,7 @@
 #pragma once
 
 #include "solver/integrator/scene.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "tests/solver/scenes.hpp"
 

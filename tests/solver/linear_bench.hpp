@@ -7,7 +7,7 @@
 #include "solver/linear/direct/cholesky_solver.hpp"
 #include "solver/linear/operator/tangent_operator.hpp"
 #include "solver/linear/preconditioner/preconditioner.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "tests/solver/scenes.hpp"
 

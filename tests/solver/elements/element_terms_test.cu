@@ -1,5 +1,5 @@
 // What couples the points of an element: B-bar and the springs of nearly empty nodes.
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "tests/solver/linear_bench.hpp"
 

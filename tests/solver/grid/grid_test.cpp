@@ -7,7 +7,7 @@
 #include "solver/boundary/walls.hpp"
 #include "solver/grid/shape_functions.hpp"
 #include "solver/integrator/scene.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 #include "solver/parallel/algorithms.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "tests/solver/scenes.hpp"

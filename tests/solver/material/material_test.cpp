@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 
 namespace talus::solver {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 
 namespace talus::solver {
 namespace {

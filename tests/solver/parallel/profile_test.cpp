@@ -5,7 +5,7 @@
 #include <chrono>
 
 #include "solver/integrator/scene.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 #include "solver/parallel/bandwidth.hpp"
 #include "solver/run/profile_report.hpp"
 #include "solver/scene/make_scene.hpp"

@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "solver/integrator/scene.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "solver/scene/make_solver.hpp"
 #include "tests/solver/scenes.hpp"

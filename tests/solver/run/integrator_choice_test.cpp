@@ -2,7 +2,7 @@
 #include "solver/run/integrator_choice.hpp"
 
 #include "solver/integrator/scene.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "solver/scene/make_solver.hpp"
 #include "tests/solver/scenes.hpp"

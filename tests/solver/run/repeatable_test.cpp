@@ -1,6 +1,6 @@
 // deterministic = true: the same bits on every run, and the same slide.
 #include "solver/integrator/scene.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "solver/scene/make_solver.hpp"
 #include "tests/solver/scenes.hpp"

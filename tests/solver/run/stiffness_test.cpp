@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 #include "solver/run/stiffness.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "solver/scene/make_solver.hpp"

@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "solver/integrator/scene.hpp"
-#include "solver/options/options.hpp"
+#include "solver/options/solve.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "solver/transfer/grid_to_particle.hpp"
 #include "solver/transfer/particle_to_grid.hpp"

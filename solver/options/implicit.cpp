@@ -1,0 +1,46 @@
+#include "solver/options/implicit.hpp"
+
+namespace talus::solver {
+
+void ImplicitOptions::describe(recipe::Visitor& v) {
+  v.number("step_s", step, recipe::positive, "step size; cut where a step does not converge, grown again after");
+  v.number("newmark_alpha", alpha, recipe::Range{0, 1, true, false}, "newmark: alpha (0.25: trapezoid)");
+  v.number("newmark_beta", beta, recipe::fraction, "newmark: beta (0.5: trapezoid; more damps)");
+  v.integer("newton_iterations", newton_iterations, recipe::Range{1, 1000},
+            "most Newton iterations a step; 1: one linear solve");
+  v.number("newton_tolerance", newton_tolerance, recipe::Range{0, 1, true, true},
+           "unbalanced force over the forces' size");
+  recipe::choice(
+      v, "tangent", tangent, {{"frozen-yield", Tangent::frozen_yield}, {"exact", Tangent::exact}},
+      "frozen-yield: symmetric, friction at the pressure of the last iteration; exact: not symmetric, needs bicgstab");
+  recipe::choice(
+      v, "linear_solver", linear_solver,
+      {{"pcg", LinearSolver::pcg}, {"bicgstab", LinearSolver::bicgstab}, {"cholesky", LinearSolver::cholesky}},
+      "conjugate gradients, or stabilised bi-conjugate ones, never assembled; or sparse Cholesky");
+  v.number("linear_tolerance", linear_tolerance, recipe::Range{0, 1, true, true},
+           "pcg, bicgstab: residual over right-hand side");
+  recipe::choice(v, "forcing", forcing, {{"eisenstat-walker", Forcing::eisenstat_walker}, {"fixed", Forcing::fixed}},
+                 "eisenstat-walker: no more exact than Newton's iteration can use, linear_tolerance at the finest; "
+                 "fixed: always linear_tolerance");
+  v.integer("linear_iterations", linear_iterations, recipe::Range{1, 1e9}, "pcg: most iterations");
+  recipe::choice(v, "operator", form,
+                 {{"points", Operator::points}, {"elements", Operator::elements}, {"stencil", Operator::stencil}},
+                 "pcg: the tangent's product point by point, by stored elements, or by assembled blocks");
+  recipe::choice(v, "preconditioner", preconditioner,
+                 {{"block", Preconditioner::block},
+                  {"column", Preconditioner::column},
+                  {"diagonal", Preconditioner::diagonal},
+                  {"gauss-seidel", Preconditioner::gauss_seidel},
+                  {"multigrid", Preconditioner::multigrid}},
+                 "pcg, bicgstab: the diagonal, 3 x 3 blocks, whole columns of nodes, Gauss-Seidel over columns, or "
+                 "multigrid with that");
+  v.integer("step_cuts", step_cuts, recipe::Range{0, 30}, "halvings of a step before the run gives up");
+  v.number("apex", apex, recipe::not_negative,
+           "drucker-prager: pressure over which the tip of the cone is rounded, in weights of a cell");
+  v.flag("b_bar", b_bar, "volume change as the mean over a cell: nearly incompressible material does not lock");
+  v.number(
+      "filler", filler, recipe::Range{0, 1, false, true},
+      "quasi-static: springs against each step's displacement of nearly empty nodes, stiffness over a full cell's");
+}
+
+}  // namespace talus::solver

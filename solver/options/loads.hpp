@@ -1,0 +1,27 @@
+// Gravity, the velocity at the start, and forces on parts of the mass.
+#pragma once
+
+#include <vector>
+
+#include "common/recipe/recipe.hpp"
+
+namespace talus::solver {
+
+struct GravityOptions {
+  std::vector<double> gravity = {0, 0, -9.81};       // [m/s2]
+  std::vector<double> initial_velocity = {0, 0, 0};  // [m/s]
+  void describe(recipe::Visitor& v);
+  void check(std::vector<Fault>& faults) const;
+};
+
+/// A force on the points that start inside a box.
+struct LoadOptions {
+  std::vector<double> box = {0, 0, 0, 0, 0, 0};  // west, east, south, north [m], bottom, top above the ground [m]
+  std::vector<double> force = {0, 0, 0};         // in all [N]
+  double ramp = 0;                               // time over which it grows [s]
+  double from = 0, to = 1e30;                    // [s]
+  void describe(recipe::Visitor& v);
+  void check(std::vector<Fault>& faults) const;
+};
+
+}  // namespace talus::solver

@@ -1,0 +1,24 @@
+// Bodies that stand in the way.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/recipe/recipe.hpp"
+
+namespace talus::solver {
+
+/// A body that stands in the way.
+struct ObstacleOptions {
+  std::string name;
+  std::filesystem::path level_set;  // empty: OUT/obstacles.vdb
+  std::string grid;                 // in that file; empty: the obstacle's name, or the only one of a file that is given
+  double friction_angle = 20;       // [deg]
+  double friction() const;          // coefficient
+  void describe(recipe::Visitor& v);
+};
+
+void check_obstacles(const std::vector<ObstacleOptions>& obstacles, std::vector<Fault>& faults);
+
+}  // namespace talus::solver

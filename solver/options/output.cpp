@@ -1,0 +1,21 @@
+#include "solver/options/output.hpp"
+
+namespace talus::solver {
+
+void OutputOptions::describe(recipe::Visitor& v) {
+  v.number("frame_interval_s", frame_interval, recipe::positive, "time between frames");
+  v.number("history_interval_s", history_interval, recipe::positive, "time between records of energy and mass");
+  v.number("checkpoint_interval_s", checkpoint_interval, recipe::not_negative,
+           "simulated time between checkpoints; 0: only when interrupted");
+  v.number("map_threshold_m", map_threshold, recipe::positive,
+           "thickness from which speed, pressure and arrival count");
+  v.flag("point_frames", point_frames, "write the material points of each frame into run.h5");
+  v.flag("vdb_frames", vdb_frames, "write the material points of each frame as frames/*.vdb as well");
+  v.flag("energy_budget", energy_budget,
+         "explicit steps: keep what is lost to the bed, to plastic flow, to damping and between points and grid, and "
+         "the impulse of bed and walls (two to three times as slow on a GPU)");
+  v.flag("deterministic", deterministic,
+         "explicit steps: the same bits on every run on a GPU too, as on the CPU always (slower)");
+}
+
+}  // namespace talus::solver

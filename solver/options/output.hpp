@@ -1,0 +1,20 @@
+// What a run writes, and how often.
+#pragma once
+
+#include "common/recipe/recipe.hpp"
+
+namespace talus::solver {
+
+struct OutputOptions {
+  double frame_interval = 10;      // [s]
+  double history_interval = 0.5;   // [s]
+  double checkpoint_interval = 0;  // simulated [s]; 0: only when interrupted
+  double map_threshold = 0.1;      // [m]
+  bool point_frames = true;
+  bool vdb_frames = false;
+  bool energy_budget = false;
+  bool deterministic = false;
+  void describe(recipe::Visitor& v);
+};
+
+}  // namespace talus::solver

@@ -1,0 +1,27 @@
+#include "solver/options/scheme.hpp"
+
+namespace talus::solver {
+
+void SchemeOptions::describe(recipe::Visitor& v) {
+  recipe::choice(v, "precision", precision, {{"double", Precision::double_}, {"single", Precision::single_}},
+                 "numbers the state is kept in");
+  recipe::choice(v, "mapping", mapping,
+                 {{"terrain-following", Mapping::terrain_following}, {"cartesian", Mapping::cartesian}},
+                 "background grid: layers follow the ground, or lie level");
+  recipe::choice(v, "ground_contact", ground, {{"nodes", GroundContact::nodes}, {"points", GroundContact::points}},
+                 "Cartesian grid: the ground met by the nodes at or below it, or by points between the nodes");
+  recipe::choice(v, "shape", shape,
+                 {{"quadratic", ShapeKind::quadratic}, {"gimp", ShapeKind::gimp}, {"linear", ShapeKind::linear}},
+                 "functions of the grid: B-splines, hats averaged over the box of each point, or hats");
+  recipe::choice(v, "transfer", transfer, {{"apic", Transfer::apic}, {"flip", Transfer::flip}},
+                 "how velocity passes between points and grid");
+  v.number("transfer_time", transfer_time, recipe::not_negative,
+           "CFL steps over which velocity finer than the grid decays; 0: at every step");
+  recipe::choice(v, "stress_update", stress_update, {{"usl", StressUpdate::last}, {"musl", StressUpdate::modified}},
+                 "stress from the grid's new velocity (usl), or from the points' mapped back (musl)");
+  v.number("damping", damping, recipe::Range{0, 1, false, true}, "local non-viscous damping factor (Cundall)");
+  v.number("cfl", courant, recipe::Range{0, 0.8, true, false}, "step size over the CFL step");
+  v.number("largest_step_s", largest_step, recipe::positive, "upper bound of the step size");
+}
+
+}  // namespace talus::solver

@@ -1,0 +1,39 @@
+// What a recipe's [solve] table says. Every key, its default and its help stand in describe() and nowhere else.
+#pragma once
+
+#include "solver/options/bed.hpp"
+#include "solver/options/implicit.hpp"
+#include "solver/options/loads.hpp"
+#include "solver/options/material.hpp"
+#include "solver/options/obstacles.hpp"
+#include "solver/options/output.hpp"
+#include "solver/options/scheme.hpp"
+#include "solver/options/time.hpp"
+#include "solver/options/walls.hpp"
+
+namespace talus::solver {
+
+/// The keys of [solve] itself by their concern, then its tables.
+struct SolveOptions : TimeOptions, SchemeOptions, GravityOptions, OutputOptions, MassOptions {
+  ImplicitOptions implicit;
+  std::vector<WallOptions> walls;
+  std::vector<ObstacleOptions> obstacles;
+  std::vector<LoadOptions> loads;
+  BaseOptions base;
+
+  /// Whether the mass meets anything between nodes.
+  bool meets_points() const { return !obstacles.empty() || ground == GroundContact::points; }
+
+  void describe(recipe::Visitor& v);
+  void check(std::vector<Fault>& faults) const;
+
+ private:
+  void check_integrator(std::vector<Fault>& faults) const;
+  void check_contacts(std::vector<Fault>& faults) const;
+};
+
+/// The options with `preset` spelt out: preset = "reference" sets what the reference paper states and leaves the rest
+/// alone.
+SolveOptions with_preset(SolveOptions options);
+
+}  // namespace talus::solver

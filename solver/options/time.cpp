@@ -1,0 +1,24 @@
+#include "solver/options/time.hpp"
+
+namespace talus::solver {
+
+void TimeOptions::describe(recipe::Visitor& v) {
+  recipe::choice(v, "preset", preset, {{"none", Preset::none}, {"reference", Preset::reference}},
+                 "reference: the implicit scheme of the reference paper as it stands (docs/theory.md)");
+  recipe::choice(
+      v, "integrator", integrator,
+      {{"explicit", Integrator::explicit_},
+       {"newmark", Integrator::newmark},
+       {"quasi-static", Integrator::quasi_static},
+       {"auto", Integrator::automatic}},
+      "time integration; auto: explicit or newmark, whichever takes less time, found by trying as the run goes on");
+  v.number("gravity_ramp_s", gravity_ramp, recipe::not_negative, "time over which gravity grows to its full size");
+  v.integer("gravity_loading_steps", gravity_loading_steps, recipe::Range{0, 100000},
+            "quasi-static steps that bring the mass to equilibrium before the start; 0: start from zero stress");
+  v.path("domain", domain, "domain of talus-preprocess; empty: domain.vdb in the output folder");
+  v.number("end_time_s", end_time, recipe::positive, "simulated time");
+  v.number("stop_kinetic_fraction", stop_kinetic_fraction, recipe::Range{0, 1, false, true},
+           "stop once the kinetic energy falls below this part of its peak; 0: run to the end");
+}
+
+}  // namespace talus::solver

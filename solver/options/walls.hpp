@@ -1,0 +1,37 @@
+// Plane walls and gates.
+#pragma once
+
+#include <vector>
+
+#include "common/recipe/recipe.hpp"
+#include "solver/boundary/walls.hpp"
+
+namespace talus::solver {
+
+enum class Axis { x, y, z };
+enum class Side { below, above };
+
+/// A plane wall, present from one time to another.
+struct WallOptions {
+  Axis axis = Axis::x;
+  double position = 0;      // map coordinate, or elevation [m]
+  Side side = Side::above;  // where the material is
+  WallKind kind = WallKind::roller;
+  double friction_angle = 0;   // [deg]
+  double speed = 0;            // along the axis [m/s]
+  double from = 0, to = 1e30;  // [s]
+  void describe(recipe::Visitor& v);
+};
+
+void check_walls(const std::vector<WallOptions>& walls, std::vector<Fault>& faults);
+
+/// Map coordinates of node (0, 0, 0) and the spacing along each axis [m].
+struct WallFrame {
+  double origin[3], cell[3];
+};
+
+/// The walls that stand at a time.
+template <class Real>
+Walls<Real> make_walls(const std::vector<WallOptions>& options, double time, const WallFrame& frame);
+
+}  // namespace talus::solver
