@@ -2,6 +2,7 @@
 SHELL  := /bin/bash
 PRESET ?= default
 BUILD  ?= $(if $(filter cpu check,$(PRESET)),build-$(PRESET),build)
+RELEASE_BUILD ?= build-release
 JOBS   ?= $(shell nproc)
 TEST_JOBS ?= 2
 SETUP  ?= yes
@@ -13,7 +14,10 @@ CASES  ?=
 programs := talus-preprocess talus-solve talus-postprocess talus-make-terrain
 launcher := $(if $(shell command -v ccache),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_CUDA_COMPILER_LAUNCHER=ccache)
 
-.PHONY: help setup configure build demo test validate bundle bundle-solver clean
+# What the build folder was configured for; another wish configures it again.
+asked := $(PRESET) $(CUDAARCHS)
+
+.PHONY: help setup build demo test validate lint docs bundle bundle-solver clean FORCE
 
 help: ## this list
 	@echo "make TARGET [PRESET=default|cpu|gpu|check] [JOBS=n]"
@@ -24,11 +28,15 @@ ifneq ($(SETUP),no)
 	@tools/install-dependencies.sh
 endif
 
-$(BUILD)/build.ninja: CMakePresets.json | setup
-	cmake --preset $(PRESET) -B $(BUILD) $(launcher)
+$(BUILD)/asked.txt: FORCE
+	@mkdir -p $(@D); [[ -f $@ && "$$(<$@)" == '$(asked)' ]] || echo '$(asked)' >$@
+
+$(BUILD)/build.ninja: CMakePresets.json $(BUILD)/asked.txt | setup
+	cmake --preset $(PRESET) -B $(BUILD) $(launcher) $(if $(CUDAARCHS),-DCMAKE_CUDA_ARCHITECTURES='$(CUDAARCHS)')
 	@touch $@
 
-build: setup $(BUILD)/build.ninja ## the programs, in build/bin/
+build: setup $(BUILD)/build.ninja ## the programs, in build/bin/ [CUDAARCHS=90-real: kernels for GPUs not in this machine]
+	@cat $(BUILD)/kernels.txt
 	@cmake --build $(BUILD) -j $(JOBS) --target $(programs)
 
 demo: build ## the synthetic valley from its two elevation models to a scored map
@@ -46,6 +54,7 @@ demo: build ## the synthetic valley from its two elevation models to a scored ma
 	  '  run.h5                       the points over time, for ParaView'
 
 test: setup $(BUILD)/build.ninja ## everything built, every test run
+	@cat $(BUILD)/kernels.txt
 	@cmake --build $(BUILD) -j $(JOBS)
 	@TALUS_REQUIRE_TOOLS=$(if $(filter no,$(SETUP)),,1) \
 	  ctest --test-dir $(BUILD) --output-on-failure --no-tests=error -j $(TEST_JOBS)
@@ -54,13 +63,27 @@ validate: setup $(BUILD)/build.ninja ## error beside tolerance for every case of
 	@cmake --build $(BUILD) -j $(JOBS) --target $(programs) talus-validate
 	@$(BUILD)/bin/talus-validate --on $(ON) $(if $(filter-out 0 no,$(LONG)),--long) $(CASES)
 
-bundle: setup $(BUILD)/build.ninja ## programs and tests with the shared libraries they need: build/bundle, build/talus-bundle.tar.xz
-	@cmake --build $(BUILD) -j $(JOBS)
-	@tools/make-bundle.sh $(BUILD)
+lint: ## formatting and static analysis of everything [CHANGED=n: analyse only the n units changed last]
+	@tools/install-dependencies.sh lint
+	@tools/lint.sh $(if $(CHANGED),--changed $(CHANGED))
 
-bundle-solver: setup $(BUILD)/build.ninja ## the solver and its tests alone: build/bundle-solver, build/talus-bundle-solver.tar.xz
-	@cmake --build $(BUILD) -j $(JOBS)
-	@tools/make-bundle.sh $(BUILD) --solver
+docs: ## the programmers' reference, in build-docs/html
+	@tools/install-dependencies.sh docs
+	@tools/make-docs.sh build-docs
+
+# Bundles go to other machines: their kernels are compiled for every supported GPU, unless CUDAARCHS says otherwise.
+$(RELEASE_BUILD)/build.ninja: CMakePresets.json | setup
+	cmake --preset default -B $(RELEASE_BUILD) $(launcher) \
+	  $(if $(CUDAARCHS),-DCMAKE_CUDA_ARCHITECTURES='$(CUDAARCHS)',-DTALUS_ALL_GPUS=ON)
+	@touch $@
+
+bundle: setup $(RELEASE_BUILD)/build.ninja ## programs and tests with the libraries they need: build-release/talus-bundle.tar.xz
+	@cmake --build $(RELEASE_BUILD) -j $(JOBS)
+	@tools/make-bundle.sh $(RELEASE_BUILD)
+
+bundle-solver: setup $(RELEASE_BUILD)/build.ninja ## the solver and its tests alone: build-release/talus-bundle-solver.tar.xz
+	@cmake --build $(RELEASE_BUILD) -j $(JOBS)
+	@tools/make-bundle.sh $(RELEASE_BUILD) --solver
 
 clean: ## remove the build folder and the pipelines' results
-	rm -rf $(BUILD) pipelines/out
+	rm -rf $(BUILD) $(RELEASE_BUILD) build-docs build-lint pipelines/out

@@ -1,24 +1,58 @@
-# How a kernel file (.cu) is compiled: by nvcc where there is one, by the host compiler otherwise. Both places live in one
-# binary; TALUS_WITH_CUDA says whether the second one is there.
+# How a kernel file (.cu) is compiled: by nvcc where kernels are wanted, by the host compiler otherwise. The code for both
+# devices lives in one binary; TALUS_WITH_CUDA says whether that for GPUs is there.
+#
+# For which GPUs: those that CUDAARCHS or CMAKE_CUDA_ARCHITECTURES names; else, with TALUS_CUDA=AUTO, those of this machine,
+# and none where it has none; with TALUS_CUDA=ON and for bundles (TALUS_ALL_GPUS) all that are supported.
+option(TALUS_ALL_GPUS "Compile the kernels for every supported GPU" OFF)
+set(TALUS_SUPPORTED_GPUS "80-real;90")   # Ampere (and, by binary compatibility, Ada) and Hopper, with PTX for later ones
+
 set(TALUS_WITH_CUDA OFF)
+set(_kernels_for none)
 if(NOT TALUS_CUDA STREQUAL "OFF")
   include(CheckLanguage)
   if(NOT CMAKE_CUDA_COMPILER AND EXISTS /usr/local/cuda/bin/nvcc)
     set(CMAKE_CUDA_COMPILER /usr/local/cuda/bin/nvcc)
   endif()
-  if(NOT CMAKE_CUDA_ARCHITECTURES AND NOT DEFINED ENV{CUDAARCHS})   # which CMake reads by itself
-    # Ampere (and, by binary compatibility, Ada) and Hopper, with PTX for what comes after.
-    set(CMAKE_CUDA_ARCHITECTURES "80-real;90")
+  if(TALUS_ALL_GPUS)
+    set(CMAKE_CUDA_ARCHITECTURES ${TALUS_SUPPORTED_GPUS})
   endif()
-  check_language(CUDA)
-  if(CMAKE_CUDA_COMPILER)
-    enable_language(CUDA)
-    set(TALUS_WITH_CUDA ON)
+  if(CMAKE_CUDA_ARCHITECTURES)
+    set(_kernels_for ${CMAKE_CUDA_ARCHITECTURES})
+  elseif(DEFINED ENV{CUDAARCHS})   # which CMake reads by itself
+    set(_kernels_for $ENV{CUDAARCHS})
   elseif(TALUS_CUDA STREQUAL "ON")
-    message(FATAL_ERROR "TALUS_CUDA=ON, but no CUDA compiler was found. Install the CUDA Toolkit or set CMAKE_CUDA_COMPILER.")
+    set(_kernels_for ${TALUS_SUPPORTED_GPUS})
+    set(CMAKE_CUDA_ARCHITECTURES ${TALUS_SUPPORTED_GPUS})
+  elseif(EXISTS /dev/nvidia0)
+    set(_kernels_for native)
+    set(CMAKE_CUDA_ARCHITECTURES native)
+  endif()
+  if(NOT _kernels_for STREQUAL "none")
+    check_language(CUDA)
+    if(CMAKE_CUDA_COMPILER)
+      enable_language(CUDA)
+      set(TALUS_WITH_CUDA ON)
+    elseif(TALUS_CUDA STREQUAL "ON")
+      message(FATAL_ERROR
+        "TALUS_CUDA=ON, but no CUDA compiler was found. Install the CUDA Toolkit or set CMAKE_CUDA_COMPILER.")
+    endif()
   endif()
 endif()
-message(STATUS "Talus: GPU kernels ${TALUS_WITH_CUDA}")
+
+# One line that says for which GPUs; `make` shows it.
+string(REPLACE ";" "," _kernels_for "${_kernels_for}")
+if(TALUS_WITH_CUDA)
+  set(_kernels_line "GPU kernels: for ${_kernels_for} (other GPUs: make CUDAARCHS=80-real\\;90 ...)")
+elseif(TALUS_CUDA STREQUAL "OFF")
+  set(_kernels_line "GPU kernels: none, as asked")
+elseif(NOT _kernels_for STREQUAL "none")
+  set(_kernels_line "GPU kernels: none, since no CUDA Toolkit was found (install it, or set CMAKE_CUDA_COMPILER)")
+else()
+  set(_kernels_line
+    "GPU kernels: none, since this machine has no GPU (to compile them all the same: make CUDAARCHS=90-real ...)")
+endif()
+message(STATUS "${_kernels_line}")
+file(WRITE ${CMAKE_BINARY_DIR}/kernels.txt "${_kernels_line}\n")
 
 if(TALUS_WITH_CUDA)
   # CMake 3.25 does not know C++20 for nvcc; without these two it refuses CUDA at C++20.

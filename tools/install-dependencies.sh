@@ -1,19 +1,21 @@
 #!/usr/bin/env bash
 # Installs what is missing to build, run and test Talus on Debian 12 or Ubuntu 24.04. Quick when nothing is missing.
-# usage: tools/install-dependencies.sh [--list]
+# usage: tools/install-dependencies.sh [lint|docs] [--list]     (lint, docs: what `make lint` or `make docs` needs)
 set -euo pipefail
 
 packages=(
   # compiler and tools
   g++ make cmake ninja-build pkg-config git ca-certificates xz-utils patchelf
   # libraries, as cmake/dependencies.cmake looks for them
-  libeigen3-dev libsuitesparse-dev libopenblas0-serial libtbb-dev libfmt-dev libspdlog-dev libcli11-dev nlohmann-json3-dev libtomlplusplus-dev
+  libeigen3-dev libsuitesparse-dev libopenblas0-serial libtbb-dev libfmt-dev libspdlog-dev libcli11-dev
+  nlohmann-json3-dev libtomlplusplus-dev
   libgdal-dev libhdf5-dev libnetcdf-dev libcgal-dev
   libopenvdb-dev libboost-iostreams-dev libblosc-dev
   libcairo2-dev fonts-dejavu-core zlib1g-dev
   # what report.html is made of, and what bundles its scripts; ffmpeg makes animations where they are asked for
   libjs-leaflet libjs-chart.js esbuild ffmpeg
-  # tests, and the readers that are not ours: gdalinfo, the COG validator, ncdump, cdo, what the CF checker takes, vdb_print, h5dump, pdfinfo
+  # tests, and the readers that are not ours: gdalinfo, the COG validator, ncdump, cdo, what the CF checker takes,
+  # vdb_print, h5dump, pdfinfo
   libgtest-dev gdal-bin python3-gdal netcdf-bin cdo python3-netcdf4 udunits-bin libopenvdb-tools hdf5-tools
   python3-selenium poppler-utils
 )
@@ -23,6 +25,11 @@ packages=(
 if grep -qx 'ID=debian' /etc/os-release; then packages+=(chromium chromium-driver); fi
 
 fail() { echo "tools/install-dependencies.sh: $*" >&2; exit 1; }
+
+case ${1:-} in
+  lint) packages+=(clang-format clang-tidy) && shift ;;
+  docs) packages=(doxygen) && shift ;;
+esac
 
 if [[ ${1:-} == --list ]]; then
   printf '%s\n' "${packages[@]}"

@@ -10,7 +10,7 @@ namespace talus::postprocess {
 /// What stands outside the computed domain, where nothing can be known.
 enum class Outside { nodata, zero };
 
-/// Write every product field as FOLDER/<name>.tif (cloud-optimised). Returns the files. Throws DataError. With
+/// Write every product field as FOLDER/NAME.tif (cloud-optimised). Returns the files. Throws DataError. With
 /// Outside::zero for tools that take nodata badly: all maps but the arrival time, whose zero would be a time.
 std::vector<std::filesystem::path> write_geotiffs(const std::filesystem::path& folder, const Run& run,
                                                   Outside outside = Outside::nodata);
