@@ -56,7 +56,7 @@ void log_plan(const Domain& domain, const SolveOptions& o, On on) {
   const Scene scene = make_scene(domain, o);
   const GroundTables ground = make_ground_tables(scene.grid);
   const double wave_speed = fastest_wave(o);
-  const double step = std::min(o.courant / first_rate(scene.grid, ground, scene.points, wave_speed, 0), o.largest_step);
+  const double step = std::min(o.cfl / first_rate(scene.grid, ground, scene.points, wave_speed, 0), o.largest_step);
   const double volume = std::accumulate(scene.points.volume.begin(), scene.points.volume.end(), 0.0);
   log_info(fmt::format("{} material points, {:.0f} m3; grid {} x {} columns of {:g} m, layers of {:g} m",
                        scene.points.size(), volume, scene.grid.columns, scene.grid.rows, scene.grid.spacing,

@@ -64,7 +64,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
       : Base(scene, options, state, fields(options), options.deterministic ? 1 : drift_between_sorts<Device>),
         affine_(options.transfer == Transfer::apic),
         musl_(options.stress_update == StressUpdate::modified),
-        keeps_(options.transfer_time > options.courant),
+        keeps_(options.transfer_time > options.cfl),
         forces_apart_(musl_ || options.damping > 0 || keeps_ || options.energy_budget) {
     Clock clock = read_clock();
     clock.accelerated = 0;

@@ -4,8 +4,8 @@ namespace talus::solver {
 
 void ImplicitOptions::describe(recipe::Visitor& v) {
   v.number("step_s", step, recipe::positive, "step size; cut where a step does not converge, grown again after");
-  v.number("newmark_alpha", alpha, recipe::Range{0, 1, true, false}, "newmark: alpha (0.25: trapezoid)");
-  v.number("newmark_beta", beta, recipe::fraction, "newmark: beta (0.5: trapezoid; more damps)");
+  v.number("newmark_alpha", newmark_alpha, recipe::Range{0, 1, true, false}, "newmark: alpha (0.25: trapezoid)");
+  v.number("newmark_beta", newmark_beta, recipe::fraction, "newmark: beta (0.5: trapezoid; more damps)");
   v.integer("newton_iterations", newton_iterations, recipe::Range{1, 1000},
             "most Newton iterations a step; 1: one linear solve");
   v.number("newton_tolerance", newton_tolerance, recipe::Range{0, 1, true, true},
@@ -23,7 +23,7 @@ void ImplicitOptions::describe(recipe::Visitor& v) {
                  "eisenstat-walker: no more exact than Newton's iteration can use, linear_tolerance at the finest; "
                  "fixed: always linear_tolerance");
   v.integer("linear_iterations", linear_iterations, recipe::Range{1, 1e9}, "pcg: most iterations");
-  recipe::choice(v, "operator", form,
+  recipe::choice(v, "operator", operator_,
                  {{"points", Operator::points}, {"elements", Operator::elements}, {"stencil", Operator::stencil}},
                  "pcg: the tangent's product point by point, by stored elements, or by assembled blocks");
   recipe::choice(v, "preconditioner", preconditioner,

@@ -8,16 +8,17 @@ namespace talus::solver {
 
 /// How an implicit step is taken.
 struct ImplicitOptions {
-  double step = 0.01;               // [s]
-  double alpha = 0.25, beta = 0.5;  // Newmark
-  int newton_iterations = 30;       // 1: the single linear solve of the reference paper
-  double newton_tolerance = 1e-6;   // unbalanced force over the forces' size
+  double step = 0.01;  // [s]
+  double newmark_alpha = 0.25;
+  double newmark_beta = 0.5;
+  int newton_iterations = 30;      // 1: the single linear solve of the reference paper
+  double newton_tolerance = 1e-6;  // unbalanced force over the forces' size
   Tangent tangent = Tangent::frozen_yield;
   LinearSolver linear_solver = LinearSolver::pcg;
   double linear_tolerance = 1e-8;
   Forcing forcing = Forcing::eisenstat_walker;
   int linear_iterations = 5000;
-  Operator form = Operator::points;
+  Operator operator_ = Operator::points;
   Preconditioner preconditioner = Preconditioner::block;
   int step_cuts = 8;     // halvings before giving up
   double apex = 0.1;     // rounding of the cone's tip, in weights of a cell

@@ -8,7 +8,8 @@ void SchemeOptions::describe(recipe::Visitor& v) {
   recipe::choice(v, "mapping", mapping,
                  {{"terrain-following", Mapping::terrain_following}, {"cartesian", Mapping::cartesian}},
                  "background grid: layers follow the ground, or lie level");
-  recipe::choice(v, "ground_contact", ground, {{"nodes", GroundContact::nodes}, {"points", GroundContact::points}},
+  recipe::choice(v, "ground_contact", ground_contact,
+                 {{"nodes", GroundContact::nodes}, {"points", GroundContact::points}},
                  "Cartesian grid: the ground met by the nodes at or below it, or by points between the nodes");
   recipe::choice(v, "shape", shape,
                  {{"quadratic", ShapeKind::quadratic}, {"gimp", ShapeKind::gimp}, {"linear", ShapeKind::linear}},
@@ -20,7 +21,7 @@ void SchemeOptions::describe(recipe::Visitor& v) {
   recipe::choice(v, "stress_update", stress_update, {{"usl", StressUpdate::last}, {"musl", StressUpdate::modified}},
                  "stress from the grid's new velocity (usl), or from the points' mapped back (musl)");
   v.number("damping", damping, recipe::Range{0, 1, false, true}, "local non-viscous damping factor (Cundall)");
-  v.number("cfl", courant, recipe::Range{0, 0.8, true, false}, "step size over the CFL step");
+  v.number("cfl", cfl, recipe::Range{0, 0.8, true, false}, "step size over the CFL step");
   v.number("largest_step_s", largest_step, recipe::positive, "upper bound of the step size");
 }
 

@@ -14,13 +14,13 @@ enum class StressUpdate { last, modified };  // USL, MUSL
 struct SchemeOptions {
   Precision precision = Precision::double_;
   Mapping mapping = Mapping::terrain_following;
-  GroundContact ground = GroundContact::nodes;
+  GroundContact ground_contact = GroundContact::nodes;
   ShapeKind shape = ShapeKind::quadratic;
   Transfer transfer = Transfer::apic;
   double transfer_time = 10;  // CFL steps
   StressUpdate stress_update = StressUpdate::last;
   double damping = 0;  // Cundall's local factor
-  double courant = 0.5;
+  double cfl = 0.5;
   double largest_step = 1;  // [s]
   void describe(recipe::Visitor& v);
 };

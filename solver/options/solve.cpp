@@ -22,7 +22,7 @@ void SolveOptions::describe(recipe::Visitor& v) {
 }
 
 void SolveOptions::check_contacts(std::vector<Fault>& faults) const {
-  if (ground == GroundContact::points && mapping != Mapping::cartesian) {
+  if (ground_contact == GroundContact::points && mapping != Mapping::cartesian) {
     faults.push_back({"[solve] ground_contact = \"points\" does not go with mapping = \"terrain-following\"",
                       "there the nodes lie on the ground, and meet it exactly",
                       "Leave it out, or take mapping = \"cartesian\""});
@@ -90,10 +90,10 @@ SolveOptions with_preset(SolveOptions o) {
   o.transfer = Transfer::flip;
   o.transfer_time = 1e30;
   o.stress_update = StressUpdate::modified;
-  o.implicit.alpha = 0.25;
-  o.implicit.beta = 0.5;
+  o.implicit.newmark_alpha = 0.25;
+  o.implicit.newmark_beta = 0.5;
   o.implicit.newton_iterations = 1;
-  o.implicit.form = Operator::elements;
+  o.implicit.operator_ = Operator::elements;
   o.implicit.preconditioner = Preconditioner::diagonal;
   return o;
 }

@@ -22,7 +22,7 @@ struct SolveOptions : TimeOptions, SchemeOptions, GravityOptions, OutputOptions,
   BaseOptions base;
 
   /// Whether the mass meets anything between nodes.
-  bool meets_points() const { return !obstacles.empty() || ground == GroundContact::points; }
+  bool meets_points() const { return !obstacles.empty() || ground_contact == GroundContact::points; }
 
   void describe(recipe::Visitor& v);
   void check(std::vector<Fault>& faults) const;

@@ -10,7 +10,7 @@ namespace talus::solver {
 void WallOptions::describe(recipe::Visitor& v) {
   recipe::choice(v, "axis", axis, {{"x", Axis::x}, {"y", Axis::y}, {"z", Axis::z}}, "normal of the wall");
   v.number("position_m", position, recipe::any, "map coordinate, or elevation");
-  recipe::choice(v, "material_is", side, {{"above", Side::above}, {"below", Side::below}},
+  recipe::choice(v, "material_is", material_is, {{"above", Side::above}, {"below", Side::below}},
                  "where the material lies: at larger (above) or smaller (below) coordinates");
   recipe::choice(v, "kind", kind,
                  {{"roller", WallKind::roller}, {"fixed", WallKind::fixed}, {"frictional", WallKind::frictional}},
@@ -36,7 +36,7 @@ Walls<Real> make_walls(const std::vector<WallOptions>& options, double time, con
     if (now < o.from || now >= o.to) continue;
     Wall<Real>& wall = walls.list[walls.count++];
     wall.axis = static_cast<int>(o.axis);
-    wall.side = o.side == Side::above ? 1 : -1;
+    wall.side = o.material_is == Side::above ? 1 : -1;
     const double position = o.position + o.speed * (time - o.from);
     const int a = wall.axis;
     wall.position = static_cast<Real>((position - frame.origin[a]) / frame.cell[a]);

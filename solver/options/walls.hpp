@@ -14,8 +14,8 @@ enum class Side { below, above };
 /// A plane wall, present from one time to another.
 struct WallOptions {
   Axis axis = Axis::x;
-  double position = 0;      // map coordinate, or elevation [m]
-  Side side = Side::above;  // where the material is
+  double position = 0;             // map coordinate, or elevation [m]
+  Side material_is = Side::above;  // where the material is
   WallKind kind = WallKind::roller;
   double friction_angle = 0;   // [deg]
   double speed = 0;            // along the axis [m/s]

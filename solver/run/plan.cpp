@@ -63,7 +63,7 @@ std::string bed_words(const BaseOptions& b) {
 
 std::string integrator_words(const SolveOptions& o) {
   switch (o.integrator) {
-    case Integrator::explicit_: return fmt::format("explicit, {:g} of the CFL step", o.courant);
+    case Integrator::explicit_: return fmt::format("explicit, {:g} of the CFL step", o.cfl);
     case Integrator::newmark:
       return fmt::format("newmark, steps of {:g} s, {}", o.implicit.step,
                          o.implicit.newton_iterations == 1 ? "one linear solve each" : "Newton");
@@ -124,7 +124,7 @@ std::vector<std::string> features(const Domain& domain, const SolveOptions& o) {
   if (o.stress_update == StressUpdate::modified) add("stress", "from velocities mapped back (musl)");
   if (o.integrator != Integrator::explicit_ && o.implicit.b_bar) add("volume", "means over cells (B-bar)");
   if (!o.walls.empty()) add("walls", fmt::format("{}", o.walls.size()));
-  if (o.ground == GroundContact::points) add("ground", "met by points between the nodes");
+  if (o.ground_contact == GroundContact::points) add("ground", "met by points between the nodes");
   for (const ObstacleOptions& obstacle : o.obstacles)
     add("obstacle", fmt::format("{}, {:g} deg", obstacle.name, obstacle.friction_angle));
   if (!o.loads.empty()) add("loads", fmt::format("{}", o.loads.size()));
@@ -154,7 +154,7 @@ std::vector<std::string> plan(const Domain& domain, const SolveOptions& o, On on
     const GroundTables ground = make_ground_tables(scene.grid);
     const double wave = fastest_wave(o), fast = lowest_stiffness(domain, o).speed;
     const auto step_at = [&](double speed) {
-      return std::min(o.courant / first_rate(scene.grid, ground, scene.points, wave, speed), o.largest_step);
+      return std::min(o.cfl / first_rate(scene.grid, ground, scene.points, wave, speed), o.largest_step);
     };
     fewest = o.end_time / step_at(0);
     most = o.end_time / std::min(step_at(fast), trial.step > 0 ? trial.step : 1e30);

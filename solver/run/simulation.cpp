@@ -317,7 +317,7 @@ void Simulation::fail(const Clock& clock) const {
                    "than 1000 km/s)",
                    clock.step, clock.time, clock.failed_point, where),
        fmt::format("the step of {:.3g} s is too long for it", clock.step_size),
-       fmt::format("Lower cfl (now {:g}), or use shape = \"quadratic\" with transfer = \"apic\"", options_.courant)});
+       fmt::format("Lower cfl (now {:g}), or use shape = \"quadratic\" with transfer = \"apic\"", options_.cfl)});
 }
 
 RunSummary Simulation::run(const std::string& scene, const std::string& title) {

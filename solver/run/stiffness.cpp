@@ -68,7 +68,7 @@ StiffnessDemand lowest_stiffness(const Domain& domain, const SolveOptions& o) {
                 fmt::format("the dynamic pressure at {:.3g} m/s, which the energy line allows, strains it by 2 %",
                             demand.speed)},
                // Its decay time in seconds stays; where that is no more than a step, it would no longer be resolved.
-               {o.transfer_time > 0 ? m.youngs_modulus * std::pow(o.courant / o.transfer_time, 2) : 0,
+               {o.transfer_time > 0 ? m.youngs_modulus * std::pow(o.cfl / o.transfer_time, 2) : 0,
                 "velocity finer than the grid decays within a step"}};
   const Need& most = *std::max_element(std::begin(needs), std::end(needs),
                                        [](const Need& a, const Need& b) { return a.modulus < b.modulus; });

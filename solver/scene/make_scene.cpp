@@ -111,7 +111,7 @@ Scene make_scene(const Domain& domain, const SolveOptions& options) {
   shape.spacing = domain.grid.cell;
   shape.layer_height = domain.layer_height;
   shape.mapping = options.mapping;
-  shape.ground = options.ground;
+  shape.ground = options.ground_contact;
   shape.quadratic = options.shape == ShapeKind::quadratic;
   // With "auto" the same for both integrators: what has next to no weight has next to no say in a change.
   const bool some_explicit = options.integrator == Integrator::explicit_ || options.integrator == Integrator::automatic;

@@ -32,7 +32,7 @@ SolverState first_state(const Scene& scene, const SolveOptions& options) {
   const auto cells = scene.map.count();
   state.maps = {std::vector<double>(cells, 0.0), std::vector<double>(cells, 0.0), std::vector<double>(cells, 0.0),
                 std::vector<double>(cells, -1.0)};
-  state.clock.courant = options.courant;
+  state.clock.courant = options.cfl;
   state.clock.largest_step = options.largest_step;
   state.clock.transfer_time = options.transfer_time;
   state.clock.keeps_budget = options.energy_budget ? 1 : 0;

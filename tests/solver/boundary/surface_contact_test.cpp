@@ -33,8 +33,8 @@ SolveOptions rigid(Integrator integrator) {
   o.material.model = MaterialModel::hencky;
   o.material.youngs_modulus = 1e8;
   o.implicit.step = 0.005;
-  o.implicit.alpha = 0.5;
-  o.implicit.beta = 1;
+  o.implicit.newmark_alpha = 0.5;
+  o.implicit.newmark_beta = 1;
   return o;
 }
 
@@ -59,7 +59,7 @@ TEST_P(SurfaceContactTest, block_slides_on_ground_between_the_nodes) {  // valid
       fill(d, {x0, x0 + 6, y0, y0 + 6, 0, c.layers * 1.0});
       SolveOptions o = rigid(integrator);
       o.mapping = Mapping::cartesian;
-      o.ground = GroundContact::points;
+      o.ground_contact = GroundContact::points;
       o.base.friction_angle = c.friction;
       const Scene scene = make_scene(d, o);
       const auto solver = make_solver(scene, o, GetParam());
@@ -91,7 +91,7 @@ TEST_P(SurfaceContactTest, rests_on_ground_between_the_nodes_below_its_friction_
   for (const Integrator integrator : both) {
     SolveOptions o = rigid(integrator);
     o.mapping = Mapping::cartesian;
-    o.ground = GroundContact::points;
+    o.ground_contact = GroundContact::points;
     o.base.friction_angle = 30;
     const Scene scene = make_scene(d, o);
     const auto solver = make_solver(scene, o, GetParam());

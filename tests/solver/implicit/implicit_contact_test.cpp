@@ -149,8 +149,8 @@ TEST_P(ImplicitContact, slides_down_an_incline_with_friction) {
   fill(d, {4, 10, 5, 11, 0, 2});
   SolveOptions o;
   o.integrator = Integrator::newmark;
-  o.implicit.beta = 1;  // backward Euler in velocity
-  o.implicit.alpha = 0.5;
+  o.implicit.newmark_beta = 1;  // backward Euler in velocity
+  o.implicit.newmark_alpha = 0.5;
   o.implicit.step = 0.02;
   o.material.model = MaterialModel::hencky;
   o.material.youngs_modulus = 1e8;

@@ -210,7 +210,7 @@ TEST_P(Implicit, gives_the_same_displacement_by_every_linear_solver) {
       o.implicit.newton_tolerance = 1e-10;
       o.implicit.linear_tolerance = 1e-11;
       o.implicit.linear_solver = kind == 0 ? LinearSolver::cholesky : LinearSolver::pcg;
-      o.implicit.form = kind <= 1 ? Operator::points : kind == 2 ? Operator::elements : Operator::stencil;
+      o.implicit.operator_ = kind <= 1 ? Operator::points : kind == 2 ? Operator::elements : Operator::stencil;
       const Scene scene = make_scene(d, o);
       const auto solver = make_solver(scene, o, GetParam());
       StepStats stats;

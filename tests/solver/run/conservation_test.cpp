@@ -145,7 +145,7 @@ TEST_P(Conservation, loses_velocity_finer_than_the_grid_by_time_and_not_by_steps
       SolveOptions o = options();
       o.transfer = transfer;
       o.transfer_time = transfer_time;
-      o.courant = courant;
+      o.cfl = courant;
       Scene scene = make_scene(d, o);
       std::mt19937 engine(11);
       std::uniform_real_distribution<double> u(-1e-3, 1e-3);
@@ -183,7 +183,7 @@ TEST_P(Conservation, deforms_uniformly_under_a_linear_velocity) {
     SolveOptions o = options();
     o.shape = shape;
     o.largest_step = 1e-3;
-    o.courant = 0.8;
+    o.cfl = 0.8;
     Scene scene = make_scene(d, o);
     const double l[3][3] = {{0.01, 0.02, -0.03}, {0.015, -0.02, 0.01}, {0.005, 0.03, 0.02}};  // grad v [1/s]
     const double cell[3] = {1.0, 1.0, 0.5};

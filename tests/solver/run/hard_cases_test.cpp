@@ -299,7 +299,7 @@ TEST_P(HardCases, single_precision_ends_within_the_discretisation_error) {  // C
   const auto deposit = [&](Precision precision, double courant) {
     SolveOptions o;
     o.precision = precision;
-    o.courant = courant;
+    o.cfl = courant;
     const Scene scene = make_scene(d, o);
     const auto solver = make_solver(scene, o, GetParam());
     run_to(*solver, 15);
