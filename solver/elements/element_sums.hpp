@@ -5,20 +5,10 @@
 #include <type_traits>
 
 #include "solver/elements/element_list.hpp"
-#include "solver/elements/filler_springs.hpp"
-#include "solver/elements/implicit_kernels.hpp"
+#include "solver/elements/point_tangents.hpp"
+#include "solver/transfer/point_gradients.hpp"
 
 namespace talus::solver {
-
-/// What the tangent is summed from.
-template <class Real>
-struct PointTangents {
-  GridView<Real> grid;
-  ParticleView<Real> points;
-  TangentStore<Real> tangents;
-  MeanDilationView<Real> means;  // off: null
-  FillerSprings springs;         // off: null
-};
 
 /// One thread: a tile of `columns` x `rows` node pairs of one element. On the CPU the tile is the element, so that a
 /// point is visited once; on the GPU it is one column node by a slice of row nodes, so that the sums stay in registers.

@@ -1,6 +1,5 @@
 #include "solver/elements/filler_springs.hpp"
 
-#include "solver/elements/implicit_kernels.hpp"
 #include "solver/grid/instances.hpp"
 
 namespace talus::solver {

@@ -1,6 +1,6 @@
 #include "solver/elements/mean_dilation.hpp"
 
-#include "solver/elements/implicit_kernels.hpp"
+#include "solver/elements/displacement_gradient.hpp"
 #include "solver/grid/instances.hpp"
 
 namespace talus::solver {

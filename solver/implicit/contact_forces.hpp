@@ -4,7 +4,8 @@
 #pragma once
 
 #include "solver/boundary/surface_contact.hpp"
-#include "solver/elements/implicit_kernels.hpp"
+#include "solver/implicit/node_arrays.hpp"
+#include "solver/transfer/point_gradients.hpp"
 
 namespace talus::solver {
 

@@ -1,7 +1,9 @@
 // Node kernels of an implicit step: constraints, contact, the residual, Newmark.
 #pragma once
 
-#include "solver/elements/implicit_kernels.hpp"
+#include "solver/boundary/base_friction.hpp"
+#include "solver/boundary/walls.hpp"
+#include "solver/implicit/node_arrays.hpp"
 #include "solver/parallel/sums.hpp"
 
 namespace talus::solver {

@@ -6,10 +6,12 @@
 #include <cmath>
 #include <type_traits>
 
+#include "solver/implicit/accept_step.hpp"
 #include "solver/implicit/contact_forces.hpp"
 #include "solver/implicit/controls.hpp"
 #include "solver/implicit/implicit_nodes.hpp"
 #include "solver/implicit/newton_control.hpp"
+#include "solver/implicit/scatter_inertia.hpp"
 #include "solver/integrator/point_solver.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/integrator/step_failure.hpp"
@@ -499,36 +501,23 @@ class ImplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     refresh_operator();
     const ProfilePhase<Device> phase("conjugate gradients");
     const ImplicitControls& o = controls_;
-    if (o.linear.solver == LinearSolver::pcg)
-      return cg_.solve(residual_, change_, tolerance, o.linear.iterations, LinearSystem{*this});
-    LinearSystem system{*this};
-    const auto multiply = [&](const NodeVector<Device>& x, NodeVector<Device>& y) {
-      y.fill_zero();
-      system.product(x, y);
-      for_each(Device{}, count_, system.close(x, y));
-    };
-    const auto precondition = [&](const NodeVector<Device>& r, NodeVector<Device>& z) { preconditioner_.apply(r, z); };
-    return bicgstab_.solve(residual_, change_, tolerance, o.linear.iterations, multiply, precondition);
+    const KrylovLimits limits{tolerance, o.linear.iterations};
+    TangentProduct product{*this};
+    return o.linear.solver == LinearSolver::pcg ? cg_.solve(product, preconditioner_, residual_, change_, limits)
+                                                : bicgstab_.solve(product, preconditioner_, residual_, change_, limits);
   }
 
-  /// The tangent of the step as conjugate gradients take it.
-  struct LinearSystem {
+  /// The tangent of the step as Krylov methods take it.
+  struct TangentProduct {
     ImplicitSolverOf& solver;
-    void product(const NodeVector<Device>& x, NodeVector<Device>& y, const CgState* state = nullptr) {
-      solver.operator_.apply(x, y, state);
+    void add_product(const NodeVector<Device>& x, NodeVector<Device>& y, const int* halted) {
+      solver.operator_.apply(x, y, halted);
       if (!solver.contact_.on()) return;
       solver.contact_.each(ApplyContacts<Real, Shape>{solver.grid_.view(), solver.contact_.view(), solver.mass_.data(),
                                                       solver.contact_stiffness_.data(), x.data(), y.data()});
     }
-    CloseProduct close(const NodeVector<Device>& x, NodeVector<Device>& y) {
+    CloseProduct closing(const NodeVector<Device>& x, NodeVector<Device>& y) {
       return {solver.nodes(), solver.held(), solver.scheme_.inertia(), x.data(), y.data()};
-    }
-    void precondition(const NodeVector<Device>& r, NodeVector<Device>& z, CgState* state) {
-      solver.preconditioner_.apply(r, z, state);
-    }
-    void precondition_after(const talus::detail::StepAlong& step, const NodeVector<Device>& r, NodeVector<Device>& z,
-                            CgState* state) {
-      solver.preconditioner_.apply_after(step, r, z, state);
     }
   };
 

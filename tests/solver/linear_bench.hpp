@@ -3,8 +3,11 @@
 
 #include <random>
 
+#include "solver/elements/forces.hpp"
+#include "solver/implicit/scatter_inertia.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/linear/direct/cholesky_solver.hpp"
+#include "solver/linear/krylov/conjugate_gradient.hpp"
 #include "solver/linear/operator/tangent_operator.hpp"
 #include "solver/linear/preconditioner/preconditioner.hpp"
 #include "solver/options/solve.hpp"
@@ -284,23 +287,16 @@ struct LinearBench {
     op.begin_step(elements, count);
     op.refresh(from(), grid.groups());
     ConjugateGradient<Device> cg;
-    struct System {
+    struct Product {
       TangentOperator<Real, Device, Shape>& op;
-      NodePreconditioner<Real, Device, Shape>& preconditioner;
       HeldNodes held;
-      void product(const NodeVector<Device>& p, NodeVector<Device>& ap, const CgState* state) {
-        op.apply(p, ap, state);
+      void add_product(const NodeVector<Device>& p, NodeVector<Device>& ap, const int* halted) {
+        op.apply(p, ap, halted);
       }
-      CloseSystem close(const NodeVector<Device>& p, NodeVector<Device>& ap) { return {held, p.data(), ap.data()}; }
-      void precondition(const NodeVector<Device>& r, NodeVector<Device>& z, CgState* state) {
-        preconditioner.apply(r, z, state);
-      }
-      void precondition_after(const talus::detail::StepAlong& step, const NodeVector<Device>& r, NodeVector<Device>& z,
-                              CgState* state) {
-        preconditioner.apply_after(step, r, z, state);
-      }
+      CloseSystem closing(const NodeVector<Device>& p, NodeVector<Device>& ap) { return {held, p.data(), ap.data()}; }
     };
-    const LinearReport report = cg.solve(b, x, tolerance, 5000, System{op, preconditioner, held()});
+    const LinearReport report =
+        cg.solve(Product{op, held()}, preconditioner, b, x, {.tolerance = tolerance, .iterations = 5000});
     EXPECT_TRUE(report.converged) << "residual " << report.residual;
     if (iterations) *iterations = report.iterations;
     return x.download();

@@ -4,7 +4,7 @@
 
 #include "solver/linear/direct/cholesky.hpp"
 #include "solver/linear/direct/csr_assembly.hpp"
-#include "solver/linear/krylov/conjugate_gradient.hpp"
+#include "solver/linear/krylov/linear_report.hpp"
 
 namespace talus::solver {
 

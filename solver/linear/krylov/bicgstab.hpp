@@ -2,69 +2,79 @@
 // symmetric.
 #pragma once
 
-#include "solver/linear/krylov/conjugate_gradient.hpp"
+#include <cmath>
+
+#include "solver/linear/krylov/contract.hpp"
+#include "solver/linear/krylov/linear_report.hpp"
 
 namespace talus {
 
 template <class Device>
-struct BiCgStab {
-  NodeVector<Device> r, shadow, p, v, t, direction;
-
-  /// Solves A x = b from x = 0. `apply(p, ap)`, `precondition(r, z)`. An iteration takes two products.
-  template <class Apply, class Precondition>
-  LinearReport solve(const NodeVector<Device>& b, NodeVector<Device>& x, double tolerance, int most, Apply&& apply,
-                     Precondition&& precondition) {
+class BiCgStab {
+ public:
+  /// Solves A x = b from x = 0 (see contract.hpp). An iteration is one product; two make a round of the method.
+  template <LinearOperator<Device> Operator, LinearPreconditioner<Device> Preconditioner>
+  LinearReport solve(Operator&& a, Preconditioner&& preconditioner, const NodeVector<Device>& b, NodeVector<Device>& x,
+                     const KrylovLimits& limits) {
     LinearReport report;
     x.resize(b.size());
     x.fill_zero();
-    copy(b, r);
+    copy(b, r_);
     const double size = std::sqrt(dot(b, b));
     report.converged = size == 0;
     if (!(size > 0)) return report;
-    for (auto* w : {&v, &t, &direction, &p}) {
+    for (auto* w : {&v_, &t_, &direction_, &p_}) {
       w->resize(b.size());
       w->fill_zero();
     }
-    copy(b, shadow);
-    // Goes along `direction`, whose product is `product`; true when that was the last half step.
-    const auto go = [&](double way, const NodeVector<Device>& product) {
-      axpby(way, direction, 1.0, x);
-      axpby(-way, product, 1.0, r);
+    copy(b, shadow_);
+    const auto apply = [&](const NodeVector<Device>& from, NodeVector<Device>& to) {
+      to.fill_zero();
+      a.add_product(from, to, nullptr);
+      for_each(Device{}, static_cast<int>(from.size()), a.closing(from, to));
+    };
+    // Goes along `direction_`, whose product is `product`; true when that was the last half step.
+    const auto advance = [&](double way, const NodeVector<Device>& product) {
+      axpby(way, direction_, 1.0, x);
+      axpby(-way, product, 1.0, r_);
       ++report.iterations;
-      report.residual = std::sqrt(dot(r, r)) / size;
-      report.converged = report.residual <= tolerance;
+      report.residual = std::sqrt(dot(r_, r_)) / size;
+      report.converged = report.residual <= limits.tolerance;
       return report.converged;
     };
     double rho = 1, alpha = 1, omega = 1;
-    while (report.iterations < most) {
-      const double next = dot(shadow, r);
+    while (report.iterations < limits.iterations) {
+      const double next = dot(shadow_, r_);
       if (!std::isfinite(next) || next == 0) break;
       // p = r + beta (p - omega v)
       const double beta = next / rho * (alpha / omega);
-      axpby(-omega, v, 1.0, p);
-      axpby(1.0, r, beta, p);
+      axpby(-omega, v_, 1.0, p_);
+      axpby(1.0, r_, beta, p_);
       rho = next;
-      precondition(p, direction);
-      apply(direction, v);
-      const double along = dot(shadow, v);
+      preconditioner.apply(p_, direction_, nullptr);
+      apply(direction_, v_);
+      const double along = dot(shadow_, v_);
       if (along == 0) break;
       alpha = rho / along;
-      if (go(alpha, v)) break;
-      precondition(r, direction);
-      apply(direction, t);
-      const double tt = dot(t, t);
+      if (advance(alpha, v_)) break;
+      preconditioner.apply(r_, direction_, nullptr);
+      apply(direction_, t_);
+      const double tt = dot(t_, t_);
       if (!(tt > 0)) break;
-      omega = dot(t, r) / tt;
-      if (go(omega, t) || omega == 0) break;
+      omega = dot(t_, r_) / tt;
+      if (advance(omega, t_) || omega == 0) break;
     }
     return report;
   }
 
   std::size_t bytes() const {
     std::size_t total = 0;
-    for (const auto* w : {&r, &shadow, &p, &v, &t, &direction}) total += w->bytes();
+    for (const auto* w : {&r_, &shadow_, &p_, &v_, &t_, &direction_}) total += w->bytes();
     return total;
   }
+
+ private:
+  NodeVector<Device> r_, shadow_, p_, v_, t_, direction_;
 };
 
 }  // namespace talus

@@ -83,12 +83,12 @@ struct ApplyRow {
   View matrix;
   const Vec3<double>* x;
   Vec3<double>* y;
-  const CgState* state;
+  const int* halted;  // of the loop that this is part of; null: of none
   double bytes(int rows) const {
     return rows * static_cast<double>(View::neighbours * (9 * sizeof(*matrix.blocks) + sizeof(int)) + sizeof(*x) +
                                       2 * sizeof(*y));
   }
-  TALUS_HD bool idle() const { return state && state->halt != CgState::no; }
+  TALUS_HD bool idle() const { return halted && *halted != 0; }
   TALUS_HD Vec3<double> term(int row, int q) const { return matrix.product(row, q, x); }
   TALUS_HD void finish(int row, const Vec3<double>& sum) const { y[matrix.node_of[row]] += sum; }
 };
@@ -126,8 +126,8 @@ void StencilMatrix<Real, Device, Shape, Number>::assemble(const ElementList<Real
 
 template <class Real, class Device, class Shape, class Number>
 void StencilMatrix<Real, Device, Shape, Number>::apply(const NodeVector<Device>& x, NodeVector<Device>& y,
-                                                       const CgState* state) {
-  sum_rows<View::neighbours>(Device{}, rows_, ApplyRow<View>{view(), x.data(), y.data(), state});
+                                                       const int* halted) {
+  sum_rows<View::neighbours>(Device{}, rows_, ApplyRow<View>{view(), x.data(), y.data(), halted});
 }
 
 #define TALUS_INSTANTIATE(Real, Device, Shape) template class StencilMatrix<Real, Device, Shape>;

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "solver/elements/element_sums.hpp"
-#include "solver/linear/krylov/conjugate_gradient.hpp"
+#include "solver/parallel/vectors.hpp"
 
 namespace talus::solver {
 
@@ -62,8 +62,8 @@ class StencilMatrix {
   /// Sums the points' tangents; `build` came before.
   void assemble(const ElementList<Real, Device, Shape>& list, const PointTangents<Real>& from);
 
-  /// y += K x; nothing in a loop that is over.
-  void apply(const NodeVector<Device>& x, NodeVector<Device>& y, const CgState* state = nullptr);
+  /// y += K x; nothing where `halted` is there and not zero.
+  void apply(const NodeVector<Device>& x, NodeVector<Device>& y, const int* halted = nullptr);
 
   View view() { return {rows_, node_of_.data(), row_of_.data(), table_.data(), blocks_.data()}; }
   int rows() const { return rows_; }

@@ -1,6 +1,7 @@
 // y = K x in the three forms of [solve.implicit] operator: per point, stored elements, assembled stencil.
 #pragma once
 
+#include "solver/elements/forces.hpp"
 #include "solver/linear/operator/operator_form.hpp"
 #include "solver/linear/operator/stencil_matrix.hpp"
 #include "solver/linear/operator/stored_elements.hpp"
@@ -37,15 +38,15 @@ class TangentOperator {
     }
   }
 
-  /// y += K x. Stencil and points do nothing in a loop that is over.
-  void apply(const NodeVector<Device>& x, NodeVector<Device>& y, const CgState* state = nullptr) {
+  /// y += K x. Stencil and points do nothing where `halted` is there and not zero.
+  void apply(const NodeVector<Device>& x, NodeVector<Device>& y, const int* halted = nullptr) {
     if (form_ == Operator::elements) return stored_.apply(*list_, x, y);
-    if (single_) return single_stencil_.apply(x, y, state);
-    if (form_ == Operator::stencil) return stencil_.apply(x, y, state);
+    if (single_) return single_stencil_.apply(x, y, halted);
+    if (form_ == Operator::stencil) return stencil_.apply(x, y, halted);
     using Product = TangentTimes<Real, Shape>;
     scatter_points(Device{}, from_.points.count, *groups_,
                    ScatterForces<Real, Shape, Product>{
-                       {from_.grid, from_.points}, Product{from_.tangents, x.data()}, y.data(), state});
+                       {from_.grid, from_.points}, Product{from_.tangents, x.data()}, y.data(), halted});
     if (from_.means.on()) apply_means(*list_, from_.means, x, y);
     if (from_.springs.on()) apply_springs(*list_, from_.springs, x, y);
   }

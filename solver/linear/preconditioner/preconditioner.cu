@@ -3,6 +3,7 @@
 #include <type_traits>
 
 #include "solver/grid/instances.hpp"
+#include "solver/transfer/point_gradients.hpp"
 
 namespace talus::solver {
 namespace {
@@ -173,15 +174,6 @@ struct SolveColumns {
   }
 };
 
-/// One thread: one node's share of r . z.
-struct TakeAngle {
-  const Vec3<double>*r, *z;
-  template <class Before>
-  TALUS_HD double operator()(int n, const Before&, double&) const {
-    return dot(r[n], z[n]);
-  }
-};
-
 /// A preconditioner's kernel by itself.
 template <class Kernel>
 struct Alone {
@@ -222,16 +214,6 @@ struct MeasuredAfter {
     Terms<2> terms;
     terms.value[1] = kernel(i, step, terms.value[0]);
     return terms;
-  }
-};
-
-/// The step alone, where the preconditioner needs all of it first.
-struct MeasuredStep {
-  using Named = talus::detail::StepAlong;
-  double bytes(int count) const { return step.bytes(count); }
-  talus::detail::StepAlong step;
-  TALUS_HD Terms<1> operator()(int n) const {
-    return step.state->halt == CgState::no ? Terms<1>{{step(n)}} : Terms<1>{};
   }
 };
 
@@ -283,7 +265,7 @@ void NodePreconditioner<Real, Device, Shape>::apply(const NodeVector<Device>& r,
                                                     CgState* state) {
   if (by_elements(kind_)) {
     grids_.apply(r, z);
-    if (state) run(held_.count, TakeAngle{r.data(), z.data()}, state);
+    if (state) talus::detail::measure_angle(held_.count, sums_, r, z, state);
   } else if (kind_ == Preconditioner::column) {
     run(columns_.count(), SolveColumns<Real, reach>{columns_, held_, factors(), r.data(), z.data()}, state);
   } else {
@@ -296,7 +278,7 @@ void NodePreconditioner<Real, Device, Shape>::apply_after(const talus::detail::S
                                                           const NodeVector<Device>& r, NodeVector<Device>& z,
                                                           CgState* state) {
   if (by_elements(kind_)) {
-    sum_each<1>(Device{}, held_.count, sums_, MeasuredStep{step}, talus::detail::FinishResidual{state});
+    talus::detail::take_step(held_.count, sums_, step, state);
     apply(r, z, state);
   } else if (kind_ == Preconditioner::column) {
     run_after(step, columns_.count(), SolveColumns<Real, reach>{columns_, held_, factors(), r.data(), z.data()}, state);

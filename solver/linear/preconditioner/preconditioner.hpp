@@ -8,7 +8,7 @@
 
 #include "solver/elements/element_sums.hpp"
 #include "solver/elements/held_nodes.hpp"
-#include "solver/linear/krylov/conjugate_gradient.hpp"
+#include "solver/linear/krylov/contract.hpp"
 #include "solver/linear/preconditioner/column_factors.hpp"
 #include "solver/linear/preconditioner/multigrid.hpp"
 #include "solver/linear/preconditioner/preconditioner_kind.hpp"

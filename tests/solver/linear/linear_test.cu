@@ -6,7 +6,6 @@
 #include "common/error.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/linear/direct/elimination_order.hpp"
-#include "solver/linear/krylov/bicgstab.hpp"
 #include "tests/solver/linear_bench.hpp"
 
 namespace talus::solver::testing {
@@ -148,43 +147,6 @@ TEST_P(LinearSystem, products_of_elements_and_stencil_are_those_of_the_points) {
 }
 
 TEST_P(LinearSystem, cholesky_finds_the_displacement_that_conjugate_gradients_find) { TALUS_RUN(compare_solvers); }
-/// A random, diagonally heavy, unsymmetric matrix of node blocks against what it was multiplied with.
-TEST(BiCgStab, solves_a_system_that_is_not_symmetric) {
-  constexpr int nodes = 60;
-  std::mt19937 engine(3);
-  std::uniform_real_distribution<double> u(-1, 1);
-  std::vector<double> a(std::size_t{9} * nodes * nodes);
-  for (double& value : a) value = u(engine) / std::sqrt(3.0 * nodes);
-  for (std::size_t i = 0; i < 3 * nodes; ++i) a[i * 3 * nodes + i] += 1.5 + 0.01 * static_cast<double>(i);
-  const auto multiply = [&](const NodeVector<CpuDevice>& x, NodeVector<CpuDevice>& y) {
-    const auto* from = reinterpret_cast<const double*>(x.data());
-    auto* to = reinterpret_cast<double*>(y.data());
-    for (std::size_t i = 0; i < 3 * nodes; ++i) {
-      to[i] = 0;
-      for (std::size_t j = 0; j < 3 * nodes; ++j) to[i] += a[i * 3 * nodes + j] * from[j];
-    }
-  };
-  NodeVector<CpuDevice> expected, b, x;
-  expected.upload(random_vectors(nodes, 1, 4));
-  b.resize(nodes);
-  multiply(expected, b);
-  BiCgStab<CpuDevice> solver;
-  const auto report = solver.solve(b, x, 1e-12, 500, multiply,
-                                   [](const NodeVector<CpuDevice>& r, NodeVector<CpuDevice>& z) { copy(r, z); });
-  EXPECT_TRUE(report.converged);
-  EXPECT_LT(difference(x.download(), expected.download()), 1e-11);
-  // It says so when it runs out of iterations, and takes a right-hand side of nothing.
-  EXPECT_FALSE(
-      solver
-          .solve(b, x, 1e-12, 2, multiply, [](const NodeVector<CpuDevice>& r, NodeVector<CpuDevice>& z) { copy(r, z); })
-          .converged);
-  b.fill_zero();
-  EXPECT_TRUE(
-      solver
-          .solve(b, x, 1e-12, 2, multiply, [](const NodeVector<CpuDevice>& r, NodeVector<CpuDevice>& z) { copy(r, z); })
-          .converged);
-}
-
 TEST_P(LinearSystem, cholesky_keeps_its_analysis_while_the_pattern_stands) { TALUS_RUN(keep_analysis); }
 TEST_P(LinearSystem, cholesky_says_that_a_matrix_is_indefinite) { TALUS_RUN(report_indefinite); }
 TEST_P(LinearSystem, cholesky_says_that_a_floating_body_has_no_equilibrium) { TALUS_RUN(report_singular); }

@@ -1,0 +1,87 @@
+// Forces on the nodes from the points' stresses, or from their changes by the tangents: f_int of (T16), and K x.
+#pragma once
+
+#include "solver/elements/displacement_gradient.hpp"
+#include "solver/elements/point_tangents.hpp"
+#include "solver/material/tangent.hpp"
+#include "solver/transfer/point_gradients.hpp"
+
+namespace talus::solver {
+
+/// What the points' stresses, or their changes, give to the nodes: V P grad N, P = law(p, its gradients), which may
+/// keep what belongs to the point.
+template <class Real, class Shape, class Law>
+struct ScatterForces : PointScatter<Real, Shape> {
+  using Base = PointScatter<Real, Shape>;
+  using Named = Law;
+  using Number = double;
+  static constexpr int parts = 3, tiles_at_once = Law::tiles_at_once;
+  Law law;
+  Vec3<double>* forces;
+  const int* halted = nullptr;  // of the loop that this is part of: does nothing where it is not zero
+
+  double bytes(int count) const {
+    return law.bytes(count) + count * (this->points.place_bytes + sizeof(Real)) +
+           this->grid.nodes * 3.0 * sizeof(*forces);
+  }
+
+  struct Source : PointGradients<Real, Shape> {
+    Mat3<Real> pull;
+    TALUS_HD Source(const ScatterForces& k, int p) : PointGradients<Real, Shape>(k.grid, k.points, p) {
+      pull = k.law(k.grid, k.points, p, *this);
+      const Real volume = k.points.volume[p];
+      pull = {pull.a * volume, pull.b * volume, pull.c * volume};
+    }
+  };
+  using Sums = Vec3<double>;
+
+  TALUS_HD void operator()(int p) const { scatter_point(*this, p); }
+  TALUS_HD bool counts(int p) const { return Base::counts(p) && (!halted || *halted == 0); }
+  TALUS_HD void add(const Source& g, int q, Sums (&sums)[Base::deep]) const {
+    TALUS_UNROLL
+    for (int c = 0; c < Base::deep; ++c) sums[c] += widen(g.pull * g.gradient(Base::along_x(q), Base::along_y(q), c));
+  }
+  TALUS_HD void give_to(int at, const Sums& sums) const { scatter_add(&forces[at], sums); }
+  TALUS_HD static void store(const Sums& sums, double* to) { put(sums, to); }
+  TALUS_HD double* part(int node, int q) const { return &forces[node].x + q; }
+};
+
+/// Stress for the displacement u; the tangent as well where there is a store for it.
+template <class Real, class Shape>
+struct StressAt {
+  static constexpr int tiles_at_once = 0;
+  Materials<Real> materials;
+  bool dilatant;
+  bool definite;  // without the part of the tangent that compression makes negative
+  MeanDilationView<Real> means;
+  TangentStore<Real> tangents;
+  const Vec3<double>* u;
+
+  double bytes(int count) const { return count * (7.0 * sizeof(Real) + tangents.bytes_each()); }
+  TALUS_HD Mat3<Real> operator()(const GridView<Real>& grid, const ParticleView<Real>& points, int p,
+                                 const PointGradients<Real, Shape>& g) const {
+    PointTangent<Real> tangent;
+    const Mat3<Real> stress =
+        nominal_stress(materials.of(points.material, points.plastic_shear, p), state_of(points, p, dilatant),
+                       displacement_gradient(grid, g, u), tangents.on() ? &tangent : nullptr, means.at_point(p));
+    if (tangents.on() && definite) make_definite(tangent);
+    if (tangents.on()) tangents.put(p, tangent);
+    return stress;
+  }
+};
+
+/// Change of the stress for a displacement x, by the tangents: K x, point by point, never assembled.
+template <class Real, class Shape>
+struct TangentTimes {
+  static constexpr int tiles_at_once = 8;  // worth the few registers that go through memory
+  TangentStore<Real> tangents;
+  const Vec3<double>* x;
+
+  double bytes(int count) const { return count * tangents.bytes_each(); }
+  TALUS_HD Mat3<Real> operator()(const GridView<Real>& grid, const ParticleView<Real>&, int p,
+                                 const PointGradients<Real, Shape>& g) const {
+    return apply(tangents.get(p), displacement_gradient(grid, g, x));
+  }
+};
+
+}  // namespace talus::solver

@@ -1,0 +1,59 @@
+// The points' tangents in storage, and all that the tangent of a step is summed from.
+#pragma once
+
+#include <cstddef>
+
+#include "solver/elements/filler_springs.hpp"
+#include "solver/elements/mean_dilation.hpp"
+#include "solver/material/tangent.hpp"
+#include "solver/state/grid_view.hpp"
+#include "solver/state/particles.hpp"
+
+namespace talus::solver {
+
+/// The tangents of all points, number by number; in single precision where Newton corrects what that rounds off.
+template <class Real>
+struct TangentStore {
+  static constexpr int numbers = sizeof(PointTangent<Real>) / sizeof(Real);
+  Real* data = nullptr;
+  int count = 0;
+  float* single = nullptr;  // in place of `data`
+
+  TALUS_HD bool on() const { return data || single; }
+  double bytes_each() const { return on() ? numbers * static_cast<double>(single ? sizeof(float) : sizeof(Real)) : 0; }
+  TALUS_HD void put(int p, const PointTangent<Real>& t) const {
+    const Real* values = t.axes;
+    if (single) {
+      for (int q = 0; q < numbers; ++q) single[at(q, p)] = static_cast<float>(values[q]);
+    } else {
+      for (int q = 0; q < numbers; ++q) data[at(q, p)] = values[q];
+    }
+  }
+  TALUS_HD PointTangent<Real> get(int p) const {
+    PointTangent<Real> t;
+    Real* values = t.axes;
+    if (single) {
+      for (int q = 0; q < numbers; ++q) values[q] = static_cast<Real>(single[at(q, p)]);
+    } else {
+      for (int q = 0; q < numbers; ++q) values[q] = data[at(q, p)];
+    }
+    return t;
+  }
+
+ private:
+  TALUS_HD std::size_t at(int q, int p) const {
+    return static_cast<std::size_t>(q) * static_cast<std::size_t>(count) + static_cast<std::size_t>(p);
+  }
+};
+
+/// What the tangent is summed from.
+template <class Real>
+struct PointTangents {
+  GridView<Real> grid;
+  ParticleView<Real> points;
+  TangentStore<Real> tangents;
+  MeanDilationView<Real> means;  // off: null
+  FillerSprings springs;         // off: null
+};
+
+}  // namespace talus::solver

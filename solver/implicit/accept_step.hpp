@@ -1,0 +1,176 @@
+// The way back to the points: how far they go in an implicit step, and their state at its end.
+#pragma once
+
+#include <cstdint>
+
+#include "solver/boundary/walls.hpp"
+#include "solver/elements/displacement_gradient.hpp"
+#include "solver/elements/mean_dilation.hpp"
+#include "solver/grid/bicubic.hpp"
+#include "solver/implicit/node_arrays.hpp"
+#include "solver/material/tangent.hpp"
+#include "solver/state/clock.hpp"
+#include "solver/transfer/point_gradients.hpp"
+
+namespace talus::solver {
+
+/// One thread: one point. How far it goes for the displacement u, over how far it may: the largest over all points, as
+/// float bits. In a dynamic step, and on sloping ground, it may go a cell. Statics over level ground are exact however
+/// far it goes, short of going half a cell through an edge that it was too far from to meet.
+template <class Real, class Shape>
+struct MeasureMotion {
+  GridView<Real> grid;
+  ParticleView<Real> points;
+  const Vec3<double>* u;
+  bool dynamic;
+  std::uint32_t* farthest;
+  TALUS_HD void operator()(int p) const {
+    const PointGradients<Real, Shape> g(grid, points, p);
+    Vec3<double> way{};
+    around(grid, g, [&](int n, int a, int b, int c) { way += u[n] * static_cast<double>(g.weight(a, b, c)); });
+    const double across = static_cast<double>(g.across), up = static_cast<double>(g.up);
+    const double rise = way.z - static_cast<double>(g.s.slope_x) * way.x - static_cast<double>(g.s.slope_y) * way.y;
+    double cells = fmax(fmax(fabs(way.x), fabs(way.y)) * across, fabs(rise) * up);
+    if (!dynamic && g.s.slope_x == Real(0) && g.s.slope_y == Real(0)) {
+      const double x = points.cell_x[p] + static_cast<double>(points.offset_x[p]) + way.x * across;
+      const double y = points.cell_y[p] + static_cast<double>(points.offset_y[p]) + way.y * across;
+      const double z = points.cell_z[p] + static_cast<double>(points.offset_z[p]) + rise * up;
+      const double through_x = fmax(grid.walls.west - x, x - grid.walls.east),
+                   through_y = fmax(grid.walls.south - y, y - grid.walls.north);
+      cells = 2 * fmax(fmax(through_x, through_y), fmax(-z, 0.0));
+    }
+    atomic_max_positive(farthest, cells < 1e30 ? static_cast<float>(cells) : 1e30f);
+  }
+};
+
+/// One thread: one point. State, velocity and position at the end of an accepted step.
+template <class Real, class Shape>
+struct AcceptStep {
+  GridView<Real> grid;
+  ParticleView<Real> points;
+  Materials<Real> materials;
+  Clock* clock;
+  NodeArrays nodes;                  // velocity, acceleration: at the start
+  const Vec3<double>* new_velocity;  // at the end; null in statics
+  const Vec3<double>* new_acceleration;
+  const Vec3<double>* strain_displacement;  // what the strain comes from: u, or dt times the remapped velocity
+  double kept;                              // share of the points' velocity finer than the grid that stays
+  bool affine, dilatant;
+  bool speeds, deforms;          // MUSL takes the velocity first and the rest later
+  MeanDilationView<Real> means;  // of strain_displacement
+
+  TALUS_HD void operator()(int p) const {
+    const PointGradients<Real, Shape> g(grid, points, p);
+    const Vec3<double> move = gather_motion(p, g);
+    if (!deforms) return;
+    const Mat3<Real> gradient = displacement_gradient(grid, g, strain_displacement);
+    MaterialState<Real> state = state_of(points, p, dilatant);
+    advance_material(materials.of(points.material, points.plastic_shear, p), gradient, state, means.at_point(p));
+    if (points.plastic_shear) points.plastic_shear[p] += state.plastic_shear;
+    points.set_elastic(p, state.elastic);
+    points.log_volume[p] = state.log_volume;
+    if (dilatant) points.plastic_log_volume[p] = state.plastic_log_volume;
+    if constexpr (Shape::averaged) points.stretch_box(p, gradient, g.s.slope_x, g.s.slope_y);
+    const double across = static_cast<double>(grid.spacing), up = static_cast<double>(grid.layer_height);
+    points.move_by(p, Vec3<double>{move.x / across, move.y / across, move.z / up}, grid.walls);
+    settle(p, g);
+  }
+
+ private:
+  /// New velocity, acceleration and affine velocity; returns the way in reference coordinates [m].
+  TALUS_HD Vec3<double> gather_motion(int p, const PointGradients<Real, Shape>& g) const {
+    const bool follows = grid.mapping == Mapping::terrain_following;
+    Vec3<double> u{}, v{}, a1{};
+    double climb = 0;
+    Mat3<double> moment{}, slope{};
+    around(grid, g, [&](int n, int a, int b, int c) {
+      const double w = static_cast<double>(g.weight(a, b, c));
+      u += nodes.u[n] * w;
+      double nx = 0, ny = 0;
+      if (follows) {
+        const int column = grid.column(g.s.i + a, g.s.j + b);
+        nx = static_cast<double>(grid.slope_x[column]);
+        ny = static_cast<double>(grid.slope_y[column]);
+      }
+      climb += w * (nodes.u[n].z - nx * nodes.u[n].x - ny * nodes.u[n].y);
+      if (!new_velocity || !speeds) return;
+      v += (new_velocity[n] - nodes.velocity[n] * kept) * w;
+      a1 += new_acceleration[n] * w;
+      if (!affine) return;
+      const Vec3<double> arm{static_cast<double>(g.s.near_x) + a, static_cast<double>(g.s.near_y) + b,
+                             static_cast<double>(g.s.near_z) + c};
+      add_outer(moment, new_velocity[n], arm * w);
+      const Vec3<double> gradient{static_cast<double>(g.s.gx[a] * g.s.wy[b] * g.s.wz[c]),
+                                  static_cast<double>(g.s.wx[a] * g.s.gy[b] * g.s.wz[c]),
+                                  static_cast<double>(g.s.wx[a] * g.s.wy[b] * g.s.gz[c])};
+      add_outer(slope, new_velocity[n], gradient);
+    });
+    if (new_velocity && speeds) {
+      if (kept > 0) v += widen(points.velocity_of(p)) * kept;
+      store(points.velocity, p, v);
+      store(points.acceleration, p, a1);
+      if (affine) points.set_affine(p, g.s.affine_velocity(moment, slope));
+    }
+    return {u.x, u.y, climb};
+  }
+
+  TALUS_HD static void store(Real* const target[3], int p, const Vec3<double>& v) {
+    target[0][p] = static_cast<Real>(v.x);
+    target[1][p] = static_cast<Real>(v.y);
+    target[2][p] = static_cast<Real>(v.z);
+  }
+
+  TALUS_HD void settle(int p, const PointGradients<Real, Shape>& g) const {
+    const Real speed = length(points.velocity_of(p));
+    if (!(speed < Real(1e6)) || !(fabs(points.log_volume[p]) < Real(1e3))) {
+      raise_flag(&clock->failed_point, points.id[p]);
+      raise_flag(&clock->request, failed);
+      return;
+    }
+    if (grid.ground == GroundContact::points) keep_above_ground(grid, points, p);
+    const int i = points.cell_x[p], j = points.cell_y[p];
+    if (i < 0 || j < 0 || i >= grid.columns || j >= grid.rows || !grid.open[grid.column(i, j)]) {
+      points.cell_x[p] = -1;
+      atomic_add(&clock->outflow_volume, static_cast<double>(points.volume[p]));
+      atomic_increment(&clock->outflow_count);
+      return;
+    }
+    const Real steep = Real(1) + g.s.slope_x * g.s.slope_x + g.s.slope_y * g.s.slope_y;
+    const Real wave_speed =
+        points.material ? materials.list[points.material[p]].wave_speed : materials.list[0].wave_speed;
+    const Real waves = wave_speed * sqrt(Real(2) * g.across * g.across + steep * g.up * g.up);
+    atomic_max_positive(&clock->rate_bits, static_cast<float>(waves + speed * (g.across + g.across + g.up)));
+    atomic_max_positive(&clock->speed_bits, static_cast<float>(speed));
+  }
+};
+
+/// Momentum of the points' new velocity back to the nodes (MUSL).
+template <class Real, class Shape>
+struct ScatterVelocity : PointScatter<Real, Shape> {
+  using Base = PointScatter<Real, Shape>;
+  using Number = double;
+  static constexpr int parts = 3;
+  Materials<Real> materials;
+  Vec3<double>* momentum;
+
+  struct Source : PointGradients<Real, Shape> {
+    Vec3<double> momentum;
+    TALUS_HD Source(const ScatterVelocity& k, int p) : PointGradients<Real, Shape>(k.grid, k.points, p) {
+      momentum = widen(k.points.velocity_of(p)) *
+                 static_cast<double>(k.points.volume[p] * k.materials.density(k.points.material, p));
+    }
+  };
+  using Sums = Vec3<double>;
+
+  TALUS_HD void operator()(int p) const { scatter_point(*this, p); }
+  TALUS_HD void add(const Source& g, int q, Sums (&sums)[Base::deep]) const {
+    TALUS_UNROLL
+    for (int c = 0; c < Base::deep; ++c)
+      sums[c] += g.momentum * static_cast<double>(g.weight(Base::along_x(q), Base::along_y(q), c));
+  }
+  TALUS_HD void give_to(int at, const Sums& sums) const { scatter_add(&momentum[at], sums); }
+  TALUS_HD static void store(const Sums& sums, double* to) { put(sums, to); }
+  TALUS_HD double* part(int node, int q) const { return &momentum[node].x + q; }
+};
+
+}  // namespace talus::solver

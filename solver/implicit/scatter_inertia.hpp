@@ -1,0 +1,78 @@
+// Mass, momentum, acceleration and loads of the points to the nodes, at the start of an implicit step.
+#pragma once
+
+#include "solver/implicit/node_arrays.hpp"
+#include "solver/material/material.hpp"
+#include "solver/transfer/point_gradients.hpp"
+
+namespace talus::solver {
+
+/// Mass, momentum, acceleration (as mass times it) and loads of the points to the nodes.
+template <class Real, class Shape>
+struct ScatterInertia : PointScatter<Real, Shape> {
+  using Base = PointScatter<Real, Shape>;
+  using Number = double;
+  static constexpr int parts = 10;
+  Materials<Real> materials;
+  bool affine, accelerated;
+  const Vec3<double>* loads;  // force per volume of each load at the end of the step [N/m3]; null without loads
+  NodeArrays nodes;
+
+  struct Source : PointGradients<Real, Shape> {
+    Real mass;
+    Vec3<Real> corner;  // velocity at the first node
+    Mat3<Real> turn{};  // its change per node
+    Vec3<double> acceleration{}, load{};
+    TALUS_HD Source(const ScatterInertia& k, int p) : PointGradients<Real, Shape>(k.grid, k.points, p) {
+      const ParticleView<Real>& points = k.points;
+      mass = points.volume[p] * k.materials.density(points.material, p);
+      corner = points.velocity_of(p);
+      if (k.affine) {
+        turn = points.affine_of(p);
+        corner += turn * Vec3<Real>{this->s.near_x, this->s.near_y, this->s.near_z};
+      }
+      if (k.accelerated)
+        acceleration =
+            widen(Vec3<Real>{points.acceleration[0][p], points.acceleration[1][p], points.acceleration[2][p]});
+      if (k.loads && points.load[p] >= 0) load = k.loads[points.load[p]] * static_cast<double>(points.volume[p]);
+    }
+  };
+  struct Sums {
+    double mass = 0;
+    Vec3<double> momentum, acceleration, load;
+  };
+
+  TALUS_HD void operator()(int p) const { scatter_point(*this, p); }
+  TALUS_HD void add(const Source& g, int q, Sums (&sums)[Base::deep]) const {
+    const int a = Base::along_x(q), b = Base::along_y(q);
+    TALUS_UNROLL
+    for (int c = 0; c < Base::deep; ++c) {
+      const double w = static_cast<double>(g.weight(a, b, c)), share = w * static_cast<double>(g.mass);
+      sums[c].mass += share;
+      sums[c].momentum += widen(g.corner + g.turn * Vec3<Real>{Real(a), Real(b), Real(c)}) * share;
+      sums[c].acceleration += g.acceleration * share;
+      sums[c].load += g.load * w;
+    }
+  }
+  TALUS_HD void give_to(int at, const Sums& sums) const {
+    talus::scatter_add(&nodes.mass[at], sums.mass);
+    scatter_add(&nodes.velocity[at], sums.momentum);
+    if (accelerated) scatter_add(&nodes.acceleration[at], sums.acceleration);
+    if (loads) scatter_add(&nodes.external[at], sums.load);
+  }
+  TALUS_HD static void store(const Sums& sums, double* to) {
+    to[0] = sums.mass;
+    put(sums.momentum, to + 1);
+    put(sums.acceleration, to + 4);
+    put(sums.load, to + 7);
+  }
+  TALUS_HD bool has(int q) const { return q < 4 || (q < 7 ? accelerated : loads != nullptr); }
+  TALUS_HD double* part(int node, int q) const {
+    return q == 0  ? &nodes.mass[node]
+           : q < 4 ? &nodes.velocity[node].x + (q - 1)
+           : q < 7 ? &nodes.acceleration[node].x + (q - 4)
+                   : &nodes.external[node].x + (q - 7);
+  }
+};
+
+}  // namespace talus::solver

@@ -1,0 +1,170 @@
+// Both Krylov methods through the one contract (contract.hpp): the same operators and preconditioners, handed over in
+// the same way, to conjugate gradients and to BiCGSTAB.
+#include <gtest/gtest.h>
+
+#include <random>
+#include <type_traits>
+
+#include "solver/linear/krylov/bicgstab.hpp"
+#include "solver/linear/krylov/conjugate_gradient.hpp"
+
+namespace talus::testing {
+namespace {
+
+using Vector = NodeVector<CpuDevice>;
+
+/// Leaves a product as add_product() made it.
+struct NothingToClose {
+  void operator()(int) const {}
+};
+
+/// A full matrix over the nodes' components.
+class DenseMatrix {
+ public:
+  explicit DenseMatrix(int nodes) : size_(3 * static_cast<std::size_t>(nodes)), entries_(size_ * size_) {}
+
+  double& at(std::size_t row, std::size_t column) { return entries_[row * size_ + column]; }
+  std::size_t size() const { return size_; }
+
+  void add_product(const Vector& x, Vector& y, const int*) const {
+    const auto* from = reinterpret_cast<const double*>(x.data());
+    auto* to = reinterpret_cast<double*>(y.data());
+    for (std::size_t i = 0; i < size_; ++i) {
+      for (std::size_t j = 0; j < size_; ++j) to[i] += entries_[i * size_ + j] * from[j];
+    }
+  }
+  NothingToClose closing(const Vector&, Vector&) const { return {}; }
+
+ private:
+  std::size_t size_;
+  std::vector<double> entries_;
+};
+static_assert(LinearOperator<DenseMatrix, CpuDevice>);
+
+/// The diagonal of a matrix as preconditioner.
+auto diagonal_of(DenseMatrix& a) {
+  std::vector<double> inverse(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) inverse[i] = 1 / a.at(i, i);
+  const auto invert = [inverse](const Vector& r, Vector& z) {
+    const auto* from = reinterpret_cast<const double*>(r.data());
+    auto* to = reinterpret_cast<double*>(z.data());
+    for (std::size_t i = 0; i < inverse.size(); ++i) to[i] = inverse[i] * from[i];
+  };
+  return SeparatePreconditioner<CpuDevice, decltype(invert)>(invert);
+}
+static_assert(LinearPreconditioner<decltype(diagonal_of(std::declval<DenseMatrix&>())), CpuDevice>);
+
+std::vector<Vec3<double>> random_vectors(int count, unsigned seed) {
+  std::mt19937 engine(seed);
+  std::uniform_real_distribution<double> u(-1, 1);
+  std::vector<Vec3<double>> v(static_cast<std::size_t>(count));
+  for (auto& x : v) x = {u(engine), u(engine), u(engine)};
+  return v;
+}
+
+double distance(const Vector& a, const std::vector<Vec3<double>>& b) {
+  double apart = 0, size = 0;
+  const auto values = a.download();
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    apart += dot(values[n] - b[n], values[n] - b[n]);
+    size += dot(b[n], b[n]);
+  }
+  return std::sqrt(apart / size);
+}
+
+/// Random, with a heavy diagonal that grows; symmetric or not.
+DenseMatrix random_matrix(int nodes, bool symmetric) {
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<double> u(-1, 1);
+  DenseMatrix a(nodes);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    for (std::size_t j = 0; j < a.size(); ++j) {
+      const double entry = u(engine) / std::sqrt(static_cast<double>(a.size()));
+      a.at(i, j) = symmetric && j < i ? a.at(j, i) : entry;
+    }
+  }
+  for (std::size_t i = 0; i < a.size(); ++i) a.at(i, i) += (symmetric ? 2.5 : 1.5) + 0.01 * static_cast<double>(i);
+  return a;
+}
+
+template <class Method>
+class Krylov : public ::testing::Test {
+ protected:
+  static constexpr int nodes = 60;
+  static constexpr bool symmetric = std::is_same_v<Method, ConjugateGradient<CpuDevice>>;
+
+  /// Solves A x = A `expected`.
+  LinearReport solve(DenseMatrix& a, const std::vector<Vec3<double>>& expected, const KrylovLimits& limits) {
+    Vector of;
+    of.upload(expected);
+    b.resize(of.size());
+    b.fill_zero();
+    a.add_product(of, b, nullptr);
+    return method.solve(a, diagonal_of(a), b, x, limits);
+  }
+
+  Method method;
+  Vector b, x;
+};
+using Methods = ::testing::Types<ConjugateGradient<CpuDevice>, BiCgStab<CpuDevice>>;
+TYPED_TEST_SUITE(Krylov, Methods);
+
+TYPED_TEST(Krylov, solves_a_system_of_the_kind_it_is_for) {
+  DenseMatrix a = random_matrix(this->nodes, this->symmetric);
+  const auto expected = random_vectors(this->nodes, 4);
+  const LinearReport report = this->solve(a, expected, {.tolerance = 1e-12, .iterations = 500});
+  EXPECT_TRUE(report.converged);
+  EXPECT_FALSE(report.indefinite);
+  EXPECT_LE(report.residual, 1e-12);
+  EXPECT_GT(report.iterations, 2);
+  EXPECT_LT(report.iterations, 200);
+  EXPECT_LT(distance(this->x, expected), 1e-11);
+}
+
+TYPED_TEST(Krylov, solves_a_symmetric_system) {
+  DenseMatrix a = random_matrix(this->nodes, true);
+  const auto expected = random_vectors(this->nodes, 5);
+  EXPECT_TRUE(this->solve(a, expected, {.tolerance = 1e-12, .iterations = 500}).converged);
+  EXPECT_LT(distance(this->x, expected), 1e-11);
+}
+
+TYPED_TEST(Krylov, reports_that_it_ran_out_of_iterations) {
+  DenseMatrix a = random_matrix(this->nodes, this->symmetric);
+  const LinearReport report = this->solve(a, random_vectors(this->nodes, 4), {.tolerance = 1e-12, .iterations = 2});
+  EXPECT_FALSE(report.converged);
+  EXPECT_EQ(report.iterations, 2);
+  EXPECT_GT(report.residual, 1e-12);
+}
+
+TYPED_TEST(Krylov, takes_a_right_hand_side_of_nothing) {
+  DenseMatrix a = random_matrix(this->nodes, this->symmetric);
+  const std::vector<Vec3<double>> nothing(static_cast<std::size_t>(this->nodes));
+  const LinearReport report = this->solve(a, nothing, {.tolerance = 1e-12, .iterations = 2});
+  EXPECT_TRUE(report.converged);
+  EXPECT_EQ(report.iterations, 0);
+  for (const auto& v : this->x.download()) EXPECT_EQ(dot(v, v), 0);
+}
+
+TYPED_TEST(Krylov, ends_a_diagonal_system_at_once) {
+  DenseMatrix a(this->nodes);
+  for (std::size_t i = 0; i < a.size(); ++i) a.at(i, i) = 1 + static_cast<double>(i);
+  const LinearReport report = this->solve(a, random_vectors(this->nodes, 6), {.tolerance = 1e-12, .iterations = 500});
+  EXPECT_TRUE(report.converged);
+  EXPECT_EQ(report.iterations, 1);
+}
+
+TEST(ConjugateGradient, reports_a_direction_of_negative_curvature) {
+  DenseMatrix a(2);
+  for (std::size_t i = 0; i < a.size(); ++i) a.at(i, i) = i == 4 ? -1 : 1;
+  Vector b, x;
+  b.upload({{0, 0, 0}, {0, 1, 0}});
+  ConjugateGradient<CpuDevice> method;
+  const auto copy_only = [](const Vector& r, Vector& z) { copy(r, z); };
+  SeparatePreconditioner<CpuDevice, decltype(copy_only)> none(copy_only);
+  const LinearReport report = method.solve(a, none, b, x, {});
+  EXPECT_TRUE(report.indefinite);
+  EXPECT_FALSE(report.converged);
+}
+
+}  // namespace
+}  // namespace talus::testing
