@@ -1,0 +1,99 @@
+#!/usr/bin/env bash
+# Folders are floors: a folder includes what lies below it, and itself (docs/architecture.md). Equations of docs/theory.md
+# are named in the sources that compute them.
+source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
+
+# The floors of a stage, the lowest first. Folders on one line do not include one another. A folder below another one is
+# named by its path; '.' is the stage's own folder.
+floors() {
+  case $1 in
+    common) printf '%s\n' . recipe stage map gis qgis 'domain run' ;;
+    preprocess) printf '%s\n' terrain release particles survey . ;;
+    solver)
+      printf '%s\n' parallel state material grid transfer boundary elements linear/krylov linear/operator \
+        linear/preconditioner linear/direct integrator 'explicit implicit' options scene run .
+      ;;
+    postprocess) printf '%s\n' . maps score picture report ;;
+  esac
+}
+
+# violations STAGE: "file:line includes HEADER: FOLDER may use ..." for every include that goes up or across.
+violations() {
+  local stage=$1
+  {
+    floors "$stage"
+    echo --
+    grep -rnoE --include='*.hpp' --include='*.cpp' --include='*.cu' "^#include \"$stage/[^\"]+" "$stage" | sed 's/#include "//'
+  } | awk -v stage="$stage" '
+    function folder(path,   part) {            # the longest floor that holds the path
+      sub("^" stage "/", "", path)
+      sub("/?[^/]*$", "", path)
+      for (part = path; part != ""; sub("/?[^/]*$", "", part)) if (part in level) return part
+      return path == "" ? "." : path
+    }
+    $0 == "--" { table = 1; next }
+    !table { for (i = 1; i <= NF; ++i) { level[$i] = NR; names = names ? names " " $i : $i; below[$i] = NR > 1 ? lower : "nothing else" }
+             lower = names; next }
+    {
+      n = split($0, piece, ":")
+      from = folder(piece[1]); to = folder(piece[3])
+      if (!(from in level)) { print piece[1] ": the folder " from " is on no floor"; next }
+      if (!(to in level)) { print piece[1] ":" piece[2] " includes " piece[3] ", which is on no floor"; next }
+      if (from == to || level[to] < level[from]) next
+      print piece[1] ":" piece[2] " includes " piece[3] ": " stage "/" from " may use " below[from]
+    }'
+}
+
+check() {
+  cd "$TALUS_SOURCE"
+  local found
+  found=$(grep -rcE --include='*.hpp' "^#include \"$1/" "$1" | awk -F: '{ n += $2 } END { print n + 0 }')
+  [[ $found -gt 10 ]] || fail "only $found includes were found in $1: this test looks at nothing"
+  found=$(violations "$1")
+  [[ -z $found ]] || fail "includes go down only:"$'\n'"$found"
+}
+
+test_common_includes_down_only() { check common; }
+test_preprocess_includes_down_only() { check preprocess; }
+test_solver_includes_down_only() { check solver; }
+test_postprocess_includes_down_only() { check postprocess; }
+
+# The test itself: an include that goes up is found, with its line and what the folder may use.
+test_a_violation_names_file_line_and_floors() {
+  mkdir -p solver/parallel solver/state
+  printf '%s\n' '#pragma once' '#include "solver/state/clock.hpp"' >solver/parallel/loop.hpp
+  printf '%s\n' '#include "solver/parallel/loop.hpp"' >solver/state/clock.hpp
+  local found
+  found=$(violations solver)
+  [[ $found == 'solver/parallel/loop.hpp:2 includes solver/state/clock.hpp: solver/parallel may use nothing else' ]] ||
+    fail "said: $found"
+}
+
+# (T12) at the end of a line of docs/theory.md is a number; in a source it names the equation that is computed there.
+stated() { grep -oE '\(T[0-9]+[a-z]?\)$' "$TALUS_SOURCE/docs/theory.md" | tr -d '()'; }
+named() {
+  cd "$TALUS_SOURCE"
+  grep -rhoE --include='*.hpp' --include='*.cpp' --include='*.cu' '\(T[0-9]+[a-z]?(, T[0-9]+[a-z]?)*\)' \
+    common preprocess solver postprocess | tr -d '(),' | tr ' ' '\n' | sort -u
+}
+
+test_every_equation_has_one_number() {
+  local twice
+  [[ $(stated | wc -l) -gt 20 ]] || fail "only $(stated | wc -l) equations were found"
+  twice=$(stated | sort | uniq -d)
+  [[ -z $twice ]] || fail "docs/theory.md uses a number twice: $twice"
+}
+
+test_every_equation_is_named_where_it_is_computed() {
+  local missing
+  missing=$(comm -23 <(stated | sort -u) <(named))
+  [[ -z $missing ]] || fail "no source names these equations of docs/theory.md as (Tn): $(tr '\n' ' ' <<<"$missing")"
+}
+
+test_every_equation_that_a_source_names_is_stated() {
+  local missing
+  missing=$(comm -13 <(stated | sort -u) <(named))
+  [[ -z $missing ]] || fail "sources name equations that docs/theory.md does not state: $(tr '\n' ' ' <<<"$missing")"
+}
+
+run_test "$@"
