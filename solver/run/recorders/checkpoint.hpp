@@ -21,16 +21,67 @@ struct RunMemory {
   RunHistory history;
 };
 
+/// Calls item(name, scalar) for every scalar of a clock, in the order of their declaration: how a checkpoint names
+/// them.
+template <class AnyClock, class Item>
+void visit_clock(AnyClock& c, Item&& item) {
+  item("time", c.time);
+  item("step_size", c.step_size);
+  item("next_event", c.next_event);
+  item("courant", c.courant);
+  item("largest_step", c.largest_step);
+  item("transfer_time", c.transfer_time);
+  item("kept", c.kept);
+  item("outflow_volume", c.outflow_volume);
+  item("step", c.step);
+  item("rate_bits", c.rate_bits);
+  item("speed_bits", c.speed_bits);
+  item("halt", c.halt);
+  item("request", c.request);
+  item("steps_since_sort", c.steps_since_sort);
+  item("steps_between_sorts", c.steps_between_sorts);
+  item("outflow_count", c.outflow_count);
+  item("failed_point", c.failed_point);
+  item("keeps_budget", c.keeps_budget);
+  item("bed_loss", c.bed_loss);
+  item("damping_loss", c.damping_loss);
+  item("plastic_loss", c.plastic_loss);
+  item("transfer_loss", c.transfer_loss);
+  item("reaction_x", c.reaction[0]);
+  item("reaction_y", c.reaction[1]);
+  item("reaction_z", c.reaction[2]);
+  item("accelerated", c.accelerated);
+}
+
+/// Calls item(name, value) for every scalar and list of a run's memory but its history, whose columns have names of
+/// their own: how a checkpoint names them.
+template <class AnyMemory, class Item>
+void visit_memory(AnyMemory& m, Item&& item) {
+  item("frames", m.frames);
+  item("records", m.records);
+  item("checkpoints", m.checkpoints);
+  item("newton", m.newton);
+  item("linear", m.linear);
+  item("cuts", m.cuts);
+  item("peak_kinetic", m.peak_kinetic);
+  item("outflow_volume", m.outflow_volume);
+  item("outflow_count", m.outflow_count);
+  item("wall_time", m.wall_time);
+  item("initial_thickness", m.initial_thickness);
+}
+
+/// What checkpoint.h5 holds.
 struct Checkpoint {
   std::string fingerprint;  // of domain and settings; a checkpoint of other ones is refused
   SolverState state;
   RunMemory memory;
 };
 
-/// Aside and renamed. Throws DataError.
+/// Writes a checkpoint to `file`, aside and renamed at the end. Throws DataError (disk full, not writable).
 void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint);
 
-/// Throws DataError when the file is missing, truncated, or made from another domain or other settings.
+/// Reads the checkpoint in `file`, bit for bit what was written. Throws DataError when the file is missing, truncated,
+/// of another kind (an older version of this program), or made from another domain or other settings.
 Checkpoint read_checkpoint(const std::filesystem::path& file, const std::string& fingerprint);
 
 }  // namespace talus::solver

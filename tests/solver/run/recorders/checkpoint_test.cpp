@@ -1,0 +1,197 @@
+// A checkpoint gives back, bit for bit, all that was written, and other files are refused in words.
+#include "solver/run/recorders/checkpoint.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <limits>
+#include <set>
+
+#include "common/run/hdf5.hpp"
+#include "solver/scene/make_solver.hpp"
+#include "tests/common/scratch.hpp"
+#include "tests/solver/scenes.hpp"
+
+namespace talus::solver {
+namespace {
+
+using test::fault_of;
+using test::Scratch;
+
+/// Converts to anything: for counting the members of an aggregate.
+struct Anything {
+  template <class T>
+  operator T() const;
+};
+
+/// Members of an aggregate, each element of an array counted.
+template <class T, class... Members>
+constexpr std::size_t member_count() {
+  if constexpr (requires { T{Members{}..., Anything{}}; }) {
+    return member_count<T, Members..., Anything>();
+  } else {
+    return sizeof...(Members);
+  }
+}
+
+/// Gives every item another value that its type just holds.
+struct FillItems {
+  int filled = 0;
+  void operator()(const char*, double& number) { number = 1.0 / (3 + filled++); }
+  void operator()(const char*, std::int64_t& number) { number = (std::int64_t{1} << 60) + filled++; }
+  void operator()(const char*, std::uint32_t& number) { number = 0xffffff00U + static_cast<std::uint32_t>(filled++); }
+  void operator()(const char*, int& number) { number = -1000 - filled++; }
+  void operator()(const char*, std::vector<double>& list) { list.assign(5, 1.0 / (3 + filled++)); }
+};
+
+/// Collects items as the bits that they are.
+struct CollectBits {
+  std::vector<std::pair<std::string, std::uint64_t>> bits;
+  void operator()(const char* name, double number) { bits.emplace_back(name, std::bit_cast<std::uint64_t>(number)); }
+  template <class Integer>
+  requires std::is_integral_v<Integer>
+  void operator()(const char* name, Integer number) { bits.emplace_back(name, static_cast<std::uint64_t>(number)); }
+  void operator()(const char* name, const std::vector<double>& list) {
+    for (const double number : list) (*this)(name, number);
+  }
+};
+
+auto clock_bits(const Clock& clock) {
+  CollectBits collect;
+  visit_clock(clock, collect);
+  return collect.bits;
+}
+
+auto memory_bits(const RunMemory& memory) {
+  CollectBits collect;
+  visit_memory(memory, collect);
+  return collect.bits;
+}
+
+/// A checkpoint of three points whose clock and memory hold no two equal numbers.
+Checkpoint sample() {
+  Checkpoint c;
+  c.fingerprint = "a domain and its settings";
+  Domain domain = testing::ground(12, 12, 10, 5, [](double x, double) { return 0.1 * x; });
+  testing::fill(domain, {50, 60, 50, 60, 0, 5}, 1, 1);
+  const SolveOptions options;
+  c.state = first_state(make_scene(domain, options), options);
+  c.state.maps.peak_speed[7] = std::numeric_limits<double>::denorm_min();
+  c.state.contacts = {{1, 2, 3}, {-0.0, 5, 6}};
+  FillItems fill;
+  visit_clock(c.state.clock, fill);
+  visit_memory(c.memory, fill);
+  c.memory.history.columns = {{.name = "time_s", .unit = "s", .quantity = "", .place = "", .values = {0, 0.1}},
+                              {.name = "a_later_column", .unit = "m", .quantity = "q", .place = "p", .values = {7, 8}}};
+  return c;
+}
+
+TEST(Checkpoint, visits_name_every_member_once) {
+  const auto names = [](const auto& bits) {
+    std::set<std::string> set;
+    for (const auto& [name, value] : bits) set.insert(name);
+    return set.size();
+  };
+  EXPECT_EQ(names(clock_bits(Clock{})), member_count<Clock>());
+  EXPECT_EQ(clock_bits(Clock{}).size(), member_count<Clock>());
+  RunMemory memory;
+  memory.initial_thickness = {1};
+  EXPECT_EQ(names(memory_bits(memory)), member_count<RunMemory>() - 1) << "the history has columns of its own";
+}
+
+TEST(Checkpoint, every_scalar_comes_back_bit_for_bit) {
+  const Scratch scratch;
+  const Checkpoint c = sample();
+  write_checkpoint(scratch / "checkpoint.h5", c);
+  EXPECT_EQ(scratch.files(), 1u);
+  const Checkpoint back = read_checkpoint(scratch / "checkpoint.h5", c.fingerprint);
+  EXPECT_EQ(clock_bits(back.state.clock), clock_bits(c.state.clock));
+  EXPECT_EQ(memory_bits(back.memory), memory_bits(c.memory));
+  ASSERT_EQ(back.memory.history.columns.size(), 2u);
+  for (std::size_t column = 0; column < 2; ++column) {
+    EXPECT_EQ(back.memory.history.columns[column].name, c.memory.history.columns[column].name);
+    EXPECT_EQ(back.memory.history.columns[column].unit, c.memory.history.columns[column].unit);
+    EXPECT_EQ(back.memory.history.columns[column].values, c.memory.history.columns[column].values);
+  }
+  EXPECT_EQ(back.state.maps.peak_speed, c.state.maps.peak_speed);
+  EXPECT_EQ(back.state.maps.arrival, c.state.maps.arrival);
+  EXPECT_EQ(back.state.contacts.force, c.state.contacts.force);
+  EXPECT_EQ(std::bit_cast<std::uint64_t>(back.state.contacts.impulse[0]), std::bit_cast<std::uint64_t>(-0.0));
+}
+
+void expect_same_points(const ParticleState& a, const ParticleState& b) {
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(a.cell[i], b.cell[i]);
+    EXPECT_EQ(a.offset[i], b.offset[i]);
+    EXPECT_EQ(a.extent[i], b.extent[i]);
+    EXPECT_EQ(a.velocity[i], b.velocity[i]);
+    EXPECT_EQ(a.acceleration[i], b.acceleration[i]);
+  }
+  for (int i = 0; i < 6; ++i) EXPECT_EQ(a.elastic[i], b.elastic[i]);
+  for (int i = 0; i < 9; ++i) EXPECT_EQ(a.affine[i], b.affine[i]);
+  EXPECT_EQ(a.id, b.id);
+  EXPECT_EQ(a.release, b.release);
+  EXPECT_EQ(a.load, b.load);
+  EXPECT_EQ(a.material, b.material);
+  EXPECT_EQ(a.plastic_shear, b.plastic_shear);
+  EXPECT_EQ(a.log_volume, b.log_volume);
+  EXPECT_EQ(a.plastic_log_volume, b.plastic_log_volume);
+  EXPECT_EQ(a.volume, b.volume);
+}
+
+/// Sliding sand, taken through a file half-way, against a run without a break.
+TEST(Checkpoint, a_run_goes_on_from_a_file_bit_for_bit) {
+  Domain domain = testing::ground(24, 16, 10, 5, [](double x, double) { return 0.4 * x; });
+  testing::fill(domain, {120, 180, 50, 110, 0, 20});
+  SolveOptions options;
+  options.largest_step = 0.05;
+  const Scene scene = make_scene(domain, options);
+  const auto unbroken = make_solver(scene, options, On::cpu);
+  BatchReport batch;
+  unbroken->set_next_event(1000);
+  while (!batch.sorted) batch = unbroken->advance();
+
+  const Scratch scratch;
+  write_checkpoint(scratch / "checkpoint.h5", {"fingerprint", unbroken->state(), {}});
+  const Checkpoint half_way = read_checkpoint(scratch / "checkpoint.h5", "fingerprint");
+  EXPECT_GT(half_way.state.clock.step, 0);
+  expect_same_points(half_way.state.points, unbroken->state().points);
+  const auto resumed = resume_solver(scene, options, On::cpu, half_way.state);
+
+  const double end = half_way.state.clock.time + 1;
+  for (Solver* solver : {unbroken.get(), resumed.get()}) testing::run_to(*solver, end);
+  EXPECT_EQ(clock_bits(resumed->clock()), clock_bits(unbroken->clock()));
+  expect_same_points(resumed->state().points, unbroken->state().points);
+  EXPECT_EQ(resumed->state().maps.peak_speed, unbroken->state().maps.peak_speed);
+}
+
+TEST(Checkpoint, an_older_kind_is_refused_in_words) {
+  const Scratch scratch;
+  const auto path = scratch / "checkpoint.h5";
+  h5::File file = h5::File::create(path, {path, ""});
+  file.set_text("/", "kind", "talus checkpoint 4");
+  file.close();
+  EXPECT_EQ(fault_of<DataError>([&] { read_checkpoint(path, ""); }),
+            path.string() +
+                ": its kind is \"talus checkpoint 4\" (another version of this program wrote it, this one reads "
+                "\"talus checkpoint 5\"). Run talus-solve again without --restart, or go on with the version that "
+                "wrote it");
+}
+
+TEST(Checkpoint, other_files_are_refused_in_words) {
+  const Scratch scratch;
+  const auto path = scratch / "checkpoint.h5";
+  EXPECT_EQ(fault_of<DataError>([&] { read_checkpoint(path, ""); }),
+            path.string() + ": no such file. Run talus-solve again without --restart");
+  h5::File file = h5::File::create(path, {path, ""});
+  file.close();
+  EXPECT_EQ(fault_of<DataError>([&] { read_checkpoint(path, ""); }),
+            path.string() + ": this is no checkpoint of this program. Run talus-solve again without --restart");
+  write_checkpoint(path, sample());
+  EXPECT_TRUE(fault_of<DataError>([&] {
+                read_checkpoint(path, "another one");
+              }).starts_with(path.string() + ": the checkpoint belongs to another domain or other [solve] settings ("));
+}
+
+}  // namespace
+}  // namespace talus::solver
