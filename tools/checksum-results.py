@@ -62,17 +62,28 @@ VARIANTS = {
     "deterministic": ("deterministic = true", "", {}),
     "cartesian-nodes": ('mapping = "cartesian"', "", {}),
     "cartesian-points": ('mapping = "cartesian"\nground_contact = "points"', "", {}),
-    "cohesion-dilatancy": ("", "[solve.material]\ncohesion_Pa = 500.0\ndilatancy_angle_deg = 5.0\n"
-                               "tension_cutoff_Pa = 100.0\n", {}),
-    "pore-softening": ("", "[solve.material]\npore_pressure_ratio = 0.3\nsoftening_slip_m = 0.5\n"
-                           "residual_friction_angle_deg = 15.0\ncohesion_Pa = 1000.0\n", {}),
+    "cohesion-dilatancy": (
+        "",
+        "[solve.material]\ncohesion_Pa = 500.0\ndilatancy_angle_deg = 5.0\n" "tension_cutoff_Pa = 100.0\n",
+        {},
+    ),
+    "pore-softening": (
+        "",
+        "[solve.material]\npore_pressure_ratio = 0.3\nsoftening_slip_m = 0.5\n"
+        "residual_friction_angle_deg = 15.0\ncohesion_Pa = 1000.0\n",
+        {},
+    ),
     "plane-strain": ("", '[solve.material]\ncone = "plane-strain"\ndilatancy_angle_deg = 2.0\n', {}),
     "extension": ("", '[solve.material]\ncone = "extension"\n', {}),
     "hencky": ("", '[solve.material]\nmodel = "hencky"\n', {}),
     "corotated": ("", '[solve.material]\nmodel = "corotated"\n', {}),
     "linear-elastic": ("", '[solve.material]\nmodel = "linear-elastic"\n', {}),
-    "parts": ("energy_budget = true", '[[solve.part]]\nrelease = "lower"\ndensity_kg_m3 = 1500.0\n'
-                                      "softening_slip_m = 0.2\nresidual_friction_angle_deg = 10.0\n", {}),
+    "parts": (
+        "energy_budget = true",
+        '[[solve.part]]\nrelease = "lower"\ndensity_kg_m3 = 1500.0\n'
+        "softening_slip_m = 0.2\nresidual_friction_angle_deg = 10.0\n",
+        {},
+    ),
     "voellmy": ("", '[solve.base]\nlaw = "voellmy"\nturbulence_m_s2 = 300.0\nfriction_angle_deg = 12.0\n', {}),
     "weakening": ("", '[solve.base]\nlaw = "velocity-weakening"\ncharacteristic_speed_m_s = 2.0\n', {}),
     "no-friction": ("", '[solve.base]\nlaw = "none"\n', {}),
@@ -80,10 +91,17 @@ VARIANTS = {
     "base-cohesion-pore": ("", "[solve.base]\ncohesion_Pa = 300.0\npore_pressure_ratio = 0.4\n", {}),
     "stiffness-auto": ("", '[solve.material]\nyoungs_modulus_Pa = 1e9\nstiffness = "auto"\n', {}),
     "stiffness-check": ("end_time_s = 0.5", "[solve.material]\nstiffness_check = true\n", {}),
-    "walls": ("", '[[solve.wall]]\naxis = "x"\nposition_m = 10.0\nkind = "frictional"\nfriction_angle_deg = 25.0\n'
-                  '[[solve.wall]]\naxis = "y"\nposition_m = 5.0\nto_s = 0.4\n', {}),
-    "load": ("", "[[solve.load]]\nbox_m = [20.0, 22.0, 5.0, 8.0, 0.0, 3.0]\nforce_N = [1e5, 0.0, 0.0]\n"
-                 "ramp_s = 0.5\n", {}),
+    "walls": (
+        "",
+        '[[solve.wall]]\naxis = "x"\nposition_m = 10.0\nkind = "frictional"\nfriction_angle_deg = 25.0\n'
+        '[[solve.wall]]\naxis = "y"\nposition_m = 5.0\nto_s = 0.4\n',
+        {},
+    ),
+    "load": (
+        "",
+        "[[solve.load]]\nbox_m = [20.0, 22.0, 5.0, 8.0, 0.0, 3.0]\nforce_N = [1e5, 0.0, 0.0]\n" "ramp_s = 0.5\n",
+        {},
+    ),
     "gravity-loading": ("gravity_loading_steps = 4", "", {}),
     "initial-velocity": ("initial_velocity_m_s = [-2.0, 0.5, 0.0]", "", {}),
     "fine-layers": ("", "", {"layer": 0.5}),
@@ -94,28 +112,49 @@ VARIANTS = {
     "newmark-weakening": ('integrator = "newmark"', '[solve.base]\nlaw = "velocity-weakening"\n', {}),
     "newmark-musl-flip": ('integrator = "newmark"\nstress_update = "musl"\ntransfer = "flip"\ndamping = 0.05', "", {}),
     "newmark-points": ('integrator = "newmark"\nmapping = "cartesian"\nground_contact = "points"', "", {}),
-    "newmark-exact": ('integrator = "newmark"', '[solve.implicit]\ntangent = "exact"\n'
-                                                'linear_solver = "bicgstab"\n', {}),
+    "newmark-exact": (
+        'integrator = "newmark"',
+        '[solve.implicit]\ntangent = "exact"\n' 'linear_solver = "bicgstab"\n',
+        {},
+    ),
     "newmark-cholesky": ('integrator = "newmark"', '[solve.implicit]\nlinear_solver = "cholesky"\n', {}),
-    "newmark-stencil-multigrid": ('integrator = "newmark"', '[solve.implicit]\noperator = "stencil"\n'
-                                                            'preconditioner = "multigrid"\n', {}),
-    "newmark-elements-column": ('integrator = "newmark"', '[solve.implicit]\noperator = "elements"\n'
-                                                          'preconditioner = "column"\nforcing = "fixed"\n', {}),
+    "newmark-stencil-multigrid": (
+        'integrator = "newmark"',
+        '[solve.implicit]\noperator = "stencil"\n' 'preconditioner = "multigrid"\n',
+        {},
+    ),
+    "newmark-elements-column": (
+        'integrator = "newmark"',
+        '[solve.implicit]\noperator = "elements"\n' 'preconditioner = "column"\nforcing = "fixed"\n',
+        {},
+    ),
     "newmark-gauss-seidel": ('integrator = "newmark"', '[solve.implicit]\npreconditioner = "gauss-seidel"\n', {}),
     "newmark-diagonal": ('integrator = "newmark"', '[solve.implicit]\npreconditioner = "diagonal"\n', {}),
-    "newmark-b-bar": ('integrator = "newmark"', "[solve.implicit]\nb_bar = true\n[solve.material]\n"
-                                                "poisson_ratio = 0.45\n", {}),
-    "newmark-load-walls": ('integrator = "newmark"', '[[solve.wall]]\naxis = "x"\nposition_m = 12.0\n'
-                                                     "[[solve.load]]\nbox_m = [20.0, 22.0, 5.0, 8.0, 0.0, 3.0]\n"
-                                                     "force_N = [1e5, 0.0, 0.0]\n", {}),
+    "newmark-b-bar": (
+        'integrator = "newmark"',
+        "[solve.implicit]\nb_bar = true\n[solve.material]\n" "poisson_ratio = 0.45\n",
+        {},
+    ),
+    "newmark-load-walls": (
+        'integrator = "newmark"',
+        '[[solve.wall]]\naxis = "x"\nposition_m = 12.0\n'
+        "[[solve.load]]\nbox_m = [20.0, 22.0, 5.0, 8.0, 0.0, 3.0]\n"
+        "force_N = [1e5, 0.0, 0.0]\n",
+        {},
+    ),
     "reference": ('preset = "reference"', "[solve.implicit]\nstep_s = 0.005\n", {}),
     "auto": ('integrator = "auto"\nlargest_step_s = 0.05', "", {}),
-    "quasi-static": ('integrator = "quasi-static"\ngravity_ramp_s = 1.0\nend_time_s = 1.0\nhistory_interval_s = 0.25',
-                     '[solve.implicit]\nstep_s = 0.1\n[solve.material]\nmodel = "hencky"\n'
-                     '[solve.base]\nlaw = "stick"\n', {}),
-    "quasi-static-cholesky": ('integrator = "quasi-static"\ngravity_ramp_s = 1.0\nend_time_s = 1.0\nshape = "linear"',
-                              '[solve.implicit]\nstep_s = 0.1\nlinear_solver = "cholesky"\n[solve.material]\n'
-                              'model = "corotated"\n[solve.base]\nlaw = "stick"\n', {}),
+    "quasi-static": (
+        'integrator = "quasi-static"\ngravity_ramp_s = 1.0\nend_time_s = 1.0\nhistory_interval_s = 0.25',
+        '[solve.implicit]\nstep_s = 0.1\n[solve.material]\nmodel = "hencky"\n' '[solve.base]\nlaw = "stick"\n',
+        {},
+    ),
+    "quasi-static-cholesky": (
+        'integrator = "quasi-static"\ngravity_ramp_s = 1.0\nend_time_s = 1.0\nshape = "linear"',
+        '[solve.implicit]\nstep_s = 0.1\nlinear_solver = "cholesky"\n[solve.material]\n'
+        'model = "corotated"\n[solve.base]\nlaw = "stick"\n',
+        {},
+    ),
 }
 
 # Left out here, because its choice of integrator follows the time that the machine takes.
@@ -242,6 +281,7 @@ def scenes(out, data):
 
 def compare(before, after):
     """Prints what differs between two tables; the exit code."""
+
     def read(path):
         rows = (line.rstrip("\n").rsplit(" ", 1) for line in open(path) if line.strip() and not line.startswith("#"))
         return {what: value for what, value in rows}

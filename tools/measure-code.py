@@ -36,8 +36,17 @@ def file_sizes(sources):
 
 def tags(sources):
     """One dictionary for each definition and declaration, from Universal Ctags."""
-    command = ["ctags", "--output-format=json", "--languages=C++", "--langmap=C++:+.cu.hpp.cpp", "--fields=+neaKS",
-               "--kinds-C++=+p", "-f", "-", *map(str, sources)]
+    command = [
+        "ctags",
+        "--output-format=json",
+        "--languages=C++",
+        "--langmap=C++:+.cu.hpp.cpp",
+        "--fields=+neaKS",
+        "--kinds-C++=+p",
+        "-f",
+        "-",
+        *map(str, sources),
+    ]
     out = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     return [json.loads(line) for line in out.splitlines() if line.startswith("{")]
 
@@ -46,8 +55,10 @@ def function_lengths(found):
     """Lines from the name to the closing brace of every function that has a body."""
     lengths = [tag["end"] - tag["line"] + 1 for tag in found if tag["kind"] == "function" and "end" in tag]
     longest = max((t for t in found if t["kind"] == "function" and "end" in t), key=lambda t: t["end"] - t["line"])
-    return (f"{percentile(lengths, 0.9)} / {percentile(lengths, 0.99)} / {max(lengths)}",
-            f"{longest['name']} in {longest['path']}")
+    return (
+        f"{percentile(lengths, 0.9)} / {percentile(lengths, 0.99)} / {max(lengths)}",
+        f"{longest['name']} in {longest['path']}",
+    )
 
 
 def documented(found, root):
@@ -93,8 +104,10 @@ def long_lines(files):
 def unformatted(sources):
     if not shutil.which("clang-format"):
         return "clang-format is missing"
-    wrong = sum(subprocess.run(["clang-format", "--dry-run", "-Werror", str(f)], capture_output=True).returncode != 0
-                for f in sources)
+    wrong = sum(
+        subprocess.run(["clang-format", "--dry-run", "-Werror", str(f)], capture_output=True).returncode != 0
+        for f in sources
+    )
     return f"{wrong} of {len(sources)} files"
 
 
@@ -171,12 +184,18 @@ def main():
     long, where = long_lines(files)
     knots, arrows = cycles(root, sources)
     named, unnamed = equations(root)
-    rows = [("file median / p90 / max lines", file_sizes(sources)), ("function p90 / p99 / max lines", lengths),
-            ("longest function", longest), ("public declarations with a docstring", f"{share:.2f}"),
-            ("lines over 120 columns", str(long)), ("clang-format differs in", unformatted(everything)),
-            ("include cycles among folders", f"{len(knots)}" + "".join(f"; {', '.join(k)}" for k in knots)),
-            ("arrows among folders", str(arrows)),
-            ("slowest unit of the build", slowest_unit(given.build or root / "build")), ("equations named where computed", named)]
+    rows = [
+        ("file median / p90 / max lines", file_sizes(sources)),
+        ("function p90 / p99 / max lines", lengths),
+        ("longest function", longest),
+        ("public declarations with a docstring", f"{share:.2f}"),
+        ("lines over 120 columns", str(long)),
+        ("clang-format differs in", unformatted(everything)),
+        ("include cycles among folders", f"{len(knots)}" + "".join(f"; {', '.join(k)}" for k in knots)),
+        ("arrows among folders", str(arrows)),
+        ("slowest unit of the build", slowest_unit(given.build or root / "build")),
+        ("equations named where computed", named),
+    ]
     print("| what | figure |\n| --- | --- |")
     for what, figure in rows:
         print(f"| {what} | {figure} |")

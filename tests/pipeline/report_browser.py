@@ -31,12 +31,18 @@ def open_browser():
 
 def open_report(browser, out):
     browser.get(f"file://{out}/report.html")
-    WebDriverWait(browser, 30).until(lambda b: b.execute_script("return document.documentElement.dataset.ready === 'yes'"))
+    WebDriverWait(browser, 30).until(
+        lambda b: b.execute_script("return document.documentElement.dataset.ready === 'yes'")
+    )
 
 
 def check_console(browser):
     # "rendering" warns of reading pictures back, which this test does and the page does not.
-    faults = [line for line in browser.get_log("browser") if line["level"] in ("SEVERE", "WARNING") and line["source"] != "rendering"]
+    faults = [
+        line
+        for line in browser.get_log("browser")
+        if line["level"] in ("SEVERE", "WARNING") and line["source"] != "rendering"
+    ]
     assert not faults, f"the console says: {faults}"
     asked = browser.execute_script("return performance.getEntriesByType('resource').map((e) => e.name)")
     outside = [name for name in asked if not name.startswith(("data:", "blob:"))]
@@ -49,7 +55,8 @@ def colours_of_map(browser):
     return browser.execute_script(
         "const c = report.map.canvas, d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data, seen = new Set();"
         "for (let i = 0; i < d.length; i += 4 * 37) if (d[i + 3]) seen.add(d[i] + ',' + d[i + 1] + ',' + d[i + 2]);"
-        "return [...seen];")
+        "return [...seen];"
+    )
 
 
 def check_layers(browser):
@@ -67,7 +74,17 @@ def check_layers(browser):
         assert swatches and legend, f"{name} has no legend"
         seen[name] = (legend, frozenset(colours_of_map(browser)))
         assert seen[name][1], f"{name} shows nothing"
-    for name in ["deposit", "peak_thickness", "peak_speed", "peak_pressure", "arrival", "flow", "release", "surveyed", "difference"]:
+    for name in [
+        "deposit",
+        "peak_thickness",
+        "peak_speed",
+        "peak_pressure",
+        "arrival",
+        "flow",
+        "release",
+        "surveyed",
+        "difference",
+    ]:
         assert name in seen, f"there is no layer {name}, but {list(seen)}"
     assert len({legend for legend, _ in seen.values()}) == len(seen), "two layers share a legend"
     assert seen["deposit"][1] != seen["peak_speed"][1], "two layers look the same"
@@ -75,7 +92,10 @@ def check_layers(browser):
 
 def check_overlays(browser):
     def lines():
-        return len(browser.find_elements(By.CSS_SELECTOR, "#map path.leaflet-interactive, #map .leaflet-overlay-pane path"))
+        return len(
+            browser.find_elements(By.CSS_SELECTOR, "#map path.leaflet-interactive, #map .leaflet-overlay-pane path")
+        )
+
     before = lines()
     box = browser.find_element(By.ID, "overlay-contours")
     box.click()
@@ -86,7 +106,9 @@ def check_overlays(browser):
 
 def check_player(browser):
     label = browser.find_element(By.ID, "time-label")
-    browser.execute_script("const s = document.getElementById('time'); s.value = 3; s.dispatchEvent(new Event('input'));")
+    browser.execute_script(
+        "const s = document.getElementById('time'); s.value = 3; s.dispatchEvent(new Event('input'));"
+    )
     assert label.text.startswith("t = 1.5"), f"the fourth of frames every 0.5 s is at {label.text}"
     assert browser.find_element(By.ID, "layer-flow").is_selected(), "the slider does not show the flow"
     third = frozenset(colours_of_map(browser))
@@ -105,6 +127,7 @@ def geotiff(out, name):
     def value(x, y):
         found = float(values[int((y - north) / dy)][int((x - west) / dx)])
         return None if found == nodata else found
+
     return value, float(values.max())
 
 
@@ -114,14 +137,23 @@ def check_cursor(browser, out):
     browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", area)
     time.sleep(0.2)
     size, met = area.size, 0
-    maps = {"deposit": "deposit_thickness", "peak_thickness": "peak_thickness", "peak_speed": "peak_speed", "arrival": "arrival_time"}
+    maps = {
+        "deposit": "deposit_thickness",
+        "peak_thickness": "peak_thickness",
+        "peak_speed": "peak_speed",
+        "arrival": "arrival_time",
+    }
     for right, down in [(0.5, 0.5), (0.42, 0.52), (0.35, 0.5), (0.6, 0.45), (0.9, 0.9)]:
-        ActionChains(browser).move_to_element_with_offset(area, round((right - 0.5) * size["width"]), round((down - 0.5) * size["height"])).perform()
+        ActionChains(browser).move_to_element_with_offset(
+            area, round((right - 0.5) * size["width"]), round((down - 0.5) * size["height"])
+        ).perform()
         place = browser.execute_script("return report.panel.place")
         assert place, "the map does not feel the cursor"
         for layer, name in maps.items():
             value, top = geotiff(out, name)
-            shown = float(browser.find_element(By.CSS_SELECTOR, f"#cursor tr[data-id={layer}]").get_attribute("data-value"))
+            shown = float(
+                browser.find_element(By.CSS_SELECTOR, f"#cursor tr[data-id={layer}]").get_attribute("data-value")
+            )
             stored = value(place["x"], place["y"])
             if stored is None:
                 assert math.isnan(shown), f"{layer} at {place}: {shown}, but the file has no data"
@@ -132,11 +164,20 @@ def check_cursor(browser, out):
 
 
 def check_curves(browser):
-    for name in ["profile-elevation", "profile-thickness", "series-energy", "series-speed", "series-motion", "series-front"]:
+    for name in [
+        "profile-elevation",
+        "profile-thickness",
+        "series-energy",
+        "series-speed",
+        "series-motion",
+        "series-front",
+    ]:
         drawn = browser.execute_script(
             "const c = document.getElementById(arguments[0]); if (!c) return -1;"
             "const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; let n = 0;"
-            "for (let i = 3; i < d.length; i += 4) n += d[i] > 0; return n;", name)
+            "for (let i = 3; i < d.length; i += 4) n += d[i] > 0; return n;",
+            name,
+        )
         assert drawn > 500, f"the chart {name} is {'missing' if drawn < 0 else 'blank'}"
     chart = browser.find_element(By.ID, "profile-thickness")
     browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", chart)
@@ -163,7 +204,9 @@ def check_surveys(browser):
 def check_parameters(browser):
     text = browser.find_element(By.ID, "parameters").text
     marked = [row.text for row in browser.find_elements(By.CSS_SELECTOR, "#parameters tr.changed")]
-    assert any(row.startswith("base.friction_angle_deg 15.0") for row in marked), f"the bed's friction is not marked: {marked}"
+    assert any(
+        row.startswith("base.friction_angle_deg 15.0") for row in marked
+    ), f"the bed's friction is not marked: {marked}"
     assert "cfl" not in text, "a parameter at its default stands among those that were changed"
     browser.find_element(By.ID, "all-parameters").click()
     assert "cfl" in browser.find_element(By.ID, "parameters").text, "the other parameters do not come"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Folders are floors: a folder includes what lies below it, and itself (docs/architecture.md). Equations of docs/theory.md
-# are named in the sources that compute them.
+# Folders are floors: a folder includes what lies below it, and itself (docs/architecture.md). Equations of
+# docs/theory.md are named in the sources that compute them.
 source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 
 # The floors of a stage, the lowest first. Folders on one line do not include one another. A folder below another one is
@@ -23,7 +23,8 @@ violations() {
   {
     floors "$stage"
     echo --
-    grep -rnoE --include='*.hpp' --include='*.cpp' --include='*.cu' "^#include \"$stage/[^\"]+" "$stage" | sed 's/#include "//'
+    grep -rnoE --include='*.hpp' --include='*.cpp' --include='*.cu' "^#include \"$stage/[^\"]+" "$stage" |
+      sed 's/#include "//'
   } | awk -v stage="$stage" '
     function folder(path,   part) {            # the longest floor that holds the path
       sub("^" stage "/", "", path)
@@ -32,8 +33,15 @@ violations() {
       return path == "" ? "." : path
     }
     $0 == "--" { table = 1; next }
-    !table { for (i = 1; i <= NF; ++i) { level[$i] = NR; names = names ? names " " $i : $i; below[$i] = NR > 1 ? lower : "nothing else" }
-             lower = names; next }
+    !table {
+      for (i = 1; i <= NF; ++i) {
+        level[$i] = NR
+        below[$i] = NR > 1 ? lower : "nothing else"
+        names = names ? names " " $i : $i
+      }
+      lower = names
+      next
+    }
     {
       n = split($0, piece, ":")
       from = folder(piece[1]); to = folder(piece[3])

@@ -2,7 +2,16 @@
 import { h, number } from "./format.js";
 
 // Okabe & Ito's colours, which every common colour blindness keeps apart.
-export const colours = { ink: "#1a1c20", grey: "#8a8f98", orange: "#d55e00", yellow: "#e69f00", blue: "#0072b2", sky: "#56b4e9", green: "#009e73", violet: "#8c1a73" };
+export const colours = {
+  ink: "#1a1c20",
+  grey: "#8a8f98",
+  orange: "#d55e00",
+  yellow: "#e69f00",
+  blue: "#0072b2",
+  sky: "#56b4e9",
+  green: "#009e73",
+  violet: "#8c1a73",
+};
 
 const axisWidth = 66; // the same for all, so that charts above one another share their x
 
@@ -22,14 +31,36 @@ export function points(x, y) {
 
 /** A line: {label, data, colour, dashes, fill, dots, width}. */
 function dataset(line) {
-  return { label: line.label, data: line.data, borderColor: line.colour, backgroundColor: line.fillColour ?? line.colour, borderWidth: line.width ?? 2,
-    borderDash: line.dashes ?? [], pointRadius: line.dots ? 2.5 : 0, pointHitRadius: 8, fill: line.fill ?? false, parsing: false, normalized: true,
-    stepped: false, spanGaps: false };
+  return {
+    label: line.label,
+    data: line.data,
+    borderColor: line.colour,
+    backgroundColor: line.fillColour ?? line.colour,
+    borderWidth: line.width ?? 2,
+    borderDash: line.dashes ?? [],
+    pointRadius: line.dots ? 2.5 : 0,
+    pointHitRadius: 8,
+    fill: line.fill ?? false,
+    parsing: false,
+    normalized: true,
+    stepped: false,
+    spanGaps: false,
+  };
 }
 
 function axis(title, extra) {
-  return { type: "linear", title: { display: true, text: title }, grid: { color: "#e6e8eb" }, ...extra,
-    ticks: { includeBounds: false, callback: (value) => number(value, decimalsOf(value)), maxRotation: 0, autoSkipPadding: 16 } };
+  return {
+    type: "linear",
+    title: { display: true, text: title },
+    grid: { color: "#e6e8eb" },
+    ...extra,
+    ticks: {
+      includeBounds: false,
+      callback: (value) => number(value, decimalsOf(value)),
+      maxRotation: 0,
+      autoSkipPadding: 16,
+    },
+  };
 }
 
 function decimalsOf(value) {
@@ -38,8 +69,16 @@ function decimalsOf(value) {
 
 /** A sample of each line, dashes and all. */
 function legendLabels(chart) {
-  return chart.data.datasets.map((d, i) => ({ text: d.label, strokeStyle: d.borderColor, fillStyle: d.borderColor, lineDash: d.borderDash,
-    lineWidth: d.borderWidth, pointStyle: "line", hidden: !chart.isDatasetVisible(i), datasetIndex: i }));
+  return chart.data.datasets.map((d, i) => ({
+    text: d.label,
+    strokeStyle: d.borderColor,
+    fillStyle: d.borderColor,
+    lineDash: d.borderDash,
+    lineWidth: d.borderWidth,
+    pointStyle: "line",
+    hidden: !chart.isDatasetVisible(i),
+    datasetIndex: i,
+  }));
 }
 
 /** Put a chart into `box`. `spec`: {id, title, height, x, y, lines, min, max, onHover, zero}. */
@@ -47,7 +86,12 @@ export function lineChart(box, spec) {
   const canvas = h("canvas", { id: spec.id, role: "img", "aria-label": spec.title });
   const frame = h("div", { class: "canvas-frame", style: `height:${spec.height}px` }, canvas);
   box.append(h("div", { class: "chart" }, h("h3", {}, spec.title), frame));
-  const y = axis(spec.y, { beginAtZero: spec.zero ?? true, afterFit: (scale) => { scale.width = axisWidth; } });
+  const y = axis(spec.y, {
+    beginAtZero: spec.zero ?? true,
+    afterFit: (scale) => {
+      scale.width = axisWidth;
+    },
+  });
   return new Chart(canvas, {
     type: "line",
     data: { datasets: spec.lines.map(dataset) },
@@ -56,9 +100,17 @@ export function lineChart(box, spec) {
       interaction: { mode: "nearest", axis: "x", intersect: false },
       scales: { x: axis(spec.x, { min: spec.min, max: spec.max }), y },
       plugins: {
-        legend: { display: spec.lines.length > 1, align: "start", labels: { usePointStyle: true, pointStyleWidth: 30, generateLabels: legendLabels } },
-        tooltip: { callbacks: { title: (items) => `${spec.x}: ${number(items[0].parsed.x, 1)}`,
-          label: (item) => `${item.dataset.label}: ${number(item.parsed.y, 2)}` } },
+        legend: {
+          display: spec.lines.length > 1,
+          align: "start",
+          labels: { usePointStyle: true, pointStyleWidth: 30, generateLabels: legendLabels },
+        },
+        tooltip: {
+          callbacks: {
+            title: (items) => `${spec.x}: ${number(items[0].parsed.x, 1)}`,
+            label: (item) => `${item.dataset.label}: ${number(item.parsed.y, 2)}`,
+          },
+        },
       },
       onHover: spec.onHover ? (event, active) => spec.onHover(active[0]?.index) : undefined,
     },

@@ -2,47 +2,95 @@
 import { colours, lineChart, points } from "./charts.js";
 import { number, scaled } from "./format.js";
 
-function text(id, words) { document.getElementById(id).textContent = words; }
+function text(id, words) {
+  document.getElementById(id).textContent = words;
+}
 
 const visible = 0.05; // [m] of a layer on a profile of hundreds
 
 /** Three charts above one another: elevation, thickness, speed. `pointAt(i)` is told which vertex is looked at. */
 export function drawProfile(data, pointAt) {
-  const profile = data.profile, box = document.getElementById("profile");
+  const profile = data.profile,
+    box = document.getElementById("profile");
   if (!profile) {
     text("profile-note", "No profile: the run has neither a release nor a deposit to draw a line through.");
     return;
   }
-  const s = profile.distance, survey = data.run.survey?.name;
+  const s = profile.distance,
+    survey = data.run.survey?.name;
   const common = { x: "Distance along the thalweg [m]", min: 0, max: s[s.length - 1], onHover: pointAt };
   const line = (label, key, more) => ({ label, data: points(s, profile[key]), ...more });
   // A surface is drawn where there is a layer to see; elsewhere it would hide the bed.
   const surface = (key, layer) => profile[key].map((z, i) => (profile[layer][i] > visible ? z : NaN));
-  const elevations = [ // the first is drawn on top
-    { label: "Deposit, simulated", data: points(s, surface("deposit_surface", "deposit")), colour: colours.orange, fill: "+1", fillColour: "rgba(213, 94, 0, 0.35)" },
+  const elevations = [
+    // the first is drawn on top
+    {
+      label: "Deposit, simulated",
+      data: points(s, surface("deposit_surface", "deposit")),
+      colour: colours.orange,
+      fill: "+1",
+      fillColour: "rgba(213, 94, 0, 0.35)",
+    },
     line("Bed", "bed", { colour: colours.ink, width: 1.5 }),
     line("Surface before", "before", { colour: colours.grey, width: 1.5, dashes: [5, 3] }),
   ];
-  const thickness = [line("Deposit, simulated", "deposit", { colour: colours.orange, fill: "origin", fillColour: "rgba(213, 94, 0, 0.18)" }),
-    line("Peak, simulated", "peak", { colour: colours.yellow, dashes: [6, 3] })];
+  const thickness = [
+    line("Deposit, simulated", "deposit", {
+      colour: colours.orange,
+      fill: "origin",
+      fillColour: "rgba(213, 94, 0, 0.18)",
+    }),
+    line("Peak, simulated", "peak", { colour: colours.yellow, dashes: [6, 3] }),
+  ];
   if (profile.surveyed) {
     const after = data.run.survey.is_change ? profile.surveyed_surface : surface("surveyed_surface", "surveyed");
-    elevations.unshift({ label: `Surface after, ${survey}`, data: points(s, after), colour: colours.blue, dashes: [8, 4] });
+    elevations.unshift({
+      label: `Surface after, ${survey}`,
+      data: points(s, after),
+      colour: colours.blue,
+      dashes: [8, 4],
+    });
     thickness.unshift(line(`Deposit, ${survey}`, "surveyed", { colour: colours.blue, dashes: [8, 4] }));
   }
-  lineChart(box, { ...common, id: "profile-elevation", title: "Elevation", y: "Elevation [m]", height: 300, lines: elevations, zero: false });
-  lineChart(box, { ...common, id: "profile-thickness", title: "Thickness, vertical", y: "Thickness [m]", height: 220, lines: thickness });
-  lineChart(box, { ...common, id: "profile-speed", title: "Peak speed", y: "Speed [m/s]", height: 180,
-    lines: [line("Peak speed", "speed", { colour: colours.green })] });
+  lineChart(box, {
+    ...common,
+    id: "profile-elevation",
+    title: "Elevation",
+    y: "Elevation [m]",
+    height: 300,
+    lines: elevations,
+    zero: false,
+  });
+  lineChart(box, {
+    ...common,
+    id: "profile-thickness",
+    title: "Thickness, vertical",
+    y: "Thickness [m]",
+    height: 220,
+    lines: thickness,
+  });
+  lineChart(box, {
+    ...common,
+    id: "profile-speed",
+    title: "Peak speed",
+    y: "Speed [m/s]",
+    height: 180,
+    lines: [line("Peak speed", "speed", { colour: colours.green })],
+  });
   text("profile-note", profileNote(profile));
 }
 
 function profileNote(profile) {
-  const z = [...profile.before, ...profile.bed].filter(Number.isFinite), s = profile.distance;
-  const drop = Math.max(...z) - Math.min(...z), length = s[s.length - 1];
+  const z = [...profile.before, ...profile.bed].filter(Number.isFinite),
+    s = profile.distance;
+  const drop = Math.max(...z) - Math.min(...z),
+    length = s[s.length - 1];
   const origin = profile.given ? "The thalweg is the line that the recipe gives" : "The thalweg was found from the run";
-  return `${origin}${profile.origin ? ` (${profile.origin})` : ""}: ${number(length)} m long, over ${number(drop)} m of relief. ` +
-    "Values are those on the line itself, not the largest across it. Moving over a curve marks the place on the map.";
+  return (
+    `${origin}${profile.origin ? ` (${profile.origin})` : ""}: ${number(length)} m long, over ${number(drop)} m ` +
+    `of relief. ` +
+    "Values are those on the line itself, not the largest across it. Moving over a curve marks the place on the map."
+  );
 }
 
 /** Brings columns to a readable unit: {factor, prefix} by their largest value. */
@@ -51,21 +99,38 @@ function unitOf(...columns) {
 }
 
 function curve(label, time, values, factor, more) {
-  return { label, data: points(time, values.map((v) => v / factor)), ...more };
+  return {
+    label,
+    data: points(
+      time,
+      values.map((v) => v / factor),
+    ),
+    ...more,
+  };
 }
 
 function energyChart(box, history) {
-  const t = history.time_s, released = history.potential_J.map((e) => history.potential_J[0] - e);
+  const t = history.time_s,
+    released = history.potential_J.map((e) => history.potential_J[0] - e);
   const { factor, prefix } = unitOf(history.kinetic_J, released);
-  const lines = [curve("Kinetic", t, history.kinetic_J, factor, { colour: colours.orange }),
-    curve("Potential, given up since the start", t, released, factor, { colour: colours.grey, dashes: [6, 3] })];
+  const lines = [
+    curve("Kinetic", t, history.kinetic_J, factor, { colour: colours.orange }),
+    curve("Potential, given up since the start", t, released, factor, { colour: colours.grey, dashes: [6, 3] }),
+  ];
   if (history.bed_loss_J) lines.push(curve("Lost to the bed", t, history.bed_loss_J, factor, { colour: colours.blue }));
-  if (history.plastic_loss_J) lines.push(curve("Lost to plastic flow", t, history.plastic_loss_J, factor, { colour: colours.green }));
+  if (history.plastic_loss_J)
+    lines.push(curve("Lost to plastic flow", t, history.plastic_loss_J, factor, { colour: colours.green }));
   lineChart(box, { id: "series-energy", title: "Energy", x: "Time [s]", y: `Energy [${prefix}J]`, height: 240, lines });
   if (!kineticLiesFlat(history.kinetic_J, released)) return;
   const own = unitOf(history.kinetic_J);
-  lineChart(box, { id: "series-kinetic", title: "Kinetic energy", x: "Time [s]", y: `Energy [${own.prefix}J]`, height: 240,
-    lines: [curve("Kinetic", t, history.kinetic_J, own.factor, { colour: colours.orange })] });
+  lineChart(box, {
+    id: "series-kinetic",
+    title: "Kinetic energy",
+    x: "Time [s]",
+    y: `Energy [${own.prefix}J]`,
+    height: 240,
+    lines: [curve("Kinetic", t, history.kinetic_J, own.factor, { colour: colours.orange })],
+  });
 }
 
 /** True where kinetic energy would lie flat beside the potential one. */
@@ -75,23 +140,50 @@ function kineticLiesFlat(kinetic, released) {
 
 /** Energy, speed, volume in motion, front. */
 export function drawSeries(data) {
-  const { history, front, motion } = data.series, box = document.getElementById("series"), notes = [];
+  const { history, front, motion } = data.series,
+    box = document.getElementById("series"),
+    notes = [];
   if (history.time_s?.length > 1) {
     energyChart(box, history);
-    const speed = [{ label: "Largest of any point", data: points(history.time_s, history.speed_max_m_s), colour: colours.green }];
-    if (motion) speed.push({ label: "Mean of what moves", data: points(motion.time, motion.mean_speed), colour: colours.violet, dots: true, dashes: [6, 3] });
+    const speed = [
+      { label: "Largest of any point", data: points(history.time_s, history.speed_max_m_s), colour: colours.green },
+    ];
+    if (motion)
+      speed.push({
+        label: "Mean of what moves",
+        data: points(motion.time, motion.mean_speed),
+        colour: colours.violet,
+        dots: true,
+        dashes: [6, 3],
+      });
     lineChart(box, { id: "series-speed", title: "Speed", x: "Time [s]", y: "Speed [m/s]", height: 240, lines: speed });
   }
   if (motion) {
-    const largest = Math.max(...motion.volume), factor = largest >= 1e6 ? 1e6 : largest >= 1e4 ? 1e3 : 1;
+    const largest = Math.max(...motion.volume),
+      factor = largest >= 1e6 ? 1e6 : largest >= 1e4 ? 1e3 : 1;
     const prefix = { 1: "", 1e3: "thousand ", 1e6: "million " }[factor];
-    lineChart(box, { id: "series-motion", title: "Volume in motion", x: "Time [s]", y: `Volume [${prefix}m\u00b3]`, height: 240,
-      lines: [curve("In motion", motion.time, motion.volume, factor, { colour: colours.blue, dots: true })] });
-    notes.push(`In motion: material points faster than ${motion.faster_than} m/s, at the ${motion.time.length} frames the run wrote.`);
+    lineChart(box, {
+      id: "series-motion",
+      title: "Volume in motion",
+      x: "Time [s]",
+      y: `Volume [${prefix}m\u00b3]`,
+      height: 240,
+      lines: [curve("In motion", motion.time, motion.volume, factor, { colour: colours.blue, dots: true })],
+    });
+    notes.push(
+      `In motion: material points faster than ${motion.faster_than} m/s, at the ${motion.time.length} frames the ` +
+        `run wrote.`,
+    );
   }
   if (front) {
-    lineChart(box, { id: "series-front", title: "Front along the thalweg", x: "Time [s]", y: "Distance [m]", height: 240,
-      lines: [{ label: "Front", data: points(front.time, front.distance), colour: colours.violet, dots: true }] });
+    lineChart(box, {
+      id: "series-front",
+      title: "Front along the thalweg",
+      x: "Time [s]",
+      y: "Distance [m]",
+      height: 240,
+      lines: [{ label: "Front", data: points(front.time, front.distance), colour: colours.violet, dots: true }],
+    });
     notes.push(`Front: farthest place along the thalweg that the flow has reached, thicker than ${front.threshold} m.`);
   }
   if (!box.children.length) notes.push("The run holds no history.");

@@ -26,13 +26,18 @@ export class Field {
     this.values = values;
   }
 
-  get east() { return this.grid.west + this.grid.columns * this.grid.cell; }
-  get north() { return this.grid.south + this.grid.rows * this.grid.cell; }
+  get east() {
+    return this.grid.west + this.grid.columns * this.grid.cell;
+  }
+  get north() {
+    return this.grid.south + this.grid.rows * this.grid.cell;
+  }
 
   /** Value of the cell that holds the place; NaN outside. */
   at(x, y) {
     const { columns, rows, west, south, cell } = this.grid;
-    const column = Math.floor((x - west) / cell), row = Math.floor((y - south) / cell);
+    const column = Math.floor((x - west) / cell),
+      row = Math.floor((y - south) / cell);
     if (column < 0 || row < 0 || column >= columns || row >= rows) return NaN;
     return this.values[row * columns + column];
   }

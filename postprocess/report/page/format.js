@@ -1,6 +1,7 @@
 // Numbers and words as people read them.
 
-const thin = "\u2009", minus = "\u2212";
+const thin = "\u2009",
+  minus = "\u2212";
 
 /** 36001 -> "36 001" with `decimals` places, thousands apart by thin spaces. */
 export function number(value, decimals = 0) {
@@ -33,12 +34,21 @@ export function volume(value) {
 }
 
 export function area(value) {
-  return value >= 1e6 ? `${number(value / 1e6, 2)}${thin}km\u00b2` : value >= 1e4 ? `${number(value / 1e4, 1)}${thin}ha` : `${number(value)}${thin}m\u00b2`;
+  return value >= 1e6
+    ? `${number(value / 1e6, 2)}${thin}km\u00b2`
+    : value >= 1e4
+      ? `${number(value / 1e4, 1)}${thin}ha`
+      : `${number(value)}${thin}m\u00b2`;
 }
 
 /** A power of thousand that brings the largest value to 1 ... 1000, with its letter. */
 export function scaled(largest) {
-  const steps = [[1e12, "T"], [1e9, "G"], [1e6, "M"], [1e3, "k"]];
+  const steps = [
+    [1e12, "T"],
+    [1e9, "G"],
+    [1e6, "M"],
+    [1e3, "k"],
+  ];
   const found = steps.find(([factor]) => largest >= factor);
   return found ? { factor: found[0], prefix: found[1] } : { factor: 1, prefix: "" };
 }
@@ -47,7 +57,8 @@ export function scaled(largest) {
 export function h(name, attributes = {}, ...children) {
   const element = document.createElement(name);
   for (const [key, value] of Object.entries(attributes)) {
-    if (value !== null && value !== undefined && value !== false) element.setAttribute(key, value === true ? "" : value);
+    if (value !== null && value !== undefined && value !== false)
+      element.setAttribute(key, value === true ? "" : value);
   }
   for (const child of children.flat()) {
     if (child !== null && child !== undefined) element.append(child);

@@ -18,12 +18,15 @@ function unflatten(flat, window) {
 }
 
 function title(id, data) {
-  const { run, map } = data, survey = run.survey;
+  const { run, map } = data,
+    survey = run.survey;
   if (id === "contours") return `Contours every ${map.lines.contours.interval} m`;
   if (id === "footprint") return `Simulated: peak > ${run.thresholds.footprint} m`;
   if (id === "survey_deposit") return `${survey.name}: deposit > ${run.thresholds.deposit} m`;
   if (id === "survey_footprint") {
-    const what = survey.is_polygon ? "outline" : `${survey.is_change ? "|change|" : "peak"} > ${survey.footprint_threshold} m`;
+    const what = survey.is_polygon
+      ? "outline"
+      : `${survey.is_change ? "|change|" : "peak"} > ${survey.footprint_threshold} m`;
     return `${survey.name}: ${what}`;
   }
   return styles[id].title;
@@ -31,12 +34,16 @@ function title(id, data) {
 
 /** [{id, title, style, lines}], bottom first. */
 export function mapLines(data) {
-  const { lines, window } = data.map, found = [];
+  const { lines, window } = data.map,
+    found = [];
   const add = (id, list) => {
     const points = list.filter((flat) => flat.length >= 4).map((flat) => unflatten(flat, window));
     if (points.length) found.push({ id, title: title(id, data), style: styles[id], lines: points });
   };
-  add("contours", lines.contours.levels.flatMap((level) => level.lines));
+  add(
+    "contours",
+    lines.contours.levels.flatMap((level) => level.lines),
+  );
   add("footprint", lines.footprint);
   add("survey_footprint", lines.survey_footprint ?? []);
   add("survey_deposit", lines.survey_deposit ?? []);
@@ -51,8 +58,16 @@ export function sample(style, width = 30) {
   svg.setAttribute("width", width);
   svg.setAttribute("height", 10);
   const line = document.createElementNS("http://www.w3.org/2000/svg", "line");
-  const attributes = { x1: 0, x2: width, y1: 5, y2: 5, stroke: style.colour, "stroke-width": style.width + 0.4,
-    "stroke-dasharray": (style.dashes ?? []).join(" "), "stroke-opacity": style.opacity ?? 1 };
+  const attributes = {
+    x1: 0,
+    x2: width,
+    y1: 5,
+    y2: 5,
+    stroke: style.colour,
+    "stroke-width": style.width + 0.4,
+    "stroke-dasharray": (style.dashes ?? []).join(" "),
+    "stroke-opacity": style.opacity ?? 1,
+  };
   for (const [name, value] of Object.entries(attributes)) line.setAttribute(name, value);
   svg.append(line);
   return svg;

@@ -17,14 +17,20 @@ function complain(words) {
 }
 
 function mapNote(data) {
-  const { run, map } = data, parts = [`Coordinates: ${run.crs} [m].`, "Shading: surface before the failure."];
-  if (map.coarsest > 1) parts.push(`Maps coarsened for this page, up to ${map.coarsest} \u00d7 ${map.coarsest} cells in one; the GeoTIFFs beside it are whole.`);
+  const { run, map } = data,
+    parts = [`Coordinates: ${run.crs} [m].`, "Shading: surface before the failure."];
+  if (map.coarsest > 1)
+    parts.push(
+      `Maps coarsened for this page, up to ${map.coarsest} \u00d7 ${map.coarsest} cells in one; the GeoTIFFs ` +
+        `beside it are whole.`,
+    );
   parts.push("Click the map, then turn the wheel to zoom.");
   document.getElementById("map-note").textContent = parts.join(" ");
 }
 
 async function drawMaps(data) {
-  const fields = await readMap(data.map), lines = mapLines(data);
+  const fields = await readMap(data.map),
+    lines = mapLines(data);
   const map = new ReportMap(document.getElementById("map"), data, fields, lines);
   const panel = new Panel(data, fields, map, lines);
   mapNote(data);
@@ -34,12 +40,14 @@ async function drawMaps(data) {
 
 /** Tells the map which vertex of the profile is looked at. */
 function thalwegPointer(data, view) {
-  const flat = data.map.lines.thalweg, { west, south } = data.map.window;
+  const flat = data.map.lines.thalweg,
+    { west, south } = data.map.window;
   return (i) => view.map?.point(i === undefined ? null : [flat[2 * i] + west, flat[2 * i + 1] + south]);
 }
 
 async function draw() {
-  const data = JSON.parse(document.getElementById("data").textContent), view = {};
+  const data = JSON.parse(document.getElementById("data").textContent),
+    view = {};
   drawSummary(data);
   drawScores(data);
   drawSurveys(data);
@@ -51,7 +59,9 @@ async function draw() {
   drawProfile(data, thalwegPointer(data, view));
   drawSeries(data);
   if (typeof DecompressionStream === "undefined") {
-    complain("The maps of this report need a browser of 2023 or later (DecompressionStream). All numbers below are complete.");
+    complain(
+      "The maps of this report need a browser of 2023 or later (DecompressionStream). All numbers below are complete.",
+    );
     return;
   }
   Object.assign(view, await drawMaps(data));

@@ -13,7 +13,10 @@ const CanvasOverlay = L.ImageOverlay.extend({
 });
 
 function boundsOf(field) {
-  return [[field.grid.south, field.grid.west], [field.north, field.east]];
+  return [
+    [field.grid.south, field.grid.west],
+    [field.north, field.east],
+  ];
 }
 
 /** White line below, coloured one on top. */
@@ -21,24 +24,35 @@ function lineLayer({ lines, style }) {
   const latlngs = lines.map((line) => line.map(([x, y]) => [y, x]));
   const options = { interactive: false, smoothFactor: 0.6, lineJoin: "round" };
   const group = L.layerGroup();
-  if (style.casing) group.addLayer(L.polyline(latlngs, { ...options, color: "#fff", weight: style.casing, opacity: 0.8 }));
-  group.addLayer(L.polyline(latlngs, { ...options, color: style.colour, weight: style.width, opacity: style.opacity ?? 1,
-    dashArray: (style.dashes ?? []).join(" ") || null }));
+  if (style.casing)
+    group.addLayer(L.polyline(latlngs, { ...options, color: "#fff", weight: style.casing, opacity: 0.8 }));
+  group.addLayer(
+    L.polyline(latlngs, {
+      ...options,
+      color: style.colour,
+      weight: style.width,
+      opacity: style.opacity ?? 1,
+      dashArray: (style.dashes ?? []).join(" ") || null,
+    }),
+  );
   return group;
 }
 
 const NorthArrow = L.Control.extend({
   onAdd() {
     const box = L.DomUtil.create("div", "north");
-    box.innerHTML = '<svg width="26" height="36" viewBox="0 0 26 36" role="img" aria-label="North is up">' +
-      '<path d="M13 1 L22 34 L13 27 Z" fill="#b9bcc1" stroke="#1a1c20"/><path d="M13 1 L4 34 L13 27 Z" fill="#1a1c20" stroke="#1a1c20"/></svg><br>N';
+    box.innerHTML =
+      '<svg width="26" height="36" viewBox="0 0 26 36" role="img" aria-label="North is up">' +
+      '<path d="M13 1 L22 34 L13 27 Z" fill="#b9bcc1" stroke="#1a1c20"/><path d="M13 1 L4 34 L13 27 Z" ' +
+      'fill="#1a1c20" stroke="#1a1c20"/></svg><br>N';
     return box;
   },
 });
 
 /** Multiples of a round step inside [low, high], about `wanted`. */
 export function ticks(low, high, wanted) {
-  const rough = (high - low) / wanted, power = 10 ** Math.floor(Math.log10(rough));
+  const rough = (high - low) / wanted,
+    power = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 5, 10].map((m) => m * power).find((s) => s >= rough);
   const places = [];
   for (let k = Math.ceil(low / step); k * step <= high; ++k) places.push(k * step);
@@ -57,23 +71,43 @@ export class ReportMap {
     this.leaflet.addLayer(new CanvasOverlay(this.ground, boundsOf(fields.ground.shade)));
     this.thematic = null;
     this.overlays = new Map(lines.map((line) => [line.id, lineLayer(line).addTo(this.leaflet)]));
-    this.marker = L.circleMarker([0, 0], { radius: 6, color: "#fff", weight: 2, fillColor: "#8c1a73", fillOpacity: 1, interactive: false });
+    this.marker = L.circleMarker([0, 0], {
+      radius: 6,
+      color: "#fff",
+      weight: 2,
+      fillColor: "#8c1a73",
+      fillOpacity: 1,
+      interactive: false,
+    });
     this.drawTicks(element);
   }
 
   /** The frame takes the proportions of what it shows, as far as the screen allows. */
   fit(element) {
     if (!element.clientWidth) return;
-    const { west, south, east, north } = this.window, most = Math.max(360, Math.min(0.86 * window.innerHeight, 860));
+    const { west, south, east, north } = this.window,
+      most = Math.max(360, Math.min(0.86 * window.innerHeight, 860));
     const height = (element.clientWidth * (north - south)) / (east - west);
     element.style.height = `${Math.min(Math.max(height, 340), most)}px`;
   }
 
   makeLeaflet(element) {
     const { west, south, east, north } = this.window;
-    const bounds = L.latLngBounds([[south, west], [north, east]]);
-    const map = L.map(element, { crs: L.CRS.Simple, attributionControl: false, zoomSnap: 0, zoomDelta: 0.7, minZoom: -12, maxZoom: 6,
-      scrollWheelZoom: false, dragging: !L.Browser.mobile, maxBounds: bounds.pad(0.5) });
+    const bounds = L.latLngBounds([
+      [south, west],
+      [north, east],
+    ]);
+    const map = L.map(element, {
+      crs: L.CRS.Simple,
+      attributionControl: false,
+      zoomSnap: 0,
+      zoomDelta: 0.7,
+      minZoom: -12,
+      maxZoom: 6,
+      scrollWheelZoom: false,
+      dragging: !L.Browser.mobile,
+      maxBounds: bounds.pad(0.5),
+    });
     map.fitBounds(bounds, { animate: false });
     map.setMinZoom(map.getZoom() - 1);
     map.on("focus click", () => map.scrollWheelZoom.enable()); // pages scroll past a map that was not asked for
@@ -87,9 +121,19 @@ export class ReportMap {
   /** A frame that changes its size shows the whole again, until somebody has moved or zoomed it. */
   followSize(element, map, bounds) {
     let touched = false;
-    map.on("dragstart boxzoomstart dblclick", () => { touched = true; });
-    element.addEventListener("wheel", () => { touched = true; }, { passive: true });
-    element.querySelector(".leaflet-control-zoom").addEventListener("click", () => { touched = true; });
+    map.on("dragstart boxzoomstart dblclick", () => {
+      touched = true;
+    });
+    element.addEventListener(
+      "wheel",
+      () => {
+        touched = true;
+      },
+      { passive: true },
+    );
+    element.querySelector(".leaflet-control-zoom").addEventListener("click", () => {
+      touched = true;
+    });
     new ResizeObserver(() => {
       if (!element.clientWidth) return; // hidden while printing
       map.invalidateSize({ animate: false });
@@ -107,7 +151,8 @@ export class ReportMap {
     const draw = () => {
       labels.forEach((label) => label.remove());
       labels = [];
-      const seen = this.leaflet.getBounds(), size = this.leaflet.getSize();
+      const seen = this.leaflet.getBounds(),
+        size = this.leaflet.getSize();
       const add = (kind, value, side, place) => {
         const label = L.DomUtil.create("span", `tick ${kind}`, element);
         label.textContent = number(value);
@@ -136,7 +181,9 @@ export class ReportMap {
     this.thematic = new CanvasOverlay(this.canvas, boundsOf(field)).addTo(this.leaflet);
   }
 
-  showLayer(layer) { this.show(layer?.field, layer?.classes, layer && blending(layer)); }
+  showLayer(layer) {
+    this.show(layer?.field, layer?.classes, layer && blending(layer));
+  }
 
   /** A frame of the flow; smaller than a still picture, to keep up. */
   showFrame(i) {

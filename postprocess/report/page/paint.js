@@ -17,16 +17,23 @@ function absent(value, mode) {
 
 /** Bilinear value at grid coordinates u, v (cells, centres at whole numbers). */
 function blend(field, u, v, mode) {
-  const { columns, rows } = field.grid, values = field.values;
-  const clampedU = Math.min(Math.max(u, 0), columns - 1), clampedV = Math.min(Math.max(v, 0), rows - 1);
+  const { columns, rows } = field.grid,
+    values = field.values;
+  const clampedU = Math.min(Math.max(u, 0), columns - 1),
+    clampedV = Math.min(Math.max(v, 0), rows - 1);
   const own = values[Math.round(clampedV) * columns + Math.round(clampedU)];
   if (mode === "cells") return own;
   if (mode !== "smooth" && absent(own, mode)) return NaN;
-  const column = Math.min(Math.floor(clampedU), Math.max(columns - 2, 0)), row = Math.min(Math.floor(clampedV), Math.max(rows - 2, 0));
-  const fu = clampedU - column, fv = clampedV - row, start = row * columns + column;
-  let sum = 0, weights = 0;
+  const column = Math.min(Math.floor(clampedU), Math.max(columns - 2, 0)),
+    row = Math.min(Math.floor(clampedV), Math.max(rows - 2, 0));
+  const fu = clampedU - column,
+    fv = clampedV - row,
+    start = row * columns + column;
+  let sum = 0,
+    weights = 0;
   for (let corner = 0; corner < 4; ++corner) {
-    const dx = corner & 1, dy = corner >> 1;
+    const dx = corner & 1,
+      dy = corner >> 1;
     const weight = (dx ? fu : 1 - fu) * (dy ? fv : 1 - fv);
     if (weight === 0) continue;
     const value = values[start + dx + dy * columns];
@@ -63,12 +70,16 @@ function rgb(hex) {
 
 /** Hillshade in greys that leave room for colours on top. */
 export function paintGround(shade) {
-  const scale = pixelsPerCell(shade.grid, widest), canvas = canvasFor(shade.grid, scale);
-  const context = canvas.getContext("2d"), image = context.createImageData(canvas.width, canvas.height);
+  const scale = pixelsPerCell(shade.grid, widest),
+    canvas = canvasFor(shade.grid, scale);
+  const context = canvas.getContext("2d"),
+    image = context.createImageData(canvas.width, canvas.height);
   forPixels(canvas, scale, shade.grid.rows, (u, v, at) => {
     const bright = blend(shade, u, v, "smooth");
     const grey = 255 * (0.64 + 0.34 * bright);
-    const known = !Number.isNaN(shade.values[Math.round(Math.max(v, 0)) * shade.grid.columns + Math.round(Math.max(u, 0))]);
+    const known = !Number.isNaN(
+      shade.values[Math.round(Math.max(v, 0)) * shade.grid.columns + Math.round(Math.max(u, 0))],
+    );
     image.data.set(known ? [0.985 * grey, 0.99 * grey, grey, 255] : [237, 240, 242, 255], at);
   });
   context.putImageData(image, 0, 0);
@@ -90,10 +101,17 @@ export class Painter {
   }
 
   computeShading(grid, scale, canvas) {
-    const ground = this.shade.grid, factors = new Float32Array(canvas.width * canvas.height);
+    const ground = this.shade.grid,
+      factors = new Float32Array(canvas.width * canvas.height);
     forPixels(canvas, scale, grid.rows, (u, v, at) => {
-      const x = grid.west + (u + 0.5) * grid.cell, y = grid.south + (v + 0.5) * grid.cell;
-      const bright = blend(this.shade, (x - ground.west) / ground.cell - 0.5, (y - ground.south) / ground.cell - 0.5, "smooth");
+      const x = grid.west + (u + 0.5) * grid.cell,
+        y = grid.south + (v + 0.5) * grid.cell;
+      const bright = blend(
+        this.shade,
+        (x - ground.west) / ground.cell - 0.5,
+        (y - ground.south) / ground.cell - 0.5,
+        "smooth",
+      );
       factors[at / 4] = 0.87 + 0.18 * bright;
     });
     return factors;
@@ -108,15 +126,18 @@ export class Painter {
       target.height = field.grid.rows * scale;
     }
     const shading = this.shadingOf(field.grid, scale, target);
-    const from = classes.map((c) => c.from ?? -Infinity), colours = classes.map((c) => rgb(c.colour));
-    const end = classes.length ? classes[classes.length - 1].to ?? Infinity : -Infinity;
-    const context = target.getContext("2d"), image = context.createImageData(target.width, target.height);
+    const from = classes.map((c) => c.from ?? -Infinity),
+      colours = classes.map((c) => rgb(c.colour));
+    const end = classes.length ? (classes[classes.length - 1].to ?? Infinity) : -Infinity;
+    const context = target.getContext("2d"),
+      image = context.createImageData(target.width, target.height);
     forPixels(target, scale, field.grid.rows, (u, v, at) => {
       const value = blend(field, u, v, mode);
       if (!(value >= from[0]) || value >= end) return;
       let k = from.length - 1;
       while (value < from[k]) --k;
-      const factor = shading[at / 4], colour = colours[k];
+      const factor = shading[at / 4],
+        colour = colours[k];
       for (let i = 0; i < 3; ++i) image.data[at + i] = colour[i] * factor;
       image.data[at + 3] = 255;
     });

@@ -7,7 +7,11 @@ const flow = "flow"; // the layer that the slider shows
 /** Classes from much to little, as a column of swatches; codes as they are. */
 export function swatches(classes, falling = true) {
   const list = falling ? [...classes].reverse() : classes;
-  return h("ul", { class: "swatches" }, list.map((c) => h("li", {}, h("i", { style: `background:${c.colour}` }), c.label)));
+  return h(
+    "ul",
+    { class: "swatches" },
+    list.map((c) => h("li", {}, h("i", { style: `background:${c.colour}` }), c.label)),
+  );
 }
 
 function legendTitle(layer) {
@@ -28,12 +32,28 @@ export class Panel {
   }
 
   layerChoices() {
-    const { frames, layers } = this.fields, list = [...layers];
+    const { frames, layers } = this.fields,
+      list = [...layers];
     if (frames.time.length > 1) {
-      list.splice(Math.min(5, list.length), 0, { id: flow, title: "Flow over time", unit: "m", decimals: 2, classes: frames.classes,
-        about: "Thickness at the time the slider shows, vertical." });
+      list.splice(Math.min(5, list.length), 0, {
+        id: flow,
+        title: "Flow over time",
+        unit: "m",
+        decimals: 2,
+        classes: frames.classes,
+        about: "Thickness at the time the slider shows, vertical.",
+      });
     }
-    return [...list, { id: "none", title: "Ground alone", unit: "", classes: [], about: "Hillshade of the surface before the failure." }];
+    return [
+      ...list,
+      {
+        id: "none",
+        title: "Ground alone",
+        unit: "",
+        classes: [],
+        about: "Hillshade of the surface before the failure.",
+      },
+    ];
   }
 
   makeLayers() {
@@ -62,13 +82,17 @@ export class Panel {
     else this.map.showLayer(this.chosen.field ? this.chosen : null);
     if (id !== flow) this.stop();
     const legend = document.getElementById("legend");
-    legend.replaceChildren(h("h3", {}, legendTitle(this.chosen)), swatches(this.chosen.classes, !this.chosen.codes),
-      h("p", { class: "note" }, this.chosen.about));
+    legend.replaceChildren(
+      h("h3", {}, legendTitle(this.chosen)),
+      swatches(this.chosen.classes, !this.chosen.codes),
+      h("p", { class: "note" }, this.chosen.about),
+    );
     this.showValues(this.place ?? null);
   }
 
   makePlayer() {
-    const player = document.getElementById("player"), slider = document.getElementById("time");
+    const player = document.getElementById("player"),
+      slider = document.getElementById("time");
     const { time } = this.fields.frames;
     if (time.length < 2) {
       player.remove();
@@ -82,7 +106,8 @@ export class Panel {
   }
 
   labelTime() {
-    const { time } = this.fields.frames, decimals = time.every((t) => Number.isInteger(t)) ? 0 : 1;
+    const { time } = this.fields.frames,
+      decimals = time.every((t) => Number.isInteger(t)) ? 0 : 1;
     document.getElementById("time-label").textContent =
       `t = ${number(time[this.frame], decimals)} of ${number(time[time.length - 1], decimals)}\u2009s`;
   }
@@ -98,7 +123,8 @@ export class Panel {
 
   /** All frames in about six seconds, from the start again once the end is reached. */
   play() {
-    const count = this.fields.frames.time.length, pause = Math.min(Math.max(6000 / count, 60), 500);
+    const count = this.fields.frames.time.length,
+      pause = Math.min(Math.max(6000 / count, 60), 500);
     if (this.frame === count - 1) this.seek(0);
     else this.seek(this.frame);
     this.setButton(true);
@@ -124,10 +150,14 @@ export class Panel {
   valueRow(choice, place) {
     const field = choice.id === flow ? this.fields.frames.fields[this.frame] : choice.field;
     const value = field.at(place.x, place.y);
-    const words = choice.codes ? choice.classes[value - 1]?.label ?? "\u2013" : number(value, choice.decimals);
+    const words = choice.codes ? (choice.classes[value - 1]?.label ?? "\u2013") : number(value, choice.decimals);
     const unit = Number.isFinite(value) && !choice.codes ? `\u2009${unitWords(choice.unit)}` : "";
-    return h("tr", { class: choice === this.chosen ? "shown" : null, "data-id": choice.id, "data-value": value },
-      h("td", {}, choice.title), h("td", {}, words + unit));
+    return h(
+      "tr",
+      { class: choice === this.chosen ? "shown" : null, "data-id": choice.id, "data-value": value },
+      h("td", {}, choice.title),
+      h("td", {}, words + unit),
+    );
   }
 
   showValues(place) {
@@ -138,8 +168,10 @@ export class Panel {
       return;
     }
     const elevation = this.fields.ground.elevation.at(place.x, place.y);
-    const rows = [h("tr", {}, h("td", {}, "East, north"), h("td", {}, `${number(place.x)}, ${number(place.y)}`)),
-      h("tr", {}, h("td", {}, "Elevation before"), h("td", {}, number(elevation, 1) + "\u2009m"))];
+    const rows = [
+      h("tr", {}, h("td", {}, "East, north"), h("td", {}, `${number(place.x)}, ${number(place.y)}`)),
+      h("tr", {}, h("td", {}, "Elevation before"), h("td", {}, number(elevation, 1) + "\u2009m")),
+    ];
     for (const choice of this.choices) if (choice.field || choice.id === flow) rows.push(this.valueRow(choice, place));
     box.replaceChildren(h("h3", {}, "At the cursor"), h("table", {}, h("tbody", {}, rows)));
   }

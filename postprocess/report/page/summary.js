@@ -4,33 +4,56 @@ import { scoreSections, scoreWords } from "./tables.js";
 
 /** Score entries with their spread, by key. */
 function byKey(score) {
-  return new Map(scoreSections(score).flatMap((section) => section.items).map((item) => [item.entry.key, item]));
+  return new Map(
+    scoreSections(score)
+      .flatMap((section) => section.items)
+      .map((item) => [item.entry.key, item]),
+  );
 }
 
-function valueOf(items, key) { return items.get(key)?.entry.value; }
+function valueOf(items, key) {
+  return items.get(key)?.entry.value;
+}
 
 /** The result in one sentence or two. */
 export function headline(data) {
-  const items = byKey(data.score), get = (key) => valueOf(items, key), survey = data.run.survey;
+  const items = byKey(data.score),
+    get = (key) => valueOf(items, key),
+    survey = data.run.survey;
   let words = `${volume(get("volume_released_m3"))} released`;
   if (get("volume_entrained_m3") > 0) words += `, ${volume(get("volume_entrained_m3"))} taken along`;
   if (get("runout_m") !== undefined) {
-    words += `; the deposit reaches ${number(get("runout_m"))} m from the crown and ${number(get("drop_m"))} m below it ` +
+    words +=
+      `; the deposit reaches ${number(get("runout_m"))} m from the crown and ${number(get("drop_m"))} m below it ` +
       `(H/L ${number(get("h_over_l"), 2)}, angle of reach ${number(get("fahrboeschung_deg"), 1)}\u00b0)`;
   }
   words += `. Peak speed ${number(get("max_peak_speed_m_s"))} m/s; ${number(get("time_end_s"))} s simulated.`;
-  const agreement = [["deposit_csi", "deposit"], ["footprint_csi", "footprint"]].filter(([key]) => get(key) !== undefined)
+  const agreement = [
+    ["deposit_csi", "deposit"],
+    ["footprint_csi", "footprint"],
+  ]
+    .filter(([key]) => get(key) !== undefined)
     .map(([key, name]) => `${name} ${number(get(key), 2)}`);
-  if (survey && agreement.length) words += ` Overlap with \u201c${survey.name}\u201d (CSI, 1 is perfect): ${agreement.join(", ")}.`;
+  if (survey && agreement.length)
+    words += ` Overlap with \u201c${survey.name}\u201d (CSI, 1 is perfect): ${agreement.join(", ")}.`;
   return words;
 }
 
 const cards = [
-  ["volume_released_m3", "Released", volume], ["volume_entrained_m3", "Taken along", volume],
-  ["runout_m", "Run-out L"], ["thalweg_runout_m", "Run-out, thalweg"], ["drop_m", "Drop H"], ["fahrboeschung_deg", "Angle of reach"],
-  ["affected_area_m2", "Footprint", area], ["deposit_area_m2", "Deposit area", area], ["max_deposit_thickness_m", "Thickest deposit"],
-  ["max_peak_speed_m_s", "Peak speed"], ["deposit_csi", "Deposit CSI"], ["footprint_csi", "Footprint CSI"],
-  ["thickness_rmse_m", "Thickness RMSE"], ["runout_difference_m", "Run-out \u2212 survey"],
+  ["volume_released_m3", "Released", volume],
+  ["volume_entrained_m3", "Taken along", volume],
+  ["runout_m", "Run-out L"],
+  ["thalweg_runout_m", "Run-out, thalweg"],
+  ["drop_m", "Drop H"],
+  ["fahrboeschung_deg", "Angle of reach"],
+  ["affected_area_m2", "Footprint", area],
+  ["deposit_area_m2", "Deposit area", area],
+  ["max_deposit_thickness_m", "Thickest deposit"],
+  ["max_peak_speed_m_s", "Peak speed"],
+  ["deposit_csi", "Deposit CSI"],
+  ["footprint_csi", "Footprint CSI"],
+  ["thickness_rmse_m", "Thickness RMSE"],
+  ["runout_difference_m", "Run-out \u2212 survey"],
   ["deposit_volume_ratio", "Volume / survey"],
 ];
 
@@ -45,15 +68,23 @@ function rounded(entry) {
 function card(item, title, words) {
   const { entry, sd } = item;
   const value = words ? words(entry.value) : scoreWords({ entry: rounded(entry) });
-  const spread = sd === undefined ? null : h("span", { class: "spread" }, `\u00b1 ${quantity(sd, entry.unit, entry.decimals)}`);
+  const spread =
+    sd === undefined ? null : h("span", { class: "spread" }, `\u00b1 ${quantity(sd, entry.unit, entry.decimals)}`);
   return h("div", {}, h("dt", {}, title), h("dd", { "data-key": entry.key }, value, spread));
 }
 
 export function drawSummary(data) {
-  const { run } = data, items = byKey(data.score);
+  const { run } = data,
+    items = byKey(data.score);
   document.getElementById("title").textContent = run.title;
   document.getElementById("headline").textContent = headline(data);
-  const parts = [`Scene ${run.scene}`, run.institution, `report of ${run.made}`, `Talus ${run.run_version}`, `${run.crs}, map cell ${run.map.cell} m`];
+  const parts = [
+    `Scene ${run.scene}`,
+    run.institution,
+    `report of ${run.made}`,
+    `Talus ${run.run_version}`,
+    `${run.crs}, map cell ${run.map.cell} m`,
+  ];
   document.getElementById("byline").textContent = parts.filter(Boolean).join(" \u00b7 ");
   const box = document.getElementById("key-numbers");
   for (const [key, title, words] of cards) {

@@ -8,14 +8,15 @@ function spreadOf(key) {
   return found && { base: found[1] + (found[3] ?? ""), what: found[2] };
 }
 
-/** Sections with their entries as {entry, sd, p05, p95}: a spread, wherever it stands, goes to what it is the spread of.
- * What has no such entry stays an entry of its own; sections left empty are dropped. */
+/** Sections with their entries as {entry, sd, p05, p95}: a spread, wherever it stands, goes to what it is the spread
+ * of. What has no such entry stays an entry of its own; sections left empty are dropped. */
 export function scoreSections(score) {
   const sections = score.sections.map((s) => ({ title: s.title, items: s.entries.map((entry) => ({ entry })) }));
   const byKey = new Map(sections.flatMap((s) => s.items.map((item) => [item.entry.key, item])));
   for (const section of sections) {
     section.items = section.items.filter(({ entry }) => {
-      const spread = spreadOf(entry.key), base = spread && byKey.get(spread.base);
+      const spread = spreadOf(entry.key),
+        base = spread && byKey.get(spread.base);
       if (base) base[spread.what] = entry.value;
       return !base;
     });
@@ -28,7 +29,11 @@ export function scoreWords({ entry, sd, p05, p95 }) {
   if (typeof entry.value === "string") return entry.value;
   const tiny = entry.decimals > 6; // a closure error: its size matters, not its digits
   const digits = entry.decimals;
-  const value = tiny ? (entry.value === 0 ? "0" : entry.value.toExponential(1).replaceAll("-", "\u2212")) : number(entry.value, digits);
+  const value = tiny
+    ? entry.value === 0
+      ? "0"
+      : entry.value.toExponential(1).replaceAll("-", "\u2212")
+    : number(entry.value, digits);
   const spread = sd === undefined ? "" : ` \u00b1 ${number(sd, digits)}`;
   const range = p05 === undefined || p95 === undefined ? "" : ` (${number(p05, digits)} to ${number(p95, digits)})`;
   const unit = unitWords(entry.unit);
@@ -36,29 +41,66 @@ export function scoreWords({ entry, sd, p05, p95 }) {
 }
 
 function table(head, rows) {
-  return h("div", { class: "scroll" }, h("table", { class: "data" }, h("thead", {}, h("tr", {}, head)), h("tbody", {}, rows)));
+  return h(
+    "div",
+    { class: "scroll" },
+    h("table", { class: "data" }, h("thead", {}, h("tr", {}, head)), h("tbody", {}, rows)),
+  );
 }
 
 export function drawScores(data) {
-  const box = document.getElementById("score"), { score } = data;
-  const rows = [], sections = scoreSections(score), hasSpread = sections.some((s) => s.items.some((item) => item.sd !== undefined));
+  const box = document.getElementById("score"),
+    { score } = data;
+  const rows = [],
+    sections = scoreSections(score),
+    hasSpread = sections.some((s) => s.items.some((item) => item.sd !== undefined));
   const ordered = [...sections].sort((a, b) => b.title.startsWith("Agreement") - a.title.startsWith("Agreement"));
   for (const section of ordered) {
     rows.push(h("tr", { class: "group" }, h("td", { colspan: 3 }, section.title)));
     for (const item of section.items) {
-      rows.push(h("tr", {}, h("td", {}, item.entry.label), h("td", { class: "number", "data-key": item.entry.key }, scoreWords(item)),
-        h("td", { class: "plain" }, definition(item.entry.key))));
+      rows.push(
+        h(
+          "tr",
+          {},
+          h("td", {}, item.entry.label),
+          h("td", { class: "number", "data-key": item.entry.key }, scoreWords(item)),
+          h("td", { class: "plain" }, definition(item.entry.key)),
+        ),
+      );
     }
   }
   for (const { key, why } of score.not_scored) {
-    rows.push(h("tr", {}, h("td", {}, h("code", {}, key)), h("td", { class: "number" }, "not scored"), h("td", { class: "plain" }, why)));
+    rows.push(
+      h(
+        "tr",
+        {},
+        h("td", {}, h("code", {}, key)),
+        h("td", { class: "number" }, "not scored"),
+        h("td", { class: "plain" }, why),
+      ),
+    );
   }
-  box.append(table([h("th", {}, "Quantity"), h("th", { class: "number" }, "Value"), h("th", {}, "In plain words")], rows));
+  box.append(
+    table([h("th", {}, "Quantity"), h("th", { class: "number" }, "Value"), h("th", {}, "In plain words")], rows),
+  );
   if (hasSpread) {
-    box.append(h("p", { class: "note" }, "\u00b1: standard deviation of the score when the survey's own error is drawn again and again; " +
-      "in brackets the 5th and 95th of 100 such scores."));
+    box.append(
+      h(
+        "p",
+        { class: "note" },
+        "\u00b1: standard deviation of the score when the survey's own error is drawn again and again; " +
+          "in brackets the 5th and 95th of 100 such scores.",
+      ),
+    );
   }
-  box.append(h("h3", {}, "Definitions"), h("ul", { class: "plain-list note" }, score.notes.map((note) => h("li", {}, note))));
+  box.append(
+    h("h3", {}, "Definitions"),
+    h(
+      "ul",
+      { class: "plain-list note" },
+      score.notes.map((note) => h("li", {}, note)),
+    ),
+  );
 }
 
 /** From which thickness on an area counts, for each body. */
@@ -69,45 +111,110 @@ function areaWords(bodies) {
 
 /** The volume both ways, from the maps; the names of the columns say which is which. */
 export function drawVolumes(data) {
-  const box = document.getElementById("volumes"), bodies = data.volumes;
+  const box = document.getElementById("volumes"),
+    bodies = data.volumes;
   const cell = (words) => h("td", { class: "number" }, words);
-  const rows = bodies.filter((b) => b.volume > 0).map((b) => h("tr", {}, h("td", {}, b.name), cell(volume(b.volume)), cell(volume(b.volume_if_normal)),
-    cell(`${number(100 * (b.volume_if_normal / b.volume - 1), 1)}\u2009%`), cell(area(b.area_projected)), cell(area(b.area_true)),
-    cell(quantity(b.thickest, "m", 1)), cell(quantity(b.thickest_normal, "m", 1))));
-  const heads = ["Volume", "Volume if read as slope-normal", "Mistake that would be", "Area, projected", "Area, true", "Thickest, vertical", "Thickest, slope-normal"];
+  const rows = bodies
+    .filter((b) => b.volume > 0)
+    .map((b) =>
+      h(
+        "tr",
+        {},
+        h("td", {}, b.name),
+        cell(volume(b.volume)),
+        cell(volume(b.volume_if_normal)),
+        cell(`${number(100 * (b.volume_if_normal / b.volume - 1), 1)}\u2009%`),
+        cell(area(b.area_projected)),
+        cell(area(b.area_true)),
+        cell(quantity(b.thickest, "m", 1)),
+        cell(quantity(b.thickest_normal, "m", 1)),
+      ),
+    );
+  const heads = [
+    "Volume",
+    "Volume if read as slope-normal",
+    "Mistake that would be",
+    "Area, projected",
+    "Area, true",
+    "Thickest, vertical",
+    "Thickest, slope-normal",
+  ];
   box.append(table([h("th", {}, "Body"), ...heads.map((words) => h("th", { class: "number" }, words))], rows));
-  box.append(h("p", { class: "note prose" }, "Every thickness in this report is vertical, as the difference of two elevation models is. Models that average over " +
-    "depth often give it normal to the slope; there it is thinner by the cosine of the slope for the same body. The third column is the volume that would " +
-    `result if these vertical numbers were handed to such a model as they are. ${areaWords(bodies)}`));
+  box.append(
+    h(
+      "p",
+      { class: "note prose" },
+      "Every thickness in this report is vertical, as the difference of two elevation models is. Models that " +
+        "average over " +
+        "depth often give it normal to the slope; there it is thinner by the cosine of the slope for the same " +
+        "body. The third column is the volume that would " +
+        `result if these vertical numbers were handed to such a model as they are. ${areaWords(bodies)}`,
+    ),
+  );
 }
 
 /** "path  sha256 abc" taken apart. */
 function fileRow(stage, kind, text) {
   const [, path, rest] = /^(.*?)  (.*)$/.exec(text) ?? [null, text, ""];
-  return h("tr", {}, h("td", {}, stage), h("td", {}, kind), h("td", { class: "path" }, path), h("td", { class: "hash" }, rest.replace(/^sha256 /, "")));
+  return h(
+    "tr",
+    {},
+    h("td", {}, stage),
+    h("td", {}, kind),
+    h("td", { class: "path" }, path),
+    h("td", { class: "hash" }, rest.replace(/^sha256 /, "")),
+  );
 }
 
 export function drawInputs(data) {
-  const box = document.getElementById("inputs"), rows = [];
+  const box = document.getElementById("inputs"),
+    rows = [];
   for (const { stage, missing, facts } of data.stages) {
     if (missing) {
-      rows.push(h("tr", {}, h("td", {}, stage), h("td", { class: "missing", colspan: 3 }, `${stage}.used.toml was not found beside the run: its inputs are not known here.`)));
+      rows.push(
+        h(
+          "tr",
+          {},
+          h("td", {}, stage),
+          h(
+            "td",
+            { class: "missing", colspan: 3 },
+            `${stage}.used.toml was not found beside the run: its inputs are not known here.`,
+          ),
+        ),
+      );
     }
-    for (const [name, value] of facts) if (name === "recipe" || name === "input") rows.push(fileRow(stage, name, value));
+    for (const [name, value] of facts)
+      if (name === "recipe" || name === "input") rows.push(fileRow(stage, name, value));
   }
-  box.append(table(["Stage", "Kind", "File", "SHA-256"].map((words) => h("th", {}, words)), rows));
+  box.append(
+    table(
+      ["Stage", "Kind", "File", "SHA-256"].map((words) => h("th", {}, words)),
+      rows,
+    ),
+  );
 }
 
 /** True where the stage marks what was changed: written by a version that does. */
-function marksChanges(stage) { return stage.keys.some((key) => key.default !== null); }
+function marksChanges(stage) {
+  return stage.keys.some((key) => key.default !== null);
+}
 
 export function drawParameters(data) {
   const box = document.getElementById("parameters");
   const note = h("p", { class: "note" }, "Highlighted: changed from the default, which stands in the last column.");
-  const toggle = h("label", { class: "screen-only" }, h("input", { type: "checkbox", id: "all-parameters" }), " show the others too");
+  const toggle = h(
+    "label",
+    { class: "screen-only" },
+    h("input", { type: "checkbox", id: "all-parameters" }),
+    " show the others too",
+  );
   box.append(note, toggle);
   for (const stage of data.stages) box.append(...parametersOf(stage));
-  const show = (all) => box.querySelectorAll("tr.usual").forEach((row) => { row.hidden = !all; });
+  const show = (all) =>
+    box.querySelectorAll("tr.usual").forEach((row) => {
+      row.hidden = !all;
+    });
   toggle.firstChild.addEventListener("change", (event) => show(event.target.checked));
   show(false);
   window.addEventListener("beforeprint", () => show(true));
@@ -116,32 +223,89 @@ export function drawParameters(data) {
 
 function parametersOf(stage) {
   const title = h("h3", {}, `talus-${stage.stage}`);
-  if (stage.missing) return [title, h("p", { class: "missing" }, `${stage.stage}.used.toml was not found beside the run.`)];
-  const marked = marksChanges(stage), rows = [];
+  if (stage.missing)
+    return [title, h("p", { class: "missing" }, `${stage.stage}.used.toml was not found beside the run.`)];
+  const marked = marksChanges(stage),
+    rows = [];
   const changed = stage.keys.filter((key) => key.default !== null).length;
   for (const key of stage.keys) {
     const isChanged = key.default !== null;
-    rows.push(h("tr", { class: isChanged ? "changed" : marked ? "usual" : null }, h("td", {}, h("code", {}, `${key.table}.${key.key}`.slice(stage.stage.length + 1))),
-      h("td", {}, h("code", { class: "path" }, key.value)), h("td", {}, isChanged ? h("code", {}, key.default) : null)));
+    rows.push(
+      h(
+        "tr",
+        { class: isChanged ? "changed" : marked ? "usual" : null },
+        h("td", {}, h("code", {}, `${key.table}.${key.key}`.slice(stage.stage.length + 1))),
+        h("td", {}, h("code", { class: "path" }, key.value)),
+        h("td", {}, isChanged ? h("code", {}, key.default) : null),
+      ),
+    );
   }
-  const words = marked ? `${changed} of ${stage.keys.length} changed from their default.` : `${stage.keys.length} parameters; none is marked as changed.`;
-  return [title, h("p", { class: "note" }, words), h("div", { class: "stage-parameters" }, table([h("th", {}, "Parameter"), h("th", {}, "Value used"), h("th", {}, "Default")], rows))];
+  const words = marked
+    ? `${changed} of ${stage.keys.length} changed from their default.`
+    : `${stage.keys.length} parameters; none is marked as changed.`;
+  return [
+    title,
+    h("p", { class: "note" }, words),
+    h(
+      "div",
+      { class: "stage-parameters" },
+      table([h("th", {}, "Parameter"), h("th", {}, "Value used"), h("th", {}, "Default")], rows),
+    ),
+  ];
 }
 
-const notFacts = ["What was used, defaults filled in. This file is itself a recipe", "recipe", "input", "program", "command", "hardware"];
+const notFacts = [
+  "What was used, defaults filled in. This file is itself a recipe",
+  "recipe",
+  "input",
+  "program",
+  "command",
+  "hardware",
+];
 
 export function drawVersions(data) {
-  const box = document.getElementById("versions"), rows = [], { run } = data;
+  const box = document.getElementById("versions"),
+    rows = [],
+    { run } = data;
   for (const { stage, missing, facts } of data.stages) {
     const fact = (name) => facts.find(([key]) => key === name)?.[1] ?? "not known";
     const rest = facts.filter(([name]) => !notFacts.includes(name));
-    rows.push(h("tr", {}, h("td", {}, stage), h("td", {}, missing ? "not known" : fact("program")), h("td", {}, missing ? "" : fact("hardware")),
-      h("td", { class: "path" }, missing ? "" : fact("command"))));
-    if (rest.length) rows.push(h("tr", {}, h("td", {}), h("td", { class: "plain", colspan: 3 }, rest.map(([name, value]) => `${name}: ${value}`).join(" \u00b7 "))));
+    rows.push(
+      h(
+        "tr",
+        {},
+        h("td", {}, stage),
+        h("td", {}, missing ? "not known" : fact("program")),
+        h("td", {}, missing ? "" : fact("hardware")),
+        h("td", { class: "path" }, missing ? "" : fact("command")),
+      ),
+    );
+    if (rest.length)
+      rows.push(
+        h(
+          "tr",
+          {},
+          h("td", {}),
+          h("td", { class: "plain", colspan: 3 }, rest.map(([name, value]) => `${name}: ${value}`).join(" \u00b7 ")),
+        ),
+      );
   }
-  box.append(table(["Stage", "Program", "Hardware", "Command"].map((words) => h("th", {}, words)), rows));
+  box.append(
+    table(
+      ["Stage", "Program", "Hardware", "Command"].map((words) => h("th", {}, words)),
+      rows,
+    ),
+  );
   const year = run.made.slice(0, 4);
-  box.append(h("h3", {}, "How to cite"), h("p", { class: "prose" },
-    `Talus ${run.run_version}: a material point method for landslides from elevation models to scored maps. Scene \u201c${run.title}\u201d, ` +
-    `report of ${run.made}${run.institution ? `, ${run.institution}` : ""}, ${year}. Name the checksums above with it: they say on which data it stands.`));
+  box.append(
+    h("h3", {}, "How to cite"),
+    h(
+      "p",
+      { class: "prose" },
+      `Talus ${run.run_version}: a material point method for landslides from elevation models to scored maps. ` +
+        `Scene \u201c${run.title}\u201d, ` +
+        `report of ${run.made}${run.institution ? `, ${run.institution}` : ""}, ${year}. Name the checksums above ` +
+        `with it: they say on which data it stands.`,
+    ),
+  );
 }

@@ -1,12 +1,22 @@
 // Plain words for scores, by the end of their key.
 
 const definitions = [
-  [/_csi$/, "Critical success index (intersection over union): area in both over area in either. 1 is perfect, 0 no overlap."],
+  [
+    /_csi$/,
+    "Critical success index (intersection over union): area in both over area in either. 1 is perfect, 0 no overlap.",
+  ],
   [/_hss$/, "Heidke skill score: agreement beyond what chance would give. 1 is perfect, 0 chance."],
-  [/_auroc$/, "Area under the receiver operating characteristic: how well thickness ranks affected before unaffected cells. 1 is perfect, 0.5 chance."],
+  [
+    /_auroc$/,
+    "Area under the receiver operating characteristic: how well thickness ranks affected before unaffected cells. " +
+      "1 is perfect, 0.5 chance.",
+  ],
   [/_spi$/, "Synthetic performance index: several of these scores in one number. 1 is perfect."],
   [/_d2pc$/, "Distance to perfect classification in ROC space. 0 is perfect."],
-  [/_foc$/, "Factor of conservativeness: simulated over surveyed area. Above 1 the simulation covers more than was surveyed."],
+  [
+    /_foc$/,
+    "Factor of conservativeness: simulated over surveyed area. Above 1 the simulation covers more than was surveyed.",
+  ],
   [/true_positive/, "Area that both simulation and survey affect."],
   [/false_positive/, "Area that the simulation alone affects: false alarm."],
   [/false_negative/, "Area that the survey alone affects: missed."],
@@ -23,7 +33,10 @@ const definitions = [
   [/^thalweg_runout_m$/, "Along the thalweg, from the crown to the farthest deposit."],
   [/residual_within_95/, "Share of cells whose difference lies within the survey's own 95 % error."],
   [/residual_median_sigma/, "Median of the difference, in standard errors of the survey. Above 0: too thick."],
-  [/residual_chi2/, "Mean square of the difference over the survey's error. Near 1 the survey's own error explains it."],
+  [
+    /residual_chi2/,
+    "Mean square of the difference over the survey's error. Near 1 the survey's own error explains it.",
+  ],
   [/thickness_median/, "Median of simulated minus surveyed thickness where either deposit lies."],
   [/^runout_m$/, "Straight in plan from the crown (highest cell of the release) to the farthest deposit."],
   [/^drop_m$/, "Drop of the surface before the failure from the crown to the farthest deposit."],
@@ -43,9 +56,14 @@ export function bedLaw(get) {
   const law = get("solve.base", "law");
   const words = {
     coulomb: () => `Coulomb friction with an angle of ${get("solve.base", "friction_angle_deg")}\u00b0`,
-    "velocity-weakening": () => `friction that falls with slip speed (Lucas, Mangeney & Ampuero 2014) from ${get("solve.base", "peak_coefficient")} ` +
-      `towards ${get("solve.base", "steady_coefficient")}, half of the drop at ${get("solve.base", "characteristic_speed_m_s")} m/s`,
-    voellmy: () => `Voellmy's law (Voellmy 1955), an angle of ${get("solve.base", "friction_angle_deg")}\u00b0 and turbulence ${get("solve.base", "turbulence_m_s2")} m/s\u00b2`,
+    "velocity-weakening": () =>
+      `friction that falls with slip speed (Lucas, Mangeney & Ampuero 2014) from ` +
+      `${get("solve.base", "peak_coefficient")} ` +
+      `towards ${get("solve.base", "steady_coefficient")}, half of the drop at ` +
+      `${get("solve.base", "characteristic_speed_m_s")} m/s`,
+    voellmy: () =>
+      `Voellmy's law (Voellmy 1955), an angle of ${get("solve.base", "friction_angle_deg")}\u00b0 and turbulence ` +
+      `${get("solve.base", "turbulence_m_s2")} m/s\u00b2`,
     none: () => "no friction",
     stick: () => "no slip",
   };
@@ -56,7 +74,8 @@ export function steps(get) {
   const integrator = get("solve", "integrator");
   const words = {
     explicit: "explicit steps below the Courant limit",
-    newmark: "implicit Newmark steps, solved by Newton's method on consistent tangents (Charlton, Coombs & Augarde 2017)",
+    newmark:
+      "implicit Newmark steps, solved by Newton's method on consistent tangents (Charlton, Coombs & Augarde 2017)",
     "quasi-static": "quasi-static steps without inertia, solved by Newton's method (Charlton, Coombs & Augarde 2017)",
     auto: "explicit or implicit Newmark steps, whichever took less time",
   };
