@@ -33,7 +33,7 @@ struct KernelRun {
 
 struct KernelSetting {
   bool newmark = false;
-  solver::ShapeKind shape = solver::ShapeKind::quadratic;
+  ShapeKind shape = ShapeKind::quadratic;
   solver::Precision precision = solver::Precision::double_;
   double points = 1e4;
 };

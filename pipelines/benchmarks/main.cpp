@@ -104,7 +104,7 @@ int kernels(const Words& words, On on) {
   std::vector<KernelRun> runs;
   bool pass = true;
   for (const bool newmark : {false, true}) {
-    for (const auto shape : {solver::ShapeKind::linear, solver::ShapeKind::quadratic}) {
+    for (const auto shape : {ShapeKind::linear, ShapeKind::quadratic}) {
       for (const auto precision : {solver::Precision::single_, solver::Precision::double_}) {
         if (newmark && precision == solver::Precision::single_) continue;
         if (benchmarks::name_of({newmark, shape, precision, 0}).find(words.only) == std::string::npos) continue;

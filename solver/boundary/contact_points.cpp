@@ -67,8 +67,8 @@ int facing(const std::array<double, 3>& area) {
 
 /// The facets above the ground, those of half a cell that look the same way as one: both faces of a wall thinner than a
 /// cell stay apart.
-void add_obstacle(const MapGrid& map, const GridShape& shape, const GroundTables& ground, const ObstacleOptions& o,
-                  int body, std::vector<Sample>& samples, std::vector<std::string>& notes) {
+void add_obstacle(const MapGrid& map, const GridShape& shape, const GroundTables& ground, const Obstacle& o, int body,
+                  std::vector<Sample>& samples, std::vector<std::string>& notes) {
   const double half = 0.5 * shape.spacing, half_layer = 0.5 * shape.layer_height;
   const BodySurface surface = read_level_set(o.level_set, o.grid, {half, half, half_layer});
   struct Bin {
@@ -118,12 +118,14 @@ void add_obstacle(const MapGrid& map, const GridShape& shape, const GroundTables
 }  // namespace
 
 ContactPoints make_contact_points(const MapGrid& map, const GridShape& shape, const GroundTables& ground,
-                                  const std::vector<ObstacleOptions>& obstacles) {
+                                  const std::vector<Obstacle>& obstacles) {
   ContactPoints points;
   std::vector<Sample> samples;
   if (shape.ground == GroundContact::points) add_ground(shape, ground, samples);
-  for (std::size_t o = 0; o < obstacles.size(); ++o)
+  for (std::size_t o = 0; o < obstacles.size(); ++o) {
     add_obstacle(map, shape, ground, obstacles[o], static_cast<int>(o), samples, points.notes);
+    points.friction.push_back(obstacles[o].friction);
+  }
   const int blocks_x = (shape.columns + block_side - 1) / block_side;
   const auto node = [](double position) { return static_cast<int>(std::floor(position + 0.5)); };
   const auto key = [&](std::size_t s) {

@@ -2,14 +2,22 @@
 // points with a normal and an area, finer than the nodes; contact_impulses.hpp and contact_forces.hpp act on them.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "common/map/raster.hpp"
 #include "solver/grid/sparse_grid.hpp"
-#include "solver/options/solve.hpp"
 
 namespace talus::solver {
+
+/// A body that stands in the way.
+struct Obstacle {
+  std::string name;
+  std::filesystem::path level_set;  // OpenVDB file of signed distances [m], negative inside
+  std::string grid;                 // in that file; empty: the only one
+  double friction = 0;              // coefficient of its surface [-]
+};
 
 /// Points of the surfaces, on the host. They lie still and are sorted by the grid's blocks of columns.
 struct ContactPoints {
@@ -19,6 +27,7 @@ struct ContactPoints {
   std::vector<Vec3<double>> normal;  // outward, where the mass is
   std::vector<double> area;          // [m2]
   std::vector<int> body;             // index of the obstacle, or `ground`
+  std::vector<double> friction;      // coefficient of every obstacle [-]
   std::vector<std::string> notes;    // a line on every obstacle
   std::size_t size() const { return body.size(); }
 };
@@ -26,6 +35,6 @@ struct ContactPoints {
 /// The obstacles' surfaces, at most half a cell apart along each axis, and the ground's where `shape` says that it is
 /// met by points. Throws DataError: a level set that cannot be read or stands wholly outside the ground.
 ContactPoints make_contact_points(const MapGrid& map, const GridShape& shape, const GroundTables& ground,
-                                  const std::vector<ObstacleOptions>& obstacles);
+                                  const std::vector<Obstacle>& obstacles);
 
 }  // namespace talus::solver

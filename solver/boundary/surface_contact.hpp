@@ -121,8 +121,8 @@ struct ForgetForces {
 template <class Real, class Device, class Shape>
 class SurfaceContact {
  public:
-  SurfaceContact(const ContactPoints& points, const std::vector<ObstacleOptions>& obstacles,
-                 const BaseFriction<Real>& ground, const GridShape& shape, const ContactState& state, bool in_order)
+  SurfaceContact(const ContactPoints& points, const BaseFriction<Real>& ground, const GridShape& shape,
+                 const ContactState& state, bool in_order)
       : count_(static_cast<int>(points.size())), blocks_x_((shape.columns + block_side - 1) / block_side) {
     groups_.in_order = in_order;
     if (count_ == 0) return;
@@ -139,11 +139,9 @@ class SurfaceContact {
     upload_as(area_, points.area);
     inverse_mass_.upload(std::vector<Real>(points.size()));
     body_.upload(points.body);
-    std::vector<double> friction;
-    for (const ObstacleOptions& o : obstacles) friction.push_back(o.friction());
-    upload_as(friction_, friction);
+    upload_as(friction_, points.friction);
     bodies_ = points.body;
-    obstacles_ = obstacles.size();
+    obstacles_ = points.friction.size();
     upload_vectors(force_, state.force);
     upload_vectors(impulse_, state.impulse);
     list_blocks(points, (shape.rows + block_side - 1) / block_side);

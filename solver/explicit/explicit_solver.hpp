@@ -9,7 +9,6 @@
 #include "solver/explicit/update_columns.hpp"
 #include "solver/integrator/point_solver.hpp"
 #include "solver/integrator/scene.hpp"
-#include "solver/options/solve.hpp"
 #include "solver/parallel/algorithms.hpp"
 #include "solver/parallel/columns.hpp"
 #include "solver/parallel/recording.hpp"
@@ -57,15 +56,15 @@ template <class Real, class Device, class Shape>
 class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   using Base = PointSolver<Real, Device, Shape>;
   using Base::bed_, Base::clock_, Base::contact_, Base::dilatant_, Base::grid_, Base::impulses_, Base::materials_,
-      Base::options_, Base::points_, Base::read_clock;
+      Base::points_, Base::read_clock, Base::settings_;
 
  public:
-  ExplicitSolverOf(const Scene& scene, const SolveOptions& options, const SolverState& state)
-      : Base(scene, options, state, fields(options), options.deterministic ? 1 : drift_between_sorts<Device>),
-        affine_(options.transfer == Transfer::apic),
-        musl_(options.stress_update == StressUpdate::modified),
-        keeps_(options.transfer_time > options.cfl),
-        forces_apart_(musl_ || options.damping > 0 || keeps_ || options.energy_budget) {
+  ExplicitSolverOf(const Scene& scene, const IntegratorSettings& settings, const SolverState& state)
+      : Base(scene, settings, state, fields(settings), settings.deterministic ? 1 : drift_between_sorts<Device>),
+        affine_(settings.transfer.affine),
+        musl_(settings.transfer.remaps_velocity),
+        keeps_(settings.transfer.time > settings.steps.cfl),
+        forces_apart_(musl_ || settings.damping > 0 || keeps_ || settings.energy_budget) {
     Clock clock = read_clock();
     clock.accelerated = 0;
     if (Device::is_gpu) clock.steps_between_sorts = steps_between_sorts_on_gpu<Shape>(points_.count());
@@ -80,7 +79,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     clock_.upload({clock});
     walls_ = this->template stand_walls<Real>(clock.time);
     loads_now_ = this->upload_loads(clock.time);
-    if (!options_.walls.empty()) recording_.forget();  // they come, go and move
+    if (!settings_.walls.empty()) recording_.forget();  // they come, go and move
     // One more than the steps left: the last one's begin halts the clock at the sort. As many as lay between the last
     // two sorts or lead to the next event, and then a few at a time: what is started after the clock has halted does
     // nothing but take its time.
@@ -118,13 +117,9 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   }
 
  private:
-  static ParticleFields fields(const SolveOptions& o) {
-    ParticleFields f;
-    f.affine = o.transfer == Transfer::apic;
-    f.plastic_volume = Base::needs_plastic_volume(o);
-    f.move = o.stress_update == StressUpdate::modified;
-    f.extent = o.shape == ShapeKind::gimp;
-    Base::add_fields(o, f);
+  static ParticleFields fields(const IntegratorSettings& settings) {
+    ParticleFields f = settings.fields;
+    f.move = settings.transfer.remaps_velocity;
     return f;
   }
 
@@ -169,13 +164,13 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   void update() {
     if (content != NodeContent::remapped) this->measure_columns();
     const ProfilePhase<Device> phase("grid");
-    const Vec3<Real> g{static_cast<Real>(options_.gravity[0]), static_cast<Real>(options_.gravity[1]),
-                       static_cast<Real>(options_.gravity[2])};
+    const Vec3<double>& gravity = settings_.gravity.acceleration;
+    const Vec3<Real> g{static_cast<Real>(gravity.x), static_cast<Real>(gravity.y), static_cast<Real>(gravity.z)};
     for_each_column(
         Device{}, grid_.active_blocks(),
         UpdateColumns<Real, content>{grid_.view(), grid_.active_list(), clock_.data(), nodes_.data(), forces_.data(), g,
-                                     options_.gravity_ramp, walls_, bed_.view(), static_cast<Real>(this->full_base()),
-                                     static_cast<Real>(options_.damping), materials_.list[0].density,
+                                     settings_.gravity.ramp, walls_, bed_.view(), static_cast<Real>(this->full_base()),
+                                     static_cast<Real>(settings_.damping), materials_.list[0].density,
                                      this->column_volumes(), this->maps()});
     if (contact_.on()) meet_surfaces<content>();
   }
@@ -199,7 +194,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
                    grid_.view(), points_.view(), materials_, clock_.data(), nodes_.data(),
                    keeps_ ? forces_.data() : nullptr, grid_.home(), affine_, dilatant_});
     };
-    if (options_.energy_budget) {
+    if (settings_.energy_budget) {
       run(std::true_type{});
     } else {
       run(std::false_type{});
@@ -226,16 +221,16 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
 
 /// A solver of one precision in the place asked for.
 template <class Real>
-std::unique_ptr<Solver> make_explicit_solver_of(const Scene& scene, const SolveOptions& options, On on,
+std::unique_ptr<Solver> make_explicit_solver_of(const Scene& scene, const IntegratorSettings& settings, On on,
                                                 const SolverState& state) {
-  return with_shape(options.shape, [&](auto shape) -> std::unique_ptr<Solver> {
+  return with_shape(settings.shape, [&](auto shape) -> std::unique_ptr<Solver> {
     using Shape = decltype(shape);
 #if TALUS_FOR_GPU
-    if (on == On::gpu) return std::make_unique<ExplicitSolverOf<Real, GpuDevice, Shape>>(scene, options, state);
+    if (on == On::gpu) return std::make_unique<ExplicitSolverOf<Real, GpuDevice, Shape>>(scene, settings, state);
 #else
     static_cast<void>(on);
 #endif
-    return std::make_unique<ExplicitSolverOf<Real, CpuDevice, Shape>>(scene, options, state);
+    return std::make_unique<ExplicitSolverOf<Real, CpuDevice, Shape>>(scene, settings, state);
   });
 }
 

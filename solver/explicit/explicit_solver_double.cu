@@ -1,11 +1,10 @@
 // The explicit solver in double precision.
 #include "solver/explicit/explicit_solver.hpp"
 #include "solver/integrator/scene.hpp"
-#include "solver/options/solve.hpp"
 
 namespace talus::solver {
 
-template std::unique_ptr<Solver> make_explicit_solver_of<double>(const Scene&, const SolveOptions&, On,
+template std::unique_ptr<Solver> make_explicit_solver_of<double>(const Scene&, const IntegratorSettings&, On,
                                                                  const SolverState&);
 
 }  // namespace talus::solver

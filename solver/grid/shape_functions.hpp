@@ -8,6 +8,9 @@
 
 namespace talus {
 
+/// The functions by name: hats, quadratic B-splines, hats averaged over the box of each particle.
+enum class ShapeKind { linear, quadratic, gimp };
+
 /// Linear hat functions: two nodes.
 struct Linear {
   static constexpr int width = 2;

@@ -20,7 +20,6 @@
 #include "solver/linear/krylov/conjugate_gradient.hpp"
 #include "solver/linear/operator/tangent_operator.hpp"
 #include "solver/linear/preconditioner/preconditioner.hpp"
-#include "solver/options/solve.hpp"
 
 namespace talus::solver {
 
@@ -66,13 +65,13 @@ class ImplicitSolverOf final : public PointSolver<Real, Device, Shape> {
       Base::read_clock, Base::sums_;
 
  public:
-  ImplicitSolverOf(const Scene& scene, const SolveOptions& options, const ImplicitControls& controls,
+  ImplicitSolverOf(const Scene& scene, const IntegratorSettings& settings, const ImplicitControls& controls,
                    const SolverState& state)
-      : Base(scene, options, state, fields(options), 0),  // sorted before every step
+      : Base(scene, settings, state, fields(settings), 0),  // sorted before every step
         controls_(controls),
         affine_(controls.affine),
         dynamic_(controls.dynamic),
-        node_bed_(make_base_friction<double>(options), scene.bed),
+        node_bed_(settings.bed, scene.bed),
         step_(controls.step),
         first_(state.clock.accelerated == 0),
         midway_(state.clock.step > 0),
@@ -150,13 +149,9 @@ class ImplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   }
 
  private:
-  static ParticleFields fields(const SolveOptions& o) {
-    ParticleFields f;
-    f.affine = o.transfer == Transfer::apic;
-    f.plastic_volume = Base::needs_plastic_volume(o);
+  static ParticleFields fields(const IntegratorSettings& settings) {
+    ParticleFields f = settings.fields;
     f.acceleration = true;
-    f.extent = o.shape == ShapeKind::gimp;
-    Base::add_fields(o, f);
     return f;
   }
 
@@ -609,17 +604,17 @@ class ImplicitSolverOf final : public PointSolver<Real, Device, Shape> {
 
 /// A solver of one precision in the place asked for.
 template <class Real>
-std::unique_ptr<Solver> make_implicit_solver_of(const Scene& scene, const SolveOptions& options,
+std::unique_ptr<Solver> make_implicit_solver_of(const Scene& scene, const IntegratorSettings& settings,
                                                 const ImplicitControls& controls, On on, const SolverState& state) {
-  return with_shape(options.shape, [&](auto shape) -> std::unique_ptr<Solver> {
+  return with_shape(settings.shape, [&](auto shape) -> std::unique_ptr<Solver> {
     using Shape = decltype(shape);
 #if TALUS_FOR_GPU
     if (on == On::gpu)
-      return std::make_unique<ImplicitSolverOf<Real, GpuDevice, Shape>>(scene, options, controls, state);
+      return std::make_unique<ImplicitSolverOf<Real, GpuDevice, Shape>>(scene, settings, controls, state);
 #else
     static_cast<void>(on);
 #endif
-    return std::make_unique<ImplicitSolverOf<Real, CpuDevice, Shape>>(scene, options, controls, state);
+    return std::make_unique<ImplicitSolverOf<Real, CpuDevice, Shape>>(scene, settings, controls, state);
   });
 }
 

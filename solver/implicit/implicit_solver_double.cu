@@ -1,11 +1,10 @@
 // The implicit solver in double precision.
 #include "solver/implicit/implicit_solver.hpp"
 #include "solver/integrator/scene.hpp"
-#include "solver/options/solve.hpp"
 
 namespace talus::solver {
 
-template std::unique_ptr<Solver> make_implicit_solver_of<double>(const Scene&, const SolveOptions&,
+template std::unique_ptr<Solver> make_implicit_solver_of<double>(const Scene&, const IntegratorSettings&,
                                                                  const ImplicitControls&, On, const SolverState&);
 
 }  // namespace talus::solver

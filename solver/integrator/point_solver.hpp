@@ -1,13 +1,11 @@
 // What every integrator has: the points, the grid, the clock and the maps, and how they are read.
 #pragma once
 
-#include <algorithm>
-
 #include "solver/boundary/contact_impulses.hpp"
 #include "solver/integrator/point_sums.hpp"
 #include "solver/integrator/scene.hpp"
+#include "solver/integrator/settings.hpp"
 #include "solver/integrator/solver.hpp"
-#include "solver/options/solve.hpp"
 #include "solver/parallel/algorithms.hpp"
 #include "solver/parallel/profile.hpp"
 #include "solver/state/map_view.hpp"
@@ -28,14 +26,12 @@ auto with_shape(ShapeKind kind, F&& f) {
 template <class Number, class Device>
 class BedOn {
  public:
-  BedOn(const BaseFriction<Number>& friction, const std::vector<Bed<double>>& columns) : friction_(friction) {
+  BedOn(const BaseFriction<double>& friction, const std::vector<Bed<double>>& columns) {
+    friction_.law = friction.law;
+    friction_.uniform = in_precision(friction.uniform);
     if (columns.empty()) return;
     std::vector<Bed<Number>> beds;
-    for (const Bed<double>& b : columns) {
-      beds.push_back({static_cast<Number>(b.coefficient), static_cast<Number>(b.peak),
-                      static_cast<Number>(b.characteristic_speed), static_cast<Number>(b.drag),
-                      static_cast<Number>(b.cohesion)});
-    }
+    for (const Bed<double>& b : columns) beds.push_back(in_precision(b));
     columns_.upload(beds);
     friction_.columns = columns_.data();
   }
@@ -43,6 +39,14 @@ class BedOn {
   std::size_t bytes() const { return columns_.bytes(); }
 
  private:
+  static Bed<Number> in_precision(const Bed<double>& b) {
+    return {.coefficient = static_cast<Number>(b.coefficient),
+            .peak = static_cast<Number>(b.peak),
+            .characteristic_speed = static_cast<Number>(b.characteristic_speed),
+            .drag = static_cast<Number>(b.drag),
+            .cohesion = static_cast<Number>(b.cohesion)};
+  }
+
   BaseFriction<Number> friction_;
   Buffer<Bed<Number>, Device> columns_;
 };
@@ -50,15 +54,15 @@ class BedOn {
 template <class Real, class Device, class Shape>
 class PointSolver : public Solver {
  public:
-  PointSolver(const Scene& scene, const SolveOptions& options, const SolverState& state, ParticleFields fields,
+  PointSolver(const Scene& scene, const IntegratorSettings& settings, const SolverState& state, ParticleFields fields,
               int drift)
-      : options_(options),
-        materials_(make_materials<Real>(options, scene.grid.spacing, scene.grid.layer_height)),
+      : settings_(settings),
+        materials_(settings.materials.in<Real>()),
         dilatant_(fields.plastic_volume),
         points_(fields),
-        grid_(scene.grid, drift, options.deterministic, Shape::width == 2),
-        bed_(make_base_friction<Real>(options), scene.bed),
-        contact_(scene.contacts, options.obstacles, bed_.view(), scene.grid, state.contacts, options.deterministic),
+        grid_(scene.grid, drift, settings.deterministic, Shape::width == 2),
+        bed_(settings.bed, scene.bed),
+        contact_(scene.contacts, bed_.view(), scene.grid, state.contacts, settings.deterministic),
         frame_{{scene.map.x(0), scene.map.y(0), grid_.ground().datum},
                {scene.grid.spacing, scene.grid.spacing, scene.grid.layer_height}},
         load_volumes_(scene.load_volumes) {
@@ -95,9 +99,9 @@ class PointSolver : public Solver {
     const ProfilePhase<Device> phase("records and frames");
     constexpr int rows = MeasureEnergies<Real, Shape>::rows;
     totals_.resize(rows);
-    const Vec3<double> g{options_.gravity[0], options_.gravity[1], options_.gravity[2]};
     sum_each<rows>(Device{}, points_.count(), sums_,
-                   MeasureEnergies<Real, Shape>{grid_.view(), points_.view(), materials_, g, dilatant_},
+                   MeasureEnergies<Real, Shape>{grid_.view(), points_.view(), materials_,
+                                                settings_.gravity.acceleration, dilatant_},
                    KeepTotals<rows>{totals_.data()});
     const std::vector<double> total = totals_.download();
     return {total[0], total[1], total[2], total[3], {total[4], total[5], total[6]}};
@@ -130,19 +134,9 @@ class PointSolver : public Solver {
   }
 
  protected:
-  static bool needs_plastic_volume(const SolveOptions& o) {
-    return o.any_material(
-        [](const MaterialOptions& m) { return m.model == MaterialModel::drucker_prager && m.dilatancy_angle > 0; });
-  }
-  /// Arrays that the scene's materials and loads need.
-  static void add_fields(const SolveOptions& o, ParticleFields& f) {
-    f.load = !o.loads.empty();
-    f.material = !o.parts.empty();
-    f.plastic_shear = o.any_material([](const MaterialOptions& m) { return m.softens(); });
-  }
   /// Where densities differ, mass does not tell the thickness: volumes over the columns, for the maps.
   void measure_columns() {
-    if (!options_.densities_differ()) return;
+    if (!settings_.materials.densities_differ) return;
     column_volumes_.resize(static_cast<std::size_t>(grid_.shape().columns) *
                            static_cast<std::size_t>(grid_.shape().rows));
     column_volumes_.fill_zero();
@@ -166,13 +160,14 @@ class PointSolver : public Solver {
   }
   Clock read_clock() const { return clock_.download().front(); }
   MapView maps() {
-    return {peak_thickness_.data(), peak_speed_.data(), peak_pressure_.data(), arrival_.data(), options_.map_threshold};
+    return {peak_thickness_.data(), peak_speed_.data(), peak_pressure_.data(), arrival_.data(),
+            settings_.map_threshold};
   }
 
   /// The walls that stand at a time, as kernels see them; the grid meets them as edges from now on.
   template <class Number>
   Walls<Number> stand_walls(double time) {
-    const Walls<Number> walls = make_walls<Number>(options_.walls, time, frame_);
+    const Walls<Number> walls = walls_at<Number>(settings_.walls, time, frame_);
     grid_.stand_walls(wall_nodes(walls));
     return walls;
   }
@@ -180,19 +175,11 @@ class PointSolver : public Solver {
   /// Force per volume of every load at a time; null when there are none.
   const Vec3<double>* upload_loads(double time) {
     if (load_volumes_.empty()) return nullptr;
-    std::vector<Vec3<double>> densities;
-    for (std::size_t l = 0; l < load_volumes_.size(); ++l) {
-      const LoadOptions& o = options_.loads[l];
-      double share = time >= o.from && time < o.to ? 1.0 : 0.0;
-      if (o.ramp > 0) share *= std::clamp((time - o.from) / o.ramp, 0.0, 1.0);
-      const double scale = share / load_volumes_[l];
-      densities.push_back({o.force[0] * scale, o.force[1] * scale, o.force[2] * scale});
-    }
-    loads_.upload(densities);
+    loads_.upload(load_densities(settings_.loads, load_volumes_, time));
     return loads_.data();
   }
 
-  SolveOptions options_;
+  IntegratorSettings settings_;
   Materials<Real> materials_;
   bool dilatant_;
   Particles<Real, Device> points_;

@@ -29,6 +29,7 @@ struct MaterialOptions {
   double residual_friction_angle = 0;  // [deg]
   double residual_cohesion = 0;        // [Pa]
   Cone cone = Cone::compression;
+  bool dilates() const { return model == MaterialModel::drucker_prager && dilatancy_angle > 0; }
   bool softens() const { return model == MaterialModel::drucker_prager && softening_slip > 0; }
   void describe(recipe::Visitor& v);
 };

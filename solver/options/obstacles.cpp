@@ -1,13 +1,8 @@
 #include "solver/options/obstacles.hpp"
 
-#include <cmath>
-#include <numbers>
-
 #include <fmt/format.h>
 
 namespace talus::solver {
-
-double ObstacleOptions::friction() const { return std::tan(friction_angle * (std::numbers::pi / 180)); }
 
 void ObstacleOptions::describe(recipe::Visitor& v) {
   v.text("name", name, "under which its force is recorded");

@@ -15,7 +15,6 @@ struct ObstacleOptions {
   std::filesystem::path level_set;  // empty: OUT/obstacles.vdb
   std::string grid;                 // in that file; empty: the obstacle's name, or the only one of a file that is given
   double friction_angle = 20;       // [deg]
-  double friction() const;          // coefficient
   void describe(recipe::Visitor& v);
 };
 

@@ -2,12 +2,12 @@
 #pragma once
 
 #include "common/recipe/recipe.hpp"
+#include "solver/grid/shape_functions.hpp"
 #include "solver/state/grid_view.hpp"
 
 namespace talus::solver {
 
 enum class Precision { single_, double_ };
-enum class ShapeKind { linear, quadratic, gimp };
 enum class Transfer { apic, flip };
 enum class StressUpdate { last, modified };  // USL, MUSL
 

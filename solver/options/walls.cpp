@@ -1,8 +1,5 @@
 #include "solver/options/walls.hpp"
 
-#include <cmath>
-#include <numbers>
-
 #include <fmt/format.h>
 
 namespace talus::solver {
@@ -27,27 +24,5 @@ void check_walls(const std::vector<WallOptions>& walls, std::vector<Fault>& faul
                       fmt::format("at most {} walls fit", most_walls), "Leave some out"});
   }
 }
-
-template <class Real>
-Walls<Real> make_walls(const std::vector<WallOptions>& options, double time, const WallFrame& frame) {
-  Walls<Real> walls;
-  for (const WallOptions& o : options) {
-    const double now = time * (1 + 1e-12);  // events a rounding apart are one
-    if (now < o.from || now >= o.to) continue;
-    Wall<Real>& wall = walls.list[walls.count++];
-    wall.axis = static_cast<int>(o.axis);
-    wall.side = o.material_is == Side::above ? 1 : -1;
-    const double position = o.position + o.speed * (time - o.from);
-    const int a = wall.axis;
-    wall.position = static_cast<Real>((position - frame.origin[a]) / frame.cell[a]);
-    wall.kind = o.kind;
-    wall.friction = static_cast<Real>(std::tan(o.friction_angle * (std::numbers::pi / 180)));
-    wall.speed = static_cast<Real>(o.speed);
-  }
-  return walls;
-}
-
-template Walls<float> make_walls(const std::vector<WallOptions>&, double, const WallFrame&);
-template Walls<double> make_walls(const std::vector<WallOptions>&, double, const WallFrame&);
 
 }  // namespace talus::solver

@@ -25,13 +25,4 @@ struct WallOptions {
 
 void check_walls(const std::vector<WallOptions>& walls, std::vector<Fault>& faults);
 
-/// Map coordinates of node (0, 0, 0) and the spacing along each axis [m].
-struct WallFrame {
-  double origin[3], cell[3];
-};
-
-/// The walls that stand at a time.
-template <class Real>
-Walls<Real> make_walls(const std::vector<WallOptions>& options, double time, const WallFrame& frame);
-
 }  // namespace talus::solver

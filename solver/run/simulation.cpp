@@ -116,7 +116,7 @@ void Simulation::start() {
   std::error_code ignored;
   for (const auto& stale : {paths_.run, paths_.checkpoint}) std::filesystem::remove(stale, ignored);
   if (options_.gravity_loading_steps > 0) load_by_gravity();
-  build_solver(first_state(scene_, options_));
+  build_solver(first_state(scene_, make_settings(options_, scene_.grid).common));
   const auto add = [&](const std::string& name) { memory_.history.columns.push_back({name, "", "", "", {}}); };
   for (const std::string& name : history_names) add(name);
   if (options_.energy_budget) {
@@ -130,25 +130,10 @@ void Simulation::start() {
 }
 
 void Simulation::load_by_gravity() {
-  SolveOptions o = options_;
-  o.integrator = Integrator::quasi_static;
-  // Elastic and held at its bed: what is about to slide has no other equilibrium. The first step brings it to its own
-  // strength.
-  const auto hold = [](MaterialOptions& m) {
-    if (m.model == MaterialModel::drucker_prager) m.model = MaterialModel::hencky;
-  };
-  hold(o.material);
-  for (PartOptions& part : o.parts) hold(part.material);
-  o.base.law = FrictionLaw::stick;
-  o.gravity_ramp = 1;
-  o.implicit.step = 1.0 / options_.gravity_loading_steps;
-  o.implicit.newton_iterations = std::max(o.implicit.newton_iterations, 20);
-  // The walls of the start stand throughout; loading has a clock of its own.
-  std::erase_if(o.walls, [](const WallOptions& wall) { return wall.from > 0; });
-  for (WallOptions& wall : o.walls) wall.to = 2;
   Scene scene = scene_;
   for (auto& component : scene.points.velocity) std::fill(component.begin(), component.end(), 0.0);
-  const auto loader = make_solver(scene, o, on_);
+  const auto loader =
+      make_solver(scene, for_gravity_loading(make_settings(options_, scene.grid), options_.gravity_loading_steps), on_);
   loader->set_next_event(1);
   std::int64_t newton = 0, linear = 0;
   while (loader->clock().time < 1) {

@@ -1,6 +1,7 @@
 #include "solver/scene/make_scene.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/options/solve.hpp"
+#include "solver/scene/settings.hpp"
 
 #include <cmath>
 
@@ -153,7 +154,7 @@ Scene make_scene(const Domain& domain, const SolveOptions& options) {
   attach_materials(domain, options, scene);
   check_bed(domain, options);
   scene.bed = make_bed(domain, options);
-  scene.contacts = make_contact_points(domain.grid, shape, ground, options.obstacles);
+  scene.contacts = make_contact_points(domain.grid, shape, ground, make_obstacles(options.obstacles));
   return scene;
 }
 

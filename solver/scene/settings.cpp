@@ -1,0 +1,109 @@
+#include "solver/scene/settings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+
+#include "solver/scene/implicit_controls.hpp"
+
+namespace talus::solver {
+namespace {
+
+/// Coefficient of friction of an angle in degrees.
+double coefficient(double degrees) { return std::tan(degrees * (std::numbers::pi / 180)); }
+
+Vec3<double> vector(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
+
+double size(const std::vector<double>& v) { return std::hypot(v[0], v[1], v[2]); }
+
+ParticleFields fields_for(const SolveOptions& o) {
+  return {.affine = o.transfer == Transfer::apic,
+          .plastic_volume = o.any_material([](const MaterialOptions& m) { return m.dilates(); }),
+          .extent = o.shape == ShapeKind::gimp,
+          .load = !o.loads.empty(),
+          .material = !o.parts.empty(),
+          .plastic_shear = o.any_material([](const MaterialOptions& m) { return m.softens(); })};
+}
+
+PlaneWall make_wall(const WallOptions& o) {
+  return {.axis = static_cast<int>(o.axis),
+          .side = o.material_is == Side::above ? 1 : -1,
+          .position = o.position,
+          .kind = o.kind,
+          .friction = coefficient(o.friction_angle),
+          .speed = o.speed,
+          .from = o.from,
+          .to = o.to};
+}
+
+Load make_load(const LoadOptions& o) { return {.force = vector(o.force), .ramp = o.ramp, .from = o.from, .to = o.to}; }
+
+IntegratorSettings make_common(const SolveOptions& o, const GridShape& grid) {
+  IntegratorSettings s{.shape = o.shape,
+                       .fields = fields_for(o),
+                       .steps = {.cfl = o.cfl,
+                                 .largest = o.largest_step,
+                                 .fastest_wave = fastest_wave(o),
+                                 .initial_speed = size(o.initial_velocity)},
+                       .transfer = {.affine = o.transfer == Transfer::apic,
+                                    .remaps_velocity = o.stress_update == StressUpdate::modified,
+                                    .time = o.transfer_time},
+                       .gravity = {.acceleration = vector(o.gravity), .ramp = o.gravity_ramp},
+                       .damping = o.damping,
+                       .map_threshold = o.map_threshold,
+                       .energy_budget = o.energy_budget,
+                       .deterministic = o.deterministic,
+                       .materials = {.in_double = make_materials<double>(o, grid.spacing, grid.layer_height),
+                                     .in_single = make_materials<float>(o, grid.spacing, grid.layer_height),
+                                     .densities_differ = o.densities_differ()},
+                       .bed = make_base_friction<double>(o),
+                       .walls = {},
+                       .loads = {}};
+  std::transform(o.walls.begin(), o.walls.end(), std::back_inserter(s.walls), make_wall);
+  std::transform(o.loads.begin(), o.loads.end(), std::back_inserter(s.loads), make_load);
+  return s;
+}
+
+/// Materials that do not yield.
+template <class Real>
+void hold(Materials<Real>& materials) {
+  for (Material<Real>& m : materials.list) {
+    if (m.model == MaterialModel::drucker_prager) m.model = MaterialModel::hencky;
+  }
+}
+
+}  // namespace
+
+SolverSettings make_settings(const SolveOptions& options, const GridShape& grid) {
+  return {.precision = options.precision,
+          .integrator = options.integrator,
+          .common = make_common(options, grid),
+          .implicit = make_implicit_controls(options)};
+}
+
+SolverSettings for_gravity_loading(SolverSettings s, int steps) {
+  s.integrator = Integrator::quasi_static;
+  s.implicit.dynamic = false;
+  s.implicit.step = 1.0 / steps;
+  s.implicit.newton.iterations = std::max(s.implicit.newton.iterations, 20);
+  s.implicit.gravity_ramp = s.common.gravity.ramp = 1;
+  hold(s.common.materials.in_double);
+  hold(s.common.materials.in_single);
+  s.common.fields.plastic_volume = s.common.fields.plastic_shear = false;
+  s.common.bed = {};
+  s.common.bed.law = FrictionLaw::stick;
+  std::erase_if(s.common.walls, [](const PlaneWall& wall) { return wall.from > 0; });
+  for (PlaneWall& wall : s.common.walls) wall.to = 2;
+  return s;
+}
+
+std::vector<Obstacle> make_obstacles(const std::vector<ObstacleOptions>& options) {
+  std::vector<Obstacle> obstacles;
+  for (const ObstacleOptions& o : options)
+    obstacles.push_back(
+        {.name = o.name, .level_set = o.level_set, .grid = o.grid, .friction = coefficient(o.friction_angle)});
+  return obstacles;
+}
+
+}  // namespace talus::solver

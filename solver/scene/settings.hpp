@@ -1,0 +1,34 @@
+// From the options of a recipe to settings: the one place where degrees become coefficients, keys become SI units and
+// words become laws and numbers that kernels see.
+#pragma once
+
+#include <vector>
+
+#include "solver/boundary/contact_points.hpp"
+#include "solver/grid/sparse_grid.hpp"
+#include "solver/implicit/controls.hpp"
+#include "solver/integrator/settings.hpp"
+#include "solver/options/solve.hpp"
+
+namespace talus::solver {
+
+/// What a solver is made of, beside its scene and state.
+struct SolverSettings {
+  Precision precision = Precision::double_;
+  Integrator integrator = Integrator::explicit_;  // never automatic: whoever changes between two names one of them
+  IntegratorSettings common;
+  ImplicitControls implicit;  // looked at by implicit integrators
+};
+
+/// The settings that the options ask for on this grid; presets are resolved already (with_preset).
+SolverSettings make_settings(const SolveOptions& options, const GridShape& grid);
+
+/// The same for quasi-static steps of gravity loading, from time 0 to 1: bodies that yield are elastic and stick to
+/// their bed, for what is about to slide has no other equilibrium; gravity grows over all steps, and the walls of the
+/// start stand throughout.
+SolverSettings for_gravity_loading(SolverSettings settings, int steps);
+
+/// The obstacles with their coefficient of friction.
+std::vector<Obstacle> make_obstacles(const std::vector<ObstacleOptions>& options);
+
+}  // namespace talus::solver
