@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Formatting of every source by clang-format 14 (Debian 12's), and static analysis of every unit, kernels included, by
-# clang-tidy 14 with the checks of .clang-tidy. A unit that was clean is not analysed again until it, a header of the
-# project or .clang-tidy has changed.
+# Formatting of every source by clang-format 14 (Debian 12's), headers that build alone, and static analysis of every
+# unit, kernels included, by clang-tidy 14 with the checks of .clang-tidy. What was clean is not looked at again until
+# it, a header that it includes or .clang-tidy has changed.
 # usage: tools/lint.sh [--changed N] [FILE...]     --changed: analyse only the N units changed last; FILE: only these
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -41,11 +41,30 @@ elif [[ -n $changed ]]; then
     while IFS= read -r file; do if [[ -f $file ]]; then printf '%s\n' "$file"; fi; done | head -n "$changed" || true)
 fi
 
-# analyse FILE: clang-tidy, unless this very text of the unit and of all headers has been found clean before.
+# Headers that can be included alone. The flags are those of all units of the project together.
+flags=$(grep -oE ' (-I|-isystem |-D|-std=)[^ ]+' $build/compile_commands.json | grep -v '\\' | sort -u | tr '\n' ' ')
+export flags
+# text_of FILE: checksum of a file, of the project's headers that it includes, and of .clang-tidy.
+text_of() {
+  # shellcheck disable=SC2086
+  { g++ $flags -I. -x c++ -MM "$1" 2>/dev/null | tr ' \\' '\n\n' | grep -E '\.(hpp|cpp|cu)$' | xargs -r cat
+    cat "$1" .clang-tidy; } | sha256sum
+}
+alone() {
+  local stamp=build-lint/alone/${1//\//_} sum
+  sum=$(text_of "$1")
+  if [[ -f $stamp && $(<"$stamp") == "$sum" ]]; then return 0; fi
+  # shellcheck disable=SC2086
+  g++ $flags -I. -fsyntax-only -x c++ -Wall -Wextra -include "$1" /dev/null || return 1
+  echo "$sum" >"$stamp"
+}
+export -f alone text_of
+
+# analyse FILE: clang-tidy, unless this very text of the unit and of its headers has been found clean before.
 analyse() {
   local unit=$1 stamp log
   log=build-lint/tidy/${unit//\//_}
-  stamp=$(cat "$unit" build-lint/headers.sum .clang-tidy | sha256sum)
+  stamp=$(text_of "$unit")
   if [[ -f $log.clean && $(<"$log.clean") == "$stamp" ]]; then return 0; fi
   if clang-tidy -p build-lint --quiet --warnings-as-errors='*' "$unit" >"$log.log" 2>"$log.err"; then
     echo "$stamp" >"$log.clean"
@@ -55,8 +74,13 @@ analyse() {
   fi
 }
 export -f analyse
-mkdir -p build-lint/tidy
-printf '%s\n' "${sources[@]}" | grep -E '\.hpp$' | xargs -d '\n' cat | sha256sum >build-lint/headers.sum
+mkdir -p build-lint/tidy build-lint/alone
+if [[ -z $changed && $# -eq 0 ]]; then
+  mapfile -t headers < <(printf '%s\n' "${sources[@]}" | grep -E '\.hpp$')
+  printf '%s\0' "${headers[@]}" | xargs -0 -r -P "$(nproc)" -n 1 bash -c 'alone "$1"' _ ||
+    fail "headers do not build alone"
+  echo "headers that build alone: ${#headers[@]}"
+fi
 # Units that CMake makes or leaves out have no command: they are not looked at.
 printf '%s\n' "${units[@]}" | while IFS= read -r unit; do
   if grep -qF "/$unit\"" build-lint/compile_commands.json; then printf '%s\0' "$unit"; fi
