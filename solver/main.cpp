@@ -44,7 +44,7 @@ Stage stage() {
 
 /// What was measured, in words and as profile.csv.
 void report_profile(const RunSummary& summary, On on, const std::filesystem::path& out) {
-  Profile& profile = Profile::of_run();
+  Profile& profile = profile_of(on);
   profile.turn_off();
   const double copy = on == On::gpu ? copy_bandwidth(GpuDevice{}) : copy_bandwidth(CpuDevice{});
   for (const std::string& text : profile_lines(summary, profile, copy)) log_info(text);
@@ -131,7 +131,7 @@ void solve(StageContext& context) {
       inputs.push_back(obstacle.level_set);
   }
   const RunPaths paths(context.out);
-  if (context.profile) Profile::of_run().turn_on();
+  if (context.profile) profile_of(on).turn_on();
   Simulation simulation(domain, options, on, paths, fingerprint);
   if (context.restart) simulation.resume(context.restart->empty() ? paths.checkpoint : *context.restart);
   const RunSummary summary = simulation.run(context.recipe.scene_name(), context.recipe.title());

@@ -161,7 +161,7 @@ KernelRun time_kernels(const KernelSetting& k, On on) {
   // Rounding; Newton's tolerance of 1e-4 in some ten steps.
   run.pass = run.check < (k.newmark ? 2e-3 : k.precision == Precision::double_ ? 1e-9 : 1e-3);
   for (const auto& [owner, bytes] : solver->memory()) run.memory.emplace_back(owner, static_cast<double>(bytes));
-  Profile& profile = Profile::of_run();
+  Profile& profile = profile_of(on);
   const auto profiled = [&](bool kernels) {
     profile.clear();
     profile.turn_on(kernels);

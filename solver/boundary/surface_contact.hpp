@@ -187,7 +187,7 @@ class SurfaceContact {
       }
     }
     beside_.upload(beside);
-    if constexpr (Device::is_gpu) groups_.upload();
+    groups_.upload(Device{});
     for_each(Device{}, count_, ForgetForces<Real>{grid.view(), view()});
   }
 

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "solver/grid/shape_functions.hpp"
+#include "solver/parallel/for_each.hpp"
 #include "solver/state/grid_view.hpp"
 #include "solver/state/particles.hpp"
 

@@ -179,7 +179,7 @@ void SparseGrid<Real, Device>::group_points(int count) {
     groups_.ranges[colour].emplace_back(begin, end);
     begin = end;
   }
-  if constexpr (Device::is_gpu) groups_.upload();
+  groups_.upload(Device{});
 }
 
 template <class Real, class Device>

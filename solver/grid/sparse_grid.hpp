@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "solver/grid/bicubic.hpp"
+#include "solver/parallel/for_each.hpp"
 #include "solver/state/grid_view.hpp"
 #include "solver/state/particles.hpp"
 

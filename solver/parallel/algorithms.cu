@@ -1,10 +1,8 @@
 #include <cstddef>
-#include <map>
 #include <stdexcept>
 #include <string>
 
 #include "solver/parallel/algorithms.hpp"
-#include "solver/parallel/sums.hpp"
 
 #if defined(__CUDACC__)
 #include <thrust/device_ptr.h>
@@ -16,60 +14,47 @@
 #include <thrust/system/cuda/execution_policy.h>
 #include <cub/device/device_radix_sort.cuh>
 
-namespace talus {
-namespace {
+#include "solver/parallel/gpu_state.hpp"
+#include "solver/parallel/sums.hpp"
 
-/// What Thrust borrows, kept for the next call: to allocate device memory is to wait for the device.
-class Borrowed {
- public:
-  using value_type = char;
-  char* allocate(std::ptrdiff_t bytes) {
-    const auto found = free_.lower_bound(bytes);
-    if (found != free_.end() && found->first <= 4 * bytes) {
-      char* memory = found->second;
-      taken_[memory] = found->first;
-      free_.erase(found);
-      return memory;
-    }
-    char* memory = static_cast<char*>(detail::gpu_allocate(static_cast<std::size_t>(bytes)));
-    taken_[memory] = bytes;
+namespace talus {
+
+BorrowedMemory::~BorrowedMemory() {
+  for (const auto& [bytes, memory] : free_) detail::free(device_, memory);
+}
+
+char* BorrowedMemory::allocate(std::ptrdiff_t bytes) {
+  const auto found = free_.lower_bound(bytes);
+  if (found != free_.end() && found->first <= 4 * bytes) {
+    char* memory = found->second;
+    taken_[memory] = found->first;
+    free_.erase(found);
     return memory;
   }
-  void deallocate(char* memory, std::size_t) {
-    const auto entry = taken_.find(memory);
-    free_.emplace(entry->second, memory);
-    taken_.erase(entry);
-  }
+  char* memory = static_cast<char*>(detail::allocate(device_, static_cast<std::size_t>(bytes)));
+  taken_[memory] = bytes;
+  return memory;
+}
 
- private:
-  std::multimap<std::ptrdiff_t, char*> free_;
-  std::map<char*, std::ptrdiff_t> taken_;
-};
+void BorrowedMemory::deallocate(char* memory, std::size_t) {
+  const auto entry = taken_.find(memory);
+  free_.emplace(entry->second, memory);
+  taken_.erase(entry);
+}
 
-Borrowed borrowed;  // until the process ends: the driver takes it back
+namespace {
 
-auto policy() { return thrust::cuda::par_nosync(borrowed); }
+/// Thrust's way onto the device's stream; to be asked for anew before every call.
+auto policy(const GpuDevice& device) {
+  GpuState& state = device.state();
+  state.select();
+  return thrust::cuda::par_nosync(state.scratch->borrowed).on(state.stream);
+}
 
 struct Products {
   const double *a, *b;
   TALUS_HD Terms<1> operator()(int i) const { return {{a[i] * b[i]}}; }
 };
-
-/// The other side that a radix sort writes to by turns; grows with the largest sort.
-struct SortSpace {
-  Buffer<std::uint64_t, GpuDevice> keys;
-  Buffer<int, GpuDevice> order;
-  Buffer<char, GpuDevice> rest;
-};
-
-SortSpace& sort_space() {
-  static auto* const kept = new SortSpace;  // until the process ends, as above
-  return *kept;
-}
-
-void check_cub(cudaError_t code) {
-  if (code != cudaSuccess) throw std::runtime_error(std::string("CUDA: sort: ") + cudaGetErrorString(code));
-}
 
 /// What is behind a list's sums is its last value and its last sum.
 struct TakeLast {
@@ -85,83 +70,86 @@ struct AddLast {
   TALUS_HD void operator()(int) const { *total += sums[at]; }
 };
 
-void start_sum(const int* values, int* sums, int count, int* total) {
-  for_each(GpuDevice{}, 1, TakeLast{values, count - 1, total});  // before it is written over
-  thrust::exclusive_scan(policy(), thrust::device_ptr<const int>(values), thrust::device_ptr<const int>(values) + count,
-                         thrust::device_ptr<int>(sums));
-  for_each(GpuDevice{}, 1, AddLast{sums, count - 1, total});
-}
-
-Buffer<int, GpuDevice>& totals() {
-  static auto* const kept = new Buffer<int, GpuDevice>(2);  // until the process ends, as above
-  return *kept;
+void start_sum(const GpuDevice& device, const int* values, int* sums, int count, int* total) {
+  for_each(device, 1, TakeLast{values, count - 1, total});  // before it is written over
+  thrust::exclusive_scan(policy(device), thrust::device_ptr<const int>(values),
+                         thrust::device_ptr<const int>(values) + count, thrust::device_ptr<int>(sums));
+  for_each(device, 1, AddLast{sums, count - 1, total});
 }
 
 }  // namespace
 
-void sort_order(GpuDevice, Buffer<std::uint64_t, GpuDevice>& keys, Buffer<int, GpuDevice>& order, int bits) {
-  SortSpace& space = sort_space();
+void sort_order(const GpuDevice& device, Buffer<std::uint64_t, GpuDevice>& keys, Buffer<int, GpuDevice>& order,
+                int bits) {
+  SortSpace& space = device.state().scratch->sort;
   const std::size_t count = keys.size();
   order.resize(count);
   if (count == 0) return;
   space.keys.resize(count);
   space.order.resize(count);
   const thrust::device_ptr<int> o(order.data());
-  thrust::sequence(policy(), o, o + static_cast<std::ptrdiff_t>(count));
+  thrust::sequence(policy(device), o, o + static_cast<std::ptrdiff_t>(count));
   cub::DoubleBuffer<std::uint64_t> k(keys.data(), space.keys.data());
   cub::DoubleBuffer<int> v(order.data(), space.order.data());
   std::size_t bytes = 0;
-  check_cub(
-      cub::DeviceRadixSort::SortPairs(nullptr, bytes, k, v, static_cast<int>(count), 0, bits, detail::gpu_stream()));
+  const int items = static_cast<int>(count);
+  check_cuda(cub::DeviceRadixSort::SortPairs(nullptr, bytes, k, v, items, 0, bits, device.stream()), "sort");
   space.rest.resize(bytes);
-  check_cub(cub::DeviceRadixSort::SortPairs(space.rest.data(), bytes, k, v, static_cast<int>(count), 0, bits,
-                                            detail::gpu_stream()));
+  check_cuda(cub::DeviceRadixSort::SortPairs(space.rest.data(), bytes, k, v, items, 0, bits, device.stream()), "sort");
   if (k.Current() != keys.data()) keys.swap(space.keys);
   if (v.Current() != order.data()) order.swap(space.order);
 }
 
-std::size_t sort_space_bytes(GpuDevice) {
-  return sort_space().keys.bytes() + sort_space().order.bytes() + sort_space().rest.bytes();
+std::size_t sort_space_bytes(const GpuDevice& device) {
+  const SortSpace& space = device.state().scratch->sort;
+  return space.keys.bytes() + space.order.bytes() + space.rest.bytes();
 }
-void drop_sort_space(GpuDevice) { sort_space() = SortSpace{}; }
+void drop_sort_space(const GpuDevice& device) {
+  SortSpace& space = device.state().scratch->sort;
+  space.keys.drop();
+  space.order.drop();
+  space.rest.drop();
+}
 
-int exclusive_sum(GpuDevice, const int* values, int* sums, int count) {
+int exclusive_sum(const GpuDevice& device, const int* values, int* sums, int count) {
   if (count == 0) return 0;
+  int* const on_device = device.state().scratch->totals.data();
   int total = 0;
-  start_sum(values, sums, count, totals().data());
-  detail::gpu_download(&total, totals().data(), sizeof total);
+  start_sum(device, values, sums, count, on_device);
+  detail::download(device, &total, on_device, sizeof total);
   return total;
 }
 
-std::array<int, 2> exclusive_sums(GpuDevice, int* first, int* second, int count) {
+std::array<int, 2> exclusive_sums(const GpuDevice& device, int* first, int* second, int count) {
   std::array<int, 2> both{};
   if (count == 0) return both;
-  start_sum(first, first, count, totals().data());
-  start_sum(second, second, count, totals().data() + 1);
-  detail::gpu_download(both.data(), totals().data(), sizeof both);
+  int* const on_device = device.state().scratch->totals.data();
+  start_sum(device, first, first, count, on_device);
+  start_sum(device, second, second, count, on_device + 1);
+  detail::download(device, both.data(), on_device, sizeof both);
   return both;
 }
 
-double inner_product(GpuDevice place, const double* a, const double* b, int count) {
-  static SumSpace<GpuDevice> space;
-  static Buffer<double, GpuDevice> total(1);
-  sum_each<1>(place, count, space, Products{a, b}, KeepTotals<1>{total.data()});
-  return total.download().front();
+double inner_product(const GpuDevice& device, const double* a, const double* b, int count) {
+  GpuScratch& scratch = *device.state().scratch;
+  sum_each<1>(device, count, scratch.sums, Products{a, b}, KeepTotals<1>{scratch.product.data()});
+  return scratch.product.download().front();
 }
 
-void gather(GpuDevice, const double* from, const int* order, double* to, int count) {
+void gather(const GpuDevice& device, const double* from, const int* order, double* to, int count) {
   const thrust::device_ptr<const int> o(order);
-  thrust::gather(policy(), o, o + count, thrust::device_ptr<const double>(from), thrust::device_ptr<double>(to));
+  thrust::gather(policy(device), o, o + count, thrust::device_ptr<const double>(from), thrust::device_ptr<double>(to));
 }
 
-void scatter(GpuDevice, const double* from, const int* order, double* to, int count) {
+void scatter(const GpuDevice& device, const double* from, const int* order, double* to, int count) {
   const thrust::device_ptr<const double> f(from);
-  thrust::scatter(policy(), f, f + count, thrust::device_ptr<const int>(order), thrust::device_ptr<double>(to));
+  thrust::scatter(policy(device), f, f + count, thrust::device_ptr<const int>(order), thrust::device_ptr<double>(to));
 }
 
-double free_memory(GpuDevice) {
+double free_memory(const GpuDevice& device) {
+  device.state().select();
   std::size_t free = 0, total = 0;
-  if (cudaMemGetInfo(&free, &total) != cudaSuccess) throw std::runtime_error("CUDA: cudaMemGetInfo failed");
+  check_cuda(cudaMemGetInfo(&free, &total), "cudaMemGetInfo");
   return static_cast<double>(free);
 }
 
@@ -170,17 +158,17 @@ double free_memory(GpuDevice) {
 #else
 
 namespace talus {
-void sort_order(GpuDevice, Buffer<std::uint64_t, GpuDevice>&, Buffer<int, GpuDevice>&, int) {
+void sort_order(const GpuDevice&, Buffer<std::uint64_t, GpuDevice>&, Buffer<int, GpuDevice>&, int) {
   throw std::logic_error("no CUDA");
 }
-int exclusive_sum(GpuDevice, const int*, int*, int) { throw std::logic_error("no CUDA"); }
-std::size_t sort_space_bytes(GpuDevice) { return 0; }
-void drop_sort_space(GpuDevice) {}
-std::array<int, 2> exclusive_sums(GpuDevice, int*, int*, int) { throw std::logic_error("no CUDA"); }
-double inner_product(GpuDevice, const double*, const double*, int) { throw std::logic_error("no CUDA"); }
-void gather(GpuDevice, const double*, const int*, double*, int) { throw std::logic_error("no CUDA"); }
-void scatter(GpuDevice, const double*, const int*, double*, int) { throw std::logic_error("no CUDA"); }
-double free_memory(GpuDevice) { throw std::logic_error("no CUDA"); }
+int exclusive_sum(const GpuDevice&, const int*, int*, int) { throw std::logic_error("no CUDA"); }
+std::size_t sort_space_bytes(const GpuDevice&) { return 0; }
+void drop_sort_space(const GpuDevice&) {}
+std::array<int, 2> exclusive_sums(const GpuDevice&, int*, int*, int) { throw std::logic_error("no CUDA"); }
+double inner_product(const GpuDevice&, const double*, const double*, int) { throw std::logic_error("no CUDA"); }
+void gather(const GpuDevice&, const double*, const int*, double*, int) { throw std::logic_error("no CUDA"); }
+void scatter(const GpuDevice&, const double*, const int*, double*, int) { throw std::logic_error("no CUDA"); }
+double free_memory(const GpuDevice&) { throw std::logic_error("no CUDA"); }
 }  // namespace talus
 
 #endif

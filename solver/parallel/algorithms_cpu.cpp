@@ -14,7 +14,7 @@
 
 namespace talus {
 
-void sort_order(CpuDevice, Buffer<std::uint64_t, CpuDevice>& keys, Buffer<int, CpuDevice>& order, int) {
+void sort_order(const CpuDevice&, Buffer<std::uint64_t, CpuDevice>& keys, Buffer<int, CpuDevice>& order, int) {
   const int count = static_cast<int>(keys.size());
   order.resize(keys.size());
   std::vector<std::pair<std::uint64_t, int>> pairs(keys.size());
@@ -26,7 +26,7 @@ void sort_order(CpuDevice, Buffer<std::uint64_t, CpuDevice>& keys, Buffer<int, C
   }
 }
 
-int exclusive_sum(CpuDevice, const int* values, int* sums, int count) {
+int exclusive_sum(const CpuDevice&, const int* values, int* sums, int count) {
   int total = 0;
   for (int i = 0; i < count; ++i) {
     const int value = values[i];
@@ -36,14 +36,14 @@ int exclusive_sum(CpuDevice, const int* values, int* sums, int count) {
   return total;
 }
 
-std::size_t sort_space_bytes(CpuDevice) { return 0; }
-void drop_sort_space(CpuDevice) {}
+std::size_t sort_space_bytes(const CpuDevice&) { return 0; }
+void drop_sort_space(const CpuDevice&) {}
 
-std::array<int, 2> exclusive_sums(CpuDevice place, int* first, int* second, int count) {
-  return {exclusive_sum(place, first, first, count), exclusive_sum(place, second, second, count)};
+std::array<int, 2> exclusive_sums(const CpuDevice& device, int* first, int* second, int count) {
+  return {exclusive_sum(device, first, first, count), exclusive_sum(device, second, second, count)};
 }
 
-double inner_product(CpuDevice, const double* a, const double* b, int count) {
+double inner_product(const CpuDevice&, const double* a, const double* b, int count) {
   return tbb::parallel_deterministic_reduce(
       tbb::blocked_range<int>(0, count, 4096), 0.0,
       [=](const tbb::blocked_range<int>& range, double total) {
@@ -53,15 +53,15 @@ double inner_product(CpuDevice, const double* a, const double* b, int count) {
       [](double x, double y) { return x + y; }, tbb::simple_partitioner());
 }
 
-void gather(CpuDevice, const double* from, const int* order, double* to, int count) {
+void gather(const CpuDevice&, const double* from, const int* order, double* to, int count) {
   for (int i = 0; i < count; ++i) to[i] = from[order[i]];
 }
 
-void scatter(CpuDevice, const double* from, const int* order, double* to, int count) {
+void scatter(const CpuDevice&, const double* from, const int* order, double* to, int count) {
   for (int i = 0; i < count; ++i) to[order[i]] = from[i];
 }
 
-double free_memory(CpuDevice) {
+double free_memory(const CpuDevice&) {
   std::ifstream file("/proc/meminfo");
   std::string name, unit;
   double kilobytes = 0;

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "solver/parallel/for_each.hpp"
 #include "solver/parallel/math.hpp"
 
 namespace talus {
@@ -16,17 +17,17 @@ struct CopyNumbers {
 };
 
 template <class Device>
-double measure_copy(Device place) {
+double measure_copy(const Device& device) {
   constexpr std::size_t count = 1 << 23;
-  Buffer<Vec4<double>, Device> from(count), to(count);
+  Buffer<Vec4<double>, Device> from(device, count), to(device, count);
   from.fill_zero();
   to.fill_zero();
-  synchronise(place);
+  synchronise(device);
   double best = 0;
   for (int round = 0; round < 5; ++round) {
     const auto begun = std::chrono::steady_clock::now();
-    for_each(place, static_cast<int>(count), CopyNumbers{from.data(), to.data()});
-    synchronise(place);
+    for_each(device, static_cast<int>(count), CopyNumbers{from.data(), to.data()});
+    synchronise(device);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     best = std::max(best, 2.0 * count * sizeof(Vec4<double>) / seconds);
   }
@@ -35,11 +36,11 @@ double measure_copy(Device place) {
 
 }  // namespace
 
-double copy_bandwidth(CpuDevice place) { return measure_copy(place); }
+double copy_bandwidth(const CpuDevice& device) { return measure_copy(device); }
 #if defined(__CUDACC__)
-double copy_bandwidth(GpuDevice place) { return measure_copy(place); }
+double copy_bandwidth(const GpuDevice& device) { return measure_copy(device); }
 #else
-double copy_bandwidth(GpuDevice) { throw std::logic_error("this binary was built without CUDA"); }
+double copy_bandwidth(const GpuDevice&) { throw std::logic_error("this binary was built without CUDA"); }
 #endif
 
 }  // namespace talus

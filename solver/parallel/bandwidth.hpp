@@ -6,7 +6,7 @@
 namespace talus {
 
 /// Bytes read and written per second by a copy of a quarter of a gigabyte, the best of five [B/s].
-double copy_bandwidth(CpuDevice);
-double copy_bandwidth(GpuDevice);
+double copy_bandwidth(const CpuDevice&);
+double copy_bandwidth(const GpuDevice& device);
 
 }  // namespace talus

@@ -2,7 +2,7 @@
 // layers, of which a small scene has more than it has columns.
 #pragma once
 
-#include "solver/parallel/device.hpp"
+#include "solver/parallel/for_each.hpp"
 #include "solver/state/grid_view.hpp"
 
 namespace talus {
@@ -26,8 +26,8 @@ struct WholeColumn {
 };
 
 template <class Kernel>
-void for_each_column(CpuDevice place, int blocks, const Kernel& kernel) {
-  for_each(place, blocks * block_columns, WholeColumn<Kernel>{kernel});
+void for_each_column(const CpuDevice& device, int blocks, const Kernel& kernel) {
+  for_each(device, blocks * block_columns, WholeColumn<Kernel>{kernel});
 }
 
 #if defined(__CUDACC__)
@@ -56,11 +56,11 @@ __global__ void run_columns(Kernel kernel) {
 }  // namespace detail
 
 template <class Kernel>
-void for_each_column(GpuDevice, int blocks, const Kernel& kernel) {
+void for_each_column(const GpuDevice& device, int blocks, const Kernel& kernel) {
   if (blocks <= 0) return;
-  const KernelTime<GpuDevice> time(kernel, blocks * block_columns);
-  detail::gpu_launch(__PRETTY_FUNCTION__, detail::run_columns<Kernel>, blocks, detail::column_shares * block_columns,
-                     kernel);
+  const KernelTime<GpuDevice> time(device, kernel, blocks * block_columns);
+  detail::gpu_launch(device, __PRETTY_FUNCTION__, detail::run_columns<Kernel>, blocks,
+                     detail::column_shares * block_columns, kernel);
 }
 #endif
 

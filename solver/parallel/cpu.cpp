@@ -2,20 +2,32 @@
 #include <tbb/parallel_for.h>
 
 #include <cstdlib>
+#include <cstring>
 #include <new>
 
-#include "solver/parallel/device.hpp"
+#include "solver/parallel/for_each.hpp"
 
-namespace talus::detail {
+namespace talus {
 
-void* cpu_allocate(std::size_t bytes) {
+CpuDevice::CpuDevice() {
+  static const CpuDevice first = make();
+  *this = first;
+}
+
+CpuDevice CpuDevice::make() { return CpuDevice(std::make_shared<Profile>()); }
+
+namespace detail {
+
+void* allocate(const CpuDevice&, std::size_t bytes) {
   constexpr std::size_t line = 64;
   void* memory = std::aligned_alloc(line, (bytes + line - 1) / line * line);
   if (!memory) throw std::bad_alloc();
   return memory;
 }
-
-void cpu_free(void* memory) { std::free(memory); }
+void free(const CpuDevice&, void* memory) noexcept { std::free(memory); }
+void upload(const CpuDevice&, void* to, const void* host, std::size_t bytes) { std::memcpy(to, host, bytes); }
+void download(const CpuDevice&, void* host, const void* from, std::size_t bytes) { std::memcpy(host, from, bytes); }
+void fill_zero(const CpuDevice&, void* memory, std::size_t bytes) { std::memset(memory, 0, bytes); }
 
 void cpu_parallel(int count, int grain, void (*body)(const void*, int, int), const void* kernel) {
   if (count <= 0) return;
@@ -27,4 +39,5 @@ void cpu_parallel(int count, int grain, void (*body)(const void*, int, int), con
                     [=](const tbb::blocked_range<int>& range) { body(kernel, range.begin(), range.end()); });
 }
 
-}  // namespace talus::detail
+}  // namespace detail
+}  // namespace talus

@@ -1,19 +1,23 @@
-// Device memory and error handling. Without a CUDA compiler this file says that there is no GPU.
+// GPU devices: streams, memory, events, recordings. Without a CUDA compiler this file states that there is no GPU.
 #include <cstring>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "common/error.hpp"
-#include "solver/parallel/device.hpp"
+#include "solver/parallel/for_each.hpp"
 
 #if defined(__CUDACC__)
-#include <cuda_runtime.h>
+#include "solver/parallel/gpu_state.hpp"
 
 namespace talus {
 namespace {
 
-void check(cudaError_t code, const char* what) {
+__global__ void probe() {}
+
+}  // namespace
+
+void check_cuda(cudaError_t code, const char* what) {
   if (code == cudaSuccess) return;
   if (code == cudaErrorMemoryAllocation) {
     throw NumericalError({std::string("GPU memory: ") + what + " failed", "the scene does not fit on this device",
@@ -22,20 +26,61 @@ void check(cudaError_t code, const char* what) {
   throw std::runtime_error(std::string("CUDA: ") + what + ": " + cudaGetErrorString(code));
 }
 
-__global__ void probe() {}
+GpuState::GpuState(int gpu) : index(gpu) {
+  check_cuda(cudaSetDevice(index), "cudaSetDevice");
+  check_cuda(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "stream");
+  cudaFuncAttributes attributes;  // code made for older devices does not wait
+  starts_early = cudaFuncGetAttributes(&attributes, probe) == cudaSuccess && attributes.binaryVersion >= 90 &&
+                 attributes.ptxVersion >= 90;
+  void* memory = nullptr;
+  if (cudaMallocHost(&memory, LockedMemory::size) == cudaSuccess) locked.memory = static_cast<char*>(memory);
+  (void)cudaGetLastError();
+  // The scratch buffers are part of this state: their handle must not keep it alive.
+  const GpuDevice self(std::shared_ptr<GpuState>(std::shared_ptr<void>(), this));
+  scratch = std::make_unique<GpuScratch>(self);
+}
 
-cudaStream_t recorded = nullptr;  // made with the first recording
-bool recording = false;
+GpuState::~GpuState() {
+  (void)cudaSetDevice(index);
+  (void)cudaStreamSynchronize(stream);
+  scratch.reset();
+  for (cudaEvent_t event : free_marks) (void)cudaEventDestroy(event);
+  if (locked.memory) (void)cudaFreeHost(locked.memory);
+  (void)cudaStreamDestroy(stream);
+}
 
-}  // namespace
+void GpuState::select() const {
+  int selected = -1;
+  if (cudaGetDevice(&selected) != cudaSuccess || selected != index) check_cuda(cudaSetDevice(index), "cudaSetDevice");
+}
+
+void GpuState::wait(const char* what) {
+  select();
+  check_cuda(cudaStreamSynchronize(stream), what);
+  locked.used = LockedMemory::few;
+}
+
+GpuDevice::GpuDevice() {
+  static const auto* const first = new GpuDevice(make());  // until the process ends: the driver takes it back
+  *this = *first;
+}
+
+GpuDevice GpuDevice::make(int index) { return GpuDevice(std::make_shared<GpuState>(index)); }
+
+int GpuDevice::count() {
+  int count = 0;
+  if (cudaGetDeviceCount(&count) == cudaSuccess) return count;
+  (void)cudaGetLastError();
+  return 0;
+}
+
+int GpuDevice::index() const { return state_->index; }
+CUstream_st* GpuDevice::stream() const { return state_->stream; }
+Profile& GpuDevice::profile() const { return state_->profile; }
 
 bool gpu_available() {
   static const bool available = [] {
-    int count = 0;
-    if (cudaGetDeviceCount(&count) != cudaSuccess || count == 0) {
-      (void)cudaGetLastError();
-      return false;
-    }
+    if (GpuDevice::count() == 0) return false;
     cudaFuncAttributes attributes;  // fails on a device older than every compiled architecture
     const bool loads = cudaFuncGetAttributes(&attributes, probe) == cudaSuccess;
     (void)cudaGetLastError();
@@ -44,100 +89,119 @@ bool gpu_available() {
   return available;
 }
 
-std::string gpu_name() {
+std::string gpu_name(int index) {
   cudaDeviceProp properties;
-  if (!gpu_available() || cudaGetDeviceProperties(&properties, 0) != cudaSuccess) return {};
+  if (!gpu_available() || cudaGetDeviceProperties(&properties, index) != cudaSuccess) return {};
   return properties.name;
 }
 
+void synchronise(const GpuDevice& device) { device.state().wait("kernel"); }
+
 namespace detail {
 
-void* gpu_allocate(std::size_t bytes) {
+void* allocate(const GpuDevice& device, std::size_t bytes) {
+  device.state().select();
   void* memory = nullptr;
-  check(cudaMalloc(&memory, bytes), "cudaMalloc");
+  check_cuda(cudaMalloc(&memory, bytes), "cudaMalloc");
   return memory;
 }
-void gpu_free(void* memory) { (void)cudaFree(memory); }
-void gpu_upload(void* device, const void* host, std::size_t bytes) {
-  check(cudaMemcpy(device, host, bytes, cudaMemcpyHostToDevice), "upload");
+
+void free(const GpuDevice& device, void* memory) noexcept {
+  (void)cudaSetDevice(device.index());
+  (void)cudaFree(memory);
 }
-void gpu_download(void* host, const void* device, std::size_t bytes) {
-  constexpr std::size_t few = 4096;
-  static void* const locked = [] {
-    void* memory = nullptr;
-    return cudaMallocHost(&memory, few) == cudaSuccess ? memory : nullptr;
-  }();
-  if (locked && bytes <= few) {  // numbers the host waits for: they come sooner by memory that stays where it is
-    check(cudaMemcpyAsync(locked, device, bytes, cudaMemcpyDeviceToHost, nullptr), "download");
-    check(cudaStreamSynchronize(nullptr), "download");
-    std::memcpy(host, locked, bytes);
-    return;
+
+void upload(const GpuDevice& device, void* to, const void* host, std::size_t bytes) {
+  GpuState& state = device.state();
+  if (state.recording) throw std::logic_error("an upload within a recording would be repeated with what it was then");
+  state.select();
+  LockedMemory& locked = state.locked;
+  if (!locked.memory || bytes > LockedMemory::few) {
+    check_cuda(cudaMemcpyAsync(to, host, bytes, cudaMemcpyHostToDevice, state.stream), "upload");
+    return state.wait("upload");
   }
-  check(cudaMemcpy(host, device, bytes, cudaMemcpyDeviceToHost), "download");
-}
-void gpu_fill_zero(void* device, std::size_t bytes) { check(cudaMemsetAsync(device, 0, bytes, gpu_stream()), "fill"); }
-void gpu_synchronise() { check(cudaDeviceSynchronize(), "kernel"); }
-void gpu_check_launch(const char* where) { check(cudaGetLastError(), where); }
-
-bool gpu_starts_early() {
-  static const bool early = [] {
-    cudaFuncAttributes attributes;  // code made for older devices does not wait
-    return cudaFuncGetAttributes(&attributes, probe) == cudaSuccess && attributes.binaryVersion >= 90 &&
-           attributes.ptxVersion >= 90;
-  }();
-  return early;
+  if (locked.used + bytes > LockedMemory::size) state.wait("upload");
+  char* const between = locked.memory + locked.used;
+  std::memcpy(between, host, bytes);
+  locked.used += (bytes + 63) / 64 * 64;
+  check_cuda(cudaMemcpyAsync(to, between, bytes, cudaMemcpyHostToDevice, state.stream), "upload");
 }
 
-cudaStream_t gpu_stream() { return recording ? recorded : nullptr; }
-
-void gpu_begin_recording() {
-  if (!recorded) check(cudaStreamCreateWithFlags(&recorded, cudaStreamNonBlocking), "stream");
-  check(cudaStreamBeginCapture(recorded, cudaStreamCaptureModeRelaxed), "begin of a recording");
-  recording = true;
+void download(const GpuDevice& device, void* host, const void* from, std::size_t bytes) {
+  GpuState& state = device.state();
+  state.select();
+  const bool by_locked = state.locked.memory && bytes <= LockedMemory::few;
+  void* const to = by_locked ? state.locked.memory : host;
+  check_cuda(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToHost, state.stream), "download");
+  state.wait("download");
+  if (by_locked) std::memcpy(host, to, bytes);
 }
 
-void* gpu_end_recording(void* before) {
-  recording = false;
+void fill_zero(const GpuDevice& device, void* memory, std::size_t bytes) {
+  device.state().select();
+  check_cuda(cudaMemsetAsync(memory, 0, bytes, device.stream()), "fill");
+}
+
+void gpu_select(const GpuDevice& device) { device.state().select(); }
+void gpu_check_launch(const char* where) { check_cuda(cudaGetLastError(), where); }
+bool gpu_starts_early(const GpuDevice& device) { return device.state().starts_early; }
+
+void gpu_begin_recording(const GpuDevice& device) {
+  GpuState& state = device.state();
+  state.select();
+  check_cuda(cudaStreamBeginCapture(state.stream, cudaStreamCaptureModeRelaxed), "begin of a recording");
+  state.recording = true;
+}
+
+void* gpu_end_recording(const GpuDevice& device, void* before) {
+  GpuState& state = device.state();
+  state.select();
+  state.recording = false;
   cudaGraph_t graph = nullptr;
-  check(cudaStreamEndCapture(recorded, &graph), "end of a recording");
+  check_cuda(cudaStreamEndCapture(state.stream, &graph), "end of a recording");
   auto executable = static_cast<cudaGraphExec_t>(before);
   cudaGraphExecUpdateResultInfo info;
   if (executable && cudaGraphExecUpdate(executable, graph, &info) != cudaSuccess) {
     (void)cudaGetLastError();
-    check(cudaGraphExecDestroy(executable), "graph");
+    check_cuda(cudaGraphExecDestroy(executable), "graph");
     executable = nullptr;
   }
-  if (!executable) check(cudaGraphInstantiate(&executable, graph, 0), "graph");
-  check(cudaGraphDestroy(graph), "graph");
+  if (!executable) check_cuda(cudaGraphInstantiate(&executable, graph, 0), "graph");
+  check_cuda(cudaGraphDestroy(graph), "graph");
   return executable;
 }
 
-namespace {
-std::vector<cudaEvent_t> free_marks;
+void gpu_replay(const GpuDevice& device, void* graph) {
+  device.state().select();
+  check_cuda(cudaGraphLaunch(static_cast<cudaGraphExec_t>(graph), device.stream()), "graph");
 }
-void* gpu_mark() {
+void gpu_drop(void* graph) {
+  if (graph) (void)cudaGraphExecDestroy(static_cast<cudaGraphExec_t>(graph));
+}
+
+void* gpu_mark(const GpuDevice& device) {
+  GpuState& state = device.state();
+  state.select();
   cudaEvent_t event = nullptr;
-  if (free_marks.empty()) {
-    check(cudaEventCreate(&event), "event");
+  if (state.free_marks.empty()) {
+    check_cuda(cudaEventCreate(&event), "event");
   } else {
-    event = free_marks.back();
-    free_marks.pop_back();
+    event = state.free_marks.back();
+    state.free_marks.pop_back();
   }
-  check(cudaEventRecordWithFlags(event, gpu_stream(), recording ? cudaEventRecordExternal : cudaEventRecordDefault),
-        "event");
+  check_cuda(
+      cudaEventRecordWithFlags(event, state.stream, state.recording ? cudaEventRecordExternal : cudaEventRecordDefault),
+      "event");
   return event;
 }
 double gpu_seconds_between(void* first, void* second) {
   float milliseconds = 0;
-  check(cudaEventElapsedTime(&milliseconds, static_cast<cudaEvent_t>(first), static_cast<cudaEvent_t>(second)),
-        "event");
+  check_cuda(cudaEventElapsedTime(&milliseconds, static_cast<cudaEvent_t>(first), static_cast<cudaEvent_t>(second)),
+             "event");
   return 1e-3 * static_cast<double>(milliseconds);
 }
-void gpu_forget_mark(void* mark) { free_marks.push_back(static_cast<cudaEvent_t>(mark)); }
-
-void gpu_replay(void* graph) { check(cudaGraphLaunch(static_cast<cudaGraphExec_t>(graph), nullptr), "graph"); }
-void gpu_drop(void* graph) {
-  if (graph) (void)cudaGraphExecDestroy(static_cast<cudaGraphExec_t>(graph));
+void gpu_forget_mark(const GpuDevice& device, void* mark) {
+  device.state().free_marks.push_back(static_cast<cudaEvent_t>(mark));
 }
 
 }  // namespace detail
@@ -146,30 +210,36 @@ void gpu_drop(void* graph) {
 #else
 
 namespace talus {
-
-bool gpu_available() { return false; }
-std::string gpu_name() { return {}; }
-
-namespace detail {
 namespace {
 [[noreturn]] void absent() { throw std::logic_error("this binary was built without CUDA"); }
 }  // namespace
-void* gpu_allocate(std::size_t) { absent(); }
-void gpu_free(void*) {}
-void gpu_upload(void*, const void*, std::size_t) { absent(); }
-void gpu_download(void*, const void*, std::size_t) { absent(); }
-void gpu_fill_zero(void*, std::size_t) { absent(); }
-void gpu_synchronise() {}
+
+GpuDevice::GpuDevice() { absent(); }
+GpuDevice GpuDevice::make(int) { absent(); }
+int GpuDevice::count() { return 0; }
+int GpuDevice::index() const { absent(); }
+CUstream_st* GpuDevice::stream() const { absent(); }
+Profile& GpuDevice::profile() const { absent(); }
+bool gpu_available() { return false; }
+std::string gpu_name(int) { return {}; }
+void synchronise(const GpuDevice&) {}
+
+namespace detail {
+void* allocate(const GpuDevice&, std::size_t) { absent(); }
+void free(const GpuDevice&, void*) noexcept {}
+void upload(const GpuDevice&, void*, const void*, std::size_t) { absent(); }
+void download(const GpuDevice&, void*, const void*, std::size_t) { absent(); }
+void fill_zero(const GpuDevice&, void*, std::size_t) { absent(); }
+void gpu_select(const GpuDevice&) { absent(); }
 void gpu_check_launch(const char*) {}
-bool gpu_starts_early() { return false; }
-CUstream_st* gpu_stream() { absent(); }
-void gpu_begin_recording() { absent(); }
-void* gpu_end_recording(void*) { absent(); }
-void* gpu_mark() { absent(); }
-double gpu_seconds_between(void*, void*) { absent(); }
-void gpu_forget_mark(void*) {}
-void gpu_replay(void*) { absent(); }
+bool gpu_starts_early(const GpuDevice&) { return false; }
+void gpu_begin_recording(const GpuDevice&) { absent(); }
+void* gpu_end_recording(const GpuDevice&, void*) { absent(); }
+void gpu_replay(const GpuDevice&, void*) { absent(); }
 void gpu_drop(void*) {}
+void* gpu_mark(const GpuDevice&) { absent(); }
+double gpu_seconds_between(void*, void*) { absent(); }
+void gpu_forget_mark(const GpuDevice&, void*) {}
 }  // namespace detail
 }  // namespace talus
 

@@ -5,11 +5,6 @@
 
 namespace talus {
 
-Profile& Profile::of_run() {
-  static Profile profile;
-  return profile;
-}
-
 void Profile::charge() {
   const auto now = WallClock::now();
   if (!open_.empty()) phases_[open_.back()].seconds += std::chrono::duration<double>(now - since_).count();
@@ -64,17 +59,17 @@ void Profile::take(const std::vector<Mark>& marks) {
   }
 }
 
-void Profile::forget(std::vector<Mark>& marks) {
+void Profile::forget(const GpuDevice& device, std::vector<Mark>& marks) {
   for (const Mark& m : marks) {
-    detail::gpu_forget_mark(m.begin);
-    detail::gpu_forget_mark(m.end);
+    detail::gpu_forget_mark(device, m.begin);
+    detail::gpu_forget_mark(device, m.end);
   }
   marks.clear();
 }
 
-void Profile::settle() {
+void Profile::settle(const GpuDevice& device) {
   for (const Mark& m : marks_) add(m.kernel, detail::gpu_seconds_between(m.begin, m.end), m.bytes);
-  forget(marks_);
+  forget(device, marks_);
 }
 
 }  // namespace talus

@@ -9,14 +9,18 @@
 
 namespace talus {
 
+class CpuDevice;
+class GpuDevice;
+
 namespace detail {
-void gpu_synchronise();
-void* gpu_mark();  // an event behind all that was started; part of the recording while there is one
+/// An event behind all that was started on the device; part of the recording while there is one.
+void* gpu_mark(const GpuDevice& device);
 double gpu_seconds_between(void* first, void* second);
-void gpu_forget_mark(void* mark);
+/// Keeps the event for a later mark.
+void gpu_forget_mark(const GpuDevice& device, void* mark);
 }  // namespace detail
 
-/// Seconds by phase and kernel, of the one run of this process. A phase inside another is taken out of that one's time.
+/// Seconds by phase and kernel of what one device is given. A phase inside another is taken out of that one's time.
 class Profile {
  public:
   struct Phase {
@@ -38,7 +42,6 @@ class Profile {
     void *begin = nullptr, *end = nullptr;
   };
 
-  static Profile& of_run();
   /// `kernels`: not phases alone. What is marked kernel by kernel does not overlap, and takes longer.
   void turn_on(bool kernels = true) {
     on_ = true;
@@ -66,13 +69,13 @@ class Profile {
   /// Seconds between the marks, the device being done with them, to their kernels; and to their phases, out of the one
   /// that is open.
   void take(const std::vector<Mark>& marks);
-  static void forget(std::vector<Mark>& marks);
+  static void forget(const GpuDevice& device, std::vector<Mark>& marks);
 
   std::size_t kernel(std::string_view name);  // of the present phase
   void add(std::size_t kernel, double seconds, double bytes);
   void add(const Mark& mark) { marks_.push_back(mark); }
   /// Takes the marks outside of recordings; the device is done with them.
-  void settle();
+  void settle(const GpuDevice& device);
 
  private:
   using WallClock = std::chrono::steady_clock;
@@ -86,32 +89,34 @@ class Profile {
   WallClock::time_point since_;
 };
 
-/// A phase for as long as it lives. Waits for the GPU at both ends, so that its kernels are counted and no others; in a
-/// recording it only names them.
+/// A phase of what the device does, for as long as the object lives. Waits for the device at both ends, so that the
+/// phase's kernels are counted and no others; in a recording it only names them.
 template <class Device>
 class ProfilePhase {
  public:
-  explicit ProfilePhase(const char* name) : on_(Profile::of_run().on()) {
+  ProfilePhase(const Device& device, const char* name) : device_(device), on_(device.profile().on()) {
     if (!on_) return;
     wait();
-    Profile::of_run().enter(name);
+    device_.profile().enter(name);
   }
+  explicit ProfilePhase(const char* name) : ProfilePhase(Device{}, name) {}
   ~ProfilePhase() {
     if (!on_) return;
     wait();
-    Profile::of_run().leave();
+    device_.profile().leave();
   }
   ProfilePhase(const ProfilePhase&) = delete;
   ProfilePhase& operator=(const ProfilePhase&) = delete;
 
  private:
-  static void wait() {
+  void wait() const {
     if constexpr (Device::is_gpu) {
-      if (Profile::of_run().recording()) return;
-      detail::gpu_synchronise();
-      Profile::of_run().settle();
+      if (device_.profile().recording()) return;
+      synchronise(device_);
+      device_.profile().settle(device_);
     }
   }
+  Device device_;
   bool on_;
 };
 
@@ -139,24 +144,24 @@ double kernel_bytes(const Kernel& kernel, int count) {
   }
 }
 
-/// Around the start of one kernel.
+/// The time of one kernel, around its start.
 template <class Device>
 class KernelTime {
  public:
   template <class Kernel>
-  KernelTime(const Kernel& kernel, int count) : on_(Profile::of_run().with_kernels()) {
+  KernelTime(const Device& device, const Kernel& kernel, int count)
+      : device_(device), on_(device.profile().with_kernels()) {
     if (!on_) return;
-    Profile& profile = Profile::of_run();
-    mark_.kernel = profile.kernel(kernel_name<Kernel>());
+    mark_.kernel = device_.profile().kernel(kernel_name<Kernel>());
     mark_.bytes = kernel_bytes(kernel, count);
-    if constexpr (Device::is_gpu) mark_.begin = detail::gpu_mark();
+    if constexpr (Device::is_gpu) mark_.begin = detail::gpu_mark(device_);
     begun_ = WallClock::now();
   }
   ~KernelTime() {
     if (!on_) return;
-    Profile& profile = Profile::of_run();
+    Profile& profile = device_.profile();
     if constexpr (Device::is_gpu) {
-      mark_.end = detail::gpu_mark();
+      mark_.end = detail::gpu_mark(device_);
       profile.add(mark_);
     } else {
       profile.add(mark_.kernel, std::chrono::duration<double>(WallClock::now() - begun_).count(), mark_.bytes);
@@ -167,6 +172,7 @@ class KernelTime {
 
  private:
   using WallClock = std::chrono::steady_clock;
+  const Device& device_;
   bool on_;
   Profile::Mark mark_;
   WallClock::time_point begun_;

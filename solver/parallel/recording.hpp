@@ -3,17 +3,22 @@
 #pragma once
 
 #include <optional>
+#include <utility>
+#include <vector>
 
-#include "solver/parallel/device.hpp"
+#include "solver/parallel/for_each.hpp"
 
 namespace talus {
 
+/// Work that repeats on one device.
 template <class Device>
 class Recording;
 
 template <>
 class Recording<CpuDevice> {
  public:
+  Recording() = default;
+  explicit Recording(const CpuDevice&) {}
   template <class Body>
   void repeat(int times, const Body& body) {
     for (int t = 0; t < times; ++t) body();
@@ -25,26 +30,28 @@ template <>
 class Recording<GpuDevice> {
  public:
   Recording() = default;
+  explicit Recording(GpuDevice device) : device_(std::move(device)) {}
   Recording(const Recording&) = delete;
   Recording& operator=(const Recording&) = delete;
   ~Recording() {
     detail::gpu_drop(graph_);
-    Profile::forget(marks_);
+    Profile::forget(device_, marks_);
   }
 
-  /// Does body() as often as said. It must start the same kernels with the same arguments every time, until forget() is
-  /// called. The first is done as it is, so that buffers find their sizes.
+  /// Does body() as often as `times`. It must start the same kernels with the same arguments on the recording's device
+  /// every time, until forget() is called, and neither upload nor download. The first is done as it is, so that buffers
+  /// find their sizes.
   template <class Body>
   void repeat(int times, const Body& body) {
-    Profile& profile = Profile::of_run();
-    if (marked_ != profile.with_kernels()) recorded_ = false;
+    const bool measured = device_.profile().with_kernels();
+    if (marked_ != measured) recorded_ = false;
     if (!recorded_ && times > 0) {
       body();
       --times;
     }
-    if (times > 0 && profile.with_kernels()) return repeat_measured(times, body);
+    if (times > 0 && measured) return repeat_measured(times, body);
     if (!recorded_ && times > 0) record(body);
-    for (int t = 0; t < times; ++t) detail::gpu_replay(graph_);
+    for (int t = 0; t < times; ++t) detail::gpu_replay(device_, graph_);
   }
   /// Arguments have changed: record again.
   void forget() { recorded_ = false; }
@@ -52,11 +59,11 @@ class Recording<GpuDevice> {
  private:
   template <class Body>
   void record(const Body& body) {
-    Profile& profile = Profile::of_run();
+    Profile& profile = device_.profile();
     profile.begin_recording();
-    detail::gpu_begin_recording();
+    detail::gpu_begin_recording(device_);
     body();
-    graph_ = detail::gpu_end_recording(graph_);
+    graph_ = detail::gpu_end_recording(device_, graph_);
     marks_ = profile.end_recording();
     recorded_ = true;
     marked_ = profile.with_kernels();
@@ -64,22 +71,23 @@ class Recording<GpuDevice> {
   /// With marks around its kernels, each time waited for.
   template <class Body>
   void repeat_measured(int times, const Body& body) {
-    Profile& profile = Profile::of_run();
+    Profile& profile = device_.profile();
     std::optional<ProfilePhase<GpuDevice>> phase;
-    if (!profile.within_phase()) phase.emplace("between kernels");
+    if (!profile.within_phase()) phase.emplace(device_, "between kernels");
     if (!recorded_) {
-      detail::gpu_synchronise();
-      profile.settle();  // what was started one by one until here
-      Profile::forget(marks_);
+      synchronise(device_);
+      profile.settle(device_);  // what was started one by one until here
+      Profile::forget(device_, marks_);
       record(body);
     }
     for (int t = 0; t < times; ++t) {
-      detail::gpu_replay(graph_);
-      detail::gpu_synchronise();
+      detail::gpu_replay(device_, graph_);
+      synchronise(device_);
       profile.take(marks_);
     }
   }
 
+  GpuDevice device_;
   void* graph_ = nullptr;
   std::vector<Profile::Mark> marks_;  // of its kernels, under --profile
   bool recorded_ = false, marked_ = false;

@@ -1,7 +1,7 @@
 // Sums of many terms for each of many indices, a row of a matrix times a vector say.
 #pragma once
 
-#include "solver/parallel/device.hpp"
+#include "solver/parallel/for_each.hpp"
 #include "solver/parallel/math.hpp"
 
 namespace talus {
@@ -31,8 +31,8 @@ struct WholeRow {
 };
 
 template <int parts, class Kernel>
-void sum_rows(CpuDevice place, int count, const Kernel& kernel) {
-  for_each(place, count, WholeRow<parts, Kernel>{kernel});
+void sum_rows(const CpuDevice& device, int count, const Kernel& kernel) {
+  for_each(device, count, WholeRow<parts, Kernel>{kernel});
 }
 
 #if defined(__CUDACC__)
@@ -59,12 +59,12 @@ __global__ void sum_row(int count, Kernel kernel) {
 }  // namespace detail
 
 template <int parts, class Kernel>
-void sum_rows(GpuDevice, int count, const Kernel& kernel) {
+void sum_rows(const GpuDevice& device, int count, const Kernel& kernel) {
   if (count <= 0) return;
-  const KernelTime<GpuDevice> time(kernel, count);
+  const KernelTime<GpuDevice> time(device, kernel, count);
   constexpr int threads = 128, each = threads / 32;
-  detail::gpu_launch(__PRETTY_FUNCTION__, detail::sum_row<parts, Kernel>, (count + each - 1) / each, threads, count,
-                     kernel);
+  detail::gpu_launch(device, __PRETTY_FUNCTION__, detail::sum_row<parts, Kernel>, (count + each - 1) / each, threads,
+                     count, kernel);
 }
 #endif
 

@@ -28,13 +28,14 @@ struct PlaceRunStarts {
 /// starts[r] becomes the first position of run r, starts[runs] the number of keys; returns the number of runs.
 template <class Device>
 int find_runs(const Buffer<std::uint64_t, Device>& keys, Buffer<int, Device>& starts, Buffer<int, Device>& scratch) {
+  const Device& device = keys.device();
   const int count = static_cast<int>(keys.size());
   scratch.resize(keys.size());
-  for_each(Device{}, count, detail::MarkRunStarts{keys.data(), scratch.data()});
-  const int runs = exclusive_sum(Device{}, scratch.data(), scratch.data(), count);
+  for_each(device, count, detail::MarkRunStarts{keys.data(), scratch.data()});
+  const int runs = exclusive_sum(device, scratch.data(), scratch.data(), count);
   starts.resize(static_cast<std::size_t>(runs) + 1);
   if (count == 0) starts.fill_zero();
-  for_each(Device{}, count, detail::PlaceRunStarts{keys.data(), scratch.data(), count, runs, starts.data()});
+  for_each(device, count, detail::PlaceRunStarts{keys.data(), scratch.data(), count, runs, starts.data()});
   return runs;
 }
 

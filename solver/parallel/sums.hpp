@@ -1,10 +1,10 @@
-// Sums over a range of indices that are finished in the place where they are made: a loop on the device needs no word
-// from the host.
+// Sums over a range of indices that are finished on the device where they are made: a loop there needs nothing from the
+// host.
 #pragma once
 
 #include <algorithm>
 
-#include "solver/parallel/device.hpp"
+#include "solver/parallel/for_each.hpp"
 
 namespace talus {
 
@@ -23,10 +23,12 @@ struct KeepTotals {
   }
 };
 
-/// Room for the partial sums; one for every stream of work.
+/// Memory for the partial sums; of one device.
 template <class Device>
 class SumSpace {
  public:
+  SumSpace() = default;
+  explicit SumSpace(const Device& device) : partial_(device), ticket_(device) {}
   double* partial(int count) {
     partial_.resize(static_cast<std::size_t>(count));
     return partial_.data();
@@ -46,8 +48,8 @@ class SumSpace {
 /// Sums body(i), Terms<K>, for i in [0, count), and calls finish(const double* total) once, by one thread. The order is
 /// fixed by count alone, so that a run repeats to the bit. A body may as well write what belongs to its index.
 template <int K, class Body, class Finish>
-void sum_each(CpuDevice, int count, SumSpace<CpuDevice>& space, const Body& body, const Finish& finish) {
-  const KernelTime<CpuDevice> time(body, count);
+void sum_each(const CpuDevice& device, int count, SumSpace<CpuDevice>& space, const Body& body, const Finish& finish) {
+  const KernelTime<CpuDevice> time(device, body, count);
   constexpr int grain = 512;
   const int chunks = (count + grain - 1) / grain;
   struct Job {
@@ -129,13 +131,13 @@ __global__ void sum_kernel(int count, Body body, Finish finish, double* partial,
 }  // namespace detail
 
 template <int K, class Body, class Finish>
-void sum_each(GpuDevice, int count, SumSpace<GpuDevice>& space, const Body& body, const Finish& finish) {
+void sum_each(const GpuDevice& device, int count, SumSpace<GpuDevice>& space, const Body& body, const Finish& finish) {
   constexpr int most_blocks = 512,
                 threads = 256;  // the last block adds up what all have found: few blocks, many threads
   const int blocks = std::clamp((count + threads - 1) / threads, 1, most_blocks);
-  const KernelTime<GpuDevice> time(body, count);
-  detail::gpu_launch(__PRETTY_FUNCTION__, detail::sum_kernel<K, Body, Finish>, blocks, threads, count, body, finish,
-                     space.partial(K * most_blocks), space.ticket());
+  const KernelTime<GpuDevice> time(device, body, count);
+  detail::gpu_launch(device, __PRETTY_FUNCTION__, detail::sum_kernel<K, Body, Finish>, blocks, threads, count, body,
+                     finish, space.partial(K * most_blocks), space.ticket());
 }
 #endif
 

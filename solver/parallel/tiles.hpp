@@ -5,7 +5,7 @@
 #include <bit>
 #include <new>
 
-#include "solver/parallel/device.hpp"
+#include "solver/parallel/for_each.hpp"
 
 namespace talus {
 
@@ -41,8 +41,8 @@ TALUS_HD void scatter_point(const Kernel& kernel, int p) {
 }
 
 template <class Kernel>
-void scatter_points(CpuDevice place, int count, const PointGroups& groups, const Kernel& kernel) {
-  for_each_grouped(place, count, groups, kernel);
+void scatter_points(const CpuDevice& device, int count, const PointGroups& groups, const Kernel& kernel) {
+  for_each_grouped(device, count, groups, kernel);
 }
 
 #if defined(__CUDACC__)
@@ -197,16 +197,16 @@ __global__ __launch_bounds__(tile_warps* warp_size, blocks) void run_tiles_dense
 }
 
 template <int each, class Kernel>
-void start_tiles(int count, const Kernel& kernel) {
+void start_tiles(const GpuDevice& device, int count, const Kernel& kernel) {
   constexpr int points = tile_warps * each;
   const int blocks = (count + points - 1) / points;
   if constexpr (requires { Kernel::tiles_at_once; }) {
     if constexpr (Kernel::tiles_at_once > 0) {
-      return gpu_launch(__PRETTY_FUNCTION__, run_tiles_densely<each, Kernel::tiles_at_once, Kernel>, blocks,
+      return gpu_launch(device, __PRETTY_FUNCTION__, run_tiles_densely<each, Kernel::tiles_at_once, Kernel>, blocks,
                         tile_warps * warp_size, count, kernel);
     }
   }
-  gpu_launch(__PRETTY_FUNCTION__, run_tiles<each, Kernel>, blocks, tile_warps * warp_size, count, kernel);
+  gpu_launch(device, __PRETTY_FUNCTION__, run_tiles<each, Kernel>, blocks, tile_warps * warp_size, count, kernel);
 }
 
 /// A warp takes the points of a block of columns one after the other, a lane for every column of nodes.
@@ -248,23 +248,23 @@ __global__ void run_tiles_in_order(const PointGroups::Range* ranges, Kernel kern
 }  // namespace detail
 
 template <class Kernel>
-void scatter_points(GpuDevice, int count, const PointGroups& groups, const Kernel& kernel) {
+void scatter_points(const GpuDevice& device, int count, const PointGroups& groups, const Kernel& kernel) {
   if (count <= 0) return;
-  const KernelTime<GpuDevice> time(kernel, count);
+  const KernelTime<GpuDevice> time(device, kernel, count);
   if (groups.in_order) {
     for (const auto& ranges : groups.on_gpu) {
       if (ranges.size() == 0) continue;
-      detail::gpu_launch(__PRETTY_FUNCTION__, detail::run_tiles_in_order<Kernel>, static_cast<int>(ranges.size()),
-                         detail::warp_size, ranges.data(), kernel);
+      detail::gpu_launch(device, __PRETTY_FUNCTION__, detail::run_tiles_in_order<Kernel>,
+                         static_cast<int>(ranges.size()), detail::warp_size, ranges.data(), kernel);
     }
     return;
   }
   constexpr bool fits = 2 * detail::tile_warps * detail::warp_size * sizeof(typename Kernel::Source) <=
                         65536;  // two blocks of 32 points a warp, and room beside them
   if constexpr (fits) {
-    if (count >= points_that_keep_a_gpu_busy) return detail::start_tiles<32>(count, kernel);
+    if (count >= points_that_keep_a_gpu_busy) return detail::start_tiles<32>(device, count, kernel);
   }
-  detail::start_tiles<16>(count, kernel);
+  detail::start_tiles<16>(device, count, kernel);
 }
 #endif
 

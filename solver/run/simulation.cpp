@@ -457,7 +457,7 @@ void Simulation::finish(RunSummary& summary) {
   summary.memory = static_cast<double>(solver_->bytes());
   for (const auto& [owner, bytes] : solver_->memory())
     summary.memory_of.emplace_back(owner, static_cast<double>(bytes));
-  for (const Profile::Phase& p : Profile::of_run().phases()) summary.profile.emplace_back(p.name, p.seconds);
+  for (const Profile::Phase& p : profile_of(on_).phases()) summary.profile.emplace_back(p.name, p.seconds);
   summary.density = options_.material.density;
   summary.volume_released = released_;
   summary.volume_final = std::accumulate(state.points.volume.begin(), state.points.volume.end(), 0.0);

@@ -2,6 +2,7 @@
 
 #include "solver/integrator/scene.hpp"
 #include "solver/options/solve.hpp"
+#include "solver/parallel/atomics.hpp"
 #include "solver/parallel/device.hpp"
 #include "solver/scene/make_scene.hpp"
 
@@ -68,6 +69,8 @@ std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolveOptions& op
                                       const SolverState& state) {
   return resume_solver(scene, make_settings(options, scene.grid), on, state);
 }
+
+Profile& profile_of(On on) { return on == On::gpu ? GpuDevice{}.profile() : CpuDevice{}.profile(); }
 
 On choose_device(On wanted) {
   if (wanted == On::gpu && !gpu_available()) {

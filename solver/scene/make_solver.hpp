@@ -7,6 +7,7 @@
 #include "solver/integrator/scene.hpp"
 #include "solver/integrator/solver.hpp"
 #include "solver/options/solve.hpp"
+#include "solver/parallel/profile.hpp"
 #include "solver/scene/settings.hpp"
 
 namespace talus::solver {
@@ -22,6 +23,9 @@ std::unique_ptr<Solver> make_solver(const Scene& scene, const SolveOptions& opti
 std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolverSettings& settings, On on,
                                       const SolverState& state);
 std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolveOptions& options, On on, const SolverState& state);
+
+/// Times of what ran on the process's first device of that kind.
+Profile& profile_of(On on);
 
 /// cpu or gpu for automatic; throws RecipeError when a GPU is asked for and there is none.
 On choose_device(On wanted);

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "solver/parallel/device.hpp"
+#include "solver/parallel/for_each.hpp"
 #include "solver/parallel/math.hpp"
 #include "solver/state/grid_view.hpp"
 

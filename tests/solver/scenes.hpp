@@ -11,7 +11,7 @@
 #include "solver/grid/sparse_grid.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/integrator/solver.hpp"
-#include "solver/parallel/device.hpp"
+#include "solver/parallel/algorithms.hpp"
 #include "solver/scene/make_scene.hpp"
 
 namespace talus::solver::testing {
@@ -68,11 +68,7 @@ std::vector<BlockSlot> slots_of(const SparseGrid<Real, Device>& grid) {
   const auto view = grid.view();
   const auto count = static_cast<std::size_t>(((view.columns + 3) / 4) * ((view.rows + 3) / 4));
   std::vector<BlockSlot> slots(count);
-  if constexpr (Device::is_gpu) {
-    detail::gpu_download(slots.data(), view.slots, count * sizeof(BlockSlot));
-  } else {
-    std::copy(view.slots, view.slots + count, slots.begin());
-  }
+  copy_to_host(Device{}, slots.data(), view.slots, count * sizeof(BlockSlot));
   return slots;
 }
 

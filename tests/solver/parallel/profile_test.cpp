@@ -30,7 +30,7 @@ TEST(KernelNames, are_those_of_their_types) {
 class ProfileOf : public InEachPlace {};
 
 TEST_P(ProfileOf, a_slide_names_its_kernels_and_takes_no_longer_than_the_run) {
-  Profile& profile = Profile::of_run();
+  Profile& profile = profile_of(GetParam());
   const auto calls_of = [&](const std::string& name) {
     long calls = 0;
     for (const auto& k : profile.kernels()) calls += k.name == name ? k.calls : 0;

@@ -1,0 +1,92 @@
+// Arrays in the memory of a device.
+#pragma once
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "solver/parallel/device.hpp"
+
+namespace talus {
+
+/// Owned memory of one device, on whose stream it is filled and copied. Grows, never shrinks; contents are lost on
+/// growth. First as large as asked for: what never grows takes no more.
+template <class T, class Device>
+class Buffer {
+ public:
+  Buffer() = default;
+  explicit Buffer(Device device) : device_(std::move(device)) {}
+  Buffer(Device device, std::size_t size) : device_(std::move(device)) { resize(size); }
+  Buffer(Buffer&& other) noexcept : device_(other.device_) { swap(other); }
+  Buffer& operator=(Buffer&& other) noexcept {
+    std::swap(device_, other.device_);
+    swap(other);
+    return *this;
+  }
+  Buffer(const Buffer&) = delete;
+  Buffer& operator=(const Buffer&) = delete;
+  ~Buffer() { release(); }
+
+  const Device& device() const { return device_; }
+  T* data() { return data_; }
+  const T* data() const { return data_; }
+  std::size_t size() const { return size_; }
+  /// Memory taken [bytes], of which the elements in use may be a part.
+  std::size_t bytes() const { return capacity_ * sizeof(T); }
+
+  /// New size; contents undefined. Throws NumericalError where the device has too little memory.
+  void resize(std::size_t size) {
+    if (size > capacity_) {
+      const std::size_t wanted = capacity_ == 0 ? size : size + size / 8;
+      release();
+      data_ = static_cast<T*>(detail::allocate(device_, wanted * sizeof(T)));
+      capacity_ = wanted;
+    }
+    size_ = size;
+  }
+  /// Becomes a copy of `values`, of their size.
+  void upload(const std::vector<T>& values) {
+    resize(values.size());
+    if (!values.empty()) detail::upload(device_, data_, values.data(), values.size() * sizeof(T));
+  }
+  /// A copy of all elements, once all work that was started on the device is done.
+  std::vector<T> download() const {
+    std::vector<T> values(size_);
+    if (!values.empty()) detail::download(device_, values.data(), data_, size_ * sizeof(T));
+    return values;
+  }
+  /// Sets every byte in use to zero.
+  void fill_zero() {
+    if (size_ > 0) detail::fill_zero(device_, data_, size_ * sizeof(T));
+  }
+  /// Gives the memory back; the size becomes 0.
+  void drop() noexcept {
+    release();
+    size_ = 0;
+  }
+  /// Exchanges the memory of two buffers of one device.
+  void swap(Buffer& other) noexcept {
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+    std::swap(capacity_, other.capacity_);
+  }
+
+ private:
+  void release() noexcept {
+    if (!data_) return;
+    detail::free(device_, data_);
+    data_ = nullptr;
+    capacity_ = 0;
+  }
+  Device device_;
+  T* data_ = nullptr;
+  std::size_t size_ = 0, capacity_ = 0;
+};
+
+/// Upload of values kept in double on the host.
+template <class Real, class Device>
+void upload_as(Buffer<Real, Device>& to, const std::vector<double>& from) {
+  to.upload(std::vector<Real>(from.begin(), from.end()));
+}
+
+}  // namespace talus

@@ -1,0 +1,88 @@
+// What a GpuDevice owns. For the CUDA files of this folder alone.
+#pragma once
+
+#include <cuda_runtime.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "solver/parallel/buffer.hpp"
+#include "solver/parallel/profile.hpp"
+#include "solver/parallel/sums.hpp"
+
+namespace talus {
+
+/// Throws where a call of CUDA failed: NumericalError where memory was short, std::runtime_error otherwise. `what`
+/// names the call.
+void check_cuda(cudaError_t code, const char* what);
+
+/// Memory that Thrust borrows, kept for its next call: to allocate device memory is to wait for the device.
+class BorrowedMemory {
+ public:
+  using value_type = char;
+  explicit BorrowedMemory(GpuDevice device) : device_(std::move(device)) {}
+  BorrowedMemory(const BorrowedMemory&) = delete;
+  BorrowedMemory& operator=(const BorrowedMemory&) = delete;
+  ~BorrowedMemory();
+
+  char* allocate(std::ptrdiff_t bytes);
+  void deallocate(char* memory, std::size_t bytes);
+
+ private:
+  GpuDevice device_;
+  std::multimap<std::ptrdiff_t, char*> free_;
+  std::map<char*, std::ptrdiff_t> taken_;
+};
+
+/// The other side that a radix sort writes to by turns; grows with the largest sort.
+struct SortSpace {
+  explicit SortSpace(const GpuDevice& device) : keys(device), order(device), rest(device) {}
+  Buffer<std::uint64_t, GpuDevice> keys;
+  Buffer<int, GpuDevice> order;
+  Buffer<char, GpuDevice> rest;
+};
+
+/// What sorts, scans and sums keep from call to call.
+struct GpuScratch {
+  explicit GpuScratch(const GpuDevice& device)
+      : borrowed(device), sort(device), totals(device, 2), sums(device), product(device, 1) {}
+  BorrowedMemory borrowed;
+  SortSpace sort;
+  Buffer<int, GpuDevice> totals;
+  SumSpace<GpuDevice> sums;
+  Buffer<double, GpuDevice> product;
+};
+
+/// Page-locked host memory that few bytes pass through, on their way in and out: they come sooner by memory that stays
+/// where it is. What goes in takes the next free bytes; all are free again once the host has waited for the stream.
+struct LockedMemory {
+  static constexpr std::size_t few = 4096, size = 16 * few;  // [bytes]; the first few are for what comes out
+  char* memory = nullptr;                                    // null where none was to be had
+  std::size_t used = few;
+};
+
+/// Stream, scratch memory, events and profile of one GpuDevice.
+struct GpuState {
+  explicit GpuState(int gpu);
+  GpuState(const GpuState&) = delete;
+  GpuState& operator=(const GpuState&) = delete;
+  ~GpuState();
+
+  /// Makes this GPU the one that this thread's CUDA calls mean.
+  void select() const;
+  /// Waits for the stream.
+  void wait(const char* what);
+
+  int index;
+  cudaStream_t stream = nullptr;
+  bool starts_early = false, recording = false;
+  LockedMemory locked;
+  std::vector<cudaEvent_t> free_marks;  // events that nobody waits for
+  Profile profile;
+  std::unique_ptr<GpuScratch> scratch;
+};
+
+}  // namespace talus
