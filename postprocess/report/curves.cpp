@@ -70,8 +70,13 @@ Json profile_json(const ReportInput& input) {
 Json series_json(const ReportInput& input) {
   const auto& thalweg = input.thalweg;
   const auto& history = input.run.history;
-  Json json{{"history", Json::object()}, {"front", nullptr}, {"motion", nullptr}};
-  for (const HistoryColumn& column : history.columns) json["history"][column.name] = column.values;
+  Json json{{"history", Json::object()}, {"at_places", Json::array()}, {"front", nullptr}, {"motion", nullptr}};
+  for (const HistoryColumn& column : history.columns) {
+    json["history"][column.name] = column.values;
+    if (column.place.empty()) continue;
+    json["at_places"].push_back(
+        {{"name", column.name}, {"unit", column.unit}, {"quantity", column.quantity}, {"place", column.place}});
+  }
   if (thalweg.line.size() >= 2 && !input.run.frames.time.empty()) {
     const auto front = front_over_time(input.run, thalweg, input.options.footprint_threshold);
     json["front"] = {

@@ -26,7 +26,8 @@ Json lines_json(const ReportInput& input, const Window& window);
 /// Elevations, thickness and speed along the thalweg.
 Json profile_json(const ReportInput& input);
 
-/// Numbers over time: the history's columns, the front along the thalweg, the volume in motion.
+/// Numbers over time: the history's columns, which of them belong to a place and what they measure there, the front
+/// along the thalweg, the volume in motion.
 Json series_json(const ReportInput& input);
 
 Json score_json(const Score& score);

@@ -1,6 +1,6 @@
 // Profile along the thalweg, and numbers over time.
 import { colours, lineChart, points } from "./charts.js";
-import { number, scaled } from "./format.js";
+import { number, scaled, unitOfPowers } from "./format.js";
 
 function text(id, words) {
   document.getElementById(id).textContent = words;
@@ -138,7 +138,32 @@ function kineticLiesFlat(kinetic, released) {
   return Math.max(...kinetic) < 0.1 * Math.max(...released);
 }
 
-/** Energy, speed, volume in motion, front. */
+/** One line after another: colours first, then dashes. */
+function lineStyle(i) {
+  const order = [colours.orange, colours.blue, colours.green, colours.violet, colours.yellow, colours.sky, colours.ink];
+  const dashes = [[], [6, 3], [2, 3]];
+  return { colour: order[i % order.length], dashes: dashes[Math.floor(i / order.length) % dashes.length] };
+}
+
+/** A chart for every quantity that is measured at places, such as gauges and obstacles: a line for each place. */
+function placeCharts(box, history, columns) {
+  const charts = new Map();
+  for (const column of columns) {
+    const key = `${column.quantity} [${column.unit}]`;
+    charts.set(key, [...(charts.get(key) ?? []), column]);
+  }
+  for (const [first, ...others] of charts.values()) {
+    const all = [first, ...others], values = all.map((column) => history[column.name]);
+    const { factor, prefix } = /^[JNW]/.test(first.unit) ? unitOf(...values) : { factor: 1, prefix: "" };
+    const known = values.flat().filter(Number.isFinite), unit = unitOfPowers(first.unit);
+    const title = first.quantity[0].toUpperCase() + first.quantity.slice(1);
+    lineChart(box, { id: `series-${first.quantity.replace(/[^a-z]+/gi, "-")}`, title, x: "Time [s]",
+      y: unit ? `${title} [${prefix}${unit}]` : title, height: 240, zero: Math.min(...known) < 0.5 * Math.max(...known),
+      lines: all.map((column, i) => curve(column.place, history.time_s, values[i], factor, lineStyle(i))) });
+  }
+}
+
+/** Energy, speed, volume in motion, front, then what was measured at places. */
 export function drawSeries(data) {
   const { history, front, motion } = data.series,
     box = document.getElementById("series"),
@@ -186,6 +211,7 @@ export function drawSeries(data) {
     });
     notes.push(`Front: farthest place along the thalweg that the flow has reached, thicker than ${front.threshold} m.`);
   }
+  placeCharts(box, history, data.series.at_places);
   if (!box.children.length) notes.push("The run holds no history.");
   text("series-note", notes.join(" "));
 }

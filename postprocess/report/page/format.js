@@ -23,6 +23,14 @@ export function unitWords(unit) {
   return { m2: "m\u00b2", m3: "m\u00b3", deg: "\u00b0" }[unit] ?? unit;
 }
 
+/** A unit as files have it, by powers, in words: "m s-1" -> "m/s", "kg m s-1" -> "kg m/s", "1" -> "". */
+export function unitOfPowers(unit) {
+  const parts = unit === "1" ? [] : unit.split(" ");
+  const over = parts.filter((part) => !part.includes("-")), under = parts.filter((part) => part.includes("-"));
+  const words = over.map(unitWords).join(" "), below = under.map((part) => unitWords(part.replace(/-1$|-/, "")));
+  return below.length ? `${words || "1"}/${below.join("/")}` : words;
+}
+
 /** "36.0 million m³", "22 500 m³": three figures. */
 export function volume(value) {
   if (Math.abs(value) >= 999500) {

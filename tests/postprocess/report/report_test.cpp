@@ -244,6 +244,19 @@ TEST_F(Report, both_conventions_of_the_release_follow_from_the_slope_of_the_bed)
   EXPECT_NEAR(release.at("thickest_normal").get<double>(), 6 * 0.8, 1e-12);
 }
 
+TEST_F(Report, columns_of_the_history_at_a_place_come_with_what_they_measure_there) {
+  run_.history.columns = {
+      {.name = "time_s", .unit = "s", .quantity = "", .place = "", .values = {0, 20}},
+      {.name = "gauge_toe_thickness_m", .unit = "m", .quantity = "thickness", .place = "gauge toe", .values = {0, 3}}};
+  const Json series = data_of(report_html(input()))["series"];
+  EXPECT_EQ(series["history"]["time_s"], (Json{0, 20}));
+  EXPECT_EQ(series["history"]["gauge_toe_thickness_m"], (Json{0, 3}));
+  ASSERT_EQ(series["at_places"].size(), 1U);
+  EXPECT_EQ(
+      series["at_places"][0],
+      (Json{{"name", "gauge_toe_thickness_m"}, {"unit", "m"}, {"quantity", "thickness"}, {"place", "gauge toe"}}));
+}
+
 TEST_F(Report, profile_follows_the_thalweg_from_the_release_to_the_deposit) {
   survey_it();
   const auto profile = data_of(report_html(input())).at("profile");
