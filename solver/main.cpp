@@ -120,7 +120,6 @@ void solve(StageContext& context) {
     return;
   }
   log_plan(domain, options, on);
-  if (context.check_only) return;
 
   const std::string settings = recipe::to_toml(options, "solve", false);
   std::string fingerprint = sha256(domain_file) + "\n" + settings;
@@ -133,6 +132,7 @@ void solve(StageContext& context) {
   const RunPaths paths(context.out);
   if (context.profile) profile_of(on).turn_on();
   Simulation simulation(domain, options, on, paths, fingerprint);
+  if (context.check_only) return;
   if (context.restart) simulation.resume(context.restart->empty() ? paths.checkpoint : *context.restart);
   const RunSummary summary = simulation.run(context.recipe.scene_name(), context.recipe.title());
   log_info(fmt::format("{} at t = {:.2f} s after {} steps in {:.1f} s", summary.stop_reason, summary.time_end,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 namespace talus {
 
@@ -9,6 +10,16 @@ const HistoryColumn* RunHistory::find(const std::string& name) const {
   const auto found =
       std::find_if(columns.begin(), columns.end(), [&](const HistoryColumn& column) { return column.name == name; });
   return found == columns.end() ? nullptr : &*found;
+}
+
+const HistoryColumn& RunHistory::at(const std::string& name) const {
+  const HistoryColumn* column = find(name);
+  if (!column) throw std::logic_error("RunHistory: no column " + name);
+  return *column;
+}
+
+HistoryColumn& RunHistory::at(const std::string& name) {
+  return const_cast<HistoryColumn&>(std::as_const(*this).at(name));
 }
 
 void write_history(h5::File& file, const RunHistory& history) {

@@ -51,6 +51,9 @@ struct RunHistory {
   std::vector<HistoryColumn> columns;
   /// The column of this name, null where there is none.
   const HistoryColumn* find(const std::string& name) const;
+  /// The column of this name, which must be there.
+  HistoryColumn& at(const std::string& name);
+  const HistoryColumn& at(const std::string& name) const;
 };
 
 /// One number or word each; names as in score.json where they meet.

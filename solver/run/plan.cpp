@@ -10,6 +10,7 @@
 #include "solver/integrator/scene.hpp"
 #include "solver/integrator/solver.hpp"
 #include "solver/options/solve.hpp"
+#include "solver/run/recorders/history.hpp"
 #include "solver/run/stiffness.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "solver/scene/make_solver.hpp"
@@ -136,6 +137,7 @@ std::vector<std::string> features(const Domain& domain, const SolveOptions& o) {
 std::vector<std::string> plan(const Domain& domain, const SolveOptions& o, On on) {
   std::vector<std::string> lines = features(domain, o);
   const Scene scene = make_scene(domain, o);
+  const History recorded(o, scene);  // refuses what cannot be recorded
   for (const std::string& note : scene.contacts.notes) lines.push_back(note);
   const Trial trial = try_steps(scene, o, on);
   const auto add = [&](const std::string& name, const std::string& words) {

@@ -1,82 +1,56 @@
 #include "solver/run/recorders/frames.hpp"
 
+#include <utility>
+
 #include <fmt/format.h>
 
-#include "common/run/hdf5.hpp"
-#include "common/stage/stage.hpp"
+#include "solver/scene/make_scene.hpp"
 
 namespace talus::solver {
-namespace {
 
-template <class T>
-std::span<const T> flat(const std::vector<std::array<T, 3>>& rows) {
-  return {rows.empty() ? nullptr : rows.front().data(), rows.size() * 3};
-}
+FrameRecorder::FrameRecorder(const Scene& scene, const SolveOptions& options, std::filesystem::path store,
+                             std::filesystem::path vdb_folder)
+    : scene_(scene),
+      options_(options),
+      ground_(make_ground_tables(scene.grid)),
+      vdb_folder_(std::move(vdb_folder)),
+      store_(std::move(store)) {}
 
-template <class T>
-std::vector<std::array<T, 3>> rows_of(const std::vector<T>& values) {
-  std::vector<std::array<T, 3>> rows(values.size() / 3);
-  for (std::size_t r = 0; r < rows.size(); ++r) rows[r] = {values[3 * r], values[3 * r + 1], values[3 * r + 2]};
-  return rows;
-}
-
-}  // namespace
-
-void FrameStore::clear() {
-  std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
-}
-
-std::filesystem::path FrameStore::file(std::int64_t number) const {
-  return folder_ / fmt::format("frame_{:05}.h5", number);
-}
-
-void FrameStore::put(std::int64_t number, const PointFrame& f, const MapGrid& grid,
-                     const std::vector<double>& thickness) {
-  std::error_code error;
-  std::filesystem::create_directories(folder_, error);
-  if (error)
-    throw DataError(
-        {folder_.string() + ": the folder cannot be made", error.message(), "Name another one with --out DIR"});
-  PendingFile pending(file(number));
-  h5::File out =
-      h5::File::create(pending.path(), {file(number), "Free some space, or name another folder with --out DIR"});
-  out.leave_plain();  // to compress takes longer than the steps between two frames; run.h5 is compressed
-  const auto count = static_cast<hsize_t>(f.id.size());
-  out.set_number("/", "time", f.time);
-  out.write<double>("/position", {count, 3}, flat(f.position));
-  out.write<float>("/velocity", {count, 3}, flat(f.velocity));
-  out.write<float>("/volume", {count}, f.volume);
-  out.write<float>("/pressure", {count}, f.pressure);
-  out.write<std::int32_t>("/id", {count}, f.id);
-  out.write<std::int32_t>("/release", {count}, f.release);
-  out.write<double>("/thickness", {static_cast<hsize_t>(grid.rows), static_cast<hsize_t>(grid.columns)}, thickness);
-  out.close();
-  pending.commit();
-}
-
-void FrameStore::expect(std::int64_t count) const {
-  for (std::int64_t n = 0; n < count; ++n) {
-    if (std::filesystem::exists(file(n))) continue;
-    throw DataError({file(n).string() + ": this frame of the broken-off run is missing", "run.h5 would have a gap",
-                     "Run talus-solve again without --restart"});
+PointFrame FrameRecorder::point_frame(double time, const ParticleState& s) const {
+  const auto materials = make_materials<double>(options_, scene_.grid.spacing, scene_.grid.layer_height);
+  PointFrame frame;
+  frame.time = time;
+  frame.position = positions(scene_.map, scene_.grid, ground_, s);
+  for (std::size_t p = 0; p < s.size(); ++p) {
+    frame.velocity.push_back({static_cast<float>(s.velocity[0][p]), static_cast<float>(s.velocity[1][p]),
+                              static_cast<float>(s.velocity[2][p])});
+    frame.volume.push_back(static_cast<float>(s.volume[p]));
+    const MaterialState<double> state{
+        {s.elastic[0][p], s.elastic[1][p], s.elastic[2][p], s.elastic[3][p], s.elastic[4][p], s.elastic[5][p]},
+        s.log_volume[p],
+        s.plastic_log_volume[p]};
+    frame.pressure.push_back(static_cast<float>(
+        -trace(kirchhoff_stress(materials.of(s.material.data(), s.plastic_shear.data(), static_cast<int>(p)), state)) /
+        3));
   }
+  frame.id = s.id;
+  frame.release = s.release;
+  return frame;
 }
 
-void FrameStore::append_to(RunWriter& run, std::int64_t count, const MapGrid& grid) const {
-  for (std::int64_t n = 0; n < count; ++n) {
-    const h5::File in = h5::File::open(file(n), {file(n), "Run talus-solve again without --restart"});
-    PointFrame f;
-    f.time = in.number("/", "time");
-    f.position = rows_of(in.read<double>("/position"));
-    f.velocity = rows_of(in.read<float>("/velocity"));
-    f.volume = in.read<float>("/volume");
-    f.pressure = in.read<float>("/pressure");
-    f.id = in.read<std::int32_t>("/id");
-    f.release = in.read<std::int32_t>("/release");
-    if (!f.id.empty()) run.append(f);
-    run.append_thickness(f.time, grid, in.read<double>("/thickness"));
-  }
+void FrameRecorder::put(double time, std::int64_t number, Solver& solver) {
+  const bool points = options_.point_frames || options_.vdb_frames;
+  writing_.start(
+      [this, time, number, thickness = solver.thickness(), state = points ? solver.shown() : ParticleState{}] {
+        PointFrame frame = point_frame(time, state);
+        if (options_.vdb_frames)
+          write_points_vdb(vdb_folder_ / fmt::format("points_{:05}.vdb", number), frame, scene_.map.cell);
+        if (!options_.point_frames) {
+          frame = {};
+          frame.time = time;
+        }
+        store_.put(number, frame, scene_.map, thickness);
+      });
 }
 
 }  // namespace talus::solver

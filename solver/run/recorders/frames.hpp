@@ -1,30 +1,43 @@
-// Frames: the points and the thickness at chosen times, one file each in a folder of their own while the run goes on,
-// so that a run broken off and resumed ends with the same run.h5.
+// Recorder of frames: the points and the thickness of the whole map at chosen times.
 #pragma once
 
 #include <filesystem>
 
-#include "common/run/run_file.hpp"
+#include "solver/integrator/solver.hpp"
+#include "solver/options/solve.hpp"
+#include "solver/run/recorders/frame_store.hpp"
+#include "solver/run/side_work.hpp"
 
 namespace talus::solver {
 
-class FrameStore {
+/// Writes frames while the run goes on.
+class FrameRecorder {
  public:
-  explicit FrameStore(std::filesystem::path folder) : folder_(std::move(folder)) {}
-  void clear();  ///< forget all frames
-  void put(std::int64_t number, const PointFrame& points, const MapGrid& grid, const std::vector<double>& thickness);
+  /// Frames go to the folder `store` until the end of the run; points as .vdb, where the recipe asks for them, to
+  /// `vdb_folder`. Keeps references to scene and options.
+  FrameRecorder(const Scene& scene, const SolveOptions& options, std::filesystem::path store,
+                std::filesystem::path vdb_folder);
+
+  void clear() { store_.clear(); }  ///< drops the frames of an older run
   /// Throws DataError unless frames 0 .. count-1 are there.
-  void expect(std::int64_t count) const;
-  /// Hand frames 0 .. count-1 to the run file. Throws DataError when one is missing.
-  void append_to(RunWriter& run, std::int64_t count, const MapGrid& grid) const;
+  void expect(std::int64_t count) const { store_.expect(count); }
+  /// Takes the state at once; the file is written while the run goes on. Throws what writing the frame before threw.
+  void put(double time, std::int64_t number, Solver& solver);
+  /// Waits until every frame is on disk. Throws what writing the last one threw. HDF5 does one thing at a time: to be
+  /// called before another file is written.
+  void settle() { writing_.settle(); }
+  /// Hands frames 0 .. count-1 to the run file. Throws DataError when one is missing.
+  void append_to(RunWriter& run, std::int64_t count) const { store_.append_to(run, count, scene_.map); }
 
  private:
-  std::filesystem::path file(std::int64_t number) const;
-  std::filesystem::path folder_;
-};
+  PointFrame point_frame(double time, const ParticleState& points) const;
 
-/// Points of a frame as `file` (OpenVDB PointDataGrid with velocity, volume, pressure, id), for Houdini, Blender,
-/// ParaView.
-void write_points_vdb(const std::filesystem::path& file, const PointFrame& frame, double spacing);
+  const Scene& scene_;
+  const SolveOptions& options_;
+  GroundTables ground_;
+  std::filesystem::path vdb_folder_;
+  FrameStore store_;
+  SideWork writing_;  // last: what it does needs the rest
+};
 
 }  // namespace talus::solver

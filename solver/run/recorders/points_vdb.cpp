@@ -3,7 +3,7 @@
 #include <openvdb/points/PointDataGrid.h>
 
 #include "common/stage/stage.hpp"
-#include "solver/run/recorders/frames.hpp"
+#include "solver/run/recorders/frame_store.hpp"
 
 namespace talus::solver {
 namespace {

@@ -75,7 +75,8 @@ Checkpoint sample() {
   Domain domain = testing::ground(12, 12, 10, 5, [](double x, double) { return 0.1 * x; });
   testing::fill(domain, {50, 60, 50, 60, 0, 5}, 1, 1);
   const SolveOptions options;
-  c.state = first_state(make_scene(domain, options), options);
+  const Scene scene = make_scene(domain, options);
+  c.state = first_state(scene, make_settings(options, scene.grid).common);
   c.state.maps.peak_speed[7] = std::numeric_limits<double>::denorm_min();
   c.state.contacts = {{1, 2, 3}, {-0.0, 5, 6}};
   FillItems fill;

@@ -1,0 +1,48 @@
+#include "solver/run/gravity_loading.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "solver/scene/make_solver.hpp"
+
+namespace talus::solver {
+namespace {
+
+/// The loaded strains go to the points of the start, which are in another order. Of a Drucker-Prager material only
+/// their deviatoric part is kept apart from the volume.
+void take_strains(const ParticleState& loaded, const SolveOptions& options, ParticleState& start) {
+  for (std::size_t q = 0; q < loaded.size(); ++q) {
+    const auto p = static_cast<std::size_t>(loaded.id[q]);
+    double mean = 0;
+    const int material = start.material[p];
+    const MaterialOptions& own =
+        material > 0 ? options.parts[static_cast<std::size_t>(material) - 1].material : options.material;
+    if (own.model == MaterialModel::drucker_prager) {
+      mean = (loaded.elastic[0][q] + loaded.elastic[1][q] + loaded.elastic[2][q]) / 3;
+    }
+    for (std::size_t a = 0; a < 6; ++a) start.elastic[a][p] = loaded.elastic[a][q] - (a < 3 ? mean : 0);
+    start.log_volume[p] = loaded.log_volume[q];
+  }
+}
+
+}  // namespace
+
+void load_by_gravity(Scene& scene, const SolveOptions& options, On on) {
+  Scene resting = scene;
+  for (auto& component : resting.points.velocity) std::fill(component.begin(), component.end(), 0.0);
+  const SolverSettings settings = make_settings(options, scene.grid);
+  const auto loader = make_solver(resting, for_gravity_loading(settings, options.gravity_loading_steps), on);
+  loader->set_next_event(1);
+  std::int64_t newton = 0, linear = 0;
+  while (loader->clock().time < 1) {
+    const BatchReport batch = loader->advance();
+    newton += batch.stats.newton;
+    linear += batch.stats.linear;
+  }
+  take_strains(loader->state().points, options, scene.points);
+  log_info(fmt::format("gravity loading: {} steps, {} Newton and {} linear iterations", loader->clock().step, newton,
+                       linear));
+}
+
+}  // namespace talus::solver

@@ -1,0 +1,14 @@
+// Start from equilibrium: gravity brought on in quasi-static steps before the run begins.
+#pragma once
+
+#include "common/stage/stage.hpp"
+#include "solver/integrator/scene.hpp"
+#include "solver/options/solve.hpp"
+
+namespace talus::solver {
+
+/// Gives the points of a scene the elastic state of the mass at rest under its own weight, held at its bed, in
+/// `gravity_loading_steps` quasi-static steps. Throws NumericalError when a step does not converge.
+void load_by_gravity(Scene& scene, const SolveOptions& options, On on);
+
+}  // namespace talus::solver

@@ -1,0 +1,89 @@
+#include "solver/run/recorders/history.hpp"
+
+#include "solver/run/recorders/obstacles.hpp"
+
+namespace talus::solver {
+namespace {
+
+constexpr Column<Instant> run_columns[] = {
+    {"time_s", "s", [](const Instant& i) { return i.time; }},
+    {"step", "1", [](const Instant& i) { return static_cast<double>(i.clock.step); }},
+    {"step_size_s", "s", [](const Instant& i) { return i.clock.step_size; }},
+    {"kinetic_J", "J", [](const Instant& i) { return i.energies.kinetic; }},
+    {"potential_J", "J", [](const Instant& i) { return i.energies.potential; }},
+    {"elastic_J", "J", [](const Instant& i) { return i.energies.elastic; }},
+    {"volume_m3", "m3", [](const Instant& i) { return i.energies.volume; }},
+    {"outflow_m3", "m3", [](const Instant& i) { return i.counted.outflow_volume; }},
+    {"speed_max_m_s", "m s-1",
+     [](const Instant& i) { return static_cast<double>(positive_from_bits(i.clock.speed_bits)); }},
+    {"momentum_x_kg_m_s", "kg m s-1", [](const Instant& i) { return i.energies.momentum.x; }},
+    {"momentum_y_kg_m_s", "kg m s-1", [](const Instant& i) { return i.energies.momentum.y; }},
+    {"momentum_z_kg_m_s", "kg m s-1", [](const Instant& i) { return i.energies.momentum.z; }},
+    {"newton_iterations", "1", [](const Instant& i) { return static_cast<double>(i.counted.newton); }},
+    {"linear_iterations", "1", [](const Instant& i) { return static_cast<double>(i.counted.linear); }},
+    {"step_cuts", "1", [](const Instant& i) { return static_cast<double>(i.counted.cuts); }},
+    {"step_over_cfl", "1", [](const Instant& i) { return i.step_over_cfl; }},
+};
+
+constexpr Column<Instant> budget_columns[] = {
+    {"bed_loss_J", "J", [](const Instant& i) { return i.clock.bed_loss; }},
+    {"damping_loss_J", "J", [](const Instant& i) { return i.clock.damping_loss; }},
+    {"plastic_loss_J", "J", [](const Instant& i) { return i.clock.plastic_loss; }},
+    {"transfer_loss_J", "J", [](const Instant& i) { return i.clock.transfer_loss; }},
+    {"reaction_x_N_s", "N s", [](const Instant& i) { return i.clock.reaction[0]; }},
+    {"reaction_y_N_s", "N s", [](const Instant& i) { return i.clock.reaction[1]; }},
+    {"reaction_z_N_s", "N s", [](const Instant& i) { return i.clock.reaction[2]; }},
+};
+
+/// Numbers of the whole run.
+class RunRecorder : public TableRecorder<Instant> {
+ public:
+  explicit RunRecorder(std::span<const Column<Instant>> table) : TableRecorder(table, {Place{}}) {}
+
+ protected:
+  std::vector<Instant> samples(const Instant& now) const override { return {now}; }
+};
+
+/// Every recorder that the recipe asks for, in the order of their columns.
+std::vector<std::unique_ptr<Recorder>> make_recorders(const SolveOptions& options, const Scene&) {
+  std::vector<std::unique_ptr<Recorder>> recorders;
+  recorders.push_back(std::make_unique<RunRecorder>(run_columns));
+  if (options.energy_budget) recorders.push_back(std::make_unique<RunRecorder>(budget_columns));
+  if (!options.obstacles.empty()) recorders.push_back(std::make_unique<ObstacleRecorder>(options));
+  return recorders;
+}
+
+}  // namespace
+
+History::History(const SolveOptions& options, const Scene& scene) : recorders_(make_recorders(options, scene)) {
+  for (const auto& recorder : recorders_) recorder->add_columns(rows_);
+}
+
+void History::record(const Instant& now) {
+  for (const auto& recorder : recorders_) recorder->record(now, rows_);
+}
+
+void History::restore(const RunHistory& rows) {
+  for (HistoryColumn& column : rows_.columns) {
+    const HistoryColumn* kept = rows.find(column.name);
+    if (!kept || rows.columns.size() != rows_.columns.size())
+      throw DataError({"the checkpoint's history has other columns than this run (" + column.name + ")",
+                       "it is of another version of this program", "Run talus-solve again without --restart"});
+    column.values = kept->values;
+  }
+}
+
+double History::last(const std::string& name) const {
+  const HistoryColumn* column = rows_.find(name);
+  return column && !column->values.empty() ? column->values.back() : 0;
+}
+
+std::vector<std::string> History::conclusions() const {
+  std::vector<std::string> lines;
+  for (const auto& recorder : recorders_) {
+    for (std::string& line : recorder->conclusions(rows_)) lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+}  // namespace talus::solver

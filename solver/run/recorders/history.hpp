@@ -1,0 +1,36 @@
+// History: the numbers of a run over time, written as /history of run.h5.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "solver/integrator/scene.hpp"
+#include "solver/options/solve.hpp"
+#include "solver/run/recorders/recorder.hpp"
+
+namespace talus::solver {
+
+/// The columns of a run and the recorders that fill them.
+class History {
+ public:
+  /// The recorders that the recipe asks for. Throws RecipeError where one of them cannot measure what it is asked to.
+  History(const SolveOptions& options, const Scene& scene);
+
+  /// Adds a row.
+  void record(const Instant& now);
+  /// Goes on from the rows of a checkpoint. Throws DataError when its columns are others.
+  void restore(const RunHistory& rows);
+
+  const RunHistory& rows() const { return rows_; }
+  /// Last value of a column, 0 before the first record.
+  double last(const std::string& name) const;
+  /// Lines for the log at the end of the run.
+  std::vector<std::string> conclusions() const;
+
+ private:
+  std::vector<std::unique_ptr<Recorder>> recorders_;
+  RunHistory rows_;
+};
+
+}  // namespace talus::solver

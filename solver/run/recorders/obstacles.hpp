@@ -1,0 +1,24 @@
+// Recorder of obstacles: the impulse that each was given.
+#pragma once
+
+#include "solver/options/solve.hpp"
+#include "solver/run/recorders/recorder.hpp"
+
+namespace talus::solver {
+
+/// Impulse of the mass on every obstacle since the start [N s].
+class ObstacleRecorder : public TableRecorder<Vec3<double>> {
+ public:
+  explicit ObstacleRecorder(const SolveOptions& options);
+  /// For every obstacle the impulse in all, and the largest mean force between two records and its time.
+  std::vector<std::string> conclusions(const RunHistory& history) const override;
+
+ protected:
+  std::vector<Vec3<double>> samples(const Instant& now) const override { return now.solver.obstacle_impulses(); }
+
+ private:
+  std::vector<std::string> names_;
+  double interval_;  // between records [s]
+};
+
+}  // namespace talus::solver

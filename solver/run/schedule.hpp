@@ -1,0 +1,31 @@
+// When a run records, writes frames and checkpoints, and what times its steps must meet.
+#pragma once
+
+#include <vector>
+
+#include "solver/options/solve.hpp"
+#include "solver/run/recorders/checkpoint.hpp"
+
+namespace talus::solver {
+
+/// The events of a run in simulated time, from the recipe. How many have passed is in the run's memory.
+class Schedule {
+ public:
+  explicit Schedule(const SolveOptions& options);
+
+  /// The next time after `time` that no step may go over [s]: a frame, a record, a wall or load that comes or goes, the
+  /// end.
+  double next_event(double time, const RunMemory& passed) const;
+  bool record_due(double time, const RunMemory& passed) const;
+  bool frame_due(double time, const RunMemory& passed) const;
+  bool checkpoint_due(double time, const RunMemory& passed) const;
+  /// Whether a run that ends at `time` ends between two frames.
+  bool ends_between_frames(double time, const RunMemory& passed) const;
+  double end_time() const { return end_time_; }  ///< [s]
+
+ private:
+  double frame_interval_, record_interval_, checkpoint_interval_, end_time_;  // [s]
+  std::vector<double> changes_;                                               // of walls and loads [s]
+};
+
+}  // namespace talus::solver

@@ -1,0 +1,49 @@
+// The steps of a run: of one integrator, or with integrator = "auto" of whichever costs less.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "common/stage/stage.hpp"
+#include "solver/integrator/scene.hpp"
+#include "solver/integrator/solver.hpp"
+#include "solver/options/solve.hpp"
+#include "solver/run/integrator_choice.hpp"
+
+namespace talus::solver {
+
+/// Owns the solver of a run, and builds it anew where another integrator is cheaper.
+class Stepper {
+ public:
+  /// Keeps references to scene and options.
+  Stepper(const Scene& scene, const SolveOptions& options, On on);
+
+  /// Begins at a state: that of the scene's start, or of a checkpoint.
+  void begin(const SolverState& state);
+  bool begun() const { return solver_ != nullptr; }
+  /// Takes steps until `next_event` [s], the next sort or a failure, at most a batch. Throws NumericalError when no
+  /// integrator can go on.
+  BatchReport advance(double next_event);
+
+  Solver& solver() { return *solver_; }
+  const Solver& solver() const { return *solver_; }
+  double time() const { return time_; }          ///< [s]
+  double over_cfl() const { return over_cfl_; }  ///< last step over the CFL step [-]
+  On on() const { return on_; }                  ///< where the steps are taken
+
+ private:
+  void build(const SolverState& state);
+  BatchReport take_batch(double next_event);
+  void log_decision();
+
+  const Scene& scene_;
+  const SolveOptions& options_;
+  On on_;
+  std::optional<IntegratorChoice> choice_;  // integrator = "auto"
+  BatchCost cost_;                          // since the last sort
+  double time_ = 0;                         // [s]
+  double over_cfl_ = 0;
+  std::unique_ptr<Solver> solver_;
+};
+
+}  // namespace talus::solver

@@ -1,0 +1,82 @@
+// What a run leaves behind: maps and volumes of its end.
+#include "solver/run/products.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "solver/run/thickness.hpp"
+#include "solver/scene/make_solver.hpp"
+#include "tests/solver/scenes.hpp"
+
+namespace talus::solver::testing {
+namespace {
+
+double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+
+/// A sheet of ground (release 0) of 8 m3 beside a block (release 1) of 4 m3.
+class Products : public ::testing::Test {
+ protected:
+  Products() : domain_(ground(20, 20, 1.0, 1.0, [](double, double) { return 0.0; })) {
+    fill(domain_, {4, 8, 4, 6, 0, 1});
+    const std::size_t sheet = domain_.points.size();
+    fill(domain_, {12, 14, 12, 14, 0, 1});
+    for (std::size_t p = sheet; p < domain_.points.size(); ++p) domain_.points.release[p] = 1;
+    domain_.release_names = {"ground", "block"};
+    domain_.erodible = 1;
+    scene_ = make_scene(domain_, options_);
+    state_ = first_state(scene_, make_settings(options_, scene_.grid).common);
+    everywhere_ = thickness_of(scene_, options_, scene_.points, [](std::size_t) { return true; });
+  }
+  RunEnd end() const { return {domain_, options_, scene_, state_, everywhere_}; }
+  /// Moves a point east by whole cells.
+  void move(std::size_t p, int cells) { state_.points.cell[0][p] += cells; }
+
+  Domain domain_;
+  SolveOptions options_;
+  Scene scene_;
+  SolverState state_;
+  std::vector<double> everywhere_;
+};
+
+TEST_F(Products, ground_belongs_to_the_slide_once_it_moved_by_more_than_a_cell) {
+  EXPECT_FALSE(belongs_to_slide(end(), 0));
+  EXPECT_TRUE(belongs_to_slide(end(), domain_.points.size() - 1));
+  move(0, 1);
+  EXPECT_FALSE(belongs_to_slide(end(), 0));
+  move(0, 1);
+  EXPECT_TRUE(belongs_to_slide(end(), 0));
+}
+
+TEST_F(Products, volumes_close) {
+  move(0, 3);
+  const SlideVolumes v = slide_volumes(end(), 0);
+  EXPECT_NEAR(v.released, 4, 1e-12);
+  EXPECT_NEAR(v.entrained, 0.125, 1e-12);
+  EXPECT_NEAR(v.final, 4.125, 1e-12);
+  domain_.erodible = 0;
+  EXPECT_NEAR(slide_volumes(end(), 0).released, 12, 1e-12);
+  EXPECT_EQ(slide_volumes(end(), 0).entrained, 0);
+}
+
+TEST_F(Products, maps_tell_releases_and_ground_apart) {
+  move(0, 3);
+  state_.maps.arrival[5] = 2;
+  state_.maps.peak_pressure[5] = 3000;
+  const auto now = thickness_of(scene_, options_, state_.points, [](std::size_t) { return true; });
+  const RunMaps maps = final_maps(end(), now);
+  ASSERT_EQ(maps.deposit_of.size(), 2U);
+  EXPECT_EQ(maps.deposit_of[0].first, "ground");
+  EXPECT_NEAR(sum(maps.deposit_of[0].second), 0.125, 1e-12);
+  EXPECT_NEAR(sum(maps.deposit_of[1].second), 4, 1e-12);
+  EXPECT_NEAR(sum(maps.deposit_thickness), 4.125, 1e-12);
+  EXPECT_NEAR(sum(maps.initial_thickness), 4, 1e-12);
+  EXPECT_NEAR(sum(maps.eroded_depth), 0.125, 1e-12);
+  EXPECT_EQ(maps.peak_pressure[5], 3);
+  EXPECT_EQ(maps.arrival_time[5], 2);
+  EXPECT_TRUE(std::isnan(maps.arrival_time[6]));
+}
+
+}  // namespace
+}  // namespace talus::solver::testing

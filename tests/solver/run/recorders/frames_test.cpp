@@ -1,0 +1,50 @@
+// Frames: written beside the run, in run.h5 at its end.
+#include "solver/run/recorders/frames.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "solver/run/recorders/frame_store.hpp"
+#include "solver/scene/make_solver.hpp"
+#include "tests/common/scratch.hpp"
+#include "tests/solver/scenes.hpp"
+
+namespace talus::solver::testing {
+namespace {
+
+TEST(FrameRecorder, hands_every_frame_to_the_run_file) {
+  const test::Scratch scratch;
+  Domain d = ground(12, 12, 1.0, 1.0, [](double x, double) { return 5 - 0.1 * x; });
+  fill(d, {4, 8, 4, 8, 0, 2});
+  SolveOptions o;
+  const Scene scene = make_scene(d, o);
+  const auto solver = make_solver(scene, o, On::cpu);
+  FrameRecorder frames(scene, o, scratch / "frames", scratch / "vdb");
+  frames.put(0, 0, *solver);
+  run_to(*solver, 0.1);
+  frames.put(0.1, 1, *solver);
+  frames.settle();
+  frames.expect(2);
+  EXPECT_THROW(frames.expect(3), DataError);
+  {
+    RunWriter writer(scratch / "run.h5");
+    frames.append_to(writer, 2);
+    RunMaps maps;
+    maps.grid = scene.map;
+    const std::vector<double> zero(scene.map.count(), 0.0);
+    maps.terrain = maps.before = maps.initial_thickness = maps.deposit_thickness = maps.peak_thickness = zero;
+    maps.peak_speed = maps.peak_pressure = maps.arrival_time = zero;
+    writer.finish(maps, {}, {});
+  }
+  const talus::Run run = read_run(scratch / "run.h5");
+  EXPECT_EQ(run.frames.time, (std::vector<double>{0, 0.1}));
+  EXPECT_EQ(run.frames.thickness.at(1), solver->thickness());
+  const auto& first = run.frames.thickness.at(0);
+  EXPECT_NEAR(std::accumulate(first.begin(), first.end(), 0.0), 4 * 4 * 2, 1e-9);
+  frames.clear();
+  EXPECT_THROW(frames.expect(1), DataError);
+}
+
+}  // namespace
+}  // namespace talus::solver::testing

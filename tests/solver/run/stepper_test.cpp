@@ -1,0 +1,38 @@
+// The steps of a run: from event to event, by whichever integrator.
+#include "solver/run/stepper.hpp"
+
+#include <gtest/gtest.h>
+
+#include "solver/scene/make_solver.hpp"
+#include "tests/solver/scenes.hpp"
+
+namespace talus::solver::testing {
+namespace {
+
+Domain column_of_sand() {
+  Domain d = ground(16, 16, 1.0, 1.0, [](double, double) { return 0.0; });
+  fill(d, {4, 12, 4, 12, 0, 4});
+  return d;
+}
+
+TEST(Stepper, meets_events_and_knows_its_step_over_the_cfl_step) {
+  const Domain d = column_of_sand();
+  for (const Integrator integrator : {Integrator::explicit_, Integrator::automatic}) {
+    SolveOptions o;
+    o.integrator = integrator;
+    const Scene scene = make_scene(d, o);
+    Stepper stepper(scene, o, On::cpu);
+    EXPECT_FALSE(stepper.begun());
+    stepper.begin(first_state(scene, make_settings(o, scene.grid).common));
+    EXPECT_TRUE(stepper.begun());
+    BatchReport batch;
+    while (batch.clock.halt != at_event) batch = stepper.advance(0.02);
+    EXPECT_EQ(stepper.time(), 0.02);
+    EXPECT_EQ(stepper.solver().clock().time, 0.02);
+    EXPECT_GT(stepper.over_cfl(), 0);
+    EXPECT_LE(stepper.over_cfl(), o.cfl * (1 + 1e-6));
+  }
+}
+
+}  // namespace
+}  // namespace talus::solver::testing
