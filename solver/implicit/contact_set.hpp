@@ -1,0 +1,194 @@
+// The contacts of an implicit step: of the nodes with bed and walls, and of the contact points between nodes.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/implicit/contact_forces.hpp"
+#include "solver/implicit/friction_smoothing.hpp"
+#include "solver/implicit/node_fields.hpp"
+#include "solver/implicit/prepare_nodes.hpp"
+#include "solver/implicit/residual.hpp"
+#include "solver/implicit/step_parts.hpp"
+#include "solver/integrator/point_solver.hpp"
+
+namespace talus::solver {
+
+/// Buffers over the stored nodes, sized together; see Constraints for what they hold.
+template <class Device>
+struct NodeContactFields {
+  Buffer<Sym3<double>, Device> walls;
+  NodeVector<Device> normal, direction, way;
+  Buffer<double, Device> friction, traction, limit;
+  Buffer<ContactChanges, Device> changes;
+
+  /// `traction`, `way`: whether those are there.
+  void resize(std::size_t nodes, bool has_traction, bool has_way) {
+    walls.resize(nodes);
+    normal.resize(nodes);
+    direction.resize(nodes);
+    if (has_way) way.resize(nodes);
+    friction.resize(nodes);
+    if (has_traction) traction.resize(nodes);
+    limit.resize(nodes);
+    changes.resize(nodes);
+  }
+  std::size_t bytes() const {
+    return walls.bytes() + normal.bytes() + direction.bytes() + way.bytes() + friction.bytes() + traction.bytes() +
+           limit.bytes() + changes.bytes();
+  }
+};
+
+/// Buffers over the contact points, sized together; see ContactNumbers for what they hold.
+template <class Device>
+struct ContactPointFields {
+  Buffer<double, Device> spring, coefficient, traction, limit;
+  Buffer<Sym3<double>, Device> stiffness;
+
+  void resize(std::size_t points) {
+    for (auto* b : {&spring, &coefficient, &traction, &limit}) b->resize(points);
+    stiffness.resize(points);
+    stiffness.fill_zero();
+  }
+  std::size_t bytes() const {
+    return spring.bytes() + coefficient.bytes() + traction.bytes() + limit.bytes() + stiffness.bytes();
+  }
+};
+
+/// The active set of a step and the friction of its members.
+template <class Real, class Device, class Shape>
+class ContactSet {
+ public:
+  using Parts = StepParts<Real, Device, Shape>;
+
+  /// `pull`: see Constraints; on the device.
+  ContactSet(const Parts& parts, NodeFields<Device>& nodes, BedOn<double, Device> bed, const double* pull)
+      : parts_(parts), nodes_(nodes), bed_(std::move(bed)), pull_(pull) {
+    smoothing_.smooths = parts.controls.dynamic;
+  }
+
+  /// Room for the nodes and contact points of a step.
+  void resize() {
+    fields_.resize(static_cast<std::size_t>(nodes_.count), bed_.view().has_traction(), parts_.controls.once());
+  }
+
+  /// The nodes at the start of a step of `scheme`: velocities, what holds them, which contacts stick to begin with, and
+  /// the first guess of u. `gravity` [m/s2] is that of the step.
+  void begin(const NewmarkScheme& scheme, const Walls<double>& walls, const Vec3<double>& gravity) {
+    const ImplicitControls& c = parts_.controls;
+    const double g = std::hypot(c.gravity.x, c.gravity.y, c.gravity.z), dt = scheme.step;
+    smoothing_.gravity_way = c.dynamic ? 0.5 * std::max(g, 1e-3) * dt * dt : 1e-4 * parts_.spacing;
+    const bool predicts = c.dynamic && !c.once();
+    for_each(parts_.device, parts_.grid.active_blocks() * block_columns,
+             PrepareNodes<Real>{.grid = parts_.grid.view(),
+                                .active = parts_.grid.active_list(),
+                                .nodes = nodes(),
+                                .held = constraints(),
+                                .walls = walls,
+                                .base = bed_.view(),
+                                .full_base = parts_.full_base,
+                                .gravity = gravity,
+                                .scheme = scheme,
+                                .predict = predicts});
+    if (parts_.surfaces.on()) begin_points(dt, predicts);
+  }
+
+  /// What holds the nodes, as kernels see it.
+  Constraints constraints() {
+    return {.walls = fields_.walls.data(),
+            .normal = fields_.normal.data(),
+            .friction = fields_.friction.data(),
+            .traction = fields_.traction.data(),
+            .limit = fields_.limit.data(),
+            .direction = fields_.direction.data(),
+            .way = fields_.way.data(),
+            .changes = fields_.changes.data(),
+            .slip = smoothing_.slip(),
+            .head_start = smoothing_.head_start(),
+            .coupled = parts_.controls.tangent == Tangent::exact,
+            .pull = pull_};
+  }
+
+  /// What friction can hold at the contact points follows their push.
+  void renew_limits() {
+    if (parts_.surfaces.on())
+      each_point(RenewLimits<Real, Shape>{parts_.grid.view(), parts_.surfaces.view(), nodes(), numbers()});
+  }
+  /// Slips that u has turned back stick, there and where the line search set out; they count as changes of `balance`.
+  void stick_reversed(Balance* balance) {
+    sum_each<1>(parts_.device, nodes_.count, parts_.sums, StickReversed{nodes(), constraints(), nodes_.saved_u.data()},
+                FinishReversals{balance});
+  }
+
+  /// The forces of the contact points go off the internal force; `with_stiffness`: and their derivative is kept.
+  void scatter(bool with_stiffness) {
+    if (parts_.surfaces.on())
+      each_point(
+          ScatterContacts<Real, Shape>{parts_.grid.view(), parts_.surfaces.view(), nodes(), numbers(), with_stiffness});
+  }
+  /// y += K x of the contact points.
+  void apply(const NodeVector<Device>& x, NodeVector<Device>& y) {
+    if (parts_.surfaces.on())
+      each_point(ApplyContacts<Real, Shape>{parts_.grid.view(), parts_.surfaces.view(), nodes_.mass.data(),
+                                            points_.stiffness.data(), x.data(), y.data()});
+  }
+  /// Stiffness of friction and of the contact points on the nodes' diagonal, S of (T19).
+  const Sym3<double>* measure_stiffness() {
+    stiffness_.resize(static_cast<std::size_t>(nodes_.count));
+    for_each(parts_.device, nodes_.count, FrictionStiffness{nodes(), constraints(), stiffness_.data()});
+    if (parts_.surfaces.on())
+      each_point(AddContactDiagonal<Real, Shape>{parts_.grid.view(), parts_.surfaces.view(), nodes_.mass.data(),
+                                                 points_.stiffness.data(), stiffness_.data()});
+    return stiffness_.data();
+  }
+
+  /// Force and impulse of the contact points in an accepted step of `step` seconds.
+  void keep(double step) {
+    if (parts_.surfaces.on())
+      each_point(KeepContacts<Real, Shape>{parts_.grid.view(), parts_.surfaces.view(), nodes(), numbers(), step,
+                                           parts_.controls.dynamic ? parts_.impulses.impulses() : nullptr});
+  }
+
+  FrictionSmoothing& smoothing() { return smoothing_; }
+  std::size_t node_bytes() const { return bed_.bytes() + fields_.bytes() + stiffness_.bytes(); }
+  std::size_t point_bytes() const { return points_.bytes(); }
+
+ private:
+  NodeArrays nodes() { return nodes_.arrays(parts_.controls.dynamic); }
+  template <class Kernel>
+  void each_point(const Kernel& kernel) {
+    parts_.surfaces.each(kernel);
+  }
+
+  /// Friction of the contact points for this step, and what they take at once.
+  void begin_points(double step, bool predicts) {
+    points_.resize(static_cast<std::size_t>(parts_.surfaces.count()));
+    each_point(MeasureGrip<Real, Shape>{parts_.grid.view(), parts_.surfaces.view(), nodes(), parts_.layer_mass,
+                                        parts_.controls.dynamic, numbers()});
+    if (!parts_.controls.dynamic) return;
+    parts_.impulses.run(parts_.surfaces, parts_.grid.view(), ArrivingNodes<Real>{nodes(), predicts ? step : 0},
+                        nodes_.count, parts_.layer_mass, {nullptr, step, true, false});
+  }
+  ContactNumbers numbers() {
+    const Material<Real>& material = parts_.materials.list[0];
+    const double wave = static_cast<double>(material.wave_speed);
+    const double modulus = static_cast<double>(material.density) * wave * wave;  // of uniaxial strain
+    return {.spring = points_.spring.data(),
+            .coefficient = points_.coefficient.data(),
+            .traction = points_.traction.data(),
+            .limit = points_.limit.data(),
+            .stiffness = points_.stiffness.data(),
+            .modulus = contact_stiffness * modulus / std::min(parts_.spacing, parts_.layer_height)};
+  }
+
+  const Parts& parts_;
+  NodeFields<Device>& nodes_;
+  BedOn<double, Device> bed_;
+  const double* pull_;
+  FrictionSmoothing smoothing_;
+  NodeContactFields<Device> fields_;
+  ContactPointFields<Device> points_;
+  Buffer<Sym3<double>, Device> stiffness_;
+};
+
+}  // namespace talus::solver

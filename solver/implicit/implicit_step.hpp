@@ -1,0 +1,214 @@
+// One implicit step: the equations (T16) of its end as Newton's method takes them, and what an accepted step leaves
+// with the particles.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/implicit/accept_step.hpp"
+#include "solver/implicit/newton.hpp"
+#include "solver/implicit/record_columns.hpp"
+#include "solver/implicit/scatter_inertia.hpp"
+#include "solver/implicit/tangent_system.hpp"
+
+namespace talus::solver {
+
+/// Where and how a step begins.
+struct StepBegin {
+  double start = 0, step = 0;           // [s]
+  bool accelerates = false;             // no acceleration is known yet: that of the forces at the start is taken
+  bool backward_euler = false;          // in place of Newmark's numbers
+  const Vec3<double>* loads = nullptr;  // force per volume of every load at the end of the step [N/m3]; null: none
+};
+
+/// A step from its beginning to its end; a NewtonProblem in between.
+template <class Real, class Device, class Shape>
+class ImplicitStep {
+ public:
+  using Parts = StepParts<Real, Device, Shape>;
+
+  ImplicitStep(const Parts& parts, BedOn<double, Device> bed)
+      : parts_(parts),
+        balance_(empty_balance()),
+        contacts_(parts_, nodes_, std::move(bed), &balance_.data()->pull),
+        tangent_(parts_, nodes_, contacts_) {}
+  ImplicitStep(const ImplicitStep&) = delete;
+  ImplicitStep& operator=(const ImplicitStep&) = delete;
+
+  /// The particles have been sorted, and the grid fitted to them; the walls that stand from now on.
+  void group(const Walls<double>& walls) {
+    walls_ = walls;
+    tangent_.group();
+  }
+
+  /// Everything that does not change with the displacement. Loads are those at the end of the step, walls those that
+  /// stand at its start.
+  void begin(const StepBegin& at) {
+    const ProfilePhase<Device> phase("points to grid");
+    const ImplicitControls& c = parts_.controls;
+    scheme_ = {.dynamic = c.dynamic, .alpha = c.alpha, .beta = c.beta, .step = at.step};
+    if (at.backward_euler) scheme_ = {.dynamic = c.dynamic, .alpha = 0.5, .beta = 1, .step = at.step};
+    nodes_.resize(parts_.grid.nodes());
+    contacts_.resize();
+    tangent_.begin(scheme_);
+    scatter_points(
+        parts_.device, parts_.points.count(), parts_.grid.groups(),
+        ScatterInertia<Real, Shape>{
+            {parts_.grid.view(), parts_.points.view()}, parts_.materials, c.affine, c.dynamic, at.loads, nodes()});
+    const double ramp = c.gravity_ramp > 0 ? std::min(1.0, (at.start + at.step) / c.gravity_ramp) : 1.0;
+    contacts_.begin(scheme_, walls_, {c.gravity.x * ramp, c.gravity.y * ramp, c.gravity.z * ramp});
+    if (!c.dynamic) return;
+    sum_each<1>(parts_.device, nodes_.count, parts_.sums, SquareMomentum{nodes()},
+                KeepTotals<1>{&balance_.data()->momentum});
+    if (at.accelerates || c.damping > 0) begin_forces(at.accelerates);
+  }
+
+  /// Newton's iterations, or the one linear solve; see NewtonReport.
+  NewtonReport solve() {
+    return parts_.controls.once() ? solve_once(*this, parts_.controls.newton) : newton(*this, parts_.controls.newton);
+  }
+
+  // The verbs of NewtonProblem.
+
+  void measure(Linearisation linearisation) { tangent_.measure(linearisation); }
+
+  Unbalanced residual(Contacts contacts) {
+    const ProfilePhase<Device> phase("residual and contact");
+    const bool decide = contacts == Contacts::decided;
+    if (decide) {
+      contacts_.renew_limits();
+      const double each = parts_.controls.newton.tolerance / std::sqrt(static_cast<double>(std::max(nodes_.count, 1)));
+      sum_each<1>(parts_.device, nodes_.count, parts_.sums, SquareForces{nodes()},
+                  FinishForces{balance_.data(), scheme_.stopping_share(), each});
+    }
+    sum_each<3>(parts_.device, nodes_.count, parts_.sums,
+                MeasureResidual{.contacts = {nodes(), contacts_.constraints(), scheme_},
+                                .decide = decide,
+                                .change = decide ? nullptr : nodes_.change.data()},
+                FinishResidual{balance_.data()});
+    const Balance balance = balance_.download().front();
+    for_each(parts_.device, 1, ForgetChanges{balance_.data()});
+    return {.force = std::sqrt(balance.residual),
+            .size = force_size(balance, scheme_.stopping_share()),
+            .along = balance.along,
+            .changed = balance.changes > 0};
+  }
+
+  LinearReport solve(double tolerance) { return tangent_.solve(nodes_.residual, nodes_.change, tolerance); }
+
+  double begin_search() {
+    copy(nodes_.u, nodes_.saved_u);
+    return std::abs(dot(nodes_.residual, nodes_.change));
+  }
+  void apply_change(double share) { axpby(share, nodes_.change, 1.0, nodes_.u); }
+  void return_to_start() { copy(nodes_.saved_u, nodes_.u); }
+  void stick_reversed() { contacts_.stick_reversed(balance_.data()); }
+
+  Motion farthest_motion() {
+    farthest_.upload({0});
+    for_each(parts_.device, parts_.points.count(),
+             MeasureMotion<Real, Shape>{.grid = parts_.grid.view(),
+                                        .points = parts_.points.view(),
+                                        .u = nodes_.u.data(),
+                                        .dynamic = parts_.controls.dynamic,
+                                        .farthest = farthest_.data()});
+    const auto cells = static_cast<double>(positive_from_bits(farthest_.download().front()));
+    return {.share = cells, .length = cells * std::min(parts_.spacing, parts_.layer_height)};
+  }
+  FrictionSmoothing& smoothing() { return contacts_.smoothing(); }
+
+  /// The particles at the end of the step. `kept`: share of their velocity finer than the grid that stays.
+  void accept(Clock* clock, double kept) {
+    contacts_.keep(scheme_.step);
+    for_each(parts_.device, nodes_.count,
+             EndOfStep{nodes(), scheme_, nodes_.velocity_end.data(), nodes_.acceleration_end.data()});
+    const bool dynamic = parts_.controls.dynamic;
+    AcceptStep<Real, Shape> kernel{.grid = parts_.grid.view(),
+                                   .points = parts_.points.view(),
+                                   .materials = parts_.materials,
+                                   .clock = clock,
+                                   .nodes = nodes(),
+                                   .new_velocity = dynamic ? nodes_.velocity_end.data() : nullptr,
+                                   .new_acceleration = nodes_.acceleration_end.data(),
+                                   .strain_displacement = nodes_.u.data(),
+                                   .kept = kept,
+                                   .affine = parts_.controls.affine,
+                                   .dilatant = parts_.dilatant,
+                                   .speeds = true,
+                                   .deforms = true,
+                                   .means = tangent_.stresses().means()};
+    if (dynamic && parts_.controls.remaps_velocity) {
+      remap_velocity(kernel);
+    } else {
+      tangent_.stresses().average(nodes_.u);
+    }
+    for_each(parts_.device, parts_.points.count(), kernel);
+  }
+
+  /// Maps of the end of the step at `time` [s]. `volumes` over the columns where densities differ, else null [m3].
+  void record_maps(const MapView& maps, double time, const double* volumes) {
+    for_each(parts_.device, parts_.grid.active_blocks() * block_columns,
+             RecordColumns<Real>{.grid = parts_.grid.view(),
+                                 .active = parts_.grid.active_list(),
+                                 .mass = nodes_.mass.data(),
+                                 .velocity = parts_.controls.dynamic ? nodes_.velocity_end.data() : nullptr,
+                                 .density = static_cast<double>(parts_.materials.list[0].density),
+                                 .volumes = volumes,
+                                 .time = time,
+                                 .maps = maps});
+  }
+
+  /// Bytes of the parts, by name.
+  template <class Add>
+  void list_memory(Add&& add) const {
+    add("nodes", nodes_.bytes());
+    add("bed and walls", contacts_.node_bytes());
+    if (parts_.surfaces.on()) add("contact forces", contacts_.point_bytes());
+    tangent_.list_memory(add);
+  }
+
+ private:
+  static Buffer<Balance, Device> empty_balance() {
+    Buffer<Balance, Device> balance;
+    balance.upload({Balance{}});
+    return balance;
+  }
+  NodeArrays nodes() { return nodes_.arrays(parts_.controls.dynamic); }
+
+  /// Acceleration and damping from the forces at the start of the step.
+  void begin_forces(bool accelerates) {
+    copy(nodes_.u, nodes_.saved_u);
+    nodes_.u.fill_zero();
+    tangent_.measure_forces();
+    if (accelerates) for_each(parts_.device, nodes_.count, FirstAcceleration{nodes()});
+    if (parts_.controls.damping > 0)
+      for_each(parts_.device, nodes_.count, AddDamping{nodes(), parts_.controls.damping});
+    copy(nodes_.saved_u, nodes_.u);
+  }
+
+  /// MUSL: the particles take their velocity first, and their strain from what it makes of the nodes'.
+  void remap_velocity(AcceptStep<Real, Shape>& kernel) {
+    kernel.deforms = false;
+    for_each(parts_.device, parts_.points.count(), kernel);
+    nodes_.change.fill_zero();
+    scatter_points(parts_.device, parts_.points.count(), parts_.grid.groups(),
+                   ScatterVelocity<Real, Shape>{
+                       {parts_.grid.view(), parts_.points.view()}, parts_.materials, nodes_.change.data()});
+    for_each(parts_.device, nodes_.count, RemapDisplacement{nodes(), scheme_.step, nodes_.change.data()});
+    tangent_.stresses().average(nodes_.change);
+    kernel.strain_displacement = nodes_.change.data();
+    kernel.deforms = true;
+    kernel.speeds = false;
+  }
+
+  Parts parts_;
+  NodeFields<Device> nodes_;
+  Buffer<Balance, Device> balance_;
+  ContactSet<Real, Device, Shape> contacts_;
+  TangentSystem<Real, Device, Shape> tangent_;
+  NewmarkScheme scheme_;
+  Walls<double> walls_;
+  Buffer<std::uint32_t, Device> farthest_;
+};
+
+}  // namespace talus::solver

@@ -1,0 +1,56 @@
+// How much of a Newton iteration's change is taken.
+#pragma once
+
+#include <cmath>
+#include <concepts>
+
+namespace talus::solver {
+
+/// Which tangent comes with the forces: their derivative, or without the part that compression makes negative.
+enum class Linearisation { consistent, definite };
+/// Whether the states of contacts are decided anew, or kept as they are.
+enum class Contacts { kept, decided };
+
+/// The unbalanced force of a state.
+struct Unbalanced {
+  double force = 0;      // |r| [N]
+  double size = 1;       // what |r| is measured against [N]
+  double along = 0;      // r . change, while contacts are kept [N m]
+  bool changed = false;  // contacts have changed their states
+};
+
+/// What a line search asks of a problem; see NewtonProblem.
+template <class P>
+concept SearchProblem = requires(P& p, double number) {
+  p.measure(Linearisation::consistent);
+  { p.residual(Contacts::kept) } -> std::same_as<Unbalanced>;
+  { p.begin_search() } -> std::same_as<double>;
+  p.apply_change(number);
+  p.stick_reversed();
+  p.return_to_start();
+};
+
+/// u += s change with the largest s = 1, 1/2, 1/4 ... after which less force is unbalanced than `before`, or less of it
+/// along the change: a sheet that must turn passes through larger forces on its way, but downhill in energy. Leaves the
+/// tangent there too: the first share is nearly always taken, and the next iteration begins with it. False, and u as it
+/// was, where no share down to 1/512 does. `size`: of the forces [N].
+template <SearchProblem Problem>
+bool line_search(Problem& problem, double before, double size) {
+  const double downhill = problem.begin_search();
+  double share = 1;
+  for (int halving = 0; halving < 10; ++halving, share *= 0.5) {
+    problem.apply_change(share);
+    problem.stick_reversed();
+    problem.measure(Linearisation::consistent);
+    const Unbalanced trial = problem.residual(Contacts::kept);
+    const double after = trial.force, along = std::abs(trial.along);
+    if (std::isfinite(after) && (after < before * (1 - 1e-4 * share) || along < 0.8 * downhill)) return true;
+    if (trial.changed && after < 2 * before) return true;  // another active set: Newton goes on with that
+    // The change that must be made at the end of convergence is rounding: take it.
+    if (halving == 0 && after <= 1e-11 * size) return true;
+    problem.return_to_start();
+  }
+  return false;
+}
+
+}  // namespace talus::solver

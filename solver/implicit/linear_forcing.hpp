@@ -1,0 +1,30 @@
+// How exactly the linear system of a Newton iteration is solved.
+#pragma once
+
+#include <algorithm>
+
+#include "solver/implicit/controls.hpp"
+
+namespace talus::solver {
+
+/// The tolerance of the next linear system: as Newton's last iteration got on (Eisenstat & Walker 1996, choice 2, with
+/// their safeguard), and no finer than Newton's own tolerance asks for.
+struct LinearForcing {
+  double last_residual = 0, last = 0.1;
+
+  /// Relative residual [-] to solve the next system to, where the unbalanced force over its size is `residual`.
+  double next(double residual, const NewtonControls& controls) {
+    constexpr double gamma = 0.9, most = 0.1, first = 1e-3;  // a nearly linear step should be done in two
+    if (controls.forcing == Forcing::fixed) return controls.linear_tolerance;
+    double wanted = first;
+    if (last_residual > 0) {
+      wanted = gamma * (residual / last_residual) * (residual / last_residual);
+      if (gamma * last * last > 0.1) wanted = std::max(wanted, gamma * last * last);
+    }
+    last_residual = residual;
+    last = std::clamp(wanted, 1e-12, most);
+    return std::max(controls.linear_tolerance, std::min(most, std::max(last, 0.1 * controls.tolerance / residual)));
+  }
+};
+
+}  // namespace talus::solver

@@ -1,0 +1,99 @@
+// Newmark's time scheme: what the displacement of a step makes of velocity and acceleration.
+#pragma once
+
+#include <cmath>
+
+#include "solver/implicit/node_arrays.hpp"
+#include "solver/parallel/sums.hpp"
+
+namespace talus::solver {
+
+/// Newmark's scheme (theory.md, Implicit step) for a step of `step` seconds; statics is the case without inertia.
+struct NewmarkScheme {
+  bool dynamic = true;
+  double alpha = 0.25, beta = 0.5;
+  double step = 0;  // [s]
+
+  /// Derivative of the acceleration at the end of the step by the displacement, 1 / (alpha dt^2) [1/s2].
+  TALUS_HD double inertia() const { return dynamic ? 1 / (alpha * step * step) : 0; }
+
+  /// Minus the acceleration at the end of the step, -a' of (T16), for node n's displacement [m/s2].
+  TALUS_HD Vec3<double> deceleration(const NodeArrays& nodes, int n) const {
+    Vec3<double> a = nodes.begin_velocity(n) * (1 / (alpha * step)) - nodes.u[n] * inertia();
+    if (nodes.acceleration) a += nodes.acceleration[n] * (1 / (2 * alpha) - 1);
+    return a;
+  }
+
+  /// Share of the momentum at the start whose rounding, as a force, a dynamic step takes for balanced [1/s].
+  double stopping_share() const {
+    constexpr double rounding = 1e-8;
+    return dynamic ? rounding / (alpha * step) : 0;
+  }
+};
+
+/// One thread: one node. Square of the momentum that the step begins with.
+struct SquareMomentum {
+  NodeArrays nodes;
+  TALUS_HD Terms<1> operator()(int n) const {
+    if (!(nodes.mass[n] > 0)) return {};
+    const Vec3<double> p = nodes.begin_velocity(n) * nodes.mass[n];
+    return {{dot(p, p)}};
+  }
+};
+
+/// One thread: one node. The acceleration that a run begins with: that of the forces at its start.
+struct FirstAcceleration {
+  NodeArrays nodes;
+  TALUS_HD void operator()(int n) const {
+    const double m = nodes.mass[n];
+    nodes.acceleration[n] =
+        m > 0 ? nodes.freed[n] * ((nodes.external[n] - nodes.internal[n]) * (1 / m)) : Vec3<double>{};
+  }
+};
+
+/// One thread: one node. Local non-viscous damping (Cundall 1987) against the velocity at the start, from the force at
+/// the start.
+struct AddDamping {
+  NodeArrays nodes;
+  double damping;
+  TALUS_HD void operator()(int n) const {
+    const Vec3<double> pull = nodes.external[n] - nodes.internal[n], v = nodes.velocity[n];
+    nodes.external[n] += Vec3<double>{against(pull.x, v.x), against(pull.y, v.y), against(pull.z, v.z)};
+  }
+  TALUS_HD double against(double pull, double v) const {
+    return v == 0 ? 0 : v > 0 ? -damping * fabs(pull) : damping * fabs(pull);
+  }
+};
+
+/// One thread: one node. Newmark's velocity v' and acceleration a' at the end of the step.
+struct EndOfStep {
+  NodeArrays nodes;
+  NewmarkScheme scheme;
+  Vec3<double>* velocity;
+  Vec3<double>* acceleration;
+  TALUS_HD void operator()(int n) const {
+    const Vec3<double> v = nodes.begin_velocity(n), u = nodes.u[n];
+    const Vec3<double> a = nodes.acceleration ? nodes.acceleration[n] : Vec3<double>{};
+    const double dt = scheme.step;
+    const Vec3<double> a1 = (u - v * dt) * (1 / (scheme.alpha * dt * dt)) - a * (1 / (2 * scheme.alpha) - 1);
+    const Vec3<double> v1 = v + a * (dt * (1 - scheme.beta)) + a1 * (dt * scheme.beta);
+    // Where a node is held it moves as its support does.
+    const Vec3<double> prescribed = u * (1 / dt);
+    velocity[n] = prescribed + nodes.freed[n] * (v1 - prescribed);
+    acceleration[n] = nodes.freed[n] * a1;
+  }
+};
+
+/// One thread: one node. Momentum to displacement of the step, held nodes as the solve left them.
+struct RemapDisplacement {
+  NodeArrays nodes;
+  double step;
+  Vec3<double>* momentum;
+  TALUS_HD void operator()(int n) const {
+    if (!(nodes.mass[n] > 0)) return;
+    const Vec3<double> moved = momentum[n] * (step / nodes.mass[n]);
+    momentum[n] = nodes.u[n] + nodes.freed[n] * (moved - nodes.u[n]);
+  }
+};
+
+}  // namespace talus::solver

@@ -1,0 +1,148 @@
+// Newton's method on the unbalanced force of a step, with an active set of contacts. It knows neither particles nor
+// grids nor devices: a problem is anything with the verbs of NewtonProblem.
+#pragma once
+
+#include <cmath>
+#include <concepts>
+
+#include "solver/implicit/controls.hpp"
+#include "solver/implicit/friction_smoothing.hpp"
+#include "solver/implicit/line_search.hpp"
+#include "solver/implicit/linear_forcing.hpp"
+#include "solver/linear/krylov/linear_report.hpp"
+
+namespace talus::solver {
+
+/// How far the farthest point moves in a step.
+struct Motion {
+  double share = 0;   // of the way that it may go [-]: shape functions are held during a step
+  double length = 0;  // [m]
+};
+
+/// A step's equations r(u) = 0 (T16) as Newton's method sees them; u, r and the change of u are the problem's own.
+///   measure(l)             forces and tangent for the present u
+///   residual(c)            r for them, under contacts as they are or decided anew (which may move u)
+///   solve(tolerance)       change = tangent^-1 r, to a relative residual of `tolerance`
+///   begin_search()         remembers u; returns |r . change|
+///   apply_change(share)    u += share change
+///   return_to_start()      u is what it was at begin_search()
+///   stick_reversed()       slipping contacts that u takes back stick
+///   farthest_motion()      of the points, for u
+///   smoothing()            of friction, kept from step to step
+template <class P>
+concept NewtonProblem = SearchProblem<P> && requires(P& p, double number) {
+  { p.solve(number) } -> std::same_as<LinearReport>;
+  { p.farthest_motion() } -> std::same_as<Motion>;
+  { p.smoothing() } -> std::same_as<FrictionSmoothing&>;
+};
+
+/// What Newton's method ended with.
+struct NewtonReport {
+  bool converged = false;
+  int iterations = 0;
+  int linear_iterations = 0;   // of all systems together
+  double residual = 0;         // unbalanced force over the size of the forces
+  double linear_residual = 0;  // relative, of the last system
+  bool indefinite = false;     // a tangent was no minimum's
+};
+
+namespace detail {
+
+/// The unbalanced force once contacts have been decided on.
+template <NewtonProblem Problem>
+Unbalanced settle_contacts(Problem& problem) {
+  const Unbalanced decided = problem.residual(Contacts::decided);
+  if (!decided.changed) return decided;
+  problem.measure(Linearisation::consistent);  // a contact that closed or opened has moved its node
+  Unbalanced after = problem.residual(Contacts::kept);
+  after.changed = true;
+  return after;
+}
+
+/// Solves for the change of u. Compression makes the tangent of a sparsely filled cell indefinite; without that part it
+/// is one of a convex energy, slower but sure to lead downhill. False where no solve converged.
+template <NewtonProblem Problem>
+bool find_change(Problem& problem, double tolerance, NewtonReport& report) {
+  LinearReport linear = problem.solve(tolerance);
+  report.linear_iterations += linear.iterations;
+  if (linear.indefinite) {
+    report.indefinite = true;
+    problem.measure(Linearisation::definite);
+    linear = problem.solve(tolerance);
+    report.linear_iterations += linear.iterations;
+  }
+  report.linear_residual = linear.residual;
+  return linear.converged;
+}
+
+/// Whether iterations have halved the unbalanced force of late.
+class Progress {
+ public:
+  /// Takes note of an iteration's residual; true where so many have gone by without halving the least so far.
+  bool stalls(double residual, int patience) {
+    waited_ = residual < 0.5 * best_ ? 0 : waited_ + 1;
+    if (residual < best_) best_ = residual;
+    return waited_ >= patience;
+  }
+
+ private:
+  double best_ = 1e300;
+  int waited_ = 0;
+};
+
+}  // namespace detail
+
+/// Newton's iterations of one step from the problem's u. Refused steps end with `converged` false: the unbalanced force
+/// is no number, the linear system has no solution, no share of its change helps, points move too far, or iterations
+/// run out.
+template <NewtonProblem Problem>
+NewtonReport newton(Problem& problem, const NewtonControls& controls) {
+  NewtonReport report;
+  FrictionSmoothing& smoothing = problem.smoothing();
+  detail::Progress progress;
+  LinearForcing forcing;
+  problem.measure(Linearisation::consistent);
+  for (report.iterations = 0; report.iterations < controls.iterations; ++report.iterations) {
+    Unbalanced now = detail::settle_contacts(problem);
+    const double size = now.size;
+    report.residual = now.force / size;
+    if (!std::isfinite(report.residual)) return report;
+    if (report.residual <= controls.tolerance && !now.changed) {
+      const Motion moved = problem.farthest_motion();
+      if (moved.share > 1) return report;
+      if (!smoothing.too_wide_for(moved.length)) {
+        smoothing.narrow_after(report.iterations);
+        report.converged = true;
+        return report;
+      }
+      // Once more with less smoothing, from here: a step that does not find its way there is cut.
+      smoothing.narrow();
+      progress = {};
+      now = detail::settle_contacts(problem);
+      report.residual = now.force / size;
+      if (report.residual <= controls.tolerance) continue;
+    }
+    if (progress.stalls(report.residual, FrictionSmoothing::patience) && smoothing.widen()) progress = {};
+    if (!detail::find_change(problem, forcing.next(report.residual, controls), report)) return report;
+    if (line_search(problem, now.force, size)) continue;
+    if (!smoothing.widen()) return report;
+    problem.measure(Linearisation::consistent);  // where the search began
+  }
+  return report;
+}
+
+/// One linear solve with the tangent at the start of the step, as the reference paper has it.
+template <NewtonProblem Problem>
+NewtonReport solve_once(Problem& problem, const NewtonControls& controls) {
+  NewtonReport report;
+  problem.measure(Linearisation::consistent);
+  problem.residual(Contacts::decided);
+  report.iterations = 1;
+  const bool solved = detail::find_change(problem, controls.linear_tolerance, report);
+  problem.apply_change(1.0);
+  report.residual = report.linear_residual;
+  report.converged = solved && problem.farthest_motion().share <= 1;
+  return report;
+}
+
+}  // namespace talus::solver

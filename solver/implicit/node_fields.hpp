@@ -1,0 +1,59 @@
+// The node buffers of an implicit step.
+#pragma once
+
+#include "solver/implicit/node_arrays.hpp"
+#include "solver/parallel/vectors.hpp"
+
+namespace talus::solver {
+
+/// Buffers over the stored nodes, sized together; see NodeArrays for what they hold.
+template <class Device>
+struct NodeFields {
+  int count = 0;
+  Buffer<double, Device> mass;
+  NodeVector<Device> velocity, arrival, acceleration, external, internal, u, residual;
+  NodeVector<Device> velocity_end, acceleration_end;  // of the step
+  NodeVector<Device> change;                          // of u, from the linear system
+  NodeVector<Device> saved_u;                         // where a line search begins
+  Buffer<Sym3<double>, Device> freed;
+  Buffer<Touch, Device> touch;
+
+  /// Room for so many nodes; what is summed from the points begins at zero.
+  void resize(int nodes) {
+    count = nodes;
+    const auto n = static_cast<std::size_t>(nodes);
+    mass.resize(n);
+    mass.fill_zero();
+    for (auto* v : {&velocity, &arrival, &acceleration, &external}) {
+      v->resize(n);
+      v->fill_zero();
+    }
+    for (auto* v : {&internal, &u, &residual, &velocity_end, &acceleration_end, &change, &saved_u}) v->resize(n);
+    freed.resize(n);
+    touch.resize(n);
+  }
+
+  /// The buffers as kernels see them; statics knows neither arrival nor acceleration.
+  NodeArrays arrays(bool dynamic) {
+    return {.mass = mass.data(),
+            .velocity = velocity.data(),
+            .arrival = dynamic ? arrival.data() : nullptr,
+            .acceleration = dynamic ? acceleration.data() : nullptr,
+            .external = external.data(),
+            .internal = internal.data(),
+            .u = u.data(),
+            .residual = residual.data(),
+            .freed = freed.data(),
+            .touch = touch.data()};
+  }
+
+  std::size_t bytes() const {
+    std::size_t total = mass.bytes() + freed.bytes() + touch.bytes();
+    for (const auto* v : {&velocity, &arrival, &acceleration, &external, &internal, &u, &residual, &velocity_end,
+                          &acceleration_end, &change, &saved_u})
+      total += v->bytes();
+    return total;
+  }
+};
+
+}  // namespace talus::solver

@@ -1,0 +1,96 @@
+// Stress and tangent of the particles for a displacement of the grid.
+#pragma once
+
+#include <algorithm>
+#include <type_traits>
+
+#include "solver/elements/forces.hpp"
+#include "solver/implicit/step_parts.hpp"
+
+namespace talus::solver {
+
+/// The particles' tangents in storage with what couples those of an element: f_int of (T16) and its derivative.
+template <class Real, class Device, class Shape>
+class ParticleStresses {
+ public:
+  using Parts = StepParts<Real, Device, Shape>;
+
+  /// `mass` of the nodes [kg]. Tangents are stored in single precision where Newton's iterations correct what that
+  /// rounds off.
+  ParticleStresses(const Parts& parts, const Buffer<double, Device>& mass)
+      : parts_(parts), mass_(mass), single_(rounds(parts.controls)) {}
+
+  static bool rounds(const ImplicitControls& c) {
+    return std::is_same_v<Real, double> && !c.once() && c.linear.solver != LinearSolver::cholesky;
+  }
+
+  /// The particles have moved, or have been sorted: elements and neighbours anew.
+  void group() {
+    elements_.build(parts_.grid.view(), parts_.points.view());
+    if (parts_.controls.b_bar) means_.begin_step(elements_, parts_.points.count());
+  }
+  /// Room for the tangents of the particles.
+  void resize() {
+    const auto numbers =
+        static_cast<std::size_t>(TangentStore<Real>::numbers) * static_cast<std::size_t>(parts_.points.count());
+    if (single_) {
+      single_tangents_.resize(numbers);
+    } else {
+      tangents_.resize(numbers);
+    }
+  }
+
+  /// Adds f_int of (T16) for the displacement u to `forces`; stores the tangents too where `with_tangent`, without what
+  /// compression makes negative in them where `definite`.
+  void measure(const NodeVector<Device>& u, NodeVector<Device>& forces, bool with_tangent, bool definite) {
+    average(u);
+    using Stress = StressAt<Real, Shape>;
+    scatter_points(parts_.device, parts_.points.count(), parts_.grid.groups(),
+                   ScatterForces<Real, Shape, Stress>{{parts_.grid.view(), parts_.points.view()},
+                                                      Stress{.materials = parts_.materials,
+                                                             .dilatant = parts_.dilatant,
+                                                             .definite = definite,
+                                                             .means = means(),
+                                                             .tangents = with_tangent ? store() : TangentStore<Real>{},
+                                                             .u = u.data()},
+                                                      forces.data()});
+    if (springs().on()) apply_springs(elements_, springs(), u, forces);
+  }
+
+  /// B-bar (T17b): means over the elements for a displacement.
+  void average(const NodeVector<Device>& u) {
+    if (parts_.controls.b_bar)
+      means_.measure(elements_, parts_.grid.view(), parts_.points.view(), parts_.materials, parts_.dilatant, u.data());
+  }
+  MeanDilationView<Real> means() const { return parts_.controls.b_bar ? means_.view() : MeanDilationView<Real>{}; }
+
+  /// All that the tangent of a step is summed from.
+  PointTangents<Real> view() { return {parts_.grid.view(), parts_.points.view(), store(), means(), springs()}; }
+  const ElementList<Real, Device, Shape>& elements() const { return elements_; }
+
+  std::size_t tangent_bytes() const { return tangents_.bytes() + single_tangents_.bytes() + means_.bytes(); }
+
+ private:
+  TangentStore<Real> store() { return {tangents_.data(), parts_.points.count(), single_tangents_.data()}; }
+
+  /// Springs (T17a) on nodes with less than a tenth of a full one's mass, in statics.
+  FillerSprings springs() const {
+    if (parts_.controls.dynamic) return {};
+    const double h = parts_.spacing, hz = parts_.layer_height;
+    const Material<Real>& material = parts_.materials.list[0];
+    const double full = static_cast<double>(material.density) * h * h * hz;
+    return {.mass = mass_.data(),
+            .light = 0.1 * full,
+            .stiffness = parts_.controls.filler * 2 * static_cast<double>(material.shear_modulus) * std::min(h, hz)};
+  }
+
+  const Parts& parts_;
+  const Buffer<double, Device>& mass_;
+  bool single_;
+  ElementList<Real, Device, Shape> elements_;
+  MeanDilation<Real, Device, Shape> means_;
+  Buffer<Real, Device> tangents_;
+  Buffer<float, Device> single_tangents_;
+};
+
+}  // namespace talus::solver

@@ -1,0 +1,143 @@
+// The nodes at the start of an implicit step.
+#pragma once
+
+#include "solver/boundary/base_friction.hpp"
+#include "solver/boundary/walls.hpp"
+#include "solver/implicit/constraints.hpp"
+#include "solver/implicit/newmark.hpp"
+#include "solver/state/grid_view.hpp"
+
+namespace talus::solver {
+
+/// One thread: one column of nodes. Their velocities from momenta, loads, constraints and the first guess of the
+/// displacement.
+template <class Real>
+struct PrepareNodes {
+  GridView<Real> grid;
+  const int* active;
+  NodeArrays nodes;
+  Constraints held;
+  Walls<double> walls;
+  BaseFriction<double> base;
+  double full_base;  // mass of a base node under a full layer [kg]
+  Vec3<double> gravity;
+  NewmarkScheme scheme;
+  bool predict;  // start from the displacement of the present velocity
+
+  TALUS_HD void operator()(int c) const {
+    const int block = active[c / block_columns], inside = c % block_columns;
+    const int i = (block % grid.block_columns_x) * block_side + (inside & 3);
+    const int j = (block / grid.block_columns_x) * block_side + (inside >> 2);
+    const BlockSlot slot = grid.slots[block];
+    for (int k = slot.first_layer; k < slot.first_layer + slot.layers; ++k)
+      prepare(GridView<Real>::node(slot, i, j, k), i, j, k);
+  }
+
+ private:
+  TALUS_HD void prepare(int n, int i, int j, int k) const {
+    const double m = nodes.mass[n];
+    nodes.touch[n] = Touch::none;
+    held.limit[n] = 0;
+    if (held.traction) held.traction[n] = 0;
+    held.direction[n] = {};
+    if (held.way) held.way[n] = {};
+    held.changes[n] = {};
+    if (!(m > 0) || i >= grid.columns || j >= grid.rows) {
+      nodes.freed[n] = held.walls[n] = Sym3<double>{};
+      nodes.u[n] = {};
+      return;
+    }
+    nodes.velocity[n] = nodes.velocity[n] * (1 / m);
+    if (nodes.acceleration) nodes.acceleration[n] = nodes.acceleration[n] * (1 / m);
+    nodes.external[n] += gravity * m;
+    Vec3<double> u{};
+    Sym3<double> freed = whole_space();
+    Vec3<double> normal{};
+    double friction = 0;
+    const bool grounded = touch_ground(i, j, k, normal, friction, freed, u);
+    if (scheme.dynamic) nodes.arrival[n] = arrive(nodes.velocity[n], normal, friction);
+    if (predict && trace(freed) > 0) u = nodes.begin_velocity(n) * scheme.step;
+    for (int w = 0; w < walls.count; ++w) meet(walls.list[w], i, j, k, grounded, normal, friction, freed, u);
+    held.walls[n] = freed;
+    held.normal[n] = normal;
+    held.friction[n] = friction;
+    if (dot(normal, normal) > 0) {
+      u = u - normal * dot(u, normal);
+      freed = without(freed, normal);
+      nodes.touch[n] = begin_contact(n, normal, friction, freed);
+      if (nodes.touch[n] == Touch::sticks) {
+        freed = {};
+        u = {};
+      }
+    }
+    nodes.freed[n] = freed;
+    nodes.u[n] = u;
+  }
+
+  /// A node that its own weight's friction can stop within the step is taken to stick, to begin with.
+  TALUS_HD Touch begin_contact(int n, const Vec3<double>& normal, double friction, const Sym3<double>& freed) const {
+    if (!held.grips(n)) return Touch::slips;
+    if (!scheme.dynamic) return Touch::sticks;
+    const Vec3<double> v = freed * nodes.begin_velocity(n);
+    const double speed = length(v);
+    const double pull = held.traction ? held.traction[n] / nodes.mass[n] : 0;
+    if (speed <= (friction * fabs(dot(gravity, normal)) + pull) * scheme.step) return Touch::sticks;
+    held.direction[n] = v * (1 / speed);
+    if (held.way) held.way[n] = v * scheme.step;
+    return Touch::slips;
+  }
+
+  /// Where the ground bends, or is met, a node comes with a velocity into it. The ground takes that at once, and
+  /// friction its share of the same impulse, as in an explicit step; spread over the step by Newmark's rule it would
+  /// count four times.
+  TALUS_HD static Vec3<double> arrive(const Vec3<double>& v, const Vec3<double>& normal, double friction) {
+    return meet_surface(v, normal, friction) - v;
+  }
+
+  TALUS_HD bool touch_ground(int i, int j, int k, Vec3<double>& normal, double& friction, Sym3<double>& freed,
+                             Vec3<double>& u) const {
+    const int column = grid.column(i, j);
+    const int top = grid.contact_layer(column);
+    if (k > top) return false;
+    if (base.law == FrictionLaw::stick) {
+      freed = {};
+      u = {};
+      return true;
+    }
+    const double sx = static_cast<double>(grid.slope_x[column]), sy = static_cast<double>(grid.slope_y[column]);
+    const double scale = 1 / sqrt(1 + sx * sx + sy * sy);
+    normal = {-sx * scale, -sy * scale, scale};
+    const int n = GridView<Real>::node(grid.slot(i, j), i, j, k);
+    const Vec3<double> v = nodes.velocity[n];
+    const double slip = length(v - normal * dot(v, normal));
+    const Bed<double>& bed = base.at(column);
+    friction = base.coefficient(bed, slip);
+    if (held.traction && k == top) {
+      const double area = bed_area(nodes.mass[n], full_base, static_cast<double>(grid.spacing), sx, sy);
+      held.traction[n] = base.traction(bed, slip) * area;
+    }
+    return true;
+  }
+
+  TALUS_HD void meet(const Wall<double>& wall, int i, int j, int k, bool grounded, Vec3<double>& normal,
+                     double& friction, Sym3<double>& freed, Vec3<double>& u) const {
+    if (!wall.holds(i, j, k)) return;
+    Vec3<double> axis{};
+    component(axis, wall.axis) = 1;
+    if (wall.kind == WallKind::fixed) {
+      freed = {};
+      u = axis * (wall.speed * scheme.step);
+      normal = {};
+      return;
+    }
+    if (wall.kind == WallKind::frictional && !grounded) {
+      normal = axis * static_cast<double>(wall.side);
+      friction = wall.friction;
+      return;
+    }
+    freed = without(freed, axis);
+    component(u, wall.axis) = wall.speed * scheme.step;
+  }
+};
+
+}  // namespace talus::solver

@@ -1,0 +1,138 @@
+// The linear system of a Newton iteration: forces and tangent for a displacement, and the change of displacement that
+// the tangent asks for.
+#pragma once
+
+#include "solver/implicit/contact_set.hpp"
+#include "solver/implicit/line_search.hpp"
+#include "solver/implicit/particle_stresses.hpp"
+#include "solver/linear/direct/cholesky_solver.hpp"
+#include "solver/linear/krylov/bicgstab.hpp"
+#include "solver/linear/krylov/conjugate_gradient.hpp"
+#include "solver/linear/operator/tangent_operator.hpp"
+#include "solver/linear/preconditioner/preconditioner.hpp"
+
+namespace talus::solver {
+
+/// Statics on few points per cell leaves modes of the splines that no point's gradient sees: the share of the diagonal
+/// that holds them in a factorisation. The change it makes to a step is undone by the next Newton iteration.
+inline constexpr double static_shift = 1e-12;
+
+/// The tangent K of the particles with inertia and contacts, A of (T19), and the solvers that invert it.
+template <class Real, class Device, class Shape>
+class TangentSystem {
+ public:
+  using Parts = StepParts<Real, Device, Shape>;
+
+  TangentSystem(const Parts& parts, NodeFields<Device>& nodes, ContactSet<Real, Device, Shape>& contacts)
+      : parts_(parts),
+        nodes_(nodes),
+        contacts_(contacts),
+        stresses_(parts, nodes.mass),
+        operator_(parts.controls.linear.form, ParticleStresses<Real, Device, Shape>::rounds(parts.controls)),
+        preconditioner_(parts.controls.linear.preconditioner) {}
+
+  /// The particles have moved, or have been sorted: elements and neighbours anew, where anything goes by them.
+  void group() {
+    const LinearControls& c = parts_.controls.linear;
+    const bool preconditioned = !direct() && NodePreconditioner<Real, Device, Shape>::by_elements(c.preconditioner);
+    if (parts_.controls.dynamic && !direct() && !preconditioned && c.form == Operator::points && !parts_.controls.b_bar)
+      return;
+    stresses_.group();
+    if (direct()) {
+      cholesky_.begin_step(stresses_.elements());
+    } else {
+      operator_.begin_step(stresses_.elements(), parts_.grid.nodes());
+    }
+  }
+  /// Room for the tangents, and the scheme of the step.
+  void begin(const NewmarkScheme& scheme) {
+    scheme_ = scheme;
+    stresses_.resize();
+  }
+
+  /// Internal force for the displacement u, less that of the contact points.
+  void measure_forces() { measure(false, false); }
+  /// The same with the tangent there.
+  void measure(Linearisation linearisation) { measure(true, linearisation == Linearisation::definite); }
+
+  /// Solves A x = b for the tangent measured last, to a relative residual of `tolerance` unless it is factorised.
+  LinearReport solve(const NodeVector<Device>& b, NodeVector<Device>& x, double tolerance) {
+    if (direct()) return cholesky_.solve(stresses_.view(), held_nodes(), b, x);
+    refresh();
+    const ProfilePhase<Device> phase("conjugate gradients");
+    const KrylovLimits limits{.tolerance = tolerance, .iterations = parts_.controls.linear.iterations};
+    Product product{*this};
+    return parts_.controls.linear.solver == LinearSolver::pcg ? cg_.solve(product, preconditioner_, b, x, limits)
+                                                              : bicgstab_.solve(product, preconditioner_, b, x, limits);
+  }
+
+  ParticleStresses<Real, Device, Shape>& stresses() { return stresses_; }
+
+  /// Bytes of the parts, by name.
+  template <class Add>
+  void list_memory(Add&& add) const {
+    add("tangents", stresses_.tangent_bytes());
+    add("elements", stresses_.elements().bytes());
+    add("operator", operator_.bytes());
+    add("preconditioner", preconditioner_.bytes());
+    add("Krylov vectors", cg_.bytes() + bicgstab_.bytes());
+    add("factor and its matrix", cholesky_.bytes() + static_cast<std::size_t>(cholesky_.factor().factor_bytes()));
+  }
+
+ private:
+  /// The tangent as Krylov methods take it (krylov/contract.hpp).
+  struct Product {
+    TangentSystem& system;
+    void add_product(const NodeVector<Device>& x, NodeVector<Device>& y, const int* halted) {
+      system.operator_.apply(x, y, halted);
+      system.contacts_.apply(x, y);
+    }
+    CloseProduct closing(const NodeVector<Device>& x, NodeVector<Device>& y) {
+      return {.nodes = system.nodes_.arrays(system.parts_.controls.dynamic),
+              .held = system.contacts_.constraints(),
+              .inertia = system.scheme_.inertia(),
+              .x = x.data(),
+              .y = y.data()};
+    }
+  };
+
+  bool direct() const { return parts_.controls.linear.solver == LinearSolver::cholesky; }
+
+  void measure(bool with_tangent, bool definite) {
+    const ProfilePhase<Device> phase("stress and tangent");
+    nodes_.internal.fill_zero();
+    stresses_.measure(nodes_.u, nodes_.internal, with_tangent, definite);
+    contacts_.scatter(with_tangent);
+  }
+
+  /// What stands on the diagonal beside the particles' stiffness.
+  HeldNodes held_nodes() {
+    return {.count = nodes_.count,
+            .mass = nodes_.mass.data(),
+            .freed = nodes_.freed.data(),
+            .inertia = scheme_.inertia(),
+            .shift = parts_.controls.dynamic ? 0 : static_shift,
+            .stiffness = contacts_.measure_stiffness()};
+  }
+
+  void refresh() {
+    const ProfilePhase<Device> phase("operator and preconditioner");
+    const SparseGrid<Real, Device>& grid = parts_.grid;
+    preconditioner_.refresh(stresses_.view(), grid.groups(), stresses_.elements(),
+                            {grid.view(), grid.active_list(), grid.active_blocks()}, held_nodes());
+    operator_.refresh(stresses_.view(), grid.groups());
+  }
+
+  const Parts& parts_;
+  NodeFields<Device>& nodes_;
+  ContactSet<Real, Device, Shape>& contacts_;
+  NewmarkScheme scheme_;
+  ParticleStresses<Real, Device, Shape> stresses_;
+  TangentOperator<Real, Device, Shape> operator_;
+  NodePreconditioner<Real, Device, Shape> preconditioner_;
+  ConjugateGradient<Device> cg_;
+  BiCgStab<Device> bicgstab_;
+  CholeskySolver<Real, Device, Shape> cholesky_;
+};
+
+}  // namespace talus::solver
