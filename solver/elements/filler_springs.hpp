@@ -1,6 +1,6 @@
 // Statics on a body that does not fill its cells: nodes at its rim carry next to no material, and compression makes the
 // tangent there indefinite (a rim cell turns about a point like a hinge). Weak springs hold such nodes to where the
-// nodes further in say they belong, in each of their elements (cf. the extension of Hoellig, Reif & Wipper 2001).
+// nodes further in say they belong, in each of their elements (T17a; cf. the extension of Hoellig, Reif & Wipper 2001).
 //
 // Quadratic functions: node n is held to the straight line through its neighbours a and b inwards, k |u_n - 2 u_a +
 // u_b|^2 / 2, which an affine motion, a turn too, does not feel. Linear ones have no third node: n is held to the
@@ -30,7 +30,7 @@ struct FillerSprings {
 
   TALUS_HD bool on() const { return mass != nullptr; }
 
-  /// The spring of local node n of an element with these nodes, width^3 of them, numbered as in ElementView.
+  /// The spring (T17a) of local node n of an element with these nodes, width^3 of them, numbered as in ElementView.
   template <int width>
   TALUS_HD FillerSpring at(const int* nodes, int n) const {
     FillerSpring s;

@@ -8,8 +8,8 @@
 
 namespace talus::solver {
 
-/// What the points' stresses, or their changes, give to the nodes: V P grad N, P = law(p, its gradients), which may
-/// keep what belongs to the point.
+/// Sums V P grad N over the points, the internal force f_int of (T16) or its change: P = law(p, its gradients) is the
+/// nominal stress, and may keep what belongs to the point.
 template <class Real, class Shape, class Law>
 struct ScatterForces : PointScatter<Real, Shape> {
   using Base = PointScatter<Real, Shape>;
@@ -46,7 +46,8 @@ struct ScatterForces : PointScatter<Real, Shape> {
   TALUS_HD double* part(int node, int q) const { return &forces[node].x + q; }
 };
 
-/// Stress for the displacement u; the tangent as well where there is a store for it.
+/// The law of ScatterForces that gives the stress for the displacement u, and stores the tangent (T17) as well where
+/// there is a store for it.
 template <class Real, class Shape>
 struct StressAt {
   static constexpr int tiles_at_once = 0;
@@ -70,7 +71,8 @@ struct StressAt {
   }
 };
 
-/// Change of the stress for a displacement x, by the tangents: K x, point by point, never assembled.
+/// The law of ScatterForces that gives the change of the stress for a displacement x, by the tangents: K x, point by
+/// point, never assembled.
 template <class Real, class Shape>
 struct TangentTimes {
   static constexpr int tiles_at_once = 8;  // worth the few registers that go through memory

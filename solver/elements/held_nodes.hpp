@@ -13,7 +13,7 @@ struct HeldNodes {
   const Sym3<double>* freed = nullptr;  // projector on the free directions; zero: held, and no unknown
   double inertia = 0;                   // [1/s2]; 0 in statics
   double shift = 0;  // share by which the diagonal is raised: statics on few points has modes no point sees
-  const Sym3<double>* stiffness = nullptr;  // of what else holds a node, friction say [N/m]; null: nothing
+  const Sym3<double>* stiffness = nullptr;  // of what else holds a node, such as friction [N/m]; null: nothing
 };
 
 /// K + mass inertia + stiffness of a node.
@@ -22,8 +22,8 @@ TALUS_HD Sym3<double> own_block(const HeldNodes& held, const Sym3<double>& tange
   return held.stiffness ? b + held.stiffness[n] : b;
 }
 
-/// What a node has on the diagonal: P (K + mass inertia + stiffness) P + (I - P), which has the action on the free
-/// directions and is regular.
+/// A node's block on the diagonal of (T19): P (K + mass inertia + stiffness) P + (I - P), which has the action on the
+/// free directions and is regular.
 TALUS_HD Sym3<double> held_block(const HeldNodes& held, const Sym3<double>& tangent, int n) {
   const Sym3<double> p = held.freed[n], b = own_block(held, tangent, n);
   const Vec3<double> e[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};

@@ -15,7 +15,7 @@ struct NumberPoints {
   }
 };
 
-/// One thread: one element. Its means.
+/// One thread: one element. Its means (T17b): of the volume change, the stress, the bulk response and the gradients.
 template <class Real, class Shape>
 struct MeasureMeans {
   GridView<Real> grid;

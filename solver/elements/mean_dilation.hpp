@@ -1,5 +1,5 @@
-// B-bar: the volume change of an element's points replaced by their mean, in stress, tangent and state (Hughes 1980;
-// for finite strain Simo, Taylor & Pister 1985). Without it nearly incompressible material locks.
+// B-bar: the volume change of an element's points replaced by their mean, in stress, tangent and state (T17b; Hughes
+// 1980; for finite strain Simo, Taylor & Pister 1985). Without it nearly incompressible material locks.
 //
 // With the mean increment t = sum V_p ln det(I + G_p) / sum V_p of the step, a point's pressure follows from its own
 // history and t; the force uses the element's mean of it, p. So the residual is the derivative of an energy, and its

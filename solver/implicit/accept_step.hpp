@@ -77,7 +77,8 @@ struct AcceptStep {
   }
 
  private:
-  /// New velocity, acceleration and affine velocity; returns the way in reference coordinates [m].
+  /// New velocity (T7), acceleration and affine velocity (T8); returns the way in reference coordinates, its rise by
+  /// the nodes' own climb (T10) [m].
   TALUS_HD Vec3<double> gather_motion(int p, const PointGradients<Real, Shape>& g) const {
     const bool follows = grid.mapping == Mapping::terrain_following;
     Vec3<double> u{}, v{}, a1{};
@@ -135,6 +136,7 @@ struct AcceptStep {
       atomic_increment(&clock->outflow_count);
       return;
     }
+    // Waves and speed over the cell, the bracket of (T11).
     const Real steep = Real(1) + g.s.slope_x * g.s.slope_x + g.s.slope_y * g.s.slope_y;
     const Real wave_speed =
         points.material ? materials.list[points.material[p]].wave_speed : materials.list[0].wave_speed;

@@ -31,7 +31,7 @@ struct NodeMass {
   TALUS_HD Real mass(int n) const { return static_cast<Real>(data[n]); }
 };
 
-/// One thread: one contact point. What stands before it, and friction for the velocity that the step begins with.
+/// One thread: one contact point. The mass before it, and friction for the velocity that the step begins with.
 template <class Real, class Shape>
 struct MeasureGrip {
   GridView<Real> grid;
@@ -63,8 +63,8 @@ struct MeasureGrip {
   }
 };
 
-/// The force of contact point c for a displacement of the grid and, with `stiffness`, minus its derivative, friction's
-/// limit held.
+/// The force (T12b) of contact point c for a displacement of the grid and, with `stiffness`, minus its derivative,
+/// friction's limit held.
 template <class Real>
 TALUS_HD Vec3<double> contact_force(const ContactView<Real>& contacts, const ContactNumbers& numbers, int c,
                                     const Vec3<double>& u, Sym3<double>* stiffness) {

@@ -88,8 +88,8 @@ struct PrepareNodes {
   }
 
   /// Where the ground bends, or is met, a node comes with a velocity into it. The ground takes that at once, and
-  /// friction its share of the same impulse, as in an explicit step; spread over the step by Newmark's rule it would
-  /// count four times.
+  /// friction its share of the same impulse (T12), as in an explicit step; spread over the step by Newmark's rule it
+  /// would count four times.
   TALUS_HD static Vec3<double> arrive(const Vec3<double>& v, const Vec3<double>& normal, double friction) {
     return meet_surface(v, normal, friction) - v;
   }

@@ -7,7 +7,7 @@
 
 namespace talus::solver {
 
-/// Mass, momentum, acceleration (as mass times it) and loads of the points to the nodes.
+/// Mass (T3), momentum (T4), acceleration (as mass times it) and loads of the points to the nodes.
 template <class Real, class Shape>
 struct ScatterInertia : PointScatter<Real, Shape> {
   using Base = PointScatter<Real, Shape>;

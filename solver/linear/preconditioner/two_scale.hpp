@@ -1,4 +1,4 @@
-// Functions of twice the spacing as sums of those of one (subdivision; Lane & Riesenfeld 1980), one direction at a
+// Functions of twice the spacing as sums of those of one (T20; subdivision, Lane & Riesenfeld 1980), one direction at a
 // time. Spaces are nested, so that a coarse displacement is one of the fine grid, to the digit.
 #pragma once
 
@@ -12,8 +12,8 @@ struct TwoScale {
   /// Coarse functions over so many fine ones.
   TALUS_HD int count(int fine) const { return kind == same ? fine : kind == hats ? fine / 2 + 1 : fine / 2 + 2; }
 
-  /// Coarse function c is the sum of weight(n) times fine function first(c) + n, n < children(), as far as that is
-  /// there.
+  /// (T20): coarse function c is the sum of weight(n) times fine function first(c) + n, n < children(), as far as that
+  /// is there.
   TALUS_HD int children() const { return kind == same ? 1 : kind == hats ? 3 : 4; }
   TALUS_HD int first(int coarse) const {
     return kind == same ? coarse : kind == hats ? 2 * coarse - 1 : 2 * coarse - 3;

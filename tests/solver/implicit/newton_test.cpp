@@ -1,0 +1,246 @@
+// Newton's method on toy problems: smooth, with a kink, with a singular tangent, with stick and slip, and without a
+// solution.
+#include "solver/implicit/newton.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/solver/implicit/toy_problem.hpp"
+
+namespace talus::solver::testing {
+namespace {
+
+NewtonControls controls(double tolerance = 1e-12) {
+  return {.iterations = 30, .tolerance = tolerance, .forcing = Forcing::fixed, .linear_tolerance = 1e-12};
+}
+
+TEST(Newton, converges_quadratically_on_a_smooth_problem) {
+  ToyProblem p = scalar_problem(
+      0, [](double u) { return 3 - u - u * u * u; }, [](double u) { return 1 + 3 * u * u; });
+  const NewtonReport report = newton(p, controls());
+  EXPECT_TRUE(report.converged);
+  EXPECT_FALSE(report.indefinite);
+  EXPECT_NEAR(p.u(0), 1.2134116627622296, 1e-12);  // of u^3 + u = 3
+  EXPECT_EQ(report.linear_iterations, report.iterations);
+  EXPECT_EQ(p.residuals.size(), static_cast<std::size_t>(report.iterations) + 1);
+  // Once near the root the residual is squared, up to f'' / (2 f'^2) = 0.13.
+  int squared = 0;
+  for (std::size_t i = 1; i < p.residuals.size(); ++i) {
+    if (p.residuals[i - 1] > 0.1 || p.residuals[i] < 1e-14) continue;
+    EXPECT_LT(p.residuals[i], 0.2 * p.residuals[i - 1] * p.residuals[i - 1]) << "iteration " << i;
+    ++squared;
+  }
+  EXPECT_GE(squared, 1);
+}
+
+TEST(Newton, solves_a_linear_problem_in_one_iteration) {
+  ToyProblem p;
+  p.u = Vector::Zero(2);
+  const Eigen::Matrix2d k = (Eigen::Matrix2d() << 4, -1, -1, 3).finished();
+  p.force = [k](const Vector& u) -> Vector { return Vector((Vector(2) << 1, 2).finished() - k * u); };
+  p.tangent = p.definite = [k](const Vector&) -> Matrix { return k; };
+  const NewtonReport report = newton(p, controls());
+  EXPECT_TRUE(report.converged);
+  EXPECT_EQ(report.iterations, 1);
+  EXPECT_NEAR(p.u(0), 5.0 / 11, 1e-14);
+  EXPECT_NEAR(p.u(1), 9.0 / 11, 1e-14);
+}
+
+TEST(Newton, finds_its_way_over_a_kink) {
+  // A stop: a hundred times as stiff beyond u = 0. The first change overshoots it by far.
+  ToyProblem p = scalar_problem(
+      -1, [](double u) { return 10 - (u < 0 ? u : 100 * u); }, [](double u) { return u < 0 ? 1.0 : 100.0; });
+  const NewtonReport report = newton(p, controls());
+  EXPECT_TRUE(report.converged);
+  EXPECT_NEAR(p.u(0), 0.1, 1e-12);
+  EXPECT_LE(report.iterations, 5);
+  EXPECT_GT(p.measures, report.iterations + 1) << "no share of a change was ever refused";
+}
+
+TEST(Newton, goes_on_with_a_definite_tangent_where_its_own_is_singular) {
+  // Two wells and a hill between them: where its slope is steepest the tangent is singular, above that negative.
+  const double steepest = std::sqrt(1.0 / 3);
+  ToyProblem p = scalar_problem(
+      0, [](double u) { return u - u * u * u; }, [](double u) { return 3 * u * u - 1; });
+  p.definite = [](const Vector& u) -> Matrix { return Matrix::Constant(1, 1, 3 * u(0) * u(0)); };
+  for (const double start : {steepest - 1e-9, 1e-9 - steepest, steepest - 0.01}) {
+    p.u(0) = start;
+    const NewtonReport report = newton(p, controls());
+    EXPECT_TRUE(report.converged) << "from " << start;
+    EXPECT_TRUE(report.indefinite) << "from " << start;
+    EXPECT_GT(report.linear_iterations, report.iterations);
+    EXPECT_NEAR(p.u(0), start > 0 ? 1 : -1, 1e-12);
+  }
+  // Near the top every way down leads through larger forces: the step is refused there, and u is where it was.
+  p.u(0) = 0.1;
+  const NewtonReport report = newton(p, controls());
+  EXPECT_FALSE(report.converged);
+  EXPECT_TRUE(report.indefinite);
+  EXPECT_EQ(p.u(0), 0.1);
+}
+
+TEST(Newton, refuses_what_nothing_holds) {
+  ToyProblem p = scalar_problem(
+      0, [](double) { return 1.0; }, [](double) { return 0.0; });
+  const NewtonReport report = newton(p, controls());
+  EXPECT_FALSE(report.converged);
+  EXPECT_TRUE(report.indefinite);
+  EXPECT_EQ(p.u(0), 0);
+}
+
+TEST(Newton, refuses_a_problem_without_a_solution) {
+  ToyProblem p = scalar_problem(
+      1, [](double u) { return 1 + u * u; }, [](double u) { return -2 * u; });
+  p.definite = [](const Vector& u) -> Matrix { return Matrix::Constant(1, 1, 2 * std::abs(u(0)) + 1e-3); };
+  const NewtonReport report = newton(p, controls());
+  EXPECT_FALSE(report.converged);
+  EXPECT_GE(report.residual, 1);
+}
+
+TEST(Newton, refuses_a_force_that_is_no_number) {
+  ToyProblem p = scalar_problem(
+      0, [](double) { return std::numeric_limits<double>::quiet_NaN(); }, [](double) { return 1.0; });
+  const NewtonReport report = newton(p, controls());
+  EXPECT_FALSE(report.converged);
+  EXPECT_EQ(report.iterations, 0);
+  EXPECT_EQ(p.searches, 0);
+}
+
+TEST(Newton, refuses_a_step_that_moves_too_far) {
+  ToyProblem p = scalar_problem(
+      0, [](double u) { return 2 - u; }, [](double) { return 1.0; });
+  p.reach = 1;
+  EXPECT_FALSE(newton(p, controls()).converged);
+  p.u(0) = 0;
+  p.reach = 3;
+  EXPECT_TRUE(newton(p, controls()).converged);
+}
+
+TEST(Newton, ends_when_iterations_run_out) {
+  ToyProblem p = scalar_problem(
+      0, [](double u) { return 3 - u - u * u * u; }, [](double u) { return 1 + 3 * u * u; });
+  NewtonControls few = controls();
+  few.iterations = 2;
+  const NewtonReport report = newton(p, few);
+  EXPECT_FALSE(report.converged);
+  EXPECT_EQ(report.iterations, 2);
+}
+
+/// Two blocks on a rough bed, each on a spring of its own and with one between them; the first is pulled.
+ToyProblem two_blocks(double pull, double first_limit, double second_limit) {
+  ToyProblem p;
+  p.u = Vector::Zero(2);
+  const Eigen::Matrix2d k =
+      (Eigen::Matrix2d() << 3, -1, -1, 2).finished();  // springs of 2 and 1, and 1 between the blocks
+  p.force = [k, pull](const Vector& u) -> Vector { return Vector((Vector(2) << pull, 0).finished() - k * u); };
+  p.tangent = p.definite = [k](const Vector&) -> Matrix { return k; };
+  p.friction = {{.limit = first_limit}, {.limit = second_limit}};
+  return p;
+}
+
+TEST(Newton, leaves_what_friction_can_hold_where_it_is) {
+  ToyProblem p = two_blocks(0.9, 1, 1);
+  const NewtonReport report = newton(p, controls());
+  EXPECT_TRUE(report.converged);
+  EXPECT_EQ(report.iterations, 0);
+  EXPECT_EQ(p.u.norm(), 0) << "what rests must not slip at all";
+}
+
+TEST(Newton, lets_one_block_slip_and_the_other_stick) {
+  ToyProblem p = two_blocks(3, 1, 1);
+  const NewtonReport report = newton(p, controls());
+  EXPECT_TRUE(report.converged);
+  EXPECT_FALSE(p.friction[0].sticks);
+  EXPECT_TRUE(p.friction[1].sticks);
+  EXPECT_NEAR(p.u(0), (3.0 - 1) / 3, 1e-12);
+  EXPECT_EQ(p.u(1), 0);
+}
+
+TEST(Newton, lets_the_second_block_slip_once_the_first_pulls_it) {
+  ToyProblem p = two_blocks(9, 1, 1);
+  const NewtonReport report = newton(p, controls());
+  EXPECT_TRUE(report.converged);
+  EXPECT_FALSE(p.friction[1].sticks);
+  // 3 u - v = 8, -u + 2 v = -1
+  EXPECT_NEAR(p.u(0), 3, 1e-12);
+  EXPECT_NEAR(p.u(1), 1, 1e-12);
+  EXPECT_LE(report.iterations, 3);
+}
+
+TEST(Newton, lets_a_block_stick_again_that_turns_back) {
+  // The second block begins as one that slips forwards; held by its own spring alone it would be pushed back.
+  ToyProblem p = two_blocks(0.5, 1, 1);
+  p.friction[1] = {.limit = 1, .sticks = false, .direction = 1};
+  const NewtonReport report = newton(p, controls());
+  EXPECT_TRUE(report.converged);
+  EXPECT_TRUE(p.friction[1].sticks);
+  EXPECT_EQ(p.reversals, 1);
+  EXPECT_EQ(p.u.norm(), 0);
+}
+
+TEST(Newton, smooths_friction_less_before_it_accepts_what_may_rest) {
+  ToyProblem p = scalar_problem(
+      0, [](double u) { return 1e-6 - u; }, [](double) { return 1.0; });
+  p.smooth = {.smooths = true, .gravity_way = 1, .width = FrictionSmoothing::widest};
+  const NewtonReport report = newton(p, controls());
+  EXPECT_TRUE(report.converged);
+  EXPECT_EQ(p.smooth.width, FrictionSmoothing::narrowest);  // nothing has moved as far as any slip
+}
+
+TEST(Newton, smooths_friction_more_where_it_makes_no_progress) {
+  // A force that changes its sign without passing through zero: no displacement balances it.
+  ToyProblem p = scalar_problem(
+      1, [](double u) { return u > 0 ? -1.0 - u : 1.0 - u; }, [](double) { return 1.0; });
+  p.smooth = {.smooths = true, .gravity_way = 1, .width = FrictionSmoothing::narrowest};
+  EXPECT_FALSE(newton(p, controls()).converged);
+  EXPECT_EQ(p.smooth.width, FrictionSmoothing::widest);
+}
+
+TEST(Newton, solves_once_with_the_tangent_at_the_start) {
+  ToyProblem p = scalar_problem(
+      0, [](double u) { return 3 - u - u * u * u; }, [](double u) { return 1 + 3 * u * u; });
+  const NewtonReport report = solve_once(p, controls());
+  EXPECT_TRUE(report.converged);
+  EXPECT_EQ(report.iterations, 1);
+  EXPECT_EQ(p.u(0), 3);
+  EXPECT_EQ(p.searches, 0);
+  p.u(0) = 0;
+  p.reach = 1;
+  EXPECT_FALSE(solve_once(p, controls()).converged);
+}
+
+TEST(LinearForcing, asks_for_as_much_as_the_last_iteration_brought) {
+  const NewtonControls c{.tolerance = 1e-6, .forcing = Forcing::eisenstat_walker, .linear_tolerance = 1e-8};
+  LinearForcing forcing;
+  EXPECT_EQ(forcing.next(1, c), 1e-3);
+  EXPECT_DOUBLE_EQ(forcing.next(0.1, c), 0.9 * 0.01);
+  EXPECT_DOUBLE_EQ(forcing.next(0.1, c), 0.1) << "no progress: at most this";
+  EXPECT_DOUBLE_EQ(forcing.next(1e-5, c), 0.01) << "no finer than Newton's own tolerance asks for";
+  EXPECT_EQ(LinearForcing{}.next(1, controls()), controls().linear_tolerance);
+}
+
+TEST(FrictionSmoothing, widens_by_tens_and_narrows_by_halves) {
+  FrictionSmoothing s{.smooths = true, .gravity_way = 2};
+  EXPECT_EQ(s.slip(), 2e-5);
+  EXPECT_DOUBLE_EQ(s.head_start(), 2e-3);
+  int times = 0;
+  while (s.widen()) ++times;
+  EXPECT_EQ(times, 4);
+  EXPECT_EQ(s.width, FrictionSmoothing::widest);
+  EXPECT_TRUE(s.too_wide_for(0.1));
+  EXPECT_FALSE(s.too_wide_for(10));
+  s.narrow_after(100);
+  EXPECT_EQ(s.width, FrictionSmoothing::widest) << "that step did not converge well";
+  s.narrow_after(3);
+  EXPECT_EQ(s.width, 0.5 * FrictionSmoothing::widest);
+  for (int i = 0; i < 9; ++i) s.narrow();
+  EXPECT_EQ(s.width, FrictionSmoothing::narrowest);
+  EXPECT_FALSE(s.too_wide_for(0));
+  s.smooths = false;
+  EXPECT_FALSE(s.widen());
+}
+
+}  // namespace
+}  // namespace talus::solver::testing
