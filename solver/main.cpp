@@ -43,16 +43,16 @@ Stage stage() {
 }
 
 /// What was measured, in words and as profile.csv.
-void report_profile(const RunSummary& summary, On on, const std::filesystem::path& out) {
-  Profile& profile = profile_of(on);
+void report_profile(const RunSummary& summary, const AnyDevice& device, const std::filesystem::path& out) {
+  Profile& profile = device.profile();
   profile.turn_off();
-  const double copy = on == On::gpu ? copy_bandwidth(GpuDevice{}) : copy_bandwidth(CpuDevice{});
+  const double copy = device.is_gpu() ? copy_bandwidth(device.gpu()) : copy_bandwidth(device.cpu());
   for (const std::string& text : profile_lines(summary, profile, copy)) log_info(text);
   write_text(out / "profile.csv", profile_csv(profile, copy));
 }
 
 /// One sentence on what will run: points, cells, first step.
-void log_plan(const Domain& domain, const SolveOptions& o, On on) {
+void log_plan(const Domain& domain, const SolveOptions& o, const AnyDevice& device) {
   const Scene scene = make_scene(domain, o);
   const GroundTables ground = make_ground_tables(scene.grid);
   const double wave_speed = fastest_wave(o);
@@ -62,7 +62,7 @@ void log_plan(const Domain& domain, const SolveOptions& o, On on) {
                        scene.points.size(), volume, scene.grid.columns, scene.grid.rows, scene.grid.spacing,
                        scene.grid.layer_height));
   log_info(fmt::format("wave speed {:.0f} m/s, first step {:.3g} s, about {:.0f} steps, on the {}", wave_speed, step,
-                       o.end_time / step, on == On::gpu ? "GPU" : "CPU"));
+                       o.end_time / step, device.is_gpu() ? "GPU" : "CPU"));
 }
 
 /// stiffness = "auto" carried out, and said.
@@ -76,7 +76,7 @@ SolveOptions settle_stiffness(const Domain& domain, SolveOptions o) {
 }
 
 /// The run once more, twice as stiff, and the difference of the deposits as a share of the volume.
-void check_stiffness(const Domain& domain, SolveOptions o, On on, const StageContext& context,
+void check_stiffness(const Domain& domain, SolveOptions o, const AnyDevice& device, const StageContext& context,
                      const std::filesystem::path& first) {
   o.transfer_time *= std::sqrt(2.0);
   o.material.youngs_modulus *= 2;
@@ -85,7 +85,7 @@ void check_stiffness(const Domain& domain, SolveOptions o, On on, const StageCon
   const auto folder = context.out / "stiffness-check";
   std::filesystem::create_directories(folder);
   const RunPaths paths(folder);
-  Simulation(domain, o, on, paths, "").run(context.recipe.scene_name(), context.recipe.title());
+  Simulation(domain, o, device, paths, "").run(context.recipe.scene_name(), context.recipe.title());
   const Run soft = read_run(first), stiff = read_run(paths.run);
   double moved = 0, all = 0;
   for (std::size_t n = 0; n < soft.maps.deposit_thickness.size(); ++n) {
@@ -111,15 +111,15 @@ void find_obstacles(SolveOptions& o, const std::filesystem::path& out) {
 void solve(StageContext& context) {
   auto options = with_preset(context.recipe.read<SolveOptions>("solve"));
   find_obstacles(options, context.out);
-  const On on = choose_device(context.on);
+  const AnyDevice device = make_device(choose_device(context.on));
   const auto domain_file = options.domain.empty() ? context.out / "domain.vdb" : options.domain;
   const Domain domain = read_domain(domain_file);
   options = settle_stiffness(domain, options);
   if (context.plan) {
-    for (const std::string& text : plan(domain, options, on)) log_info(text);
+    for (const std::string& text : plan(domain, options, device)) log_info(text);
     return;
   }
-  log_plan(domain, options, on);
+  log_plan(domain, options, device);
 
   const std::string settings = recipe::to_toml(options, "solve", false);
   std::string fingerprint = sha256(domain_file) + "\n" + settings;
@@ -130,15 +130,15 @@ void solve(StageContext& context) {
       inputs.push_back(obstacle.level_set);
   }
   const RunPaths paths(context.out);
-  if (context.profile) profile_of(on).turn_on();
-  Simulation simulation(domain, options, on, paths, fingerprint);
+  if (context.profile) device.profile().turn_on();
+  Simulation simulation(domain, options, device, paths, fingerprint);
   if (context.check_only) return;
   if (context.restart) simulation.resume(context.restart->empty() ? paths.checkpoint : *context.restart);
   const RunSummary summary = simulation.run(context.recipe.scene_name(), context.recipe.title());
   log_info(fmt::format("{} at t = {:.2f} s after {} steps in {:.1f} s", summary.stop_reason, summary.time_end,
                        summary.steps, summary.wall_time));
-  if (context.profile) report_profile(summary, on, context.out);
-  if (options.material.stiffness_check) check_stiffness(domain, options, on, context, paths.run);
+  if (context.profile) report_profile(summary, device, context.out);
+  if (options.material.stiffness_check) check_stiffness(domain, options, device, context, paths.run);
   context.results.push_back(paths.run);
   write_used_recipe(context, stage(), recipe::to_used_toml(options, "solve"), inputs,
                     {{"on", summary.on},

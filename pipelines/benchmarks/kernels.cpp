@@ -128,9 +128,10 @@ std::string name_of(const KernelSetting& k) {
 
 KernelRun time_kernels(const KernelSetting& k, On on) {
   const SolveOptions options = options_for(k);
+  const AnyDevice device = make_device(on);
   const auto solver = [&] {
     const Scene scene = block(k.points, options);
-    return make_solver(scene, options, on);
+    return make_solver(scene, options, device);
   }();
   solver->set_next_event(1e9);
   KernelRun run;
@@ -161,7 +162,7 @@ KernelRun time_kernels(const KernelSetting& k, On on) {
   // Rounding; Newton's tolerance of 1e-4 in some ten steps.
   run.pass = run.check < (k.newmark ? 2e-3 : k.precision == Precision::double_ ? 1e-9 : 1e-3);
   for (const auto& [owner, bytes] : solver->memory()) run.memory.emplace_back(owner, static_cast<double>(bytes));
-  Profile& profile = profile_of(on);
+  Profile& profile = device.profile();
   const auto profiled = [&](bool kernels) {
     profile.clear();
     profile.turn_on(kernels);

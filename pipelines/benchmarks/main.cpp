@@ -100,7 +100,7 @@ std::string picture(const std::string& title, const std::string& label, const st
 
 int kernels(const Words& words, On on) {
   const double most = words.most > 0 ? words.most : on == On::gpu ? 1e7 : 1e4;
-  const double copy = on == On::gpu ? copy_bandwidth(GpuDevice{}) : copy_bandwidth(CpuDevice{});
+  const double copy = on == On::gpu ? copy_bandwidth(GpuDevice::make()) : copy_bandwidth(CpuDevice::make());
   std::vector<KernelRun> runs;
   bool pass = true;
   for (const bool newmark : {false, true}) {

@@ -133,6 +133,8 @@ struct TakeImpulses {
 template <class Real, class Device, class Shape>
 class ContactImpulses {
  public:
+  explicit ContactImpulses(const Device& device) : device_(device) {}
+
   /// `clock` null: of `step` seconds, and nothing is kept but the impulse. Without `grips`, and without history, the
   /// surfaces are merely kept from being run through.
   struct Pass {
@@ -151,7 +153,7 @@ class ContactImpulses {
       given_.fill_zero();
     }
     const auto take = [&] {
-      for_each(Device{}, node_count, TakeImpulses<Real, Nodes>{nodes, pass.clock, given_.data()});
+      for_each(device_, node_count, TakeImpulses<Real, Nodes>{nodes, pass.clock, given_.data()});
     };
     contact.each(BeginContacts<Real, Shape, Nodes>{grid, contact.view(), nodes, pass.remembers ? pass.clock : nullptr,
                                                    impulse_.data(), given_.data(), yielding_.data()});
@@ -168,8 +170,9 @@ class ContactImpulses {
   std::size_t bytes() const { return impulse_.bytes() + given_.bytes() + yielding_.bytes(); }
 
  private:
-  Buffer<Vec3<Real>, Device> impulse_, given_;
-  Buffer<Real, Device> yielding_;
+  Device device_;
+  Buffer<Vec3<Real>, Device> impulse_{device_}, given_{device_};
+  Buffer<Real, Device> yielding_{device_};
 };
 
 }  // namespace talus::solver

@@ -121,9 +121,11 @@ struct ForgetForces {
 template <class Real, class Device, class Shape>
 class SurfaceContact {
  public:
-  SurfaceContact(const ContactPoints& points, const BaseFriction<Real>& ground, const GridShape& shape,
-                 const ContactState& state, bool in_order)
-      : count_(static_cast<int>(points.size())), blocks_x_((shape.columns + block_side - 1) / block_side) {
+  SurfaceContact(const Device& device, const ContactPoints& points, const BaseFriction<Real>& ground,
+                 const GridShape& shape, const ContactState& state, bool in_order)
+      : device_(device),
+        count_(static_cast<int>(points.size())),
+        blocks_x_((shape.columns + block_side - 1) / block_side) {
     groups_.in_order = in_order;
     if (count_ == 0) return;
     view_.ground = ground;
@@ -176,7 +178,7 @@ class SurfaceContact {
     if (!on()) return;
     for (auto& ranges : groups_.ranges) ranges.clear();
     std::vector<int> beside, active(static_cast<std::size_t>(grid.active_blocks()));
-    copy_to_host(Device{}, active.data(), grid.active_list(), active.size() * sizeof(int));
+    copy_to_host(device_, active.data(), grid.active_list(), active.size() * sizeof(int));
     for (const int block : active) {
       const int begin = first_[static_cast<std::size_t>(block)], end = first_[static_cast<std::size_t>(block) + 1];
       if (begin == end) continue;
@@ -187,17 +189,17 @@ class SurfaceContact {
       }
     }
     beside_.upload(beside);
-    groups_.upload(Device{});
-    for_each(Device{}, count_, ForgetForces<Real>{grid.view(), view()});
+    groups_.upload(device_);
+    for_each(device_, count_, ForgetForces<Real>{grid.view(), view()});
   }
 
   /// Runs kernel(c) for every contact point of the blocks in use, such that scatter_add never meets itself.
   template <class Kernel>
   void each(const Kernel& kernel) {
     if (by_list()) {
-      for_each(Device{}, static_cast<int>(beside_.size()), OverList<Kernel>{kernel, beside_.data()});
+      for_each(device_, static_cast<int>(beside_.size()), OverList<Kernel>{kernel, beside_.data()});
     } else {
-      for_each_grouped(Device{}, count_, groups_, kernel);
+      for_each_grouped(device_, count_, groups_, kernel);
     }
   }
 
@@ -240,16 +242,19 @@ class SurfaceContact {
     for (std::size_t b = 1; b < first_.size(); ++b) first_[b] += first_[b - 1];
   }
 
+  Device device_;
   int count_ = 0, blocks_x_ = 0;
   std::vector<int> bodies_;
   std::vector<int> first_;  // contact point of every block, and the count behind the last
   std::size_t obstacles_ = 0;
   ContactView<Real> view_{};
-  Buffer<int, Device> cell_[3], body_;
-  Buffer<int, Device> beside_;  // the contact points of the blocks in use; on the CPU groups_ has them
-  Buffer<Real, Device> offset_[3], none_, area_, friction_, inverse_mass_;
-  Buffer<Vec3<Real>, Device> normal_;
-  Buffer<Vec3<double>, Device> force_, impulse_;
+  Buffers<int, Device, 3> cell_{device_};
+  Buffers<Real, Device, 3> offset_{device_};
+  Buffer<int, Device> body_{device_};
+  Buffer<int, Device> beside_{device_};  // the contact points of the blocks in use; on the CPU groups_ has them
+  Buffer<Real, Device> none_{device_}, area_{device_}, friction_{device_}, inverse_mass_{device_};
+  Buffer<Vec3<Real>, Device> normal_{device_};
+  Buffer<Vec3<double>, Device> force_{device_}, impulse_{device_};
   PointGroups groups_;
 };
 

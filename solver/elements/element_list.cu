@@ -51,13 +51,12 @@ template <class Real, class Device, class Shape>
 void ElementList<Real, Device, Shape>::build(const GridView<Real>& grid, const ParticleView<Real>& points) {
   ++serial_;
   keys_.resize(static_cast<std::size_t>(points.count));
-  for_each(Device{}, points.count, MakeElementKeys<Real, Shape>{grid, points, keys_.data()});
+  for_each(device_, points.count, MakeElementKeys<Real, Shape>{grid, points, keys_.data()});
   const int blocks = grid.block_columns_x * ((grid.rows + block_side - 1) / block_side);
-  sort_order(Device{}, keys_, order_,
-             key_block_shift + static_cast<int>(std::bit_width(static_cast<unsigned>(blocks))));
+  sort_order(device_, keys_, order_, key_block_shift + static_cast<int>(std::bit_width(static_cast<unsigned>(blocks))));
   count_ = find_runs(keys_, starts_, scratch_);
   nodes_.resize(static_cast<std::size_t>(count_) * nodes_each);
-  for_each(Device{}, count_, FindNodes<Real, Shape>{grid, keys_.data(), starts_.data(), nodes_.data()});
+  for_each(device_, count_, FindNodes<Real, Shape>{grid, keys_.data(), starts_.data(), nodes_.data()});
   group_elements(grid.block_columns_x);
 }
 

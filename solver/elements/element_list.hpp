@@ -29,10 +29,13 @@ class ElementList {
   static constexpr int width = Shape::width;
   static constexpr int nodes_each = width * width * width;
 
+  explicit ElementList(const Device& device = {}) : device_(device) {}
+
   /// Groups the points of a grid that has been fitted to them. Serial numbers count the builds.
   void build(const GridView<Real>& grid, const ParticleView<Real>& points);
 
   ElementView view() const { return {count_, starts_.data(), order_.data(), nodes_.data()}; }
+  const Device& device() const { return device_; }
   int count() const { return count_; }
   int serial() const { return serial_; }
   /// Ranges of elements by colour of their column block; empty on the GPU, where sums are atomic.
@@ -42,9 +45,10 @@ class ElementList {
  private:
   void group_elements(int block_columns_x);
 
+  Device device_;
   int count_ = 0, serial_ = 0;
-  Buffer<std::uint64_t, Device> keys_;
-  Buffer<int, Device> order_, starts_, nodes_, scratch_;
+  Buffer<std::uint64_t, Device> keys_{device_};
+  Buffer<int, Device> order_{device_}, starts_{device_}, nodes_{device_}, scratch_{device_};
   PointGroups groups_;
 };
 

@@ -94,13 +94,13 @@ struct SumElements {
   }
 };
 
-/// Runs SumElements over a list with the tile that suits the place. A sink may add to what other elements add to.
+/// Runs SumElements over a list with the tile that suits the device. A sink may add to what other elements add to.
 template <class Real, class Device, class Shape, class Sink>
 void sum_elements(const ElementList<Real, Device, Shape>& list, const PointTangents<Real>& from, const Sink& sink) {
   constexpr int w = Shape::width, nodes = w * w * w;
   constexpr int columns = Device::is_gpu ? 1 : nodes, rows = Device::is_gpu ? w * w : nodes;
   using Kernel = SumElements<Real, Shape, columns, rows, Sink>;
-  for_each_grouped(Device{}, list.count() * Kernel::tiles, list.groups(), Kernel{from, list.view(), sink});
+  for_each_grouped(list.device(), list.count() * Kernel::tiles, list.groups(), Kernel{from, list.view(), sink});
 }
 
 }  // namespace talus::solver

@@ -10,6 +10,7 @@
 #include "solver/integrator/point_solver.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/parallel/algorithms.hpp"
+#include "solver/parallel/any_device.hpp"
 #include "solver/parallel/columns.hpp"
 #include "solver/parallel/recording.hpp"
 #include "solver/transfer/grid_to_particle.hpp"
@@ -55,12 +56,14 @@ struct BeginStep {
 template <class Real, class Device, class Shape>
 class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   using Base = PointSolver<Real, Device, Shape>;
-  using Base::bed_, Base::clock_, Base::contact_, Base::dilatant_, Base::grid_, Base::impulses_, Base::materials_,
-      Base::points_, Base::read_clock, Base::settings_;
+  using Base::bed_, Base::clock_, Base::contact_, Base::device_, Base::dilatant_, Base::grid_, Base::impulses_,
+      Base::materials_, Base::points_, Base::read_clock, Base::settings_;
 
  public:
-  ExplicitSolverOf(const Scene& scene, const IntegratorSettings& settings, const SolverState& state)
-      : Base(scene, settings, state, fields(settings), settings.deterministic ? 1 : drift_between_sorts<Device>),
+  ExplicitSolverOf(const Device& device, const Scene& scene, const IntegratorSettings& settings,
+                   const SolverState& state)
+      : Base(device, scene, settings, state, fields(settings),
+             settings.deterministic ? 1 : drift_between_sorts<Device>),
         affine_(settings.transfer.affine),
         musl_(settings.transfer.remaps_velocity),
         keeps_(settings.transfer.time > settings.steps.cfl),
@@ -145,17 +148,17 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   }
 
   void clear(bool opens) {
-    const ProfilePhase<Device> phase("clear the grid");
+    const ProfilePhase<Device> phase(device_, "clear the grid");
     const int count = grid_.nodes();
     for_each(
-        Device{}, std::max(count, 1),
+        device_, std::max(count, 1),
         BeginStep<Real>{clock_.data(), nodes_.data(), forces_apart_ && opens ? forces_.data() : nullptr, count, opens});
   }
 
   template <Scatter what>
   void scatter() {
-    const ProfilePhase<Device> phase("points to grid");
-    scatter_points(Device{}, points_.count(), grid_.groups(),
+    const ProfilePhase<Device> phase(device_, "points to grid");
+    scatter_points(device_, points_.count(), grid_.groups(),
                    ParticleToGrid<Real, Shape, what>{grid_.view(), points_.view(), materials_, clock_.data(),
                                                      nodes_.data(), forces_.data(), loads_now_, affine_, dilatant_});
   }
@@ -163,11 +166,11 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   template <NodeContent content>
   void update() {
     if (content != NodeContent::remapped) this->measure_columns();
-    const ProfilePhase<Device> phase("grid");
+    const ProfilePhase<Device> phase(device_, "grid");
     const Vec3<double>& gravity = settings_.gravity.acceleration;
     const Vec3<Real> g{static_cast<Real>(gravity.x), static_cast<Real>(gravity.y), static_cast<Real>(gravity.z)};
     for_each_column(
-        Device{}, grid_.active_blocks(),
+        device_, grid_.active_blocks(),
         UpdateColumns<Real, content>{grid_.view(), grid_.active_list(), clock_.data(), nodes_.data(), forces_.data(), g,
                                      settings_.gravity.ramp, walls_, bed_.view(), static_cast<Real>(this->full_base()),
                                      static_cast<Real>(settings_.damping), materials_.list[0].density,
@@ -179,7 +182,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   /// them.
   template <NodeContent content>
   void meet_surfaces() {
-    const ProfilePhase<Device> phase("contact");
+    const ProfilePhase<Device> phase(device_, "contact");
     constexpr bool first = content != NodeContent::remapped;
     const PackedNodes<Real> nodes{nodes_.data(), content == NodeContent::force ? forces_.data() : nullptr};
     impulses_.run(contact_, grid_.view(), nodes, grid_.nodes(), this->layer_mass(), {clock_.data(), 0, first, first});
@@ -187,9 +190,9 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
 
   template <Gather part>
   void gather() {
-    const ProfilePhase<Device> phase("grid to points");
+    const ProfilePhase<Device> phase(device_, "grid to points");
     const auto run = [&](auto budget) {
-      for_each(Device{}, points_.count(),
+      for_each(device_, points_.count(),
                GridToParticle<Real, Shape, part, decltype(budget)::value>{
                    grid_.view(), points_.view(), materials_, clock_.data(), nodes_.data(),
                    keeps_ ? forces_.data() : nullptr, grid_.home(), affine_, dilatant_});
@@ -202,35 +205,34 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   }
 
   void sort(int gone) {
-    const ProfilePhase<Device> phase("sort and storage");
+    const ProfilePhase<Device> phase(device_, "sort and storage");
     recording_.forget();
     this->fit(gone);
     nodes_.resize(static_cast<std::size_t>(grid_.nodes()));
     if (forces_apart_) forces_.resize(static_cast<std::size_t>(grid_.nodes()));
   }
 
-  Recording<Device> recording_;  // of a step
-  int expected_ = 32;            // steps between sorts
+  Recording<Device> recording_{device_};  // of a step
+  int expected_ = 32;                     // steps between sorts
   bool affine_, musl_;
   bool keeps_;  // points keep some of the velocity that is finer than the grid
   bool forces_apart_;
   Walls<Real> walls_;
   const Vec3<double>* loads_now_ = nullptr;
-  Buffer<Vec4<Real>, Device> nodes_, forces_;
+  Buffer<Vec4<Real>, Device> nodes_{device_}, forces_{device_};
 };
 
-/// A solver of one precision in the place asked for.
+/// A solver of one precision on a device.
 template <class Real>
-std::unique_ptr<Solver> make_explicit_solver_of(const Scene& scene, const IntegratorSettings& settings, On on,
-                                                const SolverState& state) {
+std::unique_ptr<Solver> make_explicit_solver_of(const Scene& scene, const IntegratorSettings& settings,
+                                                const AnyDevice& device, const SolverState& state) {
   return with_shape(settings.shape, [&](auto shape) -> std::unique_ptr<Solver> {
     using Shape = decltype(shape);
 #if TALUS_FOR_GPU
-    if (on == On::gpu) return std::make_unique<ExplicitSolverOf<Real, GpuDevice, Shape>>(scene, settings, state);
-#else
-    static_cast<void>(on);
+    if (device.is_gpu())
+      return std::make_unique<ExplicitSolverOf<Real, GpuDevice, Shape>>(device.gpu(), scene, settings, state);
 #endif
-    return std::make_unique<ExplicitSolverOf<Real, CpuDevice, Shape>>(scene, settings, state);
+    return std::make_unique<ExplicitSolverOf<Real, CpuDevice, Shape>>(device.cpu(), scene, settings, state);
   });
 }
 

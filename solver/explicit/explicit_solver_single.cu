@@ -4,7 +4,7 @@
 
 namespace talus::solver {
 
-template std::unique_ptr<Solver> make_explicit_solver_of<float>(const Scene&, const IntegratorSettings&, On,
-                                                                const SolverState&);
+template std::unique_ptr<Solver> make_explicit_solver_of<float>(const Scene&, const IntegratorSettings&,
+                                                                const AnyDevice&, const SolverState&);
 
 }  // namespace talus::solver

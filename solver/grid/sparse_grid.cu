@@ -92,8 +92,10 @@ struct GiveStorage {
 }  // namespace
 
 template <class Real, class Device>
-SparseGrid<Real, Device>::SparseGrid(const GridShape& shape, int drift, bool in_order, bool by_lowest_node)
-    : shape_(shape),
+SparseGrid<Real, Device>::SparseGrid(const Device& device, const GridShape& shape, int drift, bool in_order,
+                                     bool by_lowest_node)
+    : device_(device),
+      shape_(shape),
       drift_(drift),
       by_lowest_node_(by_lowest_node && Device::is_gpu && !in_order),
       ground_(make_ground_tables(shape)) {
@@ -135,8 +137,8 @@ GridView<Real> SparseGrid<Real, Device>::view() const {
 template <class Real, class Device>
 void SparseGrid<Real, Device>::fit(Particles<Real, Device>& points, int gone) {
   keys_.resize(static_cast<std::size_t>(points.count()));
-  for_each(Device{}, points.count(), MakeKeys<Real>{points.view(), blocks_x_, by_lowest_node_, keys_.data()});
-  sort_order(Device{}, keys_, order_, key_block_shift + static_cast<int>(std::bit_width(slots_.size())));
+  for_each(device_, points.count(), MakeKeys<Real>{points.view(), blocks_x_, by_lowest_node_, keys_.data()});
+  sort_order(device_, keys_, order_, key_block_shift + static_cast<int>(std::bit_width(slots_.size())));
   points.reorder(order_, points.count() - gone);
   measure_extents(points);
   give_storage();
@@ -145,8 +147,8 @@ void SparseGrid<Real, Device>::fit(Particles<Real, Device>& points, int gone) {
 
 template <class Real, class Device>
 void SparseGrid<Real, Device>::measure_extents(Particles<Real, Device>& points) {
-  for_each(Device{}, static_cast<int>(lowest_.size()), ForgetExtents{lowest_.data(), highest_.data()});
-  for_each(Device{}, points.count(),
+  for_each(device_, static_cast<int>(lowest_.size()), ForgetExtents{lowest_.data(), highest_.data()});
+  for_each(device_, points.count(),
            MeasureExtents<Real>{points.view(), shape_.columns, shape_.rows, blocks_x_, 1 + drift_, lowest_.data(),
                                 highest_.data()});
 }
@@ -154,12 +156,12 @@ void SparseGrid<Real, Device>::measure_extents(Particles<Real, Device>& points) 
 template <class Real, class Device>
 void SparseGrid<Real, Device>::give_storage() {
   const int blocks = static_cast<int>(lowest_.size());
-  for_each(Device{}, blocks, CountNodes{lowest_.data(), highest_.data(), sizes_.data(), places_.data()});
-  const auto totals = exclusive_sums(Device{}, sizes_.data(), places_.data(), blocks);
+  for_each(device_, blocks, CountNodes{lowest_.data(), highest_.data(), sizes_.data(), places_.data()});
+  const auto totals = exclusive_sums(device_, sizes_.data(), places_.data(), blocks);
   nodes_ = totals[0];
   active_ = totals[1];
   for_each(
-      Device{}, blocks,
+      device_, blocks,
       GiveStorage{lowest_.data(), highest_.data(), sizes_.data(), places_.data(), slots_.data(), active_list_.data()});
 }
 
@@ -179,7 +181,7 @@ void SparseGrid<Real, Device>::group_points(int count) {
     groups_.ranges[colour].emplace_back(begin, end);
     begin = end;
   }
-  groups_.upload(Device{});
+  groups_.upload(device_);
 }
 
 template <class Real, class Device>

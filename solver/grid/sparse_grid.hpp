@@ -43,12 +43,16 @@ class SparseGrid {
   /// of the same colour stand four columns apart. `in_order`: scatters give the same bits on every run on a GPU too; a
   /// drift of at most one there as well. `by_lowest_node`: points are sorted by the lowest of their nodes, where no
   /// order asks for more: with hats, those of one cell do not have the same nodes.
-  SparseGrid(const GridShape& shape, int drift, bool in_order = false, bool by_lowest_node = false);
+  SparseGrid(const Device& device, const GridShape& shape, int drift, bool in_order = false,
+             bool by_lowest_node = false);
+  SparseGrid(const GridShape& shape, int drift, bool in_order = false, bool by_lowest_node = false)
+      : SparseGrid(Device{}, shape, drift, in_order, by_lowest_node) {}
 
   /// Sort the points by home cell, drop those that left (the `gone` last ones after sorting), and give storage to every
   /// column and layer they reach until they have drifted too far.
   void fit(Particles<Real, Device>& points, int gone);
 
+  const Device& device() const { return device_; }
   GridView<Real> view() const;
   /// From now on material is met at these nodes.
   void stand_walls(const WallNodes& nodes) { walls_ = nodes; }
@@ -66,17 +70,19 @@ class SparseGrid {
   void give_storage();
   void group_points(int count);
 
+  Device device_;
   GridShape shape_;
   int drift_;
   bool by_lowest_node_;
   GroundTables ground_;
   WallNodes walls_;
   int blocks_x_ = 0, blocks_y_ = 0, nodes_ = 0, active_ = 0;
-  Buffer<Real, Device> terrain_, slope_x_, slope_y_;
-  Buffer<unsigned char, Device> open_;
-  Buffer<BlockSlot, Device> slots_;
-  Buffer<int, Device> lowest_, highest_, sizes_, places_, active_list_, order_;
-  Buffer<std::uint64_t, Device> keys_;
+  Buffer<Real, Device> terrain_{device_}, slope_x_{device_}, slope_y_{device_};
+  Buffer<unsigned char, Device> open_{device_};
+  Buffer<BlockSlot, Device> slots_{device_};
+  Buffer<int, Device> lowest_{device_}, highest_{device_}, sizes_{device_}, places_{device_}, active_list_{device_},
+      order_{device_};
+  Buffer<std::uint64_t, Device> keys_{device_};
   PointGroups groups_;
 };
 

@@ -26,7 +26,10 @@ auto with_shape(ShapeKind kind, F&& f) {
 template <class Number, class Device>
 class BedOn {
  public:
-  BedOn(const BaseFriction<double>& friction, const std::vector<Bed<double>>& columns) {
+  BedOn(const BaseFriction<double>& friction, const std::vector<Bed<double>>& columns)
+      : BedOn(Device{}, friction, columns) {}
+  BedOn(const Device& device, const BaseFriction<double>& friction, const std::vector<Bed<double>>& columns)
+      : columns_(device) {
     friction_.law = friction.law;
     friction_.uniform = in_precision(friction.uniform);
     if (columns.empty()) return;
@@ -56,13 +59,18 @@ class PointSolver : public Solver {
  public:
   PointSolver(const Scene& scene, const IntegratorSettings& settings, const SolverState& state, ParticleFields fields,
               int drift)
-      : settings_(settings),
+      : PointSolver(Device{}, scene, settings, state, fields, drift) {}
+  PointSolver(const Device& device, const Scene& scene, const IntegratorSettings& settings, const SolverState& state,
+              ParticleFields fields, int drift)
+      : device_(device),
+        settings_(settings),
         materials_(settings.materials.in<Real>()),
         dilatant_(fields.plastic_volume),
-        points_(fields),
-        grid_(scene.grid, drift, settings.deterministic, Shape::width == 2),
-        bed_(settings.bed, scene.bed),
-        contact_(scene.contacts, bed_.view(), scene.grid, state.contacts, settings.deterministic),
+        points_(device, fields),
+        grid_(device, scene.grid, drift, settings.deterministic, Shape::width == 2),
+        bed_(device, settings.bed, scene.bed),
+        contact_(device, scene.contacts, bed_.view(), scene.grid, state.contacts, settings.deterministic),
+        impulses_(device),
         frame_{{scene.map.x(0), scene.map.y(0), grid_.ground().datum},
                {scene.grid.spacing, scene.grid.spacing, scene.grid.layer_height}},
         load_volumes_(scene.load_volumes) {
@@ -74,7 +82,7 @@ class PointSolver : public Solver {
     arrival_.upload(state.maps.arrival);
   }
 
-  ~PointSolver() override { drop_sort_space(Device{}); }
+  ~PointSolver() override { drop_sort_space(device_); }
   PointSolver(const PointSolver&) = delete;
   PointSolver& operator=(const PointSolver&) = delete;
 
@@ -96,10 +104,10 @@ class PointSolver : public Solver {
   ParticleState shown() const override { return points_.download_shown(); }
 
   Energies energies() override {
-    const ProfilePhase<Device> phase("records and frames");
+    const ProfilePhase<Device> phase(device_, "records and frames");
     constexpr int rows = MeasureEnergies<Real, Shape>::rows;
     totals_.resize(rows);
-    sum_each<rows>(Device{}, points_.count(), sums_,
+    sum_each<rows>(device_, points_.count(), sums_,
                    MeasureEnergies<Real, Shape>{grid_.view(), points_.view(), materials_,
                                                 settings_.gravity.acceleration, dilatant_},
                    KeepTotals<rows>{totals_.data()});
@@ -108,11 +116,11 @@ class PointSolver : public Solver {
   }
 
   std::vector<double> thickness() override {
-    const ProfilePhase<Device> phase("records and frames");
+    const ProfilePhase<Device> phase(device_, "records and frames");
     const GridShape& shape = grid_.shape();
     thickness_.resize(static_cast<std::size_t>(shape.columns) * static_cast<std::size_t>(shape.rows));
     thickness_.fill_zero();
-    for_each_grouped(Device{}, points_.count(), grid_.groups(),
+    for_each_grouped(device_, points_.count(), grid_.groups(),
                      ScatterThickness<Real, Shape>{points_.view(), shape.columns, thickness_.data()});
     std::vector<double> result = thickness_.download();
     for (double& value : result) value /= shape.spacing * shape.spacing;
@@ -128,7 +136,7 @@ class PointSolver : public Solver {
         {"grid", grid_.bytes() + bed_.bytes()},
         {"maps and records", sums_.bytes() + column_volumes_.bytes() + thickness_.bytes() + peak_thickness_.bytes() +
                                  peak_speed_.bytes() + peak_pressure_.bytes() + arrival_.bytes()}};
-    if (const std::size_t sorting = sort_space_bytes(Device{}); sorting > 0) shares.emplace_back("sorting", sorting);
+    if (const std::size_t sorting = sort_space_bytes(device_); sorting > 0) shares.emplace_back("sorting", sorting);
     if (contact_.on()) shares.emplace_back("contact points", contact_.bytes() + impulses_.bytes());
     return shares;
   }
@@ -140,7 +148,7 @@ class PointSolver : public Solver {
     column_volumes_.resize(static_cast<std::size_t>(grid_.shape().columns) *
                            static_cast<std::size_t>(grid_.shape().rows));
     column_volumes_.fill_zero();
-    for_each_grouped(Device{}, points_.count(), grid_.groups(),
+    for_each_grouped(device_, points_.count(), grid_.groups(),
                      ScatterThickness<Real, Shape>{points_.view(), grid_.shape().columns, column_volumes_.data()});
   }
   const double* column_volumes() const { return column_volumes_.data(); }
@@ -179,6 +187,7 @@ class PointSolver : public Solver {
     return loads_.data();
   }
 
+  Device device_;
   IntegratorSettings settings_;
   Materials<Real> materials_;
   bool dilatant_;
@@ -189,11 +198,12 @@ class PointSolver : public Solver {
   ContactImpulses<Real, Device, Shape> impulses_;
   WallFrame frame_;
   std::vector<double> load_volumes_;  // [m3]
-  Buffer<Vec3<double>, Device> loads_;
-  Buffer<Clock, Device> clock_;
-  Buffer<double, Device> column_volumes_;
-  Buffer<double, Device> peak_thickness_, peak_speed_, peak_pressure_, arrival_, totals_, thickness_;
-  SumSpace<Device> sums_;
+  Buffer<Vec3<double>, Device> loads_{device_};
+  Buffer<Clock, Device> clock_{device_};
+  Buffer<double, Device> column_volumes_{device_};
+  Buffer<double, Device> peak_thickness_{device_}, peak_speed_{device_}, peak_pressure_{device_}, arrival_{device_},
+      totals_{device_}, thickness_{device_};
+  SumSpace<Device> sums_{device_};
 };
 
 }  // namespace talus::solver

@@ -1,6 +1,7 @@
 // Arrays in the memory of a device.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -81,6 +82,32 @@ class Buffer {
   Device device_;
   T* data_ = nullptr;
   std::size_t size_ = 0, capacity_ = 0;
+};
+
+/// A few arrays of one device, by number.
+template <class T, class Device, std::size_t number>
+class Buffers {
+ public:
+  Buffers() = default;
+  explicit Buffers(const Device& device) : Buffers(device, std::make_index_sequence<number>()) {}
+  template <class Index>
+  Buffer<T, Device>& operator[](Index n) {
+    return all_[static_cast<std::size_t>(n)];
+  }
+  template <class Index>
+  const Buffer<T, Device>& operator[](Index n) const {
+    return all_[static_cast<std::size_t>(n)];
+  }
+  auto begin() { return all_.begin(); }
+  auto end() { return all_.end(); }
+  auto begin() const { return all_.begin(); }
+  auto end() const { return all_.end(); }
+
+ private:
+  template <std::size_t... n>
+  Buffers(const Device& device, std::index_sequence<n...>)
+      : all_{(static_cast<void>(n), Buffer<T, Device>(device))...} {}
+  std::array<Buffer<T, Device>, number> all_;
 };
 
 /// Upload of values kept in double on the host.

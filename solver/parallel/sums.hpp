@@ -38,6 +38,7 @@ class SumSpace {
     if (ticket_.size() == 0) ticket_.upload({0u});
     return ticket_.data();
   }
+  const Device& device() const { return partial_.device(); }
   std::size_t bytes() const { return partial_.bytes() + ticket_.bytes(); }
 
  private:

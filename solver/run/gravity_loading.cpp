@@ -28,11 +28,11 @@ void take_strains(const ParticleState& loaded, const SolveOptions& options, Part
 
 }  // namespace
 
-void load_by_gravity(Scene& scene, const SolveOptions& options, On on) {
+void load_by_gravity(Scene& scene, const SolveOptions& options, const AnyDevice& device) {
   Scene resting = scene;
   for (auto& component : resting.points.velocity) std::fill(component.begin(), component.end(), 0.0);
   const SolverSettings settings = make_settings(options, scene.grid);
-  const auto loader = make_solver(resting, for_gravity_loading(settings, options.gravity_loading_steps), on);
+  const auto loader = make_solver(resting, for_gravity_loading(settings, options.gravity_loading_steps), device);
   loader->set_next_event(1);
   std::int64_t newton = 0, linear = 0;
   while (loader->clock().time < 1) {

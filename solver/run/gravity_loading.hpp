@@ -4,11 +4,12 @@
 #include "common/stage/stage.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/options/solve.hpp"
+#include "solver/parallel/any_device.hpp"
 
 namespace talus::solver {
 
 /// Gives the points of a scene the elastic state of the mass at rest under its own weight, held at its bed, in
 /// `gravity_loading_steps` quasi-static steps. Throws NumericalError when a step does not converge.
-void load_by_gravity(Scene& scene, const SolveOptions& options, On on);
+void load_by_gravity(Scene& scene, const SolveOptions& options, const AnyDevice& device);
 
 }  // namespace talus::solver

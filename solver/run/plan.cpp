@@ -80,9 +80,9 @@ struct Trial {
   std::size_t bytes = 0;
 };
 
-Trial try_steps(const Scene& scene, SolveOptions o, On on) {
+Trial try_steps(const Scene& scene, SolveOptions o, const AnyDevice& device) {
   if (o.integrator == Integrator::automatic) o.integrator = Integrator::explicit_;
-  const auto solver = make_solver(scene, o, on);
+  const auto solver = make_solver(scene, o, device);
   solver->set_next_event(o.end_time);
   const auto seconds_since = [](auto begun) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
@@ -134,12 +134,12 @@ std::vector<std::string> features(const Domain& domain, const SolveOptions& o) {
   return lines;
 }
 
-std::vector<std::string> plan(const Domain& domain, const SolveOptions& o, On on) {
+std::vector<std::string> plan(const Domain& domain, const SolveOptions& o, const AnyDevice& device) {
   std::vector<std::string> lines = features(domain, o);
   const Scene scene = make_scene(domain, o);
   const History recorded(o, scene);  // refuses what cannot be recorded
   for (const std::string& note : scene.contacts.notes) lines.push_back(note);
-  const Trial trial = try_steps(scene, o, on);
+  const Trial trial = try_steps(scene, o, device);
   const auto add = [&](const std::string& name, const std::string& words) {
     lines.push_back(fmt::format("{:<12} {}", name, words));
   };
@@ -150,7 +150,7 @@ std::vector<std::string> plan(const Domain& domain, const SolveOptions& o, On on
       fmt::format("{} x {} columns of {:g} m, layers of {:g} m; the mass fills about {:.0f}", scene.grid.columns,
                   scene.grid.rows, scene.grid.spacing, scene.grid.layer_height, volume / cell));
   add("memory",
-      fmt::format("{:.1f} MB now, on the {}", static_cast<double>(trial.bytes) / 1e6, on == On::gpu ? "GPU" : "CPU"));
+      fmt::format("{:.1f} MB now, on the {}", static_cast<double>(trial.bytes) / 1e6, device.is_gpu() ? "GPU" : "CPU"));
   double fewest = o.end_time / o.implicit.step, most = fewest;
   if (o.integrator == Integrator::explicit_ || o.integrator == Integrator::automatic) {
     const GroundTables ground = make_ground_tables(scene.grid);

@@ -7,6 +7,7 @@
 #include "common/domain/domain.hpp"
 #include "common/stage/stage.hpp"
 #include "solver/options/solve.hpp"
+#include "solver/parallel/any_device.hpp"
 
 namespace talus::solver {
 
@@ -16,6 +17,6 @@ std::vector<std::string> features(const Domain& domain, const SolveOptions& opti
 /// Lines for `--plan`: the features, points, nodes, memory, step, steps and time. The time is measured on steps that
 /// are forgotten; how many there will be lies between those of a mass at rest and those of one as fast as the energy
 /// line allows. Throws what the run would throw at its start.
-std::vector<std::string> plan(const Domain& domain, const SolveOptions& options, On on);
+std::vector<std::string> plan(const Domain& domain, const SolveOptions& options, const AnyDevice& device);
 
 }  // namespace talus::solver

@@ -16,7 +16,7 @@
 
 namespace talus::solver {
 
-Simulation::Simulation(const Domain& domain, const SolveOptions& options, On on, RunPaths paths,
+Simulation::Simulation(const Domain& domain, const SolveOptions& options, const AnyDevice& device, RunPaths paths,
                        std::string fingerprint)
     : domain_(domain),
       options_(with_preset(options)),
@@ -24,7 +24,7 @@ Simulation::Simulation(const Domain& domain, const SolveOptions& options, On on,
       fingerprint_(std::move(fingerprint)),
       scene_(make_scene(domain, options_)),
       schedule_(options_),
-      stepper_(scene_, options_, on),
+      stepper_(scene_, options_, device),
       history_(options_, scene_),
       released_(std::accumulate(scene_.points.volume.begin(), scene_.points.volume.end(), 0.0)),
       frames_(scene_, options_, paths_.frames, paths_.vdb_frames) {}
@@ -44,7 +44,7 @@ void Simulation::start() {
   frames_.clear();
   std::error_code ignored;
   for (const auto& stale : {paths_.run, paths_.checkpoint}) std::filesystem::remove(stale, ignored);
-  if (options_.gravity_loading_steps > 0) load_by_gravity(scene_, options_, stepper_.on());
+  if (options_.gravity_loading_steps > 0) load_by_gravity(scene_, options_, stepper_.device());
   stepper_.begin(first_state(scene_, make_settings(options_, scene_.grid).common));
   for (const std::string& note : scene_.contacts.notes) log_info(note);
   memory_.initial_thickness = stepper_.solver().thickness();
@@ -149,7 +149,8 @@ double Simulation::mass_error() const {
 
 void Simulation::measure(const RunEnd& end, RunSummary& summary) const {
   const Solver& solver = stepper_.solver();
-  summary.on = stepper_.on() == On::gpu ? gpu_name() : hardware();
+  const AnyDevice& device = stepper_.device();
+  summary.on = device.is_gpu() ? gpu_name(device.gpu().index()) : hardware();
   summary.precision = options_.precision == Precision::double_ ? "double" : "single";
   summary.version = version();
   summary.particles = static_cast<std::int64_t>(scene_.points.size());
@@ -159,7 +160,7 @@ void Simulation::measure(const RunEnd& end, RunSummary& summary) const {
   summary.wall_time = memory_.wall_time;
   summary.memory = static_cast<double>(solver.bytes());
   for (const auto& [owner, bytes] : solver.memory()) summary.memory_of.emplace_back(owner, static_cast<double>(bytes));
-  for (const Profile::Phase& p : profile_of(stepper_.on()).phases()) summary.profile.emplace_back(p.name, p.seconds);
+  for (const Profile::Phase& p : device.profile().phases()) summary.profile.emplace_back(p.name, p.seconds);
   summary.density = options_.material.density;
   const SlideVolumes volumes = slide_volumes(end, memory_.outflow_volume);
   summary.volume_released = volumes.released;

@@ -8,6 +8,7 @@
 #include "common/domain/domain.hpp"
 #include "common/stage/stage.hpp"
 #include "solver/options/solve.hpp"
+#include "solver/parallel/any_device.hpp"
 #include "solver/run/products.hpp"
 #include "solver/run/recorders/checkpoint.hpp"
 #include "solver/run/recorders/frames.hpp"
@@ -43,7 +44,8 @@ class Simulation {
   /// Places the points and prepares the recorders; no step is taken and nothing written. `on` must be cpu or gpu;
   /// `fingerprint` marks the checkpoints of this domain and these settings. Keeps a reference to `domain`. Throws
   /// RecipeError and DataError.
-  Simulation(const Domain& domain, const SolveOptions& options, On on, RunPaths paths, std::string fingerprint);
+  Simulation(const Domain& domain, const SolveOptions& options, const AnyDevice& device, RunPaths paths,
+             std::string fingerprint);
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 

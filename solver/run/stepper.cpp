@@ -10,7 +10,8 @@
 
 namespace talus::solver {
 
-Stepper::Stepper(const Scene& scene, const SolveOptions& options, On on) : scene_(scene), options_(options), on_(on) {
+Stepper::Stepper(const Scene& scene, const SolveOptions& options, const AnyDevice& device)
+    : scene_(scene), options_(options), device_(device) {
   if (options.integrator == Integrator::automatic)
     choice_.emplace(std::min(scene.grid.spacing, scene.grid.layer_height), options.largest_step);
 }
@@ -26,7 +27,7 @@ void Stepper::build(const SolverState& state) {
     o.integrator = choice_->current();
     o.implicit.step = choice_->implicit_step();
   }
-  solver_ = resume_solver(scene_, o, on_, state);
+  solver_ = resume_solver(scene_, o, device_, state);
 }
 
 void Stepper::log_decision() {

@@ -8,6 +8,7 @@
 #include "solver/integrator/scene.hpp"
 #include "solver/integrator/solver.hpp"
 #include "solver/options/solve.hpp"
+#include "solver/parallel/any_device.hpp"
 #include "solver/run/integrator_choice.hpp"
 
 namespace talus::solver {
@@ -16,7 +17,7 @@ namespace talus::solver {
 class Stepper {
  public:
   /// Keeps references to scene and options.
-  Stepper(const Scene& scene, const SolveOptions& options, On on);
+  Stepper(const Scene& scene, const SolveOptions& options, const AnyDevice& device);
 
   /// Begins at a state: that of the scene's start, or of a checkpoint.
   void begin(const SolverState& state);
@@ -27,9 +28,9 @@ class Stepper {
 
   Solver& solver() { return *solver_; }
   const Solver& solver() const { return *solver_; }
-  double time() const { return time_; }          ///< [s]
-  double over_cfl() const { return over_cfl_; }  ///< last step over the CFL step [-]
-  On on() const { return on_; }                  ///< where the steps are taken
+  double time() const { return time_; }                ///< [s]
+  double over_cfl() const { return over_cfl_; }        ///< last step over the CFL step [-]
+  const AnyDevice& device() const { return device_; }  ///< that takes the steps
 
  private:
   void build(const SolverState& state);
@@ -38,7 +39,7 @@ class Stepper {
 
   const Scene& scene_;
   const SolveOptions& options_;
-  On on_;
+  AnyDevice device_;
   std::optional<IntegratorChoice> choice_;  // integrator = "auto"
   BatchCost cost_;                          // since the last sort
   double time_ = 0;                         // [s]

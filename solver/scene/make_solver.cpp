@@ -9,15 +9,16 @@
 namespace talus::solver {
 
 template <class Real>
-std::unique_ptr<Solver> make_explicit_solver_of(const Scene&, const IntegratorSettings&, On, const SolverState&);
+std::unique_ptr<Solver> make_explicit_solver_of(const Scene&, const IntegratorSettings&, const AnyDevice&,
+                                                const SolverState&);
 template <class Real>
 std::unique_ptr<Solver> make_implicit_solver_of(const Scene&, const IntegratorSettings&, const ImplicitControls&, On,
                                                 const SolverState&);
 // Instantiated in {ex,im}plicit_solver_{single,double}.cu.
-extern template std::unique_ptr<Solver> make_explicit_solver_of<float>(const Scene&, const IntegratorSettings&, On,
-                                                                       const SolverState&);
-extern template std::unique_ptr<Solver> make_explicit_solver_of<double>(const Scene&, const IntegratorSettings&, On,
-                                                                        const SolverState&);
+extern template std::unique_ptr<Solver> make_explicit_solver_of<float>(const Scene&, const IntegratorSettings&,
+                                                                       const AnyDevice&, const SolverState&);
+extern template std::unique_ptr<Solver> make_explicit_solver_of<double>(const Scene&, const IntegratorSettings&,
+                                                                        const AnyDevice&, const SolverState&);
 extern template std::unique_ptr<Solver> make_implicit_solver_of<float>(const Scene&, const IntegratorSettings&,
                                                                        const ImplicitControls&, On, const SolverState&);
 extern template std::unique_ptr<Solver> make_implicit_solver_of<double>(const Scene&, const IntegratorSettings&,
@@ -42,35 +43,39 @@ SolverState first_state(const Scene& scene, const IntegratorSettings& settings) 
   return state;
 }
 
-std::unique_ptr<Solver> make_solver(const Scene& scene, const SolverSettings& settings, On on) {
-  return resume_solver(scene, settings, on, first_state(scene, settings.common));
+std::unique_ptr<Solver> make_solver(const Scene& scene, const SolverSettings& settings, const AnyDevice& device) {
+  return resume_solver(scene, settings, device, first_state(scene, settings.common));
 }
 
-std::unique_ptr<Solver> make_solver(const Scene& scene, const SolveOptions& options, On on) {
-  return make_solver(scene, make_settings(options, scene.grid), on);
+std::unique_ptr<Solver> make_solver(const Scene& scene, const SolveOptions& options, const AnyDevice& device) {
+  return make_solver(scene, make_settings(options, scene.grid), device);
 }
 
-std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolverSettings& settings, On on,
+std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolverSettings& settings, const AnyDevice& device,
                                       const SolverState& state) {
   const auto of = [&]<class Real>(Real) {
     switch (settings.integrator) {
       case Integrator::newmark:
       case Integrator::quasi_static:
-        return make_implicit_solver_of<Real>(scene, settings.common, settings.implicit, on, state);
+        return make_implicit_solver_of<Real>(scene, settings.common, settings.implicit,
+                                             device.is_gpu() ? On::gpu : On::cpu, state);
       case Integrator::automatic:  // begins with explicit steps, if nobody says which
       case Integrator::explicit_: break;
     }
-    return make_explicit_solver_of<Real>(scene, settings.common, on, state);
+    return make_explicit_solver_of<Real>(scene, settings.common, device, state);
   };
   return settings.precision == Precision::single_ ? of(float{}) : of(double{});
 }
 
-std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolveOptions& options, On on,
+std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolveOptions& options, const AnyDevice& device,
                                       const SolverState& state) {
-  return resume_solver(scene, make_settings(options, scene.grid), on, state);
+  return resume_solver(scene, make_settings(options, scene.grid), device, state);
 }
 
-Profile& profile_of(On on) { return on == On::gpu ? GpuDevice{}.profile() : CpuDevice{}.profile(); }
+AnyDevice make_device(On on, int index) {
+  if (on == On::gpu) return GpuDevice::make(index);
+  return CpuDevice::make();
+}
 
 On choose_device(On wanted) {
   if (wanted == On::gpu && !gpu_available()) {

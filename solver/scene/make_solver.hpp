@@ -7,7 +7,7 @@
 #include "solver/integrator/scene.hpp"
 #include "solver/integrator/solver.hpp"
 #include "solver/options/solve.hpp"
-#include "solver/parallel/profile.hpp"
+#include "solver/parallel/any_device.hpp"
 #include "solver/scene/settings.hpp"
 
 namespace talus::solver {
@@ -15,17 +15,18 @@ namespace talus::solver {
 /// State of a scene at the start.
 SolverState first_state(const Scene& scene, const IntegratorSettings& settings);
 
-/// From a scene at the start. `on` must be cpu or gpu.
-std::unique_ptr<Solver> make_solver(const Scene& scene, const SolverSettings& settings, On on);
-std::unique_ptr<Solver> make_solver(const Scene& scene, const SolveOptions& options, On on);
+/// A solver of a scene at its start; it keeps a handle to the device, which other solvers may share.
+std::unique_ptr<Solver> make_solver(const Scene& scene, const SolverSettings& settings, const AnyDevice& device);
+std::unique_ptr<Solver> make_solver(const Scene& scene, const SolveOptions& options, const AnyDevice& device);
 
-/// From a checkpoint; the scene gives the grid only.
-std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolverSettings& settings, On on,
+/// A solver that goes on from a checkpoint; the scene gives the grid only.
+std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolverSettings& settings, const AnyDevice& device,
                                       const SolverState& state);
-std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolveOptions& options, On on, const SolverState& state);
+std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolveOptions& options, const AnyDevice& device,
+                                      const SolverState& state);
 
-/// Times of what ran on the process's first device of that kind.
-Profile& profile_of(On on);
+/// A new device: the CPU's, or a stream on the GPU of that index. `on` must be cpu or gpu.
+AnyDevice make_device(On on, int index = 0);
 
 /// cpu or gpu for automatic; throws RecipeError when a GPU is asked for and there is none.
 On choose_device(On wanted);

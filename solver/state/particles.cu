@@ -165,8 +165,8 @@ void Particles<Real, Device>::reorder_together(const Buffer<int, Device>& order,
   for (int slot = 0; slot < int_slots; ++slot) {
     if (int_in_use(slot)) add(ints, ints_[slot], int_twins_[slot]);
   }
-  for_each(Device{}, count, reals);
-  for_each(Device{}, count, ints);
+  for_each(device_, count, reals);
+  for_each(device_, count, ints);
   for (int slot = 0; slot < move_slot; ++slot) {
     if (in_use(slot)) reals_[slot].swap(real_twins_[slot]);
   }
@@ -183,14 +183,14 @@ void Particles<Real, Device>::reorder(const Buffer<int, Device>& order, int coun
   for (int slot = 0; slot < real_slots; ++slot) {
     if (!in_use(slot) || slot >= move_slot) continue;  // the displacement lives within one step only
     real_scratch_.resize(static_cast<std::size_t>(count));
-    for_each(Device{}, count, Gather<Real>{order.data(), reals_[slot].data(), real_scratch_.data()});
+    for_each(device_, count, Gather<Real>{order.data(), reals_[slot].data(), real_scratch_.data()});
     reals_[slot].swap(real_scratch_);
   }
   for (int slot = 0; slot < int_slots; ++slot) {
     if (!int_in_use(slot)) continue;
     auto& array = ints_[slot];
     int_scratch_.resize(static_cast<std::size_t>(count));
-    for_each(Device{}, count, Gather<int>{order.data(), array.data(), int_scratch_.data()});
+    for_each(device_, count, Gather<int>{order.data(), array.data(), int_scratch_.data()});
     array.swap(int_scratch_);
   }
   count_ = count;

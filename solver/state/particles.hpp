@@ -117,7 +117,8 @@ struct ParticleFields {
 template <class Real, class Device>
 class Particles {
  public:
-  explicit Particles(ParticleFields fields) : fields_(fields) {}
+  Particles(const Device& device, ParticleFields fields) : device_(device), fields_(fields) {}
+  explicit Particles(ParticleFields fields) : Particles(Device{}, fields) {}
 
   void upload(const ParticleState& state);
   ParticleState download() const;
@@ -139,14 +140,15 @@ class Particles {
   bool in_use(int slot) const;
   bool int_in_use(int slot) const;
   void reorder_together(const Buffer<int, Device>& order, int count);
+  Device device_;
   ParticleFields fields_;
   int count_ = 0;
-  Buffer<Real, Device> reals_[real_slots];
-  Buffer<int, Device> ints_[int_slots];         // cell x y z, id, release, load, material
-  Buffer<Real, Device> real_twins_[move_slot];  // of as many points as may be kept twice
-  Buffer<int, Device> int_twins_[int_slots];
-  Buffer<Real, Device> real_scratch_;
-  Buffer<int, Device> int_scratch_;
+  Buffers<Real, Device, real_slots> reals_{device_};
+  Buffers<int, Device, int_slots> ints_{device_};         // cell x y z, id, release, load, material
+  Buffers<Real, Device, move_slot> real_twins_{device_};  // of as many points as may be kept twice
+  Buffers<int, Device, int_slots> int_twins_{device_};
+  Buffer<Real, Device> real_scratch_{device_};
+  Buffer<int, Device> int_scratch_{device_};
 };
 
 }  // namespace talus

@@ -13,6 +13,7 @@
 #include "solver/integrator/solver.hpp"
 #include "solver/parallel/algorithms.hpp"
 #include "solver/scene/make_scene.hpp"
+#include "solver/scene/make_solver.hpp"
 
 namespace talus::solver::testing {
 
@@ -68,7 +69,7 @@ std::vector<BlockSlot> slots_of(const SparseGrid<Real, Device>& grid) {
   const auto view = grid.view();
   const auto count = static_cast<std::size_t>(((view.columns + 3) / 4) * ((view.rows + 3) / 4));
   std::vector<BlockSlot> slots(count);
-  copy_to_host(Device{}, slots.data(), view.slots, count * sizeof(BlockSlot));
+  copy_to_host(grid.device(), slots.data(), view.slots, count * sizeof(BlockSlot));
   return slots;
 }
 
@@ -88,6 +89,15 @@ inline std::string place_name(const ::testing::TestParamInfo<On>& info) {
 
 #define TALUS_IN_EACH_PLACE(suite) \
   INSTANTIATE_TEST_SUITE_P(places, suite, ::testing::Values(On::cpu, On::gpu), place_name)
+
+/// A solver on a new device.
+inline std::unique_ptr<Solver> make_solver(const Scene& scene, const SolveOptions& options, On on) {
+  return solver::make_solver(scene, options, make_device(on));
+}
+inline std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolveOptions& options, On on,
+                                             const SolverState& state) {
+  return solver::resume_solver(scene, options, make_device(on), state);
+}
 
 /// Step to a time; returns the number of sorts on the way.
 inline int run_to(Solver& solver, double time) {

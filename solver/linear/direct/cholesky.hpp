@@ -27,7 +27,7 @@ class Cholesky {
 };
 
 /// The factor may take `memory_limit` bytes; 0: what is free where it will stand.
-std::unique_ptr<Cholesky<CpuDevice>> make_cholesky(CpuDevice, double memory_limit = 0);
-std::unique_ptr<Cholesky<GpuDevice>> make_cholesky(GpuDevice, double memory_limit = 0);
+std::unique_ptr<Cholesky<CpuDevice>> make_cholesky(const CpuDevice& device, double memory_limit = 0);
+std::unique_ptr<Cholesky<GpuDevice>> make_cholesky(const GpuDevice& device, double memory_limit = 0);
 
 }  // namespace talus

@@ -32,7 +32,7 @@ cholmod_sparse as_cholmod(const CsrMatrix<CpuDevice>& a) {  // our rows are its 
 /// CHOLMOD's supernodal factor.
 class CpuCholesky final : public Cholesky<CpuDevice> {
  public:
-  explicit CpuCholesky(double memory_limit) : limit_(memory_limit) {
+  CpuCholesky(const CpuDevice& device, double memory_limit) : device_(device), limit_(memory_limit) {
     cholmod_start(&common_);
     common_.print = 0;  // a matrix that is not positive definite is an answer, and stdout is for result paths
     common_.supernodal = CHOLMOD_SUPERNODAL;
@@ -52,7 +52,7 @@ class CpuCholesky final : public Cholesky<CpuDevice> {
     pattern_ = a.pattern;
     common_.status = CHOLMOD_OK;
     cholmod_factorize(&matrix, factor_, &common_);
-    if (common_.status < 0) refuse(factor_bytes(), free_memory(CpuDevice{}));
+    if (common_.status < 0) refuse(factor_bytes(), free_memory(device_));
     if (factor_->minor < factor_->n) return false;
     cholmod_dense right{};
     right.nrow = right.d = right.nzmax = static_cast<std::size_t>(a.rows);
@@ -61,7 +61,7 @@ class CpuCholesky final : public Cholesky<CpuDevice> {
     right.xtype = CHOLMOD_REAL;
     right.dtype = CHOLMOD_DOUBLE;
     cholmod_dense* solution = cholmod_solve(CHOLMOD_A, factor_, &right, &common_);
-    if (!solution) refuse(factor_bytes(), free_memory(CpuDevice{}));
+    if (!solution) refuse(factor_bytes(), free_memory(device_));
     x.resize(static_cast<std::size_t>(a.rows));
     std::memcpy(x.data(), solution->x, static_cast<std::size_t>(a.rows) * sizeof(double));
     cholmod_free_dense(&solution, &common_);
@@ -78,8 +78,7 @@ class CpuCholesky final : public Cholesky<CpuDevice> {
     pattern_ = 0;
     cholmod_free_factor(&factor_, &common_);
     factor_ = cholmod_analyze(&matrix, &common_);
-    const double wanted = factor_ ? factor_bytes() : 8 * common_.lnz,
-                 free = limit_ > 0 ? limit_ : free_memory(CpuDevice{});
+    const double wanted = factor_ ? factor_bytes() : 8 * common_.lnz, free = limit_ > 0 ? limit_ : free_memory(device_);
     if (!factor_ || wanted > free) refuse(wanted, free);
   }
 
@@ -89,6 +88,7 @@ class CpuCholesky final : public Cholesky<CpuDevice> {
     refuse_matrix(too_large, wanted, free, false);
   }
 
+  CpuDevice device_;
   double limit_;
   long pattern_ = 0;
   int analyses_ = 0;
@@ -102,7 +102,7 @@ class CpuCholesky final : public Cholesky<CpuDevice> {
 class CpuCholesky final : public Cholesky<CpuDevice>,
                           private Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Upper> {
  public:
-  explicit CpuCholesky(double memory_limit) : limit_(memory_limit) {}
+  CpuCholesky(const CpuDevice& device, double memory_limit) : device_(device), limit_(memory_limit) {}
 
   bool solve(const CsrMatrix<CpuDevice>& a, const Buffer<double, CpuDevice>& b, Buffer<double, CpuDevice>& x) override {
     const MatrixType matrix =
@@ -112,7 +112,7 @@ class CpuCholesky final : public Cholesky<CpuDevice>,
       pattern_ = a.pattern;
       factorize(matrix);
     } catch (const std::bad_alloc&) {
-      refuse_matrix(too_large, factor_bytes(), free_memory(CpuDevice{}), false);
+      refuse_matrix(too_large, factor_bytes(), free_memory(device_), false);
     }
     if (info() != Eigen::Success) return false;
     x.resize(static_cast<std::size_t>(a.rows));
@@ -134,6 +134,7 @@ class CpuCholesky final : public Cholesky<CpuDevice>,
     if (limit_ > 0 && factor_bytes() > limit_) refuse_matrix(too_large, factor_bytes(), limit_, false);
   }
 
+  CpuDevice device_;
   double limit_;
   long pattern_ = 0;
   int analyses_ = 0;
@@ -143,8 +144,8 @@ class CpuCholesky final : public Cholesky<CpuDevice>,
 
 }  // namespace
 
-std::unique_ptr<Cholesky<CpuDevice>> make_cholesky(CpuDevice, double memory_limit) {
-  return std::make_unique<CpuCholesky>(memory_limit);
+std::unique_ptr<Cholesky<CpuDevice>> make_cholesky(const CpuDevice& device, double memory_limit) {
+  return std::make_unique<CpuCholesky>(device, memory_limit);
 }
 
 }  // namespace talus

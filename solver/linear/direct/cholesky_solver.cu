@@ -10,7 +10,7 @@ namespace talus::solver {
 template <class Real, class Device, class Shape>
 void CholeskySolver<Real, Device, Shape>::check_memory(int nodes) const {
   const double wanted = assembly_bytes<Real, Shape>(list_->count(), nodes);
-  const double free = limit_ > 0 ? limit_ : free_memory(Device{}) + static_cast<double>(bytes());
+  const double free = limit_ > 0 ? limit_ : free_memory(device_) + static_cast<double>(bytes());
   if (wanted > free || !assembly_countable<Real, Shape>(list_->count(), nodes))
     refuse_matrix("the triples and the matrix would take", wanted, free, Device::is_gpu);
 }
@@ -28,29 +28,29 @@ LinearReport CholeskySolver<Real, Device, Shape>::solve(const PointTangents<Real
   }
   check_memory(unknowns);
   {
-    const ProfilePhase<Device> phase("element matrices");
+    const ProfilePhase<Device> phase(device_, "element matrices");
     stored_.assemble(*list_, from);
   }
   {
-    const ProfilePhase<Device> phase("sort and reduce to rows");
+    const ProfilePhase<Device> phase(device_, "sort and reduce to rows");
     assembly_.assemble(*list_, stored_, nodes);
     assembly_.to_unknowns(nodes, b, right_);
   }
   const CsrMatrix<Device>& a = assembly_.matrix();
   report.iterations = 1;
   {
-    const ProfilePhase<Device> phase("factorise and solve");
+    const ProfilePhase<Device> phase(device_, "factorise and solve");
     if (!cholesky_->solve(a, right_, solution_)) {
       report.indefinite = true;
       return report;
     }
   }
   left_over_.resize(right_.size());
-  for_each(Device{}, a.rows,
+  for_each(device_, a.rows,
            detail::CsrResidual{a.starts.data(), a.columns.data(), a.values.data(), right_.data(), solution_.data(),
                                left_over_.data()});
-  const double size = inner_product(Device{}, right_.data(), right_.data(), a.rows);
-  const double left = inner_product(Device{}, left_over_.data(), left_over_.data(), a.rows);
+  const double size = inner_product(device_, right_.data(), right_.data(), a.rows);
+  const double left = inner_product(device_, left_over_.data(), left_over_.data(), a.rows);
   report.residual = size > 0 ? std::sqrt(left / size) : 0;
   // A singular matrix may pass as positive definite by rounding; its factor has no correct digits.
   report.converged = std::isfinite(left) && report.residual < 1e-6;

@@ -11,9 +11,10 @@ namespace talus::solver {
 template <class Real, class Device, class Shape>
 class CholeskySolver {
  public:
-  /// `memory_limit` [bytes] stands for what is free in the place; 0: ask.
-  explicit CholeskySolver(double memory_limit = 0)
-      : limit_(memory_limit), cholesky_(make_cholesky(Device{}, memory_limit)) {}
+  /// `memory_limit` [bytes] stands for what is free on the device; 0: ask.
+  explicit CholeskySolver(const Device& device, double memory_limit = 0)
+      : device_(device), limit_(memory_limit), cholesky_(make_cholesky(device, memory_limit)) {}
+  explicit CholeskySolver(double memory_limit = 0) : CholeskySolver(Device{}, memory_limit) {}
 
   /// The points have moved, or have been sorted, and `list` is their elements anew; it must stay until the next call.
   void begin_step(const ElementList<Real, Device, Shape>& list) { list_ = &list; }
@@ -32,12 +33,13 @@ class CholeskySolver {
  private:
   void check_memory(int nodes) const;
 
+  Device device_;
   double limit_;
   const ElementList<Real, Device, Shape>* list_ = nullptr;
-  StoredElements<Real, Device, Shape> stored_;
-  CsrAssembly<Real, Device, Shape> assembly_;
+  StoredElements<Real, Device, Shape> stored_{device_};
+  CsrAssembly<Real, Device, Shape> assembly_{device_};
   std::unique_ptr<Cholesky<Device>> cholesky_;
-  Buffer<double, Device> right_, solution_, left_over_;
+  Buffer<double, Device> right_{device_}, solution_{device_}, left_over_{device_};
 };
 
 }  // namespace talus::solver

@@ -25,7 +25,7 @@ bool same(const Buffer<int, Device>& a, const Buffer<int, Device>& b, Buffer<int
   if (a.size() != b.size()) return false;
   differs.resize(1);
   differs.fill_zero();
-  for_each(Device{}, static_cast<int>(a.size()), Differ{a.data(), b.data(), differs.data()});
+  for_each(differs.device(), static_cast<int>(a.size()), Differ{a.data(), b.data(), differs.data()});
   return differs.download().front() == 0;
 }
 
@@ -66,14 +66,14 @@ bool assembly_countable(int elements, int freed_nodes) {
 template <class Real, class Device, class Shape>
 int CsrAssembly<Real, Device, Shape>::number_nodes(const HeldNodes& nodes) {
   new_flags_.resize(static_cast<std::size_t>(nodes.count));
-  for_each(Device{}, nodes.count, FlagUnknowns{nodes.mass, nodes.freed, new_flags_.data()});
+  for_each(device_, nodes.count, FlagUnknowns{nodes.mass, nodes.freed, new_flags_.data()});
   if (same(new_flags_, flags_, differs_)) return unknown_;
   renumbered_ = true;
   flags_.swap(new_flags_);
   number_of_.resize(flags_.size());
   node_of_.resize(flags_.size());
-  unknown_ = exclusive_sum(Device{}, flags_.data(), number_of_.data(), nodes.count);
-  for_each(Device{}, nodes.count, MapUnknowns{flags_.data(), number_of_.data(), node_of_.data()});
+  unknown_ = exclusive_sum(device_, flags_.data(), number_of_.data(), nodes.count);
+  for_each(device_, nodes.count, MapUnknowns{flags_.data(), number_of_.data(), node_of_.data()});
   return unknown_;
 }
 
@@ -82,12 +82,12 @@ void CsrAssembly<Real, Device, Shape>::sort_triples(const ElementList<Real, Devi
   constexpr int each = Shape::width * Shape::width * Shape::width;
   ++sorts_;
   keys_.resize(static_cast<std::size_t>(list.count()) * each * each);
-  for_each(Device{}, list.count() * each * each,
+  for_each(device_, list.count() * each * each,
            MakeTripleKeys{list.view().nodes, number_of_.data(), each, keys_.data()});
-  sort_order(Device{}, keys_, order_);
+  sort_order(device_, keys_, order_);
   blocks_ = find_runs(keys_, runs_, scratch_);
   std::uint64_t last = 0;
-  if (blocks_ > 0) copy_to_host(Device{}, &last, keys_.data() + keys_.size() - 1, sizeof last);
+  if (blocks_ > 0) copy_to_host(device_, &last, keys_.data() + keys_.size() - 1, sizeof last);
   if (last == held_key) --blocks_;
 }
 
@@ -97,15 +97,15 @@ void CsrAssembly<Real, Device, Shape>::make_pattern() {
   old_columns_.swap(matrix_.columns);
   matrix_.rows = 3 * unknown_;
   block_starts_.resize(static_cast<std::size_t>(unknown_) + 1);
-  copy_from_host(Device{}, block_starts_.data() + unknown_, &blocks_, sizeof blocks_);
-  for_each(Device{}, blocks_, MarkRows{keys_.data(), runs_.data(), blocks_, block_starts_.data()});
+  copy_from_host(device_, block_starts_.data() + unknown_, &blocks_, sizeof blocks_);
+  for_each(device_, blocks_, MarkRows{keys_.data(), runs_.data(), blocks_, block_starts_.data()});
   matrix_.starts.resize(static_cast<std::size_t>(matrix_.rows) + 1);
   matrix_.columns.resize(static_cast<std::size_t>(blocks_) * 9);
   matrix_.values.resize(matrix_.columns.size());
   const int entries = matrix_.entries();
-  copy_from_host(Device{}, matrix_.starts.data() + matrix_.rows, &entries, sizeof entries);
+  copy_from_host(device_, matrix_.starts.data() + matrix_.rows, &entries, sizeof entries);
   for_each(
-      Device{}, blocks_,
+      device_, blocks_,
       MakeColumns{keys_.data(), runs_.data(), block_starts_.data(), matrix_.starts.data(), matrix_.columns.data()});
   const bool kept = matrix_.pattern != 0 && same(matrix_.starts, old_starts_, differs_) &&
                     same(matrix_.columns, old_columns_, differs_);
@@ -121,7 +121,7 @@ void CsrAssembly<Real, Device, Shape>::assemble(const ElementList<Real, Device, 
     renumbered_ = false;
     list_serial_ = list.serial();
   }
-  for_each(Device{}, blocks_,
+  for_each(device_, blocks_,
            ReduceTriples<Real, Device, Shape>{stored.view(), keys_.data(), order_.data(), runs_.data(),
                                               block_starts_.data(), node_of_.data(), nodes, matrix_.values.data()});
 }
@@ -130,14 +130,14 @@ template <class Real, class Device, class Shape>
 void CsrAssembly<Real, Device, Shape>::to_unknowns(const HeldNodes& nodes, const NodeVector<Device>& from,
                                                    Buffer<double, Device>& to) {
   to.resize(3 * static_cast<std::size_t>(unknown_));
-  for_each(Device{}, unknown_, ToUnknowns{node_of_.data(), nodes.freed, from.data(), to.data()});
+  for_each(device_, unknown_, ToUnknowns{node_of_.data(), nodes.freed, from.data(), to.data()});
 }
 
 template <class Real, class Device, class Shape>
 void CsrAssembly<Real, Device, Shape>::to_nodes(const HeldNodes& nodes, const Buffer<double, Device>& from,
                                                 NodeVector<Device>& to) {
   to.resize(static_cast<std::size_t>(nodes.count));
-  for_each(Device{}, nodes.count, ToNodes{number_of_.data(), nodes.freed, from.data(), to.data()});
+  for_each(device_, nodes.count, ToNodes{number_of_.data(), nodes.freed, from.data(), to.data()});
 }
 
 template <class Real, class Device, class Shape>

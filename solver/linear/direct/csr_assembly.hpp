@@ -20,6 +20,8 @@ bool assembly_countable(int elements, int freed_nodes);
 template <class Real, class Device, class Shape>
 class CsrAssembly {
  public:
+  explicit CsrAssembly(const Device& device = {}) : device_(device) {}
+
   /// Finds the unknowns: nodes with mass and a free direction. Returns their number; three degrees of freedom each.
   int number_nodes(const HeldNodes& nodes);
 
@@ -42,12 +44,15 @@ class CsrAssembly {
   void sort_triples(const ElementList<Real, Device, Shape>& list);
   void make_pattern();
 
+  Device device_;
   int unknown_ = 0, blocks_ = 0, list_serial_ = 0, sorts_ = 0;
   bool renumbered_ = true;
-  Buffer<int, Device> flags_, new_flags_, number_of_, node_of_;  // the paper's two mapping lists
-  Buffer<std::uint64_t, Device> keys_;
-  Buffer<int, Device> order_, runs_, scratch_, block_starts_, differs_, old_starts_, old_columns_;
-  CsrMatrix<Device> matrix_;
+  Buffer<int, Device> flags_{device_}, new_flags_{device_};
+  Buffer<int, Device> number_of_{device_}, node_of_{device_};  // the paper's two mapping lists
+  Buffer<std::uint64_t, Device> keys_{device_};
+  Buffer<int, Device> order_{device_}, runs_{device_}, scratch_{device_}, block_starts_{device_}, differs_{device_},
+      old_starts_{device_}, old_columns_{device_};
+  CsrMatrix<Device> matrix_{device_};
 };
 
 }  // namespace talus::solver

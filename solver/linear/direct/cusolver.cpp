@@ -37,6 +37,7 @@ Cusolver load_all() {
   Cusolver c;
   load(library, "cusolverSpCreate", c.create);
   load(library, "cusolverSpDestroy", c.destroy);
+  load(library, "cusolverSpSetStream", c.set_stream);
   load(library, "cusparseCreateMatDescr", c.create_descriptor);
   load(library, "cusparseDestroyMatDescr", c.destroy_descriptor);
   load(library, "cusolverSpCreateCsrcholInfo", c.create_info);

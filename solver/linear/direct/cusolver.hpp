@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
+struct CUstream_st;  // CUDA's
+
 namespace talus {
 
 /// Signatures as in cusolverSp.h, cusolverSp_LOWLEVEL_PREVIEW.h and cusparse.h (CUDA 11 to 13); status 0 is success.
@@ -17,6 +19,7 @@ struct Cusolver {
 
   int (*create)(Handle*) = nullptr;
   int (*destroy)(Handle) = nullptr;
+  int (*set_stream)(Handle, CUstream_st*) = nullptr;
   int (*create_descriptor)(Descriptor*) = nullptr;
   int (*destroy_descriptor)(Descriptor) = nullptr;
   int (*create_info)(Info*) = nullptr;

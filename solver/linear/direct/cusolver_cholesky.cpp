@@ -8,37 +8,33 @@
 namespace talus {
 namespace {
 
-void check(int status, const char* what) {
-  if (status == Cusolver::out_of_memory) {
-    const double free = free_memory(GpuDevice{});
-    refuse_matrix(std::string(what) + " needs more than", free, free, true);
-  }
-  if (status != 0)
-    throw std::runtime_error(std::string("cuSOLVER: ") + what + " failed with status " + std::to_string(status));
-}
-
-/// cuSOLVER's factor of the matrix renumbered by nested dissection.
+/// cuSOLVER's factor of the matrix renumbered by nested dissection, on the device's stream.
 class GpuCholesky final : public Cholesky<GpuDevice> {
  public:
-  explicit GpuCholesky(double memory_limit) : limit_(memory_limit) {}
+  GpuCholesky(const GpuDevice& device, double memory_limit) : device_(device), limit_(memory_limit) {}
   GpuCholesky(const GpuCholesky&) = delete;
   GpuCholesky& operator=(const GpuCholesky&) = delete;
   ~GpuCholesky() override {
+    detail::gpu_select(device_);
     forget();
     if (descriptor_) cusolver().destroy_descriptor(descriptor_);
     if (handle_) cusolver().destroy(handle_);
   }
 
   bool solve(const CsrMatrix<GpuDevice>& a, const Buffer<double, GpuDevice>& b, Buffer<double, GpuDevice>& x) override {
-    if (!handle_) check(cusolver().create(&handle_), "cusolverSpCreate");
+    detail::gpu_select(device_);
+    if (!handle_) {
+      check(cusolver().create(&handle_), "cusolverSpCreate");
+      check(cusolver().set_stream(handle_, device_.stream()), "cusolverSpSetStream");
+    }
     if (!descriptor_) check(cusolver().create_descriptor(&descriptor_), "cusparseCreateMatDescr");
     if (pattern_ != a.pattern) analyse(a);
     if (!factorise(a)) return false;
     for (auto* v : {&right_, &solution_, &x}) v->resize(static_cast<std::size_t>(a.rows));
-    gather(GpuDevice{}, b.data(), order_.data(), right_.data(), a.rows);
+    gather(device_, b.data(), order_.data(), right_.data(), a.rows);
     check(cusolver().solve(handle_, a.rows, right_.data(), solution_.data(), info_, workspace_.data()),
           "cusolverSpDcsrcholSolve");
-    scatter(GpuDevice{}, solution_.data(), order_.data(), x.data(), a.rows);
+    scatter(device_, solution_.data(), order_.data(), x.data(), a.rows);
     return true;
   }
 
@@ -47,6 +43,15 @@ class GpuCholesky final : public Cholesky<GpuDevice> {
   const char* name() const override { return "cuSOLVER"; }
 
  private:
+  void check(int status, const char* what) const {
+    if (status == Cusolver::out_of_memory) {
+      const double free = free_memory(device_);
+      refuse_matrix(std::string(what) + " needs more than", free, free, true);
+    }
+    if (status != 0)
+      throw std::runtime_error(std::string("cuSOLVER: ") + what + " failed with status " + std::to_string(status));
+  }
+
   /// The factor itself lives in info_.
   void forget() {
     if (info_) cusolver().destroy_info(info_);
@@ -85,6 +90,7 @@ class GpuCholesky final : public Cholesky<GpuDevice> {
     ++analyses_;
     forget();
     renumber_matrix(a);
+    synchronise(device_);  // what cuSOLVER reads is there, whatever streams it uses within
     const Cusolver& c = cusolver();
     check(c.create_info(&info_), "cusolverSpCreateCsrcholInfo");
     check(c.analyse(handle_, a.rows, a.entries(), descriptor_, starts_.data(), columns_.data(), info_),
@@ -94,7 +100,7 @@ class GpuCholesky final : public Cholesky<GpuDevice> {
                   &internal, &scratch),
           "cusolverSpDcsrcholBufferInfo");
     held_ = static_cast<double>(internal) + static_cast<double>(scratch);
-    const double free = limit_ > 0 ? limit_ : free_memory(GpuDevice{}) + static_cast<double>(workspace_.bytes());
+    const double free = limit_ > 0 ? limit_ : free_memory(device_) + static_cast<double>(workspace_.bytes());
     if (held_ > free) refuse(free);
     workspace_.resize(scratch);
     pattern_ = a.pattern;
@@ -102,10 +108,11 @@ class GpuCholesky final : public Cholesky<GpuDevice> {
 
   bool factorise(const CsrMatrix<GpuDevice>& a) {
     fill_values(a);
+    synchronise(device_);
     const Cusolver& c = cusolver();
     const int status = c.factorise(handle_, a.rows, a.entries(), descriptor_, values_.data(), starts_.data(),
                                    columns_.data(), info_, workspace_.data());
-    if (status == Cusolver::out_of_memory) refuse(free_memory(GpuDevice{}));
+    if (status == Cusolver::out_of_memory) refuse(free_memory(device_));
     check(status, "cusolverSpDcsrcholFactor");
     int pivot = -1;
     check(c.zero_pivot(handle_, info_, 0.0, &pivot), "cusolverSpDcsrcholZeroPivot");
@@ -113,7 +120,7 @@ class GpuCholesky final : public Cholesky<GpuDevice> {
   }
 
   void fill_values(const CsrMatrix<GpuDevice>& a) {
-    gather(GpuDevice{}, a.values.data(), source_.data(), values_.data(), a.entries());
+    gather(device_, a.values.data(), source_.data(), values_.data(), a.entries());
   }
 
   [[noreturn]] void refuse(double free) {
@@ -122,21 +129,22 @@ class GpuCholesky final : public Cholesky<GpuDevice> {
     refuse_matrix("the factor of the matrix would take", wanted, free, true);
   }
 
+  GpuDevice device_;
   double limit_, held_ = 0;  // [bytes]
   long pattern_ = 0;
   int analyses_ = 0;
   Cusolver::Handle handle_ = nullptr;
   Cusolver::Descriptor descriptor_ = nullptr;  // as made: a general matrix, indices from 0
   Cusolver::Info info_ = nullptr;
-  Buffer<int, GpuDevice> starts_, columns_, source_, order_;
-  Buffer<double, GpuDevice> values_, right_, solution_;
-  Buffer<unsigned char, GpuDevice> workspace_;
+  Buffer<int, GpuDevice> starts_{device_}, columns_{device_}, source_{device_}, order_{device_};
+  Buffer<double, GpuDevice> values_{device_}, right_{device_}, solution_{device_};
+  Buffer<unsigned char, GpuDevice> workspace_{device_};
 };
 
 }  // namespace
 
-std::unique_ptr<Cholesky<GpuDevice>> make_cholesky(GpuDevice, double memory_limit) {
-  return std::make_unique<GpuCholesky>(memory_limit);
+std::unique_ptr<Cholesky<GpuDevice>> make_cholesky(const GpuDevice& device, double memory_limit) {
+  return std::make_unique<GpuCholesky>(device, memory_limit);
 }
 
 }  // namespace talus

@@ -12,6 +12,8 @@ namespace talus {
 template <class Device>
 class BiCgStab {
  public:
+  explicit BiCgStab(const Device& device = {}) : device_(device) {}
+
   /// Solves A x = b from x = 0 (see contract.hpp). An iteration is one product; two make a round of the method.
   template <LinearOperator<Device> Operator, LinearPreconditioner<Device> Preconditioner>
   LinearReport solve(Operator&& a, Preconditioner&& preconditioner, const NodeVector<Device>& b, NodeVector<Device>& x,
@@ -31,7 +33,7 @@ class BiCgStab {
     const auto apply = [&](const NodeVector<Device>& from, NodeVector<Device>& to) {
       to.fill_zero();
       a.add_product(from, to, nullptr);
-      for_each(Device{}, static_cast<int>(from.size()), a.closing(from, to));
+      for_each(device_, static_cast<int>(from.size()), a.closing(from, to));
     };
     // Goes along `direction_`, whose product is `product`; true when that was the last half step.
     const auto advance = [&](double way, const NodeVector<Device>& product) {
@@ -74,7 +76,8 @@ class BiCgStab {
   }
 
  private:
-  NodeVector<Device> r_, shadow_, p_, v_, t_, direction_;
+  Device device_;
+  NodeVector<Device> r_{device_}, shadow_{device_}, p_{device_}, v_{device_}, t_{device_}, direction_{device_};
 };
 
 }  // namespace talus

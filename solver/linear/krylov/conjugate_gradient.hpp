@@ -14,6 +14,8 @@ namespace talus {
 template <class Device>
 class ConjugateGradient {
  public:
+  explicit ConjugateGradient(const Device& device = {}) : device_(device) {}
+
   /// Solves A x = b from x = 0, A symmetric and positive definite (see contract.hpp). Ends as `indefinite` where it
   /// meets a direction of negative curvature; x is then what it was before that.
   template <LinearOperator<Device> Operator, LinearPreconditioner<Device> Preconditioner>
@@ -26,8 +28,7 @@ class ConjugateGradient {
     state.most = limits.iterations;
     state_.upload({state});
     CgState* const s = state_.data();
-    sum_each<1>(Device{}, count, sums_,
-                detail::BeginCg{b.data(), x.data(), r_.data(), z_.data(), p_.data(), ap_.data()},
+    sum_each<1>(device_, count, sums_, detail::BeginCg{b.data(), x.data(), r_.data(), z_.data(), p_.data(), ap_.data()},
                 detail::FinishBegin{s});
     preconditioner.apply(r_, z_, s);
     // As many as the last solve took, then a few at a time: what is started after the end does nothing but take its
@@ -36,9 +37,9 @@ class ConjugateGradient {
     int ahead = Device::is_gpu ? std::clamp(last_, 2, 64) : 1;
     for (;;) {
       loop_.repeat(ahead, [&] {
-        for_each(Device{}, count, detail::TurnDirection{s, z_.data(), p_.data(), ap_.data()});
+        for_each(device_, count, detail::TurnDirection{s, z_.data(), p_.data(), ap_.data()});
         a.add_product(p_, ap_, &s->halt);
-        sum_each<1>(Device{}, count, sums_, close_product(a.closing(p_, ap_)), detail::FinishCurvature{s});
+        sum_each<1>(device_, count, sums_, close_product(a.closing(p_, ap_)), detail::FinishCurvature{s});
         preconditioner.apply_after(detail::StepAlong{s, p_.data(), ap_.data(), x.data(), r_.data()}, r_, z_, s);
       });
       state = state_.download().front();
@@ -62,10 +63,11 @@ class ConjugateGradient {
     return {close, state_.data(), p_.data(), ap_.data()};
   }
 
-  NodeVector<Device> r_, z_, p_, ap_;
-  Buffer<CgState, Device> state_;
-  SumSpace<Device> sums_;
-  Recording<Device> loop_;
+  Device device_;
+  NodeVector<Device> r_{device_}, z_{device_}, p_{device_}, ap_{device_};
+  Buffer<CgState, Device> state_{device_};
+  SumSpace<Device> sums_{device_};
+  Recording<Device> loop_{device_};
   int last_ = 0;
 };
 

@@ -42,14 +42,14 @@ namespace detail {
 /// Takes the step along p in a sweep of its own; hands r . r to the state.
 template <class Device>
 void take_step(int count, SumSpace<Device>& sums, const StepAlong& step, CgState* state) {
-  sum_each<1>(Device{}, count, sums, MeasuredStep{step}, FinishResidual{state});
+  sum_each<1>(sums.device(), count, sums, MeasuredStep{step}, FinishResidual{state});
 }
 
 /// Hands r . z to the state, in a sweep of its own.
 template <class Device>
 void measure_angle(int count, SumSpace<Device>& sums, const NodeVector<Device>& r, const NodeVector<Device>& z,
                    CgState* state) {
-  sum_each<1>(Device{}, count, sums, MeasuredAngle{r.data(), z.data(), state}, FinishAngle{state});
+  sum_each<1>(sums.device(), count, sums, MeasuredAngle{r.data(), z.data(), state}, FinishAngle{state});
 }
 
 }  // namespace detail

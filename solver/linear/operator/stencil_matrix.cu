@@ -100,10 +100,10 @@ void StencilMatrix<Real, Device, Shape, Number>::build(const ElementList<Real, D
   constexpr int each = ElementList<Real, Device, Shape>::nodes_each;
   flags_.resize(static_cast<std::size_t>(nodes));
   flags_.fill_zero();
-  for_each(Device{}, list.count() * each, FlagNodes{list.view().nodes, flags_.data()});
+  for_each(device_, list.count() * each, FlagNodes{list.view().nodes, flags_.data()});
   number_rows(flags_);
-  for_each(Device{}, rows_ * View::neighbours, Forget{table_.data()});
-  for_each_grouped(Device{}, list.count(), list.groups(), MeetNeighbours<View, Shape>{view(), list.view()});
+  for_each(device_, rows_ * View::neighbours, Forget{table_.data()});
+  for_each_grouped(device_, list.count(), list.groups(), MeetNeighbours<View, Shape>{view(), list.view()});
 }
 
 template <class Real, class Device, class Shape, class Number>
@@ -111,8 +111,8 @@ void StencilMatrix<Real, Device, Shape, Number>::number_rows(const Buffer<int, D
   const int nodes = static_cast<int>(flags.size());
   row_of_.resize(flags.size());
   node_of_.resize(flags.size());
-  rows_ = exclusive_sum(Device{}, flags.data(), row_of_.data(), nodes);
-  for_each(Device{}, nodes, NumberRows{row_of_.data(), node_of_.data(), flags.data()});
+  rows_ = exclusive_sum(device_, flags.data(), row_of_.data(), nodes);
+  for_each(device_, nodes, NumberRows{row_of_.data(), node_of_.data(), flags.data()});
   table_.resize(static_cast<std::size_t>(rows_) * View::neighbours);
   blocks_.resize(static_cast<std::size_t>(rows_) * View::neighbours * 9);
 }
@@ -127,7 +127,7 @@ void StencilMatrix<Real, Device, Shape, Number>::assemble(const ElementList<Real
 template <class Real, class Device, class Shape, class Number>
 void StencilMatrix<Real, Device, Shape, Number>::apply(const NodeVector<Device>& x, NodeVector<Device>& y,
                                                        const int* halted) {
-  sum_rows<View::neighbours>(Device{}, rows_, ApplyRow<View>{view(), x.data(), y.data(), halted});
+  sum_rows<View::neighbours>(device_, rows_, ApplyRow<View>{view(), x.data(), y.data(), halted});
 }
 
 #define TALUS_INSTANTIATE(Real, Device, Shape) template class StencilMatrix<Real, Device, Shape>;

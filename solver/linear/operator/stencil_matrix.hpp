@@ -53,6 +53,8 @@ class StencilMatrix {
  public:
   using View = StencilView<Real, Device, Shape, Number>;
 
+  explicit StencilMatrix(const Device& device = {}) : device_(device) {}
+
   /// Rows and neighbours of the nodes that the elements touch, out of `nodes` stored ones.
   void build(const ElementList<Real, Device, Shape>& list, int nodes);
 
@@ -72,9 +74,10 @@ class StencilMatrix {
   }
 
  private:
+  Device device_;
   int rows_ = 0;
-  Buffer<int, Device> row_of_, node_of_, table_, flags_;
-  Buffer<Number, Device> blocks_;
+  Buffer<int, Device> row_of_{device_}, node_of_{device_}, table_{device_}, flags_{device_};
+  Buffer<Number, Device> blocks_{device_};
 };
 
 }  // namespace talus::solver

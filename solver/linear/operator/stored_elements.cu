@@ -70,10 +70,10 @@ template <class Real, class Device, class Shape>
 void StoredElements<Real, Device, Shape>::apply(const ElementList<Real, Device, Shape>& list,
                                                 const NodeVector<Device>& x, NodeVector<Device>& y) {
   if constexpr (Device::is_gpu) {
-    for_each(Device{}, list.count() * Matrices::size,
+    for_each(values_.device(), list.count() * Matrices::size,
              ApplyElementRow<Real, Device, Shape>{view(), list.view(), x.data(), y.data()});
   } else {
-    for_each_grouped(Device{}, list.count(), list.groups(),
+    for_each_grouped(values_.device(), list.count(), list.groups(),
                      ApplyElement<Real, Device, Shape>{view(), list.view(), x.data(), y.data()});
   }
 }

@@ -32,6 +32,8 @@ class StoredElements {
  public:
   using Matrices = ElementMatrices<Real, Device, Shape>;
 
+  explicit StoredElements(const Device& device = {}) : values_(device) {}
+
   /// Sums the points' tangents into the elements' matrices.
   void assemble(const ElementList<Real, Device, Shape>& list, const PointTangents<Real>& from);
 

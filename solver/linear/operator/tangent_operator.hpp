@@ -12,8 +12,9 @@ template <class Real, class Device, class Shape>
 class TangentOperator {
  public:
   /// `single`: the stencil is stored in single precision.
-  explicit TangentOperator(Operator form, bool single = false)
-      : form_(form), single_(single && form == Operator::stencil) {}
+  TangentOperator(const Device& device, Operator form, bool single = false)
+      : device_(device), form_(form), single_(single && form == Operator::stencil) {}
+  explicit TangentOperator(Operator form, bool single = false) : TangentOperator(Device{}, form, single) {}
 
   /// The points have moved, or have been sorted, and `list` is their elements anew; it must stay until the next call.
   /// The form `points` needs it for what couples the points of an element.
@@ -44,7 +45,7 @@ class TangentOperator {
     if (single_) return single_stencil_.apply(x, y, halted);
     if (form_ == Operator::stencil) return stencil_.apply(x, y, halted);
     using Product = TangentTimes<Real, Shape>;
-    scatter_points(Device{}, from_.points.count, *groups_,
+    scatter_points(device_, from_.points.count, *groups_,
                    ScatterForces<Real, Shape, Product>{
                        {from_.grid, from_.points}, Product{from_.tangents, x.data()}, y.data(), halted});
     if (from_.means.on()) apply_means(*list_, from_.means, x, y);
@@ -55,14 +56,15 @@ class TangentOperator {
   std::size_t bytes() const { return stored_.bytes() + stencil_.bytes() + single_stencil_.bytes(); }
 
  private:
+  Device device_;
   Operator form_;
   bool single_;
   PointTangents<Real> from_{};
   const PointGroups* groups_ = nullptr;
   const ElementList<Real, Device, Shape>* list_ = nullptr;
-  StoredElements<Real, Device, Shape> stored_;
-  StencilMatrix<Real, Device, Shape> stencil_;
-  StencilMatrix<Real, Device, Shape, float> single_stencil_;
+  StoredElements<Real, Device, Shape> stored_{device_};
+  StencilMatrix<Real, Device, Shape> stencil_{device_};
+  StencilMatrix<Real, Device, Shape, float> single_stencil_{device_};
 };
 
 }  // namespace talus::solver

@@ -24,7 +24,7 @@ void Multigrid<Real, Device, Shape>::build(const ElementList<Real, Device, Shape
                                            const StoredColumns<Real>& columns, int nodes) {
   constexpr auto kind = Shape::spline ? TwoScale::splines : TwoScale::hats;
   const auto grid = [&](std::size_t g) -> Grid& {  // those of the last step are used again, with their memory
-    if (g == grids_.size()) grids_.push_back(std::make_unique<Grid>());
+    if (g == grids_.size()) grids_.push_back(std::make_unique<Grid>(device_));
     return *grids_[g];
   };
   grid(0).level.build(list, columns, nodes);
@@ -86,7 +86,7 @@ void Multigrid<Real, Device, Shape>::cycle(std::size_t g) {
     coarse.level.restrict_from(grid.level, coarse.x, coarse.y, grid.r, coarse.b);
     cycle(g + 1);
     coarse.level.prolong_to(grid.level, coarse.x, coarse.y, coarse.u, grid.u);
-    if (g == 0) for_each(Device{}, held_.count, KeepFree{held_.freed, grid.u.data(), grid.u.data()});
+    if (g == 0) for_each(device_, held_.count, KeepFree{held_.freed, grid.u.data(), grid.u.data()});
   }
   grid.level.sweep(grid.b, grid.u, false);
 }
@@ -94,9 +94,9 @@ void Multigrid<Real, Device, Shape>::cycle(std::size_t g) {
 template <class Real, class Device, class Shape>
 void Multigrid<Real, Device, Shape>::apply(const NodeVector<Device>& r, NodeVector<Device>& z) {
   Grid& finest = *grids_[0];
-  for_each(Device{}, held_.count, KeepFree{held_.freed, r.data(), finest.b.data()});
+  for_each(device_, held_.count, KeepFree{held_.freed, r.data(), finest.b.data()});
   cycle(0);
-  for_each(Device{}, held_.count, KeepFree{held_.freed, finest.u.data(), z.data()});
+  for_each(device_, held_.count, KeepFree{held_.freed, finest.u.data(), z.data()});
 }
 
 template <class Real, class Device, class Shape>

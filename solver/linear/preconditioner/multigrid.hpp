@@ -16,7 +16,7 @@ template <class Real, class Device, class Shape>
 class Multigrid {
  public:
   /// Without `coarser` grids: Gauss-Seidel alone.
-  explicit Multigrid(bool coarser) : coarser_(coarser) {}
+  Multigrid(const Device& device, bool coarser) : device_(device), coarser_(coarser) {}
 
   /// From the points' tangents and what holds the nodes; `held` must stay until the next call.
   void refresh(const PointTangents<Real>& from, const ElementList<Real, Device, Shape>& list,
@@ -30,6 +30,7 @@ class Multigrid {
  private:
   /// A grid with its right-hand side, solution and what is left; how it follows from the one before.
   struct Grid {
+    explicit Grid(const Device& device) : level(device), between(device), b(device), u(device), r(device) {}
     StencilLevel<Real, Device, Shape> level, between;  // `between`: coarse along x alone
     TwoScale x, y;
     NodeVector<Device> b, u, r;
@@ -38,6 +39,7 @@ class Multigrid {
   void build(const ElementList<Real, Device, Shape>& list, const StoredColumns<Real>& columns, int nodes);
   void cycle(std::size_t g);
 
+  Device device_;
   bool coarser_;
   int serial_ = -1;  // of the elements that the grids were built for
   HeldNodes held_;

@@ -234,30 +234,29 @@ void NodePreconditioner<Real, Device, Shape>::refresh(const PointTangents<Real>&
     above_[up].fill_zero();
   }
   using Blocks = ScatterBlocks<Real, Shape, std::conditional_t<Device::is_gpu, PointTangent<Real>, WholeTangent<Real>>>;
-  scatter_points(Device{}, from.points.count, groups, Blocks{{from.grid, from.points}, from.tangents, factors()});
+  scatter_points(device_, from.points.count, groups, Blocks{{from.grid, from.points}, from.tangents, factors()});
   if (from.means.on()) add_mean_blocks(list, from.means, blocks_);
   if (from.springs.on()) add_spring_blocks(list, from.springs, blocks_);
   if (whole_columns) {
-    for_each(Device{}, held.count, HoldColumns{held, reach, factors()});
-    for_each(Device{}, columns.count(), FactoriseColumns<Real, reach>{columns, factors()});
+    for_each(device_, held.count, HoldColumns{held, reach, factors()});
+    for_each(device_, columns.count(), FactoriseColumns<Real, reach>{columns, factors()});
   } else {
-    for_each(Device{}, held.count, InvertBlocks{held, kind_ == Preconditioner::block, blocks_.data()});
+    for_each(device_, held.count, InvertBlocks{held, kind_ == Preconditioner::block, blocks_.data()});
   }
 }
 
 template <class Real, class Device, class Shape>
 template <class Kernel>
 void NodePreconditioner<Real, Device, Shape>::run(int count, const Kernel& kernel, CgState* state) {
-  if (!state) return for_each(Device{}, count, Alone<Kernel>{kernel});
-  sum_each<1>(Device{}, count, sums_, Measured<Kernel>{kernel, state}, talus::detail::FinishAngle{state});
+  if (!state) return for_each(device_, count, Alone<Kernel>{kernel});
+  sum_each<1>(device_, count, sums_, Measured<Kernel>{kernel, state}, talus::detail::FinishAngle{state});
 }
 
 template <class Real, class Device, class Shape>
 template <class Kernel>
 void NodePreconditioner<Real, Device, Shape>::run_after(const talus::detail::StepAlong& step, int count,
                                                         const Kernel& kernel, CgState* state) {
-  sum_each<2>(Device{}, count, sums_, MeasuredAfter<Kernel>{kernel, step},
-              talus::detail::FinishResidualAndAngle{state});
+  sum_each<2>(device_, count, sums_, MeasuredAfter<Kernel>{kernel, step}, talus::detail::FinishResidualAndAngle{state});
 }
 
 template <class Real, class Device, class Shape>

@@ -19,7 +19,9 @@ namespace talus::solver {
 template <class Real, class Device, class Shape>
 class NodePreconditioner {
  public:
-  explicit NodePreconditioner(Preconditioner kind) : kind_(kind), grids_(kind == Preconditioner::multigrid) {}
+  NodePreconditioner(const Device& device, Preconditioner kind)
+      : device_(device), kind_(kind), grids_(device, kind == Preconditioner::multigrid) {}
+  explicit NodePreconditioner(Preconditioner kind) : NodePreconditioner(Device{}, kind) {}
 
   /// Whether refresh() goes by elements.
   static bool by_elements(Preconditioner kind) {
@@ -46,13 +48,14 @@ class NodePreconditioner {
   ColumnFactors factors() { return {blocks_.data(), {above_[0].data(), above_[1].data()}}; }
 
   static constexpr int reach = Shape::width - 1;  // layers that a column's nodes are coupled over
+  Device device_;
   Preconditioner kind_;
   Multigrid<Real, Device, Shape> grids_;
   HeldNodes held_;
   StoredColumns<Real> columns_;
-  Buffer<Sym3<double>, Device> blocks_;    // inverses: of the blocks, or of the columns' pivots
-  Buffer<Mat3<double>, Device> above_[2];  // L of the nodes one and two layers higher
-  SumSpace<Device> sums_;
+  Buffer<Sym3<double>, Device> blocks_{device_};     // inverses: of the blocks, or of the columns' pivots
+  Buffers<Mat3<double>, Device, 2> above_{device_};  // L of the nodes one and two layers higher
+  SumSpace<Device> sums_{device_};
 };
 
 }  // namespace talus::solver

@@ -9,14 +9,14 @@ namespace talus::solver {
 namespace {
 
 template <class Real, class Device>
-BlockLayout layout_of(Device place, const StoredColumns<Real>& columns) {
+BlockLayout layout_of(const Device& device, const StoredColumns<Real>& columns) {
   BlockLayout layout;
   layout.columns = columns.grid.columns;
   layout.rows = columns.grid.rows;
   layout.slots.resize(static_cast<std::size_t>(layout.blocks_x() * layout.blocks_y()));
   layout.active.resize(static_cast<std::size_t>(columns.blocks));
-  copy_to_host(place, layout.slots.data(), columns.grid.slots, layout.slots.size() * sizeof(BlockSlot));
-  copy_to_host(place, layout.active.data(), columns.active, layout.active.size() * sizeof(int));
+  copy_to_host(device, layout.slots.data(), columns.grid.slots, layout.slots.size() * sizeof(BlockSlot));
+  copy_to_host(device, layout.active.data(), columns.active, layout.active.size() * sizeof(int));
   return layout;
 }
 
@@ -25,7 +25,7 @@ BlockLayout layout_of(Device place, const StoredColumns<Real>& columns) {
 template <class Real, class Device, class Shape>
 void StencilLevel<Real, Device, Shape>::build(const ElementList<Real, Device, Shape>& list,
                                               const StoredColumns<Real>& columns, int nodes) {
-  layout_ = layout_of(Device{}, columns);
+  layout_ = layout_of(device_, columns);
   columns_ = columns;
   nodes_ = nodes;
   matrix_.build(list, nodes);
@@ -48,10 +48,10 @@ void StencilLevel<Real, Device, Shape>::build(const StencilLevel& fine, TwoScale
   nodes_ = layout_.nodes();
   flags_.resize(static_cast<std::size_t>(nodes_));
   flags_.fill_zero();
-  for_each(Device{}, fine.matrix_.rows(), FlagParents<Real>{columns_.grid, x, y, fine.places_.data(), flags_.data()});
+  for_each(device_, fine.matrix_.rows(), FlagParents<Real>{columns_.grid, x, y, fine.places_.data(), flags_.data()});
   matrix_.number_rows(flags_);
   place_rows();
-  for_each(Device{}, matrix_.rows() * neighbours,
+  for_each(device_, matrix_.rows() * neighbours,
            MeetRows<Real, Device, Shape>{columns_.grid, matrix_.view(), places_.data()});
   colour();
 }
@@ -59,7 +59,7 @@ void StencilLevel<Real, Device, Shape>::build(const StencilLevel& fine, TwoScale
 template <class Real, class Device, class Shape>
 void StencilLevel<Real, Device, Shape>::place_rows() {
   places_.resize(static_cast<std::size_t>(matrix_.rows()));
-  for_each(Device{}, columns_.count(), PlaceRows<Real>{columns_, matrix_.view().row_of, places_.data()});
+  for_each(device_, columns_.count(), PlaceRows<Real>{columns_, matrix_.view().row_of, places_.data()});
 }
 
 template <class Real, class Device, class Shape>
@@ -74,12 +74,12 @@ template <class Real, class Device, class Shape>
 void StencilLevel<Real, Device, Shape>::assemble(const ElementList<Real, Device, Shape>& list,
                                                  const PointTangents<Real>& from, const HeldNodes& held) {
   matrix_.assemble(list, from);
-  for_each(Device{}, matrix_.rows() * neighbours, HoldRows<Real, Device, Shape>{matrix_.view(), held});
+  for_each(device_, matrix_.rows() * neighbours, HoldRows<Real, Device, Shape>{matrix_.view(), held});
 }
 
 template <class Real, class Device, class Shape>
 void StencilLevel<Real, Device, Shape>::assemble(StencilLevel& fine, TwoScale x, TwoScale y) {
-  for_each(Device{}, matrix_.rows() * neighbours,
+  for_each(device_, matrix_.rows() * neighbours,
            SumFineBlocks<Real, Device, Shape>{matrix_.view(), fine.matrix_.view(), fine.columns_.grid, x, y,
                                               places_.data()});
 }
@@ -90,8 +90,8 @@ void StencilLevel<Real, Device, Shape>::factorise() {
   pivots_.resize(n);
   left_.resize(n);
   for (int up = 0; up < reach; ++up) above_[up].resize(n);
-  for_each(Device{}, nodes_, TakeColumns<Real, Device, Shape>{matrix_.view(), factors()});
-  for_each(Device{}, columns_.count(), FactoriseColumns<Real, reach>{columns_, factors()});
+  for_each(device_, nodes_, TakeColumns<Real, Device, Shape>{matrix_.view(), factors()});
+  for_each(device_, columns_.count(), FactoriseColumns<Real, reach>{columns_, factors()});
 }
 
 template <class Real, class Device, class Shape>
@@ -103,16 +103,16 @@ void StencilLevel<Real, Device, Shape>::sweep(const NodeVector<Device>& b, NodeV
               count = colour_ends_[static_cast<std::size_t>(c)] - begin;
     const int* const of_colour = coloured_.data() + begin;
     const NodeResidual<Real, Device, Shape> residual{matrix_.view(), b.data(), x.data(), left_.data()};
-    sum_rows<neighbours>(Device{}, count * layers_,
+    sum_rows<neighbours>(device_, count * layers_,
                          ColourResidual<Real, Device, Shape>{columns_, of_colour, count, residual});
-    for_each(Device{}, count, CorrectColumns<Real, reach>{columns_, of_colour, factors(), left_.data(), x.data()});
+    for_each(device_, count, CorrectColumns<Real, reach>{columns_, of_colour, factors(), left_.data(), x.data()});
   }
 }
 
 template <class Real, class Device, class Shape>
 void StencilLevel<Real, Device, Shape>::measure_residual(const NodeVector<Device>& b, const NodeVector<Device>& x,
                                                          NodeVector<Device>& r) {
-  sum_rows<neighbours>(Device{}, nodes_,
+  sum_rows<neighbours>(device_, nodes_,
                        NodeResidual<Real, Device, Shape>{matrix_.view(), b.data(), x.data(), r.data()});
 }
 
@@ -121,7 +121,7 @@ void StencilLevel<Real, Device, Shape>::restrict_from(const StencilLevel& fine, 
                                                       const NodeVector<Device>& from, NodeVector<Device>& to) {
   to.fill_zero();
   for_each(
-      Device{}, matrix_.rows(),
+      device_, matrix_.rows(),
       RestrictRows<Real>{fine.columns_.grid, x, y, places_.data(), matrix_.view().node_of, from.data(), to.data()});
 }
 
@@ -129,7 +129,7 @@ template <class Real, class Device, class Shape>
 void StencilLevel<Real, Device, Shape>::prolong_to(StencilLevel& fine, TwoScale x, TwoScale y,
                                                    const NodeVector<Device>& from, NodeVector<Device>& to) {
   for_each(
-      Device{}, fine.matrix_.rows(),
+      device_, fine.matrix_.rows(),
       ProlongRows<Real>{columns_.grid, x, y, fine.places_.data(), fine.matrix_.view().node_of, from.data(), to.data()});
 }
 

@@ -22,6 +22,8 @@ class StencilLevel {
  public:
   static constexpr int reach = Shape::width - 1, neighbours = StencilView<Real, Device, Shape>::neighbours;
 
+  explicit StencilLevel(const Device& device = {}) : device_(device) {}
+
   /// The finest grid: rows of the elements' nodes.
   void build(const ElementList<Real, Device, Shape>& list, const StoredColumns<Real>& columns, int nodes);
   /// Functions of twice the spacing along x, y or both.
@@ -53,17 +55,18 @@ class StencilLevel {
   void colour();
   ColumnFactors factors() { return {pivots_.data(), {above_[0].data(), above_[1].data()}}; }
 
+  Device device_;
   BlockLayout layout_;
   StoredColumns<Real> columns_;
   int nodes_ = 0, layers_ = 0;
-  Buffer<BlockSlot, Device> slots_;  // of a coarse grid
-  Buffer<int, Device> active_, coloured_, flags_;
+  Buffer<BlockSlot, Device> slots_{device_};  // of a coarse grid
+  Buffer<int, Device> active_{device_}, coloured_{device_}, flags_{device_};
   std::vector<int> colour_ends_;
-  StencilMatrix<Real, Device, Shape> matrix_;
-  Buffer<NodePlace, Device> places_;  // of the rows
-  Buffer<Sym3<double>, Device> pivots_;
-  Buffer<Mat3<double>, Device> above_[2];
-  NodeVector<Device> left_;  // residual of a colour, then its change
+  StencilMatrix<Real, Device, Shape> matrix_{device_};
+  Buffer<NodePlace, Device> places_{device_};  // of the rows
+  Buffer<Sym3<double>, Device> pivots_{device_};
+  Buffers<Mat3<double>, Device, 2> above_{device_};
+  NodeVector<Device> left_{device_};  // residual of a colour, then its change
 };
 
 }  // namespace talus::solver

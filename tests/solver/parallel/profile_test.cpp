@@ -30,7 +30,8 @@ TEST(KernelNames, are_those_of_their_types) {
 class ProfileOf : public InEachPlace {};
 
 TEST_P(ProfileOf, a_slide_names_its_kernels_and_takes_no_longer_than_the_run) {
-  Profile& profile = profile_of(GetParam());
+  const AnyDevice device = make_device(GetParam());
+  Profile& profile = device.profile();
   const auto calls_of = [&](const std::string& name) {
     long calls = 0;
     for (const auto& k : profile.kernels()) calls += k.name == name ? k.calls : 0;
@@ -45,7 +46,7 @@ TEST_P(ProfileOf, a_slide_names_its_kernels_and_takes_no_longer_than_the_run) {
   fill(domain, {8, 14, 5, 11, 0, 4});
   const SolveOptions options;
   const Scene scene = make_scene(domain, options);
-  const auto solver = make_solver(scene, options, GetParam());
+  const auto solver = make_solver(scene, options, device);
   solver->set_next_event(1e9);
   const long gathers = calls_of("GridToParticle");
   const double phases = seconds_of(profile.phases()), kernels = seconds_of(profile.kernels());
@@ -77,7 +78,7 @@ TEST_P(ProfileOf, a_slide_names_its_kernels_and_takes_no_longer_than_the_run) {
 TALUS_IN_EACH_PLACE(ProfileOf);
 
 TEST(CopyBandwidth, is_that_of_a_memory) {
-  const double copy = copy_bandwidth(CpuDevice{});
+  const double copy = copy_bandwidth(CpuDevice::make());
   EXPECT_GT(copy, 1e8);
   EXPECT_LT(copy, 1e13);
 }

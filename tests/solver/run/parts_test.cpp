@@ -161,7 +161,7 @@ TEST(ErodibleGround, rests_until_it_is_loaded_and_is_told_apart) {
     o.base.characteristic_speed = 0.5;
     const RunPaths paths(folder / name);
     std::filesystem::create_directories(folder / name);
-    Simulation simulation(scene, o, On::cpu, paths, "");
+    Simulation simulation(scene, o, CpuDevice::make(), paths, "");
     simulation.run("erodible", "Erodible ground");
     return read_run(paths.run);
   };

@@ -21,7 +21,7 @@ TEST(Stepper, meets_events_and_knows_its_step_over_the_cfl_step) {
     SolveOptions o;
     o.integrator = integrator;
     const Scene scene = make_scene(d, o);
-    Stepper stepper(scene, o, On::cpu);
+    Stepper stepper(scene, o, CpuDevice::make());
     EXPECT_FALSE(stepper.begun());
     stepper.begin(first_state(scene, make_settings(o, scene.grid).common));
     EXPECT_TRUE(stepper.begun());

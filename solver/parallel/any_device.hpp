@@ -1,0 +1,27 @@
+// A device that is chosen at run time.
+#pragma once
+
+#include <utility>
+#include <variant>
+
+#include "solver/parallel/device.hpp"
+
+namespace talus {
+
+/// A CpuDevice or a GpuDevice; a handle, as they are.
+class AnyDevice {
+ public:
+  AnyDevice(CpuDevice device) : device_(std::move(device)) {}
+  AnyDevice(GpuDevice device) : device_(std::move(device)) {}
+
+  bool is_gpu() const { return std::holds_alternative<GpuDevice>(device_); }
+  const CpuDevice& cpu() const { return std::get<CpuDevice>(device_); }
+  const GpuDevice& gpu() const { return std::get<GpuDevice>(device_); }
+  /// Times of the kernels that were started on this device.
+  Profile& profile() const { return is_gpu() ? gpu().profile() : cpu().profile(); }
+
+ private:
+  std::variant<CpuDevice, GpuDevice> device_;
+};
+
+}  // namespace talus
