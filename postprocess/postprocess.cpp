@@ -9,14 +9,14 @@
 
 #include <fmt/format.h>
 
-#include "common/gis/raster_io.hpp"
+#include "common/gis/crs.hpp"
 #include "common/run/run_file.hpp"
+#include "postprocess/fields/fields.hpp"
 #include "postprocess/maps/avaframe.hpp"
-#include "postprocess/maps/fields.hpp"
 #include "postprocess/maps/geotiff.hpp"
 #include "postprocess/maps/gis.hpp"
 #include "postprocess/maps/netcdf.hpp"
-#include "postprocess/options.hpp"
+#include "postprocess/options/options.hpp"
 #include "postprocess/picture/animation.hpp"
 #include "postprocess/picture/map_picture.hpp"
 #include "postprocess/report/report.hpp"

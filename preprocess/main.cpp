@@ -3,11 +3,11 @@
 
 #include <algorithm>
 
-#include "common/gis/raster_io.hpp"
+#include "common/gis/crs.hpp"
+#include "common/map/sum.hpp"
 #include "common/stage/stage.hpp"
-#include "preprocess/prepare.hpp"
-#include "preprocess/sum.hpp"
-#include "preprocess/survey/write_survey.hpp"
+#include "preprocess/output/write_survey.hpp"
+#include "preprocess/scene/prepare.hpp"
 
 namespace {
 
@@ -55,7 +55,7 @@ void report(const preprocess::Prepared& prepared) {
   const std::string whole = prepared.by_release.size() == 1 ? prepared.by_release.front().first : "all releases";
   for (const std::string& line : preprocess::as_lines(whole, prepared.total)) log_info(line);
   const double count = static_cast<double>(prepared.point_count);
-  log_info(fmt::format("material points: {} (the solver needs about {:.0f} MB for them)", preprocess::grouped(count),
+  log_info(fmt::format("material points: {} (the solver needs about {:.0f} MB for them)", grouped(count),
                        std::max(1.0, count * bytes_per_point * 1e-6)));
 }
 

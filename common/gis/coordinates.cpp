@@ -1,7 +1,5 @@
 #include "common/gis/coordinates.hpp"
 
-#include <cmath>
-
 #include "common/gis/gdal_support.hpp"
 
 namespace talus {
@@ -12,19 +10,6 @@ gdal::Transformation between(const std::string& from_wkt, const std::string& to_
 }
 
 }  // namespace
-
-std::string crs_by_name(const std::string& name) {
-  const gdal::QuietErrors errors;
-  OGRSpatialReference srs;
-  return srs.SetFromUserInput(name.c_str()) == OGRERR_NONE ? gdal::horizontal_wkt(&srs) : "";
-}
-
-bool is_metric(const std::string& wkt) {
-  if (wkt.empty()) return true;
-  const gdal::QuietErrors errors;
-  const OGRSpatialReference srs = gdal::spatial_reference(wkt);
-  return !srs.IsGeographic() && std::abs(srs.GetLinearUnits() - 1) <= 1e-9;
-}
 
 Extent transform_extent(const Extent& extent, const std::string& from_wkt, const std::string& to_wkt) {
   const gdal::QuietErrors errors;
@@ -44,12 +29,6 @@ void transform_places(const std::string& from_wkt, const std::string& to_wkt, st
   if (between(from_wkt, to_wkt)->Transform(static_cast<int>(x.size()), x.data(), y.data()) == 0)
     throw DataError({"points cannot be moved between two CRS", errors.text(),
                      "Check their coordinates, or reproject them beforehand: ogr2ogr -t_srs"});
-}
-
-std::string utm_zone_at(const std::string& wkt, double x, double y) {
-  const gdal::QuietErrors errors;
-  const std::string zone = gdal::utm_zone(gdal::spatial_reference(wkt), x, y);
-  return zone.find('<') == std::string::npos ? zone : "";
 }
 
 }  // namespace talus

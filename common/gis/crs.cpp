@@ -1,6 +1,8 @@
-// Are two coordinate reference systems the same, and what are they called.
+#include "common/gis/crs.hpp"
+
+#include <cmath>
+
 #include "common/gis/gdal_support.hpp"
-#include "common/gis/raster_io.hpp"
 
 namespace talus {
 namespace {
@@ -32,6 +34,25 @@ std::string crs_name(const std::string& wkt) {
   OGRSpatialReference srs = gdal::spatial_reference(wkt);
   if (srs.GetAuthorityCode(nullptr) == nullptr) srs.AutoIdentifyEPSG();
   return gdal::short_name(srs);
+}
+
+std::string crs_by_name(const std::string& name) {
+  const gdal::QuietErrors errors;
+  OGRSpatialReference srs;
+  return srs.SetFromUserInput(name.c_str()) == OGRERR_NONE ? gdal::horizontal_wkt(&srs) : "";
+}
+
+bool is_metric(const std::string& wkt) {
+  if (wkt.empty()) return true;
+  const gdal::QuietErrors errors;
+  const OGRSpatialReference srs = gdal::spatial_reference(wkt);
+  return !srs.IsGeographic() && std::abs(srs.GetLinearUnits() - 1) <= 1e-9;
+}
+
+std::string utm_zone_at(const std::string& wkt, double x, double y) {
+  const gdal::QuietErrors errors;
+  const std::string zone = gdal::utm_zone(gdal::spatial_reference(wkt), x, y);
+  return zone.find('<') == std::string::npos ? zone : "";
 }
 
 }  // namespace talus

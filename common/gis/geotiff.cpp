@@ -1,11 +1,11 @@
-// Rasters out: GeoTIFF, plain or cloud-optimised, written aside, read back and renamed.
+#include "common/gis/geotiff.hpp"
+
 #include <cpl_string.h>
 
 #include <cmath>
 #include <cstring>
 
 #include "common/gis/gdal_support.hpp"
-#include "common/gis/raster_io.hpp"
 #include "common/stage/stage.hpp"
 #include "common/stage/write_fault.hpp"
 

@@ -7,6 +7,7 @@
 
 #include "common/gis/outlines.hpp"
 #include "common/map/isolines.hpp"
+#include "common/map/polygon.hpp"
 
 namespace talus {
 namespace {

@@ -9,6 +9,7 @@
 
 #include "common/gis/gdal_support.hpp"
 #include "common/gis/outlines.hpp"
+#include "common/map/polygon.hpp"
 #include "common/stage/stage.hpp"
 #include "common/stage/write_fault.hpp"
 

@@ -1,11 +1,11 @@
-// Outlines and lines out of vector files, through OGR.
+#include "common/gis/polygons.hpp"
+
 #include <fmt/format.h>
 #include <ogrsf_frmts.h>
 
 #include <cmath>
 
 #include "common/gis/gdal_support.hpp"
-#include "common/gis/raster_io.hpp"
 
 namespace talus {
 namespace fs = std::filesystem;

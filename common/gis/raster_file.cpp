@@ -8,8 +8,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include "common/gis/crs.hpp"
 #include "common/gis/gdal_support.hpp"
-#include "common/gis/raster_io.hpp"
 #include "common/gis/raster_source.hpp"
 #include "common/stage/stage.hpp"
 
@@ -173,31 +173,6 @@ Raster RasterFile::read() const {
                      fmt::format("all {} x {} cells are nodata", grid.columns, grid.rows),
                      "Check the file and its nodata value: gdalinfo -stats " + file().string()});
   return raster;
-}
-
-Raster read_raster(const fs::path& file) { return RasterFile(file).read(); }
-
-Raster read_raster_in_metres(const fs::path& file, const std::string& crs_wkt) {
-  return RasterFile(file, {in_metres(file) ? "" : crs_wkt, "", ""}).read();
-}
-
-bool in_metres(const fs::path& file) { return RasterSource(file, "metre").in_metres(); }
-
-std::string utm_crs_of(const fs::path& file) {
-  const RasterSource source(file, "metre");
-  if (source.srs() == nullptr || !source.placed())
-    throw DataError(
-        {file.string() + ": has no CRS", "so its UTM zone cannot be told",
-         fmt::format("Give it one: gdal_translate -a_srs EPSG:<code> {} {}", file.string(), mended(file, "_placed"))});
-  const auto [x, y] = source.centre();
-  const std::string zone = gdal::utm_zone(*source.srs(), x, y);
-  OGRSpatialReference srs;
-  const QuietErrors errors;
-  if (srs.SetFromUserInput(zone.c_str()) != OGRERR_NONE)
-    throw DataError({fmt::format("{}: its centre, {:.6g}, {:.6g} in {}, lies in no UTM zone", file.string(), x, y,
-                                 gdal::short_name(*source.srs())),
-                     "these reach from 80 degrees south to 84 north", "Check its CRS, or name a CRS in metres"});
-  return gdal::horizontal_wkt(&srs);
 }
 
 }  // namespace talus

@@ -51,13 +51,4 @@ class RasterFile {
   std::unique_ptr<Parts> parts_;
 };
 
-/// A raster whole: as it is where it is in metres, else reprojected to `crs_wkt`.
-Raster read_raster_in_metres(const std::filesystem::path& file, const std::string& crs_wkt);
-
-/// True when a raster's CRS is projected and in metres, or when it names none. Throws DataError as RasterFile does.
-bool in_metres(const std::filesystem::path& file);
-
-/// WKT2 of the UTM zone (on WGS 84) that holds the centre of a raster. Throws DataError: no CRS, or beyond 84 degrees.
-std::string utm_crs_of(const std::filesystem::path& file);
-
 }  // namespace talus

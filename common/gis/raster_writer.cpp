@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/gis/gdal_support.hpp"
+#include "common/gis/geotiff.hpp"
 #include "common/stage/stage.hpp"
 #include "common/stage/write_fault.hpp"
 

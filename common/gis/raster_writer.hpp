@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "common/gis/raster_io.hpp"
+#include "common/gis/geotiff.hpp"
 
 namespace talus {
 

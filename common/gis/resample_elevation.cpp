@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/gis/crs.hpp"
 #include "common/gis/gdal_support.hpp"
-#include "common/gis/raster_io.hpp"
+#include "common/gis/resampling.hpp"
 #include "common/map/axis_overlap.hpp"
 #include "common/map/bicubic.hpp"
 #include "common/map/bilinear.hpp"

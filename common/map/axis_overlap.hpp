@@ -5,19 +5,20 @@
 
 namespace talus {
 
-struct Axis {
-  double start = 0;  // outer edge of cell 0 [m]
-  double cell = 0;   // [m]
-  int count = 0;
+/// The cells of a grid along one of its axes.
+struct CellAxis {
+  double start = 0;  ///< outer edge of cell 0 [m]
+  double cell = 0;   ///< width of a cell [m]
+  int count = 0;     ///< of cells
 };
 
-/// A source cell and the length it shares with a target cell [m].
+/// A source cell and the length it shares with a target cell.
 struct Overlap {
-  int source = 0;
-  double length = 0;
+  int source = 0;     ///< index of the source cell
+  double length = 0;  ///< [m]
 };
 
-/// For each target cell the source cells that overlap it, in order. [target.count]
-std::vector<std::vector<Overlap>> axis_overlaps(const Axis& source, const Axis& target);
+/// For each target cell the source cells that overlap it, in rising order. [target.count]
+std::vector<std::vector<Overlap>> axis_overlaps(const CellAxis& source, const CellAxis& target);
 
 }  // namespace talus

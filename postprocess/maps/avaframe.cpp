@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 
-#include "common/gis/raster_io.hpp"
+#include "common/gis/geotiff.hpp"
 #include "common/map/slope.hpp"
 #include "common/stage/stage.hpp"
-#include "postprocess/maps/fields.hpp"
+#include "postprocess/fields/fields.hpp"
 
 namespace talus::postprocess {
 namespace fs = std::filesystem;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/run/run_file.hpp"
-#include "postprocess/options.hpp"
+#include "postprocess/options/options.hpp"
 
 namespace talus::postprocess {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/gis/raster_io.hpp"
-#include "postprocess/maps/fields.hpp"
+#include "common/gis/geotiff.hpp"
+#include "postprocess/fields/fields.hpp"
 
 namespace talus::postprocess {
 

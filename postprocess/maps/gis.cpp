@@ -6,13 +6,13 @@
 
 #include <fmt/format.h>
 
+#include "common/gis/geotiff.hpp"
 #include "common/gis/outlines.hpp"
-#include "common/gis/raster_io.hpp"
-#include "common/qgis/qgis_project.hpp"
-#include "postprocess/maps/fields.hpp"
+#include "common/qgis/project.hpp"
+#include "postprocess/fields/fields.hpp"
+#include "postprocess/fields/styles.hpp"
+#include "postprocess/fields/window.hpp"
 #include "postprocess/maps/outlines.hpp"
-#include "postprocess/maps/styles.hpp"
-#include "postprocess/picture/view.hpp"
 
 namespace talus::postprocess {
 namespace fs = std::filesystem;

@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 
 #include "common/stage/stage.hpp"
+#include "postprocess/fields/fields.hpp"
 #include "postprocess/maps/cf_projection.hpp"
-#include "postprocess/maps/fields.hpp"
 #include "postprocess/maps/nc_file.hpp"
 
 namespace talus::postprocess {

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "postprocess/maps/styles.hpp"
+#include "postprocess/fields/styles.hpp"
 
 namespace talus::postprocess {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "postprocess/picture/classes.hpp"
+#include "postprocess/fields/classes.hpp"
 
 namespace talus::postprocess {
 

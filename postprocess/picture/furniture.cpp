@@ -1,5 +1,7 @@
 #include "postprocess/picture/furniture.hpp"
 
+#include "common/gis/crs.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -7,8 +9,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-
-#include "common/gis/raster_io.hpp"
 
 namespace talus::postprocess {
 namespace {

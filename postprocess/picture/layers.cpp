@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "common/map/isolines.hpp"
+#include "common/map/polygon.hpp"
 #include "postprocess/picture/hillshade.hpp"
 
 namespace talus::postprocess {

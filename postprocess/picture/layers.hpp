@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/map/isolines.hpp"
+#include "common/map/polygon.hpp"
 #include "postprocess/picture/canvas.hpp"
 #include "postprocess/picture/map_picture.hpp"
 #include "postprocess/picture/view.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "postprocess/picture/classes.hpp"
+#include "postprocess/fields/classes.hpp"
 #include "postprocess/picture/furniture.hpp"
 #include "postprocess/picture/layers.hpp"
 

@@ -4,10 +4,10 @@
 #include <string>
 
 #include "common/run/run_file.hpp"
-#include "postprocess/options.hpp"
+#include "postprocess/options/options.hpp"
 #include "postprocess/picture/canvas.hpp"
 #include "postprocess/score/score.hpp"
-#include "postprocess/score/survey.hpp"
+#include "postprocess/survey/survey.hpp"
 
 namespace talus::postprocess {
 

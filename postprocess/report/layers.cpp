@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "postprocess/maps/fields.hpp"
-#include "postprocess/maps/styles.hpp"
+#include "postprocess/fields/fields.hpp"
+#include "postprocess/fields/styles.hpp"
 #include "postprocess/picture/hillshade.hpp"
 #include "postprocess/report/limits.hpp"
 #include "postprocess/report/pack.hpp"

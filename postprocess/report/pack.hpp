@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/map/raster.hpp"
-#include "postprocess/picture/view.hpp"
+#include "postprocess/fields/window.hpp"
 
 namespace talus::postprocess {
 

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "postprocess/picture/view.hpp"
+#include "postprocess/fields/window.hpp"
 #include "postprocess/report/report.hpp"
 
 namespace talus::postprocess {

@@ -7,9 +7,9 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include "common/gis/raster_io.hpp"
+#include "common/gis/crs.hpp"
 #include "common/stage/stage.hpp"
-#include "postprocess/picture/view.hpp"
+#include "postprocess/fields/window.hpp"
 #include "postprocess/report/page.hpp"
 #include "postprocess/report/parts.hpp"
 

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "common/run/run_file.hpp"
-#include "postprocess/options.hpp"
+#include "postprocess/options/options.hpp"
 #include "postprocess/score/score.hpp"
-#include "postprocess/score/survey.hpp"
 #include "postprocess/score/thalweg.hpp"
+#include "postprocess/survey/survey.hpp"
 
 namespace talus::postprocess {
 

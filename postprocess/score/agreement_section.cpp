@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "postprocess/maps/fields.hpp"
+#include "postprocess/fields/fields.hpp"
 #include "postprocess/score/contingency.hpp"
 #include "postprocess/score/ranking.hpp"
 #include "postprocess/score/residual.hpp"

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "common/stage/stage.hpp"
-#include "postprocess/maps/fields.hpp"
+#include "postprocess/fields/fields.hpp"
 #include "postprocess/score/contingency.hpp"
 #include "postprocess/score/patches.hpp"
 #include "postprocess/score/random_field.hpp"

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "common/map/slope.hpp"
-#include "postprocess/maps/fields.hpp"
+#include "postprocess/fields/fields.hpp"
 #include "postprocess/score/sections.hpp"
 
 namespace talus::postprocess {

@@ -5,8 +5,8 @@
 
 #include "postprocess/score/mobility.hpp"
 #include "postprocess/score/sheet.hpp"
-#include "postprocess/score/survey.hpp"
 #include "postprocess/score/thalweg.hpp"
+#include "postprocess/survey/survey.hpp"
 
 namespace talus::postprocess {
 

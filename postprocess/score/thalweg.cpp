@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "common/error.hpp"
-#include "common/gis/raster_io.hpp"
+#include "common/gis/polygons.hpp"
 #include "common/map/bilinear.hpp"
 #include "postprocess/score/flow_path.hpp"
 #include "postprocess/score/mobility.hpp"

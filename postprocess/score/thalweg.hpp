@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/run/run_file.hpp"
-#include "postprocess/options.hpp"
+#include "postprocess/options/options.hpp"
 #include "postprocess/score/mobility.hpp"
 
 namespace talus::postprocess {

@@ -7,9 +7,9 @@
 #include <memory>
 
 #include "common/error.hpp"
-#include "common/gis/raster_io.hpp"
 #include "common/map/bilinear.hpp"
-#include "preprocess/release/polygon_cover.hpp"
+#include "common/map/polygon.hpp"
+#include "preprocess/regions/polygon_cover.hpp"
 
 namespace talus::preprocess {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/domain/domain.hpp"
-#include "preprocess/options.hpp"
+#include "preprocess/options/options.hpp"
 #include "preprocess/release/releases.hpp"
 
 namespace talus::preprocess {

@@ -6,8 +6,9 @@
 #include <cmath>
 
 #include "common/error.hpp"
-#include "preprocess/release/polygon_cover.hpp"
-#include "preprocess/sum.hpp"
+#include "common/map/polygon.hpp"
+#include "common/map/sum.hpp"
+#include "preprocess/regions/polygon_cover.hpp"
 
 namespace talus::preprocess {
 

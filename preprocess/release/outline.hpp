@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "common/gis/raster_io.hpp"
+#include "common/map/polygon.hpp"
 #include "common/map/raster.hpp"
 
 namespace talus::preprocess {

@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "common/error.hpp"
-#include "common/gis/raster_io.hpp"
+#include "common/gis/crs.hpp"
+#include "common/map/sum.hpp"
 #include "common/stage/stage.hpp"
-#include "preprocess/release/polygon_cover.hpp"
-#include "preprocess/sum.hpp"
+#include "preprocess/regions/polygon_cover.hpp"
 #include "preprocess/terrain/elevation.hpp"
 #include "preprocess/terrain/surfaces.hpp"
 

@@ -4,7 +4,7 @@
 
 #include "common/gis/raster_file.hpp"
 #include "common/map/raster.hpp"
-#include "preprocess/options.hpp"
+#include "preprocess/options/options.hpp"
 #include "preprocess/release/sliding_surface.hpp"
 #include "preprocess/release/source.hpp"
 

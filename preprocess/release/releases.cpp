@@ -6,10 +6,11 @@
 #include <cmath>
 
 #include "common/error.hpp"
-#include "common/gis/raster_io.hpp"
+#include "common/gis/read_raster.hpp"
+#include "common/map/polygon.hpp"
 #include "common/map/slope.hpp"
 #include "common/stage/stage.hpp"
-#include "preprocess/release/polygon_cover.hpp"
+#include "preprocess/regions/polygon_cover.hpp"
 #include "preprocess/terrain/elevation.hpp"
 #include "preprocess/terrain/surfaces.hpp"
 

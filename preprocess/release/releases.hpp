@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/map/raster.hpp"
-#include "preprocess/options.hpp"
+#include "preprocess/options/options.hpp"
 
 namespace talus::preprocess {
 

@@ -7,9 +7,9 @@
 #include <functional>
 
 #include "common/error.hpp"
+#include "common/map/sum.hpp"
 #include "preprocess/release/finish_surface.hpp"
 #include "preprocess/release/rim_problem.hpp"
-#include "preprocess/sum.hpp"
 
 namespace talus::preprocess {
 

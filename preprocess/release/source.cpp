@@ -7,10 +7,11 @@
 #include <utility>
 
 #include "common/error.hpp"
+#include "common/map/polygon.hpp"
+#include "common/map/sum.hpp"
 #include "common/stage/stage.hpp"
-#include "preprocess/release/polygon_cover.hpp"
-#include "preprocess/release/regions.hpp"
-#include "preprocess/sum.hpp"
+#include "preprocess/regions/polygon_cover.hpp"
+#include "preprocess/regions/regions.hpp"
 #include "preprocess/terrain/surfaces.hpp"
 
 namespace talus::preprocess {

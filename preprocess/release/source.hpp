@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <vector>
 
-#include "common/gis/raster_io.hpp"
+#include "common/map/polygon.hpp"
 #include "common/map/raster.hpp"
-#include "preprocess/options.hpp"
+#include "preprocess/options/options.hpp"
 
 namespace talus::preprocess {
 

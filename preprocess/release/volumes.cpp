@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "preprocess/sum.hpp"
+#include "common/map/sum.hpp"
 
 namespace talus::preprocess {
 

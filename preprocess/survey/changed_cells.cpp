@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/map/statistics.hpp"
-#include "preprocess/release/regions.hpp"
+#include "preprocess/regions/regions.hpp"
 
 namespace talus::preprocess {
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/error.hpp"
+#include "common/gis/coordinates.hpp"
 #include "common/map/statistics.hpp"
 #include "preprocess/survey/changed_cells.hpp"
 #include "preprocess/survey/first_guess.hpp"

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "common/gis/raster_io.hpp"
+#include "common/map/polygon.hpp"
 #include "preprocess/survey/patches.hpp"
 #include "preprocess/survey/residuals.hpp"
 

@@ -3,9 +3,10 @@
 #include <cmath>
 
 #include "common/error.hpp"
-#include "common/gis/inside.hpp"
-#include "preprocess/release/regions.hpp"
-#include "preprocess/sum.hpp"
+#include "common/map/cells_inside.hpp"
+#include "common/map/polygon.hpp"
+#include "common/map/sum.hpp"
+#include "preprocess/regions/regions.hpp"
 #include "preprocess/survey/survey.hpp"
 
 namespace talus::preprocess {

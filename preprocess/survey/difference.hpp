@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <functional>
 
-#include "preprocess/options.hpp"
+#include "preprocess/options/options.hpp"
 #include "preprocess/survey/error_model.hpp"
 #include "preprocess/terrain/elevation.hpp"
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/gis/inside.hpp"
+#include "common/map/cells_inside.hpp"
 #include "common/map/statistics.hpp"
 #include "preprocess/survey/coregistration.hpp"
 

@@ -6,9 +6,10 @@
 #include <numbers>
 
 #include "common/error.hpp"
+#include "common/gis/polygons.hpp"
+#include "common/map/sum.hpp"
 #include "common/stage/stage.hpp"
-#include "preprocess/release/polygon_cover.hpp"
-#include "preprocess/sum.hpp"
+#include "preprocess/regions/polygon_cover.hpp"
 #include "preprocess/terrain/working_grid.hpp"
 
 namespace talus::preprocess {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/gis/raster_io.hpp"
+#include "common/map/polygon.hpp"
 #include "preprocess/survey/coregistration.hpp"
 #include "preprocess/survey/difference.hpp"
 #include "preprocess/terrain/voids.hpp"

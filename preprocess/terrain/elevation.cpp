@@ -7,10 +7,13 @@
 #include <limits>
 
 #include "common/error.hpp"
-#include "common/gis/raster_io.hpp"
+#include "common/gis/coordinates.hpp"
+#include "common/gis/crs.hpp"
+#include "common/gis/read_raster.hpp"
+#include "common/gis/resampling.hpp"
 #include "common/map/crop.hpp"
+#include "common/map/sum.hpp"
 #include "common/stage/stage.hpp"
-#include "preprocess/sum.hpp"
 #include "preprocess/terrain/scattered.hpp"
 
 namespace talus::preprocess {

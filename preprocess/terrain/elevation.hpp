@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "common/gis/coordinates.hpp"
 #include "common/gis/raster_file.hpp"
 #include "common/map/raster.hpp"
-#include "preprocess/options.hpp"
+#include "preprocess/options/options.hpp"
 #include "preprocess/terrain/geo_input.hpp"
 #include "preprocess/terrain/placement.hpp"
 

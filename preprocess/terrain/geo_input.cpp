@@ -6,8 +6,8 @@
 #include <cctype>
 
 #include "common/error.hpp"
+#include "common/gis/crs.hpp"
 #include "common/gis/point_layer.hpp"
-#include "common/gis/raster_io.hpp"
 #include "common/gis/vertical_unit.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/terrain/point_table.hpp"

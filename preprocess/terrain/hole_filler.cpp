@@ -1,5 +1,7 @@
 #include "preprocess/terrain/hole_filler.hpp"
 
+#include "common/gis/resampling.hpp"
+
 #include <CGAL/Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Interpolation_traits_2.h>

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "common/gis/resampling.hpp"
 #include "common/map/raster.hpp"
 
 namespace talus::preprocess {

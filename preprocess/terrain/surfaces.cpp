@@ -7,10 +7,10 @@
 #include <limits>
 #include <optional>
 
-#include "common/gis/raster_io.hpp"
+#include "common/gis/crs.hpp"
 #include "common/map/crop.hpp"
+#include "common/map/sum.hpp"
 #include "common/stage/stage.hpp"
-#include "preprocess/sum.hpp"
 #include "preprocess/terrain/working_grid.hpp"
 
 namespace talus::preprocess {

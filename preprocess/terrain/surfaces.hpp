@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/map/raster.hpp"
-#include "preprocess/options.hpp"
+#include "preprocess/options/options.hpp"
 #include "preprocess/terrain/elevation.hpp"
 #include "preprocess/terrain/voids.hpp"
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "preprocess/sum.hpp"
+#include "common/map/sum.hpp"
 #include "preprocess/terrain/hole_filler.hpp"
 #include "preprocess/terrain/surfaces.hpp"
 

@@ -8,7 +8,8 @@
 #include <limits>
 
 #include "common/error.hpp"
-#include "common/gis/raster_io.hpp"
+#include "common/gis/coordinates.hpp"
+#include "common/gis/crs.hpp"
 
 namespace talus::preprocess {
 

@@ -3,7 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/gis/raster_io.hpp"
+#include "common/gis/geotiff.hpp"
+#include "common/gis/read_raster.hpp"
 #include "postprocess/postprocess.hpp"
 #include "tests/postprocess/scene.hpp"
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/map/polygon.hpp"
 #include "preprocess/release/outline.hpp"
 
 namespace talus::test {

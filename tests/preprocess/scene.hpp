@@ -1,14 +1,14 @@
 // A small scene on disk: a random terrain before, and after it with a bowl taken out and a heap laid down elsewhere.
 #pragma once
 
-#include "preprocess/prepare.hpp"
+#include "preprocess/scene/prepare.hpp"
 #include "tests/preprocess/terrain.hpp"
 
 namespace talus::test {
 
 /// All material points together [m3].
 inline double volume_of_points(const preprocess::Prepared& prepared) {
-  preprocess::Sum sum;
+  Sum sum;
   for (double v : prepared.domain.points.volume) sum.add(v);
   return sum.value();
 }

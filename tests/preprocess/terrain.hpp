@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "common/gis/raster_io.hpp"
+#include "common/gis/geotiff.hpp"
 #include "common/map/raster.hpp"
-#include "preprocess/sum.hpp"
+#include "common/map/sum.hpp"
 #include "tests/common/scratch.hpp"
 
 namespace talus::test {
@@ -77,7 +77,7 @@ class Hills {
 };
 
 inline double volume_of(const Raster& thickness) {
-  preprocess::Sum sum;
+  Sum sum;
   for (double t : thickness.values) sum.add(t);
   return sum.value() * thickness.grid.cell * thickness.grid.cell;
 }

@@ -50,12 +50,12 @@ private_headers() {
   done
 }
 
-test_gdal_stands_behind_raster_io_and_the_outer_stages() {
+test_gdal_stands_behind_gis_and_the_outer_stages() {
   cd "$TALUS_SOURCE"
   local gdal='(gdal|ogr|cpl_|vrt)'
-  includes common solver | { grep -E ": $gdal" || true; } | { grep -v '^common/raster/' || true; } | refuse "GDAL is included outside common/raster"
+  includes common solver | { grep -E ": $gdal" || true; } | { grep -v '^common/gis/' || true; } | refuse "GDAL is included outside common/gis"
   private_headers "$gdal" common preprocess postprocess | refuse "a header that includes GDAL is included outside its folder's sources"
-  includes solver | { grep -E ': common/raster/raster_io' || true; } | refuse "the solver includes raster_io, which stands for GDAL"
+  includes solver | { grep -E ': common/(gis|qgis)/' || true; } | refuse "the solver includes common/gis, which stands for GDAL"
 }
 
 test_solver_does_not_link_gdal() {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "common/gis/raster_io.hpp"
+#include "common/gis/geotiff.hpp"
 #include "tests/validation/bench.hpp"
 
 namespace talus::validation {

@@ -5,8 +5,9 @@
 #include <cstdlib>
 
 #include "common/gis/ascii_header.hpp"
+#include "common/gis/crs.hpp"
 #include "common/gis/raster_file.hpp"
-#include "common/gis/raster_io.hpp"
+#include "common/gis/read_raster.hpp"
 #include "tests/common/rasters.hpp"
 #include "tests/common/scratch.hpp"
 

@@ -1,5 +1,6 @@
 // Outlines at thresholds: areas and holes with known answers, and files read back by our reader and by ogrinfo.
 #include "common/gis/outlines.hpp"
+#include "common/gis/polygons.hpp"
 
 #include <gtest/gtest.h>
 #include <ogr_geometry.h>

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "common/error.hpp"
-#include "common/gis/raster_io.hpp"
+#include "common/gis/polygons.hpp"
 #include "tests/common/rasters.hpp"
 #include "tests/common/scratch.hpp"
 

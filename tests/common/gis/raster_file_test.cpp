@@ -1,4 +1,7 @@
 #include "common/gis/raster_file.hpp"
+#include "common/gis/crs.hpp"
+#include "common/gis/geotiff.hpp"
+#include "common/gis/read_raster.hpp"
 
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
@@ -7,7 +10,6 @@
 #include <cmath>
 
 #include "common/error.hpp"
-#include "common/gis/raster_io.hpp"
 #include "common/gis/vertical_unit.hpp"
 #include "tests/common/rasters.hpp"
 #include "tests/common/tools.hpp"

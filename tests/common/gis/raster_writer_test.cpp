@@ -1,5 +1,7 @@
 // Rasters written block by block.
 #include "common/gis/raster_writer.hpp"
+#include "common/gis/crs.hpp"
+#include "common/gis/read_raster.hpp"
 
 #include <cmath>
 

@@ -1,9 +1,9 @@
 // Cutting along cells, and the one rule beyond the edge.
 #include "common/map/crop.hpp"
+#include "common/gis/resampling.hpp"
 
 #include <gtest/gtest.h>
 
-#include "common/gis/raster_io.hpp"
 #include "tests/common/rasters.hpp"
 
 namespace talus {

@@ -1,11 +1,11 @@
 // Aliases for AvaFrame: names as it takes them apart, thickness normal to the slope, units, nodata.
 #include "postprocess/maps/avaframe.hpp"
+#include "common/gis/read_raster.hpp"
 
 #include <gtest/gtest.h>
 
 #include <regex>
 
-#include "common/gis/raster_io.hpp"
 #include "common/stage/stage.hpp"
 #include "tests/postprocess/scene.hpp"
 

@@ -1,10 +1,9 @@
 // The NetCDF file against the list of requirements of the CF conventions, and read by tools that know them.
 #include <gtest/gtest.h>
 
-#include "common/gis/raster_io.hpp"
 #include "postprocess/maps/cf_projection.hpp"
 #include "postprocess/maps/netcdf.hpp"
-#include "postprocess/options.hpp"
+#include "postprocess/options/options.hpp"
 #include "tests/common/rasters.hpp"
 #include "tests/postprocess/scene.hpp"
 

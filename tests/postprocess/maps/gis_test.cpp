@@ -1,13 +1,13 @@
 // What makes the maps ready for a GIS: styles, outlines at thresholds, the project.
 #include "postprocess/maps/gis.hpp"
+#include "common/gis/read_raster.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "common/gis/raster_io.hpp"
+#include "postprocess/fields/styles.hpp"
 #include "postprocess/maps/geotiff.hpp"
 #include "postprocess/maps/outlines.hpp"
-#include "postprocess/maps/styles.hpp"
 #include "tests/postprocess/scene.hpp"
 
 namespace talus::postprocess {

@@ -2,9 +2,10 @@
 #include <gtest/gtest.h>
 #include <netcdf.h>
 
-#include "common/gis/raster_io.hpp"
+#include "common/gis/crs.hpp"
+#include "common/gis/read_raster.hpp"
+#include "postprocess/fields/fields.hpp"
 #include "postprocess/maps/cf_projection.hpp"
-#include "postprocess/maps/fields.hpp"
 #include "postprocess/maps/geotiff.hpp"
 #include "postprocess/maps/netcdf.hpp"
 #include "tests/postprocess/scene.hpp"

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <map>
 
-#include "common/gis/inside.hpp"
+#include "common/map/cells_inside.hpp"
 #include "common/map/isolines.hpp"
-#include "postprocess/picture/classes.hpp"
+#include "postprocess/fields/classes.hpp"
 #include "postprocess/picture/furniture.hpp"
 #include "postprocess/picture/hillshade.hpp"
 #include "postprocess/picture/map_picture.hpp"

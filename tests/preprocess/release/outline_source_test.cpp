@@ -1,5 +1,7 @@
 // The source under an outline: from files to the released mass, and what is refused.
 #include "preprocess/release/outline_source.hpp"
+#include "common/gis/coordinates.hpp"
+#include "common/gis/crs.hpp"
 
 #include "tests/preprocess/scene.hpp"
 

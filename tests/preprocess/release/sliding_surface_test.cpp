@@ -1,5 +1,6 @@
 // The computed sliding surface against closed forms, and what must hold on any ground.
 #include "preprocess/release/sliding_surface.hpp"
+#include "common/map/polygon.hpp"
 
 #include <numbers>
 

@@ -1,5 +1,6 @@
 // Known shifts of synthetic and real terrain, found again.
 #include "preprocess/survey/coregistration.hpp"
+#include "common/gis/read_raster.hpp"
 
 #include <iostream>
 

@@ -1,11 +1,13 @@
 // Difference of two surveys: its error, its volumes, what of it is the slide.
 #include "preprocess/survey/survey.hpp"
+#include "common/gis/polygons.hpp"
+#include "common/gis/read_raster.hpp"
 
 #include <iostream>
 
 #include "common/map/statistics.hpp"
 #include "data_samples/terrains.hpp"
-#include "preprocess/survey/write_survey.hpp"
+#include "preprocess/output/write_survey.hpp"
 #include "tests/preprocess/scene.hpp"
 
 namespace talus::preprocess {

@@ -1,4 +1,6 @@
 // Different grids, CRS, extents and registrations brought to one grid.
+#include "common/gis/coordinates.hpp"
+#include "common/gis/crs.hpp"
 #include "common/map/crop.hpp"
 #include "preprocess/terrain/geo_input.hpp"
 #include "preprocess/terrain/working_grid.hpp"

@@ -1,7 +1,10 @@
 // Elevation models in degrees and in feet, brought to metres on request.
 #include <fmt/format.h>
 
-#include "preprocess/prepare.hpp"
+#include "common/gis/coordinates.hpp"
+#include "common/gis/crs.hpp"
+#include "common/gis/geotiff.hpp"
+#include "preprocess/scene/prepare.hpp"
 #include "preprocess/terrain/geo_input.hpp"
 #include "tests/preprocess/terrain.hpp"
 

@@ -1,4 +1,6 @@
 #include "preprocess/terrain/scattered.hpp"
+#include "common/gis/crs.hpp"
+#include "common/gis/read_raster.hpp"
 
 #include "preprocess/terrain/geo_input.hpp"
 #include "preprocess/terrain/point_table.hpp"

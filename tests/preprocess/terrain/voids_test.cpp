@@ -1,4 +1,6 @@
 #include "preprocess/terrain/voids.hpp"
+#include "common/gis/read_raster.hpp"
+#include "common/gis/resampling.hpp"
 
 #include <chrono>
 #include <iostream>

@@ -1,0 +1,26 @@
+// Sums that keep their digits, and numbers as people write them.
+#pragma once
+
+#include <cmath>
+#include <string>
+
+namespace talus {
+
+/// Neumaier's compensated sum (1974): the error does not grow with the count.
+class Sum {
+ public:
+  void add(double value) {
+    const double total = sum_ + value;
+    rest_ += std::abs(sum_) >= std::abs(value) ? (sum_ - total) + value : (value - total) + sum_;
+    sum_ = total;
+  }
+  double value() const { return sum_ + rest_; }
+
+ private:
+  double sum_ = 0, rest_ = 0;
+};
+
+/// Rounded to a whole number, in groups of three: "36,003,420".
+std::string grouped(double value);
+
+}  // namespace talus

@@ -1,0 +1,16 @@
+// What styles and projects of QGIS say of how a layer is drawn.
+#pragma once
+
+#include "common/qgis/style.hpp"
+#include "common/qgis/xml_tree.hpp"
+
+namespace talus {
+
+/// Into the element of a layer or a style: everything on how the raster's band 1 is drawn.
+void add_class_renderer(XmlElement layer, const RasterStyle& style);
+void add_hillshade_renderer(XmlElement layer);
+
+/// The same for a layer of polygons: their outlines alone.
+void add_outline_renderer(XmlElement layer, const OutlineStyle& style);
+
+}  // namespace talus

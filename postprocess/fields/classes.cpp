@@ -1,0 +1,27 @@
+#include "postprocess/fields/classes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus::postprocess {
+
+std::vector<double> class_limits(const std::vector<double>& given, double thickest) {
+  if (!given.empty()) return given;
+  if (thickest < 12) return {0.1, 0.5, 1, 2, 5, 10};
+  return {0.1, 5, 10, 25, 50, 100};
+}
+
+int class_of(double value, const std::vector<double>& limits) {
+  if (std::isnan(value)) return -1;
+  return static_cast<int>(std::upper_bound(limits.begin(), limits.end(), value) - limits.begin()) - 1;
+}
+
+double round_below(double limit) {
+  const double power = std::pow(10, std::floor(std::log10(limit)));
+  for (const double step : {5.0, 2.0, 1.0}) {
+    if (step * power <= limit * (1 + 1e-12)) return step * power;
+  }
+  return power;
+}
+
+}  // namespace talus::postprocess

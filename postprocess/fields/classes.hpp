@@ -1,0 +1,19 @@
+// Thickness classes of the picture and of the styles beside the maps; their colours are those of common/map/colours.
+#pragma once
+
+#include <vector>
+
+#include "common/map/colours.hpp"
+
+namespace talus::postprocess {
+
+/// Lower limits as given; if none are: 0.1|5|10|25|50|100 m (rock avalanches), or 0.1|0.5|1|2|5|10 m below 12 m.
+std::vector<double> class_limits(const std::vector<double>& given, double thickest);
+
+/// Index of the class that holds the value; -1 below the first limit or for NaN.
+int class_of(double value, const std::vector<double>& limits);
+
+/// A round number (1, 2 or 5 times a power of ten) that is at most `limit`.
+double round_below(double limit);
+
+}  // namespace talus::postprocess

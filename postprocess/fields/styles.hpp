@@ -1,0 +1,27 @@
+// How each map is drawn in a GIS: the thresholds of hazard work, in classes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/qgis/style.hpp"
+#include "common/run/run_file.hpp"
+
+namespace talus::postprocess {
+
+/// Limits of pressure classes [kPa]: 1|3|5|10, and the powers of ten above that the largest pressure exceeds.
+std::vector<double> pressure_limits(const RunMaps& maps);
+
+/// Limits of speed classes [m/s]: 0.5|1|5|10|25|50, and 100 where that is exceeded.
+std::vector<double> speed_limits(const RunMaps& maps);
+
+/// Limits of thickness classes for `values` [m]: as given in the recipe, or by the thickest of them.
+std::vector<double> thickness_limits(const std::vector<double>& given, const std::vector<double>& values);
+
+/// Round times up to the last arrival [s], six at most.
+std::vector<double> time_limits(const RunMaps& maps);
+
+/// The style of a map by its name (file name without extension); `given_classes` are those of the recipe.
+RasterStyle map_style(const std::string& name, const RunMaps& maps, const std::vector<double>& given_classes);
+
+}  // namespace talus::postprocess

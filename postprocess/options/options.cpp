@@ -1,0 +1,153 @@
+#include "postprocess/options/options.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <regex>
+#include <utility>
+
+namespace talus::postprocess {
+namespace {
+
+/// "1903-04-29 04:10:00", after the calendar reform of 1582, before which calendars differ.
+bool is_date(const std::string& text) {
+  static const std::regex form(R"((\d{4})-(\d\d)-(\d\d) (\d\d):(\d\d):(\d\d))");
+  std::smatch part;
+  if (!std::regex_match(text, part, form)) return false;
+  const auto number = [&](int i) { return std::stoi(part[static_cast<std::size_t>(i)]); };
+  const auto unsigned_number = [&](int i) { return static_cast<unsigned>(number(i)); };
+  const std::chrono::year_month_day day{std::chrono::year{number(1)}, std::chrono::month{unsigned_number(2)},
+                                        std::chrono::day{unsigned_number(3)}};
+  return day.ok() && number(1) > 1582 && number(4) < 24 && number(5) < 60 && number(6) < 60;
+}
+
+}  // namespace
+
+void SurveyOptions::find_in(const std::filesystem::path& out) {
+  if (!from_preprocess) return;
+  difference = out / "survey" / "slide_difference.tif";
+  sigma = out / "survey" / "difference_sigma.tif";
+  for (const auto& file : {difference, sigma}) {
+    if (!std::filesystem::exists(file))
+      throw DataError({file.string() + ": no such file",
+                       "[postprocess.survey] from_preprocess = true, and talus-preprocess writes it where before_dem "
+                       "and after_dem are given",
+                       "Run talus-preprocess with the same --out, or name the survey otherwise"});
+  }
+}
+
+void SurveyOptions::describe(recipe::Visitor& v) {
+  v.text("name", name, "how map and table call it: a survey, or another model's name");
+  v.path("thickness", thickness, "raster of the deposit's thickness [m]");
+  v.path("peak_thickness", peak_thickness, "raster of the peak thickness [m]; gives the footprint");
+  recipe::choice(v, "direction", direction,
+                 {{"vertical", Direction::vertical}, {"slope-normal", Direction::slope_normal}},
+                 "which way these two measure thickness; slope-normal: brought to vertical with the run's ground");
+  v.path("after_dem", after_dem, "elevations after the event: deposit where they lie above those before");
+  v.path("before_dem", before_dem,
+         "elevations before the event, with after_dem; empty: the surface the run started from");
+  v.path("difference", difference,
+         "raster of elevations after - before the event [m], aligned: deposit where it is positive");
+  v.flag("from_preprocess", from_preprocess,
+         "score against the change of surface that talus-preprocess found between before_dem and after_dem, with its "
+         "error (OUT/survey)");
+  v.path("polygon", polygon, "outline of the affected area (any vector format); gives the footprint");
+  v.flag("nodata_is_zero", nodata_is_zero,
+         "thickness and difference rasters: no data means no deposit (otherwise: not surveyed, left out)");
+  v.path("sigma", sigma, "raster of the standard error (1 sigma) of thickness or change [m]");
+  v.number("sigma_m", sigma_m, recipe::not_negative, "the same error for all cells, instead of a raster; 0: not known");
+  v.number(
+      "correlation_length_m", correlation_length, recipe::not_negative,
+      "distance within which errors are alike (range of a spherical variogram); 0: CORRELATION_LENGTH_M of the sigma "
+      "raster, else every cell for itself");
+  v.number("detection", detection, recipe::not_negative,
+           "with a sigma: thickness or change below this times sigma counts as none (1.96: 95 %); 0: off");
+  v.integer("resamples", resamples, {0, 100000},
+            "with a sigma: surveys drawn within their error, for the spread of the scores; 0: none");
+  v.integer("resample_seed", resample_seed, {0, 2147483647}, "same seed, same spread");
+}
+
+void SurveyOptions::check(std::vector<Fault>& faults) const {
+  const std::pair<const std::filesystem::path&, const char*> deposits[] = {
+      {thickness, "thickness"}, {difference, "difference"}, {after_dem, "after_dem"}};
+  std::string given;
+  int count = 0;
+  for (const auto& [file, key] : deposits) {
+    if (file.empty()) continue;
+    given += (count++ > 0 ? " and " : "") + std::string(key);
+  }
+  if (from_preprocess) given += (count++ > 0 ? " and " : "") + std::string("from_preprocess");
+  if (count > 1)
+    faults.push_back(
+        {"[postprocess.survey] gives " + given, "one deposit can be scored at a time", "Leave one of them out"});
+  if (!peak_thickness.empty() && !polygon.empty()) {
+    faults.push_back({"[postprocess.survey] gives peak_thickness and polygon", "both say what the footprint is",
+                      "Leave one of them out"});
+  }
+  if (!before_dem.empty() && after_dem.empty()) {
+    faults.push_back(
+        {"[postprocess.survey] gives before_dem alone", "a change needs two surfaces", "Give after_dem as well"});
+  }
+  if (!sigma.empty() && sigma_m > 0) {
+    faults.push_back({"[postprocess.survey] gives sigma and sigma_m", "both say what the survey's error is",
+                      "Leave one of them out"});
+  }
+  if (from_preprocess && (!sigma.empty() || sigma_m > 0)) {
+    faults.push_back({"[postprocess.survey] gives from_preprocess and an error",
+                      "the error comes with the change that talus-preprocess found",
+                      "Leave sigma out; [preprocess.difference] takes the surveys' own"});
+  } else if ((!sigma.empty() || sigma_m > 0) && !measures()) {
+    faults.push_back({"[postprocess.survey] gives an error without a measurement",
+                      "an outline or a peak thickness has none",
+                      "Give thickness, difference or after_dem, or leave sigma out"});
+  }
+}
+
+void Options::describe(recipe::Visitor& v) {
+  v.path("run", run, "run.h5 of talus-solve; empty: the one in the output folder");
+  v.number("footprint_threshold_m", footprint_threshold, recipe::positive, "footprint: peak thickness above this");
+  v.number("deposit_threshold_m", deposit_threshold, recipe::positive, "deposit: final thickness above this");
+  v.numbers(
+      "classes_m", classes, recipe::positive,
+      "lower limits of the map's thickness classes, rising; empty: 0.1 5 10 25 50 100, or 0.1 0.5 1 2 5 10 where the "
+      "deposit is thinner than 12 m");
+  v.text("institution", institution, "who made this, for the NetCDF file");
+  v.flag("report", report, "write report.html: maps, profiles, scores and settings on one page to send on");
+  recipe::choice(v, "animation", animation,
+                 {{"none", Animation::none}, {"mp4", Animation::mp4}, {"gif", Animation::gif}},
+                 "a film of the flow on the map; needs the program ffmpeg and a run with frames");
+  v.text("start_time", start_time,
+         "when the failure began, UTC, as 1903-04-29 04:10:00, for the time axis of the NetCDF file; empty: not known");
+  v.flag("nodata_zero", nodata_zero,
+         "GeoTIFFs hold 0 outside the computed domain, for tools that take nodata badly (otherwise: nodata there)");
+  v.flag("avaframe", avaframe,
+         "also write peak pressure, thickness normal to the slope and speed as AvaFrame names and reads them, in "
+         "maps/avaframe");
+  v.path("thalweg", thalweg,
+         "line along which run-out is measured (any vector format), from either end; empty: found as the path of the "
+         "centre of mass");
+  recipe::choice(v, "avaframe_format", avaframe_format, {{"tif", AvaFrameFormat::tif}, {"asc", AvaFrameFormat::asc}},
+                 "format of these; every version of AvaFrame, and ISeeSnow, reads asc");
+  v.enter("survey",
+          "what the run is scored against: thickness, or difference, or after_dem, or polygon; all empty: no scores");
+  survey.describe(v);
+  v.leave();
+}
+
+void Options::check(std::vector<Fault>& faults) const {
+  if (std::adjacent_find(classes.begin(), classes.end(), std::greater_equal<>()) != classes.end()) {
+    faults.push_back({"[postprocess] classes_m does not rise", "classes are given by their lower limits",
+                      "Sort the limits, each once"});
+  }
+  if (!start_time.empty() && !is_date(start_time)) {
+    faults.push_back({"[postprocess] start_time = \"" + start_time + "\"", "this is no date and time",
+                      "Write it as 1903-04-29 04:10:00"});
+  }
+  if (classes.size() > 9) {
+    faults.push_back({"[postprocess] classes_m has " + std::to_string(classes.size()) + " classes",
+                      "nobody tells more than 9 shades apart on a map", "Give 9 limits or fewer"});
+  }
+  survey.check(faults);
+}
+
+}  // namespace talus::postprocess

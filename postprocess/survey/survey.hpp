@@ -1,0 +1,61 @@
+// The survey a run is scored against, and the one place where survey and simulation are brought to one grid.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/map/polygon.hpp"
+#include "common/run/run_file.hpp"
+#include "postprocess/options/options.hpp"
+
+namespace talus::postprocess {
+
+/// How far a survey may be off.
+struct SurveyError {
+  std::vector<double> sigma;      ///< standard error of the measured value at each cell [m]; empty: not known
+  double correlation_length = 0;  ///< range of a spherical correlation of the errors [m]; 0: cells are independent
+  double detection = 0;           ///< level of detection over sigma; 0: off
+};
+
+/// A survey on its own grid. Empty vectors: not given. NaN: not surveyed.
+struct Survey {
+  std::string name;
+  MapGrid grid;                  ///< the grid everything is compared on: the survey's, or the run's for a bare polygon
+  std::vector<double> measured;  ///< thickness, or after - before, before any level of detection [m]
+  SurveyError error;             ///< of `measured`
+  std::vector<double> deposit;   ///< [m] thickness, or max(0, after - before)
+  bool deposit_is_change = false;    ///< deposit is a change of the surface: compared with the simulated change
+  std::vector<double> footprint;     ///< peak thickness or |change| [m], or 1 inside and 0 outside a polygon
+  bool footprint_is_change = false;  ///< footprint is |after - before|
+  double footprint_threshold = 0;    ///< footprint where above this
+  std::vector<MapPolygon> polygons;
+  std::vector<std::filesystem::path> inputs;
+  std::vector<std::string> notes;  ///< what a reader of the scores should know of it
+};
+
+/// What a survey takes for deposit, and for footprint where that is a change, when it measures `value` [m].
+struct Sighting {
+  std::vector<double> deposit, footprint;
+};
+
+/// Values below the level of detection count as 0; deposit is what is positive, footprint the size of the change.
+Sighting sight(const Survey& survey, const std::vector<double>& value);
+
+/// The simulation on the survey's grid; NaN where it has nothing to compare with.
+struct OnSurveyGrid {
+  std::vector<double> deposit;  ///< final thickness, or max(0, final - initial thickness) for a surveyed change [m]
+  std::vector<double> change;   ///< the same without the max(0, .): what `measured` would be [m]
+  std::vector<double> peak;     ///< peak thickness [m]
+  double deposit_left_out = 0;  ///< volume of simulated deposit on cells that were not surveyed [m3]
+};
+
+/// Read what the options name. Throws DataError: unreadable, other CRS, no overlap with the run. Empty if nothing is
+/// given.
+std::optional<Survey> read_survey(const SurveyOptions& options, const RunMaps& maps, double footprint_threshold);
+
+/// Area-weighted, so that volume is kept; where the run's map ends but the survey goes on, nothing arrived: 0.
+OnSurveyGrid bring_to_survey_grid(const RunMaps& maps, const Survey& survey);
+
+}  // namespace talus::postprocess

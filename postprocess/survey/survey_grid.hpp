@@ -1,0 +1,25 @@
+// How a survey's rasters come to one grid and one convention.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "common/run/run_file.hpp"
+#include "postprocess/options/options.hpp"
+
+namespace talus::postprocess {
+
+/// True where cells coincide to a millionth of a cell.
+bool same_grid(const MapGrid& a, const MapGrid& b);
+
+/// Throws DataError, with the command that mends it, unless the file's CRS is the run's.
+void check_crs(const std::filesystem::path& file, const MapGrid& grid, const MapGrid& run);
+
+/// A thickness on `grid`, by area weights where the grids differ.
+std::vector<double> on_grid(const Raster& raster, const MapGrid& grid);
+
+/// Values normal to the slope become vertical ones where the options say that they are, by the slope of the run's
+/// ground.
+void to_vertical(Raster& raster, const SurveyOptions& options, const RunMaps& maps);
+
+}  // namespace talus::postprocess

@@ -1,0 +1,113 @@
+#include "preprocess/laboratory/laboratory.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "preprocess/options/laboratory.hpp"
+#include "preprocess/particles/shift.hpp"
+
+namespace talus::preprocess {
+
+namespace {
+
+constexpr double rounding = 1e-6;  // of a cell: what a length written in decimals may be off by
+
+/// Points along x, y and height.
+std::array<long, 3> lattice_of(const BoxOptions& box, const GridOptions& grid) {
+  const auto sides = sides_of(box);
+  const auto spacing = point_spacing(grid);
+  std::array<long, 3> counts{};
+  for (std::size_t a = 0; a < 3; ++a) counts[a] = std::lround(sides[a].length() / spacing[a]);
+  return counts;
+}
+
+/// Part of the cell [low, low + size] that [from, to] covers.
+double covered(double low, double size, double from, double to) {
+  const double length = std::min(low + size, to) - std::max(low, from);
+  return length > rounding * size ? std::min(length / size, 1.0) : 0.0;
+}
+
+Raster cover_of(const MapGrid& grid, const BoxOptions& box) {
+  Raster cover{grid, std::vector<double>(grid.count(), 0.0)};
+  for (int row = 0; row < grid.rows; ++row) {
+    const double in_row = covered(grid.south + row * grid.cell, grid.cell, box.south_m, box.north_m);
+    for (int column = 0; in_row > 0 && column < grid.columns; ++column) {
+      cover.at(column, row) = in_row * covered(grid.west + column * grid.cell, grid.cell, box.west_m, box.east_m);
+    }
+  }
+  return cover;
+}
+
+}  // namespace
+
+Raster laboratory_ground(const Options& options) {
+  const LaboratoryOptions& lab = options.laboratory;
+  const MapGrid grid = laboratory_grid(options);
+  Raster ground{grid, std::vector<double>(grid.count())};
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      ground.at(column, row) =
+          lab.ground_m + lab.slope_x * (grid.x(column) - grid.west) + lab.slope_y * (grid.y(row) - grid.south);
+    }
+  }
+  return ground;
+}
+
+Release box_release(const Options& options, std::size_t item) {
+  const BoxOptions& box = options.box.at(item);
+  Raster thickness = cover_of(laboratory_grid(options), box);
+  for (double& value : thickness.values) value *= box.top_m - box.bottom_m;
+  return {box_name(box, item), std::move(thickness)};
+}
+
+Raster box_surface(const Options& options, const Raster& ground) {
+  std::vector<double> height(ground.values.size(), 0.0);
+  for (const BoxOptions& box : options.box) {
+    const Raster cover = cover_of(ground.grid, box);
+    for (std::size_t i = 0; i < height.size(); ++i) height[i] = std::max(height[i], cover.values[i] * box.top_m);
+  }
+  Raster surface = ground;
+  for (std::size_t i = 0; i < height.size(); ++i) surface.values[i] += height[i];
+  return surface;
+}
+
+std::size_t count_box_points(const Options& options) {
+  std::size_t count = 0;
+  for (const BoxOptions& box : options.box) {
+    const auto n = lattice_of(box, options.grid);
+    count += static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]) * static_cast<std::size_t>(n[2]);
+  }
+  return count;
+}
+
+SeedPoints seed_boxes(const Options& options) {
+  SeedPoints points;
+  Shift shift(options.grid.jitter, static_cast<std::uint64_t>(options.grid.jitter_seed));
+  for (std::size_t b = 0; b < options.box.size(); ++b) {
+    const auto n = lattice_of(options.box[b], options.grid);
+    const auto side = sides_of(options.box[b]);
+    const auto place = [&](std::size_t axis, long step) {
+      return side[axis].low +
+             (static_cast<double>(step) + 0.5 + shift()) * side[axis].length() / static_cast<double>(n[axis]);
+    };
+    const double count = static_cast<double>(n[0]) * static_cast<double>(n[1]) * static_cast<double>(n[2]);
+    const double volume = side[0].length() * side[1].length() * side[2].length() / count;
+    for (long k = 0; k < n[2]; ++k) {
+      for (long j = 0; j < n[1]; ++j) {
+        for (long i = 0; i < n[0]; ++i) {
+          points.x.push_back(place(0, i));
+          points.y.push_back(place(1, j));
+          points.height.push_back(place(2, k));
+          points.volume.push_back(volume);
+          points.extent_x.push_back(side[0].length() / static_cast<double>(n[0]));
+          points.extent_y.push_back(side[1].length() / static_cast<double>(n[1]));
+          points.release.push_back(static_cast<int>(b));
+        }
+      }
+    }
+  }
+  return points;
+}
+
+}  // namespace talus::preprocess

@@ -1,0 +1,250 @@
+#include "preprocess/output/write_survey.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/error.hpp"
+#include "common/gis/geotiff.hpp"
+#include "common/gis/outlines.hpp"
+#include "common/gis/raster_writer.hpp"
+#include "common/map/crop.hpp"
+#include "common/map/sum.hpp"
+#include "common/qgis/project.hpp"
+#include "common/qgis/style.hpp"
+#include "common/stage/stage.hpp"
+#include "preprocess/survey/survey_json.hpp"
+
+namespace talus::preprocess {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::vector<double> change_classes{0.5, 1, 2, 5, 10, 25, 50};
+const std::vector<double> thickness_classes{0.1, 0.5, 1, 2, 5, 10, 25, 50, 100};
+const std::vector<double> sigma_classes{0.05, 0.1, 0.2, 0.5, 1, 2, 5};
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error)
+    throw DataError({folder.string() + ": cannot be made", error.message(), "Choose another folder with --out"});
+}
+
+RasterTags tags_of(const char* description) {
+  return {fmt::format("{} [m]", description), "m", {{"SOURCE", "Talus " + version()}}};
+}
+
+/// The range that makes the mean over a typical slide as uncertain as the variogram does; for the resampling of scores.
+double correlation_length(const Survey& survey, const Prepared* prepared) {
+  double area = 100 * survey.grid.cell * survey.grid.cell;
+  if (prepared && prepared->slide) {
+    for (const auto& side : prepared->slide->volumes) area = std::max(area, side.volume.area);
+  }
+  return survey.errors.variogram().equivalent_range(area, survey.grid.cell);
+}
+
+/// The rasters over all that both surveys hold, and the volumes, in one walk.
+class BlockFiles {
+ public:
+  BlockFiles(const fs::path& folder, const Survey& survey, double length)
+      : survey_(survey),
+        before_(folder / "before_aligned.tif", survey.grid, tags_of("surface before")),
+        after_(folder / "after_aligned.tif", survey.grid, tags_of("surface after, on the one before")),
+        difference_(folder / "difference.tif", survey.grid, tags_of("surface after less surface before")),
+        sigma_(folder / "difference_sigma.tif", survey.grid, tags_of("standard error of the difference")) {
+    sigma_.say("CORRELATION_LENGTH_M", fmt::format("{:.6g}", length));
+    if (survey.applied)
+      unaligned_.emplace(folder / "difference_unaligned.tif", survey.grid,
+                         tags_of("surface after as it came less surface before"));
+  }
+
+  Budgets walk() {
+    BudgetSum raw, believed;
+    for_each_block(survey_.before, survey_.after, survey_.grid, survey_.errors, [&](const Block& block) {
+      before_.write(block.before);
+      after_.write(block.after);
+      difference_.write(block.difference);
+      sigma_.write(block.sigma);
+      if (unaligned_) unaligned_->write(as_it_came(block));
+      for (std::size_t i = 0; i < block.difference.values.size(); ++i) {
+        const double d = block.difference.values[i], sigma = block.sigma.values[i];
+        if (std::isnan(d)) continue;
+        raw.add(d, sigma);
+        if (std::abs(d) > survey_.detection.level(sigma)) believed.add(d, sigma);
+      }
+    });
+    for (RasterWriter* file : {&before_, &after_, &difference_, &sigma_}) file->finish();
+    if (unaligned_) unaligned_->finish();
+    return {raw.budget(survey_.errors, survey_.grid.cell), believed.budget(survey_.errors, survey_.grid.cell)};
+  }
+
+ private:
+  Raster as_it_came(const Block& block) const {
+    Elevation after = survey_.after;
+    after.placement = {};
+    Raster difference = onto_grid(after, block.before.grid);
+    for (std::size_t i = 0; i < difference.values.size(); ++i) difference.values[i] -= block.before.values[i];
+    return difference;
+  }
+
+  const Survey& survey_;
+  RasterWriter before_, after_, difference_, sigma_;
+  std::optional<RasterWriter> unaligned_;
+};
+
+/// 1 where ground counted as stable, 0 where not, nodata where nobody looked.
+void write_stable(const fs::path& file, const Survey& survey) {
+  RasterWriter writer(file, survey.grid,
+                      {"ground that counted as stable [1]", "1", {{"SOURCE", "Talus " + version()}}});
+  for (const auto& [grid, stable] : survey.stable) {
+    const MapGrid part = shared_part(grid, survey.grid);  // the rest of it was shared only before the later model moved
+    if (part.count() > 0) writer.write(cut_to({grid, std::vector<double>(stable.begin(), stable.end())}, part));
+  }
+  writer.finish();
+}
+
+std::string words(const VolumeWithError& v) { return fmt::format("{} +- {} m3", grouped(v.volume), grouped(v.error)); }
+
+void say_volumes(const Survey& survey, const Budgets& budgets, const Prepared* prepared,
+                 std::vector<std::string>& lines) {
+  const auto line = [&](const std::string& what, const Budget& b) {
+    lines.push_back(fmt::format("{}: erosion {}, deposition {}, net {}", what, words(b.erosion), words(b.deposition),
+                                words(b.net)));
+  };
+  line("difference, all cells", budgets.raw);
+  line(fmt::format("difference beyond its level of detection ({:.2f} m at least)",
+                   survey.detection.level(survey.errors.sigma(0))),
+       budgets.thresholded);
+  if (!prepared || !prepared->slide) return;
+  for (const auto& side : prepared->slide->volumes)
+    lines.push_back(
+        fmt::format("{} as surveyed: {} on {} m2", side.name, words(side.volume), grouped(side.volume.area)));
+}
+
+void put(std::vector<fs::path>& files, const fs::path& file, const Raster& raster, const char* description,
+         const RasterStyle& style) {
+  RasterTags tags = tags_of(description);
+  tags.metadata.emplace_back("THICKNESS_CONVENTION",
+                             "vertical, measured along the plumb line (not normal to the slope)");
+  write_cog(file, raster, tags);
+  write_qgis_style(file, style);
+  files.push_back(file);
+}
+
+/// The surface that the source slides on; nodata outside the source.
+Raster bed_of_source(const Domain& domain) {
+  Raster bed = domain.terrain;
+  for (std::size_t i = 0; i < bed.values.size(); ++i) {
+    if (!(domain.release_thickness.values[i] > 0)) bed.values[i] = std::numeric_limits<double>::quiet_NaN();
+  }
+  return bed;
+}
+
+/// Everything at once: outlines over differences over the ground.
+void write_project(const fs::path& folder, const Survey& survey, std::vector<fs::path>& files) {
+  const auto is_there = [&](const char* name) {
+    return std::find(files.begin(), files.end(), folder / name) != files.end();
+  };
+  QgisProject project{"Surveyed change",
+                      survey.grid.crs_wkt,
+                      {survey.grid.west, survey.grid.south, survey.grid.east(), survey.grid.north()},
+                      {}};
+  ProjectGroup outlines{"Outlines", {}}, change{"Change", {}}, ground{"Ground", {}};
+  if (is_there("outlines.gpkg")) {
+    outlines.layers.push_back(
+        {"source", "outlines.gpkg|layername=source", true, OutlineStyle{{0.0, 0.45, 0.35}, 0.6, false}});
+    outlines.layers.push_back(
+        {"deposit", "outlines.gpkg|layername=deposit", true, OutlineStyle{{0.05, 0.25, 0.65}, 0.6, true}});
+    project.groups.push_back(outlines);
+  }
+  const auto add = [&](const char* name, const char* words, bool shown, const RasterStyle& style) {
+    if (is_there(name)) change.layers.push_back({words, name, shown, style});
+  };
+  add("slide_difference.tif", "difference in the slide", true, difference_style(change_classes, "m"));
+  add("difference.tif", "difference", !is_there("slide_difference.tif"), difference_style(change_classes, "m"));
+  add("difference_unaligned.tif", "difference as the models came", false, difference_style(change_classes, "m"));
+  add("difference_sigma.tif", "standard error of the difference", false, class_style(sigma_classes, "m"));
+  add("source_thickness.tif", "source, thickness", false, class_style(thickness_classes, "m"));
+  add("deposit_surveyed.tif", "deposit, rise of the surface", false, class_style(thickness_classes, "m"));
+  ground.layers = {{"surface after", "after_aligned.tif", false, HillshadeStyle{}},
+                   {"surface before", "before_aligned.tif", true, HillshadeStyle{}}};
+  project.groups.push_back(change);
+  project.groups.push_back(ground);
+  files.push_back(folder / "survey.qgs");
+  write_qgis_project(files.back(), project);
+}
+
+}  // namespace
+
+std::vector<fs::path> write_source(const fs::path& folder, const Prepared& prepared) {
+  make_folder(folder);
+  std::vector<fs::path> files;
+  const Domain& domain = prepared.domain;
+  put(files, folder / "source_thickness.tif", domain.release_thickness, "thickness of the source, vertical",
+      class_style(thickness_classes, "m"));
+  files.push_back(folder / "sliding_surface.tif");
+  write_cog(files.back(), bed_of_source(domain), tags_of("surface that the source slides on"));
+  write_qgis_hillshade_style(files.back());
+  std::vector<OutlineLayer> layers{
+      {"source", {{"source", outline_above(domain.release_thickness, 0), {{"volume_m3", prepared.total.volume}}}}}};
+  if (prepared.slide) {
+    const auto& [name, volume] = prepared.slide->volumes.back();
+    layers.front().features.front().numbers.emplace_back("volume_error_m3",
+                                                         prepared.slide->volumes.front().volume.error);
+    layers.push_back({name,
+                      {{name,
+                        outline_above(prepared.slide->deposit, 0),
+                        {{"volume_m3", volume.volume}, {"volume_error_m3", volume.error}}}}});
+  }
+  files.push_back(folder / "outlines.gpkg");
+  write_outlines(files.back(), domain.grid.crs_wkt, layers);
+  return files;
+}
+
+std::vector<fs::path> write_survey(const fs::path& folder, const Survey& survey, const Prepared* prepared,
+                                   std::vector<std::string>& lines) {
+  make_folder(folder);
+  BlockFiles blocks(folder, survey, correlation_length(survey, prepared));
+  const Budgets budgets = blocks.walk();
+  std::vector<fs::path> files;
+  for (const char* name : {"before_aligned.tif", "after_aligned.tif"}) {
+    files.push_back(folder / name);
+    write_qgis_hillshade_style(files.back());
+  }
+  files.push_back(folder / "difference.tif");
+  write_qgis_style(files.back(), difference_style(change_classes, "m"));
+  if (survey.applied) {
+    files.push_back(folder / "difference_unaligned.tif");
+    write_qgis_style(files.back(), difference_style(change_classes, "m"));
+  }
+  files.push_back(folder / "difference_sigma.tif");
+  write_qgis_style(files.back(), class_style(sigma_classes, "m"));
+  if (!survey.stable.empty()) {
+    files.push_back(folder / "stable_ground.tif");
+    write_stable(files.back(), survey);
+  }
+  if (prepared && prepared->slide) {
+    for (const auto& file : write_source(folder, *prepared)) files.push_back(file);
+    put(files, folder / "deposit_surveyed.tif", prepared->slide->deposit, "surveyed rise of the surface in the deposit",
+        class_style(thickness_classes, "m"));
+  }
+  if (prepared && prepared->slide)
+    put(files, folder / "slide_difference.tif", prepared->slide->change,
+        "surface after less surface before, in the slide alone", difference_style(change_classes, "m"));
+  if (prepared && prepared->slide && !prepared->slide->filled.values.empty()) {
+    files.push_back(folder / "filled.tif");
+    write_cog(files.back(), prepared->slide->filled,
+              {"voids filled: 1 before, 2 after, 3 both", "1", {{"SOURCE", "Talus " + version()}}});
+  }
+  say_volumes(survey, budgets, prepared, lines);
+  write_project(folder, survey, files);
+  files.push_back(folder / "survey.json");
+  write_text(files.back(), survey_json(survey, budgets, prepared ? prepared->slide : std::nullopt));
+  return files;
+}
+
+}  // namespace talus::preprocess

@@ -1,0 +1,25 @@
+// OUT/survey: what the two elevation models say, for a GIS, for the score and for people.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "preprocess/scene/prepare.hpp"
+
+namespace talus::preprocess {
+
+/// Writes before_aligned.tif, after_aligned.tif, difference.tif and difference_sigma.tif block by block (where the
+/// later survey was moved: difference_unaligned.tif too), stable_ground.tif, and survey.json with the alignment, the
+/// error and the volumes. With a slide also source_thickness.tif, sliding_surface.tif, deposit_surveyed.tif and
+/// outlines.gpkg. Styles for QGIS beside all of them. Returns the files; `lines` gains the volumes as people read them.
+/// Throws DataError (disk full).
+std::vector<std::filesystem::path> write_survey(const std::filesystem::path& folder, const Survey& survey,
+                                                const Prepared* prepared, std::vector<std::string>& lines);
+
+/// The same for a scene whose sliding surface was computed under an outline: source_thickness.tif, sliding_surface.tif
+/// and outlines.gpkg.
+std::vector<std::filesystem::path> write_source(const std::filesystem::path& folder, const Prepared& prepared);
+
+}  // namespace talus::preprocess

@@ -1,0 +1,119 @@
+#include "preprocess/regions/polygon_cover.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/error.hpp"
+#include "common/map/polygon.hpp"
+#include "common/map/sum.hpp"
+
+namespace talus::preprocess {
+
+namespace {
+
+struct Place {
+  double u, v;  // from the grid's corner, in cells
+};
+
+/// Covered parts while they are summed: `own` for the cell an edge passes, `west` for all cells west of it.
+struct Accumulator {
+  const MapGrid& grid;
+  std::vector<double> own, west;
+
+  explicit Accumulator(const MapGrid& g) : grid(g), own(g.count()), west(g.count()) {}
+
+  /// A piece within one cell.
+  void add_piece(const Place& a, const Place& b) {
+    const double u = (a.u + b.u) / 2, v = (a.v + b.v) / 2, rise = b.v - a.v;
+    const int column = std::clamp(static_cast<int>(std::floor(u)), 0, grid.columns - 1);
+    const int row = std::clamp(static_cast<int>(std::floor(v)), 0, grid.rows - 1);
+    own[grid.index(column, row)] += rise * (u - column);
+    west[grid.index(column, row)] += rise;
+  }
+
+  std::vector<double> covered() const {
+    std::vector<double> part(grid.count());
+    for (int row = 0; row < grid.rows; ++row) {
+      Sum from_east;
+      for (int column = grid.columns - 1; column >= 0; --column) {
+        const std::size_t i = grid.index(column, row);
+        part[i] = from_east.value() + own[i];
+        from_east.add(west[i]);
+      }
+    }
+    return part;
+  }
+};
+
+/// Where an edge crosses the lines u = integer (or v = integer), as parts of its length.
+void add_crossings(double from, double to, std::vector<double>& parts) {
+  if (from == to) return;
+  const double low = std::min(from, to), high = std::max(from, to);
+  for (double line = std::floor(low) + 1; line < high; ++line) parts.push_back((line - from) / (to - from));
+}
+
+void add_edge(const Place& a, const Place& b, Accumulator& sum, std::vector<double>& parts) {
+  parts.assign({0.0, 1.0});
+  add_crossings(a.u, b.u, parts);
+  add_crossings(a.v, b.v, parts);
+  std::sort(parts.begin(), parts.end());
+  Place from = a;
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    const double t = parts[i];
+    const Place to = i + 1 == parts.size() ? b : Place{a.u + t * (b.u - a.u), a.v + t * (b.v - a.v)};
+    sum.add_piece(from, to);
+    from = to;
+  }
+}
+
+void require_inside(const MapGrid& grid, const MapPolygon& polygon, const std::filesystem::path& file) {
+  const double slack = 1e-6 * grid.cell;
+  for (const auto& [x, y] : polygon.rings.front()) {
+    if (x >= grid.west - slack && x <= grid.east() + slack && y >= grid.south - slack && y <= grid.north() + slack)
+      continue;
+    throw DataError(Fault{
+        fmt::format(
+            "{}: polygon {}reaches x {:.1f}, y {:.1f}, outside the working grid (x {:.1f}..{:.1f}, y {:.1f}..{:.1f})",
+            file.string(), polygon.name.empty() ? "" : "\"" + polygon.name + "\" ", x, y, grid.west, grid.east(),
+            grid.south, grid.north()),
+        "it must lie on the DEM", "Check the CRS of both, give a DEM that reaches further, or clip the polygon"});
+  }
+}
+
+}  // namespace
+
+double area_of(const MapPolygon& polygon) {
+  Sum twice;
+  const auto origin = polygon.rings.front().front();  // map coordinates are large, areas are not
+  for (const auto& ring : polygon.rings) {
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const auto& a = ring[i];
+      const auto& b = ring[(i + 1) % ring.size()];
+      twice.add((a[0] - origin[0]) * (b[1] - origin[1]) - (b[0] - origin[0]) * (a[1] - origin[1]));
+    }
+  }
+  return twice.value() / 2;
+}
+
+std::vector<double> coverage(const MapGrid& grid, const MapPolygon& polygon, const std::filesystem::path& file) {
+  require_inside(grid, polygon, file);
+  Accumulator sum(grid);
+  std::vector<double> parts;
+  const auto place = [&](const std::array<double, 2>& p) {
+    return Place{(p[0] - grid.west) / grid.cell, (p[1] - grid.south) / grid.cell};
+  };
+  for (const auto& ring : polygon.rings) {
+    for (std::size_t i = 0; i < ring.size(); ++i)
+      add_edge(place(ring[i]), place(ring[(i + 1) % ring.size()]), sum, parts);
+  }
+  std::vector<double> covered = sum.covered();
+  for (double& part : covered) {  // rounding of sums of whole cells
+    if (std::abs(part) < 1e-13) part = 0;
+    if (std::abs(part - 1) < 1e-13) part = 1;
+  }
+  return covered;
+}
+
+}  // namespace talus::preprocess

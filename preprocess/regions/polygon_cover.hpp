@@ -1,0 +1,30 @@
+// How much of each cell a polygon covers, exactly.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/map/polygon.hpp"
+#include "common/map/raster.hpp"
+
+namespace talus::preprocess {
+
+/// Refuse (DataError, with the place) polygons whose rings cross themselves or one another, have fewer than three
+/// corners or no area, or whose holes lie outside; and turn the rings (outer counter-clockwise, holes clockwise).
+/// CGAL's exact predicates decide.
+void check_polygons(std::vector<MapPolygon>& polygons, const std::filesystem::path& file);
+
+/// read_polygons() that pass check_polygons().
+std::vector<MapPolygon> read_valid_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
+                                            const std::string& layer = "");
+
+/// Area without the holes [m2]; rings turned as check_polygons() does.
+double area_of(const MapPolygon& polygon);
+
+/// Covered part of every cell, 0..1 [rows * columns]; sum * cell^2 = area_of() to rounding. From Green's theorem: each
+/// piece of an edge within one cell adds its signed area to that cell and its height to the cells west of it. Throws
+/// DataError (naming `file`) when the polygon reaches beyond the grid.
+std::vector<double> coverage(const MapGrid& grid, const MapPolygon& polygon, const std::filesystem::path& file);
+
+}  // namespace talus::preprocess

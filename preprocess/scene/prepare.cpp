@@ -1,0 +1,293 @@
+#include "preprocess/scene/prepare.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "common/error.hpp"
+#include "common/map/slope.hpp"
+#include "common/stage/stage.hpp"
+#include "preprocess/laboratory/laboratory.hpp"
+#include "preprocess/obstacle/obstacles.hpp"
+#include "preprocess/particles/seed.hpp"
+#include "preprocess/regions/polygon_cover.hpp"
+#include "preprocess/release/outline_source.hpp"
+#include "preprocess/release/releases.hpp"
+#include "preprocess/release/source.hpp"
+#include "preprocess/terrain/elevation.hpp"
+#include "preprocess/terrain/surfaces.hpp"
+
+namespace talus::preprocess {
+
+namespace {
+
+struct Scene {
+  Raster before, bed;
+  std::vector<Release> releases;
+  std::vector<double> lowering = {};                   // before less after [m]; where both are given
+  std::optional<SlidingSurface> sliding_surface = {};  // where it was computed
+  std::optional<Survey> survey = {};
+  std::optional<SurveyedSlide> slide = {};
+};
+
+Scene from_source(Raster before, Source source) {
+  Scene scene{std::move(before), std::move(source.bed), {}};
+  scene.releases.push_back({"source", std::move(source.thickness)});
+  return scene;
+}
+
+Scene from_before_and_after(const Options& options) {
+  Survey survey = survey_of(options);
+  std::vector<Filled> filled;
+  std::vector<Raster> surfaces = align({&survey.before, &survey.after}, options, &filled);
+  SurveyedSlide slide = slide_on(survey, surfaces[0], filled);
+  Source source =
+      find_source({surfaces[0], surfaces[1], options.after_dem, false, survey.source, levels_of(survey, slide.sigma)},
+                  options.source);
+  delineate(survey, {surfaces[0], surfaces[1], source.thickness}, options, slide);
+  std::vector<double> lowering;
+  for (std::size_t c = 0; c < surfaces[0].values.size(); ++c)
+    lowering.push_back(surfaces[0].values[c] - surfaces[1].values[c]);
+  Scene scene = from_source(std::move(surfaces[0]), std::move(source));
+  scene.lowering = std::move(lowering);
+  scene.survey = std::move(survey);
+  scene.slide = std::move(slide);
+  return scene;
+}
+
+Scene from_sliding_surface(const Options& options) {
+  Elevation before =
+      read_elevation("before_dem", options.before_dem, dem_reading(options, options.before_vertical_unit));
+  Elevation sliding = read_elevation("sliding_surface", options.sliding_surface, dem_reading(options));
+  share_crs({&before, &sliding}, options.working_crs);
+  require_comparable_crs(sliding.crs_wkt(), sliding.file, before.crs_wkt(), before.file.string());
+  std::vector<Raster> surfaces = align({&before}, options);
+  log_resampling(sliding, surfaces[0].grid);
+  const Raster under = onto_grid(sliding, surfaces[0].grid);
+  require_data(under, sliding.file);
+  SurfacePair pair{surfaces[0], under, options.sliding_surface, true};
+  if (!options.source.polygon.empty())
+    pair.outline = read_valid_polygons(options.source.polygon, under.grid.crs_wkt, "source");
+  Source source = find_source(pair, options.source);
+  return from_source(std::move(surfaces[0]), std::move(source));
+}
+
+Scene from_outline(const Options& options) {
+  Elevation before =
+      read_elevation("before_dem", options.before_dem, dem_reading(options, options.before_vertical_unit));
+  share_crs({&before}, options.working_crs);
+  Raster ground = align({&before}, options).front();
+  ComputedSource computed = source_by_outline(ground, options.source, dem_reading(options));
+  Scene scene = from_source(std::move(ground), std::move(computed.source));
+  scene.sliding_surface = std::move(computed.computed);
+  return scene;
+}
+
+void warn_of_overlap(const std::vector<Release>& releases) {
+  for (std::size_t a = 0; a < releases.size(); ++a) {
+    for (std::size_t b = a + 1; b < releases.size(); ++b) {
+      std::size_t shared = 0;
+      for (std::size_t i = 0; i < releases[a].thickness.values.size(); ++i) {
+        shared += releases[a].thickness.values[i] > 0 && releases[b].thickness.values[i] > 0;
+      }
+      if (shared > 0) {
+        log_warning(fmt::format("releases {} and {} share {} cells; there the second lies on the first",
+                                releases[a].name, releases[b].name, shared));
+      }
+    }
+  }
+}
+
+Scene from_releases(const Options& options) {
+  Elevation base = read_elevation("base_dem", options.base_dem, dem_reading(options));
+  share_crs({&base}, options.working_crs);
+  Raster bed = align({&base}, options).front();
+  Scene scene{bed, std::move(bed), {}};
+  for (std::size_t i = 0; i < options.release.size(); ++i) {
+    Release release = read_release(options.release[i], i, scene.bed);
+    for (std::size_t c = 0; c < scene.before.values.size(); ++c) scene.before.values[c] += release.thickness.values[c];
+    scene.releases.push_back(std::move(release));
+  }
+  warn_of_overlap(scene.releases);
+  return scene;
+}
+
+Scene from_laboratory(const Options& options) {
+  Raster ground = laboratory_ground(options);
+  Scene scene{box_surface(options, ground), std::move(ground), {}};
+  for (std::size_t b = 0; b < options.box.size(); ++b) scene.releases.push_back(box_release(options, b));
+  return scene;
+}
+
+/// What went down where nothing fails: the layer that the slide took along.
+Release lowered_outside_source(const Scene& scene, const std::string& name) {
+  Release layer{name, {scene.bed.grid, std::vector<double>(scene.bed.grid.count(), 0.0)}};
+  bool any = false;
+  for (std::size_t c = 0; c < scene.lowering.size(); ++c) {
+    if (!(scene.lowering[c] > 0) || scene.releases.front().thickness.values[c] > 0) continue;
+    layer.thickness.values[c] = scene.lowering[c];
+    any = true;
+  }
+  if (!any)
+    throw DataError(Fault{"[[preprocess.erodible]] lowering = true: nothing lies lower outside the source",
+                          "no ground was eroded", "Leave it out, or raise source.threshold_m"});
+  return layer;
+}
+
+/// Takes the erodible layers out of the bed, and puts them below everything that is released.
+void lay_erodible(const Options& options, Scene& scene) {
+  std::vector<Release> layers;
+  for (std::size_t e = 0; e < options.erodible.size(); ++e) {
+    ErodibleOptions o = options.erodible[e];
+    if (o.name.empty()) o.name = fmt::format("erodible-{}", e + 1);
+    layers.push_back(o.lowering ? lowered_outside_source(scene, o.name) : read_release(o, e, scene.bed));
+  }
+  for (const Release& layer : layers) {
+    for (std::size_t c = 0; c < scene.bed.values.size(); ++c) scene.bed.values[c] -= layer.thickness.values[c];
+  }
+  scene.releases.insert(scene.releases.begin(), std::make_move_iterator(layers.begin()),
+                        std::make_move_iterator(layers.end()));
+}
+
+Scene read_scene(const Options& options) {
+  switch (options.way()) {
+    case Way::before_and_after: return from_before_and_after(options);
+    case Way::before_and_sliding_surface: return from_sliding_surface(options);
+    case Way::before_and_outline: return from_outline(options);
+    case Way::laboratory: return from_laboratory(options);
+    case Way::base_and_releases: break;
+  }
+  return from_releases(options);
+}
+
+/// Rasters of the bed on the working grid.
+std::vector<std::pair<std::string, Raster>> read_bed(const Options& options, const MapGrid& grid) {
+  const bool reproject = !options.working_crs.empty();
+  std::vector<std::pair<std::string, Raster>> rasters;
+  for (const auto& [name, file] : options.bed.files) {
+    if (file.empty()) continue;
+    const Elevation values =
+        read_elevation("bed." + name, file, {reproject ? grid.crs_wkt : "", "", dem_reading({}).or_else});
+    require_comparable_crs(values.crs_wkt(), values.file, grid.crs_wkt, "the working grid");
+    log_resampling(values, grid);
+    Raster raster = onto_grid(values, grid);
+    require_data(raster, file);
+    std::vector<char> negative(raster.values.size());
+    for (std::size_t i = 0; i < negative.size(); ++i) negative[i] = raster.values[i] < 0;  // false for nodata
+    refuse_cells(grid, negative,
+                 {file, "negative values of " + name, "it has none",
+                  "Mend the raster; no data means the number in [solve.base]"});
+    rasters.emplace_back(name, std::move(raster));
+  }
+  return rasters;
+}
+
+/// Of what is released: the releases from the `first` one on.
+Raster total_thickness(const Scene& scene, std::size_t first) {
+  Raster total{scene.bed.grid, std::vector<double>(scene.bed.grid.count(), 0.0)};
+  for (std::size_t r = first; r < scene.releases.size(); ++r) {
+    for (std::size_t i = 0; i < total.values.size(); ++i) total.values[i] += scene.releases[r].thickness.values[i];
+  }
+  return total;
+}
+
+void warn_at_edge(const Raster& thickness) {
+  const MapGrid& grid = thickness.grid;
+  for (std::size_t i = 0; i < thickness.values.size(); ++i) {
+    const int column = static_cast<int>(i % static_cast<std::size_t>(grid.columns)),
+              row = static_cast<int>(i / static_cast<std::size_t>(grid.columns));
+    const bool edge = column == 0 || row == 0 || column == grid.columns - 1 || row == grid.rows - 1;
+    if (!edge || !(thickness.values[i] > 0)) continue;
+    log_warning("the release reaches the edge of the working grid, at " + place_of(grid, i) +
+                ": part of it may lie beyond");
+    return;
+  }
+}
+
+void require_countable(std::size_t count, const GridOptions& grid) {
+  if (count <= static_cast<std::size_t>(std::numeric_limits<int>::max())) return;
+  throw RecipeError(Fault{fmt::format("[preprocess.grid]: {} material points", count), "points are numbered in 32 bits",
+                          fmt::format("Take a larger layer_height_m or spacing_m, or fewer points_per_cell than [{}]",
+                                      fmt::join(grid.points_per_cell, ", "))});
+}
+
+std::vector<std::filesystem::path> inputs_of(const Options& options) {
+  std::vector<std::filesystem::path> inputs;
+  const auto add = [&](const std::filesystem::path& file) {
+    if (!file.empty()) inputs.push_back(file);
+  };
+  for (const auto& file :
+       {options.before_dem, options.after_dem, options.sliding_surface, options.base_dem, options.source.polygon,
+        options.source.sliding_surface.depth_points, options.coregistration.changed, options.deposit.polygon})
+    add(file);
+  for (const ReleaseOptions& layer : options.erodible) {
+    add(layer.thickness_raster);
+    add(layer.polygons);
+  }
+  for (const ReleaseOptions& release : options.release) {
+    add(release.thickness_raster);
+    add(release.polygons);
+  }
+  for (const auto& [name, file] : options.bed.files) add(file);
+  for (const ObstacleOptions& obstacle : options.obstacle) add(obstacle.polygons);
+  return inputs;
+}
+
+}  // namespace
+
+Survey survey_of(const Options& given) {
+  const Options options = with_utm_zone(given);
+  Elevation before =
+      read_elevation("before_dem", options.before_dem, dem_reading(options, options.before_vertical_unit));
+  Elevation after = read_elevation("after_dem", options.after_dem, dem_reading(options, options.after_vertical_unit));
+  share_crs({&before, &after}, options.working_crs);
+  return compare_surveys(std::move(before), std::move(after), options);
+}
+
+Prepared prepare(const Options& given, Points points) {
+  std::vector<Fault> faults;
+  given.check(faults);
+  if (!faults.empty()) throw RecipeError(std::move(faults));
+  const Options options = with_utm_zone(given);
+  Scene scene = read_scene(options);
+  lay_erodible(options, scene);
+  const Seeding seeding = seeding_of(options.grid, scene.bed.grid.cell);
+  Prepared prepared;
+  prepared.inputs = inputs_of(options);
+  const bool laboratory = options.way() == Way::laboratory;
+  prepared.point_count = laboratory ? count_box_points(options) : count_points(scene.releases, seeding);
+  require_countable(prepared.point_count, options.grid);
+
+  Domain& domain = prepared.domain;
+  domain.grid = scene.bed.grid;
+  domain.layer_height = seeding.layer_height;
+  domain.release_thickness = total_thickness(scene, options.erodible.size());
+  warn_at_edge(domain.release_thickness);
+  const std::vector<double> cosine = slope_cosine(scene.bed);
+  prepared.total = volumes_of(domain.release_thickness, cosine);
+  for (const Release& release : scene.releases) {
+    domain.release_names.push_back(release.name);
+    prepared.by_release.emplace_back(release.name, volumes_of(release.thickness, cosine));
+  }
+  if (points == Points::seeded) {
+    domain.points = laboratory ? seed_boxes(options) : seed_points(scene.releases, seeding);
+  }
+  domain.erodible = static_cast<int>(options.erodible.size());
+  domain.bed = read_bed(options, domain.grid);
+  prepared.obstacles = stand_obstacles(options.obstacle, scene.bed, 2 * domain.layer_height);
+  prepared.obstacle_voxel = obstacle_voxel(domain.grid.cell, domain.layer_height);
+  for (const ObstacleOptions& o : options.obstacle) {
+    if (o.voxel_m > 0) prepared.obstacle_voxel = std::min(prepared.obstacle_voxel, o.voxel_m);
+  }
+  domain.terrain = std::move(scene.bed);
+  domain.before = std::move(scene.before);
+  prepared.sliding_surface = std::move(scene.sliding_surface);
+  prepared.survey = std::move(scene.survey);
+  prepared.slide = std::move(scene.slide);
+  return prepared;
+}
+
+}  // namespace talus::preprocess

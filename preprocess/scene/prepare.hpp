@@ -1,0 +1,43 @@
+// From options to the domain: what talus-preprocess does between reading its recipe and writing its file.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/domain/domain.hpp"
+#include "common/domain/level_set.hpp"
+#include "preprocess/options/options.hpp"
+#include "preprocess/release/sliding_surface.hpp"
+#include "preprocess/release/volumes.hpp"
+#include "preprocess/survey/survey.hpp"
+
+namespace talus::preprocess {
+
+struct Prepared {
+  Domain domain;  // without points where only counted; provenance is left to the caller
+  std::size_t point_count = 0;
+  Volumes total;
+  std::vector<std::pair<std::string, Volumes>> by_release;
+  std::vector<std::filesystem::path> inputs;
+  std::vector<SolidBody> obstacles;
+  double obstacle_voxel = 0;                           // [m]
+  std::optional<SlidingSurface> sliding_surface = {};  // where it was computed from an outline
+  std::optional<Survey> survey = {};                   // where before and after are given
+  std::optional<SurveyedSlide> slide = {};
+};
+
+enum class Points { seeded, counted };
+
+/// What two elevation models say of what changed, and nothing further: the first part of prepare(), for before_dem and
+/// after_dem alone.
+Survey survey_of(const Options& options);
+
+/// Reads the files, aligns them, finds or reads the release and seeds its points. Throws RecipeError and DataError.
+/// Bed: under the released mass the sliding surface (given or computed), min(before, after), or the base DEM itself
+/// (snow lies on it, so the surface before is base + thickness); elsewhere the ground as it is.
+Prepared prepare(const Options& options, Points points);
+
+}  // namespace talus::preprocess

@@ -1,0 +1,280 @@
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/error.hpp"
+#include "common/gis/crs.hpp"
+#include "common/gis/geotiff.hpp"
+#include "common/gis/read_raster.hpp"
+#include "tests/common/rasters.hpp"
+#include "tests/common/tools.hpp"
+
+namespace talus {
+namespace {
+
+using test::epsg;
+using test::fault_of;
+using test::identical;
+using test::random_raster;
+using test::small_raster;
+
+struct RasterFile : test::Workshop {
+  std::string fault(const std::filesystem::path& file) {
+    return fault_of<DataError>([&] { read_raster(file); });
+  }
+  /// The command a fault proposes, run as it stands; `made` is what it writes.
+  Raster mended(const std::string& fault_text, const std::string& made) const {
+    const std::size_t at = fault_text.find(": gdal");
+    EXPECT_NE(at, std::string::npos) << fault_text;
+    if (at != std::string::npos) shell(fault_text.substr(at + 2));
+    return read_raster(scratch / made);
+  }
+  std::filesystem::path ascii(const std::string& header, const std::string& cells) {
+    return scratch.write("dem.asc", header + "\n" + cells);
+  }
+};
+
+TEST_F(RasterFile, round_trip_keeps_every_bit_and_nodata) {
+  Raster raster = random_raster({7, 5, 500000.25, 5500000.5, 2.5, epsg(32611)}, 1);
+  raster.at(3, 2) = std::nan("");
+  for (const auto& write : {write_cog, write_geotiff}) {
+    write(scratch / "a.tif", raster, {"deposit thickness, vertical [m]", "m", {{"CONVENTION", "vertical"}}});
+    const Raster back = read_raster(scratch / "a.tif");
+    EXPECT_TRUE(identical(back, raster));
+    EXPECT_TRUE(same_crs(back.grid.crs_wkt, raster.grid.crs_wkt));
+    EXPECT_EQ(scratch.files(), 1u);
+  }
+}
+
+TEST_F(RasterFile, a_large_cog_has_overviews_and_passes_gdals_own_validator) {
+  TALUS_NEED_TOOL(TALUS_COG_VALIDATOR);
+  Raster raster = random_raster({1300, 1100, 500000, 5500000, 2, epsg(32611)}, 3);
+  for (int row = 0; row < 300; ++row)
+    for (int column = 0; column < 700; ++column) raster.at(column, row) = std::nan("");
+  write_cog(scratch / "large.tif", raster, {"z", "m", {}});
+  test::expect_valid_cog(scratch / "large.tif");
+  const auto info = test::output_of("gdalinfo '" + (scratch / "large.tif").string() + "'");
+  EXPECT_NE(info.find("Overviews: 650x550, 325x275"), std::string::npos) << info;
+  EXPECT_NE(info.find("Block=512x512"), std::string::npos) << info;
+}
+
+TEST_F(RasterFile, local_coordinates_stay_local) {
+  const Raster raster = random_raster({3, 2, -1, -2, 0.5, ""}, 2);
+  write_cog(scratch / "a.tif", raster, {"z", "m", {}});
+  EXPECT_EQ(read_raster(scratch / "a.tif").grid.crs_wkt, "");
+}
+
+TEST_F(RasterFile, a_large_map_gets_overviews_and_says_what_it_is) {
+  Raster raster = random_raster({1100, 700, 0, 0, 10, epsg(32611)}, 3);
+  write_cog(scratch / "a.tif", raster, {"deposit thickness, vertical [m]", "m", {{"THICKNESS", "vertical"}}});
+  shell("gdalinfo a.tif");
+  const std::string info = test::text_of(scratch / "log.txt");
+  for (const char* expected :
+       {"LAYOUT=COG", "COMPRESSION=DEFLATE", "Overviews: 550x350", "NoData Value=-9999", "Type=Float64",
+        "Description = deposit thickness, vertical [m]", "Unit Type: m", "THICKNESS=vertical"})
+    EXPECT_NE(info.find(expected), std::string::npos) << expected << "\n" << info;
+  EXPECT_TRUE(identical(read_raster(scratch / "a.tif"), raster));
+}
+
+TEST_F(RasterFile, row_zero_is_the_southernmost) {
+  const Raster raster = read_raster(
+      ascii("ncols 2\nnrows 3\nxllcorner 10\nyllcorner 20\ncellsize 5\nNODATA_value -1", "1 2\n3 -1\n5 6\n"));
+  EXPECT_EQ(raster.grid.columns, 2);
+  EXPECT_EQ(raster.grid.rows, 3);
+  EXPECT_EQ(raster.grid.west, 10);
+  EXPECT_EQ(raster.grid.south, 20);
+  EXPECT_EQ(raster.grid.cell, 5);
+  EXPECT_EQ(raster.at(0, 0), 5);
+  EXPECT_EQ(raster.at(1, 0), 6);
+  EXPECT_EQ(raster.at(0, 2), 1);
+  EXPECT_TRUE(std::isnan(raster.at(1, 1)));
+}
+
+TEST_F(RasterFile, a_raster_stored_south_first_reads_the_same) {
+  const Raster raster = random_raster({4, 3, 100, 200, 10, epsg(32611)}, 4);
+  write_geotiff(scratch / "north.tif", raster, {"z", "m", {}});
+  const auto vrt = scratch.write("south.vrt", test::south_first_vrt("north.tif", raster.grid));
+  const Raster back = read_raster(vrt);
+  EXPECT_EQ(back.grid.south, 200);
+  EXPECT_EQ(back.values, raster.values);
+}
+
+TEST_F(RasterFile, undeclared_nodata_values_are_dropped_with_a_warning) {
+  testing::internal::CaptureStderr();
+  const Raster raster = read_raster(ascii("ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 4", "-9999 7\n"));
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("dem.asc: 1 cell holds -9999 or the like"), std::string::npos);
+  EXPECT_TRUE(std::isnan(raster.at(0, 0)));
+  EXPECT_EQ(raster.at(1, 0), 7);
+}
+
+TEST_F(RasterFile, scale_and_offset_are_applied) {
+  write_geotiff(scratch / "a.tif", small_raster({2, 1, 0, 0, 1, epsg(32611)}, {10, std::nan("")}), {"z", "m", {}});
+  shell("gdal_translate -a_scale 0.5 -a_offset 100 a.tif b.tif");
+  const Raster raster = read_raster(scratch / "b.tif");
+  EXPECT_EQ(raster.at(0, 0), 105);
+  EXPECT_TRUE(std::isnan(raster.at(1, 0)));
+}
+
+TEST_F(RasterFile, single_precision_nodata_is_recognised) {
+  write_geotiff(scratch / "a.tif", small_raster({2, 1, 0, 0, 1, epsg(32611)}, {10, std::nan("")}), {"z", "m", {}});
+  shell("gdalwarp -ot Float32 -dstnodata -3.4028234663852886e+38 a.tif b.tif");
+  EXPECT_TRUE(std::isnan(read_raster(scratch / "b.tif").at(1, 0)));
+  shell(
+      "gdal_translate -ot Float32 -a_nodata -9999.9 a.tif c.tif && gdalwarp -ot Float32 -dstnodata -9999.9 a.tif "
+      "d.tif");
+  EXPECT_TRUE(std::isnan(read_raster(scratch / "d.tif").at(1, 0)));
+}
+
+TEST_F(RasterFile, a_crs_in_the_file_beside_counts) {
+  const auto file = ascii("ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 4\nNODATA_value -1", "5 7\n");
+  shell("gdalsrsinfo -o wkt_esri EPSG:32611 | sed /^$/d > dem.prj");
+  EXPECT_TRUE(same_crs(read_raster(file).grid.crs_wkt, epsg(32611)));
+  shell(
+      "gdal_create -outsize 2 2 -bands 1 -burn 5 -a_srs EPSG:32612 -a_ullr 0 20 20 0 a.tif && gdal_translate -of PNG "
+      "a.tif a.png");
+  EXPECT_TRUE(same_crs(read_raster(scratch / "a.png").grid.crs_wkt, epsg(32612)));
+}
+
+TEST_F(RasterFile, reading_leaves_nothing_beside_the_file) {
+  const auto file = ascii("ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 4\nNODATA_value -1", "5 7\n");
+  read_raster(file);
+  EXPECT_EQ(scratch.files(), 1u);
+}
+
+TEST_F(RasterFile, refuses_a_missing_file) {
+  EXPECT_EQ(fault(scratch / "none.tif"),
+            (scratch / "none.tif").string() + ": no such file. Check the path in the recipe");
+}
+
+TEST_F(RasterFile, refuses_what_is_no_raster) {
+  const auto file = scratch.write("notes.tif", "these are words");
+  testing::internal::CaptureStderr();
+  const std::string text = fault(file);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");  // GDAL itself must stay quiet
+  EXPECT_TRUE(text.starts_with(file.string() + ": not a raster that can be read (")) << text;
+  EXPECT_TRUE(text.ends_with(". Look at it: gdalinfo " + file.string())) << text;
+}
+
+TEST_F(RasterFile, refuses_degrees_with_the_command_that_mends_it) {
+  write_geotiff(scratch / "d.tif", random_raster({40, 40, -114.4, 49.5, 0.001, epsg(4326)}, 5), {"z", "m", {}});
+  const std::string file = (scratch / "d.tif").string();
+  const std::string text = fault(file);
+  EXPECT_EQ(text, file +
+                      ": CRS is EPSG:4326, in degrees (this stage needs metres). Reproject: gdalwarp -t_srs EPSG:32611 "
+                      "-r bilinear " +
+                      file + " d_utm.tif");
+  EXPECT_EQ(crs_name(mended(text, "d_utm.tif").grid.crs_wkt), "EPSG:32611");
+}
+
+TEST_F(RasterFile, refuses_feet_with_the_command_that_mends_it) {
+  write_geotiff(scratch / "f.tif", random_raster({20, 20, 6000000, 2000000, 30, epsg(2227)}, 6), {"z", "m", {}});
+  const std::string file = (scratch / "f.tif").string();
+  const std::string text = fault(file);
+  EXPECT_EQ(text, file +
+                      ": CRS is EPSG:2227, in US survey foot (this stage needs metres). Reproject: gdalwarp -t_srs "
+                      "EPSG:32610 -r bilinear " +
+                      file + " f_utm.tif");
+  EXPECT_EQ(crs_name(mended(text, "f_utm.tif").grid.crs_wkt), "EPSG:32610");
+}
+
+TEST_F(RasterFile, refuses_a_rotated_raster_with_the_command_that_mends_it) {
+  write_geotiff(scratch / "n.tif", random_raster({20, 20, 500000, 5500000, 10, epsg(32611)}, 7), {"z", "m", {}});
+  shell(
+      "gdal_translate -of VRT n.tif r.vrt && sed -i 's|<GeoTransform>.*</GeoTransform>|<GeoTransform>500000, 9, 3, "
+      "5500200, 3, -9</GeoTransform>|' r.vrt");
+  const std::string file = (scratch / "r.vrt").string();
+  const std::string text = fault(file);
+  EXPECT_EQ(
+      text,
+      file +
+          ": rows and columns do not run east and north (this stage needs a raster that is not rotated or mirrored). "
+          "Turn it: gdalwarp -r bilinear " +
+          file + " r_north_up.tif");
+  EXPECT_GT(mended(text, "r_north_up.tif").grid.columns, 20);
+}
+
+TEST_F(RasterFile, refuses_cells_that_are_not_square_with_the_command_that_mends_it) {
+  write_geotiff(scratch / "n.tif", random_raster({20, 20, 500000, 5500000, 10, epsg(32611)}, 8), {"z", "m", {}});
+  shell("gdal_translate -a_ullr 500000 5500200 500400 5500000 n.tif w.tif");
+  const std::string file = (scratch / "w.tif").string();
+  const std::string text = fault(file);
+  EXPECT_EQ(text, file +
+                      ": cells are 20 x 10 (this stage needs square cells). Resample: gdalwarp -tr 10 10 -r bilinear " +
+                      file + " w_square.tif");
+  EXPECT_EQ(mended(text, "w_square.tif").grid.columns, 40);
+}
+
+TEST_F(RasterFile, refuses_a_raster_without_a_place) {
+  shell("gdal_create -of GTiff -outsize 4 4 -bands 1 -ot Float32 -burn 7 p.tif");
+  const std::string file = (scratch / "p.tif").string();
+  EXPECT_EQ(fault(file),
+            file +
+                ": has no georeference (where its cells lie is not known). Give its edges: gdal_translate -a_ullr WEST "
+                "NORTH EAST SOUTH " +
+                file + " p_placed.tif");
+}
+
+TEST_F(RasterFile, refuses_a_raster_without_any_value) {
+  const auto file =
+      ascii("ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 4\nNODATA_value -9999", "-9999 -9999\n-9999 -9999\n")
+          .string();
+  EXPECT_EQ(fault(file), file +
+                             ": no cell holds a value (all 2 x 2 cells are nodata). Check the file and its nodata "
+                             "value: gdalinfo -stats " +
+                             file);
+}
+
+TEST_F(RasterFile, refuses_infinite_values_by_place) {
+  const double inf = std::numeric_limits<double>::infinity();
+  write_geotiff(scratch / "i.tif", small_raster({2, 2, 100, 200, 10, epsg(32611)}, {1, 2, 3, inf}), {"z", "m", {}});
+  const std::string text = fault(scratch / "i.tif");
+  EXPECT_TRUE(text.starts_with((scratch / "i.tif").string() + ": column 2, line 1 (x 115.00, y 215.00) is infinite ("))
+      << text;
+}
+
+TEST_F(RasterFile, refuses_a_file_cut_short) {
+  write_geotiff(scratch / "t.tif", random_raster({200, 200, 0, 0, 10, epsg(32611)}, 9), {"z", "m", {}});
+  std::filesystem::resize_file(scratch / "t.tif", std::filesystem::file_size(scratch / "t.tif") * 2 / 3);
+  const std::string text = fault(scratch / "t.tif");
+  EXPECT_FALSE(text.empty());
+}
+
+TEST_F(RasterFile, a_full_disk_leaves_no_half_map) {
+  const Raster raster = random_raster({300, 300, 0, 0, 10, epsg(32611)}, 10);
+  for (const auto& write : {write_cog, write_geotiff}) {
+    const std::string text = fault_of<DataError>([&] {
+      const test::SmallFiles limit(100000);
+      write(scratch / "a.tif", raster, {"z", "m", {}});
+    });
+    EXPECT_TRUE(text.starts_with((scratch / "a.tif").string() + ": cannot be written (")) << text;
+    EXPECT_EQ(scratch.files(), 0u);
+  }
+}
+
+TEST_F(RasterFile, a_folder_that_is_not_there_is_a_fault) {
+  const std::string text = fault_of<DataError>([] {
+    write_cog("/no/such/a.tif", random_raster({2, 2, 0, 0, 1, ""}, 11), {"z", "m", {}});
+  });
+  EXPECT_TRUE(text.starts_with("/no/such/a.tif: cannot be written (")) << text;
+}
+
+TEST(Crs, the_same_system_is_recognised_in_other_words) {
+  EXPECT_TRUE(same_crs("", ""));
+  EXPECT_FALSE(same_crs("", epsg(32611)));
+  EXPECT_TRUE(same_crs(epsg(32611), epsg(32611)));
+  EXPECT_FALSE(same_crs(epsg(32611), epsg(32612)));
+  const std::string esri =
+      R"(PROJCS["WGS_1984_UTM_Zone_11N",GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",SPHEROID["WGS_1984",6378137.0,298.257223563]],)"
+      R"(PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],PARAMETER["False_Easting",500000.0],)"
+      R"(PARAMETER["False_Northing",0.0],PARAMETER["Central_Meridian",-117.0],PARAMETER["Scale_Factor",0.9996],PARAMETER["Latitude_Of_Origin",0.0],UNIT["Meter",1.0]])";
+  EXPECT_TRUE(same_crs(esri, epsg(32611)));
+}
+
+TEST(Crs, names_are_short) {
+  EXPECT_EQ(crs_name(""), "local metric coordinates");
+  EXPECT_EQ(crs_name(epsg(32149)), "EPSG:32149");
+}
+
+}  // namespace
+}  // namespace talus

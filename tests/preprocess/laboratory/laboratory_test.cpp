@@ -1,0 +1,202 @@
+#include "preprocess/laboratory/laboratory.hpp"
+
+#include "common/map/sum.hpp"
+#include "preprocess/scene/prepare.hpp"
+#include "tests/preprocess/scene.hpp"
+
+namespace talus::preprocess {
+namespace {
+
+using test::faults_of;
+
+Options bench() {
+  Options o;
+  o.grid.spacing_m = 1;
+  o.grid.points_per_cell = {2, 2, 2};
+  o.laboratory.columns = 12;
+  o.laboratory.rows = 10;
+  o.box.push_back({"", 3.5, 6.5, 4, 6, 0, 2.5});
+  return o;
+}
+
+Prepared prepared(const Options& o) { return prepare(o, Points::seeded); }
+
+double volume_of(const SeedPoints& points, int release) {
+  Sum sum;
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    if (points.release[p] == release) sum.add(points.volume[p]);
+  }
+  return sum.value();
+}
+
+TEST(laboratory, fills_a_box_with_a_lattice_from_its_own_corner) {
+  Options o = bench();
+  o.box[0] = {"", 3.2, 5.7, 4.1, 6.1, 1.5, 4};
+  const SeedPoints points = prepared(o).domain.points;
+  ASSERT_EQ(points.size(), 5u * 4 * 5);
+  std::size_t p = 0;
+  for (int k = 0; k < 5; ++k) {
+    for (int j = 0; j < 4; ++j) {
+      for (int i = 0; i < 5; ++i, ++p) {
+        ASSERT_NEAR(points.x[p], 3.45 + 0.5 * i, 1e-12);
+        ASSERT_NEAR(points.y[p], 4.35 + 0.5 * j, 1e-12);
+        ASSERT_NEAR(points.height[p], 1.75 + 0.5 * k, 1e-12);
+        ASSERT_NEAR(points.volume[p], 0.125, 1e-14);
+      }
+    }
+  }
+}
+
+TEST(laboratory, keeps_the_volume_of_every_box_whatever_its_place_and_the_spacing) {
+  TALUS_SEEDED(seed);
+  std::mt19937 random(seed);
+  std::uniform_int_distribution<int> few(1, 5);
+  std::uniform_real_distribution<double> part(0, 1);
+  for (int trial = 0; trial < 30; ++trial) {
+    Options o = bench();
+    o.laboratory.columns = o.laboratory.rows = 40;
+    o.laboratory.west_m = 500000 * part(random);
+    o.laboratory.south_m = 5100000 * part(random);
+    o.grid.spacing_m = 0.01 + 3 * part(random);
+    o.grid.layer_height_m = 0.01 + 3 * part(random);
+    o.grid.points_per_cell = {few(random), few(random), few(random)};
+    o.box.clear();
+    const auto& n = o.grid.points_per_cell;
+    double low = 0;
+    for (int b = 0; b < 3; ++b) {  // on one another
+      const double x = o.laboratory.west_m + (2 + 20 * part(random)) * o.grid.spacing_m;
+      const double y = o.laboratory.south_m + (2 + 20 * part(random)) * o.grid.spacing_m;
+      const double height = few(random) * o.grid.layer_height_m / n[2];
+      o.box.push_back({"", x, x + few(random) * o.grid.spacing_m / n[0], y, y + few(random) * o.grid.spacing_m / n[1],
+                       low, low + height});
+      low += height;
+    }
+    const Prepared made = prepared(o);
+    for (int b = 0; b < 3; ++b) {
+      const BoxOptions& box = o.box[static_cast<std::size_t>(b)];
+      const double volume = (box.east_m - box.west_m) * (box.north_m - box.south_m) * (box.top_m - box.bottom_m);
+      EXPECT_NEAR(volume_of(made.domain.points, b) / volume, 1, 1e-12);
+      EXPECT_NEAR(made.by_release[static_cast<std::size_t>(b)].second.volume / volume, 1, 1e-6);
+    }
+  }
+}
+
+TEST(laboratory, tilts_its_ground_and_counts_heights_from_it) {
+  Options o = bench();
+  o.laboratory.ground_m = 100;
+  o.laboratory.slope_x = -0.5;
+  o.laboratory.slope_y = 0.25;
+  const Domain domain = prepared(o).domain;
+  for (int row = 0; row < 10; ++row) {
+    for (int column = 0; column < 12; ++column) {
+      ASSERT_NEAR(domain.terrain.at(column, row), 100 - 0.5 * (column + 0.5) + 0.25 * (row + 0.5), 1e-12);
+    }
+  }
+  EXPECT_NEAR(domain.points.height.front(), 0.25, 1e-12);
+  EXPECT_NEAR(domain.before.at(4, 4), domain.terrain.at(4, 4) + 2.5, 1e-12);
+  EXPECT_NEAR(domain.before.at(3, 4), domain.terrain.at(3, 4) + 1.25, 1e-12);  // half covered
+}
+
+TEST(laboratory, writes_a_domain_that_reads_back) {
+  test::Scratch scratch;
+  Options o = bench();
+  o.box.push_back({"lid", 3.5, 6.5, 4, 6, 2.5, 3});
+  const Domain domain = prepared(o).domain;
+  write_domain(scratch / "domain.vdb", domain);
+  const Domain back = read_domain(scratch / "domain.vdb");
+  EXPECT_EQ(back.release_names, (std::vector<std::string>{"box-1", "lid"}));
+  EXPECT_EQ(back.terrain.values, domain.terrain.values);
+  ASSERT_EQ(back.points.size(), domain.points.size());
+  for (std::size_t p = 0; p < back.points.size(); ++p) ASSERT_NEAR(back.points.x[p], domain.points.x[p], 1e-6);
+}
+
+TEST(laboratory, counts_what_it_would_seed_and_jitters_inside_the_spacing) {
+  Options o = bench();
+  EXPECT_EQ(prepare(o, Points::counted).point_count, 6u * 4 * 5);
+  const SeedPoints even = prepared(o).domain.points;
+  o.grid.jitter = 0.4;
+  const SeedPoints shaken = prepared(o).domain.points;
+  double largest = 0;
+  for (std::size_t p = 0; p < even.size(); ++p) largest = std::max(largest, std::abs(shaken.x[p] - even.x[p]));
+  EXPECT_GT(largest, 0.1);
+  EXPECT_LE(largest, 0.2);
+  EXPECT_NEAR(volume_of(shaken, 0), 15, 1e-12);
+}
+
+TEST(laboratory, refuses_a_box_that_the_points_would_not_fill) {
+  Options o = bench();
+  o.box[0].east_m = 6.7;
+  EXPECT_EQ(
+      faults_of(o),
+      "[preprocess]: box 1: west_m to east_m is 3.2 m (it is no multiple of the points' spacing of 0.5 m, so that they "
+      "would not fill it). Take east_m = 6.5 or 7, or other grid.points_per_cell\n");
+}
+
+TEST(laboratory, refuses_boxes_without_extent_outside_the_grid_or_inside_one_another) {
+  Options o = bench();
+  o.box[0].top_m = 0;
+  EXPECT_EQ(faults_of(o),
+            "[preprocess]: box 1: bottom_m = 0, top_m = 0 (the box has no extent). top_m must be the larger\n");
+  o = bench();
+  o.box[0].west_m = 0.5;
+  EXPECT_EQ(
+      faults_of(o),
+      "[preprocess]: box 1: west_m = 0.5, east_m = 6.5 (the grid reaches from 0 to 12 m, and points need an open cell "
+      "around them). Add columns or rows, or move the box: a margin of three cells, and room for it to flow into\n");
+  o = bench();
+  o.box.push_back({"lid", 4, 5, 4, 5, 2, 3});
+  EXPECT_EQ(
+      faults_of(o),
+      "[preprocess]: box-1 and lid overlap (the material there would count twice). Move one, or cut it into boxes that "
+      "only touch\n");
+  o.box[1].name = "box-1";
+  EXPECT_EQ(faults_of(o),
+            "[preprocess]: box 2: name \"box-1\" is taken (results are told apart by name). Name it otherwise\n");
+}
+
+TEST(laboratory, refuses_what_belongs_to_the_other_ways) {
+  Options o = bench();
+  o.base_dem = "dem.tif";
+  o.release.resize(1);
+  o.working_crs = "EPSG:2056";
+  o.grid.east_m = 9;
+  o.grid.minimum_thickness_m = 1;
+  const std::string mend = "Leave it out, or give elevation models instead of [preprocess.laboratory]\n";
+  EXPECT_EQ(
+      faults_of(o),
+      "[preprocess]: base_dem is given with a laboratory (they belong to different ways). " + mend +
+          "[preprocess]: [[preprocess.release]] is given with a laboratory (they belong to different ways). " + mend +
+          "[preprocess]: working_crs is given with a laboratory (a laboratory lies in local coordinates). Leave it "
+          "out\n"
+          "[preprocess]: grid.west_m or its like is given with a laboratory (there is no elevation model to crop). Use "
+          "laboratory.west_m, south_m, columns and rows\n"
+          "[preprocess]: grid.minimum_thickness_m is given with a laboratory (boxes are filled by a regular lattice). "
+          "Leave it out\n");
+}
+
+TEST(laboratory, refuses_half_a_laboratory) {
+  Options o = bench();
+  o.laboratory.rows = 0;
+  o.grid.spacing_m = 0;
+  EXPECT_EQ(
+      faults_of(o),
+      "[preprocess]: laboratory.columns = 12, rows = 0 (both must be positive). Give the number of cells along x and "
+      "y\n"
+      "[preprocess]: grid.spacing_m is not given (a laboratory has no elevation model to take it from). Give the width "
+      "of a cell in metres\n");
+  o = bench();
+  o.box.clear();
+  EXPECT_EQ(faults_of(o),
+            "[preprocess]: a laboratory without [[preprocess.box]] (nothing would move). Give at least one box of "
+            "material\n");
+}
+
+TEST(laboratory, reads_what_it_writes) {
+  Options o = bench();
+  o.laboratory.slope_x = 0.25;
+  o.box.push_back({"lid", 4, 5, 4, 5, 2.5, 3});
+  test::expect_read_as_written(o);
+}
+
+}  // namespace
+}  // namespace talus::preprocess

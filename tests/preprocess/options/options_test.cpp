@@ -1,0 +1,161 @@
+#include "preprocess/options/options.hpp"
+
+#include "tests/preprocess/scene.hpp"
+
+namespace talus::preprocess {
+namespace {
+
+using test::faults_of;
+
+Options before_and_after() {
+  Options options;
+  options.before_dem = "before.tif";
+  options.after_dem = "after.tif";
+  return options;
+}
+
+const std::string one_way =
+    " Give exactly one of: before_dem and after_dem; before_dem and sliding_surface; before_dem and source.polygon; "
+    "base_dem and [[preprocess.release]]; [preprocess.laboratory] and [[preprocess.box]]\n";
+
+TEST(options, know_their_ways) {
+  Options options = before_and_after();
+  EXPECT_EQ(faults_of(options), "");
+  EXPECT_EQ(options.way(), Way::before_and_after);
+  options.after_dem.clear();
+  options.sliding_surface = "surface.tif";
+  EXPECT_EQ(faults_of(options), "");
+  EXPECT_EQ(options.way(), Way::before_and_sliding_surface);
+  Options base;
+  base.base_dem = "dem.tif";
+  base.release.resize(1);
+  base.release[0].thickness_raster = "release.tif";
+  EXPECT_EQ(faults_of(base), "");
+  EXPECT_EQ(base.way(), Way::base_and_releases);
+  Options laboratory;
+  laboratory.grid.spacing_m = 1;
+  laboratory.laboratory.columns = laboratory.laboratory.rows = 8;
+  laboratory.box.push_back({"", 3, 5, 3, 5, 0, 1});
+  EXPECT_EQ(faults_of(laboratory), "");
+  EXPECT_EQ(laboratory.way(), Way::laboratory);
+}
+
+TEST(options, refuse_no_way_and_two_ways) {
+  EXPECT_EQ(faults_of({}),
+            "[preprocess]: neither before_dem nor base_dem is given (nothing says what fails)." + one_way);
+  Options options = before_and_after();
+  options.sliding_surface = "surface.tif";
+  EXPECT_EQ(faults_of(options),
+            "[preprocess]: after_dem and sliding_surface are both given (nothing says clearly what lies under the "
+            "failing mass)." +
+                one_way);
+  options = before_and_after();
+  options.after_dem.clear();
+  EXPECT_EQ(faults_of(options),
+            "[preprocess]: before_dem stands alone (nothing says clearly what lies under the failing mass)." + one_way);
+  options = before_and_after();
+  options.base_dem = "dem.tif";
+  EXPECT_EQ(faults_of(options),
+            "[preprocess]: before_dem and base_dem are both given (they belong to different ways)." + one_way);
+  Options base;
+  base.base_dem = "dem.tif";
+  EXPECT_EQ(faults_of(base), "[preprocess]: base_dem is given without a release (nothing would move)." + one_way);
+}
+
+TEST(options, refuse_spacings_that_are_not_positive) {
+  Options options = before_and_after();
+  options.grid.spacing_m = -10;
+  options.grid.layer_height_m = -2;
+  EXPECT_EQ(faults_of(options),
+            "[preprocess]: grid.spacing_m = -10 (it must be positive). Give a length in metres, or 0 for the cell of "
+            "the first DEM\n"
+            "[preprocess]: grid.layer_height_m = -2 (it must be positive). Give a length in metres, or 0 for the "
+            "horizontal spacing\n");
+}
+
+TEST(options, refuse_points_per_cell_that_are_not_three_positive_numbers) {
+  for (const std::vector<int>& points : {std::vector<int>{2, 2}, {2, 2, 0}, {2, -1, 2}, {}}) {
+    Options options = before_and_after();
+    options.grid.points_per_cell = points;
+    EXPECT_NE(
+        faults_of(options).find("(it must be three positive integers: along x, y and height). The usual is [2, 2, 2]"),
+        std::string::npos);
+  }
+  Options options = before_and_after();
+  options.grid.points_per_cell = {2, 2, 0};
+  EXPECT_EQ(faults_of(options),
+            "[preprocess]: grid.points_per_cell = [2, 2, 0] (it must be three positive integers: along x, y and "
+            "height). The usual is [2, 2, 2]\n");
+}
+
+TEST(options, report_all_faults_of_the_releases) {
+  Options options;
+  options.base_dem = "dem.tif";
+  options.release.resize(3);
+  options.release[0].name = options.release[1].name = "A";
+  options.release[1].thickness_raster = options.release[1].polygons = "x";
+  options.release[2].thickness_raster = "x";
+  options.release[2].thickness_m = 3;
+  EXPECT_EQ(faults_of(options),
+            "[preprocess]: release 1: neither thickness_raster nor polygons is given (a release is one or the other). "
+            "Give one; several "
+            "releases are several [[preprocess.release]]\n"
+            "[preprocess]: release 2: thickness_raster and polygons are both given (a release is one or the other). "
+            "Give one; several "
+            "releases are several [[preprocess.release]]\n"
+            "[preprocess]: release 2: name \"A\" is taken (results are told apart by name). Name it otherwise\n"
+            "[preprocess]: release 3: thickness_m = 3 beside thickness_raster (the raster holds the thickness). Leave "
+            "one out\n");
+}
+
+TEST(options, read_what_they_write) {
+  Options options = before_and_after();
+  options.before_dem = "/data/before.tif";
+  options.after_dem = "/data/after.tif";
+  options.grid.points_per_cell = {3, 2, 1};
+  options.grid.edge_nodata = EdgeNodata::outside;
+  options.source.seed_x_m = 5;
+  options.source.seed_y_m = 7;
+  test::expect_read_as_written(options);
+}
+
+TEST(options, units_of_one_model_come_back_and_wrong_ones_are_refused_by_word) {
+  Options options = before_and_after();
+  options.before_dem = "/data/before.tif";
+  options.after_dem = "/data/after.tif";
+  options.before_vertical_unit = VerticalUnit::us_survey_foot;
+  options.after_vertical_unit = VerticalUnit::declared;
+  test::expect_read_as_written(options);
+  const test::Scratch scratch;
+  const recipe::Recipe recipe(scratch.write("recipe.toml", "[preprocess]\nafter_vertical_unit = \"fot\"\n"));
+  const std::string fault = test::fault_of<RecipeError>([&] { recipe.read<Options>("preprocess"); });
+  EXPECT_NE(fault.find("after_vertical_unit = \"fot\" (no such choice). Did you mean \"foot\"?"), std::string::npos)
+      << fault;
+}
+
+TEST(options, units_of_models_that_are_not_there_are_refused) {
+  Options options = before_and_after();
+  options.after_vertical_unit = VerticalUnit::foot;
+  EXPECT_EQ(faults_of(options), "");
+  options.after_dem.clear();
+  options.sliding_surface = "sliding.tif";
+  EXPECT_EQ(faults_of(options),
+            "[preprocess]: after_vertical_unit is given without after_dem (there are no heights that it speaks of). "
+            "Leave it out, or use vertical_unit, which is for all elevation models\n");
+}
+
+TEST(options, tables_of_two_models_need_two_models) {
+  Options options;
+  options.before_dem = "before.tif";
+  options.sliding_surface = "sliding.tif";
+  options.coregistration.mode = Alignment::apply;
+  options.deposit.polygon = "deposit.gpkg";
+  std::vector<Fault> faults;
+  options.check(faults);
+  ASSERT_EQ(faults.size(), 2u);
+  EXPECT_NE(faults[0].what.find("coregistration.mode"), std::string::npos);
+  EXPECT_NE(faults[1].what.find("deposit.polygon"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace talus::preprocess

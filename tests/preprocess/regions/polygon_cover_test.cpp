@@ -1,0 +1,182 @@
+#include "preprocess/regions/polygon_cover.hpp"
+#include "common/map/polygon.hpp"
+
+#include "tests/preprocess/terrain.hpp"
+
+namespace talus::preprocess {
+namespace {
+
+using test::fault_of;
+using Ring = std::vector<std::array<double, 2>>;
+
+MapPolygon polygon_of(std::vector<Ring> rings) {
+  MapPolygon polygon;
+  polygon.rings = std::move(rings);
+  return polygon;
+}
+
+/// A star around (x, y): radii alternate at random, so it is simple but far from convex.
+Ring star(double x, double y, double radius, int corners, std::mt19937& random) {
+  std::uniform_real_distribution<double> part(0.35, 1.0);
+  Ring ring;
+  for (int i = 0; i < corners; ++i) {
+    const double angle = 2 * M_PI * i / corners, r = radius * part(random);
+    ring.push_back({x + r * std::cos(angle), y + r * std::sin(angle)});
+  }
+  return ring;
+}
+
+/// Reference: each ring cut to one cell (Sutherland and Hodgman 1974), whose signed area needs no care for bridges.
+double ring_area_in_cell(Ring ring, double west, double south, double cell) {
+  const double bounds[] = {west, west + cell, south, south + cell};
+  for (int side = 0; side < 4; ++side) {
+    const std::size_t axis = side / 2;
+    const double bound = bounds[side], sign = side % 2 == 0 ? 1 : -1;
+    Ring kept;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const auto &a = ring[i], &b = ring[(i + 1) % ring.size()];
+      const double da = sign * (a[axis] - bound), db = sign * (b[axis] - bound);
+      if (da >= 0) kept.push_back(a);
+      if ((da >= 0) != (db >= 0)) {
+        const double t = da / (da - db);
+        kept.push_back({a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])});
+      }
+    }
+    ring = std::move(kept);
+  }
+  double twice = 0;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const auto &a = ring[i], &b = ring[(i + 1) % ring.size()];
+    twice += (a[0] - west) * (b[1] - south) - (b[0] - west) * (a[1] - south);
+  }
+  return std::abs(twice / 2);
+}
+
+TEST(polygon_cover, equals_each_cell_clipped_for_itself) {
+  TALUS_SEEDED(seed);
+  std::mt19937 random(seed);
+  const MapGrid grid = test::grid_of(31, 27, 7.5);
+  const double x = grid.west + 110, y = grid.south + 97;
+  for (int trial = 0; trial < 20; ++trial) {
+    std::vector<MapPolygon> polygons{polygon_of({star(x, y, 90, 41, random), star(x, y, 25, 9, random)})};
+    check_polygons(polygons, "test");
+    const auto covered = coverage(grid, polygons[0], "test");
+    for (int row = 0; row < grid.rows; ++row) {
+      for (int column = 0; column < grid.columns; ++column) {
+        const double west = grid.west + column * grid.cell, south = grid.south + row * grid.cell;
+        const double area = ring_area_in_cell(polygons[0].rings[0], west, south, grid.cell) -
+                            ring_area_in_cell(polygons[0].rings[1], west, south, grid.cell);
+        ASSERT_NEAR(covered[grid.index(column, row)], area / (grid.cell * grid.cell), 1e-9) << column << " " << row;
+      }
+    }
+  }
+}
+
+TEST(polygon_cover, sums_to_the_area_of_the_polygon) {
+  TALUS_SEEDED(seed);
+  std::mt19937 random(seed);
+  for (const double cell : {0.7, 3.0, 10.0, 37.0}) {
+    const MapGrid grid =
+        test::grid_of(static_cast<int>(300 / cell) + 1, static_cast<int>(300 / cell) + 1, cell, 412345.6, 5012345.6);
+    std::vector<MapPolygon> polygons{polygon_of({star(grid.west + 150, grid.south + 150, 140, 67, random),
+                                                 star(grid.west + 150, grid.south + 150, 40, 13, random)})};
+    check_polygons(polygons, "test");
+    Raster cover{grid, coverage(grid, polygons[0], "test")};
+    EXPECT_NEAR(test::volume_of(cover) / area_of(polygons[0]), 1, 1e-12) << "cells of " << cell;
+  }
+}
+
+TEST(polygon_cover, is_exact_for_outlines_along_cell_borders) {
+  const MapGrid grid = test::grid_of(10, 10, 10, 0, 0);
+  std::vector<MapPolygon> polygons{polygon_of({{{20, 30}, {60, 30}, {60, 70}, {20, 70}}})};
+  check_polygons(polygons, "test");
+  const auto covered = coverage(grid, polygons[0], "test");
+  for (int row = 0; row < 10; ++row) {
+    for (int column = 0; column < 10; ++column) {
+      EXPECT_EQ(covered[grid.index(column, row)], column >= 2 && column < 6 && row >= 3 && row < 7 ? 1.0 : 0.0);
+    }
+  }
+}
+
+TEST(polygon_cover, does_not_depend_on_the_sense_of_the_rings) {
+  const MapGrid grid = test::grid_of(10, 10, 10, 0, 0);
+  const Ring outer{{5, 5}, {95, 12}, {70, 88}}, hole{{50, 30}, {60, 35}, {55, 45}};
+  std::vector<MapPolygon> one{polygon_of({outer, hole})},
+      other{polygon_of({{outer.rbegin(), outer.rend()}, {hole.rbegin(), hole.rend()}})};
+  check_polygons(one, "test");
+  check_polygons(other, "test");
+  EXPECT_GT(area_of(one[0]), 0);
+  EXPECT_NEAR(area_of(one[0]), area_of(other[0]), 1e-9);
+  const auto a = coverage(grid, one[0], "test"), b = coverage(grid, other[0], "test");
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-14);
+}
+
+std::string refusal(std::vector<Ring> rings) {
+  std::vector<MapPolygon> polygons{polygon_of(std::move(rings))};
+  return fault_of<DataError>([&] { check_polygons(polygons, "outline.shp"); });
+}
+
+const std::string mend = " Mend it in a GIS, or: ogr2ogr -makevalid out.gpkg outline.shp";
+
+TEST(polygon_check, names_the_place_where_an_outline_crosses_itself) {
+  EXPECT_EQ(
+      refusal({{{0, 0}, {10, 10}, {10, 0}, {0, 10}}}),
+      "outline.shp: polygon 1: its outline crosses or touches itself at x 5.0, y 5.0 (what is inside is unclear)." +
+          mend);
+}
+
+TEST(polygon_check, refuses_a_spike) {
+  EXPECT_EQ(
+      refusal({{{0, 0}, {10, 0}, {10, 10}, {10, 4}, {10, 20}, {0, 20}}}),
+      "outline.shp: polygon 1: its outline crosses or touches itself at x 10.0, y 7.0 (what is inside is unclear)." +
+          mend);
+}
+
+TEST(polygon_check, refuses_a_corner_that_lies_on_another_edge) {
+  EXPECT_EQ(
+      refusal({{{0, 0}, {10, 0}, {10, 10}, {5, 0}, {0, 10}}}),
+      "outline.shp: polygon 1: its outline crosses or touches itself at x 5.0, y 0.0 (what is inside is unclear)." +
+          mend);
+}
+
+TEST(polygon_check, refuses_a_hole_outside_its_outline) {
+  EXPECT_EQ(refusal({{{0, 0}, {10, 0}, {10, 10}, {0, 10}}, {{20, 20}, {25, 20}, {20, 25}}}),
+            "outline.shp: polygon 1: a hole reaches x 20.0, y 20.0 (that is outside its outline)." + mend);
+}
+
+TEST(polygon_check, refuses_a_hole_across_its_outline) {
+  EXPECT_EQ(refusal({{{0, 0}, {10, 0}, {10, 10}, {0, 10}}, {{8, 5}, {12, 4}, {12, 6}}})
+                .find("outline.shp: polygon 1: its outline crosses"),
+            0u);
+}
+
+TEST(polygon_check, refuses_a_hole_within_a_hole) {
+  const std::string text =
+      refusal({{{0, 0}, {10, 0}, {10, 10}, {0, 10}}, {{2, 2}, {8, 2}, {8, 8}, {2, 8}}, {{4, 4}, {6, 4}, {5, 6}}});
+  EXPECT_EQ(text, "outline.shp: polygon 1: two holes overlap at x 4.0, y 4.0 (what they leave out is unclear)." + mend);
+}
+
+TEST(polygon_check, refuses_an_outline_without_area) {
+  EXPECT_EQ(refusal({{{0, 0}, {10, 10}}}),
+            "outline.shp: polygon 1: a ring has fewer than three corners (it has no area)." + mend);
+}
+
+TEST(polygon_check, allows_a_hole_that_touches_the_outline_in_a_corner) {
+  EXPECT_EQ(refusal({{{0, 0}, {10, 0}, {10, 10}, {0, 10}}, {{10, 5}, {5, 4}, {5, 6}}}), "");
+}
+
+TEST(polygon_check, allows_repeated_corners) {
+  EXPECT_EQ(refusal({{{0, 0}, {10, 0}, {10, 0}, {10, 10}, {0, 10}, {0, 0}}}), "");
+}
+
+TEST(polygon_cover, refuses_a_polygon_beyond_the_grid) {
+  std::vector<MapPolygon> polygons{polygon_of({{{0, 0}, {10, 0}, {10, 10}, {0, 10}}})};
+  polygons[0].name = "A";
+  const auto text = fault_of<DataError>([&] { coverage(test::grid_of(5, 5, 1, 6, 0), polygons[0], "outline.shp"); });
+  EXPECT_EQ(text,
+            "outline.shp: polygon \"A\" reaches x 0.0, y 0.0, outside the working grid (x 6.0..11.0, y 0.0..5.0) "
+            "(it must lie on the DEM). Check the CRS of both, give a DEM that reaches further, or clip the polygon");
+}
+
+}  // namespace
+}  // namespace talus::preprocess

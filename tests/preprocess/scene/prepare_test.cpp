@@ -1,0 +1,272 @@
+#include "preprocess/scene/prepare.hpp"
+
+#include "common/map/slope.hpp"
+#include "common/map/sum.hpp"
+#include "preprocess/terrain/geo_input.hpp"
+#include "tests/preprocess/scene.hpp"
+
+namespace talus::preprocess {
+namespace {
+
+using test::Scene;
+using test::volume_of_points;
+
+void expect_near(const Raster& a, const Raster& b, double tolerance) {
+  ASSERT_EQ(a.values.size(), b.values.size());
+  for (std::size_t i = 0; i < a.values.size(); ++i) ASSERT_NEAR(a.values[i], b.values[i], tolerance);
+}
+
+TEST(prepare, finds_the_source_between_two_models) {
+  TALUS_SEEDED(seed);
+  Scene scene(seed);
+  const Prepared prepared = scene.prepare();
+  expect_near(prepared.domain.release_thickness, scene.bowl, 1e-9);
+  EXPECT_NEAR(prepared.total.volume / test::volume_of(scene.bowl), 1, 1e-12);
+  EXPECT_NEAR(volume_of_points(prepared) / prepared.total.volume, 1, 1e-12);
+  EXPECT_EQ(prepared.domain.release_names, std::vector<std::string>{"source"});
+}
+
+TEST(prepare, takes_out_the_lowering_and_leaves_the_deposit_out_of_the_bed) {
+  TALUS_SEEDED(seed);
+  Scene scene(seed);
+  const Domain domain = scene.prepare().domain;
+  expect_near(domain.before, scene.before, 0);
+  for (std::size_t i = 0; i < domain.terrain.values.size(); ++i) {
+    ASSERT_NEAR(domain.terrain.values[i], scene.before.values[i] - scene.bowl.values[i], 1e-9);
+  }
+}
+
+TEST(prepare, slides_on_the_sliding_surface_and_follows_it_to_its_rim) {
+  TALUS_SEEDED(seed);
+  Scene scene(seed);
+  Raster surface = scene.before;
+  for (std::size_t i = 0; i < surface.values.size(); ++i) {
+    surface.values[i] = scene.bowl.values[i] > 0 ? surface.values[i] - scene.bowl.values[i] : std::nan("");
+  }
+  scene.options.sliding_surface = test::write(scene.scratch, "surface.tif", surface);
+  scene.options.after_dem.clear();
+  scene.options.source.threshold_m = 5;  // only says which region: its rim is thinner
+  const Prepared prepared = scene.prepare();
+  EXPECT_NEAR(prepared.total.volume / test::volume_of(scene.bowl), 1, 1e-6);  // less what is thinner than 1 mm
+  EXPECT_NEAR(volume_of_points(prepared) / prepared.total.volume, 1, 1e-12);
+}
+
+TEST(prepare, counts_cells_on_a_source_polygon_by_their_covered_part) {
+  Scene scene;
+  const double x = scene.grid.west + 83, y = scene.grid.south + 101;
+  scene.options.source.polygon =
+      test::write_polygon(scene.scratch, "source.csv",
+                          fmt::format("POLYGON(({0} {1},{2} {1},{2} {3},{0} {3},{0} {1}))", x, y, x + 60, y + 75));
+  Raster after = scene.before;
+  for (double& z : after.values) z -= 4;  // lowered everywhere: the polygon alone says what counts
+  scene.rewrite_after(after);
+  const Prepared prepared = scene.prepare();
+  EXPECT_NEAR(prepared.total.volume, 4 * 60 * 75, 1e-6);
+  EXPECT_NEAR(volume_of_points(prepared) / prepared.total.volume, 1, 1e-12);
+}
+
+TEST(prepare, takes_the_region_that_holds_the_seed_point) {
+  Scene scene;
+  Raster after = scene.after;
+  after.at(35, 3) -= 3;  // a small region beside the large one
+  scene.rewrite_after(after);
+  EXPECT_GT(scene.prepare().total.volume, 1e4);
+  scene.options.source.seed_x_m = scene.grid.x(35);
+  scene.options.source.seed_y_m = scene.grid.y(3);
+  EXPECT_NEAR(scene.prepare().total.volume, 300, 1e-6);
+}
+
+TEST(prepare, lays_releases_onto_the_base) {
+  TALUS_SEEDED(seed);
+  Scene scene(seed);
+  scene.as_release().thickness_raster = test::write(scene.scratch, "release.tif", scene.bowl);
+  const Prepared prepared = scene.prepare();
+  expect_near(prepared.domain.terrain, scene.before, 0);
+  for (std::size_t i = 0; i < scene.bowl.values.size(); ++i) {
+    ASSERT_NEAR(prepared.domain.before.values[i], scene.before.values[i] + scene.bowl.values[i], 1e-9);
+  }
+  EXPECT_NEAR(volume_of_points(prepared) / test::volume_of(scene.bowl), 1, 1e-12);
+  EXPECT_EQ(prepared.domain.release_names, std::vector<std::string>{"release-1"});
+}
+
+TEST(prepare, turns_slope_normal_thickness_into_vertical) {
+  TALUS_SEEDED(seed);
+  Scene scene(seed);
+  ReleaseOptions& release = scene.as_release();
+  release.thickness_raster = test::write(scene.scratch, "release.tif", scene.bowl);
+  release.direction = Direction::slope_normal;
+  const Prepared prepared = scene.prepare();
+  const auto cosine = slope_cosine(scene.before);
+  for (std::size_t i = 0; i < cosine.size(); ++i) {
+    ASSERT_NEAR(prepared.domain.release_thickness.values[i], scene.bowl.values[i] / cosine[i], 1e-9);
+  }
+}
+
+TEST(prepare, gives_polygons_their_area_times_thickness) {
+  Scene scene;
+  ReleaseOptions& release = scene.as_release();
+  const double x = scene.grid.west, y = scene.grid.south;
+  release.polygons = scene.scratch.write(
+      "release.csv", fmt::format("WKT,thickness,name\n\"POLYGON(({0} {1},{2} {1},{2} {3},{0} {1}))\",2.5,A\n"
+                                 "\"POLYGON(({4} {5},{6} {5},{6} {7},{4} {7},{4} {5}))\",4,B\n",
+                                 x + 33, y + 41, x + 133, y + 141, x + 201, y + 50, x + 222, y + 77));
+  const double expected = 2.5 * 100 * 100 / 2 + 4 * 21 * 27;
+  EXPECT_NEAR(scene.prepare().total.volume / expected, 1, 1e-12);
+  release.thickness_m = 1;
+  EXPECT_NEAR(scene.prepare().total.volume / (100 * 100 / 2 + 21 * 27), 1, 1e-12);
+}
+
+TEST(prepare, keeps_several_releases_apart) {
+  Scene scene;
+  ReleaseOptions& first = scene.as_release();
+  first.name = "upper";
+  first.thickness_raster = test::write(scene.scratch, "bowl.tif", scene.bowl);
+  ReleaseOptions& second = scene.options.release.emplace_back();
+  second.name = "lower";
+  second.thickness_raster = test::write(scene.scratch, "heap.tif", scene.heap);
+  const Prepared prepared = scene.prepare();
+  Sum volumes[2];
+  for (std::size_t p = 0; p < prepared.domain.points.size(); ++p) {
+    volumes[prepared.domain.points.release[p]].add(prepared.domain.points.volume[p]);
+  }
+  EXPECT_NEAR(volumes[0].value() / test::volume_of(scene.bowl), 1, 1e-12);
+  EXPECT_NEAR(volumes[1].value() / test::volume_of(scene.heap), 1, 1e-12);
+  EXPECT_NEAR(prepared.by_release[1].second.volume / test::volume_of(scene.heap), 1, 1e-12);
+}
+
+TEST(prepare, takes_erodible_ground_out_of_the_bed_and_fills_it_with_points) {
+  Scene scene;
+  ReleaseOptions& release = scene.as_release();
+  release.name = "source";
+  release.thickness_raster = test::write(scene.scratch, "bowl.tif", scene.bowl);
+  ErodibleOptions& layer = scene.options.erodible.emplace_back();
+  layer.name = "ground";
+  layer.thickness_raster = test::write(scene.scratch, "heap.tif", scene.heap);
+  const Prepared prepared = scene.prepare();
+  const Domain& d = prepared.domain;
+  EXPECT_EQ(d.release_names, (std::vector<std::string>{"ground", "source"}));
+  EXPECT_EQ(d.erodible, 1);
+  double lowered = 0;
+  for (std::size_t c = 0; c < d.terrain.values.size(); ++c) {
+    lowered += scene.before.values[c] - d.terrain.values[c];
+    EXPECT_NEAR(d.release_thickness.values[c], scene.bowl.values[c], 1e-5);  // what is released, and no ground
+  }
+  EXPECT_NEAR(lowered * 100 / test::volume_of(scene.heap), 1, 1e-6);
+  Sum ground;
+  for (std::size_t p = 0; p < d.points.size(); ++p) {
+    if (d.points.release[p] == 0) ground.add(d.points.volume[p]);
+  }
+  EXPECT_NEAR(ground.value() / test::volume_of(scene.heap), 1, 1e-12);
+  write_domain(scene.scratch / "domain.vdb", d);
+  EXPECT_EQ(read_domain(scene.scratch / "domain.vdb").erodible, 1);
+}
+
+TEST(prepare, finds_erodible_ground_where_it_went_down_outside_the_source) {
+  Scene scene;
+  const double x0 = scene.grid.west + 50, y0 = scene.grid.south + 50;  // away from bowl and heap
+  Raster after = scene.after;
+  double volume = 0;
+  for (int row = 0; row < scene.grid.rows; ++row) {
+    for (int column = 0; column < scene.grid.columns; ++column) {
+      if (std::hypot(scene.grid.x(column) - x0, scene.grid.y(row) - y0) > 40) continue;
+      after.at(column, row) -= 2;
+      volume += 2 * 100;
+    }
+  }
+  scene.rewrite_after(after);
+  scene.options.erodible.emplace_back().lowering = true;
+  const Domain d = scene.prepare().domain;
+  Sum ground;
+  for (std::size_t p = 0; p < d.points.size(); ++p) {
+    if (d.points.release[p] < d.erodible) ground.add(d.points.volume[p]);
+  }
+  EXPECT_NEAR(ground.value() / volume, 1, 1e-5);
+  scene.rewrite_after(scene.after);
+  EXPECT_NE(scene.data_fault().find("nothing lies lower outside the source"), std::string::npos);
+}
+
+TEST(prepare, brings_rasters_of_the_bed_onto_the_grid) {
+  Scene scene;
+  const MapGrid coarse = test::grid_of(25, 20, 20, scene.grid.west - 40, scene.grid.south - 40);
+  for (auto& [name, file] : scene.options.bed.files) {
+    if (name == "friction_angle_deg") {
+      file = test::write(scene.scratch, "angle.tif",
+                         test::raster_of(coarse, [&](double x, double) { return 10 + 0.02 * (x - coarse.west); }));
+    }
+  }
+  const Domain d = scene.prepare().domain;
+  ASSERT_EQ(d.bed.size(), 1u);
+  EXPECT_EQ(d.bed[0].first, "friction_angle_deg");
+  for (int row = 1; row + 1 < d.grid.rows; ++row) {
+    for (int column = 1; column + 1 < d.grid.columns; ++column) {
+      EXPECT_NEAR(d.bed[0].second.at(column, row), 10 + 0.02 * (d.grid.x(column) - coarse.west), 1e-4);
+    }
+  }
+  write_domain(scene.scratch / "domain.vdb", d);
+  const Domain back = read_domain(scene.scratch / "domain.vdb");
+  ASSERT_EQ(back.bed.size(), 1u);
+  EXPECT_EQ(back.bed[0].second.values, d.bed[0].second.values);
+}
+
+TEST(prepare, keeps_the_volume_of_a_release_on_another_grid) {
+  TALUS_SEEDED(seed);
+  Scene scene(seed);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> part(0, 1);
+  for (int trial = 0; trial < 8; ++trial) {
+    Scene other(seed);
+    const MapGrid grid = test::grid_of(17, 13, 3 + 9 * part(random), other.grid.west + 20 + 50 * part(random),
+                                       other.grid.south + 20 + 50 * part(random));
+    const Raster thickness = test::raster_of(grid, [&](double, double) { return 5 * part(random); });
+    other.as_release().thickness_raster = test::write(other.scratch, "release.tif", thickness);
+    other.options.grid.spacing_m = trial % 2 ? 7.3 : 0;
+    const Prepared prepared = other.prepare();
+    EXPECT_NEAR(prepared.total.volume / test::volume_of(thickness), 1, 1e-9);
+    EXPECT_NEAR(volume_of_points(prepared) / prepared.total.volume, 1, 1e-12);
+  }
+}
+
+TEST(prepare, says_both_conventions) {
+  Scene scene;
+  const Raster plane =
+      test::raster_of(scene.grid, [&](double x, double) { return 1000 + (x - scene.grid.west) * std::tan(M_PI / 3); });
+  scene.rewrite_before(plane);
+  scene.as_release().thickness_raster =
+      test::write(scene.scratch, "release.tif",
+                  test::raster_of(scene.grid, [&](double x, double) { return x - scene.grid.west < 100 ? 3.0 : 0.0; }));
+  const Volumes v = scene.prepare().total;  // on a slope of 60 degrees, cos = 1/2
+  EXPECT_NEAR(v.volume, 3 * 100 * 300, 1e-6);
+  EXPECT_NEAR(v.volume_if_normal, 2 * v.volume, 1e-5);
+  EXPECT_NEAR(v.projected_area, 100 * 300, 1e-9);
+  EXPECT_NEAR(v.true_area, 2 * 100 * 300, 1e-5);
+  EXPECT_NEAR(v.max_vertical, 3, 1e-12);
+  EXPECT_NEAR(v.max_normal, 1.5, 1e-9);
+  EXPECT_EQ(as_lines("A", v),
+            (std::vector<std::string>{"A: 90,000 m3: vertical thickness times map area",
+                                      "  the same thickness taken as slope-normal would be 180,000 m3 (+100.0 %)",
+                                      "  area 30,000 m2 on the map, 60,000 m2 along the bed, 300 cells",
+                                      "  thickness at most 3.00 m vertical, 1.50 m slope-normal"}));
+}
+
+TEST(prepare, counts_without_seeding) {
+  Scene scene;
+  const Prepared counted = preprocess::prepare(scene.options, Points::counted), seeded = scene.prepare();
+  EXPECT_EQ(counted.domain.points.size(), 0u);
+  EXPECT_EQ(counted.point_count, seeded.domain.points.size());
+}
+
+TEST(prepare, writes_a_domain_that_reads_back) {
+  Scene scene;
+  const Domain domain = scene.prepare().domain;
+  write_domain(scene.scratch / "domain.vdb", domain);
+  const Domain back = read_domain(scene.scratch / "domain.vdb");
+  EXPECT_EQ(back.terrain.values, domain.terrain.values);
+  EXPECT_EQ(back.layer_height, 10);
+  double sum = 0, expected = 0;
+  for (double v : back.points.volume) sum += v;
+  for (double v : domain.points.volume) expected += v;
+  EXPECT_NEAR(sum / expected, 1, 1e-14);
+}
+
+}  // namespace
+}  // namespace talus::preprocess
