@@ -45,11 +45,10 @@ RunMaps read_maps(const h5::File& file) {
   RunMaps maps;
   maps.grid = read_grid(file);
   maps.threshold = file.number("/maps", "threshold_m");
-  for (const auto& field : run_layout::map_fields) {
-    maps.*(field.values) = file.read<double>(std::string("/maps/") + field.name, shape_of(maps.grid));
+  for (const MapField& field : map_fields) {
+    const auto path = std::string("/maps/") + field.name;
+    if (!field.optional || file.exists(path)) maps.*(field.values) = file.read<double>(path, shape_of(maps.grid));
   }
-  if (file.exists("/maps/eroded_depth"))
-    maps.eroded_depth = file.read<double>("/maps/eroded_depth", shape_of(maps.grid));
   if (file.exists("/maps/deposit_of")) {
     for (std::size_t r = 0; file.exists("/maps/deposit_of/" + std::to_string(r)); ++r) {
       const auto path = "/maps/deposit_of/" + std::to_string(r);

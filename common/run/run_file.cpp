@@ -33,24 +33,22 @@ void write_maps(h5::File& file, const RunMaps& maps) {
   write_grid(file, maps.grid);
   file.set_number("/maps", "threshold_m", maps.threshold);
   const h5::Dims shape{static_cast<hsize_t>(maps.grid.rows), static_cast<hsize_t>(maps.grid.columns)};
-  for (const auto& field : run_layout::map_fields) {
-    const auto path = std::string("/maps/") + field.name;
-    file.write<double>(path, shape, maps.*(field.values));
-    file.set_text(path, "unit", field.unit);
-    file.set_text(path, "long_name", field.long_name);
-  }
-  const auto extra = [&](const std::string& path, const std::vector<double>& values, const std::string& long_name) {
+  const auto write = [&](const std::string& path, const std::vector<double>& values, const char* unit,
+                         const char* meaning) {
     file.write<double>(path, shape, values);
-    file.set_text(path, "unit", "m");
-    file.set_text(path, "long_name", long_name);
+    file.set_text(path, "unit", unit);
+    file.set_text(path, "long_name", meaning);
   };
-  if (!maps.eroded_depth.empty())
-    extra("/maps/eroded_depth", maps.eroded_depth, "depth of ground that went along, vertical");
+  for (const MapField& field : map_fields) {
+    const std::vector<double>& values = maps.*(field.values);
+    if (!(field.optional && values.empty()))
+      write(std::string("/maps/") + field.name, values, field.unit, field.meaning);
+  }
   if (maps.deposit_of.empty()) return;
   file.make_group("/maps/deposit_of");
   for (std::size_t r = 0; r < maps.deposit_of.size(); ++r) {
     const auto path = "/maps/deposit_of/" + std::to_string(r);
-    extra(path, maps.deposit_of[r].second, "thickness at the end of what came from one release, vertical");
+    write(path, maps.deposit_of[r].second, "m", "thickness at the end of what came from one release, vertical");
     file.set_text(path, "release", maps.deposit_of[r].first);
   }
 }

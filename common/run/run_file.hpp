@@ -9,27 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "common/map/raster.hpp"
+#include "common/run/map_fields.hpp"
 
 namespace talus {
-
-/// Fields on the map grid, [rows * columns] each, row 0 southernmost. Thickness is vertical and counts released volume
-/// (mass over initial density), so that its integral closes exactly.
-struct RunMaps {
-  MapGrid grid;
-  std::vector<double> terrain;            // bed [m], NaN outside the domain
-  std::vector<double> before;             // surface before the failure [m]
-  std::vector<double> initial_thickness;  // [m]
-  std::vector<double> deposit_thickness;  // at the end, without what still lies where it was eroded from [m]
-  std::vector<double> peak_thickness;     // running maximum [m]
-  std::vector<double> peak_speed;         // running maximum of the depth-mean speed [m/s]
-  std::vector<double> peak_pressure;      // running maximum of rho v^2 [kPa]
-  std::vector<double> arrival_time;       // [s], NaN where it never came
-  std::vector<std::pair<std::string, std::vector<double>>>
-      deposit_of;                    // deposit_thickness by release, where there are several [m]
-  std::vector<double> eroded_depth;  // of the ground that went along [m]; empty where nothing can be eroded
-  double threshold = 0;              // thickness from which speed, pressure and arrival count [m]
-};
 
 /// Thickness maps over time.
 struct RunFrames {

@@ -12,24 +12,6 @@ namespace talus::run_layout {
 inline constexpr const char* format = "talus-run";
 inline constexpr std::int64_t format_version = 3;
 
-struct MapField {
-  const char* name;
-  std::vector<double> RunMaps::*values;
-  const char* unit;
-  const char* long_name;
-};
-
-inline constexpr MapField map_fields[] = {
-    {"terrain", &RunMaps::terrain, "m", "elevation of the bed"},
-    {"before", &RunMaps::before, "m", "elevation of the surface before the failure"},
-    {"initial_thickness", &RunMaps::initial_thickness, "m", "thickness at the start, vertical"},
-    {"deposit_thickness", &RunMaps::deposit_thickness, "m", "thickness at the end, vertical"},
-    {"peak_thickness", &RunMaps::peak_thickness, "m", "largest thickness over time, vertical"},
-    {"peak_speed", &RunMaps::peak_speed, "m s-1", "largest depth-mean speed over time"},
-    {"peak_pressure", &RunMaps::peak_pressure, "kPa", "largest rho v^2 over time"},
-    {"arrival_time", &RunMaps::arrival_time, "s", "time of first arrival"},
-};
-
 template <class T>
 struct SummaryItem {
   const char* name;

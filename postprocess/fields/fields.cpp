@@ -2,20 +2,24 @@
 
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <string_view>
 
 namespace talus::postprocess {
 
-const std::vector<Field>& product_fields() {
-  static const std::vector<Field> fields = {
-      {"deposit_thickness", &RunMaps::deposit_thickness, "m", "deposit thickness at the end, vertical", "area: mean",
-       true},
-      {"peak_thickness", &RunMaps::peak_thickness, "m", "peak thickness, vertical", "area: mean time: maximum", true},
-      {"peak_speed", &RunMaps::peak_speed, "m s-1", "peak of the depth-mean speed", "time: maximum", true},
-      {"peak_pressure", &RunMaps::peak_pressure, "kPa", "peak flow pressure, density times speed squared",
-       "time: maximum", true},
-      {"arrival_time", &RunMaps::arrival_time, "s", "time from the start to the first arrival", "", false},
-  };
-  return fields;
+std::vector<MapField> product_fields(const RunMaps& maps) {
+  std::vector<MapField> products;
+  for (const MapField& field : map_fields) {
+    if (!std::string_view(field.product.legend).empty() && !(maps.*(field.values)).empty()) products.push_back(field);
+  }
+  return products;
+}
+
+const MapField& map_field(const std::string& name) {
+  for (const MapField& field : map_fields) {
+    if (name == field.name) return field;
+  }
+  throw std::logic_error("there is no map " + name);
 }
 
 std::vector<char> inside_domain(const RunMaps& maps) {
@@ -26,8 +30,8 @@ std::vector<char> inside_domain(const RunMaps& maps) {
   return inside;
 }
 
-Raster field_raster(const RunMaps& maps, const Field& field) {
-  return values_raster(maps, maps.*(field.values), field.zero_inside);
+Raster field_raster(const RunMaps& maps, const MapField& field) {
+  return values_raster(maps, maps.*(field.values), field.product.zero_inside);
 }
 
 Raster values_raster(const RunMaps& maps, const std::vector<double>& values, bool zero_inside) {

@@ -1,4 +1,4 @@
-// The maps a run hands on: names, units and words, in one place for GeoTIFF and NetCDF.
+// The maps a run hands on, as rasters.
 #pragma once
 
 #include <string>
@@ -8,23 +8,18 @@
 
 namespace talus::postprocess {
 
-struct Field {
-  const char* name;  // file name and NetCDF variable
-  std::vector<double> RunMaps::*values;
-  const char* unit;  // UDUNITS
-  const char* long_name;
-  const char* cell_methods;  // CF; "" = none
-  bool zero_inside;          // nodata inside the domain means zero (arrival time: it never came)
-};
+/// The maps that this run has and that are written as GeoTIFF, in the order of the table map_fields; without those by
+/// release.
+std::vector<MapField> product_fields(const RunMaps& maps);
 
-/// deposit_thickness, peak_thickness, peak_speed, peak_pressure, arrival_time.
-const std::vector<Field>& product_fields();
+/// A map by its name in the table map_fields. Throws std::logic_error for a name that is not in it.
+const MapField& map_field(const std::string& name);
 
 /// True where the run has ground, or mass in spite of it: there zero is a value; elsewhere it is nodata.
 std::vector<char> inside_domain(const RunMaps& maps);
 
 /// One field as a raster: NaN outside the domain, 0 inside it where nothing is (arrival time: NaN).
-Raster field_raster(const RunMaps& maps, const Field& field);
+Raster field_raster(const RunMaps& maps, const MapField& field);
 
 /// Values on the run's grid as a raster: NaN outside the domain; with `zero_inside` 0 for NaN inside it.
 Raster values_raster(const RunMaps& maps, const std::vector<double>& values, bool zero_inside);

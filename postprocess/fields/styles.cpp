@@ -18,17 +18,17 @@ double largest(const std::vector<double>& values) {
 
 }  // namespace
 
-std::vector<double> pressure_limits(const RunMaps& maps) {
+std::vector<double> pressure_limits(const std::vector<double>& values) {
   std::vector<double> limits{1, 3, 5, 10};
   for (const double more : {100.0, 1000.0, 10000.0}) {
-    if (largest(maps.peak_pressure) > more) limits.push_back(more);
+    if (largest(values) > more) limits.push_back(more);
   }
   return limits;
 }
 
-std::vector<double> speed_limits(const RunMaps& maps) {
+std::vector<double> speed_limits(const std::vector<double>& values) {
   std::vector<double> limits{0.5, 1, 5, 10, 25, 50};
-  if (largest(maps.peak_speed) > 100) limits.push_back(100);
+  if (largest(values) > 100) limits.push_back(100);
   return limits;
 }
 
@@ -36,8 +36,8 @@ std::vector<double> thickness_limits(const std::vector<double>& given, const std
   return class_limits(given, largest(values));
 }
 
-std::vector<double> time_limits(const RunMaps& maps) {
-  const double last = largest(maps.arrival_time);
+std::vector<double> time_limits(const std::vector<double>& values) {
+  const double last = largest(values);
   if (!(last > 0)) return {1};
   double step = round_below(last / 3);
   if (last / step > 7) step *= 2;
@@ -46,15 +46,29 @@ std::vector<double> time_limits(const RunMaps& maps) {
   return limits;
 }
 
+std::vector<double> map_limits(const MapField& field, const RunMaps& maps, const std::vector<double>& given_classes) {
+  const std::vector<double>& values = maps.*(field.values);
+  switch (field.product.classes) {
+    case MapClasses::pressure: return pressure_limits(values);
+    case MapClasses::speed: return speed_limits(values);
+    case MapClasses::time: return time_limits(values);
+    case MapClasses::thickness: break;
+  }
+  return thickness_limits(given_classes, values);
+}
+
 RasterStyle map_style(const std::string& name, const RunMaps& maps, const std::vector<double>& given_classes) {
-  if (name == "peak_pressure") return class_style(pressure_limits(maps), "kPa");
-  if (name == "peak_speed") return class_style(speed_limits(maps), "m/s", Ramp::sea);
   if (name.starts_with("difference")) return difference_style(thickness_limits({}, maps.deposit_thickness), "m");
-  if (name == "arrival_time") return time_style(time_limits(maps), "s");
-  const auto& values = name == "peak_thickness" ? maps.peak_thickness
-                       : name == "eroded_depth" ? maps.eroded_depth
-                                                : maps.deposit_thickness;  // and what single releases left of it
-  return class_style(thickness_limits(given_classes, values), "m");
+  const bool of_a_release = name.starts_with("deposit_thickness");
+  const MapField& field = map_field(of_a_release ? "deposit_thickness" : name);
+  const std::vector<double> limits = map_limits(field, maps, given_classes);
+  switch (field.product.classes) {
+    case MapClasses::pressure: return class_style(limits, "kPa");
+    case MapClasses::speed: return class_style(limits, "m/s", Ramp::sea);
+    case MapClasses::time: return time_style(limits, "s");
+    case MapClasses::thickness: break;
+  }
+  return class_style(limits, "m");
 }
 
 }  // namespace talus::postprocess

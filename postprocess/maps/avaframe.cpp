@@ -23,10 +23,11 @@ struct Product {
 };
 
 std::vector<Product> products(const RunMaps& maps) {
-  return {{"ppr", "peak pressure, density times speed squared", "kPa", values_raster(maps, maps.peak_pressure, true)},
-          {"pft", "peak thickness, normal to the slope", "m",
-           values_raster(maps, normal_thickness(maps, maps.peak_thickness), true)},
-          {"pfv", "peak of the depth-mean speed", "m/s", values_raster(maps, maps.peak_speed, true)}};
+  return {
+      {"ppr", "peak pressure, density times speed squared", "kPa", values_raster(maps, maps.peak_pressure_kPa, true)},
+      {"pft", "peak thickness, normal to the slope", "m",
+       values_raster(maps, normal_thickness(maps, maps.peak_thickness), true)},
+      {"pfv", "peak of the depth-mean speed", "m/s", values_raster(maps, maps.peak_speed, true)}};
 }
 
 /// A thickness that is taken for the other one gives another volume: both are named.

@@ -40,15 +40,11 @@ std::vector<std::filesystem::path> write_geotiffs(const std::filesystem::path& f
     files.push_back(folder / (name + ".tif"));
     write_cog(files.back(), raster, tags);
   };
-  for (const auto& field : product_fields())
-    put(field.name, field.long_name, field.unit, field.zero_inside, field_raster(run.maps, field));
-  const auto thickness = [&](const std::string& name, const char* long_name, const std::vector<double>& values) {
-    put(name, long_name, "m", true, values_raster(run.maps, values, true));
-  };
-  if (!run.maps.eroded_depth.empty())
-    thickness("eroded_depth", "depth of ground that went along, vertical", run.maps.eroded_depth);
+  for (const MapField& field : product_fields(run.maps))
+    put(field.name, field.product.title, field.unit, field.product.zero_inside, field_raster(run.maps, field));
   for (const auto& [release, values] : run.maps.deposit_of) {
-    thickness("deposit_thickness_" + file_word(release), "deposit thickness of one release, vertical", values);
+    put("deposit_thickness_" + file_word(release), "deposit thickness of one release, vertical", "m", true,
+        values_raster(run.maps, values, true));
   }
   return files;
 }

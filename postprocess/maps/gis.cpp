@@ -1,7 +1,6 @@
 #include "postprocess/maps/gis.hpp"
 
 #include <algorithm>
-#include <map>
 #include <string>
 
 #include <fmt/format.h>
@@ -58,14 +57,9 @@ ProjectGroup outline_group(const GisInput& input) {
 
 /// What the legend says of a map; maps without words of their own are named after their file.
 std::string legend_name(const std::string& map) {
-  static const std::map<std::string, std::string> words = {{"deposit_thickness", "Deposit thickness, vertical [m]"},
-                                                           {"peak_thickness", "Peak thickness, vertical [m]"},
-                                                           {"peak_speed", "Peak speed [m/s]"},
-                                                           {"peak_pressure", "Peak pressure [kPa]"},
-                                                           {"arrival_time", "Arrival time [s]"},
-                                                           {"eroded_depth", "Depth of erosion, vertical [m]"}};
-  const auto found = words.find(map);
-  if (found != words.end()) return found->second;
+  for (const MapField& field : map_fields) {
+    if (map == field.name) return field.product.legend;
+  }
   std::string name = map;
   std::replace(name.begin(), name.end(), '_', ' ');
   return name + " [m]";

@@ -27,11 +27,11 @@ std::vector<double> filled(std::vector<double> values, const std::vector<char>& 
   return values;
 }
 
-struct Axis {
+struct AxisVariables {
   int dimension = -1, variable = -1, bounds = -1;
 };
 struct Axes {
-  Axis x, y;
+  AxisVariables x, y;
 };
 
 Axes define_axes(Nc& nc, const MapGrid& grid) {
@@ -95,14 +95,11 @@ std::string nc_name(const std::string& name) {
 
 std::vector<MapVariable> map_variables(const RunMaps& maps) {
   std::vector<MapVariable> all;
-  for (const auto& f : product_fields())
-    all.push_back({f.name, f.long_name, f.unit, f.cell_methods, &(maps.*(f.values)), f.zero_inside});
-  all.push_back(
-      {"initial_thickness", "thickness at the start, vertical", "m", "area: mean", &maps.initial_thickness, true});
-  all.push_back({"bed_elevation", "elevation of the bed", "m", "area: mean", &maps.terrain, false});
-  if (!maps.eroded_depth.empty())
+  for (const auto& [name, values, unit, meaning, optional, product, layer] : map_fields) {
+    if (product.netcdf_name[0] == '\0' || (maps.*values).empty()) continue;
     all.push_back(
-        {"eroded_depth", "depth of ground that went along, vertical", "m", "area: mean", &maps.eroded_depth, true});
+        {product.netcdf_name, product.title, unit, product.cell_methods, &(maps.*values), product.zero_inside});
+  }
   for (const auto& [release, values] : maps.deposit_of) {
     std::string name = "deposit_thickness_" + nc_name(release);
     const auto taken = [&](const MapVariable& other) { return other.name == name; };
@@ -159,7 +156,7 @@ Layout define(Nc& nc, const Run& run, const NetcdfNotes& notes) {
   return layout;
 }
 
-void fill_axis(Nc& nc, const Axis& axis, int count, double start, double cell) {
+void fill_axis(Nc& nc, const AxisVariables& axis, int count, double start, double cell) {
   std::vector<double> centres, bounds;
   for (int i = 0; i < count; ++i) {
     centres.push_back(start + (i + 0.5) * cell);

@@ -29,8 +29,8 @@ OutlineLayer deposit_layer(const Run& run, const Options& options) {
 
 OutlineLayer pressure_layer(const Run& run) {
   OutlineLayer layer{"pressure", {}};
-  for (const double limit : pressure_limits(run.maps))
-    layer.features.push_back(above({run.maps.grid, run.maps.peak_pressure}, "peak pressure", limit, "kPa"));
+  for (const double limit : pressure_limits(run.maps.peak_pressure_kPa))
+    layer.features.push_back(above({run.maps.grid, run.maps.peak_pressure_kPa}, "peak pressure", limit, "kPa"));
   return layer;
 }
 

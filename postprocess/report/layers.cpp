@@ -84,7 +84,7 @@ struct Layer {
   std::string id, title, unit;
   Json classes;
   Raster raster;
-  Merge merge = Merge::largest;
+  MergedCells merge = MergedCells::largest;
   int decimals = 1;
   std::string about{};
 };
@@ -96,7 +96,6 @@ class Layers {
 
   Json build() {
     simulated();
-    erosion();
     if (input_.survey) surveyed(*input_.survey);
     return std::move(list_);
   }
@@ -118,13 +117,12 @@ class Layers {
                      {"data", packed(raster.values)}});
   }
 
-  Raster map(const std::vector<double>& values) const { return values_raster(maps_, values, true); }
-  Json thickness_classes(const std::vector<double>& values, Ramp ramp = Ramp::heat) const {
-    return classes(thickness_limits(input_.options.classes, values), ramp);
+  Json thickness_classes(const std::vector<double>& values) const {
+    return classes(thickness_limits(input_.options.classes, values), Ramp::heat);
   }
 
   void simulated();
-  void erosion();
+  void of_run(const MapField& field);
   void surveyed(const Survey& survey);
   void difference(const Survey& survey, const OnSurveyGrid& simulated);
   void agreement(const Survey& survey, const OnSurveyGrid& simulated);
@@ -137,30 +135,26 @@ class Layers {
 };
 
 void Layers::simulated() {
+  for (const MapField& field : map_fields) {
+    if (!field.optional) of_run(field);
+  }
   const auto deposit = thickness_classes(maps_.deposit_thickness);
-  add({"deposit", "Deposit thickness", "m", deposit, map(maps_.deposit_thickness), Merge::mean, 2,
-       "Thickness at the end of the run, vertical."});
-  add({"peak_thickness", "Peak thickness", "m", thickness_classes(maps_.peak_thickness), map(maps_.peak_thickness),
-       Merge::largest, 2, "Largest thickness over time, vertical."});
-  const auto threshold = fmt::format(", where the flow was thicker than {:g} m.", maps_.threshold);
-  add({"peak_speed", "Peak speed", "m/s", classes(speed_limits(maps_), Ramp::sea), map(maps_.peak_speed),
-       Merge::largest, 1, "Largest depth-mean speed over time" + threshold});
-  add({"peak_pressure", "Peak pressure", "kPa", classes(pressure_limits(maps_), Ramp::heat), map(maps_.peak_pressure),
-       Merge::largest, 1, "Largest density times speed squared over time" + threshold});
-  add({"arrival", "Arrival time", "s", time_classes(time_limits(maps_)),
-       values_raster(maps_, maps_.arrival_time, false), Merge::smallest, 1,
-       fmt::format("When the flow first was thicker than {:g} m.", maps_.threshold)});
-  add({"release", "Release thickness", "m", thickness_classes(maps_.initial_thickness), map(maps_.initial_thickness),
-       Merge::mean, 2, "Thickness at the start, vertical."});
   for (const auto& [name, values] : maps_.deposit_of)
-    add({"deposit_" + file_word(name), "Deposit from " + name, "m", deposit, map(values), Merge::mean, 2,
-         "The part of the deposit that came from this release, vertical."});
+    add({"deposit_" + file_word(name), "Deposit from " + name, "m", deposit, values_raster(maps_, values, true),
+         MergedCells::mean, 2, "The part of the deposit that came from this release, vertical."});
+  for (const MapField& field : map_fields) {
+    if (field.optional) of_run(field);
+  }
 }
 
-void Layers::erosion() {
-  if (maps_.eroded_depth.empty()) return;
-  add({"eroded", "Eroded depth", "m", thickness_classes(maps_.eroded_depth, Ramp::sea), map(maps_.eroded_depth),
-       Merge::mean, 2, "Depth of the ground that went along, vertical."});
+void Layers::of_run(const MapField& field) {
+  const MapLayer& layer = field.layer;
+  if (layer.id[0] == '\0' || (maps_.*(field.values)).empty()) return;
+  const auto limits = map_limits(field, maps_, input_.options.classes);
+  const bool time = field.product.classes == MapClasses::time;
+  add({layer.id, layer.title, layer.unit, time ? time_classes(limits) : classes(limits, layer.ramp),
+       field_raster(maps_, field), layer.merge, layer.decimals,
+       fmt::format(fmt::runtime(layer.about), maps_.threshold)});
 }
 
 void Layers::surveyed(const Survey& survey) {
@@ -171,7 +165,7 @@ void Layers::surveyed(const Survey& survey) {
          "m",
          thickness_classes(maps_.deposit_thickness),
          {survey.grid, survey.deposit},
-         Merge::mean,
+         MergedCells::mean,
          2,
          survey.deposit_is_change ? "Rise of the surface between the two surveys, vertical." : "Thickness, vertical."});
     difference(survey, simulated);
@@ -187,7 +181,7 @@ void Layers::difference(const Survey& survey, const OnSurveyGrid& simulated) {
       raster.values[i] = simulated.deposit[i] - survey.deposit[i];
   const auto limits = difference_limits(raster.values);
   add({"difference", "Difference, simulated \u2212 " + survey.name, "m", difference_classes(limits), std::move(raster),
-       Merge::mean, 2,
+       MergedCells::mean, 2,
        fmt::format("Where either deposit is thicker than {:g} m: red where the simulation has more, blue where it has "
                    "less.",
                    limit)});
@@ -201,7 +195,8 @@ void Layers::agreement(const Survey& survey, const OnSurveyGrid& simulated) {
     if (std::isnan(survey.footprint[i]) || !(here || there)) continue;
     raster.values[i] = here && there ? both : here ? simulation_only : survey_only;
   }
-  add({"agreement", "Footprint agreement", "", agreement_classes(survey.name), std::move(raster), Merge::largest, 0,
+  add({"agreement", "Footprint agreement", "", agreement_classes(survey.name), std::move(raster), MergedCells::largest,
+       0,
        fmt::format("Footprint: peak thickness above {:g} m. The score counts these areas.",
                    input_.options.footprint_threshold)});
 }
@@ -223,7 +218,7 @@ Json frames_json(const ReportInput& input, const Window& window, int& coarsest) 
   double thickest = 0;
   for (std::size_t i = 0; i < run.frames.time.size(); ++i) {
     const auto frame =
-        coarsened(cut(values_raster(run.maps, flow_thickness(run, i), true), window), factor, Merge::mean);
+        coarsened(cut(values_raster(run.maps, flow_thickness(run, i), true), window), factor, MergedCells::mean);
     grid = frame.grid;
     json["time"].push_back(run.frames.time[i]);
     thickest = std::max(thickest, largest(frame.values));
@@ -240,7 +235,7 @@ Json ground_json(const ReportInput& input, const Window& window, int& coarsest) 
   const auto ground = cut({maps.grid, maps.before}, window);
   const int factor = factor_for(ground.grid, cells_of_a_map);
   coarsest = std::max(coarsest, factor);
-  const auto elevation = coarsened(ground, factor, Merge::mean);
+  const auto elevation = coarsened(ground, factor, MergedCells::mean);
   return {{"grid", grid_json(elevation.grid)},
           {"elevation", packed(elevation.values)},
           {"shade", packed(hillshade(elevation.grid, elevation.values))}};

@@ -26,18 +26,18 @@ std::string deflated(const std::string& bytes) {
 /// One number for several cells.
 class Merged {
  public:
-  explicit Merged(Merge merge) : merge_(merge) {}
+  explicit Merged(MergedCells merge) : merge_(merge) {}
   void add(double value) {
     if (std::isnan(value)) return;
-    if (merge_ == Merge::mean) value_ = count_ == 0 ? value : value_ + value;
-    if (merge_ == Merge::largest) value_ = count_ == 0 ? value : std::max(value_, value);
-    if (merge_ == Merge::smallest) value_ = count_ == 0 ? value : std::min(value_, value);
+    if (merge_ == MergedCells::mean) value_ = count_ == 0 ? value : value_ + value;
+    if (merge_ == MergedCells::largest) value_ = count_ == 0 ? value : std::max(value_, value);
+    if (merge_ == MergedCells::smallest) value_ = count_ == 0 ? value : std::min(value_, value);
     ++count_;
   }
-  double value() const { return merge_ == Merge::mean && count_ > 0 ? value_ / count_ : value_; }
+  double value() const { return merge_ == MergedCells::mean && count_ > 0 ? value_ / count_ : value_; }
 
  private:
-  Merge merge_;
+  MergedCells merge_;
   double value_ = nan;
   int count_ = 0;
 };
@@ -67,7 +67,7 @@ Raster cut(const Raster& raster, const Window& window) {
   return part;
 }
 
-Raster coarsened(const Raster& raster, int factor, Merge merge) {
+Raster coarsened(const Raster& raster, int factor, MergedCells merge) {
   if (factor == 1) return raster;
   const auto& grid = raster.grid;
   Raster coarse{grid, {}};

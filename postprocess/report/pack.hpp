@@ -7,19 +7,17 @@
 #include <nlohmann/json.hpp>
 
 #include "common/map/raster.hpp"
+#include "common/run/map_fields.hpp"
 #include "postprocess/fields/window.hpp"
 
 namespace talus::postprocess {
-
-/// What becomes of several cells that are made one.
-enum class Merge { mean, largest, smallest };
 
 /// Cells of `raster` that touch the window.
 Raster cut(const Raster& raster, const Window& window);
 
 /// Blocks of `factor` x `factor` cells made one, NaN left out (NaN where all are); an incomplete last row or column is
 /// filled up with NaN.
-Raster coarsened(const Raster& raster, int factor, Merge merge);
+Raster coarsened(const Raster& raster, int factor, MergedCells merge);
 
 /// Smallest factor that leaves at most `cells` cells.
 int factor_for(const MapGrid& grid, std::size_t cells);

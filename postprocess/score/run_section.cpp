@@ -99,7 +99,7 @@ void extent(const Scored& scored, Sheet& sheet) {
   sheet.number("max_deposit_thickness_m", "thickest deposit", "m", largest(maps.deposit_thickness), 2);
   sheet.number("max_peak_thickness_m", "largest peak thickness", "m", largest(maps.peak_thickness), 2);
   sheet.number("max_peak_speed_m_s", "largest peak speed", "m/s", largest(maps.peak_speed), 1);
-  sheet.number("max_peak_pressure_kpa", "largest peak pressure", "kPa", largest(maps.peak_pressure), 1);
+  sheet.number("max_peak_pressure_kpa", "largest peak pressure", "kPa", largest(maps.peak_pressure_kPa), 1);
 }
 
 }  // namespace

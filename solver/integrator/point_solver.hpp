@@ -76,10 +76,12 @@ class PointSolver : public Solver {
         load_volumes_(scene.load_volumes) {
     points_.upload(state.points);
     clock_.upload({state.clock});
-    peak_thickness_.upload(state.maps.peak_thickness);
-    peak_speed_.upload(state.maps.peak_speed);
-    peak_pressure_.upload(state.maps.peak_pressure);
-    arrival_.upload(state.maps.arrival);
+    for_each_running_map(
+        [&](const RunningMap&, auto& buffer, const auto& values) {
+          buffer = Buffer<double, Device>(device_);
+          buffer.upload(values);
+        },
+        maps_, state.maps);
   }
 
   ~PointSolver() override { drop_sort_space(device_); }
@@ -95,10 +97,10 @@ class PointSolver : public Solver {
   Clock clock() const override { return read_clock(); }
 
   SolverState state() const override {
-    return {points_.download(),
-            read_clock(),
-            {peak_thickness_.download(), peak_speed_.download(), peak_pressure_.download(), arrival_.download()},
-            contact_.state()};
+    SolverState all{.points = points_.download(), .clock = read_clock(), .maps = {}, .contacts = contact_.state()};
+    for_each_running_map([](const RunningMap&, auto& values, const auto& buffer) { values = buffer.download(); },
+                         all.maps, maps_);
+    return all;
   }
 
   ParticleState shown() const override { return points_.download_shown(); }
@@ -131,11 +133,10 @@ class PointSolver : public Solver {
   const GroundTables& ground() const override { return grid_.ground(); }
   int particle_count() const override { return points_.count(); }
   MemoryShares memory() const override {
+    std::size_t records = sums_.bytes() + column_volumes_.bytes() + thickness_.bytes();
+    for_each_running_map([&](const RunningMap&, const auto& buffer) { records += buffer.bytes(); }, maps_);
     MemoryShares shares{
-        {"points", points_.bytes()},
-        {"grid", grid_.bytes() + bed_.bytes()},
-        {"maps and records", sums_.bytes() + column_volumes_.bytes() + thickness_.bytes() + peak_thickness_.bytes() +
-                                 peak_speed_.bytes() + peak_pressure_.bytes() + arrival_.bytes()}};
+        {"points", points_.bytes()}, {"grid", grid_.bytes() + bed_.bytes()}, {"maps and records", records}};
     if (const std::size_t sorting = sort_space_bytes(device_); sorting > 0) shares.emplace_back("sorting", sorting);
     if (contact_.on()) shares.emplace_back("contact points", contact_.bytes() + impulses_.bytes());
     return shares;
@@ -168,8 +169,10 @@ class PointSolver : public Solver {
   }
   Clock read_clock() const { return clock_.download().front(); }
   MapView maps() {
-    return {peak_thickness_.data(), peak_speed_.data(), peak_pressure_.data(), arrival_.data(),
-            settings_.map_threshold};
+    MapView view;
+    for_each_running_map([](const RunningMap&, double*& values, auto& buffer) { values = buffer.data(); }, view, maps_);
+    view.threshold = settings_.map_threshold;
+    return view;
   }
 
   /// The walls that stand at a time, as kernels see them; the grid meets them as edges from now on.
@@ -201,8 +204,8 @@ class PointSolver : public Solver {
   Buffer<Vec3<double>, Device> loads_{device_};
   Buffer<Clock, Device> clock_{device_};
   Buffer<double, Device> column_volumes_{device_};
-  Buffer<double, Device> peak_thickness_{device_}, peak_speed_{device_}, peak_pressure_{device_}, arrival_{device_},
-      totals_{device_}, thickness_{device_};
+  RunningMaps<Buffer<double, Device>> maps_;
+  Buffer<double, Device> totals_{device_}, thickness_{device_};
   SumSpace<Device> sums_{device_};
 };
 

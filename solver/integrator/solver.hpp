@@ -6,17 +6,13 @@
 #include <utility>
 #include <vector>
 
+#include "common/run/map_fields.hpp"
 #include "common/stage/stage.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/state/clock.hpp"
 #include "solver/state/contact_state.hpp"
 
 namespace talus::solver {
-
-/// Running maxima on the map grid, [rows * columns] each.
-struct MapFields {
-  std::vector<double> peak_thickness, peak_speed, peak_pressure, arrival;  // [m], [m/s], [Pa], [s] (negative: never)
-};
 
 /// Sums over the points.
 struct Energies {
@@ -29,7 +25,7 @@ struct Energies {
 struct SolverState {
   ParticleState points;
   Clock clock;
-  MapFields maps;
+  RunningMaps<std::vector<double>> maps;
   ContactState contacts;
 };
 

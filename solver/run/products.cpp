@@ -71,22 +71,19 @@ SlideVolumes slide_volumes(const RunEnd& end, double outflow) {
 }
 
 RunMaps final_maps(const RunEnd& end, std::vector<double> thickness) {
-  const MapFields& fields = end.state.maps;
   RunMaps maps;
   maps.grid = end.scene.map;
   maps.terrain = end.domain.terrain.values;
   maps.before = end.domain.before.values;
   maps.initial_thickness = end.initial_thickness;
   maps.deposit_thickness = std::move(thickness);
-  maps.peak_thickness = fields.peak_thickness;
+  for_each_running_map(
+      [&](const RunningMap& map, const std::vector<double>& kept) {
+        for (const double value : kept)
+          (maps.*(map.result)).push_back(value < 0 ? std::numeric_limits<double>::quiet_NaN() : value / map.unit);
+      },
+      end.state.maps);
   if (end.domain.release_names.size() > 1) separate_releases(end, maps);
-  maps.peak_speed = fields.peak_speed;
-  maps.peak_pressure = fields.peak_pressure;
-  for (double& value : maps.peak_pressure) value /= 1000;  // Pa to kPa
-  maps.arrival_time = fields.arrival;
-  for (double& value : maps.arrival_time) {
-    if (value < 0) value = std::numeric_limits<double>::quiet_NaN();
-  }
   maps.threshold = end.options.map_threshold;
   return maps;
 }

@@ -29,8 +29,7 @@ SolverState first_state(const Scene& scene, const IntegratorSettings& settings) 
   SolverState state;
   state.points = scene.points;
   const auto cells = scene.map.count();
-  state.maps = {std::vector<double>(cells, 0.0), std::vector<double>(cells, 0.0), std::vector<double>(cells, 0.0),
-                std::vector<double>(cells, -1.0)};
+  for_each_running_map([&](const RunningMap& map, auto& values) { values.assign(cells, map.start); }, state.maps);
   const StepSettings& steps = settings.steps;
   state.clock.courant = steps.cfl;
   state.clock.largest_step = steps.largest;

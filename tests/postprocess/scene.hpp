@@ -58,7 +58,7 @@ inline Run small_run() {
       maps.before.push_back(maps.terrain[i] + maps.initial_thickness[i]);
       maps.deposit_thickness[i] += core[i];
       maps.peak_speed.push_back(maps.peak_thickness[i] > 0 ? 20 : 0);
-      maps.peak_pressure.push_back(maps.peak_thickness[i] > 0 ? 880 : 0);
+      maps.peak_pressure_kPa.push_back(maps.peak_thickness[i] > 0 ? 880 : 0);
       maps.arrival_time.push_back(maps.peak_thickness[i] > 0 ? 0.5 * column : nan);
     }
   }

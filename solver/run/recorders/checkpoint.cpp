@@ -38,10 +38,7 @@ void visit_points(State& s, Item&& item) {
 
 template <class Maps, class Item>
 void visit_maps(Maps& m, Item&& item) {
-  item("peak_thickness", m.peak_thickness);
-  item("peak_speed", m.peak_speed);
-  item("peak_pressure", m.peak_pressure);
-  item("arrival", m.arrival);
+  for_each_running_map([&](const RunningMap& map, auto& values) { item(map.name, values); }, m);
 }
 
 template <class Contacts, class Item>

@@ -28,7 +28,7 @@ RunMaps one_cell() {
   maps.grid = {.columns = 1, .rows = 1, .west = 0, .south = 0, .cell = 1, .crs_wkt = ""};
   for (const auto field :
        {&RunMaps::terrain, &RunMaps::before, &RunMaps::initial_thickness, &RunMaps::deposit_thickness,
-        &RunMaps::peak_thickness, &RunMaps::peak_speed, &RunMaps::peak_pressure, &RunMaps::arrival_time})
+        &RunMaps::peak_thickness, &RunMaps::peak_speed, &RunMaps::peak_pressure_kPa, &RunMaps::arrival_time})
     maps.*field = {0};
   return maps;
 }

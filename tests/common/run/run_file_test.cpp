@@ -50,7 +50,7 @@ RunMaps some_maps() {
     maps.deposit_thickness.push_back(1.0 / (i + 1));
     maps.peak_thickness.push_back(i);
     maps.peak_speed.push_back(2 * i);
-    maps.peak_pressure.push_back(0.1 * i);
+    maps.peak_pressure_kPa.push_back(0.1 * i);
     maps.arrival_time.push_back(i == 5 ? std::numeric_limits<double>::quiet_NaN() : i);
   }
   maps.threshold = 0.25;
@@ -101,7 +101,7 @@ TEST_F(RunFile, brings_back_maps_frames_history_and_summary) {
   EXPECT_EQ(run.maps.grid.south, maps.grid.south);
   EXPECT_EQ(run.maps.grid.crs_wkt, maps.grid.crs_wkt);
   EXPECT_EQ(run.maps.deposit_thickness, maps.deposit_thickness);
-  EXPECT_EQ(run.maps.peak_pressure, maps.peak_pressure);
+  EXPECT_EQ(run.maps.peak_pressure_kPa, maps.peak_pressure_kPa);
   EXPECT_TRUE(std::isnan(run.maps.arrival_time[5]));
   EXPECT_EQ(run.maps.arrival_time[6], 6);
   EXPECT_EQ(run.maps.threshold, 0.25);

@@ -18,10 +18,11 @@ using test::small_run;
 
 TEST(Styles, have_the_thresholds_of_hazard_work) {
   auto run = small_run();
-  run.maps.peak_pressure = test::block(run.maps.grid, 3, 35, 10, 20, 40);
-  EXPECT_EQ(pressure_limits(run.maps), (std::vector<double>{1, 3, 5, 10}));
-  EXPECT_EQ(pressure_limits(small_run().maps), (std::vector<double>{1, 3, 5, 10, 100})) << "880 kPa at most";
-  EXPECT_EQ(speed_limits(run.maps), (std::vector<double>{0.5, 1, 5, 10, 25, 50}));
+  run.maps.peak_pressure_kPa = test::block(run.maps.grid, 3, 35, 10, 20, 40);
+  EXPECT_EQ(pressure_limits(run.maps.peak_pressure_kPa), (std::vector<double>{1, 3, 5, 10}));
+  EXPECT_EQ(pressure_limits(small_run().maps.peak_pressure_kPa), (std::vector<double>{1, 3, 5, 10, 100}))
+      << "880 kPa at most";
+  EXPECT_EQ(speed_limits(run.maps.peak_speed), (std::vector<double>{0.5, 1, 5, 10, 25, 50}));
   EXPECT_EQ(thickness_limits({}, {80}), (std::vector<double>{0.1, 5, 10, 25, 50, 100}));
   EXPECT_EQ(thickness_limits({1, 3}, {80}), (std::vector<double>{1, 3}));
 }
@@ -38,14 +39,14 @@ TEST(Styles, suit_each_map) {
 
 TEST(Styles, round_the_times_of_arrival) {
   const auto run = small_run();  // up to 17 s
-  EXPECT_EQ(time_limits(run.maps), (std::vector<double>{5, 10, 15}));
+  EXPECT_EQ(time_limits(run.maps.arrival_time), (std::vector<double>{5, 10, 15}));
   auto never = run;
   never.maps.arrival_time.assign(run.maps.grid.count(), test::nan);
-  EXPECT_EQ(time_limits(never.maps).size(), 1U);
+  EXPECT_EQ(time_limits(never.maps.arrival_time).size(), 1U);
   for (double last = 0.3; last < 3000; last *= 1.07) {
     auto some = run;
     some.maps.arrival_time.assign(1, last);
-    const auto limits = time_limits(some.maps);
+    const auto limits = time_limits(some.maps.arrival_time);
     EXPECT_GE(limits.size(), 2U) << last;
     EXPECT_LE(limits.size(), 6U) << last;
     EXPECT_LE(last - limits.back(), 2 * limits.front()) << "the last class is not most of it";

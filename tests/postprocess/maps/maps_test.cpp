@@ -19,7 +19,7 @@ using test::small_run;
 TEST(Fields, hold_nodata_outside_the_domain_and_zero_inside) {
   const auto run = small_run();
   const auto& grid = run.maps.grid;
-  for (const auto& field : product_fields()) {
+  for (const auto& field : product_fields(run.maps)) {
     const auto raster = field_raster(run.maps, field);
     EXPECT_TRUE(std::isnan(raster.at(20, 1))) << field.name << " outside";
     const bool arrival = std::string(field.name) == "arrival_time";
@@ -33,7 +33,7 @@ TEST(Fields, hold_nodata_outside_the_domain_and_zero_inside) {
 TEST(Fields, lose_no_volume_that_left_the_ground) {
   auto run = small_run();
   run.maps.deposit_thickness[run.maps.grid.index(20, 1)] = 2;  // where there is no terrain
-  const auto raster = field_raster(run.maps, product_fields().front());
+  const auto raster = field_raster(run.maps, product_fields(run.maps).front());
   EXPECT_EQ(volume_under(raster.values, 10), 24200);
 }
 

@@ -77,14 +77,14 @@ TEST(Pack, one_value_everywhere_and_nothing_at_all_come_back_exactly) {
 TEST(Pack, merged_cells_keep_volume_peaks_and_first_arrivals) {
   const MapGrid grid{.columns = 3, .rows = 2, .west = 10, .south = 20, .cell = 5, .crs_wkt = ""};
   const Raster raster{grid, {1, 3, nan, 2, nan, nan}};
-  const auto mean = coarsened(raster, 2, Merge::mean);
+  const auto mean = coarsened(raster, 2, MergedCells::mean);
   EXPECT_EQ(mean.grid.columns, 2);
   EXPECT_EQ(mean.grid.rows, 1);
   EXPECT_EQ(mean.grid.cell, 10);
   EXPECT_EQ(mean.values[0], 2);
   EXPECT_TRUE(std::isnan(mean.values[1]));
-  EXPECT_EQ(coarsened(raster, 2, Merge::largest).values[0], 3);
-  EXPECT_EQ(coarsened(raster, 2, Merge::smallest).values[0], 1);
+  EXPECT_EQ(coarsened(raster, 2, MergedCells::largest).values[0], 3);
+  EXPECT_EQ(coarsened(raster, 2, MergedCells::smallest).values[0], 1);
   EXPECT_EQ(factor_for(raster.grid, 6), 1);
   EXPECT_EQ(factor_for(raster.grid, 5), 2);
 }
@@ -300,7 +300,7 @@ Run large_run() {
     for (std::size_t i = 0; i < grid.count(); ++i)
       maps.peak_thickness[i] = std::max(maps.peak_thickness[i], run.frames.thickness.back()[i]);
   }
-  maps.peak_speed = maps.peak_pressure = maps.arrival_time = maps.peak_thickness;
+  maps.peak_speed = maps.peak_pressure_kPa = maps.arrival_time = maps.peak_thickness;
   return run;
 }
 

@@ -62,7 +62,7 @@ TEST_F(Products, volumes_close) {
 
 TEST_F(Products, maps_tell_releases_and_ground_apart) {
   move(0, 3);
-  state_.maps.arrival[5] = 2;
+  state_.maps.arrival_time[5] = 2;
   state_.maps.peak_pressure[5] = 3000;
   const auto now = thickness_of(scene_, options_, state_.points, [](std::size_t) { return true; });
   const RunMaps maps = final_maps(end(), now);
@@ -73,7 +73,7 @@ TEST_F(Products, maps_tell_releases_and_ground_apart) {
   EXPECT_NEAR(sum(maps.deposit_thickness), 4.125, 1e-12);
   EXPECT_NEAR(sum(maps.initial_thickness), 4, 1e-12);
   EXPECT_NEAR(sum(maps.eroded_depth), 0.125, 1e-12);
-  EXPECT_EQ(maps.peak_pressure[5], 3);
+  EXPECT_EQ(maps.peak_pressure_kPa[5], 3);
   EXPECT_EQ(maps.arrival_time[5], 2);
   EXPECT_TRUE(std::isnan(maps.arrival_time[6]));
 }

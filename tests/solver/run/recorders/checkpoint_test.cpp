@@ -115,7 +115,7 @@ TEST(Checkpoint, every_scalar_comes_back_bit_for_bit) {
     EXPECT_EQ(back.memory.history.columns[column].values, c.memory.history.columns[column].values);
   }
   EXPECT_EQ(back.state.maps.peak_speed, c.state.maps.peak_speed);
-  EXPECT_EQ(back.state.maps.arrival, c.state.maps.arrival);
+  EXPECT_EQ(back.state.maps.arrival_time, c.state.maps.arrival_time);
   EXPECT_EQ(back.state.contacts.force, c.state.contacts.force);
   EXPECT_EQ(std::bit_cast<std::uint64_t>(back.state.contacts.impulse[0]), std::bit_cast<std::uint64_t>(-0.0));
 }

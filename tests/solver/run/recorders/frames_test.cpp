@@ -34,7 +34,7 @@ TEST(FrameRecorder, hands_every_frame_to_the_run_file) {
     maps.grid = scene.map;
     const std::vector<double> zero(scene.map.count(), 0.0);
     maps.terrain = maps.before = maps.initial_thickness = maps.deposit_thickness = maps.peak_thickness = zero;
-    maps.peak_speed = maps.peak_pressure = maps.arrival_time = zero;
+    maps.peak_speed = maps.peak_pressure_kPa = maps.arrival_time = zero;
     writer.finish(maps, {}, {});
   }
   const talus::Run run = read_run(scratch / "run.h5");

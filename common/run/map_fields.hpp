@@ -1,0 +1,210 @@
+// The maps of a run, in one table: what each holds, in which unit, where it is written and how it is drawn. A new map
+// is a member and a row here, and a line in the kernel or recorder that fills it.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/map/colours.hpp"
+#include "common/map/raster.hpp"
+
+namespace talus {
+
+/// Maps that kernels keep while a run goes on, in SI, [rows * columns] each. `Values` is how they are held: pointers in
+/// kernels, buffers beside them, arrays in a checkpoint.
+template <class Values>
+struct RunningMaps {
+  Values peak_thickness{};  // running maximum [m]
+  Values peak_speed{};      // running maximum of the depth-mean speed [m/s]
+  Values peak_pressure{};   // running maximum of rho v^2 [Pa]
+  Values arrival_time{};    // first time thicker than the threshold [s]; negative: not yet
+};
+
+/// The maps of a finished run as run.h5 holds them, [rows * columns] each, row 0 southernmost. Thickness is vertical
+/// and counts released volume (mass over initial density), so that its integral closes exactly.
+struct RunMaps {
+  MapGrid grid;
+  std::vector<double> terrain;            // bed [m], NaN outside the domain
+  std::vector<double> before;             // surface before the failure [m]
+  std::vector<double> initial_thickness;  // [m]
+  std::vector<double> deposit_thickness;  // at the end, without what still lies where it was eroded from [m]
+  std::vector<double> peak_thickness;     // running maximum [m]
+  std::vector<double> peak_speed;         // running maximum of the depth-mean speed [m/s]
+  std::vector<double> peak_pressure_kPa;  // running maximum of rho v^2 [kPa]
+  std::vector<double> arrival_time;       // [s], NaN where it never came
+  std::vector<double> eroded_depth;       // of the ground that was eroded [m]; empty where nothing can be
+  std::vector<std::pair<std::string, std::vector<double>>>
+      deposit_of;        // deposit_thickness by release, where there are several [m]
+  double threshold = 0;  // thickness from which speed, pressure and arrival count [m]
+};
+
+/// One of the RunningMaps, and the map of the finished run that it becomes.
+struct RunningMap {
+  const char* name;                      ///< in checkpoints
+  double start;                          ///< its value before anything moved
+  std::vector<double> RunMaps::*result;  ///< where it ends; negative values (not yet) become NaN there
+  double unit;                           ///< SI units in one unit of the result: 1000 for kPa
+};
+
+/// Calls visit(row, maps.member...) for every one of the RunningMaps, with the same member of all `maps`.
+template <class Visit, class... Maps>
+void for_each_running_map(Visit&& visit, Maps&&... maps) {
+  visit(RunningMap{"peak_thickness", 0, &RunMaps::peak_thickness, 1}, maps.peak_thickness...);
+  visit(RunningMap{"peak_speed", 0, &RunMaps::peak_speed, 1}, maps.peak_speed...);
+  visit(RunningMap{"peak_pressure", 0, &RunMaps::peak_pressure_kPa, 1000}, maps.peak_pressure...);
+  visit(RunningMap{"arrival_time", -1, &RunMaps::arrival_time, 1}, maps.arrival_time...);
+}
+
+/// What the classes of a map are, and so its colours.
+enum class MapClasses { thickness, speed, pressure, time };
+
+/// What stands for several cells that are shown as one.
+enum class MergedCells { mean, largest, smallest };
+
+/// A map among the products: GeoTIFF, NetCDF, and a layer of the GIS project.
+struct MapProduct {
+  const char* title = "";         ///< long_name of GeoTIFF and NetCDF
+  const char* netcdf_name = "";   ///< "" = not in the NetCDF file
+  const char* cell_methods = "";  ///< CF; "" = none
+  const char* legend = "";        ///< in the GIS project, with the unit; "" = no GeoTIFF
+  MapClasses classes = MapClasses::thickness;
+  bool zero_inside = true;  ///< no data inside the domain means zero (not so of a time: it never came)
+};
+
+/// A map as a layer of the report.
+struct MapLayer {
+  const char* id = "";     ///< "" = not in the report
+  const char* title = "";  ///< in the list of layers
+  const char* unit = "";   ///< as people write it
+  const char* about = "";  ///< a sentence; "{:g}" in it stands for the run's threshold [m]
+  int decimals = 2;
+  MergedCells merge = MergedCells::largest;
+  Ramp ramp = Ramp::heat;
+};
+
+/// One of the RunMaps, wherever it goes.
+struct MapField {
+  const char* name;                      ///< in run.h5, and the GeoTIFF's file name
+  std::vector<double> RunMaps::*values;  ///< in the unit below
+  const char* unit;                      ///< in UDUNITS' words: "m s-1"
+  const char* meaning;                   ///< long_name in run.h5
+  bool optional = false;                 ///< empty in runs that have none
+  MapProduct product = {};
+  MapLayer layer = {};
+};
+
+/// All maps of a run, in the order in which they are written. Those by release (RunMaps::deposit_of) are written as
+/// deposit_thickness is.
+inline constexpr MapField map_fields[] = {
+    {.name = "deposit_thickness",
+     .values = &RunMaps::deposit_thickness,
+     .unit = "m",
+     .meaning = "thickness at the end, vertical",
+     .product = {.title = "deposit thickness at the end, vertical",
+                 .netcdf_name = "deposit_thickness",
+                 .cell_methods = "area: mean",
+                 .legend = "Deposit thickness, vertical [m]"},
+     .layer = {.id = "deposit",
+               .title = "Deposit thickness",
+               .unit = "m",
+               .about = "Thickness at the end of the run, vertical.",
+               .merge = MergedCells::mean}},
+    {.name = "peak_thickness",
+     .values = &RunMaps::peak_thickness,
+     .unit = "m",
+     .meaning = "largest thickness over time, vertical",
+     .product = {.title = "peak thickness, vertical",
+                 .netcdf_name = "peak_thickness",
+                 .cell_methods = "area: mean time: maximum",
+                 .legend = "Peak thickness, vertical [m]"},
+     .layer = {.id = "peak_thickness",
+               .title = "Peak thickness",
+               .unit = "m",
+               .about = "Largest thickness over time, vertical."}},
+    {.name = "peak_speed",
+     .values = &RunMaps::peak_speed,
+     .unit = "m s-1",
+     .meaning = "largest depth-mean speed over time",
+     .product = {.title = "peak of the depth-mean speed",
+                 .netcdf_name = "peak_speed",
+                 .cell_methods = "time: maximum",
+                 .legend = "Peak speed [m/s]",
+                 .classes = MapClasses::speed},
+     .layer = {.id = "peak_speed",
+               .title = "Peak speed",
+               .unit = "m/s",
+               .about = "Largest depth-mean speed over time, where the flow was thicker than {:g} m.",
+               .decimals = 1,
+               .ramp = Ramp::sea}},
+    {.name = "peak_pressure",
+     .values = &RunMaps::peak_pressure_kPa,
+     .unit = "kPa",
+     .meaning = "largest rho v^2 over time",
+     .product = {.title = "peak flow pressure, density times speed squared",
+                 .netcdf_name = "peak_pressure",
+                 .cell_methods = "time: maximum",
+                 .legend = "Peak pressure [kPa]",
+                 .classes = MapClasses::pressure},
+     .layer = {.id = "peak_pressure",
+               .title = "Peak pressure",
+               .unit = "kPa",
+               .about = "Largest density times speed squared over time, where the flow was thicker than {:g} m.",
+               .decimals = 1}},
+    {.name = "arrival_time",
+     .values = &RunMaps::arrival_time,
+     .unit = "s",
+     .meaning = "time of first arrival",
+     .product = {.title = "time from the start to the first arrival",
+                 .netcdf_name = "arrival_time",
+                 .legend = "Arrival time [s]",
+                 .classes = MapClasses::time,
+                 .zero_inside = false},
+     .layer = {.id = "arrival",
+               .title = "Arrival time",
+               .unit = "s",
+               .about = "When the flow first was thicker than {:g} m.",
+               .decimals = 1,
+               .merge = MergedCells::smallest}},
+    {.name = "initial_thickness",
+     .values = &RunMaps::initial_thickness,
+     .unit = "m",
+     .meaning = "thickness at the start, vertical",
+     .product = {.title = "thickness at the start, vertical",
+                 .netcdf_name = "initial_thickness",
+                 .cell_methods = "area: mean"},
+     .layer = {.id = "release",
+               .title = "Release thickness",
+               .unit = "m",
+               .about = "Thickness at the start, vertical.",
+               .merge = MergedCells::mean}},
+    {.name = "terrain",
+     .values = &RunMaps::terrain,
+     .unit = "m",
+     .meaning = "elevation of the bed",
+     .product = {.title = "elevation of the bed",
+                 .netcdf_name = "bed_elevation",
+                 .cell_methods = "area: mean",
+                 .zero_inside = false}},
+    {.name = "before",
+     .values = &RunMaps::before,
+     .unit = "m",
+     .meaning = "elevation of the surface before the failure"},
+    {.name = "eroded_depth",
+     .values = &RunMaps::eroded_depth,
+     .unit = "m",
+     .meaning = "depth of ground that went along, vertical",
+     .optional = true,
+     .product = {.title = "depth of ground that went along, vertical",
+                 .netcdf_name = "eroded_depth",
+                 .cell_methods = "area: mean",
+                 .legend = "Depth of erosion, vertical [m]"},
+     .layer = {.id = "eroded",
+               .title = "Eroded depth",
+               .unit = "m",
+               .about = "Depth of the ground that went along, vertical.",
+               .merge = MergedCells::mean,
+               .ramp = Ramp::sea}},
+};
+
+}  // namespace talus
