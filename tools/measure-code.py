@@ -61,6 +61,16 @@ def function_lengths(found):
     )
 
 
+def class_members(found):
+    """Data members of the classes with private data; plain structs, which are tables of fields or options, left out."""
+    count = collections.Counter()
+    for tag in found:
+        if tag["kind"] == "member" and tag.get("scopeKind") == "class" and tag.get("access") in ("private", "protected"):
+            count[tag["scope"].split("::")[-1]] += 1
+    most = ", ".join(f"{name} {n}" for name, n in count.most_common(3))
+    return f"{sum(n > 12 for n in count.values())} of {len(count)} over 12 ({most})"
+
+
 def documented(found, root):
     """Share of the declarations in headers (classes, enumerations, functions; private ones, constructors, operators and
     what stands in a namespace `detail` left out) with a `///` comment above or behind them."""
@@ -188,6 +198,7 @@ def main():
         ("file median / p90 / max lines", file_sizes(sources)),
         ("function p90 / p99 / max lines", lengths),
         ("longest function", longest),
+        ("classes by data members", class_members(found)),
         ("public declarations with a docstring", f"{share:.2f}"),
         ("lines over 120 columns", str(long)),
         ("clang-format differs in", unformatted(everything)),

@@ -64,7 +64,7 @@ struct BeginContacts {
   }
 };
 
-/// One thread: one contact point. One sweep.
+/// A sweep (T12a). One thread: one contact point.
 template <class Real, class Shape, class Nodes>
 struct SweepContacts {
   GridView<Real> grid;

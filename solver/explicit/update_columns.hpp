@@ -17,7 +17,8 @@ enum class NodeContent {
   remapped  // momentum of the points' new velocities (MUSL): no forces, no friction, the ground alone
 };
 
-/// For for_each_column. Mass stays, momentum becomes velocity.
+/// The nodes' new velocity (T6), damped and slowed by the bed, and with a budget what that takes (T24); a kernel of
+/// for_each_column. Mass stays, momentum becomes velocity.
 template <class Real, NodeContent content>
 struct UpdateColumns {
   GridView<Real> grid;

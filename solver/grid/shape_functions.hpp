@@ -73,8 +73,8 @@ struct Quadratic {
   }
 };
 
-/// Hats averaged over the point's box (generalised interpolation; Bardenhagen & Kober 2004): three nodes, 0 < half <=
-/// 0.5. Boxes that tile a body integrate the slopes of its nodes exactly, wherever the points have gone.
+/// Hats averaged over the point's box (T2a; generalised interpolation, Bardenhagen & Kober 2004): three nodes,
+/// 0 < half <= 0.5. Boxes that tile a body integrate the slopes of its nodes exactly, wherever the points have gone.
 struct Gimp {
   static constexpr int width = 3;
   static constexpr double edge_share = 0.5;

@@ -64,7 +64,7 @@ struct MeasureEnergies {
   }
 };
 
-/// One thread: one point. Its initial volume over the columns around it [m3].
+/// One thread: one point. Its initial volume over the columns around it (T25) [m3].
 template <class Real, class Shape>
 struct ScatterThickness {
   ParticleView<Real> points;

@@ -41,8 +41,8 @@ struct Clock {
   double reaction[3] = {0, 0, 0};  // impulse of bed and walls on the mass so far [N s]
   int accelerated = 0;             // the points know their acceleration: implicit steps were taken last
 
-  /// Share of the velocity finer than the grid that a step keeps: what is lost depends on time, not on the number of
-  /// steps.
+  /// Share (T8a) of the velocity finer than the grid that a step keeps: what is lost depends on time, not on the number
+  /// of steps.
   TALUS_HD double share_kept(double step_of, double rate) const {
     const double lost = transfer_time > 0 ? step_of * rate / transfer_time : 1;
     return lost < 1 - 1e-9 ? 1 - lost : 0;

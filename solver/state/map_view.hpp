@@ -11,7 +11,7 @@ struct MapView : RunningMaps<double*> {
   double threshold = 0;  // thickness from which speed, pressure and arrival count [m]
 };
 
-/// Running maxima of one column from its mass [kg] and momentum [kg m/s] at `time` [s].
+/// Running maxima (T25) of one column from its mass [kg] and momentum [kg m/s] at `time` [s].
 TALUS_HD void record_column(const MapView& maps, int column, double mass, double momentum, double density,
                             double spacing, double time) {
   const double thickness = mass / (density * spacing * spacing);

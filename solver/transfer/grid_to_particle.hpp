@@ -15,7 +15,8 @@ enum class Gather {
   deformation  // MUSL, second half: gradient from the remapped momentum, stress, and the kept displacement
 };
 
-/// One thread: one point. nodes[] holds mass and new velocity; changes[] the velocity change of the step, null where
+/// Velocity (T7, T8), velocity gradient (T9) and way (T10) of the points. One thread: one point. nodes[] holds mass and
+/// new velocity; changes[] the velocity change of the step, null where
 /// points keep nothing of their own velocity. `budget`: adds up what is lost, for the clock.
 template <class Real, class Shape, Gather part, bool budget>
 struct GridToParticle {

@@ -15,7 +15,7 @@ enum class Scatter {
   momentum  // momentum alone (second mapping of MUSL)
 };
 
-/// Adds the points to nodes[] (mass, momentum) and, for Scatter::force, forces[].
+/// Adds the points to nodes[], mass (T3) and momentum (T4), and, for Scatter::force, to forces[] (T5).
 template <class Real, class Shape, Scatter what>
 struct ParticleToGrid {
   using Number = Real;

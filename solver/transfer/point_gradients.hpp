@@ -15,6 +15,7 @@ struct PointGradients {
   TALUS_HD PointGradients(const GridView<Real>& grid, const ParticleView<Real>& points, int p)
       : s(grid, points, p), across(Real(1) / grid.spacing), up(Real(1) / grid.layer_height) {}
   TALUS_HD Real weight(int a, int b, int c) const { return s.wx[a] * s.wy[b] * s.wz[c]; }
+  /// Physical gradient of a node's function (T2) [1/m].
   TALUS_HD Vec3<Real> gradient(int a, int b, int c) const {
     const Real gz = s.wx[a] * s.wy[b] * s.gz[c] * up;
     return {s.gx[a] * s.wy[b] * s.wz[c] * across - s.slope_x * gz,

@@ -69,6 +69,7 @@ struct Stencil {
     return edge ? Shape::weigh_edge(offset, cell == first ? 1 : -1, lowest, half, weight, slope) : offset;
   }
 
+  /// Slopes of the terrain (T1) under the point, by the weights and their gradients.
   TALUS_HD void measure_slope(const GridView<Real>& grid) {
     Real sx = 0, sy = 0;
     TALUS_UNROLL
