@@ -169,7 +169,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     const ProfilePhase<Device> phase(device_, "grid");
     const Vec3<double>& gravity = settings_.gravity.acceleration;
     const Vec3<Real> g{static_cast<Real>(gravity.x), static_cast<Real>(gravity.y), static_cast<Real>(gravity.z)};
-    for_each_column(
+    for_each_column<block_columns>(
         device_, grid_.active_blocks(),
         UpdateColumns<Real, content>{grid_.view(), grid_.active_list(), clock_.data(), nodes_.data(), forces_.data(), g,
                                      settings_.gravity.ramp, walls_, bed_.view(), static_cast<Real>(this->full_base()),

@@ -3,14 +3,15 @@
 #pragma once
 
 #include "solver/parallel/for_each.hpp"
-#include "solver/state/grid_view.hpp"
 
 namespace talus {
 
-/// Runs kernel over the columns of `blocks` blocks in use. The kernel has
-///   Column                    a column as it sees it: bool inside, int first, last (one behind the last layer); made
-///   by locate(c), c = block * 16 + column in it Sums                      of its layers, with += layer(column, k,
-///   sums)    what happens in a layer finish(column, sums)      what happens once all layers are done
+/// A loop body over the columns of a block, one after the other. `columns` of a block is how many it has. A kernel has
+/// - Column: a column as it sees it, with bool inside, int first and last (one behind the last layer);
+/// - locate(c): makes it, c = block * columns + the column's place in the block;
+/// - Sums: of its layers, with +=;
+/// - layer(column, k, sums): what happens in layer k;
+/// - finish(column, sums): what happens once all layers are done.
 template <class Kernel>
 struct WholeColumn {
   using Named = Kernel;
@@ -25,24 +26,24 @@ struct WholeColumn {
   }
 };
 
-template <class Kernel>
+/// Runs a kernel over the columns of `blocks` blocks.
+template <int columns, class Kernel>
 void for_each_column(const CpuDevice& device, int blocks, const Kernel& kernel) {
-  for_each(device, blocks * block_columns, WholeColumn<Kernel>{kernel});
+  for_each(device, blocks * columns, WholeColumn<Kernel>{kernel});
 }
 
 #if defined(__CUDACC__)
 namespace detail {
 inline constexpr int column_shares = 8;
 
-template <class Kernel>
+template <int columns, class Kernel>
 __global__ void run_columns(Kernel kernel) {
   begin_kernel();
   using Sums = typename Kernel::Sums;
-  __shared__ alignas(16) unsigned char room[column_shares * block_columns * sizeof(Sums)];
+  __shared__ alignas(16) unsigned char room[column_shares * columns * sizeof(Sums)];
   auto* const shared = reinterpret_cast<Sums*>(room);
-  const int thread = static_cast<int>(threadIdx.x), share = thread / block_columns;
-  const typename Kernel::Column column =
-      kernel.locate(static_cast<int>(blockIdx.x) * block_columns + thread % block_columns);
+  const int thread = static_cast<int>(threadIdx.x), share = thread / columns;
+  const typename Kernel::Column column = kernel.locate(static_cast<int>(blockIdx.x) * columns + thread % columns);
   Sums sums;
   if (column.inside) {
     for (int k = column.first + share; k < column.last; k += column_shares) kernel.layer(column, k, sums);
@@ -50,17 +51,17 @@ __global__ void run_columns(Kernel kernel) {
   shared[thread] = sums;
   __syncthreads();
   if (share > 0 || !column.inside) return;
-  for (int s = 1; s < column_shares; ++s) sums += shared[thread + s * block_columns];
+  for (int s = 1; s < column_shares; ++s) sums += shared[thread + s * columns];
   kernel.finish(column, sums);
 }
 }  // namespace detail
 
-template <class Kernel>
+template <int columns, class Kernel>
 void for_each_column(const GpuDevice& device, int blocks, const Kernel& kernel) {
   if (blocks <= 0) return;
-  const KernelTime<GpuDevice> time(device, kernel, blocks * block_columns);
-  detail::gpu_launch(device, __PRETTY_FUNCTION__, detail::run_columns<Kernel>, blocks,
-                     detail::column_shares * block_columns, kernel);
+  const KernelTime<GpuDevice> time(device, kernel, blocks * columns);
+  detail::gpu_launch(device, __PRETTY_FUNCTION__, detail::run_columns<columns, Kernel>, blocks,
+                     detail::column_shares * columns, kernel);
 }
 #endif
 

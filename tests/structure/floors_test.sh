@@ -7,13 +7,15 @@ source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 # named by its path; '.' is the stage's own folder.
 floors() {
   case $1 in
-    common) printf '%s\n' . recipe stage map gis qgis 'domain run' ;;
-    preprocess) printf '%s\n' terrain release particles survey . ;;
+    common) printf '%s\n' . 'map recipe' stage 'domain run gis' qgis ;;
+    preprocess)
+      printf '%s\n' 'options regions' 'terrain obstacle' 'survey release' particles laboratory scene output .
+      ;;
     solver)
       printf '%s\n' parallel state material grid transfer boundary elements linear/krylov linear/operator \
-        linear/preconditioner linear/direct integrator 'explicit implicit' options scene run .
+        linear/preconditioner linear/direct integrator 'explicit implicit' options scene run/recorders run .
       ;;
-    postprocess) printf '%s\n' . maps score picture report ;;
+    postprocess) printf '%s\n' options survey fields 'score maps' picture report . ;;
   esac
 }
 

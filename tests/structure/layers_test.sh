@@ -53,7 +53,7 @@ private_headers() {
 test_gdal_stands_behind_gis_and_the_outer_stages() {
   cd "$TALUS_SOURCE"
   local gdal='(gdal|ogr|cpl_|vrt)'
-  includes common solver | { grep -E ": $gdal" || true; } | { grep -v '^common/gis/' || true; } | refuse "GDAL is included outside common/gis"
+  includes common solver | { grep -E ": $gdal" || true; } | { grep -vE '^common/q?gis/' || true; } | refuse "GDAL is included outside common/gis and common/qgis"
   private_headers "$gdal" common preprocess postprocess | refuse "a header that includes GDAL is included outside its folder's sources"
   includes solver | { grep -E ': common/(gis|qgis)/' || true; } | refuse "the solver includes common/gis, which stands for GDAL"
 }

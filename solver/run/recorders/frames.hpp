@@ -6,7 +6,7 @@
 #include "solver/integrator/solver.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/run/recorders/frame_store.hpp"
-#include "solver/run/side_work.hpp"
+#include "solver/run/recorders/side_work.hpp"
 
 namespace talus::solver {
 

@@ -1,5 +1,5 @@
 // Work beside the run: in order, and its errors reach who waits for it.
-#include "solver/run/side_work.hpp"
+#include "solver/run/recorders/side_work.hpp"
 
 #include <gtest/gtest.h>
 
