@@ -63,6 +63,8 @@ class Reader : public Visitor {
   void begin_item(std::size_t item) override { walk_.push_item(item); }
   void end_item() override { walk_.pop_table(); }
   void end_list() override { walk_.pop_list(); }
+  void renamed(std::string_view old_key, std::string_view key,
+               const std::function<std::string(const std::string&)>& new_value) override;
 
  private:
   template <class T>
@@ -192,6 +194,15 @@ void Reader::one_of(std::string_view key, int& index, const std::vector<std::str
   const std::string near = nearest(word, {names.begin(), names.end()});
   walk_.add(*node, key, "no such choice",
             (near.empty() ? "" : fmt::format("Did you mean \"{}\"? ", near)) + "It must be " + names_text(names));
+}
+
+void Reader::renamed(std::string_view old_key, std::string_view key,
+                     const std::function<std::string(const std::string&)>& new_value) {
+  const auto* node = walk_.find_renamed(old_key);
+  if (node == nullptr) return;
+  const std::string old_value = value_text(*node), value = new_value ? new_value(old_value) : old_value;
+  walk_.add(*node, old_key, fmt::format("{} has taken its place", key),
+            value.empty() ? fmt::format("Write {} instead", key) : fmt::format("Write {} = {}", key, value));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <initializer_list>
 #include <limits>
 #include <map>
@@ -57,6 +58,15 @@ class Visitor {
   virtual void begin_item(std::size_t item) = 0;
   virtual void end_item() = 0;
   virtual void end_list() = 0;
+  /// What a value just described needs of other keys, declared beside it: `otherwise` is the fault where `met` is
+  /// false. Only find_unmet() looks, at options that have been read in full, so that the others may come later in the
+  /// visit.
+  virtual void needs(bool /*met*/, const Fault& /*otherwise*/) {}
+  /// A key of earlier versions: a recipe that holds it is refused, with the key and the value that take its place.
+  /// `new_value` makes the value of the old one's text where unit or words changed (empty: no value is the same);
+  /// null: the value stays.
+  virtual void renamed(std::string_view /*old_key*/, std::string_view /*key*/,
+                       const std::function<std::string(const std::string&)>& /*new_value*/) {}
 };
 
 /// An enum by name: choice(v, "shape", shape, {{"linear", Shape::linear}, {"quadratic", Shape::quadratic}}, "...").
@@ -88,6 +98,24 @@ void list(Visitor& v, std::string_view key, std::vector<T>& items, std::string_v
   v.end_list();
 }
 
+/// A key that was renamed and kept its value: v.number("density_kg_m3", ...); renamed(v, "density", "density_kg_m3").
+inline void renamed(Visitor& v, std::string_view old_key, std::string_view key) { v.renamed(old_key, key, nullptr); }
+
+/// A number that was renamed because its unit changed; new_value(old) is the value to write.
+void renamed(Visitor& v, std::string_view old_key, std::string_view key,
+             const std::function<double(double)>& new_value);
+
+/// The visitor that adds what the options need and do not have to `faults`.
+std::unique_ptr<Visitor> make_checker(std::vector<Fault>& faults);
+
+/// What the options need and do not have: the unmet needs() of their description, then the faults of check(), if they
+/// have one.
+template <class Options>
+void find_unmet(Options& options, std::vector<Fault>& faults) {
+  options.describe(*make_checker(faults));
+  if constexpr (requires { options.check(faults); }) options.check(faults);
+}
+
 /// A parsed recipe file. Throws RecipeError when the file is missing or is not TOML (with line and column).
 class Recipe {
  public:
@@ -98,7 +126,7 @@ class Recipe {
   std::string title() const;       ///< [scene] title, or the name
 
   /// Read table `stage` into options. All faults at once: unknown keys (with "did you mean"), wrong types, values out
-  /// of range, each with line and column; then what options.check(faults) adds. Throws RecipeError if there is any.
+  /// of range, each with line and column; then what find_unmet() adds. Throws RecipeError if there is any.
   /// A top-level table other than scene, preprocess, solve and postprocess is unknown.
   template <class Options>
   Options read(std::string_view stage) const {
@@ -108,7 +136,7 @@ class Recipe {
       auto reader = make_reader(stage, faults);
       options.describe(*reader);
     }  // the reader's end reports the keys nobody asked for
-    if (faults.empty()) options.check(faults);
+    if (faults.empty()) find_unmet(options, faults);
     if (!faults.empty()) throw RecipeError(std::move(faults));
     return options;
   }

@@ -11,20 +11,19 @@
 namespace talus::recipe {
 namespace {
 
-/// " = 5"; nothing for what would not fit on a line.
-std::string value_text(const toml::node& node) {
-  if (const auto* text = node.as_string()) return " = " + toml_text(text->get());
-  if (const auto* number = node.as_floating_point()) return " = " + toml_number(number->get());
-  if (const auto* integer = node.as_integer()) return fmt::format(" = {}", integer->get());
-  if (const auto* flag = node.as_boolean()) return flag->get() ? " = true" : " = false";
-  return "";
-}
-
 bool contains(const std::vector<std::string>& words, std::string_view word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
 }  // namespace
+
+std::string value_text(const toml::node& node) {
+  if (const auto* text = node.as_string()) return toml_text(text->get());
+  if (const auto* number = node.as_floating_point()) return toml_number(number->get());
+  if (const auto* integer = node.as_integer()) return fmt::format("{}", integer->get());
+  if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
+  return "";
+}
 
 std::string kind_of(const toml::node& node) {
   switch (node.type()) {
@@ -66,7 +65,7 @@ void Walk::pop_table() {
   for (const auto& key : frame.known) all_known_.emplace(key, frame.name);
   if (frame.table != nullptr) {
     for (const auto& [key, node] : *frame.table)
-      if (std::find(frame.known.begin(), frame.known.end(), key.str()) == frame.known.end())
+      if (!contains(frame.known, key.str()) && !contains(frame.renamed, key.str()))
         unknown_.push_back({std::string(key.str()), frame.name, key.source(), frame.known});
   }
   frames_.pop_back();
@@ -93,10 +92,18 @@ const toml::node* Walk::find(std::string_view key) {
   return frame.table == nullptr ? nullptr : frame.table->get(key);
 }
 
+const toml::node* Walk::find_renamed(std::string_view old_key) {
+  Frame& frame = frames_.back();
+  frame.renamed.emplace_back(old_key);
+  return frame.table == nullptr ? nullptr : frame.table->get(old_key);
+}
+
 void Walk::add(const toml::node& node, std::string_view key, const std::string& why, const std::string& mend) {
   const std::string& table = frames_.back().name;
   const std::string name = table.empty() ? std::string(key) : fmt::format("{} {}", table, key);
-  const std::string what = fmt::format("{}: {}{}", place(shown_, node.source()), name, value_text(node));
+  const std::string value = value_text(node);
+  const std::string what =
+      fmt::format("{}: {}{}", place(shown_, node.source()), name, value.empty() ? "" : " = " + value);
   faults_.push_back({node.source().begin, {what, why, mend}});
 }
 

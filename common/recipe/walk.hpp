@@ -26,6 +26,9 @@ class Walk {
   /// The value of a key in the table at hand, or null; from now on the key is known.
   const toml::node* find(std::string_view key);
 
+  /// The value of a key that is refused by its old name, or null; it is neither unknown nor offered as a suggestion.
+  const toml::node* find_renamed(std::string_view old_key);
+
   /// A fault at a value: "recipe.toml:3:8: [solve] steps = 0 (why). mend".
   void add(const toml::node& node, std::string_view key, const std::string& why, const std::string& mend);
 
@@ -36,9 +39,10 @@ class Walk {
   /// A table on the way down. `table` is null where the file has none: then every key keeps its default.
   struct Frame {
     const toml::table* table = nullptr;
-    std::string name{};                // "[solve.material]"
-    std::string path{};                // "solve.material"
-    std::vector<std::string> known{};  // keys asked for so far
+    std::string name{};                  // "[solve.material]"
+    std::string path{};                  // "solve.material"
+    std::vector<std::string> known{};    // keys asked for so far
+    std::vector<std::string> renamed{};  // and old names of keys
   };
   /// `items` is null where the file has no such list.
   struct List {
@@ -66,6 +70,9 @@ class Walk {
   std::vector<List> lists_;
   std::set<std::pair<std::string, std::string>> all_known_;  // (key, table name): "it belongs in ..."
 };
+
+/// A value as a recipe writes it: "5", "\"linear\""; empty for lists, tables and dates.
+std::string value_text(const toml::node& node);
 
 /// "text", "an integer", "a table", ...
 std::string kind_of(const toml::node& node);

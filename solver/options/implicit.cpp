@@ -1,8 +1,22 @@
 #include "solver/options/implicit.hpp"
 
+#include "solver/options/solve.hpp"
+
 namespace talus::solver {
 
-void ImplicitOptions::describe(recipe::Visitor& v) {
+namespace {
+
+/// Whether the pressure of every material follows from its volume change alone.
+bool pressure_by_volume(const SolveOptions& all) {
+  return all.every_material([](const MaterialOptions& m) {
+    return m.model == MaterialModel::hencky || m.model == MaterialModel::drucker_prager;
+  });
+}
+
+}  // namespace
+
+void ImplicitOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
+  const StepAbilities steps = abilities_of(all.integrator);
   v.number("step_s", step, recipe::positive, "step size; cut where a step does not converge, grown again after");
   v.number("newmark_alpha", newmark_alpha, recipe::Range{0, 1, true, false}, "newmark: alpha (0.25: trapezoid)");
   v.number("newmark_beta", newmark_beta, recipe::fraction, "newmark: beta (0.5: trapezoid; more damps)");
@@ -13,10 +27,20 @@ void ImplicitOptions::describe(recipe::Visitor& v) {
   recipe::choice(
       v, "tangent", tangent, {{"frozen-yield", Tangent::frozen_yield}, {"exact", Tangent::exact}},
       "frozen-yield: symmetric, friction at the pressure of the last iteration; exact: not symmetric, needs bicgstab");
+  v.needs(tangent == Tangent::frozen_yield || linear_solver == LinearSolver::bicgstab,
+          {"[solve.implicit] tangent = \"exact\" does not go with this linear_solver",
+           "the exact tangent is not symmetric", "Take linear_solver = \"bicgstab\""});
+  v.needs(tangent == Tangent::frozen_yield || !b_bar,
+          {"[solve.implicit] tangent = \"exact\" does not go with b_bar",
+           "the mean volume change is in the symmetric tangent alone", "Take tangent = \"frozen-yield\""});
   recipe::choice(
       v, "linear_solver", linear_solver,
       {{"pcg", LinearSolver::pcg}, {"bicgstab", LinearSolver::bicgstab}, {"cholesky", LinearSolver::cholesky}},
       "conjugate gradients, or stabilised bi-conjugate ones, never assembled; or sparse Cholesky");
+  const bool takes_contact = linear_solver == LinearSolver::pcg || linear_solver == LinearSolver::bicgstab;
+  v.needs(takes_contact || !steps.solve_systems || !all.meets_points(),
+          {all.contact_words() + " does not go with [solve.implicit] linear_solver = \"cholesky\"",
+           "contact between nodes is not in the assembled matrix", "Take linear_solver = \"pcg\""});
   v.number("linear_tolerance", linear_tolerance, recipe::Range{0, 1, true, true},
            "pcg, bicgstab: residual over right-hand side");
   recipe::choice(v, "forcing", forcing, {{"eisenstat-walker", Forcing::eisenstat_walker}, {"fixed", Forcing::fixed}},
@@ -38,6 +62,13 @@ void ImplicitOptions::describe(recipe::Visitor& v) {
   v.number("apex", apex, recipe::not_negative,
            "drucker-prager: pressure over which the tip of the cone is rounded, in weights of a cell");
   v.flag("b_bar", b_bar, "volume change as the mean over a cell: nearly incompressible material does not lock");
+  v.needs(
+      !b_bar || !steps.solve_systems || pressure_by_volume(all),
+      {"[solve.implicit] b_bar = true does not go with this [solve.material] model",
+       "its pressure does not follow from the volume change alone", "Take model = \"hencky\" or \"drucker-prager\""});
+  v.needs(!b_bar || steps.average_volume, {"[solve.implicit] b_bar = true has no effect on explicit steps",
+                                           "only implicit steps average the volume change",
+                                           "Leave it out, or take integrator = \"newmark\" or \"quasi-static\""});
   v.number(
       "filler", filler, recipe::Range{0, 1, false, true},
       "quasi-static: springs against each step's displacement of nearly empty nodes, stiffness over a full cell's");

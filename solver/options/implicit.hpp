@@ -6,6 +6,8 @@
 
 namespace talus::solver {
 
+struct SolveOptions;
+
 /// How an implicit step is taken.
 struct ImplicitOptions {
   double step = 0.01;  // [s]
@@ -24,7 +26,7 @@ struct ImplicitOptions {
   double apex = 0.1;     // rounding of the cone's tip, in weights of a cell
   bool b_bar = false;    // element means of the volume change
   double filler = 1e-3;  // stiffness of springs that hold nearly empty nodes in statics, over that of a full cell
-  void describe(recipe::Visitor& v);
+  void describe(recipe::Visitor& v, const SolveOptions& all);
 };
 
 }  // namespace talus::solver

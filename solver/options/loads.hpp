@@ -11,7 +11,6 @@ struct GravityOptions {
   std::vector<double> gravity = {0, 0, -9.81};       // [m/s2]
   std::vector<double> initial_velocity = {0, 0, 0};  // [m/s]
   void describe(recipe::Visitor& v);
-  void check(std::vector<Fault>& faults) const;
 };
 
 /// A force on the points that start inside a box.
@@ -21,7 +20,6 @@ struct LoadOptions {
   double ramp = 0;                               // time over which it grows [s]
   double from = 0, to = 1e30;                    // [s]
   void describe(recipe::Visitor& v);
-  void check(std::vector<Fault>& faults) const;
 };
 
 }  // namespace talus::solver

@@ -46,6 +46,9 @@ struct MassOptions {
   std::vector<PartOptions> parts;
   MaterialOptions material;
 
+  bool every_material(const std::function<bool(const MaterialOptions&)>& is) const {
+    return !any_material([&](const MaterialOptions& m) { return !is(m); });
+  }
   bool any_material(const std::function<bool(const MaterialOptions&)>& is) const;
   bool densities_differ() const {
     return any_material([&](const MaterialOptions& m) { return m.density != material.density; });

@@ -14,19 +14,18 @@ void ObstacleOptions::describe(recipe::Visitor& v) {
   v.number("friction_angle_deg", friction_angle, recipe::Range{0, 90, false, true}, "friction angle of its surface");
 }
 
-void check_obstacles(const std::vector<ObstacleOptions>& obstacles, std::vector<Fault>& faults) {
+void need_names(recipe::Visitor& v, const std::vector<ObstacleOptions>& obstacles) {
+  const char* why = "its forces are recorded under its name";
   for (std::size_t o = 0; o < obstacles.size(); ++o) {
     const std::string& name = obstacles[o].name;
     const bool plain =
         !name.empty() &&
         name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") == std::string::npos;
-    if (!plain)
-      faults.push_back({fmt::format("[[solve.obstacle]] number {}: name = \"{}\"", o + 1, name),
-                        "its forces are recorded under its name", "Give it one of letters, digits, - and _"});
+    v.needs(plain, {fmt::format("[[solve.obstacle]] number {}: name = \"{}\"", o + 1, name), why,
+                    "Give it one of letters, digits, - and _"});
     for (std::size_t earlier = 0; earlier < o; ++earlier) {
-      if (plain && obstacles[earlier].name == name)
-        faults.push_back({fmt::format("[[solve.obstacle]] name = \"{}\" is given twice", name),
-                          "its forces are recorded under its name", "Rename one"});
+      v.needs(!plain || obstacles[earlier].name != name,
+              {fmt::format("[[solve.obstacle]] name = \"{}\" is given twice", name), why, "Rename one"});
     }
   }
 }

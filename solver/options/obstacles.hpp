@@ -18,6 +18,7 @@ struct ObstacleOptions {
   void describe(recipe::Visitor& v);
 };
 
-void check_obstacles(const std::vector<ObstacleOptions>& obstacles, std::vector<Fault>& faults);
+/// Names of their own, fit for the names of columns.
+void need_names(recipe::Visitor& v, const std::vector<ObstacleOptions>& obstacles);
 
 }  // namespace talus::solver

@@ -1,8 +1,11 @@
 #include "solver/options/output.hpp"
 
+#include "solver/options/solve.hpp"
+
 namespace talus::solver {
 
-void OutputOptions::describe(recipe::Visitor& v) {
+void OutputOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
+  const StepAbilities steps = abilities_of(all.integrator);
   v.number("frame_interval_s", frame_interval, recipe::positive, "time between frames");
   v.number("history_interval_s", history_interval, recipe::positive, "time between records of energy and mass");
   v.number("checkpoint_interval_s", checkpoint_interval, recipe::not_negative,
@@ -14,8 +17,19 @@ void OutputOptions::describe(recipe::Visitor& v) {
   v.flag("energy_budget", energy_budget,
          "explicit steps: keep what is lost to the bed, to plastic flow, to damping and between points and grid, and "
          "the impulse of bed and walls (two to three times as slow on a GPU)");
+  v.needs(!energy_budget || (steps.count_losses && all.stress_update == StressUpdate::last),
+          {"[solve] energy_budget = true does not go with this integrator or stress_update",
+           "losses are counted in explicit steps with stress_update = \"usl\"",
+           "Leave it out, or take integrator = \"explicit\""});
+  v.needs(!energy_budget || !all.meets_points(),
+          {all.contact_words() + " does not go with energy_budget = true", "what is lost between nodes is not counted",
+           "Leave energy_budget out"});
   v.flag("deterministic", deterministic,
          "explicit steps: the same bits on every run on a GPU too, as on the CPU always (slower)");
+  v.needs(!deterministic || (steps.repeat_bits && !energy_budget),
+          {"[solve] deterministic = true does not go with this integrator or with energy_budget",
+           "sums of implicit steps and of the budget are made in any order on a GPU",
+           "Leave it out, or take integrator = \"explicit\" without energy_budget"});
 }
 
 }  // namespace talus::solver

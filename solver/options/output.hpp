@@ -5,6 +5,8 @@
 
 namespace talus::solver {
 
+struct SolveOptions;
+
 struct OutputOptions {
   double frame_interval = 10;      // [s]
   double history_interval = 0.5;   // [s]
@@ -14,7 +16,7 @@ struct OutputOptions {
   bool vdb_frames = false;
   bool energy_budget = false;
   bool deterministic = false;
-  void describe(recipe::Visitor& v);
+  void describe(recipe::Visitor& v, const SolveOptions& all);
 };
 
 }  // namespace talus::solver

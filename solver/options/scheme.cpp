@@ -11,6 +11,9 @@ void SchemeOptions::describe(recipe::Visitor& v) {
   recipe::choice(v, "ground_contact", ground_contact,
                  {{"nodes", GroundContact::nodes}, {"points", GroundContact::points}},
                  "Cartesian grid: the ground met by the nodes at or below it, or by points between the nodes");
+  v.needs(ground_contact == GroundContact::nodes || mapping == Mapping::cartesian,
+          {"[solve] ground_contact = \"points\" does not go with mapping = \"terrain-following\"",
+           "there the nodes lie on the ground, and meet it exactly", "Leave it out, or take mapping = \"cartesian\""});
   recipe::choice(v, "shape", shape,
                  {{"quadratic", ShapeKind::quadratic}, {"gimp", ShapeKind::gimp}, {"linear", ShapeKind::linear}},
                  "functions of the grid: B-splines, hats averaged over the box of each point, or hats");
@@ -18,6 +21,7 @@ void SchemeOptions::describe(recipe::Visitor& v) {
                  "how velocity passes between points and grid");
   v.number("transfer_time", transfer_time, recipe::not_negative,
            "CFL steps over which velocity finer than the grid decays; 0: at every step");
+  v.renamed("flip_fraction", "transfer_time", [](const std::string&) { return std::string(); });
   recipe::choice(v, "stress_update", stress_update, {{"usl", StressUpdate::last}, {"musl", StressUpdate::modified}},
                  "stress from the grid's new velocity (usl), or from the points' mapped back (musl)");
   v.number("damping", damping, recipe::Range{0, 1, false, true}, "local non-viscous damping factor (Cundall)");

@@ -1,6 +1,9 @@
 // What a recipe's [solve] table says. Every key, its default and its help stand in describe() and nowhere else.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "solver/options/bed.hpp"
 #include "solver/options/implicit.hpp"
 #include "solver/options/loads.hpp"
@@ -24,12 +27,11 @@ struct SolveOptions : TimeOptions, SchemeOptions, GravityOptions, OutputOptions,
   /// Whether the mass meets anything between nodes.
   bool meets_points() const { return !obstacles.empty() || ground_contact == GroundContact::points; }
 
+  /// Which keys it is that make it so, for messages.
+  std::string contact_words() const;
+
   void describe(recipe::Visitor& v);
   void check(std::vector<Fault>& faults) const;
-
- private:
-  void check_integrator(std::vector<Fault>& faults) const;
-  void check_contacts(std::vector<Fault>& faults) const;
 };
 
 /// The options with `preset` spelt out: preset = "reference" sets what the reference paper states and leaves the rest

@@ -2,6 +2,16 @@
 
 namespace talus::solver {
 
+StepAbilities abilities_of(Integrator integrator) {
+  switch (integrator) {
+    case Integrator::explicit_: return {.count_losses = true, .repeat_bits = true};
+    case Integrator::newmark:
+    case Integrator::quasi_static: return {.solve_systems = true, .average_volume = true};
+    case Integrator::automatic: return {.solve_systems = true};
+  }
+  return {};
+}
+
 void TimeOptions::describe(recipe::Visitor& v) {
   recipe::choice(v, "preset", preset, {{"none", Preset::none}, {"reference", Preset::reference}},
                  "reference: the implicit scheme of the reference paper as it stands (docs/theory.md)");

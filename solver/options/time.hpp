@@ -8,6 +8,15 @@
 namespace talus::solver {
 
 enum class Integrator { explicit_, newmark, quasi_static, automatic };
+/// What the steps of an integrator can do; other keys state in these words what they need.
+struct StepAbilities {
+  bool count_losses = false;    // what is lost, by its cause
+  bool repeat_bits = false;     // the same on every run on a GPU
+  bool solve_systems = false;   // some of the steps at least
+  bool average_volume = false;  // over the particles of an element, all of the steps
+};
+StepAbilities abilities_of(Integrator integrator);
+
 enum class Preset { none, reference };
 
 struct TimeOptions {

@@ -18,11 +18,9 @@ void WallOptions::describe(recipe::Visitor& v) {
   v.number("to_s", to, recipe::not_negative, "and goes at this time (a gate)");
 }
 
-void check_walls(const std::vector<WallOptions>& walls, std::vector<Fault>& faults) {
-  if (walls.size() > most_walls) {
-    faults.push_back({fmt::format("[[solve.wall]] is given {} times", walls.size()),
-                      fmt::format("at most {} walls fit", most_walls), "Leave some out"});
-  }
+void need_few(recipe::Visitor& v, const std::vector<WallOptions>& walls) {
+  v.needs(walls.size() <= most_walls, {fmt::format("[[solve.wall]] is given {} times", walls.size()),
+                                       fmt::format("at most {} walls fit", most_walls), "Leave some out"});
 }
 
 }  // namespace talus::solver

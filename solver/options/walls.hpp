@@ -23,6 +23,7 @@ struct WallOptions {
   void describe(recipe::Visitor& v);
 };
 
-void check_walls(const std::vector<WallOptions>& walls, std::vector<Fault>& faults);
+/// As many as kernels hold.
+void need_few(recipe::Visitor& v, const std::vector<WallOptions>& walls);
 
 }  // namespace talus::solver

@@ -1,6 +1,8 @@
 // Options with one key of every kind, as a stage would have them.
 #pragma once
 
+#include <numbers>
+
 #include "common/recipe/recipe.hpp"
 
 namespace talus::test {
@@ -38,10 +40,15 @@ struct SampleOptions {
     v.optional_number("seed_x_m", seed_x, recipe::any, "a point inside the source");
     v.enter("material", "what moves");
     v.number("friction_angle_deg", friction, {0, 90, false, true}, "internal friction");
+    recipe::renamed(v, "friction_angle_rad", "friction_angle_deg",
+                    [](double rad) { return rad / std::numbers::pi * 180; });
     v.number("tension_pa", tension, recipe::not_negative, "tension cut-off");
     v.leave();
     v.integer("steps", steps, {1, 1000}, "how many");
     v.flag("verbose", verbose, "say more");
+    recipe::renamed(v, "log", "verbose");
+    v.needs(!verbose || steps > 1, {"[solve] verbose = true with steps = 1", "there is nothing to tell",
+                                    "Take more steps, or leave verbose out"});
     v.text("label", label, "any text");
     v.path("terrain", terrain, "raster of the ground");
     v.numbers("times_s", times, recipe::not_negative, "when to write");
@@ -49,6 +56,8 @@ struct SampleOptions {
     recipe::choice(v, "shape", shape,
                    {{"linear", Shape::linear}, {"quadratic", Shape::quadratic}, {"cubic", Shape::cubic}},
                    "shape functions");
+    v.needs(shape != Shape::cubic || steps > 1,
+            {"[solve] shape = \"cubic\" with steps = 1", "it looks back two steps", "Take shape = \"quadratic\""});
     recipe::list(v, "release", releases, "what fails; several allowed");
   }
   void check(std::vector<Fault>& faults) const {

@@ -71,10 +71,10 @@ TEST(Stiffness, keeps_the_decay_of_fine_velocity_above_a_step) {
 TEST(Stiffness, of_an_elastic_body_is_its_own) {
   SolveOptions o = sliding(1e9);
   std::vector<Fault> faults;
-  o.check(faults);
+  recipe::find_unmet(o, faults);
   EXPECT_TRUE(faults.empty());
   o.material.model = MaterialModel::hencky;
-  o.check(faults);
+  recipe::find_unmet(o, faults);
   ASSERT_EQ(faults.size(), 1u);
   EXPECT_NE(faults[0].what.find("stiffness = \"auto\""), std::string::npos) << faults[0].what;
   EXPECT_NE(faults[0].mend.find("drucker-prager"), std::string::npos) << faults[0].mend;

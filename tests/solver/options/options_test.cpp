@@ -1,0 +1,177 @@
+// What keys of [solve] need of one another, and the texts of the refusals.
+#include "solver/options/solve.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/common/scratch.hpp"
+
+namespace talus::solver {
+namespace {
+
+/// The faults of a recipe, a line each; empty where it is sound.
+std::string faults(const std::string& text) {
+  const test::Scratch scratch;
+  const recipe::Recipe recipe(scratch.write("r.toml", text));
+  try {
+    recipe.read<SolveOptions>("solve");
+  } catch (const RecipeError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(SolveOptions, vectors_and_boxes_have_their_number_of_values) {
+  EXPECT_EQ(faults("[solve]\ngravity_m_s2 = [0.0, 1.0]"),
+            "[solve] gravity_m_s2 has 2 numbers (it is a vector: east, north, up). Give three: gravity_m_s2 = [0.0, "
+            "0.0, 0.0]");
+  EXPECT_EQ(faults("[solve]\ninitial_velocity_m_s = [0.0]"),
+            "[solve] initial_velocity_m_s has 1 numbers (it is a vector: east, north, up). Give three: "
+            "initial_velocity_m_s = [0.0, 0.0, 0.0]");
+  EXPECT_EQ(faults("[[solve.load]]\nbox_m = [1.0]\n[[solve.load]]\nforce_N = [1.0]"),
+            "[[solve.load]] box_m or force_N has the wrong number of values (a box has six, a force three). Give box_m "
+            "= [west, east, south, north, bottom, top] and force_N = [east, north, up]\n[[solve.load]] box_m or "
+            "force_N has the wrong number of values (a box has six, a force three). Give box_m = [west, east, south, "
+            "north, bottom, top] and force_N = [east, north, up]");
+}
+
+TEST(SolveOptions, the_energy_budget_needs_explicit_steps_and_contact_at_nodes) {
+  EXPECT_EQ(faults("[solve]\nenergy_budget = true\nintegrator = \"newmark\""),
+            "[solve] energy_budget = true does not go with this integrator or stress_update (losses are counted in "
+            "explicit steps with stress_update = \"usl\"). Leave it out, or take integrator = \"explicit\"");
+  EXPECT_EQ(faults("[solve]\nenergy_budget = true\nstress_update = \"musl\""),
+            "[solve] energy_budget = true does not go with this integrator or stress_update (losses are counted in "
+            "explicit steps with stress_update = \"usl\"). Leave it out, or take integrator = \"explicit\"");
+  EXPECT_EQ(faults("[solve]\nenergy_budget = true\nintegrator = \"auto\""),
+            "[solve] energy_budget = true does not go with this integrator or stress_update (losses are counted in "
+            "explicit steps with stress_update = \"usl\"). Leave it out, or take integrator = \"explicit\"");
+  EXPECT_EQ(faults("[solve]\nenergy_budget = true\nground_contact = \"points\"\nmapping=\"cartesian\""),
+            "[solve] ground_contact = \"points\" does not go with energy_budget = true (what is lost between nodes is "
+            "not counted). Leave energy_budget out");
+  EXPECT_EQ(faults("[solve]\nenergy_budget = true\n[[solve.obstacle]]\nname=\"a\""),
+            "[[solve.obstacle]] does not go with energy_budget = true (what is lost between nodes is not counted). "
+            "Leave energy_budget out");
+}
+
+TEST(SolveOptions, contact_by_points_needs_a_level_grid_and_a_solver_without_assembly) {
+  EXPECT_EQ(faults("[solve]\nground_contact = \"points\""),
+            "[solve] ground_contact = \"points\" does not go with mapping = \"terrain-following\" (there the nodes lie "
+            "on the ground, and meet it exactly). Leave it out, or take mapping = \"cartesian\"");
+  EXPECT_EQ(faults("[solve]\nintegrator = "
+                   "\"quasi-static\"\n[solve.implicit]\nlinear_solver=\"cholesky\"\n[[solve.obstacle]]\nname=\"a\""),
+            "[[solve.obstacle]] does not go with [solve.implicit] linear_solver = \"cholesky\" (contact between nodes "
+            "is not in the assembled matrix). Take linear_solver = \"pcg\"");
+  EXPECT_EQ(faults("[solve]\nintegrator = \"auto\"\nground_contact = "
+                   "\"points\"\nmapping=\"cartesian\"\n[solve.implicit]\nlinear_solver=\"cholesky\""),
+            "[solve] ground_contact = \"points\" does not go with [solve.implicit] linear_solver = \"cholesky\" "
+            "(contact between nodes is not in the assembled matrix). Take linear_solver = \"pcg\"");
+}
+
+TEST(SolveOptions, repeated_bits_need_explicit_steps_without_a_budget) {
+  EXPECT_EQ(faults("[solve]\ndeterministic = true\nintegrator = \"newmark\""),
+            "[solve] deterministic = true does not go with this integrator or with energy_budget (sums of implicit "
+            "steps and of the budget are made in any order on a GPU). Leave it out, or take integrator = \"explicit\" "
+            "without energy_budget");
+  EXPECT_EQ(faults("[solve]\ndeterministic = true\nenergy_budget = true"),
+            "[solve] deterministic = true does not go with this integrator or with energy_budget (sums of implicit "
+            "steps and of the budget are made in any order on a GPU). Leave it out, or take integrator = \"explicit\" "
+            "without energy_budget");
+  EXPECT_EQ(faults("[solve]\ndeterministic = true\nintegrator = \"auto\""),
+            "[solve] deterministic = true does not go with this integrator or with energy_budget (sums of implicit "
+            "steps and of the budget are made in any order on a GPU). Leave it out, or take integrator = \"explicit\" "
+            "without energy_budget");
+}
+
+TEST(SolveOptions, means_over_elements_need_implicit_steps_and_a_pressure_of_the_volume) {
+  EXPECT_EQ(faults("[solve]\n[solve.implicit]\nb_bar=true"),
+            "[solve.implicit] b_bar = true has no effect on explicit steps (only implicit steps average the volume "
+            "change). Leave it out, or take integrator = \"newmark\" or \"quasi-static\"");
+  EXPECT_EQ(faults("[solve]\nintegrator=\"auto\"\n[solve.implicit]\nb_bar=true"),
+            "[solve.implicit] b_bar = true has no effect on explicit steps (only implicit steps average the volume "
+            "change). Leave it out, or take integrator = \"newmark\" or \"quasi-static\"");
+  EXPECT_EQ(
+      faults("[solve]\nintegrator=\"newmark\"\n[solve.implicit]\nb_bar=true\n[solve.material]\nmodel=\"corotated\""),
+      "[solve.implicit] b_bar = true does not go with this [solve.material] model (its pressure does not follow from "
+      "the volume change alone). Take model = \"hencky\" or \"drucker-prager\"");
+  EXPECT_EQ(faults("[solve]\nintegrator=\"auto\"\n[solve.implicit]\nb_bar=true\n[[solve.part]]\nrelease=\"x\"\nmodel="
+                   "\"corotated\""),
+            "[solve.implicit] b_bar = true does not go with this [solve.material] model (its pressure does not follow "
+            "from the volume change alone). Take model = \"hencky\" or \"drucker-prager\"\n[solve.implicit] b_bar = "
+            "true has no effect on explicit steps (only implicit steps average the volume change). Leave it out, or "
+            "take integrator = \"newmark\" or \"quasi-static\"");
+}
+
+TEST(SolveOptions, the_exact_tangent_needs_a_solver_for_it) {
+  EXPECT_EQ(faults("[solve]\nintegrator=\"newmark\"\n[solve.implicit]\ntangent=\"exact\""),
+            "[solve.implicit] tangent = \"exact\" does not go with this linear_solver (the exact tangent is not "
+            "symmetric). Take linear_solver = \"bicgstab\"");
+  EXPECT_EQ(faults("[solve]\nintegrator=\"newmark\"\n[solve.implicit]\ntangent=\"exact\"\nb_bar=true\nlinear_solver="
+                   "\"bicgstab\""),
+            "[solve.implicit] tangent = \"exact\" does not go with b_bar (the mean volume change is in the symmetric "
+            "tangent alone). Take tangent = \"frozen-yield\"");
+}
+
+TEST(SolveOptions, walls_parts_and_names_have_their_limits) {
+  EXPECT_EQ(faults("[[solve.obstacle]]\nname=\"a "
+                   "b\"\n[[solve.obstacle]]\n[[solve.obstacle]]\nname=\"c\"\n[[solve.obstacle]]\nname=\"c\""),
+            "[[solve.obstacle]] number 1: name = \"a b\" (its forces are recorded under its name). Give it one of "
+            "letters, digits, - and _\n[[solve.obstacle]] number 2: name = \"\" (its forces are recorded under its "
+            "name). Give it one of letters, digits, - and _\n[[solve.obstacle]] name = \"c\" is given twice (its "
+            "forces are recorded under its name). Rename one");
+  EXPECT_EQ(faults("[[solve.part]]\nrelease=\"x0\"\n[[solve.part]]\nrelease=\"x1\"\n[[solve.part]]\nrelease=\"x2\"\n[["
+                   "solve.part]]\nrelease=\"x3\"\n[[solve.part]]\nrelease=\"x4\"\n[[solve.part]]\nrelease=\"x5\"\n[["
+                   "solve.part]]\nrelease=\"x6\"\n[[solve.part]]\nrelease=\"x7\""),
+            "[[solve.part]] is given 8 times (a scene has at most 8 materials). Give releases of the same material the "
+            "same name, or leave some out");
+}
+
+TEST(SolveOptions, strengths_go_together) {
+  EXPECT_EQ(faults("[solve.material]\nstiffness=\"auto\"\nmodel=\"hencky\""),
+            "[solve.material] stiffness = \"auto\" does not go with this model (what an elastic body does depends on "
+            "its stiffness). Take model = \"drucker-prager\", or leave stiffness out");
+  EXPECT_EQ(faults("[solve.material]\ndilatancy_angle_deg=40\n[[solve.part]]\nrelease=\"x\"\nsoftening_slip_m="
+                   "1\nresidual_cohesion_Pa=3\nstiffness_check=true"),
+            "[[solve.part]] release = \"x\" gives stiffness or stiffness_check (they are the whole scene's). Give them "
+            "in [solve.material]\n[solve.material] dilatancy_angle_deg = 40 is above friction_angle_deg = 30 (the "
+            "material would make energy as it shears). Lower dilatancy_angle_deg; 0 is usual for "
+            "run-out\n[[solve.part]] release = \"x\" softens to 0 deg and 3 Pa, from 30 deg and 0 Pa (a residual "
+            "strength is no larger than the first). Lower residual_friction_angle_deg or residual_cohesion_Pa");
+  EXPECT_EQ(faults("[solve.base]\nlaw=\"velocity-weakening\"\npeak_coefficient=0.1"),
+            "[solve.base] peak_coefficient = 0.1 is below steady_coefficient = 0.23 (friction would grow with speed). "
+            "Swap the two");
+}
+
+TEST(SolveOptions, at_most_as_many_walls_as_kernels_hold) {
+  std::string walls;
+  for (int w = 0; w < 12; ++w) walls += "[[solve.wall]]\n";
+  EXPECT_EQ(faults(walls), "");
+  EXPECT_EQ(faults(walls + "[[solve.wall]]\n"),
+            "[[solve.wall]] is given 13 times (at most 12 walls fit). Leave some out");
+}
+
+TEST(SolveOptions, an_old_key_is_refused_with_the_new_one) {
+  const std::string found = faults("[solve]\nflip_fraction = 0.95");
+  EXPECT_NE(found.find("r.toml:2:17: [solve] flip_fraction = 0.95 (transfer_time has taken its place). Write "
+                       "transfer_time instead"),
+            std::string::npos)
+      << found;
+}
+
+TEST(SolveOptions, what_goes_together_is_taken) {
+  EXPECT_EQ(faults("[solve]\nintegrator=\"newmark\"\n[solve.implicit]\ntangent=\"exact\"\nlinear_solver=\"bicgstab\""),
+            "");
+  EXPECT_EQ(faults("[solve]\n[solve.implicit]\nlinear_solver=\"cholesky\"\n[[solve.obstacle]]\nname=\"a\""), "");
+}
+
+TEST(SolveOptions, every_integrator_says_what_its_steps_can_do) {
+  EXPECT_TRUE(abilities_of(Integrator::explicit_).count_losses);
+  EXPECT_FALSE(abilities_of(Integrator::explicit_).solve_systems);
+  for (const Integrator some : {Integrator::newmark, Integrator::quasi_static}) {
+    EXPECT_TRUE(abilities_of(some).average_volume);
+    EXPECT_FALSE(abilities_of(some).count_losses);
+  }
+  EXPECT_TRUE(abilities_of(Integrator::automatic).solve_systems);
+  EXPECT_FALSE(abilities_of(Integrator::automatic).average_volume) << "some of its steps are explicit";
+}
+
+}  // namespace
+}  // namespace talus::solver
