@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "common/domain/active_cells.hpp"
 #include "common/map/raster.hpp"
 
 namespace talus {
@@ -34,17 +36,19 @@ struct Domain {
   std::vector<std::string> release_names;
   int erodible = 0;  // of these, the first so many lie in the ground until something takes them along
   SeedPoints points;
+  std::optional<ActiveCells> active;  // the mask of the file it was read from; none where it was made in memory
   std::vector<std::pair<std::string, std::string>> provenance;  // version, command, inputs and checksums
 };
 
 /// Write `file` (aside, renamed): PointDataGrid "points" (attributes volume, height, extent_x, extent_y, release),
-/// FloatGrids "terrain", "before", "release_thickness", and "bed.NAME" for rasters of the bed, as DoubleGrids one voxel
-/// thick, MaskGrid "active" of the cells inside the domain; grid, CRS, units and provenance as metadata. Throws
-/// DataError (disk full, not writable).
+/// DoubleGrids "terrain", "before", "release_thickness", and "bed.NAME" for rasters of the bed, one voxel thick,
+/// MaskGrid "inside" of the map cells inside the domain, one voxel thick too, MaskGrid "active" of the cells of the
+/// background grid around the points (active_cells.hpp); grid, CRS, units and provenance as metadata. Throws DataError
+/// (disk full, not writable).
 void write_domain(const std::filesystem::path& file, const Domain& domain);
 
 /// Read it back. Coordinates keep 1e-6 of a cell, volumes and heights are exact. Throws DataError: missing, truncated,
-/// not a domain of this program.
+/// not a domain of this program, a mask "active" of another grid or not of whole blocks.
 Domain read_domain(const std::filesystem::path& file);
 
 }  // namespace talus

@@ -9,14 +9,17 @@
 
 namespace talus::layout {
 
-inline constexpr int format = 3;  ///< raised when a reader of today would misread the file
+inline constexpr int format = 4;  ///< raised when a reader of today would misread the file
 inline constexpr auto kind = "talus-domain";
 
 inline constexpr auto points = "points";
 inline constexpr auto terrain = "terrain";
 inline constexpr auto before = "before";
 inline constexpr auto release_thickness = "release_thickness";
+inline constexpr auto inside = "inside";
 inline constexpr auto active = "active";
+inline constexpr auto mask_h = "h_m";       ///< of the background grid, in the metadata of "active"
+inline constexpr auto mask_h_z = "h_z_m";   ///< likewise
 inline constexpr auto bed_prefix = "bed.";  ///< and the name of a number of [solve.base]
 
 inline constexpr auto volume = "volume";

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <limits>
 
 #include "common/domain/domain.hpp"
 #include "common/domain/domain_layout.hpp"
@@ -111,6 +112,30 @@ Raster sheet(const fs::path& file, const Contents& contents, const char* name, c
   return raster;
 }
 
+/// The mask of the background grid's cells, which must be made of whole blocks and be of the grid that the header
+/// names.
+ActiveCells active_mask(const fs::path& file, const Contents& contents, const Domain& domain) {
+  const auto grid = grid_named<openvdb::MaskGrid>(file, contents, layout::active);
+  const Facts facts(file, *grid);
+  if (facts.get<double>(layout::mask_h) != domain.grid.cell ||
+      facts.get<double>(layout::mask_h_z) != domain.layer_height)
+    refuse(file, "not a whole domain", "the mask \"active\" has other cells than the grid");
+  ActiveCells cells(domain.grid.columns, domain.grid.rows);
+  const openvdb::CoordBBox map(openvdb::Coord(0, 0, 0),
+                               openvdb::Coord(cells.columns - 1, cells.rows - 1, std::numeric_limits<int>::max()));
+  for (auto value = grid->cbeginValueOn(); value; ++value) {
+    openvdb::CoordBBox box;  // a voxel, or a tile of many
+    value.getBoundingBox(box);
+    if (!map.isInside(box)) refuse(file, "not a whole domain", "the mask \"active\" goes beyond the map");
+    for (int row = box.min().y(); row <= box.max().y(); ++row)
+      for (int column = box.min().x(); column <= box.max().x(); ++column)
+        cells.block_of(column, row).add({box.min().z(), box.max().z()});
+  }
+  if (cells.cell_count() != grid->activeVoxelCount())
+    refuse(file, "not a whole domain", "the mask \"active\" is not made of whole blocks of 4 x 4 columns");
+  return cells;
+}
+
 /// Points of one leaf, each to the place its id names.
 void take_leaf(const fs::path& file, const PointDataGrid::TreeType::LeafNodeType& leaf, const MapGrid& map,
                SeedPoints& points) {
@@ -181,6 +206,7 @@ Domain assemble(const fs::path& file, const Contents& contents) {
     domain.provenance.emplace_back(facts.text(layout::numbered("fact_name", i)),
                                    facts.text(layout::numbered("fact_value", i)));
   domain.points = seed_points(file, contents, domain.grid, facts.count("points"));
+  domain.active = active_mask(file, contents, domain);
   return domain;
 }
 

@@ -87,6 +87,27 @@ openvdb::GridBase::Ptr value_sheet(const Domain& domain, const Raster& raster, c
   return grid;
 }
 
+/// The cells of the background grid around the points; voxel (column, row, layer).
+openvdb::GridBase::Ptr active_mask(const Domain& domain, const ActiveCells& cells) {
+  auto grid = openvdb::MaskGrid::create();
+  constexpr int side = ActiveCells::side;
+  for (int row = 0; row < cells.rows; row += side) {
+    for (int column = 0; column < cells.columns; column += side) {
+      const ActiveCells::Layers& layers = cells.block_of(column, row);
+      if (layers.count() <= 0) continue;
+      const openvdb::Coord last(std::min(column + side, cells.columns) - 1, std::min(row + side, cells.rows) - 1,
+                                layers.last);
+      grid->denseFill(openvdb::CoordBBox(openvdb::Coord(column, row, layers.first), last), true, true);
+    }
+  }
+  grid->setName(layout::active);
+  grid->setTransform(layout::transform(domain.grid, domain.layer_height, bottom_of(domain.terrain)));
+  grid->insertMeta(layout::mask_h, openvdb::DoubleMetadata(domain.grid.cell));
+  grid->insertMeta(layout::mask_h_z, openvdb::DoubleMetadata(domain.layer_height));
+  grid->insertMeta("units", openvdb::StringMetadata("voxel (column, row, layer above the bed); h and h_z in m"));
+  return grid;
+}
+
 openvdb::MetaMap metadata_of(const Domain& domain) {
   openvdb::MetaMap meta;
   const auto number = [&](const std::string& name, double value) {
@@ -122,12 +143,13 @@ openvdb::MetaMap metadata_of(const Domain& domain) {
 }
 
 /// OpenVDB does not look whether its stream still writes, so a full disk shows only on reading back.
-void verify(const fs::path& partial, const fs::path& file, const Domain& domain) {
+void verify(const fs::path& partial, const fs::path& file, const Domain& domain, const ActiveCells& active) {
   bool same = false;
   std::string reason = "it does not read back as written";
   try {
     const Domain back = read_domain(partial);
-    same = back.points.size() == domain.points.size() && back.points.volume == domain.points.volume;
+    same = back.points.size() == domain.points.size() && back.points.volume == domain.points.volume &&
+           back.active == active;
   } catch (const DataError& error) {
     reason += ": " + error.faults().front().why;
   }
@@ -139,12 +161,15 @@ void verify(const fs::path& partial, const fs::path& file, const Domain& domain)
 void write_domain(const fs::path& file, const Domain& domain) {
   openvdb::initialize();
   PendingFile pending(file);
+  const ActiveCells active = active_cells(domain.grid, domain.layer_height, domain.points);
   try {
     openvdb::GridPtrVec grids{
-        point_grid(domain), value_sheet(domain, domain.terrain, layout::terrain),
+        point_grid(domain),
+        value_sheet(domain, domain.terrain, layout::terrain),
         value_sheet(domain, domain.before, layout::before),
         value_sheet(domain, domain.release_thickness, layout::release_thickness),
-        sheet<openvdb::MaskGrid>(domain, domain.terrain, layout::active, [](double) { return true; })};
+        sheet<openvdb::MaskGrid>(domain, domain.terrain, layout::inside, [](double) { return true; }),
+        active_mask(domain, active)};
     for (const auto& [name, raster] : domain.bed) {
       grids.push_back(sheet<openvdb::DoubleGrid>(domain, raster, (layout::bed_prefix + name).c_str(),
                                                  [](double cell) { return cell; }));
@@ -153,7 +178,7 @@ void write_domain(const fs::path& file, const Domain& domain) {
   } catch (const openvdb::Exception& error) {
     throw DataError(write_fault(file, error.what()));
   }
-  verify(pending.path(), file, domain);
+  verify(pending.path(), file, domain, active);
   pending.commit();
 }
 

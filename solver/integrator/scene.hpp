@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "common/domain/active_cells.hpp"
 #include "common/map/raster.hpp"
 #include "solver/boundary/base_friction.hpp"
 #include "solver/boundary/contact_points.hpp"
@@ -13,6 +14,7 @@ namespace talus::solver {
 struct Scene {
   MapGrid map;
   GridShape grid;
+  ActiveCells active;  // of the grid at the start, around the points; layers above the bed
   ParticleState points;
   std::vector<double> load_volumes;  // volume of the points each load pulls at [m3]
   std::vector<Bed<double>> bed;      // of every column; empty where it is the same everywhere

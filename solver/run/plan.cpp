@@ -147,8 +147,10 @@ std::vector<std::string> plan(const Domain& domain, const SolveOptions& o, const
   const double cell = scene.grid.spacing * scene.grid.spacing * scene.grid.layer_height;
   add("points", fmt::format("{}, {:.6g} m3", scene.points.size(), volume));
   add("cells",
-      fmt::format("{} x {} columns of {:g} m, layers of {:g} m; the mass fills about {:.0f}", scene.grid.columns,
-                  scene.grid.rows, scene.grid.spacing, scene.grid.layer_height, volume / cell));
+      fmt::format("{} x {} columns of {:g} m, layers of {:g} m; the mass fills about {:.0f}, the grid around it at the "
+                  "start has {} in {} blocks of columns",
+                  scene.grid.columns, scene.grid.rows, scene.grid.spacing, scene.grid.layer_height, volume / cell,
+                  scene.active.cell_count(), scene.active.block_count()));
   add("memory",
       fmt::format("{:.1f} MB now, on the {}", static_cast<double>(trial.bytes) / 1e6, device.is_gpu() ? "GPU" : "CPU"));
   double fewest = o.end_time / o.implicit.step, most = fewest;

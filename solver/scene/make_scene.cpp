@@ -101,12 +101,9 @@ void check_bed(const Domain& domain, const SolveOptions& options) {
   }
 }
 
-}  // namespace
-
-Scene make_scene(const Domain& domain, const SolveOptions& options) {
-  Scene scene;
-  scene.map = domain.grid;
-  GridShape& shape = scene.grid;
+/// The shape of the background grid as the domain and the recipe give it.
+GridShape grid_shape(const Domain& domain, const SolveOptions& options) {
+  GridShape shape;
   shape.columns = domain.grid.columns;
   shape.rows = domain.grid.rows;
   shape.spacing = domain.grid.cell;
@@ -120,24 +117,39 @@ Scene make_scene(const Domain& domain, const SolveOptions& options) {
                          : options.integrator == Integrator::newmark ? newmark_lowest_weighed
                                                                      : 0;
   shape.terrain = domain.terrain.values;
-  const GroundTables ground = make_ground_tables(shape);
+  return shape;
+}
 
-  ParticleState& s = scene.points;
+/// Throws DataError unless a point stands over known ground, and in an active cell of the grid that was made for it.
+void check_place(const Domain& domain, const GroundTables& ground, const ActiveCells& active, std::size_t p) {
+  const auto cell = nearest_cell(domain.grid, domain.layer_height, domain.points, p);
+  const auto [i, j, layer] = cell;
+  const bool inside = i >= 0 && j >= 0 && i < domain.grid.columns && j < domain.grid.rows;
+  if (!inside || !ground.open[domain.grid.index(i, j)]) {
+    throw DataError({fmt::format("domain.vdb: point {} at ({:.2f}, {:.2f}) stands outside the ground or at its edge", p,
+                                 domain.points.x[p], domain.points.y[p]),
+                     "a point needs known ground one cell around it",
+                     "Give a larger elevation model, or a smaller source, and run talus-preprocess again"});
+  }
+  if (active.holds(cell)) return;
+  throw DataError({fmt::format("domain.vdb: point {} at ({:.2f}, {:.2f}), {:.2f} m above the bed, lies in column {}, "
+                               "row {}, layer {}, which is no active cell of the background grid",
+                               p, domain.points.x[p], domain.points.y[p], domain.points.height[p], i, j, layer),
+                   "points and mask \"active\" are not of one domain", "Run talus-preprocess again"});
+}
+
+/// The state of the domain's points as they are seeded, at the recipe's initial velocity.
+ParticleState place_points(const Domain& domain, const SolveOptions& options, const GridShape& shape,
+                           const GroundTables& ground, const ActiveCells& active) {
+  ParticleState s;
   const std::size_t count = domain.points.size();
   size_state(s, count);
   for (std::size_t p = 0; p < count; ++p) {
+    check_place(domain, ground, active, p);
     const double xi = (domain.points.x[p] - domain.grid.west) / shape.spacing - 0.5;
     const double eta = (domain.points.y[p] - domain.grid.south) / shape.spacing - 0.5;
     place(xi, s.cell[0][p], s.offset[0][p]);
     place(eta, s.cell[1][p], s.offset[1][p]);
-    const int i = s.cell[0][p], j = s.cell[1][p];
-    const bool inside = i >= 0 && j >= 0 && i < shape.columns && j < shape.rows;
-    if (!inside || !ground.open[domain.grid.index(i, j)]) {
-      throw DataError({fmt::format("domain.vdb: point {} at ({:.2f}, {:.2f}) stands outside the ground or at its edge",
-                                   p, domain.points.x[p], domain.points.y[p]),
-                       "a point needs known ground one cell around it",
-                       "Give a larger elevation model, or a smaller source, and run talus-preprocess again"});
-    }
     double height = domain.points.height[p];
     if (shape.mapping == Mapping::cartesian) height += ground_at(shape, ground, xi, eta);
     place(height / shape.layer_height, s.cell[2][p], s.offset[2][p]);
@@ -150,11 +162,24 @@ Scene make_scene(const Domain& domain, const SolveOptions& options) {
     s.id[p] = static_cast<int>(p);
     s.release[p] = domain.points.release[p];
   }
+  return s;
+}
+
+}  // namespace
+
+Scene make_scene(const Domain& domain, const SolveOptions& options) {
+  static_assert(ActiveCells::side == block_side, "domain.vdb and the solver's grid have blocks of the same columns");
+  Scene scene;
+  scene.map = domain.grid;
+  scene.grid = grid_shape(domain, options);
+  const GroundTables ground = make_ground_tables(scene.grid);
+  scene.active = domain.active ? *domain.active : active_cells(domain.grid, domain.layer_height, domain.points);
+  scene.points = place_points(domain, options, scene.grid, ground, scene.active);
   attach_loads(domain, options, scene);
   attach_materials(domain, options, scene);
   check_bed(domain, options);
   scene.bed = make_bed(domain, options);
-  scene.contacts = make_contact_points(domain.grid, shape, ground, make_obstacles(options.obstacles));
+  scene.contacts = make_contact_points(domain.grid, scene.grid, ground, make_obstacles(options.obstacles));
   return scene;
 }
 

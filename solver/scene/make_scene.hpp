@@ -10,7 +10,8 @@
 
 namespace talus::solver {
 
-/// Places the seeds of a domain on the background grid. Throws DataError when a seed stands outside the ground.
+/// Places the seeds of a domain on the background grid. Throws DataError when a seed stands outside the ground, or
+/// outside the active cells that the domain's file names.
 Scene make_scene(const Domain& domain, const SolveOptions& options);
 
 /// Positions of points in map coordinates [m].

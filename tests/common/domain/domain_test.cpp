@@ -1,8 +1,10 @@
 #include "common/domain/domain.hpp"
 
 #include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
 
 #include <cmath>
+#include <functional>
 #include <random>
 
 #include "common/error.hpp"
@@ -59,6 +61,7 @@ TEST(DomainFile, round_trip_keeps_everything) {
   EXPECT_EQ(back.points.extent_x, domain.points.extent_x);
   EXPECT_EQ(back.points.extent_y, domain.points.extent_y);
   EXPECT_EQ(back.points.release, domain.points.release);
+  EXPECT_EQ(back.active, active_cells(domain.grid, domain.layer_height, domain.points));
   ASSERT_EQ(back.points.size(), domain.points.size());
   for (std::size_t p = 0; p < back.points.size(); ++p) {
     ASSERT_NEAR(back.points.x[p], domain.points.x[p], 1e-6 * domain.grid.cell);
@@ -69,7 +72,9 @@ TEST(DomainFile, round_trip_keeps_everything) {
 TEST(DomainFile, a_domain_without_points_can_be_written) {
   const Scratch scratch;
   write_domain(scratch / "domain.vdb", sample(0));
-  EXPECT_EQ(read_domain(scratch / "domain.vdb").points.size(), 0u);
+  const Domain back = read_domain(scratch / "domain.vdb");
+  EXPECT_EQ(back.points.size(), 0u);
+  EXPECT_EQ(back.active, ActiveCells(30, 20));
 }
 
 TEST(DomainFile, vdb_print_lists_it) {
@@ -80,9 +85,9 @@ TEST(DomainFile, vdb_print_lists_it) {
   ASSERT_EQ(std::system(command.c_str()), 0)
       << text_of(scratch / "list.txt") << "\nvdb_print is in the Debian package libopenvdb-tools";
   const std::string list = text_of(scratch / "list.txt");
-  for (const char* expected :
-       {"Name: points", "Name: terrain", "Name: before", "Name: release_thickness", "Name: active", "ptdataidx32",
-        "kind: talus-domain", "crs_wkt: LOCAL_CS", "release_name.0: upper", "cell_m: 20"})
+  for (const char* expected : {"Name: points", "Name: terrain", "Name: before", "Name: release_thickness",
+                               "Name: inside", "Name: active", "ptdataidx32", "kind: talus-domain", "crs_wkt: LOCAL_CS",
+                               "release_name.0: upper", "cell_m: 20", "h_m: 20", "h_z_m: 5"})
     EXPECT_NE(list.find(expected), std::string::npos) << expected << " is not in\n" << list;
 }
 
@@ -113,6 +118,50 @@ TEST(DomainFile, foreign_files_are_refused) {
             missing.string() + ": no such file. Run talus-preprocess first, with the same --out");
   EXPECT_EQ(fault_of<DataError>([&] { read_domain(scratch.folder()); }),
             scratch.folder().string() + ": cannot be read (it is a folder). Check the path");
+}
+
+/// What reading says of a domain that was changed after it was written, without the file's name.
+std::string fault_after(const std::function<void(const openvdb::GridPtrVec& grids, openvdb::MetaMap& header,
+                                                 openvdb::MaskGrid& active)>& change) {
+  const Scratch scratch;
+  write_domain(scratch / "domain.vdb", sample(50));
+  openvdb::io::File file((scratch / "domain.vdb").string());
+  file.open(false);
+  const auto grids = file.getGrids();
+  const auto header = file.getMetadata();
+  file.close();
+  for (const auto& grid : *grids)
+    if (grid->getName() == "active") change(*grids, *header, *openvdb::gridPtrCast<openvdb::MaskGrid>(grid));
+  openvdb::io::File(file.filename()).write(*grids, *header);
+  return fault_of<DataError>([&] { read_domain(scratch / "domain.vdb"); })
+      .substr((scratch / "domain.vdb").string().size());
+}
+
+TEST(DomainFile, a_domain_that_was_only_copied_is_read) {
+  EXPECT_THROW(fault_after([](const auto&, auto&, auto&) {}), std::out_of_range) << "there is no fault to cut";
+}
+
+TEST(DomainFile, older_formats_are_refused) {
+  EXPECT_EQ(fault_after([](const auto&, auto& header, auto&) {
+              header.removeMeta("format");
+              header.insertMeta("format", openvdb::Int64Metadata(3));
+            }),
+            ": its format is 3 (this program reads format 4). Run the talus-preprocess of this version");
+}
+
+TEST(DomainFile, masks_of_other_grids_are_refused) {
+  const std::string no_domain = ": not a whole domain (the mask \"active\" ";
+  EXPECT_EQ(fault_after([](const auto&, auto&, auto& active) {
+              active.removeMeta("h_z_m");
+              active.insertMeta("h_z_m", openvdb::DoubleMetadata(4));
+            }),
+            no_domain + "has other cells than the grid). Make it with talus-preprocess");
+  EXPECT_EQ(
+      fault_after([](const auto&, auto&, auto& active) { active.tree().setValueOn(openvdb::Coord(30, 0, 0), true); }),
+      no_domain + "goes beyond the map). Make it with talus-preprocess");
+  EXPECT_EQ(
+      fault_after([](const auto&, auto&, auto& active) { active.tree().setValueOn(openvdb::Coord(3, 3, 99), true); }),
+      no_domain + "is not made of whole blocks of 4 x 4 columns). Make it with talus-preprocess");
 }
 
 TEST(DomainFile, a_full_disk_leaves_no_half_file) {
