@@ -41,7 +41,7 @@ struct ScatterForces : PointScatter<Real, Shape> {
     TALUS_UNROLL
     for (int c = 0; c < Base::deep; ++c) sums[c] += widen(g.pull * g.gradient(Base::along_x(q), Base::along_y(q), c));
   }
-  TALUS_HD void give_to(int at, const Sums& sums) const { scatter_add(&forces[at], sums); }
+  TALUS_HD void add_to_node(int at, const Sums& sums) const { scatter_add(&forces[at], sums); }
   TALUS_HD static void store(const Sums& sums, double* to) { put(sums, to); }
   TALUS_HD double* part(int node, int q) const { return &forces[node].x + q; }
 };

@@ -170,7 +170,7 @@ struct ScatterVelocity : PointScatter<Real, Shape> {
     for (int c = 0; c < Base::deep; ++c)
       sums[c] += g.momentum * static_cast<double>(g.weight(Base::along_x(q), Base::along_y(q), c));
   }
-  TALUS_HD void give_to(int at, const Sums& sums) const { scatter_add(&momentum[at], sums); }
+  TALUS_HD void add_to_node(int at, const Sums& sums) const { scatter_add(&momentum[at], sums); }
   TALUS_HD static void store(const Sums& sums, double* to) { put(sums, to); }
   TALUS_HD double* part(int node, int q) const { return &momentum[node].x + q; }
 };

@@ -54,7 +54,7 @@ struct ScatterInertia : PointScatter<Real, Shape> {
       sums[c].load += g.load * w;
     }
   }
-  TALUS_HD void give_to(int at, const Sums& sums) const {
+  TALUS_HD void add_to_node(int at, const Sums& sums) const {
     talus::scatter_add(&nodes.mass[at], sums.mass);
     scatter_add(&nodes.velocity[at], sums.momentum);
     if (accelerated) scatter_add(&nodes.acceleration[at], sums.acceleration);

@@ -3,31 +3,52 @@
 #pragma once
 
 #include <bit>
+#include <concepts>
+#include <cstdint>
 #include <new>
+#include <type_traits>
 
 #include "solver/parallel/for_each.hpp"
 
 namespace talus {
 
-/// Runs a scatter over points. The kernel is one for_each_grouped can run (scatter_point below), with the parts of its
-/// work as members:
-///   columns_each, deep  columns of nodes that a point has, and nodes of each
-///   Source              a point as its nodes see it, made from (kernel, point)
-///   Sums                what a node receives, zero to begin with
-///   counts(p)           whether the point gives anything
-///   grid                the grid of those nodes
-///   nodes_of(s)         whose i, j, k are the first node of a source
-///   add(s, q, sums)     adds what the nodes of column q of the source receive to sums[deep]
-///   column_of(s, q)     where layer 0 of column q is stored, or would be
-///   node_in(column, k, c)  where node c of a column of a source whose first layer is k is stored, from that
-///   give_to(place, sums)   passes sums on to a stored node
-/// and, for the lanes of a warp to pass on together what lies together in memory:
-///   Number, parts       what sums are made of, and of how many
-///   gives(k, c)         false where node c of such a column is none of its own: two may be stored in one place, but
-///   only one of them gives store(sums, to)     puts the parts side by side part(node, q)       where part q of a
-///   stored node is has(q)              whether there is such a part; may be left out where all are tiles_at_once
-///   blocks of two tiles that a multiprocessor must have registers for; 0, or left out, where any number will do
+/// A scatter over points, with the parts of its work as members, so that the lanes of a warp can pass on together what
+/// lies together in memory. `s` is a source, `q` one of its columns of nodes, `c` a node of a column, lowest first:
+///   columns_each, deep     columns of nodes that a point has, and nodes of each
+///   Source                 a point as its nodes see it, made from (kernel, point)
+///   Sums                   what a node receives, zero to begin with
+///   Number, parts          what sums are made of, and of how many
+///   grid                   the grid of the nodes
+///   counts(p)              whether point p gives anything
+///   nodes_of(s)            whose i, j, k are the first node of s
+///   add(s, q, sums)        adds what the nodes of column q receive from s to sums[deep]
+///   column_of(s, q)        where layer 0 of column q is stored, or would be
+///   node_in(column, k, c)  where node c of a column whose first layer is k is stored
+///   owns(k, c)             false where that node is another's: two may be stored in one location
+///   add_to_node(n, sums)   adds sums to stored node n, whoever else does
+///   store(sums, to)        puts the parts of sums side by side
+///   part(n, r)             location of part r of stored node n
+/// and, where a kernel has them, has(r), whether there is a part r (all, otherwise), and tiles_at_once, the blocks of
+/// two tiles that a multiprocessor must have registers for (0, or none: any number will do).
 template <class Kernel>
+concept ScatterKernel = std::is_constructible_v<typename Kernel::Source, const Kernel&, int> &&
+    requires(const Kernel& kernel, const typename Kernel::Source& s, typename Kernel::Sums (&sums)[Kernel::deep],
+             typename Kernel::Number* to, int n) {
+  { Kernel::columns_each + Kernel::deep + Kernel::parts } -> std::convertible_to<int>;
+  { kernel.counts(n) } -> std::same_as<bool>;
+  { kernel.grid.column(kernel.nodes_of(s).i, kernel.nodes_of(s).j) } -> std::convertible_to<int>;
+  { kernel.nodes_of(s).k } -> std::convertible_to<int>;
+  kernel.add(s, n, sums);
+  { kernel.column_of(s, n) } -> std::same_as<int>;
+  { kernel.node_in(n, n, n) } -> std::same_as<int>;
+  { kernel.owns(n, n) } -> std::same_as<bool>;
+  kernel.add_to_node(n, sums[0]);
+  kernel.store(sums[0], to);
+  { kernel.part(n, n) } -> std::same_as<typename Kernel::Number*>;
+};
+
+/// What a scatter does for one point, alone.
+template <ScatterKernel Kernel>
 TALUS_HD void scatter_point(const Kernel& kernel, int p) {
   if (!kernel.counts(p)) return;
   const typename Kernel::Source source(kernel, p);
@@ -36,11 +57,12 @@ TALUS_HD void scatter_point(const Kernel& kernel, int p) {
     kernel.add(source, q, sums);
     const int column = kernel.column_of(source, q);
     for (int c = 0; c < Kernel::deep; ++c)
-      kernel.give_to(kernel.node_in(column, kernel.nodes_of(source).k, c), sums[c]);
+      kernel.add_to_node(kernel.node_in(column, kernel.nodes_of(source).k, c), sums[c]);
   }
 }
 
-template <class Kernel>
+/// Runs a scatter over `count` points, of which one that is a kernel of for_each_grouped calls scatter_point.
+template <ScatterKernel Kernel>
 void scatter_points(const CpuDevice& device, int count, const PointGroups& groups, const Kernel& kernel) {
   for_each_grouped(device, count, groups, kernel);
 }
@@ -75,106 +97,177 @@ __device__ inline std::uint64_t sort_lanes(std::uint64_t key) {
   return key;
 }
 
-/// A warp reads `each` points, one a lane, and puts them in the order of their nodes. Then teams take a share of them
-/// each, a lane for every column of nodes: sums stay in registers for as long as the next point has the same nodes;
-/// where its nodes are those a layer up, only the lowest layer is given away, by one atomic a node (after Gao et al.
-/// 2018). With 32 points a block takes 31 kB of shared memory for P2G in double precision.
+/// How a warp parts the work on `each` points: teams take a share of the points each, a lane for every column of nodes.
 template <int each, class Kernel>
-__device__ void take_tile(int count, const Kernel& kernel) {
+struct TileSizes {
+  static constexpr int columns = Kernel::columns_each, deep = Kernel::deep, parts = Kernel::parts;
+  static constexpr int teams = warp_size / columns, share = (each + teams - 1) / teams;
+  /// Bytes from source to source: an odd number of words, so that neighbouring lanes meet different banks.
+  static constexpr std::size_t source_bytes =
+      alignof(typename Kernel::Source) * (sizeof(typename Kernel::Source) / alignof(typename Kernel::Source) | 1);
+  /// In single precision there is an atomic of 16 bytes. One of 8 takes as long as the 32 around it: there,
+  /// neighbouring lanes add neighbouring parts of one node, not the same part of many nodes, and all lanes add what one
+  /// team has found.
+  static constexpr bool together = sizeof(typename Kernel::Number) == 8;
+  static constexpr int lanes_of_a_node = static_cast<int>(std::bit_ceil(static_cast<unsigned>(parts)));
+  /// Nodes of a column, and of a team, that there is memory for at a time.
+  static constexpr int layers_at_once = parts <= 10 ? deep : 1, nodes_at_once = columns * layers_at_once;
+  static constexpr int passed_on = together ? tile_warps * teams * nodes_at_once : 0;  // nodes of all teams
+};
+
+/// Shared memory of a block of two tiles: with 32 points a warp 31 kB for P2G in double precision.
+template <int each, class Kernel>
+struct TileMemory {
   using Source = typename Kernel::Source;
-  constexpr unsigned all = 0xffffffffu;
-  constexpr int columns = Kernel::columns_each, deep = Kernel::deep, teams = warp_size / columns,
-                share = (each + teams - 1) / teams;
-  constexpr std::size_t apart_by =
-      alignof(Source) *
-      (sizeof(Source) / alignof(Source) | 1);  // an odd number of words: neighbouring lanes meet different banks
-  __shared__ alignas(16) unsigned char room[tile_warps * each * apart_by];
-  __shared__ int bases[tile_warps * each][columns];
-  const int lane = static_cast<int>(threadIdx.x) % warp_size, warp = static_cast<int>(threadIdx.x) / warp_size;
-  const auto at = [&](int q) -> Source& {
-    return *reinterpret_cast<Source*>(room + static_cast<std::size_t>(warp * each + q) * apart_by);
-  };
-  constexpr int lane_bits = 5, layer_bits = 20;
-  std::uint64_t key = ~std::uint64_t{0} << lane_bits |
-                      static_cast<unsigned>(lane);  // of a lane whose point does not count: behind all others
-  if (lane < each) {
-    const int p = (static_cast<int>(blockIdx.x) * tile_warps + warp) * each + lane;
-    if (p < count && kernel.counts(p)) {
-      const Source& source = *new (&at(lane)) Source(kernel, p);
-      for (int q = 0; q < columns; ++q) bases[warp * each + lane][q] = kernel.column_of(source, q);
-      const auto& n = kernel.nodes_of(source);
-      key = (static_cast<std::uint64_t>(kernel.grid.column(n.i, n.j)) << layer_bits | static_cast<unsigned>(n.k + 1))
-                << lane_bits |
-            static_cast<unsigned>(lane);
-    }
+  using Sizes = TileSizes<each, Kernel>;
+  alignas(16) unsigned char sources[tile_warps * each * Sizes::source_bytes];
+  int bases[tile_warps * each][Sizes::columns];  // where layer 0 of every column of a source is stored
+  typename Kernel::Number values[Sizes::together ? Sizes::passed_on * Sizes::parts : 1];
+  int nodes[Sizes::together ? Sizes::passed_on : 1];
+
+  __device__ Source& source(int q) {
+    return *reinterpret_cast<Source*>(sources + static_cast<std::size_t>(q) * Sizes::source_bytes);
   }
-  if (__all_sync(all, key >> 63)) return;
+};
+
+/// What a lane of a tile is.
+template <int each, class Kernel>
+struct TileLane {
+  using Sizes = TileSizes<each, Kernel>;
+  int lane, warp;
+  int first_source;  // of this warp
+  int team, column;  // lanes beyond the last team help to pass on
+  __device__ TileLane()
+      : lane(static_cast<int>(threadIdx.x) % warp_size),
+        warp(static_cast<int>(threadIdx.x) / warp_size),
+        first_source(warp * each),
+        team(lane / Sizes::columns),
+        column(lane % Sizes::columns) {}
+};
+
+inline constexpr int lane_bits = 5, layer_bits = 20;
+
+/// Reads the lane's point into shared memory. Returns a key that orders the points by their first node; that of a lane
+/// whose point does not count is behind all others.
+template <int each, class Kernel>
+__device__ __forceinline__ std::uint64_t read_point(int count, const Kernel& kernel, const TileLane<each, Kernel>& at,
+                                                    TileMemory<each, Kernel>& memory) {
+  const std::uint64_t nothing = ~std::uint64_t{0} << lane_bits | static_cast<unsigned>(at.lane);
+  if (at.lane >= each) return nothing;
+  const int p = (static_cast<int>(blockIdx.x) * tile_warps + at.warp) * each + at.lane;
+  if (p >= count || !kernel.counts(p)) return nothing;
+  const auto& source = *new (&memory.source(at.first_source + at.lane)) typename Kernel::Source(kernel, p);
+  for (int q = 0; q < Kernel::columns_each; ++q)
+    memory.bases[at.first_source + at.lane][q] = kernel.column_of(source, q);
+  const auto& n = kernel.nodes_of(source);
+  return (static_cast<std::uint64_t>(kernel.grid.column(n.i, n.j)) << layer_bits | static_cast<unsigned>(n.k + 1))
+             << lane_bits |
+         static_cast<unsigned>(at.lane);
+}
+
+/// The points of a tile in the order of their nodes: bit q of each word is of the q-th.
+struct TileOrder {
+  int point;          // lane that has read the point of this lane's rank
+  unsigned counting;  // the point counts
+  unsigned staying;   // the next one has the same nodes
+  unsigned climbing;  // the next one has those a layer up
+};
+
+__device__ __forceinline__ TileOrder order_points(std::uint64_t key) {
+  constexpr unsigned all = 0xffffffffu;
   __syncwarp();  // votes order no memory: what other lanes have written is read from here on
   key = sort_lanes(key);
-  const int who = static_cast<int>(key & ((1u << lane_bits) - 1));
   const std::uint64_t nodes = key >> lane_bits, nodes_after = __shfl_down_sync(all, nodes, 1);
-  const unsigned counting = __ballot_sync(all, !(key >> 63));
-  const unsigned staying = __ballot_sync(all, nodes_after == nodes),
-                 climbing = __ballot_sync(all, nodes_after == nodes + 1);  // the next point, that is
-  const int team = lane / columns, column = lane % columns;                // lanes beyond the last team help to give
-  const int first = team * share, last = team >= teams ? 0 : first + share < each ? first + share : each;
-  // In single precision there is an atomic of 16 bytes. One of 8 takes as long as the 32 around it: there, neighbouring
-  // lanes add neighbouring parts of one node, not the same part of many nodes, and all lanes give what one team has
-  // found.
-  constexpr bool together = sizeof(typename Kernel::Number) == 8;
-  constexpr int parts = Kernel::parts, apart = static_cast<int>(std::bit_ceil(static_cast<unsigned>(parts)));
-  constexpr int at_once = parts <= 10 ? deep : 1,
-                given = columns * at_once;  // nodes of a column, and of a team, that there is room for
-  __shared__ typename Kernel::Number all_values[together ? tile_warps * teams * given * parts : 1];
-  __shared__ int all_places[together ? tile_warps * teams * given : 1];
-  const int part = lane % apart;
-  const bool mine_to_give = part < parts && has_part(kernel, part);
-  typename Kernel::Sums sums[deep];
-  for (int step = 0; step < share; ++step) {
-    const int q = first + step;
-    const int point = __shfl_sync(all, who, q < warp_size ? q : 0);
-    const bool adds = q < last && (counting >> q & 1u) != 0, goes_on = adds && q + 1 < last;
-    if (adds) kernel.add(at(point), column, sums);
-    const bool climbs = goes_on && (climbing >> q & 1u) != 0, ends = adds && !(goes_on && (staying >> q & 1u) != 0);
-    if constexpr (!together) {
-      if (!ends) continue;
+  return {static_cast<int>(key & ((1u << lane_bits) - 1)), __ballot_sync(all, !(key >> 63)),
+          __ballot_sync(all, nodes_after == nodes), __ballot_sync(all, nodes_after == nodes + 1)};
+}
+
+/// Adds the sums of every lane that `ends` a run of points to the nodes of its column, those of the lowest layer alone
+/// where it `climbs`: all lanes of the warp, for one team after the other, neighbouring parts of a node at a time.
+/// `source` is the last point's.
+template <int each, class Kernel>
+__device__ __forceinline__ void add_together(const Kernel& kernel, const TileLane<each, Kernel>& at,
+                                             TileMemory<each, Kernel>& memory, int source, bool ends, bool climbs,
+                                             const typename Kernel::Sums (&sums)[Kernel::deep]) {
+  using Sizes = TileSizes<each, Kernel>;
+  constexpr unsigned all = 0xffffffffu;
+  constexpr int lanes = Sizes::lanes_of_a_node, parts = Sizes::parts;
+  const int part = at.lane % lanes;
+  const bool adds_part = part < parts && has_part(kernel, part);
+  const unsigned whole = __ballot_sync(all, ends && !climbs);
+  if (__ballot_sync(all, ends) == 0) return;
+  TALUS_UNROLL
+  for (int from = 0; from < Sizes::deep; from += Sizes::layers_at_once) {
+    const bool passes = ends && (from == 0 || !climbs);
+    const unsigned passing = __ballot_sync(all, passes);
+    if (passes) {
       TALUS_UNROLL
-      for (int c = 0; c < deep; ++c) {
-        if (c == 0 || !climbs)
-          kernel.give_to(kernel.node_in(bases[warp * each + point][column], kernel.nodes_of(at(point)).k, c), sums[c]);
+      for (int c = from; c < from + Sizes::layers_at_once; ++c) {
+        const int n =
+            (at.warp * Sizes::teams + at.team) * Sizes::nodes_at_once + (c - from) * Sizes::columns + at.column;
+        kernel.store(sums[c], memory.values + n * parts);
+        memory.nodes[n] = kernel.node_in(memory.bases[source][at.column], kernel.nodes_of(memory.source(source)).k, c);
       }
-    } else {
-      const unsigned whole = __ballot_sync(all, ends && !climbs);
-      if (__ballot_sync(all, ends) == 0) continue;
-      TALUS_UNROLL
-      for (int from = 0; from < deep; from += at_once) {
-        const bool gives = ends && (from == 0 || !climbs);
-        const unsigned giving = __ballot_sync(all, gives);
-        if (gives) {
-          TALUS_UNROLL
-          for (int c = from; c < from + at_once; ++c) {
-            const int n = (warp * teams + team) * given + (c - from) * columns + column;
-            kernel.store(sums[c], all_values + n * parts);
-            all_places[n] = kernel.node_in(bases[warp * each + point][column], kernel.nodes_of(at(point)).k, c);
-          }
-        }
-        __syncwarp();
-        for (int g = 0; g < teams; ++g) {
-          if ((giving >> (g * columns) & 1u) == 0) continue;
-          const auto* const values = all_values + (warp * teams + g) * given * parts;
-          const int* const places = all_places + (warp * teams + g) * given;
-          const int to_give = (whole >> (g * columns) & 1u) != 0 ? given : columns;
-          if (!mine_to_give) continue;
-          for (int n = lane / apart; n < to_give; n += warp_size / apart)
-            atomicAdd(kernel.part(places[n], part), values[n * parts + part]);
-        }
-        __syncwarp();
-      }
-      if (!ends) continue;
     }
+    __syncwarp();
+    for (int g = 0; g < Sizes::teams; ++g) {
+      if ((passing >> (g * Sizes::columns) & 1u) == 0) continue;
+      const int begin = (at.warp * Sizes::teams + g) * Sizes::nodes_at_once;
+      const auto* const values = memory.values + begin * parts;
+      const int* const nodes = memory.nodes + begin;
+      const int number = (whole >> (g * Sizes::columns) & 1u) != 0 ? Sizes::nodes_at_once : Sizes::columns;
+      if (!adds_part) continue;
+      for (int n = at.lane / lanes; n < number; n += warp_size / lanes)
+        atomicAdd(kernel.part(nodes[n], part), values[n * parts + part]);
+    }
+    __syncwarp();
+  }
+}
+
+/// Adds the sums of a lane whose run of points ends to the nodes of its column, the lowest layer's alone where it
+/// climbs.
+template <int each, class Kernel>
+__device__ __forceinline__ void add_alone(const Kernel& kernel, const TileLane<each, Kernel>& at,
+                                          TileMemory<each, Kernel>& memory, int source, bool climbs,
+                                          const typename Kernel::Sums (&sums)[Kernel::deep]) {
+  TALUS_UNROLL
+  for (int c = 0; c < Kernel::deep; ++c) {
+    if (c > 0 && climbs) continue;
+    const int k = kernel.nodes_of(memory.source(source)).k;
+    kernel.add_to_node(kernel.node_in(memory.bases[source][at.column], k, c), sums[c]);
+  }
+}
+
+/// Sums what `each` points a warp give to their nodes before it goes to memory (after Gao et al. 2018). A warp reads
+/// one point a lane and orders them by their nodes; its teams go through a share of them each, with the sums of a
+/// column in registers for as long as the next point has the same nodes. Where its nodes are those a layer up, only the
+/// lowest layer is passed on.
+template <int each, class Kernel>
+__device__ void reduce_tile(int count, const Kernel& kernel) {
+  using Sizes = TileSizes<each, Kernel>;
+  constexpr unsigned all = 0xffffffffu;
+  __shared__ TileMemory<each, Kernel> memory;
+  const TileLane<each, Kernel> at;
+  const std::uint64_t key = read_point<each>(count, kernel, at, memory);
+  if (__all_sync(all, key >> 63)) return;
+  const TileOrder order = order_points(key);
+  const int first = at.team * Sizes::share, last = at.team >= Sizes::teams       ? 0
+                                                   : first + Sizes::share < each ? first + Sizes::share
+                                                                                 : each;
+  typename Kernel::Sums sums[Sizes::deep];
+  for (int step = 0; step < Sizes::share; ++step) {
+    const int q = first + step;
+    const int source = at.first_source + __shfl_sync(all, order.point, q < warp_size ? q : 0);
+    const bool adds = q < last && (order.counting >> q & 1u) != 0, goes_on = adds && q + 1 < last;
+    if (adds) kernel.add(memory.source(source), at.column, sums);
+    const bool climbs = goes_on && (order.climbing >> q & 1u) != 0,
+               ends = adds && !(goes_on && (order.staying >> q & 1u) != 0);
+    if constexpr (Sizes::together) add_together<each>(kernel, at, memory, source, ends, climbs, sums);
+    if (!ends) continue;
+    if constexpr (!Sizes::together) add_alone<each>(kernel, at, memory, source, climbs, sums);
     TALUS_UNROLL
-    for (int c = 0; c < deep; ++c) {
-      if (climbs && c + 1 < deep) {
+    for (int c = 0; c < Sizes::deep; ++c) {
+      if (climbs && c + 1 < Sizes::deep) {
         sums[c] = sums[c + 1];
       } else {
         sums[c] = {};
@@ -186,14 +279,14 @@ __device__ void take_tile(int count, const Kernel& kernel) {
 template <int each, class Kernel>
 __global__ void run_tiles(int count, Kernel kernel) {
   begin_kernel();
-  take_tile<each>(count, kernel);
+  reduce_tile<each>(count, kernel);
 }
 
 /// The same in as many registers as let this number of blocks share a multiprocessor.
 template <int each, int blocks, class Kernel>
 __global__ __launch_bounds__(tile_warps* warp_size, blocks) void run_tiles_densely(int count, Kernel kernel) {
   begin_kernel();
-  take_tile<each>(count, kernel);
+  reduce_tile<each>(count, kernel);
 }
 
 template <int each, class Kernel>
@@ -231,7 +324,7 @@ __global__ void run_tiles_in_order(const PointGroups::Range* ranges, Kernel kern
         kernel.add(tile[q], lane, sums);
         const int column = kernel.column_of(tile[q], lane);
         for (int c = 0; c < Kernel::deep; ++c) {
-          if (!kernel.gives(kernel.nodes_of(tile[q]).k, c)) continue;
+          if (!kernel.owns(kernel.nodes_of(tile[q]).k, c)) continue;
           typename Kernel::Number parts[Kernel::parts];
           kernel.store(sums[c], parts);
           const int node = kernel.node_in(column, kernel.nodes_of(tile[q]).k, c);
@@ -247,7 +340,7 @@ __global__ void run_tiles_in_order(const PointGroups::Range* ranges, Kernel kern
 
 }  // namespace detail
 
-template <class Kernel>
+template <ScatterKernel Kernel>
 void scatter_points(const GpuDevice& device, int count, const PointGroups& groups, const Kernel& kernel) {
   if (count <= 0) return;
   const KernelTime<GpuDevice> time(device, kernel, count);

@@ -104,7 +104,7 @@ struct ParticleToGrid {
     return Stencil<Real, Shape>::column_at(grid, s.i + q % width, s.j + q / width);
   }
   TALUS_HD static int node_in(int column, int k, int c) { return Stencil<Real, Shape>::node(column, k, c); }
-  TALUS_HD static bool gives(int k, int c) { return k + c >= 0; }  // below the ground there is none
+  TALUS_HD static bool owns(int k, int c) { return k + c >= 0; }  // below the ground there is none
   TALUS_HD static void store(const Sums& sums, Real* to) {
     to[0] = sums.mass;
     to[1] = sums.momentum.x;
@@ -141,7 +141,7 @@ struct ParticleToGrid {
     }
   }
 
-  TALUS_HD void give_to(int n, const Sums& sums) const {
+  TALUS_HD void add_to_node(int n, const Sums& sums) const {
     scatter_add(&nodes[n], sums.mass, sums.momentum);
     if constexpr (what == Scatter::force) scatter_add(&forces[n], Real(0), sums.force);
   }

@@ -63,7 +63,7 @@ struct PointScatter {
   TALUS_HD static const Stencil<Real, Shape>& nodes_of(const Gradients& g) { return g.s; }
   TALUS_HD int column_of(const Gradients& g, int q) const { return g.s.column(grid, along_x(q), along_y(q)); }
   TALUS_HD static int node_in(int column, int k, int c) { return Stencil<Real, Shape>::node(column, k, c); }
-  TALUS_HD static bool gives(int k, int c) { return k + c >= 0; }  // below the ground there is none
+  TALUS_HD static bool owns(int k, int c) { return k + c >= 0; }  // below the ground there is none
 };
 
 }  // namespace talus::solver

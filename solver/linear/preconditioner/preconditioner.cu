@@ -39,7 +39,7 @@ struct ScatterBlocks : PointScatter<Real, Shape> {
     TALUS_UNROLL
     for (int c = 0; c < Base::deep; ++c) add(g, Base::along_x(q), Base::along_y(q), c, sums[c]);
   }
-  TALUS_HD void give_to(int at, const Sums& sums) const {
+  TALUS_HD void add_to_node(int at, const Sums& sums) const {
     double values[parts];
     store(sums, values);
     for (int q = 0; q < parts; ++q) {
