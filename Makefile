@@ -41,10 +41,11 @@ build: setup $(BUILD)/build.ninja ## the programs, in build/bin/ [CUDAARCHS=90-r
 
 demo: build ## the synthetic valley from its two elevation models to a scored map
 	@touch $(BUILD)/.demo-begins
-	@$(MAKE) --no-print-directory -C pipelines synthetic-valley OUT=$(abspath $(OUT)) BIN=$(abspath $(BUILD))/bin
+	@$(MAKE) --no-print-directory -C pipelines synthetic-valley \
+	  OUT="$$(realpath -ms -- '$(OUT)')" BIN="$$(realpath -ms -- '$(BUILD)/bin')"
 	@# A run has printed its table; where nothing was left to do, show it again.
-	@[[ $(OUT)/synthetic-valley/score.txt -nt $(BUILD)/.demo-begins ]] || cat $(OUT)/synthetic-valley/score.txt
-	@printf '%s\n' '' 'Results in $(abspath $(OUT))/synthetic-valley:' \
+	@table='$(OUT)/synthetic-valley/score.txt'; [[ $$table -nt $(BUILD)/.demo-begins ]] || cat "$$table"
+	@printf '%s\n' '' "Results in $$(realpath -ms -- '$(OUT)')/synthetic-valley:" \
 	  '  report.html                  all of it on one page, for a browser' \
 	  '  map.png                      the map as a picture' \
 	  '  history.csv                  energy, volume, speed and steps over time' \

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "common/gis/crs.hpp"
+#include "common/gis/dataset_files.hpp"
 #include "common/run/run_file.hpp"
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/maps/avaframe.hpp"
@@ -154,7 +155,28 @@ void write_results(StageContext& context, const Job& job) {
   log_info("\n" + table);
 }
 
+/// What the report shows of the stages before and of the survey, where it lies beside the run.
+std::vector<fs::path> texts_beside(const fs::path& folder) {
+  std::vector<fs::path> files{folder / "preprocess.used.toml", folder / "solve.used.toml",
+                              folder / "survey" / "survey.json"};
+  std::erase_if(files, [](const fs::path& file) { return !fs::exists(file); });
+  return files;
+}
+
 }  // namespace
+
+Dependencies depends(const StageContext& context) {
+  auto options = context.recipe.read<Options>("postprocess");
+  options.survey.name_files(context.out);
+  const fs::path run = run_file(context, options);
+  const SurveyOptions& survey = options.survey;
+  auto inputs = with_sidecars({survey.thickness, survey.difference, survey.after_dem, survey.before_dem, survey.sigma,
+                               survey.peak_thickness, survey.polygon, options.thalweg});
+  inputs.insert(inputs.begin(), run);
+  if (options.report)
+    for (const fs::path& file : texts_beside(run.parent_path())) inputs.push_back(file);
+  return {{context.out / "score.json"}, inputs};
+}
 
 void run(StageContext& context) {
   Job job;
@@ -183,6 +205,10 @@ Stage stage() {
       "  talus-postprocess scene.toml --out out/scene --check    read run and survey, write nothing\n"
       "  talus-postprocess --template >> scene.toml    all keys with their defaults\n";
   stage.template_toml = [] { return recipe::to_toml(Options{}, "postprocess", true); };
+  stage.used_toml = [](const recipe::Recipe& recipe) {
+    return recipe::to_toml(recipe.read<Options>("postprocess"), "postprocess", false);
+  };
+  stage.depends = depends;
   stage.run = run;
   return stage;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "common/gis/crs.hpp"
+#include "common/gis/dataset_files.hpp"
 #include "common/map/sum.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/output/write_survey.hpp"
@@ -74,6 +75,11 @@ Facts provenance_of(const StageContext& context, const preprocess::Prepared& pre
   return provenance;
 }
 
+/// What the command line says beyond what every stage takes.
+struct PreprocessFlags {
+  bool difference = false;  // compare the surveys and stop
+};
+
 Stage stage();
 
 /// OUT/survey, where there is anything to put into it.
@@ -103,9 +109,23 @@ void run_difference(StageContext& context, const preprocess::Options& options) {
                       {options.before_dem, options.after_dem}, {{"crs", crs_name(survey.grid.crs_wkt)}});
 }
 
-void run(StageContext& context) {
-  const auto options = context.recipe.read<preprocess::Options>("preprocess");
-  if (context.difference) return run_difference(context, options);
+preprocess::Options read_options(const StageContext& context) {
+  return context.recipe.read<preprocess::Options>("preprocess");
+}
+
+/// domain.vdb, or the survey alone where only the difference is asked for.
+Dependencies depends(const StageContext& context, const PreprocessFlags& flags) {
+  const auto options = read_options(context);
+  if (flags.difference)
+    return {{context.out / "survey/survey.json"}, with_sidecars({options.before_dem, options.after_dem})};
+  Dependencies depends{{context.out / "domain.vdb"}, with_sidecars(preprocess::inputs_of(options))};
+  if (!options.obstacle.empty()) depends.results.push_back(context.out / "obstacles.vdb");
+  return depends;
+}
+
+void run(StageContext& context, const PreprocessFlags& flags) {
+  const auto options = read_options(context);
+  if (flags.difference) return run_difference(context, options);
   auto prepared =
       preprocess::prepare(options, context.check_only ? preprocess::Points::counted : preprocess::Points::seeded);
   report(prepared);
@@ -138,12 +158,23 @@ Stage stage() {
       "  talus-preprocess recipe.toml --difference       compare the two surveys block by block, write OUT/survey and "
       "stop\n"
       "  talus-preprocess --template > recipe.toml       every key with its meaning and range";
-  stage.has_difference = true;
   stage.template_toml = [] { return recipe::to_toml(preprocess::Options{}, "preprocess", true); };
-  stage.run = run;
+  stage.used_toml = [](const recipe::Recipe& recipe) {
+    return recipe::to_toml(recipe.read<preprocess::Options>("preprocess"), "preprocess", false);
+  };
   return stage;
 }
 
 }  // namespace
 
-int main(int argc, char** argv) { return talus::run_stage(argc, argv, stage()); }
+int main(int argc, char** argv) {
+  PreprocessFlags given;
+  Stage program = stage();
+  program.flags = {
+      {.name = "--difference",
+       .help = "Compare before_dem and after_dem, write what changed with its error (OUT/survey), and stop",
+       .set = [&](const std::string&) { given.difference = true; }}};
+  program.depends = [&](const StageContext& context) { return depends(context, given); };
+  program.run = [&](StageContext& context) { run(context, given); };
+  return talus::run_stage(argc, argv, program);
+}

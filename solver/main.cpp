@@ -2,6 +2,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -11,6 +14,7 @@
 #include "solver/integrator/scene.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/parallel/bandwidth.hpp"
+#include "solver/parallel/on.hpp"
 #include "solver/run/plan.hpp"
 #include "solver/run/profile_report.hpp"
 #include "solver/run/simulation.hpp"
@@ -29,16 +33,49 @@ const char* const examples =
     "  talus-solve recipe.toml --out out/valley --restart  # go on after Ctrl-C\n"
     "  talus-solve recipe.toml --out out/valley --plan     # say what is on, how many steps, how long; write nothing";
 
+/// What the command line says beyond what every stage takes.
+struct SolveFlags {
+  On on = On::automatic;
+  std::optional<std::filesystem::path> restart;  // empty path: OUT/checkpoint.h5
+  bool profile = false;
+  bool plan = false;
+};
+
+On device_called(const std::string& word) {
+  if (word == "cpu") return On::cpu;
+  return word == "gpu" ? On::gpu : On::automatic;
+}
+
+/// The flags of talus-solve, each setting its member of `given`, which must outlive them.
+std::vector<Flag> flags(SolveFlags& given) {
+  return {{.name = "--on",
+           .help = "Where to run; auto takes the GPU where there is one",
+           .choices = {"auto", "cpu", "gpu"},
+           .set = [&](const std::string& word) { given.on = device_called(word); }},
+          {.name = "--restart",
+           .help = "Go on from a checkpoint (default: checkpoint.h5 in the results)",
+           .value = "[FILE]",
+           .set = [&](const std::string& file) { given.restart = file; }},
+          {.name = "--profile",
+           .help = "Measure where the time goes, phase by phase and kernel by kernel; say it at the end, and in "
+                   "profile.csv",
+           .set = [&](const std::string&) { given.profile = true; }},
+          {.name = "--plan",
+           .help = "Say what is on, points, memory, steps and the time to expect; run and write nothing",
+           .writes_nothing = true,
+           .set = [&](const std::string&) { given.plan = true; }}};
+}
+
 Stage stage() {
   Stage s;
   s.name = "talus-solve";
   s.table = "solve";
   s.summary = "Simulate the slide in three dimensions with the material point method: domain.vdb -> run.h5.";
   s.examples = examples;
-  s.has_on = true;
-  s.has_restart = true;
-  s.has_profile = true;
   s.template_toml = [] { return recipe::to_toml(SolveOptions{}, "solve", true); };
+  s.used_toml = [](const recipe::Recipe& recipe) {
+    return recipe::to_toml(recipe.read<SolveOptions>("solve"), "solve", false);
+  };
   return s;
 }
 
@@ -108,14 +145,40 @@ void find_obstacles(SolveOptions& o, const std::filesystem::path& out) {
   }
 }
 
-void solve(StageContext& context) {
-  auto options = with_preset(context.recipe.read<SolveOptions>("solve"));
+SolveOptions read_options(const StageContext& context) {
+  SolveOptions options = with_preset(context.recipe.read<SolveOptions>("solve"));
   find_obstacles(options, context.out);
-  const AnyDevice device = make_device(choose_device(context.on));
-  const auto domain_file = options.domain.empty() ? context.out / "domain.vdb" : options.domain;
+  return options;
+}
+
+/// The domain first, then the level sets of obstacles.
+std::vector<std::filesystem::path> inputs_of(const SolveOptions& options, const std::filesystem::path& out) {
+  std::vector<std::filesystem::path> inputs{options.domain.empty() ? out / "domain.vdb" : options.domain};
+  for (const ObstacleOptions& obstacle : options.obstacles)
+    if (std::find(inputs.begin(), inputs.end(), obstacle.level_set) == inputs.end())
+      inputs.push_back(obstacle.level_set);
+  return inputs;
+}
+
+std::filesystem::path checkpoint_of(const SolveFlags& flags, const RunPaths& paths) {
+  return flags.restart->empty() ? paths.checkpoint : *flags.restart;
+}
+
+Dependencies depends(const StageContext& context, const SolveFlags& flags) {
+  const RunPaths paths(context.out);
+  Dependencies depends{{paths.run}, inputs_of(read_options(context), context.out)};
+  if (flags.restart) depends.inputs.push_back(checkpoint_of(flags, paths));
+  return depends;
+}
+
+void solve(StageContext& context, const SolveFlags& flags) {
+  auto options = read_options(context);
+  const AnyDevice device = make_device(choose_device(flags.on));
+  auto inputs = inputs_of(options, context.out);
+  const auto domain_file = inputs.front();
   const Domain domain = read_domain(domain_file);
   options = settle_stiffness(domain, options);
-  if (context.plan) {
+  if (flags.plan) {
     for (const std::string& text : plan(domain, options, device)) log_info(text);
     return;
   }
@@ -123,21 +186,17 @@ void solve(StageContext& context) {
 
   const std::string settings = recipe::to_toml(options, "solve", false);
   std::string fingerprint = sha256(domain_file) + "\n" + settings;
-  std::vector<std::filesystem::path> inputs{context.recipe.file(), domain_file};
-  for (const ObstacleOptions& obstacle : options.obstacles) {
-    fingerprint += sha256(obstacle.level_set) + "\n";
-    if (std::find(inputs.begin(), inputs.end(), obstacle.level_set) == inputs.end())
-      inputs.push_back(obstacle.level_set);
-  }
+  for (const ObstacleOptions& obstacle : options.obstacles) fingerprint += sha256(obstacle.level_set) + "\n";
+  inputs.insert(inputs.begin(), context.recipe.file());
   const RunPaths paths(context.out);
-  if (context.profile) device.profile().turn_on();
+  if (flags.profile) device.profile().turn_on();
   Simulation simulation(domain, options, device, paths, fingerprint);
   if (context.check_only) return;
-  if (context.restart) simulation.resume(context.restart->empty() ? paths.checkpoint : *context.restart);
+  if (flags.restart) simulation.resume(checkpoint_of(flags, paths));
   const RunSummary summary = simulation.run(context.recipe.scene_name(), context.recipe.title());
   log_info(fmt::format("{} at t = {:.2f} s after {} steps in {:.1f} s", summary.stop_reason, summary.time_end,
                        summary.steps, summary.wall_time));
-  if (context.profile) report_profile(summary, device, context.out);
+  if (flags.profile) report_profile(summary, device, context.out);
   if (options.material.stiffness_check) check_stiffness(domain, options, device, context, paths.run);
   context.results.push_back(paths.run);
   write_used_recipe(context, stage(), recipe::to_used_toml(options, "solve"), inputs,
@@ -150,7 +209,10 @@ void solve(StageContext& context) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  SolveFlags given;
   Stage s = stage();
-  s.run = solve;
+  s.flags = flags(given);
+  s.depends = [&](const StageContext& context) { return depends(context, given); };
+  s.run = [&](StageContext& context) { solve(context, given); };
   return run_stage(argc, argv, s);
 }

@@ -1,8 +1,11 @@
 #include "common/stage/command_line.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <deque>
 
 namespace talus {
 namespace {
@@ -12,10 +15,51 @@ constexpr auto exit_codes =
     "4 the computation failed, 130 ended by Ctrl-C.\n"
     "Result paths go to stdout, everything for people to stderr.";
 
-struct Words {
-  std::string recipe, out, on = "auto", restart;
-  bool verbose = false, quiet = false, version = false;
+/// A flag of the stage's own on the command line.
+struct Own {
+  Flag flag;
+  CLI::Option* option = nullptr;
+  std::string value = {};
+
+  bool may_go_without_value() const { return flag.value.starts_with('['); }
 };
+
+struct Words {
+  std::string recipe, out;
+  bool verbose = false, quiet = false, version = false;
+  std::deque<Own> own = {};  // CLI11 keeps pointers to the values
+};
+
+/// Every stage takes --on, so that one command line serves all; stages that run no kernels pass it over.
+Flag unheeded_on() {
+  return {.name = "--on",
+          .help = "This stage runs on the CPU whatever is asked",
+          .choices = {"auto", "cpu", "gpu"},
+          .set = [](const std::string&) {}};
+}
+
+std::vector<Flag> own_flags(const Stage& stage) {
+  std::vector<Flag> flags = stage.flags;
+  const bool has_on = std::any_of(flags.begin(), flags.end(), [](const Flag& flag) { return flag.name == "--on"; });
+  if (!has_on) flags.insert(flags.begin(), unheeded_on());
+  return flags;
+}
+
+/// "auto|cpu|gpu", "[FILE]", or nothing.
+std::string shown_value(const Flag& flag) {
+  return flag.choices.empty() ? flag.value : fmt::format("{}", fmt::join(flag.choices, "|"));
+}
+
+void declare(CLI::App& app, Own& own) {
+  const Flag& flag = own.flag;
+  if (shown_value(flag).empty()) {
+    own.option = app.add_flag(flag.name, flag.help);
+    return;
+  }
+  own.option = app.add_option(flag.name, own.value, flag.help)->type_name(shown_value(flag));
+  if (!flag.choices.empty()) own.option->check(CLI::IsMember(flag.choices).description(""));
+  if (own.may_go_without_value()) own.option->expected(0, 1);
+}
 
 void declare(CLI::App& app, const Stage& stage, CommandLine& line, Words& words) {
   app.add_option("recipe", words.recipe, "The scene's recipe (TOML)")->type_name("recipe.toml");
@@ -24,50 +68,42 @@ void declare(CLI::App& app, const Stage& stage, CommandLine& line, Words& words)
   app.add_flag("--check", line.check_only, "Read and test everything cheap; compute and write nothing");
   app.add_flag("--template", line.print_template,
                "Print this stage's recipe table with every key, its default and its meaning");
-  app.add_option("--on", words.on,
-                 stage.has_on ? "Where to run; auto takes the GPU where there is one"
-                              : "This stage runs on the CPU whatever is asked")
-      ->type_name("auto|cpu|gpu")
-      ->check(CLI::IsMember({"auto", "cpu", "gpu"}).description(""));
-  if (stage.has_restart)
-    app.add_option("--restart", words.restart, "Go on from a checkpoint (default: checkpoint.h5 in the results)")
-        ->type_name("[FILE]")
-        ->expected(0, 1);
-  if (stage.has_profile)
-    app.add_flag(
-        "--profile", line.profile,
-        "Measure where the time goes, phase by phase and kernel by kernel; say it at the end, and in profile.csv");
-  if (stage.has_profile)
-    app.add_flag("--plan", line.plan,
-                 "Say what is on, points, memory, steps and the time to expect; run and write nothing");
-  if (stage.has_difference)
-    app.add_flag("--difference", line.difference,
-                 "Compare before_dem and after_dem, write what changed with its error (OUT/survey), and stop");
+  app.add_flag("--used", line.print_used,
+               "Print [scene] and this stage's recipe table as they would be used, defaults filled in; run nothing");
+  app.add_flag("--depends", line.print_depends,
+               "Print what this stage reads, as rules for make; run and write nothing");
+  for (Flag& flag : own_flags(stage)) declare(app, words.own.emplace_back(Own{std::move(flag)}));
   auto* verbose = app.add_flag("-v,--verbose", words.verbose, "Say more");
   app.add_flag("-q,--quiet", words.quiet, "Say nothing but errors")->excludes(verbose);
   app.add_flag("--version", words.version, "Print the version and its commit");
 }
 
-On place(const std::string& word) {
-  if (word == "cpu") return On::cpu;
-  return word == "gpu" ? On::gpu : On::automatic;
+/// `--restart recipe.toml` without another word: the recipe was meant, not the value that --restart may go without.
+void return_recipe(Words& words) {
+  for (Own& own : words.own)
+    if (words.recipe.empty() && own.may_go_without_value() && own.value.ends_with(".toml"))
+      std::swap(words.recipe, own.value);
 }
 
-/// `--restart recipe.toml` without another word: the recipe was meant, not a checkpoint.
-void untangle_restart(const CLI::App& app, CommandLine& line, Words& words) {
-  if (app.get_option_no_throw("--restart") == nullptr || app.count("--restart") == 0) return;
-  if (words.recipe.empty() && words.restart.ends_with(".toml")) std::swap(words.recipe, words.restart);
-  line.restart = words.restart;
+/// Hands the stage's own flags over to the stage.
+void set_own(const Words& words, CommandLine& line) {
+  for (const Own& own : words.own) {
+    if (own.option->count() == 0) continue;
+    own.flag.set(own.value);
+    line.writes_nothing = line.writes_nothing || own.flag.writes_nothing;
+  }
 }
 
 }  // namespace
 
 std::string usage(const Stage& stage) {
-  return fmt::format(
-      "Usage: {} recipe.toml [--out DIR] [--check] [--template] [--on auto|cpu|gpu]{}{}{} [-v|-q] (all of it: {} "
-      "--help)",
-      stage.name, stage.has_restart ? " [--restart [FILE]]" : "", stage.has_profile ? " [--profile] [--plan]" : "",
-      stage.has_difference ? " [--difference]" : "", stage.name);
+  std::string own;
+  for (const Flag& flag : own_flags(stage)) {
+    const std::string value = shown_value(flag);
+    own += fmt::format(" [{}{}{}]", flag.name, value.empty() ? "" : " ", value);
+  }
+  return fmt::format("Usage: {} recipe.toml [--out DIR] [--check] [--template]{} [-v|-q] (all of it: {} --help)",
+                     stage.name, own, stage.name);
 }
 
 std::variant<CommandLine, Answer> parse_command_line(int argc, char** argv, const Stage& stage) {
@@ -84,10 +120,11 @@ std::variant<CommandLine, Answer> parse_command_line(int argc, char** argv, cons
     throw RecipeError(Fault{error.what(), "", usage(stage)});
   }
   if (words.version) return Answer{stage.name + " " + version() + "\n"};
-  untangle_restart(app, line, words);
+  return_recipe(words);
+  line.writes_nothing = line.check_only;
+  set_own(words, line);
   line.recipe = words.recipe;
   line.out = words.out;
-  line.on = place(words.on);
   if (words.quiet) line.verbosity = Verbosity::quiet;
   if (words.verbose) line.verbosity = Verbosity::verbose;
   return line;

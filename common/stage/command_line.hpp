@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <variant>
 
@@ -14,13 +13,11 @@ namespace talus {
 struct CommandLine {
   std::filesystem::path recipe;  ///< empty: none given
   std::filesystem::path out;     ///< empty: beside the recipe
-  On on = On::automatic;
   bool check_only = false;
   bool print_template = false;
-  bool profile = false;
-  bool plan = false;
-  bool difference = false;
-  std::optional<std::filesystem::path> restart;
+  bool print_used = false;
+  bool print_depends = false;
+  bool writes_nothing = false;  ///< --check, or a flag of the stage's own that writes nothing
   Verbosity verbosity = Verbosity::normal;
 };
 
@@ -29,7 +26,8 @@ struct Answer {
   std::string text;
 };
 
-/// Throws RecipeError when an option is unknown or wrong.
+/// Reads the options that every stage has, and sets those of stage.flags that are given. Throws RecipeError when an
+/// option is unknown or wrong.
 std::variant<CommandLine, Answer> parse_command_line(int argc, char** argv, const Stage& stage);
 
 /// "Usage: talus-solve recipe.toml [--out DIR] ..."

@@ -56,6 +56,25 @@ std::string joined(int argc, char** argv) {
   return text;
 }
 
+/// The paths below the output folder as --out was given, as compilers do with -MD; others as they are.
+void show_as_given(std::vector<fs::path>& paths, const fs::path& out, const fs::path& given) {
+  if (given.empty()) return;
+  for (fs::path& path : paths) {
+    const fs::path below = path.lexically_relative(out);
+    if (!below.empty() && *below.begin() != "..") path = (given / below).lexically_normal();
+  }
+}
+
+/// --used and --depends: what would go into the results.
+void print_inputs(const CommandLine& line, const Stage& stage, const StageContext& context) {
+  if (line.print_used) fmt::print("{}", own_recipe(context.recipe, stage.used_toml(context.recipe)));
+  if (!line.print_depends) return;
+  Dependencies depends = stage.depends(context);
+  show_as_given(depends.results, context.out, line.out);
+  show_as_given(depends.inputs, context.out, line.out);
+  fmt::print("{}", make_rules(depends));
+}
+
 void run(const CommandLine& line, const std::string& command, const Stage& stage) {
   if (line.print_template) {
     fmt::print(
@@ -66,19 +85,12 @@ void run(const CommandLine& line, const std::string& command, const Stage& stage
     return;
   }
   if (line.recipe.empty()) throw RecipeError(Fault{"no recipe was given", "", usage(stage)});
-  StageContext context{recipe::Recipe(line.recipe),
-                       {},
-                       line.on,
-                       line.check_only,
-                       line.restart,
-                       line.profile,
-                       line.plan,
-                       line.difference,
-                       command,
-                       {}};
+  StageContext context{
+      .recipe = recipe::Recipe(line.recipe), .out = {}, .check_only = line.check_only, .command_line = command};
   const fs::path beside = context.recipe.file().parent_path() / "out";
   context.out = line.out.empty() ? beside : fs::absolute(line.out).lexically_normal();
-  line.check_only || line.plan ? check_output_folder(context.out) : prepare_output_folder(context.out);
+  if (line.print_used || line.print_depends) return print_inputs(line, stage, context);
+  line.writes_nothing ? check_output_folder(context.out) : prepare_output_folder(context.out);
   watch_for_interrupts();
   stage.run(context);
   clear_progress_line();

@@ -4,49 +4,52 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "common/error.hpp"
 #include "common/recipe/recipe.hpp"
+#include "common/stage/depends.hpp"
 
 namespace talus {
-
-enum class On { automatic, cpu, gpu };
 
 /// What the command line asked for, and what the stage made.
 struct StageContext {
   recipe::Recipe recipe;
   std::filesystem::path out;  ///< exists and is writable unless check_only
-  On on = On::automatic;
-  bool check_only = false;                       ///< --check: read and test everything cheap, compute and write nothing
-  std::optional<std::filesystem::path> restart;  ///< talus-solve --restart [FILE]; empty path = OUT/checkpoint.h5
-  bool profile = false;                          ///< talus-solve --profile
-  bool plan = false;        ///< talus-solve --plan: say what would run, and what it would cost; write nothing
-  bool difference = false;  ///< talus-preprocess --difference: compare the surveys and stop
+  bool check_only = false;    ///< --check: read and test everything cheap, compute and write nothing
   std::string command_line;
-  std::vector<std::filesystem::path> results;  ///< printed on stdout, one a line, at the end
+  std::vector<std::filesystem::path> results = {};  ///< printed on stdout, one a line, at the end
+};
+
+/// A flag that one stage alone knows. The stage registers it and keeps its value where `set` puts it.
+struct Flag {
+  std::string name;                       ///< "--restart"
+  std::string help;                       ///< one line
+  std::string value = {};                 ///< what stands for its value in --help: "FILE", "[FILE]" where
+                                          ///< it may be left out; empty where it has none
+  std::vector<std::string> choices = {};  ///< the words that it takes; then `value` is made of them
+  bool writes_nothing = false;            ///< with it the output folder is not made
+  std::function<void(const std::string& value)> set = {};  ///< called where the flag is given
 };
 
 struct Stage {
-  std::string name;                            ///< "talus-solve"
-  std::string table;                           ///< its recipe table: "solve"
-  std::string summary;                         ///< one line
-  std::string examples;                        ///< shown under --help
-  bool has_on = false;                         ///< takes --on auto|cpu|gpu
-  bool has_restart = false;                    ///< takes --restart
-  bool has_profile = false;                    ///< takes --profile and --plan
-  bool has_difference = false;                 ///< takes --difference
-  std::function<std::string()> template_toml;  ///< for --template
+  std::string name;                                             ///< "talus-solve"
+  std::string table;                                            ///< its recipe table: "solve"
+  std::string summary;                                          ///< one line
+  std::string examples;                                         ///< shown under --help
+  std::vector<Flag> flags = {};                                 ///< its own flags, in the order of --help
+  std::function<std::string()> template_toml;                   ///< for --template
+  std::function<std::string(const recipe::Recipe&)> used_toml;  ///< for --used: its table with the defaults filled in
+  std::function<Dependencies(const StageContext&)> depends;     ///< for --depends
   std::function<void(StageContext&)> run;
 };
 
 /// Parses the command line, runs the stage, prints faults on stderr and result paths on stdout. Returns the exit code.
-/// Options: recipe.toml, --out DIR (default: the recipe's folder / "out"), --check, --template, --on, --restart,
-/// --profile, --plan, --difference, -v, -q,
-/// --help (exit codes and examples included), --version (with the commit).
+/// Options of every stage: recipe.toml, --out DIR (default: the recipe's folder / "out"), --check, --template, --used,
+/// --depends, --on (which only a stage that runs kernels heeds), -v, -q, --help (exit codes and examples included),
+/// --version (with the commit); and those of stage.flags.
 int run_stage(int argc, char** argv, const Stage& stage);
 
 /// True once SIGINT or SIGTERM has come. A second one ends the process at once.
@@ -77,6 +80,9 @@ void write_text(const std::filesystem::path& path, const std::string& text);
 /// SHA-256 of a file, in hex. Throws DataError.
 std::string sha256(const std::filesystem::path& path);
 std::string sha256_of_text(const std::string& text);
+
+/// [scene] and a stage's table as a recipe of their own: what --used prints. `options_toml` is the table.
+std::string own_recipe(const recipe::Recipe& recipe, const std::string& options_toml);
 
 /// The text of `<stage>.used.toml`: the options with defaults filled in (recipe::to_used_toml marks those that were
 /// changed), and above them as comments version, command, inputs with their checksums, CRS, hardware, wall time (pairs

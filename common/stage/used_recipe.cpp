@@ -21,6 +21,11 @@ std::string checksum(const std::filesystem::path& path) {
 
 }  // namespace
 
+std::string own_recipe(const recipe::Recipe& recipe, const std::string& options_toml) {
+  return fmt::format("[scene]\nname = {}\ntitle = {}\n\n{}", recipe::toml_text(recipe.scene_name()),
+                     recipe::toml_text(recipe.title()), options_toml);
+}
+
 std::string used_recipe(const StageContext& context, const Stage& stage, const std::string& options_toml,
                         const std::vector<std::filesystem::path>& inputs,
                         const std::vector<std::pair<std::string, std::string>>& facts) {
@@ -33,9 +38,7 @@ std::string used_recipe(const StageContext& context, const Stage& stage, const s
   const auto tells_hardware = [](const auto& fact) { return fact.first == "hardware"; };
   if (std::none_of(facts.begin(), facts.end(), tells_hardware)) text += comment("hardware", hardware());
   for (const auto& [name, value] : facts) text += comment(name, value);
-  text += fmt::format("\n[scene]\nname = {}\ntitle = {}\n\n{}", recipe::toml_text(context.recipe.scene_name()),
-                      recipe::toml_text(context.recipe.title()), options_toml);
-  return text;
+  return text + "\n" + own_recipe(context.recipe, options_toml);
 }
 
 void write_used_recipe(StageContext& context, const Stage& stage, const std::string& options_toml,

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "common/stage/stage.hpp"
 #include "solver/options/solve.hpp"
+#include "solver/parallel/on.hpp"
 
 namespace talus::benchmarks {
 

@@ -23,10 +23,15 @@ bool is_date(const std::string& text) {
 
 }  // namespace
 
-void SurveyOptions::find_in(const std::filesystem::path& out) {
+void SurveyOptions::name_files(const std::filesystem::path& out) {
   if (!from_preprocess) return;
   difference = out / "survey" / "slide_difference.tif";
   sigma = out / "survey" / "difference_sigma.tif";
+}
+
+void SurveyOptions::find_in(const std::filesystem::path& out) {
+  name_files(out);
+  if (!from_preprocess) return;
   for (const auto& file : {difference, sigma}) {
     if (!std::filesystem::exists(file))
       throw DataError({file.string() + ": no such file",

@@ -37,7 +37,9 @@ struct SurveyOptions {
   bool measures() const {
     return !(thickness.empty() && difference.empty() && after_dem.empty());
   }  ///< not an outline only
-  /// Names the files under `out` where from_preprocess asks for them. Throws DataError when they are not there.
+  /// Names the files under `out` where from_preprocess asks for them, whether they are there or not.
+  void name_files(const std::filesystem::path& out);
+  /// Names them likewise. Throws DataError when they are not there.
   void find_in(const std::filesystem::path& out);
   bool given() const { return measures() || !peak_thickness.empty() || !polygon.empty(); }
   void check(std::vector<Fault>& faults) const;

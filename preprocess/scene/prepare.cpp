@@ -214,6 +214,8 @@ void require_countable(std::size_t count, const GridOptions& grid) {
                                       fmt::join(grid.points_per_cell, ", "))});
 }
 
+}  // namespace
+
 std::vector<std::filesystem::path> inputs_of(const Options& options) {
   std::vector<std::filesystem::path> inputs;
   const auto add = [&](const std::filesystem::path& file) {
@@ -235,8 +237,6 @@ std::vector<std::filesystem::path> inputs_of(const Options& options) {
   for (const ObstacleOptions& obstacle : options.obstacle) add(obstacle.polygons);
   return inputs;
 }
-
-}  // namespace
 
 Survey survey_of(const Options& given) {
   const Options options = with_utm_zone(given);

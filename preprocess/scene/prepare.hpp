@@ -29,6 +29,9 @@ struct Prepared {
   std::optional<SurveyedSlide> slide = {};
 };
 
+/// The files that the options name.
+std::vector<std::filesystem::path> inputs_of(const Options& options);
+
 enum class Points { seeded, counted };
 
 /// What two elevation models say of what changed, and nothing further: the first part of prepare(), for before_dem and

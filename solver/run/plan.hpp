@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/domain/domain.hpp"
-#include "common/stage/stage.hpp"
+#include "solver/parallel/on.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/parallel/any_device.hpp"
 

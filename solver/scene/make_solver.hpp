@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "common/stage/stage.hpp"
+#include "solver/parallel/on.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/integrator/solver.hpp"
 #include "solver/options/solve.hpp"

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# pipelines/Makefile: which stage runs again, and when. The programs are stand-ins that note their call and write their result.
+# pipelines/Makefile: which stage runs again, and when. The programs are stand-ins that note their call and write their
+# result; what a stage reads they ask of the real ones.
 source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 
 # A copy of the pipelines with one scene, so that recipes may be changed.
 stage_pipelines() {
   mkdir -p pipelines/scene data/scene bin
-  cp "$TALUS_SOURCE/pipelines/Makefile" pipelines/
+  cp "$TALUS_SOURCE"/pipelines/{Makefile,run-scene,stages.mk} pipelines/
   touch data/scene/before.tif data/scene/sliding.tif data/scene/survey.tif
   cat >pipelines/scene/recipe.toml <<'TOML'
 [scene]
@@ -29,9 +30,13 @@ TOML
 stand_in() {
   cat >"bin/talus-$1" <<SCRIPT
 #!/usr/bin/env bash
+if [[ \$* == *--depends* || \$* == *--used* ]]; then exec "$bin/talus-$1" "\$@"; fi
 echo -n "$1 " >>"$TALUS_SCRATCH/calls"
 echo "\$*" >>"$TALUS_SCRATCH/arguments"
-echo result >"\$3/$2"
+for name in $2; do
+  mkdir -p "\$(dirname "\$3/\$name")"
+  echo result >"\$3/\$name"
+done
 SCRIPT
   chmod +x "bin/talus-$1"
 }
@@ -103,11 +108,116 @@ test_out_is_relative_to_where_the_user_stands() {
 
 test_failed_stage_is_run_again() {
   stage_pipelines
-  printf '#!/usr/bin/env bash\necho broken >&2; exit 4\n' >bin/talus-solve
+  sed -i '/^for name/i echo broken >\&2; exit 4' bin/talus-solve
   expect_exit 2 make -C pipelines scene DATA=data BIN=bin OUT=out
   stand_in solve run.h5
-  rm -f calls
   runs solve postprocess
+}
+
+test_names_hold_spaces_and_umlauts() {
+  stage_pipelines
+  mkdir "the checkout's copy" 'Höhen und mehr'
+  mv pipelines/scene 'pipelines/Großer Rutsch'
+  mv pipelines "the checkout's copy/"
+  mv data/scene 'Höhen und mehr/Tal 1'
+  sed -i 's|/scene/before|/Tal 1/before|; s|/scene/survey|/Tal 1/survey|; s|"../../data/scene/|"../../../Höhen und mehr/Tal 1/|' \
+    "the checkout's copy/pipelines/Großer Rutsch/recipe.toml"
+  mv bin 'die Programme'
+  remake() {
+    rm -f calls
+    expect_exit 0 make -C "the checkout's copy/pipelines" 'Großer Rutsch' DATA='Höhen und mehr' BIN='die Programme' OUT='Frühe Läufe'
+    [[ $(cat calls 2>/dev/null) == "$1" ]] || fail "ran '$(cat calls)' instead of '$1'"
+    sleep 0.05
+  }
+  remake 'preprocess solve postprocess '
+  [[ -f 'Frühe Läufe/Großer Rutsch/score.json' ]] || fail "no results in Frühe Läufe/Großer Rutsch"
+  remake ''
+  touch 'Höhen und mehr/Tal 1/survey.tif'
+  remake 'postprocess '
+  touch 'Höhen und mehr/Tal 1/sliding.tif'
+  remake 'preprocess solve postprocess '
+  sed -i 's/end_time_s = 10.0/end_time_s = 20.0/' "the checkout's copy/pipelines/Großer Rutsch/recipe.toml"
+  remake 'solve postprocess '
+  touch 'die Programme/talus-solve'
+  remake 'solve postprocess '
+  expect_exit 0 make -C "the checkout's copy/pipelines" list
+  grep -qx 'Großer Rutsch' stdout || fail "list does not name the scene"
+  expect_exit 0 make -C "the checkout's copy/pipelines" clean OUT='Frühe Läufe'
+  expect_no_file 'Frühe Läufe'
+  rm 'Höhen und mehr/Tal 1/before.tif'
+  expect_exit 2 make -C "the checkout's copy/pipelines" 'Großer Rutsch' DATA='Höhen und mehr' BIN='die Programme' OUT=out
+  expect_words "$TALUS_SCRATCH/Höhen und mehr/Tal 1/before.tif is missing" "in $TALUS_SCRATCH/Höhen und mehr). Put Tal 1 there"
+}
+
+test_list_of_files_in_the_recipe_is_followed() {
+  stage_pipelines
+  sed -i 's/^sliding_surface.*//; s/before_dem/base_dem/' pipelines/scene/recipe.toml
+  cat >>pipelines/scene/recipe.toml <<'TOML'
+[[preprocess.release]]
+name = "A"
+thickness_raster = "thickness.tif"   # "not/this.tif"
+[[preprocess.obstacle]]
+name = "wall"
+polygons = "walls.geojson"
+height_m = 3.0
+[[solve.obstacle]]
+name = "wall"
+TOML
+  touch pipelines/scene/thickness.tif pipelines/scene/walls.geojson
+  stand_in preprocess "domain.vdb obstacles.vdb"
+  runs preprocess solve postprocess
+  runs
+  touch pipelines/scene/thickness.tif
+  runs preprocess solve postprocess
+  touch pipelines/scene/walls.geojson
+  runs preprocess solve postprocess
+  touch out/scene/obstacles.vdb
+  runs solve postprocess
+  rm out/scene/obstacles.vdb
+  runs preprocess solve postprocess
+}
+
+test_survey_of_preprocess_is_an_input_of_postprocess() {
+  stage_pipelines
+  sed -i 's/^thickness = .*/from_preprocess = true/; s/^sliding_surface.*/after_dem = "after.tif"/' pipelines/scene/recipe.toml
+  touch pipelines/scene/after.tif
+  stand_in preprocess "domain.vdb survey/slide_difference.tif survey/difference_sigma.tif"
+  runs preprocess solve postprocess
+  runs
+  touch out/scene/survey/difference_sigma.tif
+  runs postprocess
+  rm out/scene/survey/slide_difference.tif
+  runs preprocess solve postprocess
+  runs
+}
+
+test_sidecars_and_variables_are_followed() {
+  stage_pipelines
+  runs preprocess solve postprocess
+  touch data/scene/before.prj
+  runs preprocess solve postprocess
+  cp -r data elsewhere
+  rm -f calls
+  expect_exit 0 make -C pipelines scene DATA=elsewhere BIN=bin OUT=out
+  [[ $(<calls) == 'preprocess solve postprocess ' ]] || fail "other data, but it ran '$(<calls)'"
+}
+
+test_unknown_scene_names_those_there_are() {
+  stage_pipelines
+  mkdir 'pipelines/other scene' pipelines/benchmarks
+  cp pipelines/scene/recipe.toml 'pipelines/other scene/'
+  expect_exit 2 make -C pipelines 'scen e'
+  expect_error "scen e: no such scene (there is no pipelines/scen e/recipe.toml). Name one of these: other scene, scene"
+  expect_exit 2 make -C pipelines benchmarks
+  expect_words "benchmarks: no such scene"
+}
+
+test_faulty_recipe_runs_nothing() {
+  stage_pipelines
+  change 's/end_time_s/end_tim_s/'
+  expect_exit 2 make -C pipelines scene DATA=data BIN=bin OUT=out
+  expect_words 'talus-solve: ' 'unknown key "end_tim_s"' 'Did you mean "end_time_s"?'
+  [[ ! -f calls ]] || fail "a stage ran although the recipe is wrong"
 }
 
 test_missing_data_is_one_clear_sentence() {

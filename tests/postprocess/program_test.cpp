@@ -17,16 +17,10 @@ class Program : public ::testing::Test {
  protected:
   Program() { fs::create_directories(out_); }
   void run_it(bool check_only = false) {
-    StageContext context{recipe::Recipe(scratch_.write("recipe.toml", recipe_)),
-                         out_,
-                         On::automatic,
-                         check_only,
-                         {},
-                         false,
-                         false,
-                         false,
-                         "test",
-                         {}};
+    StageContext context{.recipe = recipe::Recipe(scratch_.write("recipe.toml", recipe_)),
+                         .out = out_,
+                         .check_only = check_only,
+                         .command_line = "test"};
     run(context);
     results_ = context.results;
   }

@@ -82,17 +82,40 @@ TEST(WriteText, names_the_reason_of_the_system) {
 /// A stage that notes what it was given.
 struct RunStage : testing::Test {
   Scratch scratch;
-  Stage stage{"talus-sample",
-              "solve",
-              "Tries the runner.",
-              "  talus-sample r.toml",
-              true,
-              true,
-              true,
-              false,
-              [] { return recipe::to_toml(SampleOptions{}, "solve", true); },
-              [](StageContext&) {}};
+  Stage stage{.name = "talus-sample",
+              .table = "solve",
+              .summary = "Tries the runner.",
+              .examples = "  talus-sample r.toml",
+              .flags = own_flags(),
+              .template_toml = [] { return recipe::to_toml(SampleOptions{}, "solve", true); },
+              .used_toml =
+                  [](const recipe::Recipe& recipe) {
+                    return recipe::to_toml(recipe.read<SampleOptions>("solve"), "solve", false);
+                  },
+              .depends =
+                  [](const StageContext& context) {
+                    const auto terrain = context.recipe.read<SampleOptions>("solve").terrain;
+                    return Dependencies{{context.out / "a.txt"}, {context.out / "survey/b.txt", terrain, terrain}};
+                  },
+              .run = [](StageContext&) {}};
   std::string out, err;
+  /// What the flags of the stage's own were given.
+  std::string on = "auto";
+  std::optional<std::filesystem::path> restart;
+  bool profile = false;
+
+  std::vector<Flag> own_flags() {
+    return {{.name = "--on",
+             .help = "Where to run",
+             .choices = {"auto", "cpu", "gpu"},
+             .set = [this](const std::string& word) { on = word; }},
+            {.name = "--restart",
+             .help = "Go on",
+             .value = "[FILE]",
+             .set = [this](const std::string& file) { restart = file; }},
+            {.name = "--profile", .help = "Measure", .set = [this](const std::string&) { profile = true; }},
+            {.name = "--plan", .help = "Plan", .writes_nothing = true, .set = [](const std::string&) {}}};
+  }
 
   int run(std::vector<std::string> words) {
     words.insert(words.begin(), stage.name);
@@ -124,8 +147,8 @@ TEST_F(RunStage, hands_over_what_the_command_line_says) {
     EXPECT_EQ(context.out, scratch / "deep/er");
     EXPECT_TRUE(std::filesystem::is_directory(context.out));
     EXPECT_TRUE(std::filesystem::is_empty(context.out));
-    EXPECT_EQ(context.on, On::gpu);
-    EXPECT_EQ(context.restart, std::filesystem::path("c.h5"));
+    EXPECT_EQ(on, "gpu");
+    EXPECT_EQ(restart, std::filesystem::path("c.h5"));
     EXPECT_FALSE(context.check_only);
     EXPECT_EQ(context.command_line, "talus-sample " + (scratch / "r.toml").string() + " --out " +
                                         (scratch / "deep/er").string() + " --on gpu --restart c.h5");
@@ -134,11 +157,67 @@ TEST_F(RunStage, hands_over_what_the_command_line_says) {
 }
 
 TEST_F(RunStage, restart_without_a_file_is_an_empty_path) {
-  stage.run = [&](StageContext& context) { EXPECT_EQ(context.restart, std::filesystem::path()); };
+  stage.run = [&](StageContext&) { EXPECT_EQ(restart, std::filesystem::path()); };
   EXPECT_EQ(run({recipe(), "--restart"}), 0) << err;
+  restart.reset();
   EXPECT_EQ(run({"--restart", recipe()}), 0) << err;
-  stage.run = [&](StageContext& context) { EXPECT_FALSE(context.restart.has_value()); };
+  restart.reset();
+  stage.run = [&](StageContext&) { EXPECT_FALSE(restart.has_value()); };
   EXPECT_EQ(run({recipe()}), 0) << err;
+}
+
+TEST_F(RunStage, sets_only_the_flags_that_are_given) {
+  EXPECT_EQ(run({recipe()}), 0) << err;
+  EXPECT_EQ(on, "auto");
+  EXPECT_FALSE(profile);
+  EXPECT_EQ(run({recipe(), "--profile"}), 0) << err;
+  EXPECT_TRUE(profile);
+}
+
+TEST_F(RunStage, a_flag_that_writes_nothing_makes_no_output_folder) {
+  EXPECT_EQ(run({recipe(), "--plan", "--out", (scratch / "new").string()}), 0) << err;
+  EXPECT_FALSE(std::filesystem::exists(scratch / "new"));
+  EXPECT_EQ(run({recipe(), "--profile", "--out", (scratch / "new").string()}), 0) << err;
+  EXPECT_TRUE(std::filesystem::exists(scratch / "new"));
+}
+
+TEST_F(RunStage, a_stage_without_kernels_takes_on_and_passes_it_over) {
+  stage.flags.clear();
+  EXPECT_EQ(run({recipe(), "--on", "gpu"}), 0) << err;
+  EXPECT_EQ(run({recipe(), "--on", "tpu"}), 2);
+  EXPECT_NE(err.find("talus-sample: --on: tpu not in {auto,cpu,gpu}"), std::string::npos) << err;
+  EXPECT_EQ(run({recipe(), "--restart"}), 2);
+  EXPECT_EQ(run({"--help"}), 0);
+  EXPECT_NE(out.find("This stage runs on the CPU whatever is asked"), std::string::npos) << out;
+}
+
+TEST_F(RunStage, depends_prints_rules_and_writes_nothing) {
+  const auto file = scratch.write("r.toml", "[solve]\nterrain = \"d m.tif\"\n").string();
+  const std::string terrain = (scratch / "d\\ m.tif").string();
+  EXPECT_EQ(run({file, "--depends", "--out", "some/../where"}), 0) << err;
+  EXPECT_EQ(out,
+            "where/a.txt: \\\n  where/survey/b.txt \\\n  " + terrain + "\n\nwhere/survey/b.txt:\n\n" + terrain + ":\n");
+  EXPECT_FALSE(std::filesystem::exists("where"));
+  EXPECT_EQ(run({file, "--depends", "--out", "."}), 0) << err;
+  EXPECT_TRUE(out.starts_with("a.txt: \\\n  survey/b.txt \\\n")) << out;
+  EXPECT_EQ(run({file, "--depends"}), 0) << err;
+  EXPECT_TRUE(out.starts_with((scratch / "out/a.txt").string() + ": \\\n")) << out;
+  EXPECT_FALSE(std::filesystem::exists(scratch / "out"));
+}
+
+TEST_F(RunStage, used_is_the_same_for_recipes_that_say_the_same) {
+  const auto used = [&](const std::string& text) {
+    EXPECT_EQ(run({scratch.write("r.toml", text).string(), "--used"}), 0) << err;
+    EXPECT_FALSE(std::filesystem::exists(scratch / "out"));
+    return out;
+  };
+  const std::string five = used("[scene]\ntitle = \"T\"\n[solve]\nsteps = 5\n");
+  EXPECT_EQ(used("# of five\n[solve]\nsteps=5\n[scene]\ntitle = \"T\"\n[postprocess]\nrun = \"a.h5\"\n"), five);
+  EXPECT_NE(used("[scene]\ntitle = \"T\"\n[solve]\nsteps = 6\n"), five);
+  EXPECT_NE(used("[scene]\ntitle = \"U\"\n[solve]\nsteps = 5\n"), five);
+  const recipe::Recipe back(scratch.write("back.toml", five));
+  EXPECT_EQ(back.read<SampleOptions>("solve").steps, 5);
+  EXPECT_EQ(back.title(), "T");
 }
 
 TEST_F(RunStage, check_writes_nothing) {

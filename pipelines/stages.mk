@@ -1,0 +1,47 @@
+# The three stages of one scene, seen from the folder of its results: names in it need no path, so that spaces in the
+# path do no harm. run-scene sets recipe, results, bin, on and TALUS_DATA, and writes .inputs.
+MAKEFLAGS += --no-builtin-rules --no-builtin-variables
+SHELL := /bin/bash
+.SHELLFLAGS := -euo pipefail -c
+.DELETE_ON_ERROR:
+.SUFFIXES:
+
+# Names as the shell and as make's rules take them.
+quoted  = '$(subst ','\'',$1)'
+empty  :=
+escaped = $(subst $(empty) ,\ ,$(subst :,\:,$1))
+run     = $(call quoted,$(value bin)/talus-$1) $(call quoted,$(value recipe)) --out $(call quoted,$(value results))
+
+.PHONY: scene force
+scene: score.json
+	@echo "$${results##*/}: results in $$results" >&2
+
+domain.vdb: .inputs/preprocess.toml $(call escaped,$(value bin)/talus-preprocess)
+	$(call run,preprocess)
+
+run.h5: .inputs/solve.toml $(call escaped,$(value bin)/talus-solve)
+	$(call run,solve) --on $(on)
+
+score.json: .inputs/postprocess.toml $(call escaped,$(value bin)/talus-postprocess)
+	$(call run,postprocess)
+
+# The files that each result depends on besides, as the programs print them.
+include .inputs/preprocess.d .inputs/solve.d .inputs/postprocess.d
+
+# What a stage writes beside its result; where a later stage wants one that was removed, the stage runs again.
+survey/%: domain.vdb ;
+obstacles.vdb preprocess.used.toml: domain.vdb ;
+solve.used.toml: run.h5 ;
+wanted := $(shell sed -n 's,^\(survey/.*\|obstacles\.vdb\):$$,\1,p' .inputs/*.d)
+domain.vdb: $(if $(filter-out $(wildcard $(wanted)),$(wanted)),force)
+
+# Any other file that is not there.
+%::
+	@missing=$(call quoted,$@); \
+	if [[ $$missing == "$$TALUS_DATA"/* ]]; then \
+	  folder=$${missing#"$$TALUS_DATA"/}; folder=$${folder%/*}; \
+	  echo "$$missing is missing (the recipes look for their data in $$TALUS_DATA). Put $$folder there, or say where" \
+	    "the data are: make -C pipelines SCENE DATA=dir" >&2; \
+	else \
+	  echo "$$missing is missing (a recipe names it). Put it back, or mend the recipe" >&2; \
+	fi; exit 2
