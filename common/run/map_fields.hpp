@@ -21,6 +21,15 @@ struct RunningMaps {
   Values arrival_time{};    // first time thicker than the threshold [s]; negative: not yet
 };
 
+/// Running maps whose values are each made from the same arguments.
+template <class Values, class... Arguments>
+RunningMaps<Values> make_running_maps(const Arguments&... arguments) {
+  return {.peak_thickness = Values(arguments...),
+          .peak_speed = Values(arguments...),
+          .peak_pressure = Values(arguments...),
+          .arrival_time = Values(arguments...)};
+}
+
 /// The maps of a finished run as run.h5 holds them, [rows * columns] each, row 0 southernmost. Thickness is vertical
 /// and counts released volume (mass over initial density), so that its integral closes exactly.
 struct RunMaps {

@@ -76,12 +76,8 @@ class PointSolver : public Solver {
         load_volumes_(scene.load_volumes) {
     points_.upload(state.points);
     clock_.upload({state.clock});
-    for_each_running_map(
-        [&](const RunningMap&, auto& buffer, const auto& values) {
-          buffer = Buffer<double, Device>(device_);
-          buffer.upload(values);
-        },
-        maps_, state.maps);
+    for_each_running_map([](const RunningMap&, auto& buffer, const auto& values) { buffer.upload(values); }, maps_,
+                         state.maps);
   }
 
   ~PointSolver() override { drop_sort_space(device_); }
@@ -204,7 +200,7 @@ class PointSolver : public Solver {
   Buffer<Vec3<double>, Device> loads_{device_};
   Buffer<Clock, Device> clock_{device_};
   Buffer<double, Device> column_volumes_{device_};
-  RunningMaps<Buffer<double, Device>> maps_;
+  RunningMaps<Buffer<double, Device>> maps_ = make_running_maps<Buffer<double, Device>>(device_);
   Buffer<double, Device> totals_{device_}, thickness_{device_};
   SumSpace<Device> sums_{device_};
 };

@@ -125,14 +125,15 @@ TEST(Sorting, is_stable_and_sums_are_exclusive_on_the_cpu) {
   std::iota(expected.begin(), expected.end(), 0);
   std::stable_sort(expected.begin(), expected.end(),
                    [&](int a, int b) { return keys[static_cast<std::size_t>(a)] < keys[static_cast<std::size_t>(b)]; });
-  Buffer<std::uint64_t, CpuDevice> sorted;
-  Buffer<int, CpuDevice> order;
+  const CpuDevice device = CpuDevice::make();
+  Buffer<std::uint64_t, CpuDevice> sorted(device);
+  Buffer<int, CpuDevice> order(device);
   sorted.upload(keys);
-  sort_order(CpuDevice{}, sorted, order);
+  sort_order(device, sorted, order);
   EXPECT_EQ(order.download(), expected);
   const std::vector<int> values{3, 0, 5, 1};
   std::vector<int> sums(4);
-  EXPECT_EQ(exclusive_sum(CpuDevice{}, values.data(), sums.data(), 4), 9);
+  EXPECT_EQ(exclusive_sum(device, values.data(), sums.data(), 4), 9);
   EXPECT_EQ(sums, (std::vector<int>{0, 3, 3, 8}));
 }
 
@@ -141,9 +142,10 @@ TEST(SparseGrid, stores_every_node_a_point_can_reach_before_the_next_sort) {
   fill(d, {5, 9, 17, 22, 0, 3});
   fill(d, {20, 21, 4, 6, 7, 8});
   const Scene scene = make_scene(d, SolveOptions{});
-  Particles<double, CpuDevice> points({});
+  const CpuDevice device = CpuDevice::make();
+  Particles<double, CpuDevice> points(device, {});
   points.upload(scene.points);
-  SparseGrid<double, CpuDevice> grid(scene.grid, 1);
+  SparseGrid<double, CpuDevice> grid(device, scene.grid, 1);
   grid.fit(points, 0);
   const auto view = grid.view();
   const ParticleState s = points.download();

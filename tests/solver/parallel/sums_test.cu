@@ -24,15 +24,16 @@ class Sums : public InEachPlace {
  protected:
   template <class Device>
   static void add_up() {
-    SumSpace<Device> space;
+    const Device device = Device::make();
+    SumSpace<Device> space(device);
     for (const int count : {0, 1, 31, 33, 5000, 70000, 300000}) {
-      Buffer<int, Device> seen;
+      Buffer<int, Device> seen(device);
       seen.upload(std::vector<int>(static_cast<std::size_t>(std::max(count, 1)), 0));
       std::vector<double> first;
       for (int repeat = 0; repeat < 3; ++repeat) {
-        Buffer<double, Device> total;
+        Buffer<double, Device> total(device);
         total.upload({-1, -1, -1, 0});
-        sum_each<3>(Device{}, count, space, Waves{seen.data()}, Finish{total.data()});
+        sum_each<3>(device, count, space, Waves{seen.data()}, Finish{total.data()});
         const auto got = total.download();
         double expected[3] = {};
         for (int i = 0; i < count; ++i) {

@@ -134,30 +134,31 @@ class Transfers : public InEachPlace {
     mo.model = MaterialModel::hencky;
     const double dt = 1e-3;
     const auto expected = reference(s, make_material<double>(mo), dt, kind_of<Shape>);
-    Particles<Real, Device> points({true, false, Shape::averaged});
+    const Device device = Device::make();
+    Particles<Real, Device> points(device, {true, false, Shape::averaged});
     points.upload(s.points);
-    SparseGrid<Real, Device> grid(s.grid, 1, false, Shape::width == 2);
+    SparseGrid<Real, Device> grid(device, s.grid, 1, false, Shape::width == 2);
     grid.fit(points, 0);
     if (shuffled) {
       std::vector<int> order(static_cast<std::size_t>(points.count()));
       std::iota(order.begin(), order.end(), 0);
       std::shuffle(order.begin(), order.end(), std::mt19937(11));
-      Buffer<int, Device> shuffle;
+      Buffer<int, Device> shuffle(device);
       shuffle.upload(order);
       points.reorder(shuffle, points.count());
     }
-    Buffer<Vec4<Real>, Device> nodes;
+    Buffer<Vec4<Real>, Device> nodes(device);
     nodes.resize(static_cast<std::size_t>(grid.nodes()));
     nodes.fill_zero();
     Clock c;
     c.step_size = dt;
-    Buffer<Clock, Device> clock;
+    Buffer<Clock, Device> clock(device);
     clock.upload({c});
-    scatter_points(Device{}, points.count(), grid.groups(),
+    scatter_points(device, points.count(), grid.groups(),
                    ParticleToGrid<Real, Shape, Scatter::impulse>{
                        grid.view(), points.view(), Materials<Real>{{make_material<Real>(mo)}}, clock.data(),
                        nodes.data(), nullptr, nullptr, true, false});
-    synchronise(Device{});
+    synchronise(device);
     const auto got = nodes.download();
     const auto slots = slots_of(grid);
     double scale = 0, worst = 0;
@@ -181,9 +182,10 @@ class Transfers : public InEachPlace {
   static void gather_linear_field(double tolerance) {
     Domain d;
     const Scene s = scene(kind_of<Shape>, d);
-    Particles<Real, Device> points({true, false, Shape::averaged});
+    const Device device = Device::make();
+    Particles<Real, Device> points(device, {true, false, Shape::averaged});
     points.upload(s.points);
-    SparseGrid<Real, Device> grid(s.grid, 1);
+    SparseGrid<Real, Device> grid(device, s.grid, 1);
     grid.fit(points, 0);
     const double slope[3][3] = {
         {0.3, -0.1, 0.2}, {0.05, 0.4, -0.3}, {-0.2, 0.1, 0.25}};  // per cell, [component][direction]
@@ -202,19 +204,19 @@ class Transfers : public InEachPlace {
         }
       }
     }
-    Buffer<Vec4<Real>, Device> nodes;
+    Buffer<Vec4<Real>, Device> nodes(device);
     nodes.upload(field);
     Clock c;
     c.step_size = 0;  // nothing moves
-    Buffer<Clock, Device> clock;
+    Buffer<Clock, Device> clock(device);
     clock.upload({c});
     MaterialOptions mo;
     mo.model = MaterialModel::hencky;
-    for_each(Device{}, points.count(),
+    for_each(device, points.count(),
              GridToParticle<Real, Shape, Gather::all, false>{grid.view(), points.view(),
                                                              Materials<Real>{{make_material<Real>(mo)}}, clock.data(),
                                                              nodes.data(), nullptr, grid.home(), true, false});
-    synchronise(Device{});
+    synchronise(device);
     const ParticleState got = points.download();
     double worst = 0;
     int checked = 0;
