@@ -25,16 +25,16 @@ class IntegratorChoice {
   Integrator current() const { return current_; }
   /// Length of implicit steps from here on: ten CFL steps in a flow, where longer ones miss its way; at rest, or
   /// nearly, as long as nothing moves by more than a quarter of a cell [s].
-  double implicit_step() const { return implicit_step_; }
+  double implicit_step() const { return step_.implicit; }
 
-  /// Takes note of a batch. True when the solver must be built anew: for the other integrator, or for implicit steps of
-  /// another length.
+  /// Counts the cost of a batch. Returns true when the solver must be built anew: for the other integrator, or for
+  /// implicit steps of another length.
   bool note(const BatchCost& batch);
-  /// The implicit step failed beyond rescue: back to explicit ones.
+  /// Goes back to explicit steps after an implicit one that failed beyond rescue; `wall`: what it took [s].
   void note_failure(double wall);
 
-  /// What was decided last and why; empty when nothing is new. Taken once.
-  std::string news();
+  /// What was decided since the last call, and why; empty when nothing was.
+  std::string take_decision();
 
  private:
   static constexpr double trial_share = 0.05, better = 0.9, most_patience = 16;
@@ -51,19 +51,31 @@ class IntegratorChoice {
   bool worth_trying() const;
   void begin_trial();
   bool end_trial();
-  void turn_to(Integrator to);
+  void change_to(Integrator to);
+
+  /// A trial of the other integrator, the one under way or the last one.
+  struct Trial {
+    bool under_way = false;
+    double wall = 0;        // what it took [s]
+    double speed = -1;      // of the fastest point when it began [m/s]; negative: there was none
+    double wall_since = 0;  // its end [s]
+    double patience = 1;    // grows while trials change nothing
+  };
+  /// Lengths of steps [s].
+  struct StepLengths {
+    double implicit = 0;  // taken now
+    double wanted = 0;    // that the flow asks for
+    double wave = 0;      // the CFL step
+  };
 
   double cell_, largest_step_;
   Integrator current_ = Integrator::explicit_;
-  bool trying_ = false;
   Cost explicit_, implicit_;
-  double trial_wall_ = 0;                                       // what the trial under way, or the last one, took [s]
-  double wall_since_ = 0;                                       // the last trial [s]
-  double patience_ = 1;                                         // grows while trials change nothing
-  int batches_ = 0;                                             // since the last turn
-  double implicit_step_ = 0, wanted_step_ = 0, wave_step_ = 0;  // [s]
-  double speed_at_trial_ = -1, speed_ = 0;
-  std::string news_;
+  Trial trial_;
+  StepLengths step_;
+  int batches_ = 0;   // since the last change
+  double speed_ = 0;  // of the fastest point [m/s]
+  std::string decision_;
 };
 
 }  // namespace talus::solver

@@ -31,7 +31,8 @@ void Stepper::build(const SolverState& state) {
 }
 
 void Stepper::log_decision() {
-  if (const std::string news = choice_->news(); !news.empty()) log_info(fmt::format("t {:.2f} s: {}", time_, news));
+  const std::string decision = choice_->take_decision();
+  if (!decision.empty()) log_info(fmt::format("t {:.2f} s: {}", time_, decision));
 }
 
 BatchReport Stepper::advance(double next_event) {

@@ -28,7 +28,7 @@ struct Costs {
       wall += cost;
       if (!is_explicit) implicit_time += simulated;
       choice.note({simulated, cost, wave_step, speed});
-      said += choice.news();
+      said += choice.take_decision();
     }
     return said;
   }
@@ -85,7 +85,7 @@ TEST(IntegratorChoice, survives_a_step_that_fails) {
   ASSERT_EQ(choice.current(), Integrator::newmark);
   choice.note_failure(1);
   EXPECT_EQ(choice.current(), Integrator::explicit_);
-  EXPECT_NE(choice.news().find("found no solution"), std::string::npos);
+  EXPECT_NE(choice.take_decision().find("found no solution"), std::string::npos);
 }
 
 class ChangeOfIntegrator : public InEachPlace {
