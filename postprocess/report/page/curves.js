@@ -156,9 +156,10 @@ function placeCharts(box, history, columns) {
     const all = [first, ...others], values = all.map((column) => history[column.name]);
     const { factor, prefix } = /^[JNW]/.test(first.unit) ? unitOf(...values) : { factor: 1, prefix: "" };
     const known = values.flat().filter(Number.isFinite), unit = unitOfPowers(first.unit);
-    const title = first.quantity[0].toUpperCase() + first.quantity.slice(1);
-    lineChart(box, { id: `series-${first.quantity.replace(/[^a-z]+/gi, "-")}`, title, x: "Time [s]",
-      y: unit ? `${title} [${prefix}${unit}]` : title, height: 240, zero: Math.min(...known) < 0.5 * Math.max(...known),
+    const measured = first.quantity[0].toUpperCase() + first.quantity.slice(1);
+    lineChart(box, { id: `series-${first.quantity.replace(/[^a-z]+/gi, "-")}`, x: "Time [s]", height: 240,
+      title: others.length ? measured : `${measured}, ${first.place}`, // one line has no legend
+      y: unit ? `${measured} [${prefix}${unit}]` : measured, zero: Math.min(...known) < 0.5 * Math.max(...known),
       lines: all.map((column, i) => curve(column.place, history.time_s, values[i], factor, lineStyle(i))) });
   }
 }
