@@ -18,7 +18,4 @@ struct ObstacleOptions {
   void describe(recipe::Visitor& v);
 };
 
-/// Names of their own, fit for the names of columns.
-void need_names(recipe::Visitor& v, const std::vector<ObstacleOptions>& obstacles);
-
 }  // namespace talus::solver

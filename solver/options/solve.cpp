@@ -1,5 +1,7 @@
 #include "solver/options/solve.hpp"
 
+#include "solver/options/names.hpp"
+
 namespace talus::solver {
 
 void SolveOptions::describe(recipe::Visitor& v) {
@@ -13,7 +15,7 @@ void SolveOptions::describe(recipe::Visitor& v) {
   recipe::list(v, "wall", walls, "plane walls, gates");
   need_few(v, walls);
   recipe::list(v, "obstacle", obstacles, "bodies in the way: walls, barriers, buildings");
-  need_names(v, obstacles);
+  need_names(v, "obstacle", "its forces are recorded under its name", obstacles);
   recipe::list(v, "load", loads, "forces on parts of the mass");
   MassOptions::describe(v);
   v.enter("base", "the bed under it");

@@ -1,0 +1,22 @@
+// Names of the things that have columns of the history.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/recipe/recipe.hpp"
+
+namespace talus::solver {
+
+/// Declares that every item of [[solve.TABLE]] has a name of its own that is fit for the names of columns. `why` says
+/// what the names are for.
+void need_names(recipe::Visitor& v, const std::string& table, const std::string& why,
+                const std::vector<std::string>& names);
+template <class Item>
+void need_names(recipe::Visitor& v, const std::string& table, const std::string& why, const std::vector<Item>& items) {
+  std::vector<std::string> names;
+  for (const Item& item : items) names.push_back(item.name);
+  need_names(v, table, why, names);
+}
+
+}  // namespace talus::solver
