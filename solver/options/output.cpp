@@ -1,8 +1,15 @@
 #include "solver/options/output.hpp"
 
+#include "solver/options/names.hpp"
 #include "solver/options/solve.hpp"
 
 namespace talus::solver {
+
+void GaugeOptions::describe(recipe::Visitor& v) {
+  v.text("name", name, "under which its readings are recorded");
+  v.number("x_m", x, recipe::any, "map coordinate, east");
+  v.number("y_m", y, recipe::any, "map coordinate, north");
+}
 
 void OutputOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
   const StepAbilities steps = abilities_of(all.integrator);
@@ -30,6 +37,8 @@ void OutputOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
           {"[solve] deterministic = true does not go with this integrator or with energy_budget",
            "sums of implicit steps and of the budget are made in any order on a GPU",
            "Leave it out, or take integrator = \"explicit\" without energy_budget"});
+  recipe::list(v, "gauge", gauges, "points where thickness, speed and surface are recorded over time");
+  need_names(v, "gauge", "its readings are recorded under its name", gauges);
 }
 
 }  // namespace talus::solver

@@ -171,6 +171,9 @@ def check_curves(browser):
         "series-speed",
         "series-motion",
         "series-front",
+        "series-thickness",
+        "series-mean-speed-over-depth",
+        "series-elevation-of-the-surface",
     ]:
         drawn = browser.execute_script(
             "const c = document.getElementById(arguments[0]); if (!c) return -1;"

@@ -18,6 +18,7 @@ made() {
   scene
   sed -i 's/^end_time_s.*/end_time_s = 3.0\nframe_interval_s = 0.5/' recipe.toml
   echo 'sigma_m = 0.2' >>recipe.toml   # of the survey: scores get a spread
+  printf '[[solve.gauge]]\nname = "%s"\nx_m = %s\ny_m = 5000100.0\n' source 500050.0 below 500090.0 >>recipe.toml
   expect_exit 0 preprocess
   expect_exit 0 solve
   expect_exit 0 postprocess
@@ -46,6 +47,34 @@ test_prints_to_a_pdf_with_all_its_maps() {
   for words in 'Bowl' 'Peak speed' 'Arrival time' 'Deposit CSI' 'SHA-256' 'How to cite'; do
     grep -qF "$words" stdout || fail "the printed report does not say: $words"
   done
+}
+
+# From the recipe to the history, and from there to the page; the rest is the browser's (series-thickness).
+test_has_a_curve_for_each_gauge() {
+  made
+  local gauge column
+  for gauge in source below; do
+    for column in thickness_m speed_m_s surface_m; do
+      head -1 out/history.csv | grep -qE "(^|,)gauge_${gauge}_$column(,|$)" ||
+        fail "history.csv has no gauge_${gauge}_$column"
+    done
+    column="\"name\":\"gauge_${gauge}_thickness_m\",\"unit\":\"m\""
+    grep -qF "{$column,\"quantity\":\"thickness\",\"place\":\"gauge $gauge\"}" out/report.html ||
+      fail "the page does not know what gauge_${gauge}_thickness_m is"
+  done
+  # The block of 4 m starts under the first gauge; the bed there is 4 m below the bowl.
+  awk -F, 'NR == 1 { for (c = 1; c <= NF; ++c) at[$c] = c; next }
+    NR == 2 { h = $at["gauge_source_thickness_m"]; z = $at["gauge_source_surface_m"]; v = $at["gauge_below_thickness_m"]
+      exit !(h > 3.9 && h < 4.1 && z - h > 5.9 && z - h < 6.4 && v < 0.1) }' out/history.csv ||
+    fail "the gauges do not read the block at rest: $(head -2 out/history.csv)"
+}
+
+test_refuses_a_gauge_outside_the_domain() {
+  scene
+  printf '[[solve.gauge]]\nname = "far"\nx_m = 1.0\ny_m = 2.0\n' >>recipe.toml
+  expect_exit 0 preprocess
+  expect_exit 2 solve --check
+  expect_words 'name = "far": (1, 2) lies outside the domain' 'Choose x_m from 500005'
 }
 
 # Neither address nor file beside it: the page must hold all it needs.

@@ -1,5 +1,6 @@
 #include "solver/run/recorders/history.hpp"
 
+#include "solver/run/recorders/gauges.hpp"
 #include "solver/run/recorders/obstacles.hpp"
 
 namespace talus::solver {
@@ -45,11 +46,12 @@ class RunRecorder : public TableRecorder<Instant> {
 };
 
 /// Every recorder that the recipe asks for, in the order of their columns.
-std::vector<std::unique_ptr<Recorder>> make_recorders(const SolveOptions& options, const Scene&) {
+std::vector<std::unique_ptr<Recorder>> make_recorders(const SolveOptions& options, const Scene& scene) {
   std::vector<std::unique_ptr<Recorder>> recorders;
   recorders.push_back(std::make_unique<RunRecorder>(run_columns));
   if (options.energy_budget) recorders.push_back(std::make_unique<RunRecorder>(budget_columns));
   if (!options.obstacles.empty()) recorders.push_back(std::make_unique<ObstacleRecorder>(options));
+  if (!options.gauges.empty()) recorders.push_back(std::make_unique<GaugeRecorder>(options, scene));
   return recorders;
 }
 

@@ -110,6 +110,13 @@ TEST(SolveOptions, the_exact_tangent_needs_a_solver_for_it) {
             "tangent alone). Take tangent = \"frozen-yield\"");
 }
 
+TEST(SolveOptions, gauges_have_names_of_their_own) {
+  EXPECT_EQ(faults("[[solve.gauge]]\nname=\"a\"\nx_m=1.0\ny_m=2.0\n[[solve.gauge]]\nname=\"a\"\n[[solve.gauge]]"),
+            "[[solve.gauge]] name = \"a\" is given twice (its readings are recorded under its name). Rename one\n"
+            "[[solve.gauge]] number 3: name = \"\" (its readings are recorded under its name). Give it one of letters, "
+            "digits, - and _");
+}
+
 TEST(SolveOptions, walls_parts_and_names_have_their_limits) {
   EXPECT_EQ(faults("[[solve.obstacle]]\nname=\"a "
                    "b\"\n[[solve.obstacle]]\n[[solve.obstacle]]\nname=\"c\"\n[[solve.obstacle]]\nname=\"c\""),

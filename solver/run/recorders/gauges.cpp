@@ -1,0 +1,109 @@
+#include "solver/run/recorders/gauges.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "solver/grid/sparse_grid.hpp"
+
+namespace talus::solver {
+namespace {
+
+constexpr Column<GaugeReading> gauge_columns[] = {
+    {"thickness_m", "m", [](const GaugeReading& r) { return r.thickness; }, "thickness"},
+    {"speed_m_s", "m s-1", [](const GaugeReading& r) { return r.speed; }, "mean speed over depth"},
+    {"surface_m", "m", [](const GaugeReading& r) { return r.surface; }, "elevation of the surface"},
+};
+
+std::vector<Place> places_of(const std::vector<GaugeOptions>& gauges) {
+  std::vector<Place> places;
+  for (const GaugeOptions& g : gauges) places.push_back({"gauge_" + g.name + "_", "gauge " + g.name});
+  return places;
+}
+
+/// Cells from the centre of the map's first one.
+double in_cells(double coordinate, double edge, double cell) { return (coordinate - edge) / cell - 0.5; }
+
+/// The first of the two cells that a gauge lies between; the last pair where it lies on the last cell.
+int first_of_pair(double position, int count) { return std::min(static_cast<int>(std::floor(position)), count - 2); }
+
+bool has_terrain_around(const Scene& scene, double xi, double eta) {
+  const GridShape& grid = scene.grid;
+  if (!(xi >= 0 && eta >= 0 && xi <= grid.columns - 1 && eta <= grid.rows - 1)) return false;
+  const std::size_t low = scene.map.index(first_of_pair(xi, grid.columns), first_of_pair(eta, grid.rows));
+  const std::size_t high = low + static_cast<std::size_t>(grid.columns);
+  return std::isfinite(grid.terrain[low]) && std::isfinite(grid.terrain[low + 1]) &&
+         std::isfinite(grid.terrain[high]) && std::isfinite(grid.terrain[high + 1]);
+}
+
+void check_places(const std::vector<GaugeOptions>& gauges, const Scene& scene) {
+  std::vector<Fault> faults;
+  const MapGrid& map = scene.map;
+  for (const GaugeOptions& g : gauges) {
+    if (has_terrain_around(scene, in_cells(g.x, map.west, map.cell), in_cells(g.y, map.south, map.cell))) continue;
+    faults.push_back({fmt::format("[[solve.gauge]] name = \"{}\": ({}, {}) lies outside the domain", g.name, g.x, g.y),
+                      "a gauge reads between four cells with terrain",
+                      fmt::format("Choose x_m from {} to {} and y_m from {} to {}, where the elevation model has data",
+                                  map.x(0), map.x(map.columns - 1), map.y(0), map.y(map.rows - 1))});
+  }
+  if (!faults.empty()) throw RecipeError(std::move(faults));
+}
+
+}  // namespace
+
+GaugeRecorder::GaugeRecorder(const SolveOptions& options, const Scene& scene)
+    : TableRecorder(gauge_columns, places_of(options.gauges)),
+      columns_(static_cast<std::size_t>(scene.grid.columns)),
+      densities_{options.material.density} {
+  check_places(options.gauges, scene);
+  for (const PartOptions& part : options.parts) densities_.push_back(part.material.density);
+  const GroundTables ground = make_ground_tables(scene.grid);
+  for (const GaugeOptions& g : options.gauges) {
+    const double xi = in_cells(g.x, scene.map.west, scene.map.cell);
+    const double eta = in_cells(g.y, scene.map.south, scene.map.cell);
+    sites_.push_back(
+        {.xi = xi,
+         .eta = eta,
+         .bed = ground.datum + ground_at(scene.grid, ground, xi, eta),
+         .low = scene.map.index(first_of_pair(xi, scene.grid.columns), first_of_pair(eta, scene.grid.rows))});
+  }
+}
+
+std::vector<GaugeReading> GaugeRecorder::samples(const Instant& now) const {
+  const std::vector<double> thickness = now.solver.thickness();
+  const ParticleState points = now.solver.shown();
+  std::vector<GaugeReading> readings;
+  for (const Site& site : sites_) {
+    const double depth = thickness_at(site, thickness);
+    readings.push_back({.thickness = depth, .speed = speed_at(site, points), .surface = site.bed + depth});
+  }
+  return readings;
+}
+
+double GaugeRecorder::thickness_at(const Site& site, const std::vector<double>& thickness) const {
+  const double x = site.xi - static_cast<double>(site.low % columns_);
+  const double y = site.eta - static_cast<double>(site.low / columns_);
+  const double* south = &thickness[site.low];
+  const double* north = south + columns_;
+  return (1 - y) * ((1 - x) * south[0] + x * south[1]) + y * ((1 - x) * north[0] + x * north[1]);
+}
+
+/// Points count by mass and by a hat as wide as a cell to either side of the gauge.
+double GaugeRecorder::speed_at(const Site& site, const ParticleState& points) const {
+  double mass = 0;
+  Vec3<double> momentum{};
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    if (points.cell[0][p] < 0) continue;  // has left the domain
+    const double x = std::abs(points.cell[0][p] + points.offset[0][p] - site.xi);
+    const double y = std::abs(points.cell[1][p] + points.offset[1][p] - site.eta);
+    if (x >= 1 || y >= 1) continue;
+    const double density = densities_[static_cast<std::size_t>(points.material[p])];
+    const double share = (1 - x) * (1 - y) * points.volume[p] * density;
+    mass += share;
+    momentum += Vec3<double>{points.velocity[0][p], points.velocity[1][p], points.velocity[2][p]} * share;
+  }
+  return mass > 0 ? std::hypot(momentum.x, momentum.y, momentum.z) / mass : 0;
+}
+
+}  // namespace talus::solver
