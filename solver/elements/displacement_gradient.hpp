@@ -6,12 +6,14 @@
 
 namespace talus::solver {
 
+/// The state that point p begins a step with; without `dilatant` its plastic volume change is zero.
 template <class Real>
 TALUS_HD MaterialState<Real> state_of(const ParticleView<Real>& points, int p, bool dilatant) {
   return {points.elastic_of(p), points.log_volume[p], dilatant ? points.plastic_log_volume[p] : Real(0)};
 }
 
-/// Displacement gradient of a point over the start of the step.
+/// The displacement gradient G of a point over the start of the step, F = I + G in (T16) [-]; `u` over the stored nodes
+/// [m].
 template <class Real, class Shape>
 TALUS_HD Mat3<Real> displacement_gradient(const GridView<Real>& grid, const PointGradients<Real, Shape>& g,
                                           const Vec3<double>* u) {

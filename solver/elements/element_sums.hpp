@@ -1,5 +1,5 @@
 // The tangent of an element, summed over its points: K_ab = sum_p V_p grad N_a . C_p . grad N_b, a 3 x 3 block for
-// every pair of its nodes. Whoever stores the blocks is handed them one by one.
+// every pair of its nodes, handed one by one to what stores them.
 #pragma once
 
 #include <type_traits>
@@ -51,7 +51,7 @@ struct SumElements {
     }
   }
 
-  /// kappa V b b^T
+  /// Adds kappa V b b^T, the part of B-bar (T17b).
   TALUS_HD void add_means(int e, int first_column, int first_row, Real (&sum)[columns * rows][9]) const {
     const Vec3<Real>* b = from.means.gradient + static_cast<std::size_t>(e) * nodes;
     for (int q = 0; q < columns; ++q) {

@@ -5,7 +5,7 @@
 namespace talus::solver {
 namespace {
 
-/// One thread: one element.
+/// One thread: one element. It adds the forces of its springs to y.
 template <class Shape>
 struct ApplySprings {
   ElementView elements;

@@ -13,7 +13,7 @@
 
 namespace talus::solver {
 
-/// One spring of an element, as local nodes: k |u_node - (1 + lead) u_near + lead u_far|^2 / 2, lead 1 or 0.
+/// A spring of an element between local nodes: k |u_node - (1 + lead) u_near + lead u_far|^2 / 2, lead 1 or 0.
 struct FillerSpring {
   double k = 0;  // [N/m]; 0: none
   int node = 0, near = 0, far = 0;
@@ -22,7 +22,7 @@ struct FillerSpring {
   TALUS_HD int local(int which) const { return which == 0 ? node : which == 1 ? near : far; }
 };
 
-/// What kernels read of them; off without mass.
+/// The springs of a step as kernels read them; there are none without `mass`.
 struct FillerSprings {
   const double* mass = nullptr;  // of the nodes [kg]
   double light = 0;              // nodes of less mass are held [kg]
@@ -68,11 +68,11 @@ struct FillerSprings {
   }
 };
 
-/// y += K_springs x
+/// Adds to y the forces of the springs, K_springs x.
 template <class Real, class Device, class Shape>
 void apply_springs(const ElementList<Real, Device, Shape>& list, const FillerSprings& springs,
                    const NodeVector<Device>& x, NodeVector<Device>& y);
-/// Adds the diagonal blocks of K_springs.
+/// Adds the diagonal blocks of K_springs to `blocks`, one of every stored node [N/m].
 template <class Real, class Device, class Shape>
 void add_spring_blocks(const ElementList<Real, Device, Shape>& list, const FillerSprings& springs,
                        Buffer<Sym3<double>, Device>& blocks);

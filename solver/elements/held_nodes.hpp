@@ -16,7 +16,7 @@ struct HeldNodes {
   const Sym3<double>* stiffness = nullptr;  // of what else holds a node, such as friction [N/m]; null: nothing
 };
 
-/// K + mass inertia + stiffness of a node.
+/// A node's block of K + mass inertia + stiffness, before what holds it; `tangent` is its block of K [N/m].
 TALUS_HD Sym3<double> own_block(const HeldNodes& held, const Sym3<double>& tangent, int n) {
   const Sym3<double> b = tangent.plus_identity(held.mass[n] * held.inertia);
   return held.stiffness ? b + held.stiffness[n] : b;

@@ -6,7 +6,7 @@
 namespace talus::solver {
 namespace {
 
-/// One thread: one element. Tells its points where they are.
+/// One thread: one element. Its number goes to its points.
 struct NumberPoints {
   ElementView elements;
   int* element_of;
@@ -67,7 +67,7 @@ struct MeasureMeans {
   }
 };
 
-/// One thread: one element. y += kappa V b (b . x).
+/// One thread: one element. It adds kappa V b (b . x) to y.
 template <class Real, int nodes>
 struct ApplyMeans {
   ElementView elements;

@@ -13,7 +13,7 @@
 
 namespace talus::solver {
 
-/// What kernels read of it; null where the scene does not average.
+/// Means over the elements as kernels read them; null where the scene does not average.
 template <class Real>
 struct MeanDilationView {
   const int* element_of = nullptr;       // [points]
@@ -35,11 +35,10 @@ class MeanDilation {
  public:
   static constexpr int nodes_each = ElementList<Real, Device, Shape>::nodes_each;
 
-  /// The points have moved, or have been sorted, and `list` is their elements anew.
+  /// Begins a step with new elements, after the points have moved or have been sorted. `points` is their number.
   void begin_step(const ElementList<Real, Device, Shape>& list, int points);
 
-  /// Means for the displacement u. Stress and tangent are measured with `materials`, points dilating plastically or
-  /// not.
+  /// Measures the means for the displacement u [m], over the stored nodes; `dilatant`: points may dilate plastically.
   void measure(const ElementList<Real, Device, Shape>& list, const GridView<Real>& grid,
                const ParticleView<Real>& points, const Materials<Real>& materials, bool dilatant,
                const Vec3<double>* u);
@@ -57,11 +56,11 @@ class MeanDilation {
   Buffer<Vec3<Real>, Device> gradient_;
 };
 
-/// y += sum kappa V b (b . x)
+/// Adds to y the forces of the means' stiffness, the sum of kappa V b (b . x) over the elements.
 template <class Real, class Device, class Shape>
 void apply_means(const ElementList<Real, Device, Shape>& list, const MeanDilationView<Real>& means,
                  const NodeVector<Device>& x, NodeVector<Device>& y);
-/// Adds the diagonal blocks of that.
+/// Adds the diagonal blocks of the means' stiffness to `blocks`, one of every stored node [N/m].
 template <class Real, class Device, class Shape>
 void add_mean_blocks(const ElementList<Real, Device, Shape>& list, const MeanDilationView<Real>& means,
                      Buffer<Sym3<double>, Device>& blocks);

@@ -11,7 +11,8 @@
 
 namespace talus::solver {
 
-/// The tangents of all points, number by number; in single precision where Newton corrects what that rounds off.
+/// The tangents (T17) of all points, number by number; in single precision where Newton's iterations correct what that
+/// rounds off.
 template <class Real>
 struct TangentStore {
   static constexpr int numbers = sizeof(PointTangent<Real>) / sizeof(Real);
@@ -46,7 +47,7 @@ struct TangentStore {
   }
 };
 
-/// What the tangent is summed from.
+/// All that the tangent of a step is summed from: the points' own, and what couples the points of an element.
 template <class Real>
 struct PointTangents {
   GridView<Real> grid;

@@ -5,6 +5,7 @@
 
 namespace talus::solver {
 
+/// The projector on all directions.
 TALUS_HD Sym3<double> whole_space() { return {1, 1, 1, 0, 0, 0}; }
 /// The projector less direction n, where it is not held already.
 TALUS_HD Sym3<double> without(const Sym3<double>& projector, const Vec3<double>& n) {
@@ -20,7 +21,7 @@ struct ContactChanges {
 };
 static_assert(sizeof(ContactChanges) == 1);
 
-/// Arrays over the stored nodes that say what holds them, and the numbers of friction.
+/// What holds the nodes, in arrays over the stored nodes, and the numbers of friction.
 struct Constraints {
   Sym3<double>* walls = nullptr;      // projector on the directions that rollers and fixed walls leave free
   Vec3<double>* normal = nullptr;     // of the surface that a node can touch; zero: none
@@ -35,7 +36,7 @@ struct Constraints {
   ContactChanges* changes = nullptr;  // in this step
   double slip = 0;                    // over which friction grows to its limit, for nodes that changed too often [m]
   double head_start = 0;              // slip that a node which starts to slip has made already [m]
-  bool coupled = false;               // the reaction's derivative stands in the friction's: not symmetric
+  bool coupled = false;               // the friction's derivative holds that of the reaction: not symmetric
   const double* pull = nullptr;       // a contact opens when it would have to pull by more than this, or rounding
                                       // would open it [N]
 
@@ -44,6 +45,7 @@ struct Constraints {
   static constexpr int most_turns = 1, most_closings = 3;
   /// Friction of node n is smoothed: it has changed between stick and slip too often.
   TALUS_HD bool smoothed(int n) const { return changes[n].turns > most_turns; }
+  /// Node n has closed too often to open again in this step.
   TALUS_HD bool stays_closed(int n) const { return changes[n].closings >= most_closings; }
   /// Whether anything but the normal acts on node n at the surface it can touch.
   TALUS_HD bool grips(int n) const { return friction[n] > 0 || (traction && traction[n] > 0); }

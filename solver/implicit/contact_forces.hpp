@@ -13,7 +13,7 @@ namespace talus::solver {
 /// that cell's strain. Conjugate gradients take a third less with ten and half more with a hundred.
 inline constexpr double contact_stiffness = 30;
 
-/// Numbers of the step at the contact points.
+/// The numbers of a step at the contact points, in arrays over them.
 struct ContactNumbers {
   double* spring;       // stiffness, as far as the place is filled [N/m]
   double* coefficient;  // of friction, at the speed the step begins with
@@ -93,7 +93,7 @@ TALUS_HD Vec3<double> contact_force(const ContactView<Real>& contacts, const Con
   return n * push + t * limit;
 }
 
-/// Displacement of contact point c.
+/// The displacement of contact point c, from the nodes' u [m].
 template <class Real, class Shape>
 TALUS_HD Vec3<double> contact_move(const GridView<Real>& grid, const ContactView<Real>& contacts, const double* mass,
                                    const Vec3<double>* u, int c) {
@@ -102,7 +102,7 @@ TALUS_HD Vec3<double> contact_move(const GridView<Real>& grid, const ContactView
                                   [&](int n, Real share) { sum += u[n] * static_cast<double>(share); });
   return sum;
 }
-/// Spreads a force at contact point c over the nodes.
+/// Spreads a force at contact point c over the nodes [N].
 template <class Real, class Shape>
 TALUS_HD void spread(const GridView<Real>& grid, const ContactView<Real>& contacts, const double* mass, int c,
                      const Vec3<double>& force, Vec3<double>* nodes) {
@@ -147,7 +147,7 @@ struct RenewLimits {
   }
 };
 
-/// One thread: one contact point. y += K x.
+/// One thread: one contact point. It adds K x of its spring to y.
 template <class Real, class Shape>
 struct ApplyContacts {
   GridView<Real> grid;

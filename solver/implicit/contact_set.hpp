@@ -17,6 +17,16 @@ namespace talus::solver {
 /// Buffers over the stored nodes, sized together; see Constraints for what they hold.
 template <class Device>
 struct NodeContactFields {
+  explicit NodeContactFields(const Device& device)
+      : walls(device),
+        normal(device),
+        direction(device),
+        way(device),
+        friction(device),
+        traction(device),
+        limit(device),
+        changes(device) {}
+
   Buffer<Sym3<double>, Device> walls;
   NodeVector<Device> normal, direction, way;
   Buffer<double, Device> friction, traction, limit;
@@ -42,6 +52,9 @@ struct NodeContactFields {
 /// Buffers over the contact points, sized together; see ContactNumbers for what they hold.
 template <class Device>
 struct ContactPointFields {
+  explicit ContactPointFields(const Device& device)
+      : spring(device), coefficient(device), traction(device), limit(device), stiffness(device) {}
+
   Buffer<double, Device> spring, coefficient, traction, limit;
   Buffer<Sym3<double>, Device> stiffness;
 
@@ -76,7 +89,8 @@ class ContactSet {
   /// the first guess of u. `gravity` [m/s2] is that of the step.
   void begin(const NewmarkScheme& scheme, const Walls<double>& walls, const Vec3<double>& gravity) {
     const ImplicitControls& c = parts_.controls;
-    const double g = std::hypot(c.gravity.x, c.gravity.y, c.gravity.z), dt = scheme.step;
+    const Vec3<double>& full = parts_.settings.gravity.acceleration;
+    const double g = std::hypot(full.x, full.y, full.z), dt = scheme.step;
     smoothing_.gravity_way = c.dynamic ? 0.5 * std::max(g, 1e-3) * dt * dt : 1e-4 * parts_.spacing;
     const bool predicts = c.dynamic && !c.once();
     for_each(parts_.device, parts_.grid.active_blocks() * block_columns,
@@ -186,9 +200,9 @@ class ContactSet {
   BedOn<double, Device> bed_;
   const double* pull_;
   FrictionSmoothing smoothing_;
-  NodeContactFields<Device> fields_;
-  ContactPointFields<Device> points_;
-  Buffer<Sym3<double>, Device> stiffness_;
+  NodeContactFields<Device> fields_{parts_.device};
+  ContactPointFields<Device> points_{parts_.device};
+  Buffer<Sym3<double>, Device> stiffness_{parts_.device};
 };
 
 }  // namespace talus::solver

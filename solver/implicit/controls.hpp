@@ -1,10 +1,9 @@
-// What an implicit step reads of a recipe: plain numbers in SI units and radians. The scene fills them from the
-// options; nothing in this folder knows those.
+// What only implicit steps read of a recipe: plain numbers in SI units. The scene fills them from the options; nothing
+// in this folder knows those. What all integrators read is in integrator/settings.hpp.
 #pragma once
 
 #include "solver/linear/operator/operator_form.hpp"
 #include "solver/linear/preconditioner/preconditioner_kind.hpp"
-#include "solver/parallel/math.hpp"
 
 namespace talus::solver {
 
@@ -35,20 +34,15 @@ struct LinearControls {
 /// How implicit steps are taken.
 struct ImplicitControls {
   bool dynamic = true;              // with inertia (Newmark); else a sequence of equilibria
-  bool affine = true;               // points carry the affine part of their velocity (APIC)
-  bool remaps_velocity = false;     // points' new velocity goes back to the grid before the strain is taken (MUSL)
   double step = 0.01;               // the longest [s]
   int step_cuts = 8;                // halvings of a step before the run is given up
   double alpha = 0.25, beta = 0.5;  // Newmark's numbers [-]
   NewtonControls newton;
   LinearControls linear;
   Tangent tangent = Tangent::frozen_yield;
-  double apex = 0.1;        // rounding of the cone's tip (T15b), in weights of a cell [-]
-  bool b_bar = false;       // means over the elements of the volume change (T17b)
-  double filler = 1e-3;     // stiffness of the springs (T17a) on nearly empty nodes in statics, over a full cell's [-]
-  Vec3<double> gravity;     // [m/s2]
-  double gravity_ramp = 0;  // time over which gravity grows to its full value [s]; 0: there from the start
-  double damping = 0;       // Cundall's local factor [-]
+  double apex = 0.1;     // rounding of the cone's tip (T15b), in weights of a cell [-]
+  bool b_bar = false;    // means over the elements of the volume change (T17b)
+  double filler = 1e-3;  // stiffness of the springs (T17a) on nearly empty nodes in statics, over a full cell's [-]
 
   /// Whether a step is one linear solve with the tangent at its start.
   bool once() const { return newton.iterations == 1; }

@@ -13,7 +13,7 @@ struct FrictionSmoothing {
   static constexpr int patience = 4;  // iterations without progress before friction is smoothed further
 
   bool smooths = true;       // statics keep the narrowest slip
-  double gravity_way = 0;    // the way that gravity alone makes in a step, or what stands for it in statics [m]
+  double gravity_way = 0;    // the way that gravity alone makes in a step, or a share of a cell in statics [m]
   double width = narrowest;  // share of gravity_way over which friction grows: what rests slips by no more than that
 
   /// The slip over which friction grows to its limit (T18) [m].

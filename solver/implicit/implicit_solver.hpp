@@ -19,7 +19,7 @@ template <class Real, class Device, class Shape>
 class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
   using Base = PointSolver<Real, Device, Shape>;
   using Base::clock_, Base::contact_, Base::dilatant_, Base::frame_, Base::grid_, Base::impulses_, Base::materials_,
-      Base::points_, Base::read_clock, Base::sums_;
+      Base::points_, Base::read_clock, Base::settings_, Base::sums_;
 
  public:
   ImplicitSolver(const Scene& scene, const IntegratorSettings& settings, const ImplicitControls& controls,
@@ -72,7 +72,8 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
 
   /// The controls; the materials learn from them which tangent is asked for, and how round the cone's tip is (T15b).
   const ImplicitControls& with_materials(const ImplicitControls& c, double layer_height) {
-    const double g = std::hypot(c.gravity.x, c.gravity.y, c.gravity.z);
+    const Vec3<double>& gravity = settings_.gravity.acceleration;
+    const double g = std::hypot(gravity.x, gravity.y, gravity.z);
     for (Material<Real>& m : materials_.list) {
       m.exact_tangent = c.tangent == Tangent::exact;
       m.apex = static_cast<Real>(c.apex * static_cast<double>(m.density) * g * layer_height);
@@ -81,6 +82,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
   }
   StepParts<Real, Device, Shape> parts() {
     return {.device = Device{},
+            .settings = settings_,
             .controls = controls_,
             .points = points_,
             .grid = grid_,

@@ -29,38 +29,40 @@ class ImplicitStep {
 
   ImplicitStep(const Parts& parts, BedOn<double, Device> bed)
       : parts_(parts),
-        balance_(empty_balance()),
+        balance_(empty_balance(parts.device)),
         contacts_(parts_, nodes_, std::move(bed), &balance_.data()->pull),
         tangent_(parts_, nodes_, contacts_) {}
   ImplicitStep(const ImplicitStep&) = delete;
   ImplicitStep& operator=(const ImplicitStep&) = delete;
 
-  /// The particles have been sorted, and the grid fitted to them; the walls that stand from now on.
+  /// The particles have been sorted, and the grid fitted to them; `walls` are there from now on.
   void group(const Walls<double>& walls) {
     walls_ = walls;
     tangent_.group();
   }
 
-  /// Everything that does not change with the displacement. Loads are those at the end of the step, walls those that
-  /// stand at its start.
+  /// Everything that does not change with the displacement. Loads are those at the end of the step, walls those at its
+  /// start.
   void begin(const StepBegin& at) {
-    const ProfilePhase<Device> phase("points to grid");
+    const ProfilePhase<Device> phase(parts_.device, "points to grid");
     const ImplicitControls& c = parts_.controls;
     scheme_ = {.dynamic = c.dynamic, .alpha = c.alpha, .beta = c.beta, .step = at.step};
     if (at.backward_euler) scheme_ = {.dynamic = c.dynamic, .alpha = 0.5, .beta = 1, .step = at.step};
     nodes_.resize(parts_.grid.nodes());
     contacts_.resize();
     tangent_.begin(scheme_);
-    scatter_points(
-        parts_.device, parts_.points.count(), parts_.grid.groups(),
-        ScatterInertia<Real, Shape>{
-            {parts_.grid.view(), parts_.points.view()}, parts_.materials, c.affine, c.dynamic, at.loads, nodes()});
-    const double ramp = c.gravity_ramp > 0 ? std::min(1.0, (at.start + at.step) / c.gravity_ramp) : 1.0;
-    contacts_.begin(scheme_, walls_, {c.gravity.x * ramp, c.gravity.y * ramp, c.gravity.z * ramp});
+    scatter_points(parts_.device, parts_.points.count(), parts_.grid.groups(),
+                   ScatterInertia<Real, Shape>{{parts_.grid.view(), parts_.points.view()},
+                                               parts_.materials,
+                                               parts_.settings.transfer.affine,
+                                               c.dynamic,
+                                               at.loads,
+                                               nodes()});
+    contacts_.begin(scheme_, walls_, gravity_at(at.start + at.step));
     if (!c.dynamic) return;
     sum_each<1>(parts_.device, nodes_.count, parts_.sums, SquareMomentum{nodes()},
                 KeepTotals<1>{&balance_.data()->momentum});
-    if (at.accelerates || c.damping > 0) begin_forces(at.accelerates);
+    if (at.accelerates || parts_.settings.damping > 0) begin_forces(at.accelerates);
   }
 
   /// Newton's iterations, or the one linear solve; see NewtonReport.
@@ -73,7 +75,7 @@ class ImplicitStep {
   void measure(Linearisation linearisation) { tangent_.measure(linearisation); }
 
   Unbalanced residual(Contacts contacts) {
-    const ProfilePhase<Device> phase("residual and contact");
+    const ProfilePhase<Device> phase(parts_.device, "residual and contact");
     const bool decide = contacts == Contacts::decided;
     if (decide) {
       contacts_.renew_limits();
@@ -132,12 +134,12 @@ class ImplicitStep {
                                    .new_acceleration = nodes_.acceleration_end.data(),
                                    .strain_displacement = nodes_.u.data(),
                                    .kept = kept,
-                                   .affine = parts_.controls.affine,
+                                   .affine = parts_.settings.transfer.affine,
                                    .dilatant = parts_.dilatant,
                                    .speeds = true,
                                    .deforms = true,
                                    .means = tangent_.stresses().means()};
-    if (dynamic && parts_.controls.remaps_velocity) {
+    if (dynamic && parts_.settings.transfer.remaps_velocity) {
       remap_velocity(kernel);
     } else {
       tangent_.stresses().average(nodes_.u);
@@ -168,10 +170,16 @@ class ImplicitStep {
   }
 
  private:
-  static Buffer<Balance, Device> empty_balance() {
-    Buffer<Balance, Device> balance;
+  static Buffer<Balance, Device> empty_balance(const Device& device) {
+    Buffer<Balance, Device> balance(device);
     balance.upload({Balance{}});
     return balance;
+  }
+  /// Gravity at a time [m/s2].
+  Vec3<double> gravity_at(double time) const {
+    const GravitySettings& g = parts_.settings.gravity;
+    const double ramp = g.ramp > 0 ? std::min(1.0, time / g.ramp) : 1.0;
+    return {g.acceleration.x * ramp, g.acceleration.y * ramp, g.acceleration.z * ramp};
   }
   NodeArrays nodes() { return nodes_.arrays(parts_.controls.dynamic); }
 
@@ -181,8 +189,8 @@ class ImplicitStep {
     nodes_.u.fill_zero();
     tangent_.measure_forces();
     if (accelerates) for_each(parts_.device, nodes_.count, FirstAcceleration{nodes()});
-    if (parts_.controls.damping > 0)
-      for_each(parts_.device, nodes_.count, AddDamping{nodes(), parts_.controls.damping});
+    if (parts_.settings.damping > 0)
+      for_each(parts_.device, nodes_.count, AddDamping{nodes(), parts_.settings.damping});
     copy(nodes_.saved_u, nodes_.u);
   }
 
@@ -202,13 +210,13 @@ class ImplicitStep {
   }
 
   Parts parts_;
-  NodeFields<Device> nodes_;
+  NodeFields<Device> nodes_{parts_.device};
   Buffer<Balance, Device> balance_;
   ContactSet<Real, Device, Shape> contacts_;
   TangentSystem<Real, Device, Shape> tangent_;
   NewmarkScheme scheme_;
   Walls<double> walls_;
-  Buffer<std::uint32_t, Device> farthest_;
+  Buffer<std::uint32_t, Device> farthest_{parts_.device};
 };
 
 }  // namespace talus::solver

@@ -78,7 +78,7 @@ bool find_change(Problem& problem, double tolerance, NewtonReport& report) {
 /// Whether iterations have halved the unbalanced force of late.
 class Progress {
  public:
-  /// Takes note of an iteration's residual; true where so many have gone by without halving the least so far.
+  /// Takes note of an iteration's residual; true where `patience` iterations have not halved the least so far.
   bool stalls(double residual, int patience) {
     waited_ = residual < 0.5 * best_ ? 0 : waited_ + 1;
     if (residual < best_) best_ = residual;

@@ -5,8 +5,8 @@
 
 namespace talus::solver {
 
-/// Where a node stands with the surface it can touch (ground or a frictional wall): away from it, slipping along it, or
-/// stuck to it.
+/// State of a node's contact with the surface that it can touch (bed or a frictional wall): there is none, it is open,
+/// slips along the surface, or sticks to it.
 enum class Touch : unsigned char { none, open, slips, sticks };
 
 /// Arrays over the stored nodes, double whatever the precision of the points.

@@ -9,14 +9,18 @@ namespace talus::solver {
 /// Buffers over the stored nodes, sized together; see NodeArrays for what they hold.
 template <class Device>
 struct NodeFields {
+  explicit NodeFields(const Device& on) : device(on) {}
+
+  Device device;
   int count = 0;
-  Buffer<double, Device> mass;
-  NodeVector<Device> velocity, arrival, acceleration, external, internal, u, residual;
-  NodeVector<Device> velocity_end, acceleration_end;  // of the step
-  NodeVector<Device> change;                          // of u, from the linear system
-  NodeVector<Device> saved_u;                         // where a line search begins
-  Buffer<Sym3<double>, Device> freed;
-  Buffer<Touch, Device> touch;
+  Buffer<double, Device> mass{device};
+  NodeVector<Device> velocity{device}, arrival{device}, acceleration{device}, external{device}, internal{device},
+      u{device}, residual{device};
+  NodeVector<Device> velocity_end{device}, acceleration_end{device};  // of the step
+  NodeVector<Device> change{device};                                  // of u, from the linear system
+  NodeVector<Device> saved_u{device};                                 // where a line search begins
+  Buffer<Sym3<double>, Device> freed{device};
+  Buffer<Touch, Device> touch{device};
 
   /// Room for so many nodes; what is summed from the points begins at zero.
   void resize(int nodes) {

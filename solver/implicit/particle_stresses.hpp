@@ -89,8 +89,8 @@ class ParticleStresses {
   bool single_;
   ElementList<Real, Device, Shape> elements_;
   MeanDilation<Real, Device, Shape> means_;
-  Buffer<Real, Device> tangents_;
-  Buffer<float, Device> single_tangents_;
+  Buffer<Real, Device> tangents_{parts_.device};
+  Buffer<float, Device> single_tangents_{parts_.device};
 };
 
 }  // namespace talus::solver

@@ -27,6 +27,7 @@ struct SquareForces {
 TALUS_HD double force_size(const Balance& balance, double stopping_share) {
   return sqrt(balance.forces) + stopping_share * sqrt(balance.momentum) + 1e-300;
 }
+/// Keeps the squared forces, and the pull that opens a contact.
 struct FinishForces {
   Balance* balance;
   double stopping_share, tolerance;  // of a node: the body's by the square root of their number
@@ -66,6 +67,7 @@ struct MeasureResidual {
   }
 };
 
+/// Keeps the sums of MeasureResidual.
 struct FinishResidual {
   Balance* balance;
   TALUS_HD void operator()(const double* total) const {
@@ -80,7 +82,7 @@ struct FinishReversals {
   TALUS_HD void operator()(const double* total) const { balance->changes += *total; }
 };
 
-/// One thread.
+/// One thread. No contact has changed since.
 struct ForgetChanges {
   Balance* balance;
   TALUS_HD void operator()(int) const { balance->changes = 0; }

@@ -5,16 +5,19 @@
 #include "solver/boundary/surface_contact.hpp"
 #include "solver/grid/sparse_grid.hpp"
 #include "solver/implicit/controls.hpp"
+#include "solver/integrator/settings.hpp"
 #include "solver/material/material.hpp"
 #include "solver/parallel/sums.hpp"
 #include "solver/state/particles.hpp"
 
 namespace talus::solver {
 
-/// The particles, the grid and what the mass can touch, which belong to the integrator, and the controls of the step.
+/// The particles, the grid and what the mass can touch, which belong to the integrator, the settings of all
+/// integrators and the controls of implicit ones.
 template <class Real, class Device, class Shape>
 struct StepParts {
   Device device;
+  const IntegratorSettings& settings;
   const ImplicitControls& controls;
   Particles<Real, Device>& points;
   SparseGrid<Real, Device>& grid;

@@ -59,7 +59,7 @@ class TangentSystem {
   LinearReport solve(const NodeVector<Device>& b, NodeVector<Device>& x, double tolerance) {
     if (direct()) return cholesky_.solve(stresses_.view(), held_nodes(), b, x);
     refresh();
-    const ProfilePhase<Device> phase("conjugate gradients");
+    const ProfilePhase<Device> phase(parts_.device, "conjugate gradients");
     const KrylovLimits limits{.tolerance = tolerance, .iterations = parts_.controls.linear.iterations};
     Product product{*this};
     return parts_.controls.linear.solver == LinearSolver::pcg ? cg_.solve(product, preconditioner_, b, x, limits)
@@ -99,13 +99,13 @@ class TangentSystem {
   bool direct() const { return parts_.controls.linear.solver == LinearSolver::cholesky; }
 
   void measure(bool with_tangent, bool definite) {
-    const ProfilePhase<Device> phase("stress and tangent");
+    const ProfilePhase<Device> phase(parts_.device, "stress and tangent");
     nodes_.internal.fill_zero();
     stresses_.measure(nodes_.u, nodes_.internal, with_tangent, definite);
     contacts_.scatter(with_tangent);
   }
 
-  /// What stands on the diagonal beside the particles' stiffness.
+  /// The part of the diagonal beside the particles' stiffness.
   HeldNodes held_nodes() {
     return {.count = nodes_.count,
             .mass = nodes_.mass.data(),
@@ -116,7 +116,7 @@ class TangentSystem {
   }
 
   void refresh() {
-    const ProfilePhase<Device> phase("operator and preconditioner");
+    const ProfilePhase<Device> phase(parts_.device, "operator and preconditioner");
     const SparseGrid<Real, Device>& grid = parts_.grid;
     preconditioner_.refresh(stresses_.view(), grid.groups(), stresses_.elements(),
                             {grid.view(), grid.active_list(), grid.active_blocks()}, held_nodes());

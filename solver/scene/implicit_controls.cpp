@@ -5,8 +5,6 @@ namespace talus::solver {
 ImplicitControls make_implicit_controls(const SolveOptions& options) {
   const ImplicitOptions& o = options.implicit;
   return {.dynamic = options.integrator == Integrator::newmark,
-          .affine = options.transfer == Transfer::apic,
-          .remaps_velocity = options.stress_update == StressUpdate::modified,
           .step = o.step,
           .step_cuts = o.step_cuts,
           .alpha = o.newmark_alpha,
@@ -22,10 +20,7 @@ ImplicitControls make_implicit_controls(const SolveOptions& options) {
           .tangent = o.tangent,
           .apex = o.apex,
           .b_bar = o.b_bar,
-          .filler = o.filler,
-          .gravity = {options.gravity[0], options.gravity[1], options.gravity[2]},
-          .gravity_ramp = options.gravity_ramp,
-          .damping = options.damping};
+          .filler = o.filler};
 }
 
 }  // namespace talus::solver

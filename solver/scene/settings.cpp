@@ -87,7 +87,7 @@ SolverSettings for_gravity_loading(SolverSettings s, int steps) {
   s.implicit.dynamic = false;
   s.implicit.step = 1.0 / steps;
   s.implicit.newton.iterations = std::max(s.implicit.newton.iterations, 20);
-  s.implicit.gravity_ramp = s.common.gravity.ramp = 1;
+  s.common.gravity.ramp = 1;
   hold(s.common.materials.in_double);
   hold(s.common.materials.in_single);
   s.common.fields.plastic_volume = s.common.fields.plastic_shear = false;

@@ -59,7 +59,7 @@ struct MarkRows {
   }
 };
 
-/// Where the block of run u stands among the scalar entries: row i of it begins at first + i * stride.
+/// The place of run u's block among the scalar entries: row i of it begins at first + i * stride.
 struct BlockPlace {
   int row, column;
   int first, stride;

@@ -6,7 +6,7 @@
 
 namespace talus::solver {
 
-/// The columns of nodes in storage: sixteen a block.
+/// The columns of nodes in storage, sixteen of every active block.
 template <class Real>
 struct StoredColumns {
   GridView<Real> grid;
@@ -15,7 +15,7 @@ struct StoredColumns {
   TALUS_HD int count() const { return blocks * block_columns; }
 };
 
-/// Where a stored column stands, and its nodes in storage; no layers outside the domain.
+/// The place of a stored column and its nodes in storage; a column outside the domain has no layers.
 template <class Real>
 struct ColumnNodes {
   int i = 0, j = 0, first_layer = 0, layers = 0, first = 0;
@@ -39,8 +39,8 @@ struct ColumnFactors {
   Mat3<double>* above[2] = {};
 };
 
-/// One thread: one column. A pivot that compression has made indefinite is replaced: whatever positive pivots stand,
-/// the product is one of conjugate gradients' kind.
+/// One thread: one column. A pivot that compression has made indefinite is replaced: with any positive pivots
+/// the product is symmetric and positive definite, as conjugate gradients need it.
 template <class Real, int reach>
 struct FactoriseColumns {
   StoredColumns<Real> columns;

@@ -12,7 +12,7 @@ TALUS_HD bool is_definite(const Sym3<double>& s) {
   return s.xx > 0 && minor > margin * s.xx * s.yy && whole > margin * s.xx * s.yy * s.zz;
 }
 
-/// The diagonal's size where a block cannot be inverted as it stands.
+/// The absolute values of a block's diagonal, in place of a block that cannot be inverted.
 TALUS_HD Sym3<double> diagonal_of(const Sym3<double>& s) {
   const auto safe = [](double d) { return fabs(d) > 0 ? fabs(d) : 1.0; };
   return {safe(s.xx), safe(s.yy), safe(s.zz), 0, 0, 0};
@@ -25,7 +25,7 @@ TALUS_HD Mat3<double> product(const Sym3<double>& s, const Mat3<double>& m) { re
 TALUS_HD Mat3<double> transposed(const Mat3<double>& m) {
   return {{m.a.x, m.b.x, m.c.x}, {m.a.y, m.b.y, m.c.y}, {m.a.z, m.b.z, m.c.z}};
 }
-/// m n^T
+/// The product m n^T.
 TALUS_HD Mat3<double> product_transposed(const Mat3<double>& m, const Mat3<double>& n) {
   Mat3<double> out{};
   add_outer(out, m.a, n.a);
@@ -36,7 +36,7 @@ TALUS_HD Mat3<double> product_transposed(const Mat3<double>& m, const Mat3<doubl
 TALUS_HD Mat3<double> difference(const Mat3<double>& m, const Mat3<double>& n) {
   return {m.a - n.a, m.b - n.b, m.c - n.c};
 }
-/// s - m n^T, which is symmetric
+/// The difference s - m n^T, of which the caller knows that it is symmetric.
 TALUS_HD Sym3<double> less(const Sym3<double>& s, const Mat3<double>& m, const Mat3<double>& n) {
   const Mat3<double> t = product_transposed(m, n);
   return {s.xx - t.a.x,

@@ -6,7 +6,7 @@
 
 namespace talus::solver {
 
-/// One thread: one column. Where its rows stand.
+/// One thread: one column. Its nodes' places go to their rows.
 template <class Real>
 struct PlaceRows {
   StoredColumns<Real> columns;
@@ -21,7 +21,7 @@ struct PlaceRows {
   }
 };
 
-/// One thread: one fine row. Names the coarse nodes that it is part of.
+/// One thread: one fine row. It flags the coarse nodes that it is part of.
 template <class Real>
 struct FlagParents {
   GridView<Real> coarse;
@@ -39,7 +39,7 @@ struct FlagParents {
   }
 };
 
-/// One thread: one row and one neighbour.
+/// One thread: one row and one neighbour. The neighbour's node goes into the table, or -1 where none is stored.
 template <class Real, class Device, class Shape>
 struct MeetRows {
   using View = StencilView<Real, Device, Shape>;
@@ -55,8 +55,8 @@ struct MeetRows {
   }
 };
 
-/// One thread: one row and one neighbour. The block between what is free at either end; at the node itself with its
-/// mass and what else holds it.
+/// One thread: one row and one neighbour. Their block is projected on what is free at either end, as in (T19); the
+/// node's own gets its mass and what else holds it first.
 template <class Real, class Device, class Shape>
 struct HoldRows {
   using View = StencilView<Real, Device, Shape>;
@@ -95,7 +95,8 @@ struct HoldRows {
   }
 };
 
-/// One thread: one coarse row and one neighbour. Sum over the fine functions that the two coarse ones are made of.
+/// One thread: one coarse row and one neighbour. Their block of R A R^T, (T20), is summed over the fine functions that
+/// the two coarse ones are made of.
 template <class Real, class Device, class Shape>
 struct SumFineBlocks {
   using View = StencilView<Real, Device, Shape>;
@@ -139,7 +140,8 @@ struct SumFineBlocks {
   }
 };
 
-/// One thread: one node. Its block, and those that couple it upwards, their symmetric part where tangents have another.
+/// One thread: one node. Its block and those that couple it upwards go to the column's factors, their symmetric part
+/// where tangents have another.
 template <class Real, class Device, class Shape>
 struct TakeColumns {
   using View = StencilView<Real, Device, Shape>;
@@ -166,7 +168,7 @@ struct TakeColumns {
   }
 };
 
-/// A node: r = b - A x, nothing where no row is.
+/// The residual r = b - A x of a node; zero where it has no row.
 template <class Real, class Device, class Shape>
 struct NodeResidual {
   StencilView<Real, Device, Shape> matrix;
@@ -181,7 +183,7 @@ struct NodeResidual {
   }
 };
 
-/// A layer of a column of a colour.
+/// The residual of the columns of a colour, layer by layer.
 template <class Real, class Device, class Shape>
 struct ColourResidual {
   StoredColumns<Real> columns;
@@ -218,7 +220,7 @@ struct CorrectColumns {
   }
 };
 
-/// One thread: one coarse row.
+/// One thread: one coarse row. It sums the fine vector with the weights of (T20).
 template <class Real>
 struct RestrictRows {
   GridView<Real> fine;
@@ -240,7 +242,7 @@ struct RestrictRows {
   }
 };
 
-/// One thread: one fine row.
+/// One thread: one fine row. It adds the coarse vector with the weights of (T20).
 template <class Real>
 struct ProlongRows {
   GridView<Real> coarse;

@@ -9,7 +9,7 @@ namespace talus::solver {
 struct TwoScale {
   enum Kind { same, hats, splines } kind = same;
 
-  /// Coarse functions over so many fine ones.
+  /// The number of coarse functions over so many fine ones.
   TALUS_HD int count(int fine) const { return kind == same ? fine : kind == hats ? fine / 2 + 1 : fine / 2 + 2; }
 
   /// (T20): coarse function c is the sum of weight(n) times fine function first(c) + n, n < children(), as far as that
