@@ -211,36 +211,5 @@ TEST(Newton, solves_once_with_the_tangent_at_the_start) {
   EXPECT_FALSE(solve_once(p, controls()).converged);
 }
 
-TEST(LinearForcing, asks_for_as_much_as_the_last_iteration_brought) {
-  const NewtonControls c{.tolerance = 1e-6, .forcing = Forcing::eisenstat_walker, .linear_tolerance = 1e-8};
-  LinearForcing forcing;
-  EXPECT_EQ(forcing.next(1, c), 1e-3);
-  EXPECT_DOUBLE_EQ(forcing.next(0.1, c), 0.9 * 0.01);
-  EXPECT_DOUBLE_EQ(forcing.next(0.1, c), 0.1) << "no progress: at most this";
-  EXPECT_DOUBLE_EQ(forcing.next(1e-5, c), 0.01) << "no finer than Newton's own tolerance asks for";
-  EXPECT_EQ(LinearForcing{}.next(1, controls()), controls().linear_tolerance);
-}
-
-TEST(FrictionSmoothing, widens_by_tens_and_narrows_by_halves) {
-  FrictionSmoothing s{.smooths = true, .gravity_way = 2};
-  EXPECT_EQ(s.slip(), 2e-5);
-  EXPECT_DOUBLE_EQ(s.head_start(), 2e-3);
-  int times = 0;
-  while (s.widen()) ++times;
-  EXPECT_EQ(times, 4);
-  EXPECT_EQ(s.width, FrictionSmoothing::widest);
-  EXPECT_TRUE(s.too_wide_for(0.1));
-  EXPECT_FALSE(s.too_wide_for(10));
-  s.narrow_after(100);
-  EXPECT_EQ(s.width, FrictionSmoothing::widest) << "that step did not converge well";
-  s.narrow_after(3);
-  EXPECT_EQ(s.width, 0.5 * FrictionSmoothing::widest);
-  for (int i = 0; i < 9; ++i) s.narrow();
-  EXPECT_EQ(s.width, FrictionSmoothing::narrowest);
-  EXPECT_FALSE(s.too_wide_for(0));
-  s.smooths = false;
-  EXPECT_FALSE(s.widen());
-}
-
 }  // namespace
 }  // namespace talus::solver::testing

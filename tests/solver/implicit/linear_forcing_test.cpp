@@ -1,0 +1,32 @@
+// How exactly linear systems are asked for.
+#include "solver/implicit/linear_forcing.hpp"
+
+#include <gtest/gtest.h>
+
+namespace talus::solver::testing {
+namespace {
+
+TEST(LinearForcing, asks_for_as_much_as_the_last_iteration_brought) {
+  const NewtonControls c{.tolerance = 1e-6, .forcing = Forcing::eisenstat_walker, .linear_tolerance = 1e-8};
+  LinearForcing forcing;
+  EXPECT_EQ(forcing.next(1, c), 1e-3);
+  EXPECT_DOUBLE_EQ(forcing.next(0.1, c), 0.9 * 0.01);
+  EXPECT_DOUBLE_EQ(forcing.next(0.1, c), 0.1) << "no progress: at most this";
+  EXPECT_DOUBLE_EQ(forcing.next(1e-5, c), 0.01) << "no finer than Newton's own tolerance asks for";
+}
+
+TEST(LinearForcing, keeps_to_one_tolerance_where_that_is_asked_for) {
+  const NewtonControls c{.tolerance = 1e-6, .forcing = Forcing::fixed, .linear_tolerance = 1e-8};
+  LinearForcing forcing;
+  for (const double residual : {1.0, 0.5, 1e-5}) EXPECT_EQ(forcing.next(residual, c), 1e-8);
+}
+
+TEST(LinearForcing, asks_for_no_more_than_the_finest_tolerance) {
+  const NewtonControls c{.tolerance = 1e-12, .forcing = Forcing::eisenstat_walker, .linear_tolerance = 1e-8};
+  LinearForcing forcing;
+  forcing.next(1, c);
+  EXPECT_EQ(forcing.next(1e-5, c), 1e-8);
+}
+
+}  // namespace
+}  // namespace talus::solver::testing
