@@ -52,14 +52,15 @@ struct AddSpringBlocks {
 template <class Real, class Device, class Shape>
 void apply_springs(const ElementList<Real, Device, Shape>& list, const FillerSprings& springs,
                    const NodeVector<Device>& x, NodeVector<Device>& y) {
-  for_each_grouped(Device{}, list.count(), list.groups(),
+  for_each_grouped(list.device(), list.count(), list.groups(),
                    ApplySprings<Shape>{list.view(), springs, x.data(), y.data()});
 }
 
 template <class Real, class Device, class Shape>
 void add_spring_blocks(const ElementList<Real, Device, Shape>& list, const FillerSprings& springs,
                        Buffer<Sym3<double>, Device>& blocks) {
-  for_each_grouped(Device{}, list.count(), list.groups(), AddSpringBlocks<Shape>{list.view(), springs, blocks.data()});
+  for_each_grouped(list.device(), list.count(), list.groups(),
+                   AddSpringBlocks<Shape>{list.view(), springs, blocks.data()});
 }
 
 #define TALUS_INSTANTIATE(Real, Device, Shape)                                                   \

@@ -113,7 +113,7 @@ void MeanDilation<Real, Device, Shape>::begin_step(const ElementList<Real, Devic
   element_of_.resize(static_cast<std::size_t>(points));
   for (auto* buffer : {&increment_, &stress_, &stiffness_}) buffer->resize(count);
   gradient_.resize(count * nodes_each);
-  for_each(Device{}, list.count(), NumberPoints{list.view(), element_of_.data()});
+  for_each(list.device(), list.count(), NumberPoints{list.view(), element_of_.data()});
 }
 
 template <class Real, class Device, class Shape>
@@ -121,7 +121,7 @@ void MeanDilation<Real, Device, Shape>::measure(const ElementList<Real, Device, 
                                                 const GridView<Real>& grid, const ParticleView<Real>& points,
                                                 const Materials<Real>& materials, bool dilatant,
                                                 const Vec3<double>* u) {
-  for_each(Device{}, list.count(),
+  for_each(list.device(), list.count(),
            MeasureMeans<Real, Shape>{grid, points, materials, dilatant, list.view(), u, increment_.data(),
                                      stress_.data(), stiffness_.data(), gradient_.data()});
 }
@@ -130,7 +130,7 @@ template <class Real, class Device, class Shape>
 void apply_means(const ElementList<Real, Device, Shape>& list, const MeanDilationView<Real>& means,
                  const NodeVector<Device>& x, NodeVector<Device>& y) {
   constexpr int nodes = ElementList<Real, Device, Shape>::nodes_each;
-  for_each_grouped(Device{}, list.count(), list.groups(),
+  for_each_grouped(list.device(), list.count(), list.groups(),
                    ApplyMeans<Real, nodes>{list.view(), means, x.data(), y.data()});
 }
 
@@ -138,7 +138,7 @@ template <class Real, class Device, class Shape>
 void add_mean_blocks(const ElementList<Real, Device, Shape>& list, const MeanDilationView<Real>& means,
                      Buffer<Sym3<double>, Device>& blocks) {
   constexpr int nodes = ElementList<Real, Device, Shape>::nodes_each;
-  for_each_grouped(Device{}, list.count(), list.groups(),
+  for_each_grouped(list.device(), list.count(), list.groups(),
                    AddMeanBlocks<Real, nodes>{list.view(), means, blocks.data()});
 }
 

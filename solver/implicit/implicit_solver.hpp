@@ -10,6 +10,7 @@
 #include "solver/integrator/point_solver.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/integrator/step_failure.hpp"
+#include "solver/parallel/any_device.hpp"
 
 namespace talus::solver {
 
@@ -18,15 +19,15 @@ namespace talus::solver {
 template <class Real, class Device, class Shape>
 class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
   using Base = PointSolver<Real, Device, Shape>;
-  using Base::clock_, Base::contact_, Base::dilatant_, Base::frame_, Base::grid_, Base::impulses_, Base::materials_,
-      Base::points_, Base::read_clock, Base::settings_, Base::sums_;
+  using Base::clock_, Base::contact_, Base::device_, Base::dilatant_, Base::frame_, Base::grid_, Base::impulses_,
+      Base::materials_, Base::points_, Base::read_clock, Base::settings_, Base::sums_;
 
  public:
-  ImplicitSolver(const Scene& scene, const IntegratorSettings& settings, const ImplicitControls& controls,
-                 const SolverState& state)
-      : Base(scene, settings, state, fields(settings), 0),
+  ImplicitSolver(const Device& device, const Scene& scene, const IntegratorSettings& settings,
+                 const ImplicitControls& controls, const SolverState& state)
+      : Base(device, scene, settings, state, fields(settings), 0),
         controls_(with_materials(controls, scene.grid.layer_height)),
-        step_(parts(), BedOn<double, Device>(settings.bed, scene.bed)),
+        step_(parts(), BedOn<double, Device>(device, settings.bed, scene.bed)),
         length_(controls.step),
         first_(state.clock.accelerated == 0),
         midway_(state.clock.step > 0) {
@@ -81,7 +82,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     return c;
   }
   StepParts<Real, Device, Shape> parts() {
-    return {.device = Device{},
+    return {.device = device_,
             .settings = settings_,
             .controls = controls_,
             .points = points_,
@@ -98,7 +99,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
   }
 
   void fit_grid(double time) {
-    const ProfilePhase<Device> phase("sort and storage");
+    const ProfilePhase<Device> phase(device_, "sort and storage");
     this->fit(0);
     step_.group(this->template stand_walls<double>(time));
   }
@@ -128,7 +129,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
   }
 
   void accept(const Clock& clock, double step) {
-    const ProfilePhase<Device> phase("grid to points");
+    const ProfilePhase<Device> phase(device_, "grid to points");
     step_.accept(clock_.data(), clock.share_kept(step, rate_));
     this->measure_columns();
     step_.record_maps(this->maps(), clock.time, this->column_volumes());
@@ -157,19 +158,18 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
   bool midway_;      // the run began with explicit steps
 };
 
-/// A solver of one precision on the device asked for.
+/// A solver of one precision on a device.
 template <class Real>
 std::unique_ptr<Solver> make_implicit_solver_of(const Scene& scene, const IntegratorSettings& settings,
-                                                const ImplicitControls& controls, On on, const SolverState& state) {
+                                                const ImplicitControls& controls, const AnyDevice& device,
+                                                const SolverState& state) {
   return with_shape(settings.shape, [&](auto shape) -> std::unique_ptr<Solver> {
     using Shape = decltype(shape);
 #if TALUS_FOR_GPU
-    if (on == On::gpu)
-      return std::make_unique<ImplicitSolver<Real, GpuDevice, Shape>>(scene, settings, controls, state);
-#else
-    static_cast<void>(on);
+    if (device.is_gpu())
+      return std::make_unique<ImplicitSolver<Real, GpuDevice, Shape>>(device.gpu(), scene, settings, controls, state);
 #endif
-    return std::make_unique<ImplicitSolver<Real, CpuDevice, Shape>>(scene, settings, controls, state);
+    return std::make_unique<ImplicitSolver<Real, CpuDevice, Shape>>(device.cpu(), scene, settings, controls, state);
   });
 }
 

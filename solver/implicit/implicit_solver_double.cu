@@ -5,6 +5,7 @@
 namespace talus::solver {
 
 template std::unique_ptr<Solver> make_implicit_solver_of<double>(const Scene&, const IntegratorSettings&,
-                                                                 const ImplicitControls&, On, const SolverState&);
+                                                                 const ImplicitControls&, const AnyDevice&,
+                                                                 const SolverState&);
 
 }  // namespace talus::solver

@@ -87,8 +87,8 @@ class ParticleStresses {
   const Parts& parts_;
   const Buffer<double, Device>& mass_;
   bool single_;
-  ElementList<Real, Device, Shape> elements_;
-  MeanDilation<Real, Device, Shape> means_;
+  ElementList<Real, Device, Shape> elements_{parts_.device};
+  MeanDilation<Real, Device, Shape> means_{parts_.device};
   Buffer<Real, Device> tangents_{parts_.device};
   Buffer<float, Device> single_tangents_{parts_.device};
 };

@@ -28,8 +28,9 @@ class TangentSystem {
         nodes_(nodes),
         contacts_(contacts),
         stresses_(parts, nodes.mass),
-        operator_(parts.controls.linear.form, ParticleStresses<Real, Device, Shape>::rounds(parts.controls)),
-        preconditioner_(parts.controls.linear.preconditioner) {}
+        operator_(parts.device, parts.controls.linear.form,
+                  ParticleStresses<Real, Device, Shape>::rounds(parts.controls)),
+        preconditioner_(parts.device, parts.controls.linear.preconditioner) {}
 
   /// The particles have moved, or have been sorted: elements and neighbours anew, where anything goes by them.
   void group() {
@@ -130,9 +131,9 @@ class TangentSystem {
   ParticleStresses<Real, Device, Shape> stresses_;
   TangentOperator<Real, Device, Shape> operator_;
   NodePreconditioner<Real, Device, Shape> preconditioner_;
-  ConjugateGradient<Device> cg_;
-  BiCgStab<Device> bicgstab_;
-  CholeskySolver<Real, Device, Shape> cholesky_;
+  ConjugateGradient<Device> cg_{parts_.device};
+  BiCgStab<Device> bicgstab_{parts_.device};
+  CholeskySolver<Real, Device, Shape> cholesky_{parts_.device};
 };
 
 }  // namespace talus::solver

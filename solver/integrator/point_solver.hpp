@@ -26,8 +26,6 @@ auto with_shape(ShapeKind kind, F&& f) {
 template <class Number, class Device>
 class BedOn {
  public:
-  BedOn(const BaseFriction<double>& friction, const std::vector<Bed<double>>& columns)
-      : BedOn(Device{}, friction, columns) {}
   BedOn(const Device& device, const BaseFriction<double>& friction, const std::vector<Bed<double>>& columns)
       : columns_(device) {
     friction_.law = friction.law;
@@ -57,9 +55,6 @@ class BedOn {
 template <class Real, class Device, class Shape>
 class PointSolver : public Solver {
  public:
-  PointSolver(const Scene& scene, const IntegratorSettings& settings, const SolverState& state, ParticleFields fields,
-              int drift)
-      : PointSolver(Device{}, scene, settings, state, fields, drift) {}
   PointSolver(const Device& device, const Scene& scene, const IntegratorSettings& settings, const SolverState& state,
               ParticleFields fields, int drift)
       : device_(device),

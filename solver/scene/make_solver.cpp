@@ -12,17 +12,18 @@ template <class Real>
 std::unique_ptr<Solver> make_explicit_solver_of(const Scene&, const IntegratorSettings&, const AnyDevice&,
                                                 const SolverState&);
 template <class Real>
-std::unique_ptr<Solver> make_implicit_solver_of(const Scene&, const IntegratorSettings&, const ImplicitControls&, On,
-                                                const SolverState&);
+std::unique_ptr<Solver> make_implicit_solver_of(const Scene&, const IntegratorSettings&, const ImplicitControls&,
+                                                const AnyDevice&, const SolverState&);
 // Instantiated in {ex,im}plicit_solver_{single,double}.cu.
 extern template std::unique_ptr<Solver> make_explicit_solver_of<float>(const Scene&, const IntegratorSettings&,
                                                                        const AnyDevice&, const SolverState&);
 extern template std::unique_ptr<Solver> make_explicit_solver_of<double>(const Scene&, const IntegratorSettings&,
                                                                         const AnyDevice&, const SolverState&);
 extern template std::unique_ptr<Solver> make_implicit_solver_of<float>(const Scene&, const IntegratorSettings&,
-                                                                       const ImplicitControls&, On, const SolverState&);
+                                                                       const ImplicitControls&, const AnyDevice&,
+                                                                       const SolverState&);
 extern template std::unique_ptr<Solver> make_implicit_solver_of<double>(const Scene&, const IntegratorSettings&,
-                                                                        const ImplicitControls&, On,
+                                                                        const ImplicitControls&, const AnyDevice&,
                                                                         const SolverState&);
 
 SolverState first_state(const Scene& scene, const IntegratorSettings& settings) {
@@ -56,8 +57,7 @@ std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolverSettings& 
     switch (settings.integrator) {
       case Integrator::newmark:
       case Integrator::quasi_static:
-        return make_implicit_solver_of<Real>(scene, settings.common, settings.implicit,
-                                             device.is_gpu() ? On::gpu : On::cpu, state);
+        return make_implicit_solver_of<Real>(scene, settings.common, settings.implicit, device, state);
       case Integrator::automatic:  // begins with explicit steps, if nobody says which
       case Integrator::explicit_: break;
     }

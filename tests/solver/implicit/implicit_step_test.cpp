@@ -53,9 +53,10 @@ struct StepBench {
       : scene(make(o)),
         settings(make_settings(o, scene.grid)),
         materials(settings.common.materials.in<double>()),
-        points(fields(settings.common)),
-        grid(scene.grid, 0),
-        surfaces(scene.contacts, settings.common.bed, scene.grid, {}, false),
+        points(CpuDevice{}, fields(settings.common)),
+        grid(CpuDevice{}, scene.grid, 0),
+        surfaces(CpuDevice{}, scene.contacts, settings.common.bed, scene.grid, {}, false),
+        impulses(CpuDevice{}),
         step({.device = {},
               .settings = settings.common,
               .controls = settings.implicit,
@@ -70,7 +71,7 @@ struct StepBench {
               .layer_height = scene.grid.layer_height,
               .layer_mass = materials.list[0].density * scene.grid.layer_height,
               .full_base = Shape::edge_share * materials.list[0].density},
-             {settings.common.bed, scene.bed}) {
+             {CpuDevice{}, settings.common.bed, scene.bed}) {
     points.upload(scene.points);
     grid.fit(points, 0);
     step.group({});
