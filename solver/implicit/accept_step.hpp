@@ -43,6 +43,17 @@ struct MeasureMotion {
   }
 };
 
+/// Velocity and acceleration of the nodes at the end of a step; null in statics [m/s], [m/s2].
+struct MotionAtEnd {
+  const Vec3<double>* velocity = nullptr;
+  const Vec3<double>* acceleration = nullptr;
+};
+
+/// What a pass over the points takes: MUSL takes the velocity first and the rest later.
+struct AcceptedPart {
+  bool speeds = true, deforms = true;
+};
+
 /// One thread: one point. State, velocity and position at the end of an accepted step.
 template <class Real, class Shape>
 struct AcceptStep {
@@ -50,19 +61,18 @@ struct AcceptStep {
   ParticleView<Real> points;
   Materials<Real> materials;
   Clock* clock;
-  NodeArrays nodes;                  // velocity, acceleration: at the start
-  const Vec3<double>* new_velocity;  // at the end; null in statics
-  const Vec3<double>* new_acceleration;
+  NodeArrays nodes;  // velocity, acceleration: at the start
+  MotionAtEnd end;
   const Vec3<double>* strain_displacement;  // what the strain comes from: u, or dt times the remapped velocity
   double kept;                              // share of the points' velocity finer than the grid that stays
   bool affine, dilatant;
-  bool speeds, deforms;          // MUSL takes the velocity first and the rest later
+  AcceptedPart part;
   MeanDilationView<Real> means;  // of strain_displacement
 
   TALUS_HD void operator()(int p) const {
     const PointGradients<Real, Shape> g(grid, points, p);
     const Vec3<double> move = gather_motion(p, g);
-    if (!deforms) return;
+    if (!part.deforms) return;
     const Mat3<Real> gradient = displacement_gradient(grid, g, strain_displacement);
     MaterialState<Real> state = state_of(points, p, dilatant);
     advance_material(materials.of(points.material, points.plastic_shear, p), gradient, state, means.at_point(p));
@@ -94,19 +104,19 @@ struct AcceptStep {
         ny = static_cast<double>(grid.slope_y[column]);
       }
       climb += w * (nodes.u[n].z - nx * nodes.u[n].x - ny * nodes.u[n].y);
-      if (!new_velocity || !speeds) return;
-      v += (new_velocity[n] - nodes.velocity[n] * kept) * w;
-      a1 += new_acceleration[n] * w;
+      if (!end.velocity || !part.speeds) return;
+      v += (end.velocity[n] - nodes.velocity[n] * kept) * w;
+      a1 += end.acceleration[n] * w;
       if (!affine) return;
       const Vec3<double> arm{static_cast<double>(g.s.near_x) + a, static_cast<double>(g.s.near_y) + b,
                              static_cast<double>(g.s.near_z) + c};
-      add_outer(moment, new_velocity[n], arm * w);
+      add_outer(moment, end.velocity[n], arm * w);
       const Vec3<double> gradient{static_cast<double>(g.s.gx[a] * g.s.wy[b] * g.s.wz[c]),
                                   static_cast<double>(g.s.wx[a] * g.s.gy[b] * g.s.wz[c]),
                                   static_cast<double>(g.s.wx[a] * g.s.wy[b] * g.s.gz[c])};
-      add_outer(slope, new_velocity[n], gradient);
+      add_outer(slope, end.velocity[n], gradient);
     });
-    if (new_velocity && speeds) {
+    if (end.velocity && part.speeds) {
       if (kept > 0) v += widen(points.velocity_of(p)) * kept;
       store(points.velocity, p, v);
       store(points.acceleration, p, a1);

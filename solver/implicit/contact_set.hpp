@@ -91,7 +91,7 @@ class ContactSet {
     const ImplicitControls& c = parts_.controls;
     const Vec3<double>& full = parts_.settings.gravity.acceleration;
     const double g = std::hypot(full.x, full.y, full.z), dt = scheme.step;
-    smoothing_.gravity_way = c.dynamic ? 0.5 * std::max(g, 1e-3) * dt * dt : 1e-4 * parts_.spacing;
+    smoothing_.gravity_way = c.dynamic ? 0.5 * std::max(g, 1e-3) * dt * dt : 1e-4 * parts_.cell.spacing;
     const bool predicts = c.dynamic && !c.once();
     for_each(parts_.device, parts_.grid.active_blocks() * block_columns,
              PrepareNodes<Real>{.grid = parts_.grid.view(),
@@ -100,7 +100,7 @@ class ContactSet {
                                 .held = constraints(),
                                 .walls = walls,
                                 .base = bed_.view(),
-                                .full_base = parts_.full_base,
+                                .full_base = parts_.cell.full_base,
                                 .gravity = gravity,
                                 .scheme = scheme,
                                 .predict = predicts});
@@ -177,11 +177,11 @@ class ContactSet {
   /// Friction of the contact points for this step, and what they take at once.
   void begin_points(double step, bool predicts) {
     points_.resize(static_cast<std::size_t>(parts_.surfaces.count()));
-    each_point(MeasureGrip<Real, Shape>{parts_.grid.view(), parts_.surfaces.view(), nodes(), parts_.layer_mass,
+    each_point(MeasureGrip<Real, Shape>{parts_.grid.view(), parts_.surfaces.view(), nodes(), parts_.cell.layer_mass,
                                         parts_.controls.dynamic, numbers()});
     if (!parts_.controls.dynamic) return;
     parts_.impulses.run(parts_.surfaces, parts_.grid.view(), ArrivingNodes<Real>{nodes(), predicts ? step : 0},
-                        nodes_.count, parts_.layer_mass, {nullptr, step, true, false});
+                        nodes_.count, parts_.cell.layer_mass, {nullptr, step, true, false});
   }
   ContactNumbers numbers() {
     const Material<Real>& material = parts_.materials.list[0];
@@ -192,7 +192,7 @@ class ContactSet {
             .traction = points_.traction.data(),
             .limit = points_.limit.data(),
             .stiffness = points_.stiffness.data(),
-            .modulus = contact_stiffness * modulus / std::min(parts_.spacing, parts_.layer_height)};
+            .modulus = contact_stiffness * modulus / std::min(parts_.cell.spacing, parts_.cell.layer_height)};
   }
 
   const Parts& parts_;

@@ -92,10 +92,10 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
             .surfaces = contact_,
             .impulses = impulses_,
             .sums = sums_,
-            .spacing = frame_.cell[0],
-            .layer_height = frame_.cell[2],
-            .layer_mass = this->layer_mass(),
-            .full_base = this->full_base()};
+            .cell = {.spacing = frame_.cell[0],
+                     .layer_height = frame_.cell[2],
+                     .layer_mass = this->layer_mass(),
+                     .full_base = this->full_base()}};
   }
 
   void fit_grid(double time) {

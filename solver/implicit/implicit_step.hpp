@@ -115,7 +115,7 @@ class ImplicitStep {
                                         .dynamic = parts_.controls.dynamic,
                                         .farthest = farthest_.data()});
     const auto cells = static_cast<double>(positive_from_bits(farthest_.download().front()));
-    return {.share = cells, .length = cells * std::min(parts_.spacing, parts_.layer_height)};
+    return {.share = cells, .length = cells * std::min(parts_.cell.spacing, parts_.cell.layer_height)};
   }
   FrictionSmoothing& smoothing() { return contacts_.smoothing(); }
 
@@ -130,14 +130,13 @@ class ImplicitStep {
                                    .materials = parts_.materials,
                                    .clock = clock,
                                    .nodes = nodes(),
-                                   .new_velocity = dynamic ? nodes_.velocity_end.data() : nullptr,
-                                   .new_acceleration = nodes_.acceleration_end.data(),
+                                   .end = {.velocity = dynamic ? nodes_.velocity_end.data() : nullptr,
+                                           .acceleration = nodes_.acceleration_end.data()},
                                    .strain_displacement = nodes_.u.data(),
                                    .kept = kept,
                                    .affine = parts_.settings.transfer.affine,
                                    .dilatant = parts_.dilatant,
-                                   .speeds = true,
-                                   .deforms = true,
+                                   .part = {},
                                    .means = tangent_.stresses().means()};
     if (dynamic && parts_.settings.transfer.remaps_velocity) {
       remap_velocity(kernel);
@@ -196,7 +195,7 @@ class ImplicitStep {
 
   /// MUSL: the particles take their velocity first, and their strain from what it makes of the nodes'.
   void remap_velocity(AcceptStep<Real, Shape>& kernel) {
-    kernel.deforms = false;
+    kernel.part = {.speeds = true, .deforms = false};
     for_each(parts_.device, parts_.points.count(), kernel);
     nodes_.change.fill_zero();
     scatter_points(parts_.device, parts_.points.count(), parts_.grid.groups(),
@@ -205,8 +204,7 @@ class ImplicitStep {
     for_each(parts_.device, nodes_.count, RemapDisplacement{nodes(), scheme_.step, nodes_.change.data()});
     tangent_.stresses().average(nodes_.change);
     kernel.strain_displacement = nodes_.change.data();
-    kernel.deforms = true;
-    kernel.speeds = false;
+    kernel.part = {.speeds = false, .deforms = true};
   }
 
   Parts parts_;

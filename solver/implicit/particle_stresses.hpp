@@ -76,7 +76,7 @@ class ParticleStresses {
   /// Springs (T17a) on nodes with less than a tenth of a full one's mass, in statics.
   FillerSprings springs() const {
     if (parts_.controls.dynamic) return {};
-    const double h = parts_.spacing, hz = parts_.layer_height;
+    const double h = parts_.cell.spacing, hz = parts_.cell.layer_height;
     const Material<Real>& material = parts_.materials.list[0];
     const double full = static_cast<double>(material.density) * h * h * hz;
     return {.mass = mass_.data(),

@@ -12,6 +12,13 @@
 
 namespace talus::solver {
 
+/// Size of the cells and what they hold when they are full.
+struct CellMeasures {
+  double spacing, layer_height;  // [m]
+  double layer_mass;             // of a full layer over a square metre [kg/m2]
+  double full_base;              // mass of a base node under a full layer [kg]
+};
+
 /// The particles, the grid and what the mass can touch, which belong to the integrator, the settings of all
 /// integrators and the controls of implicit ones.
 template <class Real, class Device, class Shape>
@@ -26,9 +33,7 @@ struct StepParts {
   SurfaceContact<Real, Device, Shape>& surfaces;
   ContactImpulses<Real, Device, Shape>& impulses;
   SumSpace<Device>& sums;
-  double spacing, layer_height;  // [m]
-  double layer_mass;             // of a full layer over a square metre [kg/m2]
-  double full_base;              // mass of a base node under a full layer [kg]
+  CellMeasures cell;
 };
 
 }  // namespace talus::solver

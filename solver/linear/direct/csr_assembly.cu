@@ -65,15 +65,16 @@ bool assembly_countable(int elements, int freed_nodes) {
 
 template <class Real, class Device, class Shape>
 int CsrAssembly<Real, Device, Shape>::number_nodes(const HeldNodes& nodes) {
-  new_flags_.resize(static_cast<std::size_t>(nodes.count));
-  for_each(device_, nodes.count, FlagUnknowns{nodes.mass, nodes.freed, new_flags_.data()});
-  if (same(new_flags_, flags_, differs_)) return unknown_;
+  numbers_.new_flags.resize(static_cast<std::size_t>(nodes.count));
+  for_each(device_, nodes.count, FlagUnknowns{nodes.mass, nodes.freed, numbers_.new_flags.data()});
+  if (same(numbers_.new_flags, numbers_.flags, earlier_.differs)) return unknown_;
   renumbered_ = true;
-  flags_.swap(new_flags_);
-  number_of_.resize(flags_.size());
-  node_of_.resize(flags_.size());
-  unknown_ = exclusive_sum(device_, flags_.data(), number_of_.data(), nodes.count);
-  for_each(device_, nodes.count, MapUnknowns{flags_.data(), number_of_.data(), node_of_.data()});
+  numbers_.flags.swap(numbers_.new_flags);
+  numbers_.number_of.resize(numbers_.flags.size());
+  numbers_.node_of.resize(numbers_.flags.size());
+  unknown_ = exclusive_sum(device_, numbers_.flags.data(), numbers_.number_of.data(), nodes.count);
+  for_each(device_, nodes.count,
+           MapUnknowns{numbers_.flags.data(), numbers_.number_of.data(), numbers_.node_of.data()});
   return unknown_;
 }
 
@@ -81,34 +82,35 @@ template <class Real, class Device, class Shape>
 void CsrAssembly<Real, Device, Shape>::sort_triples(const ElementList<Real, Device, Shape>& list) {
   constexpr int each = Shape::width * Shape::width * Shape::width;
   ++sorts_;
-  keys_.resize(static_cast<std::size_t>(list.count()) * each * each);
+  triples_.keys.resize(static_cast<std::size_t>(list.count()) * each * each);
   for_each(device_, list.count() * each * each,
-           MakeTripleKeys{list.view().nodes, number_of_.data(), each, keys_.data()});
-  sort_order(device_, keys_, order_);
-  blocks_ = find_runs(keys_, runs_, scratch_);
+           MakeTripleKeys{list.view().nodes, numbers_.number_of.data(), each, triples_.keys.data()});
+  sort_order(device_, triples_.keys, triples_.order);
+  blocks_ = find_runs(triples_.keys, triples_.runs, triples_.scratch);
   std::uint64_t last = 0;
-  if (blocks_ > 0) copy_to_host(device_, &last, keys_.data() + keys_.size() - 1, sizeof last);
+  if (blocks_ > 0) copy_to_host(device_, &last, triples_.keys.data() + triples_.keys.size() - 1, sizeof last);
   if (last == held_key) --blocks_;
 }
 
 template <class Real, class Device, class Shape>
 void CsrAssembly<Real, Device, Shape>::make_pattern() {
-  old_starts_.swap(matrix_.starts);
-  old_columns_.swap(matrix_.columns);
+  earlier_.starts.swap(matrix_.starts);
+  earlier_.columns.swap(matrix_.columns);
   matrix_.rows = 3 * unknown_;
-  block_starts_.resize(static_cast<std::size_t>(unknown_) + 1);
-  copy_from_host(device_, block_starts_.data() + unknown_, &blocks_, sizeof blocks_);
-  for_each(device_, blocks_, MarkRows{keys_.data(), runs_.data(), blocks_, block_starts_.data()});
+  triples_.block_starts.resize(static_cast<std::size_t>(unknown_) + 1);
+  copy_from_host(device_, triples_.block_starts.data() + unknown_, &blocks_, sizeof blocks_);
+  for_each(device_, blocks_,
+           MarkRows{triples_.keys.data(), triples_.runs.data(), blocks_, triples_.block_starts.data()});
   matrix_.starts.resize(static_cast<std::size_t>(matrix_.rows) + 1);
   matrix_.columns.resize(static_cast<std::size_t>(blocks_) * 9);
   matrix_.values.resize(matrix_.columns.size());
   const int entries = matrix_.entries();
   copy_from_host(device_, matrix_.starts.data() + matrix_.rows, &entries, sizeof entries);
-  for_each(
-      device_, blocks_,
-      MakeColumns{keys_.data(), runs_.data(), block_starts_.data(), matrix_.starts.data(), matrix_.columns.data()});
-  const bool kept = matrix_.pattern != 0 && same(matrix_.starts, old_starts_, differs_) &&
-                    same(matrix_.columns, old_columns_, differs_);
+  for_each(device_, blocks_,
+           MakeColumns{triples_.keys.data(), triples_.runs.data(), triples_.block_starts.data(), matrix_.starts.data(),
+                       matrix_.columns.data()});
+  const bool kept = matrix_.pattern != 0 && same(matrix_.starts, earlier_.starts, earlier_.differs) &&
+                    same(matrix_.columns, earlier_.columns, earlier_.differs);
   if (!kept) matrix_.pattern = next_pattern();
 }
 
@@ -122,29 +124,31 @@ void CsrAssembly<Real, Device, Shape>::assemble(const ElementList<Real, Device, 
     list_serial_ = list.serial();
   }
   for_each(device_, blocks_,
-           ReduceTriples<Real, Device, Shape>{stored.view(), keys_.data(), order_.data(), runs_.data(),
-                                              block_starts_.data(), node_of_.data(), nodes, matrix_.values.data()});
+           ReduceTriples<Real, Device, Shape>{stored.view(), triples_.keys.data(), triples_.order.data(),
+                                              triples_.runs.data(), triples_.block_starts.data(),
+                                              numbers_.node_of.data(), nodes, matrix_.values.data()});
 }
 
 template <class Real, class Device, class Shape>
 void CsrAssembly<Real, Device, Shape>::to_unknowns(const HeldNodes& nodes, const NodeVector<Device>& from,
                                                    Buffer<double, Device>& to) {
   to.resize(3 * static_cast<std::size_t>(unknown_));
-  for_each(device_, unknown_, ToUnknowns{node_of_.data(), nodes.freed, from.data(), to.data()});
+  for_each(device_, unknown_, ToUnknowns{numbers_.node_of.data(), nodes.freed, from.data(), to.data()});
 }
 
 template <class Real, class Device, class Shape>
 void CsrAssembly<Real, Device, Shape>::to_nodes(const HeldNodes& nodes, const Buffer<double, Device>& from,
                                                 NodeVector<Device>& to) {
   to.resize(static_cast<std::size_t>(nodes.count));
-  for_each(device_, nodes.count, ToNodes{number_of_.data(), nodes.freed, from.data(), to.data()});
+  for_each(device_, nodes.count, ToNodes{numbers_.number_of.data(), nodes.freed, from.data(), to.data()});
 }
 
 template <class Real, class Device, class Shape>
 std::size_t CsrAssembly<Real, Device, Shape>::bytes() const {
-  std::size_t total = keys_.bytes() + matrix_.bytes();
-  for (const auto* b : {&flags_, &new_flags_, &number_of_, &node_of_, &order_, &runs_, &scratch_, &block_starts_,
-                        &differs_, &old_starts_, &old_columns_}) {
+  std::size_t total = triples_.keys.bytes() + matrix_.bytes();
+  for (const auto* b :
+       {&numbers_.flags, &numbers_.new_flags, &numbers_.number_of, &numbers_.node_of, &triples_.order, &triples_.runs,
+        &triples_.scratch, &triples_.block_starts, &earlier_.differs, &earlier_.starts, &earlier_.columns}) {
     total += b->bytes();
   }
   return total;

@@ -41,17 +41,34 @@ class CsrAssembly {
   std::size_t bytes() const;
 
  private:
+  /// The paper's two mapping lists, and the flags that they were made from.
+  struct Numbers {
+    explicit Numbers(const Device& device) : flags(device), new_flags(device), number_of(device), node_of(device) {}
+    Buffer<int, Device> flags, new_flags, number_of, node_of;
+  };
+  /// Triples by row and column: sorted keys, where they come from, their runs, and the first run of every row of
+  /// blocks.
+  struct Triples {
+    explicit Triples(const Device& device)
+        : keys(device), order(device), runs(device), scratch(device), block_starts(device) {}
+    Buffer<std::uint64_t, Device> keys;
+    Buffer<int, Device> order, runs, scratch, block_starts;
+  };
+  /// The pattern before this one, to see whether they differ.
+  struct EarlierPattern {
+    explicit EarlierPattern(const Device& device) : starts(device), columns(device), differs(device) {}
+    Buffer<int, Device> starts, columns, differs;
+  };
+
   void sort_triples(const ElementList<Real, Device, Shape>& list);
   void make_pattern();
 
   Device device_;
   int unknown_ = 0, blocks_ = 0, list_serial_ = 0, sorts_ = 0;
   bool renumbered_ = true;
-  Buffer<int, Device> flags_{device_}, new_flags_{device_};
-  Buffer<int, Device> number_of_{device_}, node_of_{device_};  // the paper's two mapping lists
-  Buffer<std::uint64_t, Device> keys_{device_};
-  Buffer<int, Device> order_{device_}, runs_{device_}, scratch_{device_}, block_starts_{device_}, differs_{device_},
-      old_starts_{device_}, old_columns_{device_};
+  Numbers numbers_{device_};
+  Triples triples_{device_};
+  EarlierPattern earlier_{device_};
   CsrMatrix<Device> matrix_{device_};
 };
 

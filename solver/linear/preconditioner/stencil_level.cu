@@ -36,20 +36,21 @@ void StencilLevel<Real, Device, Shape>::build(const ElementList<Real, Device, Sh
 template <class Real, class Device, class Shape>
 void StencilLevel<Real, Device, Shape>::build(const StencilLevel& fine, TwoScale x, TwoScale y) {
   layout_ = coarse_layout(fine.layout_, x, y);
-  slots_.upload(layout_.slots);
-  active_.upload(layout_.active);
+  coarse_.slots.upload(layout_.slots);
+  coarse_.active.upload(layout_.active);
   columns_ = {};
   columns_.grid.columns = layout_.columns;
   columns_.grid.rows = layout_.rows;
   columns_.grid.block_columns_x = layout_.blocks_x();
-  columns_.grid.slots = slots_.data();
-  columns_.active = active_.data();
+  columns_.grid.slots = coarse_.slots.data();
+  columns_.active = coarse_.active.data();
   columns_.blocks = static_cast<int>(layout_.active.size());
   nodes_ = layout_.nodes();
-  flags_.resize(static_cast<std::size_t>(nodes_));
-  flags_.fill_zero();
-  for_each(device_, fine.matrix_.rows(), FlagParents<Real>{columns_.grid, x, y, fine.places_.data(), flags_.data()});
-  matrix_.number_rows(flags_);
+  coarse_.flags.resize(static_cast<std::size_t>(nodes_));
+  coarse_.flags.fill_zero();
+  for_each(device_, fine.matrix_.rows(),
+           FlagParents<Real>{columns_.grid, x, y, fine.places_.data(), coarse_.flags.data()});
+  matrix_.number_rows(coarse_.flags);
   place_rows();
   for_each(device_, matrix_.rows() * neighbours,
            MeetRows<Real, Device, Shape>{columns_.grid, matrix_.view(), places_.data()});
@@ -65,8 +66,8 @@ void StencilLevel<Real, Device, Shape>::place_rows() {
 template <class Real, class Device, class Shape>
 void StencilLevel<Real, Device, Shape>::colour() {
   const ColumnColours colours = colour_columns(layout_, reach + 1);
-  coloured_.upload(colours.columns);
-  colour_ends_ = colours.ends;
+  colours_.columns.upload(colours.columns);
+  colours_.ends = colours.ends;
   layers_ = layout_.most_layers();
 }
 
@@ -87,21 +88,21 @@ void StencilLevel<Real, Device, Shape>::assemble(StencilLevel& fine, TwoScale x,
 template <class Real, class Device, class Shape>
 void StencilLevel<Real, Device, Shape>::factorise() {
   const auto n = static_cast<std::size_t>(nodes_);
-  pivots_.resize(n);
+  blocks_.pivots.resize(n);
   left_.resize(n);
-  for (int up = 0; up < reach; ++up) above_[up].resize(n);
+  for (int up = 0; up < reach; ++up) blocks_.above[up].resize(n);
   for_each(device_, nodes_, TakeColumns<Real, Device, Shape>{matrix_.view(), factors()});
   for_each(device_, columns_.count(), FactoriseColumns<Real, reach>{columns_, factors()});
 }
 
 template <class Real, class Device, class Shape>
 void StencilLevel<Real, Device, Shape>::sweep(const NodeVector<Device>& b, NodeVector<Device>& x, bool forward) {
-  const int colours = static_cast<int>(colour_ends_.size());
+  const int colours = static_cast<int>(colours_.ends.size());
   for (int turn = 0; turn < colours; ++turn) {
     const int c = forward ? turn : colours - 1 - turn;
-    const int begin = c > 0 ? colour_ends_[static_cast<std::size_t>(c - 1)] : 0,
-              count = colour_ends_[static_cast<std::size_t>(c)] - begin;
-    const int* const of_colour = coloured_.data() + begin;
+    const int begin = c > 0 ? colours_.ends[static_cast<std::size_t>(c - 1)] : 0,
+              count = colours_.ends[static_cast<std::size_t>(c)] - begin;
+    const int* const of_colour = colours_.columns.data() + begin;
     const NodeResidual<Real, Device, Shape> residual{matrix_.view(), b.data(), x.data(), left_.data()};
     sum_rows<neighbours>(device_, count * layers_,
                          ColourResidual<Real, Device, Shape>{columns_, of_colour, count, residual});
@@ -135,8 +136,9 @@ void StencilLevel<Real, Device, Shape>::prolong_to(StencilLevel& fine, TwoScale 
 
 template <class Real, class Device, class Shape>
 std::size_t StencilLevel<Real, Device, Shape>::bytes() const {
-  return slots_.bytes() + active_.bytes() + coloured_.bytes() + flags_.bytes() + matrix_.bytes() + places_.bytes() +
-         pivots_.bytes() + above_[0].bytes() + above_[1].bytes() + left_.bytes();
+  return coarse_.slots.bytes() + coarse_.active.bytes() + colours_.columns.bytes() + coarse_.flags.bytes() +
+         matrix_.bytes() + places_.bytes() + blocks_.pivots.bytes() + blocks_.above[0].bytes() +
+         blocks_.above[1].bytes() + left_.bytes();
 }
 
 #define TALUS_INSTANTIATE(Real, Device, Shape) template class StencilLevel<Real, Device, Shape>;

@@ -51,21 +51,38 @@ class StencilLevel {
   std::size_t bytes() const;
 
  private:
+  /// Storage of a coarse grid.
+  struct CoarseStorage {
+    explicit CoarseStorage(const Device& device) : slots(device), active(device), flags(device) {}
+    Buffer<BlockSlot, Device> slots;
+    Buffer<int, Device> active, flags;
+  };
+  /// Columns colour by colour; colour c ends at ends[c].
+  struct Colours {
+    explicit Colours(const Device& device) : columns(device) {}
+    Buffer<int, Device> columns;
+    std::vector<int> ends;
+  };
+  /// The columns' factors; see ColumnFactors.
+  struct ColumnBlocks {
+    explicit ColumnBlocks(const Device& device) : pivots(device), above(device) {}
+    Buffer<Sym3<double>, Device> pivots;
+    Buffers<Mat3<double>, Device, 2> above;
+  };
+
   void place_rows();
   void colour();
-  ColumnFactors factors() { return {pivots_.data(), {above_[0].data(), above_[1].data()}}; }
+  ColumnFactors factors() { return {blocks_.pivots.data(), {blocks_.above[0].data(), blocks_.above[1].data()}}; }
 
   Device device_;
   BlockLayout layout_;
   StoredColumns<Real> columns_;
   int nodes_ = 0, layers_ = 0;
-  Buffer<BlockSlot, Device> slots_{device_};  // of a coarse grid
-  Buffer<int, Device> active_{device_}, coloured_{device_}, flags_{device_};
-  std::vector<int> colour_ends_;
+  CoarseStorage coarse_{device_};
+  Colours colours_{device_};
   StencilMatrix<Real, Device, Shape> matrix_{device_};
   Buffer<NodePlace, Device> places_{device_};  // of the rows
-  Buffer<Sym3<double>, Device> pivots_{device_};
-  Buffers<Mat3<double>, Device, 2> above_{device_};
+  ColumnBlocks blocks_{device_};
   NodeVector<Device> left_{device_};  // residual of a colour, then its change
 };
 

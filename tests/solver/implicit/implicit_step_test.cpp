@@ -67,10 +67,10 @@ struct StepBench {
               .surfaces = surfaces,
               .impulses = impulses,
               .sums = sums,
-              .spacing = scene.grid.spacing,
-              .layer_height = scene.grid.layer_height,
-              .layer_mass = materials.list[0].density * scene.grid.layer_height,
-              .full_base = Shape::edge_share * materials.list[0].density},
+              .cell = {.spacing = scene.grid.spacing,
+                       .layer_height = scene.grid.layer_height,
+                       .layer_mass = materials.list[0].density * scene.grid.layer_height,
+                       .full_base = Shape::edge_share * materials.list[0].density}},
              {CpuDevice{}, settings.common.bed, scene.bed}) {
     points.upload(scene.points);
     grid.fit(points, 0);
