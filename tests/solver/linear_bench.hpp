@@ -4,6 +4,9 @@
 #include <random>
 
 #include "solver/elements/forces.hpp"
+#include "solver/elements/held_nodes.hpp"
+#include "solver/elements/mean_dilation.hpp"
+#include "solver/elements/point_tangents.hpp"
 #include "solver/implicit/scatter_inertia.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/linear/direct/cholesky_solver.hpp"

@@ -1,4 +1,6 @@
 // What couples the points of an element: B-bar and the springs of nearly empty nodes.
+#include "solver/elements/filler_springs.hpp"
+#include "solver/elements/mean_dilation.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "tests/solver/linear_bench.hpp"

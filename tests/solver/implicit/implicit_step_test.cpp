@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "solver/implicit/controls.hpp"
+#include "solver/implicit/step_parts.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/scene/make_solver.hpp"
 #include "solver/scene/settings.hpp"

@@ -7,6 +7,8 @@
 
 #include "solver/linear/krylov/bicgstab.hpp"
 #include "solver/linear/krylov/conjugate_gradient.hpp"
+#include "solver/linear/krylov/contract.hpp"
+#include "solver/linear/krylov/linear_report.hpp"
 
 namespace talus::testing {
 namespace {

@@ -1,0 +1,82 @@
+// The tangent's three forms against one another, on random points, states and constraints.
+#include "solver/linear/operator/tangent_operator.hpp"
+
+#include "solver/linear/operator/operator_form.hpp"
+#include "solver/linear/operator/stored_elements.hpp"
+#include "tests/solver/linear_bench.hpp"
+
+namespace talus::solver::testing {
+namespace {
+
+class TangentForms : public InEachPlace {
+ protected:
+  template <class Real, class Device, class Shape>
+  static void compare_forms(double tolerance) {
+    for (const auto mapping : {Mapping::terrain_following, Mapping::cartesian}) {
+      for (const auto model : {MaterialModel::hencky, MaterialModel::drucker_prager}) {
+        LinearBench<Real, Device, Shape> bench({kind_of<Shape>, mapping, model});
+        const auto expected = bench.product(Operator::points);
+        EXPECT_GT(norm(expected), 0);
+        EXPECT_LT(difference(bench.product(Operator::elements), expected), tolerance);
+        EXPECT_LT(difference(bench.product(Operator::stencil), expected), tolerance);
+        // Rounded to 2^-24 each, and the stencil's sums on the way: a part in a million, but not none.
+        for (const auto form : {Operator::points, Operator::stencil}) {
+          const double rounding = difference(bench.product(form, true), expected);
+          EXPECT_LT(rounding, 1e-6);
+          if constexpr (std::is_same_v<Real, double>) {
+            EXPECT_GT(rounding, 1e-12) << "stored in double after all";
+          }
+        }
+      }
+    }
+  }
+};
+
+// Rounding only: the sums run over the same terms in another order.
+TEST_P(TangentForms, products_of_elements_and_stencil_are_those_of_the_points) {
+  TALUS_RUN(compare_forms, 1e-12);
+#if TALUS_FOR_GPU
+  if (GetParam() == On::gpu) {
+    compare_forms<float, GpuDevice, Linear>(1e-5);
+    compare_forms<float, GpuDevice, Quadratic>(1e-5);
+    compare_forms<float, GpuDevice, Gimp>(1e-5);
+    return;
+  }
+#endif
+  compare_forms<float, CpuDevice, Linear>(1e-5);
+  compare_forms<float, CpuDevice, Quadratic>(1e-5);
+  compare_forms<float, CpuDevice, Gimp>(1e-5);
+}
+
+TALUS_IN_EACH_PLACE(TangentForms);
+
+#if TALUS_FOR_GPU
+class ProductsOnBothDevices : public InEachPlace {
+ protected:
+  template <class Shape>
+  static void compare() {
+    LinearBench<double, CpuDevice, Shape> cpu({kind_of<Shape>});
+    LinearBench<double, GpuDevice, Shape> gpu({kind_of<Shape>});
+    for (const auto form : {Operator::points, Operator::elements, Operator::stencil}) {
+      EXPECT_LT(difference(gpu.product(form), cpu.product(form)), 1e-11);
+    }
+  }
+};
+TEST_P(ProductsOnBothDevices, give_the_same_products) {
+  compare<Linear>();
+  compare<Quadratic>();
+  compare<Gimp>();
+}
+INSTANTIATE_TEST_SUITE_P(places, ProductsOnBothDevices, ::testing::Values(On::gpu), place_name);
+#endif
+
+TEST(TangentProducts, are_the_same_on_every_run) {
+  LinearBench<double, CpuDevice, Quadratic> bench({ShapeKind::quadratic});
+  for (const auto form : {Operator::elements, Operator::stencil}) {
+    const auto a = bench.product(form), b = bench.product(form);
+    for (std::size_t n = 0; n < a.size(); ++n) EXPECT_TRUE(a[n].x == b[n].x && a[n].y == b[n].y && a[n].z == b[n].z);
+  }
+}
+
+}  // namespace
+}  // namespace talus::solver::testing
