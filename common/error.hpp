@@ -24,7 +24,9 @@ std::string to_string(const Fault& fault);
 class Error : public std::runtime_error {
  public:
   Error(ExitCode code, std::vector<Fault> faults);
+  /// What the process returns.
   ExitCode code() const { return code_; }
+  /// All faults that were found.
   const std::vector<Fault>& faults() const { return faults_; }
 
  private:

@@ -6,6 +6,7 @@
 
 namespace talus::postprocess {
 
+/// What talus-postprocess gives to the runner of stages.
 Stage stage();
 
 /// What the report is made of: the run, the survey that it is scored against, the thalweg, and what the stages before

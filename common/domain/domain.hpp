@@ -21,6 +21,7 @@ struct SeedPoints {
   std::vector<double> extent_x,
       extent_y;              // sides of the box that a point stands for; its height follows from the volume [m]
   std::vector<int> release;  // index into Domain::release_names
+  /// Number of points.
   std::size_t size() const { return x.size(); }
 };
 

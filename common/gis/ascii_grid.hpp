@@ -22,7 +22,9 @@ class AsciiGrid {
   AsciiGrid& operator=(AsciiGrid&&) = delete;
   ~AsciiGrid();
 
+  /// True when the file is an ASCII grid.
   bool is_one() const { return is_one_; }
+  /// What GDAL opens instead of the file.
   const std::string& path() const { return path_; }
 
  private:

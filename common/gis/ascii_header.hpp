@@ -8,6 +8,7 @@
 
 namespace talus {
 
+/// A header as it was understood.
 struct AsciiHeader {
   std::string text;         ///< in the usual form: ncols, nrows, xllcorner, yllcorner, cellsize, NODATA_value
   std::string nodata;       ///< as given; empty = none

@@ -9,6 +9,7 @@ namespace talus {
 /// A rectangle in map coordinates [m].
 struct Extent {
   double west = 0, south = 0, east = 0, north = 0;
+  /// True when it holds no area.
   bool empty() const { return !(west < east && south < north); }
 };
 

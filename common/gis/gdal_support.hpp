@@ -32,11 +32,13 @@ class QuietErrors {
   std::vector<std::string> failures_;
 };
 
+/// Closes a dataset of GDAL when its owner goes.
 struct CloseDataset {
   void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
 };
 using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
 
+/// Destroys a transformation of OGR when its owner goes.
 struct DestroyTransformation {
   void operator()(OGRCoordinateTransformation* t) const { OGRCoordinateTransformation::DestroyCT(t); }
 };
@@ -51,7 +53,7 @@ std::string horizontal_wkt(const OGRSpatialReference* srs);
 /// Short name for messages: "EPSG:32149", else the CRS's own name.
 std::string short_name(const OGRSpatialReference& srs);
 
-/// From one CRS to another. Throws DataError when there is no way between them.
+/// The transformation from one CRS to another. Throws DataError when there is no way between them.
 Transformation transformation(const OGRSpatialReference& from, const OGRSpatialReference& to);
 
 /// "EPSG:32611", the UTM zone of a point given in `srs`; "EPSG:<a metric one>" when it cannot be told.

@@ -23,6 +23,7 @@ struct OutlineFeature {
   std::vector<std::pair<std::string, double>> numbers;  ///< further attributes; keys carry their unit
 };
 
+/// A named layer of outlines.
 struct OutlineLayer {
   std::string name;
   std::vector<OutlineFeature> features;

@@ -10,6 +10,7 @@
 
 namespace talus {
 
+/// Points with a height each, as a vector file gives them.
 struct PointLayer {
   std::vector<double> x, y, z;  // in the units of their CRS; z as given
   std::string crs_wkt;          // empty = none named
@@ -21,6 +22,7 @@ struct RasterGlance {
   std::string driver;
   std::size_t cells = 0;
 };
+/// Opens a file as a raster without reading cells.
 std::optional<RasterGlance> glance_at_raster(const std::filesystem::path& file);
 
 /// True when the first layer of a vector file holds points.

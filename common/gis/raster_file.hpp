@@ -9,6 +9,7 @@
 
 namespace talus {
 
+/// How a raster is read.
 struct ReadOptions {
   /// WKT of a CRS in metres. A raster in degrees, in feet or in another CRS is reprojected to it as its cells are read
   /// (bilinear; square cells about as large as the file's, on whole multiples of their size). Empty: as the file is,
@@ -33,7 +34,9 @@ class RasterFile {
   RasterFile& operator=(RasterFile&&) noexcept;
   ~RasterFile();
 
+  /// The file as it was named.
   const std::filesystem::path& file() const;
+  /// The grid of its cells, after a reprojection if there is one.
   const MapGrid& grid() const;
 
   /// Between one value that the file can hold and the next, where it holds integers [m]; 0 for real numbers.

@@ -21,15 +21,20 @@ using GeoTransform = std::array<double, 6>;  // x0, dx/dcolumn, dx/dline, y0, dy
 /// "dem_utm.tif" beside which a mending command writes.
 std::string mended(const std::filesystem::path& file, const char* suffix);
 
+/// An open raster file, its cells in the order of the file.
 class RasterSource {
  public:
   /// Opens the file and reads its header. `vertical_unit` as in ReadOptions.
   RasterSource(std::filesystem::path file, const std::string& vertical_unit);
 
+  /// The file as it was named.
   const std::filesystem::path& file() const { return file_; }
+  /// Number of columns.
   int columns() const;
+  /// Number of lines.
   int lines() const;
   bool placed() const { return placed_; }  ///< has a georeference
+  /// Coordinates in the CRS of the file by column and line.
   const GeoTransform& transform() const { return transform_; }
   const OGRSpatialReference* srs() const;  ///< null when the file names none
   bool in_metres() const;                  ///< the CRS is projected and in metres, or there is none
@@ -68,6 +73,7 @@ class Warped {
   Warped& operator=(const Warped&) = delete;
   ~Warped();
 
+  /// The grid that cells are reprojected to.
   const MapGrid& grid() const { return grid_; }
   /// Cells, northernmost line first. Throws DataError as RasterSource::read does.
   std::vector<double> read(int column, int line, int columns, int lines);

@@ -61,12 +61,12 @@ RasterWriter::RasterWriter(const std::filesystem::path& file, const MapGrid& gri
   band->SetDescription(tags.description.c_str());
   band->SetUnitType(tags.unit.c_str());
   open_->dataset->SetMetadataItem(GDALMD_AREA_OR_POINT, GDALMD_AOP_AREA);
-  for (const auto& [name, value] : tags.metadata) say(name, value);
+  for (const auto& [name, value] : tags.metadata) set_item(name, value);
 }
 
 RasterWriter::~RasterWriter() = default;
 
-void RasterWriter::say(const std::string& name, const std::string& value) {
+void RasterWriter::set_item(const std::string& name, const std::string& value) {
   open_->dataset->SetMetadataItem(name.c_str(), value.c_str());
 }
 

@@ -15,8 +15,9 @@ class RasterWriter {
   ~RasterWriter();
   /// A part of the grid: its cells are the grid's.
   void write(const Raster& part);
-  /// Metadata known only at the end.
-  void say(const std::string& name, const std::string& value);
+  /// Sets a metadata item, also one known only at the end.
+  void set_item(const std::string& name, const std::string& value);
+  /// Closes the file, with overviews where it is large, and gives it its name. Throws DataError.
   void finish();
 
  private:

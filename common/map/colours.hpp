@@ -7,6 +7,7 @@
 
 namespace talus {
 
+/// A colour by its parts of red, green and blue.
 struct Colour {
   double r = 0, g = 0, b = 0;  // sRGB, 0 to 1
 };
@@ -20,7 +21,7 @@ enum class Ramp { heat, sea };
 Colour class_colour(std::size_t index, std::size_t count, Ramp ramp = Ramp::heat);
 
 /// Colour of a class of differences, `index` of `count` away from none: blue for a loss, red for a gain, both from pale
-/// to dark by the same steps of lightness. Blue and red are told apart under every common colour blindness.
+/// to dark by the same steps of lightness. Blue and red differ under every common colour blindness.
 Colour difference_colour(bool gain, std::size_t index, std::size_t count);
 
 /// "5 - 10" with an en dash, "> 100" for the last.

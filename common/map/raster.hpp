@@ -17,13 +17,19 @@ struct MapGrid {
   double cell = 0;      // [m]
   std::string crs_wkt;  // WKT2; empty = local metric coordinates
 
+  /// Number of cells.
   std::size_t count() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
+  /// Where a cell stands in arrays over the grid: row by row, the southernmost first.
   std::size_t index(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
   }
+  /// Easting of the centre of a column [m].
   double x(int column) const { return west + (column + 0.5) * cell; }  // centre [m]
-  double y(int row) const { return south + (row + 0.5) * cell; }       // centre [m]
+  /// Northing of the centre of a row [m].
+  double y(int row) const { return south + (row + 0.5) * cell; }  // centre [m]
+  /// Outer edge of the last column [m].
   double east() const { return west + columns * cell; }
+  /// Outer edge of the last row [m].
   double north() const { return south + rows * cell; }
 };
 
@@ -37,7 +43,9 @@ struct Raster {
   MapGrid grid;
   std::vector<double> values;  // [rows * columns], row-major, row 0 southernmost
 
+  /// The value of a cell.
   double& at(int column, int row) { return values[grid.index(column, row)]; }
+  /// The value of a cell.
   double at(int column, int row) const { return values[grid.index(column, row)]; }
 };
 

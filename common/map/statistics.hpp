@@ -9,6 +9,7 @@ namespace talus {
 /// 1996, type 7). NaN where there is none.
 double quantile(std::vector<double> values, double q);
 
+/// The middle value: quantile() at 0.5. NaN where there is none.
 double median(const std::vector<double>& values);
 
 /// 1.4826 median(|v - median(v)|): the standard deviation of a normal distribution, unmoved by outliers (Hoehle &
@@ -19,6 +20,7 @@ double nmad(const std::vector<double>& values);
 struct Spread {
   double mean = 0, deviation = 0, low = 0, high = 0;  ///< low, high: 5 % and 95 % quantile
 };
+/// The spread of the values that are not NaN; all members are NaN where there is none.
 Spread spread_of(std::vector<double> values);
 
 }  // namespace talus

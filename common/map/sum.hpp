@@ -9,11 +9,13 @@ namespace talus {
 /// Neumaier's compensated sum (1974): the error does not grow with the count.
 class Sum {
  public:
+  /// Adds one value.
   void add(double value) {
     const double total = sum_ + value;
     rest_ += std::abs(sum_) >= std::abs(value) ? (sum_ - total) + value : (value - total) + sum_;
     sum_ = total;
   }
+  /// The sum of all values added.
   double value() const { return sum_ + rest_; }
 
  private:

@@ -10,8 +10,10 @@
 
 namespace talus {
 
+/// A terrain drawn as a grey hillshade lit from four sides.
 struct HillshadeStyle {};
 
+/// One file, or a layer of it, and how it is drawn.
 struct ProjectLayer {
   std::string name;    ///< in the legend
   std::string source;  ///< relative to the project: "a.tif", "a.gpkg|layername=b"
@@ -19,6 +21,7 @@ struct ProjectLayer {
   std::variant<RasterStyle, HillshadeStyle, OutlineStyle> style;
 };
 
+/// Layers under one heading of the legend.
 struct ProjectGroup {
   std::string name;
   std::vector<ProjectLayer> layers;  ///< the topmost first
@@ -29,6 +32,7 @@ struct ProjectView {
   double west = 0, south = 0, east = 0, north = 0;
 };
 
+/// All that a project shows.
 struct QgisProject {
   std::string title;
   std::string crs_wkt;  ///< of everything; empty = local metric coordinates

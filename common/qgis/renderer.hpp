@@ -8,9 +8,10 @@ namespace talus {
 
 /// Into the element of a layer or a style: everything on how the raster's band 1 is drawn.
 void add_class_renderer(XmlElement layer, const RasterStyle& style);
+/// Adds a grey hillshade lit from four sides to the element of a layer or a style.
 void add_hillshade_renderer(XmlElement layer);
 
-/// The same for a layer of polygons: their outlines alone.
+/// Adds to the element of a layer of polygons how its outlines are drawn; areas stay empty.
 void add_outline_renderer(XmlElement layer, const OutlineStyle& style);
 
 }  // namespace talus

@@ -36,7 +36,8 @@ struct OutlineStyle {
 /// unit: "5 - 10 m".
 RasterStyle class_style(const std::vector<double>& limits, const std::string& unit, Ramp ramp = Ramp::heat);
 
-/// The same for a quantity whose early or small values count most (an arrival time): dark first, and all values drawn.
+/// Classes of a quantity whose early or small values count most (an arrival time), by their rising limits: dark first,
+/// and all values drawn.
 RasterStyle time_style(const std::vector<double>& limits, const std::string& unit);
 
 /// Classes of a difference, symmetric about zero: losses blue, gains red, by the rising positive `limits`; what is
@@ -47,7 +48,8 @@ RasterStyle difference_style(const std::vector<double>& limits, const std::strin
 /// (disk full).
 std::filesystem::path write_qgis_style(const std::filesystem::path& raster_file, const RasterStyle& style);
 
-/// The same for a terrain: a grey hillshade lit from four sides.
+/// Write the style of a terrain beside its raster: a grey hillshade lit from four sides. Returns its path. Throws
+/// DataError (disk full).
 std::filesystem::path write_qgis_hillshade_style(const std::filesystem::path& raster_file);
 
 }  // namespace talus

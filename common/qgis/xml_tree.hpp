@@ -18,16 +18,20 @@ class XmlElement {
   explicit XmlElement(CPLXMLNode* node) : node_(node) {}
   /// A new element inside this one, behind those it has.
   XmlElement add(const char* name, Attributes attributes = {});
+  /// Adds an element that holds text, and returns it.
   XmlElement add_text(const char* name, const std::string& text);
+  /// Sets an attribute.
   void set(const char* key, const std::string& value);
 
  private:
   CPLXMLNode* node_;
 };
 
+/// A document that owns its elements.
 class XmlDocument {
  public:
   XmlDocument(const char* root, XmlElement::Attributes attributes);
+  /// The outermost element.
   XmlElement root() const { return XmlElement(tree_.get()); }
   /// The document, with `doctype` above it.
   std::string text(const std::string& doctype) const;

@@ -15,24 +15,30 @@ namespace talus::h5 {
 
 using Dims = std::vector<hsize_t>;
 
+/// The type of HDF5 that a type of C++ is in memory.
 template <class T>
 hid_t native_type();
+/// The type of HDF5 that a type of C++ is in memory.
 template <>
 inline hid_t native_type<double>() {
   return H5T_NATIVE_DOUBLE;
 }
+/// The type of HDF5 that a type of C++ is in memory.
 template <>
 inline hid_t native_type<float>() {
   return H5T_NATIVE_FLOAT;
 }
+/// The type of HDF5 that a type of C++ is in memory.
 template <>
 inline hid_t native_type<std::int32_t>() {
   return H5T_NATIVE_INT32;
 }
+/// The type of HDF5 that a type of C++ is in memory.
 template <>
 inline hid_t native_type<std::int64_t>() {
   return H5T_NATIVE_INT64;
 }
+/// The type of HDF5 that a type of C++ is in memory.
 template <>
 inline hid_t native_type<std::uint8_t>() {
   return H5T_NATIVE_UINT8;
@@ -59,20 +65,30 @@ class File {
   /// Flush and close. Throws DataError when bytes could not be written (disk full).
   void close();
 
+  /// Makes a group; those above it must be there.
   void make_group(const std::string& path);
+  /// True when a group or dataset of that path is there.
   bool exists(const std::string& path) const;
+  /// True when a group or dataset has an attribute of that name.
   bool has_attribute(const std::string& object, const std::string& name) const;
   std::vector<std::string> children(const std::string& group) const;          ///< in order of creation
   std::vector<std::string> attribute_names(const std::string& object) const;  ///< in order of creation
 
+  /// Sets an attribute to a text.
   void set_text(const std::string& object, const std::string& name, const std::string& value);
+  /// Sets an attribute to a number.
   void set_number(const std::string& object, const std::string& name, double value);
+  /// Sets an attribute to a list of whole numbers.
   void set_integers(const std::string& object, const std::string& name, std::span<const std::int64_t> values);
+  /// Sets an attribute to a whole number.
   void set_integer(const std::string& object, const std::string& name, std::int64_t value) {
     set_integers(object, name, std::span(&value, 1));
   }
+  /// Reads an attribute that is text. Throws DataError where it is none.
   std::string text(const std::string& object, const std::string& name) const;
+  /// Reads an attribute that is a number. Throws DataError where it is none.
   double number(const std::string& object, const std::string& name) const;
+  /// Reads an attribute that is a whole number. Throws DataError where it is none.
   std::int64_t integer(const std::string& object, const std::string& name) const;
 
   /// Whole datasets are written as they are from now on: for files that are soon read back and dropped.
@@ -87,6 +103,7 @@ class File {
   void append(const std::string& path, hsize_t rows, const Dims& row, std::span<const T> values) {
     append_raw(path, rows, row, native_type<T>(), values.data(), values.size());
   }
+  /// The shape of a dataset.
   Dims dims(const std::string& path) const;
   /// Read a whole dataset whose shape must be `expected`.
   template <class T>

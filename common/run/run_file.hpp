@@ -72,8 +72,11 @@ class RunWriter {
  public:
   explicit RunWriter(std::filesystem::path file);
   ~RunWriter();
+  /// Writes the points of one frame.
   void append(const PointFrame& frame);
+  /// Writes the thickness at one time [m]; all frames are on one grid (std::logic_error otherwise).
   void append_thickness(double time, const MapGrid& grid, const std::vector<double>& thickness);
+  /// Writes the rest, closes the file and gives it its name. Throws DataError.
   void finish(const RunMaps& maps, const RunHistory& history, const RunSummary& summary);
 
  private:
@@ -81,6 +84,7 @@ class RunWriter {
   std::unique_ptr<Open> open_;
 };
 
+/// All of run.h5 but the points.
 struct Run {
   RunMaps maps;
   RunFrames frames;

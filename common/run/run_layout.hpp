@@ -12,6 +12,7 @@ namespace talus::run_layout {
 inline constexpr const char* format = "talus-run";
 inline constexpr std::int64_t format_version = 3;
 
+/// A member of RunSummary and the attribute that holds it.
 template <class T>
 struct SummaryItem {
   const char* name;

@@ -13,6 +13,7 @@ namespace talus {
 class VtkHdfPoints {
  public:
   explicit VtkHdfPoints(h5::File& file);  ///< makes the groups
+  /// Writes the points of one frame.
   void append(const PointFrame& frame);
   void finish();  ///< writes the number of steps
 

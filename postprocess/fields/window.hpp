@@ -12,7 +12,9 @@ namespace talus::postprocess {
 /// A rectangle in map coordinates [m].
 struct Window {
   double west = 0, south = 0, east = 0, north = 0;
+  /// Extent from west to east [m].
   double width() const { return east - west; }
+  /// Extent from south to north [m].
   double height() const { return north - south; }
 };
 

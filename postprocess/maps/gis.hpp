@@ -11,6 +11,7 @@
 
 namespace talus::postprocess {
 
+/// What the files for a GIS are made from.
 struct GisInput {
   const Run& run;
   const Options& options;

@@ -32,6 +32,7 @@ class Nc {
   ~Nc() {
     if (id_ >= 0) nc_abort(id_);
   }
+  /// Ends the file and returns its bytes.
   std::string close() {
     NC_memio image{};
     check(nc_close_memio(std::exchange(id_, -1), &image), "closing it");
@@ -39,11 +40,13 @@ class Nc {
     return {static_cast<const char*>(image.memory), image.size};
   }
 
+  /// Defines a dimension and returns its id.
   int dimension(const char* name, std::size_t size) {
     int dimension = 0;
     check(nc_def_dim(id_, name, size, &dimension), name);
     return dimension;
   }
+  /// Defines a variable over dimensions and returns its id.
   int variable(const char* name, nc_type type, const std::vector<int>& dimensions) {
     int variable = 0;
     check(nc_def_var(id_, name, type, static_cast<int>(dimensions.size()), dimensions.data(), &variable), name);
@@ -60,20 +63,25 @@ class Nc {
     check(nc_def_var_fill(id_, id, NC_FILL, &nc_fill), name);
     return id;
   }
+  /// Sets an attribute that is text; NC_GLOBAL as the variable sets one of the file.
   void text(int variable, const char* name, const std::string& value) {
     check(nc_put_att_text(id_, variable, name, value.size(), value.data()), name);
   }
+  /// Sets an attribute that is a list of numbers.
   void numbers(int variable, const char* name, const std::vector<double>& values) {
     check(nc_put_att_double(id_, variable, name, NC_DOUBLE, values.size(), values.data()), name);
   }
+  /// Writes all values of a variable.
   void put(int variable, const std::vector<double>& values) {
     check(nc_put_var_double(id_, variable, values.data()), "values");
   }
+  /// Writes the values of one map at one time.
   void put_map(int variable, std::size_t time, std::size_t rows, std::size_t columns,
                const std::vector<double>& values) {
     const std::size_t start[] = {time, 0, 0}, count[] = {1, rows, columns};
     check(nc_put_vara_double(id_, variable, start, count, values.data()), "values");
   }
+  /// Ends the header: values may follow.
   void end_definitions() { check(nc_enddef(id_), "header"); }
 
  private:

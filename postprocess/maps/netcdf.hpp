@@ -7,6 +7,7 @@
 
 namespace talus::postprocess {
 
+/// What a NetCDF file says of its making.
 struct NetcdfNotes {
   std::string institution;   ///< empty: "not stated"
   std::string command_line;  ///< for history

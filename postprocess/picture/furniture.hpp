@@ -7,7 +7,9 @@
 
 namespace talus::postprocess {
 
+/// Draws the title of the run, from (x, y), no wider than `width` [px].
 void draw_title(Canvas& canvas, const PictureInput& input, double x, double y, double width);
+/// Draws ticks and their coordinates along the edge of the map.
 void draw_coordinates(Canvas& canvas, const View& view);
 
 /// Everything in the column right of the map, from `y` downwards.

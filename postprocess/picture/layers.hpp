@@ -19,10 +19,15 @@ struct LineStyle {
   Pen casing;  // drawn first; width 0 = none
   Pen pen;
 };
+/// The line around the deposit that was surveyed.
 LineStyle survey_style();
+/// The line around the footprint that was surveyed.
 LineStyle survey_footprint_style();
+/// The line around what the flow touched.
 LineStyle footprint_style();
+/// The line around what was released.
 LineStyle release_style();
+/// The pen of contours; every fifth, an index contour, is heavier.
 Pen contour_pen(bool is_index);
 
 /// Hillshade and thickness classes, pixel by pixel.

@@ -18,6 +18,7 @@ struct Instant {
   double thickest = 0;                   // over all times, for the classes [m]
 };
 
+/// What the picture is drawn from.
 struct PictureInput {
   const Run& run;
   const Options& options;

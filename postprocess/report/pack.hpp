@@ -27,7 +27,7 @@ int factor_for(const MapGrid& grid, std::size_t cells);
 /// the range. Infinite values are not expected.
 nlohmann::ordered_json packed(const std::vector<double>& values);
 
-/// The same for several grids of one kind, end to end.
+/// Several grids of one kind packed end to end, with one offset and step.
 nlohmann::ordered_json packed(const std::vector<std::vector<double>>& frames);
 
 /// Columns, rows, west, south and cell [m] of a grid.

@@ -30,6 +30,7 @@ Json profile_json(const ReportInput& input);
 /// along the thalweg, the volume in motion.
 Json series_json(const ReportInput& input);
 
+/// The sections and entries of a score, and what was not scored.
 Json score_json(const Score& score);
 
 /// Release and deposit read both ways, vertical and normal to the slope, with projected and true area.

@@ -20,6 +20,7 @@ struct StageText {
   std::optional<std::string> text;  ///< of its *.used.toml; empty: there is none
 };
 
+/// What the report is made from.
 struct ReportInput {
   const Run& run;
   const Options& options;

@@ -43,6 +43,7 @@ struct ThicknessError {
   double median = 0;
   double nmad = 0;  ///< 1.4826 median(|d - median(d)|): the spread of the bulk of the cells (Hoehle and Hoehle 2009)
 };
+/// Errors of a simulated thickness against a surveyed one.
 ThicknessError thickness_error(const std::vector<double>& simulated, const std::vector<double>& surveyed,
                                double threshold);
 

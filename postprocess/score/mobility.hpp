@@ -27,6 +27,7 @@ std::optional<Place> crown(const RunMaps& maps, double threshold);
 std::optional<Place> farthest(const MapGrid& grid, const std::vector<double>& values, double threshold,
                               const Place& from, const std::vector<double>& surface);
 
+/// Distance of two places on the map [m].
 double plan_distance(const Place& a, const Place& b);
 
 /// Centre of mass of a thickness map lying on `bed` (z at half thickness; empty: z = 0). Empty without any mass.

@@ -11,7 +11,7 @@ using Polyline = std::vector<std::array<double, 2>>;  // [m]
 /// Length along the line up to each vertex [m]. [line.size()]
 std::vector<double> lengths_along(const Polyline& line);
 
-/// The same line with vertices at even distances, as near to `step` [m] as its length allows; ends stay.
+/// A line with vertices at even distances, as near to `step` [m] as its length allows; ends stay.
 Polyline resampled(const Polyline& line, double step);
 
 /// Vertices averaged with their neighbours (1/4, 1/2, 1/4) so many times; ends stay. On vertices a step apart this is a

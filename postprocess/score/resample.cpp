@@ -45,7 +45,7 @@ Reach surveyed_reach(Fixed& fixed, const std::vector<double>& deposit) {
   return reach;
 }
 
-void score_draw(Fixed& fixed, const Sighting& seen, Resampled& all) {
+void score_draw(Fixed& fixed, const DetectedChange& seen, Resampled& all) {
   const auto& survey = *fixed.scored.survey;
   const auto& options = fixed.scored.options;
   const auto& simulated = fixed.simulated;
@@ -93,7 +93,7 @@ Resampled resample(const Scored& scored, const OnSurveyGrid& simulated) {
     for (std::size_t i = 0; i < value.size(); ++i) {
       value[i] = survey.measured[i] == 0 ? 0 : survey.measured[i] + sigma[i] * value[i];
     }
-    score_draw(fixed, sight(survey, value), all);
+    score_draw(fixed, detected(survey, value), all);
   }
   return all;
 }

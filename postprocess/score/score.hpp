@@ -28,6 +28,7 @@
 
 namespace talus::postprocess {
 
+/// One number or word of a score.
 struct ScoreEntry {
   std::string key;    ///< as in score.json, with unit
   std::string label;  ///< as in score.txt
@@ -36,11 +37,13 @@ struct ScoreEntry {
   int decimals = 0;  ///< in score.txt
 };
 
+/// Entries under one heading.
 struct ScoreSection {
   std::string title;
   std::vector<ScoreEntry> entries;
 };
 
+/// All entries, in sections, with what could not be scored and why.
 struct Score {
   std::string title;
   std::vector<ScoreSection> sections;
@@ -51,15 +54,16 @@ struct Score {
   std::optional<double> number(const std::string& key) const;
 };
 
+/// Scores a run, against the survey where there is one.
 Score make_score(const Run& run, const Options& options, const std::optional<Survey>& survey, const Thalweg& thalweg);
 
-/// The same along thalweg_of(run, options).
+/// Scores a run along thalweg_of(run, options).
 Score make_score(const Run& run, const Options& options, const std::optional<Survey>& survey);
 
 /// One flat object: key -> value; a value that does not exist is absent, and `not_scored` says why.
 std::string to_json(const Score& score);
 
-/// The same as an aligned table with the definitions below it.
+/// A score as an aligned table with the definitions below it.
 std::string to_table(const Score& score);
 
 }  // namespace talus::postprocess

@@ -38,6 +38,7 @@ struct AlongLine {
   double distance = 0;  ///< along the line, of the nearest point of it [m]; beyond its ends the end segments go on
   double offset = 0;    ///< from the line, positive to the left looking downwards [m]
 };
+/// The place of map coordinates (x, y) beside the thalweg.
 AlongLine project(const Thalweg& thalweg, double x, double y);
 
 /// Distance along a line of the cells of a map, computed once for each cell that is asked for. Keeps references.

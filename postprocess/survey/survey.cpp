@@ -119,7 +119,7 @@ std::optional<Survey> read_survey(const SurveyOptions& options, const RunMaps& m
   if (options.measures()) {
     survey.deposit_is_change = survey.footprint_is_change = options.thickness.empty();
     read_error(options, maps, survey);
-    auto seen = sight(survey, survey.measured);
+    auto seen = detected(survey, survey.measured);
     survey.deposit = std::move(seen.deposit);
     if (survey.footprint_is_change) survey.footprint = std::move(seen.footprint);
     survey.footprint_threshold = footprint_threshold;

@@ -36,12 +36,12 @@ struct Survey {
 };
 
 /// What a survey takes for deposit, and for footprint where that is a change, when it measures `value` [m].
-struct Sighting {
+struct DetectedChange {
   std::vector<double> deposit, footprint;
 };
 
 /// Values below the level of detection count as 0; deposit is what is positive, footprint the size of the change.
-Sighting sight(const Survey& survey, const std::vector<double>& value);
+DetectedChange detected(const Survey& survey, const std::vector<double>& value);
 
 /// The simulation on the survey's grid; NaN where it has nothing to compare with.
 struct OnSurveyGrid {

@@ -61,8 +61,8 @@ void read_error(const SurveyOptions& options, const RunMaps& maps, Survey& surve
   log_warning("[postprocess.survey] " + warning);
 }
 
-Sighting sight(const Survey& survey, const std::vector<double>& value) {
-  Sighting seen{value, value};
+DetectedChange detected(const Survey& survey, const std::vector<double>& value) {
+  DetectedChange seen{value, value};
   const auto& error = survey.error;
   for (std::size_t i = 0; i < value.size(); ++i) {
     const bool detected = error.sigma.empty() || !(std::abs(value[i]) < error.detection * error.sigma[i]);

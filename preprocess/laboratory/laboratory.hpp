@@ -20,6 +20,7 @@ Release box_release(const Options& options, std::size_t item);
 /// The ground with the tops of the boxes on it, each weighed by the part of the cell it covers.
 Raster box_surface(const Options& options, const Raster& ground);
 
+/// The number of material points that seed_boxes() would make.
 std::size_t count_box_points(const Options& options);
 
 /// Points of all boxes on a regular lattice that starts half a spacing inside each box's lower south-western corner,

@@ -15,6 +15,7 @@ namespace talus::preprocess {
 struct BoxSide {
   const char *low_key, *high_key;
   double low, high;  // [m]
+  /// Extent of the side [m].
   double length() const { return high - low; }
 };
 

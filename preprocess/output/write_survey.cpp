@@ -56,7 +56,7 @@ class BlockFiles {
         after_(folder / "after_aligned.tif", survey.grid, tags_of("surface after, on the one before")),
         difference_(folder / "difference.tif", survey.grid, tags_of("surface after less surface before")),
         sigma_(folder / "difference_sigma.tif", survey.grid, tags_of("standard error of the difference")) {
-    sigma_.say("CORRELATION_LENGTH_M", fmt::format("{:.6g}", length));
+    sigma_.set_item("CORRELATION_LENGTH_M", fmt::format("{:.6g}", length));
     if (survey.applied)
       unaligned_.emplace(folder / "difference_unaligned.tif", survey.grid,
                          tags_of("surface after as it came less surface before"));

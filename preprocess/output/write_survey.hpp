@@ -18,8 +18,8 @@ namespace talus::preprocess {
 std::vector<std::filesystem::path> write_survey(const std::filesystem::path& folder, const Survey& survey,
                                                 const Prepared* prepared, std::vector<std::string>& lines);
 
-/// The same for a scene whose sliding surface was computed under an outline: source_thickness.tif, sliding_surface.tif
-/// and outlines.gpkg.
+/// Writes the files of a scene whose sliding surface was computed under an outline: source_thickness.tif,
+/// sliding_surface.tif and outlines.gpkg.
 std::vector<std::filesystem::path> write_source(const std::filesystem::path& folder, const Prepared& prepared);
 
 }  // namespace talus::preprocess

@@ -10,6 +10,7 @@
 
 namespace talus::preprocess {
 
+/// A source under an outline, and the sliding surface that was computed for it.
 struct ComputedSource {
   Source source;
   SlidingSurface computed;

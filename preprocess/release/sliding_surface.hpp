@@ -31,6 +31,7 @@ struct DepthPoint {
 /// Kuo et al. 2020 (least area under a given volume), (T21) and (T22) in docs/theory.md. `depth` and `volume` > 0; they
 /// are met to rounding. The ground must have elevations in all cells of the outline. Throws NumericalError.
 SlidingSurface surface_of_depth(const Raster& before, const Outline& outline, double depth);
+/// The sliding surface with that volume between it and the ground [m3].
 SlidingSurface surface_of_volume(const Raster& before, const Outline& outline, double volume);
 
 /// The surface of least integral (laplace(z) - q)^2, q free, that meets the points: exactly, or as a whole within their

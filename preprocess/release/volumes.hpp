@@ -9,7 +9,7 @@
 
 namespace talus::preprocess {
 
-/// Of a release of vertical thickness t on a bed of slope s, with cells of map area A.
+/// Volumes of a release of vertical thickness t on a bed of slope s, with cells of map area A.
 struct Volumes {
   double volume = 0;            // sum of t A [m3]
   double volume_if_normal = 0;  // sum of t A / cos s: what the same numbers would release if taken as slope-normal [m3]
@@ -23,10 +23,10 @@ struct Volumes {
 /// `cosine` as slope_cosine() gives it for the bed.
 Volumes volumes_of(const Raster& thickness, const std::vector<double>& cosine);
 
-/// The same as lines that people read.
+/// Volumes as lines that people read.
 std::vector<std::string> as_lines(const std::string& name, const Volumes& volumes);
 
-/// The same as facts to keep with the results ("released_volume_m3", ...).
+/// Volumes as facts to keep with the results ("released_volume_m3", ...).
 std::vector<std::pair<std::string, std::string>> as_facts(const Volumes& volumes);
 
 }  // namespace talus::preprocess

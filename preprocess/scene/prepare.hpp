@@ -16,6 +16,7 @@
 
 namespace talus::preprocess {
 
+/// The domain, with its volumes and all that is written beside it.
 struct Prepared {
   Domain domain;  // without points where only counted; provenance is left to the caller
   std::size_t point_count = 0;
@@ -32,6 +33,7 @@ struct Prepared {
 /// The files that the options name.
 std::vector<std::filesystem::path> inputs_of(const Options& options);
 
+/// Whether material points are made, or only counted.
 enum class Points { seeded, counted };
 
 /// What two elevation models say of what changed, and nothing further: the first part of prepare(), for before_dem and

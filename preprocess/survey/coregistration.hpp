@@ -9,12 +9,14 @@
 
 namespace talus::preprocess {
 
+/// What counts as stable ground.
 struct StableGround {
   double steepest_deg = 45;         ///< steeper cells are left out: a small shift changes them much
   double roughest = 3;              ///< left out where rougher than the median by so many NMAD
   std::vector<MapPolygon> outside;  ///< the slide and all else that changed
 };
 
+/// How the later survey lies on the earlier one, and how well that is known.
 struct Coregistration {
   bool known = false;            ///< false: too little stable ground, or most of it changed
   Placement placement;           ///< of the later survey
@@ -43,7 +45,7 @@ void find_stable(std::vector<Patch>& patches, const StableGround& limits);
 /// more than half of what is neither steep nor rough nor in a polygon.
 Coregistration coregister(std::vector<Patch>& patches, bool tilt, const std::filesystem::path& after_file);
 
-/// Residuals of the stable cells with the later survey placed as told.
+/// Residuals of the stable cells with the later survey at `placement`.
 std::vector<double> stable_misfit(const std::vector<Patch>& patches, const Placement& placement);
 
 }  // namespace talus::preprocess

@@ -10,6 +10,7 @@
 
 namespace talus::preprocess {
 
+/// From which difference on a change is believed.
 struct Detection {
   Threshold threshold = Threshold::probabilistic;
   double minimum_level = 0;  ///< [m]; the least level in any case
@@ -34,6 +35,7 @@ class BudgetSum {
  public:
   /// One cell: difference and its standard deviation [m].
   void add(double difference, double sigma);
+  /// The budget of all cells added so far, on cells of `cell` [m], with errors by `model`.
   Budget budget(const ErrorModel& model, double cell) const;
 
  private:

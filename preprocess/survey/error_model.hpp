@@ -12,9 +12,9 @@ class ErrorModel {
  public:
   ErrorModel() = default;
 
-  /// From the misfit of the unchanged cells, steep and rough ones too: NMAD in classes of slope (steeper ground errs
-  /// more; Hugonnet et al. 2022, IEEE JSTARS 15, 6456), and the variogram of the misfit over it. `given` [m] > 0 takes
-  /// the place of the NMAD.
+  /// The error learnt from the misfit of the unchanged cells, steep and rough ones too: NMAD in classes of slope
+  /// (steeper ground errs more; Hugonnet et al. 2022, IEEE JSTARS 15, 6456), and the variogram of the misfit over it.
+  /// `given` [m] > 0 takes the place of the NMAD.
   static ErrorModel learnt(const std::vector<Patch>& patches, const Placement& placement, double given);
 
   /// Without stable ground: `given` alone [m], errors of cells independent.
@@ -23,16 +23,18 @@ class ErrorModel {
   /// Standard deviation [m] on ground that rises by `slope` a metre.
   double sigma(double slope) const;
 
-  /// The same of every cell of a surface, by its slope [m].
+  /// Standard error of every cell of a surface, by its slope [m].
   std::vector<double> sigmas(const Raster& surface) const;
 
   /// Standard deviation of the mean over an area [m2] whose cells have `mean_square` [m2] as their mean variance; with
   /// what the alignment's own height is not known better than.
   double of_mean(double mean_square, double area, double cell) const;
 
+  /// How the errors of cells are alike over distance.
   const Variogram& variogram() const { return variogram_; }
   double typical() const { return typical_; }  ///< over all stable ground [m]
   double offset() const { return offset_; }    ///< of the mean height of stable ground [m]
+  /// True when the recipe gives the error, so that it was not learnt.
   bool is_given() const { return given_; }
 
  private:

@@ -7,6 +7,7 @@
 
 namespace talus::preprocess {
 
+/// A piece of both surveys on cells of the working grid.
 struct Patch {
   Raster before;                         // on cells of the working grid
   std::vector<double> slope_x, slope_y;  // of it, rise per metre east and north; NaN where not known
@@ -23,7 +24,7 @@ inline constexpr int patch_margin = 32;
 /// One patch that is the whole grid, or 64 squares on a lattice. Slopes by central differences (Horn 1981).
 std::vector<Patch> patches_of(const Elevation& before, const Elevation& after, const MapGrid& grid);
 
-/// After less before on the cells of a patch, the later survey placed as told [m]; NaN where either has no value.
+/// After less before on the cells of a patch, the later survey at `placement` [m]; NaN where either has no value.
 std::vector<double> misfit(const Patch& patch, const Placement& placement);
 
 }  // namespace talus::preprocess

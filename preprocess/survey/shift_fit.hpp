@@ -17,10 +17,11 @@ struct ShiftRows {
   std::vector<double> misfit;  // [m]
 };
 
-/// Of at most half a million stable cells, evenly taken; tilts are counted as the rise over `length` [m], so that all
-/// unknowns are of one size.
+/// Rows of at most half a million stable cells, evenly taken; tilts are counted as the rise over `length` [m], so that
+/// all unknowns are of one size.
 ShiftRows rows_of(const std::vector<Patch>& patches, const Placement& placement, double length);
 
+/// A fit of shift, height and tilt.
 struct ShiftFit {
   std::array<double, 5> value{};  // 0 for what was not sought [m]
   std::array<double, 5> error{};  // standard errors, cells taken as independent
@@ -30,7 +31,7 @@ struct ShiftFit {
 /// efficiency), reweighted five times.
 ShiftFit fit_shift(const ShiftRows& rows, const std::vector<int>& sought);
 
-/// Slopes must differ along every direction, else a shift along the one in which they do not is not told.
+/// Slopes must differ along every direction, else a shift along the one in which they do not cannot be found.
 bool tells_a_shift(const ShiftRows& rows);
 
 }  // namespace talus::preprocess

@@ -13,6 +13,7 @@
 
 namespace talus::preprocess {
 
+/// Two elevation models with what their comparison found.
 struct Survey {
   Elevation before, after;  // the later one placed, where that was asked for
   MapGrid grid;             // what both cover, in cells of the first

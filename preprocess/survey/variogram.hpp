@@ -26,8 +26,8 @@ struct Variogram {
   double equivalent_range(double area, double cell) const;
 };
 
-/// From the misfit on stable ground, each cell's over its own standard deviation: semivariance after Dowd (1984),
-/// 2.198 median|a - b|^2 / 2, in fifteen classes of distance from a cell to half a patch, 4,000 random pairs in
+/// The variogram of the misfit on stable ground, each cell's over its own standard deviation: semivariance after Dowd
+/// (1984), 2.198 median|a - b|^2 / 2, in fifteen classes of distance from a cell to half a patch, 4,000 random pairs in
 /// each; nugget and sills by non-negative least squares for the best range, or the best two where the second halves
 /// what is left. `normalised` has a vector for every patch, NaN where not stable. A pure nugget where there are too few
 /// cells. Same data, same result.

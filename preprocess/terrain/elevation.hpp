@@ -26,8 +26,11 @@ struct Elevation {
   ScatteredPoints points;
   Placement placement = {};  // in the CRS of the working grid
 
+  /// WKT2 of the CRS of its cells or points; "" = none.
   const std::string& crs_wkt() const { return scattered ? points.crs_wkt : raster.grid.crs_wkt; }
+  /// What its cells or points cover, in their own CRS [m].
   Extent extent() const;
+  /// Width of its cells [m]; 0 for points, which have none.
   double cell() const { return scattered ? 0.0 : raster.grid.cell; }  // 0 = has none
 };
 

@@ -16,6 +16,7 @@ struct ScatteredPoints {
   std::string crs_wkt;          // empty = local metric coordinates
   bool are_depths = false;      // by the name of their column: z is counted down from the ground
   std::string unit = {};        // of z, by the name of its column; "" = not said
+  /// The rectangle around all points, in their own CRS.
   Extent extent() const;
 };
 

@@ -1,7 +1,5 @@
 #include "preprocess/terrain/hole_filler.hpp"
 
-#include "common/gis/resampling.hpp"
-
 #include <CGAL/Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Interpolation_traits_2.h>
@@ -128,17 +126,17 @@ Vector gradient_at(const Surroundings& around, int column, int row) {
   }
 }
 
-Triangulation triangulated(const Surroundings& around, const std::vector<Cell>& rim, Interpolation how) {
+Triangulation triangulated(const Surroundings& around, const std::vector<Cell>& rim, HoleSurface how) {
   std::vector<std::pair<Point, Site>> sites;
   for (const auto& [column, row] : rim) {
     Site site{around.height(column, row)};
-    if (how == Interpolation::quadratic) site.gradient = gradient_at(around, column, row);
+    if (how == HoleSurface::quadratic) site.gradient = gradient_at(around, column, row);
     sites.emplace_back(Point(column, row), site);
   }
   return Triangulation(sites.begin(), sites.end());
 }
 
-double elevation_at(const Triangulation& triangulation, const Point& at, Interpolation how,
+double elevation_at(const Triangulation& triangulation, const Point& at, HoleSurface how,
                     Triangulation::Face_handle& near) {
   std::vector<std::pair<Handle, double>> neighbours;
   const auto keep = [](const std::pair<Handle, double>& pair) { return pair; };
@@ -147,7 +145,7 @@ double elevation_at(const Triangulation& triangulation, const Point& at, Interpo
       CGAL::natural_neighbor_coordinates_2(triangulation, at, std::back_inserter(neighbours), keep, near);
   if (!result.third || !(result.second > 0)) return std::nan("");
   const auto value = [](Handle v) { return std::pair(v->info().height, true); };
-  if (how == Interpolation::sibson)
+  if (how == HoleSurface::sibson)
     return CGAL::linear_interpolation(neighbours.begin(), neighbours.end(), result.second, value);
   double sum = 0;
   for (const auto& [vertex, weight] : neighbours)
@@ -158,7 +156,7 @@ double elevation_at(const Triangulation& triangulation, const Point& at, Interpo
 }  // namespace
 
 std::vector<double> fill_hole(const Raster& raster, const std::vector<Cell>& hole, const std::vector<Cell>& wanted,
-                              Interpolation how) {
+                              HoleSurface how) {
   const Surroundings around(raster, hole);
   const Triangulation triangulation = triangulated(around, around.rim(hole), how);
   std::vector<double> heights;

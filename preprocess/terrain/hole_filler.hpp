@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "common/gis/resampling.hpp"
 #include "common/map/raster.hpp"
 
 namespace talus::preprocess {
@@ -16,11 +15,12 @@ using Cell = std::array<int, 2>;  // column, row
 /// each of them its gradient is taken from [cells].
 constexpr int rim_width = 1, gradient_reach = 3;
 
-enum class Interpolation { sibson, quadratic };
+/// The surface that bridges a hole: natural neighbours (Sibson 1981), without or with gradients of the cells around.
+enum class HoleSurface { sibson, quadratic };
 
 /// Elevations for `wanted`, a part of the `hole`, from the cells around the hole that have one. The hole's own values
 /// are not looked at. Every cell of the hole must be at least one cell from the raster's edge.
 std::vector<double> fill_hole(const Raster& raster, const std::vector<Cell>& hole, const std::vector<Cell>& wanted,
-                              Interpolation how = Interpolation::quadratic);
+                              HoleSurface how = HoleSurface::quadratic);
 
 }  // namespace talus::preprocess

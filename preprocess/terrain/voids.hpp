@@ -20,6 +20,7 @@ struct VoidFill {
   bool filled = false;  // false: larger than allowed
 };
 
+/// A surface with its voids filled, and how well.
 struct Filled {
   Raster raster;
   std::vector<char> filled;   // 1 where a value was made [rows * columns]

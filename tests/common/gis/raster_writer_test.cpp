@@ -31,7 +31,7 @@ TEST(RasterWriter, blocks_make_the_raster) {
   writer.write(part_of(whole, 40, 0, 30, 20));
   writer.write(part_of(whole, 40, 20, 30, 30));
   EXPECT_FALSE(std::filesystem::exists(scratch / "a.tif")) << "it has its name before it is whole";
-  writer.say("LATER", "7");
+  writer.set_item("LATER", "7");
   writer.finish();
   const Raster read = read_raster(scratch / "a.tif");
   ASSERT_EQ(read.values.size(), whole.values.size());

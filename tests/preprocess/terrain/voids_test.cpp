@@ -1,6 +1,5 @@
 #include "preprocess/terrain/voids.hpp"
 #include "common/gis/read_raster.hpp"
-#include "common/gis/resampling.hpp"
 
 #include <chrono>
 #include <iostream>
@@ -128,7 +127,7 @@ TEST(voids, the_stated_error_is_that_of_holes_in_real_terrain) {
       for (int r = 0; r < holed.grid.rows; ++r)
         for (int c = 0; c < holed.grid.columns; ++c)
           if (std::isnan(holed.at(c, r))) hole.push_back({c, r});
-      const std::vector<double> plain = fill_hole(holed, hole, hole, Interpolation::sibson);
+      const std::vector<double> plain = fill_hole(holed, hole, hole, HoleSurface::sibson);
       for (std::size_t i = 0; i < hole.size(); ++i) {
         const std::size_t cell = whole.grid.index(hole[i][0], hole[i][1]);
         true_squares += std::pow(filled.raster.values[cell] - whole.values[cell], 2);
