@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "common/error.hpp"
 #include "common/map/bilinear.hpp"
@@ -46,16 +47,47 @@ double signed_distance(const MapPolygon& polygon, double x, double y) {
   return inside ? -nearest : nearest;
 }
 
-/// What does not change from voxel to voxel of a column.
-struct Column {
-  double x = NAN, y = NAN, ground = 0;
-  std::vector<double> across;  // distance to each footprint's edge on the map
+/// An upright body over polygons, from `depth` below the ground to their heights above it. It looks up ground and
+/// edges once for each column of voxels that is asked for, so one object serves one thread at a time.
+class UprightBody {
+ public:
+  UprightBody(std::vector<Footprint> footprints, std::shared_ptr<const Raster> ground, double depth)
+      : footprints_(std::move(footprints)), ground_(std::move(ground)), depth_(depth) {}
+
+  /// Distance of a place to the surface [m], negative inside; exact beside the surface alone.
+  double operator()(double x, double y, double z) {
+    if (x != x_ || y != y_) look_up(x, y);
+    double nearest = 1e30;
+    for (std::size_t f = 0; f < footprints_.size(); ++f) {
+      nearest = std::min(nearest,
+                         std::max({across_[f], z - ground_here_ - footprints_[f].height, ground_here_ - depth_ - z}));
+    }
+    return nearest;
+  }
+
+ private:
+  void look_up(double x, double y) {
+    const double here = bilinear(*ground_, x, y);
+    x_ = x;
+    y_ = y;
+    ground_here_ = std::isnan(here) ? 0 : here;
+    across_.clear();
+    for (const Footprint& f : footprints_)
+      across_.push_back(std::isnan(here) ? 1e30 : signed_distance(f.polygon, x, y));
+  }
+
+  std::vector<Footprint> footprints_;
+  std::shared_ptr<const Raster> ground_;
+  double depth_;                // of the foot below the ground [m]
+  double x_ = NAN, y_ = NAN;    // the column that was looked up last
+  double ground_here_ = 0;      // its ground [m]
+  std::vector<double> across_;  // its distance to each footprint's edge on the map [m]
 };
 
-SolidBody stand(const ObstacleOptions& o, const std::shared_ptr<const Raster>& shared_ground, double depth) {
+SolidBody upright_body(const ObstacleOptions& o, const std::shared_ptr<const Raster>& shared_ground, double depth) {
   const Raster& ground = *shared_ground;
   const std::vector<MapPolygon> polygons = read_valid_polygons(o.polygons, ground.grid.crs_wkt);
-  auto footprints = std::make_shared<std::vector<Footprint>>();
+  std::vector<Footprint> footprints;
   SolidBody body{o.name, {1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}, {}};
   for (std::size_t p = 0; p < polygons.size(); ++p) {
     const double height = height_of(polygons[p], p + 1, o);
@@ -74,7 +106,7 @@ SolidBody stand(const ObstacleOptions& o, const std::shared_ptr<const Raster>& s
       body.low[2] = std::min(body.low[2], z - depth);
       body.high[2] = std::max(body.high[2], z + height);
     }
-    footprints->push_back({polygons[p], height});
+    footprints.push_back({polygons[p], height});
   }
   // Between the corners the ground may rise and fall.
   for (int row = 0; row < ground.grid.rows; ++row) {
@@ -84,39 +116,25 @@ SolidBody stand(const ObstacleOptions& o, const std::shared_ptr<const Raster>& s
       if (x < body.low[0] - margin || x > body.high[0] + margin || y < body.low[1] - margin ||
           y > body.high[1] + margin)
         continue;
-      for (const Footprint& f : *footprints) {
+      for (const Footprint& f : footprints) {
         if (std::isnan(z) || signed_distance(f.polygon, x, y) > margin) continue;
         body.low[2] = std::min(body.low[2], z - depth);
         body.high[2] = std::max(body.high[2], z + f.height);
       }
     }
   }
-  auto column = std::make_shared<Column>();
-  body.distance = [footprints, column, shared_ground, depth](double x, double y, double z) {
-    if (x != column->x || y != column->y) {
-      const double here = bilinear(*shared_ground, x, y);
-      *column = {x, y, std::isnan(here) ? 0 : here, {}};
-      for (const Footprint& f : *footprints)
-        column->across.push_back(std::isnan(here) ? 1e30 : signed_distance(f.polygon, x, y));
-    }
-    double nearest = 1e30;
-    for (std::size_t f = 0; f < footprints->size(); ++f) {
-      nearest = std::min(nearest, std::max({column->across[f], z - column->ground - (*footprints)[f].height,
-                                            column->ground - depth - z}));
-    }
-    return nearest;
-  };
+  body.distance = UprightBody(std::move(footprints), shared_ground, depth);
   return body;
 }
 
 }  // namespace
 
-std::vector<SolidBody> stand_obstacles(const std::vector<ObstacleOptions>& obstacles, const Raster& ground,
-                                       double depth) {
+std::vector<SolidBody> upright_obstacles(const std::vector<ObstacleOptions>& obstacles, const Raster& ground,
+                                         double depth) {
   std::vector<SolidBody> bodies;
   if (obstacles.empty()) return bodies;
   const auto shared_ground = std::make_shared<const Raster>(ground);  // the bodies outlive the caller's
-  for (const ObstacleOptions& o : obstacles) bodies.push_back(stand(o, shared_ground, depth));
+  for (const ObstacleOptions& o : obstacles) bodies.push_back(upright_body(o, shared_ground, depth));
   return bodies;
 }
 

@@ -11,8 +11,8 @@ namespace talus::preprocess {
 
 /// An upright body over each obstacle's polygons, its top `height` above the ground, its foot `depth` below it [m].
 /// Throws DataError: polygons that are not valid or have no height, or lie outside the ground.
-std::vector<SolidBody> stand_obstacles(const std::vector<ObstacleOptions>& obstacles, const Raster& ground,
-                                       double depth);
+std::vector<SolidBody> upright_obstacles(const std::vector<ObstacleOptions>& obstacles, const Raster& ground,
+                                         double depth);
 
 /// Voxels that show a body as the background grid will meet it, and thin walls as well: a quarter of the smaller
 /// spacing [m].

@@ -51,22 +51,22 @@ std::vector<Region> lowering_regions(const Raster& lowering, double threshold) {
   return regions;
 }
 
-Company company_of(const MapGrid& grid, const std::vector<double>& marks, int column, int row) {
-  Company company;
+Neighbours neighbours(const MapGrid& grid, const std::vector<double>& marks, int column, int row) {
+  Neighbours found;
   for (int r = std::max(0, row - 1); r <= std::min(grid.rows - 1, row + 1); ++r) {
     for (int c = std::max(0, column - 1); c <= std::min(grid.columns - 1, column + 1); ++c) {
-      company.marked += marks[grid.index(c, r)] > 0;
-      ++company.cells;
+      found.marked += marks[grid.index(c, r)] > 0;
+      ++found.inside;
     }
   }
-  return company;
+  return found;
 }
 
 void cut_fringe(const MapGrid& grid, std::vector<double>& marked) {
   const std::vector<double> whole = marked;
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
-      if (company_of(grid, whole, column, row).marked <= 4) marked[grid.index(column, row)] = 0;
+      if (neighbours(grid, whole, column, row).marked <= 4) marked[grid.index(column, row)] = 0;
     }
   }
 }

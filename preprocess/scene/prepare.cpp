@@ -24,7 +24,7 @@ namespace talus::preprocess {
 
 namespace {
 
-struct Scene {
+struct SceneRasters {
   Raster before, bed;
   std::vector<Release> releases;
   std::vector<double> lowering = {};                   // before less after [m]; where both are given
@@ -33,13 +33,32 @@ struct Scene {
   std::optional<SurveyedSlide> slide = {};
 };
 
-Scene from_source(Raster before, Source source) {
-  Scene scene{std::move(before), std::move(source.bed), {}};
+/// How a model is read whose heights are in `of_model`, or in the unit that the recipe gives for all.
+ReadOptions reading(const Options& options, VerticalUnit of_model = VerticalUnit::same) {
+  return dem_reading(options.working_crs, of_model == VerticalUnit::same ? options.vertical_unit : of_model);
+}
+
+std::vector<Raster> align(const std::vector<const Elevation*>& dems, const Options& options,
+                          std::vector<Filled>* filled = nullptr) {
+  return align(
+      dems,
+      AlignRequest{.grid = grid_request(options), .edge_nodata = options.grid.edge_nodata, .voids = options.voids},
+      filled);
+}
+
+/// The options with working_crs = "utm" replaced by the zone that holds the centre of the first DEM.
+Options with_utm_zone(Options options) {
+  if (options.working_crs == "utm") options.working_crs = utm_zone_for(options.first_dem());
+  return options;
+}
+
+SceneRasters from_source(Raster before, Source source) {
+  SceneRasters scene{std::move(before), std::move(source.bed), {}};
   scene.releases.push_back({"source", std::move(source.thickness)});
   return scene;
 }
 
-Scene from_before_and_after(const Options& options) {
+SceneRasters from_before_and_after(const Options& options) {
   Survey survey = survey_of(options);
   std::vector<Filled> filled;
   std::vector<Raster> surfaces = align({&survey.before, &survey.after}, options, &filled);
@@ -47,21 +66,20 @@ Scene from_before_and_after(const Options& options) {
   Source source =
       find_source({surfaces[0], surfaces[1], options.after_dem, false, survey.source, levels_of(survey, slide.sigma)},
                   options.source);
-  delineate(survey, {surfaces[0], surfaces[1], source.thickness}, options, slide);
+  delineate(survey, {surfaces[0], surfaces[1], source.thickness}, options.deposit, slide);
   std::vector<double> lowering;
   for (std::size_t c = 0; c < surfaces[0].values.size(); ++c)
     lowering.push_back(surfaces[0].values[c] - surfaces[1].values[c]);
-  Scene scene = from_source(std::move(surfaces[0]), std::move(source));
+  SceneRasters scene = from_source(std::move(surfaces[0]), std::move(source));
   scene.lowering = std::move(lowering);
   scene.survey = std::move(survey);
   scene.slide = std::move(slide);
   return scene;
 }
 
-Scene from_sliding_surface(const Options& options) {
-  Elevation before =
-      read_elevation("before_dem", options.before_dem, dem_reading(options, options.before_vertical_unit));
-  Elevation sliding = read_elevation("sliding_surface", options.sliding_surface, dem_reading(options));
+SceneRasters from_sliding_surface(const Options& options) {
+  Elevation before = read_elevation("before_dem", options.before_dem, reading(options, options.before_vertical_unit));
+  Elevation sliding = read_elevation("sliding_surface", options.sliding_surface, reading(options));
   share_crs({&before, &sliding}, options.working_crs);
   require_comparable_crs(sliding.crs_wkt(), sliding.file, before.crs_wkt(), before.file.string());
   std::vector<Raster> surfaces = align({&before}, options);
@@ -75,13 +93,12 @@ Scene from_sliding_surface(const Options& options) {
   return from_source(std::move(surfaces[0]), std::move(source));
 }
 
-Scene from_outline(const Options& options) {
-  Elevation before =
-      read_elevation("before_dem", options.before_dem, dem_reading(options, options.before_vertical_unit));
+SceneRasters from_outline(const Options& options) {
+  Elevation before = read_elevation("before_dem", options.before_dem, reading(options, options.before_vertical_unit));
   share_crs({&before}, options.working_crs);
   Raster ground = align({&before}, options).front();
-  ComputedSource computed = source_by_outline(ground, options.source, dem_reading(options));
-  Scene scene = from_source(std::move(ground), std::move(computed.source));
+  ComputedSource computed = source_by_outline(ground, options.source, reading(options));
+  SceneRasters scene = from_source(std::move(ground), std::move(computed.source));
   scene.sliding_surface = std::move(computed.computed);
   return scene;
 }
@@ -101,11 +118,11 @@ void warn_of_overlap(const std::vector<Release>& releases) {
   }
 }
 
-Scene from_releases(const Options& options) {
-  Elevation base = read_elevation("base_dem", options.base_dem, dem_reading(options));
+SceneRasters from_releases(const Options& options) {
+  Elevation base = read_elevation("base_dem", options.base_dem, reading(options));
   share_crs({&base}, options.working_crs);
   Raster bed = align({&base}, options).front();
-  Scene scene{bed, std::move(bed), {}};
+  SceneRasters scene{bed, std::move(bed), {}};
   for (std::size_t i = 0; i < options.release.size(); ++i) {
     Release release = read_release(options.release[i], i, scene.bed);
     for (std::size_t c = 0; c < scene.before.values.size(); ++c) scene.before.values[c] += release.thickness.values[c];
@@ -115,15 +132,15 @@ Scene from_releases(const Options& options) {
   return scene;
 }
 
-Scene from_laboratory(const Options& options) {
+SceneRasters from_laboratory(const Options& options) {
   Raster ground = laboratory_ground(options);
-  Scene scene{box_surface(options, ground), std::move(ground), {}};
+  SceneRasters scene{box_surface(options, ground), std::move(ground), {}};
   for (std::size_t b = 0; b < options.box.size(); ++b) scene.releases.push_back(box_release(options, b));
   return scene;
 }
 
 /// What went down where nothing fails: the layer that the slide took along.
-Release lowered_outside_source(const Scene& scene, const std::string& name) {
+Release lowered_outside_source(const SceneRasters& scene, const std::string& name) {
   Release layer{name, {scene.bed.grid, std::vector<double>(scene.bed.grid.count(), 0.0)}};
   bool any = false;
   for (std::size_t c = 0; c < scene.lowering.size(); ++c) {
@@ -138,7 +155,7 @@ Release lowered_outside_source(const Scene& scene, const std::string& name) {
 }
 
 /// Takes the erodible layers out of the bed, and puts them below everything that is released.
-void lay_erodible(const Options& options, Scene& scene) {
+void lay_erodible(const Options& options, SceneRasters& scene) {
   std::vector<Release> layers;
   for (std::size_t e = 0; e < options.erodible.size(); ++e) {
     ErodibleOptions o = options.erodible[e];
@@ -152,7 +169,7 @@ void lay_erodible(const Options& options, Scene& scene) {
                         std::make_move_iterator(layers.end()));
 }
 
-Scene read_scene(const Options& options) {
+SceneRasters read_scene(const Options& options) {
   switch (options.way()) {
     case Way::before_and_after: return from_before_and_after(options);
     case Way::before_and_sliding_surface: return from_sliding_surface(options);
@@ -169,8 +186,8 @@ std::vector<std::pair<std::string, Raster>> read_bed(const Options& options, con
   std::vector<std::pair<std::string, Raster>> rasters;
   for (const auto& [name, file] : options.bed.files) {
     if (file.empty()) continue;
-    const Elevation values =
-        read_elevation("bed." + name, file, {reproject ? grid.crs_wkt : "", "", dem_reading({}).or_else});
+    const Elevation values = read_elevation(
+        "bed." + name, file, {reproject ? grid.crs_wkt : "", "", dem_reading("", VerticalUnit::declared).or_else});
     require_comparable_crs(values.crs_wkt(), values.file, grid.crs_wkt, "the working grid");
     log_resampling(values, grid);
     Raster raster = onto_grid(values, grid);
@@ -186,7 +203,7 @@ std::vector<std::pair<std::string, Raster>> read_bed(const Options& options, con
 }
 
 /// Of what is released: the releases from the `first` one on.
-Raster total_thickness(const Scene& scene, std::size_t first) {
+Raster total_thickness(const SceneRasters& scene, std::size_t first) {
   Raster total{scene.bed.grid, std::vector<double>(scene.bed.grid.count(), 0.0)};
   for (std::size_t r = first; r < scene.releases.size(); ++r) {
     for (std::size_t i = 0; i < total.values.size(); ++i) total.values[i] += scene.releases[r].thickness.values[i];
@@ -240,9 +257,8 @@ std::vector<std::filesystem::path> inputs_of(const Options& options) {
 
 Survey survey_of(const Options& given) {
   const Options options = with_utm_zone(given);
-  Elevation before =
-      read_elevation("before_dem", options.before_dem, dem_reading(options, options.before_vertical_unit));
-  Elevation after = read_elevation("after_dem", options.after_dem, dem_reading(options, options.after_vertical_unit));
+  Elevation before = read_elevation("before_dem", options.before_dem, reading(options, options.before_vertical_unit));
+  Elevation after = read_elevation("after_dem", options.after_dem, reading(options, options.after_vertical_unit));
   share_crs({&before, &after}, options.working_crs);
   return compare_surveys(std::move(before), std::move(after), options);
 }
@@ -252,7 +268,7 @@ Prepared prepare(const Options& given, Points points) {
   given.check(faults);
   if (!faults.empty()) throw RecipeError(std::move(faults));
   const Options options = with_utm_zone(given);
-  Scene scene = read_scene(options);
+  SceneRasters scene = read_scene(options);
   lay_erodible(options, scene);
   const Seeding seeding = seeding_of(options.grid, scene.bed.grid.cell);
   Prepared prepared;
@@ -277,7 +293,7 @@ Prepared prepare(const Options& given, Points points) {
   }
   domain.erodible = static_cast<int>(options.erodible.size());
   domain.bed = read_bed(options, domain.grid);
-  prepared.obstacles = stand_obstacles(options.obstacle, scene.bed, 2 * domain.layer_height);
+  prepared.obstacles = upright_obstacles(options.obstacle, scene.bed, 2 * domain.layer_height);
   prepared.obstacle_voxel = obstacle_voxel(domain.grid.cell, domain.layer_height);
   for (const ObstacleOptions& o : options.obstacle) {
     if (o.voxel_m > 0) prepared.obstacle_voxel = std::min(prepared.obstacle_voxel, o.voxel_m);

@@ -14,14 +14,13 @@ constexpr double beyond = 3;              // NMAD
 constexpr std::size_t least_region = 20;  // cells: fewer are noise
 constexpr int rim = 3;                    // cells around a change, where it thins out
 
-/// The share of the 3 x 3 cells around each that are marked, of those that the map has: a single cell of noise has no
-/// company.
-Raster company_share(const MapGrid& grid, const std::vector<double>& marked) {
+/// The share of the 3 x 3 cells around each that are marked, of those on the map: small for a single cell of noise.
+Raster marked_share(const MapGrid& grid, const std::vector<double>& marked) {
   Raster share{grid, std::vector<double>(grid.count(), 0.0)};
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
-      const Company company = company_of(grid, marked, column, row);
-      share.at(column, row) = static_cast<double>(company.marked) / company.cells;
+      const Neighbours around = neighbours(grid, marked, column, row);
+      share.at(column, row) = static_cast<double>(around.marked) / around.inside;
     }
   }
   return share;
@@ -55,7 +54,7 @@ void leave_out_changed(std::vector<Patch>& patches, const Placement& placement) 
     std::vector<double> marked(grid.count());
     for (std::size_t i = 0; i < marked.size(); ++i)
       marked[i] = std::abs(misfits[p][i] - centre) > limit;  // false for NaN
-    for (const Region& region : lowering_regions(company_share(grid, marked), 0.5)) {
+    for (const Region& region : lowering_regions(marked_share(grid, marked), 0.5)) {
       if (region.cells.size() < least_region) continue;
       leave_out(region, grid, patches[p].stable);
       leave_out(region, grid, patches[p].unchanged);

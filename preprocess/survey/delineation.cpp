@@ -142,15 +142,15 @@ VolumeWithError volume_in(const Raster& thickness, const SurveyedSlide& slide, c
 
 }  // namespace
 
-void delineate(const Survey& survey, const SlideSurfaces& surfaces, const Options& options, SurveyedSlide& slide) {
+void delineate(const Survey& survey, const SlideSurfaces& surfaces, const DepositOptions& given, SurveyedSlide& slide) {
   const auto& [before, after, source] = surfaces;
   Change change{after, levels_of(survey, slide.sigma)};
   for (std::size_t i = 0; i < change.levels.size(); ++i) {
     change.rise.values[i] -= before.values[i];
-    change.levels[i] = std::max(change.levels[i], options.deposit.threshold_m);
+    change.levels[i] = std::max(change.levels[i], given.threshold_m);
   }
   const std::vector<char> moved = changed_beside(change, source),
-                          deposit = deposit_cells(change, survey.deposit, moved, options.deposit.polygon);
+                          deposit = deposit_cells(change, survey.deposit, moved, given.polygon);
   slide.deposit.values.assign(deposit.size(), 0.0);
   slide.change.values.assign(deposit.size(), 0.0);
   for (std::size_t i = 0; i < deposit.size(); ++i) {

@@ -46,10 +46,8 @@ std::vector<MapPolygon> changed_ground(const Survey& s, const std::filesystem::p
 
 /// The overlap of both in cells of the first, whatever part of it and spacing the scene is computed with.
 MapGrid whole_overlap(const Elevation& before, const Elevation& after, const Options& options) {
-  Options whole = options;
-  whole.grid.west_m = whole.grid.south_m = whole.grid.east_m = whole.grid.north_m = std::nullopt;
-  if (!before.scattered) whole.grid.spacing_m = 0;
-  return working_grid({&before, &after}, whole);
+  const double spacing = before.scattered ? options.grid.spacing_m : 0;
+  return working_grid({&before, &after}, {.crs = options.working_crs, .spacing = spacing});
 }
 
 [[noreturn]] void refuse_alignment(const Survey& s, std::size_t shared) {

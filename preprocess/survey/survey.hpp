@@ -66,6 +66,6 @@ struct SlideSurfaces {
 /// are no noise (five cells beyond three levels) and lie within ten cells of the source or of one another; else, where
 /// nothing rose there, the largest region that rose. Volumes of source and deposit with their errors: of the surveys,
 /// of what was filled, and of where the edge is drawn.
-void delineate(const Survey& survey, const SlideSurfaces& surfaces, const Options& options, SurveyedSlide& slide);
+void delineate(const Survey& survey, const SlideSurfaces& surfaces, const DepositOptions& given, SurveyedSlide& slide);
 
 }  // namespace talus::preprocess

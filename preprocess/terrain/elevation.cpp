@@ -77,13 +77,14 @@ const char* name_of(VerticalUnit unit) {
   return "";
 }
 
-/// True when all heights are whole metres, and not all the same.
+/// The cells in the middle of a raster, 512 x 512 at most.
 Raster middle_of(const RasterFile& file) {
   constexpr int most = 512;
   const int columns = std::min(most, file.grid().columns), rows = std::min(most, file.grid().rows);
   return file.read({(file.grid().columns - columns) / 2, (file.grid().rows - rows) / 2, columns, rows});
 }
 
+/// True when all heights are whole metres, and not all the same.
 bool whole_metres(const Raster& raster) {
   double low = INFINITY, high = -INFINITY;
   for (const double z : raster.values) {
@@ -112,28 +113,26 @@ Extent Elevation::extent() const {
   return {raster.grid.west, raster.grid.south, raster.grid.east(), raster.grid.north()};
 }
 
-ReadOptions dem_reading(const Options& options, VerticalUnit of_model) {
-  const VerticalUnit unit = of_model == VerticalUnit::same ? options.vertical_unit : of_model;
-  const std::string crs = options.working_crs.empty() ? "" : metric_crs(options.working_crs);
+ReadOptions dem_reading(const std::string& working_crs, VerticalUnit unit) {
+  const std::string crs = working_crs.empty() ? "" : metric_crs(working_crs);
   return {crs, name_of(unit), "or set working_crs = \"utm\" in [preprocess]"};
 }
 
-Options with_utm_zone(Options options) {
-  if (options.working_crs != "utm") return options;
-  const std::filesystem::path& file = options.first_dem();
-  if (!is_point_file(file)) {
-    options.working_crs = crs_name(utm_crs_of(file));
+std::string utm_zone_for(const std::filesystem::path& dem) {
+  std::string zone;
+  if (!is_point_file(dem)) {
+    zone = crs_name(utm_crs_of(dem));
   } else {
-    const ScatteredPoints points = with_likely_crs(read_points_as_given(file), file);
+    const ScatteredPoints points = with_likely_crs(read_points_as_given(dem), dem);
     const Extent e = points.extent();
-    options.working_crs =
+    zone =
         points.crs_wkt.empty() ? "" : utm_zone_at(points.crs_wkt, 0.5 * (e.west + e.east), 0.5 * (e.south + e.north));
   }
-  if (options.working_crs.empty())
-    throw DataError(Fault{file.string() + ": its UTM zone cannot be told", "it names no CRS, or lies near a pole",
+  if (zone.empty())
+    throw DataError(Fault{dem.string() + ": its UTM zone cannot be told", "it names no CRS, or lies near a pole",
                           "Name the zone: working_crs = \"EPSG:326..\" (north) or \"EPSG:327..\" (south)"});
-  log_info(fmt::format("working_crs: \"utm\" is {}, by the centre of {}", options.working_crs, file.string()));
-  return options;
+  log_info(fmt::format("working_crs: \"utm\" is {}, by the centre of {}", zone, dem.string()));
+  return zone;
 }
 
 Elevation read_elevation(std::string key, const std::filesystem::path& file, const ReadOptions& how) {

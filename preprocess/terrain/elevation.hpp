@@ -34,14 +34,15 @@ struct Elevation {
   double cell() const { return scattered ? 0.0 : raster.grid.cell; }  // 0 = has none
 };
 
-/// What the recipe says of reading: what degrees and feet become, and the unit of heights. `to_crs` is used for files
-/// in degrees or feet alone; those in metres are brought onto the working grid in one step, later. `of_model` is the
-/// unit that the recipe gives for one model alone.
-ReadOptions dem_reading(const Options& options, VerticalUnit of_model = VerticalUnit::same);
+/// How elevation models are read: what degrees and feet become, and the unit of heights. `working_crs` is the name of a
+/// CRS in metres, "" where the recipe gives none; it is used for files in degrees or feet alone, and those in metres
+/// are brought onto the working grid in one step, later. Throws RecipeError for a CRS that is not known or not in
+/// metres.
+ReadOptions dem_reading(const std::string& working_crs, VerticalUnit unit);
 
-/// The options with working_crs = "utm" replaced by the UTM zone that holds the centre of the first DEM. Throws
-/// DataError.
-Options with_utm_zone(Options options);
+/// The name of the UTM zone (on WGS 84) that holds the centre of an elevation model, for working_crs = "utm"; the log
+/// names it. Throws DataError where the file names no CRS or lies near a pole.
+std::string utm_zone_for(const std::filesystem::path& dem);
 
 /// Read a raster by any GDAL format, or points (see is_point_file). Throws DataError.
 Elevation read_elevation(std::string key, const std::filesystem::path& file, const ReadOptions& how = {});

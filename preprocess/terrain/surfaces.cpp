@@ -11,7 +11,6 @@
 #include "common/map/crop.hpp"
 #include "common/map/sum.hpp"
 #include "common/stage/stage.hpp"
-#include "preprocess/terrain/working_grid.hpp"
 
 namespace talus::preprocess {
 
@@ -71,8 +70,8 @@ void leave_edges_outside(std::vector<Raster>& rasters) {
 }
 
 /// `largest_void` is the area of the largest one that was left unfilled [m2].
-void refuse_empty_cells(const Elevation& dem, const Raster& raster, const Options& options, double largest_void) {
-  const EdgeNodata edge = options.grid.edge_nodata;
+void refuse_empty_cells(const Elevation& dem, const Raster& raster, const AlignRequest& request, double largest_void) {
+  const EdgeNodata edge = request.edge_nodata;
   std::vector<char> empty = empty_cells(raster);
   if (edge == EdgeNodata::outside) {
     const std::vector<char> outside = reaching_edge(raster.grid, empty);
@@ -81,11 +80,11 @@ void refuse_empty_cells(const Elevation& dem, const Raster& raster, const Option
   const bool too_large = largest_void > 0;
   const std::string beforehand = "(gdal_fillnodata.py " + dem.file.string() + " out.tif)";
   std::string mend = "Fill them beforehand " + beforehand;
-  if (!options.voids.fill) mend = "Fill them: fill = true in [preprocess.voids], or beforehand " + beforehand;
+  if (!request.voids.fill) mend = "Fill them: fill = true in [preprocess.voids], or beforehand " + beforehand;
   if (too_large)
     mend = fmt::format(
         "Raise largest_m2 = {:g} in [preprocess.voids] (the largest void has {} m2), or fill it beforehand {}",
-        options.voids.largest_m2, grouped(largest_void), beforehand);
+        request.voids.largest_m2, grouped(largest_void), beforehand);
   if (edge == EdgeNodata::refuse) {
     mend +=
         "; or crop the working grid (west_m, south_m, east_m, north_m in [preprocess.grid]), or, where they reach its "
@@ -172,27 +171,27 @@ void require_data(const Raster& raster, const std::filesystem::path& file) {
                         "Check its coordinates and nodata value with gdalinfo"});
 }
 
-std::vector<Raster> align(const std::vector<const Elevation*>& dems, const Options& options,
+std::vector<Raster> align(const std::vector<const Elevation*>& dems, const AlignRequest& request,
                           std::vector<Filled>* filled) {
-  const MapGrid grid = working_grid(dems, options);
+  const MapGrid grid = working_grid(dems, request.grid);
   std::vector<Raster> rasters;
   for (const Elevation* dem : dems) {
     log_resampling(*dem, grid);
     rasters.push_back(onto_grid(*dem, grid));
     require_data(rasters.back(), dem->file);
   }
-  const EdgeNodata edge = options.grid.edge_nodata;
+  const EdgeNodata edge = request.edge_nodata;
   trim(dems, rasters, edge == EdgeNodata::outside);
   std::vector<double> largest_void(dems.size(), 0.0);
   for (std::size_t i = 0; i < dems.size(); ++i) {
-    look_at_spikes(*dems[i], rasters[i], options.voids);
-    if (!options.voids.fill) continue;
-    Filled result = fill(*dems[i], rasters[i], options.voids.largest_m2);
+    look_at_spikes(*dems[i], rasters[i], request.voids);
+    if (!request.voids.fill) continue;
+    Filled result = fill(*dems[i], rasters[i], request.voids.largest_m2);
     rasters[i] = result.raster;
     for (const VoidFill& v : result.voids) largest_void[i] = std::max(largest_void[i], v.filled ? 0.0 : v.area_m2);
     if (filled != nullptr) filled->push_back(std::move(result));
   }
-  for (std::size_t i = 0; i < dems.size(); ++i) refuse_empty_cells(*dems[i], rasters[i], options, largest_void[i]);
+  for (std::size_t i = 0; i < dems.size(); ++i) refuse_empty_cells(*dems[i], rasters[i], request, largest_void[i]);
   if (edge == EdgeNodata::outside) leave_edges_outside(rasters);
   return rasters;
 }

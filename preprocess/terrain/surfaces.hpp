@@ -9,13 +9,14 @@
 #include "preprocess/options/options.hpp"
 #include "preprocess/terrain/elevation.hpp"
 #include "preprocess/terrain/voids.hpp"
+#include "preprocess/terrain/working_grid.hpp"
 
 namespace talus::preprocess {
 
-/// "x 361265.6, y 71238.4": the centre of a cell.
+/// The centre of a cell in words: "x 361265.6, y 71238.4".
 std::string place_of(const MapGrid& grid, std::size_t cell);
 
-/// Of the marked cells [rows * columns], those that hang together (8-connected) with one on the grid's edge.
+/// The marked cells [rows * columns] that hang together (8-connected) with one on the grid's edge.
 std::vector<char> reaching_edge(const MapGrid& grid, const std::vector<char>& marked);
 
 /// What to say of the cells that are marked in `bad` and matter; count and first place are in the text.
@@ -31,12 +32,20 @@ void refuse_cells(const MapGrid& grid, const std::vector<char>& bad, const CellF
 /// Throws DataError when a raster that was brought to the working grid holds nothing but nodata.
 void require_data(const Raster& raster, const std::filesystem::path& file);
 
-/// Bring DEMs onto the working grid (the first gives CRS, registration and cell). Where one was reprojected or
-/// triangulated, the grid is trimmed to where it has data. Other cells without data are refused by name and place; with
-/// edge_nodata = "outside" those that reach the edge become nodata in every raster returned. All are on one grid, in
-/// the order of `dems`. Before that, spikes and pits are reported or removed and voids filled, as [preprocess.voids]
-/// asks; `filled`, where wanted, receives for every DEM what was filled and how well (empty without voids.fill).
-std::vector<Raster> align(const std::vector<const Elevation*>& dems, const Options& options,
+/// How elevation models are brought onto one grid.
+struct AlignRequest {
+  GridRequest grid;
+  EdgeNodata edge_nodata = EdgeNodata::refuse;
+  VoidOptions voids;
+};
+
+/// Brings DEMs onto the working grid. Where one was reprojected or triangulated, the grid is trimmed to where it has
+/// data. Other cells without data are refused by name and place; with EdgeNodata::outside those that reach the edge
+/// become nodata in every raster returned. All are on one grid, in the order of `dems`. Before that, spikes and pits
+/// are reported or removed and voids filled, as request.voids asks; `filled`, where wanted, receives for every DEM what
+/// was filled and how well (empty without voids.fill). Throws RecipeError and DataError as working_grid() does, and
+/// DataError for cells without data.
+std::vector<Raster> align(const std::vector<const Elevation*>& dems, const AlignRequest& request,
                           std::vector<Filled>* filled = nullptr);
 
 }  // namespace talus::preprocess

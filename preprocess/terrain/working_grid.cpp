@@ -31,8 +31,8 @@ Extent extent_in(const Elevation& dem, const std::string& crs) {
   return {e.west + p.x, e.south + p.y, e.east + p.x, e.north + p.y};
 }
 
-double spacing_of(const Elevation& first, const Options& options) {
-  if (options.grid.spacing_m > 0) return options.grid.spacing_m;
+double spacing_of(const Elevation& first, const GridRequest& request) {
+  if (request.spacing > 0) return request.spacing;
   if (!first.scattered) return first.cell();
   throw RecipeError(Fault{"[preprocess.grid]: spacing_m is not given",
                           first.file.string() + " holds points, which have no cell size",
@@ -52,9 +52,10 @@ MapGrid cells_inside(const Extent& extent, double west, double south, double cel
   return grid;
 }
 
-Extent crop_of(const GridOptions& g) {
+Extent crop_of(const GridRequest& request) {
   const double far = std::numeric_limits<double>::max();
-  return {g.west_m.value_or(-far), g.south_m.value_or(-far), g.east_m.value_or(far), g.north_m.value_or(far)};
+  return {request.west.value_or(-far), request.south.value_or(-far), request.east.value_or(far),
+          request.north.value_or(far)};
 }
 
 Extent overlap_of(const std::vector<const Elevation*>& dems, const std::string& crs) {
@@ -103,12 +104,22 @@ std::array<Border, 4> borders(const MapGrid& grid, const std::vector<char>& empt
 
 }  // namespace
 
-MapGrid working_grid(const std::vector<const Elevation*>& dems, const Options& options) {
+GridRequest grid_request(const Options& options) {
+  const GridOptions& g = options.grid;
+  return {.crs = options.working_crs,
+          .spacing = g.spacing_m,
+          .west = g.west_m,
+          .south = g.south_m,
+          .east = g.east_m,
+          .north = g.north_m};
+}
+
+MapGrid working_grid(const std::vector<const Elevation*>& dems, const GridRequest& request) {
   const Elevation& first = *dems.front();
-  const std::string crs = options.working_crs.empty() ? first.crs_wkt() : metric_crs(options.working_crs);
+  const std::string crs = request.crs.empty() ? first.crs_wkt() : metric_crs(request.crs);
   require_comparable_crs(first.crs_wkt(), first.file, crs, "working_crs");
-  const double cell = spacing_of(first, options);
-  const Extent overlap = overlap_of(dems, crs), wanted = intersection(overlap, crop_of(options.grid));
+  const double cell = spacing_of(first, request);
+  const Extent overlap = overlap_of(dems, crs), wanted = intersection(overlap, crop_of(request));
   const bool registered = !first.scattered && same_crs(first.crs_wkt(), crs);
   MapGrid grid = wanted.empty() ? MapGrid{}
                                 : cells_inside(wanted, registered ? first.extent().west : 0,

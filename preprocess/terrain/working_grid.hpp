@@ -1,6 +1,7 @@
 // The one metric grid that everything is brought to.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,11 +11,20 @@
 
 namespace talus::preprocess {
 
-/// The working grid: CRS `working_crs` or that of the first DEM, cell `spacing_m` or that of the first DEM, registered
-/// to the first DEM's south-west corner (to multiples of the spacing where that DEM is points or in another CRS); all
-/// cells that lie wholly inside every DEM and inside the crop. Throws RecipeError (no spacing for points) and DataError
-/// (no overlap; one file with and one without CRS).
-MapGrid working_grid(const std::vector<const Elevation*>& dems, const Options& options);
+/// The grid that is asked for. Nothing given: the cells of the first DEM, over all that the DEMs share.
+struct GridRequest {
+  std::string crs;                                 ///< name of a CRS in metres; "" = that of the first DEM
+  double spacing = 0;                              ///< [m]; 0 = the cell of the first DEM
+  std::optional<double> west, south, east, north;  ///< crop, in the working CRS [m]
+};
+
+/// The grid that a recipe asks for: working_crs, and spacing and crop of [preprocess.grid].
+GridRequest grid_request(const Options& options);
+
+/// The working grid: registered to the first DEM's south-west corner (to multiples of the spacing where that DEM is
+/// points or in another CRS), all cells that lie wholly inside every DEM and inside the crop. Throws RecipeError (no
+/// spacing for points) and DataError (no overlap; one file with and one without CRS).
+MapGrid working_grid(const std::vector<const Elevation*>& dems, const GridRequest& request);
 
 /// Drops border rows and columns of which more than `allowed` (0..1) is marked in `empty` [rows * columns], the
 /// emptiest first. Below 1 - 1e-9 it drops wholly empty ones; 0 leaves a rectangle without empty cells on its border,

@@ -17,7 +17,7 @@ Raster tilted() {
 }
 
 BodySurface stood(const test::Scratch& scratch, const ObstacleOptions& o) {
-  write_level_sets(scratch / "obstacles.vdb", stand_obstacles({o}, tilted(), 4), 0.25);
+  write_level_sets(scratch / "obstacles.vdb", upright_obstacles({o}, tilted(), 4), 0.25);
   return read_level_set(scratch / "obstacles.vdb", o.name, {1, 1, 1});
 }
 

@@ -269,7 +269,7 @@ TEST(delineation, outlines_are_read_once) {
   const Survey survey = survey_of(scene.options);
   std::filesystem::remove(scene.scratch / "heap.csv");
   SurveyedSlide slide = slide_on(survey, scene.before, {});
-  delineate(survey, {scene.before, scene.after, scene.bowl}, scene.options, slide);
+  delineate(survey, {scene.before, scene.after, scene.bowl}, scene.options.deposit, slide);
   EXPECT_EQ(slide.volumes[1].volume.volume, whole.slide->volumes[1].volume.volume);
   EXPECT_GT(slide.volumes[1].volume.volume, 0);
 }
