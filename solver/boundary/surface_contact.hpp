@@ -75,7 +75,7 @@ struct ContactView {
   TALUS_HD Grip grip(const GridView<Real>& grid, int c, Real speed) const {
     if (body[c] != ContactPoints::ground) return {body_friction[body[c]], Real(0)};
     if (ground.law == FrictionLaw::stick) return {Real(1e6), Real(0)};
-    const Bed<Real>& bed = ground.at(grid.column(places.cell_x[c], places.cell_y[c]));
+    const Bed<Real>& bed = ground.at(grid.column(places.cell[0][c], places.cell[1][c]));
     return {ground.coefficient(bed, speed), ground.traction(bed, speed)};
   }
 
@@ -112,7 +112,7 @@ struct ForgetForces {
   GridView<Real> grid;
   ContactView<Real> contacts;
   TALUS_HD void operator()(int c) const {
-    if (grid.slot(contacts.places.cell_x[c], contacts.places.cell_y[c]).offset >= 0) return;
+    if (grid.slot(contacts.places.cell[0][c], contacts.places.cell[1][c]).offset >= 0) return;
     contacts.force[c] = {};
     contacts.inverse_mass[c] = Real(0);
   }
@@ -155,12 +155,12 @@ class SurfaceContact {
   ContactView<Real> view() {
     ContactView<Real> v = view_;
     v.places = {};
-    v.places.cell_x = cell_[0].data();
-    v.places.cell_y = cell_[1].data();
-    v.places.cell_z = cell_[2].data();
-    v.places.offset_x = offset_[0].data();
-    v.places.offset_y = offset_[1].data();
-    v.places.offset_z = offset_[2].data();
+    v.places.cell[0] = cell_[0].data();
+    v.places.cell[1] = cell_[1].data();
+    v.places.cell[2] = cell_[2].data();
+    v.places.offset[0] = offset_[0].data();
+    v.places.offset[1] = offset_[1].data();
+    v.places.offset[2] = offset_[2].data();
     for (auto& extent : v.places.extent) extent = none_.data();
     v.normal = normal_.data();
     v.area = area_.data();

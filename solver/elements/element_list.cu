@@ -16,9 +16,9 @@ struct MakeElementKeys {
   ParticleView<Real> points;
   std::uint64_t* keys;
   TALUS_HD void operator()(int p) const {
-    const int i = points.cell_x[p] + Shape::first(points.offset_x[p]);
-    const int j = points.cell_y[p] + Shape::first(points.offset_y[p]);
-    const int k = points.cell_z[p] + Shape::first(points.offset_z[p]);
+    const int i = points.cell[0][p] + Shape::first(points.offset[0][p]);
+    const int j = points.cell[1][p] + Shape::first(points.offset[1][p]);
+    const int k = points.cell[2][p] + Shape::first(points.offset[2][p]);
     keys[p] = home_key(grid.block_columns_x, i, j, k + 1);
   }
 };

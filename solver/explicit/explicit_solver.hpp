@@ -62,8 +62,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
  public:
   ExplicitSolverOf(const Device& device, const Scene& scene, const IntegratorSettings& settings,
                    const SolverState& state)
-      : Base(device, scene, settings, state, fields(settings),
-             settings.deterministic ? 1 : drift_between_sorts<Device>),
+      : Base(device, scene, settings, state, needs(settings), settings.deterministic ? 1 : drift_between_sorts<Device>),
         affine_(settings.transfer.affine),
         musl_(settings.transfer.remaps_velocity),
         keeps_(settings.transfer.time > settings.steps.cfl),
@@ -120,10 +119,10 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   }
 
  private:
-  static ParticleFields fields(const IntegratorSettings& settings) {
-    ParticleFields f = settings.fields;
-    f.move = settings.transfer.remaps_velocity;
-    return f;
+  static ParticleNeeds needs(const IntegratorSettings& settings) {
+    ParticleNeeds n = settings.needs;
+    n.remapped_velocity = settings.transfer.remaps_velocity;
+    return n;
   }
 
   /// Four verbs: clear, scatter, update, gather. MUSL maps the points' new momentum back before the stress.

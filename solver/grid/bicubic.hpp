@@ -64,14 +64,14 @@ TALUS_HD GroundPoint<Real> bicubic_ground(const Real* terrain, int columns, int 
 /// friction.
 template <class Real>
 TALUS_HD void keep_above_ground(const GridView<Real>& grid, const ParticleView<Real>& points, int p) {
-  const int i = points.cell_x[p], j = points.cell_y[p];
+  const int i = points.cell[0][p], j = points.cell[1][p];
   if (i < 1 || j < 1 || i + 1 >= grid.columns || j + 1 >= grid.rows) return;
-  const GroundPoint<Real> ground =
-      bicubic_ground(grid.terrain, grid.columns, grid.rows, grid.spacing, i, j, points.offset_x[p], points.offset_y[p]);
+  const GroundPoint<Real> ground = bicubic_ground(grid.terrain, grid.columns, grid.rows, grid.spacing, i, j,
+                                                  points.offset[0][p], points.offset[1][p]);
   const Real to = ground.height / grid.layer_height, nearest = floor(to + Real(0.5));
-  if (Real(points.cell_z[p]) - nearest + points.offset_z[p] >= to - nearest) return;
-  points.cell_z[p] = static_cast<int>(nearest);
-  points.offset_z[p] = to - nearest;
+  if (Real(points.cell[2][p]) - nearest + points.offset[2][p] >= to - nearest) return;
+  points.cell[2][p] = static_cast<int>(nearest);
+  points.offset[2][p] = to - nearest;
 }
 
 }  // namespace talus

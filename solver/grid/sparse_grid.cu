@@ -17,8 +17,8 @@ struct MakeKeys {
   bool by_lowest_node;  // of hats; else by the nearest one
   std::uint64_t* keys;
   TALUS_HD void operator()(int p) const {
-    const int i = points.cell_x[p], j = points.cell_y[p], k = points.cell_z[p];
-    const bool x = points.offset_x[p] < Real(0), y = points.offset_y[p] < Real(0), z = points.offset_z[p] < Real(0);
+    const int i = points.cell[0][p], j = points.cell[1][p], k = points.cell[2][p];
+    const bool x = points.offset[0][p] < Real(0), y = points.offset[1][p] < Real(0), z = points.offset[2][p] < Real(0);
     if (i < 0) {
       keys[p] = ~std::uint64_t{0};
     } else if (by_lowest_node) {
@@ -46,7 +46,7 @@ struct MeasureExtents {
   int* lowest;
   int* highest;
   TALUS_HD void operator()(int p) const {
-    const int i = points.cell_x[p], j = points.cell_y[p], k = points.cell_z[p];
+    const int i = points.cell[0][p], j = points.cell[1][p], k = points.cell[2][p];
     const int i0 = i > reach ? i - reach : 0, i1 = i + reach < columns ? i + reach : columns - 1;
     const int j0 = j > reach ? j - reach : 0, j1 = j + reach < rows ? j + reach : rows - 1;
     const int k0 = k > reach ? k - reach : 0;

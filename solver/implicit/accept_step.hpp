@@ -32,9 +32,9 @@ struct MeasureMotion {
     const double rise = way.z - static_cast<double>(g.s.slope_x) * way.x - static_cast<double>(g.s.slope_y) * way.y;
     double cells = fmax(fmax(fabs(way.x), fabs(way.y)) * across, fabs(rise) * up);
     if (!dynamic && g.s.slope_x == Real(0) && g.s.slope_y == Real(0)) {
-      const double x = points.cell_x[p] + static_cast<double>(points.offset_x[p]) + way.x * across;
-      const double y = points.cell_y[p] + static_cast<double>(points.offset_y[p]) + way.y * across;
-      const double z = points.cell_z[p] + static_cast<double>(points.offset_z[p]) + rise * up;
+      const double x = points.cell[0][p] + static_cast<double>(points.offset[0][p]) + way.x * across;
+      const double y = points.cell[1][p] + static_cast<double>(points.offset[1][p]) + way.y * across;
+      const double z = points.cell[2][p] + static_cast<double>(points.offset[2][p]) + rise * up;
       const double through_x = fmax(grid.walls.west - x, x - grid.walls.east),
                    through_y = fmax(grid.walls.south - y, y - grid.walls.north);
       cells = 2 * fmax(fmax(through_x, through_y), fmax(-z, 0.0));
@@ -139,9 +139,9 @@ struct AcceptStep {
       return;
     }
     if (grid.ground == GroundContact::points) keep_above_ground(grid, points, p);
-    const int i = points.cell_x[p], j = points.cell_y[p];
+    const int i = points.cell[0][p], j = points.cell[1][p];
     if (i < 0 || j < 0 || i >= grid.columns || j >= grid.rows || !grid.open[grid.column(i, j)]) {
-      points.cell_x[p] = -1;
+      points.cell[0][p] = -1;
       atomic_add(&clock->outflow_volume, static_cast<double>(points.volume[p]));
       atomic_increment(&clock->outflow_count);
       return;

@@ -25,7 +25,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
  public:
   ImplicitSolver(const Device& device, const Scene& scene, const IntegratorSettings& settings,
                  const ImplicitControls& controls, const SolverState& state)
-      : Base(device, scene, settings, state, fields(settings), 0),
+      : Base(device, scene, settings, state, needs(settings), 0),
         controls_(with_materials(controls, scene.grid.layer_height)),
         step_(parts(), BedOn<double, Device>(device, settings.bed, scene.bed)),
         length_(controls.step),
@@ -65,10 +65,10 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
   }
 
  private:
-  static ParticleFields fields(const IntegratorSettings& settings) {
-    ParticleFields f = settings.fields;
-    f.acceleration = true;
-    return f;
+  static ParticleNeeds needs(const IntegratorSettings& settings) {
+    ParticleNeeds n = settings.needs;
+    n.accelerations = true;
+    return n;
   }
 
   /// The controls; the materials learn from them which tangent is asked for, and how round the cone's tip is (T15b).

@@ -56,12 +56,12 @@ template <class Real, class Device, class Shape>
 class PointSolver : public Solver {
  public:
   PointSolver(const Device& device, const Scene& scene, const IntegratorSettings& settings, const SolverState& state,
-              ParticleFields fields, int drift)
+              ParticleNeeds needs, int drift)
       : device_(device),
         settings_(settings),
         materials_(settings.materials.in<Real>()),
-        dilatant_(fields.plastic_volume),
-        points_(device, fields),
+        dilatant_(needs.plastic_volume),
+        points_(device, needs),
         grid_(device, scene.grid, drift, settings.deterministic, Shape::width == 2),
         bed_(device, settings.bed, scene.bed),
         contact_(device, scene.contacts, bed_.view(), scene.grid, state.contacts, settings.deterministic),
@@ -94,7 +94,7 @@ class PointSolver : public Solver {
     return all;
   }
 
-  ParticleState shown() const override { return points_.download_shown(); }
+  ParticleState shown() const override { return points_.download(Kept::in_frames); }
 
   Energies energies() override {
     const ProfilePhase<Device> phase(device_, "records and frames");

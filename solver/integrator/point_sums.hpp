@@ -13,13 +13,14 @@ struct MapWeights {
   int i, j;  // first column
   double x[Shape::width], y[Shape::width];
   TALUS_HD MapWeights(const ParticleView<Real>& points, int p)
-      : i(points.cell_x[p] + Shape::first(points.offset_x[p])), j(points.cell_y[p] + Shape::first(points.offset_y[p])) {
+      : i(points.cell[0][p] + Shape::first(points.offset[0][p])),
+        j(points.cell[1][p] + Shape::first(points.offset[1][p])) {
     double unused[Shape::width], half[2] = {};
     if constexpr (Shape::averaged) {
       for (int a = 0; a < 2; ++a) half[a] = static_cast<double>(points.half_extent(p, a, Real(1e-3)));
     }
-    Shape::weigh(static_cast<double>(points.offset_x[p]), half[0], x, unused);
-    Shape::weigh(static_cast<double>(points.offset_y[p]), half[1], y, unused);
+    Shape::weigh(static_cast<double>(points.offset[0][p]), half[0], x, unused);
+    Shape::weigh(static_cast<double>(points.offset[1][p]), half[1], y, unused);
   }
 };
 
@@ -40,8 +41,8 @@ struct MeasureEnergies {
     const double vx = static_cast<double>(v.x), vy = static_cast<double>(v.y), vz = static_cast<double>(v.z);
     const MaterialState<Real> state{points.elastic_of(p), points.log_volume[p],
                                     dilatant ? points.plastic_log_volume[p] : Real(0)};
-    const double x = (points.cell_x[p] + static_cast<double>(points.offset_x[p])) * grid.spacing;
-    const double y = (points.cell_y[p] + static_cast<double>(points.offset_y[p])) * grid.spacing;
+    const double x = (points.cell[0][p] + static_cast<double>(points.offset[0][p])) * grid.spacing;
+    const double y = (points.cell[1][p] + static_cast<double>(points.offset[1][p])) * grid.spacing;
     const double z = height(p);
     return {
         {0.5 * mass * (vx * vx + vy * vy + vz * vz), -mass * (gravity.x * x + gravity.y * y + gravity.z * z),
@@ -52,7 +53,7 @@ struct MeasureEnergies {
  private:
   /// Above the lowest ground [m].
   TALUS_HD double height(int p) const {
-    const double zeta = (points.cell_z[p] + static_cast<double>(points.offset_z[p])) * grid.layer_height;
+    const double zeta = (points.cell[2][p] + static_cast<double>(points.offset[2][p])) * grid.layer_height;
     if (grid.mapping == Mapping::cartesian) return zeta;
     const MapWeights<Real, Shape> w(points, p);
     double ground = 0;
@@ -72,7 +73,7 @@ struct ScatterThickness {
   double* volume;
 
   TALUS_HD void operator()(int p) const {
-    if (points.cell_x[p] < 0) return;
+    if (points.cell[0][p] < 0) return;
     const MapWeights<Real, Shape> w(points, p);
     for (int b = 0; b < Shape::width; ++b) {
       for (int a = 0; a < Shape::width; ++a) {

@@ -53,7 +53,7 @@ struct MaterialSettings {
 /// What all integrators read.
 struct IntegratorSettings {
   ShapeKind shape = ShapeKind::quadratic;
-  ParticleFields fields;  // that the scheme, the materials and the loads need of a particle
+  ParticleNeeds needs;  // what the scheme, the materials and the loads ask of the points
   StepSettings steps;
   TransferSettings transfer;
   GravitySettings gravity;

@@ -10,9 +10,7 @@ std::vector<double> thickness_of(const Scene& scene, const SolveOptions& options
                                  const std::function<bool(std::size_t)>& counts) {
   const GridShape& shape = scene.grid;
   std::vector<double> thickness(static_cast<std::size_t>(shape.columns) * static_cast<std::size_t>(shape.rows), 0.0);
-  ParticleFields fields;
-  fields.extent = options.shape == ShapeKind::gimp;
-  Particles<double, CpuDevice> held(CpuDevice::make(), fields);
+  Particles<double, CpuDevice> held(CpuDevice::make(), {.boxes = options.shape == ShapeKind::gimp});
   held.upload(points);
   with_shape(options.shape, [&](auto kind) {
     const ScatterThickness<double, decltype(kind)> scatter{held.view(), shape.columns, thickness.data()};

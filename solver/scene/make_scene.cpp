@@ -24,20 +24,6 @@ void place(double position, int& cell, double& offset) {
   offset = position - nearest;
 }
 
-void size_state(ParticleState& s, std::size_t count) {
-  for (auto* list : {&s.cell[0], &s.cell[1], &s.cell[2], &s.id, &s.release}) list->assign(count, 0);
-  for (auto& list : s.offset) list.assign(count, 0);
-  for (auto& list : s.extent) list.assign(count, 0);
-  for (auto& list : s.velocity) list.assign(count, 0);
-  for (auto& list : s.acceleration) list.assign(count, 0);
-  s.load.assign(count, -1);
-  s.material.assign(count, 0);
-  s.plastic_shear.assign(count, 0);
-  for (auto& list : s.affine) list.assign(count, 0);
-  for (auto& list : s.elastic) list.assign(count, 0);
-  for (auto* list : {&s.log_volume, &s.plastic_log_volume, &s.volume}) list->assign(count, 0);
-}
-
 /// Marks the points that start inside a load's box.
 void attach_loads(const Domain& domain, const SolveOptions& options, Scene& scene) {
   for (std::size_t l = 0; l < options.loads.size(); ++l) {
@@ -143,7 +129,7 @@ ParticleState place_points(const Domain& domain, const SolveOptions& options, co
                            const GroundTables& ground, const ActiveCells& active) {
   ParticleState s;
   const std::size_t count = domain.points.size();
-  size_state(s, count);
+  s.resize(count);
   for (std::size_t p = 0; p < count; ++p) {
     check_place(domain, ground, active, p);
     const double xi = (domain.points.x[p] - domain.grid.west) / shape.spacing - 0.5;

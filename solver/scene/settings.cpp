@@ -17,13 +17,13 @@ Vec3<double> vector(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
 
 double size(const std::vector<double>& v) { return std::hypot(v[0], v[1], v[2]); }
 
-ParticleFields fields_for(const SolveOptions& o) {
-  return {.affine = o.transfer == Transfer::apic,
+ParticleNeeds needs_of(const SolveOptions& o) {
+  return {.affine_transfer = o.transfer == Transfer::apic,
           .plastic_volume = o.any_material([](const MaterialOptions& m) { return m.dilates(); }),
-          .extent = o.shape == ShapeKind::gimp,
-          .load = !o.loads.empty(),
-          .material = !o.parts.empty(),
-          .plastic_shear = o.any_material([](const MaterialOptions& m) { return m.softens(); })};
+          .boxes = o.shape == ShapeKind::gimp,
+          .loads = !o.loads.empty(),
+          .several_materials = !o.parts.empty(),
+          .softening = o.any_material([](const MaterialOptions& m) { return m.softens(); })};
 }
 
 PlaneWall make_wall(const WallOptions& o) {
@@ -41,7 +41,7 @@ Load make_load(const LoadOptions& o) { return {.force = vector(o.force), .ramp =
 
 IntegratorSettings make_common(const SolveOptions& o, const GridShape& grid) {
   IntegratorSettings s{.shape = o.shape,
-                       .fields = fields_for(o),
+                       .needs = needs_of(o),
                        .steps = {.cfl = o.cfl,
                                  .largest = o.largest_step,
                                  .fastest_wave = fastest_wave(o),
@@ -90,7 +90,7 @@ SolverSettings for_gravity_loading(SolverSettings s, int steps) {
   s.common.gravity.ramp = 1;
   hold(s.common.materials.in_double);
   hold(s.common.materials.in_single);
-  s.common.fields.plastic_volume = s.common.fields.plastic_shear = false;
+  s.common.needs.plastic_volume = s.common.needs.softening = false;
   s.common.bed = {};
   s.common.bed.law = FrictionLaw::stick;
   std::erase_if(s.common.walls, [](const PlaneWall& wall) { return wall.from > 0; });

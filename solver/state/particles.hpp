@@ -7,31 +7,18 @@
 #include "solver/parallel/for_each.hpp"
 #include "solver/parallel/math.hpp"
 #include "solver/state/grid_view.hpp"
+#include "solver/state/particle_fields.hpp"
 
 namespace talus {
 
-/// Positions are the nearest node and the offset from it in cells, so that single precision keeps 1e-8 of a cell
-/// anywhere. A point whose cell_x is negative has left the domain.
+/// The fields of particle_fields.hpp as a kernel sees them: a pointer for each component, null where the run does not
+/// need the field.
 template <class Real>
 struct ParticleView {
+  using Ints = int*;
+  using Reals = Real*;
   int count = 0;
-  int *cell_x, *cell_y, *cell_z;         // nearest node
-  Real *offset_x, *offset_y, *offset_z;  // from it, in cells [-0.5, 0.5)
-  Real* velocity[3];                     // [m/s]
-  Real* affine[9];                       // velocity change per cell, columns x, y, zeta [m/s]; null without APIC
-  Real* elastic[6];                      // what the material keeps: xx yy zz xy yz xz (see material.hpp)
-  Real* log_volume;                      // ln(volume / initial volume) [-]
-  Real* plastic_log_volume;              // the part of it that is plastic dilation; null when there is none
-  Real* volume;                          // initial [m3]; mass is volume times the density of the scene
-  Real* extent[3];  // sides of the box it stands for, along x, y, zeta, in cells; null unless functions are averaged
-                    // over it
-  Real* move[3];    // displacement of this step in cells; null unless MUSL
-  Real* acceleration[3];  // [m/s2]; null unless Newmark
-  int* id;                // order of seeding
-  int* release;           // which release it belongs to
-  int* load;              // which load pulls at it, -1: none; null without loads
-  int* material;          // which it is of; null in a scene of one
-  Real* plastic_shear;    // equivalent plastic shear strain so far [-]; null unless a material softens
+  TALUS_DECLARE_PARTICLE_FIELDS
 
   static constexpr double place_bytes = 3 * (sizeof(int) + sizeof(Real));  // of a position
 
@@ -76,9 +63,9 @@ struct ParticleView {
   /// New cell and offset after a move in cells: nothing goes below the ground or behind a wall.
   template <class Move>
   TALUS_HD void move_by(int p, const Vec3<Move>& way, const WallNodes& walls) const {
-    shift(cell_x[p], offset_x[p], way.x, walls.west, walls.east);
-    shift(cell_y[p], offset_y[p], way.y, walls.south, walls.north);
-    shift(cell_z[p], offset_z[p], way.z, 0, WallNodes::far);
+    shift(cell[0][p], offset[0][p], way.x, walls.west, walls.east);
+    shift(cell[1][p], offset[1][p], way.y, walls.south, walls.north);
+    shift(cell[2][p], offset[2][p], way.z, 0, WallNodes::far);
   }
 
  private:
@@ -100,55 +87,53 @@ struct ParticleView {
   }
 };
 
-/// Host copy of the whole state, in double.
+/// Host copy of the state, in double; lists of one length, or empty where they were not asked for.
 struct ParticleState {
-  std::vector<int> cell[3], id, release, load, material;
-  std::vector<double> offset[3], extent[3], velocity[3], acceleration[3], affine[9], elastic[6], log_volume,
-      plastic_log_volume, plastic_shear, volume;
+  using Ints = std::vector<int>;
+  using Reals = std::vector<double>;
+  TALUS_DECLARE_PARTICLE_FIELDS
+
   std::size_t size() const { return id.size(); }
+  /// `count` points at their initial values.
+  void resize(std::size_t count);
 };
 
-/// Which optional arrays a scene needs.
-struct ParticleFields {
-  bool affine = false, plastic_volume = false, extent = false, move = false, acceleration = false, load = false,
-       material = false, plastic_shear = false;
-};
-
+/// Owner of the points' arrays on a device.
 template <class Real, class Device>
 class Particles {
  public:
-  Particles(const Device& device, ParticleFields fields) : device_(device), fields_(fields) {}
-  explicit Particles(ParticleFields fields) : Particles(Device{}, fields) {}
+  Particles(const Device& device, ParticleNeeds needs);
+  explicit Particles(ParticleNeeds needs) : Particles(Device{}, needs) {}
 
+  /// Takes the lists of the fields that are needed; those kept within a step alone get memory.
   void upload(const ParticleState& state);
-  ParticleState download() const;
-  /// Without what only a further step needs: affine velocity, acceleration, boxes, loads.
-  ParticleState download_shown() const;
+  /// The fields that are kept at least so long; those that are not needed have their initial value.
+  ParticleState download(Kept least = Kept::in_checkpoint) const;
   ParticleView<Real> view();
   int count() const { return count_; }
+  /// Memory taken [bytes].
   std::size_t bytes() const;
-  const Buffer<Real, Device>& volume() const { return reals_[volume_slot]; }
+  const Buffer<Real, Device>& volume() const { return arrays_.volume; }
 
   /// New order: point order[p] becomes point p; only the first `count` are kept.
   void reorder(const Buffer<int, Device>& order, int count);
 
  private:
-  static constexpr int offset_slot = 0, velocity_slot = 3, elastic_slot = 6, log_slot = 12, volume_slot = 13,
-                       plastic_slot = 14, affine_slot = 15, acceleration_slot = 24, extent_slot = 27, shear_slot = 30,
-                       move_slot = 31, real_slots = 34;
-  static constexpr int load_slot = 5, material_slot = 6, int_slots = 7;
-  bool in_use(int slot) const;
-  bool int_in_use(int slot) const;
+  struct Arrays {
+    using Ints = Buffer<int, Device>;
+    using Reals = Buffer<Real, Device>;
+    TALUS_DECLARE_PARTICLE_FIELDS
+  };
+
+  bool holds(const ParticleField& field) const { return needs_.*field.needed_by; }
+  bool sorts(const ParticleField& field) const { return holds(field) && field.kept != Kept::within_step; }
   void reorder_together(const Buffer<int, Device>& order, int count);
   Device device_;
-  ParticleFields fields_;
+  ParticleNeeds needs_;
   int count_ = 0;
-  Buffers<Real, Device, real_slots> reals_{device_};
-  Buffers<int, Device, int_slots> ints_{device_};         // cell x y z, id, release, load, material
-  Buffers<Real, Device, move_slot> real_twins_{device_};  // of as many points as may be kept twice
-  Buffers<int, Device, int_slots> int_twins_{device_};
-  Buffer<Real, Device> real_scratch_{device_};
-  Buffer<int, Device> int_scratch_{device_};
+  Arrays arrays_, twins_;  // the second set of as many points as may be kept twice
+  Buffer<Real, Device> real_scratch_;
+  Buffer<int, Device> int_scratch_;
 };
 
 }  // namespace talus

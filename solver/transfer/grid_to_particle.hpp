@@ -47,7 +47,7 @@ struct GridToParticle {
   };
 
   TALUS_HD void operator()(int p) const {
-    if (clock->halt != running || points.cell_x[p] < 0) return;
+    if (clock->halt != running || points.cell[0][p] < 0) return;
     const Stencil<Real, Shape> s(grid, points, p);
     const Sums sums = gather(s);
     const Real dt = Real(clock->step_size);
@@ -166,15 +166,15 @@ struct GridToParticle {
     const Vec3<Real> v = points.velocity_of(p);
     const Real speed = length(v);
     // A point that crossed a cell in one step, or whose state is no number, has left the equations.
-    if (!(speed < Real(1e6)) || !(fabs(points.log_volume[p]) < Real(1e3)) || !(fabs(points.offset_z[p]) <= Real(1))) {
+    if (!(speed < Real(1e6)) || !(fabs(points.log_volume[p]) < Real(1e3)) || !(fabs(points.offset[2][p]) <= Real(1))) {
       raise_flag(&clock->failed_point, points.id[p]);
       raise_flag(&clock->request, failed);
       return;
     }
     if (grid.ground == GroundContact::points) keep_above_ground(grid, points, p);
-    const int i = points.cell_x[p], j = points.cell_y[p], k = points.cell_z[p];
+    const int i = points.cell[0][p], j = points.cell[1][p], k = points.cell[2][p];
     if (i < 0 || j < 0 || i >= grid.columns || j >= grid.rows || !grid.open[grid.column(i, j)]) {
-      points.cell_x[p] = -1;
+      points.cell[0][p] = -1;
       atomic_add(&clock->outflow_volume, static_cast<double>(points.volume[p]));
       atomic_increment(&clock->outflow_count);
       request_sort();

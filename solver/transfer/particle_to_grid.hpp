@@ -117,7 +117,7 @@ struct ParticleToGrid {
     }
   }
   TALUS_HD Real* part(int node, int q) const { return q < 4 ? &nodes[node].w + q : &forces[node].x + (q - 4); }
-  TALUS_HD bool counts(int p) const { return clock->halt == running && points.cell_x[p] >= 0; }
+  TALUS_HD bool counts(int p) const { return clock->halt == running && points.cell[0][p] >= 0; }
 
   TALUS_HD void add(const Source& s, int q, Sums (&sums)[deep]) const {
     const int a = q % width, b = q / width;

@@ -18,24 +18,25 @@ struct Stencil {
   Real slope_x = 0, slope_y = 0;                        // of the terrain at the point
 
   TALUS_HD Stencil(const GridView<Real>& grid, const ParticleView<Real>& points, int p) {
-    const Real fx = points.offset_x[p], fy = points.offset_y[p], fz = points.offset_z[p];
+    const Real fx = points.offset[0][p], fy = points.offset[1][p], fz = points.offset[2][p];
     Real half[3] = {};
     if constexpr (Shape::averaged) {
       for (int a = 0; a < 3; ++a) half[a] = points.half_extent(p, a, least_half(grid));
     }
     const int ax = Shape::first(fx), ay = Shape::first(fy), az = Shape::first(fz);
-    i = points.cell_x[p] + ax;
-    j = points.cell_y[p] + ay;
-    k = points.cell_z[p] + az;
+    i = points.cell[0][p] + ax;
+    j = points.cell[1][p] + ay;
+    k = points.cell[2][p] + az;
     Shape::weigh(fx, half[0], wx, gx);
     Shape::weigh(fy, half[1], wy, gy);
     Shape::weigh(fz, half[2], wz, gz);
     if (grid.mapping == Mapping::terrain_following) measure_slope(grid);
     const Real lowest = grid.lowest_weighed;
-    near_x = Real(ax) - beside(points.cell_x[p], grid.walls.west, grid.walls.east, fx, lowest, half[0], wx, gx, edge_x);
+    near_x =
+        Real(ax) - beside(points.cell[0][p], grid.walls.west, grid.walls.east, fx, lowest, half[0], wx, gx, edge_x);
     near_y =
-        Real(ay) - beside(points.cell_y[p], grid.walls.south, grid.walls.north, fy, lowest, half[1], wy, gy, edge_y);
-    near_z = Real(az) - beside(points.cell_z[p], 0, WallNodes::far, fz, lowest, half[2], wz, gz, edge_z);
+        Real(ay) - beside(points.cell[1][p], grid.walls.south, grid.walls.north, fy, lowest, half[1], wy, gy, edge_y);
+    near_z = Real(az) - beside(points.cell[2][p], 0, WallNodes::far, fz, lowest, half[2], wz, gz, edge_z);
   }
 
   /// Where layer 0 of a column of its nodes is stored, or would be; and a node of that column.

@@ -90,7 +90,7 @@ struct Stiffen {
   int from;
   Real times;
   TALUS_HD void operator()(int p) const {
-    if (points.cell_x[p] < from) return;
+    if (points.cell[0][p] < from) return;
     PointTangent<Real> t = tangents.get(p);
     for (Real& d : t.direct) d *= times;
     for (Real& s : t.pairs) s *= times;

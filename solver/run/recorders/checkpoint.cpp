@@ -14,26 +14,13 @@ namespace {
 constexpr const char* kind = "talus checkpoint 5";
 constexpr const char* any_kind = "talus checkpoint ";
 
-/// Calls item(name, list) for every array of the points, so that writing and reading cannot differ.
+/// Calls item(name, list) for every list of the points, so that writing and reading cannot differ.
 template <class State, class Item>
 void visit_points(State& s, Item&& item) {
-  for (int a = 0; a < 3; ++a) {
-    item(fmt::format("cell_{}", a), s.cell[a]);
-    item(fmt::format("offset_{}", a), s.offset[a]);
-    item(fmt::format("extent_{}", a), s.extent[a]);
-    item(fmt::format("velocity_{}", a), s.velocity[a]);
-    item(fmt::format("acceleration_{}", a), s.acceleration[a]);
-  }
-  for (int a = 0; a < 9; ++a) item(fmt::format("affine_{}", a), s.affine[a]);
-  for (int a = 0; a < 6; ++a) item(fmt::format("elastic_{}", a), s.elastic[a]);
-  item("id", s.id);
-  item("release", s.release);
-  item("load", s.load);
-  item("material", s.material);
-  item("plastic_shear", s.plastic_shear);
-  item("log_volume", s.log_volume);
-  item("plastic_log_volume", s.plastic_log_volume);
-  item("volume", s.volume);
+  const auto visit_one = [&](const ParticleField& field, int component, auto& list) {
+    if (field.kept >= Kept::in_checkpoint) item(field.name_of(component), list);
+  };
+  visit_particle_fields(visit_one, s);
 }
 
 template <class Maps, class Item>

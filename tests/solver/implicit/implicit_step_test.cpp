@@ -46,16 +46,16 @@ struct StepBench {
     fill(d, {4, 8, 4, 8, 0, 3});
     return make_scene(d, o);
   }
-  static ParticleFields fields(const IntegratorSettings& s) {
-    ParticleFields f = s.fields;
-    f.acceleration = true;
-    return f;
+  static ParticleNeeds needs(const IntegratorSettings& s) {
+    ParticleNeeds n = s.needs;
+    n.accelerations = true;
+    return n;
   }
   explicit StepBench(const SolveOptions& o)
       : scene(make(o)),
         settings(make_settings(o, scene.grid)),
         materials(settings.common.materials.in<double>()),
-        points(CpuDevice{}, fields(settings.common)),
+        points(CpuDevice{}, needs(settings.common)),
         grid(CpuDevice{}, scene.grid, 0),
         surfaces(CpuDevice{}, scene.contacts, settings.common.bed, scene.grid, {}, false),
         impulses(CpuDevice{}),
