@@ -58,12 +58,12 @@ class ParticlesOn : public solver::testing::InEachPlace {
   template <class Body>
   void on_device(Body&& body) {
     if (GetParam() == On::cpu) {
-      body.template operator()<float, CpuDevice>();
-      body.template operator()<double, CpuDevice>();
+      body(float{}, CpuDevice{});
+      body(double{}, CpuDevice{});
 #if TALUS_FOR_GPU
     } else {
-      body.template operator()<float, GpuDevice>();
-      body.template operator()<double, GpuDevice>();
+      body(float{}, GpuDevice{});
+      body(double{}, GpuDevice{});
 #endif
     }
   }
@@ -106,9 +106,11 @@ TEST(ParticleTable, places_are_what_a_kernel_moves_of_a_position) {
 }
 
 TEST_P(ParticlesOn, every_field_comes_back) {
-  on_device([]<class Real, class Device>() {
+  on_device([](auto real, auto device) {
+    using Real = decltype(real);
+    using Device = decltype(device);
     const ParticleState state = sample();
-    Particles<Real, Device> points(everything);
+    Particles<Real, Device> points(device, everything);
     points.upload(state);
     EXPECT_EQ(points.count(), count);
     for (const Kept least : {Kept::in_checkpoint, Kept::in_frames}) {
@@ -119,9 +121,11 @@ TEST_P(ParticlesOn, every_field_comes_back) {
 }
 
 TEST_P(ParticlesOn, fields_without_need_take_no_memory_and_read_as_initial) {
-  on_device([]<class Real, class Device>() {
+  on_device([](auto real, auto device) {
+    using Real = decltype(real);
+    using Device = decltype(device);
     const ParticleState state = sample();
-    Particles<Real, Device> points(nothing_more);
+    Particles<Real, Device> points(device, nothing_more);
     points.upload(state);
     std::size_t bytes = 0;
     const auto check = [&](const ParticleField& field, int component, auto* pointer) {
@@ -140,12 +144,14 @@ TEST_P(ParticlesOn, fields_without_need_take_no_memory_and_read_as_initial) {
 }
 
 TEST_P(ParticlesOn, sorting_takes_every_field_along_and_drops_the_last) {
-  on_device([]<class Real, class Device>() {
+  on_device([](auto real, auto device) {
+    using Real = decltype(real);
+    using Device = decltype(device);
     const ParticleState state = sample();
-    Particles<Real, Device> points(everything);
+    Particles<Real, Device> points(device, everything);
     points.upload(state);
     const std::vector<int> new_order{3, 0, 4, 1, 2};
-    Buffer<int, Device> order;
+    Buffer<int, Device> order(device);
     order.upload(new_order);
     points.reorder(order, 4);
     EXPECT_EQ(points.count(), 4);
