@@ -8,6 +8,8 @@
 
 namespace talus::solver {
 
+/// The direct solver of the tangent system (T19): it assembles, factorises and solves, in double precision. `Real` is
+/// the precision of the element matrices, `Shape` the kind of shape functions.
 template <class Real, class Device, class Shape>
 class CholeskySolver {
  public:
@@ -16,18 +18,21 @@ class CholeskySolver {
       : device_(device), limit_(memory_limit), cholesky_(make_cholesky(device, memory_limit)) {}
   explicit CholeskySolver(double memory_limit = 0) : CholeskySolver(Device{}, memory_limit) {}
 
-  /// The points have moved, or have been sorted, and `list` is their elements anew; it must stay until the next call.
+  /// The method takes the elements of points that have moved or have been sorted. `list` must stay until the next call.
   void begin_step(const ElementList<Real, Device, Shape>& list) { list_ = &list; }
 
-  /// Solves freed (K + mass inertia + stiffness) freed x = freed b; x is 0 on held nodes. One iteration, residual |b -
-  /// A x| / |b|; `indefinite` when the matrix is not positive definite to working precision, and x is then 0. Throws
-  /// NumericalError, before it allocates, when the matrix or its factor would not fit.
+  /// The method solves freed (K + mass inertia + stiffness) freed x = freed b, x and b [nodes]; x is 0 on held nodes.
+  /// It reports one iteration with the residual |b - A x| / |b|, or `indefinite` when the matrix is not positive
+  /// definite to working precision; x is then 0. It throws NumericalError, before it allocates, when the matrix or its
+  /// factor would not fit.
   LinearReport solve(const PointTangents<Real>& from, const HeldNodes& nodes, const NodeVector<Device>& b,
                      NodeVector<Device>& x);
 
+  /// The factorisation, for its counts and its size.
   const Cholesky<Device>& factor() const { return *cholesky_; }
+  /// The assembly, for its counts and its size.
   const CsrAssembly<Real, Device, Shape>& assembly() const { return assembly_; }
-  /// Matrix, triples and element matrices; the factor's own are factor().factor_bytes().
+  /// The size of matrix, triples and element matrices [bytes]; that of the factor is factor().factor_bytes().
   std::size_t bytes() const;
 
  private:

@@ -9,35 +9,42 @@
 
 namespace talus::solver {
 
-/// Memory the triples, the element matrices and the CSR form take [bytes]: known before any of them is made.
+/// The memory that the triples, the element matrices and the CSR form take [bytes], known before any of them is made.
 template <class Real, class Shape>
 double assembly_bytes(int elements, int freed_nodes);
 
-/// Whether triples and entries can be numbered by int, as the direct solvers do.
+/// Whether `int` can number the triples and entries, as the direct solvers do.
 template <class Real, class Shape>
 bool assembly_countable(int elements, int freed_nodes);
 
+/// Assembly of the tangent into CSR form by triples: active nodes to unknowns, keys, sort, reduction.
 template <class Real, class Device, class Shape>
 class CsrAssembly {
  public:
   explicit CsrAssembly(const Device& device = {}) : device_(device) {}
 
-  /// Finds the unknowns: nodes with mass and a free direction. Returns their number; three degrees of freedom each.
+  /// The method finds the unknowns: nodes with mass and a free direction. It returns their number; each has three
+  /// degrees of freedom.
   int number_nodes(const HeldNodes& nodes);
 
-  /// Freed degrees of freedom only: P (K + mass inertia + stiffness) P, and on the diagonal blocks (I - P) times their
-  /// own size, so that held directions of a node that moves stand alone. Sorting is left out while elements and
-  /// unknowns are the same.
+  /// The method assembles the freed degrees of freedom only: P (K + mass inertia + stiffness) P, and on the diagonal
+  /// blocks (I - P) times their own size, so that held directions of a node that moves stand alone. Sorting is left out
+  /// while elements and unknowns are the same.
   void assemble(const ElementList<Real, Device, Shape>& list, StoredElements<Real, Device, Shape>& stored,
                 const HeldNodes& nodes);
 
+  /// The assembled matrix [3 unknown nodes * 3 unknown nodes].
   const CsrMatrix<Device>& matrix() const { return matrix_; }
+  /// The number of nodes with unknowns.
   int unknown_nodes() const { return unknown_; }
-  /// Vector over the nodes to one over the degrees of freedom, and back (0 where there is none), through the
-  /// projectors.
+  /// The method turns a vector [nodes] into one over the degrees of freedom [3 unknown nodes], through the projectors.
   void to_unknowns(const HeldNodes& nodes, const NodeVector<Device>& from, Buffer<double, Device>& to);
+  /// The method turns a vector [3 unknown nodes] into one [nodes], through the projectors; nodes without unknowns get
+  /// 0.
   void to_nodes(const HeldNodes& nodes, const Buffer<double, Device>& from, NodeVector<Device>& to);
+  /// The number of sorts so far.
   int sorts() const { return sorts_; }
+  /// The size of what is stored, element matrices left out [bytes].
   std::size_t bytes() const;
 
  private:

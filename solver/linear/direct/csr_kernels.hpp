@@ -8,6 +8,7 @@ namespace talus::solver {
 
 inline constexpr std::uint64_t held_key = ~std::uint64_t{0};
 
+/// One thread: one node. It flags a node with mass and a free direction as one with unknowns.
 struct FlagUnknowns {
   const double* mass;
   const Sym3<double>* freed;
@@ -15,10 +16,10 @@ struct FlagUnknowns {
   TALUS_HD void operator()(int n) const { flags[n] = mass[n] > 0 && trace(freed[n]) > 0.5 ? 1 : 0; }
 };
 
-/// One thread: one node. The two lists: node to unknown (-1: none) and unknown to node.
+/// One thread: one node. It fills the two lists: node to unknown (-1: none) and unknown to node.
 struct MapUnknowns {
   const int* flags;
-  int* number_of;  // in: unknowns before this node
+  int* number_of;  ///< in: unknowns before this node
   int* node_of;
   TALUS_HD void operator()(int n) const {
     if (flags[n] != 0) {
@@ -29,7 +30,7 @@ struct MapUnknowns {
   }
 };
 
-/// One thread: one triple: the block of local nodes (a, b) of an element. Key: row, column.
+/// One thread: one triple, the block of local nodes (a, b) of an element. Its key is row, then column.
 struct MakeTripleKeys {
   const int* nodes;
   const int* number_of;
@@ -44,10 +45,13 @@ struct MakeTripleKeys {
   }
 };
 
+/// The row of blocks in a key.
 TALUS_HD int key_row(std::uint64_t key) { return static_cast<int>(key >> 32); }
+/// The column of blocks in a key.
 TALUS_HD int key_column(std::uint64_t key) { return static_cast<int>(key & 0xffffffffu); }
 
-/// One thread: one run of keys. First run of every row of blocks; runs of held nodes come last and are nobody's.
+/// One thread: one run of keys. It notes the first run of every row of blocks; runs of held nodes come last and count
+/// for no row.
 struct MarkRows {
   const std::uint64_t* keys;
   const int* runs;
@@ -69,7 +73,7 @@ struct BlockPlace {
   }
 };
 
-/// One thread: one run of keys. Its columns, and the starts of its rows where it is the first.
+/// One thread: one run of keys. It writes the run's columns, and the starts of its rows where it is the first.
 struct MakeColumns {
   const std::uint64_t* keys;
   const int* runs;
@@ -85,7 +89,7 @@ struct MakeColumns {
   }
 };
 
-/// One thread: one run of keys. Sums its triples in their order and applies the projectors.
+/// One thread: one run of keys. It sums the run's triples in their order and applies the projectors, as in (T19).
 template <class Real, class Device, class Shape>
 struct ReduceTriples {
   ElementMatrices<Real, Device, Shape> matrices;
@@ -142,6 +146,7 @@ struct ReduceTriples {
   }
 };
 
+/// One thread: one unknown node. It gathers the projected vector of its node as three degrees of freedom.
 struct ToUnknowns {
   const int* node_of;
   const Sym3<double>* freed;
@@ -156,6 +161,7 @@ struct ToUnknowns {
   }
 };
 
+/// One thread: one node. It takes its three degrees of freedom, projected, or 0 where it has none.
 struct ToNodes {
   const int* number_of;
   const Sym3<double>* freed;

@@ -11,12 +11,14 @@ template <class Device>
 struct CsrMatrix {
   explicit CsrMatrix(const Device& device = {}) : starts(device), columns(device), values(device) {}
   int rows = 0;
-  Buffer<int, Device> starts;  // [rows + 1]
+  Buffer<int, Device> starts;  ///< [rows + 1]
   Buffer<int, Device> columns;
   Buffer<double, Device> values;
-  long pattern = 0;  // changes when starts or columns do, and only then; no two matrices share one
+  long pattern = 0;  ///< changes when starts or columns do, and only then; no two matrices share one
 
+  /// The number of stored entries.
   int entries() const { return static_cast<int>(columns.size()); }
+  /// The size of the three arrays [bytes].
   std::size_t bytes() const { return starts.bytes() + columns.bytes() + values.bytes(); }
 };
 

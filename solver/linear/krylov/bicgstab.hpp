@@ -9,12 +9,14 @@
 
 namespace talus {
 
+/// The method of stabilised bi-conjugate gradients (van der Vorst 1992) with its six vectors, kept between solves.
 template <class Device>
 class BiCgStab {
  public:
   explicit BiCgStab(const Device& device = {}) : device_(device) {}
 
-  /// Solves A x = b from x = 0 (see contract.hpp). An iteration is one product; two make a round of the method.
+  /// The method solves A x = b from x = 0 (see contract.hpp), x and b [nodes]. An iteration is one product; two make a
+  /// round.
   template <LinearOperator<Device> Operator, LinearPreconditioner<Device> Preconditioner>
   LinearReport solve(Operator&& a, Preconditioner&& preconditioner, const NodeVector<Device>& b, NodeVector<Device>& x,
                      const KrylovLimits& limits) {
@@ -69,6 +71,7 @@ class BiCgStab {
     return report;
   }
 
+  /// The size of the vectors [bytes].
   std::size_t bytes() const {
     std::size_t total = 0;
     for (const auto* w : {&r_, &shadow_, &p_, &v_, &t_, &direction_}) total += w->bytes();

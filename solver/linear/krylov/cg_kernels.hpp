@@ -11,24 +11,28 @@ namespace talus {
 /// The state of a loop of conjugate gradients, kept beside the vectors. `halt` is what other kernels of the loop look
 /// at: they do nothing once it is not zero.
 struct CgState {
+  /// Why the loop has halted: not at all, at the tolerance, at negative curvature, or at the limit of iterations.
   enum Halt : int { no, converged, indefinite, spent };
   double tolerance = 0;
   int most = 0, iterations = 0;
   int halt = no;
-  double size = 0;       // b . b
-  double residual = 0;   // r . r
-  double curvature = 0;  // p . A p
-  double angle = 0;      // r . z
-  double turn = 0;       // share of the last direction in the next
+  double size = 0;       ///< b . b
+  double residual = 0;   ///< r . r
+  double curvature = 0;  ///< p . A p
+  double angle = 0;      ///< r . z
+  double turn = 0;       ///< share of the last direction in the next
 
+  /// The loop begins with the sum b . b, which is r . r as well.
   TALUS_HD void begin(double b_b) {
     size = residual = b_b;
     if (!(b_b > 0)) halt = b_b == 0 ? converged : spent;
   }
+  /// The state takes p . A p, and halts the loop where it is not positive.
   TALUS_HD void take_curvature(double p_ap) {
     curvature = p_ap;
     if (!(p_ap > 0)) halt = indefinite;
   }
+  /// The state takes r . r after a step, counts the iteration, and halts the loop at its tolerance or limit.
   TALUS_HD void take_residual(double r_r) {
     residual = r_r;
     ++iterations;
@@ -38,6 +42,7 @@ struct CgState {
       halt = spent;
     }
   }
+  /// The state takes r . z, and with it the share of the last direction in the next (Fletcher & Reeves 1964).
   TALUS_HD void take_angle(double r_z) {
     turn = iterations > 0 ? r_z / angle : 0;
     angle = r_z;

@@ -11,13 +11,14 @@
 
 namespace talus {
 
+/// The method of preconditioned conjugate gradients with its vectors, kept between solves.
 template <class Device>
 class ConjugateGradient {
  public:
   explicit ConjugateGradient(const Device& device = {}) : device_(device) {}
 
-  /// Solves A x = b from x = 0, A symmetric and positive definite (see contract.hpp). Ends as `indefinite` where it
-  /// meets a direction of negative curvature; x is then what it was before that.
+  /// The method solves A x = b from x = 0, x and b [nodes], A symmetric and positive definite (see contract.hpp). It
+  /// ends as `indefinite` where it meets a direction of negative curvature; x is then what it was before that.
   template <LinearOperator<Device> Operator, LinearPreconditioner<Device> Preconditioner>
   LinearReport solve(Operator&& a, Preconditioner&& preconditioner, const NodeVector<Device>& b, NodeVector<Device>& x,
                      const KrylovLimits& limits) {
@@ -55,6 +56,7 @@ class ConjugateGradient {
     return report;
   }
 
+  /// The size of vectors and sums [bytes].
   std::size_t bytes() const { return r_.bytes() + z_.bytes() + p_.bytes() + ap_.bytes() + sums_.bytes(); }
 
  private:

@@ -33,19 +33,19 @@ concept LinearPreconditioner = requires(B& b, const detail::StepAlong& step, con
 
 /// When a Krylov method ends.
 struct KrylovLimits {
-  double tolerance = 1e-8;  // of |b - A x| / |b| [-]
-  int iterations = 5000;    // at most
+  double tolerance = 1e-8;  ///< of |b - A x| / |b| [-]
+  int iterations = 5000;    ///< at most
 };
 
 namespace detail {
 
-/// Takes the step along p in a sweep of its own; hands r . r to the state.
+/// This function takes the step along p in a sweep of its own, and hands r . r to the state.
 template <class Device>
 void take_step(int count, SumSpace<Device>& sums, const StepAlong& step, CgState* state) {
   sum_each<1>(sums.device(), count, sums, MeasuredStep{step}, FinishResidual{state});
 }
 
-/// Hands r . z to the state, in a sweep of its own.
+/// This function hands r . z to the state, in a sweep of its own.
 template <class Device>
 void measure_angle(int count, SumSpace<Device>& sums, const NodeVector<Device>& r, const NodeVector<Device>& z,
                    CgState* state) {
@@ -61,10 +61,12 @@ class SeparatePreconditioner {
  public:
   explicit SeparatePreconditioner(Invert invert) : invert_(std::move(invert)) {}
 
+  /// The method leaves z = B^-1 r, and hands r . z to `state` unless that is null.
   void apply(const NodeVector<Device>& r, NodeVector<Device>& z, CgState* state) {
     invert_(r, z);
     if (state) detail::measure_angle(static_cast<int>(r.size()), sums_, r, z, state);
   }
+  /// The method takes `step`, hands r . r to `state`, and then does what apply() does.
   void apply_after(const detail::StepAlong& step, const NodeVector<Device>& r, NodeVector<Device>& z, CgState* state) {
     detail::take_step(static_cast<int>(r.size()), sums_, step, state);
     apply(r, z, state);

@@ -13,13 +13,15 @@ struct ElementMatrices {
   static constexpr int nodes = Shape::width * Shape::width * Shape::width;
   static constexpr int size = 3 * nodes;
   Real* data = nullptr;
-  std::size_t rows = 0;  // of all elements
+  std::size_t rows = 0;  ///< of all elements
 
+  /// The place of an entry of element e, row and column in [0, size).
   TALUS_HD std::size_t at(int e, int row, int column) const {
     const std::size_t r = static_cast<std::size_t>(e) * size + static_cast<std::size_t>(row);
     if constexpr (Device::is_gpu) return static_cast<std::size_t>(column) * rows + r;
     return r * size + static_cast<std::size_t>(column);
   }
+  /// The method writes the 3 x 3 block of local nodes (a, b) of element e, given row by row.
   TALUS_HD void put(int e, int a, int b, const Real* block) const {
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) data[at(e, 3 * a + i, 3 * b + j)] = block[3 * i + j];
@@ -27,6 +29,7 @@ struct ElementMatrices {
   }
 };
 
+/// The matrices of all elements with their storage.
 template <class Real, class Device, class Shape>
 class StoredElements {
  public:
@@ -34,13 +37,16 @@ class StoredElements {
 
   explicit StoredElements(const Device& device = {}) : values_(device) {}
 
-  /// Sums the points' tangents into the elements' matrices.
+  /// The method sums the points' tangents into the elements' matrices.
   void assemble(const ElementList<Real, Device, Shape>& list, const PointTangents<Real>& from);
 
-  /// y += K x. CPU: elements by colour, the same sums on every run; GPU: one thread per row, atomic sums.
+  /// The method adds K x to y, both [nodes]. On the CPU it goes over the elements by colour, with the same sums on
+  /// every run; on the GPU one thread takes one row, with atomic sums.
   void apply(const ElementList<Real, Device, Shape>& list, const NodeVector<Device>& x, NodeVector<Device>& y);
 
+  /// The matrices as kernels see them, until the next assemble().
   Matrices view() { return {values_.data(), rows_}; }
+  /// The size of the matrices [bytes].
   std::size_t bytes() const { return values_.bytes(); }
 
  private:

@@ -8,16 +8,17 @@
 
 namespace talus::solver {
 
+/// The tangent K (T17) as an operator y = K x in the form that the settings choose.
 template <class Real, class Device, class Shape>
 class TangentOperator {
  public:
-  /// `single`: the stencil is stored in single precision.
+  /// With `single` the stencil is stored in single precision.
   TangentOperator(const Device& device, Operator form, bool single = false)
       : device_(device), form_(form), single_(single && form == Operator::stencil) {}
   explicit TangentOperator(Operator form, bool single = false) : TangentOperator(Device{}, form, single) {}
 
-  /// The points have moved, or have been sorted, and `list` is their elements anew; it must stay until the next call.
-  /// The form `points` needs it for what couples the points of an element.
+  /// The method takes the elements of points that have moved or have been sorted. `list` must stay until the next call;
+  /// the form `points` needs it for what couples the points of an element.
   void begin_step(const ElementList<Real, Device, Shape>& list, int nodes) {
     list_ = &list;
     if (single_) {
@@ -27,7 +28,7 @@ class TangentOperator {
     }
   }
 
-  /// The points' tangents have changed. `groups` are the points' (SparseGrid::groups()).
+  /// The method takes points' tangents that have changed. `groups` are the points' (SparseGrid::groups()).
   void refresh(const PointTangents<Real>& from, const PointGroups& groups) {
     from_ = from;
     groups_ = &groups;
@@ -39,7 +40,7 @@ class TangentOperator {
     }
   }
 
-  /// y += K x. Stencil and points do nothing where `halted` is there and not zero.
+  /// The method adds K x to y, both [nodes]. Stencil and points do nothing where `halted` is there and not zero.
   void apply(const NodeVector<Device>& x, NodeVector<Device>& y, const int* halted = nullptr) {
     if (form_ == Operator::elements) return stored_.apply(*list_, x, y);
     if (single_) return single_stencil_.apply(x, y, halted);
@@ -52,7 +53,7 @@ class TangentOperator {
     if (from_.springs.on()) apply_springs(*list_, from_.springs, x, y);
   }
 
-  /// What the form stores beside the points and their tangents.
+  /// The size of what the form stores beside the points and their tangents [bytes].
   std::size_t bytes() const { return stored_.bytes() + stencil_.bytes() + single_stencil_.bytes(); }
 
  private:

@@ -10,8 +10,9 @@ namespace talus::solver {
 template <class Real>
 struct StoredColumns {
   GridView<Real> grid;
-  const int* active = nullptr;  // blocks
+  const int* active = nullptr;  ///< blocks
   int blocks = 0;
+  /// The number of stored columns.
   TALUS_HD int count() const { return blocks * block_columns; }
 };
 

@@ -5,6 +5,7 @@
 
 namespace talus::solver {
 
+/// Whether a block is positive definite with a margin of 1e-12 against rounding.
 TALUS_HD bool is_definite(const Sym3<double>& s) {
   constexpr double margin = 1e-12;
   const double minor = s.xx * s.yy - s.xy * s.xy;
@@ -18,10 +19,13 @@ TALUS_HD Sym3<double> diagonal_of(const Sym3<double>& s) {
   return {safe(s.xx), safe(s.yy), safe(s.zz), 0, 0, 0};
 }
 
+/// The product m s.
 TALUS_HD Mat3<double> product(const Mat3<double>& m, const Sym3<double>& s) {
   return {m * Vec3<double>{s.xx, s.xy, s.xz}, m * Vec3<double>{s.xy, s.yy, s.yz}, m * Vec3<double>{s.xz, s.yz, s.zz}};
 }
+/// The product s m.
 TALUS_HD Mat3<double> product(const Sym3<double>& s, const Mat3<double>& m) { return {s * m.a, s * m.b, s * m.c}; }
+/// The transpose of m.
 TALUS_HD Mat3<double> transposed(const Mat3<double>& m) {
   return {{m.a.x, m.b.x, m.c.x}, {m.a.y, m.b.y, m.c.y}, {m.a.z, m.b.z, m.c.z}};
 }
@@ -33,6 +37,7 @@ TALUS_HD Mat3<double> product_transposed(const Mat3<double>& m, const Mat3<doubl
   add_outer(out, m.c, n.c);
   return out;
 }
+/// The difference m - n.
 TALUS_HD Mat3<double> difference(const Mat3<double>& m, const Mat3<double>& n) {
   return {m.a - n.a, m.b - n.b, m.c - n.c};
 }

@@ -16,6 +16,7 @@
 
 namespace talus::solver {
 
+/// The preconditioner of the kind that the settings choose (see LinearPreconditioner in contract.hpp).
 template <class Real, class Device, class Shape>
 class NodePreconditioner {
  public:
@@ -23,20 +24,24 @@ class NodePreconditioner {
       : device_(device), kind_(kind), grids_(device, kind == Preconditioner::multigrid) {}
   explicit NodePreconditioner(Preconditioner kind) : NodePreconditioner(Device{}, kind) {}
 
-  /// Whether refresh() goes by elements.
+  /// Whether refresh() of this kind goes by elements.
   static bool by_elements(Preconditioner kind) {
     return kind == Preconditioner::gauss_seidel || kind == Preconditioner::multigrid;
   }
 
-  /// From the points' tangents and what holds the nodes; `held` must stay until the next call. `list` are the elements,
-  /// for what couples the points of one (only its diagonal is taken where a kind does not go by elements).
+  /// The method makes B from the points' tangents and what holds the nodes; `held` must stay until the next call.
+  /// `list` are the elements, for what couples the points of one (only its diagonal is taken where a kind does not go
+  /// by elements).
   void refresh(const PointTangents<Real>& from, const PointGroups& groups, const ElementList<Real, Device, Shape>& list,
                const StoredColumns<Real>& columns, const HeldNodes& held);
-  /// z = B^-1 r; hands r . z to `state`, and does nothing where that has halted. Without one: z alone.
+  /// The method leaves z = B^-1 r, both [nodes], hands r . z to `state`, and does nothing where that has halted.
+  /// Without a state it leaves z alone.
   void apply(const NodeVector<Device>& r, NodeVector<Device>& z, CgState* state = nullptr);
-  /// The same after a step, in one sweep where a node or a column is preconditioned by itself; hands over r . r too.
+  /// The method does the same after a step, in one sweep where a node or a column is preconditioned by itself; it hands
+  /// over r . r too.
   void apply_after(const talus::detail::StepAlong& step, const NodeVector<Device>& r, NodeVector<Device>& z,
                    CgState* state);
+  /// The size of blocks, factors and grids [bytes].
   std::size_t bytes() const { return blocks_.bytes() + above_[0].bytes() + above_[1].bytes() + grids_.bytes(); }
 
  private:
@@ -47,14 +52,14 @@ class NodePreconditioner {
 
   ColumnFactors factors() { return {blocks_.data(), {above_[0].data(), above_[1].data()}}; }
 
-  static constexpr int reach = Shape::width - 1;  // layers that a column's nodes are coupled over
+  static constexpr int reach = Shape::width - 1;  ///< layers that a column's nodes are coupled over
   Device device_;
   Preconditioner kind_;
   Multigrid<Real, Device, Shape> grids_;
   HeldNodes held_;
   StoredColumns<Real> columns_;
-  Buffer<Sym3<double>, Device> blocks_{device_};     // inverses: of the blocks, or of the columns' pivots
-  Buffers<Mat3<double>, Device, 2> above_{device_};  // L of the nodes one and two layers higher
+  Buffer<Sym3<double>, Device> blocks_{device_};     ///< inverses: of the blocks, or of the columns' pivots
+  Buffers<Mat3<double>, Device, 2> above_{device_};  ///< L of the nodes one and two layers higher
   SumSpace<Device> sums_{device_};
 };
 

@@ -103,7 +103,7 @@ struct SumFineBlocks {
   View coarse, fine;
   GridView<Real> fine_grid;
   TwoScale x, y;
-  const NodePlace* places;  // of the coarse rows
+  const NodePlace* places;  ///< of the coarse rows
 
   TALUS_HD void operator()(int index) const {
     const int row = index / View::neighbours, q = index % View::neighbours;
@@ -174,10 +174,12 @@ struct NodeResidual {
   StencilView<Real, Device, Shape> matrix;
   const Vec3<double>*b, *x;
   Vec3<double>* r;
+  /// The part of A x at node n that comes from neighbour q.
   TALUS_HD Vec3<double> term(int n, int q) const {
     const int row = matrix.row_of[n];
     return row < 0 ? Vec3<double>{} : matrix.product(row, q, x);
   }
+  /// The residual of node n, once its parts are summed.
   TALUS_HD void finish(int n, const Vec3<double>& sum) const {
     r[n] = matrix.row_of[n] < 0 ? Vec3<double>{} : b[n] - sum;
   }
@@ -190,10 +192,12 @@ struct ColourResidual {
   const int* of_colour;
   int count;
   NodeResidual<Real, Device, Shape> at;
+  /// The part of A x that comes from neighbour q, at the node `index` of the colour.
   TALUS_HD Vec3<double> term(int index, int q) const {
     const int n = node_of(index);
     return n < 0 ? Vec3<double>{} : at.term(n, q);
   }
+  /// The residual of the node `index` of the colour, once its parts are summed.
   TALUS_HD void finish(int index, const Vec3<double>& sum) const {
     const int n = node_of(index);
     if (n >= 0) at.finish(n, sum);

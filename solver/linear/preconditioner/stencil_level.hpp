@@ -13,10 +13,12 @@
 
 namespace talus::solver {
 
+/// A node's column, row and layer.
 struct NodePlace {
   int i, j, k;
 };
 
+/// One grid of the hierarchy with its operator and the factors of its columns.
 template <class Real, class Device, class Shape>
 class StencilLevel {
  public:
@@ -24,30 +26,35 @@ class StencilLevel {
 
   explicit StencilLevel(const Device& device = {}) : device_(device) {}
 
-  /// The finest grid: rows of the elements' nodes.
+  /// The method builds the finest grid: rows of the elements' nodes.
   void build(const ElementList<Real, Device, Shape>& list, const StoredColumns<Real>& columns, int nodes);
-  /// Functions of twice the spacing along x, y or both.
+  /// The method builds a grid of functions of twice the spacing along x, y or both.
   void build(const StencilLevel& fine, TwoScale x, TwoScale y);
 
-  /// K of the points' tangents with all that holds the nodes: P (K + mass inertia + stiffness) P + I - P.
+  /// The method assembles K of the points' tangents with all that holds the nodes: P (K + mass inertia + stiffness) P +
+  /// I - P, (T19).
   void assemble(const ElementList<Real, Device, Shape>& list, const PointTangents<Real>& from, const HeldNodes& held);
-  /// The coarse operator of the finer grid's (Galerkin); both were built with the same scales.
+  /// The method makes the coarse operator from the finer grid's (Galerkin, (T20)); both were built with the same
+  /// scales.
   void assemble(StencilLevel& fine, TwoScale x, TwoScale y);
-  /// Factors of the columns, for the sweeps.
+  /// The method factorises the columns for the sweeps.
   void factorise();
 
-  /// One sweep over the columns, first colour first or last: x comes nearer to A x = b.
+  /// The method makes one sweep over the columns, first colour first or last: x comes nearer to A x = b.
   void sweep(const NodeVector<Device>& b, NodeVector<Device>& x, bool forward);
-  /// r = b - A x
+  /// The method leaves r = b - A x, all [nodes].
   void measure_residual(const NodeVector<Device>& b, const NodeVector<Device>& x, NodeVector<Device>& r);
-  /// r of this grid = the finer one's tested with the coarse functions.
+  /// The method leaves in `to` the finer grid's residual `from`, tested with the coarse functions.
   void restrict_from(const StencilLevel& fine, TwoScale x, TwoScale y, const NodeVector<Device>& from,
                      NodeVector<Device>& to);
-  /// u of the finer grid += this grid's.
+  /// The method adds this grid's solution `from` to the finer grid's `to`.
   void prolong_to(StencilLevel& fine, TwoScale x, TwoScale y, const NodeVector<Device>& from, NodeVector<Device>& to);
 
+  /// The layout of the grid's storage.
   const BlockLayout& layout() const { return layout_; }
+  /// The number of stored nodes.
   int nodes() const { return nodes_; }
+  /// The size of matrix, factors and vectors [bytes].
   std::size_t bytes() const;
 
  private:
@@ -81,9 +88,9 @@ class StencilLevel {
   CoarseStorage coarse_{device_};
   Colours colours_{device_};
   StencilMatrix<Real, Device, Shape> matrix_{device_};
-  Buffer<NodePlace, Device> places_{device_};  // of the rows
+  Buffer<NodePlace, Device> places_{device_};  ///< of the rows
   ColumnBlocks blocks_{device_};
-  NodeVector<Device> left_{device_};  // residual of a colour, then its change
+  NodeVector<Device> left_{device_};  ///< residual of a colour, then its change
 };
 
 }  // namespace talus::solver

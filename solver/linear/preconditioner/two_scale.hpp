@@ -6,18 +6,22 @@
 
 namespace talus::solver {
 
+/// The relation between functions of one grid and those of the next, along one direction.
 struct TwoScale {
+  /// Which functions double their spacing: none (`same`), hats or quadratic splines.
   enum Kind { same, hats, splines } kind = same;
 
   /// The number of coarse functions over so many fine ones.
   TALUS_HD int count(int fine) const { return kind == same ? fine : kind == hats ? fine / 2 + 1 : fine / 2 + 2; }
 
-  /// (T20): coarse function c is the sum of weight(n) times fine function first(c) + n, n < children(), as far as that
-  /// is there.
+  /// In (T20), coarse function c is the sum of weight(n) times fine function first(c) + n, n < children(), as far as
+  /// that is there.
   TALUS_HD int children() const { return kind == same ? 1 : kind == hats ? 3 : 4; }
+  /// The number of the first fine function in a coarse one.
   TALUS_HD int first(int coarse) const {
     return kind == same ? coarse : kind == hats ? 2 * coarse - 1 : 2 * coarse - 3;
   }
+  /// The weight of a fine function in a coarse one, `child` counted from 0.
   TALUS_HD double weight(int child) const {
     if (kind == same) return 1;
     if (kind == hats) return child == 1 ? 1 : 0.5;
