@@ -25,10 +25,18 @@ TALUS_HD void catmull_rom(Real s, Real weight[4], Real slope[4]) {
   slope[3] = half * (Real(-2) * s + Real(3) * s2);
 }
 
-/// Ground `x`, `y` cells from node (i, j), -1 <= x, y <= 1, of a terrain [rows * columns] of this spacing.
+/// The terrain at the nodes: elevation [rows * columns] above the datum [m], and the spacing of the nodes [m].
 template <class Real>
-TALUS_HD GroundPoint<Real> bicubic_ground(const Real* terrain, int columns, int rows, Real spacing, int i, int j,
-                                          Real x, Real y) {
+struct NodeTerrain {
+  const Real* elevation = nullptr;
+  int columns = 0, rows = 0;
+  Real spacing = 0;
+};
+
+/// The ground `x`, `y` cells from node (i, j), -1 <= x, y <= 1.
+template <class Real>
+TALUS_HD GroundPoint<Real> bicubic_ground(const NodeTerrain<Real>& terrain, int i, int j, Real x, Real y) {
+  const int columns = terrain.columns, rows = terrain.rows;
   if (x < Real(0)) {
     --i;
     x += Real(1);
@@ -46,7 +54,7 @@ TALUS_HD GroundPoint<Real> bicubic_ground(const Real* terrain, int columns, int 
     Real value = 0, along = 0;
     for (int a = 0; a < 4; ++a) {
       const int column = i + a - 1 < 0 ? 0 : i + a - 1 < columns ? i + a - 1 : columns - 1;
-      const Real z = terrain[row * columns + column];
+      const Real z = terrain.elevation[row * columns + column];
       value += wx[a] * z;
       along += gx[a] * z;
     }
@@ -54,8 +62,8 @@ TALUS_HD GroundPoint<Real> bicubic_ground(const Real* terrain, int columns, int 
     g.slope_x += wy[b] * along;
     g.slope_y += gy[b] * value;
   }
-  g.slope_x = g.slope_x / spacing;
-  g.slope_y = g.slope_y / spacing;
+  g.slope_x = g.slope_x / terrain.spacing;
+  g.slope_y = g.slope_y / terrain.spacing;
   return g;
 }
 
@@ -66,8 +74,9 @@ template <class Real>
 TALUS_HD void keep_above_ground(const GridView<Real>& grid, const ParticleView<Real>& points, int p) {
   const int i = points.cell[0][p], j = points.cell[1][p];
   if (i < 1 || j < 1 || i + 1 >= grid.columns || j + 1 >= grid.rows) return;
-  const GroundPoint<Real> ground = bicubic_ground(grid.terrain, grid.columns, grid.rows, grid.spacing, i, j,
-                                                  points.offset[0][p], points.offset[1][p]);
+  const GroundPoint<Real> ground =
+      bicubic_ground(NodeTerrain<Real>{grid.terrain, grid.columns, grid.rows, grid.spacing}, i, j, points.offset[0][p],
+                     points.offset[1][p]);
   const Real to = ground.height / grid.layer_height, nearest = floor(to + Real(0.5));
   if (Real(points.cell[2][p]) - nearest + points.offset[2][p] >= to - nearest) return;
   points.cell[2][p] = static_cast<int>(nearest);

@@ -105,8 +105,8 @@ GroundTables make_ground_tables(const GridShape& shape) {
 
 GroundPoint<double> bicubic_ground(const GridShape& shape, const GroundTables& ground, double xi, double eta) {
   const double i = std::floor(xi), j = std::floor(eta);
-  return bicubic_ground(ground.terrain.data(), shape.columns, shape.rows, shape.spacing, static_cast<int>(i),
-                        static_cast<int>(j), xi - i, eta - j);
+  return bicubic_ground(NodeTerrain<double>{ground.terrain.data(), shape.columns, shape.rows, shape.spacing},
+                        static_cast<int>(i), static_cast<int>(j), xi - i, eta - j);
 }
 
 double ground_at(const GridShape& shape, const GroundTables& ground, double xi, double eta) {

@@ -38,7 +38,7 @@ template <SearchProblem Problem>
 bool line_search(Problem& problem, double before, double size) {
   const double downhill = problem.begin_search();
   double share = 1;
-  for (int halving = 0; halving < 10; ++halving, share *= 0.5) {
+  for (int halving = 0; halving < 10; ++halving) {
     problem.apply_change(share);
     problem.stick_reversed();
     problem.measure(Linearisation::consistent);
@@ -49,6 +49,7 @@ bool line_search(Problem& problem, double before, double size) {
     // The change that must be made at the end of convergence is rounding: take it.
     if (halving == 0 && after <= 1e-11 * size) return true;
     problem.return_to_start();
+    share *= 0.5;
   }
   return false;
 }

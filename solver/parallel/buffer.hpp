@@ -18,6 +18,8 @@ class Buffer {
   Buffer() = default;
   explicit Buffer(Device device) : device_(std::move(device)) {}
   Buffer(Device device, std::size_t size) : device_(std::move(device)) { resize(size); }
+  /// Both go on with the device, hence its copy.
+  // NOLINTNEXTLINE(cert-oop11-cpp,performance-move-constructor-init)
   Buffer(Buffer&& other) noexcept : device_(other.device_) { swap(other); }
   Buffer& operator=(Buffer&& other) noexcept {
     std::swap(device_, other.device_);

@@ -173,10 +173,10 @@ TALUS_HD void eigen_symmetric(const Sym3<Real>& s, Real values[3], Mat3<Real>& v
         const Real t = (theta >= 0 ? Real(1) : Real(-1)) / (fabs(theta) + sqrt(theta * theta + Real(1)));
         const Real c = Real(1) / sqrt(t * t + Real(1));
         const Real sn = t * c;
-        for (int k = 0; k < 3; ++k) {
-          const Real kp = m[k][p], kq = m[k][q];
-          m[k][p] = c * kp - sn * kq;
-          m[k][q] = sn * kp + c * kq;
+        for (auto& row : m) {
+          const Real kp = row[p], kq = row[q];
+          row[p] = c * kp - sn * kq;
+          row[q] = sn * kp + c * kq;
         }
         for (int k = 0; k < 3; ++k) {
           const Real pk = m[p][k], qk = m[q][k];

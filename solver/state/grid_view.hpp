@@ -38,8 +38,8 @@ inline constexpr int key_block_shift = 28;
 /// cell, so that those that will leave it together lie together.
 TALUS_HD std::uint64_t home_key(int block_columns_x, int i, int j, int k, int octant = 0) {
   constexpr int most = (1 << 21) - 1;
-  const auto block = static_cast<std::uint64_t>((j >> 2) * block_columns_x + (i >> 2));
-  const auto inside = static_cast<std::uint64_t>(((j & 3) << 2) + (i & 3)),
+  const int at = (j >> 2) * block_columns_x + (i >> 2), column = ((j & 3) << 2) + (i & 3);
+  const auto block = static_cast<std::uint64_t>(at), inside = static_cast<std::uint64_t>(column),
              layer = static_cast<std::uint64_t>(k > most ? most : k);
   return (block << key_block_shift) | (inside << 24) | (layer << 3) | static_cast<std::uint64_t>(octant);
 }

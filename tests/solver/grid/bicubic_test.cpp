@@ -21,7 +21,7 @@ std::vector<double> terrain(double (*height)(double, double)) {
 }
 
 GroundPoint<double> at(const std::vector<double>& values, int i, int j, double x, double y) {
-  return bicubic_ground(values.data(), columns, rows, spacing, i, j, x, y);
+  return bicubic_ground(NodeTerrain<double>{values.data(), columns, rows, spacing}, i, j, x, y);
 }
 
 TEST(bicubic, goes_through_its_nodes) {

@@ -121,8 +121,8 @@ struct ToyProblem {
 static_assert(NewtonProblem<ToyProblem>);
 
 /// A problem of one unknown, from its force and minus the derivative of that.
-inline ToyProblem scalar_problem(double start, std::function<double(double)> force,
-                                 std::function<double(double)> stiffness) {
+inline ToyProblem scalar_problem(double start, const std::function<double(double)>& force,
+                                 const std::function<double(double)>& stiffness) {
   ToyProblem p;
   p.u = Vector::Constant(1, start);
   p.force = [force](const Vector& u) -> Vector { return Vector::Constant(1, force(u(0))); };
