@@ -11,7 +11,7 @@
 namespace talus {
 
 /// Largest of the values seen, for floats >= 0: their bit patterns order as the numbers do. The lanes of a warp that
-/// meet here name the same place: one of them speaks for all, for atomics at one address come one after the other.
+/// meet here name the same place: one of them updates it for all, for atomics at one address come one after the other.
 TALUS_HD void atomic_max_positive(std::uint32_t* bits, float value) {
 #if defined(__CUDA_ARCH__)
   const unsigned together = __activemask(), most = __reduce_max_sync(together, __float_as_uint(value));
@@ -27,6 +27,7 @@ TALUS_HD void atomic_max_positive(std::uint32_t* bits, float value) {
 #endif
 }
 
+/// The float >= 0 whose bit pattern atomic_max_positive() has kept.
 TALUS_HD float positive_from_bits(std::uint32_t bits) {
 #if defined(__CUDA_ARCH__)
   return __uint_as_float(bits);
@@ -37,6 +38,7 @@ TALUS_HD float positive_from_bits(std::uint32_t bits) {
 #endif
 }
 
+/// This function lowers *target to `value` where that is less.
 TALUS_HD void atomic_min(int* target, int value) {
 #if defined(__CUDA_ARCH__)
   if (value < *target) atomicMin(target, value);
@@ -48,6 +50,7 @@ TALUS_HD void atomic_min(int* target, int value) {
 #endif
 }
 
+/// This function raises *target to `value` where that is more.
 TALUS_HD void atomic_max(int* target, int value) {
 #if defined(__CUDA_ARCH__)
   if (value > *target) atomicMax(target, value);
@@ -59,7 +62,8 @@ TALUS_HD void atomic_max(int* target, int value) {
 #endif
 }
 
-/// Lanes of a warp that meet here name the same place, as above.
+/// This function adds to one double from many threads. Lanes of a warp that meet here name the same target, as in
+/// atomic_max_positive().
 TALUS_HD void atomic_add(double* target, double value) {
 #if defined(__CUDA_ARCH__)
   const unsigned together = __activemask();
@@ -75,6 +79,7 @@ TALUS_HD void atomic_add(double* target, double value) {
 #endif
 }
 
+/// This function adds 1 to *target.
 TALUS_HD void atomic_increment(int* target) {
 #if defined(__CUDA_ARCH__)
   atomicAdd(target, 1);
@@ -83,7 +88,7 @@ TALUS_HD void atomic_increment(int* target) {
 #endif
 }
 
-/// Store `value` where `expected` stands, and nowhere else.
+/// This function stores `value` where `expected` is found, and nowhere else.
 TALUS_HD void replace_if(int* target, int expected, int value) {
 #if defined(__CUDA_ARCH__)
   atomicCAS(target, expected, value);
@@ -92,7 +97,7 @@ TALUS_HD void replace_if(int* target, int expected, int value) {
 #endif
 }
 
-/// Plain store of a flag that several threads may set to the same meaning.
+/// This function stores a flag that several threads may set to the same meaning.
 TALUS_HD void raise_flag(int* flag, int value) {
 #if defined(__CUDA_ARCH__)
   atomicExch(flag, value);
@@ -101,8 +106,9 @@ TALUS_HD void raise_flag(int* flag, int value) {
 #endif
 }
 
-/// Adding to a grid node while points are scattered. On the CPU the scatter runs by colours of column blocks that share
-/// no node (for_each_grouped), so a plain sum is enough and its order is always the same; on the GPU the sum is atomic.
+/// This function adds to a grid node while points are scattered. On the CPU the scatter runs by colours of column
+/// blocks that share no node (for_each_grouped), so a plain sum is enough and its order is always the same; on the GPU
+/// the sum is atomic.
 template <class Real>
 TALUS_HD void scatter_add(Real* target, Real value) {
 #if defined(__CUDA_ARCH__)
@@ -112,6 +118,7 @@ TALUS_HD void scatter_add(Real* target, Real value) {
 #endif
 }
 
+/// This function adds to the three components of a node's vector, in the same way.
 template <class Real>
 TALUS_HD void scatter_add(Vec3<Real>* target, const Vec3<Real>& v) {
   scatter_add(&target->x, v.x);
@@ -119,7 +126,7 @@ TALUS_HD void scatter_add(Vec3<Real>* target, const Vec3<Real>& v) {
   scatter_add(&target->z, v.z);
 }
 
-/// The same for a node's mass and momentum at once.
+/// This function adds to a node's mass and momentum at once, in the same way.
 template <class Real>
 TALUS_HD void scatter_add(Vec4<Real>* target, Real w, const Vec3<Real>& v) {
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900

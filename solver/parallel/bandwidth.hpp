@@ -5,8 +5,9 @@
 
 namespace talus {
 
-/// Bytes read and written per second by a copy of a quarter of a gigabyte, the best of five [B/s].
+/// The bytes read and written per second by a copy of a quarter of a gigabyte, the best of five [B/s].
 double copy_bandwidth(const CpuDevice&);
+/// On a GPU both copies are in its memory [B/s].
 double copy_bandwidth(const GpuDevice& device);
 
 }  // namespace talus

@@ -30,14 +30,19 @@ class Buffer {
   Buffer& operator=(const Buffer&) = delete;
   ~Buffer() { release(); }
 
+  /// The device that owns the memory.
   const Device& device() const { return device_; }
+  /// The address of the first element, in the memory of the device; null while nothing has been taken.
   T* data() { return data_; }
+  /// The address of the first element, to read from.
   const T* data() const { return data_; }
+  /// The number of elements in use.
   std::size_t size() const { return size_; }
-  /// Memory taken [bytes], of which the elements in use may be a part.
+  /// The memory taken [bytes], of which the elements in use may be a part.
   std::size_t bytes() const { return capacity_ * sizeof(T); }
 
-  /// New size; contents undefined. Throws NumericalError where the device has too little memory.
+  /// The method sets the number of elements; contents are undefined. It throws NumericalError where the device has too
+  /// little memory.
   void resize(std::size_t size) {
     if (size > capacity_) {
       const std::size_t wanted = capacity_ == 0 ? size : size + size / 8;
@@ -47,27 +52,27 @@ class Buffer {
     }
     size_ = size;
   }
-  /// Becomes a copy of `values`, of their size.
+  /// The method makes the buffer a copy of `values`, of their size.
   void upload(const std::vector<T>& values) {
     resize(values.size());
     if (!values.empty()) detail::upload(device_, data_, values.data(), values.size() * sizeof(T));
   }
-  /// A copy of all elements, once all work that was started on the device is done.
+  /// The method returns a copy of all elements, once all work that was started on the device is done.
   std::vector<T> download() const {
     std::vector<T> values(size_);
     if (!values.empty()) detail::download(device_, values.data(), data_, size_ * sizeof(T));
     return values;
   }
-  /// Sets every byte in use to zero.
+  /// The method sets every byte in use to zero.
   void fill_zero() {
     if (size_ > 0) detail::fill_zero(device_, data_, size_ * sizeof(T));
   }
-  /// Gives the memory back; the size becomes 0.
+  /// The method gives the memory back; the size becomes 0.
   void drop() noexcept {
     release();
     size_ = 0;
   }
-  /// Exchanges the memory of two buffers of one device.
+  /// The method exchanges the memory of two buffers of one device.
   void swap(Buffer& other) noexcept {
     std::swap(data_, other.data_);
     std::swap(size_, other.size_);
@@ -100,9 +105,13 @@ class Buffers {
   const Buffer<T, Device>& operator[](Index n) const {
     return all_[static_cast<std::size_t>(n)];
   }
+  /// The first buffer.
   auto begin() { return all_.begin(); }
+  /// The end of the buffers.
   auto end() { return all_.end(); }
+  /// The first buffer, to read from.
   auto begin() const { return all_.begin(); }
+  /// The end of the buffers, to read from.
   auto end() const { return all_.end(); }
 
  private:
@@ -112,7 +121,7 @@ class Buffers {
   std::array<Buffer<T, Device>, number> all_;
 };
 
-/// Upload of values kept in double on the host.
+/// This function uploads values that are kept in double on the host, rounded to `Real`.
 template <class Real, class Device>
 void upload_as(Buffer<Real, Device>& to, const std::vector<double>& from) {
   to.upload(std::vector<Real>(from.begin(), from.end()));

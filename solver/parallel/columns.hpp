@@ -16,6 +16,7 @@ template <class Kernel>
 struct WholeColumn {
   using Named = Kernel;
   Kernel kernel;
+  /// The memory that the kernel moves for that many columns [bytes]; see kernel_bytes().
   double bytes(int columns) const { return kernel_bytes(kernel, columns); }
   TALUS_HD void operator()(int c) const {
     const typename Kernel::Column column = kernel.locate(c);
@@ -56,6 +57,7 @@ __global__ void run_columns(Kernel kernel) {
 }
 }  // namespace detail
 
+/// On a GPU eight threads share a column's layers; their sums are added in one order.
 template <int columns, class Kernel>
 void for_each_column(const GpuDevice& device, int blocks, const Kernel& kernel) {
   if (blocks <= 0) return;

@@ -25,7 +25,7 @@ class CpuDevice {
   /// A device with a profile of its own.
   static CpuDevice make();
 
-  /// Times of the kernels that were started on this device.
+  /// The times of the kernels that were started on this device.
   Profile& profile() const { return *profile_; }
 
  private:
@@ -48,9 +48,11 @@ class GpuDevice {
   /// Number of GPUs that CUDA sees; 0 in a binary without CUDA.
   static int count();
 
+  /// The number of the GPU, 0 <= index() < count().
   int index() const;
+  /// The stream of the device.
   CUstream_st* stream() const;
-  /// Times of the kernels that were started on this device.
+  /// The times of the kernels that were started on this device.
   Profile& profile() const;
   /// What the device owns, for the functions of solver/parallel.
   GpuState& state() const { return *state_; }
@@ -61,13 +63,15 @@ class GpuDevice {
   std::shared_ptr<GpuState> state_;
 };
 
-/// True when this binary holds GPU kernels and the machine has a device they run on.
+/// Whether this binary holds GPU kernels and the machine has a device they run on.
 bool gpu_available();
-/// Name of a GPU: "NVIDIA H200"; empty without one.
+/// The name of a GPU, such as "NVIDIA H200"; empty without one.
 std::string gpu_name(int index = 0);
 
-/// Waits until all that was started on the device is done; throws std::runtime_error where a kernel has failed.
+/// This function waits until all that was started on the device is done; it throws std::runtime_error where a kernel
+/// has failed.
 inline void synchronise(const CpuDevice&) {}
+/// On a GPU the host waits for the stream.
 void synchronise(const GpuDevice& device);
 
 namespace detail {

@@ -20,7 +20,7 @@ namespace detail {
 void cpu_parallel(int count, int grain, void (*body)(const void* kernel, int begin, int end), const void* kernel);
 }  // namespace detail
 
-/// Runs kernel(i) for i in [0, count), in any order.
+/// This function runs kernel(i) for i in [0, count), in any order.
 template <class Kernel>
 void for_each(const CpuDevice& device, int count, const Kernel& kernel) {
   const KernelTime<CpuDevice> time(device, kernel, count);
@@ -37,18 +37,20 @@ void for_each(const CpuDevice& device, int count, const Kernel& kernel) {
 struct PointGroups {
   using Range = std::pair<int, int>;  // [begin, end) into the points
   std::vector<Range> ranges[4];
-  bool in_order = false;                         // a GPU goes by them too, so that sums are the same on every run
-  std::vector<Buffer<Range, GpuDevice>> on_gpu;  // the four, where a GPU goes by them
+  bool in_order = false;                         ///< a GPU goes by them too, so that sums are the same on every run
+  std::vector<Buffer<Range, GpuDevice>> on_gpu;  ///< the four, where a GPU goes by them
+  /// The CPU goes by `ranges` themselves; nothing is copied.
   void upload(const CpuDevice&) {}
+  /// The method copies the ranges to a GPU where that goes by them too, one buffer for each colour.
   void upload(const GpuDevice& device) {
     while (on_gpu.size() < 4) on_gpu.emplace_back(device);
     for (std::size_t c = 0; in_order && c < 4; ++c) on_gpu[c].upload(ranges[c]);
   }
 };
 
-/// Runs kernel(p) over all points such that scatter_add never meets itself. CPU: colour by colour, each block in order,
-/// so sums are the same on every run. GPU: all at once, with atomics; with groups.in_order as the CPU, a thread for
-/// every block.
+/// This function runs kernel(p) over all points such that scatter_add never meets itself. CPU: colour by colour, each
+/// block in order, so sums are the same on every run. GPU: all at once, with atomics; with groups.in_order as the CPU,
+/// a thread for every block.
 template <class Kernel>
 void for_each_grouped(const CpuDevice& device, int count, const PointGroups& groups, const Kernel& kernel) {
   const KernelTime<CpuDevice> time(device, kernel, count);
@@ -124,6 +126,8 @@ __global__ __launch_bounds__(128, blocks) void run_dense(int count, Kernel kerne
 }
 }  // namespace detail
 
+/// On a GPU the kernel has one thread for each index, and as many blocks as its member `dense` asks for where there are
+/// many.
 template <class Kernel>
 void for_each(const GpuDevice& device, int count, const Kernel& kernel) {
   if (count <= 0) return;
@@ -151,6 +155,7 @@ struct InOrder {
   }
 };
 
+/// On a GPU all points run at once, or with groups.in_order one thread for each block, colour by colour.
 template <class Kernel>
 void for_each_grouped(const GpuDevice& device, int count, const PointGroups& groups, const Kernel& kernel) {
   if (!groups.in_order) return for_each(device, count, kernel);

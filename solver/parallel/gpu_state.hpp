@@ -28,7 +28,10 @@ class BorrowedMemory {
   BorrowedMemory& operator=(const BorrowedMemory&) = delete;
   ~BorrowedMemory();
 
+  /// The method returns at least that many bytes of device memory, taken anew only where none is free; it throws
+  /// NumericalError where memory is short.
   char* allocate(std::ptrdiff_t bytes);
+  /// The method keeps memory from allocate() for the next call.
   void deallocate(char* memory, std::size_t bytes);
 
  private:
@@ -59,8 +62,8 @@ struct GpuScratch {
 /// Page-locked host memory that few bytes pass through, on their way in and out: they come sooner by memory that stays
 /// where it is. What goes in takes the next free bytes; all are free again once the host has waited for the stream.
 struct LockedMemory {
-  static constexpr std::size_t few = 4096, size = 16 * few;  // [bytes]; the first few are for what comes out
-  char* memory = nullptr;                                    // null where none was to be had
+  static constexpr std::size_t few = 4096, size = 16 * few;  ///< [bytes]; the first few are for what comes out
+  char* memory = nullptr;                                    ///< null where none was to be had
   std::size_t used = few;
 };
 
@@ -80,7 +83,7 @@ struct GpuState {
   cudaStream_t stream = nullptr;
   bool starts_early = false, recording = false;
   LockedMemory locked;
-  std::vector<cudaEvent_t> free_marks;  // events that nobody waits for
+  std::vector<cudaEvent_t> free_marks;  ///< events that nobody waits for
   Profile profile;
   std::unique_ptr<GpuScratch> scratch;
 };

@@ -7,6 +7,7 @@
 
 namespace talus {
 
+/// A vector of three components.
 template <class Real>
 struct Vec3 {
   Real x{}, y{}, z{};
@@ -21,10 +22,12 @@ struct Vec3 {
   }
 };
 
+/// The scalar product a . b.
 template <class Real>
 TALUS_HD Real dot(const Vec3<Real>& a, const Vec3<Real>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
+/// The length |a|.
 template <class Real>
 TALUS_HD Real length(const Vec3<Real>& a) {
   return sqrt(dot(a, a));
@@ -43,7 +46,7 @@ struct Mat3 {
   TALUS_HD Vec3<Real> operator*(const Vec3<Real>& v) const { return a * v.x + b * v.y + c * v.z; }
 };
 
-/// Mat3 += v g^T
+/// This function adds v g^T to m.
 template <class Real>
 TALUS_HD void add_outer(Mat3<Real>& m, const Vec3<Real>& v, const Vec3<Real>& g) {
   m.a += v * g.x;
@@ -51,18 +54,20 @@ TALUS_HD void add_outer(Mat3<Real>& m, const Vec3<Real>& v, const Vec3<Real>& g)
   m.c += v * g.z;
 }
 
+/// The determinant of m.
 template <class Real>
 TALUS_HD Real determinant(const Mat3<Real>& m) {
   return m.a.x * (m.b.y * m.c.z - m.b.z * m.c.y) - m.b.x * (m.a.y * m.c.z - m.a.z * m.c.y) +
          m.c.x * (m.a.y * m.b.z - m.a.z * m.b.y);
 }
 
+/// The vector product u x v.
 template <class Real>
 TALUS_HD Vec3<Real> cross(const Vec3<Real>& u, const Vec3<Real>& v) {
   return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
 }
 
-/// Inverse by cofactors.
+/// The inverse of a matrix that is not singular, by cofactors.
 template <class Real>
 TALUS_HD Mat3<Real> inverted(const Mat3<Real>& m) {
   const Real s = Real(1) / determinant(m);
@@ -71,7 +76,7 @@ TALUS_HD Mat3<Real> inverted(const Mat3<Real>& m) {
   return {{ra.x, rb.x, rc.x}, {ra.y, rb.y, rc.y}, {ra.z, rb.z, rc.z}};
 }
 
-/// Symmetric matrix.
+/// A symmetric matrix by its six entries.
 template <class Real>
 struct Sym3 {
   Real xx{}, yy{}, zz{}, xy{}, yz{}, xz{};
@@ -79,26 +84,29 @@ struct Sym3 {
     return {xx + o.xx, yy + o.yy, zz + o.zz, xy + o.xy, yz + o.yz, xz + o.xz};
   }
   TALUS_HD Sym3 operator*(Real s) const { return {xx * s, yy * s, zz * s, xy * s, yz * s, xz * s}; }
+  /// The sum of this matrix and s I.
   TALUS_HD Sym3 plus_identity(Real s) const { return {xx + s, yy + s, zz + s, xy, yz, xz}; }
   TALUS_HD Vec3<Real> operator*(const Vec3<Real>& v) const {
     return {xx * v.x + xy * v.y + xz * v.z, xy * v.x + yy * v.y + yz * v.z, xz * v.x + yz * v.y + zz * v.z};
   }
 };
 
+/// The trace of s.
 template <class Real>
 TALUS_HD Real trace(const Sym3<Real>& s) {
   return s.xx + s.yy + s.zz;
 }
+/// The deviator of s: s less a third of its trace on the diagonal.
 template <class Real>
 TALUS_HD Sym3<Real> deviator(const Sym3<Real>& s) {
   return s.plus_identity(-trace(s) / Real(3));
 }
-/// s : s
+/// The product s : s, the square of the Frobenius norm.
 template <class Real>
 TALUS_HD Real norm_squared(const Sym3<Real>& s) {
   return s.xx * s.xx + s.yy * s.yy + s.zz * s.zz + Real(2) * (s.xy * s.xy + s.yz * s.yz + s.xz * s.xz);
 }
-/// Product of two symmetric matrices that commute (powers of one matrix), which is symmetric.
+/// The product of two symmetric matrices that commute (powers of one matrix), which is symmetric.
 template <class Real>
 TALUS_HD Sym3<Real> commuting_product(const Sym3<Real>& s, const Sym3<Real>& t) {
   return {s.xx * t.xx + s.xy * t.xy + s.xz * t.xz, s.xy * t.xy + s.yy * t.yy + s.yz * t.yz,
@@ -106,7 +114,7 @@ TALUS_HD Sym3<Real> commuting_product(const Sym3<Real>& s, const Sym3<Real>& t) 
           s.xy * t.xz + s.yy * t.yz + s.yz * t.zz, s.xx * t.xz + s.xy * t.yz + s.xz * t.zz};
 }
 
-/// Inverse by cofactors.
+/// The inverse of a symmetric matrix that is not singular, by cofactors.
 template <class Real>
 TALUS_HD Sym3<Real> inverted(const Sym3<Real>& s) {
   const Real xx = s.yy * s.zz - s.yz * s.yz, xy = s.yz * s.xz - s.xy * s.zz, xz = s.xy * s.yz - s.yy * s.xz;
@@ -142,9 +150,9 @@ TALUS_HD Vec3<Real> outlying_eigenvector(const Sym3<Real>& s) {
   return most > Real(0) ? best * (Real(1) / sqrt(most)) : Vec3<Real>{};
 }
 
-/// Eigenvalues of s, and its eigenvectors as the columns of `vectors`, by cyclic Jacobi rotations (Golub & Van Loan
-/// 2013, section 8.5): accurate for nearly equal eigenvalues too. They begin in axes of which one is an eigenvector but
-/// for rounding, so that one sweep does nearly always.
+/// This function finds the eigenvalues of s, and its eigenvectors as the columns of `vectors`, by cyclic Jacobi
+/// rotations (Golub & Van Loan 2013, section 8.5): accurate for nearly equal eigenvalues too. They begin in axes of
+/// which one is an eigenvector but for rounding, so that one sweep does nearly always.
 template <class Real>
 TALUS_HD void eigen_symmetric(const Sym3<Real>& s, Real values[3], Mat3<Real>& vectors) {
   Real m[3][3] = {{s.xx, s.xy, s.xz}, {s.xy, s.yy, s.yz}, {s.xz, s.yz, s.zz}};
@@ -193,7 +201,7 @@ TALUS_HD void eigen_symmetric(const Sym3<Real>& s, Real values[3], Mat3<Real>& v
   vectors = {{v[0][0], v[1][0], v[2][0]}, {v[0][1], v[1][1], v[2][1]}, {v[0][2], v[1][2], v[2][2]}};
 }
 
-/// Sum of values[k] n_k n_k^T over the columns n_k of `vectors`.
+/// The sum of values[k] n_k n_k^T over the columns n_k of `vectors`.
 template <class Real>
 TALUS_HD Sym3<Real> compose(const Real values[3], const Mat3<Real>& n) {
   const auto outer = [](const Vec3<Real>& u, Real s) {

@@ -20,19 +20,22 @@ double gpu_seconds_between(void* first, void* second);
 void gpu_forget_mark(const GpuDevice& device, void* mark);
 }  // namespace detail
 
-/// Seconds by phase and kernel of what one device is given. A phase inside another is taken out of that one's time.
+/// Seconds by phase and kernel of the work that one device is given. A phase inside another is taken out of that one's
+/// time.
 class Profile {
  public:
+  /// A named phase of the work, with its time.
   struct Phase {
     std::string name;
     double seconds = 0;
     long calls = 0;
   };
+  /// A kernel of a phase, with its time and the memory it moves.
   struct Kernel {
     std::string name;
-    std::size_t phase = 0;  // index into phases()
-    double seconds = 0;     // on a GPU: of the device alone
-    double bytes = 0;       // that it has to move, each read or written once; 0 where it does not say
+    std::size_t phase = 0;  ///< index into phases()
+    double seconds = 0;     ///< on a GPU: of the device alone
+    double bytes = 0;       ///< that it has to move, each read or written once; 0 where it does not say
     long calls = 0;
   };
   /// A kernel between two marks on the device.
@@ -42,39 +45,51 @@ class Profile {
     void *begin = nullptr, *end = nullptr;
   };
 
-  /// `kernels`: not phases alone. What is marked kernel by kernel does not overlap, and takes longer.
+  /// The method turns measuring on. With `kernels` they are timed too, not phases alone: what is marked kernel by
+  /// kernel does not overlap, and takes longer.
   void turn_on(bool kernels = true) {
     on_ = true;
     kernels_too_ = kernels;
   }
+  /// The method turns measuring off; what was measured stays.
   void turn_off() { on_ = false; }
-  /// Forgets what was measured so far; between phases.
+  /// The method forgets what was measured so far; it is called between phases.
   void clear() {
     phases_.clear();
     kernels_.clear();
   }
+  /// Whether phases are measured.
   bool on() const { return on_; }
+  /// Whether kernels are measured too.
   bool with_kernels() const { return on_ && kernels_too_; }
+  /// The method opens a phase within the present one.
   void enter(const char* name);
+  /// The method closes the phase opened last.
   void leave();
+  /// Whether a phase is open.
   bool within_phase() const { return !open_.empty(); }
-  const std::vector<Phase>& phases() const { return phases_; }  // in the order met
-  const std::vector<Kernel>& kernels() const { return kernels_; }
+  const std::vector<Phase>& phases() const { return phases_; }     ///< all phases in the order met
+  const std::vector<Kernel>& kernels() const { return kernels_; }  ///< all kernels in the order met
 
-  /// Work of a recording is named while it is recorded, and timed by its marks when it runs: nothing can wait for the
-  /// device in between.
+  /// The method begins a recording. Its work is named while it is recorded, and timed by its marks when it runs:
+  /// nothing can wait for the device in between.
   void begin_recording() { recording_ = true; }
+  /// The method ends the recording and returns its marks.
   std::vector<Mark> end_recording();
+  /// Whether a recording is under way.
   bool recording() const { return recording_; }
-  /// Seconds between the marks, the device being done with them, to their kernels; and to their phases, out of the one
-  /// that is open.
+  /// The method adds the seconds between the marks, the device being done with them, to their kernels; and to their
+  /// phases, out of the one that is open.
   void take(const std::vector<Mark>& marks);
+  /// The method keeps the marks' events for later ones, and empties the list.
   static void forget(const GpuDevice& device, std::vector<Mark>& marks);
 
-  std::size_t kernel(std::string_view name);  // of the present phase
+  std::size_t kernel(std::string_view name);  ///< index of a kernel of the present phase, new or not
+  /// The method adds a call of a kernel that took `seconds` and moved `bytes`.
   void add(std::size_t kernel, double seconds, double bytes);
+  /// The method keeps a mark for settle(), or for the recording.
   void add(const Mark& mark) { marks_.push_back(mark); }
-  /// Takes the marks outside of recordings; the device is done with them.
+  /// The method takes the marks outside of recordings; the device is done with them.
   void settle(const GpuDevice& device);
 
  private:
@@ -89,7 +104,7 @@ class Profile {
   WallClock::time_point since_;
 };
 
-/// A phase of what the device does, for as long as the object lives. Waits for the device at both ends, so that the
+/// A phase of the device's work, for as long as the object lives. It waits for the device at both ends, so that the
 /// phase's kernels are counted and no others; in a recording it only names them.
 template <class Device>
 class ProfilePhase {
@@ -120,7 +135,8 @@ class ProfilePhase {
   bool on_;
 };
 
-/// Name of a kernel's type without namespaces and arguments. A wrapper bears the name of what it wraps, its `Named`.
+/// The name of a kernel's type without namespaces and arguments. A wrapper bears the name of what it wraps, its
+/// `Named`.
 template <class Kernel>
 std::string_view kernel_name() {
   if constexpr (requires { typename Kernel::Named; }) {
@@ -134,7 +150,7 @@ std::string_view kernel_name() {
   }
 }
 
-/// What a kernel says it has to move for `count` indices; 0 where it does not say.
+/// The memory that a kernel has to move for `count` indices [bytes], by its member bytes(count); 0 without that member.
 template <class Kernel>
 double kernel_bytes(const Kernel& kernel, int count) {
   if constexpr (requires { kernel.bytes(count); }) {
@@ -144,7 +160,7 @@ double kernel_bytes(const Kernel& kernel, int count) {
   }
 }
 
-/// The time of one kernel, around its start.
+/// The time of one kernel: the object is made before its start and ends after it.
 template <class Device>
 class KernelTime {
  public:

@@ -14,18 +14,22 @@ namespace talus {
 template <class Device>
 class Recording;
 
+/// On the CPU work is done as it is given.
 template <>
 class Recording<CpuDevice> {
  public:
   Recording() = default;
   explicit Recording(const CpuDevice&) {}
+  /// The method does body() as often as `times`.
   template <class Body>
   void repeat(int times, const Body& body) {
     for (int t = 0; t < times; ++t) body();
   }
+  /// The method does nothing: there is no recording.
   void forget() {}
 };
 
+/// On a GPU work is recorded as a CUDA graph, and started as a whole from the second time on.
 template <>
 class Recording<GpuDevice> {
  public:
@@ -38,9 +42,9 @@ class Recording<GpuDevice> {
     Profile::forget(device_, marks_);
   }
 
-  /// Does body() as often as `times`. It must start the same kernels with the same arguments on the recording's device
-  /// every time, until forget() is called, and neither upload nor download. The first is done as it is, so that buffers
-  /// find their sizes.
+  /// The method does body() as often as `times`. It must start the same kernels with the same arguments on the
+  /// recording's device every time, until forget() is called, and neither upload nor download. The first is done as it
+  /// is, so that buffers find their sizes.
   template <class Body>
   void repeat(int times, const Body& body) {
     const bool measured = device_.profile().with_kernels();
@@ -53,7 +57,7 @@ class Recording<GpuDevice> {
     if (!recorded_ && times > 0) record(body);
     for (int t = 0; t < times; ++t) detail::gpu_replay(device_, graph_);
   }
-  /// Arguments have changed: record again.
+  /// The method gives up the recording, because arguments have changed.
   void forget() { recorded_ = false; }
 
  private:
@@ -89,7 +93,7 @@ class Recording<GpuDevice> {
 
   GpuDevice device_;
   void* graph_ = nullptr;
-  std::vector<Profile::Mark> marks_;  // of its kernels, under --profile
+  std::vector<Profile::Mark> marks_;  ///< of its kernels, under --profile
   bool recorded_ = false, marked_ = false;
 };
 

@@ -6,8 +6,7 @@
 
 namespace talus {
 
-/// Calls kernel.finish(i, sum of kernel.term(i, part) for part in [0, parts)) for i in [0, count). Terms are
-/// Vec3<double>; their order is fixed. Where the kernel says that it is idle(), nothing is done; it may say nothing.
+/// Whether a kernel of sum_rows() has nothing to do, by its member idle(); false without that member.
 template <class Kernel>
 TALUS_HD bool is_idle(const Kernel& kernel) {
   if constexpr (requires { kernel.idle(); }) {
@@ -17,10 +16,12 @@ TALUS_HD bool is_idle(const Kernel& kernel) {
   }
 }
 
+/// The loop body of sum_rows() on the CPU: one index with all its terms, in their order.
 template <int parts, class Kernel>
 struct WholeRow {
   using Named = Kernel;
   Kernel kernel;
+  /// The memory that the kernel moves for that many rows [bytes]; see kernel_bytes().
   double bytes(int rows) const { return kernel_bytes(kernel, rows); }
   void operator()(int i) const {
     if (is_idle(kernel)) return;
@@ -30,6 +31,8 @@ struct WholeRow {
   }
 };
 
+/// This function calls kernel.finish(i, sum of kernel.term(i, part) for part in [0, parts)) for i in [0, count). Terms
+/// are Vec3<double>; their order is fixed. Where the kernel is_idle(), nothing is done.
 template <int parts, class Kernel>
 void sum_rows(const CpuDevice& device, int count, const Kernel& kernel) {
   for_each(device, count, WholeRow<parts, Kernel>{kernel});
@@ -58,6 +61,7 @@ __global__ void sum_row(int count, Kernel kernel) {
 
 }  // namespace detail
 
+/// On a GPU a warp sums the terms of one index, in an order that is fixed as well.
 template <int parts, class Kernel>
 void sum_rows(const GpuDevice& device, int count, const Kernel& kernel) {
   if (count <= 0) return;

@@ -8,7 +8,7 @@
 
 namespace talus {
 
-/// What one index adds to K sums.
+/// The terms that one index adds to K sums.
 template <int K>
 struct Terms {
   double value[K] = {};
@@ -23,22 +23,25 @@ struct KeepTotals {
   }
 };
 
-/// Memory for the partial sums; of one device.
+/// The memory of one device for partial sums.
 template <class Device>
 class SumSpace {
  public:
   SumSpace() = default;
   explicit SumSpace(const Device& device) : partial_(device), ticket_(device) {}
+  /// The method returns memory for `count` partial sums.
   double* partial(int count) {
     partial_.resize(static_cast<std::size_t>(count));
     return partial_.data();
   }
-  /// Counts the blocks that are done; zero between sums.
+  /// The counter of the blocks that are done; zero between sums.
   unsigned* ticket() {
     if (ticket_.size() == 0) ticket_.upload({0u});
     return ticket_.data();
   }
+  /// The device whose memory it is.
   const Device& device() const { return partial_.device(); }
+  /// The size of the memory [bytes].
   std::size_t bytes() const { return partial_.bytes() + ticket_.bytes(); }
 
  private:
@@ -46,8 +49,9 @@ class SumSpace {
   Buffer<unsigned, Device> ticket_;
 };
 
-/// Sums body(i), Terms<K>, for i in [0, count), and calls finish(const double* total) once, by one thread. The order is
-/// fixed by count alone, so that a run repeats to the bit. A body may as well write what belongs to its index.
+/// This function sums body(i), Terms<K>, for i in [0, count), and calls finish(const double* total) once, by one
+/// thread. The order is fixed by `count` alone, so that a run repeats to the bit. A body may as well write what belongs
+/// to its index.
 template <int K, class Body, class Finish>
 void sum_each(const CpuDevice& device, int count, SumSpace<CpuDevice>& space, const Body& body, const Finish& finish) {
   const KernelTime<CpuDevice> time(device, body, count);
@@ -131,6 +135,7 @@ __global__ void sum_kernel(int count, Body body, Finish finish, double* partial,
 
 }  // namespace detail
 
+/// On a GPU up to 512 blocks sum in turns, and the last one to end adds up what they found.
 template <int K, class Body, class Finish>
 void sum_each(const GpuDevice& device, int count, SumSpace<GpuDevice>& space, const Body& body, const Finish& finish) {
   constexpr int most_blocks = 512,

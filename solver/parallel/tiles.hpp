@@ -47,7 +47,7 @@ concept ScatterKernel = std::is_constructible_v<typename Kernel::Source, const K
   { kernel.part(n, n) } -> std::same_as<typename Kernel::Number*>;
 };
 
-/// What a scatter does for one point, alone.
+/// This function does a scatter's work for one point, alone.
 template <ScatterKernel Kernel>
 TALUS_HD void scatter_point(const Kernel& kernel, int p) {
   if (!kernel.counts(p)) return;
@@ -112,7 +112,7 @@ struct TileSizes {
   static constexpr int lanes_of_a_node = static_cast<int>(std::bit_ceil(static_cast<unsigned>(parts)));
   /// Nodes of a column, and of a team, that there is memory for at a time.
   static constexpr int layers_at_once = parts <= 10 ? deep : 1, nodes_at_once = columns * layers_at_once;
-  static constexpr int passed_on = together ? tile_warps * teams * nodes_at_once : 0;  // nodes of all teams
+  static constexpr int passed_on = together ? tile_warps * teams * nodes_at_once : 0;  ///< nodes of all teams
 };
 
 /// Shared memory of a block of two tiles: with 32 points a warp 31 kB for P2G in double precision.
@@ -121,7 +121,7 @@ struct TileMemory {
   using Source = typename Kernel::Source;
   using Sizes = TileSizes<each, Kernel>;
   alignas(16) unsigned char sources[tile_warps * each * Sizes::source_bytes];
-  int bases[tile_warps * each][Sizes::columns];  // where layer 0 of every column of a source is stored
+  int bases[tile_warps * each][Sizes::columns];  ///< where layer 0 of every column of a source is stored
   typename Kernel::Number values[Sizes::together ? Sizes::passed_on * Sizes::parts : 1];
   int nodes[Sizes::together ? Sizes::passed_on : 1];
 
@@ -135,8 +135,8 @@ template <int each, class Kernel>
 struct TileLane {
   using Sizes = TileSizes<each, Kernel>;
   int lane, warp;
-  int first_source;  // of this warp
-  int team, column;  // lanes beyond the last team help to pass on
+  int first_source;  ///< of this warp
+  int team, column;  ///< lanes beyond the last team help to pass on
   __device__ TileLane()
       : lane(static_cast<int>(threadIdx.x) % warp_size),
         warp(static_cast<int>(threadIdx.x) / warp_size),
@@ -167,10 +167,10 @@ __device__ __forceinline__ std::uint64_t read_point(int count, const Kernel& ker
 
 /// The points of a tile in the order of their nodes: bit q of each word is of the q-th.
 struct TileOrder {
-  int point;          // lane that has read the point of this lane's rank
-  unsigned counting;  // the point counts
-  unsigned staying;   // the next one has the same nodes
-  unsigned climbing;  // the next one has those a layer up
+  int point;          ///< lane that has read the point of this lane's rank
+  unsigned counting;  ///< the point counts
+  unsigned staying;   ///< the next one has the same nodes
+  unsigned climbing;  ///< the next one has those a layer up
 };
 
 __device__ __forceinline__ TileOrder order_points(std::uint64_t key) {
@@ -340,6 +340,8 @@ __global__ void run_tiles_in_order(const PointGroups::Range* ranges, Kernel kern
 
 }  // namespace detail
 
+/// On a GPU warps scatter tiles of points, and add what their lanes have in common before it goes to memory; with
+/// groups.in_order a block takes the points of a column block, colour by colour.
 template <ScatterKernel Kernel>
 void scatter_points(const GpuDevice& device, int count, const PointGroups& groups, const Kernel& kernel) {
   if (count <= 0) return;
