@@ -6,6 +6,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "solver/explicit/make_explicit_solver.hpp"
 #include "solver/explicit/update_columns.hpp"
 #include "solver/integrator/point_solver.hpp"
 #include "solver/integrator/scene.hpp"
@@ -221,18 +222,14 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   Buffer<Vec4<Real>, Device> nodes_{device_}, forces_{device_};
 };
 
-/// A solver of one precision on a device.
-template <class Real>
-std::unique_ptr<Solver> make_explicit_solver_of(const Scene& scene, const IntegratorSettings& settings,
-                                                const AnyDevice& device, const SolverState& state) {
-  return with_shape(settings.shape, [&](auto shape) -> std::unique_ptr<Solver> {
-    using Shape = decltype(shape);
+template <class Real, class Shape>
+std::unique_ptr<Solver> make_explicit_solver(const Scene& scene, const IntegratorSettings& settings,
+                                             const AnyDevice& device, const SolverState& state) {
 #if TALUS_FOR_GPU
-    if (device.is_gpu())
-      return std::make_unique<ExplicitSolverOf<Real, GpuDevice, Shape>>(device.gpu(), scene, settings, state);
+  if (device.is_gpu())
+    return std::make_unique<ExplicitSolverOf<Real, GpuDevice, Shape>>(device.gpu(), scene, settings, state);
 #endif
-    return std::make_unique<ExplicitSolverOf<Real, CpuDevice, Shape>>(device.cpu(), scene, settings, state);
-  });
+  return std::make_unique<ExplicitSolverOf<Real, CpuDevice, Shape>>(device.cpu(), scene, settings, state);
 }
 
 }  // namespace talus::solver

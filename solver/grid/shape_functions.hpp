@@ -105,4 +105,15 @@ struct Gimp {
   }
 };
 
+/// Calls f with the shape functions of that name: f(Linear{}), f(Quadratic{}) or f(Gimp{}).
+template <class F>
+auto with_shape(ShapeKind kind, F&& f) {
+  switch (kind) {
+    case ShapeKind::linear: return f(Linear{});
+    case ShapeKind::gimp: return f(Gimp{});
+    case ShapeKind::quadratic: break;
+  }
+  return f(Quadratic{});
+}
+
 }  // namespace talus

@@ -6,6 +6,7 @@
 
 #include "solver/implicit/controls.hpp"
 #include "solver/implicit/implicit_step.hpp"
+#include "solver/implicit/make_implicit_solver.hpp"
 #include "solver/implicit/step_length.hpp"
 #include "solver/integrator/point_solver.hpp"
 #include "solver/integrator/scene.hpp"
@@ -158,19 +159,15 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
   bool midway_;      // the run began with explicit steps
 };
 
-/// A solver of one precision on a device.
-template <class Real>
-std::unique_ptr<Solver> make_implicit_solver_of(const Scene& scene, const IntegratorSettings& settings,
-                                                const ImplicitControls& controls, const AnyDevice& device,
-                                                const SolverState& state) {
-  return with_shape(settings.shape, [&](auto shape) -> std::unique_ptr<Solver> {
-    using Shape = decltype(shape);
+template <class Real, class Shape>
+std::unique_ptr<Solver> make_implicit_solver(const Scene& scene, const IntegratorSettings& settings,
+                                             const ImplicitControls& controls, const AnyDevice& device,
+                                             const SolverState& state) {
 #if TALUS_FOR_GPU
-    if (device.is_gpu())
-      return std::make_unique<ImplicitSolver<Real, GpuDevice, Shape>>(device.gpu(), scene, settings, controls, state);
+  if (device.is_gpu())
+    return std::make_unique<ImplicitSolver<Real, GpuDevice, Shape>>(device.gpu(), scene, settings, controls, state);
 #endif
-    return std::make_unique<ImplicitSolver<Real, CpuDevice, Shape>>(device.cpu(), scene, settings, controls, state);
-  });
+  return std::make_unique<ImplicitSolver<Real, CpuDevice, Shape>>(device.cpu(), scene, settings, controls, state);
 }
 
 }  // namespace talus::solver

@@ -12,16 +12,6 @@
 
 namespace talus::solver {
 
-/// f of the shape functions of that name.
-template <class F>
-auto with_shape(ShapeKind kind, F&& f) {
-  switch (kind) {
-    case ShapeKind::linear: return f(Linear{});
-    case ShapeKind::gimp: return f(Gimp{});
-    default: return f(Quadratic{});
-  }
-}
-
 /// The bed's friction and, where it changes from place to place, its numbers beside the grid.
 template <class Number, class Device>
 class BedOn {

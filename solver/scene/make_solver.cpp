@@ -1,5 +1,7 @@
 #include "solver/scene/make_solver.hpp"
 
+#include "solver/explicit/make_explicit_solver.hpp"
+#include "solver/implicit/make_implicit_solver.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/parallel/atomics.hpp"
@@ -7,24 +9,6 @@
 #include "solver/scene/make_scene.hpp"
 
 namespace talus::solver {
-
-template <class Real>
-std::unique_ptr<Solver> make_explicit_solver_of(const Scene&, const IntegratorSettings&, const AnyDevice&,
-                                                const SolverState&);
-template <class Real>
-std::unique_ptr<Solver> make_implicit_solver_of(const Scene&, const IntegratorSettings&, const ImplicitControls&,
-                                                const AnyDevice&, const SolverState&);
-// Instantiated in {ex,im}plicit_solver_{single,double}.cu.
-extern template std::unique_ptr<Solver> make_explicit_solver_of<float>(const Scene&, const IntegratorSettings&,
-                                                                       const AnyDevice&, const SolverState&);
-extern template std::unique_ptr<Solver> make_explicit_solver_of<double>(const Scene&, const IntegratorSettings&,
-                                                                        const AnyDevice&, const SolverState&);
-extern template std::unique_ptr<Solver> make_implicit_solver_of<float>(const Scene&, const IntegratorSettings&,
-                                                                       const ImplicitControls&, const AnyDevice&,
-                                                                       const SolverState&);
-extern template std::unique_ptr<Solver> make_implicit_solver_of<double>(const Scene&, const IntegratorSettings&,
-                                                                        const ImplicitControls&, const AnyDevice&,
-                                                                        const SolverState&);
 
 SolverState first_state(const Scene& scene, const IntegratorSettings& settings) {
   SolverState state;
@@ -54,14 +38,16 @@ std::unique_ptr<Solver> make_solver(const Scene& scene, const SolveOptions& opti
 std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolverSettings& settings, const AnyDevice& device,
                                       const SolverState& state) {
   const auto of = [&]<class Real>(Real) {
-    switch (settings.integrator) {
-      case Integrator::newmark:
-      case Integrator::quasi_static:
-        return make_implicit_solver_of<Real>(scene, settings.common, settings.implicit, device, state);
-      case Integrator::automatic:  // begins with explicit steps, if nobody says which
-      case Integrator::explicit_: break;
-    }
-    return make_explicit_solver_of<Real>(scene, settings.common, device, state);
+    return with_shape(settings.common.shape, [&]<class Shape>(Shape) {
+      switch (settings.integrator) {
+        case Integrator::newmark:
+        case Integrator::quasi_static:
+          return make_implicit_solver<Real, Shape>(scene, settings.common, settings.implicit, device, state);
+        case Integrator::automatic:  // begins with explicit steps, if nobody says which
+        case Integrator::explicit_: break;
+      }
+      return make_explicit_solver<Real, Shape>(scene, settings.common, device, state);
+    });
   };
   return settings.precision == Precision::single_ ? of(float{}) : of(double{});
 }
