@@ -98,11 +98,13 @@ TEST(ImplicitStep, has_a_linear_system_that_is_the_derivative_of_its_residual) {
     for (const bool b_bar : {false, true}) {
       SolveOptions o = options_of(integrator);
       o.implicit.b_bar = b_bar;
+      // A sheet that slides without inertia goes far beyond the slip over which its friction turns.
+      if (integrator == Integrator::quasi_static) o.base.law = FrictionLaw::stick;
       StepBench bench(o);
       const double before = bench.settle().force;
       ASSERT_GT(before, 1);
       ASSERT_TRUE(bench.step.solve(1e-12).converged);
-      // Of a small share of the change, that share of the residual is gone.
+      // With a small share of the change, that share of the residual is gone.
       const double along = bench.step.begin_search(), share = 1e-3;
       bench.step.apply_change(share);
       bench.step.measure(Linearisation::consistent);
