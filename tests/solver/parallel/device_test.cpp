@@ -51,7 +51,7 @@ void expect_same(const SolverState& a, const SolverState& b) {
   EXPECT_EQ(a.points.log_volume, b.points.log_volume);
   EXPECT_EQ(a.maps.peak_speed, b.maps.peak_speed);
   EXPECT_EQ(a.maps.peak_thickness, b.maps.peak_thickness);
-  EXPECT_EQ(a.maps.arrival, b.maps.arrival);
+  EXPECT_EQ(a.maps.arrival_time, b.maps.arrival_time);
 }
 
 /// A batch of the one and a batch of the other by turns.
