@@ -1,0 +1,119 @@
+// What the options of a recipe become: SI units, coefficients, laws.
+#include "solver/scene/settings.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "solver/integrator/settings.hpp"
+
+namespace talus::solver {
+namespace {
+
+const GridShape grid = [] {
+  GridShape shape;
+  shape.spacing = 4;
+  shape.layer_height = 2;
+  return shape;
+}();
+
+double coefficient(double degrees) { return std::tan(degrees * (std::numbers::pi / 180)); }
+
+TEST(Settings, angles_become_coefficients_and_words_become_laws) {
+  SolveOptions o;
+  o.base.friction_angle = 17;
+  o.walls.push_back({.axis = Axis::y,
+                     .position = 5,
+                     .material_is = Side::below,
+                     .kind = WallKind::frictional,
+                     .friction_angle = 12,
+                     .speed = 0.5,
+                     .from = 1,
+                     .to = 2});
+  o.obstacles.push_back({.name = "wall", .level_set = "a.vdb", .grid = "b", .friction_angle = 23});
+  const SolverSettings s = make_settings(o, grid);
+  EXPECT_EQ(s.common.bed.uniform.coefficient, coefficient(17));
+  const PlaneWall& wall = s.common.walls.at(0);
+  EXPECT_EQ(wall.axis, 1);
+  EXPECT_EQ(wall.side, -1);
+  EXPECT_EQ(wall.position, 5);
+  EXPECT_EQ(wall.friction, coefficient(12));
+  EXPECT_EQ(wall.speed, 0.5);
+  EXPECT_EQ(wall.to, 2);
+  const std::vector<Obstacle> obstacles = make_obstacles(o.obstacles);
+  EXPECT_EQ(obstacles.at(0).name, "wall");
+  EXPECT_EQ(obstacles.at(0).level_set, "a.vdb");
+  EXPECT_EQ(obstacles.at(0).grid, "b");
+  EXPECT_EQ(obstacles.at(0).friction, coefficient(23));
+}
+
+TEST(Settings, steps_transfer_and_gravity_are_those_of_the_recipe) {
+  SolveOptions o;
+  o.cfl = 0.3;
+  o.largest_step = 0.2;
+  o.transfer = Transfer::flip;
+  o.stress_update = StressUpdate::modified;
+  o.transfer_time = 7;
+  o.gravity = {1, 2, -9};
+  o.gravity_ramp = 3;
+  o.initial_velocity = {3, 4, 12};
+  const IntegratorSettings s = make_settings(o, grid).common;
+  EXPECT_EQ(s.steps.cfl, 0.3);
+  EXPECT_EQ(s.steps.largest, 0.2);
+  EXPECT_EQ(s.steps.initial_speed, 13);
+  EXPECT_EQ(s.steps.fastest_wave, fastest_wave(o));
+  EXPECT_FALSE(s.transfer.affine);
+  EXPECT_TRUE(s.transfer.remaps_velocity);
+  EXPECT_EQ(s.transfer.time, 7);
+  EXPECT_EQ(s.gravity.acceleration.y, 2);
+  EXPECT_EQ(s.gravity.ramp, 3);
+}
+
+TEST(Settings, particles_get_the_fields_that_scheme_materials_and_loads_need) {
+  SolveOptions o;
+  const ParticleFields plain = make_settings(o, grid).common.fields;
+  EXPECT_TRUE(plain.affine);
+  EXPECT_FALSE(plain.plastic_volume || plain.extent || plain.load || plain.material || plain.plastic_shear);
+  o.shape = ShapeKind::gimp;
+  o.loads.emplace_back();
+  o.parts.emplace_back();
+  o.parts[0].material.softening_slip = 1;
+  o.material.dilatancy_angle = 5;
+  const ParticleFields all = make_settings(o, grid).common.fields;
+  EXPECT_TRUE(all.plastic_volume && all.extent && all.load && all.material && all.plastic_shear);
+}
+
+TEST(Settings, the_precisions_of_a_material_are_those_of_its_options) {
+  SolveOptions o;
+  o.material.cohesion = 1234;
+  const MaterialSettings m = make_settings(o, grid).common.materials;
+  EXPECT_EQ(m.in<double>().list[0].shear_modulus, make_material<double>(o.material).shear_modulus);
+  EXPECT_EQ(m.in<float>().list[0].shear_modulus, make_material<float>(o.material).shear_modulus);
+  EXPECT_FALSE(m.densities_differ);
+}
+
+TEST(Settings, gravity_loading_holds_what_yields_and_keeps_the_walls_of_the_start) {
+  SolveOptions o;
+  o.material.dilatancy_angle = 5;
+  o.implicit.newton_iterations = 1;
+  o.base.cohesion = 100;
+  o.walls = {{.axis = Axis::x}, {.axis = Axis::y, .from = 3}};
+  const SolverSettings s = for_gravity_loading(make_settings(o, grid), 8);
+  EXPECT_EQ(s.integrator, Integrator::quasi_static);
+  EXPECT_FALSE(s.implicit.dynamic);
+  EXPECT_EQ(s.implicit.step, 0.125);
+  EXPECT_EQ(s.implicit.newton.iterations, 20);
+  EXPECT_EQ(s.implicit.gravity_ramp, 1);
+  EXPECT_EQ(s.common.gravity.ramp, 1);
+  EXPECT_EQ(s.common.materials.in_double.list[0].model, MaterialModel::hencky);
+  EXPECT_EQ(s.common.materials.in_single.list[0].model, MaterialModel::hencky);
+  EXPECT_FALSE(s.common.fields.plastic_volume);
+  EXPECT_EQ(s.common.bed.law, FrictionLaw::stick);
+  EXPECT_FALSE(s.common.bed.has_traction());
+  ASSERT_EQ(s.common.walls.size(), 1U);
+  EXPECT_EQ(s.common.walls[0].to, 2) << "they stand throughout";
+}
+
+}  // namespace
+}  // namespace talus::solver
