@@ -31,9 +31,9 @@ double covered(double low, double size, double from, double to) {
 Raster cover_of(const MapGrid& grid, const BoxOptions& box) {
   Raster cover{grid, std::vector<double>(grid.count(), 0.0)};
   for (int row = 0; row < grid.rows; ++row) {
-    const double in_row = covered(grid.south + row * grid.cell, grid.cell, box.south_m, box.north_m);
+    const double in_row = covered(grid.south + row * grid.cell, grid.cell, box.south, box.north);
     for (int column = 0; in_row > 0 && column < grid.columns; ++column) {
-      cover.at(column, row) = in_row * covered(grid.west + column * grid.cell, grid.cell, box.west_m, box.east_m);
+      cover.at(column, row) = in_row * covered(grid.west + column * grid.cell, grid.cell, box.west, box.east);
     }
   }
   return cover;
@@ -48,7 +48,7 @@ Raster laboratory_ground(const Options& options) {
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
       ground.at(column, row) =
-          lab.ground_m + lab.slope_x * (grid.x(column) - grid.west) + lab.slope_y * (grid.y(row) - grid.south);
+          lab.ground + lab.slope_x * (grid.x(column) - grid.west) + lab.slope_y * (grid.y(row) - grid.south);
     }
   }
   return ground;
@@ -57,7 +57,7 @@ Raster laboratory_ground(const Options& options) {
 Release box_release(const Options& options, std::size_t item) {
   const BoxOptions& box = options.box.at(item);
   Raster thickness = cover_of(laboratory_grid(options), box);
-  for (double& value : thickness.values) value *= box.top_m - box.bottom_m;
+  for (double& value : thickness.values) value *= box.top - box.bottom;
   return {box_name(box, item), std::move(thickness)};
 }
 
@@ -65,7 +65,7 @@ Raster box_surface(const Options& options, const Raster& ground) {
   std::vector<double> height(ground.values.size(), 0.0);
   for (const BoxOptions& box : options.box) {
     const Raster cover = cover_of(ground.grid, box);
-    for (std::size_t i = 0; i < height.size(); ++i) height[i] = std::max(height[i], cover.values[i] * box.top_m);
+    for (std::size_t i = 0; i < height.size(); ++i) height[i] = std::max(height[i], cover.values[i] * box.top);
   }
   Raster surface = ground;
   for (std::size_t i = 0; i < height.size(); ++i) surface.values[i] += height[i];

@@ -22,7 +22,7 @@ struct Footprint {
 };
 
 double height_of(const MapPolygon& polygon, std::size_t number, const ObstacleOptions& o) {
-  if (o.height_m > 0) return o.height_m;
+  if (o.height > 0) return o.height;
   for (const auto& [name, value] : polygon.numbers) {
     if (name == o.attribute && value > 0 && std::isfinite(value)) return value;
   }

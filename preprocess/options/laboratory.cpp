@@ -12,14 +12,14 @@ namespace {
 
 constexpr double rounding = 1e-6;  // of a cell: what a length written in decimals may be off by
 
-double layer_height(const GridOptions& grid) { return grid.layer_height_m > 0 ? grid.layer_height_m : grid.spacing_m; }
+double layer_height(const GridOptions& grid) { return grid.layer_height > 0 ? grid.layer_height : grid.spacing; }
 
 }  // namespace
 
 std::array<BoxSide, 3> sides_of(const BoxOptions& b) {
-  return {{{"west_m", "east_m", b.west_m, b.east_m},
-           {"south_m", "north_m", b.south_m, b.north_m},
-           {"bottom_m", "top_m", b.bottom_m, b.top_m}}};
+  return {{{"west_m", "east_m", b.west, b.east},
+           {"south_m", "north_m", b.south, b.north},
+           {"bottom_m", "top_m", b.bottom, b.top}}};
 }
 
 std::string box_name(const BoxOptions& box, std::size_t item) {
@@ -28,7 +28,7 @@ std::string box_name(const BoxOptions& box, std::size_t item) {
 
 std::array<double, 3> point_spacing(const GridOptions& grid) {
   const auto& n = grid.points_per_cell;
-  return {grid.spacing_m / n.at(0), grid.spacing_m / n.at(1), layer_height(grid) / n.at(2)};
+  return {grid.spacing / n.at(0), grid.spacing / n.at(1), layer_height(grid) / n.at(2)};
 }
 
 MapGrid laboratory_grid(const Options& options) {
@@ -36,9 +36,9 @@ MapGrid laboratory_grid(const Options& options) {
   MapGrid grid;
   grid.columns = lab.columns;
   grid.rows = lab.rows;
-  grid.west = lab.west_m;
-  grid.south = lab.south_m;
-  grid.cell = options.grid.spacing_m;
+  grid.west = lab.west;
+  grid.south = lab.south;
+  grid.cell = options.grid.spacing;
   return grid;
 }
 
@@ -73,10 +73,10 @@ class Checker {
     if (!o_.working_crs.empty())
       add("working_crs is given with a laboratory", "a laboratory lies in local coordinates", "Leave it out");
     const GridOptions& g = o_.grid;
-    if (g.west_m || g.south_m || g.east_m || g.north_m)
+    if (g.west || g.south || g.east || g.north)
       add("grid.west_m or its like is given with a laboratory", "there is no elevation model to crop",
           "Use laboratory.west_m, south_m, columns and rows");
-    if (g.minimum_thickness_m > 0)
+    if (g.minimum_thickness > 0)
       add("grid.minimum_thickness_m is given with a laboratory", "boxes are filled by a regular lattice",
           "Leave it out");
   }
@@ -87,7 +87,7 @@ class Checker {
     if (lab.columns < 1 || lab.rows < 1)
       add(fmt::format("laboratory.columns = {}, rows = {}", lab.columns, lab.rows), "both must be positive",
           "Give the number of cells along x and y");
-    if (!(o_.grid.spacing_m > 0))
+    if (!(o_.grid.spacing > 0))
       add("grid.spacing_m is not given", "a laboratory has no elevation model to take it from",
           "Give the width of a cell in metres");
     if (o_.box.empty())
@@ -127,7 +127,7 @@ class Checker {
   }
 
   void inside(const BoxSide& side, double low, double high, std::size_t item) {
-    const double cell = o_.grid.spacing_m, slack = rounding * cell;
+    const double cell = o_.grid.spacing, slack = rounding * cell;
     if (side.low >= low + cell - slack && side.high <= high - cell + slack) return;
     add(fmt::format("box {}: {} = {}, {} = {}", item + 1, side.low_key, side.low, side.high_key, side.high),
         fmt::format("the grid reaches from {:.12g} to {:.12g} m, and points need an open cell around them", low, high),
@@ -140,8 +140,7 @@ class Checker {
         const auto a = sides_of(o_.box[i]), b = sides_of(o_.box[j]);
         bool shared = true;
         for (std::size_t s = 0; s < 3; ++s) {
-          shared =
-              shared && std::min(a[s].high, b[s].high) - std::max(a[s].low, b[s].low) > rounding * o_.grid.spacing_m;
+          shared = shared && std::min(a[s].high, b[s].high) - std::max(a[s].low, b[s].low) > rounding * o_.grid.spacing;
         }
         if (shared)
           add(fmt::format("{} and {} overlap", box_name(o_.box[i], i), box_name(o_.box[j], j)),

@@ -15,8 +15,7 @@ void ReleaseOptions::describe(recipe::Visitor& v) {
   v.path("thickness_raster", thickness_raster, "raster of thickness [m]; or polygons, below");
   v.path("polygons", polygons, "vector file of polygons");
   v.text("attribute", attribute, "the polygons' attribute that holds the thickness [m]");
-  v.number("thickness_m", thickness_m, recipe::not_negative,
-           "one thickness for all polygons; 0 = that of the attribute");
+  v.number("thickness_m", thickness, recipe::not_negative, "one thickness for all polygons; 0 = that of the attribute");
   recipe::choice(v, "direction", direction,
                  {{"vertical", Direction::vertical}, {"slope-normal", Direction::slope_normal}},
                  "which way the thickness is measured");
@@ -29,8 +28,8 @@ void ErodibleOptions::describe(recipe::Visitor& v) {
 }
 
 void SlidingSurfaceOptions::describe(recipe::Visitor& v) {
-  v.number("depth_m", depth_m, recipe::not_negative, "largest vertical depth below before_dem; 0 = not given");
-  v.number("volume_m3", volume_m3, recipe::not_negative, "volume between it and before_dem; 0 = not given");
+  v.number("depth_m", depth, recipe::not_negative, "largest vertical depth below before_dem; 0 = not given");
+  v.number("volume_m3", volume, recipe::not_negative, "volume between it and before_dem; 0 = not given");
   v.path("depth_points", depth_points,
          "places where it is known (boreholes): vector points, or a table of x, y and z or depth, heights in "
          "vertical_unit; none of the three: volume from the polygon's area (Guzzetti et al. 2009)");
@@ -38,17 +37,17 @@ void SlidingSurfaceOptions::describe(recipe::Visitor& v) {
                  {{"elevation", PointValue::elevation}, {"depth", PointValue::depth}},
                  "what the z of these points is where it is not named depth: elevation of the sliding surface, or its "
                  "vertical depth below before_dem");
-  v.number("depth_points_error_m", depth_points_error_m, recipe::not_negative,
+  v.number("depth_points_error_m", depth_points_error, recipe::not_negative,
            "standard error of these points; 0 = met exactly");
 }
 
 void SourceOptions::describe(recipe::Visitor& v) {
   v.path("polygon", polygon,
          "outline of the source; empty = found as the connected region of lowering; needed for (5)");
-  v.number("threshold_m", threshold_m, recipe::not_negative, "lowering beyond which a cell belongs to such a region");
-  v.optional_number("seed_x_m", seed_x_m, recipe::any,
+  v.number("threshold_m", threshold, recipe::not_negative, "lowering beyond which a cell belongs to such a region");
+  v.optional_number("seed_x_m", seed_x, recipe::any,
                     "take the region that holds this point (its easting); else the largest by volume");
-  v.optional_number("seed_y_m", seed_y_m, recipe::any, "its northing");
+  v.optional_number("seed_y_m", seed_y, recipe::any, "its northing");
   v.enter("sliding_surface",
           "(5) how deep the surface lies that is computed under the polygon: give one of the first three");
   sliding_surface.describe(v);
@@ -60,7 +59,7 @@ void CoregistrationOptions::describe(recipe::Visitor& v) {
                  "bring after_dem onto before_dem where nothing moved: check = find shift, height and tilt, and warn; "
                  "apply = correct them");
   v.flag("tilt", tilt, "look for a tilt too; one within its error is left out");
-  v.number("steepest_deg", steepest_deg, recipe::Range{0, 90, true, false}, "steeper ground is left out of the fit");
+  v.number("steepest_deg", steepest, recipe::Range{0, 90, true, false}, "steeper ground is left out of the fit");
   v.path("changed", changed,
          "polygons of ground to leave out of the fit, besides source and deposit; changes that stand out are found by "
          "themselves");
@@ -73,35 +72,35 @@ void DifferenceOptions::describe(recipe::Visitor& v) {
                   {"minimum-level", Threshold::minimum_level}},
                  "level of detection: confidence times the error; the error itself; or minimum_level_m alone");
   v.number("confidence", confidence, recipe::Range{0.5, 0.9999}, "of the probabilistic level, two-sided");
-  v.number("minimum_level_m", minimum_level_m, recipe::not_negative, "the least level of detection in any case");
-  v.number("before_sigma_m", before_sigma_m, recipe::not_negative,
+  v.number("minimum_level_m", minimum_level, recipe::not_negative, "the least level of detection in any case");
+  v.number("before_sigma_m", before_sigma, recipe::not_negative,
            "standard error of before_dem; 0 for both = the difference's, by slope, from stable ground");
-  v.number("after_sigma_m", after_sigma_m, recipe::not_negative, "that of after_dem");
+  v.number("after_sigma_m", after_sigma, recipe::not_negative, "that of after_dem");
 }
 
-double DifferenceOptions::given_sigma() const { return std::hypot(before_sigma_m, after_sigma_m); }
+double DifferenceOptions::given_sigma() const { return std::hypot(before_sigma, after_sigma); }
 
 void DepositOptions::describe(recipe::Visitor& v) {
   v.path("polygon", polygon,
          "outline of the surveyed deposit; empty = what rose in the region of change that holds the source");
-  v.number("threshold_m", threshold_m, recipe::not_negative,
+  v.number("threshold_m", threshold, recipe::not_negative,
            "rise beyond which (and beyond the level of detection) a cell belongs to it");
 }
 
 void GridOptions::describe(recipe::Visitor& v) {
-  v.number("spacing_m", spacing_m, recipe::not_negative,
+  v.number("spacing_m", spacing, recipe::not_negative,
            "horizontal spacing h of the grid; 0 = the cell of the first DEM");
-  v.number("layer_height_m", layer_height_m, recipe::not_negative,
+  v.number("layer_height_m", layer_height, recipe::not_negative,
            "vertical spacing h_z of the grid; 0 = the horizontal one");
   v.integers("points_per_cell", points_per_cell, recipe::Range{1, 64}, "material points along x, y and height");
-  v.number("minimum_thickness_m", minimum_thickness_m, recipe::not_negative,
+  v.number("minimum_thickness_m", minimum_thickness, recipe::not_negative,
            "columns thinner than this get one point (of the same volume) instead of points_per_cell");
   v.number("jitter", jitter, recipe::Range{0, 0.5}, "random shift of the points, as a part of their spacing");
   v.integer("jitter_seed", jitter_seed, recipe::not_negative, "seed of that shift");
-  v.optional_number("west_m", west_m, recipe::any, "western edge of the working grid; none = where all DEMs overlap");
-  v.optional_number("south_m", south_m, recipe::any, "southern edge");
-  v.optional_number("east_m", east_m, recipe::any, "eastern edge");
-  v.optional_number("north_m", north_m, recipe::any, "northern edge");
+  v.optional_number("west_m", west, recipe::any, "western edge of the working grid; none = where all DEMs overlap");
+  v.optional_number("south_m", south, recipe::any, "southern edge");
+  v.optional_number("east_m", east, recipe::any, "eastern edge");
+  v.optional_number("north_m", north, recipe::any, "northern edge");
   recipe::choice(
       v, "edge_nodata", edge_nodata, {{"refuse", EdgeNodata::refuse}, {"outside", EdgeNodata::outside}},
       "cells without elevation that reach the edge of the grid: refuse them, or leave them outside the domain");
@@ -109,7 +108,7 @@ void GridOptions::describe(recipe::Visitor& v) {
 
 void VoidOptions::describe(recipe::Visitor& v) {
   v.flag("fill", fill, "fill voids inside the elevation models by natural neighbours; else they are refused by place");
-  v.number("largest_m2", largest_m2, recipe::not_negative, "area of the largest void that is filled");
+  v.number("largest_m2", largest, recipe::not_negative, "area of the largest void that is filled");
   recipe::choice(
       v, "spikes", spikes, {{"ignore", Spikes::ignore}, {"report", Spikes::report}, {"remove", Spikes::remove}},
       "cells that stand out from their neighbours (ten times the usual around): remove = make them voids and fill "
@@ -119,29 +118,29 @@ void VoidOptions::describe(recipe::Visitor& v) {
 void LaboratoryOptions::describe(recipe::Visitor& v) {
   v.integer("columns", columns, recipe::not_negative, "cells from west to east; 0 = no laboratory");
   v.integer("rows", rows, recipe::not_negative, "cells from south to north");
-  v.number("west_m", west_m, recipe::any, "western edge");
-  v.number("south_m", south_m, recipe::any, "southern edge");
-  v.number("ground_m", ground_m, recipe::any, "elevation of the ground at the south-western corner");
+  v.number("west_m", west, recipe::any, "western edge");
+  v.number("south_m", south, recipe::any, "southern edge");
+  v.number("ground_m", ground, recipe::any, "elevation of the ground at the south-western corner");
   v.number("slope_x", slope_x, recipe::any, "rise of the ground per metre towards the east");
   v.number("slope_y", slope_y, recipe::any, "rise of the ground per metre towards the north");
 }
 
 void BoxOptions::describe(recipe::Visitor& v) {
   v.text("name", name, "name of this box; empty = box-1, box-2, ...");
-  v.number("west_m", west_m, recipe::any, "western side");
-  v.number("east_m", east_m, recipe::any, "eastern side; a multiple of the points' spacing away");
-  v.number("south_m", south_m, recipe::any, "southern side");
-  v.number("north_m", north_m, recipe::any, "northern side");
-  v.number("bottom_m", bottom_m, recipe::not_negative, "lower side, above the ground");
-  v.number("top_m", top_m, recipe::not_negative, "upper side, above the ground");
+  v.number("west_m", west, recipe::any, "western side");
+  v.number("east_m", east, recipe::any, "eastern side; a multiple of the points' spacing away");
+  v.number("south_m", south, recipe::any, "southern side");
+  v.number("north_m", north, recipe::any, "northern side");
+  v.number("bottom_m", bottom, recipe::not_negative, "lower side, above the ground");
+  v.number("top_m", top, recipe::not_negative, "upper side, above the ground");
 }
 
 void ObstacleOptions::describe(recipe::Visitor& v) {
   v.text("name", name, "name of the obstacle, as in [[solve.obstacle]]");
   v.path("polygons", polygons, "vector file of footprints");
   v.text("attribute", attribute, "the polygons' attribute that holds their height above the ground [m]");
-  v.number("height_m", height_m, recipe::not_negative, "one height for all of them; 0 = that of the attribute");
-  v.number("voxel_m", voxel_m, recipe::not_negative,
+  v.number("height_m", height, recipe::not_negative, "one height for all of them; 0 = that of the attribute");
+  v.number("voxel_m", voxel, recipe::not_negative,
            "voxels of obstacles.vdb: the smallest given counts; 0 = a quarter of the smaller of spacing_m and "
            "layer_height_m");
 }
@@ -260,11 +259,11 @@ void check_release(const char* kind, const ReleaseOptions& r, std::size_t item, 
                            "a release is one or the other",
                            "Give one; several releases are several [[preprocess.release]]"));
   }
-  if (!r.thickness_raster.empty() && r.thickness_m > 0) {
-    faults.push_back(fault(fmt::format("{}: thickness_m = {} beside thickness_raster", place, r.thickness_m),
+  if (!r.thickness_raster.empty() && r.thickness > 0) {
+    faults.push_back(fault(fmt::format("{}: thickness_m = {} beside thickness_raster", place, r.thickness),
                            "the raster holds the thickness", "Leave one out"));
   }
-  if (!r.polygons.empty() && r.thickness_m == 0 && r.attribute.empty()) {
+  if (!r.polygons.empty() && r.thickness == 0 && r.attribute.empty()) {
     faults.push_back(fault(place + ": polygons without thickness", "attribute is empty and thickness_m is 0",
                            "Name the attribute that holds the thickness, or give thickness_m"));
   }
@@ -276,7 +275,7 @@ void check_depth(const Options& o, std::vector<Fault>& faults) {
     faults.push_back(fault("source.sliding_surface: more than one of depth_m, volume_m3 and depth_points is given",
                            "each says by itself how deep the surface lies", "Leave the others out"));
   }
-  if (s.depth_points.empty() && (s.depth_points_error_m > 0 || s.depth_points_hold != PointValue::elevation)) {
+  if (s.depth_points.empty() && (s.depth_points_error > 0 || s.depth_points_hold != PointValue::elevation)) {
     faults.push_back(
         fault("source.sliding_surface: depth_points_hold or depth_points_error_m is given without depth_points",
               "there are no points to read", "Give depth_points"));
@@ -289,12 +288,12 @@ void check_depth(const Options& o, std::vector<Fault>& faults) {
 }
 
 void check_grid(const GridOptions& g, std::vector<Fault>& faults) {
-  if (!(g.spacing_m >= 0) || !std::isfinite(g.spacing_m)) {
-    faults.push_back(fault(fmt::format("grid.spacing_m = {}", g.spacing_m), "it must be positive",
+  if (!(g.spacing >= 0) || !std::isfinite(g.spacing)) {
+    faults.push_back(fault(fmt::format("grid.spacing_m = {}", g.spacing), "it must be positive",
                            "Give a length in metres, or 0 for the cell of the first DEM"));
   }
-  if (!(g.layer_height_m >= 0) || !std::isfinite(g.layer_height_m)) {
-    faults.push_back(fault(fmt::format("grid.layer_height_m = {}", g.layer_height_m), "it must be positive",
+  if (!(g.layer_height >= 0) || !std::isfinite(g.layer_height)) {
+    faults.push_back(fault(fmt::format("grid.layer_height_m = {}", g.layer_height), "it must be positive",
                            "Give a length in metres, or 0 for the horizontal spacing"));
   }
   bool three_positive = g.points_per_cell.size() == 3;
@@ -303,12 +302,12 @@ void check_grid(const GridOptions& g, std::vector<Fault>& faults) {
     faults.push_back(fault(fmt::format("grid.points_per_cell = [{}]", fmt::join(g.points_per_cell, ", ")),
                            "it must be three positive integers: along x, y and height", "The usual is [2, 2, 2]"));
   }
-  if (g.west_m && g.east_m && *g.west_m >= *g.east_m) {
-    faults.push_back(fault(fmt::format("grid.west_m = {}, east_m = {}", *g.west_m, *g.east_m),
-                           "west must lie west of east", "Swap them"));
+  if (g.west && g.east && *g.west >= *g.east) {
+    faults.push_back(fault(fmt::format("grid.west_m = {}, east_m = {}", *g.west, *g.east), "west must lie west of east",
+                           "Swap them"));
   }
-  if (g.south_m && g.north_m && *g.south_m >= *g.north_m) {
-    faults.push_back(fault(fmt::format("grid.south_m = {}, north_m = {}", *g.south_m, *g.north_m),
+  if (g.south && g.north && *g.south >= *g.north) {
+    faults.push_back(fault(fmt::format("grid.south_m = {}, north_m = {}", *g.south, *g.north),
                            "south must lie south of north", "Swap them"));
   }
 }
@@ -327,7 +326,7 @@ void check_comparison(const Options& o, std::vector<Fault>& faults) {
   };
   refuse(o.coregistration.mode == Alignment::apply, "coregistration.mode = \"apply\"");
   refuse(!o.coregistration.changed.empty(), "coregistration.changed");
-  refuse(o.difference.given_sigma() > 0 || o.difference.minimum_level_m > 0,
+  refuse(o.difference.given_sigma() > 0 || o.difference.minimum_level > 0,
          "an error or level in [preprocess.difference]");
   refuse(!o.deposit.polygon.empty(), "deposit.polygon");
 }
@@ -397,11 +396,11 @@ void Options::check(std::vector<Fault>& faults) const {
     faults.push_back(fault("voids.spikes = \"remove\" without voids.fill", "what is removed is filled like a void",
                            "Set fill = true in [preprocess.voids], or spikes = \"report\""));
   }
-  if (source.seed_x_m.has_value() != source.seed_y_m.has_value()) {
+  if (source.seed_x.has_value() != source.seed_y.has_value()) {
     faults.push_back(
         fault("only one of source.seed_x_m and seed_y_m is given", "a point has both", "Give both or none"));
   }
-  if (source.seed_x_m && !source.polygon.empty()) {
+  if (source.seed_x && !source.polygon.empty()) {
     faults.push_back(fault("source.polygon and a seed point are both given",
                            "the polygon already says what the source is", "Leave one out"));
   }

@@ -29,7 +29,7 @@ struct ReleaseOptions {
   std::filesystem::path thickness_raster;
   std::filesystem::path polygons;
   std::string attribute = "thickness";
-  double thickness_m = 0;  // one thickness for all polygons; 0 = that of the attribute
+  double thickness = 0;  // one thickness for all polygons [m]; 0 = that of the attribute
   Direction direction = Direction::vertical;
 
   void describe(recipe::Visitor& v);
@@ -47,20 +47,20 @@ enum class PointValue { elevation, depth };
 
 /// How deep the sliding surface lies that is computed under source.polygon. None given: by the area of the polygon.
 struct SlidingSurfaceOptions {
-  double depth_m = 0;    // 0 = not given
-  double volume_m3 = 0;  // 0 = not given
+  double depth = 0;   // largest vertical one [m]; 0 = not given
+  double volume = 0;  // [m3]; 0 = not given
   std::filesystem::path depth_points;
   PointValue depth_points_hold = PointValue::elevation;
-  double depth_points_error_m = 0;
+  double depth_points_error = 0;  // standard error [m]
 
-  int ways_given() const { return (depth_m > 0) + (volume_m3 > 0) + !depth_points.empty(); }
+  int ways_given() const { return (depth > 0) + (volume > 0) + !depth_points.empty(); }
   void describe(recipe::Visitor& v);
 };
 
 struct SourceOptions {
   std::filesystem::path polygon;
-  double threshold_m = 0.5;
-  std::optional<double> seed_x_m, seed_y_m;
+  double threshold = 0.5;                // [m]
+  std::optional<double> seed_x, seed_y;  // easting, northing [m]
   SlidingSurfaceOptions sliding_surface;
 
   void describe(recipe::Visitor& v);
@@ -72,7 +72,7 @@ enum class Alignment { check, apply, off };
 struct CoregistrationOptions {
   Alignment mode = Alignment::check;
   bool tilt = true;
-  double steepest_deg = 45;
+  double steepest = 45;  // [deg]
   std::filesystem::path changed;
 
   void describe(recipe::Visitor& v);
@@ -81,8 +81,8 @@ struct CoregistrationOptions {
 struct DifferenceOptions {
   Threshold threshold = Threshold::probabilistic;
   double confidence = 0.95;
-  double minimum_level_m = 0;
-  double before_sigma_m = 0, after_sigma_m = 0;  // 0 = learnt from stable ground
+  double minimum_level = 0;                  // [m]
+  double before_sigma = 0, after_sigma = 0;  // [m]; 0 = learnt from stable ground
 
   /// sqrt(s1^2 + s2^2) [m]; 0 where neither is given.
   double given_sigma() const;
@@ -92,19 +92,19 @@ struct DifferenceOptions {
 /// What arrived, for after_dem.
 struct DepositOptions {
   std::filesystem::path polygon;
-  double threshold_m = 0.5;
+  double threshold = 0.5;  // [m]
 
   void describe(recipe::Visitor& v);
 };
 
 struct GridOptions {
-  double spacing_m = 0;       // 0 = the cell of the first DEM
-  double layer_height_m = 0;  // 0 = spacing
+  double spacing = 0;       // [m]; 0 = the cell of the first DEM
+  double layer_height = 0;  // [m]; 0 = spacing
   std::vector<int> points_per_cell{2, 2, 2};
-  double minimum_thickness_m = 0;
+  double minimum_thickness = 0;  // [m]
   double jitter = 0;
   int jitter_seed = 1;
-  std::optional<double> west_m, south_m, east_m, north_m;
+  std::optional<double> west, south, east, north;  // [m]
   EdgeNodata edge_nodata = EdgeNodata::refuse;
 
   void describe(recipe::Visitor& v);
@@ -116,7 +116,7 @@ enum class Spikes { ignore, report, remove };
 /// Holes in the elevation models, and cells that stand out of them.
 struct VoidOptions {
   bool fill = false;
-  double largest_m2 = 1e5;
+  double largest = 1e5;  // area [m2]
   Spikes spikes = Spikes::report;
 
   void describe(recipe::Visitor& v);
@@ -124,9 +124,9 @@ struct VoidOptions {
 
 /// A scene without elevation models: a level or tilted plane, its cells as wide as grid.spacing_m.
 struct LaboratoryOptions {
-  int columns = 0, rows = 0;  // 0 = no laboratory
-  double west_m = 0, south_m = 0;
-  double ground_m = 0;  // elevation of the south-western corner
+  int columns = 0, rows = 0;   // 0 = no laboratory
+  double west = 0, south = 0;  // [m]
+  double ground = 0;           // elevation of the south-western corner [m]
   double slope_x = 0, slope_y = 0;
 
   bool given() const { return columns > 0 || rows > 0; }
@@ -146,7 +146,7 @@ struct BedRasters {
 /// One [[preprocess.box]]: a block of material; heights count from the ground.
 struct BoxOptions {
   std::string name;
-  double west_m = 0, east_m = 0, south_m = 0, north_m = 0, bottom_m = 0, top_m = 0;
+  double west = 0, east = 0, south = 0, north = 0, bottom = 0, top = 0;  // [m]
 
   void describe(recipe::Visitor& v);
 };
@@ -156,8 +156,8 @@ struct ObstacleOptions {
   std::string name;
   std::filesystem::path polygons;
   std::string attribute = "height";
-  double height_m = 0;  // one height for all polygons; 0 = that of the attribute
-  double voxel_m = 0;   // 0 = a quarter of the smaller spacing
+  double height = 0;  // one height for all polygons [m]; 0 = that of the attribute
+  double voxel = 0;   // [m]; 0 = a quarter of the smaller spacing
 
   void describe(recipe::Visitor& v);
 };

@@ -58,8 +58,8 @@ Seeding seeding_of(const GridOptions& options, double spacing) {
   return {options.points_per_cell.at(0),
           options.points_per_cell.at(1),
           options.points_per_cell.at(2),
-          options.layer_height_m > 0 ? options.layer_height_m : spacing,
-          options.minimum_thickness_m,
+          options.layer_height > 0 ? options.layer_height : spacing,
+          options.minimum_thickness,
           options.jitter,
           static_cast<std::uint64_t>(options.jitter_seed)};
 }

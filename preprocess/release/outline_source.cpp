@@ -71,7 +71,7 @@ std::vector<DepthPoint> depth_points(const Raster& before, const Outline& outlin
     const double ground = value_at(before, read.x[i], read.y[i]);
     const double depth = are_depths ? read.z[i] : ground - read.z[i];
     if (depth > 0) {
-      points.push_back({read.x[i], read.y[i], depth, o.depth_points_error_m});
+      points.push_back({read.x[i], read.y[i], depth, o.depth_points_error});
     } else {
       faults.push_back(
           {fmt::format("{}, depth {:.2f} m", place, depth),
@@ -109,8 +109,8 @@ void report(const SlidingSurface& s, const Outline& outline) {
 SlidingSurface compute(const Raster& before, const Outline& outline, const SlidingSurfaceOptions& o,
                        const ReadOptions& how) {
   if (!o.depth_points.empty()) return surface_through(before, outline, depth_points(before, outline, o, how));
-  if (o.depth_m > 0) return surface_of_depth(before, outline, o.depth_m);
-  if (o.volume_m3 > 0) return surface_of_volume(before, outline, o.volume_m3);
+  if (o.depth > 0) return surface_of_depth(before, outline, o.depth);
+  if (o.volume > 0) return surface_of_volume(before, outline, o.volume);
   const double volume = volume_by_area(outline.area);
   log_warning(fmt::format(
       "sliding surface: NOTHING SAYS HOW DEEP IT LIES. Its volume is taken as {} m3, from the area of {} m2 by V = "

@@ -40,7 +40,7 @@ Raster from_raster(const ReleaseOptions& options, const MapGrid& grid) {
 }
 
 double thickness_of(const MapPolygon& polygon, std::size_t number, const ReleaseOptions& options) {
-  if (options.thickness_m > 0) return options.thickness_m;
+  if (options.thickness > 0) return options.thickness;
   const std::string place = fmt::format("{}: polygon {}", options.polygons.string(), number);
   std::string others;
   for (const auto& [name, value] : polygon.numbers) {

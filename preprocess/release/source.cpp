@@ -43,11 +43,11 @@ Raster lowering_of(const SurfacePair& s) {
 }
 
 std::size_t seed_cell(const MapGrid& grid, const SourceOptions& options) {
-  const double column = std::floor((*options.seed_x_m - grid.west) / grid.cell),
-               row = std::floor((*options.seed_y_m - grid.south) / grid.cell);
+  const double column = std::floor((*options.seed_x - grid.west) / grid.cell),
+               row = std::floor((*options.seed_y - grid.south) / grid.cell);
   if (column < 0 || row < 0 || column >= grid.columns || row >= grid.rows) {
     throw RecipeError(
-        Fault{fmt::format("[preprocess.source]: seed point x {:.1f}, y {:.1f}", *options.seed_x_m, *options.seed_y_m),
+        Fault{fmt::format("[preprocess.source]: seed point x {:.1f}, y {:.1f}", *options.seed_x, *options.seed_y),
               fmt::format("it lies outside the working grid, x {:.1f}..{:.1f}, y {:.1f}..{:.1f}", grid.west,
                           grid.east(), grid.south, grid.north()),
               "Give a point inside the source, in the CRS of the working grid"});
@@ -56,15 +56,15 @@ std::size_t seed_cell(const MapGrid& grid, const SourceOptions& options) {
 }
 
 const Region& chosen(const std::vector<Region>& regions, const Raster& lowering, const SourceOptions& options) {
-  if (!options.seed_x_m) return regions.front();
+  if (!options.seed_x) return regions.front();
   const std::size_t seed = seed_cell(lowering.grid, options);
   for (const Region& region : regions) {
     if (std::binary_search(region.cells.begin(), region.cells.end(), seed)) return region;
   }
   throw RecipeError(
-      Fault{fmt::format("[preprocess.source]: seed point x {:.1f}, y {:.1f}", *options.seed_x_m, *options.seed_y_m),
+      Fault{fmt::format("[preprocess.source]: seed point x {:.1f}, y {:.1f}", *options.seed_x, *options.seed_y),
             fmt::format("the lowering there is {:.3g} m, not more than threshold_m = {:g}", lowering.values[seed],
-                        options.threshold_m),
+                        options.threshold),
             fmt::format("The largest region, of {} m3, holds {}", grouped(regions.front().volume),
                         place_of(lowering.grid, regions.front().cells.front()))});
 }
@@ -104,12 +104,12 @@ void fill_pricks(const Raster& lowering, std::vector<double>& part) {
 std::vector<double> part_by_region(const SurfacePair& s, const SourceOptions& options) {
   const Raster all = lowering_of(s), lowering = detected(all, s.level);
   std::vector<Region> regions =
-      lowering_regions(lowering, s.is_sliding_surface ? std::min(rim, options.threshold_m) : options.threshold_m);
+      lowering_regions(lowering, s.is_sliding_surface ? std::min(rim, options.threshold) : options.threshold);
   std::erase_if(regions, [&](const Region& region) {
     return std::none_of(region.cells.begin(), region.cells.end(),
-                        [&](std::size_t c) { return lowering.values[c] > options.threshold_m; });
+                        [&](std::size_t c) { return lowering.values[c] > options.threshold; });
   });
-  if (regions.empty()) refuse_empty(s, lowering, options.threshold_m);
+  if (regions.empty()) refuse_empty(s, lowering, options.threshold);
   const Region& region = chosen(regions, lowering, options);
   std::vector<double> part(lowering.values.size(), 0.0);
   for (std::size_t cell : region.cells) part[cell] = 1.0;
@@ -120,7 +120,7 @@ std::vector<double> part_by_region(const SurfacePair& s, const SourceOptions& op
     const Region& next = &region == &regions[0] ? regions[1] : regions[0];
     log_info(fmt::format(
         "source: one of {} regions lowered by more than {:g} m; left out, the largest of the others has {} m3, at {}",
-        regions.size(), options.threshold_m, grouped(next.volume), place_of(lowering.grid, next.cells.front())));
+        regions.size(), options.threshold, grouped(next.volume), place_of(lowering.grid, next.cells.front())));
   }
   return part;
 }

@@ -296,7 +296,7 @@ Prepared prepare(const Options& given, Points points) {
   prepared.obstacles = upright_obstacles(options.obstacle, scene.bed, 2 * domain.layer_height);
   prepared.obstacle_voxel = obstacle_voxel(domain.grid.cell, domain.layer_height);
   for (const ObstacleOptions& o : options.obstacle) {
-    if (o.voxel_m > 0) prepared.obstacle_voxel = std::min(prepared.obstacle_voxel, o.voxel_m);
+    if (o.voxel > 0) prepared.obstacle_voxel = std::min(prepared.obstacle_voxel, o.voxel);
   }
   domain.terrain = std::move(scene.bed);
   domain.before = std::move(scene.before);

@@ -11,7 +11,7 @@ namespace talus::preprocess {
 
 /// What counts as stable ground.
 struct StableGround {
-  double steepest_deg = 45;         ///< steeper cells are left out: a small shift changes them much
+  double steepest = 45;             ///< [deg]; steeper cells are left out: a small shift changes them much
   double roughest = 3;              ///< left out where rougher than the median by so many NMAD
   std::vector<MapPolygon> outside;  ///< the slide and all else that changed
 };

@@ -147,7 +147,7 @@ void delineate(const Survey& survey, const SlideSurfaces& surfaces, const Deposi
   Change change{after, levels_of(survey, slide.sigma)};
   for (std::size_t i = 0; i < change.levels.size(); ++i) {
     change.rise.values[i] -= before.values[i];
-    change.levels[i] = std::max(change.levels[i], given.threshold_m);
+    change.levels[i] = std::max(change.levels[i], given.threshold);
   }
   const std::vector<char> moved = changed_beside(change, source),
                           deposit = deposit_cells(change, survey.deposit, moved, given.polygon);

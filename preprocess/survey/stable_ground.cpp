@@ -39,7 +39,7 @@ void find_stable(std::vector<Patch>& patches, const StableGround& limits) {
     }
   }
   const double rough = median(all) + limits.roughest * nmad(all);
-  const double steep = std::tan(limits.steepest_deg * std::numbers::pi / 180);
+  const double steep = std::tan(limits.steepest * std::numbers::pi / 180);
   for (std::size_t p = 0; p < patches.size(); ++p) {
     Patch& patch = patches[p];
     const std::vector<char> outside = cells_inside(limits.outside, patch.before.grid);

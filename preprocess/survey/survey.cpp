@@ -46,7 +46,7 @@ std::vector<MapPolygon> changed_ground(const Survey& s, const std::filesystem::p
 
 /// The overlap of both in cells of the first, whatever part of it and spacing the scene is computed with.
 MapGrid whole_overlap(const Elevation& before, const Elevation& after, const Options& options) {
-  const double spacing = before.scattered ? options.grid.spacing_m : 0;
+  const double spacing = before.scattered ? options.grid.spacing : 0;
   return working_grid({&before, &after}, {.crs = options.working_crs, .spacing = spacing});
 }
 
@@ -104,13 +104,13 @@ Survey compare_surveys(Elevation before, Elevation after, const Options& options
   s.after = std::move(after);
   s.grid = whole_overlap(s.before, s.after, options);
   read_outlines(s, options);
-  s.detection = {options.difference.threshold, options.difference.minimum_level_m,
+  s.detection = {options.difference.threshold, options.difference.minimum_level,
                  normal_quantile(options.difference.confidence)};
   const double given = options.difference.given_sigma();
   s.errors = ErrorModel::of(given);
   if (how.mode == Alignment::off && given > 0) return s;
   std::vector<Patch> patches = patches_of(s.before, s.after, s.grid);
-  find_stable(patches, {how.steepest_deg, 3, changed_ground(s, how.changed)});
+  find_stable(patches, {how.steepest, 3, changed_ground(s, how.changed)});
   s.fit = coregister(patches, how.tilt, s.after.file);
   if (!s.fit.known && how.mode == Alignment::apply) refuse_alignment(s, s.grid.count());
   s.applied = how.mode == Alignment::apply;

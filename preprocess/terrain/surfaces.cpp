@@ -84,7 +84,7 @@ void refuse_empty_cells(const Elevation& dem, const Raster& raster, const AlignR
   if (too_large)
     mend = fmt::format(
         "Raise largest_m2 = {:g} in [preprocess.voids] (the largest void has {} m2), or fill it beforehand {}",
-        request.voids.largest_m2, grouped(largest_void), beforehand);
+        request.voids.largest, grouped(largest_void), beforehand);
   if (edge == EdgeNodata::refuse) {
     mend +=
         "; or crop the working grid (west_m, south_m, east_m, north_m in [preprocess.grid]), or, where they reach its "
@@ -186,7 +186,7 @@ std::vector<Raster> align(const std::vector<const Elevation*>& dems, const Align
   for (std::size_t i = 0; i < dems.size(); ++i) {
     look_at_spikes(*dems[i], rasters[i], request.voids);
     if (!request.voids.fill) continue;
-    Filled result = fill(*dems[i], rasters[i], request.voids.largest_m2);
+    Filled result = fill(*dems[i], rasters[i], request.voids.largest);
     rasters[i] = result.raster;
     for (const VoidFill& v : result.voids) largest_void[i] = std::max(largest_void[i], v.filled ? 0.0 : v.area_m2);
     if (filled != nullptr) filled->push_back(std::move(result));

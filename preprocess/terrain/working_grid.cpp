@@ -107,11 +107,11 @@ std::array<Border, 4> borders(const MapGrid& grid, const std::vector<char>& empt
 GridRequest grid_request(const Options& options) {
   const GridOptions& g = options.grid;
   return {.crs = options.working_crs,
-          .spacing = g.spacing_m,
-          .west = g.west_m,
-          .south = g.south_m,
-          .east = g.east_m,
-          .north = g.north_m};
+          .spacing = g.spacing,
+          .west = g.west,
+          .south = g.south,
+          .east = g.east,
+          .north = g.north};
 }
 
 MapGrid working_grid(const std::vector<const Elevation*>& dems, const GridRequest& request) {

@@ -49,7 +49,7 @@ struct Scene {
     for (std::size_t i = 0; i < after.values.size(); ++i) after.values[i] += heap.values[i] - bowl.values[i];
     options.before_dem = write(scratch, "before.tif", before);
     options.after_dem = write(scratch, "after.tif", after);
-    options.source.threshold_m = 0;
+    options.source.threshold = 0;
   }
 
   /// The scene as base DEM and a release.

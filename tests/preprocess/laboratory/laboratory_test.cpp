@@ -11,7 +11,7 @@ using test::faults_of;
 
 Options bench() {
   Options o;
-  o.grid.spacing_m = 1;
+  o.grid.spacing = 1;
   o.grid.points_per_cell = {2, 2, 2};
   o.laboratory.columns = 12;
   o.laboratory.rows = 10;
@@ -55,26 +55,26 @@ TEST(laboratory, keeps_the_volume_of_every_box_whatever_its_place_and_the_spacin
   for (int trial = 0; trial < 30; ++trial) {
     Options o = bench();
     o.laboratory.columns = o.laboratory.rows = 40;
-    o.laboratory.west_m = 500000 * part(random);
-    o.laboratory.south_m = 5100000 * part(random);
-    o.grid.spacing_m = 0.01 + 3 * part(random);
-    o.grid.layer_height_m = 0.01 + 3 * part(random);
+    o.laboratory.west = 500000 * part(random);
+    o.laboratory.south = 5100000 * part(random);
+    o.grid.spacing = 0.01 + 3 * part(random);
+    o.grid.layer_height = 0.01 + 3 * part(random);
     o.grid.points_per_cell = {few(random), few(random), few(random)};
     o.box.clear();
     const auto& n = o.grid.points_per_cell;
     double low = 0;
     for (int b = 0; b < 3; ++b) {  // on one another
-      const double x = o.laboratory.west_m + (2 + 20 * part(random)) * o.grid.spacing_m;
-      const double y = o.laboratory.south_m + (2 + 20 * part(random)) * o.grid.spacing_m;
-      const double height = few(random) * o.grid.layer_height_m / n[2];
-      o.box.push_back({"", x, x + few(random) * o.grid.spacing_m / n[0], y, y + few(random) * o.grid.spacing_m / n[1],
-                       low, low + height});
+      const double x = o.laboratory.west + (2 + 20 * part(random)) * o.grid.spacing;
+      const double y = o.laboratory.south + (2 + 20 * part(random)) * o.grid.spacing;
+      const double height = few(random) * o.grid.layer_height / n[2];
+      o.box.push_back({"", x, x + few(random) * o.grid.spacing / n[0], y, y + few(random) * o.grid.spacing / n[1], low,
+                       low + height});
       low += height;
     }
     const Prepared made = prepared(o);
     for (int b = 0; b < 3; ++b) {
       const BoxOptions& box = o.box[static_cast<std::size_t>(b)];
-      const double volume = (box.east_m - box.west_m) * (box.north_m - box.south_m) * (box.top_m - box.bottom_m);
+      const double volume = (box.east - box.west) * (box.north - box.south) * (box.top - box.bottom);
       EXPECT_NEAR(volume_of(made.domain.points, b) / volume, 1, 1e-12);
       EXPECT_NEAR(made.by_release[static_cast<std::size_t>(b)].second.volume / volume, 1, 1e-6);
     }
@@ -83,7 +83,7 @@ TEST(laboratory, keeps_the_volume_of_every_box_whatever_its_place_and_the_spacin
 
 TEST(laboratory, tilts_its_ground_and_counts_heights_from_it) {
   Options o = bench();
-  o.laboratory.ground_m = 100;
+  o.laboratory.ground = 100;
   o.laboratory.slope_x = -0.5;
   o.laboratory.slope_y = 0.25;
   const Domain domain = prepared(o).domain;
@@ -125,7 +125,7 @@ TEST(laboratory, counts_what_it_would_seed_and_jitters_inside_the_spacing) {
 
 TEST(laboratory, refuses_a_box_that_the_points_would_not_fill) {
   Options o = bench();
-  o.box[0].east_m = 6.7;
+  o.box[0].east = 6.7;
   EXPECT_EQ(
       faults_of(o),
       "[preprocess]: box 1: west_m to east_m is 3.2 m (it is no multiple of the points' spacing of 0.5 m, so that they "
@@ -134,11 +134,11 @@ TEST(laboratory, refuses_a_box_that_the_points_would_not_fill) {
 
 TEST(laboratory, refuses_boxes_without_extent_outside_the_grid_or_inside_one_another) {
   Options o = bench();
-  o.box[0].top_m = 0;
+  o.box[0].top = 0;
   EXPECT_EQ(faults_of(o),
             "[preprocess]: box 1: bottom_m = 0, top_m = 0 (the box has no extent). top_m must be the larger\n");
   o = bench();
-  o.box[0].west_m = 0.5;
+  o.box[0].west = 0.5;
   EXPECT_EQ(
       faults_of(o),
       "[preprocess]: box 1: west_m = 0.5, east_m = 6.5 (the grid reaches from 0 to 12 m, and points need an open cell "
@@ -159,8 +159,8 @@ TEST(laboratory, refuses_what_belongs_to_the_other_ways) {
   o.base_dem = "dem.tif";
   o.release.resize(1);
   o.working_crs = "EPSG:2056";
-  o.grid.east_m = 9;
-  o.grid.minimum_thickness_m = 1;
+  o.grid.east = 9;
+  o.grid.minimum_thickness = 1;
   const std::string mend = "Leave it out, or give elevation models instead of [preprocess.laboratory]\n";
   EXPECT_EQ(
       faults_of(o),
@@ -177,7 +177,7 @@ TEST(laboratory, refuses_what_belongs_to_the_other_ways) {
 TEST(laboratory, refuses_half_a_laboratory) {
   Options o = bench();
   o.laboratory.rows = 0;
-  o.grid.spacing_m = 0;
+  o.grid.spacing = 0;
   EXPECT_EQ(
       faults_of(o),
       "[preprocess]: laboratory.columns = 12, rows = 0 (both must be positive). Give the number of cells along x and "

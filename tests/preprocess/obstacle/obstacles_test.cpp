@@ -25,7 +25,7 @@ TEST(Obstacles, stand_on_their_polygons_with_holes_and_follow_the_ground) {
   const test::Scratch scratch;
   ObstacleOptions o;
   o.name = "house";
-  o.height_m = 6;
+  o.height = 6;
   o.polygons = test::write_polygon(scratch, "house.csv",
                                    "POLYGON((1020 2020,1040 2020,1040 2030,1020 2030,1020 2020),(1025 2023,1035 "
                                    "2023,1035 2027,1025 2027,1025 2023))");
@@ -53,7 +53,7 @@ TEST(Obstacles, need_a_height_and_ground_under_them) {
   o.polygons = test::write_polygon(scratch, "house.csv", "POLYGON((1020 2020,1040 2020,1040 2030,1020 2020))");
   EXPECT_NE(test::fault_of<DataError>([&] { stood(scratch, o); }).find("has no positive number \"height\""),
             std::string::npos);
-  o.height_m = 6;
+  o.height = 6;
   o.polygons = test::write_polygon(scratch, "off.csv", "POLYGON((900 2020,1040 2020,1040 2030,900 2020))");
   EXPECT_NE(test::fault_of<DataError>([&] { stood(scratch, o); }).find("where there is no ground"), std::string::npos);
 }

@@ -33,7 +33,7 @@ TEST(options, know_their_ways) {
   EXPECT_EQ(faults_of(base), "");
   EXPECT_EQ(base.way(), Way::base_and_releases);
   Options laboratory;
-  laboratory.grid.spacing_m = 1;
+  laboratory.grid.spacing = 1;
   laboratory.laboratory.columns = laboratory.laboratory.rows = 8;
   laboratory.box.push_back({"", 3, 5, 3, 5, 0, 1});
   EXPECT_EQ(faults_of(laboratory), "");
@@ -64,8 +64,8 @@ TEST(options, refuse_no_way_and_two_ways) {
 
 TEST(options, refuse_spacings_that_are_not_positive) {
   Options options = before_and_after();
-  options.grid.spacing_m = -10;
-  options.grid.layer_height_m = -2;
+  options.grid.spacing = -10;
+  options.grid.layer_height = -2;
   EXPECT_EQ(faults_of(options),
             "[preprocess]: grid.spacing_m = -10 (it must be positive). Give a length in metres, or 0 for the cell of "
             "the first DEM\n"
@@ -95,7 +95,7 @@ TEST(options, report_all_faults_of_the_releases) {
   options.release[0].name = options.release[1].name = "A";
   options.release[1].thickness_raster = options.release[1].polygons = "x";
   options.release[2].thickness_raster = "x";
-  options.release[2].thickness_m = 3;
+  options.release[2].thickness = 3;
   EXPECT_EQ(faults_of(options),
             "[preprocess]: release 1: neither thickness_raster nor polygons is given (a release is one or the other). "
             "Give one; several "
@@ -114,8 +114,8 @@ TEST(options, read_what_they_write) {
   options.after_dem = "/data/after.tif";
   options.grid.points_per_cell = {3, 2, 1};
   options.grid.edge_nodata = EdgeNodata::outside;
-  options.source.seed_x_m = 5;
-  options.source.seed_y_m = 7;
+  options.source.seed_x = 5;
+  options.source.seed_y = 7;
   test::expect_read_as_written(options);
 }
 

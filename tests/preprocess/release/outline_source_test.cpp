@@ -26,7 +26,7 @@ constexpr double outline_area = 16318.5;  // of that rectangle, by its corners [
 TEST(outline_source, releases_the_volume_asked_for) {
   TALUS_SEEDED(seed);
   OutlineScene scene(seed);
-  scene.surface().volume_m3 = 2e5;
+  scene.surface().volume = 2e5;
   const Prepared prepared = scene.prepare();
   EXPECT_NEAR(prepared.total.volume, 2e5, 1e-4);
   EXPECT_NEAR(volume_of_points(prepared), 2e5, 1e-4);
@@ -40,7 +40,7 @@ TEST(outline_source, releases_the_volume_asked_for) {
 
 TEST(outline_source, lies_as_deep_as_asked_for) {
   OutlineScene scene;
-  scene.surface().depth_m = 25;
+  scene.surface().depth = 25;
   const Prepared prepared = scene.prepare();
   EXPECT_NEAR(prepared.sliding_surface->depth, 25, 1e-9);
   EXPECT_NEAR(prepared.total.max_vertical, 25, 1e-9);  // the deepest cell lies wholly inside
@@ -48,7 +48,7 @@ TEST(outline_source, lies_as_deep_as_asked_for) {
 
 TEST(outline_source, given_back_as_sliding_surface_is_the_same_source) {
   OutlineScene scene;
-  scene.surface().depth_m = 25;
+  scene.surface().depth = 25;
   const Prepared computed = scene.prepare();
   scene.surface() = {};
   scene.options.sliding_surface = write(scene.scratch, "sliding_surface.tif", computed.sliding_surface->surface);
@@ -192,7 +192,7 @@ TEST(outline_source, refuses_depth_points_outside_and_above_the_ground_all_at_on
 
 TEST(outline_source, refuses_outlines_that_cross_themselves_or_lie_outside_or_hold_no_cell) {
   OutlineScene scene;
-  scene.surface().depth_m = 10;
+  scene.surface().depth = 10;
   scene.outline("POLYGON((500063 5100127, 500193 5100231, 500193 5100127, 500063 5100231, 500063 5100127))");
   EXPECT_NE(scene.data_fault().find("outline.csv"), std::string::npos);
   scene.outline("POLYGON((400063 5100127, 400193 5100109, 400214 5100231, 400063 5100127))");
@@ -207,7 +207,7 @@ TEST(outline_source, refuses_outlines_that_cross_themselves_or_lie_outside_or_ho
 
 TEST(outline_source, refuses_ground_without_elevation_within) {
   OutlineScene scene;
-  scene.surface().depth_m = 10;
+  scene.surface().depth = 10;
   scene.options.grid.edge_nodata = EdgeNodata::outside;
   Raster holed = scene.before;
   for (int row = 10; row < 20; ++row) {
@@ -220,14 +220,14 @@ TEST(outline_source, refuses_ground_without_elevation_within) {
 TEST(outline_source, is_one_way_of_its_own) {
   OutlineScene scene;
   EXPECT_EQ(scene.options.way(), Way::before_and_outline);
-  scene.surface().depth_m = 10;
-  scene.surface().volume_m3 = 10;
+  scene.surface().depth = 10;
+  scene.surface().volume = 10;
   EXPECT_NE(scene.recipe_fault().find("more than one of depth_m, volume_m3 and depth_points is given"),
             std::string::npos);
-  scene.surface().volume_m3 = 0;
-  scene.surface().depth_points_error_m = 1;
+  scene.surface().volume = 0;
+  scene.surface().depth_points_error = 1;
   EXPECT_NE(scene.recipe_fault().find("without depth_points"), std::string::npos);
-  scene.surface().depth_points_error_m = 0;
+  scene.surface().depth_points_error = 0;
   scene.options.after_dem = scene.scratch / "after.tif";
   EXPECT_NE(scene.recipe_fault().find("source.sliding_surface is given, but not before_dem and source.polygon alone"),
             std::string::npos);

@@ -45,7 +45,7 @@ TEST(prepare, slides_on_the_sliding_surface_and_follows_it_to_its_rim) {
   }
   scene.options.sliding_surface = test::write(scene.scratch, "surface.tif", surface);
   scene.options.after_dem.clear();
-  scene.options.source.threshold_m = 5;  // only says which region: its rim is thinner
+  scene.options.source.threshold = 5;  // only says which region: its rim is thinner
   const Prepared prepared = scene.prepare();
   EXPECT_NEAR(prepared.total.volume / test::volume_of(scene.bowl), 1, 1e-6);  // less what is thinner than 1 mm
   EXPECT_NEAR(volume_of_points(prepared) / prepared.total.volume, 1, 1e-12);
@@ -71,8 +71,8 @@ TEST(prepare, takes_the_region_that_holds_the_seed_point) {
   after.at(35, 3) -= 3;  // a small region beside the large one
   scene.rewrite_after(after);
   EXPECT_GT(scene.prepare().total.volume, 1e4);
-  scene.options.source.seed_x_m = scene.grid.x(35);
-  scene.options.source.seed_y_m = scene.grid.y(3);
+  scene.options.source.seed_x = scene.grid.x(35);
+  scene.options.source.seed_y = scene.grid.y(3);
   EXPECT_NEAR(scene.prepare().total.volume, 300, 1e-6);
 }
 
@@ -112,7 +112,7 @@ TEST(prepare, gives_polygons_their_area_times_thickness) {
                                  x + 33, y + 41, x + 133, y + 141, x + 201, y + 50, x + 222, y + 77));
   const double expected = 2.5 * 100 * 100 / 2 + 4 * 21 * 27;
   EXPECT_NEAR(scene.prepare().total.volume / expected, 1, 1e-12);
-  release.thickness_m = 1;
+  release.thickness = 1;
   EXPECT_NEAR(scene.prepare().total.volume / (100 * 100 / 2 + 21 * 27), 1, 1e-12);
 }
 
@@ -219,7 +219,7 @@ TEST(prepare, keeps_the_volume_of_a_release_on_another_grid) {
                                        other.grid.south + 20 + 50 * part(random));
     const Raster thickness = test::raster_of(grid, [&](double, double) { return 5 * part(random); });
     other.as_release().thickness_raster = test::write(other.scratch, "release.tif", thickness);
-    other.options.grid.spacing_m = trial % 2 ? 7.3 : 0;
+    other.options.grid.spacing = trial % 2 ? 7.3 : 0;
     const Prepared prepared = other.prepare();
     EXPECT_NEAR(prepared.total.volume / test::volume_of(thickness), 1, 1e-9);
     EXPECT_NEAR(volume_of_points(prepared) / prepared.total.volume, 1, 1e-12);

@@ -136,7 +136,7 @@ TEST(real_terrain, cascades_source_is_found_from_the_two_models) {
   Options options;
   options.before_dem = folder / "before_dem.tif";
   options.after_dem = folder / "after_dem.tif";
-  options.grid.layer_height_m = 2.5;
+  options.grid.layer_height = 2.5;
   const Prepared prepared = prepare(options, Points::seeded);
   EXPECT_EQ(crs_name(prepared.domain.grid.crs_wkt), "EPSG:32149");
   EXPECT_EQ(prepared.domain.grid.columns, 79);  // the last column of the files is nodata
@@ -164,7 +164,7 @@ TEST(real_terrain, iseesnow_release_is_slope_normal) {
   options.release.resize(1);
   options.release[0].polygons = folder / "release1HS.shp";
   options.release[0].direction = Direction::slope_normal;
-  options.grid.layer_height_m = 1;
+  options.grid.layer_height = 1;
   const Prepared prepared = prepare(options, Points::seeded);
   const double area = (1343.51219370255 - 1047.0) * (4319.89911293384 - 4180.10088706616);  // of the polygon [m2]
   EXPECT_NEAR(prepared.total.max_normal, 1.5, 1e-3);

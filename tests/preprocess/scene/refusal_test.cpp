@@ -219,7 +219,7 @@ TEST(refusal, voids_are_filled_on_request_up_to_a_size) {
       std::string::npos)
       << log;
   EXPECT_GT(prepared.total.volume, 0);
-  scene.options.voids.largest_m2 = 700;
+  scene.options.voids.largest = 700;
   const std::string file = scene.path("after.tif");
   const std::string text = scene.data_fault();
   EXPECT_EQ(
@@ -256,7 +256,7 @@ TEST(refusal, spikes_are_reported_and_removed_on_request) {
 TEST(refusal, empty_source) {
   Scene scene;
   scene.rewrite_after(scene.before);
-  scene.options.source.threshold_m = 0.5;
+  scene.options.source.threshold = 0.5;
   EXPECT_EQ(scene.data_fault(), scene.path("after.tif") +
                                     ": nowhere lies more than 0.5 m below the surface before (at most 0 m) (the "
                                     "source is empty). Lower threshold_m in [preprocess.source], or give its "
@@ -283,12 +283,12 @@ TEST(refusal, polygon_without_lowering) {
 
 TEST(refusal, seed_point_outside_any_region) {
   Scene scene;
-  scene.options.source.threshold_m = 0.5;
-  scene.options.source.seed_x_m = scene.grid.x(38);
-  scene.options.source.seed_y_m = scene.grid.y(1);
+  scene.options.source.threshold = 0.5;
+  scene.options.source.seed_x = scene.grid.x(38);
+  scene.options.source.seed_y = scene.grid.y(1);
   const std::string text = scene.recipe_fault();
   EXPECT_EQ(text.find("[preprocess.source]: seed point x 500385.0, y 5100015.0 (the lowering there is "), 0u) << text;
-  scene.options.source.seed_x_m = 0;
+  scene.options.source.seed_x = 0;
   EXPECT_EQ(
       scene.recipe_fault(),
       "[preprocess.source]: seed point x 0.0, y 5100015.0 (it lies outside the working grid, x "
@@ -339,7 +339,7 @@ TEST(refusal, polygon_of_negative_thickness) {
 TEST(refusal, polygon_beyond_the_model) {
   Scene scene;
   ReleaseOptions& release = scene.as_release();
-  release.thickness_m = 2;
+  release.thickness = 2;
   release.polygons = test::write_polygon(scene.scratch, "release.csv",
                                          "POLYGON((499900 5100100,500200 5100100,500200 5100200,499900 5100100))");
   EXPECT_EQ(scene.data_fault(), scene.path("release.csv") +
@@ -382,7 +382,7 @@ TEST(refusal, hole_in_a_sliding_surface) {
 
 TEST(refusal, crop_that_leaves_nothing) {
   Scene scene;
-  scene.options.grid.west_m = 600000;
+  scene.options.grid.west = 600000;
   EXPECT_EQ(
       scene.data_fault(),
       "the DEMs overlap in x 500000..500400, y 5100000..5100300, which holds no cell of 10 m inside the crop (the "
@@ -391,7 +391,7 @@ TEST(refusal, crop_that_leaves_nothing) {
 
 TEST(refusal, more_points_than_can_be_numbered) {
   Scene scene;
-  scene.options.grid.layer_height_m = 1e-6;
+  scene.options.grid.layer_height = 1e-6;
   scene.options.grid.points_per_cell = {64, 64, 64};
   EXPECT_NE(scene.recipe_fault().find(
                 "material points (points are numbered in 32 bits). Take a larger layer_height_m or spacing_m, or "

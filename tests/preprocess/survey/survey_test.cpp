@@ -71,8 +71,8 @@ TEST(survey, warns_and_leaves_the_later_model_where_it_is_unless_told) {
   EXPECT_FALSE(survey.after.placement.given());
   EXPECT_TRUE(survey.fit.known);
   options.coregistration.mode = Alignment::off;
-  options.difference.before_sigma_m = 0.3;
-  options.difference.after_sigma_m = 0.4;
+  options.difference.before_sigma = 0.3;
+  options.difference.after_sigma = 0.4;
   const Survey given = survey_of(options);
   EXPECT_FALSE(given.fit.known);
   EXPECT_DOUBLE_EQ(given.errors.sigma(0.7), 0.5);

@@ -24,7 +24,7 @@ TEST(align, takes_the_common_part_of_two_extents) {
 
 TEST(align, keeps_the_corner_of_the_first_model_at_another_spacing) {
   Scene scene;
-  scene.options.grid.spacing_m = 15;
+  scene.options.grid.spacing = 15;
   const Domain domain = scene.prepare().domain;
   EXPECT_EQ(domain.grid.columns, 26);  // 400 m hold 26 whole cells of 15 m
   EXPECT_EQ(domain.grid.rows, 20);
@@ -71,8 +71,8 @@ TEST(align, does_not_average_over_a_void) {
 
 TEST(align, crops_to_whole_cells_inside_the_given_edges) {
   Scene scene;
-  scene.options.grid.west_m = scene.grid.west + 55;
-  scene.options.grid.north_m = scene.grid.south + 248;
+  scene.options.grid.west = scene.grid.west + 55;
+  scene.options.grid.north = scene.grid.south + 248;
   const MapGrid grid = scene.prepare().domain.grid;
   EXPECT_DOUBLE_EQ(grid.west, scene.grid.west + 60);
   EXPECT_DOUBLE_EQ(grid.north(), scene.grid.south + 240);
@@ -99,7 +99,7 @@ TEST(align, brings_a_model_from_another_crs) {
   scene.rewrite_after(test::raster_of(there, [&](double x, double y) {
     return 100 - 10 * std::exp(-(std::pow(x - x0, 2) + std::pow(y - y0, 2)) / 1600);
   }));
-  scene.options.source.threshold_m = 0.01;
+  scene.options.source.threshold = 0.01;
   const Prepared prepared = scene.prepare();
   EXPECT_TRUE(same_crs(prepared.domain.grid.crs_wkt, before.grid.crs_wkt));
   EXPECT_EQ(prepared.domain.grid.columns, 40);
@@ -121,8 +121,8 @@ TEST(align, works_in_another_crs_than_the_models) {
   scene.rewrite_after(after);
   const double volume = scene.prepare().total.volume;
   scene.options.working_crs = "EPSG:32632";
-  scene.options.source.threshold_m = 0.05;  // bilinear rounding lowers a little everywhere
-  scene.options.grid.spacing_m = 5;
+  scene.options.source.threshold = 0.05;  // bilinear rounding lowers a little everywhere
+  scene.options.grid.spacing = 5;
   const Prepared prepared = scene.prepare();
   EXPECT_TRUE(same_crs(prepared.domain.grid.crs_wkt, metric_crs("EPSG:32632")));
   EXPECT_NEAR(prepared.total.volume / volume, 1, 0.02);  // areas differ by 0.4 %, the rest is bilinear
@@ -144,7 +144,7 @@ TEST(align, triangulates_a_model_of_points) {
   }
   scene.options.before_dem = scene.scratch.write("before.csv", text);
   scene.rewrite_after(test::raster_of(scene.grid, [&](double x, double y) { return plane(x, y) - 2; }));
-  scene.options.grid.spacing_m = 8;
+  scene.options.grid.spacing = 8;
   const Prepared prepared = scene.prepare();
   EXPECT_GT(prepared.domain.grid.count(), 900u);  // of 50 x 37: the border is ragged
   for (double t : prepared.domain.before.values) ASSERT_FALSE(std::isnan(t));

@@ -26,7 +26,7 @@ struct InDegrees {
     write("after.tif", depth, metres);
     options.before_dem = scratch / "before.tif";
     options.after_dem = scratch / "after.tif";
-    options.grid.layer_height_m = 5;
+    options.grid.layer_height = 5;
   }
   double volume() const { return 0.5 * M_PI * radius * radius * depth; }  // of a paraboloid
 

@@ -70,18 +70,18 @@ TEST(Settings, steps_transfer_and_gravity_are_those_of_the_recipe) {
   EXPECT_EQ(s.gravity.ramp, 3);
 }
 
-TEST(Settings, particles_get_the_fields_that_scheme_materials_and_loads_need) {
+TEST(Settings, scheme_materials_and_loads_need_fields_of_the_particles) {
   SolveOptions o;
-  const ParticleFields plain = make_settings(o, grid).common.fields;
-  EXPECT_TRUE(plain.affine);
-  EXPECT_FALSE(plain.plastic_volume || plain.extent || plain.load || plain.material || plain.plastic_shear);
+  const ParticleNeeds plain = make_settings(o, grid).common.needs;
+  EXPECT_TRUE(plain.affine_transfer);
+  EXPECT_FALSE(plain.plastic_volume || plain.boxes || plain.loads || plain.several_materials || plain.softening);
   o.shape = ShapeKind::gimp;
   o.loads.emplace_back();
   o.parts.emplace_back();
   o.parts[0].material.softening_slip = 1;
   o.material.dilatancy_angle = 5;
-  const ParticleFields all = make_settings(o, grid).common.fields;
-  EXPECT_TRUE(all.plastic_volume && all.extent && all.load && all.material && all.plastic_shear);
+  const ParticleNeeds all = make_settings(o, grid).common.needs;
+  EXPECT_TRUE(all.plastic_volume && all.boxes && all.loads && all.several_materials && all.softening);
 }
 
 TEST(Settings, the_precisions_of_a_material_are_those_of_its_options) {
@@ -104,11 +104,10 @@ TEST(Settings, gravity_loading_holds_what_yields_and_keeps_the_walls_of_the_star
   EXPECT_FALSE(s.implicit.dynamic);
   EXPECT_EQ(s.implicit.step, 0.125);
   EXPECT_EQ(s.implicit.newton.iterations, 20);
-  EXPECT_EQ(s.implicit.gravity_ramp, 1);
   EXPECT_EQ(s.common.gravity.ramp, 1);
   EXPECT_EQ(s.common.materials.in_double.list[0].model, MaterialModel::hencky);
   EXPECT_EQ(s.common.materials.in_single.list[0].model, MaterialModel::hencky);
-  EXPECT_FALSE(s.common.fields.plastic_volume);
+  EXPECT_FALSE(s.common.needs.plastic_volume);
   EXPECT_EQ(s.common.bed.law, FrictionLaw::stick);
   EXPECT_FALSE(s.common.bed.has_traction());
   ASSERT_EQ(s.common.walls.size(), 1U);
