@@ -75,6 +75,9 @@ RunFrames read_frames(const h5::File& file, const MapGrid& grid) {
 RunSummary read_summary(const h5::File& file) {
   RunSummary summary;
   for (const auto& item : run_layout::summary_texts) summary.*(item.value) = file.text("/", item.name);
+  for (const auto& item : run_layout::summary_laws) {
+    if (file.has_attribute("/", item.name)) summary.*(item.value) = file.text("/", item.name);
+  }
   for (const auto& item : run_layout::summary_integers) summary.*(item.value) = file.integer("/", item.name);
   for (const auto& item : run_layout::summary_numbers) summary.*(item.value) = file.number("/", item.name);
   for (const auto& phase : file.children("/profile")) {

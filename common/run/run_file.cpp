@@ -55,6 +55,7 @@ void write_maps(h5::File& file, const RunMaps& maps) {
 
 void write_summary(h5::File& file, const RunSummary& summary) {
   for (const auto& item : run_layout::summary_texts) file.set_text("/", item.name, summary.*(item.value));
+  for (const auto& item : run_layout::summary_laws) file.set_text("/", item.name, summary.*(item.value));
   for (const auto& item : run_layout::summary_integers) file.set_integer("/", item.name, summary.*(item.value));
   for (const auto& item : run_layout::summary_numbers) file.set_number("/", item.name, summary.*(item.value));
   file.make_group("/profile");

@@ -41,6 +41,7 @@ struct RunHistory {
 /// One number or word each; names as in score.json where they meet.
 struct RunSummary {
   std::string scene, title, on, precision, version, stop_reason;
+  std::string material, bed;  // their laws in words: "It is ...", "at its bed acts ..."; empty in older files
   std::int64_t particles = 0, particles_outflow = 0, steps = 0;
   double time_end = 0;                                    // [s]
   double wall_time = 0;                                   // step loop [s]

@@ -23,6 +23,9 @@ inline constexpr SummaryItem<std::string> summary_texts[] = {
     {"scene", &RunSummary::scene},         {"title", &RunSummary::title},     {"on", &RunSummary::on},
     {"precision", &RunSummary::precision}, {"version", &RunSummary::version}, {"stop_reason", &RunSummary::stop_reason},
 };
+/// Words that files of earlier versions lack.
+inline constexpr SummaryItem<std::string> summary_laws[] = {{"material", &RunSummary::material},
+                                                            {"bed", &RunSummary::bed}};
 inline constexpr SummaryItem<std::int64_t> summary_integers[] = {{"particles", &RunSummary::particles},
                                                                  {"particles_outflow", &RunSummary::particles_outflow},
                                                                  {"steps", &RunSummary::steps}};

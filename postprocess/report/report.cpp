@@ -30,6 +30,8 @@ Json run_json(const ReportInput& input) {
                         {"deposit", options.deposit_threshold},
                         {"map", input.run.maps.threshold}};
   json["density"] = s.density;
+  json["material"] = s.material;
+  json["bed"] = s.bed;
   json["survey"] = nullptr;
   if (const auto& survey = input.survey)
     json["survey"] = {{"name", survey->name},

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/domain/bed_numbers.hpp"
 #include "common/recipe/recipe.hpp"
 
 namespace talus::preprocess {
@@ -135,11 +136,11 @@ struct LaboratoryOptions {
 
 /// Rasters of the bed's friction, under the names of the numbers in [solve.base] that they take the place of.
 struct BedRasters {
-  std::vector<std::pair<std::string, std::filesystem::path>> files{
-      {"friction_angle_deg", {}},       {"peak_coefficient", {}}, {"steady_coefficient", {}},
-      {"characteristic_speed_m_s", {}}, {"turbulence_m_s2", {}},  {"cohesion_Pa", {}},
-      {"pore_pressure_ratio", {}}};
+  std::vector<std::pair<std::string, std::filesystem::path>> files;
 
+  BedRasters() {
+    for (const std::string_view key : bed_numbers) files.emplace_back(key, std::filesystem::path());
+  }
   void describe(recipe::Visitor& v);
 };
 

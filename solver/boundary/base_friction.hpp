@@ -1,44 +1,57 @@
 // The bed: unilateral contact and friction of a base node.
 #pragma once
 
-#include "solver/parallel/math.hpp"
+#include "solver/boundary/law.hpp"
 
 namespace talus {
 
-enum class FrictionLaw { none, coulomb, velocity_weakening, voellmy, stick };
-
-/// What a law needs to know of the bed at one place.
-template <class Real>
+/// What the laws need to know of the bed at one place: the chosen law's numbers, in its order, and what acts with every
+/// law that rubs.
+template <class Real, class Laws = FrictionLaws>
 struct Bed {
-  Real coefficient = 0;           // mu; velocity-weakening: steady state mu_s
-  Real peak = 0;                  // velocity-weakening: mu_p
-  Real characteristic_speed = 1;  // velocity-weakening: v_c [m/s]
-  Real drag = 0;                  // voellmy: rho g / xi [Pa s2/m2]
-  Real cohesion = 0;              // traction besides friction, wherever the mass touches [Pa]
+  Real numbers[most_numbers<Laws>] = {};
+  Real cohesion = 0;  // traction besides friction, wherever the mass touches [Pa]
+
+  /// The same in another precision.
+  template <class To>
+  Bed<To, Laws> as() const {
+    Bed<To, Laws> bed;
+    for (int n = 0; n < most_numbers<Laws>; ++n) bed.numbers[n] = static_cast<To>(numbers[n]);
+    bed.cohesion = static_cast<To>(cohesion);
+    return bed;
+  }
 };
 
 /// Friction on the bed: a law and its numbers, the same everywhere or a set for every column.
-template <class Real>
+template <class Real, class Laws = FrictionLaws>
 struct BaseFriction {
-  FrictionLaw law = FrictionLaw::coulomb;
-  Bed<Real> uniform;
-  const Bed<Real>* columns = nullptr;  // null: uniform
+  FrictionLaw law = static_cast<FrictionLaw>(0);
+  Bed<Real, Laws> uniform;
+  const Bed<Real, Laws>* columns = nullptr;  // null: uniform
 
-  TALUS_HD const Bed<Real>& at(int column) const { return columns ? columns[column] : uniform; }
+  TALUS_HD const Bed<Real, Laws>& at(int column) const { return columns ? columns[column] : uniform; }
 
-  /// Friction coefficient at slip speed v: mu_s + (mu_p - mu_s) / (1 + v / v_c) (Lucas, Mangeney & Ampuero 2014).
-  TALUS_HD Real coefficient(const Bed<Real>& bed, Real speed) const {
-    if (law == FrictionLaw::coulomb || law == FrictionLaw::voellmy) return bed.coefficient;
-    if (law == FrictionLaw::velocity_weakening) {
-      return bed.coefficient + (bed.peak - bed.coefficient) / (Real(1) + speed / bed.characteristic_speed);
-    }
-    return Real(0);
+  /// Friction over normal stress for a slip (T13).
+  TALUS_HD Real coefficient(const Bed<Real, Laws>& bed, const Slip<Real>& slip) const {
+    return visit_law<Laws>(law, [&](auto own) { return own.coefficient(bed.numbers, slip); });
   }
-  /// Traction that does not depend on the normal stress, at slip speed v [Pa]: cohesion, and rho g v^2 / xi (Voellmy
-  /// 1955).
-  TALUS_HD static Real traction(const Bed<Real>& bed, Real speed) { return bed.cohesion + bed.drag * speed * speed; }
-  /// Whether there is any; else nobody needs the area on which it acts.
-  TALUS_HD bool has_traction() const { return columns || uniform.cohesion > Real(0) || uniform.drag > Real(0); }
+  /// Traction that is no share of the normal stress [Pa]: cohesion, and the law's drag (T13a).
+  TALUS_HD Real traction(const Bed<Real, Laws>& bed, const Slip<Real>& slip) const {
+    return visit_law<Laws>(law, [&](auto own) { return bed.cohesion + own.drag(bed.numbers, slip); });
+  }
+  /// Whether there is any.
+  TALUS_HD bool has_traction() const {
+    return columns || uniform.cohesion > Real(0) ||
+           visit_law<Laws>(law, [&](auto own) { return own.drags(uniform.numbers); });
+  }
+  /// Whether the area matters on which the mass lies; else nobody needs it.
+  TALUS_HD bool needs_area() const {
+    return has_traction() || visit_law<Laws>(law, [](auto own) { return decltype(own)::asks_pressure; });
+  }
+  /// Whether what presses on the bed does not slip at all.
+  TALUS_HD bool holds() const {
+    return visit_law<Laws>(law, [](auto own) { return decltype(own)::holds; });
+  }
 };
 
 /// Bed that the mass of a base node lies on, along the slope [m2]: that of its column, as far as the mass makes up a
@@ -61,17 +74,23 @@ TALUS_HD Vec3<Real> meet_surface(const Vec3<Real>& v, const Vec3<Real>& normal, 
   return loss < speed ? slip * (Real(1) - loss / speed) : Vec3<Real>{};
 }
 
-/// Velocity of a base node after contact with ground of slopes (sx, sy). `grip` is the time over the node's mass per
-/// area of bed [m2 s/kg].
+/// The step of a base node on its bed.
 template <class Real>
-TALUS_HD Vec3<Real> meet_ground(const BaseFriction<Real>& friction, const Bed<Real>& bed, const Vec3<Real>& v, Real sx,
-                                Real sy, Real grip = Real(0)) {
+struct BedStep {
+  Real duration;   // [s]
+  Real grip = {};  // duration over the node's mass per area of bed [m2 s/kg]; 0 where the law needs no area
+};
+
+/// Velocity of a base node after contact with ground of slopes (sx, sy) (T12, T13a).
+template <class Real, class Laws>
+TALUS_HD Vec3<Real> meet_ground(const BaseFriction<Real, Laws>& friction, const Bed<Real, Laws>& bed,
+                                const Vec3<Real>& v, Real sx, Real sy, const BedStep<Real>& step) {
   const Real scale = Real(1) / sqrt(Real(1) + sx * sx + sy * sy);
   const Vec3<Real> normal{-sx * scale, -sy * scale, scale};
   const Real along = dot(v, normal);
-  if (friction.law == FrictionLaw::stick) return along < Real(0) ? Vec3<Real>{} : v;
-  const Real slip = length(v - normal * along);
-  return meet_surface(v, normal, friction.coefficient(bed, slip), friction.traction(bed, slip) * grip);
+  if (friction.holds()) return along < Real(0) ? Vec3<Real>{} : v;
+  const Slip<Real> slip{length(v - normal * along), step.grip > Real(0) ? -along / step.grip : Real(0), step.duration};
+  return meet_surface(v, normal, friction.coefficient(bed, slip), friction.traction(bed, slip) * step.grip);
 }
 
 }  // namespace talus

@@ -107,9 +107,13 @@ struct SweepContacts {
     });
     const Vec3<Real> normal = contacts.normal[c];
     typename ContactView<Real>::Grip grip;
-    if (grips) grip = contacts.grip(grid, c, length(v - normal * dot(v, normal)));
+    const Real filled = contacts.filled(grid, c, layer_mass);
+    if (grips) {
+      const Real pressed = dot(impulse[c], normal) / (contacts.area[c] * filled * dt);
+      grip = contacts.grip(grid, c, {length(v - normal * dot(v, normal)), pressed, dt});
+    }
     Real more = 0;
-    if (grip.traction > Real(0)) more = grip.traction * contacts.area[c] * contacts.filled(grid, c, layer_mass) * dt;
+    if (grip.traction > Real(0)) more = grip.traction * contacts.area[c] * filled * dt;
     return ContactView<Real>::hold(impulse[c] - v * (Real(1) / yield), normal, grip.coefficient, more);
   }
 };

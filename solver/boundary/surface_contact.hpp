@@ -67,16 +67,16 @@ struct ContactView {
     return body[c] == ContactPoints::ground || rise * grid.spacing > Real(-0.5) * mass ? mass : Real(0);
   }
 
-  /// What resists slip at speed v at point c.
+  /// What resists a slip at a contact point.
   struct Grip {
     Real coefficient = 0;  // of the normal force
     Real traction = 0;     // besides [Pa]
   };
-  TALUS_HD Grip grip(const GridView<Real>& grid, int c, Real speed) const {
+  TALUS_HD Grip grip(const GridView<Real>& grid, int c, const Slip<Real>& slip) const {
     if (body[c] != ContactPoints::ground) return {body_friction[body[c]], Real(0)};
-    if (ground.law == FrictionLaw::stick) return {Real(1e6), Real(0)};
+    if (ground.holds()) return {Real(1e6), Real(0)};
     const Bed<Real>& bed = ground.at(grid.column(places.cell[0][c], places.cell[1][c]));
-    return {ground.coefficient(bed, speed), ground.traction(bed, speed)};
+    return {ground.coefficient(bed, slip), ground.traction(bed, slip)};
   }
 
   /// How far the bed at point c is covered: a layer's worth of mass makes it a full one, of which half lies within the

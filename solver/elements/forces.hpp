@@ -57,14 +57,15 @@ struct StressAt {
   MeanDilationView<Real> means;
   TangentStore<Real> tangents;
   const Vec3<double>* u;
+  Real duration;  // of the step [s]
 
   double bytes(int count) const { return count * (7.0 * sizeof(Real) + tangents.bytes_each()); }
   TALUS_HD Mat3<Real> operator()(const GridView<Real>& grid, const ParticleView<Real>& points, int p,
                                  const PointGradients<Real, Shape>& g) const {
     PointTangent<Real> tangent;
-    const Mat3<Real> stress =
-        nominal_stress(materials.of(points.material, points.plastic_shear, p), state_of(points, p, dilatant),
-                       displacement_gradient(grid, g, u), tangents.on() ? &tangent : nullptr, means.at_point(p));
+    const Mat3<Real> stress = nominal_stress(materials.of(points.material, points.plastic_shear, p),
+                                             state_of(points, p, dilatant), displacement_gradient(grid, g, u), duration,
+                                             tangents.on() ? &tangent : nullptr, means.at_point(p));
     if (tangents.on() && definite) make_definite(tangent);
     if (tangents.on()) tangents.put(p, tangent);
     return stress;

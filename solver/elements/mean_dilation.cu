@@ -24,6 +24,7 @@ struct MeasureMeans {
   bool dilatant;
   ElementView elements;
   const Vec3<double>* u;
+  Real duration;
   Real* increment;
   Real* stress;
   Real* stiffness;
@@ -58,7 +59,7 @@ struct MeasureMeans {
       const PointGradients<Real, Shape> g(grid, points, p);
       const VolumeResponse<Real> r =
           volume_response(materials.of(points.material, points.plastic_shear, p), state_of(points, p, dilatant),
-                          displacement_gradient(grid, g, u), increment[e]);
+                          displacement_gradient(grid, g, u), duration, increment[e]);
       mean += points.volume[p] * r.stress;
       bulk += points.volume[p] * r.bulk;
     }
@@ -119,11 +120,11 @@ void MeanDilation<Real, Device, Shape>::begin_step(const ElementList<Real, Devic
 template <class Real, class Device, class Shape>
 void MeanDilation<Real, Device, Shape>::measure(const ElementList<Real, Device, Shape>& list,
                                                 const GridView<Real>& grid, const ParticleView<Real>& points,
-                                                const Materials<Real>& materials, bool dilatant,
-                                                const Vec3<double>* u) {
+                                                const Materials<Real>& materials, bool dilatant, const Vec3<double>* u,
+                                                double duration) {
   for_each(list.device(), list.count(),
-           MeasureMeans<Real, Shape>{grid, points, materials, dilatant, list.view(), u, increment_.data(),
-                                     stress_.data(), stiffness_.data(), gradient_.data()});
+           MeasureMeans<Real, Shape>{grid, points, materials, dilatant, list.view(), u, static_cast<Real>(duration),
+                                     increment_.data(), stress_.data(), stiffness_.data(), gradient_.data()});
 }
 
 template <class Real, class Device, class Shape>

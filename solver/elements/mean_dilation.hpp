@@ -41,10 +41,11 @@ class MeanDilation {
   /// Begins a step with new elements, after the points have moved or have been sorted. `points` is their number.
   void begin_step(const ElementList<Real, Device, Shape>& list, int points);
 
-  /// Measures the means for the displacement u [m], over the stored nodes; `dilatant`: points may dilate plastically.
+  /// Measures the means for the displacement u [m], over the stored nodes, in a step of this duration [s]; `dilatant`:
+  /// points may dilate plastically.
   void measure(const ElementList<Real, Device, Shape>& list, const GridView<Real>& grid,
-               const ParticleView<Real>& points, const Materials<Real>& materials, bool dilatant,
-               const Vec3<double>* u);
+               const ParticleView<Real>& points, const Materials<Real>& materials, bool dilatant, const Vec3<double>* u,
+               double duration);
 
   MeanDilationView<Real> view() const {
     return {element_of_.data(), increment_.data(), stress_.data(), stiffness_.data(), gradient_.data()};

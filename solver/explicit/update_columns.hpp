@@ -137,12 +137,12 @@ struct UpdateColumns {
     const Vec3<Real> free = v;
     if (on_ground) {
       BaseFriction<Real> law = friction;
-      if (content == NodeContent::remapped && law.law != FrictionLaw::stick) law.law = FrictionLaw::none;
+      if (content == NodeContent::remapped && !law.holds()) law.law = FrictionLaw::none;
       const Real sx = grid.slope_x[column], sy = grid.slope_y[column];
       // On a Cartesian grid the nodes inside the ground touch no bed of their own.
-      const bool grips = content != NodeContent::remapped && friction.has_traction() && k == grid.contact_layer(column);
+      const bool grips = content != NodeContent::remapped && friction.needs_area() && k == grid.contact_layer(column);
       const Real grip = grips ? bed_area(node.w, full_base, grid.spacing, sx, sy) * dt / node.w : Real(0);
-      v = meet_ground(law, law.at(column), v, sx, sy, grip);
+      v = meet_ground(law, law.at(column), v, sx, sy, {.duration = dt, .grip = grip});
     }
     if (walls.count > 0) v = meet_walls(walls, i, j, k, v, content != NodeContent::remapped);
     if constexpr (may_count) {

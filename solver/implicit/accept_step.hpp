@@ -75,7 +75,8 @@ struct AcceptStep {
     if (!part.deforms) return;
     const Mat3<Real> gradient = displacement_gradient(grid, g, strain_displacement);
     MaterialState<Real> state = state_of(points, p, dilatant);
-    advance_material(materials.of(points.material, points.plastic_shear, p), gradient, state, means.at_point(p));
+    advance_material(materials.of(points.material, points.plastic_shear, p), gradient, Real(clock->step_size), state,
+                     means.at_point(p));
     if (points.plastic_shear) points.plastic_shear[p] += state.plastic_shear;
     points.set_elastic(p, state.elastic);
     points.log_volume[p] = state.log_volume;

@@ -39,6 +39,7 @@ struct MeasureGrip {
   NodeArrays nodes;
   double layer_mass;  // see SweepContacts
   bool dynamic;
+  double step;  // [s]
   ContactNumbers numbers;
   TALUS_HD void operator()(int c) const {
     const NodeMass<Real> masses{nodes.mass};
@@ -53,9 +54,12 @@ struct MeasureGrip {
       contacts.template around<Shape>(grid, masses, c,
                                       [&](int n, Real share) { v += nodes.velocity[n] * static_cast<double>(share); });
     const Vec3<double> normal = widen(contacts.normal[c]);
-    const auto grip = contacts.grip(grid, c, static_cast<Real>(length(v - normal * dot(v, normal))));
     const double filled = static_cast<double>(contacts.filled(grid, c, layer_mass)),
                  area = static_cast<double>(contacts.area[c]);
+    const double pressed = dot(contacts.force[c], normal) / (area * filled);
+    const Slip<Real> slip{static_cast<Real>(length(v - normal * dot(v, normal))), static_cast<Real>(pressed),
+                          static_cast<Real>(step)};
+    const auto grip = contacts.grip(grid, c, slip);
     numbers.spring[c] = numbers.modulus * area * filled;
     numbers.coefficient[c] = static_cast<double>(grip.coefficient);
     numbers.traction[c] = static_cast<double>(grip.traction) * area * filled;

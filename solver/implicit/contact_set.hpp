@@ -178,7 +178,7 @@ class ContactSet {
   void begin_points(double step, bool predicts) {
     points_.resize(static_cast<std::size_t>(parts_.surfaces.count()));
     each_point(MeasureGrip<Real, Shape>{parts_.grid.view(), parts_.surfaces.view(), nodes(), parts_.cell.layer_mass,
-                                        parts_.controls.dynamic, numbers()});
+                                        parts_.controls.dynamic, step, numbers()});
     if (!parts_.controls.dynamic) return;
     parts_.impulses.run(parts_.surfaces, parts_.grid.view(), ArrivingNodes<Real>{nodes(), predicts ? step : 0},
                         nodes_.count, parts_.cell.layer_mass, {nullptr, step, true, false});

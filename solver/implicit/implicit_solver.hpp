@@ -77,8 +77,8 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     const Vec3<double>& gravity = settings_.gravity.acceleration;
     const double g = std::hypot(gravity.x, gravity.y, gravity.z);
     for (Material<Real>& m : materials_.list) {
-      m.exact_tangent = c.tangent == Tangent::exact;
-      m.apex = static_cast<Real>(c.apex * static_cast<double>(m.density) * g * layer_height);
+      const double apex = c.apex * static_cast<double>(m.density) * g * layer_height;
+      prepare_for_newton(m, static_cast<Real>(apex), c.tangent == Tangent::exact);
     }
     return c;
   }

@@ -29,8 +29,9 @@ class ParticleStresses {
     elements_.build(parts_.grid.view(), parts_.points.view());
     if (parts_.controls.b_bar) means_.begin_step(elements_, parts_.points.count());
   }
-  /// Room for the tangents of the particles.
-  void resize() {
+  /// Room for the tangents of the particles in a step of this duration [s].
+  void begin(double duration) {
+    duration_ = duration;
     const auto numbers =
         static_cast<std::size_t>(TangentStore<Real>::numbers) * static_cast<std::size_t>(parts_.points.count());
     if (single_) {
@@ -52,7 +53,8 @@ class ParticleStresses {
                                                              .definite = definite,
                                                              .means = means(),
                                                              .tangents = with_tangent ? store() : TangentStore<Real>{},
-                                                             .u = u.data()},
+                                                             .u = u.data(),
+                                                             .duration = static_cast<Real>(duration_)},
                                                       forces.data()});
     if (springs().on()) apply_springs(elements_, springs(), u, forces);
   }
@@ -60,7 +62,8 @@ class ParticleStresses {
   /// B-bar (T17b): means over the elements for a displacement.
   void average(const NodeVector<Device>& u) {
     if (parts_.controls.b_bar)
-      means_.measure(elements_, parts_.grid.view(), parts_.points.view(), parts_.materials, parts_.dilatant, u.data());
+      means_.measure(elements_, parts_.grid.view(), parts_.points.view(), parts_.materials, parts_.dilatant, u.data(),
+                     duration_);
   }
   MeanDilationView<Real> means() const { return parts_.controls.b_bar ? means_.view() : MeanDilationView<Real>{}; }
 
@@ -87,6 +90,7 @@ class ParticleStresses {
   const Parts& parts_;
   const Buffer<double, Device>& mass_;
   bool single_;
+  double duration_ = 0;  // of the step [s]
   ElementList<Real, Device, Shape> elements_{parts_.device};
   MeanDilation<Real, Device, Shape> means_{parts_.device};
   Buffer<Real, Device> tangents_{parts_.device};

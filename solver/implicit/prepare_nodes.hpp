@@ -99,7 +99,7 @@ struct PrepareNodes {
     const int column = grid.column(i, j);
     const int top = grid.contact_layer(column);
     if (k > top) return false;
-    if (base.law == FrictionLaw::stick) {
+    if (base.holds()) {
       freed = {};
       u = {};
       return true;
@@ -109,13 +109,14 @@ struct PrepareNodes {
     normal = {-sx * scale, -sy * scale, scale};
     const int n = GridView<Real>::node(grid.slot(i, j), i, j, k);
     const Vec3<double> v = nodes.velocity[n];
-    const double slip = length(v - normal * dot(v, normal));
+    const double area = bed_area(nodes.mass[n], full_base, static_cast<double>(grid.spacing), sx, sy);
+    // The reaction is not known yet; the node's own weight presses.
+    const Slip<double> slip{.speed = length(v - normal * dot(v, normal)),
+                            .normal_stress = nodes.mass[n] * fabs(dot(gravity, normal)) / area,
+                            .duration = scheme.step};
     const Bed<double>& bed = base.at(column);
     friction = base.coefficient(bed, slip);
-    if (held.traction && k == top) {
-      const double area = bed_area(nodes.mass[n], full_base, static_cast<double>(grid.spacing), sx, sy);
-      held.traction[n] = base.traction(bed, slip) * area;
-    }
+    if (held.traction && k == top) held.traction[n] = base.traction(bed, slip) * area;
     return true;
   }
 

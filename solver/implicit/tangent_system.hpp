@@ -48,7 +48,7 @@ class TangentSystem {
   /// Room for the tangents, and the scheme of the step.
   void begin(const NewmarkScheme& scheme) {
     scheme_ = scheme;
-    stresses_.resize();
+    stresses_.begin(scheme.step);
   }
 
   /// Internal force for the displacement u, less that of the contact points.

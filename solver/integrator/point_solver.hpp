@@ -19,10 +19,10 @@ class BedOn {
   BedOn(const Device& device, const BaseFriction<double>& friction, const std::vector<Bed<double>>& columns)
       : columns_(device) {
     friction_.law = friction.law;
-    friction_.uniform = in_precision(friction.uniform);
+    friction_.uniform = friction.uniform.as<Number>();
     if (columns.empty()) return;
     std::vector<Bed<Number>> beds;
-    for (const Bed<double>& b : columns) beds.push_back(in_precision(b));
+    for (const Bed<double>& bed : columns) beds.push_back(bed.as<Number>());
     columns_.upload(beds);
     friction_.columns = columns_.data();
   }
@@ -30,14 +30,6 @@ class BedOn {
   std::size_t bytes() const { return columns_.bytes(); }
 
  private:
-  static Bed<Number> in_precision(const Bed<double>& b) {
-    return {.coefficient = static_cast<Number>(b.coefficient),
-            .peak = static_cast<Number>(b.peak),
-            .characteristic_speed = static_cast<Number>(b.characteristic_speed),
-            .drag = static_cast<Number>(b.drag),
-            .cohesion = static_cast<Number>(b.cohesion)};
-  }
-
   BaseFriction<Number> friction_;
   Buffer<Bed<Number>, Device> columns_;
 };

@@ -11,20 +11,23 @@ namespace talus::solver {
 
 struct SolveOptions;
 
-struct BaseOptions {
+/// The keys of [solve.base]: those of the laws (solver/boundary/laws), each law's declared in its header, and those
+/// that act with every law that rubs.
+struct BaseOptions : OptionsOfLaws<FrictionLaws> {
   FrictionLaw law = FrictionLaw::coulomb;
-  double friction_angle = 20;  // [deg]
-  double peak_coefficient = 0.7;
-  double steady_coefficient = 0.23;
-  double characteristic_speed = 1;  // [m/s]
-  double turbulence = 500;          // voellmy: xi [m/s2]
-  double cohesion = 0;              // [Pa]
-  double pore_pressure_ratio = 0;   // water's part of the normal stress [-]
+  double cohesion = 0;             // [Pa]
+  double pore_pressure_ratio = 0;  // water's part of the normal stress [-]
+
+  /// The number that the recipe calls by this name, null where it has none.
+  double* named(std::string_view key);
+  bool uses(std::string_view key) const;  ///< whether the law looks at it
+  /// The bed in a line, for plan and log.
+  std::string words() const;
+  /// The law in a sentence of the report, "at its bed acts ...".
+  std::string sentence() const;
+
   void describe(recipe::Visitor& v);
   void check(std::vector<Fault>& faults) const;
-  /// The number that the recipe calls by this name, null where it has none that a raster can give.
-  double* named(const std::string& key);
-  bool uses(const std::string& key) const;  ///< whether the law looks at it
 };
 
 /// The bed's law with the same numbers everywhere.

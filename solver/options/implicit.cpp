@@ -8,9 +8,7 @@ namespace {
 
 /// Whether the pressure of every material follows from its volume change alone.
 bool pressure_by_volume(const SolveOptions& all) {
-  return all.every_material([](const MaterialOptions& m) {
-    return m.model == MaterialModel::hencky || m.model == MaterialModel::drucker_prager;
-  });
+  return all.every_material([](const MaterialOptions& m) { return m.pressure_follows_volume(); });
 }
 
 }  // namespace

@@ -11,27 +11,35 @@
 namespace talus::solver {
 
 enum class StiffnessKind { as_given, automatic };
-enum class Cone { compression, extension, plane_strain };
 
-struct MaterialOptions {
+/// The keys of [solve.material]: those of every material, then those of the laws (solver/material/laws), each law's
+/// declared in its header.
+struct MaterialOptions : OptionsOfLaws<MaterialLaws> {
   MaterialModel model = MaterialModel::drucker_prager;
   double density = 2000;        // [kg/m3]
   double youngs_modulus = 1e7;  // [Pa]
   StiffnessKind stiffness = StiffnessKind::as_given;
-  bool stiffness_check = false;        // run again, twice as stiff
-  double poisson_ratio = 0.25;         // [-]
-  double friction_angle = 30;          // [deg]
-  double cohesion = 0;                 // [Pa]
-  double dilatancy_angle = 0;          // [deg]
-  double tension_cutoff = 0;           // [Pa]
-  double pore_pressure_ratio = 0;      // water's part of the mean stress [-]
-  double softening_slip = 0;           // over which strength falls to the residual one [m]; 0: it does not
-  double residual_friction_angle = 0;  // [deg]
-  double residual_cohesion = 0;        // [Pa]
-  Cone cone = Cone::compression;
-  bool dilates() const { return model == MaterialModel::drucker_prager && dilatancy_angle > 0; }
-  bool softens() const { return model == MaterialModel::drucker_prager && softening_slip > 0; }
+  bool stiffness_check = false;  // run again, twice as stiff
+  double poisson_ratio = 0.25;   // [-]
+
+  /// visit(Law{}, options of that law) for the chosen law.
+  template <class Visit>
+  auto with_law(const Visit& visit) const {
+    return visit_law(model, [&](auto law) { return visit(law, options_of<decltype(law)>()); });
+  }
+  /// Whether strength falls as the material shears, and whether shear changes its volume.
+  bool softens() const;
+  bool dilates() const;
+  /// Whether the volume change alone decides the pressure, as B-bar needs.
+  bool pressure_follows_volume() const;
+  /// The material in a line, for plan and log.
+  std::string words() const;
+  /// The material in a sentence of the report, "It is ...".
+  std::string sentence() const;
+
   void describe(recipe::Visitor& v);
+  /// `table` is how messages call the table that says it.
+  void check(const std::string& table, std::vector<Fault>& faults) const;
 };
 
 /// A release of another material than [solve.material].
@@ -58,15 +66,12 @@ struct MassOptions {
   void check(std::vector<Fault>& faults) const;
 };
 
-/// Moduli, wave speed and cone from a recipe's words. Cone fitted to Mohr-Coulomb in triaxial compression or extension
-/// (Chen & Mizuno 1990, table 4.1), or in plane strain for the flow its own dilatancy angle gives (the table's fit
-/// where that is the friction angle).
+/// Moduli and wave speed from a recipe's words, and the numbers of its law; softening for a grid whose cells have this
+/// least `side` [m].
 template <class Real>
-Material<Real> make_material(const MaterialOptions& options);
+Material<Real> make_material(const MaterialOptions& options, double side = 0);
 
-/// That of [solve.material] first, then those of the parts. Softening goes by slip: a band of shear is one cell wide,
-/// so that the strain over which strength falls is the slip over the least side of a cell (Pietruszczak & Mroz 1981),
-/// and results do not hang on the grid.
+/// That of [solve.material] first, then those of the parts.
 template <class Real>
 Materials<Real> make_materials(const MassOptions& options, double spacing, double layer_height);
 

@@ -9,19 +9,17 @@
 namespace talus::solver {
 namespace {
 
-/// The loaded strains go to the points of the start, which are in another order. Of a Drucker-Prager material only
-/// their deviatoric part is kept apart from the volume.
+/// The loaded strains go to the points of the start, which are in another order, as far as their law keeps them.
 void take_strains(const ParticleState& loaded, const SolveOptions& options, ParticleState& start) {
   for (std::size_t q = 0; q < loaded.size(); ++q) {
     const auto p = static_cast<std::size_t>(loaded.id[q]);
-    double mean = 0;
     const int material = start.material[p];
     const MaterialOptions& own =
         material > 0 ? options.parts[static_cast<std::size_t>(material) - 1].material : options.material;
-    if (own.model == MaterialModel::drucker_prager) {
-      mean = (loaded.elastic[0][q] + loaded.elastic[1][q] + loaded.elastic[2][q]) / 3;
-    }
-    for (std::size_t a = 0; a < 6; ++a) start.elastic[a][p] = loaded.elastic[a][q] - (a < 3 ? mean : 0);
+    const auto& e = loaded.elastic;
+    const Sym3<double> kept = after_loading(own.model, {e[0][q], e[1][q], e[2][q], e[3][q], e[4][q], e[5][q]});
+    const double values[6] = {kept.xx, kept.yy, kept.zz, kept.xy, kept.yz, kept.xz};
+    for (std::size_t a = 0; a < 6; ++a) start.elastic[a][p] = values[a];
     start.log_volume[p] = loaded.log_volume[q];
   }
 }

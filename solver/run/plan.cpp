@@ -25,43 +25,6 @@ std::string span(double seconds) {
   return fmt::format("{:.1f} h", seconds / 3600);
 }
 
-std::string material_words(const MaterialOptions& m) {
-  const auto common =
-      fmt::format("{:g} kg/m3, {:.3g} Pa, Poisson's ratio {:g}", m.density, m.youngs_modulus, m.poisson_ratio);
-  if (m.model == MaterialModel::hencky) return "elastic (hencky), " + common;
-  if (m.model == MaterialModel::corotated) return "elastic (corotated), " + common;
-  if (m.model == MaterialModel::linear_elastic) return "elastic (small strain), " + common;
-  std::string words = fmt::format("drucker-prager, {}, friction {:g} deg", common, m.friction_angle);
-  if (m.cohesion > 0) words += fmt::format(", cohesion {:g} Pa", m.cohesion);
-  if (m.dilatancy_angle > 0) words += fmt::format(", dilatancy {:g} deg", m.dilatancy_angle);
-  if (m.tension_cutoff > 0) words += fmt::format(", tension up to {:g} Pa", m.tension_cutoff);
-  if (m.pore_pressure_ratio > 0) words += fmt::format(", water carries {:g} of the pressure", m.pore_pressure_ratio);
-  if (m.softens())
-    words += fmt::format(", softens over {:g} m to {:g} deg and {:g} Pa", m.softening_slip, m.residual_friction_angle,
-                         m.residual_cohesion);
-  return words;
-}
-
-std::string bed_words(const BaseOptions& b) {
-  std::string words;
-  switch (b.law) {
-    case FrictionLaw::coulomb: words = fmt::format("coulomb, {:g} deg", b.friction_angle); break;
-    case FrictionLaw::voellmy:
-      words = fmt::format("voellmy, {:g} deg and xi = {:g} m/s2", b.friction_angle, b.turbulence);
-      break;
-    case FrictionLaw::velocity_weakening:
-      words = fmt::format("velocity-weakening, {:g} to {:g} about {:g} m/s", b.peak_coefficient, b.steady_coefficient,
-                          b.characteristic_speed);
-      break;
-    case FrictionLaw::none: return "no friction";
-    case FrictionLaw::stick: return "held";
-  }
-  if (b.cohesion > 0) words += fmt::format(", cohesion {:g} Pa", b.cohesion);
-  if (b.pore_pressure_ratio > 0)
-    words += fmt::format(", water carries {:g} of the normal stress", b.pore_pressure_ratio);
-  return words;
-}
-
 std::string integrator_words(const SolveOptions& o) {
   switch (o.integrator) {
     case Integrator::explicit_: return fmt::format("explicit, {:g} of the CFL step", o.cfl);
@@ -111,9 +74,9 @@ std::vector<std::string> features(const Domain& domain, const SolveOptions& o) {
                                                        : "quadratic",
                           o.transfer == Transfer::apic ? "apic" : "flip",
                           o.precision == Precision::double_ ? "double" : "single"));
-  add("material", material_words(o.material));
-  for (const PartOptions& part : o.parts) add("  " + part.release, material_words(part.material));
-  add("bed", bed_words(o.base));
+  add("material", o.material.words());
+  for (const PartOptions& part : o.parts) add("  " + part.release, part.material.words());
+  add("bed", o.base.words());
   for (const auto& [name, raster] : domain.bed) add("", name + " from a raster");
   if (domain.erodible > 0)
     add("erodible", fmt::format("{} of {} releases lie in the ground until they are taken along", domain.erodible,

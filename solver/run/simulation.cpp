@@ -151,6 +151,8 @@ void Simulation::measure(const RunEnd& end, RunSummary& summary) const {
   const Solver& solver = stepper_.solver();
   const AnyDevice& device = stepper_.device();
   summary.on = device.is_gpu() ? gpu_name(device.gpu().index()) : hardware();
+  summary.material = options_.material.sentence();
+  summary.bed = options_.base.sentence();
   summary.precision = options_.precision == Precision::double_ ? "double" : "single";
   summary.version = version();
   summary.particles = static_cast<std::int64_t>(scene_.points.size());

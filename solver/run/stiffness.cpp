@@ -17,9 +17,11 @@ constexpr double impact_strain = 0.02;
 
 /// The least friction the flow can meet: on its bed, or inside where the bed holds it.
 double least_friction(const SolveOptions& o) {
-  if (o.base.law == FrictionLaw::stick) return std::tan(o.material.friction_angle * M_PI / 180);
   const auto base = make_base_friction<double>(o);
-  return base.coefficient(base.uniform, 1e30);  // friction weakens with speed, if it changes at all
+  if (base.holds()) return std::tan(o.material.friction_angle * M_PI / 180);
+  // Friction falls or grows with speed, if it changes at all.
+  const auto at_speed = [&](double speed) { return base.coefficient(base.uniform, {speed, 0, 0}); };
+  return std::min(at_speed(0), at_speed(1e30));
 }
 
 struct Summit {

@@ -66,11 +66,13 @@ std::vector<Bed<double>> make_bed(const Domain& domain, const SolveOptions& opti
   if (domain.bed.empty()) return {};
   std::vector<Bed<double>> bed;
   SolveOptions here = options;
+  std::vector<double*> numbers;
+  for (const auto& [name, raster] : domain.bed) numbers.push_back(here.base.named(name));
   for (std::size_t column = 0; column < domain.grid.count(); ++column) {
     here.base = options.base;
-    for (const auto& [name, raster] : domain.bed) {
-      if (double* value = here.base.named(name); value && std::isfinite(raster.values[column]))
-        *value = raster.values[column];
+    for (std::size_t n = 0; n < numbers.size(); ++n) {
+      const double value = domain.bed[n].second.values[column];
+      if (numbers[n] && std::isfinite(value)) *numbers[n] = value;
     }
     bed.push_back(make_base_friction<double>(here).uniform);
   }

@@ -68,9 +68,7 @@ IntegratorSettings make_common(const SolveOptions& o, const GridShape& grid) {
 /// Materials that do not yield.
 template <class Real>
 void hold(Materials<Real>& materials) {
-  for (Material<Real>& m : materials.list) {
-    if (m.model == MaterialModel::drucker_prager) m.model = MaterialModel::hencky;
-  }
+  for (Material<Real>& m : materials.list) m.model = model_while_loading(m.model);
 }
 
 }  // namespace

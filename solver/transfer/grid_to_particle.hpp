@@ -138,7 +138,7 @@ struct GridToParticle {
                               dilatant ? points.plastic_log_volume[p] : Real(0)};
     const Material<Real> material = materials.of(points.material, points.plastic_shear, p);
     const MaterialState<Real> before = state;
-    advance_material(material, g, state);
+    advance_material(material, g, dt, state);
     if constexpr (budget) lose_to_flow(material, before, state, g, points.volume[p]);
     if (points.plastic_shear) points.plastic_shear[p] += state.plastic_shear;
     points.set_elastic(p, state.elastic);

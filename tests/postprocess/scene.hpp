@@ -71,6 +71,8 @@ inline Run small_run() {
   s.precision = "double";
   s.version = "0.0.0 (test)";
   s.stop_reason = "end time";
+  s.material = "an elastic material";
+  s.bed = "no friction";
   s.particles = 320;
   s.steps = 77;
   s.time_end = 20;

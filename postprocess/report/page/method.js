@@ -1,6 +1,6 @@
 // Method and its limits, in words that follow the parameters used.
 import { h } from "./format.js";
-import { bedLaw, steps } from "./words.js";
+import { steps } from "./words.js";
 
 /** Looks a parameter up; texts without their quotes, undefined where it is not known. */
 export function parameters(data) {
@@ -21,14 +21,9 @@ function solver(data) {
     get("solve", "mapping") === "cartesian"
       ? "a Cartesian background grid"
       : "a background grid that follows the terrain";
-  const model = get("solve.material", "model"),
-    angle = get("solve.material", "friction_angle_deg"),
-    cohesion = Number(get("solve.material", "cohesion_Pa"));
-  const material =
-    model === "drucker-prager"
-      ? `an elasto-plastic (Drucker-Prager) material with an internal friction angle of ${angle}\u00b0` +
-        (cohesion > 0 ? ` and a cohesion of ${cohesion / 1000} kPa` : "")
-      : `the material model "${model}"`;
+  // Words of the laws come from the solver; files of earlier versions have only their names.
+  const material = data.run.material || `the material model "${get("solve.material", "model")}"`,
+    bed = data.run.bed || `the law "${get("solve.base", "law")}"`;
   const reference =
     get("solve", "preset") === "reference"
       ? " The preset \u201creference\u201d keeps to the published implicit scheme."
@@ -40,7 +35,7 @@ function solver(data) {
       `The failing mass is computed in three dimensions by the material point method (Sulsky, Zhou & Schreyer ` +
         `1995) on ${grid}, ` +
         `in ${steps(get)}, with ${get("solve", "shape")} shape functions. It is ${material}; at its bed acts ` +
-        `${bedLaw(get)}.${reference}`,
+        `${bed}.${reference}`,
     ),
   ];
 }

@@ -51,25 +51,6 @@ export function definition(key) {
   return definitions.find(([pattern]) => pattern.test(key))?.[1] ?? "";
 }
 
-/** Sentences about the bed's friction law, from the parameters of [solve.base]. */
-export function bedLaw(get) {
-  const law = get("solve.base", "law");
-  const words = {
-    coulomb: () => `Coulomb friction with an angle of ${get("solve.base", "friction_angle_deg")}\u00b0`,
-    "velocity-weakening": () =>
-      `friction that falls with slip speed (Lucas, Mangeney & Ampuero 2014) from ` +
-      `${get("solve.base", "peak_coefficient")} ` +
-      `towards ${get("solve.base", "steady_coefficient")}, half of the drop at ` +
-      `${get("solve.base", "characteristic_speed_m_s")} m/s`,
-    voellmy: () =>
-      `Voellmy's law (Voellmy 1955), an angle of ${get("solve.base", "friction_angle_deg")}\u00b0 and turbulence ` +
-      `${get("solve.base", "turbulence_m_s2")} m/s\u00b2`,
-    none: () => "no friction",
-    stick: () => "no slip",
-  };
-  return words[law]?.() ?? `the law "${law}"`;
-}
-
 export function steps(get) {
   const integrator = get("solve", "integrator");
   const words = {

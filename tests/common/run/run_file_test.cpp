@@ -62,6 +62,8 @@ RunSummary some_summary() {
   summary.scene = "s";
   summary.title = "A title";
   summary.version = "0.1.0 (abc)";
+  summary.material = "an elastic material";
+  summary.bed = "Coulomb friction with an angle of 20\u00b0";
   summary.particles = 1'234'567'890'123;
   summary.volume_released = 1.0 / 3.0;
   summary.provenance = {{"input", "before.tif sha256 12"}, {"input", "after.tif sha256 34"}, {"note", ""}};
@@ -119,6 +121,8 @@ TEST_F(RunFile, brings_back_maps_frames_history_and_summary) {
   EXPECT_EQ(run.history.find("potential_J"), nullptr);
   EXPECT_EQ(run.summary.title, "A title");
   EXPECT_EQ(run.summary.stop_reason, "");
+  EXPECT_EQ(run.summary.material, "an elastic material");
+  EXPECT_EQ(run.summary.bed, "Coulomb friction with an angle of 20\u00b0");
   EXPECT_EQ(run.summary.particles, 1'234'567'890'123);
   EXPECT_EQ(run.summary.volume_released, 1.0 / 3.0);
   EXPECT_EQ(run.summary.provenance, some_summary().provenance);

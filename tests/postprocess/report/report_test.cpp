@@ -217,6 +217,8 @@ TEST_F(Report, a_title_cannot_end_the_script_that_holds_the_data) {
   EXPECT_NE(page.find("<title>&lt;/script>&lt;b>Slope &amp; \"co\"</title>"), std::string::npos);
   const auto data = data_of(page);
   EXPECT_EQ(data.at("run").at("title"), run_.summary.title);
+  EXPECT_EQ(data.at("run").at("material"), "an elastic material");
+  EXPECT_EQ(data.at("run").at("bed"), "no friction");
   EXPECT_EQ(data.at("run").at("survey").at("name"), "last <year>");
 }
 

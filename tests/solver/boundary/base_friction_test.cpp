@@ -6,9 +6,9 @@
 namespace talus {
 namespace {
 
-BaseFriction<double> coulomb(double mu) { return {FrictionLaw::coulomb, {mu, 0, 1}}; }
+BaseFriction<double> coulomb(double mu) { return {FrictionLaw::coulomb, {{mu}}}; }
 Vec3<double> meet(const BaseFriction<double>& f, const Vec3<double>& v, double sx, double sy, double grip = 0) {
-  return meet_ground(f, f.uniform, v, sx, sy, grip);
+  return meet_ground(f, f.uniform, v, sx, sy, {.duration = 0.01, .grip = grip});
 }
 
 TEST(MeetGround, lets_a_leaving_node_go) {
@@ -36,18 +36,18 @@ TEST(MeetGround, leaves_a_sloping_bed_tangentially) {
 }
 
 TEST(MeetGround, adds_cohesion_and_drag_to_friction) {
-  BaseFriction<double> f{FrictionLaw::voellmy, {0.5, 0, 1, 3, 10}};  // 3 Pa s2/m2, 10 Pa
-  const double grip = 0.01;                                          // 10 ms on 1 kg per m2
+  BaseFriction<double> f{FrictionLaw::voellmy, {{0.5, 3}, 10}};  // 3 Pa s2/m2, 10 Pa
+  const double grip = 0.01;                                      // 10 ms on 1 kg per m2
   const Vec3<double> v = meet(f, Vec3<double>{4, 0, -2}, 0.0, 0.0, grip);
   EXPECT_DOUBLE_EQ(v.x, 4 - 0.5 * 2 - (10 + 3 * 16) * grip);
   EXPECT_DOUBLE_EQ(meet(f, Vec3<double>{4, 0, 1}, 0.0, 0.0, grip).x, 4);  // it has left: nothing holds it
 }
 
 TEST(BaseFriction, weakens_from_peak_to_steady_state) {
-  const BaseFriction<double> f{FrictionLaw::velocity_weakening, {0.2, 0.7, 4}};
-  EXPECT_DOUBLE_EQ(f.coefficient(f.uniform, 0), 0.7);
-  EXPECT_DOUBLE_EQ(f.coefficient(f.uniform, 4), 0.45);  // half the drop at the characteristic speed
-  EXPECT_NEAR(f.coefficient(f.uniform, 1e9), 0.2, 1e-8);
+  const BaseFriction<double> f{FrictionLaw::velocity_weakening, {{0.2, 0.7, 4}}};
+  EXPECT_DOUBLE_EQ(f.coefficient(f.uniform, {0, 0, 0.01}), 0.7);
+  EXPECT_DOUBLE_EQ(f.coefficient(f.uniform, {4, 0, 0.01}), 0.45);  // half the drop at the characteristic speed
+  EXPECT_NEAR(f.coefficient(f.uniform, {1e9, 0, 0.01}), 0.2, 1e-8);
 }
 
 }  // namespace

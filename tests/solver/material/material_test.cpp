@@ -124,7 +124,7 @@ TEST(Hencky, does_not_feel_a_rotation) {
   s.elastic = from_eigen(random.symmetric(0.05));
   const Matrix before = to_eigen(kirchhoff_stress(m, s));
   const Matrix turn = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
-  advance_material(m, columns(turn - Matrix::Identity()), s);
+  advance_material(m, columns(turn - Matrix::Identity()), 0.01, s);
   EXPECT_LT((to_eigen(kirchhoff_stress(m, s)) - turn * before * turn.transpose()).norm(), 1e-10 * before.norm());
   EXPECT_NEAR(s.log_volume, 0, 1e-14);
 }
@@ -135,7 +135,7 @@ TEST(LinearElastic, follows_hookes_law_and_turns_with_the_body) {
   MaterialState<double> s;
   Matrix g = Matrix::Zero();
   g(2, 2) = -1e-5;
-  advance_material(m, columns(g), s);
+  advance_material(m, columns(g), 0.01, s);
   const double oedometric = m.bulk_modulus + 4 * m.shear_modulus / 3;
   EXPECT_NEAR(s.elastic.zz, -1e-5 * oedometric, 1e-9 * oedometric);
   // A quarter turn about x in small steps carries zz to yy; the Jaumann rate errs by the square of the step.
@@ -144,7 +144,7 @@ TEST(LinearElastic, follows_hookes_law_and_turns_with_the_body) {
   spin(1, 2) = -std::numbers::pi / 2 / steps;
   spin(2, 1) = -spin(1, 2);
   const double carried = s.elastic.zz, side = s.elastic.yy;
-  for (int n = 0; n < steps; ++n) advance_material(m, columns(spin), s);
+  for (int n = 0; n < steps; ++n) advance_material(m, columns(spin), 0.01, s);
   EXPECT_NEAR(s.elastic.yy / carried, 1, 1e-3);
   EXPECT_NEAR(s.elastic.zz / side, 1, 1e-3);
 }
@@ -159,7 +159,7 @@ TEST(DruckerPrager, ends_on_or_inside_the_cone) {
       Random random(6);
       for (int n = 0; n < 500; ++n) {
         MaterialState<double> s;
-        for (int k = 0; k < 5; ++k) advance_material(m, columns(random.matrix(2e-3)), s);
+        for (int k = 0; k < 5; ++k) advance_material(m, columns(random.matrix(2e-3)), 0.01, s);
         const auto tau = kirchhoff_stress(m, s);
         const double p = pressure_of(tau);
         EXPECT_LE(shear_measure(tau), m.friction * p + m.shear_cohesion + 1e-6);
@@ -172,11 +172,11 @@ TEST(DruckerPrager, ends_on_or_inside_the_cone) {
 TEST(DruckerPrager, meets_mohr_coulomb_in_triaxial_compression) {
   const auto m = sand(31);
   MaterialState<double> s;
-  advance_material(m, columns(Matrix(-1e-3 * Matrix::Identity())), s);
+  advance_material(m, columns(Matrix(-1e-3 * Matrix::Identity())), 0.01, s);
   Matrix g = Matrix::Zero();
   g(2, 2) = -1e-4;
   g(0, 0) = g(1, 1) = 0.5e-4;
-  for (int n = 0; n < 200; ++n) advance_material(m, columns(g), s);
+  for (int n = 0; n < 200; ++n) advance_material(m, columns(g), 0.01, s);
   const auto tau = kirchhoff_stress(m, s);
   const double sine = std::sin(31 * std::numbers::pi / 180);
   EXPECT_NEAR(tau.zz / tau.xx, (1 + sine) / (1 - sine), 1e-3);
@@ -196,13 +196,13 @@ TEST(DruckerPrager, meets_mohr_coulomb_in_plane_strain_for_its_own_flow) {
     o.tension_cutoff = 1e6;
     const auto m = make_material<double>(o);
     MaterialState<double> s;
-    advance_material(m, columns(Matrix(-1e-3 * Matrix::Identity())), s);
+    advance_material(m, columns(Matrix(-1e-3 * Matrix::Identity())), 0.01, s);
     Matrix g = Matrix::Zero();
     g(2, 2) = -1e-5;
     g(0, 0) = 1e-5;
     const double start = pressure_of(kirchhoff_stress(m, s));
     for (int n = 0; n < 4000; ++n) {  // it may widen in the plane, so that the pressure stays
-      advance_material(m, columns(g), s);
+      advance_material(m, columns(g), 0.01, s);
       g(0, 0) = 1e-5 + (pressure_of(kirchhoff_stress(m, s)) - start) / m.bulk_modulus;
     }
     const auto tau = kirchhoff_stress(m, s);
@@ -215,12 +215,12 @@ TEST(DruckerPrager, opened_grain_must_close_before_it_carries_load) {
   const auto m = sand();
   MaterialState<double> s;
   const Matrix open = 0.01 * Matrix::Identity(), close = -0.006 * Matrix::Identity();
-  advance_material(m, columns(open), s);
+  advance_material(m, columns(open), 0.01, s);
   EXPECT_EQ(pressure_of(kirchhoff_stress(m, s)), 0);
-  advance_material(m, columns(close), s);
+  advance_material(m, columns(close), 0.01, s);
   EXPECT_EQ(pressure_of(kirchhoff_stress(m, s)), 0) << "still open by 0.4 %";
   EXPECT_EQ(shear_measure(kirchhoff_stress(m, s)), 0);
-  advance_material(m, columns(close), s);
+  advance_material(m, columns(close), 0.01, s);
   EXPECT_GT(pressure_of(kirchhoff_stress(m, s)), 0);
 }
 
@@ -230,9 +230,9 @@ TEST(DruckerPrager, dilates_as_it_shears_only_when_asked) {
   for (const double dilatancy : {0.0, 5.0}) {
     const auto m = sand(30, dilatancy);
     MaterialState<double> s;
-    advance_material(m, columns(Matrix(-1e-3 * Matrix::Identity())), s);
+    advance_material(m, columns(Matrix(-1e-3 * Matrix::Identity())), 0.01, s);
     const double before = pressure_of(kirchhoff_stress(m, s));
-    for (int n = 0; n < 100; ++n) advance_material(m, columns(shear), s);  // at constant volume
+    for (int n = 0; n < 100; ++n) advance_material(m, columns(shear), 0.01, s);  // at constant volume
     const double after = pressure_of(kirchhoff_stress(m, s));
     if (dilatancy > 0) {
       EXPECT_GT(after, 1.05 * before);
@@ -254,12 +254,12 @@ TEST(DruckerPrager, keeps_small_stress_in_single_precision) {
   Random random(8);
   for (int n = 0; n < 1000; ++n) {
     const Matrix g = random.matrix(1e-7) - 2e-8 * Matrix::Identity();
-    advance_material(exact, columns(g), a);
+    advance_material(exact, columns(g), 0.01, a);
     const auto c = columns(g);
     const auto to_float = [](const Vec3<double>& v) {
       return Vec3<float>{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
     };
-    advance_material(coarse, Mat3<float>{to_float(c.a), to_float(c.b), to_float(c.c)}, b);
+    advance_material(coarse, Mat3<float>{to_float(c.a), to_float(c.b), to_float(c.c)}, 0.01, b);
   }
   const auto tau = kirchhoff_stress(exact, a);
   const auto single = kirchhoff_stress(coarse, b);

@@ -30,10 +30,10 @@ double norm(const M& a) { return std::sqrt(inner(a, a)); }
 double worst_error(const Material<double>& m, const MaterialState<double>& start, const M& g, const M& direction,
                    double step) {
   PointTangent<double> t;
-  nominal_stress(m, start, g, &t);
+  nominal_stress(m, start, g, 0.01, &t);
   const M exact = apply(t, direction);
-  const M up = nominal_stress<double>(m, start, sum(g, direction, step), nullptr);
-  const M down = nominal_stress<double>(m, start, sum(g, direction, -step), nullptr);
+  const M up = nominal_stress<double>(m, start, sum(g, direction, step), 0.01, nullptr);
+  const M down = nominal_stress<double>(m, start, sum(g, direction, -step), 0.01, nullptr);
   M difference = sum(up, down, -1);
   difference = {difference.a * (0.5 / step), difference.b * (0.5 / step), difference.c * (0.5 / step)};
   return norm(sum(difference, exact, -1)) / norm(exact);
@@ -83,7 +83,7 @@ TEST(Tangent, is_symmetric) {
       start.log_volume = -2e-3;
       const M g = random.matrix(5e-3), u = random.matrix(1), v = random.matrix(1);
       PointTangent<double> t;
-      nominal_stress(m, start, g, &t);
+      nominal_stress(m, start, g, 0.01, &t);
       const double uv = inner(u, apply(t, v)), vu = inner(v, apply(t, u));
       EXPECT_NEAR(uv, vu, 1e-9 * norm(u) * norm(apply(t, v)));
     }
@@ -112,7 +112,7 @@ TEST(Tangent, of_a_yielding_point_is_exact_but_for_the_pressure_in_its_friction)
     }();
     direction = {l * f.a, l * f.b, l * f.c};
     MaterialState<double> end = start;
-    advance_material(m, g, end);
+    advance_material(m, g, 0.01, end);
     const auto tau = kirchhoff_stress(m, end);
     const double shear = std::sqrt(0.5 * norm_squared(deviator(tau)));
     yielding += shear > 0.999 * m.friction * -trace(tau) / 3 ? 1 : 0;
@@ -138,7 +138,7 @@ TEST(Tangent, of_a_yielding_point_is_exact_where_that_is_asked_for) {
         const double open = start.log_volume + log_volume_change(g);
         if (apex == 0 && open >= -1e-4) continue;  // the corner itself has no derivative
         MaterialState<double> end = start;
-        advance_material(m, g, end);
+        advance_material(m, g, 0.01, end);
         yielding += end.plastic_log_volume > 0 ||
                             norm_squared(end.elastic) < 0.999 * norm_squared(deviator(advance_strain(start.elastic, g)))
                         ? 1
@@ -179,9 +179,9 @@ TEST(NominalStress, is_what_the_stress_update_ends_with) {
       start.elastic = deviator(Sym3<double>{1e-3, -2e-3, 5e-4, 3e-4, -1e-4, 2e-4});
       start.log_volume = model == MaterialModel::drucker_prager ? -1e-3 : 0;
       const M g = random.matrix(4e-3);
-      const M p = nominal_stress<double>(m, start, g, nullptr);
+      const M p = nominal_stress<double>(m, start, g, 0.01, nullptr);
       MaterialState<double> end = start;
-      advance_material(m, g, end);
+      advance_material(m, g, 0.01, end);
       const auto tau = kirchhoff_stress(m, end);
       const M f{{g.a.x + 1, g.a.y, g.a.z}, {g.b.x, g.b.y + 1, g.b.z}, {g.c.x, g.c.y, g.c.z + 1}};
       // tau = P F^T: column k of F^T is row k of F.

@@ -229,7 +229,7 @@ TEST(Softening, falls_from_peak_to_residual_over_the_slip_whatever_the_cell) {
     Mat3<double> g{};
     g.c.x = 1e-3;  // d u_x / d z
     s.plastic_shear = 0;
-    advance_material(m, g, s);
+    advance_material(m, g, 0.01, s);
     if (step >= 2000) sum += s.plastic_shear;
   }
   EXPECT_NEAR(sum, 2.0 / std::sqrt(3.0), 0.02 * 2.0 / std::sqrt(3.0));

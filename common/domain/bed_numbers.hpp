@@ -1,0 +1,15 @@
+// Numbers of the bed's friction that may change from place to place: what talus-preprocess reads as rasters and
+// talus-solve takes in place of [solve.base].
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace talus {
+
+/// Keys of those numbers, in [preprocess.bed] and [solve.base] alike.
+inline constexpr std::array<std::string_view, 7> bed_numbers{
+    "friction_angle_deg", "peak_coefficient", "steady_coefficient", "characteristic_speed_m_s",
+    "turbulence_m_s2",    "cohesion_Pa",      "pore_pressure_ratio"};
+
+}  // namespace talus

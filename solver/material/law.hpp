@@ -1,0 +1,57 @@
+// The constitutive laws. A law is a type with static members; what each must have:
+//
+//   name                      in recipes
+//   keeps_strain              whether a point's `elastic` is its logarithmic strain (else it is what `advance` makes
+//   it) pressure_follows_volume   whether the volume change alone decides the pressure, as B-bar needs
+//   stiffness_is_free         whether the flow hardly depends on the elastic moduli (stiffness = "auto" may lower them)
+//   LoadedAs, after_loading   the law that stands in for it while gravity is loaded, and what remains of its strain
+//   Options                   keys of the recipe: describe(), check(), softens(), dilates(); names of keys and members
+//                             are the law's own, for MaterialOptions has those of all laws
+//   words, sentence           the material in a line for plan and log, and in a sentence of the report ("It is ...")
+//   Numbers<Real>, numbers()  what kernels see of the options; soften(), round_tip(), couple_pressure()
+//   stress, energy            Kirchhoff stress [Pa] and elastic energy per initial volume [J/m3] of a state
+//   settle, respond           where keeps_strain: end of a step whose trial strain is in the state; principal stresses
+//                             of a trial and their derivatives. Both are given the length of the step
+//   advance, nominal_stress   elsewhere: the whole step; nominal stress and its tangent
+#pragma once
+
+#include "solver/material/laws/corotated.hpp"
+#include "solver/material/laws/drucker_prager.hpp"
+#include "solver/material/laws/hencky.hpp"
+#include "solver/material/laws/linear_elastic.hpp"
+
+namespace talus {
+
+/// Every constitutive law, in the order of the recipe's choices; nothing else lists them.
+#define TALUS_MATERIAL_LAWS(LAW) \
+  LAW(drucker_prager, DruckerPrager) LAW(hencky, Hencky) LAW(corotated, Corotated) LAW(linear_elastic, LinearElastic)
+
+#define TALUS_ENUMERATOR(name, Law) name,
+#define TALUS_TYPE(name, Law) , Law
+/// The law of a material, by its number in the list.
+enum class MaterialModel { TALUS_MATERIAL_LAWS(TALUS_ENUMERATOR) };
+using MaterialLaws = LawListBehind<void TALUS_MATERIAL_LAWS(TALUS_TYPE)>;
+#undef TALUS_ENUMERATOR
+#undef TALUS_TYPE
+
+/// The model that means `Law` in the list `Laws`.
+template <class Law, class Laws = MaterialLaws>
+inline constexpr MaterialModel model_of = static_cast<MaterialModel>(Laws::template index_of<Law>());
+
+/// visit(Law{}) for the law of a model.
+template <class Laws = MaterialLaws, class Visit>
+TALUS_HD auto visit_law(MaterialModel model, const Visit& visit) {
+  return visit_law(Laws{}, static_cast<int>(model), visit);
+}
+
+/// The law that stands in for a model while gravity is loaded.
+inline MaterialModel model_while_loading(MaterialModel model) {
+  return visit_law(model, [](auto law) { return model_of<typename decltype(law)::LoadedAs>; });
+}
+
+/// What a point goes on with of the elastic state that gravity loading ended with.
+inline Sym3<double> after_loading(MaterialModel model, const Sym3<double>& loaded) {
+  return visit_law(model, [&](auto law) { return law.after_loading(loaded); });
+}
+
+}  // namespace talus

@@ -1,0 +1,10 @@
+#include "solver/material/law_list.hpp"
+
+#include <fmt/format.h>
+
+namespace talus {
+
+std::string shortest(double value) { return fmt::format("{}", value); }
+std::string six_digits(double value) { return fmt::format("{:g}", value); }
+
+}  // namespace talus

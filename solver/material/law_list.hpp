@@ -1,0 +1,80 @@
+// A list of laws, and how the one that is meant at run time is found in it: by comparisons that are inlined into the
+// kernel, without virtual calls or pointers to functions.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "common/recipe/recipe.hpp"
+#include "solver/parallel/macros.hpp"
+
+namespace talus {
+
+/// The laws of a kind, in the order in which recipes list them; a law is a type with static members alone.
+template <class... Laws>
+struct LawList {
+  static constexpr int count = sizeof...(Laws);
+
+  /// Number of `Law` in the list; does not compile where the list lacks it.
+  template <class Law>
+  static constexpr int index_of() {
+    static_assert((std::is_same_v<Law, Laws> || ...), "the law is not in the list");
+    int index = 0;
+    (void)((std::is_same_v<Law, Laws> ? true : (++index, false)) || ...);
+    return index;
+  }
+
+  /// Calls visit(Law{}) for every law of the list, in its order.
+  template <class Visit>
+  static void each(const Visit& visit) {
+    (visit(Laws{}), ...);
+  }
+
+  /// Names of the laws as recipes write them.
+  static std::vector<std::string_view> names() { return {Laws::name...}; }
+};
+
+/// The list of the laws that X-macros give behind their first argument, which is void.
+template <class, class... Laws>
+using LawListBehind = LawList<Laws...>;
+
+/// Returns visit(Law{}) for law number `index` of the list. No law stands in for another: a number that is in no list
+/// is a bug that only a cast can make, and the sanitizers stop at it.
+template <class First, class... Rest, class Visit>
+TALUS_HD auto visit_law(LawList<First, Rest...>, int index, const Visit& visit) {
+  if constexpr (sizeof...(Rest) > 0) {
+    if (index != 0) return visit_law(LawList<Rest...>{}, index - 1, visit);
+  } else {
+    if (index != 0) __builtin_unreachable();
+  }
+  return visit(First{});
+}
+
+/// Describes the key that chooses a law of the list by its name; `Model` is an enum whose values number the list.
+template <class Laws, class Model>
+void choose_law(recipe::Visitor& v, std::string_view key, Model& model, std::string_view help) {
+  int index = static_cast<int>(model);
+  v.one_of(key, index, Laws::names(), help);
+  model = static_cast<Model>(index);
+}
+
+template <class Laws>
+struct OptionsOfLaws;
+/// The options of all laws side by side. A recipe names those of every law; those of another law than the chosen one
+/// have no effect.
+template <class... Laws>
+struct OptionsOfLaws<LawList<Laws...>> : Laws::Options... {
+  void describe(recipe::Visitor& v) { (Laws::Options::describe(v), ...); }
+  template <class Law>
+  const typename Law::Options& options_of() const {
+    return *this;
+  }
+};
+
+/// A number in words: as few digits as read back to the same number, or six significant ones.
+std::string shortest(double value);
+std::string six_digits(double value);
+
+}  // namespace talus

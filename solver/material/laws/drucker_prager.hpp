@@ -1,0 +1,328 @@
+// Drucker-Prager sand: shear as in Hencky's law, on a cone; the pressure is a function of the total volume alone, so
+// that a grain that has opened must close again before it carries load (cf. Tampubolon et al. 2017, volume correction).
+// A point keeps the deviator of its elastic logarithmic strain.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "solver/material/law_list.hpp"
+#include "solver/material/laws/hencky.hpp"
+
+namespace talus {
+
+/// How the cone meets Mohr-Coulomb.
+enum class Cone { compression, extension, plane_strain };
+
+/// sqrt(J2) = slope p + cohesion.
+struct ConeFit {
+  double slope, cohesion;  // [-], [Pa]
+};
+
+/// Cone through Mohr-Coulomb of this friction angle [rad] and cohesion [Pa]: in triaxial compression or extension (Chen
+/// & Mizuno 1990, table 4.1), or in plane strain for flow with this dilatancy angle [rad] (T15a), which is the table's
+/// fit where that is the friction angle.
+inline ConeFit fit_cone(Cone cone, double angle, double cohesion, double dilatancy) {
+  const double s = std::sin(angle), c = std::cos(angle), t = std::tan(dilatancy);
+  if (cone == Cone::plane_strain) {
+    // No plastic strain across the plane: s_z = -(2/3) beta sqrt(J2), so that the circle in the plane has the radius
+    // sqrt(J2 (1 - beta^2 / 3)) about the pressure p - (beta / 3) sqrt(J2).
+    const double beta = 3 * t / std::sqrt(9 + 12 * t * t);
+    const double share = std::sqrt(1 - beta * beta / 3) + beta / 3 * s;
+    return {s / share, cohesion * c / share};
+  }
+  const double side = cone == Cone::compression ? 3 - s : 3 + s;
+  return {6 * s / (std::sqrt(3.0) * side), 6 * cohesion * c / (std::sqrt(3.0) * side)};
+}
+
+/// Numbers of the cone as kernels see them.
+template <class Real>
+struct ConeNumbers {
+  Real friction = 0;                                  // slope alpha of sqrt(J2) = alpha p + shear_cohesion [-]
+  Real dilatancy = 0;                                 // slope beta of the plastic potential [-]
+  Real shear_cohesion = 0;                            // [Pa]
+  Real tension = 0;                                   // largest -p carried [Pa]
+  Real residual_friction = 0, residual_cohesion = 0;  // slope and shear cohesion once softened
+  Real softening = 0;          // share of the way there per plastic shear strain; 0: does not soften [-]
+  Real apex = 0;               // pressure over which the tip of the cone is rounded [Pa]
+  bool exact_tangent = false;  // with what the volume change does to a yielding point's friction: not symmetric
+
+  /// Friction and cohesion on the way to the residual ones, for this plastic shear strain (T15c).
+  TALUS_HD void soften(Real plastic_shear) {
+    const Real way = plastic_shear * softening, left = way < Real(1) ? Real(1) - way : Real(0);
+    const Real cohesion = residual_cohesion + left * (shear_cohesion - residual_cohesion);
+    friction = residual_friction + left * (friction - residual_friction);
+    if (shear_cohesion > Real(0)) tension *= cohesion / shear_cohesion;
+    shear_cohesion = cohesion;
+    if (dilatancy > friction) dilatancy = friction;
+  }
+  /// Implicit steps: rounds the tip over this pressure [Pa].
+  void round_tip(Real pressure) { apex = pressure; }
+  /// Implicit steps: whether the tangent takes along what pressure does to friction.
+  void couple_pressure(bool exact) { exact_tangent = exact; }
+};
+
+/// Pressure p = -trace(tau)/3 (positive in compression) that a point would have without cut-off, over the cut-off [Pa].
+template <class Real>
+TALUS_HD Real free_pressure(const Elasticity<Real>& m, const ConeNumbers<Real>& cone, Real log_volume,
+                            Real plastic_log_volume) {
+  return cone.tension - m.bulk_modulus * (log_volume - plastic_log_volume);
+}
+
+/// The cut-off: what is left of a free pressure, max(y, 0), rounded over `apex` to (y + sqrt(y^2 + apex^2)) / 2, and
+/// its derivative (T15b).
+template <class Real>
+struct CutPressure {
+  Real value, slope;
+  TALUS_HD CutPressure(const ConeNumbers<Real>& cone, Real y) {
+    if (cone.apex > Real(0)) {
+      const Real root = sqrt(y * y + cone.apex * cone.apex);
+      // The difference of two large numbers where the point has opened far.
+      value = y > Real(0) ? Real(0.5) * (y + root) : Real(0.5) * cone.apex * cone.apex / (root - y);
+      slope = value / root;
+    } else {
+      value = y > Real(0) ? y : Real(0);
+      slope = y > Real(0) ? Real(1) : Real(0);
+    }
+  }
+};
+
+/// Where a trial of the cone ends (de Souza Neto et al. 2008, box 8.8, non-associated): shear - G g = alpha p(g) + k
+/// with dilatancy raising the pressure by K beta g (T15). The pressure is convex in g, so Newton's steps come from one
+/// side.
+template <class Real>
+struct ConeReturn {
+  Real left;                         // sqrt(J2) [Pa]
+  Real dilation = 0;                 // plastic volume change
+  Real pressure, give;               // pressure [Pa] and the slope of its cut-off there
+  bool yields = false, tip = false;  // has yielded; no shear strength is left
+
+  TALUS_HD ConeReturn(const Elasticity<Real>& m, const ConeNumbers<Real>& cone, Real shear, Real y) : left(shear) {
+    CutPressure<Real> cut(cone, y);
+    pressure = cut.value - cone.tension;
+    give = cut.slope;
+    Real excess = shear - cone.friction * pressure - cone.shear_cohesion;
+    if (excess <= Real(0)) return;
+    yields = true;
+    // An open point has no pressure to raise.
+    const Real raise = give > Real(0) ? m.bulk_modulus * cone.dilatancy : Real(0);
+    Real multiplier = excess / (m.shear_modulus + cone.friction * raise * give);
+    const int corrections = raise > Real(0) && cone.apex > Real(0) ? 4 : raise > Real(0) ? 1 : 0;
+    for (int n = 0; n < corrections; ++n) {
+      const CutPressure<Real> now(cone, y + raise * multiplier);
+      pressure = now.value - cone.tension;
+      give = now.slope;
+      excess = shear - m.shear_modulus * multiplier - cone.friction * pressure - cone.shear_cohesion;
+      multiplier += excess / (m.shear_modulus + cone.friction * raise * give);
+    }
+    left = shear - m.shear_modulus * multiplier;
+    dilation = raise > Real(0) ? cone.dilatancy * multiplier : Real(0);
+    if (left < Real(0)) {
+      left = Real(0);
+      tip = true;
+    }
+  }
+};
+
+struct DruckerPrager {
+  static constexpr std::string_view name = "drucker-prager";
+  static constexpr bool keeps_strain = true, pressure_follows_volume = true;
+  static constexpr bool stiffness_is_free = true;  // strength bounds the stress, whatever the stiffness
+  /// Gravity is loaded elastically: what is about to slide has no equilibrium of its own.
+  using LoadedAs = Hencky;
+
+  struct Options {
+    double friction_angle = 30;          // [deg]
+    double cohesion = 0;                 // [Pa]
+    double dilatancy_angle = 0;          // [deg]
+    double tension_cutoff = 0;           // [Pa]
+    double pore_pressure_ratio = 0;      // water's part of the mean stress [-]
+    double softening_slip = 0;           // over which strength falls to the residual one [m]; 0: it does not
+    double residual_friction_angle = 0;  // [deg]
+    double residual_cohesion = 0;        // [Pa]
+    Cone cone = Cone::compression;
+
+    bool softens() const { return softening_slip > 0; }
+    bool dilates() const { return dilatancy_angle > 0; }
+    void describe(recipe::Visitor& v);
+    void check(const std::string& table, std::vector<Fault>& faults) const;
+  };
+  static std::string words(const Options& o, const std::string& elasticity);
+  static std::string sentence(const Options& o);
+
+  template <class Real>
+  struct Numbers : ConeNumbers<Real> {};
+  /// The cone of the options. Softening goes by slip: a band of shear is one cell wide, so that the strain over which
+  /// strength falls is the slip over the least side of a cell, `side` (Pietruszczak & Mroz 1981), and results do not
+  /// hang on the grid (T15c).
+  template <class Real>
+  static Numbers<Real> numbers(const Options& o, double side);
+
+  /// Pressure, tension cut off (T15) [Pa].
+  template <class Real>
+  TALUS_HD static Real pressure(const Elasticity<Real>& m, const Numbers<Real>& cone, const MaterialState<Real>& s) {
+    return CutPressure<Real>(cone, free_pressure(m, cone, s.log_volume, s.plastic_log_volume)).value - cone.tension;
+  }
+
+  /// Kirchhoff stress [Pa].
+  template <class Real>
+  TALUS_HD static Sym3<Real> stress(const Elasticity<Real>& m, const Numbers<Real>& cone,
+                                    const MaterialState<Real>& s) {
+    return (s.elastic * (Real(2) * m.shear_modulus)).plus_identity(-pressure(m, cone, s));
+  }
+
+  /// G |e|^2 + p^2 / (2 K) [J/m3].
+  template <class Real>
+  TALUS_HD static Real energy(const Elasticity<Real>& m, const Numbers<Real>& cone, const MaterialState<Real>& s) {
+    const Real p = pressure(m, cone, s);
+    return m.shear_modulus * norm_squared(s.elastic) + Real(0.5) * p * p / m.bulk_modulus;
+  }
+
+  /// Return of the trial's deviator to the cone.
+  template <class Real>
+  TALUS_HD static void settle(const Elasticity<Real>& m, const Numbers<Real>& cone, const Increment<Real>&,
+                              MaterialState<Real>& s) {
+    s.elastic = deviator(s.elastic);
+    const Real shear = Real(2) * m.shear_modulus * sqrt(Real(0.5) * norm_squared(s.elastic));  // sqrt(J2) of the trial
+    const ConeReturn<Real> end(m, cone, shear, free_pressure(m, cone, s.log_volume, s.plastic_log_volume));
+    if (!end.yields) return;
+    const Real kept = end.left / shear;
+    s.plastic_shear = sqrt(Real(2.0 / 3) * norm_squared(s.elastic)) * (Real(1) - kept);
+    s.elastic = s.elastic * kept;
+    s.plastic_log_volume += end.dilation;
+  }
+
+  /// Principal stresses of a trial and D_ab. Unless the exact tangent is asked for, the friction of a yielding point is
+  /// held at its current pressure in D (frozen yield), which keeps D symmetric (T17).
+  template <class Real>
+  TALUS_HD static void respond(const Elasticity<Real>& m, const Numbers<Real>& cone, const PrincipalTrial<Real>& trial,
+                               PrincipalResponse<Real>& out);
+
+  /// The deviator: the pressure follows from the volume.
+  template <class Real>
+  static Sym3<Real> after_loading(const Sym3<Real>& loaded) {
+    return deviator(loaded);
+  }
+};
+
+template <class Real>
+TALUS_HD void DruckerPrager::respond(const Elasticity<Real>& m, const Numbers<Real>& cone,
+                                     const PrincipalTrial<Real>& trial, PrincipalResponse<Real>& out) {
+  const Real* e = trial.strain;
+  const Real twice = Real(2) * m.shear_modulus;
+  const Real mean = (e[0] + e[1] + e[2]) / Real(3);
+  const Real s[3] = {e[0] - mean, e[1] - mean, e[2] - mean};
+  const Real size = sqrt(Real(0.5) * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2]));
+  const Real shear = twice * size;
+  const ConeReturn<Real> end(m, cone, shear, free_pressure(m, cone, trial.log_volume, trial.plastic_log_volume));
+  const Real left = end.left, pressure = end.pressure, bulk = m.bulk_modulus * end.give;
+  Real slope = Real(1);  // of sqrt(J2) after the return by the trial's
+  if (end.yields) {
+    const Real raised = end.dilation > Real(0) ? cone.friction * cone.dilatancy * bulk : Real(0);
+    slope = end.tip ? Real(0) : raised / (m.shear_modulus + raised);
+  }
+  // Exact: shear' = slope dS + pull dy, p' = hold dy + lift dS, with y = -K tr(e) the free pressure.
+  Real pull = 0, hold = end.give, lift = 0;
+  if (cone.exact_tangent && end.yields && !end.tip) {
+    const Real raise = end.dilation > Real(0) ? m.bulk_modulus * cone.dilatancy : Real(0);
+    const Real stiff = m.shear_modulus + cone.friction * raise * end.give;
+    pull = m.shear_modulus * cone.friction * end.give / stiff;
+    hold = end.give * m.shear_modulus / stiff;
+    lift = end.give * raise / stiff;
+  }
+  const Real ratio = shear > Real(0) ? left / shear : Real(1);
+  // d(2G s ratio) = 2G [ratio dev + (slope - ratio) n n^T], n = s / |s|
+  const Real square = Real(2) * size * size;
+  for (int a = 0; a < 3; ++a) {
+    out.tau[a] = twice * ratio * s[a] - pressure;
+    for (int b = 0; b < 3; ++b) {
+      const Real along = square > Real(0) ? s[a] * s[b] / square : Real(0);
+      Real& d = out.d[3 * a + b];
+      d = m.bulk_modulus * hold +
+          twice * (ratio * ((a == b ? Real(1) : Real(0)) - Real(1.0 / 3)) + (slope - ratio) * along);
+      if (size > Real(0)) d -= pull * m.bulk_modulus * s[a] / size + lift * m.shear_modulus * s[b] / size;
+    }
+  }
+}
+
+template <class Real>
+DruckerPrager::Numbers<Real> DruckerPrager::numbers(const Options& o, double side) {
+  constexpr double radians_per_degree = std::numbers::pi / 180;
+  const double dilatancy = o.dilatancy_angle * radians_per_degree;
+  const ConeFit cone = fit_cone(o.cone, o.friction_angle * radians_per_degree, o.cohesion, dilatancy);
+  const ConeFit flow = fit_cone(o.cone, dilatancy, 0, dilatancy);
+  // The cone's own tip bounds the tension; a frictionless cone has none.
+  const double tip = cone.slope > 0 ? cone.cohesion / cone.slope : o.tension_cutoff;
+  const double borne = 1 - o.pore_pressure_ratio;  // by the grains
+  Numbers<Real> n;
+  n.friction = static_cast<Real>(borne * cone.slope);
+  n.dilatancy = static_cast<Real>(flow.slope);
+  n.shear_cohesion = static_cast<Real>(cone.cohesion);
+  n.tension = static_cast<Real>(std::min(tip, o.tension_cutoff));
+  if (o.softens()) {
+    const ConeFit left =
+        fit_cone(o.cone, o.residual_friction_angle * radians_per_degree, o.residual_cohesion, dilatancy);
+    n.residual_friction = static_cast<Real>(borne * left.slope);
+    n.residual_cohesion = static_cast<Real>(left.cohesion);
+    n.softening = static_cast<Real>(side / o.softening_slip);
+  }
+  return n;
+}
+
+inline void DruckerPrager::Options::describe(recipe::Visitor& v) {
+  using recipe::Range;
+  v.number("friction_angle_deg", friction_angle, Range{0, 90, false, true}, "internal friction angle");
+  v.number("cohesion_Pa", cohesion, recipe::not_negative, "cohesion");
+  v.number("dilatancy_angle_deg", dilatancy_angle, Range{0, 90, false, true}, "dilatancy angle");
+  v.number("tension_cutoff_Pa", tension_cutoff, recipe::not_negative, "largest mean tension carried");
+  v.number("pore_pressure_ratio", pore_pressure_ratio, Range{0, 1},
+           "share of the pressure that water carries (saturated ground); friction acts on the rest");
+  v.number("softening_slip_m", softening_slip, recipe::not_negative,
+           "slip over which friction and cohesion fall to the residual ones; 0: they do not");
+  v.number("residual_friction_angle_deg", residual_friction_angle, Range{0, 90, false, true},
+           "after softening: internal friction angle");
+  v.number("residual_cohesion_Pa", residual_cohesion, recipe::not_negative, "after softening: cohesion");
+  recipe::choice(
+      v, "cone", cone,
+      {{"compression", Cone::compression}, {"extension", Cone::extension}, {"plane-strain", Cone::plane_strain}},
+      "how the cone meets Mohr-Coulomb");
+}
+
+inline void DruckerPrager::Options::check(const std::string& table, std::vector<Fault>& faults) const {
+  if (dilatancy_angle > friction_angle) {
+    faults.push_back({table + " dilatancy_angle_deg = " + shortest(dilatancy_angle) +
+                          " is above friction_angle_deg = " + shortest(friction_angle),
+                      "the material would make energy as it shears",
+                      "Lower dilatancy_angle_deg; 0 is usual for run-out"});
+  }
+  if (softens() && (residual_friction_angle > friction_angle || residual_cohesion > cohesion)) {
+    faults.push_back({table + " softens to " + shortest(residual_friction_angle) + " deg and " +
+                          shortest(residual_cohesion) + " Pa, from " + shortest(friction_angle) + " deg and " +
+                          shortest(cohesion) + " Pa",
+                      "a residual strength is no larger than the first",
+                      "Lower residual_friction_angle_deg or residual_cohesion_Pa"});
+  }
+}
+
+inline std::string DruckerPrager::sentence(const Options& o) {
+  std::string text = "an elasto-plastic (Drucker-Prager) material with an internal friction angle of " +
+                     six_digits(o.friction_angle) + "\u00b0";
+  if (o.cohesion > 0) text += " and a cohesion of " + six_digits(o.cohesion / 1000) + " kPa";
+  return text;
+}
+
+inline std::string DruckerPrager::words(const Options& o, const std::string& elasticity) {
+  std::string text = "drucker-prager, " + elasticity + ", friction " + six_digits(o.friction_angle) + " deg";
+  if (o.cohesion > 0) text += ", cohesion " + six_digits(o.cohesion) + " Pa";
+  if (o.dilatancy_angle > 0) text += ", dilatancy " + six_digits(o.dilatancy_angle) + " deg";
+  if (o.tension_cutoff > 0) text += ", tension up to " + six_digits(o.tension_cutoff) + " Pa";
+  if (o.pore_pressure_ratio > 0) text += ", water carries " + six_digits(o.pore_pressure_ratio) + " of the pressure";
+  if (o.softens()) {
+    text += ", softens over " + six_digits(o.softening_slip) + " m to " + six_digits(o.residual_friction_angle) +
+            " deg and " + six_digits(o.residual_cohesion) + " Pa";
+  }
+  return text;
+}
+
+}  // namespace talus

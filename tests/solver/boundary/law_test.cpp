@@ -1,0 +1,67 @@
+// The list of basal laws: what holds for every one of them, and the numbers that rasters give.
+#include "solver/boundary/law.hpp"
+
+#include <gtest/gtest.h>
+
+#include "common/domain/bed_numbers.hpp"
+#include "solver/options/bed.hpp"
+#include "tests/solver/boundary/any_law.hpp"
+
+namespace talus::testing {
+namespace {
+
+using solver::BaseOptions;
+
+TEST(FrictionLaws, hold_what_every_law_must) { expect_laws_to_hold<FrictionLaws>(); }
+
+TEST(FrictionLaws, weaken_or_drag_as_their_numbers_say) {
+  OptionsOfLaws<FrictionLaws> o;
+  o.turbulence = 1000;
+  const auto voellmy = some_bed<Voellmy, FrictionLaws>(o);
+  EXPECT_DOUBLE_EQ(voellmy.coefficient(voellmy.uniform, {5, 0, 0.01}), std::tan(20 * std::numbers::pi / 180));
+  EXPECT_DOUBLE_EQ(voellmy.traction(voellmy.uniform, {5, 0, 0.01}), 2000 * 9.81 / 1000 * 25);
+  const auto weakening = some_bed<VelocityWeakening, FrictionLaws>(o);
+  EXPECT_DOUBLE_EQ(weakening.coefficient(weakening.uniform, {1, 0, 0.01}), (0.7 + 0.23) / 2);
+}
+
+TEST(Bed, is_no_larger_than_its_five_numbers_were) { EXPECT_LE(sizeof(Bed<double>), 5 * sizeof(double)); }
+
+TEST(BedNumbers, are_those_of_the_laws_and_have_a_member_each) {
+  BaseOptions options;
+  std::set<double*> members;
+  for (const std::string_view key : bed_numbers) {
+    double* const number = options.named(key);
+    ASSERT_NE(number, nullptr) << key;
+    EXPECT_TRUE(members.insert(number).second) << key;
+    bool used = false;
+    FrictionLaws::each([&](auto law) {
+      options.law = static_cast<FrictionLaw>(FrictionLaws::index_of<decltype(law)>());
+      used = used || options.uses(key);
+    });
+    EXPECT_TRUE(used) << key << " belongs to no law";
+  }
+  EXPECT_EQ(options.named("law"), nullptr);
+  FrictionLaws::each([&](auto law) {  // a number that no raster could give would be missed in silence
+    typename decltype(law)::Options own;
+    recipe::Defaults keys;
+    own.describe(*recipe::make_collector("law", keys));
+    for (const auto& [place, value] : keys)
+      EXPECT_NE(std::find(bed_numbers.begin(), bed_numbers.end(), place.substr(place.rfind('.') + 1)),
+                bed_numbers.end())
+          << place;
+  });
+}
+
+TEST(BaseOptions, say_the_bed_in_a_line) {
+  BaseOptions o;
+  o.cohesion = 50;
+  EXPECT_EQ(o.words(), "coulomb, 20 deg, cohesion 50 Pa");
+  o.law = FrictionLaw::voellmy;
+  o.pore_pressure_ratio = 0.5;
+  EXPECT_EQ(o.words(), "voellmy, 20 deg and xi = 500 m/s2, cohesion 50 Pa, water carries 0.5 of the normal stress");
+  o.law = FrictionLaw::stick;
+  EXPECT_EQ(o.words(), "held");
+}
+
+}  // namespace
+}  // namespace talus::testing

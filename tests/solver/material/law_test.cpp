@@ -1,0 +1,36 @@
+// The list of constitutive laws: what holds for every one of them.
+#include "solver/material/law.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/solver/material/any_law.hpp"
+
+namespace talus::testing {
+namespace {
+
+TEST(MaterialLaws, hold_what_every_law_must) { expect_laws_to_hold<MaterialLaws>(); }
+
+TEST(MaterialLaws, are_numbered_in_the_order_of_the_list) {
+  EXPECT_EQ(model_of<DruckerPrager>, MaterialModel::drucker_prager);
+  EXPECT_EQ(model_of<Hencky>, MaterialModel::hencky);
+  EXPECT_EQ(model_of<Corotated>, MaterialModel::corotated);
+  EXPECT_EQ(model_of<LinearElastic>, MaterialModel::linear_elastic);
+}
+
+TEST(MaterialLaws, load_gravity_elastically) {
+  EXPECT_EQ(model_while_loading(MaterialModel::drucker_prager), MaterialModel::hencky);
+  const Sym3<double> strain{-3, -3, -6, 1, 2, 3};
+  EXPECT_EQ(trace(after_loading(MaterialModel::drucker_prager, strain)), 0);
+  for (const auto model : {MaterialModel::hencky, MaterialModel::corotated, MaterialModel::linear_elastic}) {
+    EXPECT_EQ(model_while_loading(model), model);
+    EXPECT_EQ(trace(after_loading(model, strain)), -12);
+  }
+}
+
+TEST(Material, is_no_larger_than_elasticity_model_and_cone) {
+  EXPECT_LE(sizeof(Material<double>), 14 * sizeof(double));
+  EXPECT_LE(sizeof(Material<float>), 14 * sizeof(float));
+}
+
+}  // namespace
+}  // namespace talus::testing
