@@ -14,9 +14,9 @@
 
 namespace talus::solver {
 
-/// One thread: one point. How far it goes for the displacement u, over how far it may: the largest over all points, as
-/// float bits. In a dynamic step, and on sloping ground, it may go a cell. Statics over level ground are exact however
-/// far it goes, short of going half a cell through an edge that it was too far from to meet.
+/// One thread: one point. It measures how far the point goes for the displacement u, over how far it may: the largest
+/// over all points, as float bits. In a dynamic step, and on sloping ground, it may go a cell. Statics over level
+/// ground are exact however far it goes, short of going half a cell through an edge that it was too far from to meet.
 template <class Real, class Shape>
 struct MeasureMotion {
   GridView<Real> grid;
@@ -49,25 +49,25 @@ struct MotionAtEnd {
   const Vec3<double>* acceleration = nullptr;
 };
 
-/// What a pass over the points takes: MUSL takes the velocity first and the rest later.
+/// The part of the new state that a pass over the points takes: MUSL takes the velocity first and the rest later.
 struct AcceptedPart {
   bool speeds = true, deforms = true;
 };
 
-/// One thread: one point. State, velocity and position at the end of an accepted step.
+/// One thread: one point. It takes its state, velocity (T7) and position (T10) at the end of an accepted step.
 template <class Real, class Shape>
 struct AcceptStep {
   GridView<Real> grid;
   ParticleView<Real> points;
   Materials<Real> materials;
   Clock* clock;
-  NodeArrays nodes;  // velocity, acceleration: at the start
+  NodeArrays nodes;  ///< velocity, acceleration: at the start
   MotionAtEnd end;
-  const Vec3<double>* strain_displacement;  // what the strain comes from: u, or dt times the remapped velocity
-  double kept;                              // share of the points' velocity finer than the grid that stays
+  const Vec3<double>* strain_displacement;  ///< what the strain comes from: u, or dt times the remapped velocity
+  double kept;                              ///< share of the points' velocity finer than the grid that stays
   bool affine, dilatant;
   AcceptedPart part;
-  MeanDilationView<Real> means;  // of strain_displacement
+  MeanDilationView<Real> means;  ///< of strain_displacement
 
   TALUS_HD void operator()(int p) const {
     const PointGradients<Real, Shape> g(grid, points, p);
@@ -157,7 +157,7 @@ struct AcceptStep {
   }
 };
 
-/// Momentum of the points' new velocity back to the nodes (MUSL).
+/// The scatter of the momentum of the points' new velocity back to the nodes (MUSL; Sulsky, Zhou & Schreyer 1995).
 template <class Real, class Shape>
 struct ScatterVelocity : PointScatter<Real, Shape> {
   using Base = PointScatter<Real, Shape>;
@@ -166,6 +166,7 @@ struct ScatterVelocity : PointScatter<Real, Shape> {
   Materials<Real> materials;
   Vec3<double>* momentum;
 
+  /// A point as its nodes see it: its weights and its momentum [kg m/s].
   struct Source : PointGradients<Real, Shape> {
     Vec3<double> momentum;
     TALUS_HD Source(const ScatterVelocity& k, int p) : PointGradients<Real, Shape>(k.grid, k.points, p) {
@@ -176,13 +177,17 @@ struct ScatterVelocity : PointScatter<Real, Shape> {
   using Sums = Vec3<double>;
 
   TALUS_HD void operator()(int p) const { scatter_point(*this, p); }
+  /// The nodes of column q receive their shares of the momentum; see ScatterKernel for this and the next members.
   TALUS_HD void add(const Source& g, int q, Sums (&sums)[Base::deep]) const {
     TALUS_UNROLL
     for (int c = 0; c < Base::deep; ++c)
       sums[c] += g.momentum * static_cast<double>(g.weight(Base::along_x(q), Base::along_y(q), c));
   }
+  /// The sums go to a stored node.
   TALUS_HD void add_to_node(int at, const Sums& sums) const { scatter_add(&momentum[at], sums); }
+  /// The three numbers of a node's sums are put side by side.
   TALUS_HD static void store(const Sums& sums, double* to) { put(sums, to); }
+  /// The location of component q of a stored node's momentum.
   TALUS_HD double* part(int node, int q) const { return &momentum[node].x + q; }
 };
 

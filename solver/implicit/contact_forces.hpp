@@ -15,29 +15,31 @@ inline constexpr double contact_stiffness = 30;
 
 /// The numbers of a step at the contact points, in arrays over them.
 struct ContactNumbers {
-  double* spring;       // stiffness, as far as the place is filled [N/m]
-  double* coefficient;  // of friction, at the speed the step begins with
-  double* traction;     // what holds slip besides friction [N]
-  double* limit;        // what holds slip, for the push found last: held while Newton goes on, so that the force has a
-                        // potential [N]
-  Sym3<double>* stiffness;  // minus the force's derivative by the displacement [N/m]
-  double modulus;           // of the springs under a full layer, over area [Pa/m]
+  double* spring;       ///< stiffness, as far as the place is filled [N/m]
+  double* coefficient;  ///< of friction, at the speed the step begins with
+  double* traction;     ///< what holds slip besides friction [N]
+  double* limit;  ///< what holds slip, for the push found last: held while Newton goes on, so that the force has a
+                  ///< potential [N]
+  Sym3<double>* stiffness;  ///< minus the force's derivative by the displacement [N/m]
+  double modulus;           ///< of the springs under a full layer, over area [Pa/m]
 };
 
 /// The nodes' masses, for ContactView::around.
 template <class Real>
 struct NodeMass {
   const double* data;
+  /// The mass of stored node n [kg].
   TALUS_HD Real mass(int n) const { return static_cast<Real>(data[n]); }
 };
 
-/// One thread: one contact point. The mass before it, and friction for the velocity that the step begins with.
+/// One thread: one contact point. It measures the mass before it, and friction for the velocity that the step begins
+/// with.
 template <class Real, class Shape>
 struct MeasureGrip {
   GridView<Real> grid;
   ContactView<Real> contacts;
   NodeArrays nodes;
-  double layer_mass;  // see SweepContacts
+  double layer_mass;  ///< see SweepContacts
   bool dynamic;
   double step;  // [s]
   ContactNumbers numbers;
@@ -115,7 +117,7 @@ TALUS_HD void spread(const GridView<Real>& grid, const ContactView<Real>& contac
   });
 }
 
-/// One thread: one contact point. Its force for the displacement u goes off the internal force.
+/// One thread: one contact point. Its force for the displacement u is subtracted from the internal force.
 template <class Real, class Shape>
 struct ScatterContacts {
   GridView<Real> grid;
@@ -132,8 +134,8 @@ struct ScatterContacts {
   }
 };
 
-/// One thread: one contact point. What friction holds there follows the push for the displacement u, and the internal
-/// force with it.
+/// One thread: one contact point. The limit of friction there follows the push for the displacement u, and the internal
+/// force follows the limit.
 template <class Real, class Shape>
 struct RenewLimits {
   GridView<Real> grid;
@@ -167,7 +169,7 @@ struct ApplyContacts {
   }
 };
 
-/// One thread: one contact point. Its part of the diagonal, for preconditioners.
+/// One thread: one contact point. It adds its part of the diagonal, for preconditioners.
 template <class Real, class Shape>
 struct AddContactDiagonal {
   GridView<Real> grid;
@@ -187,7 +189,7 @@ struct AddContactDiagonal {
   }
 };
 
-/// One thread: one contact point. Force and impulse of an accepted step.
+/// One thread: one contact point. It keeps force and impulse of an accepted step.
 template <class Real, class Shape>
 struct KeepContacts {
   GridView<Real> grid;
@@ -195,7 +197,7 @@ struct KeepContacts {
   NodeArrays nodes;
   ContactNumbers numbers;
   double step;
-  const Vec3<Real>* arrival;  // impulse with which the surface met the mass at once; null in statics [N s]
+  const Vec3<Real>* arrival;  ///< impulse with which the surface met the mass at once; null in statics [N s]
   TALUS_HD void operator()(int c) const {
     if (!(contacts.inverse_mass[c] > Real(0))) return;
     const Vec3<double> u = contact_move<Real, Shape>(grid, contacts, nodes.mass, nodes.u, c);
@@ -209,9 +211,12 @@ struct KeepContacts {
 template <class Real>
 struct ArrivingNodes {
   NodeArrays nodes;
-  double step;  // where the first guess of the displacement goes with the velocity [s]; else 0
+  double step;  ///< where the first guess of the displacement goes with the velocity [s]; else 0
+  /// The mass of stored node n [kg].
   TALUS_HD Real mass(int n) const { return static_cast<Real>(nodes.mass[n]); }
+  /// The velocity that node n begins the step with [m/s].
   TALUS_HD Vec3<Real> velocity(int n) const { return narrow<Real>(nodes.begin_velocity(n)); }
+  /// The method adds a change of velocity [m/s] to node n, and to the first guess of its displacement.
   TALUS_HD void add(int n, const Vec3<Real>& v) const {
     const Vec3<double> change = widen(v);
     nodes.arrival[n] += change;

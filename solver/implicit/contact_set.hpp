@@ -32,7 +32,7 @@ struct NodeContactFields {
   Buffer<double, Device> friction, traction, limit;
   Buffer<ContactChanges, Device> changes;
 
-  /// `traction`, `way`: whether those are there.
+  /// The method sets the number of nodes. `traction`, `way`: whether those are there.
   void resize(std::size_t nodes, bool has_traction, bool has_way) {
     walls.resize(nodes);
     normal.resize(nodes);
@@ -43,6 +43,7 @@ struct NodeContactFields {
     limit.resize(nodes);
     changes.resize(nodes);
   }
+  /// The size of the buffers [bytes].
   std::size_t bytes() const {
     return walls.bytes() + normal.bytes() + direction.bytes() + way.bytes() + friction.bytes() + traction.bytes() +
            limit.bytes() + changes.bytes();
@@ -58,11 +59,13 @@ struct ContactPointFields {
   Buffer<double, Device> spring, coefficient, traction, limit;
   Buffer<Sym3<double>, Device> stiffness;
 
+  /// The method sets the number of contact points; their stiffness begins at zero.
   void resize(std::size_t points) {
     for (auto* b : {&spring, &coefficient, &traction, &limit}) b->resize(points);
     stiffness.resize(points);
     stiffness.fill_zero();
   }
+  /// The size of the buffers [bytes].
   std::size_t bytes() const {
     return spring.bytes() + coefficient.bytes() + traction.bytes() + limit.bytes() + stiffness.bytes();
   }
@@ -80,13 +83,13 @@ class ContactSet {
     smoothing_.smooths = parts.controls.dynamic;
   }
 
-  /// Room for the nodes and contact points of a step.
+  /// The method makes room for the nodes and contact points of a step.
   void resize() {
     fields_.resize(static_cast<std::size_t>(nodes_.count), bed_.view().has_traction(), parts_.controls.once());
   }
 
-  /// The nodes at the start of a step of `scheme`: velocities, what holds them, which contacts stick to begin with, and
-  /// the first guess of u. `gravity` [m/s2] is that of the step.
+  /// The method prepares the nodes at the start of a step of `scheme`: velocities, what holds them, which contacts
+  /// stick to begin with, and the first guess of u. `gravity` [m/s2] is that of the step.
   void begin(const NewmarkScheme& scheme, const Walls<double>& walls, const Vec3<double>& gravity) {
     const ImplicitControls& c = parts_.controls;
     const Vec3<double>& full = parts_.settings.gravity.acceleration;
@@ -123,30 +126,33 @@ class ContactSet {
             .pull = pull_};
   }
 
-  /// What friction can hold at the contact points follows their push.
+  /// The method lets the limit of friction at the contact points follow their push.
   void renew_limits() {
     if (parts_.surfaces.on())
       each_point(RenewLimits<Real, Shape>{parts_.grid.view(), parts_.surfaces.view(), nodes(), numbers()});
   }
-  /// Slips that u has turned back stick, there and where the line search set out; they count as changes of `balance`.
+  /// The method makes slips that u has turned back stick, there and where the line search set out; they count as
+  /// changes of `balance`.
   void stick_reversed(Balance* balance) {
     sum_each<1>(parts_.device, nodes_.count, parts_.sums, StickReversed{nodes(), constraints(), nodes_.saved_u.data()},
                 FinishReversals{balance});
   }
 
-  /// The forces of the contact points go off the internal force; `with_stiffness`: and their derivative is kept.
+  /// The method subtracts the forces (T12b) of the contact points from the internal force, and keeps their derivative
+  /// `with_stiffness`.
   void scatter(bool with_stiffness) {
     if (parts_.surfaces.on())
       each_point(
           ScatterContacts<Real, Shape>{parts_.grid.view(), parts_.surfaces.view(), nodes(), numbers(), with_stiffness});
   }
-  /// y += K x of the contact points.
+  /// The method adds K x of the contact points to y, both [nodes].
   void apply(const NodeVector<Device>& x, NodeVector<Device>& y) {
     if (parts_.surfaces.on())
       each_point(ApplyContacts<Real, Shape>{parts_.grid.view(), parts_.surfaces.view(), nodes_.mass.data(),
                                             points_.stiffness.data(), x.data(), y.data()});
   }
-  /// Stiffness of friction and of the contact points on the nodes' diagonal, S of (T19).
+  /// The method sums the stiffness of friction and of the contact points on the nodes' diagonal, S of (T19) [N/m]; the
+  /// array [nodes] is on the device.
   const Sym3<double>* measure_stiffness() {
     stiffness_.resize(static_cast<std::size_t>(nodes_.count));
     for_each(parts_.device, nodes_.count, FrictionStiffness{nodes(), constraints(), stiffness_.data()});
@@ -156,15 +162,18 @@ class ContactSet {
     return stiffness_.data();
   }
 
-  /// Force and impulse of the contact points in an accepted step of `step` seconds.
+  /// The method keeps force and impulse of the contact points in an accepted step of `step` seconds.
   void keep(double step) {
     if (parts_.surfaces.on())
       each_point(KeepContacts<Real, Shape>{parts_.grid.view(), parts_.surfaces.view(), nodes(), numbers(), step,
                                            parts_.controls.dynamic ? parts_.impulses.impulses() : nullptr});
   }
 
+  /// The smoothing of friction, kept from step to step.
   FrictionSmoothing& smoothing() { return smoothing_; }
+  /// The size of what the nodes' contacts take [bytes].
   std::size_t node_bytes() const { return bed_.bytes() + fields_.bytes() + stiffness_.bytes(); }
+  /// The size of what the contact points take [bytes].
   std::size_t point_bytes() const { return points_.bytes(); }
 
  private:

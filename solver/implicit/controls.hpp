@@ -7,6 +7,7 @@
 
 namespace talus::solver {
 
+/// How linear systems are solved: by conjugate gradients, BiCGSTAB, or a factorisation.
 enum class LinearSolver { pcg, bicgstab, cholesky };
 /// Which derivative of the stress Newton's method takes: symmetric, the yield stress held where a point flows, or the
 /// exact one, which is not symmetric (T17).
@@ -17,32 +18,32 @@ enum class Forcing { fixed, eisenstat_walker };
 
 /// What Newton's iterations of a step are steered by.
 struct NewtonControls {
-  int iterations = 30;      // at most; 1: the single linear solve of the reference paper
-  double tolerance = 1e-6;  // of the unbalanced force, over the size of the forces that balance
+  int iterations = 30;      ///< at most; 1: the single linear solve of the reference paper
+  double tolerance = 1e-6;  ///< of the unbalanced force, over the size of the forces that balance
   Forcing forcing = Forcing::eisenstat_walker;
-  double linear_tolerance = 1e-8;  // the finest relative residual that a linear system is solved to
+  double linear_tolerance = 1e-8;  ///< the finest relative residual that a linear system is solved to
 };
 
 /// How the linear system of an iteration is solved.
 struct LinearControls {
   LinearSolver solver = LinearSolver::pcg;
-  int iterations = 5000;  // of a Krylov method, at most
+  int iterations = 5000;  ///< of a Krylov method, at most
   Operator form = Operator::points;
   Preconditioner preconditioner = Preconditioner::block;
 };
 
 /// How implicit steps are taken.
 struct ImplicitControls {
-  bool dynamic = true;              // with inertia (Newmark); else a sequence of equilibria
-  double step = 0.01;               // the longest [s]
-  int step_cuts = 8;                // halvings of a step before the run is given up
-  double alpha = 0.25, beta = 0.5;  // Newmark's numbers [-]
+  bool dynamic = true;              ///< with inertia (Newmark); else a sequence of equilibria
+  double step = 0.01;               ///< the longest [s]
+  int step_cuts = 8;                ///< halvings of a step before the run is given up
+  double alpha = 0.25, beta = 0.5;  ///< Newmark's numbers [-]
   NewtonControls newton;
   LinearControls linear;
   Tangent tangent = Tangent::frozen_yield;
-  double apex = 0.1;     // rounding of the cone's tip (T15b), in weights of a cell [-]
-  bool b_bar = false;    // means over the elements of the volume change (T17b)
-  double filler = 1e-3;  // stiffness of the springs (T17a) on nearly empty nodes in statics, over a full cell's [-]
+  double apex = 0.1;     ///< rounding of the cone's tip (T15b), in weights of a cell [-]
+  bool b_bar = false;    ///< means over the elements of the volume change (T17b)
+  double filler = 1e-3;  ///< stiffness of the springs (T17a) on nearly empty nodes in statics, over a full cell's [-]
 
   /// Whether a step is one linear solve with the tangent at its start.
   bool once() const { return newton.iterations == 1; }

@@ -7,8 +7,8 @@
 
 namespace talus::solver {
 
-/// A slipping node that turns back sticks; true if so. One that has changed too often goes on with smoothed friction
-/// instead.
+/// This function makes a slipping node that turns back stick; true if so. One that has changed too often goes on with
+/// smoothed friction instead.
 TALUS_HD bool stick_reversed(const NodeArrays& nodes, const Constraints& held, int n) {
   ++held.changes[n].turns;
   if (held.smoothed(n)) return false;
@@ -25,21 +25,21 @@ struct DecideContact {
   Constraints held;
   NewmarkScheme scheme;
 
-  /// What the surface has to balance: forces, and what it takes to bring the velocity at the start to that of the
-  /// displacement over the step. Velocity into the surface has been taken at the start (PrepareNodes).
+  /// The force that the surface has to balance: forces, and what it takes to bring the velocity at the start to that of
+  /// the displacement over the step [N]. Velocity into the surface has been taken at the start (PrepareNodes).
   TALUS_HD Vec3<double> stopping_force(int n, const Vec3<double>& force) const {
     if (!scheme.dynamic) return force;
     const double dt = scheme.step;
     return force + (nodes.begin_velocity(n) - nodes.u[n] * (1 / dt)) * (nodes.mass[n] / dt);
   }
 
-  /// What friction can hold where the surface balances `stop` [N].
+  /// The limit of friction where the surface balances `stop` [N].
   TALUS_HD double limit_of(int n, const Vec3<double>& stop) const {
     const double reaction = -dot(stop, held.normal[n]);
     return reaction > 0 ? held.friction[n] * reaction + (held.traction ? held.traction[n] : 0) : 0;
   }
 
-  /// The state of node n under `force`, external less internal [N]; true where it changed.
+  /// The method decides on the state of node n under `force`, external less internal [N]; true where it changed.
   TALUS_HD bool decide(int n, const Vec3<double>& force) const {
     const Vec3<double> normal = held.normal[n];
     const Vec3<double> stop = stopping_force(n, force);
@@ -81,7 +81,7 @@ struct DecideContact {
 struct StickReversed {
   NodeArrays nodes;
   Constraints held;
-  Vec3<double>* start;  // displacement that the line search sets out from
+  Vec3<double>* start;  ///< displacement that the line search sets out from
   TALUS_HD Terms<1> operator()(int n) const {
     if (nodes.touch[n] != Touch::slips || !held.grips(n) || held.smoothed(n) ||
         !(dot(nodes.u[n], held.direction[n]) < 0))
@@ -91,7 +91,7 @@ struct StickReversed {
   }
 };
 
-/// One thread: one node. Stiffness of its friction, for an assembled matrix.
+/// One thread: one node. It stores the stiffness of its friction, for an assembled matrix.
 struct FrictionStiffness {
   NodeArrays nodes;
   Constraints held;

@@ -15,8 +15,8 @@
 
 namespace talus::solver {
 
-/// Steps of Newmark's scheme, or a sequence of equilibria: particles are sorted before every step, a step that does not
-/// converge is cut in half.
+/// The integrator of implicit steps, by Newmark's scheme or as a sequence of equilibria: particles are sorted before
+/// every step, a step that does not converge is cut in half.
 template <class Real, class Device, class Shape>
 class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
   using Base = PointSolver<Real, Device, Shape>;
@@ -35,6 +35,8 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     this->fit(0);
   }
 
+  /// The method makes one step, or a part of one where it had to be cut; see Solver::advance(). It throws
+  /// NumericalError where the smallest step does not converge.
   BatchReport advance() override {
     Clock clock = read_clock();
     clock.halt = clock.request = running;
@@ -57,6 +59,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     return report;
   }
 
+  /// The memory by its users; see Solver::memory().
   MemoryShares memory() const override {
     MemoryShares shares = Base::memory();
     step_.list_memory([&](const char* name, std::size_t bytes) {
@@ -154,11 +157,12 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
   ImplicitControls controls_;
   ImplicitStep<Real, Device, Shape> step_;
   StepLength length_;
-  double rate_ = 0;  // CFL steps per time, as the last step ended [1/s]
-  bool first_;       // no acceleration is known yet
-  bool midway_;      // the run began with explicit steps
+  double rate_ = 0;  ///< CFL steps per time, as the last step ended [1/s]
+  bool first_;       ///< no acceleration is known yet
+  bool midway_;      ///< the run began with explicit steps
 };
 
+/// This function makes a solver of one precision and kind of shape functions, on a device.
 template <class Real, class Shape>
 std::unique_ptr<Solver> make_implicit_solver(const Scene& scene, const IntegratorSettings& settings,
                                              const ImplicitControls& controls, const AnyDevice& device,

@@ -15,10 +15,10 @@ namespace talus::solver {
 
 /// Where and how a step begins.
 struct StepBegin {
-  double start = 0, step = 0;           // [s]
-  bool accelerates = false;             // no acceleration is known yet: that of the forces at the start is taken
-  bool backward_euler = false;          // in place of Newmark's numbers
-  const Vec3<double>* loads = nullptr;  // force per volume of every load at the end of the step [N/m3]; null: none
+  double start = 0, step = 0;           ///< [s]
+  bool accelerates = false;             ///< no acceleration is known yet: that of the forces at the start is taken
+  bool backward_euler = false;          ///< in place of Newmark's numbers
+  const Vec3<double>* loads = nullptr;  ///< force per volume of every load at the end of the step [N/m3]; null: none
 };
 
 /// A step from its beginning to its end; a NewtonProblem in between.
@@ -35,14 +35,14 @@ class ImplicitStep {
   ImplicitStep(const ImplicitStep&) = delete;
   ImplicitStep& operator=(const ImplicitStep&) = delete;
 
-  /// The particles have been sorted, and the grid fitted to them; `walls` are there from now on.
+  /// The method takes particles that have been sorted and a grid that is fitted to them; `walls` are there from now on.
   void group(const Walls<double>& walls) {
     walls_ = walls;
     tangent_.group();
   }
 
-  /// Everything that does not change with the displacement. Loads are those at the end of the step, walls those at its
-  /// start.
+  /// The method measures everything that does not change with the displacement: (T3), (T4), loads and contacts. Loads
+  /// are those at the end of the step, walls those at its start.
   void begin(const StepBegin& at) {
     const ProfilePhase<Device> phase(parts_.device, "points to grid");
     const ImplicitControls& c = parts_.controls;
@@ -65,15 +65,17 @@ class ImplicitStep {
     if (at.accelerates || parts_.settings.damping > 0) begin_forces(at.accelerates);
   }
 
-  /// Newton's iterations, or the one linear solve; see NewtonReport.
+  /// The method makes Newton's iterations, or the one linear solve; see NewtonReport.
   NewtonReport solve() {
     return parts_.controls.once() ? solve_once(*this, parts_.controls.newton) : newton(*this, parts_.controls.newton);
   }
 
   // The verbs of NewtonProblem.
 
+  /// The method measures forces and tangent for the present u.
   void measure(Linearisation linearisation) { tangent_.measure(linearisation); }
 
+  /// The method measures the unbalanced force r(u) of (T16), under contacts as they are or decided anew.
   Unbalanced residual(Contacts contacts) {
     const ProfilePhase<Device> phase(parts_.device, "residual and contact");
     const bool decide = contacts == Contacts::decided;
@@ -96,16 +98,22 @@ class ImplicitStep {
             .changed = balance.changes > 0};
   }
 
+  /// The method solves the linear system (T19) for the change of u, to a relative residual of `tolerance`.
   LinearReport solve(double tolerance) { return tangent_.solve(nodes_.residual, nodes_.change, tolerance); }
 
+  /// The method keeps u as the place where a line search begins; returns |r . change| [N m].
   double begin_search() {
     copy(nodes_.u, nodes_.saved_u);
     return std::abs(dot(nodes_.residual, nodes_.change));
   }
+  /// The method adds `share` of the change to u.
   void apply_change(double share) { axpby(share, nodes_.change, 1.0, nodes_.u); }
+  /// The method sets u to what it was at begin_search().
   void return_to_start() { copy(nodes_.saved_u, nodes_.u); }
+  /// The method makes slipping contacts that u takes back stick.
   void stick_reversed() { contacts_.stick_reversed(balance_.data()); }
 
+  /// How far the farthest point moves for u; waits for the device.
   Motion farthest_motion() {
     farthest_.upload({0});
     for_each(parts_.device, parts_.points.count(),
@@ -117,9 +125,11 @@ class ImplicitStep {
     const auto cells = static_cast<double>(positive_from_bits(farthest_.download().front()));
     return {.share = cells, .length = cells * std::min(parts_.cell.spacing, parts_.cell.layer_height)};
   }
+  /// The smoothing of friction, kept from step to step.
   FrictionSmoothing& smoothing() { return contacts_.smoothing(); }
 
-  /// The particles at the end of the step. `kept`: share of their velocity finer than the grid that stays.
+  /// The method takes the particles to the end of the step. `kept`: share of their velocity finer than the grid that
+  /// stays.
   void accept(Clock* clock, double kept) {
     contacts_.keep(scheme_.step);
     for_each(parts_.device, nodes_.count,
@@ -146,7 +156,8 @@ class ImplicitStep {
     for_each(parts_.device, parts_.points.count(), kernel);
   }
 
-  /// Maps of the end of the step at `time` [s]. `volumes` over the columns where densities differ, else null [m3].
+  /// The method records the maps of the end of the step at `time` [s]. `volumes` over the columns where densities
+  /// differ, else null [m3].
   void record_maps(const MapView& maps, double time, const double* volumes) {
     for_each(parts_.device, parts_.grid.active_blocks() * block_columns,
              RecordColumns<Real>{.grid = parts_.grid.view(),
@@ -159,7 +170,7 @@ class ImplicitStep {
                                  .maps = maps});
   }
 
-  /// Bytes of the parts, by name.
+  /// The method calls add(name, bytes) for each of its parts.
   template <class Add>
   void list_memory(Add&& add) const {
     add("nodes", nodes_.bytes());

@@ -8,15 +8,15 @@ namespace talus::solver {
 
 /// Which tangent comes with the forces: their derivative, or without the part that compression makes negative.
 enum class Linearisation { consistent, definite };
-/// Whether the states of contacts are decided anew, or kept as they are.
+/// Whether the states of contacts are kept as they are, or decided anew.
 enum class Contacts { kept, decided };
 
 /// The unbalanced force of a state.
 struct Unbalanced {
-  double force = 0;      // |r| [N]
-  double size = 1;       // what |r| is measured against [N]
-  double along = 0;      // r . change, while contacts are kept [N m]
-  bool changed = false;  // contacts have changed their states
+  double force = 0;      ///< |r| [N]
+  double size = 1;       ///< what |r| is measured against [N]
+  double along = 0;      ///< r . change, while contacts are kept [N m]
+  bool changed = false;  ///< contacts have changed their states
 };
 
 /// What a line search asks of a problem; see NewtonProblem.
@@ -30,10 +30,11 @@ concept SearchProblem = requires(P& p, double number) {
   p.return_to_start();
 };
 
-/// u += s change with the largest s = 1, 1/2, 1/4 ... after which less force is unbalanced than `before`, or less of it
-/// along the change: a sheet that must turn passes through larger forces on its way, but downhill in energy. Leaves the
-/// tangent there too: the first share is nearly always taken, and the next iteration begins with it. False, and u as it
-/// was, where no share down to 1/512 does. `size`: of the forces [N].
+/// The line search takes u += s change with the largest s = 1, 1/2, 1/4 ... after which less force is unbalanced than
+/// `before`, or less of it along the change: a sheet that must turn passes through larger forces on its way, but
+/// downhill in energy. It leaves the tangent there too: the first share is nearly always taken, and the next iteration
+/// begins with it. It returns false, and leaves u as it was, where no share down to 1/512 does. `size`: of the forces
+/// [N].
 template <SearchProblem Problem>
 bool line_search(Problem& problem, double before, double size) {
   const double downhill = problem.begin_search();

@@ -12,9 +12,9 @@ namespace talus::solver {
 struct NewmarkScheme {
   bool dynamic = true;
   double alpha = 0.25, beta = 0.5;
-  double step = 0;  // [s]
+  double step = 0;  ///< [s]
 
-  /// Derivative of the acceleration at the end of the step by the displacement, 1 / (alpha dt^2) [1/s2].
+  /// The derivative of the acceleration at the end of the step by the displacement, 1 / (alpha dt^2) [1/s2].
   TALUS_HD double inertia() const { return dynamic ? 1 / (alpha * step * step) : 0; }
 
   /// Minus the acceleration at the end of the step, -a' of (T16), for node n's displacement [m/s2].
@@ -31,7 +31,7 @@ struct NewmarkScheme {
   }
 };
 
-/// One thread: one node. Square of the momentum that the step begins with.
+/// One thread: one node. It gives the square of the momentum that the step begins with.
 struct SquareMomentum {
   NodeArrays nodes;
   TALUS_HD Terms<1> operator()(int n) const {
@@ -41,7 +41,7 @@ struct SquareMomentum {
   }
 };
 
-/// One thread: one node. The acceleration that a run begins with: that of the forces at its start.
+/// One thread: one node. It takes the acceleration that a run begins with: that of the forces at its start.
 struct FirstAcceleration {
   NodeArrays nodes;
   TALUS_HD void operator()(int n) const {
@@ -51,8 +51,8 @@ struct FirstAcceleration {
   }
 };
 
-/// One thread: one node. Local non-viscous damping (Cundall 1987) against the velocity at the start, from the force at
-/// the start.
+/// One thread: one node. Local non-viscous damping (Cundall 1987) acts against the velocity at the start, from the
+/// force at the start.
 struct AddDamping {
   NodeArrays nodes;
   double damping;
@@ -60,12 +60,13 @@ struct AddDamping {
     const Vec3<double> pull = nodes.external[n] - nodes.internal[n], v = nodes.velocity[n];
     nodes.external[n] += Vec3<double>{against(pull.x, v.x), against(pull.y, v.y), against(pull.z, v.z)};
   }
+  /// The damping force of one component: `damping` times the size of the force, against the velocity [N].
   TALUS_HD double against(double pull, double v) const {
     return v == 0 ? 0 : v > 0 ? -damping * fabs(pull) : damping * fabs(pull);
   }
 };
 
-/// One thread: one node. Newmark's velocity v' and acceleration a' at the end of the step.
+/// One thread: one node. It takes Newmark's velocity v' and acceleration a' at the end of the step.
 struct EndOfStep {
   NodeArrays nodes;
   NewmarkScheme scheme;
@@ -84,7 +85,7 @@ struct EndOfStep {
   }
 };
 
-/// One thread: one node. Momentum to displacement of the step, held nodes as the solve left them.
+/// One thread: one node. It turns momentum into the displacement of the step; held nodes stay as the solve left them.
 struct RemapDisplacement {
   NodeArrays nodes;
   double step;

@@ -15,8 +15,8 @@ namespace talus::solver {
 
 /// How far the farthest point moves in a step.
 struct Motion {
-  double share = 0;   // of the way that it may go [-]: shape functions are held during a step
-  double length = 0;  // [m]
+  double share = 0;   ///< of the way that it may go [-]: shape functions are held during a step
+  double length = 0;  ///< [m]
 };
 
 /// A step's equations r(u) = 0 (T16) as Newton's method sees them; u, r and the change of u are the problem's own.
@@ -36,14 +36,14 @@ concept NewtonProblem = SearchProblem<P> && requires(P& p, double number) {
   { p.smoothing() } -> std::same_as<FrictionSmoothing&>;
 };
 
-/// What Newton's method ended with.
+/// The outcome of Newton's method.
 struct NewtonReport {
   bool converged = false;
   int iterations = 0;
-  int linear_iterations = 0;   // of all systems together
-  double residual = 0;         // unbalanced force over the size of the forces
-  double linear_residual = 0;  // relative, of the last system
-  bool indefinite = false;     // a tangent was no minimum's
+  int linear_iterations = 0;   ///< of all systems together
+  double residual = 0;         ///< unbalanced force over the size of the forces
+  double linear_residual = 0;  ///< relative, of the last system
+  bool indefinite = false;     ///< a tangent was no minimum's
 };
 
 namespace detail {
@@ -59,8 +59,9 @@ Unbalanced settle_contacts(Problem& problem) {
   return after;
 }
 
-/// Solves for the change of u. Compression makes the tangent of a sparsely filled cell indefinite; without that part it
-/// is one of a convex energy, slower but sure to lead downhill. False where no solve converged.
+/// This function solves for the change of u. Compression makes the tangent of a sparsely filled cell indefinite;
+/// without that part it is one of a convex energy, slower but sure to lead downhill. It returns false where no solve
+/// converged.
 template <NewtonProblem Problem>
 bool find_change(Problem& problem, double tolerance, NewtonReport& report) {
   LinearReport linear = problem.solve(tolerance);
@@ -92,9 +93,9 @@ class Progress {
 
 }  // namespace detail
 
-/// Newton's iterations of one step from the problem's u. Refused steps end with `converged` false: the unbalanced force
-/// is no number, the linear system has no solution, no share of its change helps, points move too far, or iterations
-/// run out.
+/// Newton's method makes the iterations of one step from the problem's u. Refused steps end with `converged` false: the
+/// unbalanced force is no number, the linear system has no solution, no share of its change helps, points move too far,
+/// or iterations run out.
 template <NewtonProblem Problem>
 NewtonReport newton(Problem& problem, const NewtonControls& controls) {
   NewtonReport report;
@@ -131,7 +132,7 @@ NewtonReport newton(Problem& problem, const NewtonControls& controls) {
   return report;
 }
 
-/// One linear solve with the tangent at the start of the step, as the reference paper has it.
+/// This function makes one linear solve with the tangent at the start of the step, as the reference paper has it.
 template <NewtonProblem Problem>
 NewtonReport solve_once(Problem& problem, const NewtonControls& controls) {
   NewtonReport report;

@@ -16,13 +16,13 @@ struct NodeFields {
   Buffer<double, Device> mass{device};
   NodeVector<Device> velocity{device}, arrival{device}, acceleration{device}, external{device}, internal{device},
       u{device}, residual{device};
-  NodeVector<Device> velocity_end{device}, acceleration_end{device};  // of the step
-  NodeVector<Device> change{device};                                  // of u, from the linear system
-  NodeVector<Device> saved_u{device};                                 // where a line search begins
+  NodeVector<Device> velocity_end{device}, acceleration_end{device};  ///< of the step
+  NodeVector<Device> change{device};                                  ///< of u, from the linear system
+  NodeVector<Device> saved_u{device};                                 ///< where a line search begins
   Buffer<Sym3<double>, Device> freed{device};
   Buffer<Touch, Device> touch{device};
 
-  /// Room for so many nodes; what is summed from the points begins at zero.
+  /// The method makes room for so many nodes; what is summed from the points begins at zero.
   void resize(int nodes) {
     count = nodes;
     const auto n = static_cast<std::size_t>(nodes);
@@ -51,6 +51,7 @@ struct NodeFields {
             .touch = touch.data()};
   }
 
+  /// The size of the buffers [bytes].
   std::size_t bytes() const {
     std::size_t total = mass.bytes() + freed.bytes() + touch.bytes();
     for (const auto* v : {&velocity, &arrival, &acceleration, &external, &internal, &u, &residual, &velocity_end,

@@ -20,16 +20,17 @@ class ParticleStresses {
   ParticleStresses(const Parts& parts, const Buffer<double, Device>& mass)
       : parts_(parts), mass_(mass), single_(rounds(parts.controls)) {}
 
+  /// Whether tangents are rounded to single precision.
   static bool rounds(const ImplicitControls& c) {
     return std::is_same_v<Real, double> && !c.once() && c.linear.solver != LinearSolver::cholesky;
   }
 
-  /// The particles have moved, or have been sorted: elements and neighbours anew.
+  /// The method takes particles that have moved or have been sorted: elements and neighbours anew.
   void group() {
     elements_.build(parts_.grid.view(), parts_.points.view());
     if (parts_.controls.b_bar) means_.begin_step(elements_, parts_.points.count());
   }
-  /// Room for the tangents of the particles in a step of this duration [s].
+  /// The method makes room for the tangents of the particles in a step of this duration [s].
   void begin(double duration) {
     duration_ = duration;
     const auto numbers =
@@ -41,8 +42,8 @@ class ParticleStresses {
     }
   }
 
-  /// Adds f_int of (T16) for the displacement u to `forces`; stores the tangents too where `with_tangent`, without what
-  /// compression makes negative in them where `definite`.
+  /// The method adds f_int of (T16) for the displacement u to `forces`, both [nodes]; it stores the tangents too where
+  /// `with_tangent`, without what compression makes negative in them where `definite`.
   void measure(const NodeVector<Device>& u, NodeVector<Device>& forces, bool with_tangent, bool definite) {
     average(u);
     using Stress = StressAt<Real, Shape>;
@@ -59,18 +60,21 @@ class ParticleStresses {
     if (springs().on()) apply_springs(elements_, springs(), u, forces);
   }
 
-  /// B-bar (T17b): means over the elements for a displacement.
+  /// The method measures the means of B-bar (T17b) over the elements for a displacement.
   void average(const NodeVector<Device>& u) {
     if (parts_.controls.b_bar)
       means_.measure(elements_, parts_.grid.view(), parts_.points.view(), parts_.materials, parts_.dilatant, u.data(),
                      duration_);
   }
+  /// The means as kernels read them; off without B-bar.
   MeanDilationView<Real> means() const { return parts_.controls.b_bar ? means_.view() : MeanDilationView<Real>{}; }
 
   /// All that the tangent of a step is summed from.
   PointTangents<Real> view() { return {parts_.grid.view(), parts_.points.view(), store(), means(), springs()}; }
+  /// The elements, as they were grouped last.
   const ElementList<Real, Device, Shape>& elements() const { return elements_; }
 
+  /// The size of tangents and means [bytes].
   std::size_t tangent_bytes() const { return tangents_.bytes() + single_tangents_.bytes() + means_.bytes(); }
 
  private:

@@ -9,8 +9,8 @@
 
 namespace talus::solver {
 
-/// One thread: one column of nodes. Their velocities from momenta, loads, constraints and the first guess of the
-/// displacement.
+/// One thread: one column of nodes. It makes their velocities from momenta, loads, constraints and the first guess of
+/// the displacement.
 template <class Real>
 struct PrepareNodes {
   GridView<Real> grid;
@@ -19,10 +19,10 @@ struct PrepareNodes {
   Constraints held;
   Walls<double> walls;
   BaseFriction<double> base;
-  double full_base;  // mass of a base node under a full layer [kg]
+  double full_base;  ///< mass of a base node under a full layer [kg]
   Vec3<double> gravity;
   NewmarkScheme scheme;
-  bool predict;  // start from the displacement of the present velocity
+  bool predict;  ///< start from the displacement of the present velocity
 
   TALUS_HD void operator()(int c) const {
     const int block = active[c / block_columns], inside = c % block_columns;
@@ -74,7 +74,8 @@ struct PrepareNodes {
     nodes.u[n] = u;
   }
 
-  /// A node that its own weight's friction can stop within the step is taken to stick, to begin with.
+  /// The state that a contact begins with: a node that its own weight's friction can stop within the step is taken to
+  /// stick.
   TALUS_HD Touch begin_contact(int n, const Vec3<double>& normal, double friction, const Sym3<double>& freed) const {
     if (!held.grips(n)) return Touch::slips;
     if (!scheme.dynamic) return Touch::sticks;
@@ -87,9 +88,9 @@ struct PrepareNodes {
     return Touch::slips;
   }
 
-  /// Where the ground bends, or is met, a node comes with a velocity into it. The ground takes that at once, and
-  /// friction its share of the same impulse (T12), as in an explicit step; spread over the step by Newmark's rule it
-  /// would count four times.
+  /// The change of velocity [m/s] with which the ground meets a node: where it bends, or is met, a node comes with a
+  /// velocity into it. The ground takes that at once, and friction its share of the same impulse (T12), as in an
+  /// explicit step; spread over the step by Newmark's rule it would count four times.
   TALUS_HD static Vec3<double> arrive(const Vec3<double>& v, const Vec3<double>& normal, double friction) {
     return meet_surface(v, normal, friction) - v;
   }

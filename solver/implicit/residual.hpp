@@ -7,38 +7,39 @@ namespace talus::solver {
 
 /// Sums over the nodes that Newton's iterations look at, kept beside the nodes.
 struct Balance {
-  double momentum = 0;  // at the start of the step, squared [(kg m/s)2]
-  double forces = 0;    // that balance, squared [N2]
-  double residual = 0;  // squared [N2]
-  double along = 0;     // residual . change [N m]
-  double changes = 0;   // of contacts
-  double pull = 0;      // see Constraints [N]
+  double momentum = 0;  ///< at the start of the step, squared [(kg m/s)2]
+  double forces = 0;    ///< that balance, squared [N2]
+  double residual = 0;  ///< squared [N2]
+  double along = 0;     ///< residual . change [N m]
+  double changes = 0;   ///< of contacts
+  double pull = 0;      ///< see Constraints [N]
 };
 
-/// One thread: one node. Squares of the forces that balance.
+/// One thread: one node. It gives the squares of the forces that balance.
 struct SquareForces {
   NodeArrays nodes;
   TALUS_HD Terms<1> operator()(int n) const {
     return {{dot(nodes.internal[n], nodes.internal[n]) + dot(nodes.external[n], nodes.external[n])}};
   }
 };
-/// What the unbalanced force is measured against: the forces that balance, and a little of what it takes to stop the
-/// body, whose rounding is all that is unbalanced where no force acts or the step is tiny [N].
+/// The size that the unbalanced force is measured against [N]: the forces that balance, and a little of what it takes
+/// to stop the body, whose rounding is all that is unbalanced where no force acts or the step is tiny.
 TALUS_HD double force_size(const Balance& balance, double stopping_share) {
   return sqrt(balance.forces) + stopping_share * sqrt(balance.momentum) + 1e-300;
 }
-/// Keeps the squared forces, and the pull that opens a contact.
+/// One thread. It keeps the squared forces, and the pull that opens a contact.
 struct FinishForces {
   Balance* balance;
-  double stopping_share, tolerance;  // of a node: the body's by the square root of their number
+  double stopping_share, tolerance;  ///< of a node: the body's by the square root of their number
   TALUS_HD void operator()(const double* total) const {
     balance->forces = *total;
     balance->pull = tolerance * force_size(*balance, stopping_share);
   }
 };
 
-/// One thread: one node. The unbalanced force r(u) of (T16) for the displacement u; with `decide` the state of its
-/// contact as well. Sums: the force squared, the force along `change` (where there is one), contacts that changed.
+/// One thread: one node. It measures the unbalanced force r(u) of (T16) for the displacement u; with `decide` the state
+/// of its contact as well. Sums: the force squared, the force along `change` (where there is one), contacts that
+/// changed.
 struct MeasureResidual {
   DecideContact contacts;
   bool decide;
@@ -67,7 +68,7 @@ struct MeasureResidual {
   }
 };
 
-/// Keeps the sums of MeasureResidual.
+/// One thread. It keeps the sums of MeasureResidual.
 struct FinishResidual {
   Balance* balance;
   TALUS_HD void operator()(const double* total) const {
@@ -76,26 +77,27 @@ struct FinishResidual {
     balance->changes += total[2];
   }
 };
-/// Slips that a trial has turned back count as changes of the contacts.
+/// One thread. It counts slips that a trial has turned back as changes of the contacts.
 struct FinishReversals {
   Balance* balance;
   TALUS_HD void operator()(const double* total) const { balance->changes += *total; }
 };
 
-/// One thread. No contact has changed since.
+/// One thread. It forgets the changes of contacts so far.
 struct ForgetChanges {
   Balance* balance;
   TALUS_HD void operator()(int) const { balance->changes = 0; }
 };
 
-/// One thread: one node. y = freed (y + mass inertia x + friction's stiffness x): what completes the product with the
-/// tangent of (T16).
+/// One thread: one node. It completes the product with the tangent of (T16): y = freed (y + mass inertia x + friction's
+/// stiffness x).
 struct CloseProduct {
   NodeArrays nodes;
   Constraints held;
   double inertia;
   const Vec3<double>* x;
   Vec3<double>* y;
+  /// The memory that the kernel moves for that many nodes [bytes].
   double bytes(int count) const {
     return count *
            static_cast<double>(3 * sizeof(*y) + sizeof(*nodes.mass) + sizeof(*nodes.touch) + sizeof(*nodes.freed));

@@ -32,7 +32,8 @@ class TangentSystem {
                   ParticleStresses<Real, Device, Shape>::rounds(parts.controls)),
         preconditioner_(parts.device, parts.controls.linear.preconditioner) {}
 
-  /// The particles have moved, or have been sorted: elements and neighbours anew, where anything goes by them.
+  /// The method takes particles that have moved or have been sorted: elements and neighbours anew, where anything goes
+  /// by them.
   void group() {
     const LinearControls& c = parts_.controls.linear;
     const bool preconditioned = !direct() && NodePreconditioner<Real, Device, Shape>::by_elements(c.preconditioner);
@@ -45,18 +46,19 @@ class TangentSystem {
       operator_.begin_step(stresses_.elements(), parts_.grid.nodes());
     }
   }
-  /// Room for the tangents, and the scheme of the step.
+  /// The method makes room for the tangents, and takes the scheme of the step.
   void begin(const NewmarkScheme& scheme) {
     scheme_ = scheme;
     stresses_.begin(scheme.step);
   }
 
-  /// Internal force for the displacement u, less that of the contact points.
+  /// The method measures the internal force for the displacement u, less that of the contact points.
   void measure_forces() { measure(false, false); }
-  /// The same with the tangent there.
+  /// The method measures the same force with its tangent.
   void measure(Linearisation linearisation) { measure(true, linearisation == Linearisation::definite); }
 
-  /// Solves A x = b for the tangent measured last, to a relative residual of `tolerance` unless it is factorised.
+  /// The method solves A x = b, (T19), for the tangent measured last, to a relative residual of `tolerance` unless it
+  /// is factorised; x and b [nodes].
   LinearReport solve(const NodeVector<Device>& b, NodeVector<Device>& x, double tolerance) {
     if (direct()) return cholesky_.solve(stresses_.view(), held_nodes(), b, x);
     refresh();
@@ -67,9 +69,10 @@ class TangentSystem {
                                                               : bicgstab_.solve(product, preconditioner_, b, x, limits);
   }
 
+  /// The stresses of the particles and what they are made with.
   ParticleStresses<Real, Device, Shape>& stresses() { return stresses_; }
 
-  /// Bytes of the parts, by name.
+  /// The method calls add(name, bytes) for each of its parts.
   template <class Add>
   void list_memory(Add&& add) const {
     add("tangents", stresses_.tangent_bytes());
@@ -84,10 +87,12 @@ class TangentSystem {
   /// The tangent as Krylov methods take it (krylov/contract.hpp).
   struct Product {
     TangentSystem& system;
+    /// The product with particles and contact points; see LinearOperator.
     void add_product(const NodeVector<Device>& x, NodeVector<Device>& y, const int* halted) {
       system.operator_.apply(x, y, halted);
       system.contacts_.apply(x, y);
     }
+    /// The kernel that completes the product with inertia and friction.
     CloseProduct closing(const NodeVector<Device>& x, NodeVector<Device>& y) {
       return {.nodes = system.nodes_.arrays(system.parts_.controls.dynamic),
               .held = system.contacts_.constraints(),
