@@ -14,15 +14,16 @@
 
 namespace talus::solver {
 
-/// Local nodes are numbered as around() visits them: layer fastest, then x, then y. Where layer -1 is folded onto layer
-/// 0, local nodes (a, b, 0) and (a, b, 1) are one and the same.
+/// The elements as kernels read them. Local nodes are numbered as around() visits them: layer fastest, then x, then y.
+/// Where layer -1 is folded onto layer 0, local nodes (a, b, 0) and (a, b, 1) are one and the same.
 struct ElementView {
   int count = 0;
-  const int* starts = nullptr;  // element e holds points order[starts[e]] ... order[starts[e + 1] - 1]
+  const int* starts = nullptr;  ///< element e holds points order[starts[e]] ... order[starts[e + 1] - 1]
   const int* order = nullptr;
-  const int* nodes = nullptr;  // [element * W^3 + local node]
+  const int* nodes = nullptr;  ///< [element * W^3 + local node]
 };
 
+/// The elements of the points with their storage.
 template <class Real, class Device, class Shape>
 class ElementList {
  public:
@@ -31,15 +32,20 @@ class ElementList {
 
   explicit ElementList(const Device& device = {}) : device_(device) {}
 
-  /// Groups the points of a grid that has been fitted to them. Serial numbers count the builds.
+  /// The method groups the points of a grid that has been fitted to them. Serial numbers count the builds.
   void build(const GridView<Real>& grid, const ParticleView<Real>& points);
 
+  /// The elements as kernels read them, until the next build().
   ElementView view() const { return {count_, starts_.data(), order_.data(), nodes_.data()}; }
+  /// The device that the elements are on.
   const Device& device() const { return device_; }
+  /// The number of elements.
   int count() const { return count_; }
+  /// The number of the last build.
   int serial() const { return serial_; }
-  /// Ranges of elements by colour of their column block; empty on the GPU, where sums are atomic.
+  /// The ranges of elements by colour of their column block; empty on the GPU, where sums are atomic.
   const PointGroups& groups() const { return groups_; }
+  /// The size of the lists [bytes].
   std::size_t bytes() const;
 
  private:

@@ -16,11 +16,11 @@ template <class Real, class Shape, int columns, int rows, class Sink>
 struct SumElements {
   static constexpr int w = Shape::width, nodes = w * w * w;
   static constexpr int column_tiles = nodes / columns, row_tiles = nodes / rows;
-  static constexpr int tiles = column_tiles * row_tiles;  // threads per element
+  static constexpr int tiles = column_tiles * row_tiles;  ///< threads per element
 
   PointTangents<Real> from;
   ElementView elements;
-  Sink sink;  // sink.put(e, a, b, block): row-major block of local nodes (a, b), called once per pair
+  Sink sink;  ///< sink.put(e, a, b, block): row-major block of local nodes (a, b), called once per pair
 
   TALUS_HD void operator()(int index) const {
     const int e = index / tiles, first_column = index / row_tiles % column_tiles * columns,
@@ -94,7 +94,8 @@ struct SumElements {
   }
 };
 
-/// Runs SumElements over a list with the tile that suits the device. A sink may add to what other elements add to.
+/// This function runs SumElements over a list with the tile that suits the device. A sink may add to what other
+/// elements add to.
 template <class Real, class Device, class Shape, class Sink>
 void sum_elements(const ElementList<Real, Device, Shape>& list, const PointTangents<Real>& from, const Sink& sink) {
   constexpr int w = Shape::width, nodes = w * w * w;

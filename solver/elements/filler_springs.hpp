@@ -13,21 +13,24 @@
 
 namespace talus::solver {
 
-/// A spring of an element between local nodes: k |u_node - (1 + lead) u_near + lead u_far|^2 / 2, lead 1 or 0.
+/// A spring (T17a) of an element between local nodes: k |u_node - (1 + lead) u_near + lead u_far|^2 / 2, lead 1 or 0.
 struct FillerSpring {
-  double k = 0;  // [N/m]; 0: none
+  double k = 0;  ///< [N/m]; 0: none
   int node = 0, near = 0, far = 0;
   double lead = 0;
+  /// The factor of node, near or far (`which` 0, 1, 2) in the spring's stretch.
   TALUS_HD double share(int which) const { return which == 0 ? 1 : which == 1 ? -(1 + lead) : lead; }
+  /// The local number of node, near or far (`which` 0, 1, 2).
   TALUS_HD int local(int which) const { return which == 0 ? node : which == 1 ? near : far; }
 };
 
 /// The springs of a step as kernels read them; there are none without `mass`.
 struct FillerSprings {
-  const double* mass = nullptr;  // of the nodes [kg]
-  double light = 0;              // nodes of less mass are held [kg]
-  double stiffness = 0;          // of the spring on an empty node [N/m]
+  const double* mass = nullptr;  ///< of the nodes [kg]
+  double light = 0;              ///< nodes of less mass are held [kg]
+  double stiffness = 0;          ///< of the spring on an empty node [N/m]
 
+  /// Whether there are springs.
   TALUS_HD bool on() const { return mass != nullptr; }
 
   /// The spring (T17a) of local node n of an element with these nodes, width^3 of them, numbered as in ElementView.
@@ -68,11 +71,11 @@ struct FillerSprings {
   }
 };
 
-/// Adds to y the forces of the springs, K_springs x.
+/// This function adds to y the forces of the springs, K_springs x; x and y [nodes].
 template <class Real, class Device, class Shape>
 void apply_springs(const ElementList<Real, Device, Shape>& list, const FillerSprings& springs,
                    const NodeVector<Device>& x, NodeVector<Device>& y);
-/// Adds the diagonal blocks of K_springs to `blocks`, one of every stored node [N/m].
+/// This function adds the diagonal blocks of K_springs to `blocks`, one of every stored node [N/m].
 template <class Real, class Device, class Shape>
 void add_spring_blocks(const ElementList<Real, Device, Shape>& list, const FillerSprings& springs,
                        Buffer<Sym3<double>, Device>& blocks);

@@ -8,8 +8,8 @@
 
 namespace talus::solver {
 
-/// Sums V P grad N over the points, the internal force f_int of (T16) or its change: P = law(p, its gradients) is the
-/// nominal stress, and may keep what belongs to the point.
+/// The scatter that sums V P grad N over the points, the internal force f_int of (T16) or its change: P = law(p, its
+/// gradients) is the nominal stress, and may keep what belongs to the point.
 template <class Real, class Shape, class Law>
 struct ScatterForces : PointScatter<Real, Shape> {
   using Base = PointScatter<Real, Shape>;
@@ -18,13 +18,15 @@ struct ScatterForces : PointScatter<Real, Shape> {
   static constexpr int parts = 3, tiles_at_once = Law::tiles_at_once;
   Law law;
   Vec3<double>* forces;
-  const int* halted = nullptr;  // of the loop that this is part of: does nothing where it is not zero
+  const int* halted = nullptr;  ///< of the loop that this is part of: does nothing where it is not zero
 
+  /// The memory that the kernel moves for that many points [bytes].
   double bytes(int count) const {
     return law.bytes(count) + count * (this->points.place_bytes + sizeof(Real)) +
            this->grid.nodes * 3.0 * sizeof(*forces);
   }
 
+  /// A point as its nodes see it: its gradients and V P [N m].
   struct Source : PointGradients<Real, Shape> {
     Mat3<Real> pull;
     TALUS_HD Source(const ScatterForces& k, int p) : PointGradients<Real, Shape>(k.grid, k.points, p) {
@@ -36,13 +38,18 @@ struct ScatterForces : PointScatter<Real, Shape> {
   using Sums = Vec3<double>;
 
   TALUS_HD void operator()(int p) const { scatter_point(*this, p); }
+  /// Whether point p gives anything; see ScatterKernel for this and the next members.
   TALUS_HD bool counts(int p) const { return Base::counts(p) && (!halted || *halted == 0); }
+  /// The nodes of column q receive their forces.
   TALUS_HD void add(const Source& g, int q, Sums (&sums)[Base::deep]) const {
     TALUS_UNROLL
     for (int c = 0; c < Base::deep; ++c) sums[c] += widen(g.pull * g.gradient(Base::along_x(q), Base::along_y(q), c));
   }
+  /// The sums go to a stored node.
   TALUS_HD void add_to_node(int at, const Sums& sums) const { scatter_add(&forces[at], sums); }
+  /// The three numbers of a node's sums are put side by side.
   TALUS_HD static void store(const Sums& sums, double* to) { put(sums, to); }
+  /// The location of component q of a stored node's force.
   TALUS_HD double* part(int node, int q) const { return &forces[node].x + q; }
 };
 
@@ -53,12 +60,13 @@ struct StressAt {
   static constexpr int tiles_at_once = 0;
   Materials<Real> materials;
   bool dilatant;
-  bool definite;  // without the part of the tangent that compression makes negative
+  bool definite;  ///< without the part of the tangent that compression makes negative
   MeanDilationView<Real> means;
   TangentStore<Real> tangents;
   const Vec3<double>* u;
-  Real duration;  // of the step [s]
+  Real duration;  ///< of the step [s]
 
+  /// The memory that the law moves for that many points, beside the scatter's own [bytes].
   double bytes(int count) const { return count * (7.0 * sizeof(Real) + tangents.bytes_each()); }
   TALUS_HD Mat3<Real> operator()(const GridView<Real>& grid, const ParticleView<Real>& points, int p,
                                  const PointGradients<Real, Shape>& g) const {
@@ -76,10 +84,11 @@ struct StressAt {
 /// point, never assembled.
 template <class Real, class Shape>
 struct TangentTimes {
-  static constexpr int tiles_at_once = 8;  // worth the few registers that go through memory
+  static constexpr int tiles_at_once = 8;  ///< worth the few registers that go through memory
   TangentStore<Real> tangents;
   const Vec3<double>* x;
 
+  /// The memory that the law moves for that many points, beside the scatter's own [bytes].
   double bytes(int count) const { return count * tangents.bytes_each(); }
   TALUS_HD Mat3<Real> operator()(const GridView<Real>& grid, const ParticleView<Real>&, int p,
                                  const PointGradients<Real, Shape>& g) const {

@@ -5,25 +5,25 @@
 
 namespace talus::solver {
 
-/// Mass times inertia and other stiffness on the diagonal, and the directions a node may move in. Arrays over the
-/// stored nodes.
+/// The constraints and additions on the diagonal of (T19): mass times inertia, other stiffness, and the directions a
+/// node may move in. Arrays are over the stored nodes.
 struct HeldNodes {
   int count = 0;
-  const double* mass = nullptr;         // [kg]
-  const Sym3<double>* freed = nullptr;  // projector on the free directions; zero: held, and no unknown
-  double inertia = 0;                   // [1/s2]; 0 in statics
-  double shift = 0;  // share by which the diagonal is raised: statics on few points has modes no point sees
-  const Sym3<double>* stiffness = nullptr;  // of what else holds a node, such as friction [N/m]; null: nothing
+  const double* mass = nullptr;         ///< [kg]
+  const Sym3<double>* freed = nullptr;  ///< projector on the free directions; zero: held, and no unknown
+  double inertia = 0;                   ///< [1/s2]; 0 in statics
+  double shift = 0;  ///< share by which the diagonal is raised: statics on few points has modes no point sees
+  const Sym3<double>* stiffness = nullptr;  ///< of what else holds a node, such as friction [N/m]; null: nothing
 };
 
-/// A node's block of K + mass inertia + stiffness, before what holds it; `tangent` is its block of K [N/m].
+/// The block of a node of K + mass inertia + stiffness, before what holds it; `tangent` is its block of K [N/m].
 TALUS_HD Sym3<double> own_block(const HeldNodes& held, const Sym3<double>& tangent, int n) {
   const Sym3<double> b = tangent.plus_identity(held.mass[n] * held.inertia);
   return held.stiffness ? b + held.stiffness[n] : b;
 }
 
-/// A node's block on the diagonal of (T19): P (K + mass inertia + stiffness) P + (I - P), which has the action on the
-/// free directions and is regular.
+/// The block of a node on the diagonal of (T19): P (K + mass inertia + stiffness) P + (I - P), which has the action on
+/// the free directions and is regular.
 TALUS_HD Sym3<double> held_block(const HeldNodes& held, const Sym3<double>& tangent, int n) {
   const Sym3<double> p = held.freed[n], b = own_block(held, tangent, n);
   const Vec3<double> e[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};

@@ -13,16 +13,18 @@
 
 namespace talus::solver {
 
-/// Means over the elements as kernels read them; null where the scene does not average.
+/// The means over the elements as kernels read them; null where the scene does not average.
 template <class Real>
 struct MeanDilationView {
-  const int* element_of = nullptr;       // [points]
-  const Real* increment = nullptr;       // mean of ln det(I + G) over the step, [elements]
-  const Real* stress = nullptr;          // mean of the mean Kirchhoff stress [Pa], [elements]
-  const Real* stiffness = nullptr;       // kappa V: volume times the mean bulk response [N m], [elements]
-  const Vec3<Real>* gradient = nullptr;  // b [1/m], [elements * W^3]
+  const int* element_of = nullptr;       ///< [points]
+  const Real* increment = nullptr;       ///< mean of ln det(I + G) over the step, [elements]
+  const Real* stress = nullptr;          ///< mean of the mean Kirchhoff stress [Pa], [elements]
+  const Real* stiffness = nullptr;       ///< kappa V: volume times the mean bulk response [N m], [elements]
+  const Vec3<Real>* gradient = nullptr;  ///< b [1/m], [elements * W^3]
 
+  /// Whether the scene averages.
   TALUS_HD bool on() const { return element_of != nullptr; }
+  /// The means of the element that point p belongs to; off where the scene does not average.
   TALUS_HD MeanVolume<Real> at_point(int p) const {
     if (!on()) return {};
     const int e = element_of[p];
@@ -30,6 +32,7 @@ struct MeanDilationView {
   }
 };
 
+/// The means over the elements with their storage.
 template <class Real, class Device, class Shape>
 class MeanDilation {
  public:
@@ -38,18 +41,21 @@ class MeanDilation {
   explicit MeanDilation(const Device& device = {})
       : element_of_(device), increment_(device), stress_(device), stiffness_(device), gradient_(device) {}
 
-  /// Begins a step with new elements, after the points have moved or have been sorted. `points` is their number.
+  /// The method begins a step with new elements, after the points have moved or have been sorted. `points` is their
+  /// number.
   void begin_step(const ElementList<Real, Device, Shape>& list, int points);
 
-  /// Measures the means for the displacement u [m], over the stored nodes, in a step of this duration [s]; `dilatant`:
-  /// points may dilate plastically.
+  /// The method measures the means (T17b) for the displacement u [m] of the stored nodes, in a step of this duration
+  /// [s]; `dilatant`: points may dilate plastically.
   void measure(const ElementList<Real, Device, Shape>& list, const GridView<Real>& grid,
                const ParticleView<Real>& points, const Materials<Real>& materials, bool dilatant, const Vec3<double>* u,
                double duration);
 
+  /// The means as kernels read them, until the next begin_step().
   MeanDilationView<Real> view() const {
     return {element_of_.data(), increment_.data(), stress_.data(), stiffness_.data(), gradient_.data()};
   }
+  /// The size of the means [bytes].
   std::size_t bytes() const {
     return element_of_.bytes() + increment_.bytes() + stress_.bytes() + stiffness_.bytes() + gradient_.bytes();
   }
@@ -60,11 +66,12 @@ class MeanDilation {
   Buffer<Vec3<Real>, Device> gradient_;
 };
 
-/// Adds to y the forces of the means' stiffness, the sum of kappa V b (b . x) over the elements.
+/// This function adds to y the forces of the means' stiffness, the sum of kappa V b (b . x) over the elements; x and y
+/// [nodes].
 template <class Real, class Device, class Shape>
 void apply_means(const ElementList<Real, Device, Shape>& list, const MeanDilationView<Real>& means,
                  const NodeVector<Device>& x, NodeVector<Device>& y);
-/// Adds the diagonal blocks of the means' stiffness to `blocks`, one of every stored node [N/m].
+/// This function adds the diagonal blocks of the means' stiffness to `blocks`, one of every stored node [N/m].
 template <class Real, class Device, class Shape>
 void add_mean_blocks(const ElementList<Real, Device, Shape>& list, const MeanDilationView<Real>& means,
                      Buffer<Sym3<double>, Device>& blocks);

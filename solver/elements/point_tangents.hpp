@@ -18,10 +18,13 @@ struct TangentStore {
   static constexpr int numbers = sizeof(PointTangent<Real>) / sizeof(Real);
   Real* data = nullptr;
   int count = 0;
-  float* single = nullptr;  // in place of `data`
+  float* single = nullptr;  ///< in place of `data`
 
+  /// Whether tangents are stored.
   TALUS_HD bool on() const { return data || single; }
+  /// The memory of one point's tangent [bytes]; 0 where none are stored.
   double bytes_each() const { return on() ? numbers * static_cast<double>(single ? sizeof(float) : sizeof(Real)) : 0; }
+  /// The method stores the tangent of point p, rounded where the store is in single precision.
   TALUS_HD void put(int p, const PointTangent<Real>& t) const {
     const Real* values = t.axes;
     if (single) {
@@ -30,6 +33,7 @@ struct TangentStore {
       for (int q = 0; q < numbers; ++q) data[at(q, p)] = values[q];
     }
   }
+  /// The method returns the tangent of point p.
   TALUS_HD PointTangent<Real> get(int p) const {
     PointTangent<Real> t;
     Real* values = t.axes;
@@ -53,8 +57,8 @@ struct PointTangents {
   GridView<Real> grid;
   ParticleView<Real> points;
   TangentStore<Real> tangents;
-  MeanDilationView<Real> means;  // off: null
-  FillerSprings springs;         // off: null
+  MeanDilationView<Real> means;  ///< off: null
+  FillerSprings springs;         ///< off: null
 };
 
 }  // namespace talus::solver

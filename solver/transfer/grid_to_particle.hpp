@@ -10,27 +10,28 @@ namespace talus {
 
 /// Which part of the gather a kernel does.
 enum class Gather {
-  all,         // USL: everything at once
-  motion,      // MUSL, first half: velocity and displacement, kept in points.move
-  deformation  // MUSL, second half: gradient from the remapped momentum, stress, and the kept displacement
+  all,         ///< USL: everything at once
+  motion,      ///< MUSL, first half: velocity and displacement, kept in points.move
+  deformation  ///< MUSL, second half: gradient from the remapped momentum, stress, and the kept displacement
 };
 
-/// Velocity (T7, T8), velocity gradient (T9) and way (T10) of the points. One thread: one point. nodes[] holds mass and
-/// new velocity; changes[] the velocity change of the step, null where
-/// points keep nothing of their own velocity. `budget`: adds up what is lost, for the clock.
+/// The gather of velocity (T7, T8), velocity gradient (T9) and way (T10) of the points. One thread: one point. nodes[]
+/// holds mass and new velocity; changes[] the velocity change of the step, null where points keep nothing of their own
+/// velocity. `budget`: adds up what is lost (T24), for the clock.
 template <class Real, class Shape, Gather part, bool budget>
 struct GridToParticle {
-  static constexpr int dense = part == Gather::all && !budget ? (sizeof(Real) == 8 ? 4 : 6) : 1;  // see run_dense
+  static constexpr int dense = part == Gather::all && !budget ? (sizeof(Real) == 8 ? 4 : 6) : 1;  ///< see run_dense
   GridView<Real> grid;
   ParticleView<Real> points;
   Materials<Real> materials;
   Clock* clock;
   const Vec4<Real>* nodes;
   const Vec4<Real>* changes;
-  const std::uint64_t* home;  // key of the cell the point was sorted by (see sparse_grid.hpp)
+  const std::uint64_t* home;  ///< key of the cell the point was sorted by (see sparse_grid.hpp)
   bool affine;
   bool dilatant;
 
+  /// The memory that the kernel moves for that many points [bytes].
   double bytes(int count) const {
     const int moved = part == Gather::deformation ? 0 : 3 + (affine ? 9 : 0),
               deformed = part == Gather::motion ? 0 : 2 * (dilatant ? 8 : 7);
@@ -38,12 +39,13 @@ struct GridToParticle {
            grid.nodes * static_cast<double>((changes ? 2 : 1) * sizeof(*nodes));
   }
 
+  /// The sums over a point's nodes.
   struct Sums {
-    Vec3<Real> velocity;  // [m/s]
-    Mat3<Real> gradient;  // by reference coordinates, per cell
-    Real climb = 0;       // rate of zeta [m/s]
-    Mat3<Real> moment;    // of velocity about the point, in cells
-    Vec3<Real> change;    // of the velocity in the step, where points keep some of their own [m/s]
+    Vec3<Real> velocity;  ///< [m/s]
+    Mat3<Real> gradient;  ///< by reference coordinates, per cell
+    Real climb = 0;       ///< rate of zeta [m/s]
+    Mat3<Real> moment;    ///< of velocity about the point, in cells
+    Vec3<Real> change;    ///< of the velocity in the step, where points keep some of their own [m/s]
   };
 
   TALUS_HD void operator()(int p) const {

@@ -10,12 +10,12 @@ namespace talus {
 
 /// What P2G scatters.
 enum class Scatter {
-  impulse,  // momentum + dt * internal force, in one
-  force,    // momentum and internal force apart (FLIP, damping, MUSL)
-  momentum  // momentum alone (second mapping of MUSL)
+  impulse,  ///< momentum + dt * internal force, in one
+  force,    ///< momentum and internal force apart (FLIP, damping, MUSL)
+  momentum  ///< momentum alone (second mapping of MUSL)
 };
 
-/// Adds the points to nodes[], mass (T3) and momentum (T4), and, for Scatter::force, to forces[] (T5).
+/// The scatter of the points to nodes[], mass (T3) and momentum (T4), and, for Scatter::force, to forces[] (T5).
 template <class Real, class Shape, Scatter what>
 struct ParticleToGrid {
   using Number = Real;
@@ -27,26 +27,27 @@ struct ParticleToGrid {
   const Clock* clock;
   Vec4<Real>* nodes;
   Vec4<Real>* forces;
-  const Vec3<double>* loads;  // force per volume of each load [N/m3]; null without loads
+  const Vec3<double>* loads;  ///< force per volume of each load [N/m3]; null without loads
   bool affine;
   bool dilatant;
 
+  /// The memory that the kernel moves for that many points [bytes].
   double bytes(int count) const {
     const int state = what == Scatter::momentum ? 0 : dilatant ? 8 : 7;
     return count * (points.place_bytes + (4 + (affine ? 9 : 0) + state) * static_cast<double>(sizeof(Real))) +
            grid.nodes * static_cast<double>((what == Scatter::force ? 4 : 2) * sizeof(*nodes));
   }
 
-  /// A point as its nodes see it: of its stencil, what they need. As small as can be, for it decides how many a GPU
-  /// holds at once.
+  /// A point as its nodes see it: the part of its stencil that they need. It is as small as can be, for it decides how
+  /// many a GPU holds at once.
   struct Source {
     int i, j, k;
     Real wx[width], wy[width], wz[width], gx[width], gy[width], gz[width];
     Real mass;
-    Vec3<Real> corner;    // velocity at the first node
-    Mat3<Real> turn{};    // its change per node
-    Mat3<Real> pull{};    // columns of -V tau, mapped to reference coordinates and per cell
-    Vec3<Real> pulled{};  // by its load, in the units of `pull`
+    Vec3<Real> corner;    ///< velocity at the first node
+    Mat3<Real> turn{};    ///< its change per node
+    Mat3<Real> pull{};    ///< columns of -V tau, mapped to reference coordinates and per cell
+    Vec3<Real> pulled{};  ///< by its load, in the units of `pull`
 
     TALUS_HD Source(const ParticleToGrid& kernel, int p)
         : Source(kernel, p, Stencil<Real, Shape>(kernel.grid, kernel.points, p)) {}
@@ -89,22 +90,27 @@ struct ParticleToGrid {
     }
   };
 
-  /// What a node receives.
+  /// The sums that a node receives: mass [kg], momentum [kg m/s] and force [N], or impulse [N s] as part of the
+  /// momentum.
   struct Sums {
     Real mass = 0;
     Vec3<Real> momentum, force;
   };
 
-  /// One thread: one point.
+  /// One thread: one point. It scatters alone, as on a CPU.
   TALUS_HD void operator()(int p) const { scatter_point(*this, p); }
 
-  // As scatter_points has it.
+  // The members that ScatterKernel (tiles.hpp) asks for.
+  /// The first node of a source; see ScatterKernel for this and the next members.
   TALUS_HD static const Source& nodes_of(const Source& s) { return s; }
+  /// The place where layer 0 of column q of a source is stored, or would be.
   TALUS_HD int column_of(const Source& s, int q) const {
     return Stencil<Real, Shape>::column_at(grid, s.i + q % width, s.j + q / width);
   }
+  /// The place of node c of a column whose first layer is k.
   TALUS_HD static int node_in(int column, int k, int c) { return Stencil<Real, Shape>::node(column, k, c); }
-  TALUS_HD static bool owns(int k, int c) { return k + c >= 0; }  // below the ground there is none
+  TALUS_HD static bool owns(int k, int c) { return k + c >= 0; }  ///< false below the ground, where there is no node
+  /// The numbers of a node's sums are put side by side.
   TALUS_HD static void store(const Sums& sums, Real* to) {
     to[0] = sums.mass;
     to[1] = sums.momentum.x;
@@ -116,9 +122,12 @@ struct ParticleToGrid {
       to[6] = sums.force.z;
     }
   }
+  /// The location of part q of a stored node.
   TALUS_HD Real* part(int node, int q) const { return q < 4 ? &nodes[node].w + q : &forces[node].x + (q - 4); }
+  /// Whether point p gives anything: it is in the domain, and the loop has not halted.
   TALUS_HD bool counts(int p) const { return clock->halt == running && points.cell[0][p] >= 0; }
 
+  /// The nodes of column q receive mass (T3), momentum (T4) and force (T5).
   TALUS_HD void add(const Source& s, int q, Sums (&sums)[deep]) const {
     const int a = q % width, b = q / width;
     const Real weight = s.wx[a] * s.wy[b], carried = weight * s.mass;
@@ -141,6 +150,7 @@ struct ParticleToGrid {
     }
   }
 
+  /// The sums go to a stored node.
   TALUS_HD void add_to_node(int n, const Sums& sums) const {
     scatter_add(&nodes[n], sums.mass, sums.momentum);
     if constexpr (what == Scatter::force) scatter_add(&forces[n], Real(0), sums.force);

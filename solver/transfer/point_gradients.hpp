@@ -14,17 +14,19 @@ struct PointGradients {
   Real across, up;
   TALUS_HD PointGradients(const GridView<Real>& grid, const ParticleView<Real>& points, int p)
       : s(grid, points, p), across(Real(1) / grid.spacing), up(Real(1) / grid.layer_height) {}
+  /// The weight of node (a, b, c) of the stencil.
   TALUS_HD Real weight(int a, int b, int c) const { return s.wx[a] * s.wy[b] * s.wz[c]; }
-  /// Physical gradient of a node's function (T2) [1/m].
+  /// The physical gradient of a node's function (T2) [1/m].
   TALUS_HD Vec3<Real> gradient(int a, int b, int c) const {
     const Real gz = s.wx[a] * s.wy[b] * s.gz[c] * up;
     return {s.gx[a] * s.wy[b] * s.wz[c] * across - s.slope_x * gz,
             s.wx[a] * s.gy[b] * s.wz[c] * across - s.slope_y * gz, gz};
   }
+  /// The place of node (a, b, c) of the stencil in storage.
   TALUS_HD int node(const GridView<Real>& grid, int a, int b, int c) const { return s.node(s.column(grid, a, b), c); }
 };
 
-/// Calls f(node, a, b, c) for every node around a point.
+/// This function calls f(node, a, b, c) for every node around a point, layers fastest, then x, then y.
 template <class Real, class Shape, class F>
 TALUS_HD void around(const GridView<Real>& grid, const PointGradients<Real, Shape>& g, F&& f) {
   for (int b = 0; b < Shape::width; ++b) {
@@ -34,14 +36,17 @@ TALUS_HD void around(const GridView<Real>& grid, const PointGradients<Real, Shap
   }
 }
 
+/// The vector in double precision.
 template <class Real>
 TALUS_HD Vec3<double> widen(const Vec3<Real>& v) {
   return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
 }
+/// The vector rounded to `Real`.
 template <class Real>
 TALUS_HD Vec3<Real> narrow(const Vec3<double>& v) {
   return {static_cast<Real>(v.x), static_cast<Real>(v.y), static_cast<Real>(v.z)};
 }
+/// The components are put side by side.
 TALUS_HD void put(const Vec3<double>& v, double* to) {
   to[0] = v.x;
   to[1] = v.y;
@@ -49,7 +54,7 @@ TALUS_HD void put(const Vec3<double>& v, double* to) {
 }
 using talus::scatter_add;
 
-/// What all scatters of scatter_points (tiles.hpp) have whose sources are gradients of points.
+/// The members that all scatters of scatter_points (tiles.hpp) share whose sources are gradients of points.
 template <class Real, class Shape>
 struct PointScatter {
   static constexpr int width = Shape::width, columns_each = width * width, deep = width;
@@ -57,13 +62,19 @@ struct PointScatter {
   ParticleView<Real> points;
 
   using Gradients = PointGradients<Real, Shape>;
+  /// The place of column q in the stencil along x.
   TALUS_HD static int along_x(int q) { return q % width; }
+  /// The place of column q in the stencil along y.
   TALUS_HD static int along_y(int q) { return q / width; }
+  /// Whether point p gives anything: all do.
   TALUS_HD static bool counts(int) { return true; }
+  /// The first node of a source.
   TALUS_HD static const Stencil<Real, Shape>& nodes_of(const Gradients& g) { return g.s; }
+  /// The place where layer 0 of column q of a source is stored, or would be.
   TALUS_HD int column_of(const Gradients& g, int q) const { return g.s.column(grid, along_x(q), along_y(q)); }
+  /// The place of node c of a column whose first layer is k.
   TALUS_HD static int node_in(int column, int k, int c) { return Stencil<Real, Shape>::node(column, k, c); }
-  TALUS_HD static bool owns(int k, int c) { return k + c >= 0; }  // below the ground there is none
+  TALUS_HD static bool owns(int k, int c) { return k + c >= 0; }  ///< false below the ground, where there is no node
 };
 
 }  // namespace talus::solver

@@ -7,15 +7,16 @@
 
 namespace talus {
 
+/// The weights of a point on the W^3 nodes around it, `Shape` of width W, and their slopes; boxes of `gimp` by (T2a).
 template <class Real, class Shape>
 struct Stencil {
   static constexpr int width = Shape::width;
-  int i, j, k;                                          // first node; k may be -1, with no weight
-  Real wx[width], wy[width], wz[width];                 // weights
-  Real gx[width], gy[width], gz[width];                 // their slopes, per cell
-  Real near_x, near_y, near_z;                          // first node minus point, in cells
-  bool edge_x = false, edge_y = false, edge_z = false;  // hats beside the ground or a wall
-  Real slope_x = 0, slope_y = 0;                        // of the terrain at the point
+  int i, j, k;                                          ///< first node; k may be -1, with no weight
+  Real wx[width], wy[width], wz[width];                 ///< weights
+  Real gx[width], gy[width], gz[width];                 ///< their slopes, per cell
+  Real near_x, near_y, near_z;                          ///< first node minus point, in cells
+  bool edge_x = false, edge_y = false, edge_z = false;  ///< hats beside the ground or a wall
+  Real slope_x = 0, slope_y = 0;                        ///< of the terrain at the point
 
   TALUS_HD Stencil(const GridView<Real>& grid, const ParticleView<Real>& points, int p) {
     const Real fx = points.offset[0][p], fy = points.offset[1][p], fz = points.offset[2][p];
@@ -39,17 +40,20 @@ struct Stencil {
     near_z = Real(az) - beside(points.cell[2][p], 0, WallNodes::far, fz, lowest, half[2], wz, gz, edge_z);
   }
 
-  /// Where layer 0 of a column of its nodes is stored, or would be; and a node of that column.
+  /// The place where layer 0 of column (a, b) of the point's nodes is stored, or would be.
   TALUS_HD int column(const GridView<Real>& grid, int a, int b) const { return column_at(grid, i + a, j + b); }
+  /// The place where layer 0 of column (i, j) of the grid is stored, or would be.
   TALUS_HD static int column_at(const GridView<Real>& grid, int i, int j) {
     return GridView<Real>::node(grid.slot(i, j), i, j, 0);
   }
+  /// The place of node c of a column of the point's nodes in storage.
   TALUS_HD int node(int column, int c) const { return node(column, k, c); }
+  /// The place of node c of a column whose first layer is k; layer -1 is folded onto layer 0.
   TALUS_HD static int node(int column, int k, int c) { return column + (k + c > 0 ? k + c : 0) * block_columns; }
 
-  /// Velocity change per cell that a point keeps, from the grid's velocity about it (APIC; Jiang et al. 2015): its
-  /// moment times the inverse of the weights' second moment, 4 per cell for splines; for hats, and so beside edges,
-  /// that is its gradient.
+  /// The velocity change per cell that a point keeps, C_p of (T8), from the grid's velocity about it (APIC; Jiang et
+  /// al. 2015): its moment times the inverse of the weights' second moment, 4 per cell for splines; for hats, and so
+  /// beside edges, that is its gradient.
   template <class Number>
   TALUS_HD Mat3<Number> affine_velocity(const Mat3<Number>& moment, const Mat3<Number>& gradient) const {
     return {Shape::spline && !edge_x ? moment.a * Number(4) : gradient.a,
