@@ -30,7 +30,7 @@ class ElementList {
   static constexpr int width = Shape::width;
   static constexpr int nodes_each = width * width * width;
 
-  explicit ElementList(const Device& device = {}) : device_(device) {}
+  explicit ElementList(const Device& device) : device_(device) {}
 
   /// The method groups the points of a grid that has been fitted to them. Serial numbers count the builds.
   void build(const GridView<Real>& grid, const ParticleView<Real>& points);

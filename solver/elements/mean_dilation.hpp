@@ -38,7 +38,7 @@ class MeanDilation {
  public:
   static constexpr int nodes_each = ElementList<Real, Device, Shape>::nodes_each;
 
-  explicit MeanDilation(const Device& device = {})
+  explicit MeanDilation(const Device& device)
       : element_of_(device), increment_(device), stress_(device), stiffness_(device), gradient_(device) {}
 
   /// The method begins a step with new elements, after the points have moved or have been sorted. `points` is their

@@ -45,8 +45,6 @@ class SparseGrid {
   /// order asks for more: with hats, those of one cell do not have the same nodes.
   SparseGrid(const Device& device, const GridShape& shape, int drift, bool in_order = false,
              bool by_lowest_node = false);
-  SparseGrid(const GridShape& shape, int drift, bool in_order = false, bool by_lowest_node = false)
-      : SparseGrid(Device{}, shape, drift, in_order, by_lowest_node) {}
 
   /// Sort the points by home cell, drop those that left (the `gone` last ones after sorting), and give storage to every
   /// column and layer they reach until they have drifted too far.

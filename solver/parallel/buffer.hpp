@@ -15,6 +15,7 @@ namespace talus {
 template <class T, class Device>
 class Buffer {
  public:
+  /// An empty array of no device; one that was made on a device is to take its place before it is used.
   Buffer() = default;
   explicit Buffer(Device device) : device_(std::move(device)) {}
   Buffer(Device device, std::size_t size) : device_(std::move(device)) { resize(size); }
@@ -95,7 +96,6 @@ class Buffer {
 template <class T, class Device, std::size_t number>
 class Buffers {
  public:
-  Buffers() = default;
   explicit Buffers(const Device& device) : Buffers(device, std::make_index_sequence<number>()) {}
   template <class Index>
   Buffer<T, Device>& operator[](Index n) {

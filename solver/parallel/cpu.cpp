@@ -9,11 +9,6 @@
 
 namespace talus {
 
-CpuDevice::CpuDevice() {
-  static const CpuDevice first = make();
-  *this = first;
-}
-
 CpuDevice CpuDevice::make() { return CpuDevice(std::make_shared<Profile>()); }
 
 namespace detail {

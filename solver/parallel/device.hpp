@@ -14,14 +14,14 @@ namespace talus {
 
 /// What one GpuDevice owns; gpu_state.hpp.
 struct GpuState;
+template <class T, class Device>
+class Buffer;
 
 /// The cores of this machine. A handle: copies share one profile. Work of two devices may be started by two threads at
 /// a time; one device takes work from one thread at a time.
 class CpuDevice {
  public:
   static constexpr bool is_gpu = false;
-  /// The one device that the process starts with.
-  CpuDevice();
   /// A device with a profile of its own.
   static CpuDevice make();
 
@@ -29,6 +29,9 @@ class CpuDevice {
   Profile& profile() const { return *profile_; }
 
  private:
+  template <class T, class Device>
+  friend class Buffer;
+  CpuDevice() = default;  // no device
   explicit CpuDevice(std::shared_ptr<Profile> profile) : profile_(std::move(profile)) {}
   std::shared_ptr<Profile> profile_;
 };
@@ -40,8 +43,6 @@ class CpuDevice {
 class GpuDevice {
  public:
   static constexpr bool is_gpu = true;
-  /// The one device that the process starts with, of GPU 0.
-  GpuDevice();
   /// A new stream on the GPU of that index, 0 <= index < count(). Throws std::runtime_error where CUDA has none, and
   /// std::logic_error in a binary without CUDA.
   static GpuDevice make(int index = 0);
@@ -58,7 +59,10 @@ class GpuDevice {
   GpuState& state() const { return *state_; }
 
  private:
+  template <class T, class Device>
+  friend class Buffer;
   friend struct GpuState;
+  GpuDevice() = default;  // no device
   explicit GpuDevice(std::shared_ptr<GpuState> state) : state_(std::move(state)) {}
   std::shared_ptr<GpuState> state_;
 };

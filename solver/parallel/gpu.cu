@@ -60,11 +60,6 @@ void GpuState::wait(const char* what) {
   locked.used = LockedMemory::few;
 }
 
-GpuDevice::GpuDevice() {
-  static const auto* const first = new GpuDevice(make());  // until the process ends: the driver takes it back
-  *this = *first;
-}
-
 GpuDevice GpuDevice::make(int index) { return GpuDevice(std::make_shared<GpuState>(index)); }
 
 int GpuDevice::count() {
@@ -214,7 +209,6 @@ namespace {
 [[noreturn]] void absent() { throw std::logic_error("this binary was built without CUDA"); }
 }  // namespace
 
-GpuDevice::GpuDevice() { absent(); }
 GpuDevice GpuDevice::make(int) { absent(); }
 int GpuDevice::count() { return 0; }
 int GpuDevice::index() const { absent(); }

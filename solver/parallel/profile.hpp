@@ -114,7 +114,6 @@ class ProfilePhase {
     wait();
     device_.profile().enter(name);
   }
-  explicit ProfilePhase(const char* name) : ProfilePhase(Device{}, name) {}
   ~ProfilePhase() {
     if (!on_) return;
     wait();

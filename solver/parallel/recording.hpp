@@ -18,7 +18,6 @@ class Recording;
 template <>
 class Recording<CpuDevice> {
  public:
-  Recording() = default;
   explicit Recording(const CpuDevice&) {}
   /// The method does body() as often as `times`.
   template <class Body>
@@ -33,7 +32,6 @@ class Recording<CpuDevice> {
 template <>
 class Recording<GpuDevice> {
  public:
-  Recording() = default;
   explicit Recording(GpuDevice device) : device_(std::move(device)) {}
   Recording(const Recording&) = delete;
   Recording& operator=(const Recording&) = delete;

@@ -27,7 +27,6 @@ struct KeepTotals {
 template <class Device>
 class SumSpace {
  public:
-  SumSpace() = default;
   explicit SumSpace(const Device& device) : partial_(device), ticket_(device) {}
   /// The method returns memory for `count` partial sums.
   double* partial(int count) {

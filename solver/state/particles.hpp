@@ -103,7 +103,6 @@ template <class Real, class Device>
 class Particles {
  public:
   Particles(const Device& device, ParticleNeeds needs);
-  explicit Particles(ParticleNeeds needs) : Particles(Device{}, needs) {}
 
   /// Takes the lists of the fields that are needed; those kept within a step alone get memory.
   void upload(const ParticleState& state);

@@ -108,22 +108,23 @@ struct CopyTangent {
 /// Everything a linear solve takes: grid, points, tangents, mass and constraints.
 template <class Real, class Device, class Shape>
 struct LinearBench {
-  Particles<Real, Device> points{{false, false, Shape::averaged}};
+  Device device = Device::make();
+  Particles<Real, Device> points{device, {false, false, Shape::averaged}};
   SparseGrid<Real, Device> grid;
-  ElementList<Real, Device, Shape> elements;
+  ElementList<Real, Device, Shape> elements{device};
   Materials<Real> materials;
   int count = 0;
-  Buffer<Real, Device> tangents;
-  Buffer<double, Device> mass;
-  Buffer<Sym3<double>, Device> freed, stiffness;
-  MeanDilation<Real, Device, Shape> means;
+  Buffer<Real, Device> tangents{device};
+  Buffer<double, Device> mass{device};
+  Buffer<Sym3<double>, Device> freed{device}, stiffness{device};
+  MeanDilation<Real, Device, Shape> means{device};
   bool b_bar;
   FillerSprings springs;
-  NodeVector<Device> velocity, internal, u;
+  NodeVector<Device> velocity{device}, internal{device}, u{device};
   double inertia = 1e3;
 
   explicit LinearBench(const Setting& setting) : LinearBench(random_scene(setting), setting) {}
-  LinearBench(const Scene& scene, const Setting& setting) : grid(scene.grid, 1), b_bar(setting.b_bar) {
+  LinearBench(const Scene& scene, const Setting& setting) : grid(device, scene.grid, 1), b_bar(setting.b_bar) {
     points.upload(scene.points);
     MaterialOptions mo;
     mo.model = setting.model;
@@ -165,7 +166,7 @@ struct LinearBench {
     mass.fill_zero();
     tangents.resize(static_cast<std::size_t>(TangentStore<Real>::numbers) * static_cast<std::size_t>(points.count()));
     scatter_points(
-        Device{}, points.count(), grid.groups(),
+        device, points.count(), grid.groups(),
         ScatterInertia<Real, Shape>{{grid.view(), points.view()}, materials, false, false, nullptr, nodes()});
     if (b_bar) means.begin_step(elements, points.count());
     measure_stress();
@@ -178,13 +179,13 @@ struct LinearBench {
     internal.fill_zero();
     if (b_bar) means.measure(elements, grid.view(), points.view(), materials, false, u.data(), step_seconds);
     using Stress = StressAt<Real, Shape>;
-    scatter_points(Device{}, points.count(), grid.groups(),
+    scatter_points(device, points.count(), grid.groups(),
                    ScatterForces<Real, Shape, Stress>{
                        {grid.view(), points.view()},
                        Stress{materials, false, false, mean_view(), store(), u.data(), Real(step_seconds)},
                        internal.data()});
     if (springs.on()) apply_springs(elements, springs, u, internal);
-    synchronise(Device{});
+    synchronise(device);
   }
 
   /// Held, slipping on a tilted plane, sliding along a line, free; some on springs.
@@ -244,7 +245,7 @@ struct LinearBench {
 
   /// Points from column `from` on are so many times as stiff, and their nodes as heavy.
   void contrast(int from, double stiffer, double heavier) {
-    for_each(Device{}, points.count(), Stiffen<Real>{points.view(), store(), from, static_cast<Real>(stiffer)});
+    for_each(device, points.count(), Stiffen<Real>{points.view(), store(), from, static_cast<Real>(stiffer)});
     auto m = mass.download();
     for_nodes([&](int i, int, int, std::size_t n) {
       if (i >= from) m[n] *= heavier;
@@ -254,27 +255,27 @@ struct LinearBench {
 
   /// K x in one form. `single`: tangents or stencil stored in single precision.
   std::vector<Vec3<double>> product(Operator form, bool single = false) {
-    TangentOperator<Real, Device, Shape> op(form, single);
+    TangentOperator<Real, Device, Shape> op(device, form, single);
     op.begin_step(elements, count);
     PointTangents<Real> tangents_of_points = from();
-    Buffer<float, Device> narrow;
+    Buffer<float, Device> narrow(device);
     if (single && form == Operator::points) {
       narrow.resize(tangents.size());
       tangents_of_points.tangents = {nullptr, points.count(), narrow.data()};
-      for_each(Device{}, points.count(), CopyTangent<Real>{store(), tangents_of_points.tangents});
+      for_each(device, points.count(), CopyTangent<Real>{store(), tangents_of_points.tangents});
     }
     op.refresh(tangents_of_points, grid.groups());
-    NodeVector<Device> x, y;
+    NodeVector<Device> x(device), y(device);
     x.upload(random_vectors(count, 1, 5));
     y.resize(x.size());
     y.fill_zero();
     op.apply(x, y);
-    synchronise(Device{});
+    synchronise(device);
     return y.download();
   }
 
   NodeVector<Device> right_side() {
-    NodeVector<Device> b;
+    NodeVector<Device> b(device);
     const auto p = freed.download();
     auto v = random_vectors(count, 1e4, 9);
     for (std::size_t n = 0; n < v.size(); ++n) v[n] = p[n] * v[n];
@@ -284,15 +285,15 @@ struct LinearBench {
 
   std::vector<Vec3<double>> by_gradients(Preconditioner kind = Preconditioner::block, int* iterations = nullptr,
                                          double tolerance = 1e-12) {
-    NodeVector<Device> x;
+    NodeVector<Device> x(device);
     const NodeVector<Device> b = right_side();
-    NodePreconditioner<Real, Device, Shape> preconditioner(kind);
+    NodePreconditioner<Real, Device, Shape> preconditioner(device, kind);
     preconditioner.refresh(from(), grid.groups(), elements, {grid.view(), grid.active_list(), grid.active_blocks()},
                            held());
-    TangentOperator<Real, Device, Shape> op(Operator::points);
+    TangentOperator<Real, Device, Shape> op(device, Operator::points);
     op.begin_step(elements, count);
     op.refresh(from(), grid.groups());
-    ConjugateGradient<Device> cg;
+    ConjugateGradient<Device> cg(device);
     struct Product {
       TangentOperator<Real, Device, Shape>& op;
       HeldNodes held;
@@ -309,9 +310,9 @@ struct LinearBench {
   }
 
   std::vector<Vec3<double>> by_cholesky() {
-    CholeskySolver<Real, Device, Shape> solver;
+    CholeskySolver<Real, Device, Shape> solver(device);
     solver.begin_step(elements);
-    NodeVector<Device> x;
+    NodeVector<Device> x(device);
     const LinearReport report = solver.solve(from(), held(), right_side(), x);
     EXPECT_TRUE(report.converged) << solver.factor().name() << ": residual " << report.residual;
     EXPECT_FALSE(report.indefinite);

@@ -16,7 +16,6 @@ class CholeskySolver {
   /// `memory_limit` [bytes] stands for what is free on the device; 0: ask.
   explicit CholeskySolver(const Device& device, double memory_limit = 0)
       : device_(device), limit_(memory_limit), cholesky_(make_cholesky(device, memory_limit)) {}
-  explicit CholeskySolver(double memory_limit = 0) : CholeskySolver(Device{}, memory_limit) {}
 
   /// The method takes the elements of points that have moved or have been sorted. `list` must stay until the next call.
   void begin_step(const ElementList<Real, Device, Shape>& list) { list_ = &list; }

@@ -21,7 +21,7 @@ bool assembly_countable(int elements, int freed_nodes);
 template <class Real, class Device, class Shape>
 class CsrAssembly {
  public:
-  explicit CsrAssembly(const Device& device = {}) : device_(device) {}
+  explicit CsrAssembly(const Device& device) : device_(device) {}
 
   /// The method finds the unknowns: nodes with mass and a free direction. It returns their number; each has three
   /// degrees of freedom.

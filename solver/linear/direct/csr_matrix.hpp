@@ -9,7 +9,7 @@ namespace talus {
 /// columns.
 template <class Device>
 struct CsrMatrix {
-  explicit CsrMatrix(const Device& device = {}) : starts(device), columns(device), values(device) {}
+  explicit CsrMatrix(const Device& device) : starts(device), columns(device), values(device) {}
   int rows = 0;
   Buffer<int, Device> starts;  ///< [rows + 1]
   Buffer<int, Device> columns;

@@ -13,7 +13,7 @@ namespace talus {
 template <class Device>
 class BiCgStab {
  public:
-  explicit BiCgStab(const Device& device = {}) : device_(device) {}
+  explicit BiCgStab(const Device& device) : device_(device) {}
 
   /// The method solves A x = b from x = 0 (see contract.hpp), x and b [nodes]. An iteration is one product; two make a
   /// round.

@@ -15,7 +15,7 @@ namespace talus {
 template <class Device>
 class ConjugateGradient {
  public:
-  explicit ConjugateGradient(const Device& device = {}) : device_(device) {}
+  explicit ConjugateGradient(const Device& device) : device_(device) {}
 
   /// The method solves A x = b from x = 0, x and b [nodes], A symmetric and positive definite (see contract.hpp). It
   /// ends as `indefinite` where it meets a direction of negative curvature; x is then what it was before that.

@@ -54,7 +54,7 @@ class StencilMatrix {
  public:
   using View = StencilView<Real, Device, Shape, Number>;
 
-  explicit StencilMatrix(const Device& device = {}) : device_(device) {}
+  explicit StencilMatrix(const Device& device) : device_(device) {}
 
   /// The method finds rows and neighbours of the nodes that the elements touch, out of `nodes` stored ones.
   void build(const ElementList<Real, Device, Shape>& list, int nodes);

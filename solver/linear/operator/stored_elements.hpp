@@ -35,7 +35,7 @@ class StoredElements {
  public:
   using Matrices = ElementMatrices<Real, Device, Shape>;
 
-  explicit StoredElements(const Device& device = {}) : values_(device) {}
+  explicit StoredElements(const Device& device) : values_(device) {}
 
   /// The method sums the points' tangents into the elements' matrices.
   void assemble(const ElementList<Real, Device, Shape>& list, const PointTangents<Real>& from);

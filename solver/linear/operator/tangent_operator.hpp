@@ -15,7 +15,6 @@ class TangentOperator {
   /// With `single` the stencil is stored in single precision.
   TangentOperator(const Device& device, Operator form, bool single = false)
       : device_(device), form_(form), single_(single && form == Operator::stencil) {}
-  explicit TangentOperator(Operator form, bool single = false) : TangentOperator(Device{}, form, single) {}
 
   /// The method takes the elements of points that have moved or have been sorted. `list` must stay until the next call;
   /// the form `points` needs it for what couples the points of an element.

@@ -22,7 +22,6 @@ class NodePreconditioner {
  public:
   NodePreconditioner(const Device& device, Preconditioner kind)
       : device_(device), kind_(kind), grids_(device, kind == Preconditioner::multigrid) {}
-  explicit NodePreconditioner(Preconditioner kind) : NodePreconditioner(Device{}, kind) {}
 
   /// Whether refresh() of this kind goes by elements.
   static bool by_elements(Preconditioner kind) {

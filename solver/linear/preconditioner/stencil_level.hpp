@@ -24,7 +24,7 @@ class StencilLevel {
  public:
   static constexpr int reach = Shape::width - 1, neighbours = StencilView<Real, Device, Shape>::neighbours;
 
-  explicit StencilLevel(const Device& device = {}) : device_(device) {}
+  explicit StencilLevel(const Device& device) : device_(device) {}
 
   /// The method builds the finest grid: rows of the elements' nodes.
   void build(const ElementList<Real, Device, Shape>& list, const StoredColumns<Real>& columns, int nodes);

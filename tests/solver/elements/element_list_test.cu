@@ -11,7 +11,7 @@ namespace {
 template <class Shape>
 void check_elements() {
   LinearBench<double, CpuDevice, Shape> bench({kind_of<Shape>});
-  ElementList<double, CpuDevice, Shape> list;
+  ElementList<double, CpuDevice, Shape> list(bench.device);
   list.build(bench.grid.view(), bench.points.view());
   const ElementView v = list.view();
   constexpr int each = ElementList<double, CpuDevice, Shape>::nodes_each;

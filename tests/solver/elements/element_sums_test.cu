@@ -19,7 +19,7 @@ template <class Shape>
 void check_tiles() {
   constexpr int w = Shape::width, nodes = w * w * w;
   LinearBench<double, CpuDevice, Shape> bench({kind_of<Shape>});
-  ElementList<double, CpuDevice, Shape> list;
+  ElementList<double, CpuDevice, Shape> list(bench.device);
   list.build(bench.grid.view(), bench.points.view());
   const auto size = static_cast<std::size_t>(list.count()) * nodes * nodes * 9;
   std::vector<double> whole(size), slices(size);

@@ -73,9 +73,9 @@ class ElementTerms : public InEachPlace {
     LinearBench<Real, Device, Shape> bench(make_scene(d, o),
                                            {kind_of<Shape>, Mapping::cartesian, MaterialModel::hencky, false, true});
     std::vector<Vec3<double>> x(static_cast<std::size_t>(bench.count)), none(x.size());
-    NodeVector<Device> u, y;
+    NodeVector<Device> u(bench.device), y(bench.device);
     u.upload(none);
-    for_each(Device{}, d.grid.columns * d.grid.rows, SetAffinely<Real>{bench.grid.view(), u.data()});
+    for_each(bench.device, d.grid.columns * d.grid.rows, SetAffinely<Real>{bench.grid.view(), u.data()});
     x = u.download();
     y.upload(none);
     apply_springs(bench.elements, bench.springs, u, y);

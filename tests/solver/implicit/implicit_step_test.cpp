@@ -30,6 +30,7 @@ SolveOptions options_of(Integrator integrator) {
 
 /// A block on a slope, all that a step of it works on, and the step.
 struct StepBench {
+  CpuDevice device = CpuDevice::make();
   Scene scene;
   SolverSettings settings;
   SolverState state;
@@ -38,7 +39,7 @@ struct StepBench {
   SparseGrid<double, CpuDevice> grid;
   SurfaceContact<double, CpuDevice, Shape> surfaces;
   ContactImpulses<double, CpuDevice, Shape> impulses;
-  SumSpace<CpuDevice> sums;
+  SumSpace<CpuDevice> sums{device};
   ImplicitStep<double, CpuDevice, Shape> step;
 
   static Scene make(const SolveOptions& o) {
@@ -55,11 +56,11 @@ struct StepBench {
       : scene(make(o)),
         settings(make_settings(o, scene.grid)),
         materials(settings.common.materials.in<double>()),
-        points(CpuDevice{}, needs(settings.common)),
-        grid(CpuDevice{}, scene.grid, 0),
-        surfaces(CpuDevice{}, scene.contacts, settings.common.bed, scene.grid, {}, false),
-        impulses(CpuDevice{}),
-        step({.device = {},
+        points(device, needs(settings.common)),
+        grid(device, scene.grid, 0),
+        surfaces(device, scene.contacts, settings.common.bed, scene.grid, {}, false),
+        impulses(device),
+        step({.device = device,
               .settings = settings.common,
               .controls = settings.implicit,
               .points = points,
@@ -73,7 +74,7 @@ struct StepBench {
                        .layer_height = scene.grid.layer_height,
                        .layer_mass = materials.list[0].density * scene.grid.layer_height,
                        .full_base = Shape::edge_share * materials.list[0].density}},
-             {CpuDevice{}, settings.common.bed, scene.bed}) {
+             {device, settings.common.bed, scene.bed}) {
     points.upload(scene.points);
     grid.fit(points, 0);
     step.group({});

@@ -9,7 +9,7 @@ namespace talus::solver::testing {
 namespace {
 
 TEST(NodeFields, begin_at_zero_where_points_add_to_them) {
-  NodeFields<CpuDevice> fields{CpuDevice{}};
+  NodeFields<CpuDevice> fields{CpuDevice::make()};
   for (const int count : {5, 9, 3}) {
     fields.resize(count);
     EXPECT_EQ(fields.u.size(), static_cast<std::size_t>(count));
@@ -21,7 +21,7 @@ TEST(NodeFields, begin_at_zero_where_points_add_to_them) {
 }
 
 TEST(NodeFields, show_statics_neither_arrival_nor_acceleration) {
-  NodeFields<CpuDevice> fields{CpuDevice{}};
+  NodeFields<CpuDevice> fields{CpuDevice::make()};
   fields.resize(1);
   EXPECT_EQ(fields.arrays(false).arrival, nullptr);
   EXPECT_EQ(fields.arrays(false).acceleration, nullptr);

@@ -58,12 +58,12 @@ class ParticlesOn : public solver::testing::InEachPlace {
   template <class Body>
   void on_device(Body&& body) {
     if (GetParam() == On::cpu) {
-      body(float{}, CpuDevice{});
-      body(double{}, CpuDevice{});
+      body(float{}, CpuDevice::make());
+      body(double{}, CpuDevice::make());
 #if TALUS_FOR_GPU
     } else {
-      body(float{}, GpuDevice{});
-      body(double{}, GpuDevice{});
+      body(float{}, GpuDevice::make());
+      body(double{}, GpuDevice::make());
 #endif
     }
   }

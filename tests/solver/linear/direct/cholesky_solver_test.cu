@@ -25,8 +25,8 @@ class CholeskyOfTangents : public InEachPlace {
   template <class Real, class Device, class Shape>
   static void keep_analysis() {
     LinearBench<Real, Device, Shape> bench({kind_of<Shape>});
-    CholeskySolver<Real, Device, Shape> solver;
-    NodeVector<Device> x;
+    CholeskySolver<Real, Device, Shape> solver(bench.device);
+    NodeVector<Device> x(bench.device);
     const NodeVector<Device> b = bench.right_side();
     const auto solve = [&] { EXPECT_TRUE(solver.solve(bench.from(), bench.held(), b, x).converged); };
     solver.begin_step(bench.elements);
@@ -45,7 +45,7 @@ class CholeskyOfTangents : public InEachPlace {
     bench.free_all();  // more unknowns
     solve();
     EXPECT_EQ(solver.factor().analyses(), 2);
-    ElementList<Real, Device, Shape> list;
+    ElementList<Real, Device, Shape> list(bench.device);
     list.build(bench.grid.view(), bench.points.view());
     const double foreseen = assembly_bytes<Real, Shape>(list.count(), solver.assembly().unknown_nodes());
     EXPECT_GT(foreseen, static_cast<double>(solver.bytes()));
@@ -55,8 +55,8 @@ class CholeskyOfTangents : public InEachPlace {
   template <class Real, class Device, class Shape>
   static void report_indefinite() {
     LinearBench<Real, Device, Shape> bench({kind_of<Shape>});
-    CholeskySolver<Real, Device, Shape> solver;
-    NodeVector<Device> x;
+    CholeskySolver<Real, Device, Shape> solver(bench.device);
+    NodeVector<Device> x(bench.device);
     const NodeVector<Device> b = bench.right_side();
     solver.begin_step(bench.elements);
     bench.inertia = -1e5;
@@ -78,8 +78,8 @@ class CholeskyOfTangents : public InEachPlace {
     LinearBench<Real, Device, Shape> bench(scene, setting);
     bench.free_all();
     bench.inertia = 0;
-    CholeskySolver<Real, Device, Shape> solver;
-    NodeVector<Device> b, x;
+    CholeskySolver<Real, Device, Shape> solver(bench.device);
+    NodeVector<Device> b(bench.device), x(bench.device);
     const auto m = bench.mass.download();
     std::vector<Vec3<double>> weight(m.size());
     for (std::size_t n = 0; n < m.size(); ++n) weight[n] = {0, 0, -9.81 * m[n]};
@@ -93,8 +93,8 @@ class CholeskyOfTangents : public InEachPlace {
   template <class Real, class Device, class Shape>
   static void refuse(double limit, const std::string& what) {
     LinearBench<Real, Device, Shape> bench({kind_of<Shape>});
-    CholeskySolver<Real, Device, Shape> solver(limit);
-    NodeVector<Device> x;
+    CholeskySolver<Real, Device, Shape> solver(bench.device, limit);
+    NodeVector<Device> x(bench.device);
     const NodeVector<Device> b = bench.right_side();
     solver.begin_step(bench.elements);
     const std::size_t before = solver.bytes();
@@ -122,10 +122,10 @@ TEST_P(CholeskyOfTangents, cholesky_refuses_a_matrix_that_does_not_fit_before_it
 
 TEST_P(CholeskyOfTangents, cholesky_refuses_a_factor_that_does_not_fit) {
   // A limit between the matrix's need and the factor's: the factorisation alone, on a full matrix.
-  const auto run = [](auto place) {
-    using Device = decltype(place);
+  const auto run = [](const auto& device) {
+    using Device = std::decay_t<decltype(device)>;
     constexpr int n = 60;
-    CsrMatrix<Device> a;
+    CsrMatrix<Device> a(device);
     a.rows = n;
     a.pattern = 1;
     std::vector<int> starts{0}, columns;
@@ -140,13 +140,13 @@ TEST_P(CholeskyOfTangents, cholesky_refuses_a_factor_that_does_not_fit) {
     a.starts.upload(starts);
     a.columns.upload(columns);
     a.values.upload(values);
-    Buffer<double, Device> b, x;
+    Buffer<double, Device> b(device), x(device);
     b.upload(std::vector<double>(n, 1.0));
-    EXPECT_THROW(make_cholesky(place, 1000.0)->solve(a, b, x), NumericalError);
-    EXPECT_TRUE(make_cholesky(place)->solve(a, b, x));
+    EXPECT_THROW(make_cholesky(device, 1000.0)->solve(a, b, x), NumericalError);
+    EXPECT_TRUE(make_cholesky(device)->solve(a, b, x));
     EXPECT_NEAR(x.download().front(), 1.0 / (3 * n - 1), 1e-14);
   };
-  GetParam() == On::gpu ? run(GpuDevice{}) : run(CpuDevice{});
+  GetParam() == On::gpu ? run(GpuDevice::make()) : run(CpuDevice::make());
 }
 
 TALUS_IN_EACH_PLACE(CholeskyOfTangents);

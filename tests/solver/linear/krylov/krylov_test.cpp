@@ -97,7 +97,7 @@ class Krylov : public ::testing::Test {
 
   /// Solves A x = A `expected`.
   LinearReport solve(DenseMatrix& a, const std::vector<Vec3<double>>& expected, const KrylovLimits& limits) {
-    Vector of;
+    Vector of(device);
     of.upload(expected);
     b.resize(of.size());
     b.fill_zero();
@@ -105,8 +105,9 @@ class Krylov : public ::testing::Test {
     return method.solve(a, diagonal_of(a), b, x, limits);
   }
 
-  Method method;
-  Vector b, x;
+  CpuDevice device = CpuDevice::make();
+  Method method{device};
+  Vector b{device}, x{device};
 };
 using Methods = ::testing::Types<ConjugateGradient<CpuDevice>, BiCgStab<CpuDevice>>;
 TYPED_TEST_SUITE(Krylov, Methods);
@@ -158,9 +159,10 @@ TYPED_TEST(Krylov, ends_a_diagonal_system_at_once) {
 TEST(ConjugateGradient, reports_a_direction_of_negative_curvature) {
   DenseMatrix a(2);
   for (std::size_t i = 0; i < a.size(); ++i) a.at(i, i) = i == 4 ? -1 : 1;
-  Vector b, x;
+  const CpuDevice device = CpuDevice::make();
+  Vector b(device), x(device);
   b.upload({{0, 0, 0}, {0, 1, 0}});
-  ConjugateGradient<CpuDevice> method;
+  ConjugateGradient<CpuDevice> method(device);
   const auto copy_only = [](const Vector& r, Vector& z) { copy(r, z); };
   SeparatePreconditioner<CpuDevice, decltype(copy_only)> none(copy_only);
   const LinearReport report = method.solve(a, none, b, x, {});

@@ -28,8 +28,8 @@ template <class Shape>
 void check_neighbours() {
   constexpr int reach = Shape::width - 1, side = 2 * reach + 1;
   LinearBench<double, CpuDevice, Shape> bench({kind_of<Shape>});
-  ElementList<double, CpuDevice, Shape> list;
-  StencilMatrix<double, CpuDevice, Shape> matrix;
+  ElementList<double, CpuDevice, Shape> list(bench.device);
+  StencilMatrix<double, CpuDevice, Shape> matrix(bench.device);
   list.build(bench.grid.view(), bench.points.view());
   matrix.build(list, bench.count);
   const auto places = node_places(bench);
