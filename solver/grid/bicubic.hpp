@@ -6,12 +6,14 @@
 
 namespace talus {
 
+/// The ground at a point of the map: height above the datum and slopes.
 template <class Real>
 struct GroundPoint {
-  Real height = 0, slope_x = 0, slope_y = 0;  // above the datum [m]; [-]
+  Real height = 0, slope_x = 0, slope_y = 0;  ///< above the datum [m]; [-]
 };
 
-/// Catmull-Rom weights of the four values about s in [0, 1), and their slopes.
+/// This function makes the Catmull-Rom weights of the four values about s in [0, 1), and their slopes (Catmull & Rom
+/// 1974).
 template <class Real>
 TALUS_HD void catmull_rom(Real s, Real weight[4], Real slope[4]) {
   const Real s2 = s * s, s3 = s2 * s, half = Real(0.5);
@@ -33,7 +35,7 @@ struct NodeTerrain {
   Real spacing = 0;
 };
 
-/// The ground `x`, `y` cells from node (i, j), -1 <= x, y <= 1.
+/// The ground `x`, `y` cells from node (i, j), -1 <= x, y <= 1; its height is in metres above the datum.
 template <class Real>
 TALUS_HD GroundPoint<Real> bicubic_ground(const NodeTerrain<Real>& terrain, int i, int j, Real x, Real y) {
   const int columns = terrain.columns, rows = terrain.rows;
@@ -67,9 +69,9 @@ TALUS_HD GroundPoint<Real> bicubic_ground(const NodeTerrain<Real>& terrain, int 
   return g;
 }
 
-/// A material point that got below ground met by points is put onto it: contact holds the mean about a point of the
-/// ground, and on rough ground single ones slip through. Their velocity is left to the contact, which knows of
-/// friction.
+/// This function puts a material point that got below ground met by points onto it: contact holds the mean about a
+/// point of the ground, and on rough ground single ones slip through. Their velocity is left to the contact, which
+/// knows of friction.
 template <class Real>
 TALUS_HD void keep_above_ground(const GridView<Real>& grid, const ParticleView<Real>& points, int p) {
   const int i = points.cell[0][p], j = points.cell[1][p];

@@ -16,14 +16,17 @@ struct Linear {
   static constexpr int width = 2;
   static constexpr double edge_share = 0.5;
   static constexpr bool averaged = false, spline = false;
+  /// The first node with a weight, counted from the nearest one.
   template <class Real>
   TALUS_HD static int first(Real offset) {
     return offset < Real(0) ? -1 : 0;
   }
+  /// The offset as it is: hats end at an edge without a change.
   template <class Real>
   TALUS_HD static Real weigh_edge(Real offset, int, Real, Real, Real[2], Real[2]) {
     return offset;
   }  // hats end at an edge as they are
+  /// This function writes weights and slopes, per cell, of the two nodes.
   template <class Real>
   TALUS_HD static void weigh(Real offset, Real, Real weight[2], Real slope[2]) {
     const Real s = offset - Real(first(offset));
@@ -39,15 +42,16 @@ struct Quadratic {
   static constexpr int width = 3;
   static constexpr double edge_share = 13.0 / 24;
   static constexpr bool averaged = false, spline = true;
+  /// The first node with a weight, counted from the nearest one.
   template <class Real>
   TALUS_HD static int first(Real) {
     return -1;
   }
-  /// Weights in the half cell beside an edge of the material (the ground, a wall) that stands on the nearest node,
-  /// where the function of the node behind would reach through it. The field goes on there in a straight line (v_-1 = 2
-  /// v_0 - v_1), which leaves hats on the edge's node and the next: slopes stay continuous, linear fields exact, and
-  /// the value on the edge is its node's. `inward` is +1 or -1; nearer than `lowest` the weights are those at `lowest`.
-  /// Returns the offset they stand for.
+  /// This function writes the weights in the half cell beside an edge of the material (the ground, a wall) that lies on
+  /// the nearest node, where the function of the node behind would reach through it. The field goes on there in a
+  /// straight line (v_-1 = 2 v_0 - v_1), which leaves hats on the edge's node and the next: slopes stay continuous,
+  /// linear fields exact, and the value on the edge is its node's. `inward` is +1 or -1; nearer than `lowest` the
+  /// weights are those at `lowest`. The function returns the offset they stand for.
   template <class Real>
   TALUS_HD static Real weigh_edge(Real offset, int inward, Real lowest, Real, Real weight[3], Real slope[3]) {
     const Real away = offset * Real(inward);
@@ -61,6 +65,7 @@ struct Quadratic {
     slope[2] = ahead ? Real(1) : Real(0);
     return s * Real(inward);
   }
+  /// This function writes weights and slopes, per cell, of the three nodes.
   template <class Real>
   TALUS_HD static void weigh(Real offset, Real, Real weight[3], Real slope[3]) {
     const Real below = Real(0.5) - offset, above = Real(0.5) + offset;
@@ -79,11 +84,13 @@ struct Gimp {
   static constexpr int width = 3;
   static constexpr double edge_share = 0.5;
   static constexpr bool averaged = true, spline = false;
+  /// The first node with a weight, counted from the nearest one.
   template <class Real>
   TALUS_HD static int first(Real) {
     return -1;
   }
-  /// The box ends at the edge: a point nearer to it stands half a box inside. Returns the offset its weights stand for.
+  /// This function writes the weights beside an edge, where the box ends: a point nearer to it is taken half a box
+  /// inside. It returns the offset its weights stand for.
   template <class Real>
   TALUS_HD static Real weigh_edge(Real offset, int inward, Real, Real half, Real weight[3], Real slope[3]) {
     const Real away = offset * Real(inward);
@@ -91,6 +98,7 @@ struct Gimp {
     weigh(inside, half, weight, slope);
     return inside;
   }
+  /// This function writes weights (T2a) and slopes, per cell, of the three nodes.
   template <class Real>
   TALUS_HD static void weigh(Real offset, Real half, Real weight[3], Real slope[3]) {
     const Real low = offset - half, high = offset + half;
@@ -105,7 +113,7 @@ struct Gimp {
   }
 };
 
-/// Calls f with the shape functions of that name: f(Linear{}), f(Quadratic{}) or f(Gimp{}).
+/// This function calls f with the shape functions of that name: f(Linear{}), f(Quadratic{}) or f(Gimp{}).
 template <class F>
 auto with_shape(ShapeKind kind, F&& f) {
   switch (kind) {

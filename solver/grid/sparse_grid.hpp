@@ -10,32 +10,35 @@
 
 namespace talus {
 
-/// What the grid is made of, on the host.
+/// The numbers that the grid is made of, on the host.
 struct GridShape {
   int columns = 0, rows = 0;
-  double spacing = 0, layer_height = 0;  // [m]
+  double spacing = 0, layer_height = 0;  ///< [m]
   Mapping mapping = Mapping::terrain_following;
   GroundContact ground = GroundContact::nodes;
   bool quadratic = true;
-  double lowest_weighed = 0;    // see GridView
-  std::vector<double> terrain;  // ground at the nodes [m], NaN outside the domain; [rows * columns]
+  double lowest_weighed = 0;    ///< see GridView
+  std::vector<double> terrain;  ///< ground at the nodes [m], NaN outside the domain; [rows * columns]
 };
 
-/// Terrain as the kernels use it, from a GridShape: coefficients, slopes at the nodes, where points may be.
+/// The terrain as kernels use it, from a GridShape: coefficients, slopes at the nodes, where points may be; each
+/// [rows * columns].
 struct GroundTables {
-  double datum = 0;  // lowest ground [m]; heights below are from here
+  double datum = 0;  ///< lowest ground [m]; heights below are from here
   std::vector<double> terrain, slope_x, slope_y;
   std::vector<unsigned char> open;
 };
+/// The terrain of a grid: coefficients whose interpolation (T1) meets the elevations, and their slopes.
 GroundTables make_ground_tables(const GridShape& shape);
 
-/// The same between nodes on the host, at (xi, eta) in cells from node (0, 0).
+/// The bicubic ground on the host, at (xi, eta) in cells from node (0, 0).
 GroundPoint<double> bicubic_ground(const GridShape& shape, const GroundTables& ground, double xi, double eta);
 
-/// Ground elevation at (xi, eta), in cells from node (0, 0), as the grid's own functions interpolate it, or bicubic
-/// where it is met by points [m above datum].
+/// The ground elevation at (xi, eta), in cells from node (0, 0), as the grid's own functions interpolate it (T1), or
+/// bicubic where it is met by points [m above datum].
 double ground_at(const GridShape& shape, const GroundTables& ground, double xi, double eta);
 
+/// The background grid with its storage, and the order of the points in it.
 template <class Real, class Device>
 class SparseGrid {
  public:
@@ -46,21 +49,31 @@ class SparseGrid {
   SparseGrid(const Device& device, const GridShape& shape, int drift, bool in_order = false,
              bool by_lowest_node = false);
 
-  /// Sort the points by home cell, drop those that left (the `gone` last ones after sorting), and give storage to every
-  /// column and layer they reach until they have drifted too far.
+  /// The method sorts the points by home cell, drops those that left (the `gone` last ones after sorting), and gives
+  /// storage to every column and layer they reach until they have drifted too far.
   void fit(Particles<Real, Device>& points, int gone);
 
+  /// The device that the grid is on.
   const Device& device() const { return device_; }
+  /// The grid as kernels see it, until the next fit().
   GridView<Real> view() const;
-  /// From now on material is met at these nodes.
+  /// The method sets the nodes at which material is met from now on.
   void stand_walls(const WallNodes& nodes) { walls_ = nodes; }
+  /// The terrain as kernels use it, on the host.
   const GroundTables& ground() const { return ground_; }
+  /// The shape of the grid.
   const GridShape& shape() const { return shape_; }
+  /// The keys of the cells that the points were sorted by (home_key()), [points] on the device.
   const std::uint64_t* home() const { return keys_.data(); }
+  /// The ranges of points by column block and colour.
   const PointGroups& groups() const { return groups_; }
+  /// The number of stored nodes.
   int nodes() const { return nodes_; }
+  /// The number of column blocks with storage.
   int active_blocks() const { return active_; }
+  /// The column blocks with storage, [active_blocks()] on the device.
   const int* active_list() const { return active_list_.data(); }
+  /// The size of the storage and of the tables [bytes].
   std::size_t bytes() const;
 
  private:

@@ -26,7 +26,9 @@ class BedOn {
     columns_.upload(beds);
     friction_.columns = columns_.data();
   }
+  /// The friction as kernels see it.
   BaseFriction<Number> view() const { return friction_; }
+  /// The size of the numbers beside the grid [bytes].
   std::size_t bytes() const { return columns_.bytes(); }
 
  private:
@@ -34,6 +36,7 @@ class BedOn {
   Buffer<Bed<Number>, Device> columns_;
 };
 
+/// The parts that every integrator has, with `Real` the precision of the points and `Shape` its shape functions.
 template <class Real, class Device, class Shape>
 class PointSolver : public Solver {
  public:
@@ -61,14 +64,17 @@ class PointSolver : public Solver {
   PointSolver(const PointSolver&) = delete;
   PointSolver& operator=(const PointSolver&) = delete;
 
+  /// The method sets the time not to step over [s]; see Solver for this and the next members.
   void set_next_event(double time) override {
     Clock clock = read_clock();
     clock.next_event = time;
     clock_.upload({clock});
   }
 
+  /// The clock of the end of the last step; waits for the device.
   Clock clock() const override { return read_clock(); }
 
+  /// All that a checkpoint keeps; waits for the device.
   SolverState state() const override {
     SolverState all{.points = points_.download(), .clock = read_clock(), .maps = {}, .contacts = contact_.state()};
     for_each_running_map([](const RunningMap&, auto& values, const auto& buffer) { values = buffer.download(); },
@@ -76,8 +82,10 @@ class PointSolver : public Solver {
     return all;
   }
 
+  /// The points as frames show them; waits for the device.
   ParticleState shown() const override { return points_.download(Kept::in_frames); }
 
+  /// The sums over the points; waits for the device.
   Energies energies() override {
     const ProfilePhase<Device> phase(device_, "records and frames");
     constexpr int rows = MeasureEnergies<Real, Shape>::rows;
@@ -90,6 +98,7 @@ class PointSolver : public Solver {
     return {total[0], total[1], total[2], total[3], {total[4], total[5], total[6]}};
   }
 
+  /// The vertical thickness, h of (T25), [rows * columns] [m]; waits for the device.
   std::vector<double> thickness() override {
     const ProfilePhase<Device> phase(device_, "records and frames");
     const GridShape& shape = grid_.shape();
@@ -102,9 +111,13 @@ class PointSolver : public Solver {
     return result;
   }
 
+  /// The impulse that every obstacle was given so far, along x, y and z [N s].
   std::vector<Vec3<double>> obstacle_impulses() const override { return contact_.obstacle_impulses(); }
+  /// The terrain as kernels use it.
   const GroundTables& ground() const override { return grid_.ground(); }
+  /// The number of points in the domain.
   int particle_count() const override { return points_.count(); }
+  /// The memory taken by points, grid, maps and what else there is [bytes].
   MemoryShares memory() const override {
     std::size_t records = sums_.bytes() + column_volumes_.bytes() + thickness_.bytes();
     for_each_running_map([&](const RunningMap&, const auto& buffer) { records += buffer.bytes(); }, maps_);
@@ -116,7 +129,8 @@ class PointSolver : public Solver {
   }
 
  protected:
-  /// Where densities differ, mass does not tell the thickness: volumes over the columns, for the maps.
+  /// The method measures the volumes over the columns for the maps, where densities differ and mass does not give the
+  /// thickness.
   void measure_columns() {
     if (!settings_.materials.densities_differ) return;
     column_volumes_.resize(static_cast<std::size_t>(grid_.shape().columns) *
@@ -132,10 +146,10 @@ class PointSolver : public Solver {
     grid_.fit(points_, gone);
     contact_.fit(grid_);
   }
-  /// Mass of a full layer over a square metre [kg/m2].
+  /// The mass of a full layer over a square metre [kg/m2].
   double layer_mass() const { return static_cast<double>(materials_.list[0].density) * frame_.cell[2]; }
 
-  /// Mass of a base node under a full layer [kg].
+  /// The mass of a base node under a full layer [kg].
   double full_base() const {
     return Shape::edge_share * static_cast<double>(materials_.list[0].density) * frame_.cell[0] * frame_.cell[1] *
            frame_.cell[2];
@@ -156,7 +170,7 @@ class PointSolver : public Solver {
     return walls;
   }
 
-  /// Force per volume of every load at a time; null when there are none.
+  /// The method uploads the force per volume of every load at a time [N/m3]; null when there are none.
   const Vec3<double>* upload_loads(double time) {
     if (load_volumes_.empty()) return nullptr;
     loads_.upload(load_densities(settings_.loads, load_volumes_, time));
@@ -173,7 +187,7 @@ class PointSolver : public Solver {
   SurfaceContact<Real, Device, Shape> contact_;
   ContactImpulses<Real, Device, Shape> impulses_;
   WallFrame frame_;
-  std::vector<double> load_volumes_;  // [m3]
+  std::vector<double> load_volumes_;  ///< [m3]
   Buffer<Vec3<double>, Device> loads_{device_};
   Buffer<Clock, Device> clock_{device_};
   Buffer<double, Device> column_volumes_{device_};

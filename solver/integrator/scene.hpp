@@ -11,13 +11,14 @@
 
 namespace talus::solver {
 
+/// The scene that an integrator starts from, in SI units, on the host.
 struct Scene {
   MapGrid map;
   GridShape grid;
-  ActiveCells active;  // of the grid at the start, around the points; layers above the bed
+  ActiveCells active;  ///< of the grid at the start, around the points; layers above the bed
   ParticleState points;
-  std::vector<double> load_volumes;  // volume of the points each load pulls at [m3]
-  std::vector<Bed<double>> bed;      // of every column; empty where it is the same everywhere
+  std::vector<double> load_volumes;  ///< volume of the points each load pulls at [m3]
+  std::vector<Bed<double>> bed;      ///< of every column; empty where it is the same everywhere
   ContactPoints contacts;
 };
 

@@ -14,14 +14,14 @@
 
 namespace talus::solver {
 
-/// Sums over the points.
+/// The sums over the points: energies, volume and momentum.
 struct Energies {
-  double kinetic = 0, potential = 0, elastic = 0;  // [J]; potential from the lowest ground
-  double volume = 0;                               // initial volume of the points present [m3]
-  Vec3<double> momentum;                           // [kg m/s]
+  double kinetic = 0, potential = 0, elastic = 0;  ///< [J]; potential from the lowest ground
+  double volume = 0;                               ///< initial volume of the points present [m3]
+  Vec3<double> momentum;                           ///< [kg m/s]
 };
 
-/// State that a checkpoint keeps.
+/// The state that a checkpoint keeps.
 struct SolverState {
   ParticleState points;
   Clock clock;
@@ -29,51 +29,59 @@ struct SolverState {
   ContactState contacts;
 };
 
-/// What an implicit step took.
+/// The effort of an implicit step.
 struct StepStats {
-  int newton = 0, linear = 0, cuts = 0;  // iterations; halvings of the step
+  int newton = 0, linear = 0, cuts = 0;  ///< iterations; halvings of the step
   double residual = 0,
-         linear_residual = 0;  // unbalanced force over the forces' size; residual of the last linear solve
-  double over_cfl = 0;         // step over the CFL step
+         linear_residual = 0;  ///< unbalanced force over the forces' size; residual of the last linear solve
+  double over_cfl = 0;         ///< step over the CFL step
   bool indefinite = false;
 };
 
-/// What a batch of steps ended with.
+/// The outcome of a batch of steps.
 struct BatchReport {
   Clock clock;
-  bool sorted = false;        // the points have just been sorted: a checkpoint may be taken here
-  double outflow_volume = 0;  // left the domain in this batch [m3]
+  bool sorted = false;        ///< the points have just been sorted: a checkpoint may be taken here
+  double outflow_volume = 0;  ///< left the domain in this batch [m3]
   int outflow_count = 0;
-  StepStats stats;  // implicit: of the step
+  StepStats stats;  ///< implicit: of the step
 };
 
 using MemoryShares = std::vector<std::pair<std::string, std::size_t>>;
 
+/// An integrator with its state, whatever its precision and device. Methods wait for the device where they return
+/// state.
 class Solver {
  public:
   virtual ~Solver() = default;
-  /// Steps until the next event, the next sort or a failure, at most a batch.
+  /// The method steps until the next event, the next sort or a failure, at most a batch.
   virtual BatchReport advance() = 0;
-  /// Time not to step over [s].
+  /// The method sets the time not to step over [s].
   virtual void set_next_event(double time) = 0;
+  /// The clock of the end of the last step.
   virtual Clock clock() const = 0;
+  /// All that a checkpoint keeps.
   virtual SolverState state() const = 0;
   /// The points as frames show them: without affine velocity, acceleration, boxes and loads, whose lists are empty.
   virtual ParticleState shown() const = 0;
+  /// The sums over the points.
   virtual Energies energies() = 0;
-  /// Vertical thickness, initial volume over cell area, [rows * columns] [m]; its sum times the cell area is the volume
-  /// of the points to rounding.
+  /// The vertical thickness (T25), initial volume over cell area, [rows * columns] [m]; its sum times the cell area is
+  /// the volume of the points to rounding.
   virtual std::vector<double> thickness() = 0;
-  /// What every obstacle was given so far, along x, y and z [N s].
+  /// The impulse that every obstacle was given so far, along x, y and z [N s].
   virtual std::vector<Vec3<double>> obstacle_impulses() const = 0;
+  /// The terrain as kernels use it.
   virtual const GroundTables& ground() const = 0;
-  /// What is held where the steps are taken, by owner [bytes].
+  /// The memory that is held where the steps are taken, by owner [bytes].
   virtual MemoryShares memory() const = 0;
+  /// The memory that is held where the steps are taken, of all owners together [bytes].
   std::size_t bytes() const {
     std::size_t total = 0;
     for (const auto& [owner, share] : memory()) total += share;
     return total;
   }
+  /// The number of points in the domain.
   virtual int particle_count() const = 0;
 };
 

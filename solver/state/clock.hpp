@@ -7,48 +7,49 @@
 
 namespace talus {
 
-/// Why a batch stopped before its last step.
+/// The reasons why a batch stopped before its last step.
 enum Halt : int {
   running = 0,
-  at_event = 1,    // time has reached next_event
-  wants_sort = 2,  // a point has left its home cell's neighbourhood, or enough steps have passed
-  failed = 3       // a point's state is not a number
+  at_event = 1,    ///< time has reached next_event
+  wants_sort = 2,  ///< a point has left its home cell's neighbourhood, or enough steps have passed
+  failed = 3       ///< a point's state is not a number
 };
 
+/// The time, step and alarms of a run, and the sums that kernels keep for it.
 struct Clock {
-  double time = 0;            // at the end of the step under way [s]
-  double step_size = 0;       // [s]
-  double next_event = 0;      // never stepped over [s]
-  double courant = 0;         // step_size = courant / rate
-  double largest_step = 0;    // upper bound of step_size [s]
-  double transfer_time = 0;   // CFL steps over which velocity finer than the grid decays
-  double kept = 0;            // share of it that this step keeps
-  double outflow_volume = 0;  // since the last sort [m3]
+  double time = 0;            ///< at the end of the step under way [s]
+  double step_size = 0;       ///< [s]
+  double next_event = 0;      ///< never stepped over [s]
+  double courant = 0;         ///< step_size = courant / rate
+  double largest_step = 0;    ///< upper bound of step_size [s]
+  double transfer_time = 0;   ///< CFL steps over which velocity finer than the grid decays
+  double kept = 0;            ///< share of it that this step keeps
+  double outflow_volume = 0;  ///< since the last sort [m3]
   std::int64_t step = 0;
-  std::uint32_t rate_bits = 0;   // largest (wave speed + speed) over cell of any point, as float bits [1/s]
-  std::uint32_t speed_bits = 0;  // largest speed of any point [m/s]
-  int halt = running;            // read by kernels: do nothing when set
-  int request = running;         // set by kernels, becomes halt at the next step's begin
+  std::uint32_t rate_bits = 0;   ///< largest (wave speed + speed) over cell of any point, as float bits [1/s]
+  std::uint32_t speed_bits = 0;  ///< largest speed of any point [m/s]
+  int halt = running;            ///< read by kernels: do nothing when set
+  int request = running;         ///< set by kernels, becomes halt at the next step's begin
   int steps_since_sort = 0;
-  int steps_between_sorts = 32;    // for the sake of the memory's order; a point that strays asks for one at once
-  int outflow_count = 0;           // since the last sort
-  int failed_point = -1;           // id of a point that failed
-  int keeps_budget = 0;            // the sums below are kept
-  double bed_loss = 0;             // energy lost so far to bed and walls [J]
-  double damping_loss = 0;         // to Cundall's damping [J]
-  double plastic_loss = 0;         // to plastic flow [J]
-  double transfer_loss = 0;        // between points and grid [J]
-  double reaction[3] = {0, 0, 0};  // impulse of bed and walls on the mass so far [N s]
-  int accelerated = 0;             // the points know their acceleration: implicit steps were taken last
+  int steps_between_sorts = 32;    ///< for the sake of the memory's order; a point that strays asks for one at once
+  int outflow_count = 0;           ///< since the last sort
+  int failed_point = -1;           ///< id of a point that failed
+  int keeps_budget = 0;            ///< the sums below are kept
+  double bed_loss = 0;             ///< energy lost so far to bed and walls [J]
+  double damping_loss = 0;         ///< to Cundall's damping [J]
+  double plastic_loss = 0;         ///< to plastic flow [J]
+  double transfer_loss = 0;        ///< between points and grid [J]
+  double reaction[3] = {0, 0, 0};  ///< impulse of bed and walls on the mass so far [N s]
+  int accelerated = 0;             ///< the points know their acceleration: implicit steps were taken last
 
-  /// Share (T8a) of the velocity finer than the grid that a step keeps: what is lost depends on time, not on the number
-  /// of steps.
+  /// The share (T8a) of the velocity finer than the grid that a step keeps: what is lost depends on time, not on the
+  /// number of steps.
   TALUS_HD double share_kept(double step_of, double rate) const {
     const double lost = transfer_time > 0 ? step_of * rate / transfer_time : 1;
     return lost < 1 - 1e-9 ? 1 - lost : 0;
   }
 
-  /// Opens the next step: settles its size, or halts. One thread.
+  /// The method opens the next step: it settles its size (T11), or halts. One thread.
   TALUS_HD void begin_step() {
     if (halt != running) return;
     if (request == failed) {

@@ -19,23 +19,24 @@ namespace talus {
 inline constexpr int block_side = 4;                           // columns along a block's side
 inline constexpr int block_columns = block_side * block_side;  // columns of a block
 
+/// The vertical coordinate of the grid: above the terrain, or above the datum.
 enum class Mapping { terrain_following, cartesian };
 
-/// What meets the ground of a Cartesian grid: the nodes at or below it, or points between the nodes.
+/// The things that meet the ground of a Cartesian grid: the nodes at or below it, or points between the nodes.
 enum class GroundContact { nodes, points };
 
-/// Where the nodes of a block of columns are stored.
+/// The place in storage of the nodes of a block of columns.
 struct BlockSlot {
-  int offset = -1;  // first node; -1: no storage
+  int offset = -1;  ///< first node; -1: no storage
   int first_layer = 0;
   int layers = 0;
 };
 
-/// Where the block begins in a key.
+/// The bit of a key at which the block begins.
 inline constexpr int key_block_shift = 28;
 
-/// What points are sorted by: block in the high bits, then column within the block, then layer, then octant of the
-/// cell, so that those that will leave it together lie together.
+/// The key that points are sorted by: block in the high bits, then column within the block, then layer, then octant of
+/// the cell, so that those that will leave it together lie together.
 TALUS_HD std::uint64_t home_key(int block_columns_x, int i, int j, int k, int octant = 0) {
   constexpr int most = (1 << 21) - 1;
   const int at = (j >> 2) * block_columns_x + (i >> 2), column = ((j & 3) << 2) + (i & 3);
@@ -44,7 +45,7 @@ TALUS_HD std::uint64_t home_key(int block_columns_x, int i, int j, int k, int oc
   return (block << key_block_shift) | (inside << 24) | (layer << 3) | static_cast<std::uint64_t>(octant);
 }
 
-/// The cell of a key.
+/// The cell of a key: column, row and layer.
 struct HomeCell {
   int i, j, k;
   TALUS_HD HomeCell(int block_columns_x, std::uint64_t key) {
@@ -57,44 +58,47 @@ struct HomeCell {
   }
 };
 
-/// Nodes on which upright walls stand: material lies between them.
+/// The nodes on which upright walls lie: material is between them.
 struct WallNodes {
   static constexpr int far = 1 << 30;
   int west = -far, east = far, south = -far, north = far;
 };
 
+/// The background grid as kernels see it.
 template <class Real>
 struct GridView {
-  int columns = 0, rows = 0;           // nodes in x and y
-  int block_columns_x = 0;             // blocks in x
-  int nodes = 0;                       // stored
-  Real spacing = 0, layer_height = 0;  // [m]
-  Real lowest_weighed = 0;             // cells from the ground or a wall within which weights no longer change
-  int drift = 1;                       // cells that a point may be from home before it is sorted again
+  int columns = 0, rows = 0;           ///< nodes in x and y
+  int block_columns_x = 0;             ///< blocks in x
+  int nodes = 0;                       ///< stored
+  Real spacing = 0, layer_height = 0;  ///< [m]
+  Real lowest_weighed = 0;             ///< cells from the ground or a wall within which weights no longer change
+  int drift = 1;                       ///< cells that a point may be from home before it is sorted again
   bool homes_below =
       false;  // home is the cell of the lowest of its nodes, its own or the one below, not of the nearest
   WallNodes walls;
   Mapping mapping = Mapping::terrain_following;
   GroundContact ground = GroundContact::nodes;
-  const BlockSlot* slots = nullptr;  // [blocks in y * blocks in x]
-  const Real* terrain = nullptr;     // spline coefficients of the ground at the nodes, from `datum` [m]
-  const Real* slope_x = nullptr;     // slope of the ground at the nodes [-]
+  const BlockSlot* slots = nullptr;  ///< [blocks in y * blocks in x]
+  const Real* terrain = nullptr;     ///< spline coefficients of the ground at the nodes, from `datum` [m]
+  const Real* slope_x = nullptr;     ///< slope of the ground at the nodes [-]
   const Real* slope_y = nullptr;
-  const unsigned char* open = nullptr;  // 1 where a point may be: its whole stencil lies in the domain
+  const unsigned char* open = nullptr;  ///< 1 where a point may be: its whole stencil lies in the domain
 
+  /// The place of column (i, j) in arrays [rows * columns].
   TALUS_HD int column(int i, int j) const { return j * columns + i; }
+  /// The place in storage of the block that column (i, j) belongs to.
   TALUS_HD const BlockSlot& slot(int i, int j) const { return slots[(j >> 2) * block_columns_x + (i >> 2)]; }
-  /// Highest layer whose node touches the ground: the base layer, or on a Cartesian grid the last one not above the
+  /// The highest layer whose node touches the ground: the base layer, or on a Cartesian grid the last one not above the
   /// terrain; -1 where points do.
   TALUS_HD int contact_layer(int column) const {
     if (mapping == Mapping::terrain_following) return 0;
     return ground == GroundContact::points ? -1 : static_cast<int>(floor(terrain[column] / layer_height + Real(1e-4)));
   }
-  /// Storage of the column's node in layer k (k >= 0, inside the slot's range).
+  /// The place in storage of the column's node in layer k (k >= 0, inside the slot's range).
   TALUS_HD static int node(const BlockSlot& s, int i, int j, int k) {
     return s.offset + (k - s.first_layer) * block_columns + ((j & 3) << 2) + (i & 3);
   }
-  /// The same for any (i, j, k); -1 where nothing is stored.
+  /// The place in storage of node (i, j, k), whatever its numbers; -1 where nothing is stored.
   TALUS_HD int find(int i, int j, int k) const {
     if (i < 0 || j < 0 || i >= columns || j >= rows) return -1;
     const BlockSlot& s = slot(i, j);

@@ -107,6 +107,7 @@ using FieldOf = std::conditional_t<components == 1, T, T[components]>;
 #define TALUS_DECLARE_FIELD(name, numbers, components, ...) FieldOf<numbers, components> name{};
 #define TALUS_DECLARE_PARTICLE_FIELDS TALUS_PARTICLE_FIELDS(TALUS_DECLARE_FIELD)
 
+/// The only component of a field of one, whatever the number.
 template <class T>
 T& component_of(T& only, int) {
   return only;

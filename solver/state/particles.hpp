@@ -20,12 +20,15 @@ struct ParticleView {
   int count = 0;
   TALUS_DECLARE_PARTICLE_FIELDS
 
-  static constexpr double place_bytes = 3 * (sizeof(int) + sizeof(Real));  // of a position
+  static constexpr double place_bytes = 3 * (sizeof(int) + sizeof(Real));  ///< of a position
 
+  /// The velocity of point p [m/s].
   TALUS_HD Vec3<Real> velocity_of(int p) const { return {velocity[0][p], velocity[1][p], velocity[2][p]}; }
+  /// The elastic state of point p, as its material keeps it [-].
   TALUS_HD Sym3<Real> elastic_of(int p) const {
     return {elastic[0][p], elastic[1][p], elastic[2][p], elastic[3][p], elastic[4][p], elastic[5][p]};
   }
+  /// The method stores the elastic state of point p.
   TALUS_HD void set_elastic(int p, const Sym3<Real>& s) const {
     elastic[0][p] = s.xx;
     elastic[1][p] = s.yy;
@@ -35,24 +38,26 @@ struct ParticleView {
     elastic[5][p] = s.xz;
   }
 
+  /// The affine velocity of point p per cell, C_p of (T8) in columns x, y, zeta [m/s].
   TALUS_HD Mat3<Real> affine_of(int p) const {
     return {{affine[0][p], affine[1][p], affine[2][p]},
             {affine[3][p], affine[4][p], affine[5][p]},
             {affine[6][p], affine[7][p], affine[8][p]}};
   }
+  /// The method stores the affine velocity of point p.
   template <class Number>
   TALUS_HD void set_affine(int p, const Mat3<Number>& m) const {
     const Number values[9] = {m.a.x, m.a.y, m.a.z, m.b.x, m.b.y, m.b.z, m.c.x, m.c.y, m.c.z};
     for (int q = 0; q < 9; ++q) affine[q][p] = static_cast<Real>(values[q]);
   }
 
-  /// Half the sides of a point's box as weights use them, in cells.
+  /// Half the side of a point's box along an axis as weights use it [cells]: at least `least`, at most half a cell.
   TALUS_HD Real half_extent(int p, int axis, Real least) const {
     const Real half = Real(0.5) * extent[axis][p];
     return half < Real(0.5) ? (half > least ? half : least) : Real(0.5);
   }
-  /// The box after a step with displacement gradient g over ground of these slopes: its sides grow with what happens
-  /// along them.
+  /// The method stretches the box (T2a) after a step with displacement gradient g over ground of these slopes: its
+  /// sides grow with what happens along them.
   TALUS_HD void stretch_box(int p, const Mat3<Real>& g, Real slope_x, Real slope_y) const {
     const Real rise = slope_x * g.c.x + slope_y * g.c.y;
     extent[0][p] *= Real(1) + g.a.x + slope_x * g.c.x;
@@ -60,7 +65,8 @@ struct ParticleView {
     extent[2][p] *= Real(1) + g.c.z - rise;
   }
 
-  /// New cell and offset after a move in cells: nothing goes below the ground or behind a wall.
+  /// The method moves point p by `way` [cells] to its new cell and offset: nothing goes below the ground or behind a
+  /// wall.
   template <class Move>
   TALUS_HD void move_by(int p, const Vec3<Move>& way, const WallNodes& walls) const {
     shift(cell[0][p], offset[0][p], way.x, walls.west, walls.east);
@@ -93,8 +99,9 @@ struct ParticleState {
   using Reals = std::vector<double>;
   TALUS_DECLARE_PARTICLE_FIELDS
 
+  /// The number of points.
   std::size_t size() const { return id.size(); }
-  /// `count` points at their initial values.
+  /// The method makes room for `count` points at their initial values.
   void resize(std::size_t count);
 };
 
@@ -104,17 +111,20 @@ class Particles {
  public:
   Particles(const Device& device, ParticleNeeds needs);
 
-  /// Takes the lists of the fields that are needed; those kept within a step alone get memory.
+  /// The method takes the lists of the fields that are needed; those kept within a step alone get memory.
   void upload(const ParticleState& state);
-  /// The fields that are kept at least so long; those that are not needed have their initial value.
+  /// The fields that are kept at least so long, in double; those that are not needed have their initial value.
   ParticleState download(Kept least = Kept::in_checkpoint) const;
+  /// The points as kernels see them, until the next upload() or reorder().
   ParticleView<Real> view();
+  /// The number of points.
   int count() const { return count_; }
-  /// Memory taken [bytes].
+  /// The memory taken [bytes].
   std::size_t bytes() const;
+  /// The initial volumes of the points [m3], on the device.
   const Buffer<Real, Device>& volume() const { return arrays_.volume; }
 
-  /// New order: point order[p] becomes point p; only the first `count` are kept.
+  /// The method puts the points in a new order: point order[p] becomes point p; only the first `count` are kept.
   void reorder(const Buffer<int, Device>& order, int count);
 
  private:
@@ -130,7 +140,7 @@ class Particles {
   Device device_;
   ParticleNeeds needs_;
   int count_ = 0;
-  Arrays arrays_, twins_;  // the second set of as many points as may be kept twice
+  Arrays arrays_, twins_;  ///< the second set of as many points as may be kept twice
   Buffer<Real, Device> real_scratch_;
   Buffer<int, Device> int_scratch_;
 };
