@@ -1,4 +1,4 @@
-// The explicit step, written once for both places, both precisions and both shapes. Included by the files that
+// The explicit step, written once for both devices, both precisions and both shapes. Included by the files that
 // instantiate it.
 #pragma once
 

@@ -1,5 +1,5 @@
-// Templates of the linear algebra are compiled once, at the foot of their .cu: for both precisions, both places and all
-// shapes.
+// Templates of the linear algebra are compiled once, at the foot of their .cu: for both precisions, both devices and
+// all shapes.
 #pragma once
 
 #include "solver/grid/shape_functions.hpp"

@@ -1,4 +1,4 @@
-// The integrators behind one interface, for both places and both precisions.
+// The integrators behind one interface, for both devices and both precisions.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// Marks functions that run in both places.
+// Marks functions that run on both devices.
 #pragma once
 
 #if defined(__CUDACC__)

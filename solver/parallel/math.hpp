@@ -1,4 +1,4 @@
-// Vectors and matrices of three, small enough to live in registers; the same in both places.
+// Vectors and matrices of three, small enough to live in registers; the same on both devices.
 #pragma once
 
 #include <cmath>
