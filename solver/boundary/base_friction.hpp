@@ -5,14 +5,14 @@
 
 namespace talus {
 
-/// What the laws need to know of the bed at one place: the chosen law's numbers, in its order, and what acts with every
+/// The numbers of the bed at one place that laws need: those of the chosen law, in its order, and what acts with every
 /// law that rubs.
 template <class Real, class Laws = FrictionLaws>
 struct Bed {
   Real numbers[most_numbers<Laws>] = {};
-  Real cohesion = 0;  // traction besides friction, wherever the mass touches [Pa]
+  Real cohesion = 0;  ///< traction besides friction, wherever the mass touches [Pa]
 
-  /// The same in another precision.
+  /// The same numbers in another precision.
   template <class To>
   Bed<To, Laws> as() const {
     Bed<To, Laws> bed;
@@ -22,29 +22,30 @@ struct Bed {
   }
 };
 
-/// Friction on the bed: a law and its numbers, the same everywhere or a set for every column.
+/// The friction on the bed: a law and its numbers, the same everywhere or a set for every column.
 template <class Real, class Laws = FrictionLaws>
 struct BaseFriction {
   FrictionLaw law = static_cast<FrictionLaw>(0);
   Bed<Real, Laws> uniform;
-  const Bed<Real, Laws>* columns = nullptr;  // null: uniform
+  const Bed<Real, Laws>* columns = nullptr;  ///< null: uniform
 
+  /// The numbers of the bed under column j * columns + i.
   TALUS_HD const Bed<Real, Laws>& at(int column) const { return columns ? columns[column] : uniform; }
 
-  /// Friction over normal stress for a slip (T13).
+  /// The ratio of friction to normal stress for a slip, mu of (T13) [-].
   TALUS_HD Real coefficient(const Bed<Real, Laws>& bed, const Slip<Real>& slip) const {
     return visit_law<Laws>(law, [&](auto own) { return own.coefficient(bed.numbers, slip); });
   }
-  /// Traction that is no share of the normal stress [Pa]: cohesion, and the law's drag (T13a).
+  /// The traction that is no share of the normal stress [Pa]: cohesion, and the law's drag (T13a).
   TALUS_HD Real traction(const Bed<Real, Laws>& bed, const Slip<Real>& slip) const {
     return visit_law<Laws>(law, [&](auto own) { return bed.cohesion + own.drag(bed.numbers, slip); });
   }
-  /// Whether there is any.
+  /// Whether there is such a traction anywhere.
   TALUS_HD bool has_traction() const {
     return columns || uniform.cohesion > Real(0) ||
            visit_law<Laws>(law, [&](auto own) { return own.drags(uniform.numbers); });
   }
-  /// Whether the area matters on which the mass lies; else nobody needs it.
+  /// Whether the area matters on which the mass lies; otherwise it is not measured.
   TALUS_HD bool needs_area() const {
     return has_traction() || visit_law<Laws>(law, [](auto own) { return decltype(own)::asks_pressure; });
   }
@@ -54,17 +55,17 @@ struct BaseFriction {
   }
 };
 
-/// Bed that the mass of a base node lies on, along the slope [m2]: that of its column, as far as the mass makes up a
-/// `full` base node.
+/// The area of bed that the mass of a base node lies on, A of (T13a) along the slope [m2]: that of its column, as far
+/// as the mass makes up a `full` base node.
 template <class Real>
 TALUS_HD Real bed_area(Real mass, Real full, Real spacing, Real sx, Real sy) {
   const Real filled = mass < full ? mass / full : Real(1);
   return filled * spacing * spacing * sqrt(Real(1) + sx * sx + sy * sy);
 }
 
-/// Velocity of a node after contact with a surface of this normal and friction coefficient. A node moving into the
-/// surface loses its normal velocity; the impulse that takes it away bounds the friction impulse, |dv_t| <= mu dv_n, so
-/// that stick holds exactly. `more` is the speed that other tractions take beside it.
+/// The velocity (T12) of a node after contact with a surface of this normal and friction coefficient [m/s]. A node
+/// moving into the surface loses its normal velocity; the impulse that takes it away bounds the friction impulse,
+/// |dv_t| <= mu dv_n, so that stick holds exactly. `more` is the speed that other tractions take beside it.
 template <class Real>
 TALUS_HD Vec3<Real> meet_surface(const Vec3<Real>& v, const Vec3<Real>& normal, Real coefficient, Real more = Real(0)) {
   const Real approach = -dot(v, normal);
@@ -77,11 +78,11 @@ TALUS_HD Vec3<Real> meet_surface(const Vec3<Real>& v, const Vec3<Real>& normal, 
 /// The step of a base node on its bed.
 template <class Real>
 struct BedStep {
-  Real duration;   // [s]
-  Real grip = {};  // duration over the node's mass per area of bed [m2 s/kg]; 0 where the law needs no area
+  Real duration;   ///< [s]
+  Real grip = {};  ///< duration over the node's mass per area of bed [m2 s/kg]; 0 where the law needs no area
 };
 
-/// Velocity of a base node after contact with ground of slopes (sx, sy) (T12, T13a).
+/// The velocity of a base node after contact with ground of slopes (sx, sy), (T12) and (T13a) [m/s].
 template <class Real, class Laws>
 TALUS_HD Vec3<Real> meet_ground(const BaseFriction<Real, Laws>& friction, const Bed<Real, Laws>& bed,
                                 const Vec3<Real>& v, Real sx, Real sy, const BedStep<Real>& step) {

@@ -15,13 +15,16 @@ namespace talus::solver {
 
 inline constexpr int contact_sweeps = 4;
 
-/// Nodes of an explicit step.
+/// The nodes of an explicit step: mass and velocity together.
 template <class Real>
 struct PackedNodes {
   Vec4<Real>* nodes;
-  Vec4<Real>* changes;  // of the velocity in the step; null where nobody asks
+  Vec4<Real>* changes;  ///< of the velocity in the step; null where nothing reads them
+  /// The mass of node n [kg].
   TALUS_HD Real mass(int n) const { return nodes[n].w; }
+  /// The velocity of node n [m/s].
   TALUS_HD Vec3<Real> velocity(int n) const { return {nodes[n].x, nodes[n].y, nodes[n].z}; }
+  /// The method adds a change of velocity [m/s] to node n.
   TALUS_HD void add(int n, const Vec3<Real>& v) const {
     nodes[n].x += v.x;
     nodes[n].y += v.y;
@@ -33,17 +36,17 @@ struct PackedNodes {
   }
 };
 
-/// One thread: one contact point. What stands before it, and how much the points together move each node. The impulse
-/// of the last step's force once more.
+/// One thread: one contact point. It measures what mass is before it, and how much the points together move each node.
+/// The impulse of the last step's force acts once more.
 template <class Real, class Shape, class Nodes>
 struct BeginContacts {
   GridView<Real> grid;
   ContactView<Real> contacts;
   Nodes nodes;
-  const Clock* clock;   // null: no history
-  Vec3<Real>* impulse;  // of this step [N s]
-  Vec3<Real>* given;    // to the nodes, not yet in their velocity [N s]
-  Real* yielding;       // of the nodes to all points: Q_i [1/kg]
+  const Clock* clock;   ///< null: no history
+  Vec3<Real>* impulse;  ///< of this step [N s]
+  Vec3<Real>* given;    ///< to the nodes, not yet in their velocity [N s]
+  Real* yielding;       ///< of the nodes to all points: Q_i [1/kg]
 
   TALUS_HD void operator()(int c) const {
     if (clock && clock->halt != running) return;
@@ -64,18 +67,18 @@ struct BeginContacts {
   }
 };
 
-/// A sweep (T12a). One thread: one contact point.
+/// One thread: one contact point. It makes a sweep of (T12a).
 template <class Real, class Shape, class Nodes>
 struct SweepContacts {
   GridView<Real> grid;
   ContactView<Real> contacts;
   Nodes nodes;
   const Real* yielding;
-  double layer_mass;  // of a full layer over a square metre [kg/m2]
+  double layer_mass;  ///< of a full layer over a square metre [kg/m2]
   const Clock* clock;
-  double step;  // [s]; the clock's where it has one
-  bool grips;   // with friction
-  bool keeps;   // the last sweep of the step: force and impulse are kept
+  double step;  ///< [s]; the clock's where it has one
+  bool grips;   ///< with friction
+  bool keeps;   ///< the last sweep of the step: force and impulse are kept
   Vec3<Real>* impulse;
   Vec3<Real>* given;
 
@@ -118,7 +121,7 @@ struct SweepContacts {
   }
 };
 
-/// One thread: one node. What it was given goes into its velocity.
+/// One thread: one node. It takes the impulse that it was given into its velocity.
 template <class Real, class Nodes>
 struct TakeImpulses {
   Nodes nodes;
@@ -133,19 +136,20 @@ struct TakeImpulses {
   }
 };
 
-/// The sweeps of a step.
+/// The sweeps (T12a) of a step with their arrays.
 template <class Real, class Device, class Shape>
 class ContactImpulses {
  public:
   explicit ContactImpulses(const Device& device) : device_(device) {}
 
-  /// `clock` null: of `step` seconds, and nothing is kept but the impulse. Without `grips`, and without history, the
-  /// surfaces are merely kept from being run through.
+  /// The kind of a pass. `clock` null: it is of `step` seconds, and nothing is kept but the impulse. Without `grips`,
+  /// and without history, the surfaces are merely kept from being run through.
   struct Pass {
     const Clock* clock;
     double step;
     bool grips, remembers;
   };
+  /// The method makes the sweeps of a pass over `node_count` nodes; `layer_mass` is that of a full layer [kg/m2].
   template <class Nodes>
   void run(SurfaceContact<Real, Device, Shape>& contact, const GridView<Real>& grid, const Nodes& nodes, int node_count,
            double layer_mass, const Pass& pass) {
@@ -170,7 +174,9 @@ class ContactImpulses {
       take();
     }
   }
+  /// The impulses of the last pass at the contact points [N s], on the device.
   const Vec3<Real>* impulses() const { return impulse_.data(); }
+  /// The size of the arrays [bytes].
   std::size_t bytes() const { return impulse_.bytes() + given_.bytes() + yielding_.bytes(); }
 
  private:

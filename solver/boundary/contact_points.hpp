@@ -11,29 +11,31 @@
 
 namespace talus::solver {
 
-/// A body that stands in the way.
+/// An obstacle: a body that the mass meets between the nodes.
 struct Obstacle {
   std::string name;
-  std::filesystem::path level_set;  // OpenVDB file of signed distances [m], negative inside
-  std::string grid;                 // in that file; empty: the only one
-  double friction = 0;              // coefficient of its surface [-]
+  std::filesystem::path level_set;  ///< OpenVDB file of signed distances [m], negative inside
+  std::string grid;                 ///< in that file; empty: the only one
+  double friction = 0;              ///< coefficient of its surface [-]
 };
 
-/// Points of the surfaces, on the host. They lie still and are sorted by the grid's blocks of columns.
+/// The points of the surfaces, on the host. They do not move and are sorted by the grid's blocks of columns.
 struct ContactPoints {
   static constexpr int ground = -1;
-  std::vector<int> cell[3];          // nearest node
-  std::vector<double> offset[3];     // from it, in cells [-0.5, 0.5)
-  std::vector<Vec3<double>> normal;  // outward, where the mass is
-  std::vector<double> area;          // [m2]
-  std::vector<int> body;             // index of the obstacle, or `ground`
-  std::vector<double> friction;      // coefficient of every obstacle [-]
-  std::vector<std::string> notes;    // a line on every obstacle
+  std::vector<int> cell[3];          ///< nearest node
+  std::vector<double> offset[3];     ///< from it, in cells [-0.5, 0.5)
+  std::vector<Vec3<double>> normal;  ///< outward, where the mass is
+  std::vector<double> area;          ///< [m2]
+  std::vector<int> body;             ///< index of the obstacle, or `ground`
+  std::vector<double> friction;      ///< coefficient of every obstacle [-]
+  std::vector<std::string> notes;    ///< a line on every obstacle
+  /// The number of points.
   std::size_t size() const { return body.size(); }
 };
 
-/// The obstacles' surfaces, at most half a cell apart along each axis, and the ground's where `shape` says that it is
-/// met by points. Throws DataError: a level set that cannot be read or stands wholly outside the ground.
+/// This function makes the points of the obstacles' surfaces, at most half a cell apart along each axis, and of the
+/// ground where `shape` says that it is met by points. It throws DataError for a level set that cannot be read or lies
+/// wholly outside the ground.
 ContactPoints make_contact_points(const MapGrid& map, const GridShape& shape, const GroundTables& ground,
                                   const std::vector<Obstacle>& obstacles);
 

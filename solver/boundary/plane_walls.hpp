@@ -9,21 +9,21 @@ namespace talus::solver {
 
 /// A plane wall, present from one time to another.
 struct PlaneWall {
-  int axis = 0;         // 0 x, 1 y, 2 z
-  int side = 1;         // +1: the material is on the side of growing coordinates, -1: of falling ones
-  double position = 0;  // map coordinate, or elevation, at time `from` [m]
+  int axis = 0;         ///< 0 x, 1 y, 2 z
+  int side = 1;         ///< +1: the material is on the side of growing coordinates, -1: of falling ones
+  double position = 0;  ///< map coordinate, or elevation, at time `from` [m]
   WallKind kind = WallKind::roller;
-  double friction = 0;         // coefficient of a frictional wall [-]
-  double speed = 0;            // along the axis [m/s]
-  double from = 0, to = 1e30;  // it stands from this time, and goes at that one [s]
+  double friction = 0;         ///< coefficient of a frictional wall [-]
+  double speed = 0;            ///< along the axis [m/s]
+  double from = 0, to = 1e30;  ///< the times from and to which it is there [s]
 };
 
-/// Map coordinates of node (0, 0, 0) and the spacing along each axis [m].
+/// The map coordinates of node (0, 0, 0) and the spacing along each axis [m].
 struct WallFrame {
   double origin[3], cell[3];
 };
 
-/// The walls that stand at a time [s]. At most `most_walls` may.
+/// The walls that are there at a time [s], as kernels see them; at most `most_walls` may be.
 template <class Real>
 Walls<Real> walls_at(const std::vector<PlaneWall>& walls, double time, const WallFrame& frame);
 

@@ -12,22 +12,22 @@
 
 namespace talus::solver {
 
-/// Contact points as a kernel sees them.
+/// The contact points as kernels see them.
 template <class Real>
 struct ContactView {
-  ParticleView<Real> places;  // cells and offsets, nothing else
+  ParticleView<Real> places;  ///< cells and offsets, nothing else
   const Vec3<Real>* normal;
-  const Real* area;  // [m2]
+  const Real* area;  ///< [m2]
   const int* body;
-  const Real* body_friction;  // coefficient of each obstacle
+  const Real* body_friction;  ///< coefficient of each obstacle
   BaseFriction<Real> ground;
-  Real* inverse_mass;   // over what stands before it in this step [1/kg]; 0: nothing
-  Vec3<double>* force;  // see ContactState
+  Real* inverse_mass;   ///< over what stands before it in this step [1/kg]; 0: nothing
+  Vec3<double>* force;  ///< see ContactState
   Vec3<double>* impulse;
 
-  /// Calls f(node, share) for the nodes with any mass around point c, which the mass stands before. Shares are weights
-  /// times masses over their sum: they add up to one, and an impulse at the point changes the velocity of a node with
-  /// next to no mass by no more than that of the others.
+  /// The method calls f(node, share) for the nodes with any mass around point c, which the mass is before. Shares M_ic
+  /// of (T12a) are weights times masses over their sum: they add up to one, and an impulse at the point changes the
+  /// velocity of a node with next to no mass by no more than that of the others.
   template <class Shape, class Nodes, class F>
   TALUS_HD void around(const GridView<Real>& grid, const Nodes& nodes, int c, F&& f) const {
     const Stencil<Real, Shape> s(grid, places, c);
@@ -43,9 +43,9 @@ struct ContactView {
     }
   }
 
-  /// What stands before point c: its mass by weight [kg], 0 where that falls off along the normal. A surface stops what
-  /// comes from the side it looks to, not what a wall thinner than a cell keeps on its other side, whose nodes are the
-  /// same. The ground has but one side.
+  /// The mass before point c by weight [kg], 0 where that falls off along the normal. A surface stops what comes from
+  /// the side it looks to, not what a wall thinner than a cell keeps on its other side, whose nodes are the same. The
+  /// ground has but one side.
   template <class Shape, class Nodes>
   TALUS_HD Real mass_before(const GridView<Real>& grid, const Nodes& nodes, int c) const {
     const Stencil<Real, Shape> s(grid, places, c);
@@ -67,11 +67,12 @@ struct ContactView {
     return body[c] == ContactPoints::ground || rise * grid.spacing > Real(-0.5) * mass ? mass : Real(0);
   }
 
-  /// What resists a slip at a contact point.
+  /// The resistance to a slip at a contact point.
   struct Grip {
-    Real coefficient = 0;  // of the normal force
-    Real traction = 0;     // besides [Pa]
+    Real coefficient = 0;  ///< of the normal force
+    Real traction = 0;     ///< besides [Pa]
   };
+  /// The resistance at contact point c: the obstacle's friction, or that of the bed there.
   TALUS_HD Grip grip(const GridView<Real>& grid, int c, const Slip<Real>& slip) const {
     if (body[c] != ContactPoints::ground) return {body_friction[body[c]], Real(0)};
     if (ground.holds()) return {Real(1e6), Real(0)};
@@ -79,15 +80,15 @@ struct ContactView {
     return {ground.coefficient(bed, slip), ground.traction(bed, slip)};
   }
 
-  /// How far the bed at point c is covered: a layer's worth of mass makes it a full one, of which half lies within the
-  /// weights of a point on a surface.
+  /// The share to which the bed at point c is covered: a layer's worth of mass makes it a full one, of which half lies
+  /// within the weights of a point on a surface.
   TALUS_HD Real filled(const GridView<Real>& grid, int c, double layer_mass) const {
     const Real share = Real(1) / (inverse_mass[c] * Real(0.5 * layer_mass) * grid.spacing * grid.spacing);
     return share < Real(1) ? share : Real(1);
   }
 
-  /// A force or impulse within what the surface can give: it pushes, and holds back slip up to `coefficient` times the
-  /// push and `more`.
+  /// The force or impulse that the surface can give towards the one `wanted`, H of (T12a): it pushes, and holds back
+  /// slip up to `coefficient` times the push and `more`.
   TALUS_HD static Vec3<Real> hold(const Vec3<Real>& wanted, const Vec3<Real>& normal, Real coefficient, Real more) {
     const Real push = dot(wanted, normal);
     if (!(push > Real(0))) return {};
@@ -106,7 +107,7 @@ struct OverList {
   TALUS_HD void operator()(int t) const { kernel(list[t]); }
 };
 
-/// One thread: one contact point. Where the mass has left the block, nothing is pressed on any more.
+/// One thread: one contact point. It forgets its force where the mass has left the block.
 template <class Real>
 struct ForgetForces {
   GridView<Real> grid;
@@ -118,6 +119,7 @@ struct ForgetForces {
   }
 };
 
+/// The contact points on a device with their history.
 template <class Real, class Device, class Shape>
 class SurfaceContact {
  public:
@@ -149,9 +151,12 @@ class SurfaceContact {
     list_blocks(points, (shape.rows + block_side - 1) / block_side);
   }
 
+  /// Whether there are contact points.
   bool on() const { return count_ > 0; }
+  /// The number of contact points.
   int count() const { return count_; }
 
+  /// The contact points as kernels see them.
   ContactView<Real> view() {
     ContactView<Real> v = view_;
     v.places = {};
@@ -172,7 +177,7 @@ class SurfaceContact {
     return v;
   }
 
-  /// Once the grid has been fitted to the mass.
+  /// The method lists the contact points beside the mass, once the grid has been fitted to it.
   template <class Grid>
   void fit(const Grid& grid) {
     if (!on()) return;
@@ -193,7 +198,7 @@ class SurfaceContact {
     for_each(device_, count_, ForgetForces<Real>{grid.view(), view()});
   }
 
-  /// Runs kernel(c) for every contact point of the blocks in use, such that scatter_add never meets itself.
+  /// The method runs kernel(c) for every contact point of the blocks in use, such that scatter_add never meets itself.
   template <class Kernel>
   void each(const Kernel& kernel) {
     if (by_list()) {
@@ -203,7 +208,7 @@ class SurfaceContact {
     }
   }
 
-  /// What every obstacle was given so far [N s].
+  /// The impulse that every obstacle was given so far, [obstacles] [N s].
   std::vector<Vec3<double>> obstacle_impulses() const {
     std::vector<Vec3<double>> sums(obstacles_);
     const std::vector<Vec3<double>> impulses = impulse_.download();
@@ -213,8 +218,10 @@ class SurfaceContact {
     return sums;
   }
 
+  /// The forces and impulses that a checkpoint keeps.
   ContactState state() const { return {download_vectors(force_), download_vectors(impulse_)}; }
 
+  /// The size of the arrays [bytes].
   std::size_t bytes() const {
     std::size_t total = none_.bytes() + normal_.bytes() + area_.bytes() + body_.bytes() + friction_.bytes() +
                         force_.bytes() + impulse_.bytes() + beside_.bytes() + inverse_mass_.bytes();
@@ -245,13 +252,13 @@ class SurfaceContact {
   Device device_;
   int count_ = 0, blocks_x_ = 0;
   std::vector<int> bodies_;
-  std::vector<int> first_;  // contact point of every block, and the count behind the last
+  std::vector<int> first_;  ///< contact point of every block, and the count behind the last
   std::size_t obstacles_ = 0;
   ContactView<Real> view_{};
   Buffers<int, Device, 3> cell_{device_};
   Buffers<Real, Device, 3> offset_{device_};
   Buffer<int, Device> body_{device_};
-  Buffer<int, Device> beside_{device_};  // the contact points of the blocks in use; on the CPU groups_ has them
+  Buffer<int, Device> beside_{device_};  ///< the contact points of the blocks in use; on the CPU groups_ has them
   Buffer<Real, Device> none_{device_}, area_{device_}, friction_{device_}, inverse_mass_{device_};
   Buffer<Vec3<Real>, Device> normal_{device_};
   Buffer<Vec3<double>, Device> force_{device_}, impulse_{device_};

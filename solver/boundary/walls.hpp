@@ -9,18 +9,21 @@
 
 namespace talus {
 
+/// How a wall holds nodes: its normal direction alone, all directions, or its normal direction while they press, with
+/// friction.
 enum class WallKind { roller, fixed, frictional };
 
 /// A wall as a kernel sees it: nodes at or behind `position` belong to it.
 template <class Real>
 struct Wall {
-  int axis = 0;       // 0 x, 1 y, 2 zeta
-  int side = 1;       // +1: the material is on the side of growing coordinates
-  Real position = 0;  // in cells from node 0
+  int axis = 0;       ///< 0 x, 1 y, 2 zeta
+  int side = 1;       ///< +1: the material is on the side of growing coordinates
+  Real position = 0;  ///< in cells from node 0
   WallKind kind = WallKind::roller;
-  Real friction = 0;  // coefficient of a frictional wall
-  Real speed = 0;     // of the wall along its axis [m/s]
+  Real friction = 0;  ///< coefficient of a frictional wall
+  Real speed = 0;     ///< of the wall along its axis [m/s]
 
+  /// Whether node (i, j, k) belongs to the wall.
   TALUS_HD bool holds(int i, int j, int k) const {
     const int coordinate = axis == 0 ? i : axis == 1 ? j : k;
     return (Real(coordinate) - position) * Real(side) <= Real(1e-4);
@@ -29,13 +32,15 @@ struct Wall {
 
 inline constexpr int most_walls = 12;
 
+/// The walls that are there, as kernels see them.
 template <class Real>
 struct Walls {
   int count = 0;
   Wall<Real> list[most_walls];
 };
 
-/// Where quadratic functions meet the walls as edges: the innermost upright ones that stand still and on nodes.
+/// The nodes at which quadratic functions meet the walls as edges: the innermost upright ones that do not move and lie
+/// on nodes.
 template <class Real>
 WallNodes wall_nodes(const Walls<Real>& walls) {
   WallNodes nodes;
@@ -54,12 +59,14 @@ WallNodes wall_nodes(const Walls<Real>& walls) {
   return nodes;
 }
 
+/// The component of v along an axis, 0 x, 1 y, 2 z.
 template <class Real>
 TALUS_HD Real& component(Vec3<Real>& v, int axis) {
   return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
 
-/// Velocity of a node after the walls that hold it.
+/// The velocity of node (i, j, k) after the walls that hold it [m/s]; friction takes its share of the same impulse
+/// (T12).
 template <class Real>
 TALUS_HD Vec3<Real> meet_walls(const Walls<Real>& walls, int i, int j, int k, Vec3<Real> v, bool with_friction) {
   for (int w = 0; w < walls.count; ++w) {

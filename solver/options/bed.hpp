@@ -15,8 +15,8 @@ struct SolveOptions;
 /// that act with every law that rubs.
 struct BaseOptions : OptionsOfLaws<FrictionLaws> {
   FrictionLaw law = FrictionLaw::coulomb;
-  double cohesion = 0;             // [Pa]
-  double pore_pressure_ratio = 0;  // water's part of the normal stress [-]
+  double cohesion = 0;             ///< [Pa]
+  double pore_pressure_ratio = 0;  ///< water's part of the normal stress [-]
 
   /// The number that the recipe calls by this name, null where it has none.
   double* named(std::string_view key);
@@ -26,11 +26,13 @@ struct BaseOptions : OptionsOfLaws<FrictionLaws> {
   /// The law in a sentence of the report, "at its bed acts ...".
   std::string sentence() const;
 
+  /// The method declares the keys of [solve.base] with defaults and help.
   void describe(recipe::Visitor& v);
+  /// The method adds the faults that values have together to `faults`.
   void check(std::vector<Fault>& faults) const;
 };
 
-/// The bed's law with the same numbers everywhere.
+/// The law of the bed with the same numbers everywhere, in SI units.
 template <class Real>
 BaseFriction<Real> make_base_friction(const SolveOptions& options);
 

@@ -10,25 +10,27 @@
 
 namespace talus::solver {
 
+/// Whether Young's modulus is the one given, or the lowest that leaves the flow unchanged (decision 0008).
 enum class StiffnessKind { as_given, automatic };
 
 /// The keys of [solve.material]: those of every material, then those of the laws (solver/material/laws), each law's
 /// declared in its header.
 struct MaterialOptions : OptionsOfLaws<MaterialLaws> {
   MaterialModel model = MaterialModel::drucker_prager;
-  double density = 2000;        // [kg/m3]
-  double youngs_modulus = 1e7;  // [Pa]
+  double density = 2000;        ///< [kg/m3]
+  double youngs_modulus = 1e7;  ///< [Pa]
   StiffnessKind stiffness = StiffnessKind::as_given;
-  bool stiffness_check = false;  // run again, twice as stiff
-  double poisson_ratio = 0.25;   // [-]
+  bool stiffness_check = false;  ///< run again, twice as stiff
+  double poisson_ratio = 0.25;   ///< [-]
 
-  /// visit(Law{}, options of that law) for the chosen law.
+  /// The method calls visit(Law{}, options of that law) for the chosen law, and returns what that returns.
   template <class Visit>
   auto with_law(const Visit& visit) const {
     return visit_law(model, [&](auto law) { return visit(law, options_of<decltype(law)>()); });
   }
-  /// Whether strength falls as the material shears, and whether shear changes its volume.
+  /// Whether strength falls as the material shears.
   bool softens() const;
+  /// Whether shear changes the volume of the material.
   bool dilates() const;
   /// Whether the volume change alone decides the pressure, as B-bar needs.
   bool pressure_follows_volume() const;
@@ -37,15 +39,18 @@ struct MaterialOptions : OptionsOfLaws<MaterialLaws> {
   /// The material in a sentence of the report, "It is ...".
   std::string sentence() const;
 
+  /// The method declares the keys of a table of a material with defaults and help.
   void describe(recipe::Visitor& v);
-  /// `table` is how messages call the table that says it.
+  /// The method adds the faults that values have together to `faults`. `table` is what messages call the recipe's
+  /// table.
   void check(const std::string& table, std::vector<Fault>& faults) const;
 };
 
-/// A release of another material than [solve.material].
+/// The keys of [[solve.part]]: a release of another material than [solve.material].
 struct PartOptions {
   std::string release;
   MaterialOptions material;
+  /// The method declares the keys with defaults and help.
   void describe(recipe::Visitor& v);
 };
 
@@ -54,28 +59,33 @@ struct MassOptions {
   std::vector<PartOptions> parts;
   MaterialOptions material;
 
+  /// Whether all materials are such.
   bool every_material(const std::function<bool(const MaterialOptions&)>& is) const {
     return !any_material([&](const MaterialOptions& m) { return !is(m); });
   }
+  /// Whether one of the materials is such.
   bool any_material(const std::function<bool(const MaterialOptions&)>& is) const;
+  /// Whether parts have another density than the rest.
   bool densities_differ() const {
     return any_material([&](const MaterialOptions& m) { return m.density != material.density; });
   }
 
+  /// The method declares [solve.material] and [[solve.part]].
   void describe(recipe::Visitor& v);
+  /// The method adds the faults of all materials to `faults`.
   void check(std::vector<Fault>& faults) const;
 };
 
-/// Moduli and wave speed from a recipe's words, and the numbers of its law; softening for a grid whose cells have this
-/// least `side` [m].
+/// The material that kernels see: moduli and wave speed from a recipe's words, and the numbers of its law; softening is
+/// for a grid whose cells have this least `side` [m].
 template <class Real>
 Material<Real> make_material(const MaterialOptions& options, double side = 0);
 
-/// That of [solve.material] first, then those of the parts.
+/// The material of [solve.material] first, then those of the parts, for cells of this size [m].
 template <class Real>
 Materials<Real> make_materials(const MassOptions& options, double spacing, double layer_height);
 
-/// The fastest wave of any of them [m/s].
+/// The fastest wave of any of the materials [m/s].
 double fastest_wave(const MassOptions& options);
 
 }  // namespace talus::solver

@@ -8,10 +8,11 @@
 
 namespace talus::solver {
 
-/// Declares that every item of [[solve.TABLE]] has a name of its own that is fit for the names of columns. `why` says
-/// what the names are for.
+/// This function declares that every item of [[solve.TABLE]] has a name of its own that is fit for the names of
+/// columns. `why` says what the names are for.
 void need_names(recipe::Visitor& v, const std::string& table, const std::string& why,
                 const std::vector<std::string>& names);
+/// This function declares the same of items with a member `name`.
 template <class Item>
 void need_names(recipe::Visitor& v, const std::string& table, const std::string& why, const std::vector<Item>& items) {
   std::vector<std::string> names;

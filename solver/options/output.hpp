@@ -10,23 +10,26 @@ namespace talus::solver {
 
 struct SolveOptions;
 
-/// A point of the map at which the mass is watched.
+/// The keys of [[solve.gauge]]: a point of the map at which the mass is watched.
 struct GaugeOptions {
   std::string name;
-  double x = 0, y = 0;  // map coordinates [m]
+  double x = 0, y = 0;  ///< map coordinates [m]
+  /// The method declares the keys with defaults and help.
   void describe(recipe::Visitor& v);
 };
 
+/// The keys of [solve] for what a run writes.
 struct OutputOptions {
-  double frame_interval = 10;      // [s]
-  double history_interval = 0.5;   // [s]
-  double checkpoint_interval = 0;  // simulated [s]; 0: only when interrupted
-  double map_threshold = 0.1;      // [m]
+  double frame_interval = 10;      ///< [s]
+  double history_interval = 0.5;   ///< [s]
+  double checkpoint_interval = 0;  ///< simulated [s]; 0: only when interrupted
+  double map_threshold = 0.1;      ///< [m]
   bool point_frames = true;
   bool vdb_frames = false;
   bool energy_budget = false;
   bool deterministic = false;
   std::vector<GaugeOptions> gauges;
+  /// The method declares the keys with defaults, help and what they need of `all` others.
   void describe(recipe::Visitor& v, const SolveOptions& all);
 };
 

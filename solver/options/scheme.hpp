@@ -7,21 +7,26 @@
 
 namespace talus::solver {
 
+/// The precision of the points' state.
 enum class Precision { single_, double_ };
+/// The transfer of velocity: affine (Jiang et al. 2015) or not (Brackbill & Ruppel 1986); see (T7) and (T8).
 enum class Transfer { apic, flip };
-enum class StressUpdate { last, modified };  // USL, MUSL
+/// The time at which stress is updated: after the nodes' step (USL), or after velocity went back to them (MUSL).
+enum class StressUpdate { last, modified };  ///< USL, MUSL
 
+/// The keys of [solve] for the numerical scheme that all integrators share.
 struct SchemeOptions {
   Precision precision = Precision::double_;
   Mapping mapping = Mapping::terrain_following;
   GroundContact ground_contact = GroundContact::nodes;
   ShapeKind shape = ShapeKind::quadratic;
   Transfer transfer = Transfer::apic;
-  double transfer_time = 10;  // CFL steps
+  double transfer_time = 10;  ///< CFL steps
   StressUpdate stress_update = StressUpdate::last;
-  double damping = 0;  // Cundall's local factor
+  double damping = 0;  ///< Cundall's local factor
   double cfl = 0.5;
-  double largest_step = 1;  // [s]
+  double largest_step = 1;  ///< [s]
+  /// The method declares the keys with defaults and help.
   void describe(recipe::Visitor& v);
 };
 

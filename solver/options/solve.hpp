@@ -27,10 +27,12 @@ struct SolveOptions : TimeOptions, SchemeOptions, GravityOptions, OutputOptions,
   /// Whether the mass meets anything between nodes.
   bool meets_points() const { return !obstacles.empty() || ground_contact == GroundContact::points; }
 
-  /// Which keys it is that make it so, for messages.
+  /// The keys that make it so, for messages.
   std::string contact_words() const;
 
+  /// The method declares all keys of [solve] and its tables with defaults and help.
   void describe(recipe::Visitor& v);
+  /// The method adds the faults that values have together to `faults`.
   void check(std::vector<Fault>& faults) const;
 };
 

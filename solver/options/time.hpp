@@ -7,26 +7,31 @@
 
 namespace talus::solver {
 
+/// How steps are taken: explicitly, by Newmark's scheme, as a sequence of equilibria, or as the run needs it.
 enum class Integrator { explicit_, newmark, quasi_static, automatic };
-/// What the steps of an integrator can do; other keys state in these words what they need.
+/// The abilities of an integrator's steps; other keys state in these words what they need.
 struct StepAbilities {
-  bool count_losses = false;    // what is lost, by its cause
-  bool repeat_bits = false;     // the same on every run on a GPU
-  bool solve_systems = false;   // some of the steps at least
-  bool average_volume = false;  // over the particles of an element, all of the steps
+  bool count_losses = false;    ///< what is lost, by its cause
+  bool repeat_bits = false;     ///< the same on every run on a GPU
+  bool solve_systems = false;   ///< some of the steps at least
+  bool average_volume = false;  ///< over the particles of an element, all of the steps
 };
+/// The abilities of an integrator's steps.
 StepAbilities abilities_of(Integrator integrator);
 
+/// A set of values that stands for many keys.
 enum class Preset { none, reference };
 
+/// The keys of [solve] for what a run simulates.
 struct TimeOptions {
   Preset preset = Preset::none;
   Integrator integrator = Integrator::explicit_;
-  double gravity_ramp = 0;           // [s]
-  int gravity_loading_steps = 0;     // quasi-static steps before the start
-  std::filesystem::path domain;      // empty: OUT/domain.vdb
-  double end_time = 60;              // [s]
-  double stop_kinetic_fraction = 0;  // of its peak; 0: never
+  double gravity_ramp = 0;           ///< [s]
+  int gravity_loading_steps = 0;     ///< quasi-static steps before the start
+  std::filesystem::path domain;      ///< empty: OUT/domain.vdb
+  double end_time = 60;              ///< [s]
+  double stop_kinetic_fraction = 0;  ///< of its peak; 0: never
+  /// The method declares the keys with defaults and help.
   void describe(recipe::Visitor& v);
 };
 

@@ -8,22 +8,25 @@
 
 namespace talus::solver {
 
+/// The axis that a wall is across.
 enum class Axis { x, y, z };
+/// The side of a wall on which the material is, along the axis.
 enum class Side { below, above };
 
-/// A plane wall, present from one time to another.
+/// The keys of [[solve.wall]]: a plane wall, present from one time to another.
 struct WallOptions {
   Axis axis = Axis::x;
-  double position = 0;             // map coordinate, or elevation [m]
-  Side material_is = Side::above;  // where the material is
+  double position = 0;             ///< map coordinate, or elevation [m]
+  Side material_is = Side::above;  ///< where the material is
   WallKind kind = WallKind::roller;
-  double friction_angle = 0;   // [deg]
-  double speed = 0;            // along the axis [m/s]
-  double from = 0, to = 1e30;  // [s]
+  double friction_angle = 0;   ///< [deg]
+  double speed = 0;            ///< along the axis [m/s]
+  double from = 0, to = 1e30;  ///< [s]
+  /// The method declares the keys with defaults and help.
   void describe(recipe::Visitor& v);
 };
 
-/// As many as kernels hold.
+/// This function declares that there are as many walls as kernels hold, at most.
 void need_few(recipe::Visitor& v, const std::vector<WallOptions>& walls);
 
 }  // namespace talus::solver
