@@ -45,7 +45,7 @@ inline constexpr int most_numbers = 0;
 template <class... Laws>
 inline constexpr int most_numbers<LawList<Laws...>> = std::max({static_cast<int>(Laws::count)...});
 
-/// visit(Law{}) for a law of the list.
+/// This function returns visit(Law{}) for a law of the list.
 template <class Laws = FrictionLaws, class Visit>
 TALUS_HD auto visit_law(FrictionLaw law, const Visit& visit) {
   return visit_law(Laws{}, static_cast<int>(law), visit);

@@ -19,28 +19,32 @@
 
 namespace talus::solver {
 
-/// A GPU gains little by order within the cells, and sorting there takes as long as ten steps.
+/// The steps between sorts on a GPU: it gains little by order within the cells, and sorting there takes as long as ten
+/// steps.
 inline constexpr int gpu_steps_between_sorts = 256;
-/// But many points keep it busy, and then what lies apart costs more than that.
+/// The steps between sorts where many points keep a GPU busy: what lies apart costs more than sorting then.
 inline constexpr int busy_gpu_steps_between_sorts = 32;
+/// The steps between sorts on a GPU for a number of points: `busy_gpu_steps_between_sorts` where many points have wide
+/// stencils.
 template <class Shape>
 int steps_between_sorts_on_gpu(int points) {
   return Shape::width > 2 && points >= points_that_keep_a_gpu_busy ? busy_gpu_steps_between_sorts
                                                                    : gpu_steps_between_sorts;
 }
-/// Cells that points may drift before they are sorted: a sort takes as long as a dozen steps of a small scene.
+/// The cells that points may drift before they are sorted: a sort takes as long as a dozen steps of a small scene.
 template <class Device>
 inline constexpr int drift_between_sorts = Device::is_gpu ? 3 : 1;
 inline constexpr int most_batch_steps = 64;  // given to the device before the host looks at the clock
 
-/// One thread: one node. The first one also opens the step.
+/// One thread: one node. It clears the node; the first one also opens the step.
 template <class Real>
 struct BeginStep {
   Clock* clock;
   Vec4<Real>* nodes;
-  Vec4<Real>* forces;  // null when forces are folded into the momentum
+  Vec4<Real>* forces;  ///< null when forces are folded into the momentum
   int count;
   bool opens;
+  /// The memory that the kernel moves [bytes].
   double bytes(int) const { return count * static_cast<double>((forces ? 2 : 1) * sizeof(*nodes)); }
   TALUS_HD void operator()(int n) const {
     if (n == 0 && opens) {
@@ -54,6 +58,7 @@ struct BeginStep {
   }
 };
 
+/// The integrator of explicit steps: clear, scatter, update, gather.
 template <class Real, class Device, class Shape>
 class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   using Base = PointSolver<Real, Device, Shape>;
@@ -75,6 +80,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     sort(0);
   }
 
+  /// The method makes a batch of steps on the device; see Solver::advance().
   BatchReport advance() override {
     Clock clock = read_clock();
     clock.halt = clock.request = running;
@@ -113,6 +119,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     return report;
   }
 
+  /// The memory by its users; see Solver::memory().
   MemoryShares memory() const override {
     MemoryShares shares = Base::memory();
     shares.emplace_back("nodes", nodes_.bytes() + forces_.bytes());
@@ -126,7 +133,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     return n;
   }
 
-  /// Four verbs: clear, scatter, update, gather. MUSL maps the points' new momentum back before the stress.
+  /// The step in four verbs: clear, scatter, update, gather. MUSL maps the points' new momentum back before the stress.
   void step() {
     clear(true);
     if (forces_apart_) {
@@ -178,8 +185,8 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     if (contact_.on()) meet_surfaces<content>();
   }
 
-  /// Obstacles, and ground between the nodes. What is mapped back a second time is merely kept from running through
-  /// them.
+  /// The method lets the nodes meet obstacles, and ground between the nodes (T12a). What is mapped back a second time
+  /// is merely kept from running through them.
   template <NodeContent content>
   void meet_surfaces() {
     const ProfilePhase<Device> phase(device_, "contact");
@@ -212,16 +219,17 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     if (forces_apart_) forces_.resize(static_cast<std::size_t>(grid_.nodes()));
   }
 
-  Recording<Device> recording_{device_};  // of a step
-  int expected_ = 32;                     // steps between sorts
+  Recording<Device> recording_{device_};  ///< of a step
+  int expected_ = 32;                     ///< steps between sorts
   bool affine_, musl_;
-  bool keeps_;  // points keep some of the velocity that is finer than the grid
+  bool keeps_;  ///< points keep some of the velocity that is finer than the grid
   bool forces_apart_;
   Walls<Real> walls_;
   const Vec3<double>* loads_now_ = nullptr;
   Buffer<Vec4<Real>, Device> nodes_{device_}, forces_{device_};
 };
 
+/// The definition for the files in instances/; see make_explicit_solver.hpp.
 template <class Real, class Shape>
 std::unique_ptr<Solver> make_explicit_solver(const Scene& scene, const IntegratorSettings& settings,
                                              const AnyDevice& device, const SolverState& state) {

@@ -10,44 +10,46 @@
 
 namespace talus {
 
-/// What the nodes hold when a column is updated.
+/// The content of the nodes when a column is updated.
 enum class NodeContent {
-  impulse,  // momentum with the internal force's impulse in it
-  force,    // momentum and internal force apart
-  remapped  // momentum of the points' new velocities (MUSL): no forces, no friction, the ground alone
+  impulse,  ///< momentum with the internal force's impulse in it
+  force,    ///< momentum and internal force apart
+  remapped  ///< momentum of the points' new velocities (MUSL): no forces, no friction, the ground alone
 };
 
-/// The nodes' new velocity (T6), damped and slowed by the bed, and with a budget what that takes (T24); a kernel of
-/// for_each_column. Mass stays, momentum becomes velocity.
+/// The update of the nodes' velocity (T6), damped and slowed by the bed, and with a budget what that takes (T24); a
+/// kernel of for_each_column. Mass stays, momentum becomes velocity.
 template <class Real, NodeContent content>
 struct UpdateColumns {
   GridView<Real> grid;
   const int* active;
   Clock* clock;
   Vec4<Real>* nodes;
-  Vec4<Real>* forces;   // in: internal force; out: velocity change of the step (FLIP)
-  Vec3<Real> gravity;   // full [m/s2]
-  double gravity_ramp;  // time over which it grows [s]
+  Vec4<Real>* forces;   ///< in: internal force; out: velocity change of the step (FLIP)
+  Vec3<Real> gravity;   ///< full [m/s2]
+  double gravity_ramp;  ///< time over which it grows [s]
   Walls<Real> walls;
   BaseFriction<Real> friction;
-  Real full_base;         // mass of a base node under a full layer [kg]
-  Real damping;           // Cundall's local factor [-]
-  Real density;           // where all points have the same [kg/m3]
-  const double* volumes;  // of the matter over each column, where they differ [m3]; else null
+  Real full_base;         ///< mass of a base node under a full layer [kg]
+  Real damping;           ///< Cundall's local factor [-]
+  Real density;           ///< where all points have the same [kg/m3]
+  const double* volumes;  ///< of the matter over each column, where they differ [m3]; else null
   MapView maps;
 
+  /// The memory that the kernel moves [bytes].
   double bytes(int) const {
     return grid.nodes * static_cast<double>((content == NodeContent::force ? 4 : 2) * sizeof(*nodes));
   }
 
+  /// A column of nodes as the kernel sees it; see WholeColumn.
   struct Column {
     bool inside = false;
     int i = 0, j = 0, first = 0, last = 0;
     int column = 0, top_contact = 0;
     BlockSlot slot;
   };
-  /// Of kinetic energy, over a column [J]; what the points give to the grid and get back counts with signs. And what
-  /// bed and walls gave it [N s].
+  /// The losses of kinetic energy (T24) over a column [J]; what the points give to the grid and get back counts with
+  /// signs. And what bed and walls gave it [N s].
   struct Losses {
     double contact = 0, damping = 0, transfer = 0, reaction[3] = {0, 0, 0};
     TALUS_HD void operator+=(const Losses& o) {
@@ -57,10 +59,12 @@ struct UpdateColumns {
       for (int a = 0; a < 3; ++a) reaction[a] += o.reaction[a];
     }
   };
+  /// No losses, where none can be counted.
   struct NoLosses {
     TALUS_HD void operator+=(const NoLosses&) {}
   };
-  static constexpr bool may_count = content != NodeContent::impulse;  // a budget wants forces apart
+  static constexpr bool may_count = content != NodeContent::impulse;  ///< a budget wants forces apart
+  /// The sums over the layers of a column: mass [kg], momentum [kg m/s], losses.
   struct Sums {
     Real mass = 0;
     Vec3<Real> momentum{};
@@ -73,6 +77,7 @@ struct UpdateColumns {
     }
   };
 
+  /// The column number c: its place, its layers, and whether it is in the domain and the loop goes on.
   TALUS_HD Column locate(int c) const {
     Column at;
     const int halt = clock->halt;  // looked at once all is on its way
@@ -89,6 +94,7 @@ struct UpdateColumns {
     return at;
   }
 
+  /// The method updates the node in layer k, and adds it to the sums.
   TALUS_HD void layer(const Column& at, int k, Sums& sums) const {
     const int n = GridView<Real>::node(at.slot, at.i, at.j, k);
     Vec4<Real> node = nodes[n];
@@ -99,6 +105,7 @@ struct UpdateColumns {
     sums.momentum += v * node.w;
   }
 
+  /// The method adds the losses to the clock's, and records the maps of the column (T25).
   TALUS_HD void finish(const Column& at, const Sums& sums) const {
     if constexpr (content == NodeContent::remapped) return;
     if (!(sums.mass > Real(0))) return;
@@ -166,7 +173,8 @@ struct UpdateColumns {
     return v;
   }
 
-  /// Local non-viscous damping (Cundall 1987): a share of the unbalanced force against the velocity.
+  /// The force that is left after local non-viscous damping (Cundall 1987): a share of the unbalanced force acts
+  /// against the velocity.
   TALUS_HD Real damped(Real pull, Real velocity) const {
     if (velocity == Real(0)) return pull;
     return pull - damping * (velocity > Real(0) ? fabs(pull) : -fabs(pull));

@@ -17,7 +17,7 @@ template <class... Laws>
 struct LawList {
   static constexpr int count = sizeof...(Laws);
 
-  /// Number of `Law` in the list; does not compile where the list lacks it.
+  /// The number of `Law` in the list; the call does not compile where the list lacks it.
   template <class Law>
   static constexpr int index_of() {
     static_assert((std::is_same_v<Law, Laws> || ...), "the law is not in the list");
@@ -26,13 +26,13 @@ struct LawList {
     return index;
   }
 
-  /// Calls visit(Law{}) for every law of the list, in its order.
+  /// This function calls visit(Law{}) for every law of the list, in its order.
   template <class Visit>
   static void each(const Visit& visit) {
     (visit(Laws{}), ...);
   }
 
-  /// Names of the laws as recipes write them.
+  /// The names of the laws as recipes write them.
   static std::vector<std::string_view> names() { return {Laws::name...}; }
 };
 
@@ -40,8 +40,8 @@ struct LawList {
 template <class, class... Laws>
 using LawListBehind = LawList<Laws...>;
 
-/// Returns visit(Law{}) for law number `index` of the list. No law stands in for another: a number that is in no list
-/// is a bug that only a cast can make, and the sanitizers stop at it.
+/// This function returns visit(Law{}) for law number `index` of the list. No law stands in for another: a number that
+/// is in no list is a bug that only a cast can make, and the sanitizers stop at it.
 template <class First, class... Rest, class Visit>
 TALUS_HD auto visit_law(LawList<First, Rest...>, int index, const Visit& visit) {
   if constexpr (sizeof...(Rest) > 0) {
@@ -52,7 +52,8 @@ TALUS_HD auto visit_law(LawList<First, Rest...>, int index, const Visit& visit) 
   return visit(First{});
 }
 
-/// Describes the key that chooses a law of the list by its name; `Model` is an enum whose values number the list.
+/// This function declares the key that chooses a law of the list by its name; `Model` is an enum whose values number
+/// the list.
 template <class Laws, class Model>
 void choose_law(recipe::Visitor& v, std::string_view key, Model& model, std::string_view help) {
   int index = static_cast<int>(model);
@@ -66,15 +67,18 @@ struct OptionsOfLaws;
 /// have no effect.
 template <class... Laws>
 struct OptionsOfLaws<LawList<Laws...>> : Laws::Options... {
+  /// The method declares the keys of all laws with defaults and help.
   void describe(recipe::Visitor& v) { (Laws::Options::describe(v), ...); }
+  /// The options of one law.
   template <class Law>
   const typename Law::Options& options_of() const {
     return *this;
   }
 };
 
-/// A number in words: as few digits as read back to the same number, or six significant ones.
+/// The number in words: as few digits as read back to the same number.
 std::string shortest(double value);
+/// The number in words, with six significant digits at most.
 std::string six_digits(double value);
 
 }  // namespace talus

@@ -7,7 +7,7 @@ namespace talus {
 
 template <class Real, class Laws>
 struct NumbersOfLaws;
-/// The numbers of all laws side by side; those of another law than the material's are not looked at.
+/// The numbers of all laws side by side; those of another law than the material's are not read.
 template <class Real, class... Laws>
 struct NumbersOfLaws<Real, LawList<Laws...>> : Laws::template Numbers<Real>... {};
 
@@ -16,11 +16,12 @@ template <class Real, class Laws = MaterialLaws>
 struct Material : Elasticity<Real>, NumbersOfLaws<Real, Laws> {
   MaterialModel model = static_cast<MaterialModel>(0);
 
-  /// visit(Law{}, numbers of that law) for the law of the material.
+  /// The method returns visit(Law{}, numbers of that law) for the law of the material.
   template <class Visit>
   TALUS_HD auto with_law(const Visit& visit) const {
     return visit_law<Laws>(model, [&](auto law) { return visit(law, numbers_of<decltype(law)>()); });
   }
+  /// The method calls visit(Law{}, numbers of that law) for the law of the material; `visit` may change them.
   template <class Visit>
   TALUS_HD void change_law(const Visit& visit) {
     visit_law<Laws>(model, [&](auto law) { visit(law, numbers_of<decltype(law)>()); });
@@ -30,11 +31,12 @@ struct Material : Elasticity<Real>, NumbersOfLaws<Real, Laws> {
     return visit_law<Laws>(model, [](auto law) { return decltype(law)::keeps_strain; });
   }
 
-  /// Numbers of a law, which count while that is the material's.
+  /// The numbers of a law, which count while that is the material's.
   template <class Law>
   TALUS_HD const typename Law::template Numbers<Real>& numbers_of() const {
     return *this;
   }
+  /// The numbers of a law, to change.
   template <class Law>
   TALUS_HD typename Law::template Numbers<Real>& numbers_of() {
     return *this;
@@ -43,15 +45,15 @@ struct Material : Elasticity<Real>, NumbersOfLaws<Real, Laws> {
 
 inline constexpr int most_materials = 8;
 
-/// A material that has yielded by this plastic shear strain.
+/// The material after it has yielded by this plastic shear strain (T15c).
 template <class Real, class Laws>
 TALUS_HD Material<Real, Laws> softened(Material<Real, Laws> m, Real plastic_shear) {
   m.change_law([&](auto, auto& numbers) { numbers.soften(plastic_shear); });
   return m;
 }
 
-/// Implicit steps: the pressure over which the tip of a cone is rounded [Pa], and whether the tangent takes along what
-/// pressure does to friction.
+/// This function prepares a material for implicit steps: the pressure over which the tip of a cone is rounded [Pa]
+/// (T15b), and whether the tangent takes along what pressure does to friction.
 template <class Real, class Laws>
 void prepare_for_newton(Material<Real, Laws>& m, Real apex, bool exact_tangent) {
   m.change_law([&](auto, auto& numbers) {
@@ -66,28 +68,29 @@ template <class Real>
 struct Materials {
   Material<Real> list[most_materials];
 
-  /// `which` and `plastic_shear` are the points' arrays; null where the scene needs none.
+  /// The material of point p. `which` and `plastic_shear` are the points' arrays; null where the scene needs none.
   TALUS_HD Material<Real> of(const int* which, const Real* plastic_shear, int p) const {
     const Material<Real>& m = which ? list[which[p]] : list[0];
     return plastic_shear ? softened(m, plastic_shear[p]) : m;
   }
+  /// The density of point p [kg/m3].
   TALUS_HD Real density(const int* which, int p) const { return which ? list[which[p]].density : list[0].density; }
 };
 
-/// Kirchhoff stress tau = J sigma [Pa].
+/// The Kirchhoff stress tau = J sigma [Pa].
 template <class Real, class Laws>
 TALUS_HD Sym3<Real> kirchhoff_stress(const Material<Real, Laws>& m, const MaterialState<Real>& s) {
   return m.with_law([&](auto law, const auto& numbers) { return law.stress(m, numbers, s); });
 }
 
-/// Elastic energy per initial volume [J/m3].
+/// The elastic energy per initial volume [J/m3].
 template <class Real, class Laws>
 TALUS_HD Real elastic_energy(const Material<Real, Laws>& m, const MaterialState<Real>& s) {
   return m.with_law([&](auto law, const auto& numbers) { return law.energy(m, numbers, s); });
 }
 
-/// Advance the state over a step of `seconds` with displacement gradient g = dt grad v, and the mean volume change
-/// where that is on.
+/// This function advances the state over a step of `seconds` with displacement gradient g = dt grad v, (T14), and the
+/// mean volume change (T17b) where that is on.
 template <class Real, class Laws>
 TALUS_HD void advance_material(const Material<Real, Laws>& m, const Mat3<Real>& g, std::type_identity_t<Real> seconds,
                                MaterialState<Real>& s, const MeanVolume<Real>& mean = {}) {

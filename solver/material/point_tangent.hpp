@@ -14,10 +14,10 @@ namespace talus {
 /// The tangent of one point, 36 numbers.
 template <class Real>
 struct PointTangent {
-  Real axes[9];    // principal axes n_a, one after the other
-  Real pull[9];    // rows n_a^T F^-T: maps a gradient of the start to principal axes of now
-  Real direct[9];  // D_ab - delta_ab tau_a, row-major
-  Real pairs[9];   // for (0,1), (1,2), (0,2): s l_b, s l_a, s l_a - tau_a
+  Real axes[9];    ///< principal axes n_a, one after the other
+  Real pull[9];    ///< rows n_a^T F^-T: maps a gradient of the start to principal axes of now
+  Real direct[9];  ///< D_ab - delta_ab tau_a, row-major
+  Real pairs[9];   ///< for (0,1), (1,2), (0,2): s l_b, s l_a, s l_a - tau_a
 };
 
 /// dP for dG, both as columns by direction of the gradient.
@@ -50,7 +50,7 @@ TALUS_HD Mat3<Real> apply(const PointTangent<Real>& t, const Mat3<Real>& dg) {
 /// The tangent as the 81 numbers dP_ik / dG_jl, for those who need many of its products.
 template <class Real>
 struct WholeTangent {
-  Mat3<Real> change[3][3];  // [l][j]: dP for a unit of G_jl
+  Mat3<Real> change[3][3];  ///< [l][j]: dP for a unit of G_jl
 
   TALUS_HD explicit WholeTangent(const PointTangent<Real>& t) {
     for (int l = 0; l < 3; ++l) {
@@ -64,7 +64,8 @@ struct WholeTangent {
   }
 };
 
-/// dP for a unit displacement along each axis of a node whose gradient is g.
+/// The change dP of the nominal stress for a unit displacement along each axis of a node whose gradient is g, from the
+/// whole tangent.
 template <class Real>
 TALUS_HD void along(const WholeTangent<Real>& t, const Vec3<Real>& g, Mat3<Real> (&out)[3]) {
   for (int j = 0; j < 3; ++j) {
@@ -72,6 +73,7 @@ TALUS_HD void along(const WholeTangent<Real>& t, const Vec3<Real>& g, Mat3<Real>
     out[j] = {x.a * g.x + y.a * g.y + z.a * g.z, x.b * g.x + y.b * g.y + z.b * g.z, x.c * g.x + y.c * g.y + z.c * g.z};
   }
 }
+/// The change dP of the nominal stress for a unit displacement along each axis of a node whose gradient is g.
 template <class Real>
 TALUS_HD void along(const PointTangent<Real>& t, const Vec3<Real>& g, Mat3<Real> (&out)[3]) {
   for (int j = 0; j < 3; ++j) {
@@ -81,7 +83,7 @@ TALUS_HD void along(const PointTangent<Real>& t, const Vec3<Real>& g, Mat3<Real>
   }
 }
 
-/// Takes from each off-diagonal pair what makes it indefinite: |s l_a - tau_a| <= sqrt(s l_a s l_b).
+/// This function takes from each off-diagonal pair what makes it indefinite: |s l_a - tau_a| <= sqrt(s l_a s l_b).
 template <class Real>
 TALUS_HD void make_definite(PointTangent<Real>& t) {
   for (int q = 0; q < 3; ++q) {

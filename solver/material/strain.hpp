@@ -6,15 +6,16 @@
 
 namespace talus {
 
-/// Below this size of the largest component the series converge to rounding of what they are used for (relative 1e-9).
+/// Whether every component is below `limit`; below the limits in use the series converge to rounding of what they are
+/// used for (relative 1e-9).
 template <class Real>
 TALUS_HD bool is_small(const Sym3<Real>& s, Real limit) {
   return fabs(s.xx) < limit && fabs(s.yy) < limit && fabs(s.zz) < limit && fabs(s.xy) < limit && fabs(s.yz) < limit &&
          fabs(s.xz) < limit;
 }
 
-/// exp(2 strain) - I, without cancellation for small strain: the series of a strain halved often enough, squared as
-/// often.
+/// The deviation exp(2 strain) - I, without cancellation for small strain: the series of a strain halved often enough,
+/// squared as often.
 template <class Real>
 TALUS_HD Sym3<Real> stretch_deviation(const Sym3<Real>& strain) {
   int halvings = 0;
@@ -31,7 +32,7 @@ TALUS_HD Sym3<Real> stretch_deviation(const Sym3<Real>& strain) {
   return d;
 }
 
-/// The same by eigenvalues, for strain of any size.
+/// The strain ln(I + deviation) / 2 by eigenvalues, for strain of any size.
 template <class Real>
 TALUS_RARE Sym3<Real> large_hencky_strain(const Sym3<Real> deviation) {
   Real values[3];
@@ -41,9 +42,9 @@ TALUS_RARE Sym3<Real> large_hencky_strain(const Sym3<Real> deviation) {
   return compose(values, directions);
 }
 
-/// ln(I + deviation) / 2. Strains of some percent, which soft grains carry, by the series of artanh z, z = deviation (2
-/// I + deviation)^-1 (Gregory's; Higham 2008, chapter 11): its rest is 1e-11 of the strain at the limit, and it takes a
-/// tenth of the work of eigenvalues.
+/// The strain ln(I + deviation) / 2. Strains of some percent, which soft grains carry, are found by the series of
+/// artanh z, z = deviation (2 I + deviation)^-1 (Gregory's; Higham 2008, chapter 11): its rest is 1e-11 of the strain
+/// at the limit, and it takes a tenth of the work of eigenvalues.
 template <class Real>
 TALUS_HD Sym3<Real> hencky_strain(const Sym3<Real>& deviation) {
   const Sym3<Real>& b = deviation;
@@ -62,8 +63,8 @@ TALUS_HD Sym3<Real> hencky_strain(const Sym3<Real>& deviation) {
   return z + commuting_product(z, commuting_product(rest, z2));
 }
 
-/// Deviation of the left Cauchy-Green tensor after the displacement gradient `g` of the step: b' = (I + g) b (I + g)^T,
-/// written for deviations so that single precision keeps strains of 1e-6 (Simo 1992, trial state).
+/// The deviation of the left Cauchy-Green tensor after the displacement gradient `g` of the step: b' = (I + g) b (I +
+/// g)^T (T14), written for deviations so that single precision keeps strains of 1e-6 (Simo 1992, trial state).
 template <class Real>
 TALUS_HD Sym3<Real> advance_deviation(const Sym3<Real>& strain, const Mat3<Real>& g) {
   const Sym3<Real> d = stretch_deviation(strain);
@@ -82,13 +83,13 @@ TALUS_HD Sym3<Real> advance_deviation(const Sym3<Real>& strain, const Mat3<Real>
   return out;
 }
 
-/// Strain after the displacement gradient `g` of the step.
+/// The logarithmic strain after the displacement gradient `g` of the step (T14).
 template <class Real>
 TALUS_HD Sym3<Real> advance_strain(const Sym3<Real>& strain, const Mat3<Real>& g) {
   return hencky_strain(advance_deviation(strain, g));
 }
 
-/// ln det(I + g), exact for small g.
+/// The change of ln J, ln det(I + g), exact for small g.
 template <class Real>
 TALUS_HD Real log_volume_change(const Mat3<Real>& g) {
   const Real minors = g.a.x * g.b.y - g.b.x * g.a.y + g.a.x * g.c.z - g.c.x * g.a.z + g.b.y * g.c.z - g.c.y * g.b.z;

@@ -10,11 +10,11 @@
 
 namespace talus {
 
-/// Stress and stiffness of a point in the principal axes of its trial, `mean` volume change instead of its own where
-/// that is on.
+/// The stress and stiffness of a point in the principal axes of its trial, `mean` volume change instead of its own
+/// where that is on.
 template <class Real>
 struct PrincipalState {
-  Real stretch[3];  // eigenvalues of b, less one
+  Real stretch[3];  ///< eigenvalues of b, less one
   Mat3<Real> axes;
   PrincipalResponse<Real> response;
 
@@ -37,12 +37,13 @@ struct PrincipalState {
   }
 };
 
-/// Mean Kirchhoff stress of a point [Pa] and its derivative by the volume change, for a mean volume change.
+/// The mean Kirchhoff stress of a point [Pa] and its derivative by the volume change [Pa], for a mean volume change.
 template <class Real>
 struct VolumeResponse {
   Real stress, bulk;
 };
-/// `increment` is the mean change of ln J over the step of `seconds` whose displacement gradient is g (T17b).
+/// The response of a point to a mean volume change: `increment` is the mean change of ln J over the step of `seconds`
+/// whose displacement gradient is g (T17b).
 template <class Real, class Laws>
 TALUS_HD VolumeResponse<Real> volume_response(const Material<Real, Laws>& m, const MaterialState<Real>& start,
                                               const Mat3<Real>& g, std::type_identity_t<Real> seconds,
@@ -51,13 +52,13 @@ TALUS_HD VolumeResponse<Real> volume_response(const Material<Real, Laws>& m, con
   return {state.response.mean_stress(), state.response.bulk()};
 }
 
-/// F^-1, for F = I + g.
+/// The inverse F^-1, for F = I + g.
 template <class Real>
 TALUS_HD Mat3<Real> inverse_deformation(const Mat3<Real>& g) {
   return inverted(Mat3<Real>{{g.a.x + 1, g.a.y, g.a.z}, {g.b.x, g.b.y + 1, g.b.z}, {g.c.x, g.c.y, g.c.z + 1}});
 }
 
-/// The same stress without principal axes, which small strains can do without.
+/// The nominal stress P without principal axes and tangent, which small strains can do without (T16).
 template <class Real, class Laws>
 TALUS_HD Mat3<Real> nominal_stress_alone(const Material<Real, Laws>& m, const MaterialState<Real>& start,
                                          const Mat3<Real>& g, std::type_identity_t<Real> seconds,
@@ -72,7 +73,8 @@ TALUS_HD Mat3<Real> nominal_stress_alone(const Material<Real, Laws>& m, const Ma
           tau * Vec3<Real>{inverse.a.z, inverse.b.z, inverse.c.z}};
 }
 
-/// Puts the tangent of a point in its principal axes together (see point_tangent.hpp); `pull` are F^-1 n_a.
+/// This function puts the tangent of a point in its principal axes together (T17; see point_tangent.hpp); `pull` are
+/// F^-1 n_a.
 template <class Real>
 TALUS_HD void put_tangent(const PrincipalState<Real>& state, const Vec3<Real> (&pull)[3], PointTangent<Real>& tangent) {
   const Real *stretch = state.stretch, *tau = state.response.tau, *d = state.response.d;
@@ -100,9 +102,9 @@ TALUS_HD void put_tangent(const PrincipalState<Real>& state, const Vec3<Real> (&
   }
 }
 
-/// Nominal stress P of a point whose state at the start of the step is `start`, for the displacement gradient g of the
-/// step of `seconds`; with `tangent` not null also the derivative of P by g (T16, T17). With `mean` on (B-bar) its mean
-/// stress is the element's, and the tangent is without the bulk part, which couples the element's points
+/// The nominal stress P of a point whose state at the start of the step is `start`, for the displacement gradient g of
+/// the step of `seconds` [Pa]; with `tangent` not null also the derivative of P by g (T16, T17). With `mean` on (B-bar)
+/// its mean stress is the element's, and the tangent is without the bulk part, which couples the element's points
 /// (mean_dilation.hpp).
 template <class Real, class Laws>
 TALUS_HD Mat3<Real> nominal_stress(const Material<Real, Laws>& m, const MaterialState<Real>& start, const Mat3<Real>& g,

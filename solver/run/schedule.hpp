@@ -8,7 +8,7 @@
 
 namespace talus::solver {
 
-/// The events of a run in simulated time, from the recipe. How many have passed is in the run's memory.
+/// The events of a run in simulated time, from the recipe. RunMemory keeps how many have passed.
 class Schedule {
  public:
   explicit Schedule(const SolveOptions& options);
@@ -16,16 +16,19 @@ class Schedule {
   /// The next time after `time` that no step may go over [s]: a frame, a record, a wall or load that comes or goes, the
   /// end.
   double next_event(double time, const RunMemory& passed) const;
+  /// Whether a row of the history is due at `time` [s].
   bool record_due(double time, const RunMemory& passed) const;
+  /// Whether a frame is due at `time` [s].
   bool frame_due(double time, const RunMemory& passed) const;
+  /// Whether a checkpoint is due at `time` [s].
   bool checkpoint_due(double time, const RunMemory& passed) const;
   /// Whether a run that ends at `time` ends between two frames.
   bool ends_between_frames(double time, const RunMemory& passed) const;
   double end_time() const { return end_time_; }  ///< [s]
 
  private:
-  double frame_interval_, record_interval_, checkpoint_interval_, end_time_;  // [s]
-  std::vector<double> changes_;                                               // of walls and loads [s]
+  double frame_interval_, record_interval_, checkpoint_interval_, end_time_;  ///< [s]
+  std::vector<double> changes_;                                               ///< of walls and loads [s]
 };
 
 }  // namespace talus::solver

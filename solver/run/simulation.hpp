@@ -28,31 +28,34 @@ struct RunPaths {
 /// Wall time of a run, those before an interruption included.
 class RunTimer {
  public:
+  /// The method starts the clock.
   void start() { started_ = WallClock::now(); }
   void resume(double before) { before_ = before; }  ///< before: the wall time so far [s]
+  /// The wall time so far [s].
   double seconds() const { return before_ + std::chrono::duration<double>(WallClock::now() - started_).count(); }
 
  private:
   using WallClock = std::chrono::steady_clock;
   WallClock::time_point started_ = WallClock::now();
-  double before_ = 0;  // [s]
+  double before_ = 0;  ///< [s]
 };
 
-/// The loop of a run and what it hands its recorders.
+/// The loop of a run, and the recorders that it serves.
 class Simulation {
  public:
-  /// Places the points and prepares the recorders; no step is taken and nothing written. `on` must be cpu or gpu;
-  /// `fingerprint` marks the checkpoints of this domain and these settings. Keeps a reference to `domain`. Throws
-  /// RecipeError and DataError.
+  /// The constructor places the points and prepares the recorders; no step is taken and nothing written. `on` must be
+  /// cpu or gpu; `fingerprint` marks the checkpoints of this domain and these settings. It keeps a reference to
+  /// `domain`, and throws RecipeError and DataError.
   Simulation(const Domain& domain, const SolveOptions& options, const AnyDevice& device, RunPaths paths,
              std::string fingerprint);
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
-  /// Goes on from checkpoint.h5 instead of the start. Throws DataError.
+  /// The method goes on from checkpoint.h5 instead of the start. It throws DataError.
   void resume(const std::filesystem::path& checkpoint);
 
-  /// Steps to the end and writes run.h5. Throws NumericalError, DataError, Interrupted (checkpoint left).
+  /// The method steps to the end and writes run.h5. It throws NumericalError, DataError, and Interrupted (checkpoint
+  /// left).
   RunSummary run(const std::string& scene, const std::string& title);
 
  private:
@@ -79,8 +82,8 @@ class Simulation {
   History history_;
   RunMemory memory_;
   RunTimer timer_;
-  double released_;       // volume of all points at the start [m3]
-  FrameRecorder frames_;  // last: what it writes needs the rest
+  double released_;       ///< volume of all points at the start [m3]
+  FrameRecorder frames_;  ///< last: what it writes needs the rest
 };
 
 }  // namespace talus::solver

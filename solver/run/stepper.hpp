@@ -13,20 +13,23 @@
 
 namespace talus::solver {
 
-/// Owns the solver of a run, and builds it anew where another integrator is cheaper.
+/// The stepper owns the solver of a run, and builds it anew where another integrator is cheaper.
 class Stepper {
  public:
-  /// Keeps references to scene and options.
+  /// The constructor keeps references to scene and options.
   Stepper(const Scene& scene, const SolveOptions& options, const AnyDevice& device);
 
-  /// Begins at a state: that of the scene's start, or of a checkpoint.
+  /// The method begins at a state: that of the scene's start, or of a checkpoint.
   void begin(const SolverState& state);
+  /// Whether begin() was called.
   bool begun() const { return solver_ != nullptr; }
-  /// Takes steps until `next_event` [s], the next sort or a failure, at most a batch. Throws NumericalError when no
-  /// integrator can go on.
+  /// The method takes steps until `next_event` [s], the next sort or a failure, at most a batch. It throws
+  /// NumericalError when no integrator can go on.
   BatchReport advance(double next_event);
 
+  /// The solver that takes the steps; it must have begun.
   Solver& solver() { return *solver_; }
+  /// The solver that takes the steps, to read from.
   const Solver& solver() const { return *solver_; }
   double time() const { return time_; }                ///< [s]
   double over_cfl() const { return over_cfl_; }        ///< last step over the CFL step [-]
@@ -40,9 +43,9 @@ class Stepper {
   const Scene& scene_;
   const SolveOptions& options_;
   AnyDevice device_;
-  std::optional<IntegratorChoice> choice_;  // integrator = "auto"
-  BatchCost cost_;                          // since the last sort
-  double time_ = 0;                         // [s]
+  std::optional<IntegratorChoice> choice_;  ///< integrator = "auto"
+  BatchCost cost_;                          ///< since the last sort
+  double time_ = 0;                         ///< [s]
   double over_cfl_ = 0;
   std::unique_ptr<Solver> solver_;
 };

@@ -3,25 +3,27 @@
 
 #include <memory>
 
-#include "solver/parallel/on.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/integrator/solver.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/parallel/any_device.hpp"
+#include "solver/parallel/on.hpp"
 #include "solver/scene/settings.hpp"
 
 namespace talus::solver {
 
-/// State of a scene at the start.
+/// The state of a scene at the start.
 SolverState first_state(const Scene& scene, const IntegratorSettings& settings);
 
 /// A solver of a scene at its start; it keeps a handle to the device, which other solvers may share.
 std::unique_ptr<Solver> make_solver(const Scene& scene, const SolverSettings& settings, const AnyDevice& device);
+/// A solver of a scene at its start, with settings made of the options.
 std::unique_ptr<Solver> make_solver(const Scene& scene, const SolveOptions& options, const AnyDevice& device);
 
 /// A solver that goes on from a checkpoint; the scene gives the grid only.
 std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolverSettings& settings, const AnyDevice& device,
                                       const SolverState& state);
+/// A solver that goes on from a checkpoint, with settings made of the options.
 std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolveOptions& options, const AnyDevice& device,
                                       const SolverState& state);
 

@@ -9,48 +9,57 @@
 
 namespace talus {
 
+/// Coulomb's law of friction.
 struct Coulomb {
   static constexpr std::string_view name = "coulomb";
   static constexpr bool rubs = true, holds = false, asks_pressure = false;
 
+  /// The keys of the law; Voellmy's law takes its angle from here.
   struct Options {
-    double friction_angle = 20;  // [deg]
+    double friction_angle = 20;  ///< [deg]
 
-    /// tan(angle)
+    /// The friction coefficient tan(angle) [-].
     double friction() const { return std::tan(friction_angle * (std::numbers::pi / 180)); }
+    /// The method declares the keys with defaults and help.
     void describe(recipe::Visitor& v) {
       v.number("friction_angle_deg", friction_angle, recipe::Range{0, 90, false, true},
                "coulomb, voellmy: friction angle of the bed");
     }
+    /// There are no faults that values have together.
     void check(std::vector<Fault>&) const {}
   };
+  /// Whether the law looks at a key.
   static bool uses(std::string_view key) { return key == "friction_angle_deg"; }
+  /// The law in a line, for plan and log.
   template <class All>
   static std::string words(const All& o) {
     return "coulomb, " + six_digits(o.friction_angle) + " deg";
   }
+  /// The law in a sentence of the report, "at its bed acts ...".
   template <class All>
   static std::string sentence(const All& o) {
     return "Coulomb friction with an angle of " + six_digits(o.friction_angle) + "\u00b0";
   }
 
+  /// The numbers that kernels see: the coefficient [-].
   enum Number { mu, count };
+  /// This function makes the numbers from the options of all laws.
   template <class All>
   static void numbers(const All& o, const BedSetting& setting, double* n) {
     n[mu] = setting.borne * o.friction();
   }
 
-  /// Friction over normal stress.
+  /// The ratio of friction to normal stress, mu [-].
   template <class Real>
   TALUS_HD static Real coefficient(const Real* n, const Slip<Real>&) {
     return n[mu];
   }
-  /// Traction besides [Pa].
+  /// The traction besides [Pa].
   template <class Real>
   TALUS_HD static Real drag(const Real*, const Slip<Real>&) {
     return Real(0);
   }
-  /// Whether there is any.
+  /// Whether there is such a traction.
   template <class Real>
   TALUS_HD static bool drags(const Real*) {
     return false;

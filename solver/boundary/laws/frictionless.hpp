@@ -6,28 +6,36 @@
 
 namespace talus {
 
-/// Base of such a law; `Law` is the law itself, so that each has its own types.
+/// The base of a law without friction; `Law` is the law itself, so that each has its own types.
 template <class Law>
 struct FrictionlessLaw {
   static constexpr bool rubs = false, asks_pressure = false;
   static constexpr int count = 0;
 
+  /// The law has no keys.
   struct Options {
+    /// There are no keys.
     void describe(recipe::Visitor&) {}
+    /// There are no faults.
     void check(std::vector<Fault>&) const {}
   };
+  /// Whether the law looks at a key: at none.
   static bool uses(std::string_view) { return false; }
+  /// There are no numbers.
   template <class All>
   static void numbers(const All&, const BedSetting&, double*) {}
 
+  /// The ratio of friction to normal stress [-].
   template <class Real>
   TALUS_HD static Real coefficient(const Real*, const Slip<Real>&) {
     return Real(0);
   }
+  /// The traction besides [Pa].
   template <class Real>
   TALUS_HD static Real drag(const Real*, const Slip<Real>&) {
     return Real(0);
   }
+  /// Whether there is such a traction.
   template <class Real>
   TALUS_HD static bool drags(const Real*) {
     return false;

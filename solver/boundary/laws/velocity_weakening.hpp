@@ -7,15 +7,18 @@
 
 namespace talus {
 
+/// The law of friction that falls with slip speed (Lucas, Mangeney & Ampuero 2014).
 struct VelocityWeakening {
   static constexpr std::string_view name = "velocity-weakening";
   static constexpr bool rubs = true, holds = false, asks_pressure = false;
 
+  /// The keys of the law.
   struct Options {
     double peak_coefficient = 0.7;
     double steady_coefficient = 0.23;
-    double characteristic_speed = 1;  // [m/s]
+    double characteristic_speed = 1;  ///< [m/s]
 
+    /// The method declares the keys with defaults and help.
     void describe(recipe::Visitor& v) {
       v.number("peak_coefficient", peak_coefficient, recipe::not_negative, "velocity-weakening: coefficient at rest");
       v.number("steady_coefficient", steady_coefficient, recipe::not_negative,
@@ -23,6 +26,7 @@ struct VelocityWeakening {
       v.number("characteristic_speed_m_s", characteristic_speed, recipe::positive,
                "velocity-weakening: speed of half the drop");
     }
+    /// The method adds a fault where friction would grow with speed.
     void check(std::vector<Fault>& faults) const {
       if (peak_coefficient >= steady_coefficient) return;
       faults.push_back({"[solve.base] peak_coefficient = " + shortest(peak_coefficient) +
@@ -30,14 +34,17 @@ struct VelocityWeakening {
                         "friction would grow with speed", "Swap the two"});
     }
   };
+  /// Whether the law looks at a key.
   static bool uses(std::string_view key) {
     return key == "peak_coefficient" || key == "steady_coefficient" || key == "characteristic_speed_m_s";
   }
+  /// The law in a line, for plan and log.
   template <class All>
   static std::string words(const All& o) {
     return "velocity-weakening, " + six_digits(o.peak_coefficient) + " to " + six_digits(o.steady_coefficient) +
            " about " + six_digits(o.characteristic_speed) + " m/s";
   }
+  /// The law in a sentence of the report, "at its bed acts ...".
   template <class All>
   static std::string sentence(const All& o) {
     return "friction that falls with slip speed (Lucas, Mangeney & Ampuero 2014) from " +
@@ -45,7 +52,9 @@ struct VelocityWeakening {
            six_digits(o.characteristic_speed) + " m/s";
   }
 
+  /// The numbers that kernels see: mu_s and mu_p [-], v_c [m/s].
   enum Number { steady, peak, characteristic_speed, count };
+  /// This function makes the numbers from the options of all laws.
   template <class All>
   static void numbers(const All& o, const BedSetting& setting, double* n) {
     n[steady] = setting.borne * o.steady_coefficient;
@@ -53,14 +62,17 @@ struct VelocityWeakening {
     n[characteristic_speed] = o.characteristic_speed;
   }
 
+  /// The ratio of friction to normal stress, mu(v) (T13) [-].
   template <class Real>
   TALUS_HD static Real coefficient(const Real* n, const Slip<Real>& slip) {
     return n[steady] + (n[peak] - n[steady]) / (Real(1) + slip.speed / n[characteristic_speed]);
   }
+  /// The traction besides [Pa].
   template <class Real>
   TALUS_HD static Real drag(const Real*, const Slip<Real>&) {
     return Real(0);
   }
+  /// Whether there is such a traction.
   template <class Real>
   TALUS_HD static bool drags(const Real*) {
     return false;

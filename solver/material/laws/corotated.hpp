@@ -6,16 +6,19 @@
 
 namespace talus {
 
+/// The law of corotated elasticity (Chao et al. 2010).
 struct Corotated : ElasticLaw<Corotated> {
   static constexpr std::string_view name = "corotated";
   static constexpr bool keeps_strain = true, pressure_follows_volume = false;
 
+  /// The law in a line, for plan and log; `elasticity` states density and moduli.
   static std::string words(const Options&, const std::string& elasticity) {
     return "elastic (corotated), " + elasticity;
   }
+  /// The law in a sentence of the report, "It is ...".
   static std::string sentence(const Options&) { return "an elastic material, linear in the stretch"; }
 
-  /// tau = V (2G (V - I) + lambda tr(V - I) I), V the left stretch [Pa].
+  /// The Kirchhoff stress tau = V (2G (V - I) + lambda tr(V - I) I), V the left stretch [Pa].
   template <class Real>
   TALUS_HD static Sym3<Real> stress(const Elasticity<Real>& m, const Numbers<Real>&, const MaterialState<Real>& s) {
     const Real lame = m.lame();
@@ -24,7 +27,7 @@ struct Corotated : ElasticLaw<Corotated> {
     return linear + commuting_product(d, linear);
   }
 
-  /// G |V - I|^2 + lambda tr(V - I)^2 / 2 [J/m3].
+  /// The elastic energy G |V - I|^2 + lambda tr(V - I)^2 / 2 per initial volume [J/m3].
   template <class Real>
   TALUS_HD static Real energy(const Elasticity<Real>& m, const Numbers<Real>&, const MaterialState<Real>& s) {
     const Real lame = m.lame();
@@ -33,7 +36,7 @@ struct Corotated : ElasticLaw<Corotated> {
     return m.shear_modulus * norm_squared(d) + Real(0.5) * lame * volume * volume;
   }
 
-  /// Principal stresses tau_a = s_a (2 G (s_a - 1) + lambda sum (s - 1)) of the stretches s, and D_ab.
+  /// The principal stresses tau_a = s_a (2 G (s_a - 1) + lambda sum (s - 1)) of the stretches s, and D_ab of (T17).
   template <class Real>
   TALUS_HD static void respond(const Elasticity<Real>& m, const Numbers<Real>&, const PrincipalTrial<Real>& trial,
                                PrincipalResponse<Real>& out) {

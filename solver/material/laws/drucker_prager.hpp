@@ -12,17 +12,17 @@
 
 namespace talus {
 
-/// How the cone meets Mohr-Coulomb.
+/// The way in which the cone meets Mohr-Coulomb.
 enum class Cone { compression, extension, plane_strain };
 
-/// sqrt(J2) = slope p + cohesion.
+/// The cone sqrt(J2) = slope p + cohesion, (T15).
 struct ConeFit {
-  double slope, cohesion;  // [-], [Pa]
+  double slope, cohesion;  ///< [-], [Pa]
 };
 
-/// Cone through Mohr-Coulomb of this friction angle [rad] and cohesion [Pa]: in triaxial compression or extension (Chen
-/// & Mizuno 1990, table 4.1), or in plane strain for flow with this dilatancy angle [rad] (T15a), which is the table's
-/// fit where that is the friction angle.
+/// The cone through Mohr-Coulomb of this friction angle [rad] and cohesion [Pa]: in triaxial compression or extension
+/// (Chen & Mizuno 1990, table 4.1), or in plane strain for flow with this dilatancy angle [rad] (T15a), which is the
+/// table's fit where that is the friction angle.
 inline ConeFit fit_cone(Cone cone, double angle, double cohesion, double dilatancy) {
   const double s = std::sin(angle), c = std::cos(angle), t = std::tan(dilatancy);
   if (cone == Cone::plane_strain) {
@@ -36,19 +36,19 @@ inline ConeFit fit_cone(Cone cone, double angle, double cohesion, double dilatan
   return {6 * s / (std::sqrt(3.0) * side), 6 * cohesion * c / (std::sqrt(3.0) * side)};
 }
 
-/// Numbers of the cone as kernels see them.
+/// The numbers of the cone as kernels see them.
 template <class Real>
 struct ConeNumbers {
-  Real friction = 0;                                  // slope alpha of sqrt(J2) = alpha p + shear_cohesion [-]
-  Real dilatancy = 0;                                 // slope beta of the plastic potential [-]
-  Real shear_cohesion = 0;                            // [Pa]
-  Real tension = 0;                                   // largest -p carried [Pa]
-  Real residual_friction = 0, residual_cohesion = 0;  // slope and shear cohesion once softened
-  Real softening = 0;          // share of the way there per plastic shear strain; 0: does not soften [-]
-  Real apex = 0;               // pressure over which the tip of the cone is rounded [Pa]
-  bool exact_tangent = false;  // with what the volume change does to a yielding point's friction: not symmetric
+  Real friction = 0;                                  ///< slope alpha of sqrt(J2) = alpha p + shear_cohesion [-]
+  Real dilatancy = 0;                                 ///< slope beta of the plastic potential [-]
+  Real shear_cohesion = 0;                            ///< [Pa]
+  Real tension = 0;                                   ///< largest -p carried [Pa]
+  Real residual_friction = 0, residual_cohesion = 0;  ///< slope and shear cohesion once softened
+  Real softening = 0;          ///< share of the way there per plastic shear strain; 0: does not soften [-]
+  Real apex = 0;               ///< pressure over which the tip of the cone is rounded [Pa]
+  bool exact_tangent = false;  ///< with what the volume change does to a yielding point's friction: not symmetric
 
-  /// Friction and cohesion on the way to the residual ones, for this plastic shear strain (T15c).
+  /// The method sets friction and cohesion on the way to the residual ones, for this plastic shear strain (T15c).
   TALUS_HD void soften(Real plastic_shear) {
     const Real way = plastic_shear * softening, left = way < Real(1) ? Real(1) - way : Real(0);
     const Real cohesion = residual_cohesion + left * (shear_cohesion - residual_cohesion);
@@ -57,13 +57,14 @@ struct ConeNumbers {
     shear_cohesion = cohesion;
     if (dilatancy > friction) dilatancy = friction;
   }
-  /// Implicit steps: rounds the tip over this pressure [Pa].
+  /// The method rounds the tip over this pressure [Pa], for implicit steps.
   void round_tip(Real pressure) { apex = pressure; }
-  /// Implicit steps: whether the tangent takes along what pressure does to friction.
+  /// The method sets whether the tangent takes along what pressure does to friction, for implicit steps.
   void couple_pressure(bool exact) { exact_tangent = exact; }
 };
 
-/// Pressure p = -trace(tau)/3 (positive in compression) that a point would have without cut-off, over the cut-off [Pa].
+/// The pressure p = -trace(tau)/3 (positive in compression) that a point would have without cut-off, over the cut-off,
+/// y of (T15b) [Pa].
 template <class Real>
 TALUS_HD Real free_pressure(const Elasticity<Real>& m, const ConeNumbers<Real>& cone, Real log_volume,
                             Real plastic_log_volume) {
@@ -88,15 +89,15 @@ struct CutPressure {
   }
 };
 
-/// Where a trial of the cone ends (de Souza Neto et al. 2008, box 8.8, non-associated): shear - G g = alpha p(g) + k
+/// The end of a trial on the cone (de Souza Neto et al. 2008, box 8.8, non-associated): shear - G g = alpha p(g) + k
 /// with dilatancy raising the pressure by K beta g (T15). The pressure is convex in g, so Newton's steps come from one
 /// side.
 template <class Real>
 struct ConeReturn {
-  Real left;                         // sqrt(J2) [Pa]
-  Real dilation = 0;                 // plastic volume change
-  Real pressure, give;               // pressure [Pa] and the slope of its cut-off there
-  bool yields = false, tip = false;  // has yielded; no shear strength is left
+  Real left;                         ///< sqrt(J2) [Pa]
+  Real dilation = 0;                 ///< plastic volume change
+  Real pressure, give;               ///< pressure [Pa] and the slope of its cut-off there
+  bool yields = false, tip = false;  ///< has yielded; no shear strength is left
 
   TALUS_HD ConeReturn(const Elasticity<Real>& m, const ConeNumbers<Real>& cone, Real shear, Real y) : left(shear) {
     CutPressure<Real> cut(cone, y);
@@ -125,61 +126,70 @@ struct ConeReturn {
   }
 };
 
+/// The law of Drucker-Prager sand with tension cut-off, dilatancy and softening (T15).
 struct DruckerPrager {
   static constexpr std::string_view name = "drucker-prager";
   static constexpr bool keeps_strain = true, pressure_follows_volume = true;
-  static constexpr bool stiffness_is_free = true;  // strength bounds the stress, whatever the stiffness
+  static constexpr bool stiffness_is_free = true;  ///< strength bounds the stress, whatever the stiffness
   /// Gravity is loaded elastically: what is about to slide has no equilibrium of its own.
   using LoadedAs = Hencky;
 
+  /// The keys of the law.
   struct Options {
-    double friction_angle = 30;          // [deg]
-    double cohesion = 0;                 // [Pa]
-    double dilatancy_angle = 0;          // [deg]
-    double tension_cutoff = 0;           // [Pa]
-    double pore_pressure_ratio = 0;      // water's part of the mean stress [-]
-    double softening_slip = 0;           // over which strength falls to the residual one [m]; 0: it does not
-    double residual_friction_angle = 0;  // [deg]
-    double residual_cohesion = 0;        // [Pa]
+    double friction_angle = 30;          ///< [deg]
+    double cohesion = 0;                 ///< [Pa]
+    double dilatancy_angle = 0;          ///< [deg]
+    double tension_cutoff = 0;           ///< [Pa]
+    double pore_pressure_ratio = 0;      ///< water's part of the mean stress [-]
+    double softening_slip = 0;           ///< over which strength falls to the residual one [m]; 0: it does not
+    double residual_friction_angle = 0;  ///< [deg]
+    double residual_cohesion = 0;        ///< [Pa]
     Cone cone = Cone::compression;
 
+    /// Whether strength falls as the material shears.
     bool softens() const { return softening_slip > 0; }
+    /// Whether shear changes the volume of the material.
     bool dilates() const { return dilatancy_angle > 0; }
+    /// The method declares the keys with defaults and help.
     void describe(recipe::Visitor& v);
+    /// The method adds the faults that values have together to `faults`; messages call the recipe's table `table`.
     void check(const std::string& table, std::vector<Fault>& faults) const;
   };
+  /// The law in a line, for plan and log; `elasticity` states density and moduli.
   static std::string words(const Options& o, const std::string& elasticity);
+  /// The law in a sentence of the report, "It is ...".
   static std::string sentence(const Options& o);
 
+  /// The numbers of the law: those of its cone.
   template <class Real>
   struct Numbers : ConeNumbers<Real> {};
   /// The cone of the options. Softening goes by slip: a band of shear is one cell wide, so that the strain over which
-  /// strength falls is the slip over the least side of a cell, `side` (Pietruszczak & Mroz 1981), and results do not
-  /// hang on the grid (T15c).
+  /// strength falls is the slip over the least side of a cell, `side` [m] (Pietruszczak & Mroz 1981), and results do
+  /// not depend on the grid (T15c).
   template <class Real>
   static Numbers<Real> numbers(const Options& o, double side);
 
-  /// Pressure, tension cut off (T15) [Pa].
+  /// The pressure, tension cut off (T15) [Pa].
   template <class Real>
   TALUS_HD static Real pressure(const Elasticity<Real>& m, const Numbers<Real>& cone, const MaterialState<Real>& s) {
     return CutPressure<Real>(cone, free_pressure(m, cone, s.log_volume, s.plastic_log_volume)).value - cone.tension;
   }
 
-  /// Kirchhoff stress [Pa].
+  /// The Kirchhoff stress [Pa].
   template <class Real>
   TALUS_HD static Sym3<Real> stress(const Elasticity<Real>& m, const Numbers<Real>& cone,
                                     const MaterialState<Real>& s) {
     return (s.elastic * (Real(2) * m.shear_modulus)).plus_identity(-pressure(m, cone, s));
   }
 
-  /// G |e|^2 + p^2 / (2 K) [J/m3].
+  /// The elastic energy G |e|^2 + p^2 / (2 K) per initial volume [J/m3].
   template <class Real>
   TALUS_HD static Real energy(const Elasticity<Real>& m, const Numbers<Real>& cone, const MaterialState<Real>& s) {
     const Real p = pressure(m, cone, s);
     return m.shear_modulus * norm_squared(s.elastic) + Real(0.5) * p * p / m.bulk_modulus;
   }
 
-  /// Return of the trial's deviator to the cone.
+  /// The return of the trial's deviator to the cone (T15).
   template <class Real>
   TALUS_HD static void settle(const Elasticity<Real>& m, const Numbers<Real>& cone, const Increment<Real>&,
                               MaterialState<Real>& s) {
@@ -193,19 +203,20 @@ struct DruckerPrager {
     s.plastic_log_volume += end.dilation;
   }
 
-  /// Principal stresses of a trial and D_ab. Unless the exact tangent is asked for, the friction of a yielding point is
-  /// held at its current pressure in D (frozen yield), which keeps D symmetric (T17).
+  /// The principal stresses of a trial and D_ab. Unless the exact tangent is asked for, the friction of a yielding
+  /// point is held at its current pressure in D (frozen yield), which keeps D symmetric (T17).
   template <class Real>
   TALUS_HD static void respond(const Elasticity<Real>& m, const Numbers<Real>& cone, const PrincipalTrial<Real>& trial,
                                PrincipalResponse<Real>& out);
 
-  /// The deviator: the pressure follows from the volume.
+  /// The state after loading: the deviator of `loaded`, as the pressure follows from the volume.
   template <class Real>
   static Sym3<Real> after_loading(const Sym3<Real>& loaded) {
     return deviator(loaded);
   }
 };
 
+/// The definition of the response to a trial, of (T17).
 template <class Real>
 TALUS_HD void DruckerPrager::respond(const Elasticity<Real>& m, const Numbers<Real>& cone,
                                      const PrincipalTrial<Real>& trial, PrincipalResponse<Real>& out) {
@@ -246,6 +257,7 @@ TALUS_HD void DruckerPrager::respond(const Elasticity<Real>& m, const Numbers<Re
   }
 }
 
+/// The definition of the cone's numbers, by (T15a) and (T15c).
 template <class Real>
 DruckerPrager::Numbers<Real> DruckerPrager::numbers(const Options& o, double side) {
   constexpr double radians_per_degree = std::numbers::pi / 180;
@@ -270,6 +282,7 @@ DruckerPrager::Numbers<Real> DruckerPrager::numbers(const Options& o, double sid
   return n;
 }
 
+/// The definition of the keys, with defaults and help.
 inline void DruckerPrager::Options::describe(recipe::Visitor& v) {
   using recipe::Range;
   v.number("friction_angle_deg", friction_angle, Range{0, 90, false, true}, "internal friction angle");
@@ -289,6 +302,7 @@ inline void DruckerPrager::Options::describe(recipe::Visitor& v) {
       "how the cone meets Mohr-Coulomb");
 }
 
+/// The definition of the faults that values have together.
 inline void DruckerPrager::Options::check(const std::string& table, std::vector<Fault>& faults) const {
   if (dilatancy_angle > friction_angle) {
     faults.push_back({table + " dilatancy_angle_deg = " + shortest(dilatancy_angle) +
@@ -305,6 +319,7 @@ inline void DruckerPrager::Options::check(const std::string& table, std::vector<
   }
 }
 
+/// The definition of the sentence for the report.
 inline std::string DruckerPrager::sentence(const Options& o) {
   std::string text = "an elasto-plastic (Drucker-Prager) material with an internal friction angle of " +
                      six_digits(o.friction_angle) + "\u00b0";
@@ -312,6 +327,7 @@ inline std::string DruckerPrager::sentence(const Options& o) {
   return text;
 }
 
+/// The definition of the line for plan and log.
 inline std::string DruckerPrager::words(const Options& o, const std::string& elasticity) {
   std::string text = "drucker-prager, " + elasticity + ", friction " + six_digits(o.friction_angle) + " deg";
   if (o.cohesion > 0) text += ", cohesion " + six_digits(o.cohesion) + " Pa";

@@ -6,28 +6,31 @@
 
 namespace talus {
 
+/// The law of Hencky elasticity (Hencky 1928).
 struct Hencky : ElasticLaw<Hencky> {
   static constexpr std::string_view name = "hencky";
   static constexpr bool keeps_strain = true, pressure_follows_volume = true;
 
+  /// The law in a line, for plan and log; `elasticity` states density and moduli.
   static std::string words(const Options&, const std::string& elasticity) { return "elastic (hencky), " + elasticity; }
+  /// The law in a sentence of the report, "It is ...".
   static std::string sentence(const Options&) { return "an elastic material, linear in the logarithmic strain"; }
 
-  /// tau = 2 G dev(epsilon) + K tr(epsilon) I (T14) [Pa].
+  /// The Kirchhoff stress tau = 2 G dev(epsilon) + K tr(epsilon) I (T14) [Pa].
   template <class Real>
   TALUS_HD static Sym3<Real> stress(const Elasticity<Real>& m, const Numbers<Real>&, const MaterialState<Real>& s) {
     const Real lame = m.lame();
     return (s.elastic * (Real(2) * m.shear_modulus)).plus_identity(lame * trace(s.elastic));
   }
 
-  /// G |dev(epsilon)|^2 + K tr(epsilon)^2 / 2 [J/m3].
+  /// The elastic energy G |dev(epsilon)|^2 + K tr(epsilon)^2 / 2 per initial volume [J/m3].
   template <class Real>
   TALUS_HD static Real energy(const Elasticity<Real>& m, const Numbers<Real>&, const MaterialState<Real>& s) {
     const Real volume = trace(s.elastic);
     return m.shear_modulus * norm_squared(deviator(s.elastic)) + Real(0.5) * m.bulk_modulus * volume * volume;
   }
 
-  /// Principal stresses of a trial, and D_ab = lambda + 2 G delta_ab.
+  /// The principal stresses of a trial, and D_ab = lambda + 2 G delta_ab of (T17).
   template <class Real>
   TALUS_HD static void respond(const Elasticity<Real>& m, const Numbers<Real>&, const PrincipalTrial<Real>& trial,
                                PrincipalResponse<Real>& out) {

@@ -7,22 +7,25 @@
 
 namespace talus {
 
+/// The law of small-strain elasticity, as in the reference paper.
 struct LinearElastic : ElasticLaw<LinearElastic> {
   static constexpr std::string_view name = "linear-elastic";
   static constexpr bool keeps_strain = false, pressure_follows_volume = false;
 
+  /// The law in a line, for plan and log; `elasticity` states density and moduli.
   static std::string words(const Options&, const std::string& elasticity) {
     return "elastic (small strain), " + elasticity;
   }
+  /// The law in a sentence of the report, "It is ...".
   static std::string sentence(const Options&) { return "an elastic material of small strain"; }
 
-  /// J times the Cauchy stress [Pa].
+  /// The Kirchhoff stress: J times the Cauchy stress [Pa].
   template <class Real>
   TALUS_HD static Sym3<Real> stress(const Elasticity<Real>&, const Numbers<Real>&, const MaterialState<Real>& s) {
     return s.elastic * exp(s.log_volume);
   }
 
-  /// J (|dev(sigma)|^2 / (4 G) + (tr(sigma) / 3)^2 / (2 K)) [J/m3].
+  /// The elastic energy J (|dev(sigma)|^2 / (4 G) + (tr(sigma) / 3)^2 / (2 K)) per initial volume [J/m3].
   template <class Real>
   TALUS_HD static Real energy(const Elasticity<Real>& m, const Numbers<Real>&, const MaterialState<Real>& s) {
     const Real mean = trace(s.elastic) / Real(3);
@@ -30,7 +33,7 @@ struct LinearElastic : ElasticLaw<LinearElastic> {
            (norm_squared(deviator(s.elastic)) / (Real(4) * m.shear_modulus) + mean * mean / (Real(2) * m.bulk_modulus));
   }
 
-  /// Hooke's law on the strain increment, stress turned with the spin.
+  /// This function adds to the stress by Hooke's law on the strain increment, and turns it with the spin.
   template <class Real>
   TALUS_HD static void advance(const Elasticity<Real>& m, const Numbers<Real>&, const Increment<Real>& step,
                                MaterialState<Real>& state) {
@@ -46,8 +49,8 @@ struct LinearElastic : ElasticLaw<LinearElastic> {
     state.elastic = s + turned + (strain * (Real(2) * m.shear_modulus)).plus_identity(lame * trace(strain));
   }
 
-  /// The paper's linear step: stress at the start plus Hooke's law on the strain of the step, over the volume at the
-  /// start [Pa]; with `tangent` not null also its derivative by the gradient.
+  /// The nominal stress of the paper's linear step: stress at the start plus Hooke's law on the strain of the step,
+  /// over the volume at the start [Pa]; with `tangent` not null also its derivative by the gradient.
   template <class Real>
   TALUS_HD static Mat3<Real> nominal_stress(const Elasticity<Real>& m, const Numbers<Real>&,
                                             const MaterialState<Real>& start, const Mat3<Real>& g,

@@ -11,21 +11,23 @@
 
 namespace talus::solver {
 
-/// The columns of a run and the recorders that fill them.
+/// The history of a run: its columns and the recorders that fill them.
 class History {
  public:
-  /// The recorders that the recipe asks for. Throws RecipeError where one of them cannot measure what it is asked to.
+  /// The constructor makes the recorders that the recipe asks for. It throws RecipeError where one of them cannot
+  /// measure what it is asked to.
   History(const SolveOptions& options, const Scene& scene);
 
-  /// Adds a row.
+  /// The method adds a row.
   void record(const Instant& now);
-  /// Goes on from the rows of a checkpoint. Throws DataError when its columns are others.
+  /// The method goes on from the rows of a checkpoint. It throws DataError when its columns are others.
   void restore(const RunHistory& rows);
 
+  /// All rows so far, column by column.
   const RunHistory& rows() const { return rows_; }
-  /// Last value of a column, 0 before the first record.
+  /// The last value of a column, 0 before the first record.
   double last(const std::string& name) const;
-  /// Lines for the log at the end of the run.
+  /// The lines for the log at the end of the run.
   std::vector<std::string> conclusions() const;
 
  private:

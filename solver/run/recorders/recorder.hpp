@@ -37,15 +37,15 @@ struct Place {
   std::string words;   ///< "gauge bridge"; empty for the run itself
 };
 
-/// Adds columns to the history of a run and fills them at every record.
+/// The interface of what adds columns to the history of a run and fills them at every record.
 class Recorder {
  public:
   virtual ~Recorder() = default;
-  /// Adds the recorder's columns, without values.
+  /// The method adds the recorder's columns, without values.
   virtual void add_columns(RunHistory& history) const = 0;
-  /// Appends one value to each of them.
+  /// The method appends one value to each of them.
   virtual void record(const Instant& now, RunHistory& history) const = 0;
-  /// Lines for the log at the end of the run.
+  /// The lines for the log at the end of the run.
   virtual std::vector<std::string> conclusions(const RunHistory&) const { return {}; }
 };
 
@@ -56,6 +56,7 @@ class TableRecorder : public Recorder {
   TableRecorder(std::span<const Column<Sample>> table, std::vector<Place> places)
       : table_(table), places_(std::move(places)) {}
 
+  /// The method adds the columns of every place.
   void add_columns(RunHistory& history) const override {
     for (const Place& place : places_) {
       for (const Column<Sample>& column : table_)
@@ -67,6 +68,7 @@ class TableRecorder : public Recorder {
     }
   }
 
+  /// The method appends the values of every place.
   void record(const Instant& now, RunHistory& history) const override {
     const std::vector<Sample> taken = samples(now);
     for (std::size_t i = 0; i < places_.size(); ++i) {

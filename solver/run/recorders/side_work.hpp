@@ -7,20 +7,21 @@
 
 namespace talus::solver {
 
+/// Work beside the run, one piece at a time.
 class SideWork {
  public:
-  /// Waits for the piece before; throws what that threw.
+  /// The method starts `work` once the piece before is done; it throws what that threw.
   void start(std::function<void()> work) {
     settle();
     running_ = std::async(std::launch::async, std::move(work));
   }
-  /// Waits until nothing is left to do; throws what the last piece threw.
+  /// The method waits until nothing is left to do; it throws what the last piece threw.
   void settle() {
     if (running_.valid()) running_.get();
   }
 
  private:
-  std::future<void> running_;  // its destructor waits
+  std::future<void> running_;  ///< its destructor waits
 };
 
 }  // namespace talus::solver
