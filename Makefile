@@ -35,7 +35,7 @@ $(BUILD)/build.ninja: CMakePresets.json $(BUILD)/asked.txt | setup
 	cmake --preset $(PRESET) -B $(BUILD) $(launcher) $(if $(CUDAARCHS),-DCMAKE_CUDA_ARCHITECTURES='$(CUDAARCHS)')
 	@touch $@
 
-build: setup $(BUILD)/build.ninja ## the programs, in build/bin/ [CUDAARCHS=90-real: kernels for GPUs not in this machine]
+build: setup $(BUILD)/build.ninja ## the programs, in build/bin/ [CUDAARCHS=90-real: kernels for other GPUs]
 	@cat $(BUILD)/kernels.txt
 	@cmake --build $(BUILD) -j $(JOBS) --target $(programs)
 
@@ -60,7 +60,7 @@ test: setup $(BUILD)/build.ninja ## everything built, every test run
 	@TALUS_REQUIRE_TOOLS=$(if $(filter no,$(SETUP)),,1) \
 	  ctest --test-dir $(BUILD) --output-on-failure --no-tests=error -j $(TEST_JOBS)
 
-validate: setup $(BUILD)/build.ninja ## error beside tolerance for every case of docs/validation.md [LONG=1] [ON=cpu|gpu] [CASES="A1 B2"]
+validate: setup $(BUILD)/build.ninja ## error beside tolerance, docs/validation.md [LONG=1] [ON=cpu|gpu] [CASES="A1 B2"]
 	@cmake --build $(BUILD) -j $(JOBS) --target $(programs) talus-validate
 	@$(BUILD)/bin/talus-validate --on $(ON) $(if $(filter-out 0 no,$(LONG)),--long) $(CASES)
 
@@ -78,11 +78,11 @@ $(RELEASE_BUILD)/build.ninja: CMakePresets.json | setup
 	  $(if $(CUDAARCHS),-DCMAKE_CUDA_ARCHITECTURES='$(CUDAARCHS)',-DTALUS_ALL_GPUS=ON)
 	@touch $@
 
-bundle: setup $(RELEASE_BUILD)/build.ninja ## programs and tests with the libraries they need: build-release/talus-bundle.tar.xz
+bundle: setup $(RELEASE_BUILD)/build.ninja ## programs and tests with their libraries: build-release/talus-bundle.tar.xz
 	@cmake --build $(RELEASE_BUILD) -j $(JOBS)
 	@tools/make-bundle.sh $(RELEASE_BUILD)
 
-bundle-solver: setup $(RELEASE_BUILD)/build.ninja ## the solver and its tests alone: build-release/talus-bundle-solver.tar.xz
+bundle-solver: setup $(RELEASE_BUILD)/build.ninja ## the solver and its tests: build-release/talus-bundle-solver.tar.xz
 	@cmake --build $(RELEASE_BUILD) -j $(JOBS)
 	@tools/make-bundle.sh $(RELEASE_BUILD) --solver
 

@@ -1,4 +1,5 @@
-# One line per dependency: find it, or say which Debian package holds it. tools/install-dependencies.sh installs them all.
+# One line per dependency: find it, or say which Debian package holds it. tools/install-dependencies.sh installs them
+# all.
 function(talus_missing name package)
   message(FATAL_ERROR "${name} was not found. Install it: apt-get install ${package} (or all at once: make setup)")
 endfunction()

@@ -1,8 +1,8 @@
-# How a kernel file (.cu) is compiled: by nvcc where kernels are wanted, by the host compiler otherwise. The code for both
-# devices lives in one binary; TALUS_WITH_CUDA says whether that for GPUs is there.
+# How a kernel file (.cu) is compiled: by nvcc where kernels are wanted, by the host compiler otherwise. The code for
+# both devices lives in one binary; TALUS_WITH_CUDA says whether that for GPUs is there.
 #
-# For which GPUs: those that CUDAARCHS or CMAKE_CUDA_ARCHITECTURES names; else, with TALUS_CUDA=AUTO, those of this machine,
-# and none where it has none; with TALUS_CUDA=ON and for bundles (TALUS_ALL_GPUS) all that are supported.
+# For which GPUs: those that CUDAARCHS or CMAKE_CUDA_ARCHITECTURES names; else, with TALUS_CUDA=AUTO, those of this
+# machine, and none where it has none; with TALUS_CUDA=ON and for bundles (TALUS_ALL_GPUS) all that are supported.
 option(TALUS_ALL_GPUS "Compile the kernels for every supported GPU" OFF)
 set(TALUS_SUPPORTED_GPUS "80-real;90")   # Ampere (and, by binary compatibility, Ada) and Hopper, with PTX for later ones
 

@@ -58,7 +58,8 @@ expect_stdout_paths() {
   done <"$TALUS_SCRATCH/stdout"
 }
 
-# expect_no_file DIR [EXCEPT...]: DIR is missing or holds no file, not even a hidden one, but those named and what lies in folders named.
+# expect_no_file DIR [EXCEPT...]: DIR is missing or holds no file, not even a hidden one, but those named and what
+# lies in folders named.
 expect_no_file() {
   local folder=$1 file name except
   shift

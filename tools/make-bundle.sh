@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Copies the programs and tests of a build with the shared libraries they need into one relocatable folder, packs it, and
-# checks that it stands alone. What every Linux machine with GCC's run-time has (glibc, libstdc++, libgcc_s) and NVIDIA's
-# driver stay outside.
+# Copies the programs and tests of a build with the shared libraries they need into one relocatable folder, packs it,
+# and checks that it stands alone. What every Linux machine with GCC's run-time has (glibc, libstdc++, libgcc_s) and
+# NVIDIA's driver stay outside.
 # usage: tools/make-bundle.sh BUILD [--solver] [--to DIR] [--no-archive]
 set -euo pipefail
 

@@ -1,6 +1,6 @@
-# Puts page.html together from its parts and writes it as C++: cmake -DHTML=... -DSTYLE=... -DSCRIPT=... -DLEAFLET_STYLE=...
-# -DLEAFLET=... -DCHART=... -DLICENCES=... -DOUTPUT=page.cpp -P build_page.cmake
-# Arguments are quoted throughout: scripts are full of semicolons, which CMake would take for lists.
+# Puts page.html together from its parts and writes it as C++: cmake -DHTML=... -DSTYLE=... -DSCRIPT=...
+# -DLEAFLET_STYLE=... -DLEAFLET=... -DCHART=... -DLICENCES=... -DOUTPUT=page.cpp -P build_page.cmake Arguments are
+# quoted throughout: scripts are full of semicolons, which CMake would take for lists.
 
 # What would be loaded from beside the page is taken out: pictures of controls that are not used, maps for debuggers.
 function(read_part file out)

@@ -1,5 +1,5 @@
-# The report's page: page/*.js bundled by esbuild (which also refuses what does not parse), put into page/report.html with
-# the style and the libraries, and compiled in as bytes. Nothing is fetched; see cmake/dependencies.cmake.
+# The report's page: page/*.js bundled by esbuild (which also refuses what does not parse), put into page/report.html
+# with the style and the libraries, and compiled in as bytes. Nothing is fetched; see cmake/dependencies.cmake.
 set(_page ${CMAKE_CURRENT_SOURCE_DIR}/report/page)
 set(_made ${CMAKE_CURRENT_BINARY_DIR}/report)
 file(GLOB _scripts CONFIGURE_DEPENDS ${_page}/*.js)

@@ -33,7 +33,8 @@ test_solver_bundle_holds_the_solver_without_gdal() {
   stands_alone "$PWD/bundle-solver"
   [[ -x bundle-solver/bin/talus-solve && ! -e bundle-solver/bin/talus-preprocess ]] || fail "in the bundle: $(ls bundle-solver/bin)"
   if compgen -G 'bundle-solver/lib/libgdal*' >/dev/null; then fail "the solver's bundle holds GDAL"; fi
-  # OpenVDB takes 57 MB, the BLAS and LAPACK behind CHOLMOD 45 MB; GDAL and its company would add 100 MB. Executables grow with the kernels.
+  # OpenVDB takes 57 MB, the BLAS and LAPACK behind CHOLMOD 45 MB; GDAL and its company would add 100 MB. Executables
+  # grow with the kernels.
   [[ $(du -sm bundle-solver/lib | cut -f 1) -lt 140 ]] || fail "its libraries are large: $(<stdout)"
 }
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# From two raw surveys to a score: the valley as noisy, shifted surveys with holes see it, beside the same valley as it is.
+# From two raw surveys to a score: the valley as noisy, shifted surveys with holes see it, beside the same valley as
+# it is.
 source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 
 scene() { expect_exit 0 make -C "$TALUS_SOURCE/pipelines" "$1" OUT="$TALUS_SCRATCH/out" BIN="$bin" ON=cpu; }
@@ -25,7 +26,8 @@ a = survey["alignment"]
 check("shift east [cells]", a["after_lies_east_m"] / 10, 0.4, 0.05)
 check("shift north [cells]", a["after_lies_north_m"] / 10, -0.7, 0.05)
 check("lift [m]", a["after_lies_high_m"], 1.3, 0.1)
-# What is left on stable ground: two surveys of 0.15 m noise and a swell of 0.13 m (rms), one of them smoothed by resampling.
+# What is left on stable ground: two surveys of 0.15 m noise and a swell of 0.13 m (rms), one of them smoothed by
+# resampling.
 check("NMAD of stable ground [m]", a["stable_ground_aligned"]["nmad_m"], 0.27, 0.06)
 erosion = true_survey["volumes"]["raw"]["erosion"]["volume_m3"]
 for name in ("source", "deposit"):   # 95 %: 1.96 standard errors

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# A full disk while writing: a small tmpfs, mounted where only this test sees it. Whatever its size, a stage either succeeds or says
-# that the disk is full, and every file that carries a final name is whole.
+# A full disk while writing: a small tmpfs, mounted where only this test sees it. Whatever its size, a stage either
+# succeeds or says that the disk is full, and every file that carries a final name is whole.
 source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
 
-# on_small_disk STAGE KIB [OPTIONS...]: the stage writes to disk/, which holds what is in out/ already and has KIB left. kept/ is a
-# copy of the disk afterwards.
+# on_small_disk STAGE KIB [OPTIONS...]: the stage writes to disk/, which holds what is in out/ already and has KIB
+# left. kept/ is a copy of the disk afterwards.
 on_small_disk() {
   local stage=$1 kib=$2
   shift 2

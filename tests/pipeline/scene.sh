@@ -1,8 +1,9 @@
-# A small scene for the tests of this folder: a bowl of 20 x 20 cells of 10 m in which a block of 4 x 4 cells, 4 m thick, fails.
+# A small scene for the tests of this folder: a bowl of 20 x 20 cells of 10 m in which a block of 4 x 4 cells, 4 m
+# thick, fails.
 source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 
-# grid FILE EXPRESSION [WEST]: an ESRI ASCII grid of 20 x 20 cells of 10 m; EXPRESSION in awk's language, of the cell centre x, y
-# [m from the grid's corner], column i and row j (row 0 southernmost).
+# grid FILE EXPRESSION [WEST]: an ESRI ASCII grid of 20 x 20 cells of 10 m; EXPRESSION in awk's language, of the cell
+# centre x, y [m from the grid's corner], column i and row j (row 0 southernmost).
 grid() {
   awk -v west="${3:-500000}" "BEGIN {
     printf \"ncols 20\nnrows 20\nxllcorner %d\nyllcorner 5000000\ncellsize 10\nNODATA_value -9999\n\", west
@@ -51,8 +52,8 @@ preprocess() { "$bin/talus-preprocess" recipe.toml --out out "$@"; }
 solve() { "$bin/talus-solve" recipe.toml --out out --on cpu "$@"; }
 postprocess() { "$bin/talus-postprocess" recipe.toml --out out "$@"; }
 
-# interrupt SIGNAL FILE COMMAND...: start it, wait until FILE is there, send the signal, and expect exit code 130. Shells start
-# background work with SIGINT ignored, hence env --default-signal.
+# interrupt SIGNAL FILE COMMAND...: start it, wait until FILE is there, send the signal, and expect exit code 130.
+# Shells start background work with SIGINT ignored, hence env --default-signal.
 interrupt() {
   local signal=$1 sign=$2 code=0
   shift 2

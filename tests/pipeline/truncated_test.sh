@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Files between the stages cut short: by a copy that broke off, say. At any place: the exit code, the message, and no result.
+# Files between the stages cut short: by a copy that broke off, say. At any place: the exit code, the message, and no
+# result.
 source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
 parts=(0 1 3 10 60 100 300 500 700 900 990 999)   # per mille
 

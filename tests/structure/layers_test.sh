@@ -41,7 +41,8 @@ test_includes_start_at_the_root() {
   includes common preprocess solver postprocess | { grep -F '../' || true; } | refuse "an include climbs out of its folder"
 }
 
-# private_headers PATTERN FOLDER...: headers that include what matches PATTERN may be included by sources of their own folder only.
+# private_headers PATTERN FOLDER...: headers that include what matches PATTERN may be included by sources of their own
+# folder only.
 private_headers() {
   local pattern=$1 header
   shift
