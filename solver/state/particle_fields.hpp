@@ -66,13 +66,16 @@ enum class Kept {
   FIELD(plastic_shear,      Reals, 1, "1",     softening,         in_frames,     0)
 // clang-format on
 
+/// A member of ParticleNeeds. (Under a name, since nvcc writes a bare one in a way that GCC warns of.)
+using ParticleNeed = bool ParticleNeeds::*;
+
 /// A line of the table.
 struct ParticleField {
   const char* name;
   bool whole;  ///< whole numbers
   int components;
   const char* unit;
-  bool ParticleNeeds::*needed_by;
+  ParticleNeed needed_by;
   Kept kept;
   int initial;
 
