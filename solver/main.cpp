@@ -33,7 +33,7 @@ const char* const examples =
     "  talus-solve recipe.toml --out out/valley --restart  # go on after Ctrl-C\n"
     "  talus-solve recipe.toml --out out/valley --plan     # say what is on, how many steps, how long; write nothing";
 
-/// What the command line says beyond what every stage takes.
+/// The arguments of the command line beyond those that every stage takes.
 struct SolveFlags {
   On on = On::automatic;
   std::optional<std::filesystem::path> restart;  // empty path: OUT/checkpoint.h5
@@ -102,7 +102,7 @@ void log_plan(const Domain& domain, const SolveOptions& o, const AnyDevice& devi
                        o.end_time / step, device.is_gpu() ? "GPU" : "CPU"));
 }
 
-/// stiffness = "auto" carried out, and said.
+/// This function carries out stiffness = "auto", and logs the modulus.
 SolveOptions settle_stiffness(const Domain& domain, SolveOptions o) {
   if (o.material.stiffness != StiffnessKind::automatic) return o;
   const StiffnessDemand demand = lowest_stiffness(domain, o);

@@ -1,4 +1,4 @@
-// Plane walls over time: which of them stand at a time, and where, as kernels see them.
+// Plane walls over time: which of them are there at a time, and where, as kernels see them.
 #pragma once
 
 #include <vector>

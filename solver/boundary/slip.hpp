@@ -1,4 +1,4 @@
-// What a basal law is told of the slip of the mass over its bed at one place.
+// What a basal law knows of the slip of the mass over its bed at one place.
 #pragma once
 
 #include "solver/parallel/math.hpp"

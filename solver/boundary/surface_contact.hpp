@@ -21,7 +21,7 @@ struct ContactView {
   const int* body;
   const Real* body_friction;  ///< coefficient of each obstacle
   BaseFriction<Real> ground;
-  Real* inverse_mass;   ///< over what stands before it in this step [1/kg]; 0: nothing
+  Real* inverse_mass;   ///< of the mass before it in this step [1/kg]; 0: there is none
   Vec3<double>* force;  ///< see ContactState
   Vec3<double>* impulse;
 

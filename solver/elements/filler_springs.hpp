@@ -1,6 +1,6 @@
 // Statics on a body that does not fill its cells: nodes at its rim carry next to no material, and compression makes the
 // tangent there indefinite (a rim cell turns about a point like a hinge). Weak springs hold such nodes to where the
-// nodes further in say they belong, in each of their elements (T17a; cf. the extension of Hoellig, Reif & Wipper 2001).
+// nodes further in would have them, in each of their elements (T17a; cf. the extension of Hoellig, Reif & Wipper 2001).
 //
 // Quadratic functions: node n is held to the straight line through its neighbours a and b inwards, k |u_n - 2 u_a +
 // u_b|^2 / 2, which an affine motion, a turn too, does not feel. Linear ones have no third node: n is held to the

@@ -11,7 +11,7 @@ namespace talus {
 /// The functions by name: hats, quadratic B-splines, hats averaged over the box of each particle.
 enum class ShapeKind { linear, quadratic, gimp };
 
-/// Linear hat functions: two nodes.
+/// The linear hat functions: two nodes.
 struct Linear {
   static constexpr int width = 2;
   static constexpr double edge_share = 0.5;
@@ -37,7 +37,7 @@ struct Linear {
   }
 };
 
-/// Quadratic B-splines (Steffen, Kirby & Berzins 2008): three nodes, gradients continuous across cells.
+/// The quadratic B-splines (Steffen, Kirby & Berzins 2008): three nodes, gradients continuous across cells.
 struct Quadratic {
   static constexpr int width = 3;
   static constexpr double edge_share = 13.0 / 24;
@@ -78,8 +78,8 @@ struct Quadratic {
   }
 };
 
-/// Hats averaged over the point's box (T2a; generalised interpolation, Bardenhagen & Kober 2004): three nodes,
-/// 0 < half <= 0.5. Boxes that tile a body integrate the slopes of its nodes exactly, wherever the points have gone.
+/// The hats averaged over the point's box (T2a; generalised interpolation, Bardenhagen & Kober 2004): three nodes, 0 <
+/// half <= 0.5. Boxes that tile a body integrate the slopes of its nodes exactly, wherever the points are.
 struct Gimp {
   static constexpr int width = 3;
   static constexpr double edge_share = 0.5;

@@ -42,10 +42,11 @@ double ground_at(const GridShape& shape, const GroundTables& ground, double xi, 
 template <class Real, class Device>
 class SparseGrid {
  public:
-  /// `drift`: how far a point may go from home before it is sorted again [cells]. At most one on the CPU, where blocks
-  /// of the same colour stand four columns apart. `in_order`: scatters give the same bits on every run on a GPU too; a
-  /// drift of at most one there as well. `by_lowest_node`: points are sorted by the lowest of their nodes, where no
-  /// order asks for more: with hats, those of one cell do not have the same nodes.
+  /// The constructor makes a grid without points. `drift` is how far a point may go from home before it is sorted again
+  /// [cells], at most one on the CPU, where blocks of the same colour are four columns apart. With `in_order` scatters
+  /// give the same bits on every run on a GPU too; the drift is at most one there as well. With `by_lowest_node` points
+  /// are sorted by the lowest of their nodes, where no order asks for more: with hats, those of one cell do not have
+  /// the same nodes.
   SparseGrid(const Device& device, const GridShape& shape, int drift, bool in_order = false,
              bool by_lowest_node = false);
 

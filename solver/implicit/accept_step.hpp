@@ -43,7 +43,7 @@ struct MeasureMotion {
   }
 };
 
-/// Velocity and acceleration of the nodes at the end of a step; null in statics [m/s], [m/s2].
+/// The velocity and acceleration of the nodes at the end of a step; null in statics [m/s], [m/s2].
 struct MotionAtEnd {
   const Vec3<double>* velocity = nullptr;
   const Vec3<double>* acceleration = nullptr;
@@ -88,8 +88,8 @@ struct AcceptStep {
   }
 
  private:
-  /// New velocity (T7), acceleration and affine velocity (T8); returns the way in reference coordinates, its rise by
-  /// the nodes' own climb (T10) [m].
+  /// The method stores the new velocity (T7), acceleration and affine velocity (T8); it returns the way in reference
+  /// coordinates, its rise by the nodes' own climb (T10) [m].
   TALUS_HD Vec3<double> gather_motion(int p, const PointGradients<Real, Shape>& g) const {
     const bool follows = grid.mapping == Mapping::terrain_following;
     Vec3<double> u{}, v{}, a1{};

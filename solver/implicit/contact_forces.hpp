@@ -41,7 +41,7 @@ struct MeasureGrip {
   NodeArrays nodes;
   double layer_mass;  ///< see SweepContacts
   bool dynamic;
-  double step;  // [s]
+  double step;  ///< [s]
   ContactNumbers numbers;
   TALUS_HD void operator()(int c) const {
     const NodeMass<Real> masses{nodes.mass};
@@ -108,7 +108,7 @@ TALUS_HD Vec3<double> contact_move(const GridView<Real>& grid, const ContactView
                                   [&](int n, Real share) { sum += u[n] * static_cast<double>(share); });
   return sum;
 }
-/// Spreads a force at contact point c over the nodes [N].
+/// This function adds a force [N] at contact point c to the nodes around it, by their shares.
 template <class Real, class Shape>
 TALUS_HD void spread(const GridView<Real>& grid, const ContactView<Real>& contacts, const double* mass, int c,
                      const Vec3<double>& force, Vec3<double>* nodes) {
@@ -207,7 +207,7 @@ struct KeepContacts {
   }
 };
 
-/// Nodes of an implicit step, for what surfaces take from them at once (see PrepareNodes::arrive).
+/// The nodes of an implicit step, for what surfaces take from them at once (see PrepareNodes::arrive).
 template <class Real>
 struct ArrivingNodes {
   NodeArrays nodes;

@@ -14,7 +14,7 @@
 
 namespace talus::solver {
 
-/// Buffers over the stored nodes, sized together; see Constraints for what they hold.
+/// The buffers of contacts over the stored nodes, sized together; see Constraints for what they hold.
 template <class Device>
 struct NodeContactFields {
   explicit NodeContactFields(const Device& device)
@@ -50,7 +50,7 @@ struct NodeContactFields {
   }
 };
 
-/// Buffers over the contact points, sized together; see ContactNumbers for what they hold.
+/// The buffers of contacts over the contact points, sized together; see ContactNumbers for what they hold.
 template <class Device>
 struct ContactPointFields {
   explicit ContactPointFields(const Device& device)
@@ -77,7 +77,7 @@ class ContactSet {
  public:
   using Parts = StepParts<Real, Device, Shape>;
 
-  /// `pull`: see Constraints; on the device.
+  /// The constructor keeps references. `pull`: see Constraints; on the device.
   ContactSet(const Parts& parts, NodeFields<Device>& nodes, BedOn<double, Device> bed, const double* pull)
       : parts_(parts), nodes_(nodes), bed_(std::move(bed)), pull_(pull) {
     smoothing_.smooths = parts.controls.dynamic;
@@ -110,7 +110,7 @@ class ContactSet {
     if (parts_.surfaces.on()) begin_points(dt, predicts);
   }
 
-  /// What holds the nodes, as kernels see it.
+  /// The constraints of the nodes as kernels see them.
   Constraints constraints() {
     return {.walls = fields_.walls.data(),
             .normal = fields_.normal.data(),
@@ -183,7 +183,7 @@ class ContactSet {
     parts_.surfaces.each(kernel);
   }
 
-  /// Friction of the contact points for this step, and what they take at once.
+  /// The method measures friction of the contact points for this step, and what they take at once.
   void begin_points(double step, bool predicts) {
     points_.resize(static_cast<std::size_t>(parts_.surfaces.count()));
     each_point(MeasureGrip<Real, Shape>{parts_.grid.view(), parts_.surfaces.view(), nodes(), parts_.cell.layer_mass,

@@ -16,7 +16,7 @@ enum class Tangent { frozen_yield, exact };
 /// Walker 1996).
 enum class Forcing { fixed, eisenstat_walker };
 
-/// What Newton's iterations of a step are steered by.
+/// The controls of Newton's iterations of a step.
 struct NewtonControls {
   int iterations = 30;      ///< at most; 1: the single linear solve of the reference paper
   double tolerance = 1e-6;  ///< of the unbalanced force, over the size of the forces that balance

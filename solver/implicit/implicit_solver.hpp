@@ -108,7 +108,8 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     step_.group(this->template stand_walls<double>(time));
   }
 
-  /// Solves for the end of the next step; returns its length [s]. Throws NumericalError where no halving helps.
+  /// The method solves for the end of the next step and returns its length [s]. It throws NumericalError where no
+  /// halving helps.
   double solve_step(const Clock& clock, StepStats& stats) {
     double step = length_.next(clock.next_event - clock.time);
     for (int cut = 0;; ++cut) {
@@ -139,7 +140,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     step_.record_maps(this->maps(), clock.time, this->column_volumes());
   }
 
-  /// What the step ended with; particles that left the domain are dropped.
+  /// The method reports what the step ended with, and drops particles that left the domain.
   void close(BatchReport& report, double step) {
     Clock clock = read_clock();
     report.outflow_count = clock.outflow_count;

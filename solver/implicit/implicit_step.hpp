@@ -13,7 +13,7 @@
 
 namespace talus::solver {
 
-/// Where and how a step begins.
+/// The place in time where a step begins, and the way in which it does.
 struct StepBegin {
   double start = 0, step = 0;           ///< [s]
   bool accelerates = false;             ///< no acceleration is known yet: that of the forces at the start is taken
@@ -193,7 +193,7 @@ class ImplicitStep {
   }
   NodeArrays nodes() { return nodes_.arrays(parts_.controls.dynamic); }
 
-  /// Acceleration and damping from the forces at the start of the step.
+  /// The method takes acceleration and damping from the forces at the start of the step.
   void begin_forces(bool accelerates) {
     copy(nodes_.u, nodes_.saved_u);
     nodes_.u.fill_zero();
@@ -204,7 +204,8 @@ class ImplicitStep {
     copy(nodes_.saved_u, nodes_.u);
   }
 
-  /// MUSL: the particles take their velocity first, and their strain from what it makes of the nodes'.
+  /// The method remaps velocity (MUSL): the particles take their velocity first, and their strain from what it makes of
+  /// the nodes'.
   void remap_velocity(AcceptStep<Real, Shape>& kernel) {
     kernel.part = {.speeds = true, .deforms = false};
     for_each(parts_.device, parts_.points.count(), kernel);

@@ -19,7 +19,7 @@ struct Unbalanced {
   bool changed = false;  ///< contacts have changed their states
 };
 
-/// What a line search asks of a problem; see NewtonProblem.
+/// The verbs that a line search asks of a problem; see NewtonProblem.
 template <class P>
 concept SearchProblem = requires(P& p, double number) {
   p.measure(Linearisation::consistent);

@@ -12,7 +12,7 @@ namespace talus::solver {
 struct LinearForcing {
   double last_residual = 0, last = 0.1;
 
-  /// Relative residual [-] to solve the next system to, where the unbalanced force over its size is `residual`.
+  /// The relative residual [-] to solve the next system to, where the unbalanced force over its size is `residual`.
   double next(double residual, const NewtonControls& controls) {
     constexpr double gamma = 0.9, most = 0.1, first = 1e-3;  // a nearly linear step should be done in two
     if (controls.forcing == Forcing::fixed) return controls.linear_tolerance;

@@ -8,7 +8,8 @@
 
 namespace talus::solver {
 
-/// Newmark's scheme (theory.md, Implicit step) for a step of `step` seconds; statics is the case without inertia.
+/// The numbers of Newmark's scheme (theory.md, Implicit step) for a step of `step` seconds; statics is the case without
+/// inertia.
 struct NewmarkScheme {
   bool dynamic = true;
   double alpha = 0.25, beta = 0.5;
@@ -17,14 +18,14 @@ struct NewmarkScheme {
   /// The derivative of the acceleration at the end of the step by the displacement, 1 / (alpha dt^2) [1/s2].
   TALUS_HD double inertia() const { return dynamic ? 1 / (alpha * step * step) : 0; }
 
-  /// Minus the acceleration at the end of the step, -a' of (T16), for node n's displacement [m/s2].
+  /// The negative of the acceleration at the end of the step, -a' of (T16), for node n's displacement [m/s2].
   TALUS_HD Vec3<double> deceleration(const NodeArrays& nodes, int n) const {
     Vec3<double> a = nodes.begin_velocity(n) * (1 / (alpha * step)) - nodes.u[n] * inertia();
     if (nodes.acceleration) a += nodes.acceleration[n] * (1 / (2 * alpha) - 1);
     return a;
   }
 
-  /// Share of the momentum at the start whose rounding, as a force, a dynamic step takes for balanced [1/s].
+  /// The share of the momentum at the start whose rounding, as a force, a dynamic step takes for balanced [1/s].
   double stopping_share() const {
     constexpr double rounding = 1e-8;
     return dynamic ? rounding / (alpha * step) : 0;

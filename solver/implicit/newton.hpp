@@ -79,7 +79,8 @@ bool find_change(Problem& problem, double tolerance, NewtonReport& report) {
 /// Whether iterations have halved the unbalanced force of late.
 class Progress {
  public:
-  /// Takes note of an iteration's residual; true where `patience` iterations have not halved the least so far.
+  /// The method takes note of an iteration's residual; it returns true where `patience` iterations have not halved the
+  /// least so far.
   bool stalls(double residual, int patience) {
     waited_ = residual < 0.5 * best_ ? 0 : waited_ + 1;
     if (residual < best_) best_ = residual;

@@ -6,7 +6,7 @@
 
 namespace talus::solver {
 
-/// Buffers over the stored nodes, sized together; see NodeArrays for what they hold.
+/// The buffers over the stored nodes, sized together; see NodeArrays for what they hold.
 template <class Device>
 struct NodeFields {
   explicit NodeFields(const Device& on) : device(on) {}

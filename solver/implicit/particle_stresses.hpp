@@ -15,8 +15,8 @@ class ParticleStresses {
  public:
   using Parts = StepParts<Real, Device, Shape>;
 
-  /// `mass` of the nodes [kg]. Tangents are stored in single precision where Newton's iterations correct what that
-  /// rounds off.
+  /// The constructor keeps references, `mass` to that of the nodes [kg]. Tangents are stored in single precision where
+  /// Newton's iterations correct what that rounds off.
   ParticleStresses(const Parts& parts, const Buffer<double, Device>& mass)
       : parts_(parts), mass_(mass), single_(rounds(parts.controls)) {}
 
@@ -80,7 +80,7 @@ class ParticleStresses {
  private:
   TangentStore<Real> store() { return {tangents_.data(), parts_.points.count(), single_tangents_.data()}; }
 
-  /// Springs (T17a) on nodes with less than a tenth of a full one's mass, in statics.
+  /// The springs (T17a) on nodes with less than a tenth of a full one's mass, in statics.
   FillerSprings springs() const {
     if (parts_.controls.dynamic) return {};
     const double h = parts_.cell.spacing, hz = parts_.cell.layer_height;
@@ -94,7 +94,7 @@ class ParticleStresses {
   const Parts& parts_;
   const Buffer<double, Device>& mass_;
   bool single_;
-  double duration_ = 0;  // of the step [s]
+  double duration_ = 0;  ///< of the step [s]
   ElementList<Real, Device, Shape> elements_{parts_.device};
   MeanDilation<Real, Device, Shape> means_{parts_.device};
   Buffer<Real, Device> tangents_{parts_.device};

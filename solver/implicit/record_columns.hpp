@@ -12,9 +12,9 @@ struct RecordColumns {
   GridView<Real> grid;
   const int* active;
   const double* mass;
-  const Vec3<double>* velocity;  // null in statics
-  double density;                // where all points have the same [kg/m3]
-  const double* volumes;         // of the matter over each column, where they differ [m3]; else null
+  const Vec3<double>* velocity;  ///< null in statics
+  double density;                ///< where all points have the same [kg/m3]
+  const double* volumes;         ///< of the matter over each column, where they differ [m3]; else null
   double time;
   MapView maps;
   TALUS_HD void operator()(int c) const {

@@ -5,7 +5,7 @@
 
 namespace talus::solver {
 
-/// Sums over the nodes that Newton's iterations look at, kept beside the nodes.
+/// The sums over the nodes that steer Newton's iterations, kept beside the nodes.
 struct Balance {
   double momentum = 0;  ///< at the start of the step, squared [(kg m/s)2]
   double forces = 0;    ///< that balance, squared [N2]

@@ -38,7 +38,7 @@ struct ScatterInertia : PointScatter<Real, Shape> {
       if (k.loads && points.load[p] >= 0) load = k.loads[points.load[p]] * static_cast<double>(points.volume[p]);
     }
   };
-  /// What a node receives: mass [kg], momentum [kg m/s], mass times acceleration [N] and load [N].
+  /// The sums that a node receives: mass [kg], momentum [kg m/s], mass times acceleration [N] and load [N].
   struct Sums {
     double mass = 0;
     Vec3<double> momentum, acceleration, load;

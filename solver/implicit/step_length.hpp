@@ -8,7 +8,7 @@ namespace talus::solver {
 /// The step to try: the longest one asked for, halved where a step fails, grown back afterwards, never over an event.
 class StepLength {
  public:
-  /// `longest` is the step that is asked for [s].
+  /// The constructor takes the step that is asked for, `longest` [s].
   explicit StepLength(double longest) : longest_(longest), now_(longest) {}
 
   /// The method returns the next step [s], `remaining` seconds before the next event: two even steps rather than a full

@@ -12,11 +12,11 @@
 
 namespace talus::solver {
 
-/// Size of the cells and what they hold when they are full.
+/// The size of the cells and what they hold when they are full.
 struct CellMeasures {
-  double spacing, layer_height;  // [m]
-  double layer_mass;             // of a full layer over a square metre [kg/m2]
-  double full_base;              // mass of a base node under a full layer [kg]
+  double spacing, layer_height;  ///< [m]
+  double layer_mass;             ///< of a full layer over a square metre [kg/m2]
+  double full_base;              ///< mass of a base node under a full layer [kg]
 };
 
 /// The particles, the grid and what the mass can touch, which belong to the integrator, the settings of all
@@ -29,7 +29,7 @@ struct StepParts {
   Particles<Real, Device>& points;
   SparseGrid<Real, Device>& grid;
   Materials<Real>& materials;
-  bool dilatant;  // plastic flow changes the volume
+  bool dilatant;  ///< plastic flow changes the volume
   SurfaceContact<Real, Device, Shape>& surfaces;
   ContactImpulses<Real, Device, Shape>& impulses;
   SumSpace<Device>& sums;

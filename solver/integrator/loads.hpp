@@ -9,12 +9,12 @@ namespace talus::solver {
 
 /// A force on the particles that start inside a box.
 struct Load {
-  Vec3<double> force;       // on all of them together [N]
-  double ramp = 0;          // time over which it grows to its full size [s]
-  double from = 0, to = 0;  // it pulls from this time to that one [s]
+  Vec3<double> force;       ///< on all of them together [N]
+  double ramp = 0;          ///< time over which it grows to its full size [s]
+  double from = 0, to = 0;  ///< it pulls from this time to that one [s]
 };
 
-/// Force per volume of every load at a time [N/m3]. `volumes`: of the particles that each pulls at [m3].
+/// The force per volume of every load at a time [N/m3]. `volumes`: of the particles that each pulls at [m3].
 std::vector<Vec3<double>> load_densities(const std::vector<Load>& loads, const std::vector<double>& volumes,
                                          double time);
 

@@ -141,7 +141,7 @@ class PointSolver : public Solver {
   }
   const double* column_volumes() const { return column_volumes_.data(); }
 
-  /// Sorts the points and fits the grid to them; the `gone` last ones are dropped.
+  /// The method sorts the points and fits the grid to them; the `gone` last ones are dropped.
   void fit(int gone) {
     grid_.fit(points_, gone);
     contact_.fit(grid_);
@@ -162,7 +162,7 @@ class PointSolver : public Solver {
     return view;
   }
 
-  /// The walls that stand at a time, as kernels see them; the grid meets them as edges from now on.
+  /// The walls that are there at a time, as kernels see them; the grid meets them as edges from now on.
   template <class Number>
   Walls<Number> stand_walls(double time) {
     const Walls<Number> walls = walls_at<Number>(settings_.walls, time, frame_);

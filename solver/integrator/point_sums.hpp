@@ -7,10 +7,10 @@
 
 namespace talus::solver {
 
-/// Weights of a point on the columns around it, in double, so that they sum to one.
+/// The weights of a point on the columns around it, in double, so that they sum to one.
 template <class Real, class Shape>
 struct MapWeights {
-  int i, j;  // first column
+  int i, j;  ///< first column
   double x[Shape::width], y[Shape::width];
   TALUS_HD MapWeights(const ParticleView<Real>& points, int p)
       : i(points.cell[0][p] + Shape::first(points.offset[0][p])),
@@ -51,7 +51,7 @@ struct MeasureEnergies {
   }
 
  private:
-  /// Above the lowest ground [m].
+  /// The height of point p above the lowest ground [m].
   TALUS_HD double height(int p) const {
     const double zeta = (points.cell[2][p] + static_cast<double>(points.offset[2][p])) * grid.layer_height;
     if (grid.mapping == Mapping::cartesian) return zeta;

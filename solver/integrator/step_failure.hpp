@@ -1,11 +1,11 @@
-// What is said of a step that no halving could bring to convergence.
+// The error of a step that no halving could bring to convergence.
 #pragma once
 
 #include "solver/integrator/solver.hpp"
 
 namespace talus::solver {
 
-/// Throws the NumericalError that names the step, its unbalanced force and the way out.
+/// This function throws the NumericalError that names the step, its unbalanced force and the way out.
 [[noreturn]] void refuse_step(const Clock& clock, double step, const StepStats& stats, bool dynamic);
 
 }  // namespace talus::solver

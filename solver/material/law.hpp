@@ -4,7 +4,7 @@
 //   keeps_strain              whether a point's `elastic` is its logarithmic strain (else it is what `advance` makes
 //   it) pressure_follows_volume   whether the volume change alone decides the pressure, as B-bar needs
 //   stiffness_is_free         whether the flow hardly depends on the elastic moduli (stiffness = "auto" may lower them)
-//   LoadedAs, after_loading   the law that stands in for it while gravity is loaded, and what remains of its strain
+//   LoadedAs, after_loading   the law that takes its part while gravity is loaded, and what remains of its strain
 //   Options                   keys of the recipe: describe(), check(), softens(), dilates(); names of keys and members
 //                             are the law's own, for MaterialOptions has those of all laws
 //   words, sentence           the material in a line for plan and log, and in a sentence of the report ("It is ...")
@@ -38,18 +38,18 @@ using MaterialLaws = LawListBehind<void TALUS_MATERIAL_LAWS(TALUS_TYPE)>;
 template <class Law, class Laws = MaterialLaws>
 inline constexpr MaterialModel model_of = static_cast<MaterialModel>(Laws::template index_of<Law>());
 
-/// visit(Law{}) for the law of a model.
+/// This function returns visit(Law{}) for the law of a model.
 template <class Laws = MaterialLaws, class Visit>
 TALUS_HD auto visit_law(MaterialModel model, const Visit& visit) {
   return visit_law(Laws{}, static_cast<int>(model), visit);
 }
 
-/// The law that stands in for a model while gravity is loaded.
+/// The law that takes a model's part while gravity is loaded.
 inline MaterialModel model_while_loading(MaterialModel model) {
   return visit_law(model, [](auto law) { return model_of<typename decltype(law)::LoadedAs>; });
 }
 
-/// What a point goes on with of the elastic state that gravity loading ended with.
+/// The part of the elastic state that gravity loading ended with, with which a point goes on.
 inline Sym3<double> after_loading(MaterialModel model, const Sym3<double>& loaded) {
   return visit_law(model, [&](auto law) { return law.after_loading(loaded); });
 }

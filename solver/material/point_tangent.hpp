@@ -20,7 +20,8 @@ struct PointTangent {
   Real pairs[9];   ///< for (0,1), (1,2), (0,2): s l_b, s l_a, s l_a - tau_a
 };
 
-/// dP for dG, both as columns by direction of the gradient.
+/// The change dP of the nominal stress for a change dG of the displacement gradient (T17), both as columns by direction
+/// of the gradient.
 template <class Real>
 TALUS_HD Mat3<Real> apply(const PointTangent<Real>& t, const Mat3<Real>& dg) {
   const auto axis = [&](int a) { return Vec3<Real>{t.axes[3 * a], t.axes[3 * a + 1], t.axes[3 * a + 2]}; };

@@ -1,4 +1,4 @@
-// What a constitutive law is told of a material point: its elasticity, its state and the deformation of a step.
+// What a constitutive law knows of a material point: its elasticity, its state and the deformation of a step.
 #pragma once
 
 #include <cmath>
@@ -15,7 +15,7 @@ struct Elasticity {
   Real bulk_modulus = 0;   ///< K [Pa]
   Real wave_speed = 0;     ///< sqrt((K + 4G/3) / density) [m/s]
 
-  /// Lame's first constant, K - 2G/3 [Pa].
+  /// The first constant of Lame, K - 2G/3 [Pa].
   TALUS_HD Real lame() const { return bulk_modulus - Real(2.0 / 3) * shear_modulus; }
 };
 

@@ -1,4 +1,4 @@
-// Bodies that stand in the way.
+// Options of obstacles: bodies that the mass meets between the nodes.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// What a recipe's [solve] table says. Every key, its default and its help stand in describe() and nowhere else.
+// The options of a recipe's [solve] table. Every key, its default and its help are in describe() and nowhere else.
 #pragma once
 
 #include <string>

@@ -19,7 +19,7 @@ struct StepAbilities {
 /// The abilities of an integrator's steps.
 StepAbilities abilities_of(Integrator integrator);
 
-/// A set of values that stands for many keys.
+/// A named set of values for many keys.
 enum class Preset { none, reference };
 
 /// The keys of [solve] for what a run simulates.

@@ -69,7 +69,7 @@ double free_memory(const CpuDevice&) {
     std::getline(file, unit);
     if (name == "MemAvailable:") return kilobytes * 1024;
   }
-  return std::numeric_limits<double>::infinity();  // a system that does not say
+  return std::numeric_limits<double>::infinity();  // a system that does not report it
 }
 
 }  // namespace talus

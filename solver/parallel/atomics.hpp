@@ -10,9 +10,9 @@
 
 namespace talus {
 
-/// Largest of the values seen, for floats >= 0: their bit patterns order as the numbers do. The lanes of a warp that
-/// meet here name the same location: one of them updates it for all, for atomics at one address come one after the
-/// other.
+/// This function keeps the largest of the values seen, for floats >= 0: their bit patterns order as the numbers do. The
+/// lanes of a warp that meet here name the same location: one of them updates it for all, for atomics at one address
+/// come one after the other.
 TALUS_HD void atomic_max_positive(std::uint32_t* bits, float value) {
 #if defined(__CUDA_ARCH__)
   const unsigned together = __activemask(), most = __reduce_max_sync(together, __float_as_uint(value));

@@ -10,8 +10,8 @@
 
 namespace talus {
 
-/// Owned memory of one device, on whose stream it is filled and copied. Grows, never shrinks; contents are lost on
-/// growth. First as large as asked for: what never grows takes no more.
+/// An array in memory of one device, which owns it and on whose stream it is filled and copied. It grows and never
+/// shrinks; contents are lost on growth. At first it is as large as asked for: what never grows takes no more.
 template <class T, class Device>
 class Buffer {
  public:

@@ -27,7 +27,7 @@ struct WholeColumn {
   }
 };
 
-/// Runs a kernel over the columns of `blocks` blocks.
+/// This function runs a kernel over the columns of `blocks` blocks; see WholeColumn for what a kernel has.
 template <int columns, class Kernel>
 void for_each_column(const CpuDevice& device, int blocks, const Kernel& kernel) {
   for_each(device, blocks * columns, WholeColumn<Kernel>{kernel});

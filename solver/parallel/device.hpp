@@ -12,7 +12,7 @@ struct CUstream_st;  // CUDA's
 
 namespace talus {
 
-/// What one GpuDevice owns; gpu_state.hpp.
+/// The resources of one GpuDevice; see gpu_state.hpp.
 struct GpuState;
 template <class T, class Device>
 class Buffer;
@@ -46,7 +46,7 @@ class GpuDevice {
   /// A new stream on the GPU of that index, 0 <= index < count(). Throws std::runtime_error where CUDA has none, and
   /// std::logic_error in a binary without CUDA.
   static GpuDevice make(int index = 0);
-  /// Number of GPUs that CUDA sees; 0 in a binary without CUDA.
+  /// The number of GPUs that CUDA sees; 0 in a binary without CUDA.
   static int count();
 
   /// The number of the GPU, 0 <= index() < count().
@@ -55,7 +55,7 @@ class GpuDevice {
   CUstream_st* stream() const;
   /// The times of the kernels that were started on this device.
   Profile& profile() const;
-  /// What the device owns, for the functions of solver/parallel.
+  /// The resources of the device, for the functions of solver/parallel.
   GpuState& state() const { return *state_; }
 
  private:

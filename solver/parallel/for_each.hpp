@@ -33,7 +33,7 @@ void for_each(const CpuDevice& device, int count, const Kernel& kernel) {
       &kernel);
 }
 
-/// Ranges of points, one per occupied column block, in four colours: blocks of one colour share no grid node.
+/// The ranges of points, one per occupied column block, in four colours: blocks of one colour share no grid node.
 struct PointGroups {
   using Range = std::pair<int, int>;  // [begin, end) into the points
   std::vector<Range> ranges[4];
@@ -103,7 +103,7 @@ void gpu_launch(const GpuDevice& device, const char* where, void (*kernel)(Param
   config.attrs = &early;
   constexpr int small = 200000;  // threads; with more, those that wait are in the way
   config.numAttrs = gpu_starts_early(device) && blocks * static_cast<long>(threads) < small ? 1 : 0;
-  static_cast<void>(cudaLaunchKernelEx(&config, kernel, arguments...));  // gpu_check_launch tells
+  static_cast<void>(cudaLaunchKernelEx(&config, kernel, arguments...));  // gpu_check_launch reports it
   gpu_check_launch(where);
 }
 

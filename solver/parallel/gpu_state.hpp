@@ -15,11 +15,11 @@
 
 namespace talus {
 
-/// Throws where a call of CUDA failed: NumericalError where memory was short, std::runtime_error otherwise. `what`
-/// names the call.
+/// This function throws where a call of CUDA failed: NumericalError where memory was short, std::runtime_error
+/// otherwise. `what` names the call.
 void check_cuda(cudaError_t code, const char* what);
 
-/// Memory that Thrust borrows, kept for its next call: to allocate device memory is to wait for the device.
+/// The memory that Thrust borrows, kept for its next call: to allocate device memory is to wait for the device.
 class BorrowedMemory {
  public:
   using value_type = char;
@@ -48,7 +48,7 @@ struct SortSpace {
   Buffer<char, GpuDevice> rest;
 };
 
-/// What sorts, scans and sums keep from call to call.
+/// The memory that sorts, scans and sums keep from call to call.
 struct GpuScratch {
   explicit GpuScratch(const GpuDevice& device)
       : borrowed(device), sort(device), totals(device, 2), sums(device), product(device, 1) {}
@@ -59,24 +59,25 @@ struct GpuScratch {
   Buffer<double, GpuDevice> product;
 };
 
-/// Page-locked host memory that few bytes pass through, on their way in and out: they come sooner by memory that stays
-/// where it is. What goes in takes the next free bytes; all are free again once the host has waited for the stream.
+/// The page-locked host memory that few bytes pass through, on their way in and out: they come sooner by memory that
+/// stays where it is. What goes in takes the next free bytes; all are free again once the host has waited for the
+/// stream.
 struct LockedMemory {
   static constexpr std::size_t few = 4096, size = 16 * few;  ///< [bytes]; the first few are for what comes out
   char* memory = nullptr;                                    ///< null where none was to be had
   std::size_t used = few;
 };
 
-/// Stream, scratch memory, events and profile of one GpuDevice.
+/// The stream, scratch memory, events and profile of one GpuDevice.
 struct GpuState {
   explicit GpuState(int gpu);
   GpuState(const GpuState&) = delete;
   GpuState& operator=(const GpuState&) = delete;
   ~GpuState();
 
-  /// Makes this GPU the one that this thread's CUDA calls mean.
+  /// The method makes this GPU the one that this thread's CUDA calls mean.
   void select() const;
-  /// Waits for the stream.
+  /// The method waits for the stream.
   void wait(const char* what);
 
   int index;

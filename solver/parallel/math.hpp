@@ -33,13 +33,13 @@ TALUS_HD Real length(const Vec3<Real>& a) {
   return sqrt(dot(a, a));
 }
 
-/// Four numbers loaded and stored at once: a node's mass and momentum.
+/// A vector of four numbers loaded and stored at once: a node's mass and momentum.
 template <class Real>
 struct alignas(4 * sizeof(Real)) Vec4 {
   Real w{}, x{}, y{}, z{};
 };
 
-/// Full matrix; columns are vectors, so that column b of a gradient is the derivative along b.
+/// A full matrix; columns are vectors, so that column b of a gradient is the derivative along b.
 template <class Real>
 struct Mat3 {
   Vec3<Real> a, b, c;

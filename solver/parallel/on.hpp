@@ -3,7 +3,7 @@
 
 namespace talus {
 
-/// `automatic` takes the GPU where there is one.
+/// The device that the command line asks for; `automatic` takes the GPU where there is one.
 enum class On { automatic, cpu, gpu };
 
 }  // namespace talus

@@ -35,7 +35,7 @@ class Profile {
     std::string name;
     std::size_t phase = 0;  ///< index into phases()
     double seconds = 0;     ///< on a GPU: of the device alone
-    double bytes = 0;       ///< that it has to move, each read or written once; 0 where it does not say
+    double bytes = 0;       ///< that it has to move, each read or written once; 0 where that is not known
     long calls = 0;
   };
   /// A kernel between two marks on the device.

@@ -10,7 +10,7 @@
 
 namespace talus {
 
-/// Work that repeats on one device.
+/// The recording of work that repeats on one device.
 template <class Device>
 class Recording;
 

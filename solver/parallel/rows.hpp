@@ -1,4 +1,4 @@
-// Sums of many terms for each of many indices, a row of a matrix times a vector say.
+// Sums of many terms for each of many indices, such as a row of a matrix times a vector.
 #pragma once
 
 #include "solver/parallel/for_each.hpp"

@@ -15,7 +15,7 @@ struct MarkRunStarts {
 };
 struct PlaceRunStarts {
   const std::uint64_t* keys;
-  const int* places;  // runs before position i
+  const int* places;  ///< runs before position i
   int count, runs;
   int* starts;
   TALUS_HD void operator()(int i) const {
@@ -25,7 +25,8 @@ struct PlaceRunStarts {
 };
 }  // namespace detail
 
-/// starts[r] becomes the first position of run r, starts[runs] the number of keys; returns the number of runs.
+/// This function finds the runs of equal keys: starts[r] becomes the first position of run r, starts[runs] the number
+/// of keys. It returns the number of runs.
 template <class Device>
 int find_runs(const Buffer<std::uint64_t, Device>& keys, Buffer<int, Device>& starts, Buffer<int, Device>& scratch) {
   const Device& device = keys.device();

@@ -1,4 +1,4 @@
-// Scatters by tiles: points that stand side by side in memory mostly share their nodes, so that a GPU can sum what they
+// Scatters by tiles: points that lie side by side in memory mostly share their nodes, so that a GPU can sum what they
 // give before it goes to memory.
 #pragma once
 
@@ -61,7 +61,7 @@ TALUS_HD void scatter_point(const Kernel& kernel, int p) {
   }
 }
 
-/// Runs a scatter over `count` points, of which one that is a kernel of for_each_grouped calls scatter_point.
+/// This function runs a scatter over `count` points; on the CPU each point scatters alone, by scatter_point().
 template <ScatterKernel Kernel>
 void scatter_points(const CpuDevice& device, int count, const PointGroups& groups, const Kernel& kernel) {
   for_each_grouped(device, count, groups, kernel);

@@ -6,7 +6,7 @@
 
 namespace talus {
 
-/// Three numbers for every node.
+/// A vector of three numbers for every node.
 template <class Device>
 using NodeVector = Buffer<Vec3<double>, Device>;
 
@@ -24,20 +24,20 @@ struct Copy {
 };
 }  // namespace detail
 
-/// y = a x + b y, of vectors of one size.
+/// This function sets y = a x + b y, of vectors of one size.
 template <class Device>
 void axpby(double a, const NodeVector<Device>& x, double b, NodeVector<Device>& y) {
   for_each(y.device(), static_cast<int>(y.size()), detail::Axpby{a, b, x.data(), y.data()});
 }
 
-/// y = x; y takes the size of x.
+/// This function copies x to y; y takes the size of x.
 template <class Device>
 void copy(const NodeVector<Device>& x, NodeVector<Device>& y) {
   y.resize(x.size());
   for_each(y.device(), static_cast<int>(x.size()), detail::Copy{x.data(), y.data()});
 }
 
-/// Scalar product of two vectors of one size; waits for the device.
+/// The scalar product of two vectors of one size; waits for the device.
 template <class Device>
 double dot(const NodeVector<Device>& x, const NodeVector<Device>& y) {
   return inner_product(x.device(), reinterpret_cast<const double*>(x.data()), reinterpret_cast<const double*>(y.data()),

@@ -64,7 +64,7 @@ class IntegratorChoice {
     double wall_since = 0;  ///< its end [s]
     double patience = 1;    ///< grows while trials change nothing
   };
-  /// Lengths of steps [s].
+  /// The lengths of steps [s].
   struct StepLengths {
     double implicit = 0;  ///< taken now
     double wanted = 0;    ///< that the flow asks for

@@ -19,7 +19,7 @@ struct RunEnd {
   const std::vector<double>& initial_thickness;  ///< of all points [m]
 };
 
-/// Volumes of the slide [m3].
+/// The volumes of the slide [m3].
 struct SlideVolumes {
   double released = 0;
   double entrained = 0;  ///< eroded from the ground on the way
@@ -32,8 +32,8 @@ bool belongs_to_slide(const RunEnd& end, std::size_t p);
 /// The volumes of the slide; `outflow` is what left the domain [m3].
 SlideVolumes slide_volumes(const RunEnd& end, double outflow);
 
-/// Maps of run.h5; `thickness` is that of all points at the end [m]. With several releases there is a map of each, and
-/// what still lies in the ground counts as ground.
+/// The maps of run.h5, [rows * columns] each; `thickness` is that of all points at the end [m]. With several releases
+/// there is a map of each, and what still lies in the ground counts as ground.
 RunMaps final_maps(const RunEnd& end, std::vector<double> thickness);
 
 }  // namespace talus::solver

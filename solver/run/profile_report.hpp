@@ -1,4 +1,4 @@
-// What --profile says at the end of a run: phases, kernels with the bytes they move, memory by owner.
+// The report of --profile at the end of a run: phases, kernels with the bytes they move, memory by owner.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@
 
 namespace talus::solver {
 
-/// Lines of text. `copy` is the bandwidth of a copy where the run was [B/s].
+/// The profile in lines of text. `copy` is the bandwidth of a copy where the run was [B/s].
 std::vector<std::string> profile_lines(const RunSummary& summary, const Profile& profile, double copy);
 
 /// A row for every kernel: kernel, phase, calls, seconds, bytes it has to move (each read or written once; empty where
-/// it does not say), share of the copy's bandwidth.
+/// that is not known), share of the copy's bandwidth.
 std::string profile_csv(const Profile& profile, double copy);
 
 }  // namespace talus::solver

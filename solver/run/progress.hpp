@@ -1,4 +1,4 @@
-// What a run says of itself while it goes on: the progress line, and which point lost its state.
+// The progress line of a run, and the error that names a point which lost its state.
 #pragma once
 
 #include <string>
@@ -11,15 +11,15 @@ namespace talus::solver {
 /// How far a run has come.
 struct RunProgress {
   double end_time;    ///< [s]
-  double mass_error;  ///< volume present and gone over volume released, less one [-]
+  double mass_error;  ///< volume in the domain and out of it over volume released, less one [-]
   double wall_time;   ///< since the start [s]
 };
 
 /// One line: time, step, step size, largest speed, error of mass, wall time still to come.
 std::string progress_line(const Clock& clock, const RunProgress& progress);
 
-/// Throws the NumericalError that names the point whose state is not a number, or which is faster than 1000 km/s, where
-/// it is, and the way out. `cfl`: the recipe's cfl.
+/// This function throws the NumericalError that names the point whose state is not a number, or which is faster than
+/// 1000 km/s, where it is, and the way out. `cfl`: the recipe's cfl.
 [[noreturn]] void refuse_lost_point(const Clock& clock, const ParticleState& points, const MapGrid& map, double cfl);
 
 }  // namespace talus::solver

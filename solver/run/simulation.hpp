@@ -25,7 +25,7 @@ struct RunPaths {
       : run(out / "run.h5"), checkpoint(out / "checkpoint.h5"), frames(out / ".frames"), vdb_frames(out / "frames") {}
 };
 
-/// Wall time of a run, those before an interruption included.
+/// The wall time of a run, that before an interruption included.
 class RunTimer {
  public:
   /// The method starts the clock.

@@ -8,11 +8,11 @@
 
 namespace talus::solver {
 
-/// What a scene asks of the stiffness.
+/// The demand of a scene on the stiffness.
 struct StiffnessDemand {
-  double speed = 0;          // that the energy line allows somewhere in the domain [m/s]
-  double modulus = 0;        // Young's modulus chosen [Pa]
-  double transfer_time = 0;  // that goes with it: the same time in seconds [CFL steps]
+  double speed = 0;          ///< that the energy line allows somewhere in the domain [m/s]
+  double modulus = 0;        ///< Young's modulus chosen [Pa]
+  double transfer_time = 0;  ///< that goes with it: the same time in seconds [CFL steps]
   std::string reason;
 };
 

@@ -10,8 +10,8 @@
 
 namespace talus::solver {
 
-/// Initial volume of the points for which `counts` (by index) says so, over the area of each map cell, spread as the
-/// grid's functions spread it [m]; [rows * columns].
+/// The initial volume of the points whose index `counts` accepts, over the area of each map cell, spread as the grid's
+/// functions spread it [m]; [rows * columns].
 std::vector<double> thickness_of(const Scene& scene, const SolveOptions& options, const ParticleState& points,
                                  const std::function<bool(std::size_t)>& counts);
 

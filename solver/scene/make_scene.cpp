@@ -79,7 +79,7 @@ std::vector<Bed<double>> make_bed(const Domain& domain, const SolveOptions& opti
   return bed;
 }
 
-/// Rasters that the law does not look at are a slip of whoever wrote the recipe.
+/// Rasters that the law does not look at are a mistake in the recipe.
 void check_bed(const Domain& domain, const SolveOptions& options) {
   for (const auto& [name, raster] : domain.bed) {
     if (options.base.uses(name)) continue;
@@ -99,7 +99,7 @@ GridShape grid_shape(const Domain& domain, const SolveOptions& options) {
   shape.mapping = options.mapping;
   shape.ground = options.ground_contact;
   shape.quadratic = options.shape == ShapeKind::quadratic;
-  // With "auto" the same for both integrators: what has next to no weight has next to no say in a change.
+  // With "auto" the same for both integrators: what has next to no weight contributes next to nothing to a change.
   const bool some_explicit = options.integrator == Integrator::explicit_ || options.integrator == Integrator::automatic;
   shape.lowest_weighed = some_explicit                               ? explicit_lowest_weighed
                          : options.integrator == Integrator::newmark ? newmark_lowest_weighed
@@ -108,7 +108,7 @@ GridShape grid_shape(const Domain& domain, const SolveOptions& options) {
   return shape;
 }
 
-/// Throws DataError unless a point stands over known ground, and in an active cell of the grid that was made for it.
+/// Throws DataError unless a point lies over known ground, and in an active cell of the grid that was made for it.
 void check_place(const Domain& domain, const GroundTables& ground, const ActiveCells& active, std::size_t p) {
   const auto cell = nearest_cell(domain.grid, domain.layer_height, domain.points, p);
   const auto [i, j, layer] = cell;

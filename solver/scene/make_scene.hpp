@@ -10,11 +10,11 @@
 
 namespace talus::solver {
 
-/// Places the seeds of a domain on the background grid. Throws DataError when a seed stands outside the ground, or
-/// outside the active cells that the domain's file names.
+/// This function places the seeds of a domain on the background grid. It throws DataError when a seed lies outside the
+/// ground, or outside the active cells that the domain's file names.
 Scene make_scene(const Domain& domain, const SolveOptions& options);
 
-/// Positions of points in map coordinates [m].
+/// The positions of points in map coordinates [m].
 std::vector<std::array<double, 3>> positions(const MapGrid& map, const GridShape& shape, const GroundTables& ground,
                                              const ParticleState& points);
 

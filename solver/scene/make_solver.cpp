@@ -43,7 +43,7 @@ std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolverSettings& 
         case Integrator::newmark:
         case Integrator::quasi_static:
           return make_implicit_solver<Real, Shape>(scene, settings.common, settings.implicit, device, state);
-        case Integrator::automatic:  // begins with explicit steps, if nobody says which
+        case Integrator::automatic:  // begins with explicit steps where none is named
         case Integrator::explicit_: break;
       }
       return make_explicit_solver<Real, Shape>(scene, settings.common, device, state);

@@ -30,7 +30,7 @@ std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolveOptions& op
 /// A new device: the CPU's, or a stream on the GPU of that index. `on` must be cpu or gpu.
 AnyDevice make_device(On on, int index = 0);
 
-/// cpu or gpu for automatic; throws RecipeError when a GPU is asked for and there is none.
+/// The choice of cpu or gpu for automatic; the function throws RecipeError when a GPU is asked for and there is none.
 On choose_device(On wanted);
 
 }  // namespace talus::solver

@@ -12,20 +12,20 @@
 
 namespace talus::solver {
 
-/// What a solver is made of, beside its scene and state.
+/// The settings that a solver is made of, beside its scene and state.
 struct SolverSettings {
   Precision precision = Precision::double_;
-  Integrator integrator = Integrator::explicit_;  // never automatic: whoever changes between two names one of them
+  Integrator integrator = Integrator::explicit_;  ///< never automatic: a change between two names one of them
   IntegratorSettings common;
-  ImplicitControls implicit;  // looked at by implicit integrators
+  ImplicitControls implicit;  ///< looked at by implicit integrators
 };
 
 /// The settings that the options ask for on this grid; presets are resolved already (with_preset).
 SolverSettings make_settings(const SolveOptions& options, const GridShape& grid);
 
-/// The same for quasi-static steps of gravity loading, from time 0 to 1: bodies that yield are elastic and stick to
+/// The settings of quasi-static steps of gravity loading, from time 0 to 1: bodies that yield are elastic and stick to
 /// their bed, for what is about to slide has no other equilibrium; gravity grows over all steps, and the walls of the
-/// start stand throughout.
+/// start are there throughout.
 SolverSettings for_gravity_loading(SolverSettings settings, int steps);
 
 /// The obstacles with their coefficient of friction.

@@ -1,4 +1,4 @@
-// Time, step and alarms, kept where the kernels run so that a batch of steps needs no word from the host.
+// Time, step and alarms, kept where the kernels run so that a batch of steps needs nothing from the host.
 #pragma once
 
 #include <cstdint>

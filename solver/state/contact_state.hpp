@@ -5,10 +5,10 @@
 
 namespace talus::solver {
 
-/// Three numbers for every contact point; empty at the start of a run.
+/// The history of the contact points, three numbers for each; empty at the start of a run.
 struct ContactState {
-  std::vector<double> force;    // on the mass, last step [N]
-  std::vector<double> impulse;  // on the mass so far [N s]
+  std::vector<double> force;    ///< on the mass, last step [N]
+  std::vector<double> impulse;  ///< on the mass so far [N s]
 };
 
 }  // namespace talus::solver

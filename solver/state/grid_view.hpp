@@ -1,12 +1,12 @@
 // The background grid as a kernel sees it: which columns hold storage, where a node lies in it, and the terrain below.
 //
 // Reference coordinates are (x, y, zeta), zeta = z - b(x, y) over the terrain b (terrain-following mapping) or z -
-// datum (Cartesian). Node (i, j, k) stands at the centre of map cell (i, j), k layers up. Storage is given to blocks of
+// datum (Cartesian). Node (i, j, k) lies at the centre of map cell (i, j), k layers up. Storage is given to blocks of
 // 4 x 4 columns that hold material, each over its own range of layers; inside a block, layers are the slow index, so
 // that the 16 columns of a layer are neighbours in memory.
 //
 // There is no layer below 0: near the ground, quadratic functions go over into hats (shape_functions.hpp), so that the
-// base node carries the value on the ground and the traction of the bed alone. Upright walls that stand on nodes are
+// base node carries the value on the ground and the traction of the bed alone. Upright walls that lie on nodes are
 // met in the same way.
 #pragma once
 

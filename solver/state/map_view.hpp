@@ -6,12 +6,12 @@
 
 namespace talus {
 
-/// Running maxima and arrival time as a kernel sees them, [rows * columns] each.
+/// The running maxima and arrival time as kernels see them, [rows * columns] each.
 struct MapView : RunningMaps<double*> {
-  double threshold = 0;  // thickness from which speed, pressure and arrival count [m]
+  double threshold = 0;  ///< thickness from which speed, pressure and arrival count [m]
 };
 
-/// Running maxima (T25) of one column from its mass [kg] and momentum [kg m/s] at `time` [s].
+/// This function updates the running maxima (T25) of one column from its mass [kg] and momentum [kg m/s] at `time` [s].
 TALUS_HD void record_column(const MapView& maps, int column, double mass, double momentum, double density,
                             double spacing, double time) {
   const double thickness = mass / (density * spacing * spacing);

@@ -9,7 +9,7 @@
 
 namespace talus {
 
-/// What a run asks of its points, beyond what every run does.
+/// The needs of a run of its points, beyond what every run needs.
 struct ParticleNeeds {
   bool always = true;
   bool affine_transfer = false;    ///< APIC
@@ -93,7 +93,7 @@ inline constexpr ParticleField particle_fields[] = {
 #undef TALUS_LINE
 };
 
-/// Components of all fields of whole (or of real) numbers that are kept across steps.
+/// The number of components of all fields of whole (or of real) numbers that are kept across steps.
 constexpr int components_kept(bool whole) {
   int count = 0;
   for (const ParticleField& field : particle_fields) {
@@ -120,8 +120,8 @@ T& component_of(T (&all)[components], int component) {
   return all[component];
 }
 
-/// Calls item(field, component, members...) for every component of every field, with what each of the holders (classes
-/// with TALUS_DECLARE_PARTICLE_FIELDS) has for it.
+/// This function calls item(field, component, members...) for every component of every field, with what each of the
+/// holders (classes with TALUS_DECLARE_PARTICLE_FIELDS) has for it.
 template <class Item, class... Holders>
 void visit_particle_fields(Item&& item, Holders&... holders) {
   const ParticleField* field = particle_fields;

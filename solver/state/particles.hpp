@@ -93,7 +93,7 @@ struct ParticleView {
   }
 };
 
-/// Host copy of the state, in double; lists of one length, or empty where they were not asked for.
+/// A copy of the points on the host, in double; lists of one length, or empty where they were not asked for.
 struct ParticleState {
   using Ints = std::vector<int>;
   using Reals = std::vector<double>;
@@ -105,7 +105,7 @@ struct ParticleState {
   void resize(std::size_t count);
 };
 
-/// Owner of the points' arrays on a device.
+/// The owner of the points' arrays on a device.
 template <class Real, class Device>
 class Particles {
  public:

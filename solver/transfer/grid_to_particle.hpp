@@ -162,8 +162,8 @@ struct GridToParticle {
     atomic_add(&clock->plastic_loss, static_cast<double>(volume) * static_cast<double>(work - kept));
   }
 
-  /// Alarms of the clock: not a number, left the domain, left the home cell's neighbourhood; step size of the next
-  /// step.
+  /// The method raises the alarms of the clock: not a number, left the domain, left the home cell's neighbourhood; and
+  /// it measures the step size of the next step, the bracket of (T11).
   TALUS_HD void settle(int p, const Stencil<Real, Shape>& s, const Sums& sums) const {
     const Vec3<Real> v = points.velocity_of(p);
     const Real speed = length(v);

@@ -8,7 +8,7 @@
 
 namespace talus {
 
-/// What P2G scatters.
+/// The quantities that P2G scatters.
 enum class Scatter {
   impulse,  ///< momentum + dt * internal force, in one
   force,    ///< momentum and internal force apart (FLIP, damping, MUSL)

@@ -7,7 +7,7 @@
 
 namespace talus::solver {
 
-/// Interpolation of a point once more, in double, with gradients by position [1/m].
+/// The interpolation of a point in an implicit step, with gradients by position [1/m].
 template <class Real, class Shape>
 struct PointGradients {
   Stencil<Real, Shape> s;

@@ -62,19 +62,20 @@ struct Stencil {
   }
 
  private:
-  /// Boxes shrink no further in explicit steps, which have to be shorter the smaller they are; and never to nothing.
+  /// The least half of a side of a box [cells]: boxes shrink no further in explicit steps, which have to be shorter the
+  /// smaller they are; and never to nothing.
   TALUS_HD static Real least_half(const GridView<Real>& grid) {
     return grid.lowest_weighed > Real(1e-3) ? grid.lowest_weighed : Real(1e-3);
   }
 
-  /// Weights of one direction once more where the point is beside an edge; the offset they stand for.
+  /// The offset that the weights of one direction stand for, once they are made anew where the point is beside an edge.
   TALUS_HD static Real beside(int cell, int first, int last, Real offset, Real lowest, Real half, Real* weight,
                               Real* slope, bool& edge) {
     edge = width == 3 && (cell == first || cell == last);
     return edge ? Shape::weigh_edge(offset, cell == first ? 1 : -1, lowest, half, weight, slope) : offset;
   }
 
-  /// Slopes of the terrain (T1) under the point, by the weights and their gradients.
+  /// The method measures the slopes of the terrain (T1) under the point, by the weights and their gradients.
   TALUS_HD void measure_slope(const GridView<Real>& grid) {
     Real sx = 0, sy = 0;
     TALUS_UNROLL

@@ -13,7 +13,7 @@ namespace talus::solver {
 template <class Real, class Device, class Shape>
 class CholeskySolver {
  public:
-  /// `memory_limit` [bytes] stands for what is free on the device; 0: ask.
+  /// With a `memory_limit` [bytes] matrix and factor may take that much; with 0, what is free on the device.
   explicit CholeskySolver(const Device& device, double memory_limit = 0)
       : device_(device), limit_(memory_limit), cholesky_(make_cholesky(device, memory_limit)) {}
 

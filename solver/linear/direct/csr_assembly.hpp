@@ -1,5 +1,5 @@
 // From element matrices to CSR as the reference paper does it: active nodes to degrees of freedom, (row, column, value)
-// triples, sort by key, reduce by key. A triple here stands for the 3 x 3 block of two nodes: a ninth of the keys to
+// triples, sort by key, reduce by key. A triple here is the 3 x 3 block of two nodes: a ninth of the keys to
 // sort, the same sums.
 #pragma once
 
@@ -53,7 +53,7 @@ class CsrAssembly {
     explicit Numbers(const Device& device) : flags(device), new_flags(device), number_of(device), node_of(device) {}
     Buffer<int, Device> flags, new_flags, number_of, node_of;
   };
-  /// Triples by row and column: sorted keys, where they come from, their runs, and the first run of every row of
+  /// The triples by row and column: sorted keys, where they come from, their runs, and the first run of every row of
   /// blocks.
   struct Triples {
     explicit Triples(const Device& device)

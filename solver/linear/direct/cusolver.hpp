@@ -10,12 +10,13 @@ struct CUstream_st;  // CUDA's
 
 namespace talus {
 
-/// Signatures as in cusolverSp.h, cusolverSp_LOWLEVEL_PREVIEW.h and cusparse.h (CUDA 11 to 13); status 0 is success.
+/// The functions of cuSOLVER in use, with signatures as in cusolverSp.h, cusolverSp_LOWLEVEL_PREVIEW.h and cusparse.h
+/// (CUDA 11 to 13); status 0 is success.
 struct Cusolver {
   using Handle = void*;
   using Descriptor = void*;
   using Info = void*;
-  static constexpr int out_of_memory = 2;  // CUSOLVER_STATUS_ALLOC_FAILED
+  static constexpr int out_of_memory = 2;  ///< CUSOLVER_STATUS_ALLOC_FAILED
 
   int (*create)(Handle*) = nullptr;
   int (*destroy)(Handle) = nullptr;

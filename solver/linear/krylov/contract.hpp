@@ -31,7 +31,7 @@ concept LinearPreconditioner = requires(B& b, const detail::StepAlong& step, con
   b.apply_after(step, r, z, state);
 };
 
-/// When a Krylov method ends.
+/// The limits at which a Krylov method ends.
 struct KrylovLimits {
   double tolerance = 1e-8;  ///< of |b - A x| / |b| [-]
   int iterations = 5000;    ///< at most

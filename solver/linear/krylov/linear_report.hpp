@@ -3,12 +3,12 @@
 
 namespace talus {
 
-/// Iterations, relative residual and outcome of a linear solve.
+/// The iterations, relative residual and outcome of a linear solve.
 struct LinearReport {
   int iterations = 0;
-  double residual = 0;  // |b - A x| / |b| [-]
+  double residual = 0;  ///< |b - A x| / |b| [-]
   bool converged = false;
-  bool indefinite = false;  // met a direction of negative curvature: the tangent is no minimum's
+  bool indefinite = false;  ///< met a direction of negative curvature: the tangent is no minimum's
 };
 
 }  // namespace talus

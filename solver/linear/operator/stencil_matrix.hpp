@@ -15,7 +15,7 @@ struct StencilView {
   int rows = 0;
   const int* node_of = nullptr;  ///< [rows]
   const int* row_of = nullptr;   ///< [nodes]
-  int* table = nullptr;          ///< node each block stands for; -1: none
+  int* table = nullptr;          ///< neighbour of each block; -1: none
   Number* blocks = nullptr;
 
   /// The place of the row's neighbour q in the table.

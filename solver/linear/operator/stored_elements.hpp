@@ -6,8 +6,8 @@
 
 namespace talus::solver {
 
-/// Element matrices as kernels see them: 3 W^3 rows and columns each. Row by row on the CPU; entry by entry on the GPU,
-/// so that the threads of neighbouring rows read neighbouring numbers.
+/// The element matrices as kernels see them: 3 W^3 rows and columns each. They lie row by row on the CPU, and entry by
+/// entry on the GPU, so that the threads of neighbouring rows read neighbouring numbers.
 template <class Real, class Device, class Shape>
 struct ElementMatrices {
   static constexpr int nodes = Shape::width * Shape::width * Shape::width;

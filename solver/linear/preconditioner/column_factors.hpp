@@ -33,8 +33,9 @@ struct ColumnNodes {
   TALUS_HD int operator[](int layer) const { return first + layer * block_columns; }
 };
 
-/// Arrays over the stored nodes: D's inverses, and L of the nodes one and two layers higher. Before the factorisation
-/// the blocks of the nodes, and those that couple them to the nodes higher up.
+/// The factors of all columns in arrays over the stored nodes: D's inverses, and L of the nodes one and two layers
+/// higher. Before the factorisation they hold the blocks of the nodes, and those that couple them to the nodes higher
+/// up.
 struct ColumnFactors {
   Sym3<double>* pivots = nullptr;
   Mat3<double>* above[2] = {};
@@ -81,8 +82,8 @@ struct FactoriseColumns {
   }
 };
 
-/// z = (L D L^T)^-1 r over one column; r and z may be the same. What some layers need is fetched before they are
-/// solved: the loads are then under way together.
+/// This function leaves z = (L D L^T)^-1 r over one column; r and z may be the same. What some layers need is fetched
+/// before they are solved: the loads are then under way together.
 template <class Real, int reach>
 TALUS_HD void solve_column(const ColumnNodes<Real>& node, const ColumnFactors& factors, const Vec3<double>* r,
                            Vec3<double>* z) {

@@ -3,7 +3,7 @@
 
 namespace talus::solver {
 
-/// What z = B^-1 r inverts of the system (T19): its diagonal, a node's 3 x 3 block, a whole column of nodes,
+/// The part of the system (T19) that z = B^-1 r inverts: its diagonal, a node's 3 x 3 block, a whole column of nodes,
 /// Gauss-Seidel over columns forth and back, or a multigrid cycle with such sweeps.
 enum class Preconditioner { diagonal, block, column, gauss_seidel, multigrid };
 

@@ -58,7 +58,7 @@ class StencilLevel {
   std::size_t bytes() const;
 
  private:
-  /// Storage of a coarse grid.
+  /// The storage of a coarse grid.
   struct CoarseStorage {
     explicit CoarseStorage(const Device& device) : slots(device), active(device), flags(device) {}
     Buffer<BlockSlot, Device> slots;

@@ -9,20 +9,20 @@
 
 namespace talus::solver {
 
-/// What the run itself remembers between steps.
+/// The memory of the run itself between steps.
 struct RunMemory {
-  std::int64_t frames = 0, records = 0, checkpoints = 0;  // events passed
-  std::int64_t newton = 0, linear = 0, cuts = 0;          // iterations and step cuts so far
-  double peak_kinetic = 0;                                // [J]
-  double outflow_volume = 0;                              // [m3]
+  std::int64_t frames = 0, records = 0, checkpoints = 0;  ///< events passed
+  std::int64_t newton = 0, linear = 0, cuts = 0;          ///< iterations and step cuts so far
+  double peak_kinetic = 0;                                ///< [J]
+  double outflow_volume = 0;                              ///< [m3]
   std::int64_t outflow_count = 0;
-  double wall_time = 0;                   // [s]
-  std::vector<double> initial_thickness;  // [m]
+  double wall_time = 0;                   ///< [s]
+  std::vector<double> initial_thickness;  ///< [m]
   RunHistory history;
 };
 
-/// Calls item(name, scalar) for every scalar of a clock, in the order of their declaration: how a checkpoint names
-/// them.
+/// This function calls item(name, scalar) for every scalar of a clock, in the order of their declaration, with the
+/// names that a checkpoint has for them.
 template <class AnyClock, class Item>
 void visit_clock(AnyClock& c, Item&& item) {
   item("time", c.time);
@@ -53,8 +53,8 @@ void visit_clock(AnyClock& c, Item&& item) {
   item("accelerated", c.accelerated);
 }
 
-/// Calls item(name, value) for every scalar and list of a run's memory but its history, whose columns have names of
-/// their own: how a checkpoint names them.
+/// This function calls item(name, value) for every scalar and list of a run's memory but its history, whose columns
+/// have names of their own, with the names that a checkpoint has for them.
 template <class AnyMemory, class Item>
 void visit_memory(AnyMemory& m, Item&& item) {
   item("frames", m.frames);
@@ -70,18 +70,19 @@ void visit_memory(AnyMemory& m, Item&& item) {
   item("initial_thickness", m.initial_thickness);
 }
 
-/// What checkpoint.h5 holds.
+/// The content of checkpoint.h5.
 struct Checkpoint {
-  std::string fingerprint;  // of domain and settings; a checkpoint of other ones is refused
+  std::string fingerprint;  ///< of domain and settings; a checkpoint of other ones is refused
   SolverState state;
   RunMemory memory;
 };
 
-/// Writes a checkpoint to `file`, aside and renamed at the end. Throws DataError (disk full, not writable).
+/// This function writes a checkpoint to `file`, aside and renamed at the end. It throws DataError (disk full, not
+/// writable).
 void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint);
 
-/// Reads the checkpoint in `file`, bit for bit what was written. Throws DataError when the file is missing, truncated,
-/// of another kind (an older version of this program), or made from another domain or other settings.
+/// The checkpoint in `file`, bit for bit what was written. The function throws DataError when the file is missing,
+/// truncated, of another kind (an older version of this program), or made from another domain or other settings.
 Checkpoint read_checkpoint(const std::filesystem::path& file, const std::string& fingerprint);
 
 }  // namespace talus::solver

@@ -13,11 +13,11 @@ class FrameStore {
  public:
   explicit FrameStore(std::filesystem::path folder) : folder_(std::move(folder)) {}
   void clear();  ///< forget all frames
-  /// Writes one frame, aside and renamed at the end. Throws DataError (disk full, not writable).
+  /// The method writes one frame, aside and renamed at the end. It throws DataError (disk full, not writable).
   void put(std::int64_t number, const PointFrame& points, const MapGrid& grid, const std::vector<double>& thickness);
-  /// Throws DataError unless frames 0 .. count-1 are there.
+  /// The method throws DataError unless frames 0 .. count-1 are there.
   void expect(std::int64_t count) const;
-  /// Hand frames 0 .. count-1 to the run file. Throws DataError when one is missing.
+  /// The method hands frames 0 .. count-1 to the run file. It throws DataError when one is missing.
   void append_to(RunWriter& run, std::int64_t count, const MapGrid& grid) const;
 
  private:
@@ -25,8 +25,8 @@ class FrameStore {
   std::filesystem::path folder_;
 };
 
-/// Writes the points of a frame as `file` (OpenVDB PointDataGrid with velocity, volume, pressure, id), for Houdini,
-/// Blender, ParaView. Throws DataError when it cannot be written.
+/// This function writes the points of a frame as `file` (OpenVDB PointDataGrid with velocity, volume, pressure, id),
+/// for Houdini, Blender, ParaView. It throws DataError when it cannot be written.
 void write_points_vdb(const std::filesystem::path& file, const PointFrame& frame, double spacing);
 
 }  // namespace talus::solver

@@ -10,23 +10,24 @@
 
 namespace talus::solver {
 
-/// Writes frames while the run goes on.
+/// The recorder of frames, which are written while the run goes on.
 class FrameRecorder {
  public:
-  /// Frames go to the folder `store` until the end of the run; points as .vdb, where the recipe asks for them, to
-  /// `vdb_folder`. Keeps references to scene and options.
+  /// The constructor keeps references to scene and options. Frames go to the folder `store` until the end of the run;
+  /// points as .vdb, where the recipe asks for them, to `vdb_folder`.
   FrameRecorder(const Scene& scene, const SolveOptions& options, std::filesystem::path store,
                 std::filesystem::path vdb_folder);
 
   void clear() { store_.clear(); }  ///< drops the frames of an older run
-  /// Throws DataError unless frames 0 .. count-1 are there.
+  /// The method throws DataError unless frames 0 .. count-1 are there.
   void expect(std::int64_t count) const { store_.expect(count); }
-  /// Takes the state at once; the file is written while the run goes on. Throws what writing the frame before threw.
+  /// The method takes the state at once; the file is written while the run goes on. It throws what writing the frame
+  /// before threw.
   void put(double time, std::int64_t number, Solver& solver);
-  /// Waits until every frame is on disk. Throws what writing the last one threw. HDF5 does one thing at a time: to be
-  /// called before another file is written.
+  /// The method waits until every frame is on disk. It throws what writing the last one threw. HDF5 does one thing at a
+  /// time: this is called before another file is written.
   void settle() { writing_.settle(); }
-  /// Hands frames 0 .. count-1 to the run file. Throws DataError when one is missing.
+  /// The method hands frames 0 .. count-1 to the run file. It throws DataError when one is missing.
   void append_to(RunWriter& run, std::int64_t count) const { store_.append_to(run, count, scene_.map); }
 
  private:
@@ -37,7 +38,7 @@ class FrameRecorder {
   GroundTables ground_;
   std::filesystem::path vdb_folder_;
   FrameStore store_;
-  SideWork writing_;  // last: what it does needs the rest
+  SideWork writing_;  ///< last: what it does needs the rest
 };
 
 }  // namespace talus::solver

@@ -6,18 +6,18 @@
 
 namespace talus::solver {
 
-/// What a gauge reads.
+/// The reading of a gauge.
 struct GaugeReading {
   double thickness;  ///< vertical, bilinear between the map's cells; ground that can be eroded counts too [m]
   double speed;      ///< of the mean velocity over depth, by mass, of the points within a cell; 0 where none is [m/s]
   double surface;    ///< elevation of the bed at the gauge itself, plus thickness [m]
 };
 
-/// Reads every gauge at each record. Without gauges there is no such recorder; with them a record takes the points from
-/// the device.
+/// The recorder that reads every gauge at each record. Without gauges there is no such recorder; with them a record
+/// takes the points from the device.
 class GaugeRecorder : public TableRecorder<GaugeReading> {
  public:
-  /// Throws RecipeError that names every gauge without terrain around it.
+  /// The constructor throws RecipeError that names every gauge without terrain around it.
   GaugeRecorder(const SolveOptions& options, const Scene& scene);
 
  protected:
@@ -26,16 +26,16 @@ class GaugeRecorder : public TableRecorder<GaugeReading> {
  private:
   /// A gauge on the grid.
   struct Site {
-    double xi, eta;   // cells from the centre of the map's first one
-    double bed;       // elevation [m]
-    std::size_t low;  // the cell to the south-west of it
+    double xi, eta;   ///< cells from the centre of the map's first one
+    double bed;       ///< elevation [m]
+    std::size_t low;  ///< the cell to the south-west of it
   };
   double thickness_at(const Site& site, const std::vector<double>& thickness) const;
   double speed_at(const Site& site, const ParticleState& points) const;
 
   std::vector<Site> sites_;
-  std::size_t columns_;            // of the map
-  std::vector<double> densities_;  // of every material [kg/m3]
+  std::size_t columns_;            ///< of the map
+  std::vector<double> densities_;  ///< of every material [kg/m3]
 };
 
 }  // namespace talus::solver

@@ -6,11 +6,11 @@
 
 namespace talus::solver {
 
-/// Impulse of the mass on every obstacle since the start [N s].
+/// The recorder of the impulse of the mass on every obstacle since the start [N s].
 class ObstacleRecorder : public TableRecorder<Vec3<double>> {
  public:
   explicit ObstacleRecorder(const SolveOptions& options);
-  /// For every obstacle the impulse in all, and the largest mean force between two records and its time.
+  /// The lines on every obstacle: the impulse in all, and the largest mean force between two records and its time.
   std::vector<std::string> conclusions(const RunHistory& history) const override;
 
  protected:
@@ -18,7 +18,7 @@ class ObstacleRecorder : public TableRecorder<Vec3<double>> {
 
  private:
   std::vector<std::string> names_;
-  double interval_;  // between records [s]
+  double interval_;  ///< between records [s]
 };
 
 }  // namespace talus::solver
