@@ -79,7 +79,7 @@ Stage stage() {
   return s;
 }
 
-/// What was measured, in words and as profile.csv.
+/// This function reports what was measured, in words and as profile.csv.
 void report_profile(const RunSummary& summary, const AnyDevice& device, const std::filesystem::path& out) {
   Profile& profile = device.profile();
   profile.turn_off();
@@ -136,7 +136,7 @@ void check_stiffness(const Domain& domain, SolveOptions o, const AnyDevice& devi
                        all > 0 ? 100 * moved / all : 0, o.material.youngs_modulus));
 }
 
-/// Obstacles without a level set of their own are those of talus-preprocess.
+/// This function finds obstacles without a level set of their own in the output of talus-preprocess.
 void find_obstacles(SolveOptions& o, const std::filesystem::path& out) {
   for (ObstacleOptions& obstacle : o.obstacles) {
     if (!obstacle.level_set.empty()) continue;

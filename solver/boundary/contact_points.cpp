@@ -29,8 +29,8 @@ bool open_at(const GridShape& shape, const GroundTables& ground, double xi, doub
              .open[static_cast<std::size_t>(j) * static_cast<std::size_t>(shape.columns) + static_cast<std::size_t>(i)];
 }
 
-/// Two points to a cell and direction, more where the ground is so steep that they would lie further apart than half a
-/// layer.
+/// The function adds two points to a cell and direction, more where the ground is so steep that they would lie further
+/// apart than half a layer.
 void add_ground(const GridShape& shape, const GroundTables& ground, std::vector<Sample>& samples) {
   constexpr int most = 8;
   for (int j = 0; j < shape.rows; ++j) {

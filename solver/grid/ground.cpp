@@ -8,7 +8,7 @@
 namespace talus {
 namespace {
 
-/// Weights along one direction of the value and slope at a node itself.
+/// The weights along one direction of the value and slope at a node itself.
 struct NodeWeights {
   double value[3], slope[3];  // at the nodes before, at and after; slope per cell
 };
@@ -18,8 +18,8 @@ NodeWeights node_weights(bool quadratic) {
   return {{0.0, 1.0, 0.0}, {-0.5, 0.0, 0.5}};  // mean of the slopes of the two cells
 }
 
-/// Nodes without ground beside known ones get the mean of those, which only curves beyond the places where points may
-/// be look at.
+/// This function gives nodes without ground beside known ones the mean of those; only curves beyond the places where
+/// points may be look at them.
 void fill_rim(const GridShape& shape, std::vector<double>& terrain) {
   const auto at = [&](int i, int j) {
     return static_cast<std::size_t>(j) * static_cast<std::size_t>(shape.columns) + static_cast<std::size_t>(i);

@@ -59,7 +59,7 @@ struct MeasureExtents {
   }
 };
 
-/// Nodes a block needs, and whether it is in use.
+/// One thread: one block. It counts the nodes that the block needs, and notes whether it is in use.
 struct CountNodes {
   const int* lowest;
   const int* highest;

@@ -7,7 +7,7 @@
 namespace talus::solver {
 namespace {
 
-/// Finds the number of a key among the options visited.
+/// The visitor that finds the number of a key among the options visited.
 class NumberFinder final : public recipe::Visitor {
  public:
   explicit NumberFinder(std::string_view key) : key_(key) {}
@@ -36,7 +36,7 @@ class NumberFinder final : public recipe::Visitor {
   double* found_ = nullptr;
 };
 
-/// Keys that act with every law that rubs.
+/// Whether a key acts with every law that rubs.
 bool is_common(std::string_view key) { return key == "cohesion_Pa" || key == "pore_pressure_ratio"; }
 
 }  // namespace

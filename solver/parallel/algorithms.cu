@@ -44,7 +44,7 @@ void BorrowedMemory::deallocate(char* memory, std::size_t) {
 
 namespace {
 
-/// Thrust's way onto the device's stream; to be asked for anew before every call.
+/// The policy that sends Thrust's work to the device's stream; it is asked for anew before every call.
 auto policy(const GpuDevice& device) {
   GpuState& state = device.state();
   state.select();
@@ -56,7 +56,7 @@ struct Products {
   TALUS_HD Terms<1> operator()(int i) const { return {{a[i] * b[i]}}; }
 };
 
-/// What is behind a list's sums is its last value and its last sum.
+/// One thread. It keeps the last value of a list: with the last of its sums it gives the total.
 struct TakeLast {
   const int* values;
   int at;

@@ -55,7 +55,7 @@ void IntegratorChoice::begin_trial() {
   change_to(other());
 }
 
-/// True when the trial's integrator stays.
+/// The method ends a trial; it returns true when the trial's integrator stays.
 bool IntegratorChoice::end_trial() {
   trial_.under_way = false;
   trial_.wall_since = 0;

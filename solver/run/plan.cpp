@@ -36,7 +36,7 @@ std::string integrator_words(const SolveOptions& o) {
   }
 }
 
-/// Steps and seconds of a trial.
+/// The steps and seconds of a trial.
 struct Trial {
   double step = 0;     // length of the last one [s]
   double seconds = 0;  // each

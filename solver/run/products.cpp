@@ -16,8 +16,8 @@ double total_volume(const ParticleState& points) {
   return std::accumulate(points.volume.begin(), points.volume.end(), 0.0);
 }
 
-/// Adds a map of what each release left, and takes out of the others what was ground at the start or still is at the
-/// end.
+/// This function adds a map of what each release left, and takes out of the others what was ground at the start or
+/// still is at the end.
 void separate_releases(const RunEnd& run, RunMaps& maps) {
   const Domain& domain = run.domain;
   const ParticleState &end = run.state.points, &start = run.scene.points;

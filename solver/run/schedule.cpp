@@ -5,7 +5,8 @@
 namespace talus::solver {
 namespace {
 
-/// Events a rounding apart are one: no step may be asked to go from one to the other.
+/// The time from which an event counts as a later one: events a rounding apart are one, for no step may be asked to go
+/// from one to the other.
 double just_after(double time) { return time * (1 + 1e-12); }
 
 double at_count(std::int64_t count, double interval) { return static_cast<double>(count) * interval; }

@@ -64,7 +64,7 @@ RunSummary Simulation::run(const std::string& scene, const std::string& title) {
   return finish(std::move(summary));
 }
 
-/// Returns why it stopped.
+/// The method steps to the end and returns why it stopped.
 std::string Simulation::step_to_end() {
   Progress progress;
   while (stepper_.time() < schedule_.end_time()) {
@@ -95,7 +95,7 @@ void Simulation::count(const BatchReport& batch) {
       batch.stats.residual, batch.stats.cuts, batch.stats.indefinite ? "  indefinite tangent, convex part taken" : ""));
 }
 
-/// Points can be written down only after a sort.
+/// The method stops or saves where it must; points can be written down only after a sort.
 void Simulation::stop_or_save(const BatchReport& batch) {
   if (!batch.sorted) return;
   const double time = stepper_.time();
@@ -142,7 +142,7 @@ bool Simulation::calm() const {
          history_.last("kinetic_J") < options_.stop_kinetic_fraction * memory_.peak_kinetic;
 }
 
-/// By the last record.
+/// The error of the mass by the last record, over the volume released [-].
 double Simulation::mass_error() const {
   return (history_.last("volume_m3") + history_.last("outflow_m3")) / released_ - 1;
 }

@@ -11,8 +11,8 @@
 namespace talus::solver {
 namespace {
 
-/// Of the dynamic pressure. The energy line begins above what is released, so its weight makes no more than half of
-/// that.
+/// The strain that the dynamic pressure may cause [-]. The energy line begins above what is released, so its weight
+/// makes no more than half of that.
 constexpr double impact_strain = 0.02;
 
 /// The least friction the flow can meet: on its bed, or inside where the bed holds it.
@@ -28,7 +28,7 @@ struct Summit {
   double x = 0, y = 0, z = -1e30;
 };
 
-/// Highest place of what is released.
+/// The highest place of what is released.
 Summit summit_of(const Domain& domain) {
   Summit top;
   for (int row = 0; row < domain.grid.rows; ++row) {

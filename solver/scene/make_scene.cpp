@@ -17,14 +17,14 @@ namespace {
 /// material without tension, and hands the point next to it a spin out of all measure.
 constexpr double explicit_lowest_weighed = 0.1, newmark_lowest_weighed = 0.01;
 
-/// Nearest node and offset from it of a position in cells.
+/// This function finds the nearest node and the offset from it of a position in cells.
 void place(double position, int& cell, double& offset) {
   const double nearest = std::floor(position + 0.5);
   cell = static_cast<int>(nearest);
   offset = position - nearest;
 }
 
-/// Marks the points that start inside a load's box.
+/// This function marks the points that start inside a load's box.
 void attach_loads(const Domain& domain, const SolveOptions& options, Scene& scene) {
   for (std::size_t l = 0; l < options.loads.size(); ++l) {
     const auto& b = options.loads[l].box;
@@ -44,7 +44,7 @@ void attach_loads(const Domain& domain, const SolveOptions& options, Scene& scen
   }
 }
 
-/// Gives the points of each part its material.
+/// This function gives the points of each part its material.
 void attach_materials(const Domain& domain, const SolveOptions& options, Scene& scene) {
   for (std::size_t part = 0; part < options.parts.size(); ++part) {
     const std::string& name = options.parts[part].release;
@@ -79,7 +79,7 @@ std::vector<Bed<double>> make_bed(const Domain& domain, const SolveOptions& opti
   return bed;
 }
 
-/// Rasters that the law does not look at are a mistake in the recipe.
+/// This function refuses rasters that the law does not look at, which are a mistake in the recipe.
 void check_bed(const Domain& domain, const SolveOptions& options) {
   for (const auto& [name, raster] : domain.bed) {
     if (options.base.uses(name)) continue;
@@ -108,7 +108,8 @@ GridShape grid_shape(const Domain& domain, const SolveOptions& options) {
   return shape;
 }
 
-/// Throws DataError unless a point lies over known ground, and in an active cell of the grid that was made for it.
+/// This function throws DataError unless a point lies over known ground, and in an active cell of the grid that was
+/// made for it.
 void check_place(const Domain& domain, const GroundTables& ground, const ActiveCells& active, std::size_t p) {
   const auto cell = nearest_cell(domain.grid, domain.layer_height, domain.points, p);
   const auto [i, j, layer] = cell;

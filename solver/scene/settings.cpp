@@ -10,7 +10,7 @@
 namespace talus::solver {
 namespace {
 
-/// Coefficient of friction of an angle in degrees.
+/// The coefficient of friction of an angle in degrees.
 double coefficient(double degrees) { return std::tan(degrees * (std::numbers::pi / 180)); }
 
 Vec3<double> vector(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
@@ -65,7 +65,7 @@ IntegratorSettings make_common(const SolveOptions& o, const GridShape& grid) {
   return s;
 }
 
-/// Materials that do not yield.
+/// This function lets materials follow the laws that take their part while gravity is loaded, and do not yield.
 template <class Real>
 void hold(Materials<Real>& materials) {
   for (Material<Real>& m : materials.list) m.model = model_while_loading(m.model);

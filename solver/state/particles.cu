@@ -13,7 +13,7 @@ struct Gather {
   TALUS_HD void operator()(int p) const { to[p] = from[order[p]]; }
 };
 
-/// Arrays of one kind that go into another order together.
+/// The arrays of one kind that go into another order together.
 template <class T, int most>
 struct GatherAll {
   const int* order = nullptr;
@@ -36,7 +36,7 @@ GatherAll<int, most_ints>& gather_of(const int*, GatherAll<Real, most_reals>&, G
   return ints;
 }
 
-/// Uploads a list in the numbers of the device.
+/// This function uploads a list in the numbers of the device.
 template <class Number, class Device, class Value>
 void upload_list(Buffer<Number, Device>& to, const std::vector<Value>& from) {
   if constexpr (std::is_same_v<Number, Value>) {
@@ -46,7 +46,7 @@ void upload_list(Buffer<Number, Device>& to, const std::vector<Value>& from) {
   }
 }
 
-/// Downloads an array into a list in the numbers of the host.
+/// This function downloads an array into a list in the numbers of the host.
 template <class Number, class Device, class Value>
 void download_list(const Buffer<Number, Device>& from, std::vector<Value>& to) {
   if constexpr (std::is_same_v<Number, Value>) {
@@ -120,7 +120,7 @@ std::size_t Particles<Real, Device>::bytes() const {
   return total;
 }
 
-/// Every array at once, into a second set of them.
+/// The method puts every array at once into a second set of them, in the new order.
 template <class Real, class Device>
 void Particles<Real, Device>::reorder_together(const Buffer<int, Device>& order, int count) {
   GatherAll<Real, components_kept(false)> reals;

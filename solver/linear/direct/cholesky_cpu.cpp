@@ -29,7 +29,7 @@ cholmod_sparse as_cholmod(const CsrMatrix<CpuDevice>& a) {  // our rows are its 
   return m;
 }
 
-/// CHOLMOD's supernodal factor.
+/// The supernodal factor of CHOLMOD.
 class CpuCholesky final : public Cholesky<CpuDevice> {
  public:
   CpuCholesky(const CpuDevice& device, double memory_limit) : device_(device), limit_(memory_limit) {
@@ -98,7 +98,7 @@ class CpuCholesky final : public Cholesky<CpuDevice> {
 
 #else
 
-/// Eigen's up-looking factor, for builds without CHOLMOD.
+/// The up-looking factor of Eigen, for builds without CHOLMOD.
 class CpuCholesky final : public Cholesky<CpuDevice>,
                           private Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Upper> {
  public:
@@ -126,7 +126,8 @@ class CpuCholesky final : public Cholesky<CpuDevice>,
   const char* name() const override { return "Eigen SimplicialLLT"; }
 
  private:
-  /// Eigen makes room for the factor here already, so that only a stated limit can refuse it.
+  /// The method analyses the matrix. Eigen makes room for the factor here already, so that only a stated limit can
+  /// refuse it.
   void analyse(const MatrixType& matrix) {
     ++analyses_;
     pattern_ = 0;

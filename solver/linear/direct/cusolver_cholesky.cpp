@@ -8,7 +8,7 @@
 namespace talus {
 namespace {
 
-/// cuSOLVER's factor of the matrix renumbered by nested dissection, on the device's stream.
+/// The factor of cuSOLVER, of the matrix renumbered by nested dissection, on the device's stream.
 class GpuCholesky final : public Cholesky<GpuDevice> {
  public:
   GpuCholesky(const GpuDevice& device, double memory_limit) : device_(device), limit_(memory_limit) {}

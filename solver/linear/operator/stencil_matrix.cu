@@ -8,7 +8,7 @@
 namespace talus::solver {
 namespace {
 
-/// Offset of local node b from local node a among the neighbours. `folded`: layer -1 of the element is layer 0.
+/// The number of local node b among the neighbours of local node a. `folded`: layer -1 of the element is layer 0.
 template <class Shape>
 TALUS_HD int neighbour_of(int a, int b, bool folded) {
   constexpr int w = Shape::width;
@@ -59,7 +59,7 @@ struct MeetNeighbours {
   }
 };
 
-/// Adds an element's blocks to the rows of its nodes.
+/// This sink adds an element's blocks to the rows of its nodes.
 template <class View, class Shape>
 struct AddToStencil {
   View matrix;

@@ -5,7 +5,7 @@
 namespace talus::solver {
 namespace {
 
-/// First and last column (inclusive) of a block along one direction.
+/// The first and last column (inclusive) of a block along one direction.
 struct Range {
   int first, last;
 };

@@ -108,7 +108,7 @@ struct InvertBlocks {
   TALUS_HD static double safe(double d) { return d > 0 ? 1 / d : 0; }
 };
 
-/// Nothing is done with a node before it is preconditioned.
+/// This step leaves a node as it is before it is preconditioned.
 struct Stay {
   TALUS_HD double operator()(int) const { return 0; }
 };
@@ -186,7 +186,7 @@ struct Alone {
   }
 };
 
-/// The same in a loop that may be over.
+/// The preconditioner of a node in a loop that may be over, with its share of r . z.
 template <class Kernel>
 struct Measured {
   using Named = Kernel;
@@ -199,7 +199,7 @@ struct Measured {
   }
 };
 
-/// After the step of that loop. Both sums are of its nodes.
+/// The preconditioner of a node after the step of that loop, with its shares of r . r and r . z.
 template <class Kernel>
 struct MeasuredAfter {
   using Named = Kernel;

@@ -22,7 +22,7 @@ std::vector<Place> places_of(const std::vector<GaugeOptions>& gauges) {
   return places;
 }
 
-/// Cells from the centre of the map's first one.
+/// The distance from the centre of the map's first cell [cells].
 double in_cells(double coordinate, double edge, double cell) { return (coordinate - edge) / cell - 0.5; }
 
 /// The first of the two cells that a gauge lies between; the last pair where it lies on the last cell.
@@ -89,7 +89,7 @@ double GaugeRecorder::thickness_at(const Site& site, const std::vector<double>& 
   return (1 - y) * ((1 - x) * south[0] + x * south[1]) + y * ((1 - x) * north[0] + x * north[1]);
 }
 
-/// Points count by mass and by a hat as wide as a cell to either side of the gauge.
+/// The speed at a gauge: points count by mass and by a hat as wide as a cell to either side of it.
 double GaugeRecorder::speed_at(const Site& site, const ParticleState& points) const {
   double mass = 0;
   Vec3<double> momentum{};

@@ -36,7 +36,7 @@ constexpr Column<Instant> budget_columns[] = {
     {"reaction_z_N_s", "N s", [](const Instant& i) { return i.clock.reaction[2]; }},
 };
 
-/// Numbers of the whole run.
+/// The recorder of the numbers of the whole run.
 class RunRecorder : public TableRecorder<Instant> {
  public:
   explicit RunRecorder(std::span<const Column<Instant>> table) : TableRecorder(table, {Place{}}) {}
@@ -45,7 +45,7 @@ class RunRecorder : public TableRecorder<Instant> {
   std::vector<Instant> samples(const Instant& now) const override { return {now}; }
 };
 
-/// Every recorder that the recipe asks for, in the order of their columns.
+/// This function makes every recorder that the recipe asks for, in the order of their columns.
 std::vector<std::unique_ptr<Recorder>> make_recorders(const SolveOptions& options, const Scene& scene) {
   std::vector<std::unique_ptr<Recorder>> recorders;
   recorders.push_back(std::make_unique<RunRecorder>(run_columns));

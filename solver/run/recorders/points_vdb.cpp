@@ -10,7 +10,7 @@ namespace {
 
 namespace vp = openvdb::points;
 
-/// Adds an attribute whose values are given in the points' own order.
+/// This function adds an attribute whose values are given in the points' own order.
 template <class Value>
 void add_attribute(vp::PointDataGrid& grid, const openvdb::tools::PointIndexGrid& index, const std::string& name,
                    const std::vector<Value>& values) {
