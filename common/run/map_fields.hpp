@@ -48,12 +48,15 @@ struct RunMaps {
   double threshold = 0;  // thickness from which speed, pressure and arrival count [m]
 };
 
+/// One of the maps of RunMaps. (Under a name, since nvcc writes a bare pointer to a member in a way that GCC warns of.)
+using MapMember = std::vector<double> RunMaps::*;
+
 /// One of the RunningMaps, and the map of the finished run that it becomes.
 struct RunningMap {
-  const char* name;                      ///< in checkpoints
-  double start;                          ///< its value before anything moved
-  std::vector<double> RunMaps::*result;  ///< where it ends; negative values (not yet) become NaN there
-  double unit;                           ///< SI units in one unit of the result: 1000 for kPa
+  const char* name;  ///< in checkpoints
+  double start;      ///< its value before anything moved
+  MapMember result;  ///< where it ends; negative values (not yet) become NaN there
+  double unit;       ///< SI units in one unit of the result: 1000 for kPa
 };
 
 /// Calls visit(row, maps.member...) for every one of the RunningMaps, with the same member of all `maps`.
@@ -94,11 +97,11 @@ struct MapLayer {
 
 /// One of the RunMaps, wherever it goes.
 struct MapField {
-  const char* name;                      ///< in run.h5, and the GeoTIFF's file name
-  std::vector<double> RunMaps::*values;  ///< in the unit below
-  const char* unit;                      ///< in UDUNITS' words: "m s-1"
-  const char* meaning;                   ///< long_name in run.h5
-  bool optional = false;                 ///< empty in runs that have none
+  const char* name;       ///< in run.h5, and the GeoTIFF's file name
+  MapMember values;       ///< in the unit below
+  const char* unit;       ///< in UDUNITS' words: "m s-1"
+  const char* meaning;    ///< long_name in run.h5
+  bool optional = false;  ///< empty in runs that have none
   MapProduct product = {};
   MapLayer layer = {};
 };
