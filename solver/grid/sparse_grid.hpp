@@ -28,7 +28,7 @@ struct GroundTables {
   std::vector<double> terrain, slope_x, slope_y;
   std::vector<unsigned char> open;
 };
-/// The terrain of a grid: coefficients whose interpolation (T1) meets the elevations, and their slopes.
+/// The terrain of a grid: elevations at the nodes above the datum, the coefficients b_i of (T1), and the slopes there.
 GroundTables make_ground_tables(const GridShape& shape);
 
 /// The bicubic ground on the host, at (xi, eta) in cells from node (0, 0).

@@ -20,7 +20,7 @@ struct BaseOptions : OptionsOfLaws<FrictionLaws> {
 
   /// The number that the recipe calls by this name, null where it has none.
   double* named(std::string_view key);
-  bool uses(std::string_view key) const;  ///< whether the law looks at it
+  bool uses(std::string_view key) const;  ///< whether the chosen law uses a key
   /// The bed in a line, for plan and log.
   std::string words() const;
   /// The law in a sentence of the report, "at its bed acts ...".
