@@ -2,7 +2,10 @@
 #pragma once
 
 #include "solver/integrator/scene.hpp"
+#include "solver/options/loads.hpp"
 #include "solver/options/solve.hpp"
+#include "solver/options/time.hpp"
+#include "solver/options/walls.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "tests/solver/scenes.hpp"
 

@@ -13,7 +13,11 @@
 #include "solver/linear/krylov/conjugate_gradient.hpp"
 #include "solver/linear/operator/tangent_operator.hpp"
 #include "solver/linear/preconditioner/preconditioner.hpp"
+#include "solver/linear/preconditioner/preconditioner_kind.hpp"
+#include "solver/material/point_tangent.hpp"
 #include "solver/options/solve.hpp"
+#include "solver/parallel/tiles.hpp"
+#include "solver/parallel/vectors.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "tests/solver/scenes.hpp"
 

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "common/domain/bed_numbers.hpp"
+#include "solver/boundary/laws/velocity_weakening.hpp"
+#include "solver/boundary/laws/voellmy.hpp"
 #include "solver/options/bed.hpp"
 #include "tests/solver/boundary/any_law.hpp"
 

@@ -5,7 +5,9 @@
 
 #include "common/domain/level_set.hpp"
 #include "solver/integrator/scene.hpp"
+#include "solver/options/obstacles.hpp"
 #include "solver/options/solve.hpp"
+#include "solver/options/walls.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "solver/scene/make_solver.hpp"
 #include "tests/solver/scenes.hpp"

@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "solver/boundary/contact_impulses.hpp"
+#include "solver/boundary/surface_contact.hpp"
 #include "solver/implicit/controls.hpp"
 #include "solver/implicit/step_parts.hpp"
 #include "solver/options/solve.hpp"

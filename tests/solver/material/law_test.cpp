@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "solver/material/laws/corotated.hpp"
+#include "solver/material/laws/drucker_prager.hpp"
+#include "solver/material/laws/linear_elastic.hpp"
 #include "tests/solver/material/any_law.hpp"
 
 namespace talus::testing {

@@ -7,6 +7,9 @@
 #include <numbers>
 #include <random>
 
+#include "solver/material/laws/drucker_prager.hpp"
+#include "solver/material/state.hpp"
+#include "solver/material/strain.hpp"
 #include "solver/options/solve.hpp"
 
 namespace talus::solver {

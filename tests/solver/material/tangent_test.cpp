@@ -5,6 +5,8 @@
 
 #include <random>
 
+#include "solver/material/point_tangent.hpp"
+#include "solver/material/strain.hpp"
 #include "solver/options/solve.hpp"
 
 namespace talus::solver {

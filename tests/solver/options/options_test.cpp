@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "solver/options/implicit.hpp"
+#include "solver/options/names.hpp"
+#include "solver/options/time.hpp"
 #include "tests/common/scratch.hpp"
 
 namespace talus::solver {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "solver/options/walls.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "tests/solver/scenes.hpp"
 

@@ -6,7 +6,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "solver/boundary/contact_points.hpp"
 #include "solver/integrator/settings.hpp"
+#include "solver/options/material.hpp"
+#include "solver/options/obstacles.hpp"
+#include "solver/options/scheme.hpp"
+#include "solver/options/walls.hpp"
 
 namespace talus::solver {
 namespace {

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "solver/parallel/device.hpp"
+#include "solver/state/particle_fields.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus {

@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include "solver/boundary/laws/coulomb.hpp"
 #include "solver/boundary/laws/frictionless.hpp"
+#include "solver/boundary/laws/none.hpp"
+#include "solver/boundary/laws/stick.hpp"
+#include "solver/boundary/laws/velocity_weakening.hpp"
 #include "tests/solver/boundary/any_law.hpp"
 
 namespace talus::testing {

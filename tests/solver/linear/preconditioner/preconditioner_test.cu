@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "solver/integrator/scene.hpp"
+#include "solver/linear/preconditioner/preconditioner_kind.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "tests/solver/linear_bench.hpp"

@@ -9,6 +9,8 @@
 
 #include "common/run/hdf5.hpp"
 #include "solver/scene/make_solver.hpp"
+#include "solver/state/contact_state.hpp"
+#include "solver/state/particle_fields.hpp"
 #include "tests/common/scratch.hpp"
 #include "tests/solver/scenes.hpp"
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "solver/options/output.hpp"
 #include "solver/run/recorders/history.hpp"
 #include "solver/scene/make_solver.hpp"
 #include "tests/solver/scenes.hpp"

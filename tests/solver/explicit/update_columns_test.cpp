@@ -1,0 +1,126 @@
+// The update of the nodes of one column in an explicit step: gravity, forces, bed, walls, budget and maps.
+#include "solver/explicit/update_columns.hpp"
+
+#include <gtest/gtest.h>
+
+#include "solver/parallel/columns.hpp"
+#include "solver/state/clock.hpp"
+#include "tests/solver/small_grid.hpp"
+
+namespace talus::solver::testing {
+namespace {
+
+/// A grid with two nodes of mass in column (5, 2), one on the bed and one above, and a step of a tenth of a second.
+struct Updated {
+  SmallGrid grid;
+  Clock clock;
+  std::vector<Vec4<double>> nodes = std::vector<Vec4<double>>(SmallGrid::nodes), forces = nodes;
+  std::vector<double> thickness = std::vector<double>(64), speed = thickness, pressure = thickness,
+                      arrival = std::vector<double>(64, -1);
+  BaseFriction<double> friction{FrictionLaw::coulomb, {{0.5}}};
+  Walls<double> walls;
+  double damping = 0, gravity_ramp = 0;
+
+  Updated() {
+    clock.step_size = 0.1;
+    clock.time = 2;
+    at(nodes, 0) = {100, 300, 0, 0};  // mass, momentum
+    at(nodes, 3) = {100, 300, 0, 0};
+  }
+  Vec4<double>& at(std::vector<Vec4<double>>& of, int k) {
+    return of[static_cast<std::size_t>(grid.view().find(5, 2, k))];
+  }
+  template <NodeContent content>
+  void update() {
+    const MapView maps{{thickness.data(), speed.data(), pressure.data(), arrival.data()}, 0};
+    for_each_column<block_columns>(CpuDevice::make(), 4,
+                                   UpdateColumns<double, content>{.grid = grid.view(),
+                                                                  .active = grid.active.data(),
+                                                                  .clock = &clock,
+                                                                  .nodes = nodes.data(),
+                                                                  .forces = forces.data(),
+                                                                  .gravity = {0, 0, -10},
+                                                                  .gravity_ramp = gravity_ramp,
+                                                                  .walls = walls,
+                                                                  .friction = friction,
+                                                                  .full_base = 1e3,
+                                                                  .damping = damping,
+                                                                  .density = 2000,
+                                                                  .volumes = nullptr,
+                                                                  .maps = maps});
+  }
+};
+
+TEST(UpdateColumns, lets_what_is_above_the_bed_fall_and_the_bed_hold_the_rest) {
+  Updated u;
+  u.update<NodeContent::impulse>();
+  EXPECT_DOUBLE_EQ(u.at(u.nodes, 3).x, 3);
+  EXPECT_DOUBLE_EQ(u.at(u.nodes, 3).z, -1);
+  EXPECT_EQ(u.at(u.nodes, 3).w, 100);
+  EXPECT_DOUBLE_EQ(u.at(u.nodes, 0).x, 3 - 0.5 * 1);  // friction of the impulse that the bed takes
+  EXPECT_DOUBLE_EQ(u.at(u.nodes, 0).z, 0);
+}
+
+TEST(UpdateColumns, grows_gravity_over_its_ramp) {
+  Updated u;
+  u.gravity_ramp = 8;  // a quarter of it has passed
+  u.update<NodeContent::impulse>();
+  EXPECT_DOUBLE_EQ(u.at(u.nodes, 3).z, -0.25);
+}
+
+TEST(UpdateColumns, leaves_the_change_of_velocity_where_the_force_was) {
+  Updated u;
+  u.at(u.forces, 3) = {0, 500, 0, 2000};
+  u.update<NodeContent::force>();
+  EXPECT_DOUBLE_EQ(u.at(u.nodes, 3).x, 3 + 0.5);
+  EXPECT_DOUBLE_EQ(u.at(u.nodes, 3).z, 2 - 1);
+  EXPECT_DOUBLE_EQ(u.at(u.forces, 3).x, 0.5);
+  EXPECT_DOUBLE_EQ(u.at(u.forces, 3).z, 1);
+}
+
+TEST(UpdateColumns, damps_a_share_of_the_force_against_the_velocity) {
+  Updated u;
+  u.damping = 0.2;
+  u.at(u.forces, 3) = {0, 500, 0, 1000};  // 5 m/s2 along the velocity
+  u.update<NodeContent::force>();
+  EXPECT_DOUBLE_EQ(u.at(u.nodes, 3).x, 3 + 0.5 * 0.8);
+}
+
+TEST(UpdateColumns, counts_what_the_bed_takes_where_a_budget_is_kept) {
+  Updated u;
+  u.clock.keeps_budget = 1;
+  u.update<NodeContent::force>();
+  EXPECT_NEAR(u.clock.reaction[0], -100 * 0.5, 1e-12);  // impulses of the base node, rounded
+  EXPECT_NEAR(u.clock.reaction[2], 100 * 1, 1e-12);
+  const double mean = 0.5 * (3 + 2.5);  // velocity along x during the step; that of z stays zero
+  EXPECT_NEAR(u.clock.bed_loss, 100 * 0.5 * mean, 1e-10);
+}
+
+TEST(UpdateColumns, stops_at_a_fixed_wall) {
+  Updated u;
+  u.walls.count = 1;
+  u.walls.list[0] = {.axis = 0, .side = -1, .position = 5, .kind = WallKind::fixed};  // holds columns from 5 on
+  u.update<NodeContent::impulse>();
+  EXPECT_EQ(u.at(u.nodes, 3).x, 0);
+  EXPECT_EQ(u.at(u.nodes, 3).z, 0);
+}
+
+TEST(UpdateColumns, records_the_maps_of_the_column) {
+  Updated u;
+  u.update<NodeContent::impulse>();
+  constexpr std::size_t column = 2 * SmallGrid::side + 5;
+  EXPECT_DOUBLE_EQ(u.thickness[column], 200.0 / (2000 * 4));
+  EXPECT_DOUBLE_EQ(u.speed[column], std::hypot(3 + 2.5, -1) / 2);
+  EXPECT_EQ(u.arrival[column], 2);
+  EXPECT_EQ(u.thickness[column + 1], 0);
+}
+
+TEST(UpdateColumns, does_nothing_once_the_clock_has_halted) {
+  Updated u;
+  u.clock.halt = wants_sort;
+  u.update<NodeContent::impulse>();
+  EXPECT_EQ(u.at(u.nodes, 3).x, 300) << "still a momentum";
+}
+
+}  // namespace
+}  // namespace talus::solver::testing

@@ -1,0 +1,68 @@
+// Loops over the layers of columns, on both devices, against a plain loop.
+#include "solver/parallel/columns.hpp"
+
+#include "tests/solver/scenes.hpp"
+
+namespace talus::solver::testing {
+namespace {
+
+constexpr int of_block = 16, blocks = 5;
+
+/// One column: the sum of its layers' numbers, and how often a layer was met.
+struct SumLayers {
+  double* total;
+  int* met;
+  struct Column {
+    bool inside;
+    int first, last, number;
+  };
+  struct Sums {
+    double layers = 0;
+    TALUS_HD Sums& operator+=(const Sums& o) {
+      layers += o.layers;
+      return *this;
+    }
+  };
+  TALUS_HD Column locate(int c) const { return {c % 5 != 0, c % 3, c % 3 + c % 23, c}; }
+  TALUS_HD void layer(const Column& at, int k, Sums& sums) const {
+    met[at.number * 32 + k] += 1;
+    sums.layers += k + 1;
+  }
+  TALUS_HD void finish(const Column& at, const Sums& sums) const { total[at.number] += sums.layers; }
+};
+
+class Columns : public InEachPlace {
+ protected:
+  template <class Device>
+  static void add_up() {
+    const Device device = Device::make();
+    Buffer<double, Device> total(device);
+    Buffer<int, Device> met(device);
+    total.upload(std::vector<double>(of_block * blocks, 0.5));
+    met.upload(std::vector<int>(of_block * blocks * 32, 0));
+    for_each_column<of_block>(device, blocks, SumLayers{total.data(), met.data()});
+    const auto sums = total.download();
+    const auto times = met.download();
+    for (int c = 0; c < of_block * blocks; ++c) {
+      const int first = c % 3, last = c % 3 + c % 23;
+      double expected = 0.5;  // once, and whole numbers beyond: exact in any order
+      for (int k = 0; k < 32; ++k) {
+        const bool in = c % 5 != 0 && k >= first && k < last;
+        if (in) expected += k + 1;
+        EXPECT_EQ(times[static_cast<std::size_t>(c * 32 + k)], in ? 1 : 0) << "column " << c << ", layer " << k;
+      }
+      EXPECT_EQ(sums[static_cast<std::size_t>(c)], expected) << "column " << c;
+    }
+  }
+};
+
+TEST_P(Columns, meet_each_of_their_layers_once_and_finish_with_the_sum) {
+#if TALUS_FOR_GPU
+  if (GetParam() == On::gpu) return add_up<GpuDevice>();
+#endif
+  add_up<CpuDevice>();
+}
+TALUS_IN_EACH_PLACE(Columns);
+
+}  // namespace
+}  // namespace talus::solver::testing

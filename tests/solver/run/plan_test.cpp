@@ -1,0 +1,50 @@
+// What `--plan` prints: the features that are on, and what the run will cost.
+#include "solver/run/plan.hpp"
+
+#include <algorithm>
+
+#include "solver/options/solve.hpp"
+#include "tests/solver/scenes.hpp"
+
+namespace talus::solver::testing {
+namespace {
+
+bool has(const std::vector<std::string>& lines, const std::string& name) {
+  return std::any_of(lines.begin(), lines.end(),
+                     [&](const std::string& line) { return line.substr(0, line.find(' ')) == name; });
+}
+
+Domain block() {
+  Domain d = ground(12, 12, 1.0, 1.0, [](double x, double) { return 10 - 0.5 * x; });
+  fill(d, {4, 8, 4, 8, 0, 2});
+  return d;
+}
+
+TEST(Plan, names_only_the_features_that_are_on) {
+  SolveOptions o;
+  const auto plain = features(block(), o);
+  for (const char* always : {"steps", "grid", "material", "bed"}) EXPECT_TRUE(has(plain, always)) << always;
+  for (const char* off : {"damping", "walls", "loads", "gravity", "sums"}) EXPECT_FALSE(has(plain, off)) << off;
+  o.damping = 0.1;
+  o.gravity_ramp = 2;
+  o.deterministic = true;
+  o.walls.emplace_back();
+  const auto more = features(block(), o);
+  for (const char* on : {"damping", "walls", "gravity", "sums"}) EXPECT_TRUE(has(more, on)) << on;
+  EXPECT_EQ(more.size(), plain.size() + 4);
+}
+
+TEST(Plan, counts_points_memory_step_and_time_after_the_features) {
+  SolveOptions o;
+  o.end_time = 1;
+  const auto listed = features(block(), o), lines = plan(block(), o, make_device(On::cpu));
+  ASSERT_GT(lines.size(), listed.size());
+  EXPECT_TRUE(std::equal(listed.begin(), listed.end(), lines.begin()));
+  for (const char* cost : {"points", "cells", "memory", "step", "count", "time"}) EXPECT_TRUE(has(lines, cost)) << cost;
+  EXPECT_TRUE(std::any_of(lines.begin(), lines.end(), [](const std::string& line) {
+    return line.find("256, 32 m3") != std::string::npos && line.rfind("points", 0) == 0;
+  }));
+}
+
+}  // namespace
+}  // namespace talus::solver::testing

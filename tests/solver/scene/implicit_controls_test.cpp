@@ -1,0 +1,60 @@
+// The controls of implicit steps are the options of the recipe, each in its place.
+#include "solver/scene/implicit_controls.hpp"
+
+#include <gtest/gtest.h>
+
+#include "solver/options/implicit.hpp"
+
+namespace talus::solver {
+namespace {
+
+TEST(ImplicitControls, are_those_of_the_recipe) {
+  SolveOptions o;
+  o.integrator = Integrator::newmark;
+  o.implicit = {.step = 0.03,
+                .newmark_alpha = 0.5,
+                .newmark_beta = 1,
+                .newton_iterations = 7,
+                .newton_tolerance = 1e-4,
+                .tangent = Tangent::exact,
+                .linear_solver = LinearSolver::bicgstab,
+                .linear_tolerance = 1e-5,
+                .forcing = Forcing::fixed,
+                .linear_iterations = 77,
+                .operator_ = Operator::stencil,
+                .preconditioner = Preconditioner::multigrid,
+                .step_cuts = 3,
+                .apex = 0.2,
+                .b_bar = true,
+                .filler = 1e-2};
+  const ImplicitControls c = make_implicit_controls(o);
+  EXPECT_TRUE(c.dynamic);
+  EXPECT_EQ(c.step, 0.03);
+  EXPECT_EQ(c.step_cuts, 3);
+  EXPECT_EQ(c.alpha, 0.5);
+  EXPECT_EQ(c.beta, 1);
+  EXPECT_EQ(c.newton.iterations, 7);
+  EXPECT_EQ(c.newton.tolerance, 1e-4);
+  EXPECT_EQ(c.newton.forcing, Forcing::fixed);
+  EXPECT_EQ(c.newton.linear_tolerance, 1e-5);
+  EXPECT_EQ(c.linear.solver, LinearSolver::bicgstab);
+  EXPECT_EQ(c.linear.iterations, 77);
+  EXPECT_EQ(c.linear.form, Operator::stencil);
+  EXPECT_EQ(c.linear.preconditioner, Preconditioner::multigrid);
+  EXPECT_EQ(c.tangent, Tangent::exact);
+  EXPECT_EQ(c.apex, 0.2);
+  EXPECT_TRUE(c.b_bar);
+  EXPECT_EQ(c.filler, 1e-2);
+}
+
+TEST(ImplicitControls, are_static_and_one_linear_solve_where_the_recipe_says_so) {
+  SolveOptions o;
+  o.integrator = Integrator::quasi_static;
+  EXPECT_FALSE(make_implicit_controls(o).dynamic);
+  EXPECT_FALSE(make_implicit_controls(o).once());
+  o.implicit.newton_iterations = 1;
+  EXPECT_TRUE(make_implicit_controls(o).once());
+}
+
+}  // namespace
+}  // namespace talus::solver
