@@ -113,7 +113,7 @@ struct CopyTangent {
 template <class Real, class Device, class Shape>
 struct LinearBench {
   Device device = Device::make();
-  Particles<Real, Device> points{device, {false, false, Shape::averaged}};
+  Particles<Real, Device> points{device, {.boxes = Shape::averaged}};
   SparseGrid<Real, Device> grid;
   ElementList<Real, Device, Shape> elements{device};
   Materials<Real> materials;
