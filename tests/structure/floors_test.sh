@@ -79,6 +79,34 @@ test_a_violation_names_file_line_and_floors() {
     fail "said: $found"
 }
 
+# headers_without_test: the headers of solver/ that no test includes directly. Two have nothing that a test could use:
+# grid/instances.hpp and parallel/macros.hpp are macros for instantiating templates and marking functions; every kernel
+# file of solver/ fails to compile or to link where they are wrong.
+headers_without_test() {
+  comm -23 <(find solver -name '*.hpp' | grep -vxE 'solver/(grid/instances|parallel/macros)\.hpp' | sort) \
+    <(grep -rhoE --include='*.hpp' --include='*.cpp' --include='*.cu' '^#include "solver/[^"]+' tests/solver |
+      sed 's/#include "//' | sort -u)
+}
+
+test_every_header_of_the_solver_is_included_by_a_test() {
+  cd "$TALUS_SOURCE"
+  local headers missing
+  headers=$(find solver -name '*.hpp' | wc -l)
+  [[ $headers -gt 50 ]] || fail "only $headers headers were found: this test looks at nothing"
+  missing=$(headers_without_test)
+  [[ -z $missing ]] || fail "no test includes these headers directly:"$'\n'"$missing"
+}
+
+# The test itself: a header that no test includes is found.
+test_a_header_without_a_test_is_named() {
+  mkdir -p solver/state solver/grid tests/solver/state
+  touch solver/state/clock.hpp solver/state/loop.hpp solver/grid/instances.hpp
+  printf '%s\n' '#include "solver/state/clock.hpp"' >tests/solver/state/clock_test.cpp
+  local found
+  found=$(headers_without_test)
+  [[ $found == solver/state/loop.hpp ]] || fail "said: $found"
+}
+
 # (T12) at the end of a line of docs/theory.md is a number; in a source it names the equation that is computed there.
 stated() { grep -oE '\(T[0-9]+[a-z]?\)$' "$TALUS_SOURCE/docs/theory.md" | tr -d '()'; }
 named() {
