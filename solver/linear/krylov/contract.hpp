@@ -59,7 +59,7 @@ void measure_angle(int count, SumSpace<Device>& sums, const NodeVector<Device>& 
 template <class Device, class Invert>
 class SeparatePreconditioner {
  public:
-  explicit SeparatePreconditioner(Invert invert) : invert_(std::move(invert)) {}
+  SeparatePreconditioner(const Device& device, Invert invert) : invert_(std::move(invert)), sums_(device) {}
 
   /// The method leaves z = B^-1 r, and hands r . z to `state` unless that is null.
   void apply(const NodeVector<Device>& r, NodeVector<Device>& z, CgState* state) {

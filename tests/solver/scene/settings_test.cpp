@@ -38,7 +38,8 @@ TEST(Settings, angles_become_coefficients_and_words_become_laws) {
                      .to = 2});
   o.obstacles.push_back({.name = "wall", .level_set = "a.vdb", .grid = "b", .friction_angle = 23});
   const SolverSettings s = make_settings(o, grid);
-  EXPECT_EQ(s.common.bed.uniform.coefficient, coefficient(17));
+  const BaseFriction<double>& bed = s.common.bed;
+  EXPECT_EQ(bed.coefficient(bed.uniform, {.speed = 0, .normal_stress = 0, .duration = 0}), coefficient(17));
   const PlaneWall& wall = s.common.walls.at(0);
   EXPECT_EQ(wall.axis, 1);
   EXPECT_EQ(wall.side, -1);

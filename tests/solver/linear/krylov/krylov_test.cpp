@@ -44,7 +44,7 @@ class DenseMatrix {
 static_assert(LinearOperator<DenseMatrix, CpuDevice>);
 
 /// The diagonal of a matrix as preconditioner.
-auto diagonal_of(DenseMatrix& a) {
+auto diagonal_of(const CpuDevice& device, DenseMatrix& a) {
   std::vector<double> inverse(a.size());
   for (std::size_t i = 0; i < a.size(); ++i) inverse[i] = 1 / a.at(i, i);
   const auto invert = [inverse](const Vector& r, Vector& z) {
@@ -52,9 +52,10 @@ auto diagonal_of(DenseMatrix& a) {
     auto* to = reinterpret_cast<double*>(z.data());
     for (std::size_t i = 0; i < inverse.size(); ++i) to[i] = inverse[i] * from[i];
   };
-  return SeparatePreconditioner<CpuDevice, decltype(invert)>(invert);
+  return SeparatePreconditioner<CpuDevice, decltype(invert)>(device, invert);
 }
-static_assert(LinearPreconditioner<decltype(diagonal_of(std::declval<DenseMatrix&>())), CpuDevice>);
+static_assert(
+    LinearPreconditioner<decltype(diagonal_of(std::declval<CpuDevice&>(), std::declval<DenseMatrix&>())), CpuDevice>);
 
 std::vector<Vec3<double>> random_vectors(int count, unsigned seed) {
   std::mt19937 engine(seed);
@@ -102,7 +103,7 @@ class Krylov : public ::testing::Test {
     b.resize(of.size());
     b.fill_zero();
     a.add_product(of, b, nullptr);
-    return method.solve(a, diagonal_of(a), b, x, limits);
+    return method.solve(a, diagonal_of(device, a), b, x, limits);
   }
 
   CpuDevice device = CpuDevice::make();
@@ -164,7 +165,7 @@ TEST(ConjugateGradient, reports_a_direction_of_negative_curvature) {
   b.upload({{0, 0, 0}, {0, 1, 0}});
   ConjugateGradient<CpuDevice> method(device);
   const auto copy_only = [](const Vector& r, Vector& z) { copy(r, z); };
-  SeparatePreconditioner<CpuDevice, decltype(copy_only)> none(copy_only);
+  SeparatePreconditioner<CpuDevice, decltype(copy_only)> none(device, copy_only);
   const LinearReport report = method.solve(a, none, b, x, {});
   EXPECT_TRUE(report.indefinite);
   EXPECT_FALSE(report.converged);
