@@ -4,10 +4,17 @@
 set -euo pipefail
 folder=${1:?usage: tools/make-docs.sh DIR}
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-command -v doxygen >/dev/null || { echo "tools/make-docs.sh: doxygen was not found. Install it: make docs" >&2; exit 1; }
+command -v doxygen >/dev/null || {
+  echo "tools/make-docs.sh: doxygen was not found. Install it: make docs" >&2
+  exit 1
+}
 mkdir -p "$folder"
 version=$(sed -nE 's/^project\(talus VERSION ([0-9.]+).*/\1/p' CMakeLists.txt)
-{ cat docs/Doxyfile; echo "OUTPUT_DIRECTORY = $folder"; echo "PROJECT_NUMBER = $version"; } | doxygen - 2>"$folder/warnings.txt" >/dev/null || true
+settings() {
+  cat docs/Doxyfile
+  printf '%s\n' "OUTPUT_DIRECTORY = $folder" "PROJECT_NUMBER = $version" "USE_MDFILE_AS_MAINPAGE = $PWD/README.md"
+}
+settings | doxygen - 2>"$folder/warnings.txt" >/dev/null || true
 if [[ -s $folder/warnings.txt ]]; then
   cat "$folder/warnings.txt" >&2
   echo "tools/make-docs.sh: Doxygen has $(grep -c 'warning:' "$folder/warnings.txt") warnings" >&2
