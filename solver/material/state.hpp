@@ -77,7 +77,7 @@ struct PrincipalResponse {
   /// The derivative of the mean stress by the volume change [Pa]; the rest of D has rows that sum to zero.
   TALUS_HD Real bulk() const {
     Real sum = 0;
-    for (int q = 0; q < 9; ++q) sum += d[q];
+    for (const Real value : d) sum += value;
     return sum / Real(9);
   }
   /// The method makes all numbers NaN: for laws that have no principal response, and recipes that ask for none (B-bar
