@@ -2,19 +2,26 @@
 # Formatting of every source by clang-format 14 (Debian 12's), headers that build alone, and static analysis of every
 # unit, kernels included, by clang-tidy 14 with the checks of .clang-tidy. What was clean is not looked at again until
 # it, a header that it includes or .clang-tidy has changed.
-# usage: tools/lint.sh [--changed N] [FILE...]     --changed: analyse only the N units changed last; FILE: only these
+# usage: tools/lint.sh [--format | --changed N] [FILE...]
+#   --format: look at the formatting alone; --changed: analyse only the N units changed last; FILE: only these
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 fail() { echo "tools/lint.sh: $*" >&2; exit 1; }
 
 changed=
-if [[ ${1:-} == --changed ]]; then
+format_only=no
+if [[ ${1:-} == --format ]]; then
+  format_only=yes
+  shift
+elif [[ ${1:-} == --changed ]]; then
   changed=${2:?tools/lint.sh --changed N}
   shift 2
 fi
-for tool in clang-format clang-tidy cmake ninja; do
-  command -v $tool >/dev/null || fail "$tool was not found. Install it: make lint"
+needed=(clang-format clang-tidy cmake ninja)
+if [[ $format_only == yes ]]; then needed=(clang-format); fi
+for tool in "${needed[@]}"; do
+  command -v "$tool" >/dev/null || fail "$tool was not found. Install it: make lint"
 done
 clang-format --version | grep -q 'version 14\.' ||
   fail "clang-format is not version 14 ($(clang-format --version)); other versions format otherwise. Use Debian 12's."
@@ -25,6 +32,7 @@ mapfile -t sources < <(git ls-files --cached --others --exclude-standard '*.cpp'
 printf '%s\0' "${sources[@]}" | xargs -0 clang-format --dry-run -Werror ||
   fail "these files are not formatted. Format them: git ls-files '*.cpp' '*.hpp' '*.cu' | xargs clang-format -i"
 echo "clang-format: ${#sources[@]} files"
+if [[ $format_only == yes ]]; then exit 0; fi
 
 build=build-lint
 cmake --preset cpu -B $build -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DTALUS_WERROR=OFF >"$build.log" 2>&1 ||
