@@ -135,7 +135,7 @@ class Transfers : public InEachPlace {
     const double dt = 1e-3;
     const auto expected = reference(s, make_material<double>(mo), dt, kind_of<Shape>);
     const Device device = Device::make();
-    Particles<Real, Device> points(device, {true, false, Shape::averaged});
+    Particles<Real, Device> points(device, {.affine_transfer = true, .boxes = Shape::averaged});
     points.upload(s.points);
     SparseGrid<Real, Device> grid(device, s.grid, 1, false, Shape::width == 2);
     grid.fit(points, 0);
@@ -183,7 +183,7 @@ class Transfers : public InEachPlace {
     Domain d;
     const Scene s = scene(kind_of<Shape>, d);
     const Device device = Device::make();
-    Particles<Real, Device> points(device, {true, false, Shape::averaged});
+    Particles<Real, Device> points(device, {.affine_transfer = true, .boxes = Shape::averaged});
     points.upload(s.points);
     SparseGrid<Real, Device> grid(device, s.grid, 1);
     grid.fit(points, 0);
