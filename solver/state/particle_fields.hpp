@@ -11,7 +11,6 @@ namespace talus {
 
 /// The needs of a run of its points, beyond what every run needs.
 struct ParticleNeeds {
-  bool always = true;
   bool affine_transfer = false;    ///< APIC
   bool plastic_volume = false;     ///< some material dilates
   bool boxes = false;              ///< functions are averaged over the box of each point (GIMP)
@@ -20,6 +19,7 @@ struct ParticleNeeds {
   bool loads = false;
   bool several_materials = false;
   bool softening = false;  ///< some material softens
+  bool always = true;      ///< last, so that no list of values switches it off by position
 };
 
 /// How long a field is kept, and where it is written; each includes the one before.
