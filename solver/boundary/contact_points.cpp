@@ -126,7 +126,7 @@ ContactPoints make_contact_points(const MapGrid& map, const GridShape& shape, co
     add_obstacle(map, shape, ground, obstacles[o], static_cast<int>(o), samples, points.notes);
     points.friction.push_back(obstacles[o].friction);
   }
-  const int blocks_x = (shape.columns + block_side - 1) / block_side;
+  const int blocks_x = blocks_across(shape.columns);
   const auto node = [](double position) { return static_cast<int>(std::floor(position + 0.5)); };
   const auto key = [&](std::size_t s) {
     return home_key(blocks_x, node(samples[s].at[0]), node(samples[s].at[1]), node(samples[s].at[2]));

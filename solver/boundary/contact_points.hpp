@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/map/raster.hpp"
-#include "solver/grid/sparse_grid.hpp"
+#include "solver/grid/terrain.hpp"
 
 namespace talus::solver {
 

@@ -3,7 +3,6 @@
 #include <bit>
 
 #include "solver/grid/instances.hpp"
-#include "solver/grid/sparse_grid.hpp"
 #include "solver/parallel/runs.hpp"
 
 namespace talus::solver {
@@ -52,7 +51,7 @@ void ElementList<Real, Device, Shape>::build(const GridView<Real>& grid, const P
   ++serial_;
   keys_.resize(static_cast<std::size_t>(points.count));
   for_each(device_, points.count, MakeElementKeys<Real, Shape>{grid, points, keys_.data()});
-  const int blocks = grid.block_columns_x * ((grid.rows + block_side - 1) / block_side);
+  const int blocks = grid.block_columns_x * blocks_across(grid.rows);
   sort_order(device_, keys_, order_, key_block_shift + static_cast<int>(std::bit_width(static_cast<unsigned>(blocks))));
   count_ = find_runs(keys_, starts_, scratch_);
   nodes_.resize(static_cast<std::size_t>(count_) * nodes_each);

@@ -86,7 +86,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     clock.halt = clock.request = running;
     const int left = clock.steps_between_sorts - clock.steps_since_sort;
     clock_.upload({clock});
-    walls_ = this->template stand_walls<Real>(clock.time);
+    walls_ = this->template set_walls<Real>(clock.time);
     loads_now_ = this->upload_loads(clock.time);
     if (!settings_.walls.empty()) recording_.forget();  // they come, go and move
     // One more than the steps left: the last one's begin halts the clock at the sort. As many as lay between the last
@@ -211,10 +211,10 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     }
   }
 
-  void sort(int gone) {
+  void sort(int outflow_count) {
     const ProfilePhase<Device> phase(device_, "sort and storage");
     recording_.forget();
-    this->fit(gone);
+    this->fit(outflow_count);
     nodes_.resize(static_cast<std::size_t>(grid_.nodes()));
     if (forces_apart_) forces_.resize(static_cast<std::size_t>(grid_.nodes()));
   }

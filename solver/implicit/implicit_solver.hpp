@@ -105,7 +105,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
   void fit_grid(double time) {
     const ProfilePhase<Device> phase(device_, "sort and storage");
     this->fit(0);
-    step_.group(this->template stand_walls<double>(time));
+    step_.group(this->template set_walls<double>(time));
   }
 
   /// The method solves for the end of the next step and returns its length [s]. It throws NumericalError where no

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "solver/boundary/contact_impulses.hpp"
+#include "solver/grid/sparse_grid.hpp"
 #include "solver/integrator/point_sums.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/integrator/settings.hpp"
@@ -141,9 +142,9 @@ class PointSolver : public Solver {
   }
   const double* column_volumes() const { return column_volumes_.data(); }
 
-  /// The method sorts the points and fits the grid to them; the `gone` last ones are dropped.
-  void fit(int gone) {
-    grid_.fit(points_, gone);
+  /// The method sorts the points and fits the grid to them; the `outflow_count` last ones are dropped.
+  void fit(int outflow_count) {
+    grid_.fit(points_, outflow_count);
     contact_.fit(grid_);
   }
   /// The mass of a full layer over a square metre [kg/m2].
@@ -164,9 +165,9 @@ class PointSolver : public Solver {
 
   /// The walls that are there at a time, as kernels see them; the grid meets them as edges from now on.
   template <class Number>
-  Walls<Number> stand_walls(double time) {
+  Walls<Number> set_walls(double time) {
     const Walls<Number> walls = walls_at<Number>(settings_.walls, time, frame_);
-    grid_.stand_walls(wall_nodes(walls));
+    grid_.set_walls(wall_nodes(walls));
     return walls;
   }
 

@@ -7,7 +7,8 @@
 #include "common/map/raster.hpp"
 #include "solver/boundary/base_friction.hpp"
 #include "solver/boundary/contact_points.hpp"
-#include "solver/grid/sparse_grid.hpp"
+#include "solver/grid/terrain.hpp"
+#include "solver/state/particles.hpp"
 
 namespace talus::solver {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "solver/boundary/contact_points.hpp"
-#include "solver/grid/sparse_grid.hpp"
+#include "solver/grid/terrain.hpp"
 #include "solver/implicit/controls.hpp"
 #include "solver/integrator/settings.hpp"
 #include "solver/options/solve.hpp"

@@ -18,6 +18,8 @@ namespace talus {
 
 inline constexpr int block_side = 4;                           // columns along a block's side
 inline constexpr int block_columns = block_side * block_side;  // columns of a block
+/// The number of blocks beside one another that hold `columns` columns.
+inline constexpr int blocks_across(int columns) { return (columns + block_side - 1) / block_side; }
 
 /// The vertical coordinate of the grid: above the terrain, or above the datum.
 enum class Mapping { terrain_following, cartesian };

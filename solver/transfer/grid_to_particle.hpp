@@ -27,7 +27,7 @@ struct GridToParticle {
   Clock* clock;
   const Vec4<Real>* nodes;
   const Vec4<Real>* changes;
-  const std::uint64_t* home;  ///< key of the cell the point was sorted by (see sparse_grid.hpp)
+  const std::uint64_t* home;  ///< key of the cell the point was sorted by (see particle_order.hpp)
   bool affine;
   bool dilatant;
 

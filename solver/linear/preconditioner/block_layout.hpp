@@ -15,9 +15,9 @@ struct BlockLayout {
   std::vector<int> active;       ///< blocks with storage
 
   /// The number of blocks along x.
-  int blocks_x() const { return (columns + block_side - 1) / block_side; }
+  int blocks_x() const { return blocks_across(columns); }
   /// The number of blocks along y.
-  int blocks_y() const { return (rows + block_side - 1) / block_side; }
+  int blocks_y() const { return blocks_across(rows); }
   /// The number of stored nodes.
   int nodes() const;
   /// The largest number of layers of a block.

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "solver/grid/sparse_grid.hpp"
+#include "solver/grid/terrain.hpp"
 
 namespace talus::solver {
 namespace {

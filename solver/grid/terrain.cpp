@@ -1,9 +1,10 @@
+#include "solver/grid/terrain.hpp"
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "solver/grid/bicubic.hpp"
 #include "solver/grid/shape_functions.hpp"
-#include "solver/grid/sparse_grid.hpp"
 
 namespace talus {
 namespace {

@@ -1,0 +1,39 @@
+// The shape of a grid and the terrain below it, on the host.
+#pragma once
+
+#include <vector>
+
+#include "solver/grid/bicubic.hpp"
+#include "solver/state/grid_view.hpp"
+
+namespace talus {
+
+/// The numbers that the grid is made of, on the host.
+struct GridShape {
+  int columns = 0, rows = 0;
+  double spacing = 0, layer_height = 0;  ///< [m]
+  Mapping mapping = Mapping::terrain_following;
+  GroundContact ground = GroundContact::nodes;
+  bool quadratic = true;
+  double lowest_weighed = 0;    ///< see GridView
+  std::vector<double> terrain;  ///< ground at the nodes [m], NaN outside the domain; [rows * columns]
+};
+
+/// The terrain as kernels use it, from a GridShape: coefficients, slopes at the nodes, where points may be; each
+/// [rows * columns].
+struct GroundTables {
+  double datum = 0;  ///< lowest ground [m]; heights below are from here
+  std::vector<double> terrain, slope_x, slope_y;
+  std::vector<unsigned char> open;
+};
+/// The terrain of a grid: elevations at the nodes above the datum, the coefficients b_i of (T1), and the slopes there.
+GroundTables make_ground_tables(const GridShape& shape);
+
+/// The bicubic ground on the host, at (xi, eta) in cells from node (0, 0).
+GroundPoint<double> bicubic_ground(const GridShape& shape, const GroundTables& ground, double xi, double eta);
+
+/// The ground elevation at (xi, eta), in cells from node (0, 0), as the grid's own functions interpolate it (T1), or
+/// bicubic where it is met by points [m above datum].
+double ground_at(const GridShape& shape, const GroundTables& ground, double xi, double eta);
+
+}  // namespace talus
