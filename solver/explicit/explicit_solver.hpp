@@ -62,8 +62,8 @@ struct BeginStep {
 template <class Real, class Device, class Shape>
 class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   using Base = PointSolver<Real, Device, Shape>;
-  using Base::bed_, Base::clock_, Base::contact_, Base::device_, Base::dilatant_, Base::grid_, Base::impulses_,
-      Base::materials_, Base::points_, Base::read_clock, Base::settings_;
+  using Base::clock_, Base::device_, Base::dilatant_, Base::grid_, Base::loads_, Base::maps_, Base::materials_,
+      Base::measures_, Base::points_, Base::read_clock, Base::settings_, Base::surroundings_;
 
  public:
   ExplicitSolverOf(const Device& device, const Scene& scene, const IntegratorSettings& settings,
@@ -87,7 +87,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     const int left = clock.steps_between_sorts - clock.steps_since_sort;
     clock_.upload({clock});
     walls_ = this->template set_walls<Real>(clock.time);
-    loads_now_ = this->upload_loads(clock.time);
+    loads_now_ = loads_.upload(clock.time);
     if (!settings_.walls.empty()) recording_.forget();  // they come, go and move
     // One more than the steps left: the last one's begin halts the clock at the sort. As many as lay between the last
     // two sorts or lead to the next event, and then a few at a time: what is started after the clock has halted does
@@ -179,10 +179,10 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     for_each_column<block_columns>(
         device_, grid_.active_blocks(),
         UpdateColumns<Real, content>{grid_.view(), grid_.active_list(), clock_.data(), nodes_.data(), forces_.data(), g,
-                                     settings_.gravity.ramp, walls_, bed_.view(), static_cast<Real>(this->full_base()),
-                                     static_cast<Real>(settings_.damping), materials_.list[0].density,
-                                     this->column_volumes(), this->maps()});
-    if (contact_.on()) meet_surfaces<content>();
+                                     settings_.gravity.ramp, walls_, surroundings_.bed(),
+                                     static_cast<Real>(this->full_base()), static_cast<Real>(settings_.damping),
+                                     materials_.list[0].density, measures_.column_volumes(), maps_.view()});
+    if (surroundings_.contact().on()) meet_surfaces<content>();
   }
 
   /// The method lets the nodes meet obstacles, and ground between the nodes (T12a). What is mapped back a second time
@@ -192,7 +192,8 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     const ProfilePhase<Device> phase(device_, "contact");
     constexpr bool first = content != NodeContent::remapped;
     const PackedNodes<Real> nodes{nodes_.data(), content == NodeContent::force ? forces_.data() : nullptr};
-    impulses_.run(contact_, grid_.view(), nodes, grid_.nodes(), this->layer_mass(), {clock_.data(), 0, first, first});
+    surroundings_.impulses().run(surroundings_.contact(), grid_.view(), nodes, grid_.nodes(), this->layer_mass(),
+                                 {clock_.data(), 0, first, first});
   }
 
   template <Gather part>

@@ -10,7 +10,7 @@
 #include "solver/implicit/prepare_nodes.hpp"
 #include "solver/implicit/residual.hpp"
 #include "solver/implicit/step_parts.hpp"
-#include "solver/integrator/point_solver.hpp"
+#include "solver/integrator/device_bed.hpp"
 
 namespace talus::solver {
 
@@ -78,7 +78,7 @@ class ContactSet {
   using Parts = StepParts<Real, Device, Shape>;
 
   /// The constructor keeps references. `pull`: see Constraints; on the device.
-  ContactSet(const Parts& parts, NodeFields<Device>& nodes, BedOn<double, Device> bed, const double* pull)
+  ContactSet(const Parts& parts, NodeFields<Device>& nodes, DeviceBed<double, Device> bed, const double* pull)
       : parts_(parts), nodes_(nodes), bed_(std::move(bed)), pull_(pull) {
     smoothing_.smooths = parts.controls.dynamic;
   }
@@ -206,7 +206,7 @@ class ContactSet {
 
   const Parts& parts_;
   NodeFields<Device>& nodes_;
-  BedOn<double, Device> bed_;
+  DeviceBed<double, Device> bed_;
   const double* pull_;
   FrictionSmoothing smoothing_;
   NodeContactFields<Device> fields_{parts_.device};

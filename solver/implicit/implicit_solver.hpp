@@ -20,15 +20,15 @@ namespace talus::solver {
 template <class Real, class Device, class Shape>
 class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
   using Base = PointSolver<Real, Device, Shape>;
-  using Base::clock_, Base::contact_, Base::device_, Base::dilatant_, Base::frame_, Base::grid_, Base::impulses_,
-      Base::materials_, Base::points_, Base::read_clock, Base::settings_, Base::sums_;
+  using Base::clock_, Base::device_, Base::dilatant_, Base::grid_, Base::loads_, Base::maps_, Base::materials_,
+      Base::measures_, Base::points_, Base::read_clock, Base::settings_, Base::surroundings_;
 
  public:
   ImplicitSolver(const Device& device, const Scene& scene, const IntegratorSettings& settings,
                  const ImplicitControls& controls, const SolverState& state)
       : Base(device, scene, settings, state, needs(settings), 0),
         controls_(with_materials(controls, scene.grid.layer_height)),
-        step_(parts(), BedOn<double, Device>(device, settings.bed, scene.bed)),
+        step_(parts(), DeviceBed<double, Device>(device, settings.bed, scene.bed)),
         length_(controls.step),
         first_(state.clock.accelerated == 0),
         midway_(state.clock.step > 0) {
@@ -93,11 +93,11 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
             .grid = grid_,
             .materials = materials_,
             .dilatant = dilatant_,
-            .surfaces = contact_,
-            .impulses = impulses_,
-            .sums = sums_,
-            .cell = {.spacing = frame_.cell[0],
-                     .layer_height = frame_.cell[2],
+            .surfaces = surroundings_.contact(),
+            .impulses = surroundings_.impulses(),
+            .sums = measures_.sums(),
+            .cell = {.spacing = grid_.shape().spacing,
+                     .layer_height = grid_.shape().layer_height,
                      .layer_mass = this->layer_mass(),
                      .full_base = this->full_base()}};
   }
@@ -119,7 +119,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
                    .step = step,
                    .accelerates = first_ && !midway_,
                    .backward_euler = first_ && midway_,
-                   .loads = this->upload_loads(clock.time + step)});
+                   .loads = loads_.upload(clock.time + step)});
       const NewtonReport found = step_.solve();
       stats = {.newton = found.iterations,
                .linear = found.linear_iterations,
@@ -137,7 +137,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     const ProfilePhase<Device> phase(device_, "grid to points");
     step_.accept(clock_.data(), clock.share_kept(step, rate_));
     this->measure_columns();
-    step_.record_maps(this->maps(), clock.time, this->column_volumes());
+    step_.record_maps(maps_.view(), clock.time, measures_.column_volumes());
   }
 
   /// The method reports what the step ended with, and drops particles that left the domain.

@@ -27,7 +27,7 @@ class ImplicitStep {
  public:
   using Parts = StepParts<Real, Device, Shape>;
 
-  ImplicitStep(const Parts& parts, BedOn<double, Device> bed)
+  ImplicitStep(const Parts& parts, DeviceBed<double, Device> bed)
       : parts_(parts),
         balance_(empty_balance(parts.device)),
         contacts_(parts_, nodes_, std::move(bed), &balance_.data()->pull),

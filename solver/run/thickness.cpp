@@ -1,6 +1,6 @@
 #include "solver/run/thickness.hpp"
 
-#include "solver/integrator/point_solver.hpp"
+#include "solver/integrator/point_sums.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/options/solve.hpp"
 

@@ -1,28 +1,98 @@
-// The bed's friction beside the grid, in the precision of the kernels.
+// What every integrator has, on a body that is never moved.
 #include "solver/integrator/point_solver.hpp"
 
-#include <gtest/gtest.h>
+#include <numeric>
+
+#include "solver/options/solve.hpp"
+#include "solver/scene/settings.hpp"
+#include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
 namespace {
 
-TEST(BedOn, has_the_numbers_of_every_column_in_the_precision_of_the_kernels) {
-  BaseFriction<double> friction{FrictionLaw::coulomb, {{0.5}}};
-  std::vector<Bed<double>> columns(3);
-  for (std::size_t c = 0; c < 3; ++c) columns[c].numbers[0] = 0.1 + static_cast<double>(c);
-  columns[2].cohesion = 7;
-  const BedOn<float, CpuDevice> bed(CpuDevice::make(), friction, columns);
-  const BaseFriction<float> view = bed.view();
-  EXPECT_EQ(view.law, FrictionLaw::coulomb);
-  for (int c = 0; c < 3; ++c) EXPECT_EQ(view.at(c).numbers[0], static_cast<float>(0.1 + c));
-  EXPECT_EQ(view.at(2).cohesion, 7);
-  EXPECT_EQ(bed.bytes(), 3 * sizeof(Bed<float>));
+/// An integrator that makes no step.
+class StandingStill final : public PointSolver<double, CpuDevice, Quadratic> {
+ public:
+  StandingStill(const Scene& scene, const IntegratorSettings& settings, const SolverState& state)
+      : PointSolver(CpuDevice::make(), scene, settings, state, settings.needs, 1) {
+    fit(0);
+  }
+  BatchReport advance() override { return {}; }
+  using PointSolver::full_base, PointSolver::layer_mass, PointSolver::set_walls;
+  const double* columns() {
+    measure_columns();
+    return measures_.column_volumes();
+  }
+  WallNodes walls() const { return grid_.view().walls; }
+};
+
+struct Still {
+  Scene scene;
+  IntegratorSettings settings;
+  SolverState start;
+
+  Still() {
+    Domain d = ground(12, 10, 2.0, 0.5, [](double, double) { return 5.0; });
+    fill(d, {8, 12, 6, 10, 0, 1.5});
+    SolveOptions o;
+    o.material.density = 1500;
+    scene = make_scene(d, o);
+    settings = make_settings(o, scene.grid).common;
+    settings.walls = {{.axis = 0, .position = 7, .from = 1}};
+    start = first_state(scene, settings);
+  }
+  StandingStill make() const { return {scene, settings, start}; }
+};
+
+TEST(PointSolver, keeps_particles_clock_and_maps_for_a_checkpoint) {
+  Still still;
+  still.start.clock.time = 3;
+  still.start.maps.peak_speed[17] = 8;
+  StandingStill solver = still.make();
+  solver.set_next_event(4.5);
+  const SolverState state = solver.state();
+  EXPECT_EQ(state.clock.time, 3);
+  EXPECT_EQ(state.clock.next_event, 4.5);
+  EXPECT_EQ(solver.clock().next_event, 4.5);
+  EXPECT_EQ(state.maps.peak_speed, still.start.maps.peak_speed);
+  EXPECT_EQ(solver.particle_count(), static_cast<int>(still.scene.points.size()));
+  EXPECT_EQ(std::accumulate(state.points.volume.begin(), state.points.volume.end(), 0.0), 24);
 }
 
-TEST(BedOn, takes_no_memory_where_the_bed_is_the_same_everywhere) {
-  const BedOn<double, CpuDevice> bed(CpuDevice::make(), {FrictionLaw::coulomb, {{0.5}}}, {});
-  EXPECT_EQ(bed.bytes(), 0u);
-  EXPECT_EQ(bed.view().at(1000).numbers[0], 0.5);
+TEST(PointSolver, measures_the_whole_mass) {
+  const Still still;
+  StandingStill solver = still.make();
+  EXPECT_NEAR(solver.energies().volume, 24, 1e-12);
+  const std::vector<double> thickness = solver.thickness();
+  EXPECT_NEAR(4 * std::accumulate(thickness.begin(), thickness.end(), 0.0), 24, 1e-12);
+  EXPECT_EQ(solver.layer_mass(), 1500 * 0.5);
+  EXPECT_EQ(solver.full_base(), Quadratic::edge_share * 1500 * 2 * 2 * 0.5);
+}
+
+TEST(PointSolver, measures_volumes_over_columns_where_densities_differ_alone) {
+  Still still;
+  EXPECT_EQ(still.make().columns(), nullptr);
+  still.settings.materials.densities_differ = true;
+  EXPECT_NE(still.make().columns(), nullptr);
+}
+
+TEST(PointSolver, lets_the_grid_meet_the_walls_of_a_time) {
+  const Still still;
+  StandingStill solver = still.make();
+  EXPECT_EQ(solver.set_walls<double>(0.5).count, 0);
+  EXPECT_EQ(solver.walls().west, -WallNodes::far);
+  EXPECT_EQ(solver.set_walls<double>(1.5).count, 1);
+  EXPECT_EQ(solver.walls().west, 3);  // 7 m, nodes at 1 m, 3 m, ...
+}
+
+TEST(PointSolver, lists_its_memory_by_owner) {
+  const Still still;
+  const MemoryShares shares = still.make().memory();
+  ASSERT_GE(shares.size(), 3u);
+  EXPECT_EQ(shares[0].first, "points");
+  EXPECT_EQ(shares[1].first, "grid");
+  EXPECT_EQ(shares[2].first, "maps and records");
+  EXPECT_GE(shares[2].second, 4 * 120 * sizeof(double));
 }
 
 }  // namespace
