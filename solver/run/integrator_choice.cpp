@@ -9,12 +9,15 @@
 namespace talus::solver {
 namespace {
 
-constexpr double flow_cfl = 10;    // CFL steps of an implicit step in a flow
-constexpr double still = 1e-3;     // cells that nothing moves further than in such a step: at rest, or nearly
-constexpr double reach = 0.25;     // cells that a point may move in an implicit step
-constexpr double least_cfl = 3;    // shorter implicit steps cannot pay
-constexpr double first_price = 3;  // batches of explicit steps that the first trial is taken to cost
-constexpr double hopeless = 4;     // the trial ends after a first step that cost this many times as much
+constexpr double flow_cfl = 10;       // CFL steps of an implicit step in a flow
+constexpr double still = 1e-3;        // cells that nothing moves further than in such a step: at rest, or nearly
+constexpr double reach = 0.25;        // cells that a point may move in an implicit step
+constexpr double least_cfl = 3;       // shorter implicit steps cannot pay
+constexpr double first_price = 3;     // batches of explicit steps that the first trial is taken to cost
+constexpr double hopeless = 4;        // the trial ends after a first step that cost this many times as much
+constexpr double trial_share = 0.05;  // of the wall time that trials may take
+constexpr double better = 0.9;        // of the present cost that an integrator may have to take over
+constexpr double most_patience = 16;  // longer waits between trials than so many times the usual one are not made
 
 const char* name_of(Integrator i) { return i == Integrator::explicit_ ? "explicit" : "newmark"; }
 

@@ -38,7 +38,6 @@ class IntegratorChoice {
   std::string take_decision();
 
  private:
-  static constexpr double trial_share = 0.05, better = 0.9, most_patience = 16;
   struct Cost {
     double simulated = 0, wall = 0;
     /// The method adds a batch; `memory` is the weight that earlier ones keep [-].

@@ -4,6 +4,7 @@
 #include "solver/linear/direct/cholesky.hpp"
 #include "solver/linear/direct/cusolver.hpp"
 #include "solver/linear/direct/elimination_order.hpp"
+#include "solver/linear/direct/renumbered_matrix.hpp"
 
 namespace talus {
 namespace {
@@ -31,10 +32,10 @@ class GpuCholesky final : public Cholesky<GpuDevice> {
     if (pattern_ != a.pattern) analyse(a);
     if (!factorise(a)) return false;
     for (auto* v : {&right_, &solution_, &x}) v->resize(static_cast<std::size_t>(a.rows));
-    gather(device_, b.data(), order_.data(), right_.data(), a.rows);
+    matrix_.to_order(b, right_, a.rows);
     check(cusolver().solve(handle_, a.rows, right_.data(), solution_.data(), info_, workspace_.data()),
           "cusolverSpDcsrcholSolve");
-    scatter(device_, solution_.data(), order_.data(), x.data(), a.rows);
+    matrix_.from_order(solution_, x, a.rows);
     return true;
   }
 
@@ -77,13 +78,8 @@ class GpuCholesky final : public Cholesky<GpuDevice> {
 
   void renumber_matrix(const CsrMatrix<GpuDevice>& a) {
     const HostPattern host{a.starts.download(), a.columns.download()};
-    const Renumbered r = renumber(host, order_nodes(graph_of_nodes(host)));
-    starts_.upload(r.pattern.starts);
-    columns_.upload(r.pattern.columns);
-    source_.upload(r.source);
-    order_.upload(r.order);
-    values_.resize(r.source.size());
-    fill_values(a);
+    matrix_.take(host, order_nodes(graph_of_nodes(host)));
+    matrix_.fill(a);
   }
 
   void analyse(const CsrMatrix<GpuDevice>& a) {
@@ -93,11 +89,11 @@ class GpuCholesky final : public Cholesky<GpuDevice> {
     synchronise(device_);  // what cuSOLVER reads is there, whatever streams it uses within
     const Cusolver& c = cusolver();
     check(c.create_info(&info_), "cusolverSpCreateCsrcholInfo");
-    check(c.analyse(handle_, a.rows, a.entries(), descriptor_, starts_.data(), columns_.data(), info_),
+    check(c.analyse(handle_, a.rows, a.entries(), descriptor_, matrix_.starts(), matrix_.columns(), info_),
           "cusolverSpXcsrcholAnalysis");
     std::size_t internal = 0, scratch = 0;
-    check(c.sizes(handle_, a.rows, a.entries(), descriptor_, values_.data(), starts_.data(), columns_.data(), info_,
-                  &internal, &scratch),
+    check(c.sizes(handle_, a.rows, a.entries(), descriptor_, matrix_.values(), matrix_.starts(), matrix_.columns(),
+                  info_, &internal, &scratch),
           "cusolverSpDcsrcholBufferInfo");
     held_ = static_cast<double>(internal) + static_cast<double>(scratch);
     const double free = limit_ > 0 ? limit_ : free_memory(device_) + static_cast<double>(workspace_.bytes());
@@ -107,11 +103,11 @@ class GpuCholesky final : public Cholesky<GpuDevice> {
   }
 
   bool factorise(const CsrMatrix<GpuDevice>& a) {
-    fill_values(a);
+    matrix_.fill(a);
     synchronise(device_);
     const Cusolver& c = cusolver();
-    const int status = c.factorise(handle_, a.rows, a.entries(), descriptor_, values_.data(), starts_.data(),
-                                   columns_.data(), info_, workspace_.data());
+    const int status = c.factorise(handle_, a.rows, a.entries(), descriptor_, matrix_.values(), matrix_.starts(),
+                                   matrix_.columns(), info_, workspace_.data());
     if (status == Cusolver::out_of_memory) refuse(free_memory(device_));
     check(status, "cusolverSpDcsrcholFactor");
     int pivot = -1;
@@ -119,14 +115,10 @@ class GpuCholesky final : public Cholesky<GpuDevice> {
     return pivot < 0;
   }
 
-  void fill_values(const CsrMatrix<GpuDevice>& a) {
-    gather(device_, a.values.data(), source_.data(), values_.data(), a.entries());
-  }
-
   [[noreturn]] void refuse(double free) {
-    const double wanted = held_;
+    const double needed = held_;
     forget();
-    refuse_matrix("the factor of the matrix would take", wanted, free, true);
+    refuse_matrix("the factor of the matrix would take", needed, free, true);
   }
 
   GpuDevice device_;
@@ -136,8 +128,8 @@ class GpuCholesky final : public Cholesky<GpuDevice> {
   Cusolver::Handle handle_ = nullptr;
   Cusolver::Descriptor descriptor_ = nullptr;  // as made: a general matrix, indices from 0
   Cusolver::Info info_ = nullptr;
-  Buffer<int, GpuDevice> starts_{device_}, columns_{device_}, source_{device_}, order_{device_};
-  Buffer<double, GpuDevice> values_{device_}, right_{device_}, solution_{device_};
+  RenumberedMatrix<GpuDevice> matrix_{device_};
+  Buffer<double, GpuDevice> right_{device_}, solution_{device_};
   Buffer<unsigned char, GpuDevice> workspace_{device_};
 };
 
