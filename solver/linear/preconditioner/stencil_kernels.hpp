@@ -224,47 +224,48 @@ struct CorrectColumns {
   }
 };
 
+/// A vector's way between two grids of (T20), one of which has the columns of the other or every second one.
+template <class Real>
+struct GridTransfer {
+  GridView<Real> grid;      ///< the vector comes from its nodes
+  TwoScale x, y;            ///< between the columns of both, along x and y
+  const NodePlace* places;  ///< of the rows that the vector goes to
+  const int* node_of;       ///< the nodes of these rows
+  const Vec3<double>* from;
+  Vec3<double>* to;
+};
+
 /// One thread: one coarse row. It sums the fine vector with the weights of (T20).
 template <class Real>
 struct RestrictRows {
-  GridView<Real> fine;
-  TwoScale x, y;
-  const NodePlace* places;
-  const int* node_of;
-  const Vec3<double>* from;
-  Vec3<double>* to;
+  GridTransfer<Real> fine;
   TALUS_HD void operator()(int row) const {
-    const NodePlace at = places[row];
+    const NodePlace at = fine.places[row];
     Vec3<double> sum{};
-    for (int b = 0; b < y.children(); ++b) {
-      for (int a = 0; a < x.children(); ++a) {
-        const int n = fine.find(x.first(at.i) + a, y.first(at.j) + b, at.k);
-        if (n >= 0) sum += from[n] * (x.weight(a) * y.weight(b));
+    for (int b = 0; b < fine.y.children(); ++b) {
+      for (int a = 0; a < fine.x.children(); ++a) {
+        const int n = fine.grid.find(fine.x.first(at.i) + a, fine.y.first(at.j) + b, at.k);
+        if (n >= 0) sum += fine.from[n] * (fine.x.weight(a) * fine.y.weight(b));
       }
     }
-    to[node_of[row]] = sum;
+    fine.to[fine.node_of[row]] = sum;
   }
 };
 
 /// One thread: one fine row. It adds the coarse vector with the weights of (T20).
 template <class Real>
 struct ProlongRows {
-  GridView<Real> coarse;
-  TwoScale x, y;
-  const NodePlace* places;
-  const int* node_of;
-  const Vec3<double>* from;
-  Vec3<double>* to;
+  GridTransfer<Real> coarse;
   TALUS_HD void operator()(int row) const {
     int i[2], j[2];
     double wx[2], wy[2];
-    const NodePlace at = places[row];
-    const int across = x.parents(at.i, i, wx), along = y.parents(at.j, j, wy);
+    const NodePlace at = coarse.places[row];
+    const int across = coarse.x.parents(at.i, i, wx), along = coarse.y.parents(at.j, j, wy);
     Vec3<double> sum{};
     for (int b = 0; b < along; ++b) {
-      for (int a = 0; a < across; ++a) sum += from[coarse.find(i[a], j[b], at.k)] * (wx[a] * wy[b]);
+      for (int a = 0; a < across; ++a) sum += coarse.from[coarse.grid.find(i[a], j[b], at.k)] * (wx[a] * wy[b]);
     }
-    to[node_of[row]] += sum;
+    coarse.to[coarse.node_of[row]] += sum;
   }
 };
 

@@ -123,15 +123,15 @@ void StencilLevel<Real, Device, Shape>::restrict_from(const StencilLevel& fine, 
   to.fill_zero();
   for_each(
       device_, matrix_.rows(),
-      RestrictRows<Real>{fine.columns_.grid, x, y, places_.data(), matrix_.view().node_of, from.data(), to.data()});
+      RestrictRows<Real>{{fine.columns_.grid, x, y, places_.data(), matrix_.view().node_of, from.data(), to.data()}});
 }
 
 template <class Real, class Device, class Shape>
 void StencilLevel<Real, Device, Shape>::prolong_to(StencilLevel& fine, TwoScale x, TwoScale y,
                                                    const NodeVector<Device>& from, NodeVector<Device>& to) {
-  for_each(
-      device_, fine.matrix_.rows(),
-      ProlongRows<Real>{columns_.grid, x, y, fine.places_.data(), fine.matrix_.view().node_of, from.data(), to.data()});
+  for_each(device_, fine.matrix_.rows(),
+           ProlongRows<Real>{
+               {columns_.grid, x, y, fine.places_.data(), fine.matrix_.view().node_of, from.data(), to.data()}});
 }
 
 template <class Real, class Device, class Shape>

@@ -1,9 +1,8 @@
 // A solver of implicit steps as it is made for a precision and a shape: a body far above the ground falls freely.
 #include "solver/implicit/make_implicit_solver.hpp"
 
-#include "solver/options/solve.hpp"
 #include "solver/scene/settings.hpp"
-#include "tests/solver/scenes.hpp"
+#include "tests/solver/free_fall.hpp"
 
 namespace talus::solver::testing {
 namespace {
@@ -12,21 +11,15 @@ class ImplicitSolvers : public InEachPlace {
  protected:
   template <class Real, class Shape>
   static void fall(On on, double rounding) {
-    Domain d = ground(12, 12, 1.0, 1.0, [](double, double) { return 0.0; });
-    fill(d, {4, 8, 4, 8, 5, 8});
     SolveOptions o;
     o.integrator = Integrator::newmark;
     o.implicit.step = 0.05;
     o.shape = kind_of<Shape>;
-    const Scene scene = make_scene(d, o);
+    const Scene scene = falling_body(o);
     const SolverSettings settings = make_settings(o, scene.grid);
     const auto solver = make_implicit_solver<Real, Shape>(scene, settings.common, settings.implicit, make_device(on),
                                                           first_state(scene, settings.common));
-    EXPECT_EQ(solver->particle_count(), static_cast<int>(scene.points.size()));
-    run_to(*solver, 0.2);
-    const Centre c = centre(*solver, scene);
-    EXPECT_NEAR(c.speed, 9.81 * 0.2, rounding * 9.81 * 0.2);
-    EXPECT_NEAR(c.x, 6, 6 * rounding);
+    expect_free_fall(*solver, scene, rounding);
   }
 };
 

@@ -49,10 +49,10 @@ TEST(StencilKernels, restrict_with_the_transpose_of_what_they_prolong_with) {
     const TwoScale y{TwoScale::hats};
     const auto fine = random_vectors(SmallGrid::nodes, 1), coarse = random_vectors(SmallGrid::nodes, 2);
     std::vector<Vec3<double>> down(SmallGrid::nodes), up(SmallGrid::nodes);
-    const RestrictRows<double> restricts{grids.fine.view(), x,           y,          grids.places.data(),
-                                         grids.rows.data(), fine.data(), down.data()};
-    const ProlongRows<double> prolongs{grids.coarse.view(), x,        y, grids.places.data(), grids.rows.data(),
-                                       coarse.data(),       up.data()};
+    const RestrictRows<double> restricts{
+        {grids.fine.view(), x, y, grids.places.data(), grids.rows.data(), fine.data(), down.data()}};
+    const ProlongRows<double> prolongs{
+        {grids.coarse.view(), x, y, grids.places.data(), grids.rows.data(), coarse.data(), up.data()}};
     for (int n = 0; n < SmallGrid::nodes; ++n) {
       restricts(n);
       prolongs(n);
@@ -68,8 +68,8 @@ TEST(StencilKernels, hold_a_constant_exactly_on_the_finer_grid) {
   std::vector<Vec3<double>> up(SmallGrid::nodes);
   const TwoScale splines{TwoScale::splines};
   for (int n = 0; n < SmallGrid::nodes; ++n)
-    ProlongRows<double>{grids.coarse.view(), splines,     splines,  grids.places.data(),
-                        grids.rows.data(),   ones.data(), up.data()}(n);
+    ProlongRows<double>{
+        {grids.coarse.view(), splines, splines, grids.places.data(), grids.rows.data(), ones.data(), up.data()}}(n);
   for (const Vec3<double>& v : up) EXPECT_EQ(v.z, 3);  // weights of sixteenths
 }
 
