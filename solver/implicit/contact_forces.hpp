@@ -75,17 +75,17 @@ template <class Real>
 TALUS_HD Vec3<double> contact_force(const ContactView<Real>& contacts, const ContactNumbers& numbers, int c,
                                     const Vec3<double>& u, Sym3<double>* stiffness) {
   const double k = numbers.spring[c];
-  const Vec3<double> n = widen(contacts.normal[c]), wanted = contacts.force[c] - u * k;
-  const double push = dot(wanted, n);
+  const Vec3<double> n = widen(contacts.normal[c]), required = contacts.force[c] - u * k;
+  const double push = dot(required, n);
   if (push < 0) {
     if (stiffness) *stiffness = {};
     return {};
   }
-  const Vec3<double> along = wanted - n * push;
+  const Vec3<double> along = required - n * push;
   const double size = length(along), limit = numbers.limit[c];
   if (size <= limit) {
     if (stiffness) *stiffness = Sym3<double>{k, k, k, 0, 0, 0};
-    return wanted;
+    return required;
   }
   const Vec3<double> t = along * (1 / size);
   if (stiffness) {

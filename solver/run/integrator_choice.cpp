@@ -34,11 +34,11 @@ void IntegratorChoice::measure(const BatchCost& batch) {
   step_.wave = batch.wave_step;
   const double flow = flow_cfl * batch.wave_step;
   const double motion = batch.speed > 0 ? reach * cell_ / batch.speed : largest_step_;
-  step_.wanted = std::min({batch.speed * flow > still * cell_ ? flow : largest_step_, motion, largest_step_});
+  step_.suitable = std::min({batch.speed * flow > still * cell_ ? flow : largest_step_, motion, largest_step_});
 }
 
 bool IntegratorChoice::worth_trying() const {
-  if (current_ == Integrator::explicit_ && step_.wanted < least_cfl * step_.wave) return false;
+  if (current_ == Integrator::explicit_ && step_.suitable < least_cfl * step_.wave) return false;
   const bool changed = trial_.speed < 0 || speed_ > 4 * trial_.speed || speed_ < 0.25 * trial_.speed;
   const double price = trial_.wall > 0 ? trial_.wall : first_price * trial_.wall_since / std::max(batches_, 1);
   return trial_.wall_since > price / trial_share * (changed ? 1 : trial_.patience);
@@ -47,7 +47,7 @@ bool IntegratorChoice::worth_trying() const {
 void IntegratorChoice::change_to(Integrator to) {
   current_ = to;
   batches_ = 0;
-  if (to == Integrator::newmark) step_.implicit = step_.wanted;
+  if (to == Integrator::newmark) step_.implicit = step_.suitable;
 }
 
 void IntegratorChoice::begin_trial() {
@@ -94,8 +94,9 @@ bool IntegratorChoice::note(const BatchCost& batch) {
     begin_trial();
     return true;
   }
-  if (current_ == Integrator::newmark && (step_.wanted > 2 * step_.implicit || step_.wanted < 0.5 * step_.implicit)) {
-    step_.implicit = step_.wanted;
+  if (current_ == Integrator::newmark &&
+      (step_.suitable > 2 * step_.implicit || step_.suitable < 0.5 * step_.implicit)) {
+    step_.implicit = step_.suitable;
     return true;
   }
   return false;

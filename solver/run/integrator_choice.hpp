@@ -66,7 +66,7 @@ class IntegratorChoice {
   /// The lengths of steps [s].
   struct StepLengths {
     double implicit = 0;  ///< taken now
-    double wanted = 0;    ///< that the flow asks for
+    double suitable = 0;  ///< that the flow asks for
     double wave = 0;      ///< the CFL step
   };
 

@@ -78,14 +78,14 @@ class CpuCholesky final : public Cholesky<CpuDevice> {
     pattern_ = 0;
     cholmod_free_factor(&factor_, &common_);
     factor_ = cholmod_analyze(&matrix, &common_);
-    const double wanted = factor_ ? factor_bytes() : 8 * common_.lnz, free = limit_ > 0 ? limit_ : free_memory(device_);
-    if (!factor_ || wanted > free) refuse(wanted, free);
+    const double needed = factor_ ? factor_bytes() : 8 * common_.lnz, free = limit_ > 0 ? limit_ : free_memory(device_);
+    if (!factor_ || needed > free) refuse(needed, free);
   }
 
-  [[noreturn]] void refuse(double wanted, double free) {
+  [[noreturn]] void refuse(double needed, double free) {
     pattern_ = 0;
     cholmod_free_factor(&factor_, &common_);
-    refuse_matrix(too_large, wanted, free, false);
+    refuse_matrix(too_large, needed, free, false);
   }
 
   CpuDevice device_;

@@ -9,10 +9,10 @@ namespace talus::solver {
 
 template <class Real, class Device, class Shape>
 void CholeskySolver<Real, Device, Shape>::check_memory(int nodes) const {
-  const double wanted = assembly_bytes<Real, Shape>(list_->count(), nodes);
+  const double needed = assembly_bytes<Real, Shape>(list_->count(), nodes);
   const double free = limit_ > 0 ? limit_ : free_memory(device_) + static_cast<double>(bytes());
-  if (wanted > free || !assembly_countable<Real, Shape>(list_->count(), nodes))
-    refuse_matrix("the triples and the matrix would take", wanted, free, Device::is_gpu);
+  if (needed > free || !assembly_countable<Real, Shape>(list_->count(), nodes))
+    refuse_matrix("the triples and the matrix would take", needed, free, Device::is_gpu);
 }
 
 template <class Real, class Device, class Shape>
