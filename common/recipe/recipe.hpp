@@ -85,17 +85,32 @@ void choice(Visitor& v, std::string_view key, Enum& value,
   value = values.at(static_cast<std::size_t>(index));
 }
 
-/// Items of an array of tables; T has describe(Visitor&).
-template <class T>
-void list(Visitor& v, std::string_view key, std::vector<T>& items, std::string_view help) {
+/// A sub-table [..key], whose keys options.describe(v, others...) declares; `others` is what needs() look at besides,
+/// or what messages call the table.
+template <class T, class... Others>
+void table(Visitor& v, std::string_view key, T& options, std::string_view help, const Others&... others) {
+  v.enter(key, help);
+  options.describe(v, others...);
+  v.leave();
+}
+
+/// Items of an array of tables; describe(item, number) declares the keys of each, the number counted from 0.
+template <class T, class Describe>
+void list(Visitor& v, std::string_view key, std::vector<T>& items, std::string_view help, const Describe& describe) {
   const std::size_t count = v.begin_list(key, items.size(), help);
   items.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     v.begin_item(i);
-    items[i].describe(v);
+    describe(items[i], i);
     v.end_item();
   }
   v.end_list();
+}
+
+/// Items that need nothing of others; T has describe(Visitor&).
+template <class T>
+void list(Visitor& v, std::string_view key, std::vector<T>& items, std::string_view help) {
+  list(v, key, items, help, [&](T& item, std::size_t) { item.describe(v); });
 }
 
 /// A key that was renamed and kept its value: v.number("density_kg_m3", ...); renamed(v, "density", "density_kg_m3").

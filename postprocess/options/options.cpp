@@ -133,10 +133,9 @@ void Options::describe(recipe::Visitor& v) {
          "centre of mass");
   recipe::choice(v, "avaframe_format", avaframe_format, {{"tif", AvaFrameFormat::tif}, {"asc", AvaFrameFormat::asc}},
                  "format of these; every version of AvaFrame, and ISeeSnow, reads asc");
-  v.enter("survey",
-          "what the run is scored against: thickness, or difference, or after_dem, or polygon; all empty: no scores");
-  survey.describe(v);
-  v.leave();
+  recipe::table(
+      v, "survey", survey,
+      "what the run is scored against: thickness, or difference, or after_dem, or polygon; all empty: no scores");
 }
 
 void Options::check(std::vector<Fault>& faults) const {

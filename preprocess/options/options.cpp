@@ -48,10 +48,8 @@ void SourceOptions::describe(recipe::Visitor& v) {
   v.optional_number("seed_x_m", seed_x, recipe::any,
                     "take the region that holds this point (its easting); else the largest by volume");
   v.optional_number("seed_y_m", seed_y, recipe::any, "its northing");
-  v.enter("sliding_surface",
-          "(5) how deep the surface lies that is computed under the polygon: give one of the first three");
-  sliding_surface.describe(v);
-  v.leave();
+  recipe::table(v, "sliding_surface", sliding_surface,
+                "(5) how deep the surface lies that is computed under the polygon: give one of the first three");
 }
 
 void CoregistrationOptions::describe(recipe::Visitor& v) {
@@ -187,38 +185,22 @@ void Options::describe(recipe::Visitor& v) {
       "what the heights of before_dem are in, where it differs from the others; same = as vertical_unit says");
   describe_unit(v, "after_vertical_unit", after_vertical_unit,
                 "what the heights of after_dem are in, where it differs from the others; same = as vertical_unit says");
-  v.enter("coregistration", "for (1): after_dem brought onto before_dem");
-  coregistration.describe(v);
-  v.leave();
-  v.enter("difference", "for (1): after_dem less before_dem, and from where on it is believed");
-  difference.describe(v);
-  v.leave();
-  v.enter("deposit", "for (1): what arrived, written for the score");
-  deposit.describe(v);
-  v.leave();
-  v.enter("source", "what fails, for (1), (2) and (5)");
-  source.describe(v);
-  v.leave();
-  v.enter("grid", "background grid and material points");
-  grid.describe(v);
-  v.leave();
-  v.enter("voids", "cells without elevation inside the elevation models, and cells that stand out");
-  voids.describe(v);
-  v.leave();
+  recipe::table(v, "coregistration", coregistration, "for (1): after_dem brought onto before_dem");
+  recipe::table(v, "difference", difference, "for (1): after_dem less before_dem, and from where on it is believed");
+  recipe::table(v, "deposit", deposit, "for (1): what arrived, written for the score");
+  recipe::table(v, "source", source, "what fails, for (1), (2) and (5)");
+  recipe::table(v, "grid", grid, "background grid and material points");
+  recipe::table(v, "voids", voids, "cells without elevation inside the elevation models, and cells that stand out");
   recipe::list(v, "release", release, "what is released onto base_dem; may be repeated");
   recipe::list(
       v, "erodible", erodible,
       "a layer of ground that the slide can take along: material points with a strength of their own; may be repeated");
-  v.enter("laboratory", "(4) a plane instead of elevation models, with [[preprocess.box]]");
-  laboratory.describe(v);
-  v.leave();
+  recipe::table(v, "laboratory", laboratory, "(4) a plane instead of elevation models, with [[preprocess.box]]");
   recipe::list(v, "box", box, "a block of material on or above that plane; may be repeated");
   recipe::list(
       v, "obstacle", obstacle,
       "a body in the way, from polygons: written into OUT/obstacles.vdb for [[solve.obstacle]]; may be repeated");
-  v.enter("bed", "friction of the bed from place to place");
-  bed.describe(v);
-  v.leave();
+  recipe::table(v, "bed", bed, "friction of the bed from place to place");
 }
 
 namespace {

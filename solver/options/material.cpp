@@ -57,9 +57,7 @@ bool MassOptions::any_material(const std::function<bool(const MaterialOptions&)>
 
 void MassOptions::describe(recipe::Visitor& v) {
   recipe::list(v, "part", parts, "a release of another material than [solve.material]");
-  v.enter("material", "the sliding mass");
-  material.describe(v);
-  v.leave();
+  recipe::table(v, "material", material, "the sliding mass");
 }
 
 void MassOptions::check(std::vector<Fault>& faults) const {

@@ -9,18 +9,14 @@ void SolveOptions::describe(recipe::Visitor& v) {
   SchemeOptions::describe(v);
   GravityOptions::describe(v);
   OutputOptions::describe(v, *this);
-  v.enter("implicit", "implicit steps");
-  implicit.describe(v, *this);
-  v.leave();
+  recipe::table(v, "implicit", implicit, "implicit steps", *this);
   recipe::list(v, "wall", walls, "plane walls, gates");
   need_few(v, walls);
   recipe::list(v, "obstacle", obstacles, "bodies in the way: walls, barriers, buildings");
   need_names(v, "obstacle", "its forces are recorded under its name", obstacles);
   recipe::list(v, "load", loads, "forces on parts of the mass");
   MassOptions::describe(v);
-  v.enter("base", "the bed under it");
-  base.describe(v);
-  v.leave();
+  recipe::table(v, "base", base, "the bed under it");
 }
 
 void SolveOptions::check(std::vector<Fault>& faults) const {

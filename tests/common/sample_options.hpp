@@ -2,6 +2,7 @@
 #pragma once
 
 #include <numbers>
+#include <string>
 
 #include "common/recipe/recipe.hpp"
 
@@ -21,6 +22,20 @@ struct Release {
   bool operator==(const Release&) const = default;
 };
 
+struct SampleMaterial {
+  double friction = 25;
+  double tension = recipe::infinity;
+  void describe(recipe::Visitor& v, const double& density) {
+    v.number("friction_angle_deg", friction, {0, 90, false, true}, "internal friction");
+    recipe::renamed(v, "friction_angle_rad", "friction_angle_deg",
+                    [](double rad) { return rad / std::numbers::pi * 180; });
+    v.number("tension_pa", tension, recipe::not_negative, "tension cut-off");
+    v.needs(density < 1e5 || friction > 0,
+            {"[solve.material] friction_angle_deg = 0 with so large a density", "nothing would hold it", "Raise it"});
+  }
+  bool operator==(const SampleMaterial&) const = default;
+};
+
 struct SampleOptions {
   double density = 2000;
   std::optional<double> seed_x;
@@ -31,19 +46,13 @@ struct SampleOptions {
   std::vector<double> times{0, 2.5, 1e-7};
   std::vector<int> points_per_cell{2, 2, 2};
   Shape shape = Shape::quadratic;
-  double friction = 25;
-  double tension = recipe::infinity;
+  SampleMaterial material;
   std::vector<Release> releases;
 
   void describe(recipe::Visitor& v) {
     v.number("density_kg_m3", density, recipe::positive, "density of the moving mass");
     v.optional_number("seed_x_m", seed_x, recipe::any, "a point inside the source");
-    v.enter("material", "what moves");
-    v.number("friction_angle_deg", friction, {0, 90, false, true}, "internal friction");
-    recipe::renamed(v, "friction_angle_rad", "friction_angle_deg",
-                    [](double rad) { return rad / std::numbers::pi * 180; });
-    v.number("tension_pa", tension, recipe::not_negative, "tension cut-off");
-    v.leave();
+    recipe::table(v, "material", material, "what moves", density);
     v.integer("steps", steps, {1, 1000}, "how many");
     v.flag("verbose", verbose, "say more");
     recipe::renamed(v, "log", "verbose");
@@ -58,7 +67,11 @@ struct SampleOptions {
                    "shape functions");
     v.needs(shape != Shape::cubic || steps > 1,
             {"[solve] shape = \"cubic\" with steps = 1", "it looks back two steps", "Take shape = \"quadratic\""});
-    recipe::list(v, "release", releases, "what fails; several allowed");
+    recipe::list(v, "release", releases, "what fails; several allowed", [&](Release& release, std::size_t number) {
+      release.describe(v);
+      v.needs(release.thickness < 1000,
+              {"[[solve.release]] number " + std::to_string(number + 1), "no release is so thick", "Is it in metres?"});
+    });
   }
   void check(std::vector<Fault>& faults) const {
     if (points_per_cell.size() != 3)

@@ -8,7 +8,7 @@ unit='_(kg_m3|m_s2|m_s|m3|m2|m|s|deg|Pa|N)$'
 described() {
   local file=$1 at text
   local visit='v\.(number|optional_number|integer|flag|text|path|numbers|integers)\('
-  local call="($visit|(choice|list)\\(\\s*v,)"'\s*"[A-Za-z0-9_]+",\s*[A-Za-z_][A-Za-z0-9_.]*'
+  local call="($visit|(choice|list|table)\\(\\s*v,)"'\s*"[A-Za-z0-9_]+",\s*[A-Za-z_][A-Za-z0-9_.]*'
   { grep -zobP "$call" "$file" || true; } | tr '\n' ' ' | tr '\0' '\n' | while IFS=: read -r at text; do
     printf '%s %s\n' "$(($(head -c "$at" "$file" | wc -l) + 1))" \
       "$(sed -E 's/^(v\.)?([a-z_]+)\( *(v, *)?"([A-Za-z0-9_]+)", *([A-Za-z0-9_.]+) *$/\2 \4 \5/' <<<"$text")"

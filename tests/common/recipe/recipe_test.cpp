@@ -67,8 +67,8 @@ anything = "is another stage's business"
   EXPECT_EQ(options.times, (std::vector<double>{1, 2.5}));
   EXPECT_EQ(options.points_per_cell, (std::vector<int>{1, 2, 3}));
   EXPECT_EQ(options.shape, Shape::linear);
-  EXPECT_EQ(options.friction, 0);
-  EXPECT_EQ(options.tension, recipe::infinity);
+  EXPECT_EQ(options.material.friction, 0);
+  EXPECT_EQ(options.material.tension, recipe::infinity);
   ASSERT_EQ(options.releases.size(), 2u);
   EXPECT_EQ(options.releases[0].name, "A");
   EXPECT_EQ(options.releases[0].thickness, 2);
@@ -235,6 +235,13 @@ TEST_F(RecipeFile, refuses_what_a_key_needs_and_does_not_have) {
   EXPECT_EQ(faults("[solve]\nverbose = true\nsteps = 1\nshape = \"cubic\""),
             "[solve] verbose = true with steps = 1 (there is nothing to tell). Take more steps, or leave verbose out\n"
             "[solve] shape = \"cubic\" with steps = 1 (it looks back two steps). Take shape = \"quadratic\"");
+}
+
+TEST_F(RecipeFile, tells_a_table_of_the_others_and_an_entry_of_its_number) {
+  EXPECT_EQ(faults("[solve]\ndensity_kg_m3 = 1e6\n[solve.material]\nfriction_angle_deg = 0.0"),
+            "[solve.material] friction_angle_deg = 0 with so large a density (nothing would hold it). Raise it");
+  EXPECT_EQ(faults("[[solve.release]]\nthickness_m = 1.0\n[[solve.release]]\nthickness_m = 1e3"),
+            "[[solve.release]] number 2 (no release is so thick). Is it in metres?");
 }
 
 TEST_F(RecipeFile, looks_at_needs_only_where_every_key_is_sound) {

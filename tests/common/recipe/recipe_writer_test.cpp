@@ -69,8 +69,8 @@ TEST(RecipeWriter, options_in_use_read_back_exactly) {
   options.terrain = "/data/a \"b\".tif";
   options.times = {std::numeric_limits<double>::denorm_min(), 1e300};
   options.shape = test::Shape::cubic;
-  options.friction = 35;
-  options.tension = 0;
+  options.material.friction = 35;
+  options.material.tension = 0;
   options.releases = {{"A", 1.5, "/a.gpkg"}, {"B", 2, ""}};
   EXPECT_EQ(read_back(to_toml(options, "solve", false)), options);
   EXPECT_EQ(read_back(to_toml(options, "solve", true)), options);
@@ -95,7 +95,7 @@ TEST(UsedRecipe, marks_what_was_changed_from_its_default_and_nothing_else) {
   EXPECT_EQ(recipe::to_used_toml(SampleOptions{}, "solve"), to_toml(SampleOptions{}, "solve", false));
   SampleOptions options;
   options.steps = 11;
-  options.friction = 30;
+  options.material.friction = 30;
   options.seed_x = 4;
   const auto text = recipe::to_used_toml(options, "solve");
   EXPECT_NE(text.find("steps = 11  # default: 10\n"), std::string::npos) << text;
