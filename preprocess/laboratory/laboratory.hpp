@@ -9,7 +9,7 @@
 
 namespace talus::preprocess {
 
-// All of these expect options that check_laboratory() found nothing in.
+// All of these expect options that recipe::find_unmet() finds nothing in.
 
 /// ground_m + slope_x (x - west_m) + slope_y (y - south_m) at the cells' centres.
 Raster laboratory_ground(const Options& options);

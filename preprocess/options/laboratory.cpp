@@ -6,6 +6,9 @@
 #include <cmath>
 #include <set>
 
+#include "preprocess/options/fault.hpp"
+#include "preprocess/options/options.hpp"
+
 namespace talus::preprocess {
 
 namespace {
@@ -15,6 +18,59 @@ constexpr double rounding = 1e-6;  // of a cell: what a length written in decima
 double layer_height(const GridOptions& grid) { return grid.layer_height > 0 ? grid.layer_height : grid.spacing; }
 
 }  // namespace
+
+namespace {
+
+/// This function declares that keys of the other ways are left out.
+void need_no_other_way(recipe::Visitor& v, const Options& o) {
+  const auto exclude = [&](bool given, const std::string& what, const char* why, const char* mend) {
+    v.needs(!o.in_laboratory() || !given, fault(what + " is given with a laboratory", why, mend));
+  };
+  const char* two_ways = "they belong to different ways";
+  const char* choose = "Leave it out, or give elevation models instead of [preprocess.laboratory]";
+  exclude(!o.before_dem.empty(), "before_dem", two_ways, choose);
+  exclude(!o.after_dem.empty(), "after_dem", two_ways, choose);
+  exclude(!o.sliding_surface.empty(), "sliding_surface", two_ways, choose);
+  exclude(!o.base_dem.empty(), "base_dem", two_ways, choose);
+  exclude(!o.source.polygon.empty(), "source.polygon", two_ways, choose);
+  exclude(!o.release.empty(), "[[preprocess.release]]", two_ways, choose);
+  exclude(!o.working_crs.empty(), "working_crs", "a laboratory lies in local coordinates", "Leave it out");
+  exclude(o.grid.west || o.grid.south || o.grid.east || o.grid.north, "grid.west_m or its like",
+          "there is no elevation model to crop", "Use laboratory.west_m, south_m, columns and rows");
+  exclude(o.grid.minimum_thickness > 0, "grid.minimum_thickness_m", "boxes are filled by a regular lattice",
+          "Leave it out");
+}
+
+}  // namespace
+
+void LaboratoryOptions::describe(recipe::Visitor& v, const Options& all) {
+  const bool ignored = !all.in_laboratory();
+  v.integer("columns", columns, recipe::not_negative, "cells from west to east; 0 = no laboratory");
+  v.integer("rows", rows, recipe::not_negative, "cells from south to north");
+  need_no_other_way(v, all);
+  v.needs(ignored || has_cells(), fault(fmt::format("laboratory.columns = {}, rows = {}", columns, rows),
+                                        "both must be positive", "Give the number of cells along x and y"));
+  v.needs(ignored || all.grid.spacing > 0,
+          fault("grid.spacing_m is not given", "a laboratory has no elevation model to take it from",
+                "Give the width of a cell in metres"));
+  v.needs(ignored || !all.box.empty(),
+          fault("a laboratory without [[preprocess.box]]", "nothing would move", "Give at least one box of material"));
+  v.number("west_m", west, recipe::any, "western edge");
+  v.number("south_m", south, recipe::any, "southern edge");
+  v.number("ground_m", ground, recipe::any, "elevation of the ground at the south-western corner");
+  v.number("slope_x", slope_x, recipe::any, "rise of the ground per metre towards the east");
+  v.number("slope_y", slope_y, recipe::any, "rise of the ground per metre towards the north");
+}
+
+void BoxOptions::describe(recipe::Visitor& v) {
+  v.text("name", name, "name of this box; empty = box-1, box-2, ...");
+  v.number("west_m", west, recipe::any, "western side");
+  v.number("east_m", east, recipe::any, "eastern side; a multiple of the points' spacing away");
+  v.number("south_m", south, recipe::any, "southern side");
+  v.number("north_m", north, recipe::any, "northern side");
+  v.number("bottom_m", bottom, recipe::not_negative, "lower side, above the ground");
+  v.number("top_m", top, recipe::not_negative, "upper side, above the ground");
+}
 
 std::array<BoxSide, 3> sides_of(const BoxOptions& b) {
   return {{{"west_m", "east_m", b.west, b.east},
@@ -44,55 +100,19 @@ MapGrid laboratory_grid(const Options& options) {
 
 namespace {
 
-class Checker {
+/// The faults that boxes have with the grid and with one another.
+class BoxChecker {
  public:
-  Checker(const Options& options, std::vector<Fault>& faults) : o_(options), faults_(faults) {}
+  BoxChecker(const Options& options, std::vector<Fault>& faults) : o_(options), faults_(faults) {}
 
   void check() {
-    other_ways();
-    if (!grid()) return;
     for (std::size_t b = 0; b < o_.box.size(); ++b) box(o_.box[b], b);
     if (faults_.empty()) overlaps();
   }
 
  private:
   void add(std::string what, std::string why, std::string mend) {
-    faults_.push_back({"[preprocess]: " + std::move(what), std::move(why), std::move(mend)});
-  }
-
-  void other_ways() {
-    const std::string mend = "Leave it out, or give elevation models instead of [preprocess.laboratory]";
-    for (const auto& [key, path] :
-         {std::pair{"before_dem", &o_.before_dem}, std::pair{"after_dem", &o_.after_dem},
-          std::pair{"sliding_surface", &o_.sliding_surface}, std::pair{"base_dem", &o_.base_dem},
-          std::pair{"source.polygon", &o_.source.polygon}}) {
-      if (!path->empty()) add(fmt::format("{} is given with a laboratory", key), "they belong to different ways", mend);
-    }
-    if (!o_.release.empty())
-      add("[[preprocess.release]] is given with a laboratory", "they belong to different ways", mend);
-    if (!o_.working_crs.empty())
-      add("working_crs is given with a laboratory", "a laboratory lies in local coordinates", "Leave it out");
-    const GridOptions& g = o_.grid;
-    if (g.west || g.south || g.east || g.north)
-      add("grid.west_m or its like is given with a laboratory", "there is no elevation model to crop",
-          "Use laboratory.west_m, south_m, columns and rows");
-    if (g.minimum_thickness > 0)
-      add("grid.minimum_thickness_m is given with a laboratory", "boxes are filled by a regular lattice",
-          "Leave it out");
-  }
-
-  bool grid() {
-    const LaboratoryOptions& lab = o_.laboratory;
-    const auto before = faults_.size();
-    if (lab.columns < 1 || lab.rows < 1)
-      add(fmt::format("laboratory.columns = {}, rows = {}", lab.columns, lab.rows), "both must be positive",
-          "Give the number of cells along x and y");
-    if (!(o_.grid.spacing > 0))
-      add("grid.spacing_m is not given", "a laboratory has no elevation model to take it from",
-          "Give the width of a cell in metres");
-    if (o_.box.empty())
-      add("a laboratory without [[preprocess.box]]", "nothing would move", "Give at least one box of material");
-    return faults_.size() == before;
+    faults_.push_back(fault(std::move(what), std::move(why), std::move(mend)));
   }
 
   void box(const BoxOptions& b, std::size_t item) {
@@ -156,6 +176,6 @@ class Checker {
 
 }  // namespace
 
-void check_laboratory(const Options& options, std::vector<Fault>& faults) { Checker(options, faults).check(); }
+void check_boxes(const Options& options, std::vector<Fault>& faults) { BoxChecker(options, faults).check(); }
 
 }  // namespace talus::preprocess

@@ -1,4 +1,4 @@
-// Laboratory scenes as the recipe gives them: the grid, the sides of the boxes, and what must hold of them.
+// Laboratory scenes as the recipe gives them: the grid, the boxes, their sides, and what must hold of them.
 #pragma once
 
 #include <array>
@@ -7,9 +7,37 @@
 #include <vector>
 
 #include "common/map/raster.hpp"
-#include "preprocess/options/options.hpp"
+#include "common/recipe/recipe.hpp"
 
 namespace talus::preprocess {
+
+struct GridOptions;
+struct Options;
+
+/// The keys of [preprocess.laboratory]: a scene without elevation models, on a level or tilted plane whose cells are as
+/// wide as grid.spacing_m.
+struct LaboratoryOptions {
+  int columns = 0, rows = 0;   ///< 0: no laboratory
+  double west = 0, south = 0;  ///< [m]
+  double ground = 0;           ///< elevation of the south-western corner [m]
+  double slope_x = 0, slope_y = 0;
+
+  /// Whether there is a laboratory.
+  bool given() const { return columns > 0 || rows > 0; }
+  /// Whether it has both columns and rows.
+  bool has_cells() const { return columns > 0 && rows > 0; }
+  /// The method declares the keys with defaults, help and what they need of `all` others.
+  void describe(recipe::Visitor& v, const Options& all);
+};
+
+/// One [[preprocess.box]]: a block of material; heights count from the ground.
+struct BoxOptions {
+  std::string name;
+  double west = 0, east = 0, south = 0, north = 0, bottom = 0, top = 0;  ///< [m]
+
+  /// The method declares the keys with defaults and help.
+  void describe(recipe::Visitor& v);
+};
 
 /// A side of a box: from where to where it reaches along x, y or height, and the keys of the recipe that say so.
 struct BoxSide {
@@ -31,9 +59,9 @@ std::array<double, 3> point_spacing(const GridOptions& grid);
 /// The grid of a laboratory, in local coordinates.
 MapGrid laboratory_grid(const Options& options);
 
-/// Adds the faults of a laboratory that the ranges of its keys do not show: no spacing, boxes that overlap, reach
-/// beyond the grid or are not filled exactly by the lattice of points, and keys that belong to elevation models.
-/// Expects grid.points_per_cell to be in order.
-void check_laboratory(const Options& options, std::vector<Fault>& faults);
+/// This function adds the faults of boxes that their keys do not show: boxes of one name, boxes that reach beyond the
+/// grid or are not filled exactly by the lattice of points, and, where `faults` is empty by then, boxes that overlap.
+/// It expects a laboratory with cells and a grid that stands alone.
+void check_boxes(const Options& options, std::vector<Fault>& faults);
 
 }  // namespace talus::preprocess

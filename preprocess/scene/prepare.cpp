@@ -263,10 +263,18 @@ Survey survey_of(const Options& given) {
   return compare_surveys(std::move(before), std::move(after), options);
 }
 
-Prepared prepare(const Options& given, Points points) {
+namespace {
+
+void require_sound(Options options) {
   std::vector<Fault> faults;
-  given.check(faults);
+  recipe::find_unmet(options, faults);
   if (!faults.empty()) throw RecipeError(std::move(faults));
+}
+
+}  // namespace
+
+Prepared prepare(const Options& given, Points points) {
+  require_sound(given);
   const Options options = with_utm_zone(given);
   SceneRasters scene = read_scene(options);
   lay_erodible(options, scene);

@@ -14,9 +14,9 @@ inline double volume_of_points(const preprocess::Prepared& prepared) {
 }
 
 /// What is wrong with options before any file is read, one fault a line.
-inline std::string faults_of(const preprocess::Options& options) {
+inline std::string faults_of(preprocess::Options options) {
   std::vector<Fault> faults;
-  options.check(faults);
+  recipe::find_unmet(options, faults);
   std::string text;
   for (const Fault& fault : faults) text += to_string(fault) + "\n";
   return text;

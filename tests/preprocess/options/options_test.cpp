@@ -151,7 +151,7 @@ TEST(options, tables_of_two_models_need_two_models) {
   options.coregistration.mode = Alignment::apply;
   options.deposit.polygon = "deposit.gpkg";
   std::vector<Fault> faults;
-  options.check(faults);
+  recipe::find_unmet(options, faults);
   ASSERT_EQ(faults.size(), 2u);
   EXPECT_NE(faults[0].what.find("coregistration.mode"), std::string::npos);
   EXPECT_NE(faults[1].what.find("deposit.polygon"), std::string::npos);

@@ -1,0 +1,62 @@
+#include "preprocess/options/grid.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "preprocess/options/fault.hpp"
+
+namespace talus::preprocess {
+
+namespace {
+
+bool is_length(double value) { return value >= 0 && std::isfinite(value); }
+
+bool three_positive(const std::vector<int>& numbers) {
+  return numbers.size() == 3 && std::all_of(numbers.begin(), numbers.end(), [](int n) { return n > 0; });
+}
+
+/// This function declares that `low` lies below `high`, where both are given; `order` says so in words.
+void need_order(recipe::Visitor& v, const char* keys, const std::optional<double>& low,
+                const std::optional<double>& high, const char* order) {
+  v.needs(!low || !high || *low < *high,
+          fault(fmt::format(fmt::runtime(keys), low.value_or(0), high.value_or(0)), order, "Swap them"));
+}
+
+}  // namespace
+
+bool GridOptions::stands_alone() const {
+  return spacing > 0 && is_length(spacing) && is_length(layer_height) && three_positive(points_per_cell);
+}
+
+void GridOptions::describe(recipe::Visitor& v) {
+  v.number("spacing_m", spacing, recipe::not_negative,
+           "horizontal spacing h of the grid; 0 = the cell of the first DEM");
+  v.needs(is_length(spacing), fault(fmt::format("grid.spacing_m = {}", spacing), "it must be positive",
+                                    "Give a length in metres, or 0 for the cell of the first DEM"));
+  v.number("layer_height_m", layer_height, recipe::not_negative,
+           "vertical spacing h_z of the grid; 0 = the horizontal one");
+  v.needs(is_length(layer_height), fault(fmt::format("grid.layer_height_m = {}", layer_height), "it must be positive",
+                                         "Give a length in metres, or 0 for the horizontal spacing"));
+  v.integers("points_per_cell", points_per_cell, recipe::Range{1, 64}, "material points along x, y and height");
+  v.needs(three_positive(points_per_cell),
+          fault(fmt::format("grid.points_per_cell = [{}]", fmt::join(points_per_cell, ", ")),
+                "it must be three positive integers: along x, y and height", "The usual is [2, 2, 2]"));
+  v.number("minimum_thickness_m", minimum_thickness, recipe::not_negative,
+           "columns thinner than this get one point (of the same volume) instead of points_per_cell");
+  v.number("jitter", jitter, recipe::Range{0, 0.5}, "random shift of the points, as a part of their spacing");
+  v.integer("jitter_seed", jitter_seed, recipe::not_negative, "seed of that shift");
+  v.optional_number("west_m", west, recipe::any, "western edge of the working grid; none = where all DEMs overlap");
+  v.optional_number("south_m", south, recipe::any, "southern edge");
+  v.optional_number("east_m", east, recipe::any, "eastern edge");
+  need_order(v, "grid.west_m = {}, east_m = {}", west, east, "west must lie west of east");
+  v.optional_number("north_m", north, recipe::any, "northern edge");
+  need_order(v, "grid.south_m = {}, north_m = {}", south, north, "south must lie south of north");
+  recipe::choice(
+      v, "edge_nodata", edge_nodata, {{"refuse", EdgeNodata::refuse}, {"outside", EdgeNodata::outside}},
+      "cells without elevation that reach the edge of the grid: refuse them, or leave them outside the domain");
+}
+
+}  // namespace talus::preprocess

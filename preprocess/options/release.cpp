@@ -1,0 +1,69 @@
+#include "preprocess/options/release.hpp"
+
+#include <fmt/format.h>
+
+#include <set>
+
+#include "preprocess/options/fault.hpp"
+#include "preprocess/options/options.hpp"
+
+namespace talus::preprocess {
+
+void ReleaseOptions::describe(recipe::Visitor& v, const std::string& place, bool needed) {
+  v.text("name", name, "name of this release; empty = release-1, release-2, ...");
+  v.path("thickness_raster", thickness_raster, "raster of thickness [m]; or polygons, below");
+  v.path("polygons", polygons, "vector file of polygons");
+  v.needs(!needed || thickness_raster.empty() != polygons.empty(),
+          fault(place + (polygons.empty() ? ": neither thickness_raster nor polygons is given"
+                                          : ": thickness_raster and polygons are both given"),
+                "a release is one or the other", "Give one; several releases are several [[preprocess.release]]"));
+  v.text("attribute", attribute, "the polygons' attribute that holds the thickness [m]");
+  v.number("thickness_m", thickness, recipe::not_negative, "one thickness for all polygons; 0 = that of the attribute");
+  v.needs(!needed || thickness_raster.empty() || !(thickness > 0),
+          fault(fmt::format("{}: thickness_m = {} beside thickness_raster", place, thickness),
+                "the raster holds the thickness", "Leave one out"));
+  v.needs(!needed || polygons.empty() || thickness != 0 || !attribute.empty(),
+          fault(place + ": polygons without thickness", "attribute is empty and thickness_m is 0",
+                "Name the attribute that holds the thickness, or give thickness_m"));
+  recipe::choice(v, "direction", direction,
+                 {{"vertical", Direction::vertical}, {"slope-normal", Direction::slope_normal}},
+                 "which way the thickness is measured");
+}
+
+void ErodibleOptions::describe(recipe::Visitor& v, const std::string& place, const Options& all) {
+  v.flag("lowering", lowering,
+         "with before_dem and after_dem: the layer is what went down outside the source; no raster, no polygons");
+  v.needs(all.in_laboratory() || !lowering || (!all.after_dem.empty() && thickness_raster.empty() && polygons.empty()),
+          fault("erodible: lowering = true beside a raster or polygons, or without after_dem",
+                "the layer is the difference of two elevation models",
+                "Give before_dem and after_dem and nothing else, or leave lowering out"));
+  ReleaseOptions::describe(v, place, !all.in_laboratory() && !lowering);
+}
+
+void describe_layers(recipe::Visitor& v, Options& o) {
+  std::set<std::string> names;
+  const auto need_own_name = [&](const std::string& place, const std::string& name) {
+    v.needs(o.in_laboratory() || name.empty() || names.insert(name).second,
+            fault(fmt::format("{}: name \"{}\" is taken", place, name), "results are told apart by name",
+                  "Name it otherwise"));
+  };
+  recipe::list(v, "release", o.release, "what is released onto base_dem; may be repeated",
+               [&](ReleaseOptions& release, std::size_t item) {
+                 const std::string place = fmt::format("release {}", item + 1);
+                 release.describe(v, place, !o.in_laboratory());
+                 need_own_name(place, release.name);
+               });
+  recipe::list(
+      v, "erodible", o.erodible,
+      "a layer of ground that the slide can take along: material points with a strength of their own; may be repeated",
+      [&](ErodibleOptions& layer, std::size_t item) {
+        const std::string place = fmt::format("erodible {}", item + 1);
+        layer.describe(v, place, o);
+        need_own_name(place, layer.name);
+      });
+  v.needs(
+      o.erodible.empty() || !o.in_laboratory(),
+      fault("erodible does not go with a laboratory", "its boxes are not read from maps", "Give the layer as a box"));
+}
+
+}  // namespace talus::preprocess

@@ -1,0 +1,53 @@
+#include "preprocess/options/source.hpp"
+
+#include "preprocess/options/fault.hpp"
+#include "preprocess/options/options.hpp"
+
+namespace talus::preprocess {
+
+void SlidingSurfaceOptions::describe(recipe::Visitor& v, const Options& all) {
+  const bool ignored = all.in_laboratory(), given = ways_given() > 0;
+  v.number("depth_m", depth, recipe::not_negative, "largest vertical depth below before_dem; 0 = not given");
+  v.number("volume_m3", volume, recipe::not_negative, "volume between it and before_dem; 0 = not given");
+  v.path("depth_points", depth_points,
+         "places where it is known (boreholes): vector points, or a table of x, y and z or depth, heights in "
+         "vertical_unit; none of the three: volume from the polygon's area (Guzzetti et al. 2009)");
+  v.needs(ignored || ways_given() <= 1,
+          fault("source.sliding_surface: more than one of depth_m, volume_m3 and depth_points is given",
+                "each says by itself how deep the surface lies", "Leave the others out"));
+  v.needs(ignored || !given || (!all.before_dem.empty() && all.after_dem.empty() && all.sliding_surface.empty()),
+          fault("source.sliding_surface is given, but not before_dem and source.polygon alone",
+                "only there is a sliding surface computed; elsewhere the files hold it",
+                "Leave it out, or leave after_dem, sliding_surface and base_dem out"));
+  recipe::choice(v, "depth_points_hold", depth_points_hold,
+                 {{"elevation", PointValue::elevation}, {"depth", PointValue::depth}},
+                 "what the z of these points is where it is not named depth: elevation of the sliding surface, or its "
+                 "vertical depth below before_dem");
+  v.number("depth_points_error_m", depth_points_error, recipe::not_negative,
+           "standard error of these points; 0 = met exactly");
+  const bool speaks_of_points = depth_points_error > 0 || depth_points_hold != PointValue::elevation;
+  v.needs(ignored || !depth_points.empty() || !speaks_of_points,
+          fault("source.sliding_surface: depth_points_hold or depth_points_error_m is given without depth_points",
+                "there are no points to read", "Give depth_points"));
+}
+
+void SourceOptions::describe(recipe::Visitor& v, const Options& all) {
+  const bool ignored = all.in_laboratory();
+  v.path("polygon", polygon,
+         "outline of the source; empty = found as the connected region of lowering; needed for (5)");
+  v.needs(ignored || polygon.empty() || all.base_dem.empty(),
+          fault("source.polygon is given with base_dem", "the releases say what fails there",
+                "Use polygons = ... in [[preprocess.release]]"));
+  v.number("threshold_m", threshold, recipe::not_negative, "lowering beyond which a cell belongs to such a region");
+  v.optional_number("seed_x_m", seed_x, recipe::any,
+                    "take the region that holds this point (its easting); else the largest by volume");
+  v.optional_number("seed_y_m", seed_y, recipe::any, "its northing");
+  v.needs(ignored || seed_x.has_value() == seed_y.has_value(),
+          fault("only one of source.seed_x_m and seed_y_m is given", "a point has both", "Give both or none"));
+  v.needs(ignored || !seed_x || polygon.empty(), fault("source.polygon and a seed point are both given",
+                                                       "the polygon already says what the source is", "Leave one out"));
+  recipe::table(v, "sliding_surface", sliding_surface,
+                "(5) how deep the surface lies that is computed under the polygon: give one of the first three", all);
+}
+
+}  // namespace talus::preprocess

@@ -1,0 +1,41 @@
+// The source: what fails, and how deep.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "common/recipe/recipe.hpp"
+
+namespace talus::preprocess {
+
+struct Options;
+
+/// What the numbers of depth points are.
+enum class PointValue { elevation, depth };
+
+/// How deep the sliding surface lies that is computed under source.polygon. None given: by the area of the polygon.
+struct SlidingSurfaceOptions {
+  double depth = 0;   ///< largest vertical one [m]; 0: not given
+  double volume = 0;  ///< [m3]; 0: not given
+  std::filesystem::path depth_points;
+  PointValue depth_points_hold = PointValue::elevation;
+  double depth_points_error = 0;  ///< standard error [m]
+
+  /// How many of depth, volume and points are given.
+  int ways_given() const { return (depth > 0) + (volume > 0) + !depth_points.empty(); }
+  /// The method declares the keys with defaults, help and what they need of `all` others.
+  void describe(recipe::Visitor& v, const Options& all);
+};
+
+/// The keys of [preprocess.source].
+struct SourceOptions {
+  std::filesystem::path polygon;
+  double threshold = 0.5;                ///< [m]
+  std::optional<double> seed_x, seed_y;  ///< easting, northing [m]
+  SlidingSurfaceOptions sliding_surface;
+
+  /// The method declares the keys with defaults, help and what they need of `all` others.
+  void describe(recipe::Visitor& v, const Options& all);
+};
+
+}  // namespace talus::preprocess

@@ -1,0 +1,23 @@
+// Holes in the elevation models, and cells that stand out of them.
+#pragma once
+
+#include "common/recipe/recipe.hpp"
+
+namespace talus::preprocess {
+
+struct Options;
+
+/// What is done about cells that stand out from their neighbours.
+enum class Spikes { ignore, report, remove };
+
+/// The keys of [preprocess.voids].
+struct VoidOptions {
+  bool fill = false;
+  double largest = 1e5;  ///< area [m2]
+  Spikes spikes = Spikes::report;
+
+  /// The method declares the keys with defaults, help and what they need of `all` others.
+  void describe(recipe::Visitor& v, const Options& all);
+};
+
+}  // namespace talus::preprocess
