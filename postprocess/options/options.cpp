@@ -21,6 +21,43 @@ bool is_date(const std::string& text) {
   return day.ok() && number(1) > 1582 && number(4) < 24 && number(5) < 60 && number(6) < 60;
 }
 
+/// This function declares that the survey gives one deposit at most.
+void need_one_deposit(recipe::Visitor& v, const SurveyOptions& s) {
+  const std::pair<bool, const char*> deposits[] = {{!s.thickness.empty(), "thickness"},
+                                                   {!s.difference.empty(), "difference"},
+                                                   {!s.after_dem.empty(), "after_dem"},
+                                                   {s.from_preprocess, "from_preprocess"}};
+  std::string keys;
+  int count = 0;
+  for (const auto& [given, key] : deposits) {
+    if (given) keys += (count++ > 0 ? " and " : "") + std::string(key);
+  }
+  v.needs(count <= 1,
+          {"[postprocess.survey] gives " + keys, "one deposit can be scored at a time", "Leave one of them out"});
+}
+
+/// This function declares that the survey gives one error at most, and that of something measured.
+void need_one_error(recipe::Visitor& v, const SurveyOptions& s) {
+  const bool given = !s.sigma.empty() || s.sigma_m > 0;
+  v.needs(s.sigma.empty() || !(s.sigma_m > 0), {"[postprocess.survey] gives sigma and sigma_m",
+                                                "both say what the survey's error is", "Leave one of them out"});
+  v.needs(!given || !s.from_preprocess, {"[postprocess.survey] gives from_preprocess and an error",
+                                         "the error comes with the change that talus-preprocess found",
+                                         "Leave sigma out; [preprocess.difference] takes the surveys' own"});
+  v.needs(!given || s.from_preprocess || s.measures(),
+          {"[postprocess.survey] gives an error without a measurement", "an outline or a peak thickness has none",
+           "Give thickness, difference or after_dem, or leave sigma out"});
+}
+
+/// This function declares that the limits of the classes rise, and that a map can show so many.
+void need_classes(recipe::Visitor& v, const std::vector<double>& classes) {
+  v.needs(std::adjacent_find(classes.begin(), classes.end(), std::greater_equal<>()) == classes.end(),
+          {"[postprocess] classes_m does not rise", "classes are given by their lower limits",
+           "Sort the limits, each once"});
+  v.needs(classes.size() <= 9, {"[postprocess] classes_m has " + std::to_string(classes.size()) + " classes",
+                                "nobody tells more than 9 shades apart on a map", "Give 9 limits or fewer"});
+}
+
 }  // namespace
 
 void SurveyOptions::name_files(const std::filesystem::path& out) {
@@ -51,16 +88,22 @@ void SurveyOptions::describe(recipe::Visitor& v) {
   v.path("after_dem", after_dem, "elevations after the event: deposit where they lie above those before");
   v.path("before_dem", before_dem,
          "elevations before the event, with after_dem; empty: the surface the run started from");
+  v.needs(before_dem.empty() || !after_dem.empty(),
+          {"[postprocess.survey] gives before_dem alone", "a change needs two surfaces", "Give after_dem as well"});
   v.path("difference", difference,
          "raster of elevations after - before the event [m], aligned: deposit where it is positive");
   v.flag("from_preprocess", from_preprocess,
          "score against the change of surface that talus-preprocess found between before_dem and after_dem, with its "
          "error (OUT/survey)");
+  need_one_deposit(v, *this);
   v.path("polygon", polygon, "outline of the affected area (any vector format); gives the footprint");
+  v.needs(peak_thickness.empty() || polygon.empty(), {"[postprocess.survey] gives peak_thickness and polygon",
+                                                      "both say what the footprint is", "Leave one of them out"});
   v.flag("nodata_is_zero", nodata_is_zero,
          "thickness and difference rasters: no data means no deposit (otherwise: not surveyed, left out)");
   v.path("sigma", sigma, "raster of the standard error (1 sigma) of thickness or change [m]");
   v.number("sigma_m", sigma_m, recipe::not_negative, "the same error for all cells, instead of a raster; 0: not known");
+  need_one_error(v, *this);
   v.number(
       "correlation_length_m", correlation_length, recipe::not_negative,
       "distance within which errors are alike (range of a spherical variogram); 0: CORRELATION_LENGTH_M of the sigma "
@@ -72,42 +115,6 @@ void SurveyOptions::describe(recipe::Visitor& v) {
   v.integer("resample_seed", resample_seed, {0, 2147483647}, "same seed, same spread");
 }
 
-void SurveyOptions::check(std::vector<Fault>& faults) const {
-  const std::pair<const std::filesystem::path&, const char*> deposits[] = {
-      {thickness, "thickness"}, {difference, "difference"}, {after_dem, "after_dem"}};
-  std::string given;
-  int count = 0;
-  for (const auto& [file, key] : deposits) {
-    if (file.empty()) continue;
-    given += (count++ > 0 ? " and " : "") + std::string(key);
-  }
-  if (from_preprocess) given += (count++ > 0 ? " and " : "") + std::string("from_preprocess");
-  if (count > 1)
-    faults.push_back(
-        {"[postprocess.survey] gives " + given, "one deposit can be scored at a time", "Leave one of them out"});
-  if (!peak_thickness.empty() && !polygon.empty()) {
-    faults.push_back({"[postprocess.survey] gives peak_thickness and polygon", "both say what the footprint is",
-                      "Leave one of them out"});
-  }
-  if (!before_dem.empty() && after_dem.empty()) {
-    faults.push_back(
-        {"[postprocess.survey] gives before_dem alone", "a change needs two surfaces", "Give after_dem as well"});
-  }
-  if (!sigma.empty() && sigma_m > 0) {
-    faults.push_back({"[postprocess.survey] gives sigma and sigma_m", "both say what the survey's error is",
-                      "Leave one of them out"});
-  }
-  if (from_preprocess && (!sigma.empty() || sigma_m > 0)) {
-    faults.push_back({"[postprocess.survey] gives from_preprocess and an error",
-                      "the error comes with the change that talus-preprocess found",
-                      "Leave sigma out; [preprocess.difference] takes the surveys' own"});
-  } else if ((!sigma.empty() || sigma_m > 0) && !measures()) {
-    faults.push_back({"[postprocess.survey] gives an error without a measurement",
-                      "an outline or a peak thickness has none",
-                      "Give thickness, difference or after_dem, or leave sigma out"});
-  }
-}
-
 void Options::describe(recipe::Visitor& v) {
   v.path("run", run, "run.h5 of talus-solve; empty: the one in the output folder");
   v.number("footprint_threshold_m", footprint_threshold, recipe::positive, "footprint: peak thickness above this");
@@ -116,6 +123,7 @@ void Options::describe(recipe::Visitor& v) {
       "classes_m", classes, recipe::positive,
       "lower limits of the map's thickness classes, rising; empty: 0.1 5 10 25 50 100, or 0.1 0.5 1 2 5 10 where the "
       "deposit is thinner than 12 m");
+  need_classes(v, classes);
   v.text("institution", institution, "who made this, for the NetCDF file");
   v.flag("report", report, "write report.html: maps, profiles, scores and settings on one page to send on");
   recipe::choice(v, "animation", animation,
@@ -123,6 +131,8 @@ void Options::describe(recipe::Visitor& v) {
                  "a film of the flow on the map; needs the program ffmpeg and a run with frames");
   v.text("start_time", start_time,
          "when the failure began, UTC, as 1903-04-29 04:10:00, for the time axis of the NetCDF file; empty: not known");
+  v.needs(start_time.empty() || is_date(start_time), {"[postprocess] start_time = \"" + start_time + "\"",
+                                                      "this is no date and time", "Write it as 1903-04-29 04:10:00"});
   v.flag("nodata_zero", nodata_zero,
          "GeoTIFFs hold 0 outside the computed domain, for tools that take nodata badly (otherwise: nodata there)");
   v.flag("avaframe", avaframe,
@@ -136,22 +146,6 @@ void Options::describe(recipe::Visitor& v) {
   recipe::table(
       v, "survey", survey,
       "what the run is scored against: thickness, or difference, or after_dem, or polygon; all empty: no scores");
-}
-
-void Options::check(std::vector<Fault>& faults) const {
-  if (std::adjacent_find(classes.begin(), classes.end(), std::greater_equal<>()) != classes.end()) {
-    faults.push_back({"[postprocess] classes_m does not rise", "classes are given by their lower limits",
-                      "Sort the limits, each once"});
-  }
-  if (!start_time.empty() && !is_date(start_time)) {
-    faults.push_back({"[postprocess] start_time = \"" + start_time + "\"", "this is no date and time",
-                      "Write it as 1903-04-29 04:10:00"});
-  }
-  if (classes.size() > 9) {
-    faults.push_back({"[postprocess] classes_m has " + std::to_string(classes.size()) + " classes",
-                      "nobody tells more than 9 shades apart on a map", "Give 9 limits or fewer"});
-  }
-  survey.check(faults);
 }
 
 }  // namespace talus::postprocess

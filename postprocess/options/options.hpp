@@ -42,7 +42,7 @@ struct SurveyOptions {
   /// Names them likewise. Throws DataError when they are not there.
   void find_in(const std::filesystem::path& out);
   bool given() const { return measures() || !peak_thickness.empty() || !polygon.empty(); }
-  void check(std::vector<Fault>& faults) const;
+  /// The method declares the keys with defaults, help and what they need of one another.
   void describe(recipe::Visitor& v);
 };
 
@@ -64,8 +64,8 @@ struct Options {
   AvaFrameFormat avaframe_format = AvaFrameFormat::tif;
   SurveyOptions survey;
 
+  /// The method declares the keys with defaults, help and what they need of one another.
   void describe(recipe::Visitor& v);
-  void check(std::vector<Fault>& faults) const;
 };
 
 }  // namespace talus::postprocess

@@ -91,7 +91,7 @@ TEST(StartTime, is_a_date_or_refused) {
     Options options;
     options.start_time = text;
     std::vector<Fault> faults;
-    options.check(faults);
+    recipe::find_unmet(options, faults);
     return faults.size();
   };
   for (const auto* good : {"", "1903-04-29 04:10:00", "2021-02-28 23:59:59"}) EXPECT_EQ(faults_of(good), 0U) << good;
