@@ -268,5 +268,15 @@ TEST(prepare, writes_a_domain_that_reads_back) {
   EXPECT_NEAR(sum / expected, 1, 1e-14);
 }
 
+TEST(prepare, refuses_more_points_than_can_be_numbered) {
+  Scene scene;
+  scene.options.grid.layer_height = 1e-6;
+  scene.options.grid.points_per_cell = {64, 64, 64};
+  EXPECT_NE(scene.recipe_fault().find(
+                "material points (points are numbered in 32 bits). Take a larger layer_height_m or spacing_m, or "
+                "fewer points_per_cell than [64, 64, 64]"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace talus::preprocess
