@@ -15,7 +15,8 @@ if(TALUS_CHOLMOD)
   find_library(CHOLMOD_LIBRARY cholmod)
   if(NOT CHOLMOD_INCLUDE OR NOT CHOLMOD_LIBRARY)
     # Optional: everything works without it.
-    message(STATUS "Talus: CHOLMOD was not found (apt-get install libsuitesparse-dev); Eigen factorises instead, more slowly")
+    message(STATUS "Talus: CHOLMOD was not found (apt-get install libsuitesparse-dev); "
+      "Eigen factorises instead, more slowly")
   endif()
 endif()
 find_package(TBB CONFIG QUIET)

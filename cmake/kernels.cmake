@@ -4,7 +4,8 @@
 # For which GPUs: those that CUDAARCHS or CMAKE_CUDA_ARCHITECTURES names; else, with TALUS_CUDA=AUTO, those of this
 # machine, and none where it has none; with TALUS_CUDA=ON and for bundles (TALUS_ALL_GPUS) all that are supported.
 option(TALUS_ALL_GPUS "Compile the kernels for every supported GPU" OFF)
-set(TALUS_SUPPORTED_GPUS "80-real;90")   # Ampere (and, by binary compatibility, Ada) and Hopper, with PTX for later ones
+# Ampere (and, by binary compatibility, Ada) and Hopper, with PTX for later ones.
+set(TALUS_SUPPORTED_GPUS "80-real;90")
 
 set(TALUS_WITH_CUDA OFF)
 set(_kernels_for none)
@@ -80,8 +81,8 @@ function(talus_kernels target)
     target_compile_definitions(${target} PUBLIC TALUS_WITH_CUDA=1)
     # Host-only calls in device code are mere warnings by default, hence -Werror all-warnings.
     # -Xcompiler ",": g++'s own optimiser must see the host half of a kernel as it would see a .cpp.
-    target_compile_options(${target} PRIVATE
-      $<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr --extended-lambda -Werror all-warnings -Xcompiler=-Wall,-Wextra>)
+    set(_of_nvcc --expt-relaxed-constexpr --extended-lambda -Werror all-warnings -Xcompiler=-Wall,-Wextra)
+    target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CUDA>:${_of_nvcc}>)
     target_link_libraries(${target} PUBLIC CUDA::cudart_static)
   endif()
 endfunction()

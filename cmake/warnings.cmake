@@ -9,6 +9,7 @@ if(TALUS_WERROR)
 endif()
 target_compile_options(talus_warnings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:${_warnings}>)
 if(TALUS_SANITIZE)
-  add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fsanitize=address,undefined> $<$<COMPILE_LANGUAGE:CXX>:-fno-omit-frame-pointer>)
+  add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fsanitize=address,undefined>
+    $<$<COMPILE_LANGUAGE:CXX>:-fno-omit-frame-pointer>)
   add_link_options(-fsanitize=address,undefined)
 endif()

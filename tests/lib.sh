@@ -36,9 +36,12 @@ expect_exit() {
   [[ $code -eq $expected ]] || fail "exit code $code instead of $expected: $*"
 }
 
-# expect_error LINE: the last command said exactly this on stderr, as a line of its own.
+# expect_error PART...: the last command said exactly this on stderr, the parts one behind the other, as a line of its
+# own.
 expect_error() {
-  grep -qxF -- "$1" "$TALUS_SCRATCH/stderr" || fail "stderr has no line: $1"
+  local line
+  line=$(printf '%s' "$@")
+  grep -qxF -- "$line" "$TALUS_SCRATCH/stderr" || fail "stderr has no line: $line"
 }
 
 # expect_words TEXT...: each of these stands somewhere on stderr.

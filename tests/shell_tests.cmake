@@ -12,8 +12,9 @@ function(talus_shell_tests)
       string(REGEX REPLACE "^test_([a-z0-9_]+).*" "\\1" _case ${_function})
       set(_name ${_group}.${_subject}.${_case})
       add_test(NAME ${_name} COMMAND ${TALUS_BASH} ${_path} ${_case})
-      set_tests_properties(${_name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 300
-        ENVIRONMENT "TALUS_SOURCE=${CMAKE_SOURCE_DIR};TALUS_BUILD=${CMAKE_BINARY_DIR};TALUS_SCRATCH=${CMAKE_BINARY_DIR}/scratch/${_name}")
+      set(_variables TALUS_SOURCE=${CMAKE_SOURCE_DIR} TALUS_BUILD=${CMAKE_BINARY_DIR}
+        TALUS_SCRATCH=${CMAKE_BINARY_DIR}/scratch/${_name})
+      set_tests_properties(${_name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 300 ENVIRONMENT "${_variables}")
     endforeach()
   endforeach()
 endfunction()

@@ -38,7 +38,8 @@ fi
 
 missing_packages() {
   local installed
-  installed=$(dpkg-query -W -f '${db:Status-Abbrev}|${Package}\n' "${packages[@]}" 2>/dev/null | sed -n 's/^[ih]i *|//p' || true)
+  installed=$(dpkg-query -W -f '${db:Status-Abbrev}|${Package}\n' "${packages[@]}" 2>/dev/null |
+    sed -n 's/^[ih]i *|//p' || true)
   local package
   for package in "${packages[@]}"; do
     grep -qx "$package" <<<"$installed" || echo "$package"

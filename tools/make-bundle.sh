@@ -41,7 +41,8 @@ for tool in patchelf ldd xz; do
 done
 
 # Libraries the target machine has by itself.
-outside='^(ld-linux|libc\.|libm\.|libmvec\.|libdl\.|libpthread\.|librt\.|libresolv\.|libutil\.|libanl\.|linux-vdso|libstdc\+\+\.|libgcc_s\.|libcuda\.|libnvidia-)'
+outside='^(ld-linux|linux-vdso|libc\.|libm\.|libmvec\.|libdl\.|libpthread\.|librt\.|libresolv\.|libutil\.|libanl\.'
+outside+='|libstdc\+\+\.|libgcc_s\.|libcuda\.|libnvidia-)'
 
 rm -rf "$bundle" "$archive"
 mkdir -p "$bundle"/{bin,lib}
@@ -108,7 +109,8 @@ done
 [[ $strangers -eq 0 ]] || fail "the bundle does not stand alone"
 for program in "${programs[@]}"; do
   env -i "$bundle/bin/$program" --help >/dev/null || fail "$program --help failed inside the bundle"
-  loaded=$(env -i LD_DEBUG=libs "$bundle/bin/$program" --help 2>&1 >/dev/null | sed -n 's/.*calling init: //p' | sort -u)
+  loaded=$(env -i LD_DEBUG=libs "$bundle/bin/$program" --help 2>&1 >/dev/null |
+    sed -n 's/.*calling init: //p' | sort -u)
   while read -r path; do
     if [[ $(realpath "$path") != "$(realpath "$bundle")"/* && ! $(basename "$path") =~ $outside ]]; then
       fail "$program loads $path at run time"
@@ -116,7 +118,9 @@ for program in "${programs[@]}"; do
   done <<<"$loaded"
 done
 
-size="$bundle: $(du -sh "$bundle" | cut -f1), $(find "$bundle/bin" -type f | wc -l) programs and tests, $(find "$bundle/lib" -type f | wc -l) libraries"
+count() { find "$1" -type f | wc -l; }
+size="$bundle: $(du -sh "$bundle" | cut -f1)"
+size+=", $(count "$bundle/bin") programs and tests, $(count "$bundle/lib") libraries"
 if [[ $archived == yes ]]; then   # last: it is there only if the check has passed
   XZ_OPT=-T0 tar -C "$folder" -cJf "$archive" "$name"
   size+="; $archive: $(du -h "$archive" | cut -f1)"

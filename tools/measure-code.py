@@ -66,8 +66,9 @@ def function_lengths(found):
 def class_members(found):
     """Data members of the classes with private data; plain structs, which are tables of fields or options, left out."""
     count = collections.Counter()
+    hidden = ("private", "protected")
     for tag in found:
-        if tag["kind"] == "member" and tag.get("scopeKind") == "class" and tag.get("access") in ("private", "protected"):
+        if tag["kind"] == "member" and tag.get("scopeKind") == "class" and tag.get("access") in hidden:
             count[tag["scope"].split("::")[-1]] += 1
     most = ", ".join(f"{name} {n}" for name, n in count.most_common(3))
     return f"{sum(n > 12 for n in count.values())} of {len(count)} over 12 ({most})"

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Draws docs/pictures/kernels-time.png, time and memory over the number of points, from docs/benchmarks/kernels-h200.csv.
+"""Draws docs/pictures/kernels-time.png, time and memory over the number of points.
+
+They are read from docs/benchmarks/kernels-h200.csv.
 
 usage: tools/plot-kernels.py [CSV [PNG]]        (Debian: python3-matplotlib)
 """

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Draws docs/pictures/speed-against-error.png, and headline.png beside it, from docs/benchmarks/speed-against-error.csv.
+"""Draws docs/pictures/speed-against-error.png, and headline.png beside it.
+
+They are drawn from docs/benchmarks/speed-against-error.csv.
 
 usage: tools/plot-speed-against-error.py [CSV [PNG]]        (Debian: python3-matplotlib)
 """
@@ -87,7 +89,8 @@ def sand_column(axes, rows):
     axes.text(
         0.015,
         0.93,
-        "cells of 0.0225 m above 8 %, of 0.01125 m below (reference preset: 16 and 13 %); numbers: step over the CFL step",
+        "cells of 0.0225 m above 8 %, of 0.01125 m below (reference preset: 16 and 13 %); "
+        "numbers: step over the CFL step",
         transform=axes.transAxes,
         fontsize=8,
     )

@@ -4,12 +4,13 @@ set(_page ${CMAKE_CURRENT_SOURCE_DIR}/report/page)
 set(_made ${CMAKE_CURRENT_BINARY_DIR}/report)
 file(GLOB _scripts CONFIGURE_DEPENDS ${_page}/*.js)
 add_custom_command(OUTPUT ${_made}/page.js
-  COMMAND ${ESBUILD} ${_page}/main.js --bundle --format=iife --charset=utf8 --log-level=warning --outfile=${_made}/page.js
+  COMMAND ${ESBUILD} ${_page}/main.js --bundle --format=iife --charset=utf8 --log-level=warning
+    --outfile=${_made}/page.js
   DEPENDS ${_scripts} VERBATIM)
 add_custom_command(OUTPUT ${_made}/page.cpp
   COMMAND ${CMAKE_COMMAND} -DHTML=${_page}/report.html -DSTYLE=${_page}/report.css -DSCRIPT=${_made}/page.js
-    -DLEAFLET_STYLE=${LEAFLET_STYLE} -DLEAFLET=${LEAFLET_SCRIPT} -DCHART=${CHART_SCRIPT} -DLICENCES=${_page}/licences.txt
-    -DOUTPUT=${_made}/page.cpp -P ${CMAKE_CURRENT_SOURCE_DIR}/report/build_page.cmake
+    -DLEAFLET_STYLE=${LEAFLET_STYLE} -DLEAFLET=${LEAFLET_SCRIPT} -DCHART=${CHART_SCRIPT}
+    -DLICENCES=${_page}/licences.txt -DOUTPUT=${_made}/page.cpp -P ${CMAKE_CURRENT_SOURCE_DIR}/report/build_page.cmake
   DEPENDS ${_made}/page.js ${_page}/report.html ${_page}/report.css ${_page}/licences.txt
     ${CMAKE_CURRENT_SOURCE_DIR}/report/build_page.cmake ${LEAFLET_STYLE} ${LEAFLET_SCRIPT} ${CHART_SCRIPT}
   VERBATIM)

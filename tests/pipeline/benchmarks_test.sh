@@ -6,7 +6,8 @@ test_kernels_are_checked_and_timed() {
   expect_exit 0 "$bin/talus-bench" kernels --on cpu --most 1e4 --out out
   [[ -s out/kernels-time.png && -s out/kernels-memory.png ]] || fail "no pictures"
   [[ $(wc -l <out/kernels.csv) -eq 7 ]] || fail "not six ways of stepping: $(<out/kernels.csv)"
-  awk -F, 'NR > 1 && !($7 > 0 && $8 > 0 && $9 > 100) { exit 1 }' out/kernels.csv || fail "a time or a size is missing: $(<out/kernels.csv)"
+  awk -F, 'NR > 1 && !($7 > 0 && $8 > 0 && $9 > 100) { exit 1 }' out/kernels.csv ||
+    fail "a time or a size is missing: $(<out/kernels.csv)"
   grep -q 'points to grid: ' out/kernels.csv || fail "no phases"
 }
 

@@ -2,12 +2,19 @@
 # The relocatable bundle: it stands alone, wherever it lies.
 source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
 
+# bundle [OPTION]: the bundle of this build, as a folder beside the test's other files.
+bundle() {
+  local options=("$@" --to "$TALUS_SCRATCH" --no-archive)
+  (cd "$TALUS_SOURCE" && tools/make-bundle.sh "$TALUS_BUILD" "${options[@]}") >stdout 2>stderr ||
+    fail "make-bundle.sh failed"
+}
+
 # Every library a program of the bundle names is in the bundle, or belongs to glibc or to GCC's run-time.
 stands_alone() {
-  local program soname path
+  local program soname path own='^(lib(c|m|mvec|dl|pthread|rt|resolv|util|anl|stdc\+\+|gcc_s|cuda)\.so)'
   for program in "$1"/bin/*; do
     while read -r soname path; do
-      [[ $path == "$1"/bin/../lib/* || $soname =~ ^(lib(c|m|mvec|dl|pthread|rt|resolv|util|anl|stdc\+\+|gcc_s|cuda)\.so) ]] ||
+      [[ $path == "$1"/bin/../lib/* || $soname =~ $own ]] ||
         fail "$program takes $soname from '$path'"
     done < <(env -i ldd "$program" | awk '$2 == "=>" { print $1, $3 }')
   done
@@ -16,7 +23,7 @@ stands_alone() {
 test_whole_pipeline_runs_from_a_bundle_that_was_moved() {
   need_tool patchelf
   scene
-  (cd "$TALUS_SOURCE" && tools/make-bundle.sh "$TALUS_BUILD" --to "$TALUS_SCRATCH" --no-archive) >stdout 2>stderr || fail "make-bundle.sh failed"
+  bundle
   grep -qE 'bundle: [0-9.]+M, [0-9]+ programs and tests, [0-9]+ libraries' stdout || fail "no sizes were printed"
   mv bundle moved
   stands_alone "$PWD/moved"
@@ -29,9 +36,10 @@ test_whole_pipeline_runs_from_a_bundle_that_was_moved() {
 
 test_solver_bundle_holds_the_solver_without_gdal() {
   need_tool patchelf
-  (cd "$TALUS_SOURCE" && tools/make-bundle.sh "$TALUS_BUILD" --solver --to "$TALUS_SCRATCH" --no-archive) >stdout 2>stderr || fail "make-bundle.sh failed"
+  bundle --solver
   stands_alone "$PWD/bundle-solver"
-  [[ -x bundle-solver/bin/talus-solve && ! -e bundle-solver/bin/talus-preprocess ]] || fail "in the bundle: $(ls bundle-solver/bin)"
+  [[ -x bundle-solver/bin/talus-solve && ! -e bundle-solver/bin/talus-preprocess ]] ||
+    fail "in the bundle: $(ls bundle-solver/bin)"
   if compgen -G 'bundle-solver/lib/libgdal*' >/dev/null; then fail "the solver's bundle holds GDAL"; fi
   # OpenVDB takes 57 MB, the BLAS and LAPACK behind CHOLMOD 45 MB; GDAL and its company would add 100 MB. Executables
   # grow with the kernels.

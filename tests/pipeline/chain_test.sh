@@ -9,7 +9,8 @@ test_raw_surveys_score_as_the_true_terrain_does() {
   scene synthetic-valley
   scene synthetic-raw-survey
   expect_words 'corrected' 'voids of' 'filled by natural neighbours'
-  /usr/bin/python3 - "$TALUS_SCRATCH/out" >stdout 2>stderr <<'PYTHON' || fail "the raw surveys do not lead where the true terrain does"
+  local otherwise="the raw surveys do not lead where the true terrain does"
+  /usr/bin/python3 - "$TALUS_SCRATCH/out" >stdout 2>stderr <<'PYTHON' || fail "$otherwise"
 import json, sys
 out = sys.argv[1]
 def load(scene, name):

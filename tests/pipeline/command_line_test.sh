@@ -17,7 +17,8 @@ test_version_names_the_commit() {
   local program
   for program in "${programs[@]}"; do
     expect_exit 0 "$bin/$program" --version
-    grep -qE "^$program [0-9]+\.[0-9]+\.[0-9]+ \(([0-9a-f]{7,}|unknown)\)$" stdout || fail "$program --version says $(<stdout)"
+    grep -qE "^$program [0-9]+\.[0-9]+\.[0-9]+ \(([0-9a-f]{7,}|unknown)\)$" stdout ||
+      fail "$program --version says $(<stdout)"
   done
 }
 
@@ -67,7 +68,9 @@ test_plan_says_what_it_takes_and_writes_nothing() {
   scene
   expect_exit 0 preprocess
   expect_exit 0 solve --plan
-  for word in 'drucker-prager' 'coulomb, 15 deg' 'terrain-following, quadratic' 'MB now, on the CPU' 's at rest (waves of' 'steps to 3 s' 'ms a step'; do
+  local word words=('drucker-prager' 'coulomb, 15 deg' 'terrain-following, quadratic' 'MB now, on the CPU'
+    's at rest (waves of' 'steps to 3 s' 'ms a step')
+  for word in "${words[@]}"; do
     grep -qF -- "$word" stderr || fail "--plan does not say: $word"
   done
   ! grep -qE 'softens|walls|rasters|erodible|damping' stderr || fail "--plan names what the recipe does not"

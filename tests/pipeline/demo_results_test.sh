@@ -31,7 +31,8 @@ test_gdalinfo_reads_the_maps() {
 }
 
 test_maps_pass_gdals_own_cog_validator() {
-  /usr/bin/python3 -c 'import osgeo_utils.samples.validate_cloud_optimized_geotiff' 2>/dev/null || need_tool python3-gdal
+  /usr/bin/python3 -c 'import osgeo_utils.samples.validate_cloud_optimized_geotiff' 2>/dev/null ||
+    need_tool python3-gdal
   local map
   for map in "$out"/maps/*.tif; do
     expect_exit 0 /usr/bin/python3 -m osgeo_utils.samples.validate_cloud_optimized_geotiff --full-check=yes "$map"
@@ -49,7 +50,8 @@ import array, math, re, subprocess, sys
 from osgeo import gdal
 gdal.UseExceptions()
 out = sys.argv[1]
-dumped = subprocess.run(["h5dump", "-m", "%.17g", "-a", "/volume_final_m3", out + "/run.h5"], check=True, capture_output=True, text=True).stdout
+command = ["h5dump", "-m", "%.17g", "-a", "/volume_final_m3", out + "/run.h5"]
+dumped = subprocess.run(command, check=True, capture_output=True, text=True).stdout
 points = float(re.search(r"\(0\): ([0-9.e+-]+)", dumped).group(1))
 file = gdal.Open(out + "/maps/deposit_thickness.tif")
 band = file.GetRasterBand(1)
@@ -80,7 +82,8 @@ test_ncdump_reads_the_netcdf() {
 }
 
 test_netcdf_follows_cf() {
-  /usr/bin/python3 -c 'import netCDF4, osgeo.gdal, ctypes; ctypes.CDLL("libudunits2.so.0")' 2>/dev/null || need_tool python3-netcdf4
+  /usr/bin/python3 -c 'import netCDF4, osgeo.gdal, ctypes; ctypes.CDLL("libudunits2.so.0")' 2>/dev/null ||
+    need_tool python3-netcdf4
   expect_exit 0 /usr/bin/python3 "$TALUS_SOURCE/tests/postprocess/maps/check_cf.py" "$out/maps/results.nc"
   need_tool cdo
   expect_exit 0 cdo -s infon "$out/maps/results.nc"
@@ -125,8 +128,9 @@ test_vdb_print_lists_the_domain() {
 test_h5dump_reads_the_run() {
   need_tool h5dump
   expect_exit 0 h5dump -H "$out/run.h5"
-  local name
-  for name in VTKHDF Steps Points Connectivity Offsets Types NumberOfPoints velocity maps deposit_thickness frames history; do
+  local name names=(VTKHDF Steps Points Connectivity Offsets Types NumberOfPoints velocity maps deposit_thickness frames
+    history)
+  for name in "${names[@]}"; do
     shows "\"$name\""
   done
   expect_exit 0 h5dump -a /VTKHDF/Type "$out/run.h5"
@@ -138,13 +142,14 @@ test_score_holds_every_promised_number() {
   cat >score.py <<'PYTHON'
 import json, math, sys
 score = json.load(open(sys.argv[1]))
-promised = """volume_released_m3 volume_final_m3 volume_outflow_m3 footprint_csi deposit_csi thickness_rmse_m thickness_bias_m
-runout_m h_over_l particles steps wall_time_s on""".split()
+promised = """volume_released_m3 volume_final_m3 volume_outflow_m3 footprint_csi deposit_csi thickness_rmse_m
+thickness_bias_m runout_m h_over_l particles steps wall_time_s on""".split()
 for name in promised:
     assert name in score, f"score.json has no {name}"
     assert isinstance(score[name], str) or math.isfinite(score[name]), f"{name} = {score[name]}"
 closed = score["volume_final_m3"] + score["volume_outflow_m3"]
-assert abs(closed / score["volume_released_m3"] - 1) < 1e-9, f"released {score['volume_released_m3']}, accounted for {closed}"
+released = score["volume_released_m3"]
+assert abs(closed / released - 1) < 1e-9, f"released {released}, accounted for {closed}"
 assert 0 < score["deposit_csi"] <= 1 and 0 < score["footprint_csi"] <= 1
 print("all there")
 PYTHON

@@ -3,16 +3,19 @@
 source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 out=$TALUS_BUILD/scratch/demo/synthetic-valley
 
-pipeline() { make -C "$TALUS_SOURCE/pipelines" synthetic-valley OUT="$TALUS_BUILD/scratch/demo" BIN="$bin" ON="${1:-auto}"; }
+pipeline() {
+  make -C "$TALUS_SOURCE/pipelines" synthetic-valley OUT="$TALUS_BUILD/scratch/demo" BIN="$bin" ON="${1:-auto}"
+}
 
 # Its results stay for the tests of demo_results_test.sh.
 test_valley_runs_to_a_score() {
   rm -rf "$TALUS_BUILD/scratch/demo"
   expect_exit 0 pipeline
-  local file
-  for file in domain.vdb preprocess.used.toml run.h5 solve.used.toml postprocess.used.toml score.json score.txt map.png history.csv \
-    maps/deposit_thickness.tif maps/peak_thickness.tif maps/peak_speed.tif maps/peak_pressure.tif maps/arrival_time.tif maps/results.nc \
-    maps/deposit_thickness.qml maps/terrain.tif maps/outlines.gpkg maps/synthetic-valley.qgs; do
+  local file files=(domain.vdb preprocess.used.toml run.h5 solve.used.toml postprocess.used.toml score.json score.txt
+    map.png history.csv maps/deposit_thickness.tif maps/peak_thickness.tif maps/peak_speed.tif maps/peak_pressure.tif
+    maps/arrival_time.tif maps/results.nc maps/deposit_thickness.qml maps/terrain.tif maps/outlines.gpkg
+    maps/synthetic-valley.qgs)
+  for file in "${files[@]}"; do
     [[ -s $out/$file ]] || fail "$file is missing"
     grep -qF "$out/$file" stdout || fail "no program named $file on stdout"
   done

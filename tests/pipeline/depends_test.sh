@@ -17,7 +17,8 @@ depends() {
     done <<<"$rule"
   } >expected
   diff -u expected stdout >difference || fail "talus-$stage --depends prints: $(<difference)"
-  [[ -z $(find . -newer before-the-call ! -name stdout ! -name stderr ! -name expected ! -name difference ! -name .) ]] ||
+  local own=(! -name stdout ! -name stderr ! -name expected ! -name difference ! -name .)
+  [[ -z $(find . -newer before-the-call "${own[@]}") ]] ||
     fail "talus-$stage --depends wrote something: $(find . -newer before-the-call)"
 }
 
@@ -113,7 +114,8 @@ test_survey_of_preprocess_is_listed() {
 
 test_files_given_elsewhere_take_the_place_of_those_of_the_stage_before() {
   scene
-  sed -i 's/^\[solve\]/[solve]\ndomain = "other.vdb"/; s/^\[postprocess.survey\]/[postprocess]\nrun = "other.h5"\n\n&/' recipe.toml
+  sed -i -e 's/^\[solve\]/[solve]\ndomain = "other.vdb"/' \
+    -e 's/^\[postprocess.survey\]/[postprocess]\nrun = "other.h5"\n\n&/' recipe.toml
   depends solve "out/run.h5:
   $TALUS_SCRATCH/other.vdb" --out out
   depends postprocess "out/score.json:
@@ -127,11 +129,14 @@ test_what_gdal_reads_beside_a_file_is_listed() {
   scene
   gdal_translate -q -of GTiff -a_srs EPSG:32611 before.asc west.tif
   gdalbuildvrt -q mosaic.vrt west.tif
-  echo '{"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {}, "geometry": {"type": "Polygon",
-    "coordinates": [[[500030, 5000080], [500070, 5000080], [500070, 5000120], [500030, 5000120], [500030, 5000080]]]}}]}' >ring.json
+  cat >ring.json <<'JSON'
+{"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {}, "geometry": {"type": "Polygon",
+  "coordinates": [[[500030, 5000080], [500070, 5000080], [500070, 5000120], [500030, 5000120], [500030, 5000080]]]}}]}
+JSON
   ogr2ogr -q -a_srs EPSG:32611 ring.shp ring.json
   touch after.prj
-  sed -i 's|^before_dem.*|before_dem = "mosaic.vrt"|; s|^\[preprocess.grid\]|[preprocess.source]\npolygon = "ring.shp"\n\n&|' recipe.toml
+  sed -i -e 's|^before_dem.*|before_dem = "mosaic.vrt"|' \
+    -e 's|^\[preprocess.grid\]|[preprocess.source]\npolygon = "ring.shp"\n\n&|' recipe.toml
   expect_exit 0 "$bin/talus-preprocess" recipe.toml --depends
   local name
   for name in mosaic.vrt west.tif after.asc after.prj ring.shp ring.shx ring.dbf ring.prj; do

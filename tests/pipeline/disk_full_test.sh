@@ -38,7 +38,8 @@ whole() {
   esac
 }
 
-full="^talus-[a-z]+: $TALUS_SCRATCH/disk(/[a-z_/.0-9]+)?: .*cannot (be written|be created|write) ?.*(disk is full|No space left on device).*--out"
+full="^talus-[a-z]+: $TALUS_SCRATCH/disk(/[a-z_/.0-9]+)?: .*cannot (be written|be created|write) ?"
+full+=".*(disk is full|No space left on device).*--out"
 
 # fills STAGE [OPTIONS...]: tries disks of growing size until the stage succeeds.
 fills() {

@@ -6,7 +6,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
 erodible_scene() {
   scene
   grid after.asc "$bowl - 4 * $in_source - 1 * (i >= 8 && i < 11 && j >= 8 && j < 12)"
-  sed -i 's/^\[preprocess.grid\]/[[preprocess.erodible]]\nname = "ground"\nlowering = true\n\n[preprocess.grid]/' recipe.toml
+  sed -i 's/^\[preprocess.grid\]/[[preprocess.erodible]]\nname = "ground"\nlowering = true\n\n&/' recipe.toml
   cat >>recipe.toml <<'TOML'
 
 [[solve.part]]
@@ -28,7 +28,8 @@ test_ground_is_told_from_source() {
     [[ -s out/maps/$map.tif ]] || fail "no $map.tif"
   done
   grep -q '"volume_entrained_m3"' out/score.json || fail "score.json does not say what was taken along"
-  grep -qE '"volume_released_m3": 6(400|399\.99)' out/score.json || fail "the ground counts as released: $(grep volume_released out/score.json)"
+  grep -qE '"volume_released_m3": 6(400|399\.99)' out/score.json ||
+    fail "the ground counts as released: $(grep volume_released out/score.json)"
 }
 
 test_release_that_is_not_there() {
@@ -36,13 +37,15 @@ test_release_that_is_not_there() {
   sed -i 's/^release = "ground"/release = "grund"/' recipe.toml
   expect_exit 0 preprocess
   expect_exit 2 solve
-  expect_error 'talus-solve: [[solve.part]] release = "grund": no material point is of that release (domain.vdb has ground, source). Name one of those, or leave the part out'
+  expect_error 'talus-solve: [[solve.part]] release = "grund": no material point is of that release ' \
+    '(domain.vdb has ground, source). Name one of those, or leave the part out'
   expect_no_file out domain.vdb preprocess.used.toml survey
 }
 
 test_lowering_needs_two_models() {
   scene
-  sed -i 's/^after_dem = .*/sliding_surface = "after.asc"/; s/^\[preprocess.grid\]/[[preprocess.erodible]]\nlowering = true\n\n[preprocess.grid]/' recipe.toml
+  sed -i -e 's/^after_dem = .*/sliding_surface = "after.asc"/' \
+    -e 's/^\[preprocess.grid\]/[[preprocess.erodible]]\nlowering = true\n\n&/' recipe.toml
   expect_exit 2 preprocess
   expect_words "the layer is the difference of two elevation models"
 }
@@ -53,7 +56,8 @@ test_raster_that_the_law_does_not_use() {
   sed -i 's/^\[preprocess.grid\]/[preprocess.bed]\nturbulence_m_s2 = "xi.asc"\n\n[preprocess.grid]/' recipe.toml
   expect_exit 0 preprocess
   expect_exit 2 solve
-  expect_error 'talus-solve: [preprocess.bed] turbulence_m_s2 is given, but [solve.base] law does not use it (the raster would have no effect). Name the law that does, or leave the raster out and run talus-preprocess again'
+  expect_error 'talus-solve: [preprocess.bed] turbulence_m_s2 is given, but [solve.base] law does not use it ' \
+    '(the raster would have no effect). Name the law that does, or leave the raster out and run talus-preprocess again'
   sed -i 's/^friction_angle_deg = 15.0/law = "voellmy"\nfriction_angle_deg = 15.0/' recipe.toml
   expect_exit 0 preprocess
   expect_exit 0 solve

@@ -27,7 +27,8 @@ test_without_apt_says_so() {
 test_neither_root_nor_sudo_says_what_is_missing() {
   tools id='echo 1000' apt-get='exit 9' dpkg-query="$all_but_gdal"
   expect_exit 1 install
-  expect_words "packages are missing and this is neither root nor a machine with sudo. Ask its administrator for: apt-get install libgdal-dev"
+  local mend="Ask its administrator for: apt-get install libgdal-dev"
+  expect_words "packages are missing and this is neither root nor a machine with sudo. $mend"
 }
 
 test_nothing_missing_calls_nothing() {
@@ -39,12 +40,15 @@ test_nothing_missing_calls_nothing() {
 test_only_what_is_missing_is_installed() {
   tools id='echo 0' apt-get="echo \"\$@\" >>$TALUS_SCRATCH/calls" dpkg-query="$all_but_gdal"
   expect_exit 0 install
-  grep -q ' update$' calls && grep -qE 'install --yes --no-install-recommends libgdal-dev$' calls || fail "called: $(<calls)"
+  grep -q ' update$' calls && grep -qE 'install --yes --no-install-recommends libgdal-dev$' calls ||
+    fail "called: $(<calls)"
 }
 
 test_removed_but_configured_package_counts_as_missing() {
   tools id='echo 0' apt-get="echo \"\$@\" >>$TALUS_SCRATCH/calls" \
-    dpkg-query='for p in "${@:4}"; do if [[ $p == ccache || $p == libcgal-dev ]]; then echo "rc |$p"; else echo "ii |$p"; fi; done'
+    dpkg-query='for p in "${@:4}"; do
+      if [[ $p == ccache || $p == libcgal-dev ]]; then echo "rc |$p"; else echo "ii |$p"; fi
+    done'
   expect_exit 0 install
   grep -qE 'recommends libcgal-dev$' calls || fail "called: $(<calls)"
 }

@@ -65,7 +65,9 @@ test_checkpoint_of_another_recipe_is_refused() {
   make_checkpoint out
   sed -i 's/^friction_angle_deg = 15.0/friction_angle_deg = 16.0/' recipe.toml
   expect_exit 3 solve --restart
-  expect_error "talus-solve: $PWD/out/checkpoint.h5: the checkpoint belongs to another domain or other [solve] settings (going on from it would mix two runs). Restore the recipe and domain.vdb it was made with, or run talus-solve without --restart"
+  expect_error "talus-solve: $PWD/out/checkpoint.h5: the checkpoint belongs to another domain or other [solve] " \
+    "settings (going on from it would mix two runs). Restore the recipe and domain.vdb it was made with, or run " \
+    "talus-solve without --restart"
   [[ ! -e out/run.h5 ]] || fail "a run came of it"
 }
 

@@ -5,7 +5,8 @@ source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
 wall_scene() {
   scene
   printf 'id,WKT\n1,"POLYGON((%s))"\n' "$1" >wall.csv
-  sed -i 's/^\[preprocess.grid\]/[[preprocess.obstacle]]\nname = "wall"\npolygons = "wall.csv"\nheight_m = 15.0\n\n[preprocess.grid]/' recipe.toml
+  local wall='[[preprocess.obstacle]]\nname = "wall"\npolygons = "wall.csv"\nheight_m = 15.0'
+  sed -i "s/^\[preprocess.grid\]/$wall\n\n&/" recipe.toml
   cat >>recipe.toml <<'TOML'
 
 [[solve.obstacle]]
@@ -26,7 +27,8 @@ test_wall_stops_the_slide_and_records_its_force() {
   expect_exit 0 solve
   expect_words "obstacle wall: impulse"
   expect_exit 0 postprocess
-  awk -F, 'NR == 1 { for (c = 1; c <= NF; ++c) if ($c == "obstacle_wall_impulse_x_N_s") at = c } END { exit !(at && $at > 1e6) }' out/history.csv || fail "the wall was given no impulse towards the east"
+  awk -F, 'NR == 1 { for (c = 1; c <= NF; ++c) if ($c == "obstacle_wall_impulse_x_N_s") at = c }
+    END { exit !(at && $at > 1e6) }' out/history.csv || fail "the wall was given no impulse towards the east"
   gdallocationinfo -valonly -geoloc out/maps/deposit_thickness.tif 500075 5000100 >before_wall
   gdallocationinfo -valonly -geoloc out/maps/deposit_thickness.tif 500105 5000100 >behind_wall
   awk '{ exit !($1 > 0.5) }' before_wall || fail "nothing lies before the wall: $(<before_wall)"

@@ -120,12 +120,14 @@ test_names_hold_spaces_and_umlauts() {
   mv pipelines/scene 'pipelines/Großer Rutsch'
   mv pipelines "the checkout's copy/"
   mv data/scene 'Höhen und mehr/Tal 1'
-  sed -i 's|/scene/before|/Tal 1/before|; s|/scene/survey|/Tal 1/survey|; s|"../../data/scene/|"../../../Höhen und mehr/Tal 1/|' \
+  sed -i -e 's|/scene/before|/Tal 1/before|; s|/scene/survey|/Tal 1/survey|' \
+    -e 's|"../../data/scene/|"../../../Höhen und mehr/Tal 1/|' \
     "the checkout's copy/pipelines/Großer Rutsch/recipe.toml"
   mv bin 'die Programme'
+  local slide=(make -C "the checkout's copy/pipelines" 'Großer Rutsch' DATA='Höhen und mehr' BIN='die Programme')
   remake() {
     rm -f calls
-    expect_exit 0 make -C "the checkout's copy/pipelines" 'Großer Rutsch' DATA='Höhen und mehr' BIN='die Programme' OUT='Frühe Läufe'
+    expect_exit 0 "${slide[@]}" OUT='Frühe Läufe'
     [[ $(cat calls 2>/dev/null) == "$1" ]] || fail "ran '$(cat calls)' instead of '$1'"
     sleep 0.05
   }
@@ -145,8 +147,9 @@ test_names_hold_spaces_and_umlauts() {
   expect_exit 0 make -C "the checkout's copy/pipelines" clean OUT='Frühe Läufe'
   expect_no_file 'Frühe Läufe'
   rm 'Höhen und mehr/Tal 1/before.tif'
-  expect_exit 2 make -C "the checkout's copy/pipelines" 'Großer Rutsch' DATA='Höhen und mehr' BIN='die Programme' OUT=out
-  expect_words "$TALUS_SCRATCH/Höhen und mehr/Tal 1/before.tif is missing" "in $TALUS_SCRATCH/Höhen und mehr). Put Tal 1 there"
+  expect_exit 2 "${slide[@]}" OUT=out
+  expect_words "$TALUS_SCRATCH/Höhen und mehr/Tal 1/before.tif is missing" \
+    "in $TALUS_SCRATCH/Höhen und mehr). Put Tal 1 there"
 }
 
 test_list_of_files_in_the_recipe_is_followed() {
@@ -179,7 +182,8 @@ TOML
 
 test_survey_of_preprocess_is_an_input_of_postprocess() {
   stage_pipelines
-  sed -i 's/^thickness = .*/from_preprocess = true/; s/^sliding_surface.*/after_dem = "after.tif"/' pipelines/scene/recipe.toml
+  sed -i 's/^thickness = .*/from_preprocess = true/; s/^sliding_surface.*/after_dem = "after.tif"/' \
+    pipelines/scene/recipe.toml
   touch pipelines/scene/after.tif
   stand_in preprocess "domain.vdb survey/slide_difference.tif survey/difference_sigma.tif"
   runs preprocess solve postprocess
@@ -223,14 +227,16 @@ test_faulty_recipe_runs_nothing() {
 test_missing_data_is_one_clear_sentence() {
   stage_pipelines
   expect_exit 2 make -C pipelines scene DATA=nowhere BIN=bin OUT=out
-  expect_error "$TALUS_SCRATCH/nowhere/scene/before.tif is missing (the recipes look for their data in $TALUS_SCRATCH/nowhere). Put scene there, or say where the data are: make -C pipelines SCENE DATA=dir"
+  expect_error "$TALUS_SCRATCH/nowhere/scene/before.tif is missing (the recipes look for their data in " \
+    "$TALUS_SCRATCH/nowhere). Put scene there, or say where the data are: make -C pipelines SCENE DATA=dir"
   [[ ! -f calls ]] || fail "a stage ran without its data"
 }
 
 test_missing_program_says_how_to_build_it() {
   stage_pipelines
   expect_exit 2 make -C pipelines scene DATA=data BIN=none OUT=out
-  expect_error "$TALUS_SCRATCH/none/talus-preprocess is missing (the programs are not built yet). Build them: make build"
+  expect_error "$TALUS_SCRATCH/none/talus-preprocess is missing (the programs are not built yet). " \
+    "Build them: make build"
 }
 
 run_test "$@"

@@ -53,7 +53,8 @@ def check_console(browser):
 def colours_of_map(browser):
     """Opaque colours of what lies on the ground, a few thousand pixels."""
     return browser.execute_script(
-        "const c = report.map.canvas, d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data, seen = new Set();"
+        "const c = report.map.canvas, d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;"
+        "const seen = new Set();"
         "for (let i = 0; i < d.length; i += 4 * 37) if (d[i + 3]) seen.add(d[i] + ',' + d[i + 1] + ',' + d[i + 2]);"
         "return [...seen];"
     )

@@ -6,7 +6,9 @@ source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
 need_browser() {
   local id
   id=$(. /etc/os-release && echo "$ID")
-  if [[ $id != debian ]]; then skip "the report is not opened in a browser: only Debian packages one that tests can drive"; fi
+  if [[ $id != debian ]]; then
+    skip "the report is not opened in a browser: only Debian packages one that tests can drive"
+  fi
   need_tool chromium
   need_tool chromedriver
   need_tool pdfinfo
@@ -94,7 +96,8 @@ test_says_which_stage_left_nothing_about_itself() {
   made
   rm out/preprocess.used.toml
   expect_exit 0 postprocess
-  grep -q '"stage":"preprocess","missing":true' out/report.html || fail "the report does not say that preprocess.used.toml is missing"
+  grep -q '"stage":"preprocess","missing":true' out/report.html ||
+    fail "the report does not say that preprocess.used.toml is missing"
   grep -q '"stage":"solve","missing":false' out/report.html || fail "the report does not see solve.used.toml"
 }
 
@@ -107,7 +110,8 @@ test_is_left_out_on_request() {
 
 # frames FILE: how many there are, and how long they take.
 frames() {
-  expect_exit 0 ffprobe -v error -count_frames -select_streams v:0 -show_entries stream=nb_read_frames,duration -of default=nw=1 "$1"
+  expect_exit 0 ffprobe -v error -count_frames -select_streams v:0 -show_entries stream=nb_read_frames,duration \
+    -of default=nw=1 "$1"
 }
 
 test_animation_has_every_frame_and_lingers_on_the_last() {

@@ -83,5 +83,6 @@ with_mounts() {
 # Skips aloud where neither is allowed.
 need_mounts() {
   mkdir -p mount_trial
-  with_mounts mount -t tmpfs -o size=64k tmpfs mount_trial 2>/dev/null || skip "this machine does not let the test mount a small disk"
+  with_mounts mount -t tmpfs -o size=64k tmpfs mount_trial 2>/dev/null ||
+    skip "this machine does not let the test mount a small disk"
 }

@@ -25,7 +25,8 @@ test_domain() {
   for part in "${parts[@]}"; do
     cut_file out/domain.vdb $part
     expect_exit 3 solve
-    expect_error "talus-solve: $PWD/out/domain.vdb: ends too early (the file is truncated: its writing or copying was cut short). Run talus-preprocess again, or copy it again"
+    expect_error "talus-solve: $PWD/out/domain.vdb: ends too early (the file is truncated: its writing or copying " \
+      "was cut short). Run talus-preprocess again, or copy it again"
     expect_no_file out domain.vdb domain.vdb.whole preprocess.used.toml survey
   done
 }
@@ -35,7 +36,8 @@ test_domain_of_another_kind() {
   mkdir out
   echo "not a volume" >out/domain.vdb
   expect_exit 3 solve
-  expect_error "talus-solve: $PWD/out/domain.vdb: not an OpenVDB file (its first bytes say so). Make it with talus-preprocess"
+  expect_error "talus-solve: $PWD/out/domain.vdb: not an OpenVDB file (its first bytes say so). " \
+    "Make it with talus-preprocess"
 }
 
 test_checkpoint() {
@@ -63,7 +65,8 @@ test_run() {
     cut_file out/run.h5 $part
     expect_exit 3 postprocess
     says_cut "talus-postprocess: $PWD/out/run.h5" "Run talus-solve again"
-    [[ ! -e out/score.json && ! -e out/maps && ! -e out/map.png ]] || fail "a truncated run.h5 ($part per mille) gave results"
+    [[ ! -e out/score.json && ! -e out/maps && ! -e out/map.png ]] ||
+      fail "a truncated run.h5 ($part per mille) gave results"
   done
 }
 

@@ -2,9 +2,10 @@
 # Wrong input: the exit code, the whole message, and that nothing is left which looks like a result.
 source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
 
+# refused CODE PART...: talus-preprocess ends with that code and with this line, its parts one behind the other.
 refused() {
   expect_exit "$1" preprocess
-  expect_error "$2"
+  expect_error "${@:2}"
   [[ ! -s stdout ]] || fail "a refused run names results on stdout"
   expect_no_file out
 }
@@ -28,38 +29,53 @@ test_missing_file() {
 
 test_geographic_crs() {
   scene
-  echo 'GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",SPHEROID["WGS_1984",6378137.0,298.257223563]],PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]]' >before.prj
-  refused 3 "talus-preprocess: $PWD/before.asc: CRS is WGS 84, in degrees (this stage needs metres). Reproject: gdalwarp -t_srs EPSG:<a metric one> -r bilinear $PWD/before.asc before_utm.tif; or set working_crs = \"utm\" in [preprocess]"
+  printf '%s%s\n' 'GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",SPHEROID["WGS_1984",6378137.0,298.257223563]],' \
+    'PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]]' >before.prj
+  refused 3 "talus-preprocess: $PWD/before.asc: CRS is WGS 84, in degrees (this stage needs metres). Reproject: " \
+    "gdalwarp -t_srs EPSG:<a metric one> -r bilinear $PWD/before.asc before_utm.tif; or set working_crs = \"utm\" in " \
+    "[preprocess]"
 }
 
 test_no_overlap() {
   scene
   grid after.asc "$bowl - 4 * $in_source" 600000
-  refused 3 "talus-preprocess: $PWD/after.asc: covers x 600000..600200, y 5000000..5000200, while $PWD/before.asc covers x 500000..500200, y 5000000..5000200 (they do not overlap). Check the coordinates and the CRS of both with gdalinfo"
+  refused 3 "talus-preprocess: $PWD/after.asc: covers x 600000..600200, y 5000000..5000200, while " \
+    "$PWD/before.asc covers x 500000..500200, y 5000000..5000200 (they do not overlap). Check the coordinates and " \
+    "the CRS of both with gdalinfo"
 }
 
 test_all_nodata() {
   scene
   grid before.asc -9999
-  refused 3 "talus-preprocess: $PWD/before.asc: has no data at all in the working grid (all its cells there are nodata). Check its coordinates and nodata value with gdalinfo"
+  refused 3 "talus-preprocess: $PWD/before.asc: has no data at all in the working grid (all its cells there are " \
+    "nodata). Check its coordinates and nodata value with gdalinfo"
+}
+
+# refused_void FILE: the cell at column 11, row 5 has no elevation.
+refused_void() {
+  refused 3 "talus-preprocess: $PWD/$1: 1 cell without elevation, at x 500115.0, y 5000055.0 (nodata or NaN inside " \
+    "the working area). Fill them: fill = true in [preprocess.voids], or beforehand (gdal_fillnodata.py $PWD/$1 " \
+    "out.tif); or crop the working grid (west_m, south_m, east_m, north_m in [preprocess.grid]), or, where they " \
+    "reach its edge, leave them outside the domain: edge_nodata = \"outside\""
 }
 
 test_nan_cells() {
   scene
   grid after.asc "i == 11 && j == 5 ? \"nan\" : $bowl - 4 * $in_source"
-  refused 3 "talus-preprocess: $PWD/after.asc: 1 cell without elevation, at x 500115.0, y 5000055.0 (nodata or NaN inside the working area). Fill them: fill = true in [preprocess.voids], or beforehand (gdal_fillnodata.py $PWD/after.asc out.tif); or crop the working grid (west_m, south_m, east_m, north_m in [preprocess.grid]), or, where they reach its edge, leave them outside the domain: edge_nodata = \"outside\""
+  refused_void after.asc
 }
 
 test_nodata_cells() {
   scene
   grid before.asc "i == 11 && j == 5 ? -9999 : $bowl"
-  refused 3 "talus-preprocess: $PWD/before.asc: 1 cell without elevation, at x 500115.0, y 5000055.0 (nodata or NaN inside the working area). Fill them: fill = true in [preprocess.voids], or beforehand (gdal_fillnodata.py $PWD/before.asc out.tif); or crop the working grid (west_m, south_m, east_m, north_m in [preprocess.grid]), or, where they reach its edge, leave them outside the domain: edge_nodata = \"outside\""
+  refused_void before.asc
 }
 
 test_empty_source() {
   scene
   cp before.asc after.asc
-  refused 3 "talus-preprocess: $PWD/after.asc: nowhere lies more than 0.5 m below the surface before (at most 0 m) (the source is empty). Lower threshold_m in [preprocess.source], or give its outline as polygon"
+  refused 3 "talus-preprocess: $PWD/after.asc: nowhere lies more than 0.5 m below the surface before (at most 0 m) " \
+    "(the source is empty). Lower threshold_m in [preprocess.source], or give its outline as polygon"
 }
 
 test_negative_thickness() {
@@ -67,27 +83,33 @@ test_negative_thickness() {
   grid release.asc "-3 * $in_source"
   sed -i '/^after_dem/d; s/^before_dem = "before.asc"/base_dem = "before.asc"/' recipe.toml
   printf '\n[[preprocess.release]]\nname = "A"\nthickness_raster = "release.asc"\n' >>recipe.toml
-  refused 3 "talus-preprocess: $PWD/release.asc: 16 cells of negative thickness (down to -3 m), the first at x 500035.0, y 5000115.0 (a release has none). Is it an elevation difference, after - before? Then: gdal_calc.py -A $PWD/release.asc --calc \"maximum(-A,0)\" --outfile out.tif"
+  refused 3 "talus-preprocess: $PWD/release.asc: 16 cells of negative thickness (down to -3 m), the first at " \
+    "x 500035.0, y 5000115.0 (a release has none). Is it an elevation difference, after - before? Then: " \
+    "gdal_calc.py -A $PWD/release.asc --calc \"maximum(-A,0)\" --outfile out.tif"
 }
 
 test_unknown_key() {
   scene
   sed -i 's/^layer_height_m/layer_hight_m/' recipe.toml
-  refused 2 "talus-preprocess: recipe.toml:10:1: unknown key \"layer_hight_m\" in [preprocess.grid]. Did you mean \"layer_height_m\"?"
+  refused 2 "talus-preprocess: recipe.toml:10:1: unknown key \"layer_hight_m\" in [preprocess.grid]. " \
+    "Did you mean \"layer_height_m\"?"
 }
 
 test_value_out_of_range() {
   scene
   sed -i 's/^layer_height_m = 2.0/layer_height_m = -2.0/' recipe.toml
-  refused 2 "talus-preprocess: recipe.toml:10:18: [preprocess.grid] layer_height_m = -2.0 (out of range). It must be >= 0"
+  refused 2 "talus-preprocess: recipe.toml:10:18: [preprocess.grid] layer_height_m = -2.0 (out of range). " \
+    "It must be >= 0"
 }
 
 test_all_faults_are_reported_at_once() {
   scene
   sed -i 's/^layer_height_m = 2.0/layer_height_m = "two"\nspacing = 10/; s/^before_dem/befor_dem/' recipe.toml
   refused 2 "talus-preprocess: recipe.toml:6:1: unknown key \"befor_dem\" in [preprocess]. Did you mean \"before_dem\"?"
-  expect_error "talus-preprocess: recipe.toml:10:18: [preprocess.grid] layer_height_m = \"two\" (it is text). Give a number"
-  expect_error "talus-preprocess: recipe.toml:11:1: unknown key \"spacing\" in [preprocess.grid]. Did you mean \"spacing_m\"?"
+  expect_error "talus-preprocess: recipe.toml:10:18: [preprocess.grid] layer_height_m = \"two\" (it is text). " \
+    "Give a number"
+  expect_error "talus-preprocess: recipe.toml:11:1: unknown key \"spacing\" in [preprocess.grid]. " \
+    "Did you mean \"spacing_m\"?"
 }
 
 test_not_a_recipe() {
@@ -101,7 +123,8 @@ test_output_folder_below_a_file() {
   scene
   touch file
   expect_exit 3 "$bin/talus-preprocess" recipe.toml --out file/out
-  expect_error "talus-preprocess: $PWD/file/out: the output folder cannot be written to (Not a directory). Name another one with --out DIR"
+  expect_error "talus-preprocess: $PWD/file/out: the output folder cannot be written to (Not a directory). " \
+    "Name another one with --out DIR"
 }
 
 test_output_folder_not_writable() {
@@ -114,7 +137,8 @@ SCRIPT
   for stage in preprocess solve postprocess; do
     rm -rf out
     expect_exit 3 with_mounts bash read_only.sh $stage
-    expect_error "talus-$stage: $PWD/out: the output folder cannot be written to (Read-only file system). Name another one with --out DIR"
+    expect_error "talus-$stage: $PWD/out: the output folder cannot be written to (Read-only file system). " \
+      "Name another one with --out DIR"
   done
 }
 

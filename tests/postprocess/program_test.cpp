@@ -154,7 +154,8 @@ TEST_F(Program, scores_with_the_surveys_error_along_a_line_named_in_the_recipe) 
   scratch_.write(
       "line.geojson",
       R"({"type":"FeatureCollection","crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::32632"}},
-"features":[{"type":"Feature","properties":{},"geometry":{"type":"LineString","coordinates":[[600390,5100150],[600010,5100150]]}}]})");
+"features":[{"type":"Feature","properties":{},
+"geometry":{"type":"LineString","coordinates":[[600390,5100150],[600010,5100150]]}}]})");
   recipe_ +=
       "[postprocess]\nthalweg = \"line.geojson\"\n[postprocess.survey]\ndifference = \"difference.tif\"\nsigma = "
       "\"sigma.tif\"\n";

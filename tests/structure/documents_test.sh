@@ -17,7 +17,9 @@ documents() { project_files | grep -E '\.md$'; }
 
 # Lines of code blocks and `inline code`, without prompts.
 code_of() {
-  awk '/^ *```/ { block = !block; next } block { print; next } { n = split($0, part, "`"); for (i = 2; i <= n; i += 2) print part[i] }' "$1"
+  awk '/^ *```/ { block = !block; next }
+    block { print; next }
+    { n = split($0, part, "`"); for (i = 2; i <= n; i += 2) print part[i] }' "$1"
 }
 
 test_readme_commands_are_makefile_targets() {
@@ -41,7 +43,8 @@ test_pipelines_named_in_documents_exist() {
   while read -r document; do
     while read -r scene; do
       found=$((found + 1))
-      [[ $scene =~ ^(help|list|clean)$ || -f pipelines/$scene/recipe.toml ]] || fail "$document names the scene '$scene', which has no recipe"
+      [[ $scene =~ ^(help|list|clean)$ || -f pipelines/$scene/recipe.toml ]] ||
+        fail "$document names the scene '$scene', which has no recipe"
     done < <(code_of "$document" | { grep -oE 'make -C pipelines +[a-z][a-z0-9-]*' || true; } | awk '{ print $NF }')
   done < <(documents)
   [[ $found -ge 2 ]] || fail "only $found pipeline commands were found in the documents: this test looks at nothing"
@@ -49,9 +52,10 @@ test_pipelines_named_in_documents_exist() {
 
 test_programs_named_in_readme_are_built() {
   cd "$TALUS_SOURCE"
-  local program
-  for program in $(grep -ohE '\btalus-[a-z-]*[a-z]' README.md docs/user-guide.md docs/architecture.md docs/formats.md | sort -u); do
-    [[ $program =~ ^talus-(bundle|run|stage|tests).*$ || -x $bin/$program ]] || fail "the documents name $program, which the build does not make"
+  local program documents=(README.md docs/user-guide.md docs/architecture.md docs/formats.md)
+  for program in $(grep -ohE '\btalus-[a-z-]*[a-z]' "${documents[@]}" | sort -u); do
+    [[ $program =~ ^talus-(bundle|run|stage|tests).*$ || -x $bin/$program ]] ||
+      fail "the documents name $program, which the build does not make"
   done
 }
 
@@ -70,10 +74,11 @@ test_relative_links_lead_somewhere() {
 
 test_install_script_holds_every_package_named_in_cmake() {
   cd "$TALUS_SOURCE"
-  local package packages
+  local package packages named='s/.*talus_missing\((".*"|[^ ]*) +"?([^")]*)"?\).*/\2/p'
   packages=$(tools/install-dependencies.sh --list)
-  for package in $(sed -nE 's/.*talus_missing\((".*"|[^ ]*) +"?([^")]*)"?\).*/\2/p' cmake/dependencies.cmake | grep -v package); do
-    grep -qx "$package" <<<"$packages" || fail "cmake/dependencies.cmake asks for $package, which tools/install-dependencies.sh does not install"
+  for package in $(sed -nE "$named" cmake/dependencies.cmake | grep -v package); do
+    grep -qx "$package" <<<"$packages" ||
+      fail "cmake/dependencies.cmake asks for $package, which tools/install-dependencies.sh does not install"
   done
   grep -qx libgdal-dev <<<"$packages" || fail "no packages were found"
 }
@@ -89,8 +94,35 @@ test_no_file_names_a_machine() {
   [[ -z $found ]] || fail "files name a place on one machine:"$'\n'"$found"
 }
 
+# lines_over COLUMNS: "file:line" of what is wider in the files named on stdin. Tables of figures, data and the licence
+# are as they came.
+lines_over() {
+  { grep -vE '(^|/)LICENSE$|\.(csv|geojson)$' || true; } |
+    LC_ALL=C.UTF-8 xargs -d '\n' grep -nHoE "^.{$(($1 + 1))}" | cut -d : -f 1,2 || true
+}
+
+test_no_line_is_over_120_columns() {
+  cd "$TALUS_SOURCE"
+  local found
+  [[ $(project_files | lines_over 100 | wc -l) -gt 100 ]] || fail "no line is over 100 columns: this looks at nothing"
+  found=$(project_files | lines_over 120)
+  [[ -z $found ]] || fail "lines of more than 120 columns:"$'\n'"$found"
+}
+
+# The test itself: the one line that is too long is named; letters count, not bytes.
+test_a_line_over_120_columns_is_named() {
+  local line umlauts
+  line=$(printf 'x%.0s' {1..120})
+  umlauts=${line//x/ö}
+  printf '%s\n' "$line" "$umlauts" >fits.sh
+  printf '%s\n' "$line" "${umlauts}ö" "$line" >wide.md
+  [[ $(printf '%s\n' fits.sh wide.md | lines_over 120) == wide.md:2 ]] ||
+    fail "said: $(printf '%s\n' fits.sh wide.md | lines_over 120)"
+}
+
 test_licence_is_the_gpl_3() {
-  grep -q 'GNU GENERAL PUBLIC LICENSE' "$TALUS_SOURCE/LICENSE" && grep -q 'Version 3, 29 June 2007' "$TALUS_SOURCE/LICENSE" ||
+  cd "$TALUS_SOURCE"
+  grep -q 'GNU GENERAL PUBLIC LICENSE' LICENSE && grep -q 'Version 3, 29 June 2007' LICENSE ||
     fail "LICENSE is not the GNU General Public License, version 3"
 }
 

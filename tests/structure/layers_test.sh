@@ -16,7 +16,9 @@ refuse() {
   [[ -z $found ]] || fail "$1:"$'\n'"$found"
 }
 
-some_includes() { [[ $(includes "$1" | wc -l) -gt 5 ]] || fail "no includes were found in $1: this test looks at nothing"; }
+some_includes() {
+  [[ $(includes "$1" | wc -l) -gt 5 ]] || fail "no includes were found in $1: this test looks at nothing"
+}
 
 test_stages_include_common_and_never_one_another() {
   cd "$TALUS_SOURCE"
@@ -32,13 +34,15 @@ test_stages_include_common_and_never_one_another() {
 test_common_knows_no_stage() {
   cd "$TALUS_SOURCE"
   some_includes common
-  includes common | { grep -E ': (preprocess|solver|postprocess|data_samples|tests)/' || true; } | refuse "common/ includes a stage"
+  includes common | { grep -E ': (preprocess|solver|postprocess|data_samples|tests)/' || true; } |
+    refuse "common/ includes a stage"
 }
 
 # No way round through ../: includes name their file from the project's root.
 test_includes_start_at_the_root() {
   cd "$TALUS_SOURCE"
-  includes common preprocess solver postprocess | { grep -F '../' || true; } | refuse "an include climbs out of its folder"
+  includes common preprocess solver postprocess | { grep -F '../' || true; } |
+    refuse "an include climbs out of its folder"
 }
 
 # private_headers PATTERN FOLDER...: headers that include what matches PATTERN may be included by sources of their own
@@ -47,38 +51,46 @@ private_headers() {
   local pattern=$1 header
   shift
   for header in $(includes "$@" | sed -nE "s#\.(hpp|h|cuh): $pattern.*#.\1#p" | sort -u); do
-    includes common preprocess solver postprocess data_samples | grep -E ": $header$" | grep -vE "^$(dirname "$header")/[a-z_0-9]+\.cpp:" || true
+    includes common preprocess solver postprocess data_samples | grep -E ": $header$" |
+      grep -vE "^$(dirname "$header")/[a-z_0-9]+\.cpp:" || true
   done
 }
 
 test_gdal_stands_behind_gis_and_the_outer_stages() {
   cd "$TALUS_SOURCE"
   local gdal='(gdal|ogr|cpl_|vrt)'
-  includes common solver | { grep -E ": $gdal" || true; } | { grep -vE '^common/q?gis/' || true; } | refuse "GDAL is included outside common/gis and common/qgis"
+  includes common solver | { grep -E ": $gdal" || true; } | { grep -vE '^common/q?gis/' || true; } |
+    refuse "GDAL is included outside common/gis and common/qgis"
   private_headers "$gdal" common preprocess postprocess | { grep -v '^common/qgis/' || true; } |
     refuse "a header that includes GDAL is included outside its folder's sources"
-  includes solver | { grep -E ': common/(gis|qgis)/' || true; } | refuse "the solver includes common/gis, which stands for GDAL"
+  includes solver | { grep -E ': common/(gis|qgis)/' || true; } |
+    refuse "the solver includes common/gis, which stands for GDAL"
 }
 
 test_solver_does_not_link_gdal() {
   [[ -x $bin/talus-solve ]] || fail "$bin/talus-solve is not built"
   ldd "$bin/talus-solve" >"$TALUS_SCRATCH/stdout"
   grep -q libopenvdb "$TALUS_SCRATCH/stdout" || fail "ldd shows no OpenVDB in talus-solve: is this the right file?"
-  { grep -E 'libgdal|libproj|libnetcdf' "$TALUS_SCRATCH/stdout" || true; } | refuse "talus-solve links GDAL or what belongs to it"
+  { grep -E 'libgdal|libproj|libnetcdf' "$TALUS_SCRATCH/stdout" || true; } |
+    refuse "talus-solve links GDAL or what belongs to it"
 }
 
 # OpenVDB's headers do not compile under nvcc, and are slow.
 test_openvdb_stands_in_sources_only() {
   cd "$TALUS_SOURCE"
-  includes common preprocess solver postprocess | { grep -E '\.(cu|cuh): openvdb/' || true; } | refuse "OpenVDB is included in a kernel file"
-  private_headers 'openvdb/' common preprocess solver postprocess | refuse "a header that includes OpenVDB is included outside its folder's sources"
+  includes common preprocess solver postprocess | { grep -E '\.(cu|cuh): openvdb/' || true; } |
+    refuse "OpenVDB is included in a kernel file"
+  private_headers 'openvdb/' common preprocess solver postprocess |
+    refuse "a header that includes OpenVDB is included outside its folder's sources"
 }
 
 test_only_parallel_names_cuda_tbb_and_thrust() {
   cd "$TALUS_SOURCE"
-  local words='\b(cuda[A-Z][A-Za-z]*|cub::|tbb::|thrust::|__global__|__device__|__host__|__shared__|__CUDACC__|__CUDA_ARCH__)|<<<|[<"](tbb|oneapi|thrust|cub|cuda)[/_a-z]*\.?h?'
+  local words='\b(cuda[A-Z][A-Za-z]*|cub::|tbb::|thrust::|__global__|__device__|__host__|__shared__|__CUDACC__'
+  words+='|__CUDA_ARCH__)|<<<|[<"](tbb|oneapi|thrust|cub|cuda)[/_a-z]*\.?h?'
   grep -rnE --include='*.hpp' --include='*.cpp' --include='*.cu' --include='*.cuh' "$words" solver | sed -E 's#//.*##' |
-    { grep -E "$words" || true; } | { grep -v '^solver/parallel/' || true; } | refuse "CUDA, TBB or Thrust is named outside solver/parallel/"
+    { grep -E "$words" || true; } | { grep -v '^solver/parallel/' || true; } |
+      refuse "CUDA, TBB or Thrust is named outside solver/parallel/"
   grep -rqE 'tbb::' solver/parallel || fail "solver/parallel/ does not name TBB: this test looks at nothing"
 }
 

@@ -22,7 +22,8 @@ TEST(ReadPolygons, reads_rings_holes_and_attributes) {
   const auto file = scratch.write(
       "a.geojson",
       collection(R"({"type":"Feature","properties":{"name":"scar","thickness":4.5,"class":2,"note":"x","text":"7.25"},
-"geometry":{"type":"Polygon","coordinates":[[[0,0],[100,0],[100,100],[0,100],[0,0]],[[40,40],[60,40],[60,60],[40,40]]]}})",
+"geometry":{"type":"Polygon","coordinates":
+[[[0,0],[100,0],[100,100],[0,100],[0,0]],[[40,40],[60,40],[60,60],[40,40]]]}})",
                  utm_11));
   const auto polygons = read_polygons(file, test::epsg(32611));
   ASSERT_EQ(polygons.size(), 1u);
@@ -38,7 +39,8 @@ TEST(ReadPolygons, splits_multipolygons_and_skips_other_shapes) {
   const Scratch scratch;
   const auto file = scratch.write(
       "a.geojson", collection(R"({"type":"Feature","properties":{},"geometry":{"type":"MultiPolygon","coordinates":
-[[[[0,0],[1,0],[1,1],[0,0]]],[[[5,5],[6,5],[6,6],[5,5]]]]}},{"type":"Feature","properties":{},"geometry":{"type":"Point","coordinates":[1,1]}})",
+[[[[0,0],[1,0],[1,1],[0,0]]],[[[5,5],[6,5],[6,6],[5,5]]]]}},
+{"type":"Feature","properties":{},"geometry":{"type":"Point","coordinates":[1,1]}})",
                               utm_11));
   EXPECT_EQ(read_polygons(file, "").size(), 2u);
 }

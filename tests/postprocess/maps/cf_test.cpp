@@ -32,8 +32,8 @@ class Cf : public ::testing::Test {
     write_netcdf(scratch_ / name, run, {"A test", "talus-postprocess x.toml", ""});
     return " '" + (scratch_ / name).string() + "'";
   }
-  static std::string checked(const std::string& arguments) {
-    return output_of("/usr/bin/python3 '" TALUS_SOURCE_DIR "/tests/postprocess/maps/check_cf.py' " + arguments);
+  static std::string checked(const std::string& files, const std::string& program = "check_cf.py") {
+    return output_of("/usr/bin/python3 '" TALUS_SOURCE_DIR "/tests/postprocess/maps/" + program + "' " + files);
   }
   static bool has_checker() {
     return test::has_tool(
@@ -75,7 +75,7 @@ TEST_F(Cf, is_followed_to_the_letter_in_every_projection_it_names) {
 
 TEST_F(Cf, is_checked_by_what_sees_every_break) {
   TALUS_NEED_CF_CHECKER
-  EXPECT_EQ(checked("--breaks" + written(full_run(test::epsg(32632), 600000, 5100000), "whole.nc")), "no faults\n");
+  EXPECT_EQ(checked(written(full_run(test::epsg(32632), 600000, 5100000), "whole.nc"), "break_cf.py"), "no faults\n");
 }
 
 TEST_F(Cf, names_the_start_of_the_failure_where_it_is_known) {

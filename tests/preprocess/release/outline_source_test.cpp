@@ -155,8 +155,10 @@ TEST(outline_source, depth_points_in_degrees_come_to_the_crs_of_the_ground) {
   scene.points(scene.in_degrees("longitude,latitude,depth\n{:.10f},{:.10f},{}\n{:.10f},{:.10f},{}\n", 12, 9));
   scene.expect_depths("a table");
   const std::string feature =
-      R"({{"type":"Feature","properties":{{"depth_m":{2}}},"geometry":{{"type":"Point","coordinates":[{0:.10f},{1:.10f},700]}}}},
-{{"type":"Feature","properties":{{"depth_m":{5}}},"geometry":{{"type":"Point","coordinates":[{3:.10f},{4:.10f},700]}}}})";
+      R"({{"type":"Feature","properties":{{"depth_m":{2}}},
+"geometry":{{"type":"Point","coordinates":[{0:.10f},{1:.10f},700]}}}},
+{{"type":"Feature","properties":{{"depth_m":{5}}},
+"geometry":{{"type":"Point","coordinates":[{3:.10f},{4:.10f},700]}}}})";
   scene.surface().depth_points = scene.scratch.write(
       "boreholes.geojson", R"({"type":"FeatureCollection","features":[)" + scene.in_degrees(feature, 12, 9) + "]}");
   scene.expect_depths("vector points that also carry the ground's elevation");
@@ -164,9 +166,10 @@ TEST(outline_source, depth_points_in_degrees_come_to_the_crs_of_the_ground) {
 
 TEST(outline_source, depth_points_in_degrees_are_refused_where_the_ground_has_no_crs) {
   OutlineScene scene;
-  scene.surface().depth_points = scene.scratch.write(
-      "boreholes.geojson",
-      R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{"depth":12},"geometry":{"type":"Point","coordinates":[15,46]}}]})");
+  scene.surface().depth_points =
+      scene.scratch.write("boreholes.geojson",
+                          R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{"depth":12},
+"geometry":{"type":"Point","coordinates":[15,46]}}]})");
   EXPECT_EQ(scene.data_fault().find(scene.path("boreholes.geojson") + ": CRS is EPSG:4326 (this stage needs metres)"),
             0U)
       << scene.data_fault();
