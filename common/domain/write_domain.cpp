@@ -1,13 +1,10 @@
-#include <openvdb/points/PointAttribute.h>
-#include <openvdb/points/PointConversion.h>
-#include <openvdb/tools/PointIndexGrid.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "common/domain/domain.hpp"
 #include "common/domain/domain_layout.hpp"
+#include "common/domain/point_grid.hpp"
 #include "common/map/bilinear.hpp"
 #include "common/stage/stage.hpp"
 #include "common/stage/write_fault.hpp"
@@ -15,9 +12,6 @@
 namespace talus {
 namespace fs = std::filesystem;
 namespace {
-
-using openvdb::points::PointDataGrid;
-using openvdb::tools::PointIndexGrid;
 
 /// Lowest ground: the local origin of heights.
 double bottom_of(const Raster& terrain) {
@@ -39,33 +33,21 @@ std::vector<openvdb::Vec3d> positions_of(const Domain& domain) {
   return positions;
 }
 
-template <class Stored, class Values>
-void attach(PointDataGrid& grid, const PointIndexGrid& order, const char* name, const Values& values) {
-  const std::vector<Stored> stored(values.begin(), values.end());
-  openvdb::points::appendAttribute<Stored>(grid.tree(), name);
-  const openvdb::points::PointAttributeVector<Stored> wrapped(stored);
-  openvdb::points::populateAttribute(grid.tree(), order.tree(), name, wrapped);
-}
-
-PointDataGrid::Ptr point_grid(const Domain& domain) {
-  const auto transform = layout::transform(domain.grid, domain.layer_height, bottom_of(domain.terrain));
-  const auto positions = positions_of(domain);
-  const openvdb::points::PointAttributeVector<openvdb::Vec3d> wrapped(positions);
-  const auto order = openvdb::tools::createPointIndexGrid<PointIndexGrid>(wrapped, *transform);
-  auto grid =
-      openvdb::points::createPointDataGrid<openvdb::points::NullCodec, PointDataGrid>(*order, wrapped, *transform);
-  std::vector<std::int64_t> ids(positions.size());
+openvdb::GridBase::Ptr point_grid(const Domain& domain) {
+  const SeedPoints& points = domain.points;
+  PointGrid grid(positions_of(domain), *layout::transform(domain.grid, domain.layer_height, bottom_of(domain.terrain)));
+  std::vector<std::int64_t> ids(points.size());
   std::iota(ids.begin(), ids.end(), 0);
-  attach<double>(*grid, *order, layout::volume, domain.points.volume);
-  attach<double>(*grid, *order, layout::height, domain.points.height);
-  attach<double>(*grid, *order, layout::extent_x, domain.points.extent_x);
-  attach<double>(*grid, *order, layout::extent_y, domain.points.extent_y);
-  attach<std::int32_t>(*grid, *order, layout::release, domain.points.release);
-  attach<std::int64_t>(*grid, *order, layout::id, ids);
-  grid->setName(layout::points);
-  grid->insertMeta("units",
-                   openvdb::StringMetadata("position m, volume m3, height m above the bed, vertical, extent m"));
-  return grid;
+  grid.attach(layout::volume, points.volume);
+  grid.attach(layout::height, points.height);
+  grid.attach(layout::extent_x, points.extent_x);
+  grid.attach(layout::extent_y, points.extent_y);
+  grid.attach(layout::release, std::vector<std::int32_t>(points.release.begin(), points.release.end()));
+  grid.attach(layout::id, ids);
+  grid.grid()->setName(layout::points);
+  grid.grid()->insertMeta("units",
+                          openvdb::StringMetadata("position m, volume m3, height m above the bed, vertical, extent m"));
+  return grid.grid();
 }
 
 template <class Grid, class Value>
