@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Formatting of every source by clang-format 14 (Debian 12's), headers that build alone, and static analysis of every
-# unit, kernels included, by clang-tidy 14 with the checks of .clang-tidy. What was clean is not looked at again until
-# it, a header that it includes or .clang-tidy has changed.
+# source, kernels included, by clang-tidy 14 with the checks of .clang-tidy: all of them in batches of a folder (see
+# cmake/batches.cmake), which reads the headers that they share once. What was clean is not looked at again until it, a
+# header that it includes or .clang-tidy has changed.
 # usage: tools/lint.sh [--format | --changed N] [FILE...]
 #   --format: look at the formatting alone; --changed: analyse only the N units changed last; FILE: only these
 set -euo pipefail
@@ -34,23 +35,29 @@ printf '%s\0' "${sources[@]}" | xargs -0 clang-format --dry-run -Werror ||
 echo "clang-format: ${#sources[@]} files"
 if [[ $format_only == yes ]]; then exit 0; fi
 
-build=build-lint
-cmake --preset cpu -B $build -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DTALUS_WERROR=OFF >"$build.log" 2>&1 ||
-  { cat "$build.log" >&2; fail "configuring failed"; }
-mv "$build.log" "$build/configure.log"
+# Everything is analysed in batches, files that were asked for one by one.
+batches=OFF
+if [[ -z $changed && $# -eq 0 ]]; then batches=ON; fi
+build=build-lint/$([[ $batches == ON ]] && echo batches || echo units)
+export build
+mkdir -p "$build"
+cmake --preset cpu -B "$build" -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DTALUS_WERROR=OFF -DTALUS_BATCHES=$batches \
+  >"$build/configure.log" 2>&1 || { cat "$build/configure.log" >&2; fail "configuring failed"; }
 
-mapfile -t units < <(printf '%s\n' "${sources[@]}" | grep -E '\.(cpp|cu)$')
 if [[ $# -gt 0 ]]; then
-  units=("$@")
+  units=("${@/#/$PWD/}")
 elif [[ -n $changed ]]; then
   # Units of the last commits, the latest first.
   mapfile -t units < <({ git diff --name-only HEAD; git log --format= --name-only -n 200; } |
     awk '!seen[$0]++' | grep -E '\.(cpp|cu)$' |
-    while IFS= read -r file; do if [[ -f $file ]]; then printf '%s\n' "$file"; fi; done | head -n "$changed" || true)
+    while IFS= read -r file; do if [[ -f $file ]]; then printf '%s\n' "$PWD/$file"; fi; done | head -n "$changed" || true)
+else
+  mapfile -t units < <(grep -oE '"file": "[^"]+"' "$build/compile_commands.json" | cut -d'"' -f4 |
+    awk '/unity_/ { print; next } { single[++n] = $0 } END { for (i = 1; i <= n; i++) print single[i] }')
 fi
 
 # Headers that can be included alone. The flags are those of all units of the project together.
-flags=$(grep -oE ' (-I|-isystem |-D|-std=)[^ ]+' $build/compile_commands.json | grep -v '\\' | sort -u | tr '\n' ' ')
+flags=$(grep -oE ' (-I|-isystem |-D|-std=)[^ ]+' "$build/compile_commands.json" | grep -v '\\' | sort -u | tr '\n' ' ')
 export flags
 # text_of FILE: checksum of a file, of the project's headers that it includes, and of .clang-tidy.
 text_of() {
@@ -74,7 +81,9 @@ analyse() {
   log=build-lint/tidy/${unit//\//_}
   stamp=$(text_of "$unit")
   if [[ -f $log.clean && $(<"$log.clean") == "$stamp" ]]; then return 0; fi
-  if clang-tidy -p build-lint --quiet --warnings-as-errors='*' "$unit" >"$log.log" 2>"$log.err"; then
+  # A batch includes sources, which is what that check looks for.
+  if clang-tidy -p "$build" --quiet --warnings-as-errors='*' --checks=-bugprone-suspicious-include "$unit" \
+    >"$log.log" 2>"$log.err"; then
     echo "$stamp" >"$log.clean"
   else
     { grep -E 'warning:|error:' "$log.log" || tail -n 20 "$log.err"; } | sort -u
@@ -89,11 +98,11 @@ if [[ -z $changed && $# -eq 0 ]]; then
     fail "headers do not build alone"
   echo "headers that build alone: ${#headers[@]}"
 fi
-# Units that CMake makes or leaves out have no command: they are not looked at.
+# Units that CMake makes or leaves out are not looked at: they are not there, or have no command.
 printf '%s\n' "${units[@]}" | while IFS= read -r unit; do
-  if grep -qF "/$unit\"" build-lint/compile_commands.json; then printf '%s\0' "$unit"; fi
-done >build-lint/units
-count=$(tr -cd '\0' <build-lint/units | wc -c)
+  if [[ -f $unit ]] && grep -qF "\"$unit\"" "$build/compile_commands.json"; then printf '%s\0' "$unit"; fi
+done >build-lint/list
+count=$(tr -cd '\0' <build-lint/list | wc -c)
 [[ $count -gt 0 || -n $changed ]] || fail "no unit to analyse"
-xargs -0 -r -P "$(nproc)" -n 1 bash -c 'analyse "$1"' _ <build-lint/units || fail "clang-tidy has something to say"
+xargs -0 -r -P "$(nproc)" -n 1 bash -c 'analyse "$1"' _ <build-lint/list || fail "clang-tidy has something to say"
 echo "clang-tidy: $count units"
