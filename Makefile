@@ -12,7 +12,9 @@ LONG   ?=
 CASES  ?=
 
 programs := talus-preprocess talus-solve talus-postprocess talus-make-terrain
-launcher := $(if $(shell command -v ccache),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_CUDA_COMPILER_LAUNCHER=ccache)
+# With a compiler cache every source is a unit of its own; without one those of a folder are compiled together.
+ccache := $(shell command -v ccache)
+quickly := $(if $(ccache),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_CUDA_COMPILER_LAUNCHER=ccache,-DTALUS_BATCHES=ON)
 
 # What the build folder was configured for; another wish configures it again.
 asked := $(PRESET) $(CUDAARCHS)
@@ -32,7 +34,7 @@ $(BUILD)/asked.txt: FORCE
 	@mkdir -p $(@D); [[ -f $@ && "$$(<$@)" == '$(asked)' ]] || echo '$(asked)' >$@
 
 $(BUILD)/build.ninja: CMakePresets.json $(BUILD)/asked.txt | setup
-	cmake --preset $(PRESET) -B $(BUILD) $(launcher) $(if $(CUDAARCHS),-DCMAKE_CUDA_ARCHITECTURES='$(CUDAARCHS)')
+	cmake --preset $(PRESET) -B $(BUILD) $(quickly) $(if $(CUDAARCHS),-DCMAKE_CUDA_ARCHITECTURES='$(CUDAARCHS)')
 	@touch $@
 
 build: setup $(BUILD)/build.ninja ## the programs, in build/bin/ [CUDAARCHS=90-real: kernels for other GPUs]
@@ -74,7 +76,7 @@ docs: ## the programmers' reference, in build-docs/html
 
 # Bundles go to other machines: their kernels are compiled for every supported GPU, unless CUDAARCHS says otherwise.
 $(RELEASE_BUILD)/build.ninja: CMakePresets.json | setup
-	cmake --preset default -B $(RELEASE_BUILD) $(launcher) \
+	cmake --preset default -B $(RELEASE_BUILD) $(quickly) \
 	  $(if $(CUDAARCHS),-DCMAKE_CUDA_ARCHITECTURES='$(CUDAARCHS)',-DTALUS_ALL_GPUS=ON)
 	@touch $@
 

@@ -1,8 +1,13 @@
 # One interface target carries the warnings of all our own code; third-party headers are SYSTEM.
 add_library(talus_warnings INTERFACE)
-set(_warnings -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual)
+set(_warnings -Wall -Wextra -Wnon-virtual-dtor -Woverloaded-virtual)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   list(APPEND _warnings -Wno-restrict)   # GCC 12 sees overlaps in every "literal" + std::string (GCC PR 105651)
+endif()
+if(TALUS_BATCHES)   # sources see what others of their folder declare, and are included files
+  list(APPEND _warnings -Wshadow=local -Wno-subobject-linkage)
+else()
+  list(APPEND _warnings -Wshadow)
 endif()
 if(TALUS_WERROR)
   list(APPEND _warnings -Werror)

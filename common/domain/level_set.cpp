@@ -22,15 +22,11 @@ using Vector = openvdb::Vec3d;
 
 constexpr double band = 3;  // of a level set on either side of its surface, in voxels
 
-[[noreturn]] void refuse(const fs::path& file, const std::string& what, const std::string& why,
-                         const std::string& mend) {
-  throw DataError({file.string() + ": " + what, why, mend});
-}
-
 openvdb::FloatGrid::Ptr open_grid(const fs::path& file, const std::string& name) {
   if (!fs::exists(file))
-    refuse(file, "no such file", "",
-           "Check [[solve.obstacle]] level_set; talus-preprocess writes obstacles.vdb from [[preprocess.obstacle]]");
+    refuse_file(
+        file, "no such file", "",
+        "Check [[solve.obstacle]] level_set; talus-preprocess writes obstacles.vdb from [[preprocess.obstacle]]");
   try {
     openvdb::io::File archive(file.string());
     archive.open();
@@ -39,20 +35,20 @@ openvdb::FloatGrid::Ptr open_grid(const fs::path& file, const std::string& name)
     std::sort(names.begin(), names.end());
     const bool known = std::find(names.begin(), names.end(), name) != names.end();
     if ((name.empty() && names.size() != 1) || (!name.empty() && !known)) {
-      refuse(file,
-             name.empty() ? fmt::format("holds {} grids", names.size()) : fmt::format("holds no grid \"{}\"", name),
-             fmt::format("its grids are: {}", fmt::join(names, ", ")), "Name one of them: grid = \"...\"");
+      refuse_file(
+          file, name.empty() ? fmt::format("holds {} grids", names.size()) : fmt::format("holds no grid \"{}\"", name),
+          fmt::format("its grids are: {}", fmt::join(names, ", ")), "Name one of them: grid = \"...\"");
     }
     const auto grid = archive.readGrid(name.empty() ? names.front() : name);
     const auto typed = openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
     if (!typed || typed->getGridClass() != openvdb::GRID_LEVEL_SET) {
-      refuse(file, fmt::format("the grid \"{}\" is no level set", grid->getName()),
-             "a level set is a float grid of class \"level set\", negative inside the body",
-             "Write it as one (Houdini: VDB from Polygons; OpenVDB: tools::meshToLevelSet)");
+      refuse_file(file, fmt::format("the grid \"{}\" is no level set", grid->getName()),
+                  "a level set is a float grid of class \"level set\", negative inside the body",
+                  "Write it as one (Houdini: VDB from Polygons; OpenVDB: tools::meshToLevelSet)");
     }
     return typed;
   } catch (const openvdb::Exception& error) {
-    refuse(file, "cannot be read", error.what(), "Write it again");
+    refuse_file(file, "cannot be read", error.what(), "Write it again");
   }
 }
 
@@ -112,9 +108,10 @@ BodySurface read_level_set(const fs::path& file, const std::string& name, const 
     add_triangle(surface, largest, at(q[0]), at(q[3]), at(q[2]));
   }
   if (surface.facets.empty() || !(surface.volume > 0)) {
-    refuse(file, fmt::format("the level set \"{}\" encloses nothing", grid->getName()),
-           fmt::format("its surface has {} pieces", surface.facets.size()),
-           "A level set is negative inside the body; write it with smaller voxels if the body is thinner than one");
+    refuse_file(
+        file, fmt::format("the level set \"{}\" encloses nothing", grid->getName()),
+        fmt::format("its surface has {} pieces", surface.facets.size()),
+        "A level set is negative inside the body; write it with smaller voxels if the body is thinner than one");
   }
   return surface;
 }
@@ -143,8 +140,8 @@ void write_level_sets(const fs::path& file, const std::vector<SolidBody>& bodies
       }
     }
     if (!any)
-      refuse(file, fmt::format("the body \"{}\" lies between the voxels", body.name),
-             fmt::format("they are {:g} m wide", voxel), "Take smaller ones");
+      refuse_file(file, fmt::format("the body \"{}\" lies between the voxels", body.name),
+                  fmt::format("they are {:g} m wide", voxel), "Take smaller ones");
     openvdb::tools::signedFloodFill(grid->tree());
     grid->setTransform(transform);
     grid->setGridClass(openvdb::GRID_LEVEL_SET);

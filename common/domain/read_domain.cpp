@@ -8,7 +8,7 @@
 
 #include "common/domain/domain.hpp"
 #include "common/domain/domain_layout.hpp"
-#include "common/error.hpp"
+#include "common/stage/write_fault.hpp"
 
 #ifdef __SANITIZE_ADDRESS__
 // OpenVDB drops the tree at hand when its stream ends within it; the leak sanitizer is told so here.
@@ -26,7 +26,7 @@ constexpr auto make_it = "Make it with talus-preprocess";
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& what, const std::string& why,
                          const std::string& mend = make_it) {
-  throw DataError({file.string() + ": " + what, why, mend});
+  refuse_file(file, what, why, mend);
 }
 
 struct Contents {

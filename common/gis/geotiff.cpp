@@ -13,8 +13,6 @@ namespace talus {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double nodata = -9999;
-
 gdal::Dataset tagged(const Raster& raster, const RasterTags& tags) {
   gdal::Dataset dataset = gdal::in_memory(raster, nodata);
   auto* band = dataset->GetRasterBand(1);

@@ -10,6 +10,9 @@
 
 namespace talus {
 
+/// What cells without a value hold in the GeoTIFFs that are written.
+inline constexpr float nodata = -9999;
+
 /// What a GeoTIFF says of itself beside its values.
 struct RasterTags {
   std::string description;  ///< band description: "deposit thickness, vertical [m]"

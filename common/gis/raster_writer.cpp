@@ -13,7 +13,6 @@
 namespace talus {
 namespace {
 
-constexpr float nodata = -9999;
 constexpr int large = 2048;  // cells from which a map is looked at through overviews
 
 CPLStringList creation_options() {

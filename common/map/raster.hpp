@@ -3,10 +3,14 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
 namespace talus {
+
+/// What a raster holds where it knows nothing.
+inline constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// A square-celled, axis-aligned metric grid.
 struct MapGrid {

@@ -36,9 +36,9 @@ std::string trimmed(const std::string& text) {
   return first == std::string::npos ? "" : text.substr(first, last - first + 1);
 }
 
-class Reader {
+class UsedReader {
  public:
-  explicit Reader(const std::string& text) : lines_(lines_of(text)) {}
+  explicit UsedReader(const std::string& text) : lines_(lines_of(text)) {}
 
   UsedRecipe read(const toml::table& root) {
     facts();
@@ -97,7 +97,7 @@ class Reader {
 UsedRecipe read_used_recipe(const std::string& text, const std::string& shown) {
   try {
     const toml::table root = toml::parse(text, shown);
-    return Reader(text).read(root);
+    return UsedReader(text).read(root);
   } catch (const toml::parse_error& error) {
     throw DataError({fmt::format("{}:{}: not TOML", shown, error.source().begin.line), std::string(error.description()),
                      "Run its stage again"});

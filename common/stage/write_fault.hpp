@@ -1,4 +1,4 @@
-// The one text for "a file could not be written", with the disk-full case told apart.
+// Faults of files: one that cannot be written (a full disk has a text of its own), and one that is refused.
 #pragma once
 
 #include <filesystem>
@@ -10,5 +10,11 @@ namespace talus {
 
 /// "PATH: cannot be written (REASON). mend". Libraries seldom say that the disk is full, so the file system is asked.
 Fault write_fault(const std::filesystem::path& path, const std::string& reason);
+
+/// This function throws the DataError "PATH: what (why). mend".
+[[noreturn]] inline void refuse_file(const std::filesystem::path& path, const std::string& what, const std::string& why,
+                                     const std::string& mend) {
+  throw DataError({path.string() + ": " + what, why, mend});
+}
 
 }  // namespace talus

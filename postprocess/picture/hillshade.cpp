@@ -8,8 +8,6 @@
 namespace talus::postprocess {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
 /// Elevation of a neighbour; the cell's own where there is none.
 double neighbour(const MapGrid& grid, const std::vector<double>& z, int column, int row, double own) {
   const auto i = grid.index(std::clamp(column, 0, grid.columns - 1), std::clamp(row, 0, grid.rows - 1));

@@ -15,7 +15,6 @@
 namespace talus::postprocess {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr Colour white{1, 1, 1};
 constexpr Colour beyond_domain{0.93, 0.94, 0.95};
 

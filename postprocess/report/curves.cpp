@@ -9,7 +9,6 @@
 namespace talus::postprocess {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double moving = 1.0;  // [m/s]; what is slower creeps or rests
 
 std::vector<double> zero_for_nan(std::vector<double> values) {

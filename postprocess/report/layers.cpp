@@ -15,7 +15,6 @@
 namespace talus::postprocess {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 // What a map may hold before its cells are merged: pages stay below some ten megabytes.
 constexpr std::size_t cells_of_a_map = 300'000, cells_of_all_frames = 9'000'000;
 

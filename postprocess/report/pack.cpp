@@ -10,7 +10,6 @@
 namespace talus::postprocess {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double most = 65534;  // of 65536: 0 is NaN
 
 std::string deflated(const std::string& bytes) {

@@ -10,7 +10,6 @@ namespace talus::postprocess {
 namespace {
 
 constexpr double degrees = 180 / std::numbers::pi;
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 void straight(const Scored& scored, Sheet& sheet) {
   const auto& maps = scored.run.maps;

@@ -14,8 +14,6 @@
 namespace talus::postprocess {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
 /// What does not change from draw to draw.
 struct Fixed {
   const Scored& scored;

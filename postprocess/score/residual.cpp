@@ -20,7 +20,6 @@ Residual residual_of(const std::vector<double>& simulated, const std::vector<dou
     square += r * r;
   }
   if (residuals.empty()) {
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     return {0, nan, nan, nan};
   }
   const auto count = static_cast<double>(residuals.size());

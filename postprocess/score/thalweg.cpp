@@ -16,7 +16,6 @@
 namespace talus::postprocess {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double shortest_path_cells = 5;  // a centre of mass that moves less says little about the way
 constexpr int smoothing = 18;              // a Gaussian of three cells: takes off the corners of cells, keeps bends
 

@@ -51,7 +51,7 @@ std::vector<Region> lowering_regions(const Raster& lowering, double threshold) {
   return regions;
 }
 
-Neighbours neighbours(const MapGrid& grid, const std::vector<double>& marks, int column, int row) {
+Neighbours neighbours_of(const MapGrid& grid, const std::vector<double>& marks, int column, int row) {
   Neighbours found;
   for (int r = std::max(0, row - 1); r <= std::min(grid.rows - 1, row + 1); ++r) {
     for (int c = std::max(0, column - 1); c <= std::min(grid.columns - 1, column + 1); ++c) {
@@ -66,7 +66,7 @@ void cut_fringe(const MapGrid& grid, std::vector<double>& marked) {
   const std::vector<double> whole = marked;
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
-      if (neighbours(grid, whole, column, row).marked <= 4) marked[grid.index(column, row)] = 0;
+      if (neighbours_of(grid, whole, column, row).marked <= 4) marked[grid.index(column, row)] = 0;
     }
   }
 }

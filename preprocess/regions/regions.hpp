@@ -24,7 +24,7 @@ struct Neighbours {
 };
 
 /// Counts the marked cells (above 0 in `marks` [rows * columns]) around a cell.
-Neighbours neighbours(const MapGrid& grid, const std::vector<double>& marks, int column, int row);
+Neighbours neighbours_of(const MapGrid& grid, const std::vector<double>& marks, int column, int row);
 
 /// Sets marked cells (above 0 in `marked` [rows * columns]) with fewer than four of their eight neighbours marked to 0:
 /// the fringe that noise gives a region.

@@ -23,7 +23,7 @@ struct Outline {
 };
 
 /// The four neighbours in the order of Outline::reach.
-constexpr std::array<std::array<int, 2>, 4> neighbours{{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
+constexpr std::array<std::array<int, 2>, 4> neighbour_steps{{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
 
 /// `polygons` as check_polygons() leaves them; where they overlap they count once. Throws DataError (naming `file`)
 /// when they reach beyond the grid or hold the centre of no cell.

@@ -17,7 +17,7 @@ void for_neighbours(const MapGrid& grid, std::size_t cell, Use use) {
   const int column = static_cast<int>(cell % static_cast<std::size_t>(grid.columns)),
             row = static_cast<int>(cell / static_cast<std::size_t>(grid.columns));
   for (std::size_t side = 0; side < 4; ++side) {
-    const int c = column + neighbours[side][0], r = row + neighbours[side][1];
+    const int c = column + neighbour_steps[side][0], r = row + neighbour_steps[side][1];
     const bool there = c >= 0 && r >= 0 && c < grid.columns && r < grid.rows;
     use(side, there ? grid.index(c, r) : none);
   }

@@ -10,7 +10,7 @@ namespace talus::preprocess {
 
 namespace {
 
-constexpr double beyond = 3;              // NMAD
+constexpr double beyond_nmads = 3;        // limit of what changed, over the NMAD
 constexpr std::size_t least_region = 20;  // cells: fewer are noise
 constexpr int rim = 3;                    // cells around a change, where it thins out
 
@@ -19,7 +19,7 @@ Raster marked_share(const MapGrid& grid, const std::vector<double>& marked) {
   Raster share{grid, std::vector<double>(grid.count(), 0.0)};
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
-      const Neighbours around = neighbours(grid, marked, column, row);
+      const Neighbours around = neighbours_of(grid, marked, column, row);
       share.at(column, row) = static_cast<double>(around.marked) / around.inside;
     }
   }
@@ -48,7 +48,7 @@ void leave_out_changed(std::vector<Patch>& patches, const Placement& placement) 
       if (p.stable[i] && !std::isnan(misfits.back()[i])) all.push_back(misfits.back()[i]);
     }
   }
-  const double centre = median(all), limit = beyond * std::max(nmad(all), 1e-6);
+  const double centre = median(all), limit = beyond_nmads * std::max(nmad(all), 1e-6);
   for (std::size_t p = 0; p < patches.size(); ++p) {
     const MapGrid& grid = patches[p].before.grid;
     std::vector<double> marked(grid.count());

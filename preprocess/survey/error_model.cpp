@@ -13,7 +13,7 @@ namespace talus::preprocess {
 namespace {
 
 constexpr double class_deg = 10;
-constexpr std::size_t least_cells = 200;  // of a class: the NMAD of fewer is off by more than 7 %
+constexpr std::size_t least_in_class = 200;  // of a class: the NMAD of fewer is off by more than 7 %
 
 struct Sample {
   double slope, misfit;
@@ -50,7 +50,7 @@ ErrorModel ErrorModel::learnt(const std::vector<Patch>& patches, const Placement
   for (double deg = 0; deg < 90 && !model.given_; deg += class_deg) {
     const auto rise = [](double angle) { return std::tan(std::min(angle, 89.9) * std::numbers::pi / 180); };
     const std::vector<double> in_class = misfits_in(samples, rise(deg), rise(deg + class_deg));
-    if (in_class.size() < least_cells) continue;
+    if (in_class.size() < least_in_class) continue;
     model.slopes_.push_back(rise(deg + class_deg / 2));
     model.sigmas_.push_back(nmad(in_class));
   }

@@ -11,8 +11,8 @@ namespace talus::preprocess {
 namespace {
 
 constexpr std::size_t most_rows = 500000;
-constexpr double least_spread = 0.02;  // of slope, in any direction, that tells a shift
-constexpr double cut = 4.685;          // scales
+constexpr double least_spread = 0.02;   // of slope, in any direction, that tells a shift
+constexpr double biweight_cut = 4.685;  // scales
 constexpr int passes = 5;
 
 struct NormalEquations {
@@ -27,7 +27,7 @@ NormalEquations sum_up(const ShiftRows& rows, const std::vector<int>& sought, co
   NormalEquations sum{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
   Eigen::VectorXd row(n);
   for (std::size_t k = 0; k < rest.size(); ++k) {
-    const double far = scale > 0 ? (rest[k] - centre) / (cut * scale) : 0;
+    const double far = scale > 0 ? (rest[k] - centre) / (biweight_cut * scale) : 0;
     if (std::abs(far) >= 1) continue;
     const double weight = (1 - far * far) * (1 - far * far);
     for (Eigen::Index j = 0; j < n; ++j)

@@ -26,9 +26,9 @@ struct Site {
   double height = 0;
   Vector gradient{0, 0};
 };
-using Vertex = CGAL::Triangulation_vertex_base_with_info_2<Site, Kernel>;
-using Triangulation = CGAL::Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<Vertex>>;
-using Handle = Triangulation::Vertex_handle;
+using SiteVertex = CGAL::Triangulation_vertex_base_with_info_2<Site, Kernel>;
+using SiteTriangulation = CGAL::Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<SiteVertex>>;
+using Handle = SiteTriangulation::Vertex_handle;
 
 /// The surroundings of a hole: which cells are known.
 class Surroundings {
@@ -126,18 +126,18 @@ Vector gradient_at(const Surroundings& around, int column, int row) {
   }
 }
 
-Triangulation triangulated(const Surroundings& around, const std::vector<Cell>& rim, HoleSurface how) {
+SiteTriangulation triangulated(const Surroundings& around, const std::vector<Cell>& rim, HoleSurface how) {
   std::vector<std::pair<Point, Site>> sites;
   for (const auto& [column, row] : rim) {
     Site site{around.height(column, row)};
     if (how == HoleSurface::quadratic) site.gradient = gradient_at(around, column, row);
     sites.emplace_back(Point(column, row), site);
   }
-  return Triangulation(sites.begin(), sites.end());
+  return SiteTriangulation(sites.begin(), sites.end());
 }
 
-double elevation_at(const Triangulation& triangulation, const Point& at, HoleSurface how,
-                    Triangulation::Face_handle& near) {
+double elevation_at(const SiteTriangulation& triangulation, const Point& at, HoleSurface how,
+                    SiteTriangulation::Face_handle& near) {
   std::vector<std::pair<Handle, double>> neighbours;
   const auto keep = [](const std::pair<Handle, double>& pair) { return pair; };
   near = triangulation.locate(at, near);
@@ -158,9 +158,9 @@ double elevation_at(const Triangulation& triangulation, const Point& at, HoleSur
 std::vector<double> fill_hole(const Raster& raster, const std::vector<Cell>& hole, const std::vector<Cell>& wanted,
                               HoleSurface how) {
   const Surroundings around(raster, hole);
-  const Triangulation triangulation = triangulated(around, around.rim(hole), how);
+  const SiteTriangulation triangulation = triangulated(around, around.rim(hole), how);
   std::vector<double> heights;
-  Triangulation::Face_handle near;
+  SiteTriangulation::Face_handle near;
   for (const auto& [column, row] : wanted) {
     heights.push_back(triangulation.dimension() < 2 ? std::nan("")
                                                     : elevation_at(triangulation, Point(column, row), how, near));

@@ -19,8 +19,8 @@ namespace talus::preprocess {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Vertex = CGAL::Triangulation_vertex_base_with_info_2<double, Kernel>;
-using Triangulation = CGAL::Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<Vertex>>;
+using HeightVertex = CGAL::Triangulation_vertex_base_with_info_2<double, Kernel>;
+using HeightTriangulation = CGAL::Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<HeightVertex>>;
 using Point = Kernel::Point_2;
 
 /// Points with elevation, those at one place averaged; coordinates from the grid's corner, to keep the digits.
@@ -42,7 +42,7 @@ std::vector<std::pair<Point, double>> merged(const ScatteredPoints& points, cons
 }
 
 /// Linear in the triangle, by the areas opposite its corners.
-double interpolate(const Triangulation::Face& face, const Point& at) {
+double interpolate(const HeightTriangulation::Face& face, const Point& at) {
   const Point& a = face.vertex(0)->point();
   const Point& b = face.vertex(1)->point();
   const Point& c = face.vertex(2)->point();
@@ -51,15 +51,15 @@ double interpolate(const Triangulation::Face& face, const Point& at) {
   return wa * face.vertex(0)->info() + wb * face.vertex(1)->info() + (1 - wa - wb) * face.vertex(2)->info();
 }
 
-double elevation_at(const Triangulation& triangulation, const Point& at, Triangulation::Face_handle& near) {
-  Triangulation::Locate_type type;
+double elevation_at(const HeightTriangulation& triangulation, const Point& at, HeightTriangulation::Face_handle& near) {
+  HeightTriangulation::Locate_type type;
   int corner = 0;
   const auto face = triangulation.locate(at, type, corner, near);
-  if (type == Triangulation::OUTSIDE_CONVEX_HULL || type == Triangulation::OUTSIDE_AFFINE_HULL) {
+  if (type == HeightTriangulation::OUTSIDE_CONVEX_HULL || type == HeightTriangulation::OUTSIDE_AFFINE_HULL) {
     return std::numeric_limits<double>::quiet_NaN();
   }
   near = face;
-  if (type == Triangulation::VERTEX) return face->vertex(corner)->info();
+  if (type == HeightTriangulation::VERTEX) return face->vertex(corner)->info();
   if (!triangulation.is_infinite(face)) return interpolate(*face, at);
   return interpolate(*face->neighbor(face->index(triangulation.infinite_vertex())), at);  // on an edge of the hull
 }
@@ -68,13 +68,13 @@ double elevation_at(const Triangulation& triangulation, const Point& at, Triangu
 
 Raster interpolate_scattered(const ScatteredPoints& points, const MapGrid& grid, const std::filesystem::path& file) {
   const auto vertices = merged(points, grid);
-  Triangulation triangulation(vertices.begin(), vertices.end());
+  HeightTriangulation triangulation(vertices.begin(), vertices.end());
   if (triangulation.dimension() < 2) {
     throw DataError(Fault{fmt::format("{}: {} points in {} places", file.string(), points.x.size(), vertices.size()),
                           "a surface needs three that do not lie on one line", "Give more points, or a raster"});
   }
   Raster raster{grid, std::vector<double>(grid.count())};
-  Triangulation::Face_handle near;
+  HeightTriangulation::Face_handle near;
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
       const Point at((column + 0.5) * grid.cell, (row + 0.5) * grid.cell);

@@ -84,5 +84,6 @@ std::size_t ElementList<Real, Device, Shape>::bytes() const {
 
 #define TALUS_INSTANTIATE(Real, Device, Shape) template class ElementList<Real, Device, Shape>;
 TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
+#undef TALUS_INSTANTIATE
 
 }  // namespace talus::solver

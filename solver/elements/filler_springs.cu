@@ -69,5 +69,6 @@ void add_spring_blocks(const ElementList<Real, Device, Shape>& list, const Fille
   template void add_spring_blocks(const ElementList<Real, Device, Shape>&, const FillerSprings&, \
                                   Buffer<Sym3<double>, Device>&);
 TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
+#undef TALUS_INSTANTIATE
 
 }  // namespace talus::solver

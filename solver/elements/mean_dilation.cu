@@ -150,5 +150,6 @@ void add_mean_blocks(const ElementList<Real, Device, Shape>& list, const MeanDil
   template void add_mean_blocks(const ElementList<Real, Device, Shape>&, const MeanDilationView<Real>&, \
                                 Buffer<Sym3<double>, Device>&);
 TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
+#undef TALUS_INSTANTIATE
 
 }  // namespace talus::solver

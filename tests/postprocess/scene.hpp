@@ -12,8 +12,6 @@
 
 namespace talus::test {
 
-inline constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
 inline const char* utm32n =
     "PROJCRS[\"WGS 84 / UTM zone 32N\",BASEGEOGCRS[\"WGS 84\",DATUM[\"World Geodetic System 1984\","
     "ELLIPSOID[\"WGS 84\",6378137,298.257223563,LENGTHUNIT[\"metre\",1]]],PRIMEM[\"Greenwich\",0,"

@@ -13,7 +13,6 @@
 namespace talus::validation {
 namespace {
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 constexpr double length = 10, depth = 1, lift = 10, modulus = 1e9;
 
 struct Beam {

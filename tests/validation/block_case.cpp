@@ -13,8 +13,6 @@
 namespace talus::validation {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
-
 struct Incline {
   double angle, direction, friction;  // [deg]; direction of descent from east
   int layers;                         // thickness in cells

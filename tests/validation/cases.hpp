@@ -1,12 +1,18 @@
 // The cases of the validation. Each runs its recipe's variants, adds rows to the table and draws its pictures.
 #pragma once
 
+#include <limits>
+#include <numbers>
 #include <string>
 #include <vector>
 
 #include "tests/validation/bench.hpp"
 
 namespace talus::validation {
+
+/// What a row holds in place of a number that it does not have.
+inline constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double degree = std::numbers::pi / 180;  ///< [rad]
 
 /// One way of solving the linear systems. A1 runs with each of them and compares; the studies of A2 take the last, the
 /// systems of slender bodies being hard on iterations.

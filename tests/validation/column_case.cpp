@@ -11,8 +11,6 @@
 namespace talus::validation {
 namespace {
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-
 /// First Piola stress of the points over their height in the first frame [Pa]. With nu = 0 and no lateral strain the
 /// pressure of the file, minus the mean Kirchhoff stress, is a third of the vertical one.
 std::vector<double> piola_of(const Outcome& o, const Column& column) {

@@ -13,9 +13,6 @@
 namespace talus::validation {
 namespace {
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-constexpr double degree = std::numbers::pi / 180;
-
 struct Terrain {
   const char* name;
   GroundLine line;
@@ -25,7 +22,8 @@ struct Terrain {
 constexpr Terrain terrains[] = {{"parabola", {GroundLine::parabola, 1000, 2250, 0}},
                                 {"hockey stick", {GroundLine::bend, 1000, 0, 400}}};
 
-constexpr double first = 400, length = 120, width = 100, thickness = 10;  // of the heap: its middle along the line [m]
+// The heap: its middle along the line and its sizes [m].
+constexpr double first = 400, heap_length = 120, width = 100, thickness = 10;
 constexpr double mu = 0.4;
 
 struct Facing {
@@ -56,7 +54,7 @@ Overrides lay_out(const Bench& bench, const Terrain& terrain, const Facing& faci
       ground.at(column, row) = terrain.line.elevation(facing.along(grid.x(column), grid.y(row)));
   }
   const Raster heap = cell_means(grid, [&](double x, double y) {
-    return std::abs(facing.along(x, y) - first) < 0.5 * length && std::abs(facing.across(x, y)) < 0.5 * width
+    return std::abs(facing.along(x, y) - first) < 0.5 * heap_length && std::abs(facing.across(x, y)) < 0.5 * width
                ? thickness
                : 0.0;
   });

@@ -14,9 +14,6 @@
 namespace talus::validation {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-
 struct Norms {
   double mean = nothing,
          most = nothing;  // root of the mean square over that of the reference; largest over the largest

@@ -10,8 +10,6 @@
 namespace talus::validation {
 namespace {
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-
 /// Mean period from the zeros of the momentum, which come twice a period.
 double period_of(const std::vector<double>& time, const std::vector<double>& momentum) {
   double last = nothing;

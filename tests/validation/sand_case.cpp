@@ -13,7 +13,6 @@
 namespace talus::validation {
 namespace {
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 double top_of(const Points& points, const Sand& s) {
   double top = 0;
   for (const auto& p : points.position) {

@@ -27,7 +27,7 @@ double end_of(const Outcome& o, const Sand& s) {
   return o.ok() ? front_of(o.last(), s) : std::numeric_limits<double>::quiet_NaN();
 }
 
-struct Scheme {
+struct TangentScheme {
   const char* tangent;
   const char* linear_solver;
 };
@@ -53,7 +53,7 @@ void compare_steps(Bench& bench, const Sand& s, const std::vector<double>& lengt
   chart.y_label = "difference to explicit steps of 0.1 CFL [%]";
   chart.log_x = true;
   int colour = 1;
-  for (const Scheme& scheme : {Scheme{"frozen-yield", "pcg"}, {"exact", "bicgstab"}}) {
+  for (const TangentScheme& scheme : {TangentScheme{"frozen-yield", "pcg"}, {"exact", "bicgstab"}}) {
     Series line{fmt::format("newmark, {} tangent", scheme.tangent), {}, {}, colour++};
     line.marks = true;
     for (const double over_cfl : lengths) {

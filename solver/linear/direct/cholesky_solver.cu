@@ -66,5 +66,6 @@ std::size_t CholeskySolver<Real, Device, Shape>::bytes() const {
 
 #define TALUS_INSTANTIATE(Real, Device, Shape) template class CholeskySolver<Real, Device, Shape>;
 TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
+#undef TALUS_INSTANTIATE
 
 }  // namespace talus::solver

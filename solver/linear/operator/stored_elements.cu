@@ -80,5 +80,6 @@ void StoredElements<Real, Device, Shape>::apply(const ElementList<Real, Device, 
 
 #define TALUS_INSTANTIATE(Real, Device, Shape) template class StoredElements<Real, Device, Shape>;
 TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
+#undef TALUS_INSTANTIATE
 
 }  // namespace talus::solver

@@ -109,5 +109,6 @@ std::size_t Multigrid<Real, Device, Shape>::bytes() const {
 
 #define TALUS_INSTANTIATE(Real, Device, Shape) template class Multigrid<Real, Device, Shape>;
 TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
+#undef TALUS_INSTANTIATE
 
 }  // namespace talus::solver

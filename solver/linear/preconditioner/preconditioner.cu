@@ -288,5 +288,6 @@ void NodePreconditioner<Real, Device, Shape>::apply_after(const talus::detail::S
 
 #define TALUS_INSTANTIATE(Real, Device, Shape) template class NodePreconditioner<Real, Device, Shape>;
 TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
+#undef TALUS_INSTANTIATE
 
 }  // namespace talus::solver

@@ -143,5 +143,6 @@ std::size_t StencilLevel<Real, Device, Shape>::bytes() const {
 
 #define TALUS_INSTANTIATE(Real, Device, Shape) template class StencilLevel<Real, Device, Shape>;
 TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
+#undef TALUS_INSTANTIATE
 
 }  // namespace talus::solver

@@ -41,7 +41,7 @@ TEST(Styles, round_the_times_of_arrival) {
   const auto run = small_run();  // up to 17 s
   EXPECT_EQ(time_limits(run.maps.arrival_time), (std::vector<double>{5, 10, 15}));
   auto never = run;
-  never.maps.arrival_time.assign(run.maps.grid.count(), test::nan);
+  never.maps.arrival_time.assign(run.maps.grid.count(), nan);
   EXPECT_EQ(time_limits(never.maps.arrival_time).size(), 1U);
   for (double last = 0.3; last < 3000; last *= 1.07) {
     auto some = run;

@@ -66,7 +66,7 @@ TEST_F(MapFiles, geotiffs_pass_gdals_own_cog_validator) {
 }
 
 std::vector<double> read_variable(const std::filesystem::path& file, const char* name, std::size_t count) {
-  std::vector<double> values(count, test::nan);
+  std::vector<double> values(count, nan);
   int id = 0, variable = 0;
   EXPECT_EQ(nc_open(file.c_str(), NC_NOWRITE, &id), NC_NOERR);
   EXPECT_EQ(nc_inq_varid(id, name, &variable), NC_NOERR) << name;

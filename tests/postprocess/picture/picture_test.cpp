@@ -35,7 +35,7 @@ TEST(Classes, follow_the_deposits_thickness_unless_they_are_given) {
   EXPECT_EQ(class_of(0.05, limits), -1);
   EXPECT_EQ(class_of(5, limits), 1);
   EXPECT_EQ(class_of(1000, limits), 2);
-  EXPECT_EQ(class_of(test::nan, limits), -1);
+  EXPECT_EQ(class_of(nan, limits), -1);
   EXPECT_EQ(class_label(0, limits), "0.1 \u2013 5");
   EXPECT_EQ(class_label(2, limits), "> 10");
 }
@@ -49,7 +49,7 @@ TEST(Hillshade, lights_slopes_that_face_the_north_west) {
   const auto shades = hillshade(grid, cone);
   EXPECT_GT(shades[grid.index(4, 16)], 0.8) << "north-west flank";
   EXPECT_LT(shades[grid.index(16, 4)], 0.2) << "south-east flank";
-  EXPECT_TRUE(std::isnan(hillshade(grid, std::vector<double>(grid.count(), test::nan))[0]));
+  EXPECT_TRUE(std::isnan(hillshade(grid, std::vector<double>(grid.count(), nan))[0]));
 }
 
 TEST(Isolines, close_around_an_area_even_at_the_edge) {

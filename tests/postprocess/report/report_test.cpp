@@ -15,8 +15,6 @@
 namespace talus::postprocess {
 namespace {
 
-using test::nan;
-
 std::string from_base64(const std::string& text) {
   const std::string letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string bytes;

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "common/map/raster.hpp"
+
 namespace talus::postprocess {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Contingency, counts_areas_on_a_mask_made_by_hand) {
   //                               TP FP FN TN TN  not compared

@@ -50,7 +50,7 @@ TEST(Mobility, measures_to_the_farthest_cell_above_the_threshold) {
 
 TEST(Mobility, weighs_the_centre_of_mass_by_thickness) {
   const MapGrid grid{.columns = 3, .rows = 1, .west = 0, .south = 0, .cell = 10, .crs_wkt = ""};
-  const auto centre = centre_of_mass(grid, {1, test::nan, 3}, {100, 100, 200});
+  const auto centre = centre_of_mass(grid, {1, nan, 3}, {100, 100, 200});
   ASSERT_TRUE(centre);
   EXPECT_DOUBLE_EQ(centre->x, (5.0 + 3 * 25) / 4);
   EXPECT_DOUBLE_EQ(centre->y, 5);

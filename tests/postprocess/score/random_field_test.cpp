@@ -7,17 +7,17 @@
 namespace talus::postprocess {
 namespace {
 
-const MapGrid grid{.columns = 50, .rows = 37, .west = 0, .south = 0, .cell = 10, .crs_wkt = ""};
+const MapGrid field_grid{.columns = 50, .rows = 37, .west = 0, .south = 0, .cell = 10, .crs_wkt = ""};
 
 /// Mean product of cells (dx, dy) apart, over many fields: the covariance, because the mean is 0 by construction.
 double covariance(double range, int dx, int dy) {
-  RandomField field(grid, range, 7);
+  RandomField field(field_grid, range, 7);
   double sum = 0, count = 0;
   for (int draw = 0; draw < 400; ++draw) {
     const auto v = field.next();
-    for (int row = 0; row + dy < grid.rows; ++row) {
-      for (int column = 0; column + dx < grid.columns; ++column) {
-        sum += v[grid.index(column, row)] * v[grid.index(column + dx, row + dy)];
+    for (int row = 0; row + dy < field_grid.rows; ++row) {
+      for (int column = 0; column + dx < field_grid.columns; ++column) {
+        sum += v[field_grid.index(column, row)] * v[field_grid.index(column + dx, row + dy)];
         ++count;
       }
     }
@@ -44,7 +44,7 @@ TEST(RandomField, has_no_correlation_without_a_range) {
 }
 
 TEST(RandomField, is_the_same_for_the_same_seed_and_never_twice_in_a_row) {
-  RandomField one(grid, 80, 5), same(grid, 80, 5), other(grid, 80, 6);
+  RandomField one(field_grid, 80, 5), same(field_grid, 80, 5), other(field_grid, 80, 6);
   const auto first = one.next(), second = one.next(), third = one.next();
   EXPECT_EQ(first, same.next());
   EXPECT_EQ(second, same.next());

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
+#include "common/map/raster.hpp"
+
 namespace talus::postprocess {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Auroc, counts_pairs_and_halves_ties) {
   // Survey yes at 5, 2, 0; no at 3, 0, 0. Pairs won: 5 beats all three; 2 beats two; 0 ties with two: (3 + 2 + 1) / 9.

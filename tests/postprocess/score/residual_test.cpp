@@ -4,10 +4,10 @@
 
 #include <cmath>
 
+#include "common/map/raster.hpp"
+
 namespace talus::postprocess {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Residual, is_measured_in_units_of_sigma) {
   //                                       r:  1    -2   0.5   no sigma  not surveyed  not counted

@@ -143,7 +143,7 @@ TEST(Thalweg, follows_the_front_over_time_and_leaves_out_ground_at_rest) {
 
 TEST(Thalweg, finds_the_largest_value_across_itself) {
   const MapGrid grid{.columns = 3, .rows = 3, .west = 0, .south = 0, .cell = 10, .crs_wkt = ""};
-  const std::vector<double> values{1, 2, 3, 4, 5, test::nan, 9, 8, 0};
+  const std::vector<double> values{1, 2, 3, 4, 5, nan, 9, 8, 0};
   const auto thalweg = line_of({{5, 15}, {15, 15}, {25, 15}});
   EXPECT_EQ(cross_section_maxima(thalweg, grid, values, 100), (std::vector<double>{9, 8, 3}));
   const auto narrow = cross_section_maxima(thalweg, grid, values, 4);

@@ -66,7 +66,7 @@ TEST_F(SurveyTest, compares_on_the_surveys_own_grid_and_keeps_the_volume) {
 TEST_F(SurveyTest, leaves_out_what_was_not_surveyed_and_says_how_much) {
   auto values = block(small_grid(), 0, 40, 0, 30, 0.5);
   for (int row = 0; row < 30; ++row) {
-    for (int column = 30; column < 40; ++column) values[small_grid().index(column, row)] = test::nan;
+    for (int column = 30; column < 40; ++column) values[small_grid().index(column, row)] = nan;
   }
   options_.thickness = raster("survey.tif", small_grid(), values);
   const auto survey = read_survey(options_, run_.maps, 1.0);
@@ -186,7 +186,7 @@ TEST_F(SurveyTest, warns_where_the_range_of_its_errors_is_not_known) {
 TEST_F(SurveyTest, leaves_out_what_was_measured_without_a_sigma) {
   options_.difference = raster("difference.tif", small_grid(), some_change());
   auto sigma = std::vector<double>(small_grid().count(), 0.1);
-  sigma[small_grid().index(20, 10)] = sigma[small_grid().index(30, 20)] = test::nan;
+  sigma[small_grid().index(20, 10)] = sigma[small_grid().index(30, 20)] = nan;
   options_.sigma = raster("sigma.tif", small_grid(), sigma);
   options_.correlation_length = 60;
   const auto survey = read_survey(options_, run_.maps, 1.0);

@@ -160,7 +160,7 @@ TEST(sliding_surface, has_no_kink_where_it_leaves_ground_that_is_smooth) {
   for (std::size_t c : outline.cells) {
     const int column = static_cast<int>(c) % grid.columns, row = static_cast<int>(c) / grid.columns;
     bool rim = false;
-    for (const auto& [dc, dr] : neighbours) rim = rim || outline.number[grid.index(column + dc, row + dr)] < 0;
+    for (const auto& [dc, dr] : neighbour_steps) rim = rim || outline.number[grid.index(column + dc, row + dr)] < 0;
     if (rim) continue;
     sharpest = std::max(sharpest, std::abs(bend(s.surface, column, row)));
     ground = std::max(ground, std::abs(bend(before, column, row)));

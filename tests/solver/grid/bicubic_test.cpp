@@ -9,26 +9,26 @@
 namespace talus {
 namespace {
 
-constexpr int columns = 9, rows = 8;
+constexpr int ground_columns = 9, ground_rows = 8;
 constexpr double spacing = 2;
 
 std::vector<double> terrain(double (*height)(double, double)) {
   std::vector<double> values;
-  for (int j = 0; j < rows; ++j) {
-    for (int i = 0; i < columns; ++i) values.push_back(height(i * spacing, j * spacing));
+  for (int j = 0; j < ground_rows; ++j) {
+    for (int i = 0; i < ground_columns; ++i) values.push_back(height(i * spacing, j * spacing));
   }
   return values;
 }
 
 GroundPoint<double> at(const std::vector<double>& values, int i, int j, double x, double y) {
-  return bicubic_ground(NodeTerrain<double>{values.data(), columns, rows, spacing}, i, j, x, y);
+  return bicubic_ground(NodeTerrain<double>{values.data(), ground_columns, ground_rows, spacing}, i, j, x, y);
 }
 
 TEST(bicubic, goes_through_its_nodes) {
   const auto values = terrain([](double x, double y) { return std::sin(x) + 0.3 * y * y; });
-  for (int j = 2; j < rows - 2; ++j) {
-    for (int i = 2; i < columns - 2; ++i)
-      EXPECT_NEAR(at(values, i, j, 0, 0).height, values[static_cast<std::size_t>(j * columns + i)], 1e-13);
+  for (int j = 2; j < ground_rows - 2; ++j) {
+    for (int i = 2; i < ground_columns - 2; ++i)
+      EXPECT_NEAR(at(values, i, j, 0, 0).height, values[static_cast<std::size_t>(j * ground_columns + i)], 1e-13);
   }
 }
 

@@ -10,7 +10,7 @@
 namespace talus::solver::testing {
 namespace {
 
-constexpr int columns = 20, rows = 12;  // 5 x 3 blocks
+constexpr int grid_columns = 20, grid_rows = 12;  // 5 x 3 blocks
 
 class BlockStorageOn : public InEachPlace {
  protected:
@@ -52,7 +52,7 @@ std::vector<int> active(const Device& device, const BlockStorage<Device>& storag
 
 TEST_P(BlockStorageOn, holds_the_columns_and_layers_within_reach_of_a_point_and_no_others) {
   on_device([](const auto& device) {
-    BlockStorage storage(device, columns, rows);
+    BlockStorage storage(device, grid_columns, grid_rows);
     EXPECT_EQ(storage.nodes(), 0);
     auto points = points_at(device, {{4, 5, 3}});  // columns 3 to 5: blocks 0 and 1 of the second row; layers 2 to 4
     storage.fit(points.view(), 1);
@@ -73,7 +73,7 @@ TEST_P(BlockStorageOn, holds_the_columns_and_layers_within_reach_of_a_point_and_
 
 TEST_P(BlockStorageOn, ends_at_the_edges_of_the_map_and_at_the_terrain) {
   on_device([](const auto& device) {
-    BlockStorage storage(device, columns, rows);
+    BlockStorage storage(device, grid_columns, grid_rows);
     auto points = points_at(device, {{0, 0, 0}, {1, 2, 7}, {19, 11, 1}});
     storage.fit(points.view(), 2);
     EXPECT_EQ(active(device, storage), (std::vector<int>{0, 5, 14}));
@@ -87,7 +87,7 @@ TEST_P(BlockStorageOn, ends_at_the_edges_of_the_map_and_at_the_terrain) {
 
 TEST_P(BlockStorageOn, is_taken_from_blocks_that_points_have_left) {
   on_device([](const auto& device) {
-    BlockStorage storage(device, columns, rows);
+    BlockStorage storage(device, grid_columns, grid_rows);
     auto before = points_at(device, {{2, 2, 0}, {17, 2, 4}});
     storage.fit(before.view(), 1);
     EXPECT_EQ(active(device, storage), (std::vector<int>{0, 4}));

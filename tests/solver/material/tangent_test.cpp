@@ -14,9 +14,9 @@ namespace {
 
 using M = Mat3<double>;
 
-class Random {
+class RandomTensors {
  public:
-  explicit Random(unsigned seed) : engine_(seed) {}
+  explicit RandomTensors(unsigned seed) : engine_(seed) {}
   Vec3<double> vector(double size) { return {size * u_(engine_), size * u_(engine_), size * u_(engine_)}; }
   M matrix(double size) { return {vector(size), vector(size), vector(size)}; }
 
@@ -52,7 +52,7 @@ Material<double> material(MaterialModel model, double dilatancy = 0) {
 }
 
 TEST(Tangent, of_hencky_elasticity_matches_finite_differences) {
-  Random random(1);
+  RandomTensors random(1);
   for (const auto model : {MaterialModel::hencky, MaterialModel::corotated}) {
     const auto m = material(model);
     for (const double size : {1e-6, 1e-3, 0.1}) {
@@ -68,7 +68,7 @@ TEST(Tangent, of_hencky_elasticity_matches_finite_differences) {
 }
 
 TEST(Tangent, of_the_linear_step_is_hookes_law) {
-  Random random(2);
+  RandomTensors random(2);
   const auto m = material(MaterialModel::linear_elastic);
   MaterialState<double> start;
   start.elastic = {1e4, 2e4, -1e4, 3e3, 0, 1e3};
@@ -76,7 +76,7 @@ TEST(Tangent, of_the_linear_step_is_hookes_law) {
 }
 
 TEST(Tangent, is_symmetric) {
-  Random random(3);
+  RandomTensors random(3);
   for (const auto model : {MaterialModel::hencky, MaterialModel::corotated, MaterialModel::drucker_prager}) {
     const auto m = material(model);
     for (int n = 0; n < 50; ++n) {
@@ -93,7 +93,7 @@ TEST(Tangent, is_symmetric) {
 }
 
 TEST(Tangent, of_a_yielding_point_is_exact_but_for_the_pressure_in_its_friction) {
-  Random random(4);
+  RandomTensors random(4);
   const auto m = material(MaterialModel::drucker_prager);
   int yielding = 0;
   for (int n = 0; n < 100; ++n) {
@@ -127,7 +127,7 @@ TEST(Tangent, of_a_yielding_point_is_exact_where_that_is_asked_for) {
   // Any direction, dilating or not, sharp or rounded tip, closed or open.
   for (const double dilatancy : {0.0, 10.0}) {
     for (const double apex : {0.0, 2e3}) {
-      Random random(7);
+      RandomTensors random(7);
       auto m = material(MaterialModel::drucker_prager, dilatancy);
       m.apex = apex;
       m.exact_tangent = true;
@@ -173,7 +173,7 @@ TEST(CutPressure, is_rounded_over_the_apex_alone) {
 }
 
 TEST(NominalStress, is_what_the_stress_update_ends_with) {
-  Random random(5);
+  RandomTensors random(5);
   for (const auto model : {MaterialModel::hencky, MaterialModel::corotated, MaterialModel::drucker_prager}) {
     const auto m = material(model);
     for (int n = 0; n < 50; ++n) {
