@@ -4,10 +4,11 @@ namespace talus::solver {
 
 StepAbilities abilities_of(Integrator integrator) {
   switch (integrator) {
-    case Integrator::explicit_: return {.count_losses = true, .repeat_bits = true};
-    case Integrator::newmark:
+    case Integrator::explicit_:
+      return {.obey_cfl = true, .carry_inertia = true, .count_losses = true, .repeat_bits = true};
+    case Integrator::newmark: return {.carry_inertia = true, .solve_systems = true, .average_volume = true};
     case Integrator::quasi_static: return {.solve_systems = true, .average_volume = true};
-    case Integrator::automatic: return {.solve_systems = true};
+    case Integrator::automatic: return {.obey_cfl = true, .carry_inertia = true, .solve_systems = true};
   }
   return {};
 }

@@ -9,8 +9,10 @@ namespace talus::solver {
 
 /// How steps are taken: explicitly, by Newmark's scheme, as a sequence of equilibria, or as the run needs it.
 enum class Integrator { explicit_, newmark, quasi_static, automatic };
-/// The abilities of an integrator's steps; other keys state in these words what they need.
+/// The abilities of an integrator's steps; other keys, the scene and the plan ask for these, not for the integrator.
 struct StepAbilities {
+  bool obey_cfl = false;        ///< their size follows waves and speed, for the first of the steps at least
+  bool carry_inertia = false;   ///< the others are a sequence of equilibria
   bool count_losses = false;    ///< what is lost, by its cause
   bool repeat_bits = false;     ///< the same on every run on a GPU
   bool solve_systems = false;   ///< some of the steps at least

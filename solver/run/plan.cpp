@@ -43,8 +43,7 @@ struct Trial {
   std::size_t bytes = 0;
 };
 
-Trial try_steps(const Scene& scene, SolveOptions o, const AnyDevice& device) {
-  if (o.integrator == Integrator::automatic) o.integrator = Integrator::explicit_;
+Trial try_steps(const Scene& scene, const SolveOptions& o, const AnyDevice& device) {
   const auto solver = make_solver(scene, o, device);
   solver->set_next_event(o.end_time);
   const auto seconds_since = [](auto begun) {
@@ -86,11 +85,13 @@ std::vector<std::string> features(const Domain& domain, const SolveOptions& o) {
   if (o.gravity_ramp > 0) add("gravity", fmt::format("grows over {:g} s", o.gravity_ramp));
   if (o.damping > 0) add("damping", fmt::format("Cundall's, {:g}", o.damping));
   if (o.stress_update == StressUpdate::modified) add("stress", "from velocities mapped back (musl)");
-  if (o.integrator != Integrator::explicit_ && o.implicit.b_bar) add("volume", "means over cells (B-bar)");
+  if (abilities_of(o.integrator).solve_systems && o.implicit.b_bar) add("volume", "means over cells (B-bar)");
   if (!o.walls.empty()) add("walls", fmt::format("{}", o.walls.size()));
   if (o.ground_contact == GroundContact::points) add("ground", "met by points between the nodes");
   for (const ObstacleOptions& obstacle : o.obstacles)
     add("obstacle", fmt::format("{}, {:g} deg", obstacle.name, obstacle.friction_angle));
+  for (const GaugeOptions& gauge : o.gauges)
+    add("gauge", fmt::format("{}, at x {}, y {}", gauge.name, gauge.x, gauge.y));
   if (!o.loads.empty()) add("loads", fmt::format("{}", o.loads.size()));
   if (o.deterministic) add("sums", "in a fixed order (deterministic)");
   if (o.vdb_frames) add("frames", "points as .vdb too");
@@ -117,7 +118,7 @@ std::vector<std::string> plan(const Domain& domain, const SolveOptions& o, const
   add("memory",
       fmt::format("{:.1f} MB now, on the {}", static_cast<double>(trial.bytes) / 1e6, device.is_gpu() ? "GPU" : "CPU"));
   double fewest = o.end_time / o.implicit.step, most = fewest;
-  if (o.integrator == Integrator::explicit_ || o.integrator == Integrator::automatic) {
+  if (abilities_of(o.integrator).obey_cfl) {
     const GroundTables ground = make_ground_tables(scene.grid);
     const double wave = fastest_wave(o), fast = lowest_stiffness(domain, o).speed;
     const auto step_at = [&](double speed) {

@@ -4,7 +4,7 @@ namespace talus::solver {
 
 ImplicitControls make_implicit_controls(const SolveOptions& options) {
   const ImplicitOptions& o = options.implicit;
-  return {.dynamic = options.integrator == Integrator::newmark,
+  return {.dynamic = abilities_of(options.integrator).carry_inertia,
           .step = o.step,
           .step_cuts = o.step_cuts,
           .alpha = o.newmark_alpha,

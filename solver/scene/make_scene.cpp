@@ -100,10 +100,8 @@ GridShape grid_shape(const Domain& domain, const SolveOptions& options) {
   shape.ground = options.ground_contact;
   shape.quadratic = options.shape == ShapeKind::quadratic;
   // With "auto" the same for both integrators: what has next to no weight contributes next to nothing to a change.
-  const bool some_explicit = options.integrator == Integrator::explicit_ || options.integrator == Integrator::automatic;
-  shape.lowest_weighed = some_explicit                               ? explicit_lowest_weighed
-                         : options.integrator == Integrator::newmark ? newmark_lowest_weighed
-                                                                     : 0;
+  const StepAbilities steps = abilities_of(options.integrator);
+  shape.lowest_weighed = steps.obey_cfl ? explicit_lowest_weighed : steps.carry_inertia ? newmark_lowest_weighed : 0;
   shape.terrain = domain.terrain.values;
   return shape;
 }

@@ -39,14 +39,9 @@ std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolverSettings& 
                                       const SolverState& state) {
   const auto of = [&]<class Real>(Real) {
     return with_shape(settings.common.shape, [&]<class Shape>(Shape) {
-      switch (settings.integrator) {
-        case Integrator::newmark:
-        case Integrator::quasi_static:
-          return make_implicit_solver<Real, Shape>(scene, settings.common, settings.implicit, device, state);
-        case Integrator::automatic:  // begins with explicit steps where none is named
-        case Integrator::explicit_: break;
-      }
-      return make_explicit_solver<Real, Shape>(scene, settings.common, device, state);
+      return abilities_of(settings.integrator).obey_cfl
+                 ? make_explicit_solver<Real, Shape>(scene, settings.common, device, state)
+                 : make_implicit_solver<Real, Shape>(scene, settings.common, settings.implicit, device, state);
     });
   };
   return settings.precision == Precision::single_ ? of(float{}) : of(double{});

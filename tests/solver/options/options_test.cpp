@@ -175,6 +175,12 @@ TEST(SolveOptions, what_goes_together_is_taken) {
 TEST(SolveOptions, every_integrator_says_what_its_steps_can_do) {
   EXPECT_TRUE(abilities_of(Integrator::explicit_).count_losses);
   EXPECT_FALSE(abilities_of(Integrator::explicit_).solve_systems);
+  for (const Integrator some : {Integrator::explicit_, Integrator::automatic}) EXPECT_TRUE(abilities_of(some).obey_cfl);
+  for (const Integrator some : {Integrator::newmark, Integrator::quasi_static})
+    EXPECT_FALSE(abilities_of(some).obey_cfl);
+  for (const Integrator some : {Integrator::explicit_, Integrator::newmark, Integrator::automatic})
+    EXPECT_TRUE(abilities_of(some).carry_inertia);
+  EXPECT_FALSE(abilities_of(Integrator::quasi_static).carry_inertia);
   for (const Integrator some : {Integrator::newmark, Integrator::quasi_static}) {
     EXPECT_TRUE(abilities_of(some).average_volume);
     EXPECT_FALSE(abilities_of(some).count_losses);

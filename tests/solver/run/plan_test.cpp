@@ -34,6 +34,15 @@ TEST(Plan, names_only_the_features_that_are_on) {
   EXPECT_EQ(more.size(), plain.size() + 4);
 }
 
+TEST(Plan, names_every_gauge_and_its_place) {
+  SolveOptions o;
+  EXPECT_FALSE(has(features(block(), o), "gauge"));
+  o.gauges = {{.name = "road", .x = 500123.25, .y = 5100456.5}, {.name = "dam", .x = 2, .y = 3}};
+  const auto lines = features(block(), o);
+  for (const char* line : {"gauge        road, at x 500123.25, y 5100456.5", "gauge        dam, at x 2, y 3"})
+    EXPECT_EQ(std::count(lines.begin(), lines.end(), line), 1) << line;
+}
+
 TEST(Plan, counts_points_memory_step_and_time_after_the_features) {
   SolveOptions o;
   o.end_time = 1;
