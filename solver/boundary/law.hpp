@@ -4,8 +4,8 @@
 //   rubs                 whether it has a coefficient, and cohesion and pore pressure act with it
 //   holds                whether what presses on the bed does not slip at all
 //   asks_pressure        whether it looks at the normal stress
-//   Options, uses        keys of the recipe, describe() and check(); the keys that it looks at. A key that a raster can
-//                        give is in common/domain/bed_numbers.hpp as well
+//   Options, uses        keys of the recipe with describe(); the keys that it looks at. A key that a raster can give
+//                        is in common/domain/bed_numbers.hpp as well
 //   words, sentence      the law in a line for plan and log, and in a sentence of the report ("at its bed acts ..."),
 //                        from the options of all laws
 //   count, numbers       numbers that kernels see, made from the options of all laws

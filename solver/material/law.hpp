@@ -1,12 +1,12 @@
 // The constitutive laws. A law is a type with static members; what each must have:
 //
 //   name                      in recipes
-//   keeps_strain              whether a point's `elastic` is its logarithmic strain (else it is what `advance` makes
-//   it) pressure_follows_volume   whether the volume change alone decides the pressure, as B-bar needs
+//   keeps_strain              whether a point's `elastic` is its logarithmic strain (else it is what `advance` makes)
+//   pressure_follows_volume   whether the volume change alone decides the pressure, as B-bar needs
 //   stiffness_is_free         whether the flow hardly depends on the elastic moduli (stiffness = "auto" may lower them)
 //   LoadedAs, after_loading   the law that takes its part while gravity is loaded, and what remains of its strain
-//   Options                   keys of the recipe: describe(), check(), softens(), dilates(); names of keys and members
-//                             are the law's own, for MaterialOptions has those of all laws
+//   Options                   keys of the recipe: describe(), softens(), dilates(); names of keys and members are the
+//                             law's own, for MaterialOptions has those of all laws
 //   words, sentence           the material in a line for plan and log, and in a sentence of the report ("It is ...")
 //   Numbers<Real>, numbers()  what kernels see of the options; soften(), round_tip(), couple_pressure()
 //   stress, energy            Kirchhoff stress [Pa] and elastic energy per initial volume [J/m3] of a state

@@ -61,14 +61,20 @@ void choose_law(recipe::Visitor& v, std::string_view key, Model& model, std::str
   model = static_cast<Model>(index);
 }
 
+/// The table of a recipe that holds the keys of laws.
+struct LawTable {
+  std::string name;         ///< what messages call it: "[solve.material]"
+  std::string_view chosen;  ///< the name of the law that it chooses
+};
+
 template <class Laws>
 struct OptionsOfLaws;
 /// The options of all laws side by side. A recipe names those of every law; those of another law than the chosen one
 /// have no effect.
 template <class... Laws>
 struct OptionsOfLaws<LawList<Laws...>> : Laws::Options... {
-  /// The method declares the keys of all laws with defaults and help.
-  void describe(recipe::Visitor& v) { (Laws::Options::describe(v), ...); }
+  /// The method declares the keys of all laws with defaults, help and what they need of one another.
+  void describe(recipe::Visitor& v, const LawTable& table) { (Laws::Options::describe(v, table), ...); }
   /// The options of one law.
   template <class Law>
   const typename Law::Options& options_of() const {

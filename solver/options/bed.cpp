@@ -43,7 +43,8 @@ bool is_common(std::string_view key) { return key == "cohesion_Pa" || key == "po
 
 void BaseOptions::describe(recipe::Visitor& v) {
   choose_law<FrictionLaws>(v, "law", law, "friction between the mass and its bed");
-  OptionsOfLaws::describe(v);
+  const auto name = visit_law(law, [](auto own) { return std::string_view(own.name); });
+  OptionsOfLaws::describe(v, {.name = "[solve.base]", .chosen = name});
   v.number("cohesion_Pa", cohesion, recipe::not_negative,
            "traction besides friction, wherever the mass touches its bed");
   v.number("pore_pressure_ratio", pore_pressure_ratio, recipe::Range{0, 1},
@@ -72,10 +73,6 @@ std::string BaseOptions::words() const {
 
 std::string BaseOptions::sentence() const {
   return visit_law(law, [&](auto own) { return own.sentence(*this); });
-}
-
-void BaseOptions::check(std::vector<Fault>& faults) const {
-  visit_law(law, [&](auto own) { options_of<decltype(own)>().check(faults); });
 }
 
 template <class Real>

@@ -26,10 +26,8 @@ struct BaseOptions : OptionsOfLaws<FrictionLaws> {
   /// The law in a sentence of the report, "at its bed acts ...".
   std::string sentence() const;
 
-  /// The method declares the keys of [solve.base] with defaults and help.
+  /// The method declares the keys of [solve.base] with defaults, help and what they need of one another.
   void describe(recipe::Visitor& v);
-  /// The method adds the faults that values have together to `faults`.
-  void check(std::vector<Fault>& faults) const;
 };
 
 /// The law of the bed with the same numbers everywhere, in SI units.

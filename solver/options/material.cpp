@@ -28,7 +28,7 @@ std::string MaterialOptions::sentence() const {
   return with_law([](auto law, const auto& options) { return law.sentence(options); });
 }
 
-void MaterialOptions::describe(recipe::Visitor& v) {
+void MaterialOptions::describe(recipe::Visitor& v, const std::string& table) {
   choose_law<MaterialLaws>(v, "model", model, "constitutive law");
   v.number("density_kg_m3", density, recipe::positive, "bulk density of the released mass");
   v.number("youngs_modulus_Pa", youngs_modulus, recipe::positive,
@@ -37,17 +37,18 @@ void MaterialOptions::describe(recipe::Visitor& v) {
                  "auto: the lowest modulus up to that one which leaves the flow unchanged");
   v.flag("stiffness_check", stiffness_check, "run again with twice the modulus and say how far the deposit moves");
   v.number("poisson_ratio", poisson_ratio, recipe::Range{-1, 0.5, true, true}, "Poisson's ratio");
-  OptionsOfLaws::describe(v);
-}
-
-void MaterialOptions::check(const std::string& table, std::vector<Fault>& faults) const {
-  MaterialLaws::each([&](auto law) { options_of<decltype(law)>().check(table, faults); });
+  const auto name = visit_law(model, [](auto law) { return std::string_view(law.name); });
+  OptionsOfLaws::describe(v, {.name = table, .chosen = name});
 }
 
 void PartOptions::describe(recipe::Visitor& v) {
   v.text("release", release,
          "name of the release (of talus-preprocess) that is of this material; the keys below have their own defaults");
-  material.describe(v);
+  const std::string table = fmt::format("[[solve.part]] release = \"{}\"", release);
+  material.describe(v, table);
+  v.needs(
+      material.stiffness == StiffnessKind::as_given && !material.stiffness_check,
+      {table + " gives stiffness or stiffness_check", "they are the whole scene's", "Give them in [solve.material]"});
 }
 
 bool MassOptions::any_material(const std::function<bool(const MaterialOptions&)>& is) const {
@@ -57,29 +58,16 @@ bool MassOptions::any_material(const std::function<bool(const MaterialOptions&)>
 
 void MassOptions::describe(recipe::Visitor& v) {
   recipe::list(v, "part", parts, "a release of another material than [solve.material]");
-  recipe::table(v, "material", material, "the sliding mass");
-}
-
-void MassOptions::check(std::vector<Fault>& faults) const {
-  if (parts.size() >= most_materials) {
-    faults.push_back({fmt::format("[[solve.part]] is given {} times", parts.size()),
-                      fmt::format("a scene has at most {} materials", most_materials),
-                      "Give releases of the same material the same name, or leave some out"});
-  }
-  for (const PartOptions& part : parts) {
-    if (part.material.stiffness == StiffnessKind::as_given && !part.material.stiffness_check) continue;
-    faults.push_back({fmt::format("[[solve.part]] release = \"{}\" gives stiffness or stiffness_check", part.release),
-                      "they are the whole scene's", "Give them in [solve.material]"});
-  }
+  v.needs(parts.size() < most_materials, {fmt::format("[[solve.part]] is given {} times", parts.size()),
+                                          fmt::format("a scene has at most {} materials", most_materials),
+                                          "Give releases of the same material the same name, or leave some out"});
+  const std::string table = "[solve.material]";
+  recipe::table(v, "material", material, "the sliding mass", table);
   const bool stiffness_is_free = material.with_law([](auto law, const auto&) { return law.stiffness_is_free; });
-  if (material.stiffness == StiffnessKind::automatic && !stiffness_is_free) {
-    faults.push_back({"[solve.material] stiffness = \"auto\" does not go with this model",
-                      "what an elastic body does depends on its stiffness",
-                      "Take model = \"drucker-prager\", or leave stiffness out"});
-  }
-  material.check("[solve.material]", faults);
-  for (const PartOptions& part : parts)
-    part.material.check("[[solve.part]] release = \"" + part.release + "\"", faults);
+  v.needs(material.stiffness == StiffnessKind::as_given || stiffness_is_free,
+          {table + " stiffness = \"auto\" does not go with this model",
+           "what an elastic body does depends on its stiffness",
+           "Take model = \"drucker-prager\", or leave stiffness out"});
 }
 
 template <class Real>

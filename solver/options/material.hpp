@@ -39,11 +39,9 @@ struct MaterialOptions : OptionsOfLaws<MaterialLaws> {
   /// The material in a sentence of the report, "It is ...".
   std::string sentence() const;
 
-  /// The method declares the keys of a table of a material with defaults and help.
-  void describe(recipe::Visitor& v);
-  /// The method adds the faults that values have together to `faults`. `table` is what messages call the recipe's
-  /// table.
-  void check(const std::string& table, std::vector<Fault>& faults) const;
+  /// The method declares the keys of a table of a material with defaults, help and what they need of one another.
+  /// `table` is what messages call the recipe's table.
+  void describe(recipe::Visitor& v, const std::string& table);
 };
 
 /// The keys of [[solve.part]]: a release of another material than [solve.material].
@@ -72,8 +70,6 @@ struct MassOptions {
 
   /// The method declares [solve.material] and [[solve.part]].
   void describe(recipe::Visitor& v);
-  /// The method adds the faults of all materials to `faults`.
-  void check(std::vector<Fault>& faults) const;
 };
 
 /// The material that kernels see: moduli and wave speed from a recipe's words, and the numbers of its law; softening is

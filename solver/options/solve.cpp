@@ -19,11 +19,6 @@ void SolveOptions::describe(recipe::Visitor& v) {
   recipe::table(v, "base", base, "the bed under it");
 }
 
-void SolveOptions::check(std::vector<Fault>& faults) const {
-  MassOptions::check(faults);
-  base.check(faults);
-}
-
 std::string SolveOptions::contact_words() const {
   return obstacles.empty() ? "[solve] ground_contact = \"points\"" : "[[solve.obstacle]]";
 }

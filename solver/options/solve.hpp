@@ -30,10 +30,8 @@ struct SolveOptions : TimeOptions, SchemeOptions, GravityOptions, OutputOptions,
   /// The keys that make it so, for messages.
   std::string contact_words() const;
 
-  /// The method declares all keys of [solve] and its tables with defaults and help.
+  /// The method declares all keys of [solve] and its tables with defaults, help and what they need of one another.
   void describe(recipe::Visitor& v);
-  /// The method adds the faults that values have together to `faults`.
-  void check(std::vector<Fault>& faults) const;
 };
 
 /// The options with `preset` spelt out: preset = "reference" sets what the reference paper states and leaves the rest

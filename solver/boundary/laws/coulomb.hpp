@@ -21,12 +21,10 @@ struct Coulomb {
     /// The friction coefficient tan(angle) [-].
     double friction() const { return std::tan(friction_angle * (std::numbers::pi / 180)); }
     /// The method declares the keys with defaults and help.
-    void describe(recipe::Visitor& v) {
+    void describe(recipe::Visitor& v, const LawTable&) {
       v.number("friction_angle_deg", friction_angle, recipe::Range{0, 90, false, true},
                "coulomb, voellmy: friction angle of the bed");
     }
-    /// There are no faults that values have together.
-    void check(std::vector<Fault>&) const {}
   };
   /// Whether the law looks at a key.
   static bool uses(std::string_view key) { return key == "friction_angle_deg"; }

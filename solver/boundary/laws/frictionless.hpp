@@ -15,9 +15,7 @@ struct FrictionlessLaw {
   /// The law has no keys.
   struct Options {
     /// There are no keys.
-    void describe(recipe::Visitor&) {}
-    /// There are no faults.
-    void check(std::vector<Fault>&) const {}
+    void describe(recipe::Visitor&, const LawTable&) {}
   };
   /// Whether the law looks at a key: at none.
   static bool uses(std::string_view) { return false; }

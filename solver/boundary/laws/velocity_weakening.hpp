@@ -18,20 +18,17 @@ struct VelocityWeakening {
     double steady_coefficient = 0.23;
     double characteristic_speed = 1;  ///< [m/s]
 
-    /// The method declares the keys with defaults and help.
-    void describe(recipe::Visitor& v) {
+    /// The method declares the keys with defaults and help; where the law is chosen, friction falls with speed.
+    void describe(recipe::Visitor& v, const LawTable& table) {
       v.number("peak_coefficient", peak_coefficient, recipe::not_negative, "velocity-weakening: coefficient at rest");
       v.number("steady_coefficient", steady_coefficient, recipe::not_negative,
                "velocity-weakening: coefficient at high speed");
+      v.needs(table.chosen != name || peak_coefficient >= steady_coefficient,
+              {table.name + " peak_coefficient = " + shortest(peak_coefficient) +
+                   " is below steady_coefficient = " + shortest(steady_coefficient),
+               "friction would grow with speed", "Swap the two"});
       v.number("characteristic_speed_m_s", characteristic_speed, recipe::positive,
                "velocity-weakening: speed of half the drop");
-    }
-    /// The method adds a fault where friction would grow with speed.
-    void check(std::vector<Fault>& faults) const {
-      if (peak_coefficient >= steady_coefficient) return;
-      faults.push_back({"[solve.base] peak_coefficient = " + shortest(peak_coefficient) +
-                            " is below steady_coefficient = " + shortest(steady_coefficient),
-                        "friction would grow with speed", "Swap the two"});
     }
   };
   /// Whether the law looks at a key.

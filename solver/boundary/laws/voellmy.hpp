@@ -15,12 +15,10 @@ struct Voellmy {
     double turbulence = 500;  ///< xi [m/s2]
 
     /// The method declares the keys with defaults and help.
-    void describe(recipe::Visitor& v) {
+    void describe(recipe::Visitor& v, const LawTable&) {
       v.number("turbulence_m_s2", turbulence, recipe::positive,
                "voellmy: xi; a traction of rho g v^2 / xi besides friction");
     }
-    /// There are no faults that values have together.
-    void check(std::vector<Fault>&) const {}
   };
   /// Whether the law looks at a key.
   static bool uses(std::string_view key) { return Coulomb::uses(key) || key == "turbulence_m_s2"; }

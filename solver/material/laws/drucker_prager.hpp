@@ -150,10 +150,8 @@ struct DruckerPrager {
     bool softens() const { return softening_slip > 0; }
     /// Whether shear changes the volume of the material.
     bool dilates() const { return dilatancy_angle > 0; }
-    /// The method declares the keys with defaults and help.
-    void describe(recipe::Visitor& v);
-    /// The method adds the faults that values have together to `faults`; messages call the recipe's table `table`.
-    void check(const std::string& table, std::vector<Fault>& faults) const;
+    /// The method declares the keys with defaults, help and what they need of one another.
+    void describe(recipe::Visitor& v, const LawTable& table);
   };
   /// The law in a line, for plan and log; `elasticity` states density and moduli.
   static std::string words(const Options& o, const std::string& elasticity);
@@ -282,12 +280,16 @@ DruckerPrager::Numbers<Real> DruckerPrager::numbers(const Options& o, double sid
   return n;
 }
 
-/// The definition of the keys, with defaults and help.
-inline void DruckerPrager::Options::describe(recipe::Visitor& v) {
+/// The definition of the keys, with defaults, help and what they need of one another, whichever law is chosen.
+inline void DruckerPrager::Options::describe(recipe::Visitor& v, const LawTable& table) {
   using recipe::Range;
   v.number("friction_angle_deg", friction_angle, Range{0, 90, false, true}, "internal friction angle");
   v.number("cohesion_Pa", cohesion, recipe::not_negative, "cohesion");
   v.number("dilatancy_angle_deg", dilatancy_angle, Range{0, 90, false, true}, "dilatancy angle");
+  v.needs(!(dilatancy_angle > friction_angle),
+          {table.name + " dilatancy_angle_deg = " + shortest(dilatancy_angle) +
+               " is above friction_angle_deg = " + shortest(friction_angle),
+           "the material would make energy as it shears", "Lower dilatancy_angle_deg; 0 is usual for run-out"});
   v.number("tension_cutoff_Pa", tension_cutoff, recipe::not_negative, "largest mean tension carried");
   v.number("pore_pressure_ratio", pore_pressure_ratio, Range{0, 1},
            "share of the pressure that water carries (saturated ground); friction acts on the rest");
@@ -296,27 +298,15 @@ inline void DruckerPrager::Options::describe(recipe::Visitor& v) {
   v.number("residual_friction_angle_deg", residual_friction_angle, Range{0, 90, false, true},
            "after softening: internal friction angle");
   v.number("residual_cohesion_Pa", residual_cohesion, recipe::not_negative, "after softening: cohesion");
+  v.needs(
+      !softens() || !(residual_friction_angle > friction_angle || residual_cohesion > cohesion),
+      {table.name + " softens to " + shortest(residual_friction_angle) + " deg and " + shortest(residual_cohesion) +
+           " Pa, from " + shortest(friction_angle) + " deg and " + shortest(cohesion) + " Pa",
+       "a residual strength is no larger than the first", "Lower residual_friction_angle_deg or residual_cohesion_Pa"});
   recipe::choice(
       v, "cone", cone,
       {{"compression", Cone::compression}, {"extension", Cone::extension}, {"plane-strain", Cone::plane_strain}},
       "how the cone meets Mohr-Coulomb");
-}
-
-/// The definition of the faults that values have together.
-inline void DruckerPrager::Options::check(const std::string& table, std::vector<Fault>& faults) const {
-  if (dilatancy_angle > friction_angle) {
-    faults.push_back({table + " dilatancy_angle_deg = " + shortest(dilatancy_angle) +
-                          " is above friction_angle_deg = " + shortest(friction_angle),
-                      "the material would make energy as it shears",
-                      "Lower dilatancy_angle_deg; 0 is usual for run-out"});
-  }
-  if (softens() && (residual_friction_angle > friction_angle || residual_cohesion > cohesion)) {
-    faults.push_back({table + " softens to " + shortest(residual_friction_angle) + " deg and " +
-                          shortest(residual_cohesion) + " Pa, from " + shortest(friction_angle) + " deg and " +
-                          shortest(cohesion) + " Pa",
-                      "a residual strength is no larger than the first",
-                      "Lower residual_friction_angle_deg or residual_cohesion_Pa"});
-  }
 }
 
 /// The definition of the sentence for the report.

@@ -15,9 +15,7 @@ struct ElasticLaw {
   /// The law has no keys of its own.
   struct Options {
     /// There are no keys.
-    void describe(recipe::Visitor&) {}
-    /// There are no faults.
-    void check(const std::string&, std::vector<Fault>&) const {}
+    void describe(recipe::Visitor&, const LawTable&) {}
     /// Whether strength falls as the material shears.
     bool softens() const { return false; }
     /// Whether shear changes the volume of the material.

@@ -45,7 +45,8 @@ void expect_laws_to_hold() {
     EXPECT_TRUE(names.insert(std::string(Law::name)).second) << "two laws are called " << Law::name;
     typename Law::Options options;
     recipe::Defaults own;
-    options.describe(*recipe::make_collector("law", own));
+    const LawTable table{.name = "[solve.base]", .chosen = Law::name};
+    options.describe(*recipe::make_collector("law", own), table);
     for (const auto& [place, value] : own) {
       const std::string key = place.substr(place.rfind('.') + 1);
       EXPECT_TRUE(keys.insert(key).second) << key << " belongs to two laws";
@@ -53,7 +54,7 @@ void expect_laws_to_hold() {
     }
     EXPECT_FALSE(Law::uses("no_such_key"));
     std::vector<Fault> faults;
-    options.check(faults);
+    options.describe(*recipe::make_checker(faults), table);
     EXPECT_TRUE(faults.empty()) << "the defaults are refused";
     EXPECT_FALSE(Law::words(OptionsOfLaws<Laws>{}).empty());
     EXPECT_FALSE(Law::sentence(OptionsOfLaws<Laws>{}).empty());

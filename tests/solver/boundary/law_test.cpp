@@ -46,7 +46,7 @@ TEST(BedNumbers, are_those_of_the_laws_and_have_a_member_each) {
   FrictionLaws::each([&](auto law) {  // a number that no raster could give would be missed in silence
     typename decltype(law)::Options own;
     recipe::Defaults keys;
-    own.describe(*recipe::make_collector("law", keys));
+    own.describe(*recipe::make_collector("law", keys), {});
     for (const auto& [place, value] : keys)
       EXPECT_NE(std::find(bed_numbers.begin(), bed_numbers.end(), place.substr(place.rfind('.') + 1)),
                 bed_numbers.end())

@@ -57,10 +57,11 @@ void expect_name_options_and_words(std::set<std::string>& names, std::set<std::s
   EXPECT_TRUE(names.insert(std::string(Law::name)).second) << "two laws are called " << Law::name;
   typename Law::Options options;
   recipe::Defaults own;
-  options.describe(*recipe::make_collector("law", own));
+  const LawTable table{.name = "[solve.material]", .chosen = Law::name};
+  options.describe(*recipe::make_collector("law", own), table);
   for (const auto& [key, value] : own) EXPECT_TRUE(keys.insert(key).second) << key << " belongs to two laws";
   std::vector<Fault> faults;
-  options.check("[solve.material]", faults);
+  options.describe(*recipe::make_checker(faults), table);
   EXPECT_TRUE(faults.empty()) << "the defaults are refused";
   EXPECT_NE(Law::words(options, "ELASTICITY").find("ELASTICITY"), std::string::npos);
   EXPECT_FALSE(Law::sentence(options).empty());

@@ -138,13 +138,15 @@ TEST(SolveOptions, strengths_go_together) {
   EXPECT_EQ(faults("[solve.material]\nstiffness=\"auto\"\nmodel=\"hencky\""),
             "[solve.material] stiffness = \"auto\" does not go with this model (what an elastic body does depends on "
             "its stiffness). Take model = \"drucker-prager\", or leave stiffness out");
-  EXPECT_EQ(faults("[solve.material]\ndilatancy_angle_deg=40\n[[solve.part]]\nrelease=\"x\"\nsoftening_slip_m="
-                   "1\nresidual_cohesion_Pa=3\nstiffness_check=true"),
-            "[[solve.part]] release = \"x\" gives stiffness or stiffness_check (they are the whole scene's). Give them "
-            "in [solve.material]\n[solve.material] dilatancy_angle_deg = 40 is above friction_angle_deg = 30 (the "
-            "material would make energy as it shears). Lower dilatancy_angle_deg; 0 is usual for "
-            "run-out\n[[solve.part]] release = \"x\" softens to 0 deg and 3 Pa, from 30 deg and 0 Pa (a residual "
-            "strength is no larger than the first). Lower residual_friction_angle_deg or residual_cohesion_Pa");
+  EXPECT_EQ(
+      faults("[solve.material]\ndilatancy_angle_deg=40\n[[solve.part]]\nrelease=\"x\"\nsoftening_slip_m="
+             "1\nresidual_cohesion_Pa=3\nstiffness_check=true"),
+      "[[solve.part]] release = \"x\" softens to 0 deg and 3 Pa, from 30 deg and 0 Pa (a residual strength is no "
+      "larger than the first). Lower residual_friction_angle_deg or residual_cohesion_Pa\n"
+      "[[solve.part]] release = \"x\" gives stiffness or stiffness_check (they are the whole scene's). Give them "
+      "in [solve.material]\n"
+      "[solve.material] dilatancy_angle_deg = 40 is above friction_angle_deg = 30 (the material would make energy "
+      "as it shears). Lower dilatancy_angle_deg; 0 is usual for run-out");
   EXPECT_EQ(faults("[solve.base]\nlaw=\"velocity-weakening\"\npeak_coefficient=0.1"),
             "[solve.base] peak_coefficient = 0.1 is below steady_coefficient = 0.23 (friction would grow with speed). "
             "Swap the two");

@@ -16,13 +16,12 @@ struct SpeedPower {
     double reference_speed = 10;         // v_0 [m/s]
     double speed_exponent = 0.25;        // n
 
-    void describe(recipe::Visitor& v) {
+    void describe(recipe::Visitor& v, const LawTable&) {
       v.number("reference_coefficient", reference_coefficient, recipe::not_negative,
                "speed-power: coefficient at the reference speed");
       v.number("reference_speed_m_s", reference_speed, recipe::positive, "speed-power: that speed");
       v.number("speed_exponent", speed_exponent, recipe::not_negative, "speed-power: power of the speed");
     }
-    void check(std::vector<Fault>&) const {}
   };
   static bool uses(std::string_view key) {
     return key == "reference_coefficient" || key == "reference_speed_m_s" || key == "speed_exponent";

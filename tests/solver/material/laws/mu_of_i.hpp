@@ -26,18 +26,16 @@ struct MuOfI {
 
     bool softens() const { return false; }
     bool dilates() const { return false; }
-    void describe(recipe::Visitor& v) {
+    void describe(recipe::Visitor& v, const LawTable& table) {
       v.number("static_coefficient", static_coefficient, recipe::not_negative, "mu-of-i: friction of slow flow");
       v.number("limiting_coefficient", limiting_coefficient, recipe::not_negative, "mu-of-i: friction of fast flow");
+      v.needs(limiting_coefficient >= static_coefficient,
+              {table.name + " limiting_coefficient = " + shortest(limiting_coefficient) +
+                   " is below static_coefficient = " + shortest(static_coefficient),
+               "friction would fall with the rate", "Swap the two"});
       v.number("inertial_number", inertial_number, recipe::positive, "mu-of-i: I at half of the rise");
       v.number("grain_diameter_m", grain_diameter, recipe::positive, "mu-of-i: diameter of the grains");
       v.number("grain_density_kg_m3", grain_density, recipe::positive, "mu-of-i: density of the grains");
-    }
-    void check(const std::string& table, std::vector<Fault>& faults) const {
-      if (limiting_coefficient >= static_coefficient) return;
-      faults.push_back({table + " limiting_coefficient = " + shortest(limiting_coefficient) +
-                            " is below static_coefficient = " + shortest(static_coefficient),
-                        "friction would fall with the rate", "Swap the two"});
     }
   };
   static std::string words(const Options& o, const std::string& elasticity) {
