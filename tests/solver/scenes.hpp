@@ -46,12 +46,22 @@ struct Box {
   double x0, x1, y0, y1, bottom, top;  // [m]; bottom and top above the ground
 };
 
+/// first, first + step, ... below `end`, as adding makes them.
+inline std::vector<double> lattice(double first, double end, double step) {
+  std::vector<double> result;
+  while (first < end) {
+    result.push_back(first);
+    first += step;
+  }
+  return result;
+}
+
 /// Points on a regular lattice, `across` per cell in x and y and `up` per layer, filling a box.
 inline void fill(Domain& d, const Box& box, int across = 2, int up = 2) {
   const double dx = d.grid.cell / across, dz = d.layer_height / up;
-  for (double h = box.bottom + dz / 2; h < box.top; h += dz) {
-    for (double y = box.y0 + dx / 2; y < box.y1; y += dx) {
-      for (double x = box.x0 + dx / 2; x < box.x1; x += dx) {
+  for (const double h : lattice(box.bottom + dz / 2, box.top, dz)) {
+    for (const double y : lattice(box.y0 + dx / 2, box.y1, dx)) {
+      for (const double x : lattice(box.x0 + dx / 2, box.x1, dx)) {
         d.points.x.push_back(x);
         d.points.y.push_back(y);
         d.points.height.push_back(h);

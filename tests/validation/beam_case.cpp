@@ -139,7 +139,8 @@ Chart deflection_chart() {
   chart.y = Limits{0, 0.9};
   Series thin{"elastica", {}, {}, 0}, solid{"beam with shear and stretch", {}, {}, 7};
   solid.dashed = true;
-  for (double k = 0; k <= 10.4; k += 0.2) {
+  for (int n = 0; n <= 52; ++n) {
+    const double k = 0.2 * n;
     thin.x.push_back(k);
     thin.y.push_back(k == 0 ? 0 : elastica(k).across);
     solid.x.push_back(k);

@@ -49,7 +49,7 @@ struct Axis {
     std::vector<double> result;
     if (log) {
       const bool wide = high - low > 2.2;
-      for (double decade = std::floor(low); decade <= high; ++decade) {
+      for (int decade = static_cast<int>(std::floor(low)); decade <= high; ++decade) {
         for (const double m : {1.0, 2.0, 5.0}) {
           const double value = m * std::pow(10, decade);
           if ((m == 1 || !wide) && holds(value)) result.push_back(value);
@@ -62,7 +62,9 @@ struct Axis {
     for (const double m : {5.0, 2.0, 1.0}) {
       if (m * size >= raw * 0.999) step = m * size;
     }
-    for (double n = std::ceil(low / step - 1e-9); n * step <= high + 1e-9 * step; ++n) result.push_back(n * step);
+    const long first = std::lround(std::ceil(low / step - 1e-9));
+    for (long n = first; static_cast<double>(n) * step <= high + 1e-9 * step; ++n)
+      result.push_back(static_cast<double>(n) * step);
     return result;
   }
 };

@@ -111,8 +111,8 @@ TEST(closed_forms, parabolic_cap_spreads_by_its_own_pressure) {
   EXPECT_NEAR((after.width - before.width) / (2 * dt), now.spread, 1e-8);
   EXPECT_NEAR((after.way - before.way) / (2 * dt), now.speed, 1e-9);
   double volume = 0;
-  for (double x = -200; x < 200; x += 0.5) {
-    for (double y = -200; y < 200; y += 0.5) volume += 0.25 * cap.thickness(now, x, y);
+  for (int i = -400; i < 400; ++i) {
+    for (int j = -400; j < 400; ++j) volume += 0.25 * cap.thickness(now, 0.5 * i, 0.5 * j);
   }
   EXPECT_NEAR(volume, 0.5 * M_PI * 6400 * 4, 1e-4 * volume);
 }
@@ -121,7 +121,8 @@ TEST(closed_forms, dam_break_keeps_its_volume_and_momentum_balance) {
   const DamBreak dam{0.4, 0.35, 1.5};
   const double pull = 9.81 * (std::sin(0.4) - std::cos(0.4) * std::tan(0.35)), dx = 1e-3;
   double volume = 0, momentum = 0;
-  for (double x = -40 + dx / 2; x < 80; x += dx) {
+  for (int n = 0; n < 120'000; ++n) {
+    const double x = -40 + (n + 0.5) * dx;
     volume += dx * dam.thickness(x, 3);
     momentum += dx * dam.thickness(x, 3) * dam.speed(x, 3);
   }
@@ -130,8 +131,8 @@ TEST(closed_forms, dam_break_keeps_its_volume_and_momentum_balance) {
   EXPECT_NEAR(volume, 40 * 1.5 + 0.5 * pull * 9 * 1.5, 1e-3);
   double impulse = 0;
   const double dt = 1e-3;
-  for (double t = dt / 2; t < 3; t += dt) {
-    const double speed = pull * t, mass = 40 * 1.5 + 0.5 * pull * t * t * 1.5;
+  for (int n = 0; n < 3000; ++n) {
+    const double t = (n + 0.5) * dt, speed = pull * t, mass = 40 * 1.5 + 0.5 * pull * t * t * 1.5;
     impulse += dt * (mass * pull + 1.5 * speed * speed + 0.5 * 9.81 * std::cos(0.4) * 1.5 * 1.5);
   }
   EXPECT_NEAR(momentum, impulse, 1e-3 * impulse);

@@ -190,7 +190,7 @@ void parabolic_cap(Bench& bench) {
     errors.series.push_back(convergence(mapping, h, error, colour++));
   }
   Series exact{"Hutter et al. 1993", {}, {}, 0};
-  for (double x = -90; x <= 130; x += 1) {
+  for (int x = -90; x <= 130; ++x) {
     exact.x.push_back(x);
     exact.y.push_back(upright(cap.at(5), x, 0));
   }
@@ -234,7 +234,7 @@ void dam_break(Bench& bench) {
     errors.series.push_back(convergence(mapping, h, error, colour++));
   }
   std::vector<double> x;
-  for (double at = west; at <= east; at += 0.25) x.push_back(at);
+  for (int n = 0; west + 0.25 * n <= east; ++n) x.push_back(west + 0.25 * n);
   const Profile exact = exact_at(x, 5);
   thickness.series.insert(thickness.series.begin(), Series{"Mangeney et al. 2000", exact.x, exact.thickness, 0});
   bench.picture("B5-thickness", png_of(thickness));

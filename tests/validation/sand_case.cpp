@@ -260,8 +260,14 @@ void sand_column_aspects(Bench& bench) {
   Chart chart = log_chart("A3b: run-out over aspect ratio, one set of parameters", "aspect ratio, height over width",
                           "(d end − d start) / d start");
   Series low{"Lube et al. 2005: 1.6 a, 2.2 a²ᐟ³", {}, {}, 0}, high{"", {}, {}, 0};
-  for (double a = 0.4; a < 1.8; a += 0.1) low.x.push_back(a), low.y.push_back(lube_run_out(a));
-  for (double a = 2.81; a < 11; a += 0.5) high.x.push_back(a), high.y.push_back(lube_run_out(a));
+  const auto draw = [](Series& line, double first, double step, int count) {
+    for (int n = 0; n < count; ++n) {
+      line.x.push_back(first + n * step);
+      line.y.push_back(lube_run_out(line.x.back()));
+    }
+  };
+  draw(low, 0.4, 0.1, 14);
+  draw(high, 2.81, 0.5, 17);
   Series ours{"computed, h = 0.01 m, 64 points per cell", {}, {}, 2};
   ours.line = false;
   ours.marks = true;

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "postprocess/fields/styles.hpp"
 #include "postprocess/maps/geotiff.hpp"
 #include "postprocess/maps/outlines.hpp"
@@ -43,7 +45,8 @@ TEST(Styles, round_the_times_of_arrival) {
   auto never = run;
   never.maps.arrival_time.assign(run.maps.grid.count(), nan);
   EXPECT_EQ(time_limits(never.maps.arrival_time).size(), 1U);
-  for (double last = 0.3; last < 3000; last *= 1.07) {
+  for (int n = 0; n < 137; ++n) {
+    const double last = 0.3 * std::pow(1.07, n);
     auto some = run;
     some.maps.arrival_time.assign(1, last);
     const auto limits = time_limits(some.maps.arrival_time);

@@ -66,7 +66,8 @@ double hat(double x) { return std::max(0.0, 1 - std::abs(x)); }
 // A hat of twice the spacing is the sum that (T20) says.
 TEST(two_scale, coarse_hat_is_the_sum_of_fine_hats) {
   const TwoScale scale{TwoScale::hats};
-  for (double x = -2.5; x < 2.5; x += 0.1) {
+  for (int tenths = -25; tenths <= 25; ++tenths) {
+    const double x = 0.1 * tenths;
     double sum = 0;
     for (int n = 0; n < 3; ++n) sum += scale.weight(n) * hat(x - (n - 1));
     EXPECT_NEAR(sum, hat(x / 2), 1e-15);
