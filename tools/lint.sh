@@ -50,7 +50,8 @@ elif [[ -n $changed ]]; then
   # Units of the last commits, the latest first.
   mapfile -t units < <({ git diff --name-only HEAD; git log --format= --name-only -n 200; } |
     awk '!seen[$0]++' | grep -E '\.(cpp|cu)$' |
-    while IFS= read -r file; do if [[ -f $file ]]; then printf '%s\n' "$PWD/$file"; fi; done | head -n "$changed" || true)
+    while IFS= read -r file; do if [[ -f $file ]]; then printf '%s\n' "$PWD/$file"; fi; done |
+    head -n "$changed" || true)
 else
   mapfile -t units < <(grep -oE '"file": "[^"]+"' "$build/compile_commands.json" | cut -d'"' -f4 |
     awk '/unity_/ { print; next } { single[++n] = $0 } END { for (i = 1; i <= n; i++) print single[i] }')

@@ -7,7 +7,8 @@ namespace {
 
 using test::Scene;
 
-const std::string square = "POLYGON((500100 5100100,500200 5100100,500200 5100200,500100 5100200,500100 5100100))";
+const std::string released_square =
+    "POLYGON((500100 5100100,500200 5100100,500200 5100200,500100 5100200,500100 5100100))";
 
 TEST(refusal, thickness_in_another_crs) {
   Scene scene;
@@ -61,7 +62,7 @@ TEST(refusal, no_thickness) {
 
 TEST(refusal, polygon_without_the_attribute) {
   Scene scene;
-  scene.as_release().polygons = test::write_polygon(scene.scratch, "release.csv", square, ",depth", ",3");
+  scene.as_release().polygons = test::write_polygon(scene.scratch, "release.csv", released_square, ",depth", ",3");
   EXPECT_EQ(scene.data_fault(),
             scene.path("release.csv") +
                 ": polygon 1: no number \"thickness\" among its attributes (depth) (its thickness "
@@ -70,7 +71,7 @@ TEST(refusal, polygon_without_the_attribute) {
 
 TEST(refusal, polygon_of_negative_thickness) {
   Scene scene;
-  scene.as_release().polygons = test::write_polygon(scene.scratch, "release.csv", square, ",thickness", ",-3");
+  scene.as_release().polygons = test::write_polygon(scene.scratch, "release.csv", released_square, ",thickness", ",-3");
   EXPECT_EQ(scene.data_fault(), scene.path("release.csv") +
                                     ": polygon 1: thickness = -3 (a thickness is a number and not negative). Mend the "
                                     "attribute, or give thickness_m in the recipe");
