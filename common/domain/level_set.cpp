@@ -40,7 +40,7 @@ openvdb::FloatGrid::Ptr open_grid(const fs::path& file, const std::string& name)
           fmt::format("its grids are: {}", fmt::join(names, ", ")), "Name one of them: grid = \"...\"");
     }
     const auto grid = archive.readGrid(name.empty() ? names.front() : name);
-    const auto typed = openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
+    auto typed = openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
     if (!typed || typed->getGridClass() != openvdb::GRID_LEVEL_SET) {
       refuse_file(file, fmt::format("the grid \"{}\" is no level set", grid->getName()),
                   "a level set is a float grid of class \"level set\", negative inside the body",

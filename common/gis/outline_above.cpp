@@ -81,6 +81,7 @@ std::vector<MapPolygon> outline_above(const Raster& raster, double threshold) {
   std::map<std::size_t, std::vector<std::size_t>> members;
   for (std::size_t ring = 0; ring < rings.size(); ++ring) members[groups.of(ring)].push_back(ring);
   std::vector<double> areas;
+  areas.reserve(rings.size());
   for (const auto& ring : rings) areas.push_back(twice_area(ring));
   std::vector<MapPolygon> polygons;
   for (auto& [unused, list] : members) {

@@ -47,7 +47,7 @@ bool holds_points(const fs::path& file) {
   if (!dataset || dataset->GetLayerCount() == 0) return false;
   OGRLayer& layer = *dataset->GetLayer(0);
   const auto kind = wkbFlatten(layer.GetGeomType());
-  if (kind == wkbPoint || kind != wkbUnknown) return kind == wkbPoint;
+  if (kind != wkbUnknown) return kind == wkbPoint;
   layer.ResetReading();
   const OGRFeatureUniquePtr feature(layer.GetNextFeature());
   return feature && is_point(feature->GetGeometryRef());

@@ -47,7 +47,7 @@ std::unique_ptr<AsciiGrid> ascii_grid(const fs::path& file) {
 
 /// The unit that a band names, else that of the vertical part of its CRS.
 std::string declared_unit(GDALRasterBand& band, const OGRSpatialReference* srs) {
-  const std::string unit = band.GetUnitType();
+  std::string unit = band.GetUnitType();
   if (!unit.empty() || srs == nullptr || !srs->IsCompound()) return unit;
   const char* name = nullptr;
   srs->GetTargetLinearUnits("VERT_CS", &name);

@@ -39,10 +39,11 @@ RasterStyle time_style(const std::vector<double>& limits, const std::string& uni
   const std::size_t count = limits.size() + 1;
   for (std::size_t i = 0; i < count; ++i) {
     const Colour colour = class_colour(count - 1 - i, count, Ramp::sea);
-    const std::string label = i == 0 && !limits.empty() ? fmt::format("< {:g}", limits[0])
-                              : limits.empty()          ? "all"
-                                                        : class_label(i - 1, limits);
-    style.classes.push_back({i < limits.size() ? limits[i] : infinity, colour, label + " " + unit});
+    std::string label = i == 0 && !limits.empty() ? fmt::format("< {:g}", limits[0])
+                        : limits.empty()          ? "all"
+                                                  : class_label(i - 1, limits);
+    label += " " + unit;
+    style.classes.push_back({i < limits.size() ? limits[i] : infinity, colour, label});
   }
   return style;
 }

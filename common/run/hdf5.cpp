@@ -172,13 +172,18 @@ std::vector<std::string> File::attribute_names(const std::string& object) const 
 
 namespace {
 
+/// The value of an attribute: its types in the file and in memory, and its size.
+struct AttributeValue {
+  hid_t file_type, memory_type, space;
+  const void* data;
+};
+
 /// Write one attribute; false when HDF5 refuses.
-bool write_attribute(hid_t file, const std::string& object, const std::string& name, hid_t file_type, hid_t space,
-                     hid_t memory_type, const void* data) {
-  Id attribute(
-      H5Acreate_by_name(file, object.c_str(), name.c_str(), file_type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-      H5Aclose);
-  return !attribute.bad() && H5Awrite(attribute, memory_type, data) >= 0 && attribute.close();
+bool write_attribute(hid_t file, const std::string& object, const std::string& name, const AttributeValue& value) {
+  Id attribute(H5Acreate_by_name(file, object.c_str(), name.c_str(), value.file_type, value.space, H5P_DEFAULT,
+                                 H5P_DEFAULT, H5P_DEFAULT),
+               H5Aclose);
+  return !attribute.bad() && H5Awrite(attribute, value.memory_type, value.data) >= 0 && attribute.close();
 }
 
 }  // namespace
@@ -193,12 +198,13 @@ void File::set_text(const std::string& object, const std::string& name, const st
   }
   const Id space(H5Screate(H5S_SCALAR), H5Sclose);
   const char* data = value.empty() ? "\0" : value.data();
-  if (!write_attribute(id_, object, name, type, space, type, data)) fail(fmt::format("attribute {} {}", object, name));
+  if (!write_attribute(id_, object, name, {type, type, space, data}))
+    fail(fmt::format("attribute {} {}", object, name));
 }
 
 void File::set_number(const std::string& object, const std::string& name, double value) {
   const Id space(H5Screate(H5S_SCALAR), H5Sclose);
-  if (!write_attribute(id_, object, name, H5T_IEEE_F64LE, space, H5T_NATIVE_DOUBLE, &value)) {
+  if (!write_attribute(id_, object, name, {H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, space, &value})) {
     fail(fmt::format("attribute {} {}", object, name));
   }
 }
@@ -206,7 +212,7 @@ void File::set_number(const std::string& object, const std::string& name, double
 void File::set_integers(const std::string& object, const std::string& name, std::span<const std::int64_t> values) {
   const hsize_t count = values.size();
   const Id space(count == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &count, nullptr), H5Sclose);
-  if (!write_attribute(id_, object, name, H5T_STD_I64LE, space, H5T_NATIVE_INT64, values.data())) {
+  if (!write_attribute(id_, object, name, {H5T_STD_I64LE, H5T_NATIVE_INT64, space, values.data()})) {
     fail(fmt::format("attribute {} {}", object, name));
   }
 }
