@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -56,8 +57,8 @@ double noise(double x, double y, unsigned seed);
 template <class Value>
 Raster raster_of(double width, double height, double cell, Value value) {
   Raster raster;
-  raster.grid.columns = static_cast<int>(width / cell + 0.5);
-  raster.grid.rows = static_cast<int>(height / cell + 0.5);
+  raster.grid.columns = static_cast<int>(std::lround(width / cell));
+  raster.grid.rows = static_cast<int>(std::lround(height / cell));
   raster.grid.west = west;
   raster.grid.south = south;
   raster.grid.cell = cell;

@@ -108,8 +108,10 @@ double lobe_shape(double x, double y) {
 
 double volume_ratio() {
   double scar_volume = 0, lobe_volume = 0;
-  for (double y = 1; y < height; y += 2) {
-    for (double x = 1; x < width; x += 2) {
+  constexpr int step = 2;  // [m]
+  for (int row = 0; row * step + 1 < height; ++row) {
+    for (int column = 0; column * step + 1 < width; ++column) {
+      const double x = column * step + 1, y = row * step + 1;
       scar_volume += scar_at(x, y);
       lobe_volume += lobe_shape(x, y);
     }

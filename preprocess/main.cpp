@@ -36,7 +36,8 @@ Facts facts_of(const preprocess::Prepared& prepared) {
   }
   if (prepared.by_release.size() < 2) return facts;
   for (const auto& [name, volumes] : prepared.by_release) {
-    for (auto& [key, value] : preprocess::as_facts(volumes)) facts.emplace_back(name + "." + key, std::move(value));
+    for (auto& [key, value] : preprocess::as_facts(volumes))
+      facts.emplace_back(fmt::format("{}.{}", name, key), std::move(value));
   }
   return facts;
 }

@@ -186,7 +186,8 @@ void draw_scale_bar(Canvas& canvas, const View& view, double x, double y, double
 std::vector<double> ticks(double low, double high, double pixels) {
   const double step = round_below((high - low) * std::max(300 / pixels, 0.14));
   std::vector<double> places;
-  for (double k = std::ceil(low / step); k * step <= high; ++k) places.push_back(k * step);
+  const double first = std::ceil(low / step);
+  for (int n = 0; (first + n) * step <= high; ++n) places.push_back((first + n) * step);
   return places;
 }
 

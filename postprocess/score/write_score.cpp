@@ -42,7 +42,7 @@ std::string wrapped(const std::string& text, std::size_t width, const std::strin
     const auto end = std::min(text.find(' ', start), text.size());
     const auto word = text.substr(start, end - start);
     if (!line.empty() && line.size() + 1 + word.size() > width) {
-      lines += line + "\n" + indent;
+      lines.append(line).append("\n").append(indent);
       line = word;
     } else {
       line += (line.empty() ? "" : " ") + word;

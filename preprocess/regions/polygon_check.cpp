@@ -62,6 +62,7 @@ std::vector<Edge> edges_of(const std::vector<Ring>& rings) {
 std::optional<Point> first_forbidden_meeting(const std::vector<Ring>& rings) {
   const std::vector<Edge> edges = edges_of(rings);
   std::vector<Box> boxes;
+  boxes.reserve(edges.size());
   for (const Edge& edge : edges) boxes.emplace_back(edge.segment.bbox(), &edge);
   std::optional<Point> found;
   CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "common/error.hpp"
 #include "common/map/polygon.hpp"
@@ -51,7 +52,9 @@ struct Accumulator {
 void add_crossings(double from, double to, std::vector<double>& parts) {
   if (from == to) return;
   const double low = std::min(from, to), high = std::max(from, to);
-  for (double line = std::floor(low) + 1; line < high; ++line) parts.push_back((line - from) / (to - from));
+  const auto first = static_cast<std::int64_t>(std::floor(low)) + 1;
+  for (std::int64_t line = first; static_cast<double>(line) < high; ++line)
+    parts.push_back((static_cast<double>(line) - from) / (to - from));
 }
 
 void add_edge(const Place& a, const Place& b, Accumulator& sum, std::vector<double>& parts) {

@@ -149,7 +149,7 @@ Coregistration lifted(std::vector<Patch>& patches, Coregistration result) {
   leave_out_changed(patches, result.placement);
   result.converged = true;
   result.shift_known = false;
-  return told(patches, start, std::move(result));
+  return told(patches, start, result);
 }
 
 }  // namespace
@@ -163,7 +163,7 @@ Coregistration coregister(std::vector<Patch>& patches, bool tilt, const std::fil
   const std::vector<double> first_misfit = stable_misfit(patches, result.placement);
   const std::size_t at_first = first_misfit.size();
   if (at_first < least_cells) return result;
-  if (nmad(first_misfit) < 1e-9) return lifted(patches, std::move(result));
+  if (nmad(first_misfit) < 1e-9) return lifted(patches, result);
   refuse_feet(patches, result.placement, after_file);
   const Placement start = result.placement;
   move_by_whole_cells(patches, result.placement);
@@ -178,7 +178,7 @@ Coregistration coregister(std::vector<Patch>& patches, bool tilt, const std::fil
     settle(patches, sought, length, result);
   }
   if (tilt) fit_tilt(patches, sought, length, result);
-  return told(patches, start, std::move(result));
+  return told(patches, start, result);
 }
 
 }  // namespace talus::preprocess

@@ -43,11 +43,13 @@ std::vector<double> misfits_in(const std::vector<Sample>& samples, double from, 
 ErrorModel ErrorModel::learnt(const std::vector<Patch>& patches, const Placement& placement, double given) {
   ErrorModel model;
   std::vector<std::vector<double>> misfits;
+  misfits.reserve(patches.size());
   for (const Patch& patch : patches) misfits.push_back(misfit(patch, placement));
   const std::vector<Sample> samples = samples_of(patches, misfits);
   model.given_ = given > 0;
   model.typical_ = model.given_ ? given : nmad(misfits_in(samples, 0, INFINITY));
-  for (double deg = 0; deg < 90 && !model.given_; deg += class_deg) {
+  for (int n = 0; n * class_deg < 90 && !model.given_; ++n) {
+    const double deg = n * class_deg;
     const auto rise = [](double angle) { return std::tan(std::min(angle, 89.9) * std::numbers::pi / 180); };
     const std::vector<double> in_class = misfits_in(samples, rise(deg), rise(deg + class_deg));
     if (in_class.size() < least_in_class) continue;

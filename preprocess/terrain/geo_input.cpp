@@ -48,7 +48,7 @@ Extent ScatteredPoints::extent() const {
 }
 
 std::string metric_crs(const std::string& name) {
-  const std::string wkt = crs_by_name(name);
+  std::string wkt = crs_by_name(name);
   if (wkt.empty()) {
     throw RecipeError(Fault{"[preprocess]: working_crs = \"" + name + "\"", "no such CRS is known",
                             "Name it by its code, as in \"EPSG:32633\""});

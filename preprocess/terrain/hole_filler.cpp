@@ -160,6 +160,7 @@ std::vector<double> fill_hole(const Raster& raster, const std::vector<Cell>& hol
   const Surroundings around(raster, hole);
   const SiteTriangulation triangulation = triangulated(around, around.rim(hole), how);
   std::vector<double> heights;
+  heights.reserve(wanted.size());
   SiteTriangulation::Face_handle near;
   for (const auto& [column, row] : wanted) {
     heights.push_back(triangulation.dimension() < 2 ? std::nan("")

@@ -65,17 +65,18 @@ int facing(const std::array<double, 3>& area) {
   return static_cast<int>(2 * axis) + (area[axis] > 0 ? 1 : 0);
 }
 
+/// The facets of a surface in half a cell that look the same way.
+struct Bin {
+  double area = 0, at[3] = {};
+  Vec3<double> sum;
+};
+using Bins = std::map<std::tuple<int, int, int, int>, Bin>;
+
 /// The facets above the ground, those of half a cell that look the same way as one: both faces of a wall thinner than a
 /// cell stay apart.
-void add_obstacle(const MapGrid& map, const GridShape& shape, const GroundTables& ground, const Obstacle& o, int body,
-                  std::vector<Sample>& samples, std::vector<std::string>& notes) {
-  const double half = 0.5 * shape.spacing, half_layer = 0.5 * shape.layer_height;
-  const BodySurface surface = read_level_set(o.level_set, o.grid, {half, half, half_layer});
-  struct Bin {
-    double area = 0, at[3] = {};
-    Vec3<double> sum;
-  };
-  std::map<std::tuple<int, int, int, int>, Bin> bins;
+Bins exposed_facets(const MapGrid& map, const GridShape& shape, const GroundTables& ground,
+                    const BodySurface& surface) {
+  Bins bins;
   for (const Facet& facet : surface.facets) {
     const double xi = (facet.centre[0] - map.west) / shape.spacing - 0.5,
                  eta = (facet.centre[1] - map.south) / shape.spacing - 0.5;
@@ -91,9 +92,28 @@ void add_obstacle(const MapGrid& map, const GridShape& shape, const GroundTables
     bin.sum += Vec3<double>{facet.area[0], facet.area[1], facet.area[2]};
     for (int a = 0; a < 3; ++a) bin.at[a] += size * at[a];
   }
+  return bins;
+}
+
+[[noreturn]] void refuse_hidden(const MapGrid& map, const Obstacle& o, const BodySurface& surface) {
+  throw DataError(
+      {fmt::format("{}: the obstacle \"{}\" stands nowhere above the ground of the scene", o.level_set.string(),
+                   o.name),
+       fmt::format("it reaches from ({:.1f}, {:.1f}, {:.1f}) to ({:.1f}, {:.1f}, {:.1f}); the scene from ({:.1f}, "
+                   "{:.1f}) to ({:.1f}, {:.1f})",
+                   surface.low[0], surface.low[1], surface.low[2], surface.high[0], surface.high[1], surface.high[2],
+                   map.west, map.south, map.west + map.columns * map.cell, map.south + map.rows * map.cell),
+       "Give the level set in the map's coordinates [m], elevations in the terrain's datum"});
+}
+
+/// The contact points of an obstacle, one for each half cell and way to look; returns what there is to say of them.
+std::string add_obstacle(const MapGrid& map, const GridShape& shape, const GroundTables& ground, const Obstacle& o,
+                         int body, std::vector<Sample>& samples) {
+  const double half = 0.5 * shape.spacing, half_layer = 0.5 * shape.layer_height;
+  const BodySurface surface = read_level_set(o.level_set, o.grid, {half, half, half_layer});
   double exposed = 0;
   std::size_t points = 0;
-  for (const auto& [key, bin] : bins) {
+  for (const auto& [key, bin] : exposed_facets(map, shape, ground, surface)) {
     const double size = length(bin.sum);
     if (!(size > 1e-9 * bin.area) || !(bin.area > 0)) continue;
     samples.push_back(
@@ -101,18 +121,9 @@ void add_obstacle(const MapGrid& map, const GridShape& shape, const GroundTables
     exposed += bin.area;
     ++points;
   }
-  if (points == 0) {
-    throw DataError(
-        {fmt::format("{}: the obstacle \"{}\" stands nowhere above the ground of the scene", o.level_set.string(),
-                     o.name),
-         fmt::format("it reaches from ({:.1f}, {:.1f}, {:.1f}) to ({:.1f}, {:.1f}, {:.1f}); the scene from ({:.1f}, "
-                     "{:.1f}) to ({:.1f}, {:.1f})",
-                     surface.low[0], surface.low[1], surface.low[2], surface.high[0], surface.high[1], surface.high[2],
-                     map.west, map.south, map.west + map.columns * map.cell, map.south + map.rows * map.cell),
-         "Give the level set in the map's coordinates [m], elevations in the terrain's datum"});
-  }
-  notes.push_back(fmt::format("obstacle {}: {:.4g} m3, {:.4g} m2 above the ground, {} contact points", o.name,
-                              surface.volume, exposed, points));
+  if (points == 0) refuse_hidden(map, o, surface);
+  return fmt::format("obstacle {}: {:.4g} m3, {:.4g} m2 above the ground, {} contact points", o.name, surface.volume,
+                     exposed, points);
 }
 
 }  // namespace
@@ -123,7 +134,7 @@ ContactPoints make_contact_points(const MapGrid& map, const GridShape& shape, co
   std::vector<Sample> samples;
   if (shape.ground == GroundContact::points) add_ground(shape, ground, samples);
   for (std::size_t o = 0; o < obstacles.size(); ++o) {
-    add_obstacle(map, shape, ground, obstacles[o], static_cast<int>(o), samples, points.notes);
+    points.notes.push_back(add_obstacle(map, shape, ground, obstacles[o], static_cast<int>(o), samples));
     points.friction.push_back(obstacles[o].friction);
   }
   const int blocks_x = blocks_across(shape.columns);

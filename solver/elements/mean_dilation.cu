@@ -120,11 +120,11 @@ void MeanDilation<Real, Device, Shape>::begin_step(const ElementList<Real, Devic
 template <class Real, class Device, class Shape>
 void MeanDilation<Real, Device, Shape>::measure(const ElementList<Real, Device, Shape>& list,
                                                 const GridView<Real>& grid, const ParticleView<Real>& points,
-                                                const Materials<Real>& materials, bool dilatant, const Vec3<double>* u,
-                                                double duration) {
+                                                const Materials<Real>& materials, const Motion& motion) {
   for_each(list.device(), list.count(),
-           MeasureMeans<Real, Shape>{grid, points, materials, dilatant, list.view(), u, static_cast<Real>(duration),
-                                     increment_.data(), stress_.data(), stiffness_.data(), gradient_.data()});
+           MeasureMeans<Real, Shape>{grid, points, materials, motion.dilatant, list.view(), motion.u,
+                                     static_cast<Real>(motion.duration), increment_.data(), stress_.data(),
+                                     stiffness_.data(), gradient_.data()});
 }
 
 template <class Real, class Device, class Shape>

@@ -45,11 +45,16 @@ class MeanDilation {
   /// number.
   void begin_step(const ElementList<Real, Device, Shape>& list, int points);
 
-  /// The method measures the means (T17b) for the displacement u [m] of the stored nodes, in a step of this duration
-  /// [s]; `dilatant`: points may dilate plastically.
+  /// A step as the means see it: displacement of the stored nodes [m], duration [s], and whether points may dilate
+  /// plastically.
+  struct Motion {
+    const Vec3<double>* u;
+    double duration;
+    bool dilatant;
+  };
+  /// The method measures the means (T17b) of a step.
   void measure(const ElementList<Real, Device, Shape>& list, const GridView<Real>& grid,
-               const ParticleView<Real>& points, const Materials<Real>& materials, bool dilatant, const Vec3<double>* u,
-               double duration);
+               const ParticleView<Real>& points, const Materials<Real>& materials, const Motion& motion);
 
   /// The means as kernels read them, until the next begin_step().
   MeanDilationView<Real> view() const {

@@ -99,7 +99,7 @@ struct UpdateColumns {
     const int n = GridView<Real>::node(at.slot, at.i, at.j, k);
     Vec4<Real> node = nodes[n];
     if (!(node.w > Real(0))) return;
-    const Vec3<Real> v = update(n, node, k <= at.top_contact, at.column, at.i, at.j, k, sums.losses);
+    const Vec3<Real> v = update(at, k, n, node, sums.losses);
     nodes[n] = {node.w, v.x, v.y, v.z};
     sums.mass += node.w;
     sums.momentum += v * node.w;
@@ -119,13 +119,15 @@ struct UpdateColumns {
     }
     const double mass = static_cast<double>(sums.mass);
     const double mean = volumes && volumes[at.column] > 0 ? mass / volumes[at.column] : static_cast<double>(density);
-    record_column(maps, at.column, mass, static_cast<double>(length(sums.momentum)), mean,
-                  static_cast<double>(grid.spacing), clock->time);
+    record_column(maps, at.column,
+                  {mass, static_cast<double>(length(sums.momentum)), mean, static_cast<double>(grid.spacing)},
+                  clock->time);
   }
 
  private:
-  TALUS_HD Vec3<Real> update(int n, const Vec4<Real>& node, bool on_ground, int column, int i, int j, int k,
+  TALUS_HD Vec3<Real> update(const Column& at, int k, int n, const Vec4<Real>& node,
                              decltype(Sums::losses)& losses) const {
+    const int column = at.column;
     const Real dt = Real(clock->step_size);
     const bool growing = gravity_ramp > 0 && clock->time < gravity_ramp;
     const Vec3<Real> g = growing ? gravity * Real(clock->time / gravity_ramp) : gravity;
@@ -142,16 +144,16 @@ struct UpdateColumns {
       v += pull * dt;
     }
     const Vec3<Real> free = v;
-    if (on_ground) {
+    if (k <= at.top_contact) {
       BaseFriction<Real> law = friction;
       if (content == NodeContent::remapped && !law.holds()) law.law = FrictionLaw::none;
       const Real sx = grid.slope_x[column], sy = grid.slope_y[column];
       // On a Cartesian grid the nodes inside the ground touch no bed of their own.
-      const bool grips = content != NodeContent::remapped && friction.needs_area() && k == grid.contact_layer(column);
+      const bool grips = content != NodeContent::remapped && friction.needs_area() && k == at.top_contact;
       const Real grip = grips ? bed_area(node.w, full_base, grid.spacing, sx, sy) * dt / node.w : Real(0);
       v = meet_ground(law, law.at(column), v, sx, sy, {.duration = dt, .grip = grip});
     }
-    if (walls.count > 0) v = meet_walls(walls, i, j, k, v, content != NodeContent::remapped);
+    if (walls.count > 0) v = meet_walls(walls, at.i, at.j, k, v, content != NodeContent::remapped);
     if constexpr (may_count) {
       if (clock->keeps_budget) {
         // Forces and impulses of a step act together, on the mean of its velocities: what rests loses nothing.

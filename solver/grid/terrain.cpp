@@ -42,13 +42,63 @@ void fill_rim(const GridShape& shape, std::vector<double>& terrain) {
   }
 }
 
+/// The place of node (i, j) in arrays [rows * columns].
+std::size_t place_of(const GridShape& shape, int i, int j) {
+  return static_cast<std::size_t>(j) * static_cast<std::size_t>(shape.columns) + static_cast<std::size_t>(i);
+}
+
+/// Slopes at the nodes, and which are open: where all nodes around have an elevation.
+void measure_slopes(const GridShape& shape, GroundTables& tables) {
+  const NodeWeights w = node_weights(shape.quadratic);
+  for (int j = 1; j + 1 < shape.rows; ++j) {
+    for (int i = 1; i + 1 < shape.columns; ++i) {
+      bool inside = true;
+      double sx = 0, sy = 0;
+      for (int b = -1; b <= 1; ++b) {
+        for (int a = -1; a <= 1; ++a) {
+          inside = inside && std::isfinite(shape.terrain[place_of(shape, i + a, j + b)]);
+          const double z = tables.terrain[place_of(shape, i + a, j + b)];
+          sx += w.slope[a + 1] * w.value[b + 1] * z;
+          sy += w.value[a + 1] * w.slope[b + 1] * z;
+        }
+      }
+      if (!inside) continue;
+      tables.slope_x[place_of(shape, i, j)] = sx / shape.spacing;
+      tables.slope_y[place_of(shape, i, j)] = sy / shape.spacing;
+      tables.open[place_of(shape, i, j)] = 1;
+    }
+  }
+}
+
+/// A node beside the domain's edge, which stencils reach but where no slope can be measured, leans as its neighbours
+/// do.
+void lean_edges(const GridShape& shape, GroundTables& tables) {
+  const auto measured = tables.open;
+  for (int j = 0; j < shape.rows; ++j) {
+    for (int i = 0; i < shape.columns; ++i) {
+      if (measured[place_of(shape, i, j)]) continue;
+      int count = 0;
+      double sx = 0, sy = 0;
+      for (int b = std::max(j - 1, 0); b <= std::min(j + 1, shape.rows - 1); ++b) {
+        for (int a = std::max(i - 1, 0); a <= std::min(i + 1, shape.columns - 1); ++a) {
+          if (!measured[place_of(shape, a, b)]) continue;
+          sx += tables.slope_x[place_of(shape, a, b)];
+          sy += tables.slope_y[place_of(shape, a, b)];
+          ++count;
+        }
+      }
+      if (count > 0) {
+        tables.slope_x[place_of(shape, i, j)] = sx / count;
+        tables.slope_y[place_of(shape, i, j)] = sy / count;
+      }
+    }
+  }
+}
+
 }  // namespace
 
 GroundTables make_ground_tables(const GridShape& shape) {
   GroundTables tables;
-  const auto at = [&](int i, int j) {
-    return static_cast<std::size_t>(j) * static_cast<std::size_t>(shape.columns) + static_cast<std::size_t>(i);
-  };
   tables.datum = std::numeric_limits<double>::infinity();
   for (double z : shape.terrain) {
     if (std::isfinite(z)) tables.datum = std::min(tables.datum, z);
@@ -60,47 +110,8 @@ GroundTables make_ground_tables(const GridShape& shape) {
     if (std::isfinite(shape.terrain[n])) tables.terrain[n] = shape.terrain[n] - tables.datum;
   }
   fill_rim(shape, tables.terrain);
-  const NodeWeights w = node_weights(shape.quadratic);
-  for (int j = 1; j + 1 < shape.rows; ++j) {
-    for (int i = 1; i + 1 < shape.columns; ++i) {
-      bool inside = true;
-      double sx = 0, sy = 0;
-      for (int b = -1; b <= 1; ++b) {
-        for (int a = -1; a <= 1; ++a) {
-          inside = inside && std::isfinite(shape.terrain[at(i + a, j + b)]);
-          const double z = tables.terrain[at(i + a, j + b)];
-          sx += w.slope[a + 1] * w.value[b + 1] * z;
-          sy += w.value[a + 1] * w.slope[b + 1] * z;
-        }
-      }
-      if (!inside) continue;
-      tables.slope_x[at(i, j)] = sx / shape.spacing;
-      tables.slope_y[at(i, j)] = sy / shape.spacing;
-      tables.open[at(i, j)] = 1;
-    }
-  }
-  // A node beside the domain's edge, which stencils reach but where no slope can be measured, leans as its neighbour
-  // does.
-  const auto measured = tables.open;
-  for (int j = 0; j < shape.rows; ++j) {
-    for (int i = 0; i < shape.columns; ++i) {
-      if (measured[at(i, j)]) continue;
-      int count = 0;
-      double sx = 0, sy = 0;
-      for (int b = std::max(j - 1, 0); b <= std::min(j + 1, shape.rows - 1); ++b) {
-        for (int a = std::max(i - 1, 0); a <= std::min(i + 1, shape.columns - 1); ++a) {
-          if (!measured[at(a, b)]) continue;
-          sx += tables.slope_x[at(a, b)];
-          sy += tables.slope_y[at(a, b)];
-          ++count;
-        }
-      }
-      if (count > 0) {
-        tables.slope_x[at(i, j)] = sx / count;
-        tables.slope_y[at(i, j)] = sy / count;
-      }
-    }
-  }
+  measure_slopes(shape, tables);
+  lean_edges(shape, tables);
   return tables;
 }
 

@@ -63,8 +63,8 @@ class ParticleStresses {
   /// The method measures the means of B-bar (T17b) over the elements for a displacement.
   void average(const NodeVector<Device>& u) {
     if (parts_.controls.b_bar)
-      means_.measure(elements_, parts_.grid.view(), parts_.points.view(), parts_.materials, parts_.dilatant, u.data(),
-                     duration_);
+      means_.measure(elements_, parts_.grid.view(), parts_.points.view(), parts_.materials,
+                     {u.data(), duration_, parts_.dilatant});
   }
   /// The means as kernels read them; off without B-bar.
   MeanDilationView<Real> means() const { return parts_.controls.b_bar ? means_.view() : MeanDilationView<Real>{}; }

@@ -50,29 +50,39 @@ struct PrepareNodes {
     nodes.velocity[n] = nodes.velocity[n] * (1 / m);
     if (nodes.acceleration) nodes.acceleration[n] = nodes.acceleration[n] * (1 / m);
     nodes.external[n] += gravity * m;
-    Vec3<double> u{};
-    Sym3<double> freed = whole_space();
-    Vec3<double> normal{};
-    double friction = 0;
-    const bool grounded = touch_ground(i, j, k, normal, friction, freed, u);
-    if (scheme.dynamic) nodes.arrival[n] = arrive(nodes.velocity[n], normal, friction);
-    if (predict && trace(freed) > 0) u = nodes.begin_velocity(n) * scheme.step;
-    for (int w = 0; w < walls.count; ++w) meet(walls.list[w], i, j, k, grounded, normal, friction, freed, u);
-    held.walls[n] = freed;
-    held.normal[n] = normal;
-    held.friction[n] = friction;
-    if (dot(normal, normal) > 0) {
-      u = u - normal * dot(u, normal);
-      freed = without(freed, normal);
-      nodes.touch[n] = begin_contact(n, normal, friction, freed);
+    const Place at{i, j, k};
+    Meeting to;
+    const bool grounded = touch_ground(at, to);
+    if (scheme.dynamic) nodes.arrival[n] = arrive(nodes.velocity[n], to.normal, to.friction);
+    if (predict && trace(to.freed) > 0) to.u = nodes.begin_velocity(n) * scheme.step;
+    for (int w = 0; w < walls.count; ++w) meet(walls.list[w], at, grounded, to);
+    held.walls[n] = to.freed;
+    held.normal[n] = to.normal;
+    held.friction[n] = to.friction;
+    if (dot(to.normal, to.normal) > 0) {
+      to.u = to.u - to.normal * dot(to.u, to.normal);
+      to.freed = without(to.freed, to.normal);
+      nodes.touch[n] = begin_contact(n, to.normal, to.friction, to.freed);
       if (nodes.touch[n] == Touch::sticks) {
-        freed = {};
-        u = {};
+        to.freed = {};
+        to.u = {};
       }
     }
-    nodes.freed[n] = freed;
-    nodes.u[n] = u;
+    nodes.freed[n] = to.freed;
+    nodes.u[n] = to.u;
   }
+
+  /// The place of a node in the grid.
+  struct Place {
+    int i, j, k;
+  };
+  /// What a node meets, and what that leaves it.
+  struct Meeting {
+    Vec3<double> u{};                    ///< displacement to begin with [m]
+    Sym3<double> freed = whole_space();  ///< directions that are free
+    Vec3<double> normal{};               ///< of the surface that it can slip along; zero: none
+    double friction = 0;
+  };
 
   /// The state that a contact begins with: a node that its own weight's friction can stop within the step is taken to
   /// stick.
@@ -95,50 +105,48 @@ struct PrepareNodes {
     return meet_surface(v, normal, friction) - v;
   }
 
-  TALUS_HD bool touch_ground(int i, int j, int k, Vec3<double>& normal, double& friction, Sym3<double>& freed,
-                             Vec3<double>& u) const {
-    const int column = grid.column(i, j);
+  TALUS_HD bool touch_ground(const Place& at, Meeting& to) const {
+    const int column = grid.column(at.i, at.j);
     const int top = grid.contact_layer(column);
-    if (k > top) return false;
+    if (at.k > top) return false;
     if (base.holds()) {
-      freed = {};
-      u = {};
+      to.freed = {};
+      to.u = {};
       return true;
     }
     const double sx = static_cast<double>(grid.slope_x[column]), sy = static_cast<double>(grid.slope_y[column]);
     const double scale = 1 / sqrt(1 + sx * sx + sy * sy);
-    normal = {-sx * scale, -sy * scale, scale};
-    const int n = GridView<Real>::node(grid.slot(i, j), i, j, k);
+    to.normal = {-sx * scale, -sy * scale, scale};
+    const int n = GridView<Real>::node(grid.slot(at.i, at.j), at.i, at.j, at.k);
     const Vec3<double> v = nodes.velocity[n];
     const double area = bed_area(nodes.mass[n], full_base, static_cast<double>(grid.spacing), sx, sy);
     // The reaction is not known yet; the node's own weight presses.
-    const Slip<double> slip{.speed = length(v - normal * dot(v, normal)),
-                            .normal_stress = nodes.mass[n] * fabs(dot(gravity, normal)) / area,
+    const Slip<double> slip{.speed = length(v - to.normal * dot(v, to.normal)),
+                            .normal_stress = nodes.mass[n] * fabs(dot(gravity, to.normal)) / area,
                             .duration = scheme.step};
     const Bed<double>& bed = base.at(column);
-    friction = base.coefficient(bed, slip);
-    if (held.traction && k == top) held.traction[n] = base.traction(bed, slip) * area;
+    to.friction = base.coefficient(bed, slip);
+    if (held.traction && at.k == top) held.traction[n] = base.traction(bed, slip) * area;
     return true;
   }
 
-  TALUS_HD void meet(const Wall<double>& wall, int i, int j, int k, bool grounded, Vec3<double>& normal,
-                     double& friction, Sym3<double>& freed, Vec3<double>& u) const {
-    if (!wall.holds(i, j, k)) return;
+  TALUS_HD void meet(const Wall<double>& wall, const Place& at, bool grounded, Meeting& to) const {
+    if (!wall.holds(at.i, at.j, at.k)) return;
     Vec3<double> axis{};
     component(axis, wall.axis) = 1;
     if (wall.kind == WallKind::fixed) {
-      freed = {};
-      u = axis * (wall.speed * scheme.step);
-      normal = {};
+      to.freed = {};
+      to.u = axis * (wall.speed * scheme.step);
+      to.normal = {};
       return;
     }
     if (wall.kind == WallKind::frictional && !grounded) {
-      normal = axis * static_cast<double>(wall.side);
-      friction = wall.friction;
+      to.normal = axis * static_cast<double>(wall.side);
+      to.friction = wall.friction;
       return;
     }
-    freed = without(freed, axis);
-    component(u, wall.axis) = wall.speed * scheme.step;
+    to.freed = without(to.freed, axis);
+    component(to.u, wall.axis) = wall.speed * scheme.step;
   }
 };
 

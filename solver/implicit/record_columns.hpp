@@ -33,7 +33,7 @@ struct RecordColumns {
     const double spacing = static_cast<double>(grid.spacing);
     const int column = grid.column(i, j);
     const double mean = volumes && volumes[column] > 0 ? total / volumes[column] : density;
-    if (total > 0) record_column(maps, column, total, length(momentum), mean, spacing, time);
+    if (total > 0) record_column(maps, column, {total, length(momentum), mean, spacing}, time);
   }
 };
 

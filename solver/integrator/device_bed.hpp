@@ -21,6 +21,7 @@ class DeviceBed {
     friction_.uniform = friction.uniform.as<Number>();
     if (columns.empty()) return;
     std::vector<Bed<Number>> beds;
+    beds.reserve(columns.size());
     for (const Bed<double>& bed : columns) beds.push_back(bed.as<Number>());
     columns_.upload(beds);
     friction_.columns = columns_.data();

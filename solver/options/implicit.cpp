@@ -14,7 +14,26 @@ bool pressure_by_volume(const SolveOptions& all) {
 }  // namespace
 
 void ImplicitOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
+  describe_newton(v);
+  describe_linear(v, all);
   const StepAbilities steps = abilities_of(all.integrator);
+  v.integer("step_cuts", step_cuts, recipe::Range{0, 30}, "halvings of a step before the run gives up");
+  v.number("apex", apex, recipe::not_negative,
+           "drucker-prager: pressure over which the tip of the cone is rounded, in weights of a cell");
+  v.flag("b_bar", b_bar, "volume change as the mean over a cell: nearly incompressible material does not lock");
+  v.needs(
+      !b_bar || !steps.solve_systems || pressure_by_volume(all),
+      {"[solve.implicit] b_bar = true does not go with this [solve.material] model",
+       "its pressure does not follow from the volume change alone", "Take model = \"hencky\" or \"drucker-prager\""});
+  v.needs(!b_bar || steps.average_volume, {"[solve.implicit] b_bar = true has no effect on explicit steps",
+                                           "only implicit steps average the volume change",
+                                           "Leave it out, or take integrator = \"newmark\" or \"quasi-static\""});
+  v.number(
+      "filler", filler, recipe::Range{0, 1, false, true},
+      "quasi-static: springs against each step's displacement of nearly empty nodes, stiffness over a full cell's");
+}
+
+void ImplicitOptions::describe_newton(recipe::Visitor& v) {
   v.number("step_s", step, recipe::positive, "step size; cut where a step does not converge, grown again after");
   v.number("newmark_alpha", newmark_alpha, recipe::Range{0, 1, true, false}, "newmark: alpha (0.25: trapezoid)");
   v.number("newmark_beta", newmark_beta, recipe::fraction, "newmark: beta (0.5: trapezoid; more damps)");
@@ -31,12 +50,15 @@ void ImplicitOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
   v.needs(tangent == Tangent::frozen_yield || !b_bar,
           {"[solve.implicit] tangent = \"exact\" does not go with b_bar",
            "the mean volume change is in the symmetric tangent alone", "Take tangent = \"frozen-yield\""});
+}
+
+void ImplicitOptions::describe_linear(recipe::Visitor& v, const SolveOptions& all) {
   recipe::choice(
       v, "linear_solver", linear_solver,
       {{"pcg", LinearSolver::pcg}, {"bicgstab", LinearSolver::bicgstab}, {"cholesky", LinearSolver::cholesky}},
       "conjugate gradients, or stabilised bi-conjugate ones, never assembled; or sparse Cholesky");
   const bool takes_contact = linear_solver == LinearSolver::pcg || linear_solver == LinearSolver::bicgstab;
-  v.needs(takes_contact || !steps.solve_systems || !all.meets_points(),
+  v.needs(takes_contact || !abilities_of(all.integrator).solve_systems || !all.meets_points(),
           {all.contact_words() + " does not go with [solve.implicit] linear_solver = \"cholesky\"",
            "contact between nodes is not in the assembled matrix", "Take linear_solver = \"pcg\""});
   v.number("linear_tolerance", linear_tolerance, recipe::Range{0, 1, true, true},
@@ -56,20 +78,6 @@ void ImplicitOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
                   {"multigrid", Preconditioner::multigrid}},
                  "pcg, bicgstab: the diagonal, 3 x 3 blocks, whole columns of nodes, Gauss-Seidel over columns, or "
                  "multigrid with that");
-  v.integer("step_cuts", step_cuts, recipe::Range{0, 30}, "halvings of a step before the run gives up");
-  v.number("apex", apex, recipe::not_negative,
-           "drucker-prager: pressure over which the tip of the cone is rounded, in weights of a cell");
-  v.flag("b_bar", b_bar, "volume change as the mean over a cell: nearly incompressible material does not lock");
-  v.needs(
-      !b_bar || !steps.solve_systems || pressure_by_volume(all),
-      {"[solve.implicit] b_bar = true does not go with this [solve.material] model",
-       "its pressure does not follow from the volume change alone", "Take model = \"hencky\" or \"drucker-prager\""});
-  v.needs(!b_bar || steps.average_volume, {"[solve.implicit] b_bar = true has no effect on explicit steps",
-                                           "only implicit steps average the volume change",
-                                           "Leave it out, or take integrator = \"newmark\" or \"quasi-static\""});
-  v.number(
-      "filler", filler, recipe::Range{0, 1, false, true},
-      "quasi-static: springs against each step's displacement of nearly empty nodes, stiffness over a full cell's");
 }
 
 }  // namespace talus::solver

@@ -28,6 +28,10 @@ struct ImplicitOptions {
   double filler = 1e-3;  ///< stiffness of springs that hold nearly empty nodes in statics, over that of a full cell
   /// The method declares the keys with defaults, help and what they need of `all` others.
   void describe(recipe::Visitor& v, const SolveOptions& all);
+
+ private:
+  void describe_newton(recipe::Visitor& v);
+  void describe_linear(recipe::Visitor& v, const SolveOptions& all);
 };
 
 }  // namespace talus::solver

@@ -16,6 +16,7 @@ void need_names(recipe::Visitor& v, const std::string& table, const std::string&
 template <class Item>
 void need_names(recipe::Visitor& v, const std::string& table, const std::string& why, const std::vector<Item>& items) {
   std::vector<std::string> names;
+  names.reserve(items.size());
   for (const Item& item : items) names.push_back(item.name);
   need_names(v, table, why, names);
 }

@@ -98,6 +98,7 @@ SolverSettings for_gravity_loading(SolverSettings s, int steps) {
 
 std::vector<Obstacle> make_obstacles(const std::vector<ObstacleOptions>& options) {
   std::vector<Obstacle> obstacles;
+  obstacles.reserve(options.size());
   for (const ObstacleOptions& o : options)
     obstacles.push_back(
         {.name = o.name, .level_set = o.level_set, .grid = o.grid, .friction = coefficient(o.friction_angle)});

@@ -11,16 +11,22 @@ struct MapView : RunningMaps<double*> {
   double threshold = 0;  ///< thickness from which speed, pressure and arrival count [m]
 };
 
-/// This function updates the running maxima (T25) of one column from its mass [kg] and momentum [kg m/s] at `time` [s].
-TALUS_HD void record_column(const MapView& maps, int column, double mass, double momentum, double density,
-                            double spacing, double time) {
-  const double thickness = mass / (density * spacing * spacing);
+/// The matter over a column of the map.
+struct ColumnMatter {
+  double mass, momentum;  ///< [kg], [kg m/s]
+  double density;         ///< [kg/m3]
+  double spacing;         ///< between columns [m]
+};
+
+/// This function updates the running maxima (T25) of one column at `time` [s].
+TALUS_HD void record_column(const MapView& maps, int column, const ColumnMatter& matter, double time) {
+  const double thickness = matter.mass / (matter.density * matter.spacing * matter.spacing);
   if (thickness > maps.peak_thickness[column]) maps.peak_thickness[column] = thickness;
   if (thickness < maps.threshold) return;
-  const double speed = momentum / mass;
+  const double speed = matter.momentum / matter.mass;
   if (speed > maps.peak_speed[column]) {
     maps.peak_speed[column] = speed;
-    maps.peak_pressure[column] = density * speed * speed;
+    maps.peak_pressure[column] = matter.density * speed * speed;
   }
   if (maps.arrival_time[column] < 0) maps.arrival_time[column] = time;
 }

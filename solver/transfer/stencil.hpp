@@ -33,11 +33,11 @@ struct Stencil {
     Shape::weigh(fz, half[2], wz, gz);
     if (grid.mapping == Mapping::terrain_following) measure_slope(grid);
     const Real lowest = grid.lowest_weighed;
-    near_x =
-        Real(ax) - beside(points.cell[0][p], grid.walls.west, grid.walls.east, fx, lowest, half[0], wx, gx, edge_x);
-    near_y =
-        Real(ay) - beside(points.cell[1][p], grid.walls.south, grid.walls.north, fy, lowest, half[1], wy, gy, edge_y);
-    near_z = Real(az) - beside(points.cell[2][p], 0, WallNodes::far, fz, lowest, half[2], wz, gz, edge_z);
+    near_x = Real(ax) -
+             beside(points.cell[0][p], {grid.walls.west, grid.walls.east, lowest}, fx, half[0], {wx, gx, &edge_x});
+    near_y = Real(ay) -
+             beside(points.cell[1][p], {grid.walls.south, grid.walls.north, lowest}, fy, half[1], {wy, gy, &edge_y});
+    near_z = Real(az) - beside(points.cell[2][p], {0, WallNodes::far, lowest}, fz, half[2], {wz, gz, &edge_z});
   }
 
   /// The place where layer 0 of column (a, b) of the point's nodes is stored, or would be.
@@ -68,11 +68,21 @@ struct Stencil {
     return grid.lowest_weighed > Real(1e-3) ? grid.lowest_weighed : Real(1e-3);
   }
 
+  /// The cells between which points are in one direction, and how near to the edge weights still change [cells].
+  struct Range {
+    int first, last;
+    Real lowest;
+  };
+  /// The weights of one direction, their slopes, and whether they are those beside an edge.
+  struct Weights {
+    Real *weight, *slope;
+    bool* edge;
+  };
   /// The offset that the weights of one direction stand for, once they are made anew where the point is beside an edge.
-  TALUS_HD static Real beside(int cell, int first, int last, Real offset, Real lowest, Real half, Real* weight,
-                              Real* slope, bool& edge) {
-    edge = width == 3 && (cell == first || cell == last);
-    return edge ? Shape::weigh_edge(offset, cell == first ? 1 : -1, lowest, half, weight, slope) : offset;
+  TALUS_HD static Real beside(int cell, const Range& range, Real offset, Real half, const Weights& to) {
+    *to.edge = width == 3 && (cell == range.first || cell == range.last);
+    if (!*to.edge) return offset;
+    return Shape::weigh_edge(offset, cell == range.first ? 1 : -1, range.lowest, half, to.weight, to.slope);
   }
 
   /// The method measures the slopes of the terrain (T1) under the point, by the weights and their gradients.

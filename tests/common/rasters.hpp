@@ -19,7 +19,7 @@ inline std::string epsg(int code) {
   const char* const options[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
   char* wkt = nullptr;
   srs.exportToWkt(&wkt, options);
-  const std::string text = wkt;
+  std::string text = wkt;
   CPLFree(wkt);
   return text;
 }

@@ -51,10 +51,10 @@ struct Workshop : testing::Test {
 
 /// Skip aloud where a foreign tool is missing; fail where it was promised (TALUS_REQUIRE_TOOLS).
 #define TALUS_NEED_TOOL(...) TALUS_NEED_TOOL_OF(__VA_ARGS__)
-#define TALUS_NEED_TOOL_OF(check, package)                                                       \
-  if (!talus::test::has_tool(check)) {                                                           \
-    if (std::getenv("TALUS_REQUIRE_TOOLS") != nullptr) FAIL() << "missing: install " << package; \
-    GTEST_SKIP() << "SKIPPED: not checked by a foreign tool; install " << package;               \
+#define TALUS_NEED_TOOL_OF(check, package)                                                         \
+  if (!talus::test::has_tool((check))) {                                                           \
+    if (std::getenv("TALUS_REQUIRE_TOOLS") != nullptr) FAIL() << "missing: install " << (package); \
+    GTEST_SKIP() << "SKIPPED: not checked by a foreign tool; install " << (package);               \
   }
 
 }  // namespace talus::test

@@ -45,7 +45,7 @@ inline Scene random_scene(const Setting& setting) {
       const double lowest = a == 2 && s.points.cell[2][p] == 0 ? 0.0 : -0.5;
       s.points.offset[a][p] = std::clamp(s.points.offset[a][p] + 0.2 * u(engine), lowest, 0.499);
     }
-    for (int a = 0; a < 6; ++a) s.points.elastic[a][p] = 0.01 * u(engine);
+    for (auto& component : s.points.elastic) component[p] = 0.01 * u(engine);
     s.points.log_volume[p] = s.points.elastic[0][p] + s.points.elastic[1][p] + s.points.elastic[2][p];
   }
   return s;
@@ -181,7 +181,7 @@ struct LinearBench {
   /// Internal force and tangents for the displacement u.
   void measure_stress() {
     internal.fill_zero();
-    if (b_bar) means.measure(elements, grid.view(), points.view(), materials, false, u.data(), step_seconds);
+    if (b_bar) means.measure(elements, grid.view(), points.view(), materials, {u.data(), step_seconds, false});
     using Stress = StressAt<Real, Shape>;
     scatter_points(device, points.count(), grid.groups(),
                    ScatterForces<Real, Shape, Stress>{

@@ -21,17 +21,9 @@ class BiCgStab {
   LinearReport solve(Operator&& a, Preconditioner&& preconditioner, const NodeVector<Device>& b, NodeVector<Device>& x,
                      const KrylovLimits& limits) {
     LinearReport report;
-    x.resize(b.size());
-    x.fill_zero();
-    copy(b, r_);
-    const double size = std::sqrt(dot(b, b));
+    const double size = begin(b, x);
     report.converged = size == 0;
     if (!(size > 0)) return report;
-    for (auto* w : {&v_, &t_, &direction_, &p_}) {
-      w->resize(b.size());
-      w->fill_zero();
-    }
-    copy(b, shadow_);
     const auto apply = [&](const NodeVector<Device>& from, NodeVector<Device>& to) {
       to.fill_zero();
       a.add_product(from, to, nullptr);
@@ -46,27 +38,8 @@ class BiCgStab {
       report.converged = report.residual <= limits.tolerance;
       return report.converged;
     };
-    double rho = 1, alpha = 1, omega = 1;
-    while (report.iterations < limits.iterations) {
-      const double next = dot(shadow_, r_);
-      if (!std::isfinite(next) || next == 0) break;
-      // p = r + beta (p - omega v)
-      const double beta = next / rho * (alpha / omega);
-      axpby(-omega, v_, 1.0, p_);
-      axpby(1.0, r_, beta, p_);
-      rho = next;
-      preconditioner.apply(p_, direction_, nullptr);
-      apply(direction_, v_);
-      const double along = dot(shadow_, v_);
-      if (along == 0) break;
-      alpha = rho / along;
-      if (advance(alpha, v_)) break;
-      preconditioner.apply(r_, direction_, nullptr);
-      apply(direction_, t_);
-      const double tt = dot(t_, t_);
-      if (!(tt > 0)) break;
-      omega = dot(t_, r_) / tt;
-      if (advance(omega, t_) || omega == 0) break;
+    Scalars scalars;
+    while (report.iterations < limits.iterations && round(scalars, preconditioner, apply, advance)) {
     }
     return report;
   }
@@ -79,6 +52,50 @@ class BiCgStab {
   }
 
  private:
+  /// The numbers that a round leaves to the next.
+  struct Scalars {
+    double rho = 1, alpha = 1, omega = 1;
+  };
+
+  /// The method sets x to zero and the residual to b; returns the size of b.
+  double begin(const NodeVector<Device>& b, NodeVector<Device>& x) {
+    x.resize(b.size());
+    x.fill_zero();
+    copy(b, r_);
+    const double size = std::sqrt(dot(b, b));
+    if (!(size > 0)) return size;
+    for (auto* w : {&v_, &t_, &direction_, &p_}) {
+      w->resize(b.size());
+      w->fill_zero();
+    }
+    copy(b, shadow_);
+    return size;
+  }
+
+  /// A round of two half steps; false when it was the last, or breaks down.
+  template <class Preconditioner, class Apply, class Advance>
+  bool round(Scalars& s, Preconditioner& preconditioner, const Apply& apply, const Advance& advance) {
+    const double next = dot(shadow_, r_);
+    if (!std::isfinite(next) || next == 0) return false;
+    // p = r + beta (p - omega v)
+    const double beta = next / s.rho * (s.alpha / s.omega);
+    axpby(-s.omega, v_, 1.0, p_);
+    axpby(1.0, r_, beta, p_);
+    s.rho = next;
+    preconditioner.apply(p_, direction_, nullptr);
+    apply(direction_, v_);
+    const double along = dot(shadow_, v_);
+    if (along == 0) return false;
+    s.alpha = s.rho / along;
+    if (advance(s.alpha, v_)) return false;
+    preconditioner.apply(r_, direction_, nullptr);
+    apply(direction_, t_);
+    const double tt = dot(t_, t_);
+    if (!(tt > 0)) return false;
+    s.omega = dot(t_, r_) / tt;
+    return !advance(s.omega, t_) && s.omega != 0;
+  }
+
   Device device_;
   NodeVector<Device> r_{device_}, shadow_{device_}, p_{device_}, v_{device_}, t_{device_}, direction_{device_};
 };

@@ -52,14 +52,14 @@ BlockLayout coarse_layout(const BlockLayout& fine, TwoScale scale_x, TwoScale sc
   BlockLayout coarse;
   coarse.columns = scale_x.count(fine.columns);
   coarse.rows = scale_y.count(fine.rows);
-  coarse.slots.resize(static_cast<std::size_t>(coarse.blocks_x() * coarse.blocks_y()));
+  coarse.slots.resize(coarse.blocks());
   for (const int b : fine.active) {
     const BlockSlot& from = fine.slots[static_cast<std::size_t>(b)];
     const Range x = parents_of(columns_of(b % fine.blocks_x(), fine.columns), scale_x);
     const Range y = parents_of(columns_of(b / fine.blocks_x(), fine.rows), scale_y);
     for (int by = y.first / block_side; by <= y.last / block_side; ++by) {
       for (int bx = x.first / block_side; bx <= x.last / block_side; ++bx) {
-        BlockSlot& to = coarse.slots[static_cast<std::size_t>(by * coarse.blocks_x() + bx)];
+        BlockSlot& to = coarse.slots[coarse.block(bx, by)];
         const int top = std::max(to.first_layer + to.layers, from.first_layer + from.layers);
         to.first_layer = to.layers > 0 ? std::min(to.first_layer, from.first_layer) : from.first_layer;
         to.layers = top - to.first_layer;
@@ -85,8 +85,8 @@ ColumnColours colour_columns(const BlockLayout& layout, int pitch) {
       const int i = block % layout.blocks_x() * block_side + (inside & 3),
                 j = block / layout.blocks_x() * block_side + (inside >> 2);
       if (i >= layout.columns || j >= layout.rows) continue;
-      of[static_cast<std::size_t>(j % pitch * pitch + i % pitch)].push_back(static_cast<int>(a) * block_columns +
-                                                                            inside);
+      of[static_cast<std::size_t>(j % pitch) * static_cast<std::size_t>(pitch) + static_cast<std::size_t>(i % pitch)]
+          .push_back(static_cast<int>(a) * block_columns + inside);
     }
   }
   ColumnColours colours;

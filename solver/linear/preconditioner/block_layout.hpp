@@ -18,6 +18,12 @@ struct BlockLayout {
   int blocks_x() const { return blocks_across(columns); }
   /// The number of blocks along y.
   int blocks_y() const { return blocks_across(rows); }
+  /// The number of blocks, stored or not.
+  std::size_t blocks() const { return static_cast<std::size_t>(blocks_x()) * static_cast<std::size_t>(blocks_y()); }
+  /// The place of block (x, y) in `slots`.
+  std::size_t block(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(blocks_x()) + static_cast<std::size_t>(x);
+  }
   /// The number of stored nodes.
   int nodes() const;
   /// The largest number of layers of a block.

@@ -13,7 +13,7 @@ BlockLayout layout_of(const Device& device, const StoredColumns<Real>& columns) 
   BlockLayout layout;
   layout.columns = columns.grid.columns;
   layout.rows = columns.grid.rows;
-  layout.slots.resize(static_cast<std::size_t>(layout.blocks_x() * layout.blocks_y()));
+  layout.slots.resize(layout.blocks());
   layout.active.resize(static_cast<std::size_t>(columns.blocks));
   copy_to_host(device, layout.slots.data(), columns.grid.slots, layout.slots.size() * sizeof(BlockSlot));
   copy_to_host(device, layout.active.data(), columns.active, layout.active.size() * sizeof(int));

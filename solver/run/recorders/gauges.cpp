@@ -18,6 +18,7 @@ constexpr Column<GaugeReading> gauge_columns[] = {
 
 std::vector<Place> places_of(const std::vector<GaugeOptions>& gauges) {
   std::vector<Place> places;
+  places.reserve(gauges.size());
   for (const GaugeOptions& g : gauges) places.push_back({"gauge_" + g.name + "_", "gauge " + g.name});
   return places;
 }
@@ -82,8 +83,8 @@ std::vector<GaugeReading> GaugeRecorder::samples(const Instant& now) const {
 }
 
 double GaugeRecorder::thickness_at(const Site& site, const std::vector<double>& thickness) const {
-  const double x = site.xi - static_cast<double>(site.low % columns_);
-  const double y = site.eta - static_cast<double>(site.low / columns_);
+  const std::size_t column = site.low % columns_, row = site.low / columns_;
+  const double x = site.xi - static_cast<double>(column), y = site.eta - static_cast<double>(row);
   const double* south = &thickness[site.low];
   const double* north = south + columns_;
   return (1 - y) * ((1 - x) * south[0] + x * south[1]) + y * ((1 - x) * north[0] + x * north[1]);

@@ -18,6 +18,7 @@ std::string prefix_of(const std::string& name) { return "obstacle_" + name + "_"
 
 std::vector<Place> places_of(const std::vector<ObstacleOptions>& obstacles) {
   std::vector<Place> places;
+  places.reserve(obstacles.size());
   for (const ObstacleOptions& o : obstacles) places.push_back({prefix_of(o.name), "obstacle " + o.name});
   return places;
 }

@@ -114,7 +114,7 @@ TEST_F(Cf, is_read_by_cdo_without_complaint) {
   for (const auto* words : {"projection", "transverse_mercator", "600005 to 600395 by 10", "1970-01-01 00:00:20"})
     EXPECT_NE(grid.find(words), std::string::npos) << words << "\n" << grid;
   const auto sum = output_of("cdo -s output -fldsum -selname,deposit_thickness '" + file_.string() + "'");
-  EXPECT_NEAR(std::atof(sum.c_str()) * 100, 24000, 1) << "the volume, as cdo sums it up: " << sum;
+  EXPECT_NEAR(std::stod(sum) * 100, 24000, 1) << "the volume, as cdo sums it up: " << sum;
 }
 
 TEST_F(Cf, lies_in_its_place_for_gdalinfo) {

@@ -113,7 +113,7 @@ TEST(prepare, gives_polygons_their_area_times_thickness) {
   const double expected = 2.5 * 100 * 100 / 2 + 4 * 21 * 27;
   EXPECT_NEAR(scene.prepare().total.volume / expected, 1, 1e-12);
   release.thickness = 1;
-  EXPECT_NEAR(scene.prepare().total.volume / (100 * 100 / 2 + 21 * 27), 1, 1e-12);
+  EXPECT_NEAR(scene.prepare().total.volume / (100 * 100 / 2.0 + 21 * 27), 1, 1e-12);
 }
 
 TEST(prepare, keeps_several_releases_apart) {

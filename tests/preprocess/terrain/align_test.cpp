@@ -109,8 +109,9 @@ TEST(align, brings_a_model_from_another_crs) {
   const auto deepest = std::max_element(prepared.domain.release_thickness.values.begin(),
                                         prepared.domain.release_thickness.values.end());
   const auto cell = static_cast<int>(deepest - prepared.domain.release_thickness.values.begin());
-  EXPECT_NEAR(cell % 40, 15, 1);
-  EXPECT_NEAR(cell / 40, 15, 1);
+  const int column = cell % 40, row = cell / 40;
+  EXPECT_NEAR(column, 15, 1);
+  EXPECT_NEAR(row, 15, 1);
 }
 
 TEST(align, works_in_another_crs_than_the_models) {

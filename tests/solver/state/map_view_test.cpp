@@ -15,7 +15,7 @@ struct TwoColumns {
   void record(double thick, double fast, double time) {
     const double mass = thick * density * spacing * spacing;
     const MapView maps{{thickness, speed, pressure, arrival}, 0.1};
-    record_column(maps, 1, mass, mass * fast, density, spacing, time);
+    record_column(maps, 1, {mass, mass * fast, density, spacing}, time);
   }
 };
 

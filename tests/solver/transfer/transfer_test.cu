@@ -54,22 +54,28 @@ class Transfers : public InEachPlace {
         s.points.offset[a][p] =
             std::clamp(s.points.offset[a][p] + 0.2 * u(engine), a == 2 && s.points.cell[2][p] == 0 ? 0.0 : -0.5, 0.499);
       }
-      for (int a = 0; a < 3; ++a) s.points.extent[a][p] *= 1 + 0.4 * u(engine);
-      for (int a = 0; a < 9; ++a) s.points.affine[a][p] = 0.3 * u(engine);
-      for (int a = 0; a < 6; ++a) s.points.elastic[a][p] = 1e-3 * u(engine);
+      for (auto& extent : s.points.extent) extent[p] *= 1 + 0.4 * u(engine);
+      for (auto& component : s.points.affine) component[p] = 0.3 * u(engine);
+      for (auto& component : s.points.elastic) component[p] = 1e-3 * u(engine);
     }
     return s;
   }
 
-  /// Momentum after one scatter, by the definitions: m (v + C (xi - xi_p)) w - dt V tau grad w.
-  static std::map<Node, Vec4<double>> reference(const Scene& s, const Material<double>& m, double dt, ShapeKind shape) {
-    std::map<Node, Vec4<double>> nodes;
-    const GroundTables ground = make_ground_tables(s.grid);
-    for (std::size_t p = 0; p < s.points.size(); ++p) {
-      double x[3];
+  /// A point by the definitions: its weights, and what it gives.
+  struct ReferencePoint {
+    const Scene& s;
+    std::size_t p;
+    ShapeKind shape;
+    double x[3];
+    double bx = 0, by = 0;  ///< slope of the ground there
+    bool on_base;
+    double height;
+    Sym3<double> tau;
+
+    ReferencePoint(const Scene& scene, const GroundTables& ground, std::size_t point, const Material<double>& m,
+                   ShapeKind of)
+        : s(scene), p(point), shape(of) {
       for (int a = 0; a < 3; ++a) x[a] = s.points.cell[a][p] + s.points.offset[a][p];
-      const auto along = [&](int a, int n) { return weight(shape, x[a], n, s.points.extent[a][p]); };
-      double bx = 0, by = 0;  // slope of the ground there
       for (int i = s.points.cell[0][p] - 1; i <= s.points.cell[0][p] + 1; ++i) {
         for (int j = s.points.cell[1][p] - 1; j <= s.points.cell[1][p] + 1; ++j) {
           const double z = ground.terrain[static_cast<std::size_t>(j * s.grid.columns + i)] / s.grid.spacing;
@@ -79,38 +85,52 @@ class Transfers : public InEachPlace {
       }
       // In the lowest half layer quadratic functions are hats, and their weights stop changing a tenth of a layer above
       // the ground; the box of an averaged one ends on the ground.
-      const bool on_base = shape != ShapeKind::linear && s.points.cell[2][p] == 0;
+      on_base = shape != ShapeKind::linear && s.points.cell[2][p] == 0;
       const double nearest = shape == ShapeKind::gimp ? 0.5 * s.points.extent[2][p] : s.grid.lowest_weighed;
-      const double height = on_base ? std::max(x[2], nearest) : x[2];
+      height = on_base ? std::max(x[2], nearest) : x[2];
       MaterialState<double> state;
       state.elastic = {s.points.elastic[0][p], s.points.elastic[1][p], s.points.elastic[2][p],
                        s.points.elastic[3][p], s.points.elastic[4][p], s.points.elastic[5][p]};
-      const Sym3<double> tau = kirchhoff_stress(m, state);
-      const double volume = s.points.volume[p], mass = volume * m.density;
+      tau = kirchhoff_stress(m, state);
+    }
+    Weight along(int a, int n) const { return weight(shape, x[a], n, s.points.extent[a][p]); }
+
+    /// The method adds m (v + C (xi - xi_p)) w - dt V tau grad w to node (i, j, k).
+    void give(int i, int j, int k, double density, double dt, std::map<Node, Vec4<double>>& nodes) const {
+      const Weight wx = along(0, i), wy = along(1, j);
+      const ShapeKind upright = on_base && shape == ShapeKind::quadratic ? ShapeKind::linear : shape;
+      const Weight wz = weight(upright, height, k, s.points.extent[2][p]);
+      const double w = wx.value * wy.value * wz.value;
+      if (w == 0) return;
+      const double volume = s.points.volume[p], mass = volume * density;
+      const double gz = wx.value * wy.value * wz.slope / s.grid.layer_height;
+      const Vec3<double> gradient{wx.slope * wy.value * wz.value / s.grid.spacing - bx * gz,
+                                  wx.value * wy.slope * wz.value / s.grid.spacing - by * gz, gz};
+      const Vec3<double> force = tau * gradient * (-volume * dt);
+      const double r[3] = {i - x[0], j - x[1], k - height};
+      double v[3];
+      for (int a = 0; a < 3; ++a) {
+        v[a] = s.points.velocity[a][p];
+        for (int b = 0; b < 3; ++b) v[a] += s.points.affine[3 * b + a][p] * r[b];
+      }
+      Vec4<double>& node = nodes[{i, j, k}];
+      node.w += w * mass;
+      node.x += w * mass * v[0] + force.x;
+      node.y += w * mass * v[1] + force.y;
+      node.z += w * mass * v[2] + force.z;
+    }
+  };
+
+  /// Momentum after one scatter, by the definitions.
+  static std::map<Node, Vec4<double>> reference(const Scene& s, const Material<double>& m, double dt, ShapeKind shape) {
+    std::map<Node, Vec4<double>> nodes;
+    const GroundTables ground = make_ground_tables(s.grid);
+    for (std::size_t p = 0; p < s.points.size(); ++p) {
+      const ReferencePoint point(s, ground, p, m, shape);
       for (int i = s.points.cell[0][p] - 2; i <= s.points.cell[0][p] + 2; ++i) {
         for (int j = s.points.cell[1][p] - 2; j <= s.points.cell[1][p] + 2; ++j) {
-          for (int k = s.points.cell[2][p] - 2; k <= s.points.cell[2][p] + 2; ++k) {
-            const Weight wx = along(0, i), wy = along(1, j);
-            const ShapeKind upright = on_base && shape == ShapeKind::quadratic ? ShapeKind::linear : shape;
-            const Weight wz = weight(upright, height, k, s.points.extent[2][p]);
-            const double w = wx.value * wy.value * wz.value;
-            if (w == 0) continue;
-            const double gz = wx.value * wy.value * wz.slope / s.grid.layer_height;
-            const Vec3<double> gradient{wx.slope * wy.value * wz.value / s.grid.spacing - bx * gz,
-                                        wx.value * wy.slope * wz.value / s.grid.spacing - by * gz, gz};
-            const Vec3<double> force = tau * gradient * (-volume * dt);
-            const double r[3] = {i - x[0], j - x[1], k - height};
-            double v[3];
-            for (int a = 0; a < 3; ++a) {
-              v[a] = s.points.velocity[a][p];
-              for (int b = 0; b < 3; ++b) v[a] += s.points.affine[3 * b + a][p] * r[b];
-            }
-            Vec4<double>& node = nodes[{i, j, k}];
-            node.w += w * mass;
-            node.x += w * mass * v[0] + force.x;
-            node.y += w * mass * v[1] + force.y;
-            node.z += w * mass * v[2] + force.z;
-          }
+          for (int k = s.points.cell[2][p] - 2; k <= s.points.cell[2][p] + 2; ++k)
+            point.give(i, j, k, m.density, dt, nodes);
         }
       }
     }
@@ -126,27 +146,27 @@ class Transfers : public InEachPlace {
           true);  // tiles find those with the same nodes wherever they have drifted; the CPU goes by the order
   }
 
-  template <class Real, class Device, class Shape>
-  static void compare(double tolerance, bool shuffled) {
-    Domain d;
-    const Scene s = scene(kind_of<Shape>, d);
-    MaterialOptions mo;
-    mo.model = MaterialModel::hencky;
-    const double dt = 1e-3;
-    const auto expected = reference(s, make_material<double>(mo), dt, kind_of<Shape>);
-    const Device device = Device::make();
-    Particles<Real, Device> points(device, {.affine_transfer = true, .boxes = Shape::averaged});
-    points.upload(s.points);
-    SparseGrid<Real, Device> grid(device, s.grid, 1, false, Shape::width == 2);
-    grid.fit(points, 0);
-    if (shuffled) {
-      std::vector<int> order(static_cast<std::size_t>(points.count()));
-      std::iota(order.begin(), order.end(), 0);
-      std::shuffle(order.begin(), order.end(), std::mt19937(11));
-      Buffer<int, Device> shuffle(device);
-      shuffle.upload(order);
-      points.reorder(shuffle, points.count());
-    }
+  static MaterialOptions hencky() {
+    MaterialOptions o;
+    o.model = MaterialModel::hencky;
+    return o;
+  }
+
+  /// The method brings the points into an order by chance.
+  template <class Real, class Device>
+  static void shuffle(const Device& device, Particles<Real, Device>& points) {
+    std::vector<int> order(static_cast<std::size_t>(points.count()));
+    std::iota(order.begin(), order.end(), 0);
+    std::shuffle(order.begin(), order.end(), std::mt19937(11));
+    Buffer<int, Device> chance(device);
+    chance.upload(order);
+    points.reorder(chance, points.count());
+  }
+
+  /// The nodes after one scatter of the points, [stored nodes].
+  template <class Shape, class Real, class Device>
+  static std::vector<Vec4<Real>> scattered(const Device& device, const SparseGrid<Real, Device>& grid,
+                                           Particles<Real, Device>& points, double dt) {
     Buffer<Vec4<Real>, Device> nodes(device);
     nodes.resize(static_cast<std::size_t>(grid.nodes()));
     nodes.fill_zero();
@@ -156,10 +176,25 @@ class Transfers : public InEachPlace {
     clock.upload({c});
     scatter_points(device, points.count(), grid.groups(),
                    ParticleToGrid<Real, Shape, Scatter::impulse>{
-                       grid.view(), points.view(), Materials<Real>{{make_material<Real>(mo)}}, clock.data(),
+                       grid.view(), points.view(), Materials<Real>{{make_material<Real>(hencky())}}, clock.data(),
                        nodes.data(), nullptr, nullptr, true, false});
     synchronise(device);
-    const auto got = nodes.download();
+    return nodes.download();
+  }
+
+  template <class Real, class Device, class Shape>
+  static void compare(double tolerance, bool shuffled) {
+    Domain d;
+    const Scene s = scene(kind_of<Shape>, d);
+    const double dt = 1e-3;
+    const auto expected = reference(s, make_material<double>(hencky()), dt, kind_of<Shape>);
+    const Device device = Device::make();
+    Particles<Real, Device> points(device, {.affine_transfer = true, .boxes = Shape::averaged});
+    points.upload(s.points);
+    SparseGrid<Real, Device> grid(device, s.grid, 1, false, Shape::width == 2);
+    grid.fit(points, 0);
+    if (shuffled) shuffle(device, points);
+    const auto got = scattered<Shape>(device, grid, points, dt);
     const auto slots = slots_of(grid);
     double scale = 0, worst = 0;
     for (const auto& [where, node] : expected) scale = std::max(scale, std::abs(node.x));
@@ -177,23 +212,17 @@ class Transfers : public InEachPlace {
     EXPECT_LT(worst, tolerance * scale);
   }
 
-  /// Velocity gather of a linear field in reference coordinates, and the climb, by the definitions.
-  template <class Real, class Device, class Shape>
-  static void gather_linear_field(double tolerance) {
-    Domain d;
-    const Scene s = scene(kind_of<Shape>, d);
-    const Device device = Device::make();
-    Particles<Real, Device> points(device, {.affine_transfer = true, .boxes = Shape::averaged});
-    points.upload(s.points);
-    SparseGrid<Real, Device> grid(device, s.grid, 1);
-    grid.fit(points, 0);
-    const double slope[3][3] = {
-        {0.3, -0.1, 0.2}, {0.05, 0.4, -0.3}, {-0.2, 0.1, 0.25}};  // per cell, [component][direction]
+  /// The velocity that grows by this much per cell, [component][direction].
+  static constexpr double slope[3][3] = {{0.3, -0.1, 0.2}, {0.05, 0.4, -0.3}, {-0.2, 0.1, 0.25}};
+
+  /// The nodes of a linear field of velocity, [stored nodes].
+  template <class Real, class Device>
+  static std::vector<Vec4<Real>> linear_field(const SparseGrid<Real, Device>& grid) {
     std::vector<Vec4<Real>> field(static_cast<std::size_t>(grid.nodes()));
     const auto slots = slots_of(grid);
-    const int blocks_x = (s.grid.columns + 3) / 4;
-    for (int j = 0; j < s.grid.rows; ++j) {
-      for (int i = 0; i < s.grid.columns; ++i) {
+    const int blocks_x = (grid.shape().columns + 3) / 4;
+    for (int j = 0; j < grid.shape().rows; ++j) {
+      for (int i = 0; i < grid.shape().columns; ++i) {
         const auto& slot = slots[static_cast<std::size_t>((j >> 2) * blocks_x + (i >> 2))];
         for (int k = slot.first_layer; slot.offset >= 0 && k < slot.first_layer + slot.layers; ++k) {
           auto& node = field[static_cast<std::size_t>(GridView<Real>::node(slot, i, j, k))];
@@ -204,18 +233,29 @@ class Transfers : public InEachPlace {
         }
       }
     }
+    return field;
+  }
+
+  /// Velocity gather of a linear field in reference coordinates, and the climb, by the definitions.
+  template <class Real, class Device, class Shape>
+  static void gather_linear_field(double tolerance) {
+    Domain d;
+    const Scene s = scene(kind_of<Shape>, d);
+    const Device device = Device::make();
+    Particles<Real, Device> points(device, {.affine_transfer = true, .boxes = Shape::averaged});
+    points.upload(s.points);
+    SparseGrid<Real, Device> grid(device, s.grid, 1);
+    grid.fit(points, 0);
     Buffer<Vec4<Real>, Device> nodes(device);
-    nodes.upload(field);
+    nodes.upload(linear_field(grid));
     Clock c;
     c.step_size = 0;  // nothing moves
     Buffer<Clock, Device> clock(device);
     clock.upload({c});
-    MaterialOptions mo;
-    mo.model = MaterialModel::hencky;
     for_each(device, points.count(),
-             GridToParticle<Real, Shape, Gather::all, false>{grid.view(), points.view(),
-                                                             Materials<Real>{{make_material<Real>(mo)}}, clock.data(),
-                                                             nodes.data(), nullptr, grid.home(), true, false});
+             GridToParticle<Real, Shape, Gather::all, false>{
+                 grid.view(), points.view(), Materials<Real>{{make_material<Real>(hencky())}}, clock.data(),
+                 nodes.data(), nullptr, grid.home(), true, false});
     synchronise(device);
     const ParticleState got = points.download();
     double worst = 0;
