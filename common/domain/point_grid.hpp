@@ -3,6 +3,8 @@
 
 #include <openvdb/Grid.h>
 
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 

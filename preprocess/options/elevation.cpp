@@ -21,9 +21,8 @@ void need_one_way(recipe::Visitor& v, const Options& o) {
                   "[[preprocess.box]]"));
     found = found || wrong;
   };
-  const char *two_ways = "they belong to different ways", *unclear =
-                                                              "nothing says clearly what lies under the failing "
-                                                              "mass";
+  const char* const two_ways = "they belong to different ways";
+  const char* const unclear = "nothing says clearly what lies under the failing mass";
   refuse(!before && !base, "neither before_dem nor base_dem is given", "nothing says what fails");
   refuse(before && base, "before_dem and base_dem are both given", two_ways);
   refuse(before && after && sliding, "after_dem and sliding_surface are both given", unclear);

@@ -1,7 +1,7 @@
 // Kernels are run once for every contact point of the blocks in use, and for no other.
 #include "solver/boundary/nearby_contacts.hpp"
 
-#include "tests/solver/scenes.hpp"
+#include "tests/solver/on_each_device.hpp"
 
 namespace talus::solver::testing {
 namespace {
@@ -22,16 +22,11 @@ ContactPoints four_points() {
   return points;
 }
 
-class NearbyContactsOn : public InEachPlace {
+class NearbyContactsOn : public OnEachDevice {
  protected:
   template <class Body>
-  void on_device(Body&& body) {
-    for (const bool in_order : {false, true}) {
-      if (GetParam() == On::cpu) body(CpuDevice::make(), in_order);
-#if TALUS_FOR_GPU
-      if (GetParam() == On::gpu) body(GpuDevice::make(), in_order);
-#endif
-    }
+  void in_both_orders(Body&& body) {
+    for (const bool in_order : {false, true}) on_device([&](const auto& device) { body(device, in_order); });
   }
 };
 
@@ -44,7 +39,7 @@ std::vector<int> visits(const Device& device, const NearbyContacts<Device>& cont
 }
 
 TEST_P(NearbyContactsOn, are_those_of_the_blocks_in_use) {
-  on_device([](const auto& device, bool in_order) {
+  in_both_orders([](const auto& device, bool in_order) {
     NearbyContacts contacts(device, four_points(), 8, 12, in_order);
     EXPECT_EQ(contacts.count(), 4);
     EXPECT_EQ(visits(device, contacts), (std::vector<int>{0, 0, 0, 0})) << "no block is in use yet";

@@ -5,23 +5,14 @@
 #include <vector>
 
 #include "solver/parallel/algorithms.hpp"
-#include "tests/solver/scenes.hpp"
+#include "tests/solver/on_each_device.hpp"
 
 namespace talus::solver::testing {
 namespace {
 
 constexpr int grid_columns = 20, grid_rows = 12;  // 5 x 3 blocks
 
-class BlockStorageOn : public InEachPlace {
- protected:
-  template <class Body>
-  void on_device(Body&& body) {
-    if (GetParam() == On::cpu) body(CpuDevice::make());
-#if TALUS_FOR_GPU
-    if (GetParam() == On::gpu) body(GpuDevice::make());
-#endif
-  }
-};
+class BlockStorageOn : public OnEachDevice {};
 
 /// Points at cells (i, j, k).
 template <class Device>

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "solver/parallel/algorithms.hpp"
-#include "tests/solver/scenes.hpp"
+#include "tests/solver/on_each_device.hpp"
 
 namespace talus::solver::testing {
 namespace {
@@ -28,16 +28,7 @@ ParticleState scattered() {
   return state;
 }
 
-class ParticleOrderOn : public InEachPlace {
- protected:
-  template <class Body>
-  void on_device(Body&& body) {
-    if (GetParam() == On::cpu) body(CpuDevice::make());
-#if TALUS_FOR_GPU
-    if (GetParam() == On::gpu) body(GpuDevice::make());
-#endif
-  }
-};
+class ParticleOrderOn : public OnEachDevice {};
 
 template <class Device>
 std::vector<std::uint64_t> keys_of(const Device& device, const ParticleOrder<double, Device>& order, int points) {

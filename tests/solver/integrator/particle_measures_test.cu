@@ -5,7 +5,7 @@
 #include <type_traits>
 
 #include "solver/options/solve.hpp"
-#include "tests/solver/scenes.hpp"
+#include "tests/solver/on_each_device.hpp"
 
 namespace talus::solver::testing {
 namespace {
@@ -32,19 +32,16 @@ struct Bench {
   }
 };
 
-class ParticleMeasuresOn : public InEachPlace {
+class ParticleMeasuresOn : public OnEachDevice {
  protected:
   template <class Body>
-  void on_device(Body&& body) {
-    if (GetParam() == On::cpu) body(Bench<CpuDevice>(CpuDevice::make()));
-#if TALUS_FOR_GPU
-    if (GetParam() == On::gpu) body(Bench<GpuDevice>(GpuDevice::make()));
-#endif
+  static void on_bench(Body&& body) {
+    on_device([&](const auto& device) { body(Bench<std::decay_t<decltype(device)>>(device)); });
   }
 };
 
 TEST_P(ParticleMeasuresOn, have_the_volume_and_the_momentum_of_the_whole) {
-  on_device([](auto bench) {
+  on_bench([](auto bench) {
     Materials<double> materials;
     materials.list[0].density = 1500;
     using Energy = typename std::decay_t<decltype(bench.measures)>::Energy;
@@ -59,7 +56,7 @@ TEST_P(ParticleMeasuresOn, have_the_volume_and_the_momentum_of_the_whole) {
 }
 
 TEST_P(ParticleMeasuresOn, spread_the_whole_volume_over_the_map) {
-  on_device([](auto bench) {
+  on_bench([](auto bench) {
     const std::vector<double> thickness = bench.measures.thickness(bench.points.view(), bench.grid.groups());
     ASSERT_EQ(thickness.size(), 120u);
     EXPECT_NEAR(4 * std::accumulate(thickness.begin(), thickness.end(), 0.0), 24, 1e-12);
@@ -70,7 +67,7 @@ TEST_P(ParticleMeasuresOn, spread_the_whole_volume_over_the_map) {
 }
 
 TEST_P(ParticleMeasuresOn, have_volumes_over_columns_once_they_are_measured) {
-  on_device([](auto bench) {
+  on_bench([](auto bench) {
     EXPECT_EQ(bench.measures.column_volumes(), nullptr);
     bench.measures.measure_columns(bench.points.view(), bench.grid.groups());
     std::vector<double> volumes(120);
