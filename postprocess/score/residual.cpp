@@ -1,8 +1,8 @@
 #include "postprocess/score/residual.hpp"
 
 #include <cmath>
-#include <limits>
 
+#include "common/map/raster.hpp"
 #include "common/map/statistics.hpp"
 
 namespace talus::postprocess {
