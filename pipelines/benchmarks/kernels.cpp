@@ -10,6 +10,7 @@
 #include "solver/integrator/scene.hpp"
 #include "solver/integrator/solver.hpp"
 #include "solver/options/solve.hpp"
+#include "solver/parallel/any_device.hpp"
 #include "solver/parallel/profile.hpp"
 #include "solver/scene/make_solver.hpp"
 
@@ -116,6 +117,62 @@ Taken take(Solver& solver, int steps) {
   return taken;
 }
 
+/// Steps that suffice to warm up, and to guess how long one takes.
+int few_of(const KernelSetting& k) { return k.newmark ? 3 : 20; }
+
+/// Three rounds of about 0.3 s each, and the median of their times.
+void time_steps(const KernelSetting& k, Solver& solver, KernelRun& run) {
+  const int few = few_of(k);
+  take(solver, few);  // storage, first launches
+  using WallClock = std::chrono::steady_clock;
+  const auto timed = [&](int steps) {
+    const auto begun = WallClock::now();
+    const Taken taken = take(solver, steps);
+    run.steps = taken.steps;
+    return std::chrono::duration<double>(WallClock::now() - begun).count() / taken.steps;
+  };
+  const double guess = timed(few);
+  const int steps = std::clamp(static_cast<int>(0.3 / guess), few, k.newmark ? 20 : 2000);
+  std::vector<double> rounds;
+  for (int round = 0; round < 3; ++round) rounds.push_back(timed(steps));
+  std::sort(rounds.begin(), rounds.end());
+  run.step_seconds = rounds[1];
+}
+
+/// The block keeps its momentum.
+void check_momentum(const KernelSetting& k, const Energies& e, KernelRun& run) {
+  const double mass = run.points * 0.125 * density;
+  run.check = std::hypot(e.momentum.x / mass - way_of(k.shape).x, e.momentum.y / mass - way_of(k.shape).y) / 0.36;
+  // Rounding; Newton's tolerance of 1e-4 in some ten steps.
+  run.pass = run.check < (k.newmark ? 2e-3 : k.precision == Precision::double_ ? 1e-9 : 1e-3);
+}
+
+/// Phases and kernels, in rounds of their own: to measure them takes time.
+void profile_steps(const KernelSetting& k, Solver& solver, Profile& profile, KernelRun& run) {
+  const auto profiled = [&](bool kernels) {
+    profile.clear();
+    profile.turn_on(kernels);
+    const Taken taken = take(solver, kernels ? few_of(k) : 20);
+    profile.turn_off();
+    return taken;
+  };
+  const auto keep_phases = [&](int over) {
+    for (const auto& phase : profile.phases()) {
+      if (phase.seconds > 0) run.phases.emplace_back(phase.name, phase.seconds / over);
+    }
+  };
+  if (k.newmark) {  // whose phases hold many kernels each: marks around every one would be in the way
+    const Taken taken = profiled(false);
+    run.cg_iterations = static_cast<double>(taken.linear) / taken.steps;
+    keep_phases(taken.steps);
+  }
+  const int steps = profiled(true).steps;
+  if (!k.newmark) keep_phases(steps);
+  for (const auto& kernel : profile.kernels())
+    run.kernels.push_back({kernel.name, kernel.seconds / steps, kernel.bytes / steps});
+  std::sort(run.kernels.begin(), run.kernels.end(), [](const auto& a, const auto& b) { return a.seconds > b.seconds; });
+}
+
 std::string method_of(const KernelSetting& k) { return k.newmark ? "newmark" : "explicit"; }
 std::string shape_of(const KernelSetting& k) { return k.shape == ShapeKind::linear ? "linear" : "quadratic"; }
 std::string precision_of(const KernelSetting& k) { return k.precision == Precision::double_ ? "double" : "single"; }
@@ -140,51 +197,11 @@ KernelRun time_kernels(const KernelSetting& k, On on) {
   run.precision = precision_of(k);
   run.place = on == On::gpu ? gpu_name() : "CPU";
   run.points = solver->particle_count();
-  const int few = k.newmark ? 3 : 20;
-  take(*solver, few);  // storage, first launches
-  std::vector<double> rounds;
-  using WallClock = std::chrono::steady_clock;
-  const auto timed = [&](int steps) {
-    const auto begun = WallClock::now();
-    const Taken taken = take(*solver, steps);
-    run.steps = taken.steps;
-    return std::chrono::duration<double>(WallClock::now() - begun).count() / taken.steps;
-  };
-  const double guess = timed(few);
-  const int steps = std::clamp(static_cast<int>(0.3 / guess), few, k.newmark ? 20 : 2000);
-  for (int round = 0; round < 3; ++round) rounds.push_back(timed(steps));
-  std::sort(rounds.begin(), rounds.end());
-  run.step_seconds = rounds[1];
+  time_steps(k, *solver, run);
   run.bytes = static_cast<double>(solver->bytes());
-  const Energies e = solver->energies();
-  const double mass = run.points * 0.125 * density;
-  run.check = std::hypot(e.momentum.x / mass - way_of(k.shape).x, e.momentum.y / mass - way_of(k.shape).y) / 0.36;
-  // Rounding; Newton's tolerance of 1e-4 in some ten steps.
-  run.pass = run.check < (k.newmark ? 2e-3 : k.precision == Precision::double_ ? 1e-9 : 1e-3);
+  check_momentum(k, solver->energies(), run);
   for (const auto& [owner, bytes] : solver->memory()) run.memory.emplace_back(owner, static_cast<double>(bytes));
-  Profile& profile = device.profile();
-  const auto profiled = [&](bool kernels) {
-    profile.clear();
-    profile.turn_on(kernels);
-    const Taken taken = take(*solver, kernels ? few : 20);
-    profile.turn_off();
-    return taken;
-  };
-  const auto keep_phases = [&](int over) {
-    for (const auto& phase : profile.phases()) {
-      if (phase.seconds > 0) run.phases.emplace_back(phase.name, phase.seconds / over);
-    }
-  };
-  if (k.newmark) {  // whose phases hold many kernels each: marks around every one would be in the way
-    const Taken taken = profiled(false);
-    run.cg_iterations = static_cast<double>(taken.linear) / taken.steps;
-    keep_phases(taken.steps);
-  }
-  const int steps_profiled = profiled(true).steps;
-  if (!k.newmark) keep_phases(steps_profiled);
-  for (const auto& kernel : profile.kernels())
-    run.kernels.push_back({kernel.name, kernel.seconds / steps_profiled, kernel.bytes / steps_profiled});
-  std::sort(run.kernels.begin(), run.kernels.end(), [](const auto& a, const auto& b) { return a.seconds > b.seconds; });
+  profile_steps(k, *solver, device.profile(), run);
   return run;
 }
 

@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/validation/cases.hpp"
 #include "tests/validation/chart.hpp"
@@ -158,6 +160,46 @@ Overrides refined_column(int level, const char* shape, int per_cell) {
   return o;
 }
 
+constexpr Column soft_column{Law::hencky, 1e4, 800, 50};
+
+/// Functions and points whose stress error is followed over cell size.
+struct Refinement {
+  const char* shape;
+  int per_cell;  // along each side
+  bool always;   // else with the long runs only
+};
+
+constexpr Refinement refinements[] = {{"gimp", 2, true},       {"gimp", 3, false},      {"quadratic", 2, true},
+                                      {"quadratic", 3, false}, {"quadratic", 4, false}, {"linear", 2, true}};
+
+/// One refinement: its order, and its line in both charts.
+void order_study(Bench& bench, const Refinement& study, Chart& chart, Chart& profile, int colour) {
+  const std::string name =
+      fmt::format("{}, {} points per cell", study.shape, study.per_cell * study.per_cell * study.per_cell);
+  const int finest = bench.complete() ? 7 : 5;
+  std::vector<double> h, error;
+  Outcome o;
+  for (int level = 2; level <= finest; ++level) {
+    o = bench.run(fmt::format("{}, h = 50 / {}", name, 1 << level), refined_column(level, study.shape, study.per_cell));
+    h.push_back(50 / std::pow(2, level));
+    error.push_back(stress_error(o, soft_column));
+    if (level == 5 && study.always) profile.series.push_back(stresses(study.shape, o, soft_column, colour));
+  }
+  // Splines integrate at points, and their error goes flat; hats stall when points cross cells: both are shown, and
+  // promise no order.
+  o.variant = name;
+  const std::string range = fmt::format("order of the stress error, h = 12.5 to {:.1f} m", h.back());
+  const double order = observed_order(h.data(), error.data(), static_cast<int>(h.size()));
+  if (std::string(study.shape) == "gimp") {
+    bench.at_least(o, range, order, 1);
+    if (study.per_cell == 2) chart.series.push_back(slope_line(1, h, h[0], error[0]));
+  } else {
+    bench.note(o, range, order);
+  }
+  bench.note(o, fmt::format("stress error, h = {:.1f} m", h.back()), error.back());
+  chart.series.push_back(convergence(name, h, error, colour));
+}
+
 /// Error over the load steps, h = 50 m / 2^4: the stress against the closed form, which the grid bounds from below, and
 /// how far the top is from where twice as many steps as the most shown leave it.
 void load_step_study(Bench& bench, const Column& column) {
@@ -204,56 +246,16 @@ void self_weight_column(Bench& bench) {
 }
 
 void large_compaction(Bench& bench) {
-  constexpr Column soft{Law::hencky, 1e4, 800, 50};
-  Chart chart, profile = stress_chart(soft, "A1b: stress in a column compacted to a third (h = 50 m / 2⁵)");
-  chart.title = "A1b: stress error over cell size, 40 load steps";
-  chart.x_label = "cell size [m]";
-  chart.y_label = "error, mean of |P − P exact| over stress at the foot";
-  chart.log_x = chart.log_y = true;
-  const int finest = bench.complete() ? 7 : 5;
-  const auto order = [](const std::vector<double>& h, const std::vector<double>& error, std::size_t count) {
-    return observed_order(h.data(), error.data(), static_cast<int>(count));
-  };
-  struct Study {
-    const char* shape;
-    int per_cell;  // along each side
-    bool always;
-  };
+  Chart chart = log_chart("A1b: stress error over cell size, 40 load steps", "cell size [m]",
+                          "error, mean of |P − P exact| over stress at the foot"),
+        profile = stress_chart(soft_column, "A1b: stress in a column compacted to a third (h = 50 m / 2⁵)");
   int colour = 1;
-  for (const Study& study : {Study{"gimp", 2, true},
-                             {"gimp", 3, false},
-                             {"quadratic", 2, true},
-                             {"quadratic", 3, false},
-                             {"quadratic", 4, false},
-                             {"linear", 2, true}}) {
-    if (!study.always && !bench.complete()) continue;
-    const std::string name =
-        fmt::format("{}, {} points per cell", study.shape, study.per_cell * study.per_cell * study.per_cell);
-    std::vector<double> h, error;
-    Outcome o;
-    for (int level = 2; level <= finest; ++level) {
-      o = bench.run(fmt::format("{}, h = 50 / {}", name, 1 << level),
-                    refined_column(level, study.shape, study.per_cell));
-      h.push_back(50 / std::pow(2, level));
-      error.push_back(stress_error(o, soft));
-      if (level == 5 && study.always) profile.series.push_back(stresses(study.shape, o, soft, colour));
-    }
-    // Splines integrate at points, and their error goes flat; hats stall when points cross cells: both are shown, and
-    // promise no order.
-    o.variant = name;
-    const std::string range = fmt::format("order of the stress error, h = 12.5 to {:.1f} m", h.back());
-    if (std::string(study.shape) == "gimp") {
-      bench.at_least(o, range, order(h, error, h.size()), 1);
-      if (study.per_cell == 2) chart.series.push_back(slope_line(1, h, h[0], error[0]));
-    } else {
-      bench.note(o, range, order(h, error, h.size()));
-    }
-    bench.note(o, fmt::format("stress error, h = {:.1f} m", h.back()), error.back());
-    chart.series.push_back(convergence(name, h, error, colour++));
+  for (const Refinement& study : refinements) {
+    if (study.always || bench.complete()) order_study(bench, study, chart, profile, colour++);
   }
   bench.picture("A1b-convergence", png_of(chart));
   bench.picture("A1b-stress", png_of(profile, 1400, 1100));
-  load_step_study(bench, soft);
+  load_step_study(bench, soft_column);
 }
 
 }  // namespace talus::validation

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/validation/cases.hpp"
 #include "tests/validation/chart.hpp"
@@ -82,55 +85,66 @@ std::string shares(const std::string& name, const std::vector<Outcome>& runs) {
   return png_of(chart);
 }
 
+std::vector<int> sizes_of(const Bench& bench, const Scheme& scheme) {
+  std::vector<int> sizes = bench.complete() ? scheme.complete : scheme.quick;
+  if (bench.complete() && bench.on_gpu()) sizes.insert(sizes.end(), scheme.gpu.begin(), scheme.gpu.end());
+  return sizes;
+}
+
+/// What a scheme costs over the number of points, and the runs that tell its phases.
+struct SchemeLines {
+  Series eta, bytes, paper;
+  std::vector<Outcome> profiled;
+};
+
+SchemeLines lines_of(const Scheme& scheme, int colour) {
+  SchemeLines l{{scheme.name, {}, {}, colour},
+                {scheme.name, {}, {}, colour},
+                {scheme.name + ", paper (RTX 3060 Ti)", {}, {}, colour},
+                {}};
+  l.eta.marks = l.bytes.marks = l.paper.dashed = true;
+  return l;
+}
+
+/// Time and memory of one size.
+void time_size(Bench& bench, const Scheme& scheme, int cells, SchemeLines& lines) {
+  const std::string variant = fmt::format("{}, {} points", scheme.name, 36288 * cells);
+  const Overrides overrides = thick(cells, bench.complete() ? 200 : 10) + scheme.overrides;
+  const Outcome o = bench.run(variant, overrides);
+  const RunSummary& s = o.run.summary;
+  const double points = static_cast<double>(s.particles), each = s.wall_time / (points * static_cast<double>(s.steps));
+  bench.note(o, "time per point and step [s]", each);
+  if (const double published = scheme.paper_memory(cells); published > 0) {
+    bench.at_most(o, "memory [GB]", s.memory / 1e9, published / 1e9);
+  } else {
+    bench.note(o, "memory [GB]", s.memory / 1e9);
+  }
+  if (!o.ok()) return;
+  lines.eta.x.push_back(points);
+  lines.eta.y.push_back(each);
+  lines.bytes.x.push_back(points);
+  lines.bytes.y.push_back(s.memory / 1e9);
+  lines.paper.x.push_back(points);
+  lines.paper.y.push_back(scheme.paper_time);
+  if (cells > 32) return;
+  // Once more with its phases: waiting for each of them would count in the time above.
+  Outcome phases = bench.run(variant + ", profile", overrides, true);
+  if (phases.ok()) lines.profiled.push_back(std::move(phases));
+}
+
 }  // namespace
 
 void step_cost(Bench& bench) {
-  const int steps = bench.complete() ? 200 : 10;
-  Chart time;
-  time.title = "A4: time per point and step";
-  time.x_label = "material points";
-  time.y_label = "time per point and step [s]";
-  time.log_x = time.log_y = true;
-  Chart memory = time;
-  memory.title = "A4: memory of points, grid and linear solver";
-  memory.y_label = "memory [GB]";
+  Chart time = log_chart("A4: time per point and step", "material points", "time per point and step [s]"),
+        memory = log_chart("A4: memory of points, grid and linear solver", "material points", "memory [GB]");
   int colour = 1;
   for (const Scheme& scheme : schemes()) {
-    Series eta{scheme.name, {}, {}, colour}, bytes{scheme.name, {}, {}, colour},
-        paper{scheme.name + ", paper (RTX 3060 Ti)", {}, {}, colour};
-    eta.marks = bytes.marks = paper.dashed = true;
-    ++colour;
-    std::vector<Outcome> profiled;
-    std::vector<int> sizes = bench.complete() ? scheme.complete : scheme.quick;
-    if (bench.complete() && bench.on_gpu()) sizes.insert(sizes.end(), scheme.gpu.begin(), scheme.gpu.end());
-    for (const int cells : sizes) {
-      const std::string variant = fmt::format("{}, {} points", scheme.name, 36288 * cells);
-      const Outcome o = bench.run(variant, thick(cells, steps) + scheme.overrides);
-      const RunSummary& s = o.run.summary;
-      const double points = static_cast<double>(s.particles),
-                   each = s.wall_time / (points * static_cast<double>(s.steps));
-      bench.note(o, "time per point and step [s]", each);
-      if (const double published = scheme.paper_memory(cells); published > 0) {
-        bench.at_most(o, "memory [GB]", s.memory / 1e9, published / 1e9);
-      } else {
-        bench.note(o, "memory [GB]", s.memory / 1e9);
-      }
-      if (!o.ok()) continue;
-      eta.x.push_back(points);
-      eta.y.push_back(each);
-      bytes.x.push_back(points);
-      bytes.y.push_back(s.memory / 1e9);
-      paper.x.push_back(points);
-      paper.y.push_back(scheme.paper_time);
-      if (cells > 32) continue;
-      // Once more with its phases: waiting for each of them would count in the time above.
-      Outcome phases = bench.run(variant + ", profile", thick(cells, steps) + scheme.overrides, true);
-      if (phases.ok()) profiled.push_back(std::move(phases));
-    }
-    time.series.push_back(eta);
-    if (paper.x.size() > 1) time.series.push_back(paper);
-    memory.series.push_back(bytes);
-    bench.picture("A4-shares-" + scheme.name, shares(scheme.name, profiled));
+    SchemeLines lines = lines_of(scheme, colour++);
+    for (const int cells : sizes_of(bench, scheme)) time_size(bench, scheme, cells, lines);
+    time.series.push_back(lines.eta);
+    if (lines.paper.x.size() > 1) time.series.push_back(lines.paper);
+    memory.series.push_back(lines.bytes);
+    bench.picture("A4-shares-" + scheme.name, shares(scheme.name, lines.profiled));
   }
   bench.picture("A4-time", png_of(time));
   bench.picture("A4-memory", png_of(memory));

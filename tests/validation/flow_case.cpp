@@ -1,10 +1,11 @@
 // B4 and B5: a parabolic cap and a dam break on a slope, against closed forms of the depth-averaged equations.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
-#include <numbers>
+#include <string>
+#include <vector>
 
 #include "tests/validation/cases.hpp"
 #include "tests/validation/chart.hpp"
@@ -78,6 +79,71 @@ Overrides lay_out(const Bench& bench, double cell) {
   return write_scene(bench, fmt::format("{:g}", cell), plane, thickness);
 }
 
+/// Upright thickness over the middle of every cell of the map [m].
+std::vector<double> upright_on(const MapGrid& grid, const ParabolicCap::State& s) {
+  std::vector<double> h;
+  h.reserve(grid.count());
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) h.push_back(upright(s, grid.x(column), grid.y(row)));
+  }
+  return h;
+}
+
+/// How the points move down the slope, and how fast the reference is where they are.
+struct CapMotion {
+  std::vector<double> speed, expected;  // [m/s]
+  double way = nothing;                 // of the centre [m]
+};
+
+CapMotion motion_of(const Outcome& o, const ParabolicCap::State& state) {
+  CapMotion m;
+  double travelled = 0;
+  for (std::size_t p = 0; p < o.last().size(); ++p) {
+    const auto& x = o.last().position[p];
+    const auto& v = o.last().velocity[p];
+    travelled += (x[0] - o.first().position[p][0]) / std::cos(cap.slope);
+    m.speed.push_back(static_cast<double>(v[0]) * std::cos(cap.slope) -
+                      static_cast<double>(v[2]) * std::sin(cap.slope));
+    m.expected.push_back(state.speed + (x[0] * std::cos(cap.slope) + (500 - x[2]) * std::sin(cap.slope) - state.way) *
+                                           state.spread / state.width);
+  }
+  m.way = travelled / static_cast<double>(m.speed.size());
+  return m;
+}
+
+struct CapErrors {
+  Norms thickness, speed;
+  double way = nothing;  // of the centre, over the reference's less one
+};
+
+CapErrors cap_errors(const Outcome& o) {
+  if (!o.ok()) return {};
+  const auto state = cap.at(o.last().time);
+  const CapMotion motion = motion_of(o, state);
+  return {norms(o.run.frames.thickness.back(), upright_on(o.run.maps.grid, state)),
+          norms(motion.speed, motion.expected), motion.way / state.way - 1};
+}
+
+/// Thickness down the middle of the map.
+Series middle_section(const Outcome& o, const std::string& name, int colour) {
+  const MapGrid& grid = o.run.maps.grid;
+  Series line{name, {}, {}, colour};
+  for (int column = 0; column < grid.columns; ++column) {
+    line.x.push_back(grid.x(column));
+    line.y.push_back(o.run.frames.thickness.back()[grid.index(column, grid.rows / 2)]);
+  }
+  return line;
+}
+
+Series exact_section() {
+  Series exact{"Hutter et al. 1993", {}, {}, 0};
+  for (int x = -90; x <= 130; ++x) {
+    exact.x.push_back(x);
+    exact.y.push_back(upright(cap.at(5), x, 0));
+  }
+  return exact;
+}
+
 // B5 ---------------------------------------------------------------------------------------------------------------
 
 constexpr double slope = 22 * degree, bed = 21 * degree;
@@ -143,58 +209,24 @@ void parabolic_cap(Bench& bench) {
     std::vector<double> h, error;
     for (const int layers : layer_counts(bench)) {
       const double layer = layer_of(layers), cell = 4 * layer;
-      const Outcome o = bench.run(fmt::format("{}, {} layers", mapping, layers),
-                                  scenes[layers] + Overrides{{"preprocess.grid.spacing_m", cell},
-                                                             {"preprocess.grid.layer_height_m", layer},
-                                                             {"solve.mapping", words(mapping)}});
-      Norms of_thickness, of_speed;
-      double way = nothing;
+      const std::string variant = fmt::format("{}, {} layers", mapping, layers);
+      const Outcome o = bench.run(variant, scenes[layers] + Overrides{{"preprocess.grid.spacing_m", cell},
+                                                                      {"preprocess.grid.layer_height_m", layer},
+                                                                      {"solve.mapping", words(mapping)}});
       if (o.ok()) {
-        const auto state = cap.at(o.last().time);
-        const MapGrid& grid = o.run.maps.grid;
-        const std::vector<double>& computed = o.run.frames.thickness.back();
-        std::vector<double> exact;
-        Series line{fmt::format("{}, {} layers", mapping, layers), {}, {}, colour++};
-        for (int row = 0; row < grid.rows; ++row) {
-          for (int column = 0; column < grid.columns; ++column) {
-            exact.push_back(upright(state, grid.x(column), grid.y(row)));
-            if (row != grid.rows / 2) continue;
-            line.x.push_back(grid.x(column));
-            line.y.push_back(computed[grid.index(column, row)]);
-          }
-        }
-        of_thickness = norms(computed, exact);
+        const Series line = middle_section(o, variant, colour++);
         if (layers == 4) section.series.push_back(line);
-        // Down the slope, point by point.
-        std::vector<double> speed, expected;
-        double travelled = 0;
-        for (std::size_t p = 0; p < o.last().size(); ++p) {
-          const auto& x = o.last().position[p];
-          const auto& v = o.last().velocity[p];
-          travelled += (x[0] - o.first().position[p][0]) / std::cos(cap.slope);
-          speed.push_back(static_cast<double>(v[0]) * std::cos(cap.slope) -
-                          static_cast<double>(v[2]) * std::sin(cap.slope));
-          expected.push_back(state.speed +
-                             (x[0] * std::cos(cap.slope) + (500 - x[2]) * std::sin(cap.slope) - state.way) *
-                                 state.spread / state.width);
-        }
-        of_speed = norms(speed, expected);
-        way = travelled / static_cast<double>(speed.size()) / state.way - 1;
       }
-      note(bench, o, "thickness", of_thickness);
-      note(bench, o, "speed of the points", of_speed);
-      bench.note(o, "way of the centre, over the reference's less one", way);
+      const CapErrors e = cap_errors(o);
+      note(bench, o, "thickness", e.thickness);
+      note(bench, o, "speed of the points", e.speed);
+      bench.note(o, "way of the centre, over the reference's less one", e.way);
       h.push_back(layer);
-      error.push_back(of_thickness.mean);
+      error.push_back(e.thickness.mean);
     }
     errors.series.push_back(convergence(mapping, h, error, colour++));
   }
-  Series exact{"Hutter et al. 1993", {}, {}, 0};
-  for (int x = -90; x <= 130; ++x) {
-    exact.x.push_back(x);
-    exact.y.push_back(upright(cap.at(5), x, 0));
-  }
-  section.series.insert(section.series.begin(), exact);
+  section.series.insert(section.series.begin(), exact_section());
   bench.picture("B4-section", png_of(section));
   bench.picture("B4-convergence", png_of(errors));
 }

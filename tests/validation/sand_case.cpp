@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <string>
+#include <vector>
 
 #include "tests/validation/cases.hpp"
 #include "tests/validation/chart.hpp"
@@ -149,6 +150,63 @@ void refinement(Bench& bench, const std::vector<int>& levels) {
   bench.picture("A3-convergence", png_of(chart));
 }
 
+/// How far 99 % of the sand get with one kind of functions, on cells of 0.0225 m.
+struct ReachStudy {
+  Bench& bench;
+  const char* shape;
+  Sand sand;
+
+  double reach(const std::string& name, const Overrides& more) const {
+    const Outcome o = bench.run(fmt::format("{}, {}", shape, name),
+                                overrides_of(sand) + Overrides{{"solve.shape", words(shape)}} + more);
+    const double x = o.ok() ? reach_of(o.last()) : nothing;
+    bench.note(o, "reach of 99 % [m]", x);
+    return x;
+  }
+  double explicit_reach(double cfl) const {
+    const int points = sand.per_cell * sand.per_cell * sand.per_cell;
+    return reach(fmt::format("{} points per cell, explicit, {:g} CFL", points, cfl), {{"solve.cfl", cfl}});
+  }
+  double newmark_reach(double over_cfl) const {
+    constexpr double cfl_step = 4.27e-4;  // cell over the wave speed and the square root of three [s]
+    return reach(fmt::format("newmark, {:g} CFL", over_cfl), {{"solve.integrator", words("newmark")},
+                                                              {"solve.implicit.step_s", over_cfl * cfl_step},
+                                                              {"solve.implicit.newton_tolerance", 1e-4},
+                                                              {"solve.implicit.linear_tolerance", 1e-3}});
+  }
+};
+
+/// Against the most points.
+Series reach_over_points(ReachStudy study, int colour) {
+  study.sand.per_cell = 7;
+  const double most_points = study.explicit_reach(0.25);
+  std::vector<double> spacing, difference;
+  for (const int per_cell : {2, 3, 4, 5}) {
+    study.sand.per_cell = per_cell;
+    spacing.push_back(1.0 / per_cell);
+    difference.push_back(std::abs(study.explicit_reach(0.25) / most_points - 1));
+  }
+  return convergence(study.shape, spacing, difference, colour);
+}
+
+/// Explicit and Newmark steps, against the shortest.
+std::vector<Series> reach_over_step(ReachStudy study, int colour) {
+  study.sand.per_cell = 3;
+  const double shortest = study.explicit_reach(0.02);
+  std::vector<double> cfl, by_step, over_cfl, by_implicit_step;
+  for (const double step : {0.5, 0.25, 0.1, 0.05}) {
+    cfl.push_back(step);
+    by_step.push_back(std::abs(study.explicit_reach(step) / shortest - 1));
+  }
+  for (const double step : {1.0, 3.0, 10.0, 30.0}) {
+    over_cfl.push_back(step);
+    by_implicit_step.push_back(std::abs(study.newmark_reach(step) / shortest - 1));
+  }
+  Series implicit = convergence(fmt::format("{}, newmark", study.shape), over_cfl, by_implicit_step, colour);
+  implicit.dashed = true;
+  return {convergence(fmt::format("{}, explicit", study.shape), cfl, by_step, colour), implicit};
+}
+
 }  // namespace
 
 void sand_column(Bench& bench) {
@@ -177,52 +235,14 @@ void sand_column_studies(Bench& bench) {
                            "difference of the reach of 99 % to 343 points per cell");
   Chart steps = log_chart("A3: reach over the step, h = 0.0225 m, 27 points per cell", "step over the CFL step",
                           "difference of the reach of 99 % to explicit steps of 0.02 CFL");
-  const double cfl_step = 4.27e-4;  // cell over the wave speed and the square root of three [s]
   int colour = 1;
   for (const char* shape : {"quadratic", "gimp", "linear"}) {
     Sand s;
     s.h = 0.09 / 4;
-    const auto reach = [&](const std::string& name, const Overrides& more) {
-      const Outcome o = bench.run(fmt::format("{}, {}", shape, name),
-                                  overrides_of(s) + Overrides{{"solve.shape", words(shape)}} + more);
-      const double x = o.ok() ? reach_of(o.last()) : nothing;
-      bench.note(o, "reach of 99 % [m]", x);
-      return x;
-    };
-    const auto explicit_steps = [&](double cfl) {
-      return reach(fmt::format("{} points per cell, explicit, {:g} CFL", s.per_cell * s.per_cell * s.per_cell, cfl),
-                   {{"solve.cfl", cfl}});
-    };
-    s.per_cell = 7;
-    const double most_points = explicit_steps(0.25);
-    std::vector<double> spacing, by_points;
-    for (const int per_cell : {2, 3, 4, 5}) {
-      s.per_cell = per_cell;
-      spacing.push_back(1.0 / per_cell);
-      by_points.push_back(std::abs(explicit_steps(0.25) / most_points - 1));
-    }
-    points.series.push_back(convergence(shape, spacing, by_points, colour));
-    s.per_cell = 3;
-    const double shortest = explicit_steps(0.02);
-    std::vector<double> cfl, by_step, over_cfl, by_implicit_step;
-    for (const double step : {0.5, 0.25, 0.1, 0.05}) {
-      cfl.push_back(step);
-      by_step.push_back(std::abs(explicit_steps(step) / shortest - 1));
-    }
-    for (const double step : {1.0, 3.0, 10.0, 30.0}) {
-      over_cfl.push_back(step);
-      by_implicit_step.push_back(
-          std::abs(reach(fmt::format("newmark, {:g} CFL", step), {{"solve.integrator", words("newmark")},
-                                                                  {"solve.implicit.step_s", step * cfl_step},
-                                                                  {"solve.implicit.newton_tolerance", 1e-4},
-                                                                  {"solve.implicit.linear_tolerance", 1e-3}}) /
-                       shortest -
-                   1));
-    }
-    steps.series.push_back(convergence(fmt::format("{}, explicit", shape), cfl, by_step, colour));
-    Series implicit = convergence(fmt::format("{}, newmark", shape), over_cfl, by_implicit_step, colour++);
-    implicit.dashed = true;
-    steps.series.push_back(implicit);
+    const ReachStudy study{bench, shape, s};
+    points.series.push_back(reach_over_points(study, colour));
+    for (const Series& line : reach_over_step(study, colour)) steps.series.push_back(line);
+    ++colour;
   }
   bench.picture("A3-points", png_of(points));
   bench.picture("A3-steps", png_of(steps));

@@ -32,58 +32,88 @@ struct TangentScheme {
   const char* linear_solver;
 };
 
+/// Runs on one grid, judged by explicit steps of a tenth of the CFL step.
+class ShortSteps {
+ public:
+  ShortSteps(Bench& bench, const Sand& sand)
+      : bench_(bench),
+        sand_(sand),
+        reference_(run("explicit, 0.1 CFL", {{"solve.integrator", words("explicit")}, {"solve.cfl", 0.1}})),
+        centre_(centre_of(reference_)),
+        reach_(reach_of(reference_)) {
+    bench_.note(reference_, "run-out [m]", end_of(reference_, sand_));
+  }
+
+  Bench& bench() const { return bench_; }
+  const Sand& sand() const { return sand_; }
+  std::string grid() const { return fmt::format(", h = {:g} m", sand_.h); }
+  Outcome run(const std::string& name, const Overrides& more) const {
+    return bench_.run(name + grid(), overrides_of(sand_) + more);
+  }
+  /// Adds the rows; returns how far the centre of mass is off [%].
+  double judge(const Outcome& o, double tolerance) const {
+    bench_.compare(o, "reach of 99 %", reach_of(o), reach_, tolerance);
+    bench_.compare(o, "centre of mass", centre_of(o), centre_, tolerance);
+    bench_.note(o, "run-out [m]", end_of(o, sand_));
+    return 100 * (centre_of(o) / centre_ - 1);
+  }
+
+ private:
+  Bench& bench_;
+  Sand sand_;
+  Outcome reference_;
+  double centre_, reach_;
+};
+
+/// Newmark steps of these lengths [CFL steps].
+Series newmark_line(const ShortSteps& against, const TangentScheme& scheme, const std::vector<double>& lengths,
+                    int colour) {
+  const double cfl_step = 4.27e-4 * against.sand().h / 0.0225;  // cell over wave speed and square root of three [s]
+  Bench& bench = against.bench();
+  Series line{fmt::format("newmark, {} tangent", scheme.tangent), {}, {}, colour};
+  line.marks = true;
+  for (const double over_cfl : lengths) {
+    const Outcome o = against.run(fmt::format("{}, {:g} CFL", scheme.tangent, over_cfl),
+                                  {{"solve.implicit.step_s", over_cfl * cfl_step},
+                                   {"solve.implicit.tangent", words(scheme.tangent)},
+                                   {"solve.implicit.linear_solver", words(scheme.linear_solver)}});
+    const double cuts = o.last_of("step_cuts"), steps = static_cast<double>(o.run.summary.steps);
+    line.x.push_back(over_cfl);
+    line.y.push_back(against.judge(o, over_cfl > 20 ? 0.1 : 0.03));  // 30 CFL need only finish (validation.md C1)
+    bench.note(o, "Newton iterations a step", o.last_of("newton_iterations") / steps);
+    if (over_cfl > 20) {
+      bench.note(o, "steps cut, share", cuts / steps);
+    } else {
+      bench.measure(o, "steps cut, share", o.ok() ? cuts / steps : 0, 0.01);
+    }
+  }
+  return line;
+}
+
+Series explicit_line(const ShortSteps& against) {
+  Series line{"explicit", {0.1}, {0}, 0};
+  line.marks = true;
+  for (const double cfl : {0.25, 0.5}) {
+    const Outcome o = against.run(fmt::format("explicit, {:g} CFL", cfl),
+                                  {{"solve.integrator", words("explicit")}, {"solve.cfl", cfl}});
+    line.x.push_back(cfl);
+    line.y.push_back(against.judge(o, 0.02));
+  }
+  return line;
+}
+
 /// All steps on one grid against the shortest; the lengths of implicit ones in CFL steps.
 void compare_steps(Bench& bench, const Sand& s, const std::vector<double>& lengths) {
-  const double cfl_step = 4.27e-4 * s.h / 0.0225;  // cell over the wave speed and the square root of three [s]
-  const std::string grid = fmt::format(", h = {:g} m", s.h);
-  const auto run = [&](const std::string& name, const Overrides& more) {
-    return bench.run(name + grid, overrides_of(s) + more);
-  };
-  const Outcome reference = run("explicit, 0.1 CFL", {{"solve.integrator", words("explicit")}, {"solve.cfl", 0.1}});
-  const double expected = centre_of(reference), reach = reach_of(reference);
-  const auto judge = [&](const Outcome& o, double tolerance) {
-    bench.compare(o, "reach of 99 %", reach_of(o), reach, tolerance);
-    bench.compare(o, "centre of mass", centre_of(o), expected, tolerance);
-    bench.note(o, "run-out [m]", end_of(o, s));
-  };
-  bench.note(reference, "run-out [m]", end_of(reference, s));
+  const ShortSteps against(bench, s);
   Chart chart;
-  chart.title = "C1: sand column, centre of mass over the step" + grid;
+  chart.title = "C1: sand column, centre of mass over the step" + against.grid();
   chart.x_label = "step over the CFL step";
   chart.y_label = "difference to explicit steps of 0.1 CFL [%]";
   chart.log_x = true;
   int colour = 1;
-  for (const TangentScheme& scheme : {TangentScheme{"frozen-yield", "pcg"}, {"exact", "bicgstab"}}) {
-    Series line{fmt::format("newmark, {} tangent", scheme.tangent), {}, {}, colour++};
-    line.marks = true;
-    for (const double over_cfl : lengths) {
-      const Outcome o = run(fmt::format("{}, {:g} CFL", scheme.tangent, over_cfl),
-                            {{"solve.implicit.step_s", over_cfl * cfl_step},
-                             {"solve.implicit.tangent", words(scheme.tangent)},
-                             {"solve.implicit.linear_solver", words(scheme.linear_solver)}});
-      const double cuts = o.last_of("step_cuts"), steps = static_cast<double>(o.run.summary.steps);
-      judge(o, over_cfl > 20 ? 0.1 : 0.03);  // 30 CFL need only finish (validation.md C1)
-      bench.note(o, "Newton iterations a step", o.last_of("newton_iterations") / steps);
-      if (over_cfl > 20) {
-        bench.note(o, "steps cut, share", cuts / steps);
-      } else {
-        bench.measure(o, "steps cut, share", o.ok() ? cuts / steps : 0, 0.01);
-      }
-      line.x.push_back(over_cfl);
-      line.y.push_back(100 * (centre_of(o) / expected - 1));
-    }
-    chart.series.push_back(line);
-  }
-  Series few{"explicit", {0.1}, {0}, 0};
-  few.marks = true;
-  for (const double cfl : {0.25, 0.5}) {
-    const Outcome o =
-        run(fmt::format("explicit, {:g} CFL", cfl), {{"solve.integrator", words("explicit")}, {"solve.cfl", cfl}});
-    judge(o, 0.02);
-    few.x.push_back(cfl);
-    few.y.push_back(100 * (centre_of(o) / expected - 1));
-  }
-  chart.series.push_back(few);
+  for (const TangentScheme& scheme : {TangentScheme{"frozen-yield", "pcg"}, {"exact", "bicgstab"}})
+    chart.series.push_back(newmark_line(against, scheme, lengths, colour++));
+  chart.series.push_back(explicit_line(against));
   bench.picture(fmt::format("C1-centre-{:g}", s.h), png_of(chart));
 }
 

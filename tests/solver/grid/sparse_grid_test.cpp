@@ -13,6 +13,37 @@
 namespace talus::solver::testing {
 namespace {
 
+/// Every node up to two columns and layers around a point's home.
+void expect_stored_around(const ParticleState& s, std::size_t p, const SparseGrid<double, CpuDevice>& grid) {
+  const auto view = grid.view();
+  for (int b = -2; b <= 2; ++b) {
+    for (int a = -2; a <= 2; ++a) {
+      const int i = s.cell[0][p] + a, j = s.cell[1][p] + b;
+      const BlockSlot& slot = view.slot(i, j);
+      ASSERT_GE(slot.offset, 0);
+      for (int k = std::max(s.cell[2][p] - 2, 0); k <= s.cell[2][p] + 2; ++k) {
+        ASSERT_GE(k, slot.first_layer);
+        ASSERT_LT(k, slot.first_layer + slot.layers);
+        const int n = GridView<double>::node(slot, i, j, k);
+        ASSERT_GE(n, 0);
+        ASSERT_LT(n, grid.nodes());
+      }
+    }
+  }
+}
+
+/// The columns that points begin to end can reach.
+std::set<std::pair<int, int>> columns_around(const ParticleState& s, int begin, int end) {
+  std::set<std::pair<int, int>> columns;
+  for (int p = begin; p < end; ++p) {
+    for (int b = -2; b <= 2; ++b) {
+      for (int a = -2; a <= 2; ++a)
+        columns.insert({s.cell[0][static_cast<std::size_t>(p)] + a, s.cell[1][static_cast<std::size_t>(p)] + b});
+    }
+  }
+  return columns;
+}
+
 TEST(SparseGrid, stores_every_node_a_point_can_reach_before_the_next_sort) {
   Domain d = ground(37, 29, 1.0, 0.5, [](double, double) { return 0.0; });
   fill(d, {5, 9, 17, 22, 0, 3});
@@ -23,25 +54,8 @@ TEST(SparseGrid, stores_every_node_a_point_can_reach_before_the_next_sort) {
   points.upload(scene.points);
   SparseGrid<double, CpuDevice> grid(device, scene.grid, 1);
   grid.fit(points, 0);
-  const auto view = grid.view();
   const ParticleState s = points.download();
-  std::set<int> seen;
-  for (std::size_t p = 0; p < s.size(); ++p) {
-    for (int b = -2; b <= 2; ++b) {
-      for (int a = -2; a <= 2; ++a) {
-        const int i = s.cell[0][p] + a, j = s.cell[1][p] + b;
-        const BlockSlot& slot = view.slot(i, j);
-        ASSERT_GE(slot.offset, 0);
-        for (int k = std::max(s.cell[2][p] - 2, 0); k <= s.cell[2][p] + 2; ++k) {
-          ASSERT_GE(k, slot.first_layer);
-          ASSERT_LT(k, slot.first_layer + slot.layers);
-          const int n = GridView<double>::node(slot, i, j, k);
-          ASSERT_GE(n, 0);
-          ASSERT_LT(n, grid.nodes());
-        }
-      }
-    }
-  }
+  for (std::size_t p = 0; p < s.size(); ++p) ASSERT_NO_FATAL_FAILURE(expect_stored_around(s, p, grid)) << "point " << p;
   // Sparse: far less than the box around both bodies.
   EXPECT_LT(grid.nodes(), 37 * 29 * 18 / 3);
   // Points of a block stand together, and blocks of one colour share no column that either can reach.
@@ -50,14 +64,7 @@ TEST(SparseGrid, stores_every_node_a_point_can_reach_before_the_next_sort) {
     std::set<std::pair<int, int>> columns;
     for (const auto& [begin, end] : ranges) {
       covered += end - begin;
-      std::set<std::pair<int, int>> mine;
-      for (int p = begin; p < end; ++p) {
-        for (int b = -2; b <= 2; ++b) {
-          for (int a = -2; a <= 2; ++a)
-            mine.insert({s.cell[0][static_cast<std::size_t>(p)] + a, s.cell[1][static_cast<std::size_t>(p)] + b});
-        }
-      }
-      for (const auto& column : mine) EXPECT_TRUE(columns.insert(column).second);
+      for (const auto& column : columns_around(s, begin, end)) EXPECT_TRUE(columns.insert(column).second);
     }
   }
   EXPECT_EQ(covered, static_cast<int>(s.size()));

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "common/run/run_file.hpp"
 
@@ -131,61 +134,76 @@ TEST_P(Parts, soften_as_they_slip) {
   EXPECT_LT(softened, loose + 0.4);
 }
 
+/// A sheet of ground on a slope and below it, where wanted with a slide that comes down on it.
+Domain erodible_ground(bool slide) {
+  Domain d = ground(120, 16, 1.0, 0.5, [](double x, double) { return x < 40 ? 0.6 * (40 - x) : 0.0; });
+  fill(d, {24, 34, 5, 11, 0, 0.5});  // a sheet of ground, as thick as a layer
+  const std::size_t sheet = d.points.size();
+  if (slide) fill(d, {6, 12, 5, 11, 0, 3});
+  std::fill(d.points.release.begin() + static_cast<std::ptrdiff_t>(sheet), d.points.release.end(), 1);
+  d.release_names = {"ground", "slide"};
+  d.erodible = 1;
+  return d;
+}
+
+/// Ground of a strength of its own that it loses as it slips, on a base that holds what rests.
+SolveOptions erodible_options() {
+  SolveOptions o;
+  o.end_time = 6;
+  o.frame_interval = 6;
+  o.base.friction_angle = 12;
+  o.gravity_loading_steps = 4;
+  o.base.cohesion = 0;
+  o.parts.resize(1);
+  o.parts[0].release = "ground";
+  o.parts[0].material.cohesion = 5000;
+  o.parts[0].material.softening_slip = 0.3;
+  o.parts[0].material.residual_friction_angle = 20;
+  o.base.law = FrictionLaw::velocity_weakening;
+  o.base.peak_coefficient = 0.8;  // holds the sheet at rest on a slope of 0.6
+  o.base.steady_coefficient = 0.2;
+  o.base.characteristic_speed = 0.5;
+  return o;
+}
+
+talus::Run run_erodible(bool slide, const std::filesystem::path& folder) {
+  const RunPaths paths(folder);
+  std::filesystem::create_directories(folder);
+  const Domain domain = erodible_ground(slide);
+  const SolveOptions options = erodible_options();
+  Simulation simulation(domain, options, CpuDevice::make(), paths, "");
+  simulation.run("erodible", "Erodible ground");
+  return read_run(paths.run);
+}
+
+/// Of what lies on a map with cells of 1 m2.
+double volume_on(const std::vector<double>& thickness) {
+  double sum = 0;
+  for (const double t : thickness) sum += std::isfinite(t) ? t : 0;
+  return sum;
+}
+
 /// Entrainment: ground of its own strength rests until a slide comes, and what it takes along is told from what stays.
 TEST(ErodibleGround, rests_until_it_is_loaded_and_is_told_apart) {
   const auto folder = std::filesystem::temp_directory_path() / ("talus-erodible-" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
-  Domain d = ground(120, 16, 1.0, 0.5, [](double x, double) { return x < 40 ? 0.6 * (40 - x) : 0.0; });
-  fill(d, {24, 34, 5, 11, 0, 0.5});  // a sheet of ground, as thick as a layer
-  const std::size_t sheet = d.points.size();
-  const auto run = [&](bool slide, const std::string& name) {
-    Domain scene = d;
-    if (slide) fill(scene, {6, 12, 5, 11, 0, 3});
-    std::fill(scene.points.release.begin() + static_cast<std::ptrdiff_t>(sheet), scene.points.release.end(), 1);
-    scene.release_names = {"ground", "slide"};
-    scene.erodible = 1;
-    SolveOptions o;
-    o.end_time = 6;
-    o.frame_interval = 6;
-    o.base.friction_angle = 12;
-    o.gravity_loading_steps = 4;
-    o.base.cohesion = 0;
-    o.parts.resize(1);
-    o.parts[0].release = "ground";
-    o.parts[0].material.cohesion = 5000;
-    o.parts[0].material.softening_slip = 0.3;
-    o.parts[0].material.residual_friction_angle = 20;
-    o.base.law = FrictionLaw::velocity_weakening;
-    o.base.peak_coefficient = 0.8;  // holds the sheet at rest on a slope of 0.6
-    o.base.steady_coefficient = 0.2;
-    o.base.characteristic_speed = 0.5;
-    const RunPaths paths(folder / name);
-    std::filesystem::create_directories(folder / name);
-    Simulation simulation(scene, o, CpuDevice::make(), paths, "");
-    simulation.run("erodible", "Erodible ground");
-    return read_run(paths.run);
-  };
-  const auto volume = [&](const std::vector<double>& thickness) {
-    double sum = 0;
-    for (const double t : thickness) sum += std::isfinite(t) ? t : 0;
-    return sum;  // cells of 1 m2
-  };
-  const talus::Run calm = run(false, "calm");
+  const talus::Run calm = run_erodible(false, folder / "calm");
   EXPECT_EQ(calm.summary.volume_entrained, 0);
-  EXPECT_NEAR(volume(calm.maps.deposit_thickness), 0, 1e-9);
-  EXPECT_NEAR(volume(calm.maps.eroded_depth), 0, 0.02 * 30);
-  const talus::Run swept = run(true, "swept");
+  EXPECT_NEAR(volume_on(calm.maps.deposit_thickness), 0, 1e-9);
+  EXPECT_NEAR(volume_on(calm.maps.eroded_depth), 0, 0.02 * 30);
+  const talus::Run swept = run_erodible(true, folder / "swept");
   const RunSummary& s = swept.summary;
   EXPECT_NEAR(s.volume_released, 6 * 6 * 3, 1e-9);
   EXPECT_GT(s.volume_entrained, 3);
   EXPECT_NEAR(s.volume_released + s.volume_entrained, s.volume_final + s.volume_outflow, 1e-9);
-  EXPECT_NEAR(volume(swept.maps.deposit_thickness), s.volume_final, 1e-6);
+  EXPECT_NEAR(volume_on(swept.maps.deposit_thickness), s.volume_final, 1e-6);
   ASSERT_EQ(swept.maps.deposit_of.size(), 2U);
-  EXPECT_NEAR(volume(swept.maps.deposit_of[0].second) + volume(swept.maps.deposit_of[1].second), s.volume_final, 1e-6);
-  const double ground_left = volume(swept.maps.deposit_of[0].second);  // some of it may have left the domain
+  EXPECT_NEAR(volume_on(swept.maps.deposit_of[0].second) + volume_on(swept.maps.deposit_of[1].second), s.volume_final,
+              1e-6);
+  const double ground_left = volume_on(swept.maps.deposit_of[0].second);  // some of it may have left the domain
   EXPECT_LE(ground_left, s.volume_entrained + 1e-6);
   EXPECT_GE(ground_left, s.volume_entrained - s.volume_outflow - 1e-6);
-  EXPECT_NEAR(volume(swept.maps.initial_thickness), s.volume_released, 1e-6);
+  EXPECT_NEAR(volume_on(swept.maps.initial_thickness), s.volume_released, 1e-6);
   std::filesystem::remove_all(folder);
 }
 
