@@ -24,9 +24,7 @@ struct Sample {
 
 bool open_at(const GridShape& shape, const GroundTables& ground, double xi, double eta) {
   const int i = static_cast<int>(std::floor(xi + 0.5)), j = static_cast<int>(std::floor(eta + 0.5));
-  return i >= 0 && j >= 0 && i < shape.columns && j < shape.rows &&
-         ground
-             .open[static_cast<std::size_t>(j) * static_cast<std::size_t>(shape.columns) + static_cast<std::size_t>(i)];
+  return i >= 0 && j >= 0 && i < shape.columns && j < shape.rows && ground.open[shape.index(i, j)];
 }
 
 /// The function adds two points to a cell and direction, more where the ground is so steep that they would lie further

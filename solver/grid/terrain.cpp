@@ -22,29 +22,21 @@ NodeWeights node_weights(bool quadratic) {
 /// This function gives nodes without ground beside known ones the mean of those; only curves beyond the places where
 /// points may be look at them.
 void fill_rim(const GridShape& shape, std::vector<double>& terrain) {
-  const auto at = [&](int i, int j) {
-    return static_cast<std::size_t>(j) * static_cast<std::size_t>(shape.columns) + static_cast<std::size_t>(i);
-  };
   for (int j = 0; j < shape.rows; ++j) {
     for (int i = 0; i < shape.columns; ++i) {
-      if (std::isfinite(shape.terrain[at(i, j)])) continue;
+      if (std::isfinite(shape.terrain[shape.index(i, j)])) continue;
       double sum = 0;
       int count = 0;
       for (int b = std::max(j - 1, 0); b <= std::min(j + 1, shape.rows - 1); ++b) {
         for (int a = std::max(i - 1, 0); a <= std::min(i + 1, shape.columns - 1); ++a) {
-          if (!std::isfinite(shape.terrain[at(a, b)])) continue;
-          sum += terrain[at(a, b)];
+          if (!std::isfinite(shape.terrain[shape.index(a, b)])) continue;
+          sum += terrain[shape.index(a, b)];
           ++count;
         }
       }
-      if (count > 0) terrain[at(i, j)] = sum / count;
+      if (count > 0) terrain[shape.index(i, j)] = sum / count;
     }
   }
-}
-
-/// The place of node (i, j) in arrays [rows * columns].
-std::size_t place_of(const GridShape& shape, int i, int j) {
-  return static_cast<std::size_t>(j) * static_cast<std::size_t>(shape.columns) + static_cast<std::size_t>(i);
 }
 
 /// Slopes at the nodes, and which are open: where all nodes around have an elevation.
@@ -56,16 +48,16 @@ void measure_slopes(const GridShape& shape, GroundTables& tables) {
       double sx = 0, sy = 0;
       for (int b = -1; b <= 1; ++b) {
         for (int a = -1; a <= 1; ++a) {
-          inside = inside && std::isfinite(shape.terrain[place_of(shape, i + a, j + b)]);
-          const double z = tables.terrain[place_of(shape, i + a, j + b)];
+          inside = inside && std::isfinite(shape.terrain[shape.index(i + a, j + b)]);
+          const double z = tables.terrain[shape.index(i + a, j + b)];
           sx += w.slope[a + 1] * w.value[b + 1] * z;
           sy += w.value[a + 1] * w.slope[b + 1] * z;
         }
       }
       if (!inside) continue;
-      tables.slope_x[place_of(shape, i, j)] = sx / shape.spacing;
-      tables.slope_y[place_of(shape, i, j)] = sy / shape.spacing;
-      tables.open[place_of(shape, i, j)] = 1;
+      tables.slope_x[shape.index(i, j)] = sx / shape.spacing;
+      tables.slope_y[shape.index(i, j)] = sy / shape.spacing;
+      tables.open[shape.index(i, j)] = 1;
     }
   }
 }
@@ -76,20 +68,20 @@ void lean_edges(const GridShape& shape, GroundTables& tables) {
   const auto measured = tables.open;
   for (int j = 0; j < shape.rows; ++j) {
     for (int i = 0; i < shape.columns; ++i) {
-      if (measured[place_of(shape, i, j)]) continue;
+      if (measured[shape.index(i, j)]) continue;
       int count = 0;
       double sx = 0, sy = 0;
       for (int b = std::max(j - 1, 0); b <= std::min(j + 1, shape.rows - 1); ++b) {
         for (int a = std::max(i - 1, 0); a <= std::min(i + 1, shape.columns - 1); ++a) {
-          if (!measured[place_of(shape, a, b)]) continue;
-          sx += tables.slope_x[place_of(shape, a, b)];
-          sy += tables.slope_y[place_of(shape, a, b)];
+          if (!measured[shape.index(a, b)]) continue;
+          sx += tables.slope_x[shape.index(a, b)];
+          sy += tables.slope_y[shape.index(a, b)];
           ++count;
         }
       }
       if (count > 0) {
-        tables.slope_x[place_of(shape, i, j)] = sx / count;
-        tables.slope_y[place_of(shape, i, j)] = sy / count;
+        tables.slope_x[shape.index(i, j)] = sx / count;
+        tables.slope_y[shape.index(i, j)] = sy / count;
       }
     }
   }
@@ -134,9 +126,7 @@ double ground_at(const GridShape& shape, const GroundTables& ground, double xi, 
     for (int b = 0; b < Shape::width; ++b) {
       for (int a = 0; a < Shape::width; ++a) {
         const int ii = std::clamp(i + a, 0, shape.columns - 1), jj = std::clamp(j + b, 0, shape.rows - 1);
-        z += wx[a] * wy[b] *
-             ground.terrain[static_cast<std::size_t>(jj) * static_cast<std::size_t>(shape.columns) +
-                            static_cast<std::size_t>(ii)];
+        z += wx[a] * wy[b] * ground.terrain[shape.index(ii, jj)];
       }
     }
     return z;

@@ -1,6 +1,7 @@
 // The shape of a grid and the terrain below it, on the host.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "solver/grid/bicubic.hpp"
@@ -17,6 +18,11 @@ struct GridShape {
   bool quadratic = true;
   double lowest_weighed = 0;    ///< see GridView
   std::vector<double> terrain;  ///< ground at the nodes [m], NaN outside the domain; [rows * columns]
+
+  /// The place of node (i, j) in arrays [rows * columns]: row by row, the southernmost first, as MapGrid::index().
+  std::size_t index(int i, int j) const {
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(i);
+  }
 };
 
 /// The terrain as kernels use it, from a GridShape: coefficients, slopes at the nodes, where points may be; each

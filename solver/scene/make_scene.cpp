@@ -187,8 +187,7 @@ double first_rate(const GridShape& shape, const GroundTables& ground, const Part
   double steepest = 0;
   if (shape.mapping == Mapping::terrain_following) {
     for (std::size_t p = 0; p < points.size(); ++p) {
-      const auto n = static_cast<std::size_t>(points.cell[1][p]) * static_cast<std::size_t>(shape.columns) +
-                     static_cast<std::size_t>(points.cell[0][p]);
+      const std::size_t n = shape.index(points.cell[0][p], points.cell[1][p]);
       steepest = std::max(steepest, ground.slope_x[n] * ground.slope_x[n] + ground.slope_y[n] * ground.slope_y[n]);
     }
   }

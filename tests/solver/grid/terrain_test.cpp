@@ -31,17 +31,26 @@ TEST(Terrain, measures_the_slope_of_a_plane_exactly) {
   }
 }
 
+TEST(Terrain, stands_row_by_row) {
+  GridShape shape;
+  shape.columns = 9;
+  shape.rows = 8;
+  EXPECT_EQ(shape.index(0, 0), 0u);
+  EXPECT_EQ(shape.index(5, 3), 3u * 9u + 5u);
+  EXPECT_EQ(shape.index(8, 7), 9u * 8u - 1u);
+}
+
 TEST(Terrain, is_closed_beside_missing_elevations) {
   GridShape shape;
   shape.columns = shape.rows = 7;
   shape.spacing = shape.layer_height = 1;
   shape.terrain.assign(49, 0.0);
-  shape.terrain[3 * 7 + 5] = std::nan("");
+  shape.terrain[shape.index(5, 3)] = std::nan("");
   const GroundTables g = make_ground_tables(shape);
-  EXPECT_EQ(g.open[3 * 7 + 4], 0);
-  EXPECT_EQ(g.open[3 * 7 + 5], 0);
-  EXPECT_EQ(g.open[3 * 7 + 3], 1);
-  EXPECT_EQ(g.open[0], 0);
+  EXPECT_EQ(g.open[shape.index(4, 3)], 0);
+  EXPECT_EQ(g.open[shape.index(5, 3)], 0);
+  EXPECT_EQ(g.open[shape.index(3, 3)], 1);
+  EXPECT_EQ(g.open[shape.index(0, 0)], 0);
 }
 
 }  // namespace

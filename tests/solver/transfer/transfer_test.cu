@@ -78,7 +78,7 @@ class Transfers : public InEachPlace {
       for (int a = 0; a < 3; ++a) x[a] = s.points.cell[a][p] + s.points.offset[a][p];
       for (int i = s.points.cell[0][p] - 1; i <= s.points.cell[0][p] + 1; ++i) {
         for (int j = s.points.cell[1][p] - 1; j <= s.points.cell[1][p] + 1; ++j) {
-          const double z = ground.terrain[static_cast<std::size_t>(j * s.grid.columns + i)] / s.grid.spacing;
+          const double z = ground.terrain[s.grid.index(i, j)] / s.grid.spacing;
           bx += along(0, i).slope * along(1, j).value * z;
           by += along(0, i).value * along(1, j).slope * z;
         }
