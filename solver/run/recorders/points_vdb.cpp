@@ -1,22 +1,16 @@
 #include "common/domain/point_file.hpp"
-#include "common/error.hpp"
 #include "solver/run/recorders/frame_store.hpp"
 
 namespace talus::solver {
 
 void write_points_vdb(const std::filesystem::path& path, const PointFrame& frame, double spacing) {
   std::filesystem::create_directories(path.parent_path());
-  try {
-    write_point_file(
-        path, {.time = frame.time,
-               .voxel = spacing,
-               .positions = frame.position,
-               .attributes = {
-                   {"v", frame.velocity}, {"volume", frame.volume}, {"pressure", frame.pressure}, {"id", frame.id}}});
-  } catch (const DataError& error) {
-    throw DataError({path.string() + ": the frame cannot be written", error.faults().front().why,
-                     "Free some space, or set vdb_frames = false"});
-  }
+  write_point_file(
+      path, {.time = frame.time,
+             .voxel = spacing,
+             .positions = frame.position,
+             .attributes = {
+                 {"v", frame.velocity}, {"volume", frame.volume}, {"pressure", frame.pressure}, {"id", frame.id}}});
 }
 
 }  // namespace talus::solver

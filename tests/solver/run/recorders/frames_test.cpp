@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <numeric>
+#include <string>
 
 #include "solver/run/recorders/frame_store.hpp"
 #include "solver/scene/make_solver.hpp"
@@ -44,6 +46,21 @@ TEST(FrameRecorder, hands_every_frame_to_the_run_file) {
   EXPECT_NEAR(std::accumulate(first.begin(), first.end(), 0.0), 4 * 4 * 2, 1e-9);
   frames.clear();
   EXPECT_THROW(frames.expect(1), DataError);
+}
+
+TEST(PointsVdb, that_cannot_be_written_are_a_fault_like_that_of_any_other_file) {
+  const test::Scratch scratch;
+  const auto file = scratch / "points.vdb";
+  std::filesystem::create_directory(file);  // where the file is to go
+  const PointFrame frame{.time = 0,
+                         .position = {{1, 2, 3}},
+                         .velocity = {{0, 0, 0}},
+                         .volume = {1},
+                         .pressure = {0},
+                         .id = {0},
+                         .release = {0}};
+  const std::string fault = test::fault_of<DataError>([&] { write_points_vdb(file, frame, 1); });
+  EXPECT_EQ(fault.rfind(file.string() + ": cannot be written (", 0), 0u) << fault;
 }
 
 }  // namespace
