@@ -16,13 +16,13 @@ struct LinearForcing {
   double next(double residual, const NewtonControls& controls) {
     constexpr double gamma = 0.9, most = 0.1, first = 1e-3;  // a nearly linear step should be done in two
     if (controls.forcing == Forcing::fixed) return controls.linear_tolerance;
-    double wanted = first;
+    double tolerance = first;
     if (last_residual > 0) {
-      wanted = gamma * (residual / last_residual) * (residual / last_residual);
-      if (gamma * last * last > 0.1) wanted = std::max(wanted, gamma * last * last);
+      tolerance = gamma * (residual / last_residual) * (residual / last_residual);
+      if (gamma * last * last > 0.1) tolerance = std::max(tolerance, gamma * last * last);
     }
     last_residual = residual;
-    last = std::clamp(wanted, 1e-12, most);
+    last = std::clamp(tolerance, 1e-12, most);
     return std::max(controls.linear_tolerance, std::min(most, std::max(last, 0.1 * controls.tolerance / residual)));
   }
 };

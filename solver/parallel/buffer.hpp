@@ -46,10 +46,10 @@ class Buffer {
   /// little memory.
   void resize(std::size_t size) {
     if (size > capacity_) {
-      const std::size_t wanted = capacity_ == 0 ? size : size + size / 8;
+      const std::size_t capacity = capacity_ == 0 ? size : size + size / 8;
       release();
-      data_ = static_cast<T*>(detail::allocate(device_, wanted * sizeof(T)));
-      capacity_ = wanted;
+      data_ = static_cast<T*>(detail::allocate(device_, capacity * sizeof(T)));
+      capacity_ = capacity;
     }
     size_ = size;
   }

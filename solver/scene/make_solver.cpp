@@ -57,12 +57,12 @@ AnyDevice make_device(On on, int index) {
   return CpuDevice::make();
 }
 
-On choose_device(On wanted) {
-  if (wanted == On::gpu && !gpu_available()) {
+On choose_device(On on) {
+  if (on == On::gpu && !gpu_available()) {
     throw RecipeError({"--on gpu", "this machine has no GPU that the program can use", "Use --on cpu or --on auto"});
   }
-  if (wanted == On::automatic) return gpu_available() ? On::gpu : On::cpu;
-  return wanted;
+  if (on == On::automatic) return gpu_available() ? On::gpu : On::cpu;
+  return on;
 }
 
 }  // namespace talus::solver

@@ -30,7 +30,8 @@ std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolveOptions& op
 /// A new device: the CPU's, or a stream on the GPU of that index. `on` must be cpu or gpu.
 AnyDevice make_device(On on, int index = 0);
 
-/// The choice of cpu or gpu for automatic; the function throws RecipeError when a GPU is asked for and there is none.
-On choose_device(On wanted);
+/// The choice of cpu or gpu where `on` is automatic; the function throws RecipeError when a GPU is asked for and there
+/// is none.
+On choose_device(On on);
 
 }  // namespace talus::solver

@@ -61,15 +61,15 @@ struct Clock {
     }
     if (halt != running) return;
     const double rate = positive_from_bits(rate_bits);
-    double wanted = rate > 0 ? courant / rate : largest_step;
-    if (wanted > largest_step) wanted = largest_step;
+    double full_step = rate > 0 ? courant / rate : largest_step;
+    if (full_step > largest_step) full_step = largest_step;
     const double remaining = next_event - time;
-    if (wanted >= remaining) {
+    if (full_step >= remaining) {
       step_size = remaining;
       time = next_event;
     } else {
       // Two even steps rather than a full one and a sliver.
-      step_size = remaining < 2 * wanted ? 0.5 * remaining : wanted;
+      step_size = remaining < 2 * full_step ? 0.5 * remaining : full_step;
       time += step_size;
     }
     kept = share_kept(step_size, rate);
