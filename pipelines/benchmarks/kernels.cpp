@@ -27,20 +27,9 @@ struct Way {
 Way way_of(ShapeKind shape) { return shape == ShapeKind::linear ? Way{0, 0} : Way{0.3, 0.2}; }
 constexpr double density = 2000;  // [kg/m3]
 
-/// A block of sand 8 points to a cell, four times as wide as high, on level ground without friction, on its way.
-Scene block(double points, const SolveOptions& options) {
-  const int high = std::max(4, static_cast<int>(std::lround(std::cbrt(points / 8 / 16)))),
-            wide = std::max(4, static_cast<int>(std::lround(std::sqrt(points / 8 / high))));
-  constexpr int margin = 12;
-  Scene scene;
-  GridShape& shape = scene.grid;
-  shape.columns = shape.rows = wide + 2 * margin;
-  shape.spacing = shape.layer_height = 1;
-  shape.quadratic = options.shape == ShapeKind::quadratic;
-  shape.lowest_weighed = options.integrator == Integrator::explicit_ ? 0.1 : 0.01;  // as make_scene
-  shape.terrain.assign(static_cast<std::size_t>(shape.columns) * static_cast<std::size_t>(shape.rows), 0.0);
-  scene.map = {shape.columns, shape.rows, 0, 0, 1, ""};
-  ParticleState& s = scene.points;
+/// The seeds of a block of `wide` x `wide` x `high` cells that stands on the terrain, `margin` cells from the edges of
+/// the map: 8 points to a cell, by number from the lowest layer on.
+void place_seeds(int margin, int wide, int high, ParticleState& s) {
   const auto count = static_cast<std::size_t>(8) * static_cast<std::size_t>(wide) * static_cast<std::size_t>(wide) *
                      static_cast<std::size_t>(high);
   for (auto* list : {&s.cell[0], &s.cell[1], &s.cell[2], &s.id}) list->reserve(count);
@@ -57,6 +46,23 @@ Scene block(double points, const SolveOptions& options) {
       }
     }
   }
+}
+
+/// A block of sand 8 points to a cell, four times as wide as high, on level ground without friction, on its way.
+Scene block(double points, const SolveOptions& options) {
+  const int high = std::max(4, static_cast<int>(std::lround(std::cbrt(points / 8 / 16)))),
+            wide = std::max(4, static_cast<int>(std::lround(std::sqrt(points / 8 / high))));
+  constexpr int margin = 12;
+  Scene scene;
+  GridShape& shape = scene.grid;
+  shape.columns = shape.rows = wide + 2 * margin;
+  shape.spacing = shape.layer_height = 1;
+  shape.quadratic = options.shape == ShapeKind::quadratic;
+  shape.lowest_weighed = options.integrator == Integrator::explicit_ ? 0.1 : 0.01;  // as make_scene
+  shape.terrain.assign(static_cast<std::size_t>(shape.columns) * static_cast<std::size_t>(shape.rows), 0.0);
+  scene.map = {shape.columns, shape.rows, 0, 0, 1, ""};
+  ParticleState& s = scene.points;
+  place_seeds(margin, wide, high, s);
   const auto constant = [&](double value) { return std::vector<double>(s.id.size(), value); };
   s.velocity[0] = constant(options.initial_velocity[0]);
   s.velocity[1] = constant(options.initial_velocity[1]);
