@@ -91,9 +91,9 @@ void report_profile(const RunSummary& summary, const AnyDevice& device, const st
 /// One sentence on what will run: points, cells, first step.
 void log_plan(const Domain& domain, const SolveOptions& o, const AnyDevice& device) {
   const Scene scene = make_scene(domain, o);
-  const GroundTables ground = make_ground_tables(scene.grid);
+  const TerrainTables terrain = make_terrain_tables(scene.grid);
   const double wave_speed = fastest_wave(o);
-  const double step = std::min(o.cfl / first_rate(scene.grid, ground, scene.points, wave_speed, 0), o.largest_step);
+  const double step = std::min(o.cfl / first_rate(scene.grid, terrain, scene.points, wave_speed, 0), o.largest_step);
   const double volume = std::accumulate(scene.points.volume.begin(), scene.points.volume.end(), 0.0);
   log_info(fmt::format("{} material points, {:.0f} m3; grid {} x {} columns of {:g} m, layers of {:g} m",
                        scene.points.size(), volume, scene.grid.columns, scene.grid.rows, scene.grid.spacing,

@@ -22,26 +22,26 @@ struct Sample {
   int body;
 };
 
-bool open_at(const GridShape& shape, const GroundTables& ground, double xi, double eta) {
+bool open_at(const GridShape& shape, const TerrainTables& terrain, double xi, double eta) {
   const int i = static_cast<int>(std::floor(xi + 0.5)), j = static_cast<int>(std::floor(eta + 0.5));
-  return i >= 0 && j >= 0 && i < shape.columns && j < shape.rows && ground.open[shape.index(i, j)];
+  return i >= 0 && j >= 0 && i < shape.columns && j < shape.rows && terrain.open[shape.index(i, j)];
 }
 
 /// The function adds two points to a cell and direction, more where the ground is so steep that they would lie further
 /// apart than half a layer.
-void add_ground(const GridShape& shape, const GroundTables& ground, std::vector<Sample>& samples) {
+void add_ground(const GridShape& shape, const TerrainTables& terrain, std::vector<Sample>& samples) {
   constexpr int most = 8;
   for (int j = 0; j < shape.rows; ++j) {
     for (int i = 0; i < shape.columns; ++i) {
-      if (!open_at(shape, ground, i, j)) continue;
-      const GroundPoint<double> middle = bicubic_ground(shape, ground, i, j);
+      if (!open_at(shape, terrain, i, j)) continue;
+      const GroundPoint<double> middle = bicubic_ground(shape, terrain, i, j);
       const double steep =
           std::max(std::abs(middle.slope_x), std::abs(middle.slope_y)) * shape.spacing / shape.layer_height;
       const int n = std::clamp(static_cast<int>(std::ceil(2 * steep)), 2, most);
       for (int b = 0; b < n; ++b) {
         for (int a = 0; a < n; ++a) {
           const double xi = i - 0.5 + (a + 0.5) / n, eta = j - 0.5 + (b + 0.5) / n;
-          const GroundPoint<double> g = bicubic_ground(shape, ground, xi, eta);
+          const GroundPoint<double> g = bicubic_ground(shape, terrain, xi, eta);
           const double length = std::sqrt(1 + g.slope_x * g.slope_x + g.slope_y * g.slope_y);
           const double side = shape.spacing / n;
           samples.push_back({{xi, eta, g.height / shape.layer_height},
@@ -72,15 +72,15 @@ using Bins = std::map<std::tuple<int, int, int, int>, Bin>;
 
 /// The facets above the ground, those of half a cell that look the same way as one: both faces of a wall thinner than a
 /// cell stay apart.
-Bins exposed_facets(const MapGrid& map, const GridShape& shape, const GroundTables& ground,
+Bins exposed_facets(const MapGrid& map, const GridShape& shape, const TerrainTables& terrain,
                     const BodySurface& surface) {
   Bins bins;
   for (const Facet& facet : surface.facets) {
     const double xi = (facet.centre[0] - map.west) / shape.spacing - 0.5,
                  eta = (facet.centre[1] - map.south) / shape.spacing - 0.5;
-    if (!open_at(shape, ground, xi, eta)) continue;
-    const double under = ground.datum + ground_at(shape, ground, xi, eta),
-                 bottom = shape.mapping == Mapping::cartesian ? ground.datum : under;
+    if (!open_at(shape, terrain, xi, eta)) continue;
+    const double under = terrain.datum + terrain_at(shape, terrain, xi, eta),
+                 bottom = shape.mapping == Mapping::cartesian ? terrain.datum : under;
     if (facet.centre[2] < under) continue;
     const double at[3] = {xi, eta, (facet.centre[2] - bottom) / shape.layer_height};
     const double size = std::hypot(facet.area[0], facet.area[1], facet.area[2]);
@@ -105,13 +105,13 @@ Bins exposed_facets(const MapGrid& map, const GridShape& shape, const GroundTabl
 }
 
 /// The contact points of an obstacle, one for each half cell and way to look; returns what there is to say of them.
-std::string add_obstacle(const MapGrid& map, const GridShape& shape, const GroundTables& ground, const Obstacle& o,
+std::string add_obstacle(const MapGrid& map, const GridShape& shape, const TerrainTables& terrain, const Obstacle& o,
                          int body, std::vector<Sample>& samples) {
   const double half = 0.5 * shape.spacing, half_layer = 0.5 * shape.layer_height;
   const BodySurface surface = read_level_set(o.level_set, o.grid, {half, half, half_layer});
   double exposed = 0;
   std::size_t points = 0;
-  for (const auto& [key, bin] : exposed_facets(map, shape, ground, surface)) {
+  for (const auto& [key, bin] : exposed_facets(map, shape, terrain, surface)) {
     const double size = length(bin.sum);
     if (!(size > 1e-9 * bin.area) || !(bin.area > 0)) continue;
     samples.push_back(
@@ -126,13 +126,13 @@ std::string add_obstacle(const MapGrid& map, const GridShape& shape, const Groun
 
 }  // namespace
 
-ContactPoints make_contact_points(const MapGrid& map, const GridShape& shape, const GroundTables& ground,
+ContactPoints make_contact_points(const MapGrid& map, const GridShape& shape, const TerrainTables& terrain,
                                   const std::vector<Obstacle>& obstacles) {
   ContactPoints points;
   std::vector<Sample> samples;
-  if (shape.ground == GroundContact::points) add_ground(shape, ground, samples);
+  if (shape.ground == GroundContact::points) add_ground(shape, terrain, samples);
   for (std::size_t o = 0; o < obstacles.size(); ++o) {
-    points.notes.push_back(add_obstacle(map, shape, ground, obstacles[o], static_cast<int>(o), samples));
+    points.notes.push_back(add_obstacle(map, shape, terrain, obstacles[o], static_cast<int>(o), samples));
     points.friction.push_back(obstacles[o].friction);
   }
   const int blocks_x = blocks_across(shape.columns);

@@ -12,7 +12,7 @@ template <class Real, class Device>
 class DeviceTerrain {
  public:
   /// The constructor copies the tables to the device.
-  DeviceTerrain(const Device& device, const GroundTables& tables)
+  DeviceTerrain(const Device& device, const TerrainTables& tables)
       : elevation_(device), slope_x_(device), slope_y_(device), open_(device) {
     upload_as(elevation_, tables.terrain);
     upload_as(slope_x_, tables.slope_x);

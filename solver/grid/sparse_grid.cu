@@ -8,8 +8,8 @@ SparseGrid<Real, Device>::SparseGrid(const Device& device, const GridShape& shap
     : device_(device),
       shape_(shape),
       drift_(drift),
-      ground_(make_ground_tables(shape)),
-      terrain_(device, ground_),
+      tables_(make_terrain_tables(shape)),
+      terrain_(device, tables_),
       storage_(device, shape.columns, shape.rows),
       order_(device, shape.columns, shape.rows, {.in_order = in_order, .by_lowest_node = by_lowest_node}) {}
 

@@ -31,7 +31,7 @@ class SparseGrid {
   /// The method sets the nodes at which material is met from now on.
   void set_walls(const WallNodes& nodes) { walls_ = nodes; }
   /// The terrain as kernels use it, on the host.
-  const GroundTables& ground() const { return ground_; }
+  const TerrainTables& ground() const { return tables_; }
   /// The shape of the grid.
   const GridShape& shape() const { return shape_; }
   /// The keys of the cells that the points were sorted by (home_key()), [points] on the device.
@@ -51,7 +51,7 @@ class SparseGrid {
   Device device_;
   GridShape shape_;
   int drift_;
-  GroundTables ground_;
+  TerrainTables tables_;
   WallNodes walls_;
   DeviceTerrain<Real, Device> terrain_;
   BlockStorage<Device> storage_;

@@ -40,7 +40,7 @@ void fill_rim(const GridShape& shape, std::vector<double>& terrain) {
 }
 
 /// Slopes at the nodes, and which are open: where all nodes around have an elevation.
-void measure_slopes(const GridShape& shape, GroundTables& tables) {
+void measure_slopes(const GridShape& shape, TerrainTables& tables) {
   const NodeWeights w = node_weights(shape.quadratic);
   for (int j = 1; j + 1 < shape.rows; ++j) {
     for (int i = 1; i + 1 < shape.columns; ++i) {
@@ -64,7 +64,7 @@ void measure_slopes(const GridShape& shape, GroundTables& tables) {
 
 /// A node beside the domain's edge, which stencils reach but where no slope can be measured, leans as its neighbours
 /// do.
-void lean_edges(const GridShape& shape, GroundTables& tables) {
+void lean_edges(const GridShape& shape, TerrainTables& tables) {
   const auto measured = tables.open;
   for (int j = 0; j < shape.rows; ++j) {
     for (int i = 0; i < shape.columns; ++i) {
@@ -89,8 +89,8 @@ void lean_edges(const GridShape& shape, GroundTables& tables) {
 
 }  // namespace
 
-GroundTables make_ground_tables(const GridShape& shape) {
-  GroundTables tables;
+TerrainTables make_terrain_tables(const GridShape& shape) {
+  TerrainTables tables;
   tables.datum = std::numeric_limits<double>::infinity();
   for (double z : shape.terrain) {
     if (std::isfinite(z)) tables.datum = std::min(tables.datum, z);
@@ -107,14 +107,14 @@ GroundTables make_ground_tables(const GridShape& shape) {
   return tables;
 }
 
-GroundPoint<double> bicubic_ground(const GridShape& shape, const GroundTables& ground, double xi, double eta) {
+GroundPoint<double> bicubic_ground(const GridShape& shape, const TerrainTables& tables, double xi, double eta) {
   const double i = std::floor(xi), j = std::floor(eta);
-  return bicubic_ground(NodeTerrain<double>{ground.terrain.data(), shape.columns, shape.rows, shape.spacing},
+  return bicubic_ground(NodeTerrain<double>{tables.terrain.data(), shape.columns, shape.rows, shape.spacing},
                         static_cast<int>(i), static_cast<int>(j), xi - i, eta - j);
 }
 
-double ground_at(const GridShape& shape, const GroundTables& ground, double xi, double eta) {
-  if (shape.ground == GroundContact::points) return bicubic_ground(shape, ground, xi, eta).height;
+double terrain_at(const GridShape& shape, const TerrainTables& tables, double xi, double eta) {
+  if (shape.ground == GroundContact::points) return bicubic_ground(shape, tables, xi, eta).height;
   const auto sample = [&](auto kind) {
     using Shape = decltype(kind);
     double wx[3], wy[3], unused[3];
@@ -126,7 +126,7 @@ double ground_at(const GridShape& shape, const GroundTables& ground, double xi, 
     for (int b = 0; b < Shape::width; ++b) {
       for (int a = 0; a < Shape::width; ++a) {
         const int ii = std::clamp(i + a, 0, shape.columns - 1), jj = std::clamp(j + b, 0, shape.rows - 1);
-        z += wx[a] * wy[b] * ground.terrain[shape.index(ii, jj)];
+        z += wx[a] * wy[b] * tables.terrain[shape.index(ii, jj)];
       }
     }
     return z;

@@ -17,7 +17,7 @@ struct GridShape {
   GroundContact ground = GroundContact::nodes;
   bool quadratic = true;
   double lowest_weighed = 0;    ///< see GridView
-  std::vector<double> terrain;  ///< ground at the nodes [m], NaN outside the domain; [rows * columns]
+  std::vector<double> terrain;  ///< elevations at the nodes [m], NaN outside the domain; [rows * columns]
 
   /// The place of node (i, j) in arrays [rows * columns]: row by row, the southernmost first, as MapGrid::index().
   std::size_t index(int i, int j) const {
@@ -27,19 +27,23 @@ struct GridShape {
 
 /// The terrain as kernels use it, from a GridShape: coefficients, slopes at the nodes, where points may be; each
 /// [rows * columns].
-struct GroundTables {
-  double datum = 0;  ///< lowest ground [m]; heights below are from here
+struct TerrainTables {
+  double datum = 0;  ///< lowest elevation [m]; heights below are from here
   std::vector<double> terrain, slope_x, slope_y;
   std::vector<unsigned char> open;
 };
+
+/// The name by which contact_points.hpp still knows them.
+using GroundTables = TerrainTables;
+
 /// The terrain of a grid: elevations at the nodes above the datum, the coefficients b_i of (T1), and the slopes there.
-GroundTables make_ground_tables(const GridShape& shape);
+TerrainTables make_terrain_tables(const GridShape& shape);
 
 /// The bicubic ground on the host, at (xi, eta) in cells from node (0, 0).
-GroundPoint<double> bicubic_ground(const GridShape& shape, const GroundTables& ground, double xi, double eta);
+GroundPoint<double> bicubic_ground(const GridShape& shape, const TerrainTables& tables, double xi, double eta);
 
-/// The ground elevation at (xi, eta), in cells from node (0, 0), as the grid's own functions interpolate it (T1), or
-/// bicubic where it is met by points [m above datum].
-double ground_at(const GridShape& shape, const GroundTables& ground, double xi, double eta);
+/// The elevation of the terrain at (xi, eta), in cells from node (0, 0), as the grid's own functions interpolate it
+/// (T1), or bicubic where it is met by points [m above datum].
+double terrain_at(const GridShape& shape, const TerrainTables& tables, double xi, double eta);
 
 }  // namespace talus

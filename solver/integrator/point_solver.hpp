@@ -71,7 +71,7 @@ class PointSolver : public Solver {
   /// The impulse that every obstacle was given so far, along x, y and z [N s].
   std::vector<Vec3<double>> obstacle_impulses() const override { return surroundings_.contact().obstacle_impulses(); }
   /// The terrain as kernels use it.
-  const GroundTables& ground() const override { return grid_.ground(); }
+  const TerrainTables& ground() const override { return grid_.ground(); }
   /// The number of points in the domain.
   int particle_count() const override { return points_.count(); }
   /// The memory taken by points, grid, maps and what else there is [bytes].

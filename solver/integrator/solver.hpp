@@ -72,7 +72,7 @@ class Solver {
   /// The impulse that every obstacle was given so far, along x, y and z [N s].
   virtual std::vector<Vec3<double>> obstacle_impulses() const = 0;
   /// The terrain as kernels use it.
-  virtual const GroundTables& ground() const = 0;
+  virtual const TerrainTables& ground() const = 0;
   /// The memory that is held where the steps are taken, by owner [bytes].
   virtual MemoryShares memory() const = 0;
   /// The memory that is held where the steps are taken, of all owners together [bytes].

@@ -119,10 +119,10 @@ std::vector<std::string> plan(const Domain& domain, const SolveOptions& o, const
       fmt::format("{:.1f} MB now, on the {}", static_cast<double>(trial.bytes) / 1e6, device.is_gpu() ? "GPU" : "CPU"));
   double fewest = o.end_time / o.implicit.step, most = fewest;
   if (abilities_of(o.integrator).obey_cfl) {
-    const GroundTables ground = make_ground_tables(scene.grid);
+    const TerrainTables terrain = make_terrain_tables(scene.grid);
     const double wave = fastest_wave(o), fast = lowest_stiffness(domain, o).speed;
     const auto step_at = [&](double speed) {
-      return std::min(o.cfl / first_rate(scene.grid, ground, scene.points, wave, speed), o.largest_step);
+      return std::min(o.cfl / first_rate(scene.grid, terrain, scene.points, wave, speed), o.largest_step);
     };
     fewest = o.end_time / step_at(0);
     most = o.end_time / std::min(step_at(fast), trial.step > 0 ? trial.step : 1e30);

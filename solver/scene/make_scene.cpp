@@ -108,11 +108,11 @@ GridShape grid_shape(const Domain& domain, const SolveOptions& options) {
 
 /// This function throws DataError unless a point lies over known ground, and in an active cell of the grid that was
 /// made for it.
-void check_place(const Domain& domain, const GroundTables& ground, const ActiveCells& active, std::size_t p) {
+void check_place(const Domain& domain, const TerrainTables& terrain, const ActiveCells& active, std::size_t p) {
   const auto cell = nearest_cell(domain.grid, domain.layer_height, domain.points, p);
   const auto [i, j, layer] = cell;
   const bool inside = i >= 0 && j >= 0 && i < domain.grid.columns && j < domain.grid.rows;
-  if (!inside || !ground.open[domain.grid.index(i, j)]) {
+  if (!inside || !terrain.open[domain.grid.index(i, j)]) {
     throw DataError({fmt::format("domain.vdb: point {} at ({:.2f}, {:.2f}) stands outside the ground or at its edge", p,
                                  domain.points.x[p], domain.points.y[p]),
                      "a point needs known ground one cell around it",
@@ -127,18 +127,18 @@ void check_place(const Domain& domain, const GroundTables& ground, const ActiveC
 
 /// The state of the domain's points as they are seeded, at the recipe's initial velocity.
 ParticleState place_points(const Domain& domain, const SolveOptions& options, const GridShape& shape,
-                           const GroundTables& ground, const ActiveCells& active) {
+                           const TerrainTables& terrain, const ActiveCells& active) {
   ParticleState s;
   const std::size_t count = domain.points.size();
   s.resize(count);
   for (std::size_t p = 0; p < count; ++p) {
-    check_place(domain, ground, active, p);
+    check_place(domain, terrain, active, p);
     const double xi = (domain.points.x[p] - domain.grid.west) / shape.spacing - 0.5;
     const double eta = (domain.points.y[p] - domain.grid.south) / shape.spacing - 0.5;
     place(xi, s.cell[0][p], s.offset[0][p]);
     place(eta, s.cell[1][p], s.offset[1][p]);
     double height = domain.points.height[p];
-    if (shape.mapping == Mapping::cartesian) height += ground_at(shape, ground, xi, eta);
+    if (shape.mapping == Mapping::cartesian) height += terrain_at(shape, terrain, xi, eta);
     place(height / shape.layer_height, s.cell[2][p], s.offset[2][p]);
     for (int a = 0; a < 3; ++a) s.velocity[a][p] = options.initial_velocity[static_cast<std::size_t>(a)];
     s.volume[p] = domain.points.volume[p];
@@ -159,36 +159,36 @@ Scene make_scene(const Domain& domain, const SolveOptions& options) {
   Scene scene;
   scene.map = domain.grid;
   scene.grid = grid_shape(domain, options);
-  const GroundTables ground = make_ground_tables(scene.grid);
+  const TerrainTables terrain = make_terrain_tables(scene.grid);
   scene.active = domain.active ? *domain.active : active_cells(domain.grid, domain.layer_height, domain.points);
-  scene.points = place_points(domain, options, scene.grid, ground, scene.active);
+  scene.points = place_points(domain, options, scene.grid, terrain, scene.active);
   attach_loads(domain, options, scene);
   attach_materials(domain, options, scene);
   check_bed(domain, options);
   scene.bed = make_bed(domain, options);
-  scene.contacts = make_contact_points(domain.grid, scene.grid, ground, make_obstacles(options.obstacles));
+  scene.contacts = make_contact_points(domain.grid, scene.grid, terrain, make_obstacles(options.obstacles));
   return scene;
 }
 
-std::vector<std::array<double, 3>> positions(const MapGrid& map, const GridShape& shape, const GroundTables& ground,
+std::vector<std::array<double, 3>> positions(const MapGrid& map, const GridShape& shape, const TerrainTables& terrain,
                                              const ParticleState& s) {
   std::vector<std::array<double, 3>> result(s.size());
   for (std::size_t p = 0; p < s.size(); ++p) {
     const double xi = s.cell[0][p] + s.offset[0][p], eta = s.cell[1][p] + s.offset[1][p];
-    double z = ground.datum + (s.cell[2][p] + s.offset[2][p]) * shape.layer_height;
-    if (shape.mapping == Mapping::terrain_following) z += ground_at(shape, ground, xi, eta);
+    double z = terrain.datum + (s.cell[2][p] + s.offset[2][p]) * shape.layer_height;
+    if (shape.mapping == Mapping::terrain_following) z += terrain_at(shape, terrain, xi, eta);
     result[p] = {map.west + (xi + 0.5) * shape.spacing, map.south + (eta + 0.5) * shape.spacing, z};
   }
   return result;
 }
 
-double first_rate(const GridShape& shape, const GroundTables& ground, const ParticleState& points, double wave_speed,
+double first_rate(const GridShape& shape, const TerrainTables& terrain, const ParticleState& points, double wave_speed,
                   double speed) {
   double steepest = 0;
   if (shape.mapping == Mapping::terrain_following) {
     for (std::size_t p = 0; p < points.size(); ++p) {
       const std::size_t n = shape.index(points.cell[0][p], points.cell[1][p]);
-      steepest = std::max(steepest, ground.slope_x[n] * ground.slope_x[n] + ground.slope_y[n] * ground.slope_y[n]);
+      steepest = std::max(steepest, terrain.slope_x[n] * terrain.slope_x[n] + terrain.slope_y[n] * terrain.slope_y[n]);
     }
   }
   const double hx = 1 / shape.spacing, hz = 1 / shape.layer_height;

@@ -15,12 +15,12 @@ namespace talus::solver {
 Scene make_scene(const Domain& domain, const SolveOptions& options);
 
 /// The positions of points in map coordinates [m].
-std::vector<std::array<double, 3>> positions(const MapGrid& map, const GridShape& shape, const GroundTables& ground,
+std::vector<std::array<double, 3>> positions(const MapGrid& map, const GridShape& shape, const TerrainTables& terrain,
                                              const ParticleState& points);
 
 /// An upper bound of (wave speed + speed) over cell size for points at rest or moving at `speed`, for the first step
 /// [1/s].
-double first_rate(const GridShape& shape, const GroundTables& ground, const ParticleState& points, double wave_speed,
+double first_rate(const GridShape& shape, const TerrainTables& terrain, const ParticleState& points, double wave_speed,
                   double speed);
 
 }  // namespace talus::solver

@@ -35,7 +35,7 @@ class FrameRecorder {
 
   const Scene& scene_;
   const SolveOptions& options_;
-  GroundTables ground_;
+  TerrainTables terrain_;
   std::filesystem::path vdb_folder_;
   FrameStore store_;
   SideWork writing_;  ///< last: what it does needs the rest

@@ -59,14 +59,14 @@ GaugeRecorder::GaugeRecorder(const SolveOptions& options, const Scene& scene)
       densities_{options.material.density} {
   check_places(options.gauges, scene);
   for (const PartOptions& part : options.parts) densities_.push_back(part.material.density);
-  const GroundTables ground = make_ground_tables(scene.grid);
+  const TerrainTables terrain = make_terrain_tables(scene.grid);
   for (const GaugeOptions& g : options.gauges) {
     const double xi = in_cells(g.x, scene.map.west, scene.map.cell);
     const double eta = in_cells(g.y, scene.map.south, scene.map.cell);
     sites_.push_back(
         {.xi = xi,
          .eta = eta,
-         .bed = ground.datum + ground_at(scene.grid, ground, xi, eta),
+         .bed = terrain.datum + terrain_at(scene.grid, terrain, xi, eta),
          .low = scene.map.index(first_of_pair(xi, scene.grid.columns), first_of_pair(eta, scene.grid.rows))});
   }
 }

@@ -28,7 +28,7 @@ TEST(ContactPoints, of_a_plane_lie_on_it_and_know_its_normal) {
   ASSERT_GT(points.size(), 14u * 12u) << "finer than the nodes";
   const double steep = std::sqrt(1 + along_x * along_x + along_y * along_y);
   int inside = 0;
-  const double datum = make_ground_tables(scene.grid).datum;
+  const double datum = make_terrain_tables(scene.grid).datum;
   for (std::size_t c = 0; c < points.size(); ++c) {
     if (points.cell[0][c] < 3 || points.cell[0][c] > 10 || points.cell[1][c] < 3 || points.cell[1][c] > 8) continue;
     ++inside;  // where the spline does not feel the edge of the map
@@ -66,7 +66,7 @@ TEST(ContactPoints, are_not_there_where_nodes_meet_the_ground) {
 TEST(ContactPoints, refuse_an_obstacle_without_a_file) {
   const Scene scene = over_a_plane(GroundContact::nodes);
   EXPECT_THROW(
-      make_contact_points(scene.map, scene.grid, make_ground_tables(scene.grid), {{"pier", "/no/such.vdb", "", 0}}),
+      make_contact_points(scene.map, scene.grid, make_terrain_tables(scene.grid), {{"pier", "/no/such.vdb", "", 0}}),
       DataError);
 }
 

@@ -7,7 +7,7 @@ namespace talus {
 namespace {
 
 TEST(DeviceTerrain, shows_a_grid_every_table_in_the_precision_of_the_kernels) {
-  const GroundTables tables{
+  const TerrainTables tables{
       .datum = 1000, .terrain = {0.1, 2, 3}, .slope_x = {0.4, 5, 6}, .slope_y = {0.7, 8, 9}, .open = {1, 0, 1}};
   const DeviceTerrain<float, CpuDevice> terrain(CpuDevice::make(), tables);
   GridView<float> grid;

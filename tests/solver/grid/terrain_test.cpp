@@ -20,14 +20,14 @@ TEST(Terrain, measures_the_slope_of_a_plane_exactly) {
     for (int j = 0; j < 8; ++j) {
       for (int i = 0; i < 9; ++i) shape.terrain.push_back(1000 + 0.3 * 5 * i - 0.7 * 5 * j);
     }
-    const GroundTables g = make_ground_tables(shape);
+    const TerrainTables g = make_terrain_tables(shape);
     for (std::size_t n = 0; n < g.open.size(); ++n) {
       if (!g.open[n]) continue;
       EXPECT_NEAR(g.slope_x[n], 0.3, 1e-12);
       EXPECT_NEAR(g.slope_y[n], -0.7, 1e-12);
     }
     EXPECT_EQ(std::count(g.open.begin(), g.open.end(), 1), 7 * 6);
-    EXPECT_NEAR(g.datum + ground_at(shape, g, 3.3, 4.6), 1000 + 0.3 * 5 * 3.3 - 0.7 * 5 * 4.6, 1e-10);
+    EXPECT_NEAR(g.datum + terrain_at(shape, g, 3.3, 4.6), 1000 + 0.3 * 5 * 3.3 - 0.7 * 5 * 4.6, 1e-10);
   }
 }
 
@@ -46,7 +46,7 @@ TEST(Terrain, is_closed_beside_missing_elevations) {
   shape.spacing = shape.layer_height = 1;
   shape.terrain.assign(49, 0.0);
   shape.terrain[shape.index(5, 3)] = std::nan("");
-  const GroundTables g = make_ground_tables(shape);
+  const TerrainTables g = make_terrain_tables(shape);
   EXPECT_EQ(g.open[shape.index(4, 3)], 0);
   EXPECT_EQ(g.open[shape.index(5, 3)], 0);
   EXPECT_EQ(g.open[shape.index(3, 3)], 1);

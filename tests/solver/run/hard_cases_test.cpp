@@ -185,7 +185,7 @@ TEST_P(HardCases, cliffs_spikes_and_pits_hold_nothing_inside_the_ground) {  // C
       for (std::size_t p = 0; p < s.size(); ++p) {
         const double ground_here =
             solver->ground().datum +
-            ground_at(scene.grid, solver->ground(), s.cell[0][p] + s.offset[0][p], s.cell[1][p] + s.offset[1][p]);
+            terrain_at(scene.grid, solver->ground(), s.cell[0][p] + s.offset[0][p], s.cell[1][p] + s.offset[1][p]);
         ASSERT_TRUE(std::isfinite(places[p][2]));
         if (mapping == Mapping::cartesian) continue;  // its ground is stairs between nodes
         ASSERT_GE(places[p][2], ground_here - 0.1);

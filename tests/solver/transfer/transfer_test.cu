@@ -72,13 +72,13 @@ class Transfers : public InEachPlace {
     double height;
     Sym3<double> tau;
 
-    ReferencePoint(const Scene& scene, const GroundTables& ground, std::size_t point, const Material<double>& m,
+    ReferencePoint(const Scene& scene, const TerrainTables& tables, std::size_t point, const Material<double>& m,
                    ShapeKind of)
         : s(scene), p(point), shape(of) {
       for (int a = 0; a < 3; ++a) x[a] = s.points.cell[a][p] + s.points.offset[a][p];
       for (int i = s.points.cell[0][p] - 1; i <= s.points.cell[0][p] + 1; ++i) {
         for (int j = s.points.cell[1][p] - 1; j <= s.points.cell[1][p] + 1; ++j) {
-          const double z = ground.terrain[s.grid.index(i, j)] / s.grid.spacing;
+          const double z = tables.terrain[s.grid.index(i, j)] / s.grid.spacing;
           bx += along(0, i).slope * along(1, j).value * z;
           by += along(0, i).value * along(1, j).slope * z;
         }
@@ -124,9 +124,9 @@ class Transfers : public InEachPlace {
   /// Momentum after one scatter, by the definitions.
   static std::map<Node, Vec4<double>> reference(const Scene& s, const Material<double>& m, double dt, ShapeKind shape) {
     std::map<Node, Vec4<double>> nodes;
-    const GroundTables ground = make_ground_tables(s.grid);
+    const TerrainTables tables = make_terrain_tables(s.grid);
     for (std::size_t p = 0; p < s.points.size(); ++p) {
-      const ReferencePoint point(s, ground, p, m, shape);
+      const ReferencePoint point(s, tables, p, m, shape);
       for (int i = s.points.cell[0][p] - 2; i <= s.points.cell[0][p] + 2; ++i) {
         for (int j = s.points.cell[1][p] - 2; j <= s.points.cell[1][p] + 2; ++j) {
           for (int k = s.points.cell[2][p] - 2; k <= s.points.cell[2][p] + 2; ++k)
