@@ -57,7 +57,8 @@ struct ScatterForces : PointScatter<Real, Shape> {
 /// there is a store for it.
 template <class Real, class Shape>
 struct StressAt {
-  static constexpr int tiles_at_once = 0;
+  /// In double precision the first cache has room for the local arrays of so many.
+  static constexpr int tiles_at_once = sizeof(Real) == 8 ? 6 : 0;
   Materials<Real> materials;
   bool dilatant;
   bool definite;  ///< without the part of the tangent that compression makes negative

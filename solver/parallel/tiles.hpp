@@ -130,19 +130,15 @@ struct TileMemory {
   }
 };
 
-/// What a lane of a tile is.
+/// What a lane of a tile is. Nothing of it is kept: the kernels are short of registers.
 template <int each, class Kernel>
 struct TileLane {
   using Sizes = TileSizes<each, Kernel>;
-  int lane, warp;
-  int first_source;  ///< of this warp
-  int team, column;  ///< lanes beyond the last team help to pass on
-  __device__ TileLane()
-      : lane(static_cast<int>(threadIdx.x) % warp_size),
-        warp(static_cast<int>(threadIdx.x) / warp_size),
-        first_source(warp * each),
-        team(lane / Sizes::columns),
-        column(lane % Sizes::columns) {}
+  __device__ int lane() const { return static_cast<int>(threadIdx.x) % warp_size; }
+  __device__ int warp() const { return static_cast<int>(threadIdx.x) / warp_size; }
+  __device__ int first_source() const { return warp() * each; }    ///< of this warp
+  __device__ int team() const { return lane() / Sizes::columns; }  ///< lanes beyond the last team help to pass on
+  __device__ int column() const { return lane() % Sizes::columns; }
 };
 
 inline constexpr int lane_bits = 5, layer_bits = 20;
@@ -152,17 +148,17 @@ inline constexpr int lane_bits = 5, layer_bits = 20;
 template <int each, class Kernel>
 __device__ __forceinline__ std::uint64_t read_point(int count, const Kernel& kernel, const TileLane<each, Kernel>& at,
                                                     TileMemory<each, Kernel>& memory) {
-  const std::uint64_t nothing = ~std::uint64_t{0} << lane_bits | static_cast<unsigned>(at.lane);
-  if (at.lane >= each) return nothing;
-  const int p = (static_cast<int>(blockIdx.x) * tile_warps + at.warp) * each + at.lane;
+  const std::uint64_t nothing = ~std::uint64_t{0} << lane_bits | static_cast<unsigned>(at.lane());
+  if (at.lane() >= each) return nothing;
+  const int p = (static_cast<int>(blockIdx.x) * tile_warps + at.warp()) * each + at.lane();
   if (p >= count || !kernel.counts(p)) return nothing;
-  const auto& source = *new (&memory.source(at.first_source + at.lane)) typename Kernel::Source(kernel, p);
+  const auto& source = *new (&memory.source(at.first_source() + at.lane())) typename Kernel::Source(kernel, p);
   for (int q = 0; q < Kernel::columns_each; ++q)
-    memory.bases[at.first_source + at.lane][q] = kernel.column_of(source, q);
+    memory.bases[at.first_source() + at.lane()][q] = kernel.column_of(source, q);
   const auto& n = kernel.nodes_of(source);
   return (static_cast<std::uint64_t>(kernel.grid.column(n.i, n.j)) << layer_bits | static_cast<unsigned>(n.k + 1))
              << lane_bits |
-         static_cast<unsigned>(at.lane);
+         static_cast<unsigned>(at.lane());
 }
 
 /// The points of a tile in the order of their nodes: bit q of each word is of the q-th.
@@ -192,7 +188,7 @@ __device__ __forceinline__ void add_together(const Kernel& kernel, const TileLan
   using Sizes = TileSizes<each, Kernel>;
   constexpr unsigned all = 0xffffffffu;
   constexpr int lanes = Sizes::lanes_of_a_node, parts = Sizes::parts;
-  const int part = at.lane % lanes;
+  const int part = at.lane() % lanes;
   const bool adds_part = part < parts && has_part(kernel, part);
   const unsigned whole = __ballot_sync(all, ends && !climbs);
   if (__ballot_sync(all, ends) == 0) return;
@@ -204,20 +200,21 @@ __device__ __forceinline__ void add_together(const Kernel& kernel, const TileLan
       TALUS_UNROLL
       for (int c = from; c < from + Sizes::layers_at_once; ++c) {
         const int n =
-            (at.warp * Sizes::teams + at.team) * Sizes::nodes_at_once + (c - from) * Sizes::columns + at.column;
+            (at.warp() * Sizes::teams + at.team()) * Sizes::nodes_at_once + (c - from) * Sizes::columns + at.column();
         kernel.store(sums[c], memory.values + n * parts);
-        memory.nodes[n] = kernel.node_in(memory.bases[source][at.column], kernel.nodes_of(memory.source(source)).k, c);
+        memory.nodes[n] =
+            kernel.node_in(memory.bases[source][at.column()], kernel.nodes_of(memory.source(source)).k, c);
       }
     }
     __syncwarp();
     for (int g = 0; g < Sizes::teams; ++g) {
       if ((passing >> (g * Sizes::columns) & 1u) == 0) continue;
-      const int begin = (at.warp * Sizes::teams + g) * Sizes::nodes_at_once;
+      const int begin = (at.warp() * Sizes::teams + g) * Sizes::nodes_at_once;
       const auto* const values = memory.values + begin * parts;
       const int* const nodes = memory.nodes + begin;
       const int number = (whole >> (g * Sizes::columns) & 1u) != 0 ? Sizes::nodes_at_once : Sizes::columns;
       if (!adds_part) continue;
-      for (int n = at.lane / lanes; n < number; n += warp_size / lanes)
+      for (int n = at.lane() / lanes; n < number; n += warp_size / lanes)
         atomicAdd(kernel.part(nodes[n], part), values[n * parts + part]);
     }
     __syncwarp();
@@ -234,7 +231,7 @@ __device__ __forceinline__ void add_alone(const Kernel& kernel, const TileLane<e
   for (int c = 0; c < Kernel::deep; ++c) {
     if (c > 0 && climbs) continue;
     const int k = kernel.nodes_of(memory.source(source)).k;
-    kernel.add_to_node(kernel.node_in(memory.bases[source][at.column], k, c), sums[c]);
+    kernel.add_to_node(kernel.node_in(memory.bases[source][at.column()], k, c), sums[c]);
   }
 }
 
@@ -251,15 +248,14 @@ __device__ void reduce_tile(int count, const Kernel& kernel) {
   const std::uint64_t key = read_point<each>(count, kernel, at, memory);
   if (__all_sync(all, key >> 63)) return;
   const TileOrder order = order_points(key);
-  const int first = at.team * Sizes::share, last = at.team >= Sizes::teams       ? 0
-                                                   : first + Sizes::share < each ? first + Sizes::share
-                                                                                 : each;
+  const int first = at.team() * Sizes::share;
+  const int last = at.team() >= Sizes::teams ? 0 : first + Sizes::share < each ? first + Sizes::share : each;
   typename Kernel::Sums sums[Sizes::deep];
   for (int step = 0; step < Sizes::share; ++step) {
     const int q = first + step;
-    const int source = at.first_source + __shfl_sync(all, order.point, q < warp_size ? q : 0);
+    const int source = at.first_source() + __shfl_sync(all, order.point, q < warp_size ? q : 0);
     const bool adds = q < last && (order.counting >> q & 1u) != 0, goes_on = adds && q + 1 < last;
-    if (adds) kernel.add(memory.source(source), at.column, sums);
+    if (adds) kernel.add(memory.source(source), at.column(), sums);
     const bool climbs = goes_on && (order.climbing >> q & 1u) != 0,
                ends = adds && !(goes_on && (order.staying >> q & 1u) != 0);
     if constexpr (Sizes::together) add_together<each>(kernel, at, memory, source, ends, climbs, sums);
