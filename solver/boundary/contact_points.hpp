@@ -36,7 +36,7 @@ struct ContactPoints {
 /// This function makes the points of the obstacles' surfaces, at most half a cell apart along each axis, and of the
 /// ground where `shape` has it met by points. It throws DataError for a level set that cannot be read or lies
 /// wholly outside the ground.
-ContactPoints make_contact_points(const MapGrid& map, const GridShape& shape, const GroundTables& ground,
+ContactPoints make_contact_points(const MapGrid& map, const GridShape& shape, const TerrainTables& ground,
                                   const std::vector<Obstacle>& obstacles);
 
 }  // namespace talus::solver

@@ -33,9 +33,6 @@ struct TerrainTables {
   std::vector<unsigned char> open;
 };
 
-/// The name by which contact_points.hpp still knows them.
-using GroundTables = TerrainTables;
-
 /// The terrain of a grid: elevations at the nodes above the datum, the coefficients b_i of (T1), and the slopes there.
 TerrainTables make_terrain_tables(const GridShape& shape);
 
