@@ -26,7 +26,7 @@ const OutlineStyle pressure_line{{0.45, 0.0, 0.45}, 0.35, false};
 const OutlineStyle survey_line{{0.0, 0.30, 0.70}, 0.7, true};
 
 fs::path write_terrain(const fs::path& folder, const Run& run) {
-  const fs::path file = folder / "terrain.tif";
+  fs::path file = folder / "terrain.tif";
   write_cog(file, {run.maps.grid, run.maps.before},
             {"elevation of the ground before the failure [m]",
              "m",

@@ -119,7 +119,7 @@ void check_animation(Animation animation, const Run& run) {
 }
 
 fs::path write_animation(const fs::path& folder, const PictureInput& input, Animation animation) {
-  const fs::path file = folder / (animation == Animation::gif ? "animation.gif" : "animation.mp4");
+  fs::path file = folder / (animation == Animation::gif ? "animation.gif" : "animation.mp4");
   PendingFile pending(file);
   const auto tail = encoding(animation) + " " + quoted(pending.path().string());
   if (!encode(input, tail, film_rate(input.run.frames.time.size())))

@@ -38,10 +38,14 @@ Json contours(const RunMaps& maps, const Window& window) {
     if (z < low) low = z;
     if (z > high) high = z;
   }
-  for (double k = std::ceil(low / interval); k * interval <= high; ++k) {
-    auto lines = lines_json(isolines(maps.grid, maps.before, k * interval, AtEdge::end), window);
+  if (!(low <= high)) return json;
+  const auto first = static_cast<long>(std::ceil(low / interval)),
+             last = static_cast<long>(std::floor(high / interval));
+  for (long k = first; k <= last; ++k) {
+    const double level = static_cast<double>(k) * interval;
+    auto lines = lines_json(isolines(maps.grid, maps.before, level, AtEdge::end), window);
     if (!lines.empty())
-      json["levels"].push_back({{"level", k * interval}, {"index", std::fmod(k, 5) == 0}, {"lines", std::move(lines)}});
+      json["levels"].push_back({{"level", level}, {"index", k % 5 == 0}, {"lines", std::move(lines)}});
   }
   return json;
 }

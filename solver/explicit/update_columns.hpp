@@ -127,7 +127,6 @@ struct UpdateColumns {
  private:
   TALUS_HD Vec3<Real> update(const Column& at, int k, int n, const Vec4<Real>& node,
                              decltype(Sums::losses)& losses) const {
-    const int column = at.column;
     const Real dt = Real(clock->step_size);
     const bool growing = gravity_ramp > 0 && clock->time < gravity_ramp;
     const Vec3<Real> g = growing ? gravity * Real(clock->time / gravity_ramp) : gravity;
@@ -144,35 +143,47 @@ struct UpdateColumns {
       v += pull * dt;
     }
     const Vec3<Real> free = v;
-    if (k <= at.top_contact) {
-      BaseFriction<Real> law = friction;
-      if (content == NodeContent::remapped && !law.holds()) law.law = FrictionLaw::none;
-      const Real sx = grid.slope_x[column], sy = grid.slope_y[column];
-      // On a Cartesian grid the nodes inside the ground touch no bed of their own.
-      const bool grips = content != NodeContent::remapped && friction.needs_area() && k == at.top_contact;
-      const Real grip = grips ? bed_area(node.w, full_base, grid.spacing, sx, sy) * dt / node.w : Real(0);
-      v = meet_ground(law, law.at(column), v, sx, sy, {.duration = dt, .grip = grip});
-    }
+    if (k <= at.top_contact) v = meet_bed(at, k, v, node.w, dt);
     if (walls.count > 0) v = meet_walls(walls, at.i, at.j, k, v, content != NodeContent::remapped);
     if constexpr (may_count) {
-      if (clock->keeps_budget) {
-        // Forces and impulses of a step act together, on the mean of its velocities: what rests loses nothing.
-        const Vec3<Real> mean = (before + v) * Real(0.5);
-        const double mass = static_cast<double>(node.w);
-        if (content == NodeContent::force && damping > Real(0))
-          losses.damping += mass * static_cast<double>(dot(undamped - free, mean));
-        losses.contact += mass * static_cast<double>(dot(free - v, mean));
-        losses.transfer += mass * static_cast<double>(dot(v - before, mean));
-        losses.reaction[0] += mass * static_cast<double>(v.x - free.x);
-        losses.reaction[1] += mass * static_cast<double>(v.y - free.y);
-        losses.reaction[2] += mass * static_cast<double>(v.z - free.z);
-      }
+      if (clock->keeps_budget) count(losses, static_cast<double>(node.w), {before, undamped, free, v});
     }
     if constexpr (content == NodeContent::force) {
       const Vec3<Real> change = v - before;
       forces[n] = {Real(0), change.x, change.y, change.z};
     }
     return v;
+  }
+
+  /// The velocity of a node of this mass after contact with the bed [m/s].
+  TALUS_HD Vec3<Real> meet_bed(const Column& at, int k, const Vec3<Real>& v, Real mass, Real dt) const {
+    BaseFriction<Real> law = friction;
+    if (content == NodeContent::remapped && !law.holds()) law.law = FrictionLaw::none;
+    const Real sx = grid.slope_x[at.column], sy = grid.slope_y[at.column];
+    // On a Cartesian grid the nodes inside the ground touch no bed of their own.
+    const bool grips = content != NodeContent::remapped && friction.needs_area() && k == at.top_contact;
+    const Real grip = grips ? bed_area(mass, full_base, grid.spacing, sx, sy) * dt / mass : Real(0);
+    return meet_ground(law, law.at(at.column), v, sx, sy, {.duration = dt, .grip = grip});
+  }
+
+  /// The velocities of a node in a step [m/s].
+  struct Velocities {
+    Vec3<Real> before;    ///< of the points
+    Vec3<Real> undamped;  ///< with all forces
+    Vec3<Real> free;      ///< damped, without bed and walls
+    Vec3<Real> after;
+  };
+  /// The method adds what a node of this mass has lost. Forces and impulses of a step act together, on the mean of its
+  /// velocities: what rests loses nothing.
+  TALUS_HD void count(Losses& losses, double mass, const Velocities& v) const {
+    const Vec3<Real> mean = (v.before + v.after) * Real(0.5);
+    if (content == NodeContent::force && damping > Real(0))
+      losses.damping += mass * static_cast<double>(dot(v.undamped - v.free, mean));
+    losses.contact += mass * static_cast<double>(dot(v.free - v.after, mean));
+    losses.transfer += mass * static_cast<double>(dot(v.after - v.before, mean));
+    losses.reaction[0] += mass * static_cast<double>(v.after.x - v.free.x);
+    losses.reaction[1] += mass * static_cast<double>(v.after.y - v.free.y);
+    losses.reaction[2] += mass * static_cast<double>(v.after.z - v.free.z);
   }
 
   /// The force that is left after local non-viscous damping (Cundall 1987): a share of the unbalanced force acts
