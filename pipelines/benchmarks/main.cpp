@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -22,6 +23,7 @@ using namespace talus;
 namespace fs = std::filesystem;
 using benchmarks::KernelRun;
 using benchmarks::KernelSetting;
+using solver::Precision;
 
 struct Words {
   std::string set, on = "auto";
@@ -98,36 +100,58 @@ std::string picture(const std::string& title, const std::string& label, const st
   return validation::png_of(chart);
 }
 
+/// The settings that rows are timed with: methods, shapes and precisions whose name contains `only`.
+std::vector<KernelSetting> settings_of(const std::string& only) {
+  std::vector<KernelSetting> settings;
+  for (const bool newmark : {false, true}) {
+    for (const auto shape : {ShapeKind::linear, ShapeKind::quadratic}) {
+      for (const auto precision : {Precision::single_, Precision::double_}) {
+        const KernelSetting setting{newmark, shape, precision, 0};
+        if (newmark && precision == Precision::single_) continue;
+        if (benchmarks::name_of(setting).find(only) != std::string::npos) settings.push_back(setting);
+      }
+    }
+  }
+  return settings;
+}
+
+/// The numbers of points that a setting is timed with, half a power of ten apart from 1e4 on.
+std::vector<double> numbers_of_points(const KernelSetting& setting, double least, double most) {
+  if (setting.newmark) most = std::min(most, 1.1e6);
+  if (setting.precision == Precision::double_) most = std::min(most, 3.3e7);
+  std::vector<double> numbers;
+  for (int half_powers = 8;; ++half_powers) {
+    const double points = std::pow(10.0, 0.5 * half_powers);
+    if (points > most * 1.001) return numbers;
+    if (points * 1.1 >= least) numbers.push_back(points);
+  }
+}
+
+std::string line_of(const KernelRun& r) {
+  return fmt::format(
+      "{:8} {:9} {:6} {:9.0f} points {:10.1f} us a step {:9.3g} s a point and step {:6.0f} B a point{}\n", r.method,
+      r.shape, r.precision, r.points, 1e6 * r.step_seconds, r.eta(), r.bytes / r.points,
+      r.pass ? "" : fmt::format("  WRONG: momentum off by {:.2g}", r.check));
+}
+
 int kernels(const Words& words, On on) {
   const double most = words.most > 0 ? words.most : on == On::gpu ? 1e7 : 1e4;
   const double copy = on == On::gpu ? copy_bandwidth(GpuDevice::make()) : copy_bandwidth(CpuDevice::make());
   std::vector<KernelRun> runs;
   bool pass = true;
-  for (const bool newmark : {false, true}) {
-    for (const auto shape : {ShapeKind::linear, ShapeKind::quadratic}) {
-      for (const auto precision : {solver::Precision::single_, solver::Precision::double_}) {
-        if (newmark && precision == solver::Precision::single_) continue;
-        if (benchmarks::name_of({newmark, shape, precision, 0}).find(words.only) == std::string::npos) continue;
-        for (double points = 1e4; points <= most * 1.001; points *= std::sqrt(10.0)) {
-          if (points * 1.1 < words.least) continue;
-          if ((newmark && points > 1.1e6) || (precision == solver::Precision::double_ && points > 3.3e7)) break;
-          try {
-            runs.push_back(benchmarks::time_kernels({newmark, shape, precision, points}, on));
-          } catch (const NumericalError& error) {
-            fmt::print(stderr, "{:.0f} points: {}\n", points, error.what());
-            pass = false;
-            break;
-          }
-          const KernelRun& r = runs.back();
-          pass = pass && r.pass;
-          fmt::print(
-              stderr,
-              "{:8} {:9} {:6} {:9.0f} points {:10.1f} us a step {:9.3g} s a point and step {:6.0f} B a point{}\n",
-              r.method, r.shape, r.precision, r.points, 1e6 * r.step_seconds, r.eta(), r.bytes / r.points,
-              r.pass ? "" : fmt::format("  WRONG: momentum off by {:.2g}", r.check));
-          write_text(words.out / "kernels.csv", csv_of(runs, copy));
-        }
+  for (KernelSetting setting : settings_of(words.only)) {
+    for (const double points : numbers_of_points(setting, words.least, most)) {
+      setting.points = points;
+      try {
+        runs.push_back(benchmarks::time_kernels(setting, on));
+      } catch (const NumericalError& error) {
+        fmt::print(stderr, "{:.0f} points: {}\n", points, error.what());
+        pass = false;
+        break;
       }
+      pass = pass && runs.back().pass;
+      fmt::print(stderr, "{}", line_of(runs.back()));
+      write_text(words.out / "kernels.csv", csv_of(runs, copy));
     }
   }
   if (runs.empty())

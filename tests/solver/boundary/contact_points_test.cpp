@@ -40,9 +40,9 @@ TEST(ContactPoints, of_a_plane_lie_on_it_and_know_its_normal) {
     EXPECT_NEAR(points.normal[c].y, -along_y / steep, 1e-9);
     EXPECT_NEAR(points.normal[c].z, 1 / steep, 1e-9);
     EXPECT_EQ(points.body[c], ContactPoints::ground);
-    for (int a = 0; a < 3; ++a) {
-      EXPECT_GE(points.offset[a][c], -0.5);
-      EXPECT_LT(points.offset[a][c], 0.5);
+    for (const auto& offset : points.offset) {
+      EXPECT_GE(offset[c], -0.5);
+      EXPECT_LT(offset[c], 0.5);
     }
   }
   EXPECT_GT(inside, 8 * 6);

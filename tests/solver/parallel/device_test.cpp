@@ -126,8 +126,10 @@ TEST(TwoGpus, give_slides_the_bits_of_each_alone) {
 }
 
 TEST(Devices, are_handles_to_one_state) {
-  const CpuDevice device = CpuDevice::make(), copy = device, other = CpuDevice::make();
-  EXPECT_EQ(&device.profile(), &copy.profile());
+  const CpuDevice device = CpuDevice::make(), other = CpuDevice::make();
+  CpuDevice handle = other;
+  handle = device;
+  EXPECT_EQ(&device.profile(), &handle.profile());
   EXPECT_NE(&device.profile(), &other.profile());
   EXPECT_FALSE(AnyDevice(device).is_gpu());
   EXPECT_EQ(&AnyDevice(device).profile(), &device.profile());
