@@ -36,18 +36,19 @@ struct BaseFriction {
   TALUS_HD Real coefficient(const Bed<Real, Laws>& bed, const Slip<Real>& slip) const {
     return visit_law<Laws>(law, [&](auto own) { return own.coefficient(bed.numbers, slip); });
   }
-  /// The traction that is no share of the normal stress [Pa]: cohesion, and the law's drag (T13a).
-  TALUS_HD Real traction(const Bed<Real, Laws>& bed, const Slip<Real>& slip) const {
-    return visit_law<Laws>(law, [&](auto own) { return bed.cohesion + own.drag(bed.numbers, slip); });
+  /// The law's traction that is no share of the normal stress (T13a) [Pa].
+  TALUS_HD Real drag(const Bed<Real, Laws>& bed, const Slip<Real>& slip) const {
+    return visit_law<Laws>(law, [&](auto own) { return own.drag(bed.numbers, slip); });
   }
-  /// Whether there is such a traction anywhere.
-  TALUS_HD bool has_traction() const {
-    return columns || uniform.cohesion > Real(0) ||
-           visit_law<Laws>(law, [&](auto own) { return own.drags(uniform.numbers); });
+  /// Whether there is such a drag anywhere.
+  TALUS_HD bool has_drag() const {
+    return columns || visit_law<Laws>(law, [&](auto own) { return own.drags(uniform.numbers); });
   }
-  /// Whether the area matters on which the mass lies; otherwise it is not measured.
-  TALUS_HD bool needs_area() const {
-    return has_traction() || visit_law<Laws>(law, [](auto own) { return decltype(own)::asks_pressure; });
+  /// Whether there is drag or cohesion anywhere.
+  TALUS_HD bool has_traction() const { return uniform.cohesion > Real(0) || has_drag(); }
+  /// Whether the normal stress matters; otherwise it is not measured.
+  TALUS_HD bool asks_pressure() const {
+    return visit_law<Laws>(law, [](auto own) { return decltype(own)::asks_pressure; });
   }
   /// Whether what presses on the bed does not slip at all.
   TALUS_HD bool holds() const {
@@ -55,8 +56,8 @@ struct BaseFriction {
   }
 };
 
-/// The area of bed that the mass of a base node lies on, A of (T13a) along the slope [m2]: that of its column, as far
-/// as the mass makes up a `full` base node.
+/// The area of bed on which the normal force of a base node acts, along the slope [m2]: that of its column, as far as
+/// the mass makes up a `full` base node.
 template <class Real>
 TALUS_HD Real bed_area(Real mass, Real full, Real spacing, Real sx, Real sy) {
   const Real filled = mass < full ? mass / full : Real(1);
@@ -65,13 +66,13 @@ TALUS_HD Real bed_area(Real mass, Real full, Real spacing, Real sx, Real sy) {
 
 /// The velocity (T12) of a node after contact with a surface of this normal and friction coefficient [m/s]. A node
 /// moving into the surface loses its normal velocity; the impulse that takes it away bounds the friction impulse,
-/// |dv_t| <= mu dv_n, so that stick holds exactly. `more` is the speed that other tractions take beside it.
+/// |dv_t| <= mu dv_n, so that stick holds exactly.
 template <class Real>
-TALUS_HD Vec3<Real> meet_surface(const Vec3<Real>& v, const Vec3<Real>& normal, Real coefficient, Real more = Real(0)) {
+TALUS_HD Vec3<Real> meet_surface(const Vec3<Real>& v, const Vec3<Real>& normal, Real coefficient) {
   const Real approach = -dot(v, normal);
   if (approach <= Real(0)) return v;
   const Vec3<Real> slip = v + normal * approach;
-  const Real speed = length(slip), loss = coefficient * approach + more;
+  const Real speed = length(slip), loss = coefficient * approach;
   return loss < speed ? slip * (Real(1) - loss / speed) : Vec3<Real>{};
 }
 
@@ -79,10 +80,10 @@ TALUS_HD Vec3<Real> meet_surface(const Vec3<Real>& v, const Vec3<Real>& normal, 
 template <class Real>
 struct BedStep {
   Real duration;   ///< [s]
-  Real grip = {};  ///< duration over the node's mass per area of bed [m2 s/kg]; 0 where the law needs no area
+  Real grip = {};  ///< duration over the node's mass per area of bed [m2 s/kg]; 0 where no law asks for pressure
 };
 
-/// The velocity of a base node after contact with ground of slopes (sx, sy), (T12) and (T13a) [m/s].
+/// The velocity of a base node after contact with ground of slopes (sx, sy), (T12) [m/s].
 template <class Real, class Laws>
 TALUS_HD Vec3<Real> meet_ground(const BaseFriction<Real, Laws>& friction, const Bed<Real, Laws>& bed,
                                 const Vec3<Real>& v, Real sx, Real sy, const BedStep<Real>& step) {
@@ -91,7 +92,7 @@ TALUS_HD Vec3<Real> meet_ground(const BaseFriction<Real, Laws>& friction, const 
   const Real along = dot(v, normal);
   if (friction.holds()) return along < Real(0) ? Vec3<Real>{} : v;
   const Slip<Real> slip{length(v - normal * along), step.grip > Real(0) ? -along / step.grip : Real(0), step.duration};
-  return meet_surface(v, normal, friction.coefficient(bed, slip), friction.traction(bed, slip) * step.grip);
+  return meet_surface(v, normal, friction.coefficient(bed, slip));
 }
 
 }  // namespace talus

@@ -18,6 +18,7 @@ inline constexpr int contact_sweeps = 4;
 /// The nodes of an explicit step: mass and velocity together.
 template <class Real>
 struct PackedNodes {
+  using Number = Real;
   Vec4<Real>* nodes;
   Vec4<Real>* changes;  ///< of the velocity in the step; null where nothing reads them
   /// The mass of node n [kg].
@@ -109,15 +110,12 @@ struct SweepContacts {
       yield += share * yielding[n];
     });
     const Vec3<Real> normal = contacts.normal[c];
-    typename ContactView<Real>::Grip grip;
-    const Real filled = contacts.filled(grid, c, layer_mass);
+    Real coefficient = 0;
     if (grips) {
-      const Real pressed = dot(impulse[c], normal) / (contacts.area[c] * filled * dt);
-      grip = contacts.grip(grid, c, {length(v - normal * dot(v, normal)), pressed, dt});
+      const Real pressed = dot(impulse[c], normal) / (contacts.area[c] * contacts.filled(grid, c, layer_mass) * dt);
+      coefficient = contacts.friction(grid, c, {length(v - normal * dot(v, normal)), pressed, dt});
     }
-    Real more = 0;
-    if (grip.traction > Real(0)) more = grip.traction * contacts.area[c] * filled * dt;
-    return ContactView<Real>::hold(impulse[c] - v * (Real(1) / yield), normal, grip.coefficient, more);
+    return ContactView<Real>::hold(impulse[c] - v * (Real(1) / yield), normal, coefficient);
   }
 };
 

@@ -64,17 +64,17 @@ struct ContactView {
     return body[c] == ContactPoints::ground || rise * grid.spacing > Real(-0.5) * mass ? mass : Real(0);
   }
 
-  /// The resistance to a slip at a contact point.
-  struct Grip {
-    Real coefficient = 0;  ///< of the normal force
-    Real traction = 0;     ///< besides [Pa]
-  };
-  /// The resistance at contact point c: the obstacle's friction, or that of the bed there.
-  TALUS_HD Grip grip(const GridView<Real>& grid, int c, const Slip<Real>& slip) const {
-    if (body[c] != ContactPoints::ground) return {body_friction[body[c]], Real(0)};
-    if (ground.holds()) return {Real(1e6), Real(0)};
-    const Bed<Real>& bed = ground.at(grid.column(places.cell[0][c], places.cell[1][c]));
-    return {ground.coefficient(bed, slip), ground.traction(bed, slip)};
+  /// The ratio of friction to normal force at contact point c: the obstacle's, or that of the bed there.
+  TALUS_HD Real friction(const GridView<Real>& grid, int c, const Slip<Real>& slip) const {
+    if (body[c] != ContactPoints::ground) return body_friction[body[c]];
+    if (ground.holds()) return Real(1e6);
+    return ground.coefficient(ground.at(grid.column(places.cell[0][c], places.cell[1][c])), slip);
+  }
+
+  /// The cohesion of what contact point c stands for [Pa].
+  TALUS_HD Real cohesion(const GridView<Real>& grid, int c) const {
+    if (body[c] != ContactPoints::ground) return Real(0);
+    return ground.at(grid.column(places.cell[0][c], places.cell[1][c])).cohesion;
   }
 
   /// The share to which the bed at point c is covered: a layer's worth of mass makes it a full one, of which half lies
@@ -85,12 +85,12 @@ struct ContactView {
   }
 
   /// The force or impulse that the surface can give towards the `required` one, H of (T12a): it pushes, and holds
-  /// back slip up to `coefficient` times the push and `more`.
-  TALUS_HD static Vec3<Real> hold(const Vec3<Real>& required, const Vec3<Real>& normal, Real coefficient, Real more) {
+  /// back slip up to `coefficient` times the push.
+  TALUS_HD static Vec3<Real> hold(const Vec3<Real>& required, const Vec3<Real>& normal, Real coefficient) {
     const Real push = dot(required, normal);
     if (!(push > Real(0))) return {};
     const Vec3<Real> along = required - normal * push;
-    const Real size = length(along), limit = coefficient * push + more;
+    const Real size = length(along), limit = coefficient * push;
     return size > limit ? normal * push + along * (limit / size) : required;
   }
 };

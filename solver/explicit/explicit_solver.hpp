@@ -123,6 +123,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   MemoryShares memory() const override {
     MemoryShares shares = Base::memory();
     shares.emplace_back("nodes", nodes_.bytes() + forces_.bytes());
+    if (traction_.on()) shares.emplace_back("bed's tractions", traction_.bytes());
     return shares;
   }
 
@@ -176,13 +177,36 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     const ProfilePhase<Device> phase(device_, "grid");
     const Vec3<double>& gravity = settings_.gravity.acceleration;
     const Vec3<Real> g{static_cast<Real>(gravity.x), static_cast<Real>(gravity.y), static_cast<Real>(gravity.z)};
+    const ColumnRecorder<Real> recorder{maps_.view(), materials_.list[0].density, measures_.column_volumes()};
     for_each_column<block_columns>(
         device_, grid_.active_blocks(),
         UpdateColumns<Real, content>{grid_.view(), grid_.active_list(), clock_.data(), nodes_.data(), forces_.data(), g,
                                      settings_.gravity.ramp, walls_, surroundings_.bed(),
                                      static_cast<Real>(this->full_base()), static_cast<Real>(settings_.damping),
-                                     materials_.list[0].density, measures_.column_volumes(), maps_.view()});
+                                     traction_.columns(), recorder});
     if (surroundings_.contact().on()) meet_surfaces<content>();
+    if (content != NodeContent::remapped && traction_.on()) slow_columns<content>(recorder);
+  }
+
+  /// The method lets drag and cohesion of the bed slow what lies on it (T13a).
+  template <NodeContent content>
+  void slow_columns(const ColumnRecorder<Real>& recorder) {
+    using Nodes = PackedNodes<Real>;
+    for_each(device_, grid_.active_blocks() * block_columns,
+             SlowColumns<Real, Nodes, true>{.grid = grid_.view(),
+                                            .active = grid_.active_list(),
+                                            .nodes = packed_nodes<content>(),
+                                            .friction = surroundings_.bed(),
+                                            .columns = traction_.columns(),
+                                            .step = {clock_.data()},
+                                            .with_cohesion = true,
+                                            .recorder = recorder});
+  }
+
+  /// The nodes with the changes of their velocity, where a step keeps them.
+  template <NodeContent content>
+  PackedNodes<Real> packed_nodes() {
+    return {nodes_.data(), content == NodeContent::force ? forces_.data() : nullptr};
   }
 
   /// The method lets the nodes meet obstacles, and ground between the nodes (T12a). What is mapped back a second time
@@ -191,7 +215,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   void meet_surfaces() {
     const ProfilePhase<Device> phase(device_, "contact");
     constexpr bool first = content != NodeContent::remapped;
-    const PackedNodes<Real> nodes{nodes_.data(), content == NodeContent::force ? forces_.data() : nullptr};
+    const PackedNodes<Real> nodes = packed_nodes<content>();
     surroundings_.impulses().run(surroundings_.contact(), grid_.view(), nodes, grid_.nodes(), this->layer_mass(),
                                  {clock_.data(), 0, first, first});
   }
@@ -228,6 +252,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   Walls<Real> walls_;
   const Vec3<double>* loads_now_ = nullptr;
   Buffer<Vec4<Real>, Device> nodes_{device_}, forces_{device_};
+  ColumnTraction<Real, Device> traction_{device_, surroundings_.bed(), grid_.shape().columns, grid_.shape().rows};
 };
 
 /// The definition for the files in instances/; see make_explicit_solver.hpp.

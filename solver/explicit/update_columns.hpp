@@ -3,6 +3,7 @@
 
 #include <type_traits>
 
+#include "solver/boundary/column_traction.hpp"
 #include "solver/boundary/walls.hpp"
 #include "solver/state/clock.hpp"
 #include "solver/state/grid_view.hpp"
@@ -30,11 +31,10 @@ struct UpdateColumns {
   double gravity_ramp;  ///< time over which it grows [s]
   Walls<Real> walls;
   BaseFriction<Real> friction;
-  Real full_base;         ///< mass of a base node under a full layer [kg]
-  Real damping;           ///< Cundall's local factor [-]
-  Real density;           ///< where all points have the same [kg/m3]
-  const double* volumes;  ///< of the matter over each column, where they differ [m3]; else null
-  MapView maps;
+  Real full_base;                 ///< mass of a base node under a full layer [kg]
+  Real damping;                   ///< Cundall's local factor [-]
+  BedColumns<Real> columns;       ///< for the bed's tractions, which come after
+  ColumnRecorder<Real> recorder;  ///< at work here unless they do
 
   /// The memory that the kernel moves [bytes].
   double bytes(int) const {
@@ -98,7 +98,10 @@ struct UpdateColumns {
   TALUS_HD void layer(const Column& at, int k, Sums& sums) const {
     const int n = GridView<Real>::node(at.slot, at.i, at.j, k);
     Vec4<Real> node = nodes[n];
-    if (!(node.w > Real(0))) return;
+    if (!(node.w > Real(0))) {
+      if (measures_press(at.column, k)) columns.pressed[at.column] = 0;
+      return;
+    }
     const Vec3<Real> v = update(at, k, n, node, sums.losses);
     nodes[n] = {node.w, v.x, v.y, v.z};
     sums.mass += node.w;
@@ -108,6 +111,11 @@ struct UpdateColumns {
   /// The method adds the losses to the clock's, and records the maps of the column (T25).
   TALUS_HD void finish(const Column& at, const Sums& sums) const {
     if constexpr (content == NodeContent::remapped) return;
+    if (columns.mass) {
+      columns.mass[at.column] = sums.mass;
+      const int bed = bed_layer(grid, at.column);
+      if (bed < at.first || bed >= at.last) columns.pressed[at.column] = 0;
+    }
     if (!(sums.mass > Real(0))) return;
     if constexpr (may_count) {
       if (clock->keeps_budget) {
@@ -117,14 +125,20 @@ struct UpdateColumns {
         for (int a = 0; a < 3; ++a) atomic_add(&clock->reaction[a], sums.losses.reaction[a]);
       }
     }
-    const double mass = static_cast<double>(sums.mass);
-    const double mean = volumes && volumes[at.column] > 0 ? mass / volumes[at.column] : static_cast<double>(density);
-    record_column(maps, at.column,
-                  {mass, static_cast<double>(length(sums.momentum)), mean, static_cast<double>(grid.spacing)},
-                  clock->time);
+    // With tractions the maps are recorded once they have acted.
+    if (!columns.mass) recorder.record(at.column, sums.mass, sums.momentum, grid.spacing, clock->time);
   }
 
  private:
+  /// Whether the node in layer k says of its column whether it presses on the bed.
+  TALUS_HD bool measures_press(int column, int k) const {
+    return content != NodeContent::remapped && columns.mass && k == bed_layer(grid, column);
+  }
+  /// Whether a node of this velocity moves into the ground of a column.
+  TALUS_HD bool presses(int column, const Vec3<Real>& v) const {
+    return v.z < v.x * grid.slope_x[column] + v.y * grid.slope_y[column];
+  }
+
   TALUS_HD Vec3<Real> update(const Column& at, int k, int n, const Vec4<Real>& node,
                              decltype(Sums::losses)& losses) const {
     const Real dt = Real(clock->step_size);
@@ -143,6 +157,7 @@ struct UpdateColumns {
       v += pull * dt;
     }
     const Vec3<Real> free = v;
+    if (measures_press(at.column, k)) columns.pressed[at.column] = presses(at.column, free);
     if (k <= at.top_contact) v = meet_bed(at, k, v, node.w, dt);
     if (walls.count > 0) v = meet_walls(walls, at.i, at.j, k, v, content != NodeContent::remapped);
     if constexpr (may_count) {
@@ -161,7 +176,7 @@ struct UpdateColumns {
     if (content == NodeContent::remapped && !law.holds()) law.law = FrictionLaw::none;
     const Real sx = grid.slope_x[at.column], sy = grid.slope_y[at.column];
     // On a Cartesian grid the nodes inside the ground touch no bed of their own.
-    const bool grips = content != NodeContent::remapped && friction.needs_area() && k == at.top_contact;
+    const bool grips = content != NodeContent::remapped && friction.asks_pressure() && k == at.top_contact;
     const Real grip = grips ? bed_area(mass, full_base, grid.spacing, sx, sy) * dt / mass : Real(0);
     return meet_ground(law, law.at(at.column), v, sx, sy, {.duration = dt, .grip = grip});
   }

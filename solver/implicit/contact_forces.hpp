@@ -61,10 +61,9 @@ struct MeasureGrip {
     const double pressed = dot(contacts.force[c], normal) / (area * filled);
     const Slip<Real> slip{static_cast<Real>(length(v - normal * dot(v, normal))), static_cast<Real>(pressed),
                           static_cast<Real>(step)};
-    const auto grip = contacts.grip(grid, c, slip);
     numbers.spring[c] = numbers.modulus * area * filled;
-    numbers.coefficient[c] = static_cast<double>(grip.coefficient);
-    numbers.traction[c] = static_cast<double>(grip.traction) * area * filled;
+    numbers.coefficient[c] = static_cast<double>(contacts.friction(grid, c, slip));
+    numbers.traction[c] = static_cast<double>(contacts.cohesion(grid, c)) * area * filled;
     numbers.limit[c] = numbers.coefficient[c] * dot(contacts.force[c], normal) + numbers.traction[c];
   }
 };

@@ -71,6 +71,21 @@ struct ContactPointFields {
   }
 };
 
+/// The nodes of an implicit step before its beginning, as drag of the bed sees them: mass [kg], momentum [kg m/s], and
+/// the velocity that they get at once [m/s]; null in statics, where nothing drags.
+struct MomentumNodes {
+  using Number = double;
+  const double* data;
+  const Vec3<double>* momentum;
+  Vec3<double>* arrival;
+  /// The mass of node n [kg].
+  TALUS_HD double mass(int n) const { return data[n]; }
+  /// The velocity of node n, which has mass [m/s].
+  TALUS_HD Vec3<double> velocity(int n) const { return momentum[n] * (1 / data[n]); }
+  /// The method adds a change of velocity [m/s] to node n.
+  TALUS_HD void add(int n, const Vec3<double>& v) const { arrival[n] += v; }
+};
+
 /// The active set of a step and the friction of its members.
 template <class Real, class Device, class Shape>
 class ContactSet {
@@ -96,6 +111,7 @@ class ContactSet {
     const double g = std::hypot(full.x, full.y, full.z), dt = scheme.step;
     smoothing_.gravity_way = c.dynamic ? 0.5 * std::max(g, 1e-3) * dt * dt : 1e-4 * parts_.cell.spacing;
     const bool predicts = c.dynamic && !c.once();
+    if (traction_.on()) meet_drag(scheme, gravity);
     for_each(parts_.device, parts_.grid.active_blocks() * block_columns,
              PrepareNodes<Real>{.grid = parts_.grid.view(),
                                 .active = parts_.grid.active_list(),
@@ -106,6 +122,7 @@ class ContactSet {
                                 .full_base = parts_.cell.full_base,
                                 .gravity = gravity,
                                 .scheme = scheme,
+                                .columns = traction_.columns(),
                                 .predict = predicts});
     if (parts_.surfaces.on()) begin_points(dt, predicts);
   }
@@ -172,7 +189,7 @@ class ContactSet {
   /// The smoothing of friction, kept from step to step.
   FrictionSmoothing& smoothing() { return smoothing_; }
   /// The size of what the nodes' contacts take [bytes].
-  std::size_t node_bytes() const { return bed_.bytes() + fields_.bytes() + stiffness_.bytes(); }
+  std::size_t node_bytes() const { return bed_.bytes() + traction_.bytes() + fields_.bytes() + stiffness_.bytes(); }
   /// The size of what the contact points take [bytes].
   std::size_t point_bytes() const { return points_.bytes(); }
 
@@ -181,6 +198,30 @@ class ContactSet {
   template <class Kernel>
   void each_point(const Kernel& kernel) {
     parts_.surfaces.each(kernel);
+  }
+
+  /// The method measures the columns, and lets the bed's drag slow them as they begin a step (T13a). Cohesion is left
+  /// to the contacts, whose friction it joins: what it holds does not creep.
+  void meet_drag(const NewmarkScheme& scheme, const Vec3<double>& gravity) {
+    const MomentumNodes columns{nodes_.mass.data(), nodes_.velocity.data(), nodes_.arrival.data()};
+    const int count = parts_.grid.active_blocks() * block_columns;
+    for_each(parts_.device, count,
+             MeasureColumns<Real, MomentumNodes>{.grid = parts_.grid.view(),
+                                                 .active = parts_.grid.active_list(),
+                                                 .nodes = columns,
+                                                 .columns = traction_.columns(),
+                                                 .gravity = gravity,
+                                                 .step = scheme.step});
+    if (!scheme.dynamic || !bed_.view().has_drag()) return;
+    for_each(parts_.device, count,
+             SlowColumns<Real, MomentumNodes, false>{.grid = parts_.grid.view(),
+                                                     .active = parts_.grid.active_list(),
+                                                     .nodes = columns,
+                                                     .friction = bed_.view(),
+                                                     .columns = traction_.columns(),
+                                                     .step = {nullptr, scheme.step},
+                                                     .with_cohesion = false,
+                                                     .recorder = {}});
   }
 
   /// The method measures friction of the contact points for this step, and what they take at once.
@@ -209,6 +250,8 @@ class ContactSet {
   DeviceBed<double, Device> bed_;
   const double* pull_;
   FrictionSmoothing smoothing_;
+  ColumnTraction<double, Device> traction_{parts_.device, bed_.view(), parts_.grid.shape().columns,
+                                           parts_.grid.shape().rows};
   NodeContactFields<Device> fields_{parts_.device};
   ContactPointFields<Device> points_{parts_.device};
   Buffer<Sym3<double>, Device> stiffness_{parts_.device};

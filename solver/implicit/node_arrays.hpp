@@ -13,8 +13,8 @@ enum class Touch : unsigned char { none, open, slips, sticks };
 struct NodeArrays {
   double* mass = nullptr;            ///< [kg]
   Vec3<double>* velocity = nullptr;  ///< at the start of the step, from the points [m/s]
-  Vec3<double>* arrival =
-      nullptr;  // what the ground takes from it at once, where it points into the ground; null in statics [m/s]
+  Vec3<double>* arrival = nullptr;   ///< what the ground takes from it at once, where it points into the ground, and
+                                     ///< what the bed's drag takes; null in statics [m/s]
   Vec3<double>* acceleration = nullptr;  ///< at the start of the step [m/s2]
   Vec3<double>* external = nullptr;      ///< at the end of the step [N]
   Vec3<double>* internal = nullptr;      ///< for the displacement u [N]

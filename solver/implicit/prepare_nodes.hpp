@@ -1,7 +1,7 @@
 // The nodes at the start of an implicit step.
 #pragma once
 
-#include "solver/boundary/base_friction.hpp"
+#include "solver/boundary/column_traction.hpp"
 #include "solver/boundary/walls.hpp"
 #include "solver/implicit/constraints.hpp"
 #include "solver/implicit/newmark.hpp"
@@ -22,7 +22,8 @@ struct PrepareNodes {
   double full_base;  ///< mass of a base node under a full layer [kg]
   Vec3<double> gravity;
   NewmarkScheme scheme;
-  bool predict;  ///< start from the displacement of the present velocity
+  BedColumns<double> columns;  ///< for the bed's cohesion
+  bool predict;                ///< start from the displacement of the present velocity
 
   TALUS_HD void operator()(int c) const {
     const int block = active[c / block_columns], inside = c % block_columns;
@@ -53,7 +54,7 @@ struct PrepareNodes {
     const Place at{i, j, k};
     Meeting to;
     const bool grounded = touch_ground(at, to);
-    if (scheme.dynamic) nodes.arrival[n] = arrive(nodes.velocity[n], to.normal, to.friction);
+    if (scheme.dynamic) nodes.arrival[n] += arrive(nodes.begin_velocity(n), to.normal, to.friction);
     if (predict && trace(to.freed) > 0) to.u = nodes.begin_velocity(n) * scheme.step;
     for (int w = 0; w < walls.count; ++w) meet(walls.list[w], at, grounded, to);
     held.walls[n] = to.freed;
@@ -126,7 +127,10 @@ struct PrepareNodes {
                             .duration = scheme.step};
     const Bed<double>& bed = base.at(column);
     to.friction = base.coefficient(bed, slip);
-    if (held.traction && at.k == top) held.traction[n] = base.traction(bed, slip) * area;
+    if (held.traction && at.k == top) {
+      const double h = static_cast<double>(grid.spacing);
+      held.traction[n] = bed.cohesion * cover(grid, columns.mass, at.i, at.j) * h * h / scale;
+    }
     return true;
   }
 

@@ -39,6 +39,17 @@ struct alignas(4 * sizeof(Real)) Vec4 {
   Real w{}, x{}, y{}, z{};
 };
 
+/// The vector in double precision.
+template <class Real>
+TALUS_HD Vec3<double> widen(const Vec3<Real>& v) {
+  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+/// The vector rounded to `Real`.
+template <class Real>
+TALUS_HD Vec3<Real> narrow(const Vec3<double>& v) {
+  return {static_cast<Real>(v.x), static_cast<Real>(v.y), static_cast<Real>(v.z)};
+}
+
 /// A full matrix; columns are vectors, so that column b of a gradient is the derivative along b.
 template <class Real>
 struct Mat3 {

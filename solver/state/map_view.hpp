@@ -31,4 +31,19 @@ TALUS_HD void record_column(const MapView& maps, int column, const ColumnMatter&
   if (maps.arrival_time[column] < 0) maps.arrival_time[column] = time;
 }
 
+/// The recording of maps from sums over columns of nodes.
+template <class Real>
+struct ColumnRecorder {
+  MapView maps;
+  Real density;           ///< where all points have the same [kg/m3]
+  const double* volumes;  ///< of the matter over each column, where they differ [m3]; else null
+
+  /// The method records a column's mass [kg] and momentum [kg m/s] on nodes `spacing` apart [m] at `time` [s].
+  TALUS_HD void record(int column, Real mass, const Vec3<Real>& momentum, Real spacing, double time) const {
+    const double m = static_cast<double>(mass);
+    const double mean = volumes && volumes[column] > 0 ? m / volumes[column] : static_cast<double>(density);
+    record_column(maps, column, {m, static_cast<double>(length(momentum)), mean, static_cast<double>(spacing)}, time);
+  }
+};
+
 }  // namespace talus

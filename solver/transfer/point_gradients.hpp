@@ -36,16 +36,6 @@ TALUS_HD void around(const GridView<Real>& grid, const PointGradients<Real, Shap
   }
 }
 
-/// The vector in double precision.
-template <class Real>
-TALUS_HD Vec3<double> widen(const Vec3<Real>& v) {
-  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
-}
-/// The vector rounded to `Real`.
-template <class Real>
-TALUS_HD Vec3<Real> narrow(const Vec3<double>& v) {
-  return {static_cast<Real>(v.x), static_cast<Real>(v.y), static_cast<Real>(v.z)};
-}
 /// The components are put side by side.
 TALUS_HD void put(const Vec3<double>& v, double* to) {
   to[0] = v.x;

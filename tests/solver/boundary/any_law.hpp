@@ -23,11 +23,11 @@ void expect_finite_friction() {
   const auto f = some_bed<Law, Laws>();
   for (const double speed : {0.0, 0.1, 30.0}) {
     const Slip<double> slip{speed, 1e4, 0.01};
-    const double mu = f.coefficient(f.uniform, slip), traction = f.traction(f.uniform, slip);
+    const double mu = f.coefficient(f.uniform, slip), drag = f.drag(f.uniform, slip);
     EXPECT_TRUE(std::isfinite(mu) && mu >= 0 && mu < 10) << "speed " << speed;
-    EXPECT_TRUE(std::isfinite(traction) && traction >= 0) << "speed " << speed;
-    if (!f.has_traction()) {
-      EXPECT_EQ(traction, 0);
+    EXPECT_TRUE(std::isfinite(drag) && drag >= 0) << "speed " << speed;
+    if (!f.has_drag()) {
+      EXPECT_EQ(drag, 0);
     }
     if (!Law::rubs) {
       EXPECT_EQ(mu, 0);

@@ -35,12 +35,12 @@ TEST(MeetGround, leaves_a_sloping_bed_tangentially) {
   EXPECT_NEAR(v.z, sx * v.x + sy * v.y, 1e-14);
 }
 
-TEST(MeetGround, adds_cohesion_and_drag_to_friction) {
-  BaseFriction<double> f{FrictionLaw::voellmy, {{0.5, 3}, 10}};  // 3 Pa s2/m2, 10 Pa
-  const double grip = 0.01;                                      // 10 ms on 1 kg per m2
-  const Vec3<double> v = meet(f, Vec3<double>{4, 0, -2}, 0.0, 0.0, grip);
-  EXPECT_DOUBLE_EQ(v.x, 4 - 0.5 * 2 - (10 + 3 * 16) * grip);
-  EXPECT_DOUBLE_EQ(meet(f, Vec3<double>{4, 0, 1}, 0.0, 0.0, grip).x, 4);  // it has left: nothing holds it
+TEST(MeetGround, leaves_cohesion_and_drag_to_the_column) {
+  const BaseFriction<double> f{FrictionLaw::voellmy, {{0.5, 3}, 10}};  // 3 Pa s2/m2, 10 Pa
+  EXPECT_DOUBLE_EQ(meet(f, Vec3<double>{4, 0, -2}, 0.0, 0.0).x, 4 - 0.5 * 2);
+  EXPECT_DOUBLE_EQ(f.drag(f.uniform, {4, 0, 0.01}), 3 * 16);
+  EXPECT_TRUE(f.has_drag());
+  EXPECT_TRUE(f.has_traction());
 }
 
 TEST(BaseFriction, weakens_from_peak_to_steady_state) {

@@ -21,7 +21,7 @@ TEST(FrictionLaws, weaken_or_drag_as_their_numbers_say) {
   o.turbulence = 1000;
   const auto voellmy = some_bed<Voellmy, FrictionLaws>(o);
   EXPECT_DOUBLE_EQ(voellmy.coefficient(voellmy.uniform, {5, 0, 0.01}), std::tan(20 * std::numbers::pi / 180));
-  EXPECT_DOUBLE_EQ(voellmy.traction(voellmy.uniform, {5, 0, 0.01}), 2000 * 9.81 / 1000 * 25);
+  EXPECT_DOUBLE_EQ(voellmy.drag(voellmy.uniform, {5, 0, 0.01}), 2000 * 9.81 / 1000 * 25);
   const auto weakening = some_bed<VelocityWeakening, FrictionLaws>(o);
   EXPECT_DOUBLE_EQ(weakening.coefficient(weakening.uniform, {1, 0, 0.01}), (0.7 + 0.23) / 2);
 }

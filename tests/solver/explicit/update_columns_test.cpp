@@ -20,6 +20,7 @@ struct Updated {
   BaseFriction<double> friction{FrictionLaw::coulomb, {{0.5}}};
   Walls<double> walls;
   double damping = 0, gravity_ramp = 0;
+  BedColumns<double> columns;
 
   Updated() {
     clock.step_size = 0.1;
@@ -45,9 +46,8 @@ struct Updated {
                                                                   .friction = friction,
                                                                   .full_base = 1e3,
                                                                   .damping = damping,
-                                                                  .density = 2000,
-                                                                  .volumes = nullptr,
-                                                                  .maps = maps});
+                                                                  .columns = columns,
+                                                                  .recorder = {maps, 2000, nullptr}});
   }
 };
 
@@ -113,6 +113,22 @@ TEST(UpdateColumns, records_the_maps_of_the_column) {
   EXPECT_DOUBLE_EQ(u.speed[column], std::hypot(3 + 2.5, -1) / 2);
   EXPECT_EQ(u.arrival[column], 2);
   EXPECT_EQ(u.thickness[column + 1], 0);
+}
+
+TEST(UpdateColumns, leaves_the_maps_to_the_tractions_and_tells_them_what_presses) {
+  Updated u;
+  std::vector<double> mass(64);
+  std::vector<unsigned char> pressed(64);
+  u.columns = {mass.data(), pressed.data()};
+  u.update<NodeContent::impulse>();
+  constexpr std::size_t column = 2 * SmallGrid::side + 5;
+  EXPECT_EQ(mass[column], 200);
+  EXPECT_EQ(pressed[column], 1);
+  EXPECT_EQ(mass[column + 1], 0);
+  EXPECT_EQ(u.thickness[column], 0);
+  u.at(u.nodes, 0) = {100, 0, 0, 200};  // leaves faster than it falls
+  u.update<NodeContent::impulse>();
+  EXPECT_EQ(pressed[column], 0);
 }
 
 TEST(UpdateColumns, does_nothing_once_the_clock_has_halted) {

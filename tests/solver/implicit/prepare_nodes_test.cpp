@@ -48,6 +48,7 @@ struct Prepared {
                                       .full_base = 1e3,
                                       .gravity = {0, 0, -10},
                                       .scheme = {.dynamic = dynamic, .step = 0.1},
+                                      .columns = {},
                                       .predict = predict};
     for (int c = 0; c < 4 * block_columns; ++c) kernel(c);
   }

@@ -58,7 +58,7 @@ TEST(SpeedPower, meets_what_every_law_must) { expect_laws_to_hold<Laws>(); }
 TEST(BasalLaws, are_told_normal_stress_and_step) {
   const auto f = some_bed<Told, MoreLaws>();
   EXPECT_FALSE(f.has_traction());
-  EXPECT_TRUE(f.needs_area());
+  EXPECT_TRUE(f.asks_pressure());
   // 1 kg per m2 that loses 2 m/s in 10 ms presses with 200 Pa.
   const Vec3<double> v = meet_ground(f, f.uniform, Vec3<double>{3, 0, -2}, 0.0, 0.0, {.duration = 0.01, .grip = 0.01});
   EXPECT_DOUBLE_EQ(v.x, 3 - (200 / 1e6 + 0.01) * 2);

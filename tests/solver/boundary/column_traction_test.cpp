@@ -1,0 +1,165 @@
+// Drag and cohesion of the bed, which act on columns.
+#include "solver/boundary/column_traction.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "solver/boundary/contact_impulses.hpp"
+#include "solver/parallel/for_each.hpp"
+#include "tests/solver/small_grid.hpp"
+
+namespace talus::solver::testing {
+namespace {
+
+TEST(ShareLeftByTraction, is_what_an_implicit_step_of_drag_leaves) {
+  // v' = v - dt drag v'/v / m for a drag that is taken as proportional to the new speed
+  constexpr double speed = 5, drag = 300, rate = 0.01;
+  const double left = share_left_by_traction(speed, drag, 0.0, rate);
+  EXPECT_DOUBLE_EQ(left * speed, speed - rate * drag * left);
+}
+
+TEST(ShareLeftByTraction, stops_what_cohesion_can_hold_and_turns_nothing_back) {
+  EXPECT_EQ(share_left_by_traction(2.0, 0.0, 300.0, 0.01), 0);
+  EXPECT_DOUBLE_EQ(share_left_by_traction(4.0, 0.0, 300.0, 0.01), 0.25);
+  EXPECT_GT(share_left_by_traction(4.0, 1e9, 0.0, 0.01), 0) << "however light the column is";
+  EXPECT_EQ(share_left_by_traction(0.0, 300.0, 300.0, 0.01), 1);
+}
+
+/// A sheet of two layers of nodes over the columns from 2 to 5 across and along, 100 kg a node at (3, 1) m/s along the
+/// ground.
+struct Sheet {
+  SmallGrid grid{0.3, -0.2};
+  Clock clock;
+  std::vector<Vec4<double>> nodes = std::vector<Vec4<double>>(SmallGrid::nodes), changes = nodes;
+  std::vector<double> mass = std::vector<double>(64), maxima = mass, arrival = std::vector<double>(64, -1);
+  std::vector<unsigned char> pressed = std::vector<unsigned char>(64);
+  BaseFriction<double> friction{FrictionLaw::voellmy, {{0.5, 3}, 0}};  // 3 Pa s2/m2
+
+  Sheet() {
+    clock.step_size = 0.1;
+    for (int j = 2; j < 6; ++j) {
+      for (int i = 2; i < 6; ++i) {
+        for (int k = 0; k < 2; ++k) put(i, j, k);
+        mass[column(i, j)] = 200;
+        pressed[column(i, j)] = 1;
+      }
+    }
+  }
+  static std::size_t column(int i, int j) { return static_cast<std::size_t>(j * SmallGrid::side + i); }
+  Vec4<double>& at(int i, int j, int k) { return nodes[static_cast<std::size_t>(grid.view().find(i, j, k))]; }
+  void put(int i, int j, int k) { at(i, j, k) = {100, 3, 1, 3 * 0.3 - 1 * 0.2}; }
+  void slow(bool with_cohesion = true) {
+    const MapView maps{{maxima.data(), maxima.data(), maxima.data(), arrival.data()}, 0};
+    for_each(CpuDevice::make(), 4 * block_columns,
+             SlowColumns<double, PackedNodes<double>, true>{.grid = grid.view(),
+                                                            .active = grid.active.data(),
+                                                            .nodes = {nodes.data(), changes.data()},
+                                                            .friction = friction,
+                                                            .columns = {mass.data(), pressed.data()},
+                                                            .step = {&clock},
+                                                            .with_cohesion = with_cohesion,
+                                                            .recorder = {maps, 2000, nullptr}});
+  }
+};
+
+constexpr double area = 4 * 1.0630145812734649;  // 2 m by 2 m on slopes of 0.3 and -0.2
+
+TEST(SlowColumns, gives_all_nodes_of_a_column_the_drag_of_its_whole_bed) {
+  Sheet s;
+  const Vec4<double> before = s.at(3, 3, 1);
+  const double speed = length(Vec3<double>{before.x, before.y, before.z});
+  s.slow();
+  const double left = share_left_by_traction(speed, 3 * speed * speed, 0.0, area * 0.1 / 200);
+  for (int k = 0; k < 2; ++k) {
+    EXPECT_NEAR(s.at(3, 3, k).x, left * before.x, 1e-13);
+    EXPECT_NEAR(s.at(3, 3, k).y, left * before.y, 1e-13);
+    EXPECT_NEAR(s.at(3, 3, k).z, left * before.z, 1e-13) << "along the ground";
+    const std::size_t n = static_cast<std::size_t>(s.grid.view().find(3, 3, k));
+    EXPECT_NEAR(s.changes[n].x, (left - 1) * before.x, 1e-13);
+  }
+}
+
+TEST(SlowColumns, leaves_alone_what_flies) {
+  Sheet s;
+  s.put(3, 3, 5);  // over the sheet, with empty nodes between
+  s.pressed[Sheet::column(4, 3)] = 0;
+  s.slow();
+  EXPECT_LT(s.at(3, 3, 1).x, 3);
+  EXPECT_EQ(s.at(3, 3, 5).x, 3);
+  EXPECT_EQ(s.at(4, 3, 0).x, 3) << "a column that does not press";
+}
+
+TEST(SlowColumns, takes_cohesion_where_asked) {
+  Sheet s;
+  s.friction.uniform.cohesion = 1e6;
+  s.slow(false);
+  EXPECT_GT(s.at(3, 3, 0).x, 1);
+  s.slow(true);
+  EXPECT_EQ(s.at(3, 3, 0).x, 0);
+}
+
+TEST(SlowColumns, counts_what_the_bed_takes_and_records_what_is_left) {
+  Sheet s;
+  s.clock.keeps_budget = 1;
+  double before = 0, after = 0;
+  const auto energy = [&] {
+    double sum = 0;
+    for (const auto& n : s.nodes) sum += 0.5 * n.w * (n.x * n.x + n.y * n.y + n.z * n.z);
+    return sum;
+  };
+  before = energy();
+  s.slow();
+  after = energy();
+  EXPECT_NEAR(s.clock.bed_loss, before - after, 1e-9);
+  EXPECT_NEAR(s.clock.transfer_loss, after - before, 1e-9);
+  EXPECT_LT(s.clock.reaction[0], 0);
+  EXPECT_EQ(s.arrival[Sheet::column(3, 3)], 0);
+  EXPECT_EQ(s.arrival[Sheet::column(7, 7)], -1);
+}
+
+TEST(Cover, is_whole_inside_and_the_share_of_the_mass_at_the_edge) {
+  Sheet s;
+  EXPECT_EQ(cover(s.grid.view(), s.mass.data(), 3, 3), 1);
+  EXPECT_EQ(cover(s.grid.view(), s.mass.data(), 2, 3), 1) << "an edge as thick as the inside";
+  s.mass[Sheet::column(1, 3)] = 50;  // a quarter of what lies further in
+  EXPECT_DOUBLE_EQ(cover(s.grid.view(), s.mass.data(), 1, 3), 0.25);
+  for (double& mass : s.mass) mass = 200;
+  s.mass[Sheet::column(3, 3)] = 50;
+  EXPECT_EQ(cover(s.grid.view(), s.mass.data(), 3, 3), 1) << "a thin place inside";
+}
+
+/// The masses of the nodes over a line, of a wall of matter from x = 0 to x = 4 spacings.
+std::vector<double> masses_of_a_wall(double first_node) {
+  std::vector<double> masses(8);
+  constexpr int parts = 4000;
+  for (int p = 0; p < parts; ++p) {
+    const double x = 4 * (p + 0.5) / parts;
+    for (int n = 0; n < 8; ++n) {
+      const double r = std::abs(x - (first_node + n));
+      masses[static_cast<std::size_t>(n)] += (r < 0.5   ? 0.75 - r * r
+                                              : r < 1.5 ? 0.5 * (1.5 - r) * (1.5 - r)
+                                                        : 0) *
+                                             4 / parts;
+    }
+  }
+  return masses;
+}
+
+TEST(Cover, adds_up_to_the_length_of_a_wall_wherever_it_lies_in_the_grid) {
+  const SmallGrid grid;
+  for (const double first_node : {-2.0, -1.5, -1.75}) {
+    const auto line = masses_of_a_wall(first_node);
+    std::vector<double> mass(64);
+    for (std::size_t j = 0; j < 8; ++j) {
+      for (std::size_t i = 0; i < 8; ++i) mass[j * 8 + i] = line[i];
+    }
+    double sum = 0;
+    for (int i = 0; i < 8; ++i) sum += cover(grid.view(), mass.data(), i, 4);
+    EXPECT_NEAR(sum, 4, 0.1) << "first node at " << first_node;  // 1.6 % at each end
+  }
+}
+
+}  // namespace
+}  // namespace talus::solver::testing
