@@ -53,7 +53,7 @@ TEST(SpeedPower, slows_a_node_on_the_bed) {
   EXPECT_EQ(v.z, 0);
 }
 
-TEST(SpeedPower, meets_what_every_law_must) { expect_laws_to_hold<Laws>(); }
+TEST(SpeedPower, meets_what_every_law_must) { expect_laws_to_hold<MoreLaws>(); }
 
 TEST(BasalLaws, are_told_normal_stress_and_step) {
   const auto f = some_bed<Told, MoreLaws>();
