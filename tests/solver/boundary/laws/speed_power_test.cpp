@@ -16,7 +16,7 @@ namespace {
 /// Friction that is told everything: mu = sigma / (1 MPa) + dt / (1 s).
 struct Told : FrictionlessLaw<Told> {
   static constexpr std::string_view name = "told";
-  static constexpr bool holds = false, asks_pressure = true;
+  static constexpr bool rubs = true, holds = false, asks_pressure = true;
   template <class All>
   static std::string words(const All&) {
     return "told";
