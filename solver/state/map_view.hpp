@@ -3,6 +3,7 @@
 
 #include "common/run/map_fields.hpp"
 #include "solver/parallel/macros.hpp"
+#include "solver/parallel/math.hpp"
 
 namespace talus {
 
