@@ -93,37 +93,47 @@ struct SlowColumns {
     BlockSlot slot;
     int i, j, column;
     TALUS_HD int node(int k) const { return GridView<Real>::node(slot, i, j, k); }
+    TALUS_HD int begin() const { return slot.first_layer; }
     TALUS_HD int end() const { return slot.first_layer + slot.layers; }
+  };
+  /// The matter in some layers of a column.
+  struct Matter {
+    Number mass = 0;          ///< [kg]
+    Vec3<Number> momentum{};  ///< [kg m/s]
   };
 
   TALUS_HD void operator()(int c) const {
     if (step.clock && step.clock->halt != running) return;
-    const int block = active[c / block_columns], inside = c % block_columns;
-    Place at{grid.slots[block], (block % grid.block_columns_x) * block_side + (inside & 3),
-             (block / grid.block_columns_x) * block_side + (inside >> 2), 0};
-    if (at.i >= grid.columns || at.j >= grid.rows) return;
-    at.column = grid.column(at.i, at.j);
+    const ActiveColumn place(grid, active, c);
+    if (!place.in_domain(grid)) return;
+    const Place at{grid.slots[place.block], place.i, place.j, grid.column(place.i, place.j)};
     if (!(columns.mass[at.column] > Number(0))) return;
     if (columns.pressed[at.column]) slow(at);
     if constexpr (records) {
-      Vec3<Number> momentum{};
-      for (int k = at.slot.first_layer; k < at.end(); ++k)
-        momentum += nodes.velocity(at.node(k)) * nodes.mass(at.node(k));
-      recorder.record(at.column, columns.mass[at.column], momentum, Number(grid.spacing), step.clock->time);
+      const Matter all = matter(at, at.begin(), at.end());
+      recorder.record(at.column, all.mass, all.momentum, Number(grid.spacing), step.clock->time);
     }
   }
 
  private:
-  TALUS_HD void slow(const Place& at) const {
-    Number mass = 0;
-    Vec3<Number> momentum{};
-    int first = at.slot.first_layer;
-    while (first < at.end() && !(nodes.mass(at.node(first)) > Number(0))) ++first;
-    int last = first;
-    for (; last < at.end() && nodes.mass(at.node(last)) > Number(0); ++last) {
-      mass += nodes.mass(at.node(last));
-      momentum += nodes.velocity(at.node(last)) * nodes.mass(at.node(last));
+  TALUS_HD bool is_empty(const Place& at, int k) const { return !(nodes.mass(at.node(k)) > Number(0)); }
+  /// The matter in layers first to last - 1.
+  TALUS_HD Matter matter(const Place& at, int first, int last) const {
+    Matter sum;
+    for (int k = first; k < last; ++k) {
+      if (is_empty(at, k)) continue;
+      sum.mass += nodes.mass(at.node(k));
+      sum.momentum += nodes.velocity(at.node(k)) * nodes.mass(at.node(k));
     }
+    return sum;
+  }
+
+  TALUS_HD void slow(const Place& at) const {
+    int first = at.begin();
+    while (first < at.end() && is_empty(at, first)) ++first;
+    int last = first;
+    while (last < at.end() && !is_empty(at, last)) ++last;
+    const auto [mass, momentum] = matter(at, first, last);
     const Number sx = grid.slope_x[at.column], sy = grid.slope_y[at.column], h = grid.spacing;
     const Number steep = sqrt(Number(1) + sx * sx + sy * sy), scale = Number(1) / steep;
     const Vec3<Number> normal{-sx * scale, -sy * scale, scale}, mean = momentum * (Number(1) / mass);
@@ -167,16 +177,14 @@ struct MeasureColumns {
   Number step;  ///< [s]
 
   TALUS_HD void operator()(int c) const {
-    const int block = active[c / block_columns], inside = c % block_columns;
-    const BlockSlot slot = grid.slots[block];
-    const int i = (block % grid.block_columns_x) * block_side + (inside & 3);
-    const int j = (block / grid.block_columns_x) * block_side + (inside >> 2);
-    if (i >= grid.columns || j >= grid.rows) return;
-    const int column = grid.column(i, j), bed = bed_layer(grid, column);
+    const ActiveColumn at(grid, active, c);
+    if (!at.in_domain(grid)) return;
+    const BlockSlot slot = grid.slots[at.block];
+    const int column = grid.column(at.i, at.j), bed = bed_layer(grid, column);
     Number mass = 0;
     columns.pressed[column] = 0;
     for (int k = slot.first_layer; k < slot.first_layer + slot.layers; ++k) {
-      const int n = GridView<Real>::node(slot, i, j, k);
+      const int n = GridView<Real>::node(slot, at.i, at.j, k);
       const Number m = nodes.mass(n);
       mass += m;
       if (k != bed || !(m > Number(0))) continue;

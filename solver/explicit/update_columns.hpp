@@ -81,11 +81,11 @@ struct UpdateColumns {
   TALUS_HD Column locate(int c) const {
     Column at;
     const int halt = clock->halt;  // looked at once all is on its way
-    const int block = active[c / block_columns], in_block = c % block_columns;
-    at.slot = grid.slots[block];
-    at.i = (block % grid.block_columns_x) * block_side + (in_block & 3);
-    at.j = (block / grid.block_columns_x) * block_side + (in_block >> 2);
-    at.inside = halt == running && at.i < grid.columns && at.j < grid.rows;
+    const ActiveColumn place(grid, active, c);
+    at.slot = grid.slots[place.block];
+    at.i = place.i;
+    at.j = place.j;
+    at.inside = halt == running && place.in_domain(grid);
     if (!at.inside) return at;
     at.first = at.slot.first_layer;
     at.last = at.first + at.slot.layers;

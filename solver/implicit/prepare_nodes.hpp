@@ -26,12 +26,10 @@ struct PrepareNodes {
   bool predict;                ///< start from the displacement of the present velocity
 
   TALUS_HD void operator()(int c) const {
-    const int block = active[c / block_columns], inside = c % block_columns;
-    const int i = (block % grid.block_columns_x) * block_side + (inside & 3);
-    const int j = (block / grid.block_columns_x) * block_side + (inside >> 2);
-    const BlockSlot slot = grid.slots[block];
+    const ActiveColumn at(grid, active, c);
+    const BlockSlot slot = grid.slots[at.block];
     for (int k = slot.first_layer; k < slot.first_layer + slot.layers; ++k)
-      prepare(GridView<Real>::node(slot, i, j, k), i, j, k);
+      prepare(GridView<Real>::node(slot, at.i, at.j, k), at.i, at.j, k);
   }
 
  private:

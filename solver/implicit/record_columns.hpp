@@ -18,20 +18,18 @@ struct RecordColumns {
   double time;
   MapView maps;
   TALUS_HD void operator()(int c) const {
-    const int block = active[c / block_columns], inside = c % block_columns;
-    const int i = (block % grid.block_columns_x) * block_side + (inside & 3);
-    const int j = (block / grid.block_columns_x) * block_side + (inside >> 2);
-    if (i >= grid.columns || j >= grid.rows) return;
-    const BlockSlot slot = grid.slots[block];
+    const ActiveColumn at(grid, active, c);
+    if (!at.in_domain(grid)) return;
+    const BlockSlot slot = grid.slots[at.block];
     double total = 0;
     Vec3<double> momentum{};
     for (int k = slot.first_layer; k < slot.first_layer + slot.layers; ++k) {
-      const int n = GridView<Real>::node(slot, i, j, k);
+      const int n = GridView<Real>::node(slot, at.i, at.j, k);
       total += mass[n];
       if (velocity && mass[n] > 0) momentum += velocity[n] * mass[n];
     }
     const double spacing = static_cast<double>(grid.spacing);
-    const int column = grid.column(i, j);
+    const int column = grid.column(at.i, at.j);
     const double mean = volumes && volumes[column] > 0 ? total / volumes[column] : density;
     if (total > 0) record_column(maps, column, {total, length(momentum), mean, spacing}, time);
   }

@@ -130,13 +130,14 @@ struct TileMemory {
   }
 };
 
-/// What a lane of a tile is. Nothing of it is kept: the kernels are short of registers.
+/// What a lane of a tile is. Only what the addresses in shared memory begin with is kept: the kernels are short of
+/// registers, and P2G takes 8 % longer where that is worked out for every point.
 template <int each, class Kernel>
 struct TileLane {
   using Sizes = TileSizes<each, Kernel>;
+  int first_source = static_cast<int>(threadIdx.x) / warp_size * each;  ///< of this warp
   __device__ int lane() const { return static_cast<int>(threadIdx.x) % warp_size; }
   __device__ int warp() const { return static_cast<int>(threadIdx.x) / warp_size; }
-  __device__ int first_source() const { return warp() * each; }    ///< of this warp
   __device__ int team() const { return lane() / Sizes::columns; }  ///< lanes beyond the last team help to pass on
   __device__ int column() const { return lane() % Sizes::columns; }
 };
@@ -152,9 +153,9 @@ __device__ __forceinline__ std::uint64_t read_point(int count, const Kernel& ker
   if (at.lane() >= each) return nothing;
   const int p = (static_cast<int>(blockIdx.x) * tile_warps + at.warp()) * each + at.lane();
   if (p >= count || !kernel.counts(p)) return nothing;
-  const auto& source = *new (&memory.source(at.first_source() + at.lane())) typename Kernel::Source(kernel, p);
+  const auto& source = *new (&memory.source(at.first_source + at.lane())) typename Kernel::Source(kernel, p);
   for (int q = 0; q < Kernel::columns_each; ++q)
-    memory.bases[at.first_source() + at.lane()][q] = kernel.column_of(source, q);
+    memory.bases[at.first_source + at.lane()][q] = kernel.column_of(source, q);
   const auto& n = kernel.nodes_of(source);
   return (static_cast<std::uint64_t>(kernel.grid.column(n.i, n.j)) << layer_bits | static_cast<unsigned>(n.k + 1))
              << lane_bits |
@@ -253,7 +254,7 @@ __device__ void reduce_tile(int count, const Kernel& kernel) {
   typename Kernel::Sums sums[Sizes::deep];
   for (int step = 0; step < Sizes::share; ++step) {
     const int q = first + step;
-    const int source = at.first_source() + __shfl_sync(all, order.point, q < warp_size ? q : 0);
+    const int source = at.first_source + __shfl_sync(all, order.point, q < warp_size ? q : 0);
     const bool adds = q < last && (order.counting >> q & 1u) != 0, goes_on = adds && q + 1 < last;
     if (adds) kernel.add(memory.source(source), at.column(), sums);
     const bool climbs = goes_on && (order.climbing >> q & 1u) != 0,

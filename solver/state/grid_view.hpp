@@ -108,4 +108,20 @@ struct GridView {
   }
 };
 
+/// A column of the blocks that hold material, by its number in a loop over all of them.
+struct ActiveColumn {
+  int block, i, j;  ///< block, column and row of the grid; of a block at the edge some lie outside the domain
+  /// `active`: the blocks; c: place in that list * block_columns + place in the block.
+  template <class Real>
+  TALUS_HD ActiveColumn(const GridView<Real>& grid, const int* active, int c) : block(active[c / block_columns]) {
+    const int inside = c % block_columns;
+    i = (block % grid.block_columns_x) * block_side + (inside & 3);
+    j = (block / grid.block_columns_x) * block_side + (inside >> 2);
+  }
+  template <class Real>
+  TALUS_HD bool in_domain(const GridView<Real>& grid) const {
+    return i < grid.columns && j < grid.rows;
+  }
+};
+
 }  // namespace talus

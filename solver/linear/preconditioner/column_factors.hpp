@@ -21,11 +21,11 @@ template <class Real>
 struct ColumnNodes {
   int i = 0, j = 0, first_layer = 0, layers = 0, first = 0;
   TALUS_HD ColumnNodes(const StoredColumns<Real>& columns, int c) {
-    const int block = columns.active[c / block_columns], inside = c % block_columns;
-    i = (block % columns.grid.block_columns_x) * block_side + (inside & 3);
-    j = (block / columns.grid.block_columns_x) * block_side + (inside >> 2);
-    if (i >= columns.grid.columns || j >= columns.grid.rows) return;
-    const BlockSlot slot = columns.grid.slots[block];
+    const ActiveColumn at(columns.grid, columns.active, c);
+    i = at.i;
+    j = at.j;
+    if (!at.in_domain(columns.grid)) return;
+    const BlockSlot slot = columns.grid.slots[at.block];
     first_layer = slot.first_layer;
     layers = slot.layers;
     first = GridView<Real>::node(slot, i, j, slot.first_layer);
