@@ -36,10 +36,12 @@ void GridOptions::describe(recipe::Visitor& v) {
            "horizontal spacing h of the grid; 0 = the cell of the first DEM");
   v.needs(is_length(spacing), fault(fmt::format("grid.spacing_m = {}", spacing), "it must be positive",
                                     "Give a length in metres, or 0 for the cell of the first DEM"));
-  v.number("layer_height_m", layer_height, recipe::not_negative,
-           "vertical spacing h_z of the grid; 0 = the horizontal one");
+  v.number(
+      "layer_height_m", layer_height, recipe::not_negative,
+      "vertical spacing h_z of the grid; 0 = half the median thickness of the release (by volume), at most h; in a "
+      "laboratory h");
   v.needs(is_length(layer_height), fault(fmt::format("grid.layer_height_m = {}", layer_height), "it must be positive",
-                                         "Give a length in metres, or 0 for the horizontal spacing"));
+                                         "Give a length in metres, or 0 for one that suits the release"));
   v.integers("points_per_cell", points_per_cell, recipe::Range{1, 64}, "material points along x, y and height");
   v.needs(three_positive(points_per_cell),
           fault(fmt::format("grid.points_per_cell = [{}]", fmt::join(points_per_cell, ", ")),

@@ -14,7 +14,7 @@ enum class EdgeNodata { refuse, outside };
 /// The keys of [preprocess.grid].
 struct GridOptions {
   double spacing = 0;       ///< [m]; 0: the cell of the first DEM
-  double layer_height = 0;  ///< [m]; 0: spacing
+  double layer_height = 0;  ///< [m]; 0: by the thickness of the release (default_layer_height()), or spacing
   std::vector<int> points_per_cell{2, 2, 2};
   double minimum_thickness = 0;  ///< [m]
   double jitter = 0;

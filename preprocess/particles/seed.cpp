@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <numeric>
 
 #include "preprocess/particles/shift.hpp"
 
@@ -54,11 +56,32 @@ void reserve(SeedPoints& points, std::size_t count) {
 
 }  // namespace
 
-Seeding seeding_of(const GridOptions& options, double spacing) {
+double median_thickness(const Raster& thickness) {
+  std::vector<double> columns;
+  std::copy_if(thickness.values.begin(), thickness.values.end(), std::back_inserter(columns),
+               [](double t) { return t > 0; });
+  std::sort(columns.begin(), columns.end());
+  const double half = 0.5 * std::accumulate(columns.begin(), columns.end(), 0.0);
+  double below = 0;
+  for (double t : columns) {
+    below += t;
+    if (below >= half) return t;
+  }
+  return 0;
+}
+
+double default_layer_height(const Raster& thickness, double spacing) {
+  const double half = 0.5 * median_thickness(thickness);
+  if (!(half > 0)) return spacing;
+  const double last_digit = std::pow(10.0, std::floor(std::log10(half)) - 1);
+  return std::min(spacing, std::floor(half / last_digit + 1e-9) * last_digit);
+}
+
+Seeding seeding_of(const GridOptions& options, double layer_height) {
   return {options.points_per_cell.at(0),
           options.points_per_cell.at(1),
           options.points_per_cell.at(2),
-          options.layer_height > 0 ? options.layer_height : spacing,
+          layer_height,
           options.minimum_thickness,
           options.jitter,
           static_cast<std::uint64_t>(options.jitter_seed)};

@@ -19,8 +19,15 @@ struct Seeding {
   std::uint64_t jitter_seed = 1;
 };
 
-/// Seeding as the recipe says, with its defaults resolved for cells of `spacing`.
-Seeding seeding_of(const GridOptions& options, double spacing);
+/// The median thickness by volume [m]: half the released volume stands in columns that are thicker. 0 without release.
+double median_thickness(const Raster& thickness);
+
+/// The height of a layer where the recipe gives none [m]: half the median thickness, so that most of the release has
+/// two layers or more, rounded down to two digits, and at most the spacing; the spacing without release.
+double default_layer_height(const Raster& thickness, double spacing);
+
+/// Seeding as the recipe says, with layers of this height [m].
+Seeding seeding_of(const GridOptions& options, double layer_height);
 
 /// Points for all releases, without making them.
 std::size_t count_points(const std::vector<Release>& releases, const Seeding& seeding);

@@ -211,6 +211,12 @@ Raster total_thickness(const SceneRasters& scene, std::size_t first) {
   return total;
 }
 
+/// The height of the layers [m].
+double layer_height(const Options& options, const Raster& release) {
+  if (options.grid.layer_height > 0) return options.grid.layer_height;
+  return options.way() == Way::laboratory ? options.grid.spacing : default_layer_height(release, release.grid.cell);
+}
+
 void warn_at_edge(const Raster& thickness) {
   const MapGrid& grid = thickness.grid;
   for (std::size_t i = 0; i < thickness.values.size(); ++i) {
@@ -278,8 +284,9 @@ Prepared prepare(const Options& given, Points points) {
   const Options options = with_utm_zone(given);
   SceneRasters scene = read_scene(options);
   lay_erodible(options, scene);
-  const Seeding seeding = seeding_of(options.grid, scene.bed.grid.cell);
   Prepared prepared;
+  prepared.domain.release_thickness = total_thickness(scene, options.erodible.size());
+  const Seeding seeding = seeding_of(options.grid, layer_height(options, prepared.domain.release_thickness));
   prepared.inputs = inputs_of(options);
   const bool laboratory = options.way() == Way::laboratory;
   prepared.point_count = laboratory ? count_box_points(options) : count_points(scene.releases, seeding);
@@ -288,7 +295,6 @@ Prepared prepare(const Options& given, Points points) {
   Domain& domain = prepared.domain;
   domain.grid = scene.bed.grid;
   domain.layer_height = seeding.layer_height;
-  domain.release_thickness = total_thickness(scene, options.erodible.size());
   warn_at_edge(domain.release_thickness);
   const std::vector<double> cosine = slope_cosine(scene.bed);
   prepared.total = volumes_of(domain.release_thickness, cosine);

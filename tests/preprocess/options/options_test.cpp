@@ -69,8 +69,8 @@ TEST(options, refuse_spacings_that_are_not_positive) {
   EXPECT_EQ(faults_of(options),
             "[preprocess]: grid.spacing_m = -10 (it must be positive). Give a length in metres, or 0 for the cell of "
             "the first DEM\n"
-            "[preprocess]: grid.layer_height_m = -2 (it must be positive). Give a length in metres, or 0 for the "
-            "horizontal spacing\n");
+            "[preprocess]: grid.layer_height_m = -2 (it must be positive). Give a length in metres, or 0 for one "
+            "that suits the release\n");
 }
 
 TEST(options, refuse_points_per_cell_that_are_not_three_positive_numbers) {

@@ -2,6 +2,7 @@
 
 #include "common/map/slope.hpp"
 #include "common/map/sum.hpp"
+#include "preprocess/particles/seed.hpp"
 #include "preprocess/terrain/geo_input.hpp"
 #include "tests/preprocess/scene.hpp"
 
@@ -261,7 +262,8 @@ TEST(prepare, writes_a_domain_that_reads_back) {
   write_domain(scene.scratch / "domain.vdb", domain);
   const Domain back = read_domain(scene.scratch / "domain.vdb");
   EXPECT_EQ(back.terrain.values, domain.terrain.values);
-  EXPECT_EQ(back.layer_height, 10);
+  EXPECT_EQ(back.layer_height, domain.layer_height);
+  EXPECT_EQ(back.layer_height, default_layer_height(domain.release_thickness, 10)) << "the recipe names none";
   double sum = 0, expected = 0;
   for (double v : back.points.volume) sum += v;
   for (double v : domain.points.volume) expected += v;

@@ -2,6 +2,7 @@
 #include "common/gis/coordinates.hpp"
 #include "common/gis/crs.hpp"
 #include "common/map/crop.hpp"
+#include "preprocess/particles/seed.hpp"
 #include "preprocess/terrain/geo_input.hpp"
 #include "preprocess/terrain/working_grid.hpp"
 #include "tests/preprocess/scene.hpp"
@@ -30,7 +31,7 @@ TEST(align, keeps_the_corner_of_the_first_model_at_another_spacing) {
   EXPECT_EQ(domain.grid.rows, 20);
   EXPECT_DOUBLE_EQ(domain.grid.west, scene.grid.west);
   EXPECT_DOUBLE_EQ(domain.grid.south, scene.grid.south);
-  EXPECT_EQ(domain.layer_height, 15);
+  EXPECT_EQ(domain.layer_height, default_layer_height(domain.release_thickness, 15)) << "the recipe names none";
 }
 
 /// A plane stays a plane on any other grid, except where a border cell has no neighbour to weigh with.
