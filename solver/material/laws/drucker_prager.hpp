@@ -12,25 +12,40 @@
 
 namespace talus {
 
-/// The way in which the cone meets Mohr-Coulomb.
-enum class Cone { compression, extension, plane_strain };
+/// The test in which the cone meets Mohr-Coulomb: the one that the friction angle is from.
+enum class Cone {
+  simple_shear,  ///< shear box, or the angle at which a slope slides: tan(phi) on the plane that slips
+  compression,   ///< triaxial compression
+  extension,     ///< triaxial extension
+  plane_strain   ///< biaxial compression
+};
 
 /// The cone sqrt(J2) = slope p + cohesion, (T15).
 struct ConeFit {
   double slope, cohesion;  ///< [-], [Pa]
 };
 
+/// The steepest cone under which grains carry no tension: with a steeper one the least principal stress of an extension
+/// is tensile.
+inline constexpr double steepest_cone = 0.5 * std::numbers::sqrt3;
+
 /// The cone through Mohr-Coulomb of this friction angle [rad] and cohesion [Pa]: in triaxial compression or extension
-/// (Chen & Mizuno 1990, table 4.1), or in plane strain for flow with this dilatancy angle [rad] (T15a), which is the
-/// table's fit where that is the friction angle.
+/// (Chen & Mizuno 1990, table 4.1), in plane strain for flow with this dilatancy angle [rad] (T15a), which is the
+/// table's fit where that is the friction angle, or on the plane along which such a flow slips (T15d), after Davis
+/// (1968). It may be steeper than `steepest_cone`.
 inline ConeFit fit_cone(Cone cone, double angle, double cohesion, double dilatancy) {
   const double s = std::sin(angle), c = std::cos(angle), t = std::tan(dilatancy);
+  // In a plane that nothing crosses, s_z = -(2/3) beta sqrt(J2): the circle there has the radius
+  // sqrt(J2 (1 - beta^2 / 3)) about the pressure p - (beta / 3) sqrt(J2).
+  const double beta = 3 * t / std::sqrt(9 + 12 * t * t), radius = std::sqrt(1 - beta * beta / 3);
   if (cone == Cone::plane_strain) {
-    // No plastic strain across the plane: s_z = -(2/3) beta sqrt(J2), so that the circle in the plane has the radius
-    // sqrt(J2 (1 - beta^2 / 3)) about the pressure p - (beta / 3) sqrt(J2).
-    const double beta = 3 * t / std::sqrt(9 + 12 * t * t);
-    const double share = std::sqrt(1 - beta * beta / 3) + beta / 3 * s;
+    const double share = radius + beta / 3 * s;
     return {s / share, cohesion * c / share};
+  }
+  if (cone == Cone::simple_shear) {
+    const double slope = std::tan(angle);
+    const double share = radius * (std::cos(dilatancy) + slope * std::sin(dilatancy)) + beta / 3 * slope;
+    return {slope / share, cohesion / share};
   }
   const double side = cone == Cone::compression ? 3 - s : 3 + s;
   return {6 * s / (std::sqrt(3.0) * side), 6 * cohesion * c / (std::sqrt(3.0) * side)};
@@ -144,8 +159,18 @@ struct DruckerPrager {
     double softening_slip = 0;           ///< over which strength falls to the residual one [m]; 0: it does not
     double residual_friction_angle = 0;  ///< [deg]
     double residual_cohesion = 0;        ///< [Pa]
-    Cone cone = Cone::compression;
+    Cone cone = Cone::simple_shear;
 
+    /// The cone that a friction angle [deg] and a cohesion [Pa] ask for.
+    ConeFit asked_cone(double angle, double shear_cohesion) const {
+      constexpr double radians_per_degree = std::numbers::pi / 180;
+      return fit_cone(cone, angle * radians_per_degree, shear_cohesion, dilatancy_angle * radians_per_degree);
+    }
+    /// The cone of a friction angle [deg] and a cohesion [Pa]: the one asked for, or `steepest_cone`.
+    ConeFit cone_of(double angle, double shear_cohesion) const {
+      const ConeFit asked = asked_cone(angle, shear_cohesion);
+      return {std::min(asked.slope, steepest_cone), asked.cohesion};
+    }
     /// Whether strength falls as the material shears.
     bool softens() const { return softening_slip > 0; }
     /// Whether shear changes the volume of the material.
@@ -260,7 +285,7 @@ template <class Real>
 DruckerPrager::Numbers<Real> DruckerPrager::numbers(const Options& o, double side) {
   constexpr double radians_per_degree = std::numbers::pi / 180;
   const double dilatancy = o.dilatancy_angle * radians_per_degree;
-  const ConeFit cone = fit_cone(o.cone, o.friction_angle * radians_per_degree, o.cohesion, dilatancy);
+  const ConeFit cone = o.cone_of(o.friction_angle, o.cohesion);
   const ConeFit flow = fit_cone(o.cone, dilatancy, 0, dilatancy);
   // The cone's own tip bounds the tension; a frictionless cone has none.
   const double tip = cone.slope > 0 ? cone.cohesion / cone.slope : o.tension_cutoff;
@@ -271,8 +296,7 @@ DruckerPrager::Numbers<Real> DruckerPrager::numbers(const Options& o, double sid
   n.shear_cohesion = static_cast<Real>(cone.cohesion);
   n.tension = static_cast<Real>(std::min(tip, o.tension_cutoff));
   if (o.softens()) {
-    const ConeFit left =
-        fit_cone(o.cone, o.residual_friction_angle * radians_per_degree, o.residual_cohesion, dilatancy);
+    const ConeFit left = o.cone_of(o.residual_friction_angle, o.residual_cohesion);
     n.residual_friction = static_cast<Real>(borne * left.slope);
     n.residual_cohesion = static_cast<Real>(left.cohesion);
     n.softening = static_cast<Real>(side / o.softening_slip);
@@ -305,8 +329,11 @@ inline void DruckerPrager::Options::describe(recipe::Visitor& v, const LawTable&
        "a residual strength is no larger than the first", "Lower residual_friction_angle_deg or residual_cohesion_Pa"});
   recipe::choice(
       v, "cone", cone,
-      {{"compression", Cone::compression}, {"extension", Cone::extension}, {"plane-strain", Cone::plane_strain}},
-      "how the cone meets Mohr-Coulomb");
+      {{"simple-shear", Cone::simple_shear},
+       {"compression", Cone::compression},
+       {"extension", Cone::extension},
+       {"plane-strain", Cone::plane_strain}},
+      "test that the friction angle is from: shear box or angle of repose, triaxial compression or extension, biaxial");
 }
 
 /// The definition of the sentence for the report.

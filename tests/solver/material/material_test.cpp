@@ -173,7 +173,11 @@ TEST(DruckerPrager, ends_on_or_inside_the_cone) {
 }
 
 TEST(DruckerPrager, meets_mohr_coulomb_in_triaxial_compression) {
-  const auto m = sand(31);
+  MaterialOptions o;
+  o.model = MaterialModel::drucker_prager;
+  o.cone = Cone::compression;
+  o.friction_angle = 31;
+  const auto m = make_material<double>(o);
   MaterialState<double> s;
   advance_material(m, columns(Matrix(-1e-3 * Matrix::Identity())), 0.01, s);
   Matrix g = Matrix::Zero();
@@ -211,6 +215,55 @@ TEST(DruckerPrager, meets_mohr_coulomb_in_plane_strain_for_its_own_flow) {
     const auto tau = kirchhoff_stress(m, s);
     const double radius = 0.5 * (tau.xx - tau.zz), mean = -0.5 * (tau.xx + tau.zz);
     EXPECT_NEAR(radius / (mean * sine + cohesion * std::sqrt(1 - sine * sine)), 1, 2e-3) << "dilatancy " << dilatancy;
+  }
+}
+
+TEST(DruckerPrager, meets_mohr_coulomb_on_the_plane_that_slips) {
+  // Simple shear between plates that dilate as the flow does: shear over normal stress on the plate is that of the line
+  // of 31 degrees whatever the dilatancy is.
+  const double slope = std::tan(31 * std::numbers::pi / 180), cohesion = 2e3;
+  for (const double dilatancy : {0.0, 1.0, 15.0, 31.0}) {
+    MaterialOptions o;
+    o.model = MaterialModel::drucker_prager;
+    o.cone = Cone::simple_shear;
+    o.friction_angle = 31;
+    o.dilatancy_angle = dilatancy;
+    o.cohesion = cohesion;
+    o.tension_cutoff = 1e6;
+    const auto m = make_material<double>(o);
+    MaterialState<double> s;
+    advance_material(m, columns(Matrix(-1e-4 * Matrix::Identity())), 0.01, s);
+    Matrix g = Matrix::Zero();
+    g(0, 2) = 1e-6;
+    const double start = pressure_of(kirchhoff_stress(m, s));
+    for (int n = 0; n < 4000; ++n) {  // the plates give way, so that the pressure stays
+      advance_material(m, columns(g), 0.01, s);
+      g(2, 2) = 1e-6 * std::tan(dilatancy * std::numbers::pi / 180) +
+                (pressure_of(kirchhoff_stress(m, s)) - start) / m.bulk_modulus;
+    }
+    const auto tau = kirchhoff_stress(m, s);
+    EXPECT_NEAR(tau.xz / (-tau.zz * slope + cohesion), 1, 2e-3) << "dilatancy " << dilatancy;
+  }
+}
+
+TEST(DruckerPrager, carries_no_tension_however_steep_its_cone) {
+  // Pulled along one axis at constant volume, the worst that a cone can meet: the stress along it may vanish, not turn.
+  for (const auto cone : {Cone::simple_shear, Cone::compression, Cone::extension, Cone::plane_strain}) {
+    for (const double angle : {30.0, 40.0, 60.0, 85.0}) {
+      MaterialOptions o;
+      o.model = MaterialModel::drucker_prager;
+      o.cone = cone;
+      o.friction_angle = angle;
+      const auto m = make_material<double>(o);
+      MaterialState<double> s;
+      advance_material(m, columns(Matrix(-1e-4 * Matrix::Identity())), 0.01, s);
+      Matrix g = Matrix::Zero();
+      g(2, 2) = 1e-5;
+      g(0, 0) = g(1, 1) = -0.5e-5;
+      for (int n = 0; n < 200; ++n) advance_material(m, columns(g), 0.01, s);
+      const auto tau = kirchhoff_stress(m, s);
+      EXPECT_LE(tau.zz, 1e-6 * pressure_of(tau)) << angle;
+    }
   }
 }
 

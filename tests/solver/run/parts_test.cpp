@@ -118,6 +118,7 @@ TEST_P(Parts, soften_as_they_slip) {
     SolveOptions o;
     o.material.youngs_modulus = 1e7;
     o.material.cohesion = cohesion;
+    o.material.cone = Cone::compression;
     o.material.friction_angle = 25;
     o.material.softening_slip = slip;
     o.material.residual_friction_angle = 25;

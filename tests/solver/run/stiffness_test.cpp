@@ -29,6 +29,7 @@ SolveOptions sliding(double modulus) {
   SolveOptions o;
   o.material.youngs_modulus = modulus;
   o.material.stiffness = StiffnessKind::automatic;
+  o.material.cone = Cone::compression;
   o.base.friction_angle = 20;
   o.end_time = 20;
   return o;
