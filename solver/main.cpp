@@ -19,6 +19,7 @@
 #include "solver/run/profile_report.hpp"
 #include "solver/run/simulation.hpp"
 #include "solver/run/stiffness.hpp"
+#include "solver/run/warnings.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "solver/scene/make_solver.hpp"
 
@@ -180,9 +181,11 @@ void solve(StageContext& context, const SolveFlags& flags) {
   options = settle_stiffness(domain, options);
   if (flags.plan) {
     for (const std::string& text : plan(domain, options, device)) log_info(text);
+    for (const std::string& text : warnings(domain, options)) log_warning(text);
     return;
   }
   log_plan(domain, options, device);
+  for (const std::string& text : warnings(domain, options)) log_warning(text);
 
   const std::string settings = recipe::to_toml(options, "solve", false);
   std::string fingerprint = sha256(domain_file) + "\n" + settings;

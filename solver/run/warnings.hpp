@@ -1,0 +1,16 @@
+// What a recipe asks that its numbers do not bear out: said before the run, with the numbers.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/domain/domain.hpp"
+#include "solver/options/solve.hpp"
+
+namespace talus::solver {
+
+/// The warnings of a scene, a sentence or two each: a mass that gives way inside before it slides on its bed, and a
+/// friction angle whose cone would carry tension.
+std::vector<std::string> warnings(const Domain& domain, const SolveOptions& options);
+
+}  // namespace talus::solver

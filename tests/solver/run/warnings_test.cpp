@@ -1,0 +1,93 @@
+// What is said of a recipe whose numbers do not bear out what it asks.
+#include "solver/run/warnings.hpp"
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "solver/options/solve.hpp"
+#include "tests/solver/scenes.hpp"
+
+namespace talus::solver::testing {
+namespace {
+
+Domain two_metres_of_mass() {
+  Domain d = ground(12, 12, 1.0, 1.0, [](double x, double) { return 10 - 0.5 * x; });
+  fill(d, {4, 8, 4, 8, 0, 2});
+  d.release_thickness = d.terrain;
+  for (double& t : d.release_thickness.values) t = 2;
+  return d;
+}
+
+SolveOptions mass_on_bed(double mass, double bed) {
+  SolveOptions o;
+  o.material.friction_angle = mass;
+  o.base.friction_angle = bed;
+  return o;
+}
+
+bool says(const std::vector<std::string>& lines, const std::string& words) {
+  for (const std::string& line : lines)
+    if (line.find(words) != std::string::npos) return true;
+  return false;
+}
+
+TEST(Warnings, are_silent_of_a_mass_that_is_stronger_than_its_bed) {
+  EXPECT_TRUE(warnings(two_metres_of_mass(), mass_on_bed(30, 20)).empty());
+  EXPECT_TRUE(warnings(two_metres_of_mass(), mass_on_bed(20.01, 20)).empty()) << "simple shear mobilises the tangent";
+}
+
+TEST(Warnings, name_a_mass_that_gives_way_inside) {
+  const auto lines = warnings(two_metres_of_mass(), mass_on_bed(17, 25));
+  ASSERT_EQ(lines.size(), 1u);
+  for (const char* words :
+       {"0.306", "friction_angle_deg = 17", "0.466 (25.0 deg)", "as on a bed of 17.0 deg", "33.1 deg or more"})
+    EXPECT_TRUE(says(lines, words)) << words << "\n" << lines[0];
+}
+
+TEST(Warnings, count_cohesion_pore_pressure_rasters_and_parts) {
+  SolveOptions o = mass_on_bed(17, 25);
+  // 2 m of 2,000 kg/m3 press with 39 kPa; 7 kPa make up for 0.16 of that.
+  o.material.cohesion = 7e3;
+  EXPECT_TRUE(warnings(two_metres_of_mass(), o).empty());
+  o = mass_on_bed(26, 25);
+  o.material.pore_pressure_ratio = 0.5;
+  EXPECT_EQ(warnings(two_metres_of_mass(), o).size(), 1u);
+  o.base.pore_pressure_ratio = 0.5;
+  EXPECT_TRUE(warnings(two_metres_of_mass(), o).empty()) << "water carries as much of the bed's pressure";
+  o = mass_on_bed(26, 25);
+  Domain rough = two_metres_of_mass();
+  rough.bed.emplace_back("friction_angle_deg", rough.terrain);
+  for (double& angle : rough.bed[0].second.values) angle = 10;
+  EXPECT_TRUE(warnings(rough, o).empty());
+  rough.bed[0].second.values[7] = 35;
+  EXPECT_TRUE(says(warnings(rough, o), "35.0 deg"));
+  o.parts = {{.release = "lower", .material = o.material}};
+  o.parts[0].material.friction_angle = 20;
+  EXPECT_TRUE(says(warnings(two_metres_of_mass(), o), "[[solve.part]] \"lower\""));
+}
+
+TEST(Warnings, name_a_cone_that_would_carry_tension) {
+  EXPECT_TRUE(warnings(two_metres_of_mass(), mass_on_bed(40, 20)).empty());
+  const auto lines = warnings(two_metres_of_mass(), mass_on_bed(45, 20));
+  ASSERT_EQ(lines.size(), 1u);
+  for (const char* words : {"friction_angle_deg = 45", "1.000 p", "0.866 p", "40.9 deg"})
+    EXPECT_TRUE(says(lines, words)) << words << "\n" << lines[0];
+  SolveOptions triaxial = mass_on_bed(36, 20);
+  triaxial.material.cone = Cone::compression;
+  EXPECT_TRUE(warnings(two_metres_of_mass(), triaxial).empty());
+  triaxial.material.friction_angle = 38;
+  EXPECT_EQ(warnings(two_metres_of_mass(), triaxial).size(), 1u);
+}
+
+TEST(Warnings, are_silent_of_a_bed_that_sticks_or_does_not_rub) {
+  SolveOptions o = mass_on_bed(17, 25);
+  for (const auto law : {FrictionLaw::none, FrictionLaw::stick}) {
+    o.base.law = law;
+    EXPECT_TRUE(warnings(two_metres_of_mass(), o).empty());
+  }
+}
+
+}  // namespace
+}  // namespace talus::solver::testing
