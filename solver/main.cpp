@@ -103,6 +103,10 @@ void log_plan(const Domain& domain, const SolveOptions& o, const AnyDevice& devi
                        o.end_time / step, device.is_gpu() ? "GPU" : "CPU"));
 }
 
+void log_warnings(const Domain& domain, const SolveOptions& o) {
+  for (const std::string& text : warnings(domain, o)) log_warning(text);
+}
+
 /// This function carries out stiffness = "auto", and logs the modulus.
 SolveOptions settle_stiffness(const Domain& domain, SolveOptions o) {
   if (o.material.stiffness != StiffnessKind::automatic) return o;
@@ -181,11 +185,11 @@ void solve(StageContext& context, const SolveFlags& flags) {
   options = settle_stiffness(domain, options);
   if (flags.plan) {
     for (const std::string& text : plan(domain, options, device)) log_info(text);
-    for (const std::string& text : warnings(domain, options)) log_warning(text);
+    log_warnings(domain, options);
     return;
   }
   log_plan(domain, options, device);
-  for (const std::string& text : warnings(domain, options)) log_warning(text);
+  log_warnings(domain, options);
 
   const std::string settings = recipe::to_toml(options, "solve", false);
   std::string fingerprint = sha256(domain_file) + "\n" + settings;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double degrees = 180 / std::numbers::pi;
 /// What the mass should hold over what its bed asks, as tangents: with less, part of the shear stays in the mass (Frank
-/// Slide on beds of 10 to 20 degrees, docs/validation.md).
+/// Slide on beds of 10 to 20 degrees, docs/decisions/0022-cone-of-simple-shear.md).
 constexpr double recommended_ratio = 1.4;
 
 /// The largest friction coefficient of the bed, of slow slip [-]; 0 where none rubs or the mass sticks.
@@ -46,8 +46,7 @@ void warn_of(const MaterialOptions& material, const std::string& table, double b
   if (asked > steepest_cone) {
     lines.push_back(
         fmt::format("{} friction_angle_deg = {:g} asks for the cone sqrt(J2) = {:.3f} p, under which grains would "
-                    "carry tension. It "
-                    "is held to {:.3f} p, {:.1f} deg in simple shear",
+                    "carry tension. It is held to {:.3f} p, {:.1f} deg in simple shear",
                     table, law.friction_angle, asked, steepest_cone, std::atan(steepest_cone) * degrees));
   }
   const ConeFit fit = law.cone_of(law.friction_angle, law.cohesion);
@@ -57,8 +56,8 @@ void warn_of(const MaterialOptions& material, const std::string& table, double b
   lines.push_back(fmt::format(
       "the mass gives way inside before it slides on its bed: in simple shear it holds {:.3f} of the pressure ({} "
       "friction_angle_deg = {:g}), the bed asks {:.3f} ({:.1f} deg). It moves as on a bed of {:.1f} deg. Give a "
-      "friction "
-      "angle of {:.1f} deg or more (cone = \"simple-shear\"; {:g} times the bed's tangent), or lower the bed's",
+      "friction angle of {:.1f} deg or more (cone = \"simple-shear\"; {:g} times the bed's tangent), or lower the "
+      "bed's",
       held, table, law.friction_angle, bed, std::atan(bed) * degrees, std::atan(held) * degrees,
       std::atan(recommended_ratio * bed) * degrees, recommended_ratio));
 }

@@ -283,10 +283,8 @@ TALUS_HD void DruckerPrager::respond(const Elasticity<Real>& m, const Numbers<Re
 /// The definition of the cone's numbers, by (T15a) and (T15c).
 template <class Real>
 DruckerPrager::Numbers<Real> DruckerPrager::numbers(const Options& o, double side) {
-  constexpr double radians_per_degree = std::numbers::pi / 180;
-  const double dilatancy = o.dilatancy_angle * radians_per_degree;
   const ConeFit cone = o.cone_of(o.friction_angle, o.cohesion);
-  const ConeFit flow = fit_cone(o.cone, dilatancy, 0, dilatancy);
+  const ConeFit flow = o.asked_cone(o.dilatancy_angle, 0);
   // The cone's own tip bounds the tension; a frictionless cone has none.
   const double tip = cone.slope > 0 ? cone.cohesion / cone.slope : o.tension_cutoff;
   const double borne = 1 - o.pore_pressure_ratio;  // by the grains

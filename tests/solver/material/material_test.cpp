@@ -189,19 +189,24 @@ TEST(DruckerPrager, meets_mohr_coulomb_in_triaxial_compression) {
   EXPECT_NEAR(tau.zz / tau.xx, (1 + sine) / (1 - sine), 1e-3);
 }
 
+/// Sand of 31 degrees by this test, whose cohesion bears tension.
+Material<double> cohesive_sand(Cone cone, double dilatancy, double cohesion) {
+  MaterialOptions o;
+  o.model = MaterialModel::drucker_prager;
+  o.cone = cone;
+  o.friction_angle = 31;
+  o.dilatancy_angle = dilatancy;
+  o.cohesion = cohesion;
+  o.tension_cutoff = 1e6;
+  return make_material<double>(o);
+}
+
 TEST(DruckerPrager, meets_mohr_coulomb_in_plane_strain_for_its_own_flow) {
   // Sheared in a plane, nothing across it: the circle in the plane must touch the line of 31 degrees whatever the
   // dilatancy is.
   const double sine = std::sin(31 * std::numbers::pi / 180), cohesion = 2e3;
   for (const double dilatancy : {0.0, 1.0, 15.0, 31.0}) {
-    MaterialOptions o;
-    o.model = MaterialModel::drucker_prager;
-    o.cone = Cone::plane_strain;
-    o.friction_angle = 31;
-    o.dilatancy_angle = dilatancy;
-    o.cohesion = cohesion;
-    o.tension_cutoff = 1e6;
-    const auto m = make_material<double>(o);
+    const auto m = cohesive_sand(Cone::plane_strain, dilatancy, cohesion);
     MaterialState<double> s;
     advance_material(m, columns(Matrix(-1e-3 * Matrix::Identity())), 0.01, s);
     Matrix g = Matrix::Zero();
@@ -223,14 +228,7 @@ TEST(DruckerPrager, meets_mohr_coulomb_on_the_plane_that_slips) {
   // of 31 degrees whatever the dilatancy is.
   const double slope = std::tan(31 * std::numbers::pi / 180), cohesion = 2e3;
   for (const double dilatancy : {0.0, 1.0, 15.0, 31.0}) {
-    MaterialOptions o;
-    o.model = MaterialModel::drucker_prager;
-    o.cone = Cone::simple_shear;
-    o.friction_angle = 31;
-    o.dilatancy_angle = dilatancy;
-    o.cohesion = cohesion;
-    o.tension_cutoff = 1e6;
-    const auto m = make_material<double>(o);
+    const auto m = cohesive_sand(Cone::simple_shear, dilatancy, cohesion);
     MaterialState<double> s;
     advance_material(m, columns(Matrix(-1e-4 * Matrix::Identity())), 0.01, s);
     Matrix g = Matrix::Zero();
