@@ -156,6 +156,15 @@ void Bench::at_most(const Outcome& outcome, const std::string& quantity, double 
   judge(std::move(row));
 }
 
+void Bench::within(const Outcome& outcome, const std::string& quantity, double computed, double low, double high) {
+  Row row = row_of(outcome, quantity);
+  row.computed = computed;
+  row.reference = std::abs(computed - low) < std::abs(computed - high) ? low : high;
+  row.tolerance = 0;
+  row.error = computed >= low && computed <= high ? 0 : std::abs(computed / row.reference - 1);
+  judge(std::move(row));
+}
+
 void Bench::note(const Outcome& outcome, const std::string& quantity, double computed) {
   Row row = row_of(outcome, quantity);
   row.computed = computed;

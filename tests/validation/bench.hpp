@@ -72,6 +72,8 @@ class Bench {
 
   /// A row that `computed` passes up to `reference`; its error is what is too much.
   void at_most(const Outcome& outcome, const std::string& quantity, double computed, double reference);
+  /// A row that `computed` passes from `low` to `high`; its error is how far beyond the nearer end it lies, over that.
+  void within(const Outcome& outcome, const std::string& quantity, double computed, double low, double high);
   /// A row that says what was measured and claims nothing: it passes when the run did.
   void note(const Outcome& outcome, const std::string& quantity, double computed);
 

@@ -14,6 +14,7 @@ const std::vector<Case>& cases() {
       {"A3-studies", "reach of the sand column over points per cell and step", false, sand_column_studies},
       {"A3-friction", "run-out of the sand column over damping and base friction", false, sand_column_friction},
       {"A3b", "sand columns of other aspect ratios", false, sand_column_aspects},
+      {"A3c", "round columns of sand", false, round_sand_columns},
       {"A4", "time and memory of a step", true, step_cost},
       {"B1", "block on an incline", true, block_on_incline},
       {"B2", "block on a bed that weakens with speed", true, velocity_weakening},

@@ -48,6 +48,7 @@ void sand_column_paper(Bench&);     // A3-paper
 void sand_column_studies(Bench&);   // A3-studies
 void sand_column_friction(Bench&);  // A3-friction
 void sand_column_aspects(Bench&);   // A3b
+void round_sand_columns(Bench&);    // A3c
 void step_cost(Bench&);             // A4
 void block_on_incline(Bench&);      // B1
 void velocity_weakening(Bench&);    // B2

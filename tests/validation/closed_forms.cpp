@@ -170,12 +170,6 @@ double SlidingBlock::way(double speed, double time) const {
   return way;
 }
 
-double lube_run_out(double a) {
-  if (a < 1.8) return 1.6 * a;
-  if (a > 2.8) return 2.2 * std::pow(a, 2.0 / 3);
-  return std::numeric_limits<double>::quiet_NaN();
-}
-
 double GroundLine::elevation(double x) const {
   if (kind == parabola) {
     const double left = std::max(run - x, 0.0) / run;
@@ -241,8 +235,6 @@ double DamBreak::speed(double x, double time) const {
   if (fallen >= 2 * c * time) return 0;
   return 2.0 / 3.0 * (fallen / time + c) + pull * time;
 }
-
-double lube_height(double a) { return a < 1.15 ? a : std::pow(a, 0.4); }
 
 double observed_order(const double* x, const double* y, int count) {
   double sx = 0, sy = 0, sxx = 0, sxy = 0;

@@ -84,10 +84,6 @@ struct DamBreak {
   double speed(double x, double time) const;      ///< downhill [m/s]; 0 where there is nothing
 };
 
-/// Columns of sand (Lube, Huppert, Sparks & Freundt 2005): aspect ratio height over width.
-double lube_run_out(double aspect);  ///< (d_inf - d_0) / d_0; NaN between 1.8 and 2.8, where the paper gives no law
-double lube_height(double aspect);   ///< h_inf / d_0
-
 /// Slope of the straight line through (ln x, ln y).
 double observed_order(const double* x, const double* y, int count);
 

@@ -77,12 +77,6 @@ TEST(closed_forms, block_slides_as_newton_says) {
   EXPECT_NEAR(coulomb.way(1, 2), 2 + 0.5 * 9.81 * (std::sin(0.5) - 0.3 * std::cos(0.5)) * 4, 1e-9);
 }
 
-TEST(closed_forms, sand_column_has_lubes_run_out_and_height) {
-  EXPECT_NEAR(0.09 * (1 + lube_run_out(7)), 0.8145, 1e-4);
-  EXPECT_NEAR(0.09 * lube_height(7), 0.196, 1e-4);
-  EXPECT_TRUE(std::isnan(lube_run_out(2)));
-}
-
 TEST(closed_forms, ground_line_takes_its_share_in_a_tight_bend) {
   // Through a bend much shorter than the way, Coulomb's friction on the centripetal force leaves exp(-2 mu angle) of
   // the square of the speed.

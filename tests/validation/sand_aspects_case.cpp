@@ -1,0 +1,131 @@
+// A3b and A3c: sand columns of other aspect ratios, in a slice and round.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "tests/validation/cases.hpp"
+#include "tests/validation/chart.hpp"
+#include "tests/validation/sand_deposit.hpp"
+
+namespace talus::validation {
+namespace {
+
+/// The column of an aspect ratio on cells of about a `cells`th of its height: a whole number of them across the column,
+/// since walls stand on nodes.
+Sand column_of(double aspect, double cells) {
+  Sand s;
+  s.height = aspect * s.width;
+  s.h = s.width / static_cast<double>(std::max(1L, std::lround(cells / aspect)));
+  return s;
+}
+
+/// Columns of one aspect ratio with 16 cells along the height and 32, and what halving the cells moves.
+Collapse halved(Bench& bench, double aspect) {
+  Collapse result;
+  double before = nothing;
+  Series outline;
+  for (const bool finer : {false, true}) {
+    Sand s = column_of(aspect, 16);
+    if (finer) s.h /= 2;
+    result = collapse(bench, fmt::format("a = {:g}, h = {:.2g} mm", aspect, 1000 * s.h), s, {});
+    if (finer) {
+      bench.measure(result.outcome, "run-out that halving the cells moves", result.front / before - 1, 0.03);
+      if (result.outcome.ok() && !outline.x.empty()) {
+        const Series fine = outline_of(result.outcome, result.outcome.frames.size() - 1, s, 2);
+        bench.note(result.outcome, "profile moved over height", profile_difference(outline, fine));
+      }
+    }
+    before = result.front;
+    if (result.outcome.ok()) outline = outline_of(result.outcome, result.outcome.frames.size() - 1, s, 2);
+  }
+  return result;
+}
+
+/// A quarter of a round column from strips of a sixteenth of its radius along y, each as far along x as the circle,
+/// rounded to a sixteenth as well.
+Overrides round_column(const Sand& s) {
+  constexpr int strips = 16;
+  const double wide = s.width / strips, reach = s.width * (1 + 1.5 * round_run_out(s.height / s.width));
+  const long columns = std::lround(reach / s.h) + 8;
+  Overrides all{{"preprocess.grid.spacing_m", s.h},
+                {"preprocess.grid.points_per_cell", std::vector<std::int64_t>(3, s.per_cell)},
+                {"preprocess.laboratory.columns", whole(columns)},
+                {"preprocess.laboratory.rows", whole(columns)},
+                {"preprocess.laboratory.west_m", -3.5 * s.h},
+                {"preprocess.laboratory.south_m", -3.5 * s.h}};
+  for (int n = 0; n < strips; ++n) {
+    const double y = (n + 0.5) / strips;
+    const std::string box = fmt::format("preprocess.box[{}].", n);
+    all = all + Overrides{{box + "name", words(fmt::format("strip {}", n + 1))},
+                          {box + "west_m", 0.0},
+                          {box + "east_m", wide * std::round(strips * std::sqrt(1 - y * y))},
+                          {box + "south_m", n * wide},
+                          {box + "north_m", (n + 1) * wide},
+                          {box + "bottom_m", 0.0},
+                          {box + "top_m", s.height}};
+  }
+  return all;
+}
+
+/// The points with their distance from the axis for x.
+Points by_radius(Points points) {
+  for (auto& p : points.position) p = {std::hypot(p[0], p[1]), 0, p[2]};
+  return points;
+}
+
+}  // namespace
+
+void sand_column_aspects(Bench& bench) {
+  Chart chart = log_chart("A3b: run-out over aspect ratio, one set of parameters", "aspect ratio, height over width",
+                          "(d end − d start) / d start");
+  const auto draw = [](const std::string& name, double (*law)(double), double first, double step, int count) {
+    Series line{name, {}, {}, 0};
+    for (int n = 0; n < count; ++n) {
+      line.x.push_back(first + n * step);
+      line.y.push_back(law(line.x.back()));
+    }
+    return line;
+  };
+  Series ours{"computed, some 32 cells along the height", {}, {}, 2};
+  ours.line = false;
+  ours.marks = true;
+  ours.mark_size = 10;
+  for (const double aspect : {0.5, 1.0, 1.5, 3.0, 5.0, 7.0, 9.0}) {
+    const Collapse c = halved(bench, aspect);
+    ours.x.push_back(aspect);
+    ours.y.push_back(c.front / Sand{}.width - 1);
+  }
+  Series wide = draw("Lajeunesse et al. 2005", lajeunesse_run_out, 0.4, 0.1, 90);
+  wide.colour = 3;
+  chart.series = {draw("Lube et al. 2005", lube_run_out, 0.4, 0.1, 14), draw("", lube_run_out, 2.81, 0.5, 14), wide,
+                  ours};
+  bench.picture("A3b-run-out", png_of(chart));
+}
+
+/// Round columns, as a quarter between two rollers; run-out and height by the laws of one laboratory.
+void round_sand_columns(Bench& bench) {
+  for (const double aspect : {0.5, 1.0, 2.0, 4.0}) {
+    const Band run_out = band_of(round_run_out(aspect), nothing), height = band_of(round_height(aspect), nothing);
+    double before = nothing;
+    for (const double cells : {8.0, 16.0}) {
+      Sand s = column_of(aspect, static_cast<int>(std::lround(cells * std::max(1.0, aspect))));
+      s.per_cell = s.h > s.width / 8 ? 4 : 3;
+      if (std::lround(s.width / s.h) % 16 != 0) s.per_cell = 4;
+      const Outcome o =
+          bench.run(fmt::format("a = {:g}, h = radius / {}", aspect, std::lround(s.width / s.h)), round_column(s));
+      const double front = o.ok() ? front_of(by_radius(o.last()), s) / s.width - 1 : nothing;
+      bench.within(o, "run-out over radius", front, run_out.low, run_out.high);
+      if (std::isfinite(height.low))
+        bench.within(o, "height over radius", o.ok() ? top_of(o.last(), s) / s.width : nothing, height.low,
+                     height.high);
+      if (std::isfinite(before))
+        bench.measure(o, "run-out that halving the cells moves", (1 + front) / (1 + before) - 1, 0.03);
+      before = front;
+    }
+  }
+}
+
+}  // namespace talus::validation
