@@ -1,23 +1,51 @@
 // talus-make-terrain KIND --out DIR: writes one of the synthetic terrains; paths go to stdout.
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <iostream>
 #include <map>
 #include <string>
 
 #include "common/error.hpp"
+#include "data_samples/hard_terrains.hpp"
 #include "data_samples/terrains.hpp"
 #include "data_samples/write_sample.hpp"
 
 namespace {
 
-using talus::samples::Sample;
+using namespace talus::samples;
 
-const std::map<std::string, Sample (*)(double)> kinds{
-    {"inclined-plane", talus::samples::inclined_plane},
-    {"parabolic-chute", talus::samples::parabolic_chute},
-    {"raw-valley", [](double cell) { return talus::samples::raw_valley(cell, 1); }},
-    {"rock-slope", talus::samples::rock_slope},
-    {"valley", talus::samples::valley}};
+/// The terrain of a kind, with cells of this size [m], laid on the map. Throws RecipeError where it cannot be laid so.
+using Maker = std::function<Sample(double cell, const Pose& pose)>;
+
+Maker fixed(Sample (*made)(double cell)) {
+  return [made](double cell, const Pose& pose) {
+    if (pose.mirrored || pose.turned_deg != 0)
+      throw talus::RecipeError({"this terrain cannot be mirrored or turned",
+                                "rough-slope, bent-gully, cliff-bench and thinning-slide alone are given on axes of "
+                                "their own",
+                                "Leave out --mirror and --turn, or make one of those"});
+    return made(cell);
+  };
+}
+Maker laid(HardTerrain (*terrain)()) {
+  return [terrain](double cell, const Pose& pose) { return LaidTerrain(terrain(), cell, pose).sample(); };
+}
+
+const std::map<std::string, Maker> kinds{{"bent-gully", laid(bent_gully)},
+                                         {"cliff-bench", laid(cliff_bench)},
+                                         {"inclined-plane", fixed(inclined_plane)},
+                                         {"parabolic-chute", fixed(parabolic_chute)},
+                                         {"raw-valley", fixed([](double cell) { return raw_valley(cell, 1); })},
+                                         {"rock-slope", fixed(rock_slope)},
+                                         {"rough-slope", laid(rough_slope)},
+                                         {"thinning-slide", laid(thinning_slide)},
+                                         {"valley", fixed(valley)}};
+
+std::string names() {
+  std::string all;
+  for (const auto& [name, maker] : kinds) all += (all.empty() ? "" : ", ") + name;
+  return all;
+}
 
 }  // namespace
 
@@ -25,14 +53,18 @@ int main(int argc, char** argv) {
   CLI::App app{"Makes a small synthetic terrain: elevation models, outlines and release thickness."};
   std::string kind, out;
   double cell = 10;
-  app.add_option("kind", kind, "inclined-plane, parabolic-chute, raw-valley, rock-slope or valley")
-      ->required()
-      ->check(CLI::IsMember(kinds));
+  app.add_option("kind", kind, "one of " + names())->required()->check(CLI::IsMember(kinds));
   app.add_option("--out", out, "folder to write to")->required();
   app.add_option("--cell", cell, "cell size [m]")->check(CLI::Range(0.5, 50.0))->capture_default_str();
+  Pose pose;
+  app.add_flag("--mirror", pose.mirrored, "left for right, seen down the slope");
+  app.add_option("--turn", pose.turned_deg, "counter-clockwise [degrees]")
+      ->check(CLI::Range(-360.0, 360.0))
+      ->capture_default_str();
   try {
     app.parse(argc, argv);
-    for (const auto& file : talus::samples::write_sample(out, kinds.at(kind)(cell))) std::cout << file.string() << "\n";
+    for (const auto& file : talus::samples::write_sample(out, kinds.at(kind)(cell, pose)))
+      std::cout << file.string() << "\n";
   } catch (const CLI::ParseError& fault) {
     return app.exit(fault) == 0 ? 0 : static_cast<int>(talus::ExitCode::recipe);
   } catch (const talus::Error& error) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "data_samples/smooth.hpp"
 #include "data_samples/terrains.hpp"
 
 namespace talus::samples {
@@ -50,17 +51,6 @@ constexpr Ellipse lobe{618, 362, 155, 112, 92};
 constexpr double scar_depth = 22;  // [m]
 
 double river(double y) { return 690 + 28 * std::sin(2 * M_PI * y / 560 + 0.7) + 9 * std::sin(2 * M_PI * y / 210); }
-
-double smooth(double t) {
-  t = std::clamp(t, 0.0, 1.0);
-  return t * t * (3 - 2 * t);
-}
-
-/// Integral of smooth() from 0 to t.
-double smooth_integral(double t) {
-  const double c = std::clamp(t, 0.0, 1.0);
-  return c * c * c - c * c * c * c / 2 + std::max(0.0, t - 1);
-}
 
 /// Height of a flank at a distance from its foot: its slope grows from `foot` to `steep` over `reach`, and past `crest`
 /// falls off again to round the ridge.

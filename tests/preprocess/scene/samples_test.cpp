@@ -4,6 +4,7 @@
 #include "common/gis/crs.hpp"
 #include "common/gis/polygons.hpp"
 #include "common/gis/read_raster.hpp"
+#include "data_samples/hard_terrains.hpp"
 #include "data_samples/terrains.hpp"
 #include "preprocess/regions/polygon_cover.hpp"
 #include "preprocess/scene/prepare.hpp"
@@ -40,12 +41,53 @@ void expect_committed(const std::string& kind, const samples::Sample& sample) {
   }
 }
 
+samples::Sample hard_sample(const samples::HardTerrain& terrain, double cell, const samples::Pose& pose = {}) {
+  return samples::LaidTerrain(terrain, cell, pose).sample();
+}
+
 TEST(samples, are_what_the_program_makes) {
+  expect_committed("bent-gully", hard_sample(samples::bent_gully(), 4));
+  expect_committed("cliff-bench", hard_sample(samples::cliff_bench(), 2.5));
   expect_committed("inclined-plane", samples::inclined_plane(10));
   expect_committed("parabolic-chute", samples::parabolic_chute(10));
   expect_committed("raw-valley", samples::raw_valley(10, 1));
   expect_committed("rock-slope", samples::rock_slope(10));
+  expect_committed("rough-slope", hard_sample(samples::rough_slope(), 2));
+  expect_committed("thinning-slide", hard_sample(samples::thinning_slide(), 5));
   expect_committed("valley", samples::valley(10));
+}
+
+TEST(samples, are_small) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (!entry.is_regular_file() || entry.path().extension() != ".tif") continue;
+    EXPECT_LE(entry.file_size(), 200'000u) << entry.path();
+  }
+}
+
+TEST(samples, hard_terrains_lie_on_the_map_as_asked) {
+  const samples::HardTerrain terrain = samples::bent_gully();
+  const Raster as_is = hard_sample(terrain, 4).rasters.at(0).second;
+  const Raster mirrored = hard_sample(terrain, 4, {true, 0}).rasters.at(0).second;
+  const Raster quarter = hard_sample(terrain, 4, {false, 90}).rasters.at(0).second;
+  ASSERT_EQ(quarter.grid.columns, as_is.grid.rows);
+  ASSERT_EQ(quarter.grid.rows, as_is.grid.columns);
+  const int rows = as_is.grid.rows;
+  // Rounded to cm.
+  for (int j = 0; j < rows; ++j) {
+    for (int i = 0; i < as_is.grid.columns; ++i) {
+      ASSERT_NEAR(mirrored.at(i, rows - 1 - j), as_is.at(i, j), 0.0102);
+      ASSERT_NEAR(quarter.at(rows - 1 - j, i), as_is.at(i, j), 0.0102);
+    }
+  }
+  // By 30 degrees counter-clockwise: 100 m down the slope from the middle is 86.6 m east and 50 m north of it.
+  const Raster oblique = hard_sample(terrain, 4, {false, 30}).rasters.at(0).second;
+  const double x = oblique.grid.columns * 2 + 86.60254, y = oblique.grid.rows * 2 + 50;
+  const auto own = samples::LaidTerrain(terrain, 4, {false, 30}).own(x, y);
+  EXPECT_NEAR(own[0], terrain.width / 2 + 100, 1e-4);
+  EXPECT_NEAR(own[1], terrain.height / 2, 1e-4);
+  // Half a cell on ground of at most 47 degrees.
+  EXPECT_NEAR(oblique.at(static_cast<int>(x / 4), static_cast<int>(y / 4)),
+              terrain.ground(terrain.width / 2 + 100, terrain.height / 2), 3.1);
 }
 
 Options valley_options() {
@@ -108,6 +150,24 @@ TEST(samples, releases_on_plane_and_chute_have_their_volume) {
   options.base_dem = folder / "parabolic-chute" / "dem.tif";
   options.release[0].polygons = folder / "parabolic-chute" / "release.geojson";
   EXPECT_NEAR(prepare(options, Points::seeded).total.volume, 2 * 53 * 76 + 3 * 47 * 52, 1e-6);
+}
+
+TEST(samples, releases_on_hard_terrains_are_as_thick_as_they_say) {
+  struct Release {
+    const char* name;
+    double volume, most;  ///< [m3], [m]
+  };
+  for (const Release& release : {Release{"rough-slope", 4295, 1}, Release{"bent-gully", 7763, 5},
+                                 Release{"cliff-bench", 16500, 5}, Release{"thinning-slide", 53462, 18}}) {
+    Options options;
+    options.base_dem = folder / release.name / "dem.tif";
+    options.release.resize(1);
+    options.release[0].thickness_raster = folder / release.name / "release_thickness.tif";
+    const Prepared prepared = prepare(options, Points::counted);
+    EXPECT_NEAR(prepared.total.volume, release.volume, 0.5) << release.name;
+    EXPECT_LE(prepared.total.max_vertical, release.most) << release.name;
+    EXPECT_GT(prepared.total.max_vertical, 0.9 * release.most) << release.name;
+  }
 }
 
 }  // namespace

@@ -1,0 +1,74 @@
+#!/usr/bin/env bash
+# The recipes of the samples that are as hard as the world, on coarser cells and for their first seconds, through the
+# three programs: what their maps and histories must hold whatever the model.
+source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
+
+# coarse_scene NAME CELL SECONDS: terrain of that cell [m] and the scene's recipe, here; then all three stages.
+coarse_scene() {
+  expect_exit 0 "$bin/talus-make-terrain" "$1" --cell "$2" --out "$TALUS_SCRATCH/terrain"
+  sed -e "s,../../data_samples/$1,$TALUS_SCRATCH/terrain,; s/^end_time_s.*/end_time_s = $3/" \
+    "$TALUS_SOURCE/pipelines/$1/recipe.toml" >recipe.toml
+  [[ $(grep -c "$TALUS_SCRATCH/terrain" recipe.toml) -eq 2 ]] || fail "the recipe of $1 names other files"
+  expect_exit 0 "$bin/talus-preprocess" recipe.toml --out out
+  expect_exit 0 "$bin/talus-solve" recipe.toml --out out --on cpu
+  if grep -iq warning stderr; then fail "the solver warns of the recipe of $1"; fi
+  expect_exit 0 "$bin/talus-postprocess" recipe.toml --out out
+}
+
+# expect_sane NAME CELL: volume closed; no speed beyond that of a fall from the highest released surface; the map holds
+# what was released, and it has moved.
+expect_sane() {
+  /usr/bin/python3 - out "$1" "$2" >stdout 2>stderr <<'PYTHON' || fail "the run of $1 is not sane"
+import csv, math, sys
+import numpy as np
+from osgeo import gdal
+gdal.UseExceptions()
+out, name, cell = sys.argv[1], sys.argv[2], float(sys.argv[3])
+def grid(path):
+    return gdal.Open(path).ReadAsArray().astype(float)
+with open(f"{out}/history.csv") as file:
+    rows = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+bed, release = grid("terrain/dem.tif"), grid("terrain/release_thickness.tif")
+deposit, speed = grid(f"{out}/maps/deposit_thickness.tif"), grid(f"{out}/maps/peak_speed.tif")
+deposit, speed = (np.where(map > -9998, map, 0) for map in (deposit, speed))
+released = release.sum() * cell * cell
+faults = []
+def check(what, holds, value):
+    print(f"{what}: {value:.6g}")
+    if not holds:
+        faults.append(what)
+left = rows[-1]["outflow_m3"]
+end, on_map = rows[-1]["volume_m3"], deposit.sum() * cell * cell
+# The rasters are in single precision.
+check("volume lost", abs(end + left - released) < 1e-7 * released, end + left - released)
+check("volume on the map", abs(on_map + left - released) < 1e-6 * released, on_map)
+top = (bed + release)[release > 0].max()
+fall = np.sqrt(2 * 9.81 * np.maximum(top - bed, 0))
+fastest = max(row["speed_max_m_s"] for row in rows)
+check("largest speed over that of the deepest fall", fastest < fall.max(), fastest / fall.max())
+here = (speed > 0) & (top - bed > 20)
+check("mean speed over that of the fall to where it was", (speed <= fall)[here].all(), (speed[here] / fall[here]).max())
+check("it moved", speed.max() > 8, speed.max())
+print(faults)
+sys.exit(bool(faults))
+PYTHON
+}
+
+hard_sample_runs() {
+  /usr/bin/python3 -c 'from osgeo import gdal' 2>/dev/null || need_tool python3-gdal
+  coarse_scene "$@"
+  expect_sane "$1" "$2"
+}
+
+test_rough_slope_runs() { hard_sample_runs rough-slope 8 8; }
+test_bent_gully_runs() { hard_sample_runs bent-gully 8 25; }
+test_cliff_bench_runs() { hard_sample_runs cliff-bench 5 10; }
+test_thinning_slide_runs() { hard_sample_runs thinning-slide 10 45; }
+
+test_terrains_without_axes_of_their_own_cannot_be_turned() {
+  expect_exit 2 "$bin/talus-make-terrain" valley --turn 30 --out "$TALUS_SCRATCH/terrain"
+  expect_words 'cannot be mirrored or turned' 'rough-slope'
+  expect_no_file "$TALUS_SCRATCH/terrain"
+}
+
+run_test "$@"

@@ -1,0 +1,207 @@
+#include "tests/solver/samples/sample_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace talus::solver::testing {
+
+namespace {
+
+void seed_column(Domain& d, int column, int row) {
+  const double thickness = d.release_thickness.at(column, row), h = d.grid.cell;
+  const int high = std::max(1, static_cast<int>(std::lround(2 * thickness / d.layer_height)));
+  for (int n = 0; n < 4 * high; ++n) {
+    d.points.x.push_back(d.grid.x(column) + h / 4 * (n % 2 == 0 ? -1 : 1));
+    d.points.y.push_back(d.grid.y(row) + h / 4 * (n / 2 % 2 == 0 ? -1 : 1));
+    d.points.height.push_back((n / 4 + 0.5) * thickness / high);
+    d.points.volume.push_back(thickness * h * h / (4 * high));
+    d.points.extent_x.push_back(h / 2);
+    d.points.extent_y.push_back(h / 2);
+    d.points.release.push_back(0);
+  }
+}
+
+/// The columns of a run as its points fill them.
+struct Columns {
+  std::vector<double> mass;
+  std::vector<Vec3<double>> momentum;
+};
+Columns columns_of(const ParticleState& s, const GridShape& grid, double density) {
+  Columns all{std::vector<double>(grid.terrain.size()), std::vector<Vec3<double>>(grid.terrain.size())};
+  for (std::size_t p = 0; p < s.size(); ++p) {
+    const std::size_t c = grid.index(s.cell[0][p], s.cell[1][p]);
+    const double mass = density * s.volume[p];
+    all.mass[c] += mass;
+    all.momentum[c] += Vec3<double>{s.velocity[0][p], s.velocity[1][p], s.velocity[2][p]} * mass;
+  }
+  return all;
+}
+
+/// Half the mass [kg] that the median column has, by mass: columns that hold less are crossed by the rim.
+double rim_mass(const std::vector<double>& of_columns) {
+  std::vector<double> mass(of_columns.size());
+  std::partial_sort_copy(of_columns.begin(), of_columns.end(), mass.begin(), mass.end());
+  const double half = 0.5 * std::accumulate(mass.begin(), mass.end(), 0.0);
+  double below = 0;
+  for (const double m : mass) {
+    below += m;
+    if (below >= half) return 0.5 * m;
+  }
+  return 0;
+}
+
+/// The momentum of the points one step after a state [kg m/s], and that step [s].
+struct AfterStep {
+  Vec3<double> momentum;
+  double step;
+};
+AfterStep after_step(const SampleRun& run, const SolverState& state, double turbulence, On on) {
+  SolveOptions options = run.sample().options;
+  options.base.turbulence = turbulence;
+  const auto solver = resume_solver(run.scene(), options, on, state);
+  const double step = 0.99 * state.clock.courant / positive_from_bits(state.clock.rate_bits);
+  solver->set_next_event(state.clock.time + step);
+  while (solver->advance().clock.halt != at_event) {
+  }
+  return {solver->energies().momentum, solver->clock().time - state.clock.time};
+}
+
+SampleScene scene_with(const samples::HardTerrain& terrain, double cell, double layer_height, double bed_coefficient) {
+  SampleScene scene{terrain, cell, layer_height};
+  scene.options.material.friction_angle = 35;
+  scene.options.material.youngs_modulus = 1e6;
+  scene.options.base.friction_angle = std::atan(bed_coefficient) * 180 / M_PI;
+  return scene;
+}
+
+}  // namespace
+
+SampleScene rough_slope_scene() {
+  SampleScene scene = scene_with(samples::rough_slope(), 6.4, 0.37, 0.2);
+  scene.options.base.law = FrictionLaw::voellmy;
+  scene.options.base.turbulence = 2000;
+  return scene;
+}
+SampleScene bent_gully_scene() {
+  SampleScene scene = scene_with(samples::bent_gully(), 4, 1.5, 0.15);
+  scene.options.base.law = FrictionLaw::voellmy;
+  scene.options.base.turbulence = 400;
+  return scene;
+}
+SampleScene cliff_bench_scene() { return scene_with(samples::cliff_bench(), 5, 2, 0.4); }
+SampleScene thinning_slide_scene() { return scene_with(samples::thinning_slide(), 10, 5, 0.28); }
+
+Domain domain_of(const SampleScene& scene) {
+  const samples::Sample sample = samples::LaidTerrain(scene.terrain, scene.cell, scene.pose).sample();
+  Domain d;
+  d.terrain = d.before = sample.rasters.at(0).second;
+  d.release_thickness = sample.rasters.at(1).second;
+  d.grid = d.terrain.grid;
+  d.layer_height = scene.layer_height;
+  d.release_names = {"release"};
+  for (int row = 0; row < d.grid.rows; ++row) {
+    for (int column = 0; column < d.grid.columns; ++column) {
+      if (d.release_thickness.at(column, row) > 0) seed_column(d, column, row);
+    }
+  }
+  return d;
+}
+
+SampleRun::SampleRun(const SampleScene& scene, On on)
+    : sample_(scene),
+      laid_(scene.terrain, scene.cell, scene.pose),
+      scene_(make_scene(domain_of(scene), scene.options)),
+      solver_(make_solver(scene_, scene.options, on)),
+      released_(std::accumulate(scene_.points.volume.begin(), scene_.points.volume.end(), 0.0)) {}
+
+void SampleRun::run_to(double time) {
+  solver_->set_next_event(time);
+  for (;;) {
+    const BatchReport batch = solver_->advance();
+    left_ += batch.outflow_volume;
+    if (batch.clock.halt == failed) {
+      ADD_FAILURE() << "point " << batch.clock.failed_point << " failed at " << batch.clock.time << " s";
+      return;
+    }
+    if (batch.clock.halt == at_event) return;
+  }
+}
+
+std::vector<PointSeen> SampleRun::points() const {
+  const ParticleState s = solver_->state().points;
+  const auto places = positions(scene_.map, scene_.grid, solver_->ground(), s);
+  const TerrainTables& ground = solver_->ground();
+  std::vector<PointSeen> seen;
+  for (std::size_t p = 0; p < s.size(); ++p) {
+    const auto [x, y] = laid_.own(places[p][0] - samples::west, places[p][1] - samples::south);
+    const double bed =
+        ground.datum + terrain_at(scene_.grid, ground, s.cell[0][p] + s.offset[0][p], s.cell[1][p] + s.offset[1][p]);
+    const double speed = std::hypot(s.velocity[0][p], s.velocity[1][p], s.velocity[2][p]);
+    seen.push_back({s.id[p], x, y, places[p][2], places[p][2] - bed, speed, s.velocity[2][p], s.volume[p]});
+  }
+  std::sort(seen.begin(), seen.end(), [](const PointSeen& a, const PointSeen& b) { return a.id < b.id; });
+  return seen;
+}
+
+Mean mean_of(const std::vector<PointSeen>& points) {
+  Mean m;
+  for (const PointSeen& p : points) {
+    m.volume += p.volume;
+    m.x += p.volume * p.x;
+    m.y += p.volume * p.y;
+    m.z += p.volume * p.z;
+    m.half_square += p.volume * 0.5 * p.speed * p.speed;
+  }
+  for (double* sum : {&m.x, &m.y, &m.z, &m.half_square}) *sum /= m.volume;
+  return m;
+}
+
+double reach_of(const std::vector<PointSeen>& points, double share) {
+  std::vector<std::pair<double, double>> along;
+  double all = 0, sum = 0;
+  for (const PointSeen& p : points) {
+    along.emplace_back(p.x, p.volume);
+    all += p.volume;
+  }
+  std::sort(along.begin(), along.end());
+  for (const auto& [x, volume] : along) {
+    sum += volume;
+    if (sum >= share * all) return x;
+  }
+  return along.back().first;
+}
+
+Drag drag_of(const SampleRun& run, On on) {
+  const SolverState state = run.solver().state();
+  const SampleScene& sample = run.sample();
+  const double xi = sample.options.base.turbulence, density = sample.options.material.density;
+  // The same step with and without drag: nothing else of it differs.
+  const AfterStep with = after_step(run, state, xi, on), without = after_step(run, state, 1e30, on);
+  const Vec3<double> lost = (without.momentum - with.momentum) * (1 / with.step);
+  const Vec3<double> way = without.momentum * (1 / length(without.momentum));
+  const Columns columns = columns_of(state.points, run.scene().grid, density);
+  const TerrainTables& ground = run.solver().ground();
+  const double rim = rim_mass(columns.mass);
+  double due = 0;
+  for (std::size_t c = 0; c < columns.mass.size(); ++c) {
+    if (!(columns.mass[c] > 0)) continue;
+    const double sx = ground.slope_x[c], sy = ground.slope_y[c], steep = std::sqrt(1 + sx * sx + sy * sy);
+    const Vec3<double> normal{-sx / steep, -sy / steep, 1 / steep}, mean = columns.momentum[c] * (1 / columns.mass[c]);
+    const Vec3<double> along = mean - normal * dot(mean, normal);
+    const double area = std::min(1.0, columns.mass[c] / rim) * sample.cell * sample.cell * steep;
+    due += density * 9.81 / xi * length(along) * dot(along, way) * area;
+  }
+  return {dot(lost, way), due};
+}
+
+double common_cover(const std::vector<double>& a, const std::vector<double>& b, double threshold) {
+  double both = 0, either = 0;
+  for (std::size_t c = 0; c < a.size(); ++c) {
+    both += a[c] >= threshold && b[c] >= threshold;
+    either += a[c] >= threshold || b[c] >= threshold;
+  }
+  return both / either;
+}
+
+}  // namespace talus::solver::testing
