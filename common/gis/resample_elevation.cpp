@@ -9,8 +9,8 @@
 #include "common/gis/gdal_support.hpp"
 #include "common/gis/resampling.hpp"
 #include "common/map/axis_overlap.hpp"
-#include "common/map/bicubic.hpp"
 #include "common/map/bilinear.hpp"
+#include "common/map/biquintic.hpp"
 #include "common/map/crop.hpp"
 
 namespace talus {
@@ -39,7 +39,7 @@ Raster area_mean(const Raster& source, const MapGrid& grid) {
 /// be null.
 Raster sampled(const Raster& source, const MapGrid& grid, OGRCoordinateTransformation* transform, int n,
                Interpolation interpolation) {
-  const auto at = interpolation == Interpolation::cubic ? bicubic : bilinear;
+  const auto at = interpolation == Interpolation::quintic ? biquintic : bilinear;
   Raster result{grid, std::vector<double>(grid.count(), 0)};
   const auto samples = static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(n);
   std::vector<double> x(samples), y(samples);

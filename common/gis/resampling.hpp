@@ -5,8 +5,8 @@
 
 namespace talus {
 
-/// How values between cell centres are found: from four cells, or from sixteen (see bicubic()).
-enum class Interpolation { bilinear, cubic };
+/// How values between cell centres are found: from four cells, or from 36 (see biquintic()).
+enum class Interpolation { bilinear, quintic };
 
 /// Warp elevations [m] onto `grid` (another CRS, extent, registration or cell size): interpolated where the target is
 /// finer, area mean where it is coarser; NaN where the source has no data. Throws DataError when one of the two has a

@@ -23,7 +23,6 @@ class RandomField {
 
  private:
   using Complex = std::complex<double>;
-  void transform(std::vector<Complex>& plane) const;
   void draw();
 
   int columns_, rows_;

@@ -10,6 +10,7 @@
 #include "common/map/statistics.hpp"
 #include "preprocess/survey/changed_cells.hpp"
 #include "preprocess/survey/first_guess.hpp"
+#include "preprocess/survey/refined_shift.hpp"
 #include "preprocess/survey/shift_fit.hpp"
 
 namespace talus::preprocess {
@@ -107,6 +108,16 @@ void fit_tilt(std::vector<Patch>& patches, std::vector<int> sought, double lengt
     result = tilted;
 }
 
+/// The shift anew by bands of wavelengths, and the height that goes with it.
+void refine(std::vector<Patch>& patches, double length, Coregistration& result) {
+  const RefinedShift shift = refined_shift(patches, result.placement);
+  result.shift_error = shift.error;
+  if (!shift.known) return;
+  result.placement.x += shift.x;
+  result.placement.y += shift.y;
+  settle(patches, {shift_z}, length, result);
+}
+
 /// The rectangle around all patches.
 Extent extent_of(const std::vector<Patch>& patches) {
   Extent all{INFINITY, INFINITY, -INFINITY, -INFINITY};
@@ -178,6 +189,7 @@ Coregistration coregister(std::vector<Patch>& patches, bool tilt, const std::fil
     settle(patches, sought, length, result);
   }
   if (tilt) fit_tilt(patches, sought, length, result);
+  if (result.shift_known) refine(patches, length, result);
   return told(patches, start, result);
 }
 

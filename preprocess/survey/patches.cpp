@@ -35,11 +35,11 @@ void find_slopes(Patch& patch) {
 
 Patch patch_of(const Elevation& before, const Elevation& after, const MapGrid& part) {
   const double margin = patch_margin * std::max(part.cell, after.cell());
-  Patch patch{onto_grid(before, part), {}, {}, {}, {}, {}};
+  Patch patch{onto_grid(before, part), {}, {}, {}, {}, {}, {}};
   patch.after = part_of(after, {part.west - margin, part.south - margin, part.east() + margin, part.north() + margin},
                         part.crs_wkt);
   patch.unchanged.assign(part.count(), 1);
-  patch.stable = patch.unchanged;
+  patch.stable = patch.gentle = patch.unchanged;
   find_slopes(patch);
   return patch;
 }

@@ -13,7 +13,8 @@ struct Patch {
   std::vector<double> slope_x, slope_y;  // of it, rise per metre east and north; NaN where not known
   Elevation after;                       // as it was read, so that it is resampled once only; a margin wider
   std::vector<char> unchanged;           // cells that are not known to have changed: they tell the error
-  std::vector<char> stable;              // of these, the ones neither steep nor rough: they tell the alignment
+  std::vector<char> stable;              // of these, the ones neither steep nor rough: they tell where the fit begins
+  std::vector<char> gentle;              // cells that are not too steep: with `unchanged` they tell the alignment
 };
 
 /// Cells of which a fit makes use: more add time, not digits.

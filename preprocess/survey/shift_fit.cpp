@@ -11,8 +11,7 @@ namespace talus::preprocess {
 namespace {
 
 constexpr std::size_t most_rows = 500000;
-constexpr double least_spread = 0.02;   // of slope, in any direction, that tells a shift
-constexpr double biweight_cut = 4.685;  // scales
+constexpr double least_spread = 0.02;  // of slope, in any direction, that tells a shift
 constexpr int passes = 5;
 
 struct NormalEquations {

@@ -8,6 +8,8 @@
 
 namespace talus::preprocess {
 
+inline constexpr double biweight_cut = 4.685;  ///< scales, beyond which a cell does not count
+
 /// Numbers of the unknowns in the rows.
 enum ShiftUnknown { shift_x, shift_y, shift_z, tilt_x, tilt_y };
 

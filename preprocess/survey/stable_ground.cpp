@@ -46,7 +46,8 @@ void find_stable(std::vector<Patch>& patches, const StableGround& limits) {
     for (std::size_t i = 0; i < patch.stable.size(); ++i) {
       const double slope = std::hypot(patch.slope_x[i], patch.slope_y[i]);
       patch.unchanged[i] = !outside[i];
-      patch.stable[i] = slope <= steep && roughness[p][i] <= rough && !outside[i];  // false for NaN
+      patch.gentle[i] = slope <= steep;  // false for NaN
+      patch.stable[i] = patch.gentle[i] && roughness[p][i] <= rough && patch.unchanged[i];
     }
   }
 }

@@ -17,6 +17,7 @@ namespace talus::preprocess {
 namespace {
 
 constexpr double noticeable_shift = 0.2;    // cells
+constexpr double well_known = 0.1;          // cells: a shift whose standard error is larger is warned of
 constexpr double noticeable_height = 0.05;  // [m]
 
 /// z with P(|normal| < z) = confidence.
@@ -62,20 +63,39 @@ MapGrid whole_overlap(const Elevation& before, const Elevation& after, const Opt
       "beforehand and set mode = \"off\""});
 }
 
+double largest_shift_error(const Survey& s) { return std::max(s.fit.shift_error[0], s.fit.shift_error[1]); }
+
 bool noticeable(const Survey& s) {
   const Placement& p = s.fit.placement;
-  return std::hypot(p.x, p.y) > noticeable_shift * s.grid.cell ||
-         std::abs(p.z) > std::max(noticeable_height, s.fit.aligned.nmad) || p.tilt_x != 0 || p.tilt_y != 0;
+  const double told = std::max(noticeable_shift * s.grid.cell, 2 * largest_shift_error(s));
+  return std::hypot(p.x, p.y) > told || std::abs(p.z) > std::max(noticeable_height, s.fit.aligned.nmad) ||
+         p.tilt_x != 0 || p.tilt_y != 0;
 }
 
 std::string placement_words(const Survey& s) {
   const Placement& p = s.fit.placement;
-  std::string words = fmt::format("{:+.2f} m east, {:+.2f} m north ({:+.2f}, {:+.2f} cells), {:+.2f} m high", -p.x,
-                                  -p.y, -p.x / s.grid.cell, -p.y / s.grid.cell, -p.z);
+  const auto& [east, north] = s.fit.shift_error;
+  const double cell = s.grid.cell;
+  std::string words = fmt::format(
+      "{:+.2f} +- {:.2f} m east, {:+.2f} +- {:.2f} m north ({:+.3f} +- {:.3f}, {:+.3f} +- {:.3f} cells), {:+.2f} m "
+      "high",
+      -p.x, east, -p.y, north, -p.x / cell, east / cell, -p.y / cell, north / cell, -p.z);
   if (p.tilt_x != 0 || p.tilt_y != 0)
     words += fmt::format(", tilted by {:+.2f} m/km towards the east and {:+.2f} m/km towards the north",
                          -1000 * p.tilt_x, -1000 * p.tilt_y);
   return words;
+}
+
+/// A cell of shift on a slope is a cell times its rise of height: what is not known of one is not known of the other.
+void warn_of_vague_shift(const Survey& s) {
+  const double error = largest_shift_error(s);
+  if (!(error > well_known * s.grid.cell)) return;
+  log_warning(fmt::format(
+      "{}: its shift on the map is known to {:.2f} m (standard error), {:.2f} cells, only: on a slope of 30 degrees "
+      "heights differ by {:.2f} m for that alone. Give elevation models with more stable ground beyond the slide, with "
+      "finer cells or with less noise, or align them beforehand and set mode = \"off\" in "
+      "[preprocess.coregistration]",
+      s.after.file.string(), error, error / s.grid.cell, error * std::tan(std::numbers::pi / 6)));
 }
 
 void say_alignment(const Survey& s) {
@@ -93,6 +113,7 @@ void say_alignment(const Survey& s) {
   } else if (noticeable(s)) {
     log_warning(where + ". Correct it: mode = \"apply\" in [preprocess.coregistration]");
   }
+  warn_of_vague_shift(s);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "preprocess/survey/survey_json.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -31,6 +32,9 @@ Json alignment_of(const Survey& s) {
           {"applied", s.applied},
           {"after_lies_east_m", -p.x},
           {"after_lies_north_m", -p.y},
+          {"after_lies_east_error_m", s.fit.shift_error[0]},
+          {"after_lies_north_error_m", s.fit.shift_error[1]},
+          {"after_lies_error_cells", std::max(s.fit.shift_error[0], s.fit.shift_error[1]) / s.grid.cell},
           {"after_lies_high_m", -p.z},
           {"after_tilts_east_m_per_km", -1000 * p.tilt_x},
           {"after_tilts_north_m_per_km", -1000 * p.tilt_y},

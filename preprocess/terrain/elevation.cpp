@@ -35,15 +35,16 @@ void keep_voids(const Raster& raster, Raster& result) {
 }
 
 /// The mean of the cells within coarser ones. Where these do not hold whole cells, the mean of cells cut at their edges
-/// would be off by part of a cell, which on a slope is metres of height; so the surface is first read off, bilinearly,
-/// on cells that do fit.
-Raster coarsened(const Raster& raster, const MapGrid& grid) {
+/// would be off by part of a cell, which on a slope is metres of height; so the surface is first read off on
+/// cells that do fit.
+Raster coarsened(const Raster& raster, const MapGrid& grid, Interpolation interpolation) {
   const int parts = static_cast<int>(std::ceil(grid.cell / raster.grid.cell - 1e-6));
   MapGrid fine = grid;
   fine.cell = grid.cell / parts;
   fine.columns = grid.columns * parts;
   fine.rows = grid.rows * parts;
-  Raster result = resample_elevation(same_lattice(raster.grid, fine) ? raster : resample_elevation(raster, fine), grid);
+  Raster result = resample_elevation(
+      same_lattice(raster.grid, fine) ? raster : resample_elevation(raster, fine, interpolation), grid);
   keep_voids(raster, result);
   return result;
 }
@@ -165,9 +166,9 @@ Raster read_off(const Elevation& elevation, const MapGrid& grid) {
                                  elevation.file);
   if (one_crs && same_lattice(elevation.raster.grid, grid)) return cut_to(elevation.raster, grid);
   const bool coarser = grid.cell > elevation.cell() * (1 + 1e-6);
-  if (one_crs && coarser) return coarsened(elevation.raster, grid);
-  return resample_elevation(elevation.raster, grid,
-                            elevation.placement.moves() ? Interpolation::cubic : Interpolation::bilinear);
+  const Interpolation interpolation = elevation.placement.moves() ? Interpolation::quintic : Interpolation::bilinear;
+  if (one_crs && coarser) return coarsened(elevation.raster, grid, interpolation);
+  return resample_elevation(elevation.raster, grid, interpolation);
 }
 
 }  // namespace

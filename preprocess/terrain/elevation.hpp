@@ -48,7 +48,7 @@ std::string utm_zone_for(const std::filesystem::path& dem);
 Elevation read_elevation(std::string key, const std::filesystem::path& file, const ReadOptions& how = {});
 
 /// Copied where its cells are the grid's cells, resampled or triangulated otherwise (moved by less than a cell: by
-/// cubic convolution, which does not flatten crests); NaN where it has no data.
+/// six-point interpolation, which does not flatten crests); NaN where it has no data.
 Raster onto_grid(const Elevation& elevation, const MapGrid& grid);
 
 /// Says in the log how it comes onto the working grid, where its cells are not copied.

@@ -14,9 +14,19 @@ const row = (label, value, words = "") =>
   h("tr", {}, h("td", {}, label), h("td", { class: "number" }, value), h("td", { class: "plain" }, words));
 const group = (title) => h("tr", { class: "group" }, h("td", { colspan: 3 }, title));
 
-function side(value, positive, negative, cell) {
-  const words = `${quantity(Math.abs(value), "m", 2)} ${value < 0 ? negative : positive}`;
-  return cell ? `${words} (${number(Math.abs(value) / cell, 2)} cells)` : words;
+/** "0.37 m east"; of a shift with its standard error and both in cells: "3.98 ± 0.05 m east (0.398 ± 0.005 cells)". */
+function side(value, positive, negative, cell, error) {
+  const with_error = (unit, places) =>
+    number(Math.abs(value) / unit, places) + (error > 0 ? ` \u00b1 ${number(error / unit, places)}` : "");
+  const words = `${with_error(1, 2)}\u2009m ${value < 0 ? negative : positive}`;
+  return cell ? `${words} (${with_error(cell, 3)} cells)` : words;
+}
+
+/** What is said of a shift that is not known to a tenth of a cell. */
+function shiftWords({ after_lies_error_cells: error }) {
+  return error > 0.1
+    ? `Known to ${number(error, 2)} cells only: stable ground is too little, too level or too noisy for more.`
+    : "";
 }
 
 function alignmentRows({ alignment: a, cell_m: cell }) {
@@ -35,10 +45,10 @@ function alignmentRows({ alignment: a, cell_m: cell }) {
     group(a.applied ? "Alignment, corrected" : "Alignment, found and left as it was"),
     row(
       "the later model lay",
-      side(a.after_lies_east_m, "east", "west", cell),
-      "Found on stable ground after Nuth & K\u00e4\u00e4b (2011).",
+      side(a.after_lies_east_m, "east", "west", cell, a.after_lies_east_error_m),
+      "Found on stable ground after Nuth & K\u00e4\u00e4b (2011), by bands of wavelengths; \u00b1 one standard error.",
     ),
-    row("", side(a.after_lies_north_m, "north", "south", cell)),
+    row("", side(a.after_lies_north_m, "north", "south", cell, a.after_lies_north_error_m), shiftWords(a)),
     row("", side(a.after_lies_high_m, "high", "low")),
   ];
   if (a.after_tilts_east_m_per_km || a.after_tilts_north_m_per_km) {

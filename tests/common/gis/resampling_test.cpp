@@ -142,26 +142,29 @@ TEST(ResampleElevation, goes_through_another_crs_and_back) {
   EXPECT_LT(worst, 0.17);
 }
 
-/// Cubic convolution keeps a quadratic surface, which linear interpolation bends by h^2/8 times its curvature.
-TEST(ResampleElevation, keeps_a_quadratic_surface_when_moved_by_part_of_a_cell) {
-  const auto bowl = [](double x, double y) { return 0.02 * x * x - 0.01 * x * y + 0.03 * y * y; };
+/// Six points keep a surface of the fifth degree, with it a quadratic one, which linear interpolation bends by h^2/8
+/// times its curvature.
+TEST(ResampleElevation, keeps_a_surface_of_the_fifth_degree_when_moved_by_part_of_a_cell) {
+  const auto bowl = [](double x, double y) {
+    return 0.02 * x * x - 0.01 * x * y + 0.03 * y * y + 1e-8 * std::pow(x, 5) - 1e-8 * std::pow(y, 5);
+  };
   const MapGrid own{30, 30, -150, -150, 10, ""};
   Raster source{own, std::vector<double>(own.count())};
   for (int row = 0; row < 30; ++row)
     for (int column = 0; column < 30; ++column)
       source.at(column, row) = bowl(source.grid.x(column), source.grid.y(row));
   MapGrid moved{20, 20, -97, -104, 10, ""};
-  const Raster cubic = resample_elevation(source, moved, Interpolation::cubic),
+  const Raster quintic = resample_elevation(source, moved, Interpolation::quintic),
                linear = resample_elevation(source, moved);
   double worst = 0;
   for (int row = 0; row < 20; ++row)
     for (int column = 0; column < 20; ++column) {
-      EXPECT_NEAR(cubic.at(column, row), bowl(moved.x(column), moved.y(row)), 1e-9);
+      EXPECT_NEAR(quintic.at(column, row), bowl(moved.x(column), moved.y(row)), 1e-9);
       worst = std::max(worst, std::abs(linear.at(column, row) - bowl(moved.x(column), moved.y(row))));
     }
   EXPECT_GT(worst, 0.5);
   source.at(15, 15) = std::nan("");  // beside a hole: as linear interpolation does
-  const Raster beside = resample_elevation(source, moved, Interpolation::cubic);
+  const Raster beside = resample_elevation(source, moved, Interpolation::quintic);
   EXPECT_FALSE(std::isnan(beside.at(7, 10)));
 }
 

@@ -75,13 +75,15 @@ Coregistration found(const Pair& pair, bool tilt = false) {
   return coregister(patches, tilt, "after.tif");
 }
 
-/// Share of the variance of noise that cubic convolution (Keys 1981) leaves `shift` cells along one axis off the cell
+/// Share of the variance of noise that six-point interpolation leaves `shift` cells along one axis off the cell
 /// centres.
 double kept_variance(double shift) {
   double sum = 0;
-  for (int k = -1; k <= 2; ++k) {
-    const double s = std::abs(shift - std::floor(shift) - k);
-    const double weight = s < 1 ? 1 + s * s * (1.5 * s - 2.5) : 2 + s * (-4 + s * (2.5 - 0.5 * s));
+  for (int k = -2; k <= 3; ++k) {
+    double weight = 1;  // Lagrange's
+    for (int other = -2; other <= 3; ++other) {
+      if (other != k) weight *= (shift - std::floor(shift) - other) / (k - other);
+    }
     sum += weight * weight;
   }
   return sum;
