@@ -86,6 +86,9 @@ VARIANTS = {
     ),
     "voellmy": ("", '[solve.base]\nlaw = "voellmy"\nturbulence_m_s2 = 300.0\nfriction_angle_deg = 12.0\n', {}),
     "weakening": ("", '[solve.base]\nlaw = "velocity-weakening"\ncharacteristic_speed_m_s = 2.0\n', {}),
+    "samosat": ("", '[solve.base]\nlaw = "samosat"\nminimum_shear_Pa = 100.0\n', {}),
+    "pouliquen": ("", '[solve.base]\nlaw = "pouliquen"\nlayer_length_m = 0.5\n', {}),
+    "bartelt": ("", '[solve.base]\nlaw = "voellmy"\nbartelt_cohesion_Pa = 300.0\n', {}),
     "no-friction": ("", '[solve.base]\nlaw = "none"\n', {}),
     "stick": ("", '[solve.base]\nlaw = "stick"\n', {}),
     "base-cohesion-pore": ("", "[solve.base]\ncohesion_Pa = 300.0\npore_pressure_ratio = 0.4\n", {}),
@@ -110,6 +113,7 @@ VARIANTS = {
     "newmark-gimp": ('integrator = "newmark"\nshape = "gimp"', "", {}),
     "newmark-voellmy": ('integrator = "newmark"', '[solve.base]\nlaw = "voellmy"\ncohesion_Pa = 100.0\n', {}),
     "newmark-weakening": ('integrator = "newmark"', '[solve.base]\nlaw = "velocity-weakening"\n', {}),
+    "newmark-samosat": ('integrator = "newmark"', '[solve.base]\nlaw = "samosat"\n', {}),
     "newmark-musl-flip": ('integrator = "newmark"\nstress_update = "musl"\ntransfer = "flip"\ndamping = 0.05', "", {}),
     "newmark-points": ('integrator = "newmark"\nmapping = "cartesian"\nground_contact = "points"', "", {}),
     "newmark-exact": (

@@ -100,16 +100,41 @@ double area_of(const MapPolygon& polygon) {
   return twice.value() / 2;
 }
 
-std::vector<double> coverage(const MapGrid& grid, const MapPolygon& polygon, const std::filesystem::path& file) {
-  require_inside(grid, polygon, file);
+namespace {
+
+/// A ring from the grid's corner, in cells.
+using PlacedRing = std::vector<Place>;
+
+PlacedRing placed(const MapGrid& grid, const std::vector<std::array<double, 2>>& ring) {
+  PlacedRing places;
+  places.reserve(ring.size());
+  for (const auto& p : ring) places.push_back({(p[0] - grid.west) / grid.cell, (p[1] - grid.south) / grid.cell});
+  return places;
+}
+
+/// What of a ring lies at least at `bound` along an axis, or at most for side = -1 (Sutherland & Hodgman 1974). Edges
+/// that run to and fro along the bound cancel in the sums of areas.
+PlacedRing clipped(const PlacedRing& ring, double Place::*axis, double bound, double side) {
+  PlacedRing kept;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Place &a = ring[i], &b = ring[(i + 1) % ring.size()];
+    const double from = side * (a.*axis - bound), to = side * (b.*axis - bound);
+    if (from >= 0) kept.push_back(a);
+    if ((from < 0) == (to < 0)) continue;
+    const double t = from / (from - to);
+    Place crossing{a.u + t * (b.u - a.u), a.v + t * (b.v - a.v)};
+    crossing.*axis = bound;
+    kept.push_back(crossing);
+  }
+  return kept;
+}
+
+/// The covered part of every cell, of rings within the grid.
+std::vector<double> covered_by(const MapGrid& grid, const std::vector<PlacedRing>& rings) {
   Accumulator sum(grid);
   std::vector<double> parts;
-  const auto place = [&](const std::array<double, 2>& p) {
-    return Place{(p[0] - grid.west) / grid.cell, (p[1] - grid.south) / grid.cell};
-  };
-  for (const auto& ring : polygon.rings) {
-    for (std::size_t i = 0; i < ring.size(); ++i)
-      add_edge(place(ring[i]), place(ring[(i + 1) % ring.size()]), sum, parts);
+  for (const PlacedRing& ring : rings) {
+    for (std::size_t i = 0; i < ring.size(); ++i) add_edge(ring[i], ring[(i + 1) % ring.size()], sum, parts);
   }
   std::vector<double> covered = sum.covered();
   for (double& part : covered) {  // rounding of sums of whole cells
@@ -117,6 +142,26 @@ std::vector<double> coverage(const MapGrid& grid, const MapPolygon& polygon, con
     if (std::abs(part - 1) < 1e-13) part = 1;
   }
   return covered;
+}
+
+}  // namespace
+
+std::vector<double> coverage(const MapGrid& grid, const MapPolygon& polygon, const std::filesystem::path& file) {
+  require_inside(grid, polygon, file);
+  std::vector<PlacedRing> rings;
+  for (const auto& ring : polygon.rings) rings.push_back(placed(grid, ring));
+  return covered_by(grid, rings);
+}
+
+std::vector<double> coverage_within(const MapGrid& grid, const MapPolygon& polygon) {
+  std::vector<PlacedRing> rings;
+  for (const auto& ring : polygon.rings) {
+    PlacedRing inside = clipped(placed(grid, ring), &Place::u, 0, 1);
+    inside = clipped(inside, &Place::u, grid.columns, -1);
+    inside = clipped(inside, &Place::v, 0, 1);
+    rings.push_back(clipped(inside, &Place::v, grid.rows, -1));
+  }
+  return covered_by(grid, rings);
 }
 
 }  // namespace talus::preprocess

@@ -27,4 +27,8 @@ double area_of(const MapPolygon& polygon);
 /// DataError (naming `file`) when the polygon reaches beyond the grid.
 std::vector<double> coverage(const MapGrid& grid, const MapPolygon& polygon, const std::filesystem::path& file);
 
+/// Covered part of every cell, as coverage() gives it, of a polygon that may reach beyond the grid: only what lies on
+/// it counts.
+std::vector<double> coverage_within(const MapGrid& grid, const MapPolygon& polygon);
+
 }  // namespace talus::preprocess

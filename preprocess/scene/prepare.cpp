@@ -17,6 +17,7 @@
 #include "preprocess/release/outline_source.hpp"
 #include "preprocess/release/releases.hpp"
 #include "preprocess/release/source.hpp"
+#include "preprocess/scene/bed_zones.hpp"
 #include "preprocess/terrain/elevation.hpp"
 #include "preprocess/terrain/surfaces.hpp"
 
@@ -257,6 +258,7 @@ std::vector<std::filesystem::path> inputs_of(const Options& options) {
     add(release.polygons);
   }
   for (const auto& [name, file] : options.bed.files) add(file);
+  for (const BedZone& zone : options.bed.zones) add(zone.polygons);
   for (const ObstacleOptions& obstacle : options.obstacle) add(obstacle.polygons);
   return inputs;
 }
@@ -307,6 +309,7 @@ Prepared prepare(const Options& given, Points points) {
   }
   domain.erodible = static_cast<int>(options.erodible.size());
   domain.bed = read_bed(options, domain.grid);
+  lay_bed_zones(options.bed, scene.bed, prepared.total.volume, domain.bed);
   prepared.obstacles = upright_obstacles(options.obstacle, scene.bed, 2 * domain.layer_height);
   prepared.obstacle_voxel = obstacle_voxel(domain.grid.cell, domain.layer_height);
   for (const ObstacleOptions& o : options.obstacle) {

@@ -27,33 +27,69 @@ template <class Real, class Laws = FrictionLaws>
 struct BaseFriction {
   FrictionLaw law = static_cast<FrictionLaw>(0);
   Bed<Real, Laws> uniform;
-  const Bed<Real, Laws>* columns = nullptr;  ///< null: uniform
+  const Bed<Real, Laws>* columns = nullptr;   ///< null: uniform
+  Real constants[most_constants<Laws>] = {};  ///< the law's numbers of the scene, in its order
+  const Real* measured = nullptr;  ///< coefficient of every column in this step, of a law that asks for the column
+
+  /// The law with the same numbers everywhere in another precision.
+  template <class To>
+  BaseFriction<To, Laws> as() const {
+    BaseFriction<To, Laws> friction{.law = law, .uniform = uniform.template as<To>()};
+    for (int n = 0; n < most_constants<Laws>; ++n) friction.constants[n] = static_cast<To>(constants[n]);
+    return friction;
+  }
 
   /// The numbers of the bed under column j * columns + i.
   TALUS_HD const Bed<Real, Laws>& at(int column) const { return columns ? columns[column] : uniform; }
 
   /// The ratio of friction to normal stress for a slip, mu of (T13) [-].
   TALUS_HD Real coefficient(const Bed<Real, Laws>& bed, const Slip<Real>& slip) const {
-    return visit_law<Laws>(law, [&](auto own) { return own.coefficient(bed.numbers, slip); });
+    return visit_law<Laws>(law, [&](auto own) { return own.coefficient(numbers(bed), slip); });
   }
-  /// The law's traction that is no share of the normal stress (T13a) [Pa].
+  /// The same for a base node of a column: that of the column where it was measured (MeasureCoefficients). Laws that
+  /// ask for the column are no part of the kernels that call this.
+  TALUS_HD Real base_coefficient(int column, const Slip<Real>& slip) const {
+    if (measured) return measured[column];
+    return visit_law<Laws>(law, [&](auto own) {
+      if constexpr (decltype(own)::asks_column) {
+        return Real(0);
+      } else {
+        return own.coefficient(numbers(at(column)), slip);
+      }
+    });
+  }
+  /// The law's traction that grows with speed (T13a) [Pa].
   TALUS_HD Real drag(const Bed<Real, Laws>& bed, const Slip<Real>& slip) const {
-    return visit_law<Laws>(law, [&](auto own) { return own.drag(bed.numbers, slip); });
+    return visit_law<Laws>(law, [&](auto own) { return own.drag(numbers(bed), slip); });
   }
-  /// Whether there is such a drag anywhere.
+  /// The traction besides friction at any speed [Pa]: cohesion, and the law's own.
+  TALUS_HD Real yield(const Bed<Real, Laws>& bed, const Slip<Real>& slip) const {
+    return bed.cohesion + visit_law<Laws>(law, [&](auto own) { return own.yield(numbers(bed), slip); });
+  }
+  /// Whether there is drag anywhere.
   TALUS_HD bool has_drag() const {
-    return columns || visit_law<Laws>(law, [&](auto own) { return own.drags(uniform.numbers); });
+    return columns || visit_law<Laws>(law, [&](auto own) { return own.drags(numbers(uniform)); });
   }
-  /// Whether there is drag or cohesion anywhere.
-  TALUS_HD bool has_traction() const { return uniform.cohesion > Real(0) || has_drag(); }
+  /// Whether there is drag, yield or cohesion anywhere.
+  TALUS_HD bool has_traction() const {
+    return uniform.cohesion > Real(0) || has_drag() ||
+           visit_law<Laws>(law, [&](auto own) { return own.yields(numbers(uniform)); });
+  }
   /// Whether the normal stress matters; otherwise it is not measured.
   TALUS_HD bool asks_pressure() const {
     return visit_law<Laws>(law, [](auto own) { return decltype(own)::asks_pressure; });
+  }
+  /// Whether the coefficient follows from weight and mean speed of the column.
+  TALUS_HD bool asks_column() const {
+    return visit_law<Laws>(law, [](auto own) { return decltype(own)::asks_column; });
   }
   /// Whether what presses on the bed does not slip at all.
   TALUS_HD bool holds() const {
     return visit_law<Laws>(law, [](auto own) { return decltype(own)::holds; });
   }
+
+ private:
+  TALUS_HD LawNumbers<Real> numbers(const Bed<Real, Laws>& bed) const { return {bed.numbers, constants}; }
 };
 
 /// The area of bed on which the normal force of a base node acts, along the slope [m2]: that of its column, as far as
@@ -83,16 +119,16 @@ struct BedStep {
   Real grip = {};  ///< duration over the node's mass per area of bed [m2 s/kg]; 0 where no law asks for pressure
 };
 
-/// The velocity of a base node after contact with ground of slopes (sx, sy), (T12) [m/s].
+/// The velocity of a column's base node after contact with ground of slopes (sx, sy), (T12) [m/s].
 template <class Real, class Laws>
-TALUS_HD Vec3<Real> meet_ground(const BaseFriction<Real, Laws>& friction, const Bed<Real, Laws>& bed,
-                                const Vec3<Real>& v, Real sx, Real sy, const BedStep<Real>& step) {
+TALUS_HD Vec3<Real> meet_ground(const BaseFriction<Real, Laws>& friction, int column, const Vec3<Real>& v, Real sx,
+                                Real sy, const BedStep<Real>& step) {
   const Real scale = Real(1) / sqrt(Real(1) + sx * sx + sy * sy);
   const Vec3<Real> normal{-sx * scale, -sy * scale, scale};
   const Real along = dot(v, normal);
   if (friction.holds()) return along < Real(0) ? Vec3<Real>{} : v;
   const Slip<Real> slip{length(v - normal * along), step.grip > Real(0) ? -along / step.grip : Real(0), step.duration};
-  return meet_surface(v, normal, friction.coefficient(bed, slip));
+  return meet_surface(v, normal, friction.base_coefficient(column, slip));
 }
 
 }  // namespace talus

@@ -37,6 +37,19 @@ struct PackedNodes {
   }
 };
 
+/// The nodes as an explicit step finds them: mass and momentum together.
+template <class Real>
+struct PackedMomenta {
+  using Number = Real;
+  const Vec4<Real>* nodes;
+  /// The mass of node n [kg].
+  TALUS_HD Real mass(int n) const { return nodes[n].w; }
+  /// The velocity of node n, which has mass [m/s].
+  TALUS_HD Vec3<Real> velocity(int n) const {
+    return Vec3<Real>{nodes[n].x, nodes[n].y, nodes[n].z} * (Real(1) / nodes[n].w);
+  }
+};
+
 /// One thread: one contact point. It measures what mass is before it, and how much the points together move each node.
 /// The impulse of the last step's force acts once more.
 template <class Real, class Shape, class Nodes>

@@ -68,7 +68,7 @@ struct ContactView {
   TALUS_HD Real friction(const GridView<Real>& grid, int c, const Slip<Real>& slip) const {
     if (body[c] != ContactPoints::ground) return body_friction[body[c]];
     if (ground.holds()) return Real(1e6);
-    return ground.coefficient(ground.at(grid.column(places.cell[0][c], places.cell[1][c])), slip);
+    return ground.base_coefficient(grid.column(places.cell[0][c], places.cell[1][c]), slip);
   }
 
   /// The cohesion of what contact point c stands for [Pa].

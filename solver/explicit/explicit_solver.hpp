@@ -123,7 +123,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   MemoryShares memory() const override {
     MemoryShares shares = Base::memory();
     shares.emplace_back("nodes", nodes_.bytes() + forces_.bytes());
-    if (traction_.on()) shares.emplace_back("bed's tractions", traction_.bytes());
+    if (traction_.bytes() > 0) shares.emplace_back("bed's tractions", traction_.bytes());
     return shares;
   }
 
@@ -174,6 +174,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   template <NodeContent content>
   void update() {
     if (content != NodeContent::remapped) this->measure_columns();
+    if (content != NodeContent::remapped && traction_.measures()) measure_coefficients();
     const ProfilePhase<Device> phase(device_, "grid");
     const Vec3<double>& gravity = settings_.gravity.acceleration;
     const Vec3<Real> g{static_cast<Real>(gravity.x), static_cast<Real>(gravity.y), static_cast<Real>(gravity.z)};
@@ -181,11 +182,37 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     for_each_column<block_columns>(
         device_, grid_.active_blocks(),
         UpdateColumns<Real, content>{grid_.view(), grid_.active_list(), clock_.data(), nodes_.data(), forces_.data(), g,
-                                     settings_.gravity.ramp, walls_, surroundings_.bed(),
+                                     settings_.gravity.ramp, walls_, traction_.seen_by(surroundings_.bed()),
                                      static_cast<Real>(this->full_base()), static_cast<Real>(settings_.damping),
-                                     traction_.columns(), recorder});
+                                     traction_.slowed(), recorder});
     if (surroundings_.contact().on()) meet_surfaces<content>();
-    if (content != NodeContent::remapped && traction_.on()) slow_columns<content>(recorder);
+    if (content != NodeContent::remapped && traction_.acts()) slow_columns<content>(recorder);
+  }
+
+  /// The step as columns see it.
+  ColumnStep column_step() { return {clock_.data(), 0, settings_.gravity.acceleration, settings_.gravity.ramp}; }
+
+  /// The method measures the coefficients of friction of a law that asks for the column.
+  void measure_coefficients() {
+    using Nodes = PackedMomenta<Real>;
+    const ProfilePhase<Device> phase(device_, "grid");
+    const int count = grid_.active_blocks() * block_columns;
+    const Nodes nodes{nodes_.data()};
+    for_each(device_, count,
+             MeasureColumns<Real, Nodes>{.grid = grid_.view(),
+                                         .active = grid_.active_list(),
+                                         .nodes = nodes,
+                                         .columns = traction_.columns(),
+                                         .gravity = {},
+                                         .step = 0});
+    for_each(device_, count,
+             MeasureCoefficients<Real, Nodes>{.grid = grid_.view(),
+                                              .active = grid_.active_list(),
+                                              .nodes = nodes,
+                                              .friction = surroundings_.bed(),
+                                              .mass = traction_.columns().mass,
+                                              .coefficient = traction_.coefficients(),
+                                              .step = column_step()});
   }
 
   /// The method lets drag and cohesion of the bed slow what lies on it (T13a).
@@ -198,8 +225,8 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
                                             .nodes = packed_nodes<content>(),
                                             .friction = surroundings_.bed(),
                                             .columns = traction_.columns(),
-                                            .step = {clock_.data()},
-                                            .with_cohesion = true,
+                                            .step = column_step(),
+                                            .with_yield = true,
                                             .recorder = recorder});
   }
 

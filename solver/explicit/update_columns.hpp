@@ -178,7 +178,7 @@ struct UpdateColumns {
     // On a Cartesian grid the nodes inside the ground touch no bed of their own.
     const bool grips = content != NodeContent::remapped && friction.asks_pressure() && k == at.top_contact;
     const Real grip = grips ? bed_area(mass, full_base, grid.spacing, sx, sy) * dt / mass : Real(0);
-    return meet_ground(law, law.at(at.column), v, sx, sy, {.duration = dt, .grip = grip});
+    return meet_ground(law, at.column, v, sx, sy, {.duration = dt, .grip = grip});
   }
 
   /// The velocities of a node in a step [m/s].

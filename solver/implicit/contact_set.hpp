@@ -111,14 +111,14 @@ class ContactSet {
     const double g = std::hypot(full.x, full.y, full.z), dt = scheme.step;
     smoothing_.gravity_way = c.dynamic ? 0.5 * std::max(g, 1e-3) * dt * dt : 1e-4 * parts_.cell.spacing;
     const bool predicts = c.dynamic && !c.once();
-    if (traction_.on()) meet_drag(scheme, gravity);
+    if (traction_.acts() || traction_.measures()) meet_columns(scheme, gravity);
     for_each(parts_.device, parts_.grid.active_blocks() * block_columns,
              PrepareNodes<Real>{.grid = parts_.grid.view(),
                                 .active = parts_.grid.active_list(),
                                 .nodes = nodes(),
                                 .held = constraints(),
                                 .walls = walls,
-                                .base = bed_.view(),
+                                .base = traction_.seen_by(bed_.view()),
                                 .full_base = parts_.cell.full_base,
                                 .gravity = gravity,
                                 .scheme = scheme,
@@ -200,9 +200,9 @@ class ContactSet {
     parts_.surfaces.each(kernel);
   }
 
-  /// The method measures the columns, and lets the bed's drag slow them as they begin a step (T13a). Cohesion is left
-  /// to the contacts, whose friction it joins: what it holds does not creep.
-  void meet_drag(const NewmarkScheme& scheme, const Vec3<double>& gravity) {
+  /// The method measures the columns, and lets the bed's drag slow them as they begin a step (T13a). Yield and cohesion
+  /// are left to the contacts, whose friction they join: what they hold does not creep.
+  void meet_columns(const NewmarkScheme& scheme, const Vec3<double>& gravity) {
     const MomentumNodes columns{nodes_.mass.data(), nodes_.velocity.data(), nodes_.arrival.data()};
     const int count = parts_.grid.active_blocks() * block_columns;
     for_each(parts_.device, count,
@@ -212,6 +212,17 @@ class ContactSet {
                                                  .columns = traction_.columns(),
                                                  .gravity = gravity,
                                                  .step = scheme.step});
+    const ColumnStep step{nullptr, scheme.step, gravity};
+    if (traction_.measures()) {
+      for_each(parts_.device, count,
+               MeasureCoefficients<Real, MomentumNodes>{.grid = parts_.grid.view(),
+                                                        .active = parts_.grid.active_list(),
+                                                        .nodes = columns,
+                                                        .friction = bed_.view(),
+                                                        .mass = traction_.columns().mass,
+                                                        .coefficient = traction_.coefficients(),
+                                                        .step = step});
+    }
     if (!scheme.dynamic || !bed_.view().has_drag()) return;
     for_each(parts_.device, count,
              SlowColumns<Real, MomentumNodes, false>{.grid = parts_.grid.view(),
@@ -219,8 +230,8 @@ class ContactSet {
                                                      .nodes = columns,
                                                      .friction = bed_.view(),
                                                      .columns = traction_.columns(),
-                                                     .step = {nullptr, scheme.step},
-                                                     .with_cohesion = false,
+                                                     .step = step,
+                                                     .with_yield = false,
                                                      .recorder = {}});
   }
 

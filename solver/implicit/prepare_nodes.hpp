@@ -22,7 +22,7 @@ struct PrepareNodes {
   double full_base;  ///< mass of a base node under a full layer [kg]
   Vec3<double> gravity;
   NewmarkScheme scheme;
-  BedColumns<double> columns;  ///< for the bed's cohesion
+  BedColumns<double> columns;  ///< for what of the bed's tractions does not grow with speed
   bool predict;                ///< start from the displacement of the present velocity
 
   TALUS_HD void operator()(int c) const {
@@ -123,11 +123,12 @@ struct PrepareNodes {
     const Slip<double> slip{.speed = length(v - to.normal * dot(v, to.normal)),
                             .normal_stress = nodes.mass[n] * fabs(dot(gravity, to.normal)) / area,
                             .duration = scheme.step};
-    const Bed<double>& bed = base.at(column);
-    to.friction = base.coefficient(bed, slip);
-    if (held.traction && at.k == top) {
-      const double h = static_cast<double>(grid.spacing);
-      held.traction[n] = bed.cohesion * cover(grid, columns.mass, at.i, at.j) * h * h / scale;
+    to.friction = base.base_coefficient(column, slip);
+    if (held.traction && at.k == top && columns.mass[column] > 0) {
+      const ColumnBed<double> under = bed_under(grid, columns.mass, at.i, at.j);
+      const LyingMatter<double> matter{.mass = columns.mass[column]};
+      held.traction[n] =
+          base.yield(base.at(column), column_slip(matter, under, {nullptr, scheme.step, gravity})) * under.area;
     }
     return true;
   }

@@ -16,9 +16,7 @@ class DeviceBed {
   /// The constructor takes the law with the numbers that hold everywhere, and those of every column in their place
   /// where there are any, [rows * columns].
   DeviceBed(const Device& device, const BaseFriction<double>& friction, const std::vector<Bed<double>>& columns)
-      : columns_(device) {
-    friction_.law = friction.law;
-    friction_.uniform = friction.uniform.as<Number>();
+      : friction_(friction.as<Number>()), columns_(device) {
     if (columns.empty()) return;
     std::vector<Bed<Number>> beds;
     beds.reserve(columns.size());

@@ -43,8 +43,10 @@ bool is_common(std::string_view key) { return key == "cohesion_Pa" || key == "po
 
 void BaseOptions::describe(recipe::Visitor& v) {
   choose_law<FrictionLaws>(v, "law", law, "friction between the mass and its bed");
-  const auto name = visit_law(law, [](auto own) { return std::string_view(own.name); });
-  OptionsOfLaws::describe(v, {.name = "[solve.base]", .chosen = name});
+  const std::string name = law_name();
+  const LawTable table{.name = "[solve.base]", .chosen = name};
+  OptionsOfLaws::describe(v, table);
+  FrictionLaws::each([&](auto own) { own.check(v, *this, table); });
   v.number("cohesion_Pa", cohesion, recipe::not_negative,
            "traction besides friction, wherever the mass touches its bed");
   v.number("pore_pressure_ratio", pore_pressure_ratio, recipe::Range{0, 1},
@@ -59,6 +61,14 @@ double* BaseOptions::named(std::string_view key) {
 
 bool BaseOptions::uses(std::string_view key) const {
   return visit_law(law, [&](auto own) { return own.uses(key) || (own.rubs && is_common(key)); });
+}
+
+bool BaseOptions::asks_column() const {
+  return visit_law(law, [](auto own) { return decltype(own)::asks_column; });
+}
+
+std::string BaseOptions::law_name() const {
+  return visit_law(law, [](auto own) { return std::string(own.name); });
 }
 
 std::string BaseOptions::words() const {
@@ -85,9 +95,10 @@ BaseFriction<Real> make_base_friction(const SolveOptions& options) {
   f.law = o.law;
   visit_law(o.law, [&](auto own) {
     own.numbers(o, setting, f.uniform.numbers);
+    own.constants(o, setting, f.constants);
     if (own.rubs) f.uniform.cohesion = o.cohesion;
   });
-  return {.law = f.law, .uniform = f.uniform.as<Real>()};
+  return f.as<Real>();
 }
 
 template BaseFriction<float> make_base_friction(const SolveOptions&);

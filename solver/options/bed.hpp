@@ -21,6 +21,9 @@ struct BaseOptions : OptionsOfLaws<FrictionLaws> {
   /// The number that the recipe calls by this name, null where it has none.
   double* named(std::string_view key);
   bool uses(std::string_view key) const;  ///< whether the chosen law uses a key
+  bool asks_column() const;               ///< whether the law's coefficient follows from weight and speed of a column
+  /// The name of the chosen law.
+  std::string law_name() const;
   /// The bed in a line, for plan and log.
   std::string words() const;
   /// The law in a sentence of the report, "at its bed acts ...".

@@ -17,6 +17,10 @@ void SolveOptions::describe(recipe::Visitor& v) {
   recipe::list(v, "load", loads, "forces on parts of the mass");
   MassOptions::describe(v);
   recipe::table(v, "base", base, "the bed under it");
+  v.needs(ground_contact == GroundContact::nodes || !base.asks_column(),
+          {"[solve] ground_contact = \"points\" with [solve.base] law = \"" + base.law_name() + "\"",
+           "the law's friction follows from whole columns, which contact points know nothing of",
+           "Take ground_contact = \"nodes\", or another law"});
 }
 
 std::string SolveOptions::contact_words() const {

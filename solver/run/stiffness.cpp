@@ -19,8 +19,10 @@ constexpr double impact_strain = 0.02;
 double least_friction(const SolveOptions& o) {
   const auto base = make_base_friction<double>(o);
   if (base.holds()) return std::tan(o.material.friction_angle * M_PI / 180);
-  // Friction falls or grows with speed, if it changes at all.
-  const auto at_speed = [&](double speed) { return base.coefficient(base.uniform, {speed, 0, 0}); };
+  // Friction falls or grows with speed, if it changes at all, and is least under the thickest flow.
+  const auto at_speed = [&](double speed) {
+    return base.coefficient(base.uniform, {.speed = speed, .normal_stress = 1e41, .duration = 0, .load = 1e40});
+  };
   return std::min(at_speed(0), at_speed(1e30));
 }
 

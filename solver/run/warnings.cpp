@@ -16,24 +16,48 @@ constexpr double degrees = 180 / std::numbers::pi;
 /// Slide on beds of 10 to 20 degrees, docs/decisions/0022-cone-of-simple-shear.md).
 constexpr double recommended_ratio = 1.4;
 
-/// The largest friction coefficient of the bed, of slow slip [-]; 0 where none rubs or the mass sticks.
-double bed_friction(const Domain& domain, const SolveOptions& o) {
-  const auto friction = make_base_friction<double>(o);
-  if (friction.holds()) return 0;
-  const double share = 1 - o.base.pore_pressure_ratio;
-  for (const auto& [name, raster] : domain.bed) {
-    if (name != "friction_angle_deg" || !o.base.uses(name)) continue;
-    double steepest = 0;
-    for (double angle : raster.values) steepest = std::isfinite(angle) ? std::max(steepest, angle) : steepest;
-    return share * std::tan(steepest / degrees);
-  }
-  return friction.coefficient(friction.uniform, {});
-}
-
 /// The thickness at which strengths are compared [m]: the largest that is released.
 double thickness(const Domain& domain) {
   double most = 0;
   for (double t : domain.release_thickness.values) most = std::isfinite(t) ? std::max(most, t) : most;
+  return most;
+}
+
+/// What a bed asks of the mass at most, over the normal stress [-]: its largest coefficient of friction, which is that
+/// at rest, under any layer (laws that look at the depth hold thin ones best). Where yield and cohesion join the
+/// friction of the base nodes, so that they must pass through the mass too, theirs under a layer of `depth` [m]
+/// besides; 0: they act on whole columns.
+double most_asked(const BaseFriction<double>& friction, double density, double depth) {
+  const auto resting = [&](double thick) {
+    const double load = density * thick;
+    return Slip<double>{.speed = 0, .normal_stress = 9.81 * load, .duration = 0, .load = load};
+  };
+  double most = 0;
+  for (double thick : {1e-6, 1e6}) most = std::max(most, friction.coefficient(friction.uniform, resting(thick)));
+  if (!(depth > 0)) return most;
+  const Slip<double> slip = resting(depth);
+  return std::max(
+      most, friction.coefficient(friction.uniform, slip) + friction.yield(friction.uniform, slip) / slip.normal_stress);
+}
+
+/// What the bed asks at most, anywhere [-]; 0 where none rubs or the mass sticks.
+double bed_friction(const Domain& domain, const SolveOptions& o) {
+  const auto friction = make_base_friction<double>(o);
+  if (friction.holds()) return 0;
+  const double depth = abilities_of(o.integrator).obey_cfl ? 0 : thickness(domain), density = o.material.density;
+  if (domain.bed.empty()) return most_asked(friction, density, depth);
+  double most = 0;
+  SolveOptions here = o;
+  std::vector<double*> numbers;
+  for (const auto& [name, raster] : domain.bed) numbers.push_back(here.base.named(name));
+  for (std::size_t column = 0; column < domain.grid.count(); ++column) {
+    here.base = o.base;
+    for (std::size_t n = 0; n < numbers.size(); ++n) {
+      const double value = domain.bed[n].second.values[column];
+      if (numbers[n] && std::isfinite(value)) *numbers[n] = value;
+    }
+    most = std::max(most, most_asked(make_base_friction<double>(here), density, depth));
+  }
   return most;
 }
 
@@ -55,7 +79,8 @@ void warn_of(const MaterialOptions& material, const std::string& table, double b
   if (!(held < bed)) return;
   lines.push_back(fmt::format(
       "the mass gives way inside before it slides on its bed: in simple shear it holds {:.3f} of the pressure ({} "
-      "friction_angle_deg = {:g}), the bed asks {:.3f} ({:.1f} deg). It moves as on a bed of {:.1f} deg. Give a "
+      "friction_angle_deg = {:g}), the bed asks up to {:.3f} ({:.1f} deg). Where it does, it moves as on a bed of "
+      "{:.1f} deg. Give a "
       "friction angle of {:.1f} deg or more (cone = \"simple-shear\"; {:g} times the bed's tangent), or lower the "
       "bed's",
       held, table, law.friction_angle, bed, std::atan(bed) * degrees, std::atan(held) * degrees,

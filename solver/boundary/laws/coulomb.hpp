@@ -4,15 +4,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "solver/boundary/slip.hpp"
-#include "solver/material/law_list.hpp"
+#include "solver/boundary/laws/basal_law.hpp"
 
 namespace talus {
 
 /// Coulomb's law of friction.
-struct Coulomb {
+struct Coulomb : BasalLaw {
   static constexpr std::string_view name = "coulomb";
-  static constexpr bool rubs = true, holds = false, asks_pressure = false;
 
   /// The keys of the law; Voellmy's law takes its angle from here.
   struct Options {
@@ -49,18 +47,8 @@ struct Coulomb {
 
   /// The ratio of friction to normal stress, mu [-].
   template <class Real>
-  TALUS_HD static Real coefficient(const Real* n, const Slip<Real>&) {
+  TALUS_HD static Real coefficient(const LawNumbers<Real>& n, const Slip<Real>&) {
     return n[mu];
-  }
-  /// The traction besides [Pa].
-  template <class Real>
-  TALUS_HD static Real drag(const Real*, const Slip<Real>&) {
-    return Real(0);
-  }
-  /// Whether there is such a traction.
-  template <class Real>
-  TALUS_HD static bool drags(const Real*) {
-    return false;
   }
 };
 

@@ -1,15 +1,14 @@
 // What the laws without a friction coefficient have in common: no options, no numbers, no force that follows from slip.
 #pragma once
 
-#include "solver/boundary/slip.hpp"
-#include "solver/material/law_list.hpp"
+#include "solver/boundary/laws/basal_law.hpp"
 
 namespace talus {
 
 /// The base of a law without friction; `Law` is the law itself, so that each has its own types.
 template <class Law>
-struct FrictionlessLaw {
-  static constexpr bool rubs = false, asks_pressure = false;
+struct FrictionlessLaw : BasalLaw {
+  static constexpr bool rubs = false;
   static constexpr int count = 0;
 
   /// The law has no keys.
@@ -25,18 +24,8 @@ struct FrictionlessLaw {
 
   /// The ratio of friction to normal stress [-].
   template <class Real>
-  TALUS_HD static Real coefficient(const Real*, const Slip<Real>&) {
+  TALUS_HD static Real coefficient(const LawNumbers<Real>&, const Slip<Real>&) {
     return Real(0);
-  }
-  /// The traction besides [Pa].
-  template <class Real>
-  TALUS_HD static Real drag(const Real*, const Slip<Real>&) {
-    return Real(0);
-  }
-  /// Whether there is such a traction.
-  template <class Real>
-  TALUS_HD static bool drags(const Real*) {
-    return false;
   }
 };
 

@@ -2,15 +2,13 @@
 // 2014).
 #pragma once
 
-#include "solver/boundary/slip.hpp"
-#include "solver/material/law_list.hpp"
+#include "solver/boundary/laws/basal_law.hpp"
 
 namespace talus {
 
 /// The law of friction that falls with slip speed (Lucas, Mangeney & Ampuero 2014).
-struct VelocityWeakening {
+struct VelocityWeakening : BasalLaw {
   static constexpr std::string_view name = "velocity-weakening";
-  static constexpr bool rubs = true, holds = false, asks_pressure = false;
 
   /// The keys of the law.
   struct Options {
@@ -61,18 +59,8 @@ struct VelocityWeakening {
 
   /// The ratio of friction to normal stress, mu(v) (T13) [-].
   template <class Real>
-  TALUS_HD static Real coefficient(const Real* n, const Slip<Real>& slip) {
+  TALUS_HD static Real coefficient(const LawNumbers<Real>& n, const Slip<Real>& slip) {
     return n[steady] + (n[peak] - n[steady]) / (Real(1) + slip.speed / n[characteristic_speed]);
-  }
-  /// The traction besides [Pa].
-  template <class Real>
-  TALUS_HD static Real drag(const Real*, const Slip<Real>&) {
-    return Real(0);
-  }
-  /// Whether there is such a traction.
-  template <class Real>
-  TALUS_HD static bool drags(const Real*) {
-    return false;
   }
 };
 

@@ -178,5 +178,26 @@ TEST(polygon_cover, refuses_a_polygon_beyond_the_grid) {
             "(it must lie on the DEM). Check the CRS of both, give a DEM that reaches further, or clip the polygon");
 }
 
+TEST(polygon_cover, counts_what_of_a_polygon_lies_on_the_grid) {
+  TALUS_SEEDED(seed);
+  std::mt19937 random(seed);
+  const MapGrid grid = test::grid_of(21, 17, 7.5);
+  for (const auto& [dx, dy] : {std::pair{0.0, 0.0}, {80.0, 40.0}, {-3000.0, 60.0}}) {
+    MapPolygon polygon = polygon_of({star(grid.west + dx, grid.south + dy, 120, 40, random)});
+    polygon.rings.push_back(star(grid.west + dx, grid.south + dy, 35, 12, random));
+    std::reverse(polygon.rings[1].begin(), polygon.rings[1].end());
+    const std::vector<double> covered = coverage_within(grid, polygon);
+    for (int row = 0; row < grid.rows; ++row) {
+      for (int column = 0; column < grid.columns; ++column) {
+        const double west = grid.west + column * grid.cell, south = grid.south + row * grid.cell;
+        const double area = ring_area_in_cell(polygon.rings[0], west, south, grid.cell) -
+                            ring_area_in_cell(polygon.rings[1], west, south, grid.cell);
+        ASSERT_NEAR(covered[grid.index(column, row)] * grid.cell * grid.cell, area, 1e-7)
+            << "cell " << column << ", " << row;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace talus::preprocess

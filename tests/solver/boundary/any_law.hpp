@@ -5,7 +5,7 @@
 
 #include <set>
 
-#include "solver/boundary/base_friction.hpp"
+#include "solver/boundary/column_traction.hpp"
 
 namespace talus::testing {
 
@@ -15,22 +15,47 @@ BaseFriction<double, Laws> some_bed(const OptionsOfLaws<Laws>& options = {}) {
   BaseFriction<double, Laws> f;
   f.law = static_cast<FrictionLaw>(Laws::template index_of<Law>());
   Law::numbers(options, {.borne = 1, .density = 2000, .gravity = 9.81}, f.uniform.numbers);
+  Law::constants(options, {.borne = 1, .density = 2000, .gravity = 9.81}, f.constants);
   return f;
 }
 
+/// Friction, drag and yield are finite and take energy, whatever the speed and the column: also of one without weight.
 template <class Law, class Laws>
 void expect_finite_friction() {
   const auto f = some_bed<Law, Laws>();
-  for (const double speed : {0.0, 0.1, 30.0}) {
-    const Slip<double> slip{speed, 1e4, 0.01};
-    const double mu = f.coefficient(f.uniform, slip), drag = f.drag(f.uniform, slip);
-    EXPECT_TRUE(std::isfinite(mu) && mu >= 0 && mu < 10) << "speed " << speed;
-    EXPECT_TRUE(std::isfinite(drag) && drag >= 0) << "speed " << speed;
-    if (!f.has_drag()) {
-      EXPECT_EQ(drag, 0);
+  for (const double speed : {0.0, 1e-9, 0.1, 30.0}) {
+    for (const double load : {0.0, 1e-6, 1.0, 1e5}) {
+      const Slip<double> slip{speed, 9 * load, 0.01, load};
+      const double mu = f.coefficient(f.uniform, slip), drag = f.drag(f.uniform, slip),
+                   yield = f.yield(f.uniform, slip);
+      EXPECT_TRUE(std::isfinite(mu) && mu >= 0 && mu < 10) << "speed " << speed << ", load " << load;
+      EXPECT_TRUE(std::isfinite(drag) && drag >= 0) << "speed " << speed << ", load " << load;
+      EXPECT_TRUE(std::isfinite(yield) && yield >= 0) << "speed " << speed << ", load " << load;
+      if (!f.has_drag()) {
+        EXPECT_EQ(drag, 0);
+      }
+      if (!f.has_traction()) {
+        EXPECT_EQ(yield, 0);
+      }
+      if (!Law::rubs) {
+        EXPECT_EQ(mu, 0);
+      }
     }
-    if (!Law::rubs) {
-      EXPECT_EQ(mu, 0);
+  }
+}
+
+/// No step is so long and no column so light that the law's tractions would turn it back.
+template <class Law, class Laws>
+void expect_stable_steps() {
+  const auto f = some_bed<Law, Laws>();
+  for (const double step : {1e-6, 1e-2, 1e3}) {
+    for (const double load : {1e-12, 1e-3, 1e4}) {
+      for (const double speed : {1e-6, 1.0, 100.0}) {
+        const Slip<double> slip{speed, 9 * load, step, load};
+        const double left =
+            share_left_by_traction(speed, f.drag(f.uniform, slip), f.yield(f.uniform, slip), step / load);
+        EXPECT_TRUE(left >= 0 && left <= 1) << "step " << step << ", load " << load << ", speed " << speed;
+      }
     }
   }
 }
@@ -59,6 +84,7 @@ void expect_laws_to_hold() {
     EXPECT_FALSE(Law::words(OptionsOfLaws<Laws>{}).empty());
     EXPECT_FALSE(Law::sentence(OptionsOfLaws<Laws>{}).empty());
     expect_finite_friction<Law, Laws>();
+    expect_stable_steps<Law, Laws>();
     EXPECT_EQ((some_bed<Law, Laws>().holds()), Law::holds);
   });
   EXPECT_EQ(names.size(), static_cast<std::size_t>(Laws::count));

@@ -8,7 +8,7 @@ namespace {
 
 BaseFriction<double> coulomb(double mu) { return {FrictionLaw::coulomb, {{mu}}}; }
 Vec3<double> meet(const BaseFriction<double>& f, const Vec3<double>& v, double sx, double sy, double grip = 0) {
-  return meet_ground(f, f.uniform, v, sx, sy, {.duration = 0.01, .grip = grip});
+  return meet_ground(f, 0, v, sx, sy, {.duration = 0.01, .grip = grip});
 }
 
 TEST(MeetGround, lets_a_leaving_node_go) {

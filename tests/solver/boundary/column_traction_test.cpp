@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "solver/boundary/column_flow.hpp"
 #include "solver/boundary/contact_impulses.hpp"
 #include "solver/parallel/for_each.hpp"
 #include "tests/solver/small_grid.hpp"
@@ -50,7 +51,7 @@ struct Sheet {
   static std::size_t column(int i, int j) { return static_cast<std::size_t>(j * SmallGrid::side + i); }
   Vec4<double>& at(int i, int j, int k) { return nodes[static_cast<std::size_t>(grid.view().find(i, j, k))]; }
   void put(int i, int j, int k) { at(i, j, k) = {100, 3, 1, 3 * 0.3 - 1 * 0.2}; }
-  void slow(bool with_cohesion = true) {
+  void slow(bool with_yield = true) {
     const MapView maps{{maxima.data(), maxima.data(), maxima.data(), arrival.data()}, 0};
     for_each(CpuDevice::make(), 4 * block_columns,
              SlowColumns<double, PackedNodes<double>, true>{.grid = grid.view(),
@@ -59,7 +60,7 @@ struct Sheet {
                                                             .friction = friction,
                                                             .columns = {mass.data(), pressed.data()},
                                                             .step = {&clock},
-                                                            .with_cohesion = with_cohesion,
+                                                            .with_yield = with_yield,
                                                             .recorder = {maps, 2000, nullptr}});
   }
 };
@@ -117,6 +118,50 @@ TEST(SlowColumns, counts_what_the_bed_takes_and_records_what_is_left) {
   EXPECT_LT(s.clock.reaction[0], 0);
   EXPECT_EQ(s.arrival[Sheet::column(3, 3)], 0);
   EXPECT_EQ(s.arrival[Sheet::column(7, 7)], -1);
+}
+
+/// Grains over a rough bed: mu between 0.4 and 0.6, over 0.02 m, in a mass of 2000 kg/m3.
+BaseFriction<double> grains() {
+  return {
+      .law = FrictionLaw::pouliquen, .uniform = {{0.4, 0.2, 0.42, 0.02}, 0}, .constants = {0.136, 0, 0.136, 1, 2000}};
+}
+
+TEST(MeasureCoefficients, gives_columns_the_friction_of_their_depth_and_mean_speed) {
+  Sheet s;
+  const BaseFriction<double> law = grains();
+  s.at(3, 3, 1).x = 5;  // the mean of 3 and 5 m/s
+  s.at(3, 3, 1).w = s.at(3, 3, 0).w;
+  s.at(3, 3, 1).z = 5 * 0.3 - 1 * 0.2;
+  std::vector<double> coefficient(64, -1);
+  for_each(CpuDevice::make(), 4 * block_columns,
+           MeasureCoefficients<double, PackedNodes<double>>{.grid = s.grid.view(),
+                                                            .active = s.grid.active.data(),
+                                                            .nodes = {s.nodes.data(), nullptr},
+                                                            .friction = law,
+                                                            .mass = s.mass.data(),
+                                                            .coefficient = coefficient.data(),
+                                                            .step = {&s.clock, 0, {0, 0, -9.81}}});
+  const double load = 200 / area, speed = length(Vec3<double>{4, 1, 4 * 0.3 - 1 * 0.2});
+  const Slip<double> slip{speed, load * 9.81 * 4 / area, 0.1, load};
+  EXPECT_NEAR(coefficient[Sheet::column(3, 3)], law.coefficient(law.uniform, slip), 1e-14);
+  EXPECT_GT(coefficient[Sheet::column(3, 3)], coefficient[Sheet::column(4, 3)]) << "the slower one";
+  EXPECT_EQ(coefficient[Sheet::column(7, 7)], -1) << "no mass";
+}
+
+TEST(ColumnTraction, stores_nothing_that_the_law_does_not_ask_for) {
+  const BaseFriction<double> coulomb{FrictionLaw::coulomb, {{0.5}, 0}};
+  ColumnTraction<double, CpuDevice> none(CpuDevice::make(), coulomb, 8, 8);
+  EXPECT_EQ(none.bytes(), 0u);
+  EXPECT_FALSE(none.acts() || none.measures());
+  EXPECT_EQ(none.seen_by(coulomb).measured, nullptr);
+  const BaseFriction<double> voellmy{FrictionLaw::voellmy, {{0.5, 3}, 0}};
+  ColumnTraction<double, CpuDevice> drag(CpuDevice::make(), voellmy, 8, 8);
+  EXPECT_EQ(drag.bytes(), 64 * (sizeof(double) + 1));
+  EXPECT_TRUE(drag.acts() && !drag.measures());
+  ColumnTraction<double, CpuDevice> friction(CpuDevice::make(), grains(), 8, 8);
+  EXPECT_TRUE(friction.measures() && !friction.acts());
+  EXPECT_EQ(friction.slowed().mass, nullptr);
+  EXPECT_EQ(friction.seen_by(grains()).measured, friction.coefficients());
 }
 
 TEST(Cover, is_whole_inside_and_the_share_of_the_mass_at_the_edge) {

@@ -43,14 +43,38 @@ TEST(BedNumbers, are_those_of_the_laws_and_have_a_member_each) {
     EXPECT_TRUE(used) << key << " belongs to no law";
   }
   EXPECT_EQ(options.named("law"), nullptr);
-  FrictionLaws::each([&](auto law) {  // a number that no raster could give would be missed in silence
-    typename decltype(law)::Options own;
+}
+
+/// The numbers of a law, those of a place and of the scene.
+template <class Law>
+struct Made {
+  std::vector<double> here = std::vector<double>(Law::count), everywhere = std::vector<double>(Law::constant_count);
+  explicit Made(const BaseOptions& o) {
+    const BedSetting setting{.borne = 1, .density = 2000, .gravity = 9.81};
+    Law::numbers(o, setting, here.data());
+    Law::constants(o, setting, everywhere.data());
+  }
+};
+
+TEST(BedNumbers, reach_the_numbers_of_a_place_and_no_others_do) {
+  // A number of the scene that a raster gives would be missed in silence, and so would one of a place that none gives.
+  FrictionLaws::each([&](auto law) {
+    using Law = decltype(law);
+    typename Law::Options own;
     recipe::Defaults keys;
     own.describe(*recipe::make_collector("law", keys), {});
-    for (const auto& [place, value] : keys)
-      EXPECT_NE(std::find(bed_numbers.begin(), bed_numbers.end(), place.substr(place.rfind('.') + 1)),
-                bed_numbers.end())
-          << place;
+    for (const auto& [place, value] : keys) {
+      const std::string key = place.substr(place.rfind('.') + 1);
+      const bool from_raster = std::find(bed_numbers.begin(), bed_numbers.end(), key) != bed_numbers.end();
+      BaseOptions options;
+      const Made<Law> before(options);
+      double* const number = options.named(key);
+      ASSERT_NE(number, nullptr) << key;
+      *number = 0.9 * *number + 0.01;
+      const Made<Law> after(options);
+      EXPECT_EQ(before.here != after.here, from_raster) << key;
+      EXPECT_EQ(before.everywhere != after.everywhere, !from_raster) << key;
+    }
   });
 }
 

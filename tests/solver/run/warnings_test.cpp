@@ -68,6 +68,37 @@ TEST(Warnings, count_cohesion_pore_pressure_rasters_and_parts) {
   EXPECT_TRUE(says(warnings(two_metres_of_mass(), o), "[[solve.part]] \"lower\""));
 }
 
+TEST(Warnings, take_the_most_that_laws_of_columns_ask) {
+  SolveOptions o = mass_on_bed(15, 5);
+  o.base.law = FrictionLaw::samosat;  // at rest twice mu
+  o.base.friction_coefficient = 0.13;
+  EXPECT_TRUE(warnings(two_metres_of_mass(), o).empty());
+  o.base.friction_coefficient = 0.14;
+  EXPECT_TRUE(says(warnings(two_metres_of_mass(), o), "the bed asks up to 0.280 (15.6 deg)"));
+  o = mass_on_bed(31, 5);
+  o.base.law = FrictionLaw::pouliquen;  // under the thinnest layer tan 22.2 + tan 30.7 - tan 21 = 0.618
+  EXPECT_TRUE(says(warnings(two_metres_of_mass(), o), "the bed asks up to 0.618 (31.7 deg)"));
+  o.material.friction_angle = 32;
+  EXPECT_TRUE(warnings(two_metres_of_mass(), o).empty());
+  Domain rough = two_metres_of_mass();
+  rough.bed.emplace_back("steepest_angle_deg", rough.terrain);
+  for (double& angle : rough.bed[0].second.values) angle = 30;
+  rough.bed[0].second.values[7] = 40;
+  EXPECT_TRUE(says(warnings(rough, o), "the bed asks up to 0.863"));
+}
+
+TEST(Warnings, count_what_joins_friction_in_implicit_steps) {
+  SolveOptions o = mass_on_bed(30, 20);  // 2 m press with 39 kPa; 10 kPa are 0.255 of that
+  o.base.cohesion = 10e3;
+  EXPECT_TRUE(warnings(two_metres_of_mass(), o).empty()) << "it acts on whole columns";
+  o.integrator = Integrator::newmark;
+  EXPECT_TRUE(says(warnings(two_metres_of_mass(), o), "the bed asks up to 0.619"));
+  o.base.cohesion = 0;
+  o.base.law = FrictionLaw::voellmy;
+  o.base.bartelt_cohesion = 20e3;  // (1 - 0.364) 20 kPa (1 - exp(-39.24 / 20)) is 0.279 of the pressure
+  EXPECT_TRUE(says(warnings(two_metres_of_mass(), o), "the bed asks up to 0.643"));
+}
+
 TEST(Warnings, name_a_cone_that_would_carry_tension) {
   EXPECT_TRUE(warnings(two_metres_of_mass(), mass_on_bed(40, 20)).empty());
   const auto lines = warnings(two_metres_of_mass(), mass_on_bed(45, 20));

@@ -2,14 +2,12 @@
 // show what a basal law takes.
 #pragma once
 
-#include "solver/boundary/slip.hpp"
-#include "solver/material/law_list.hpp"
+#include "solver/boundary/laws/basal_law.hpp"
 
 namespace talus {
 
-struct SpeedPower {
+struct SpeedPower : BasalLaw {
   static constexpr std::string_view name = "speed-power";
-  static constexpr bool rubs = true, holds = false, asks_pressure = false;
 
   struct Options {
     double reference_coefficient = 0.4;  // mu_0
@@ -45,16 +43,8 @@ struct SpeedPower {
   }
 
   template <class Real>
-  TALUS_HD static Real coefficient(const Real* n, const Slip<Real>& slip) {
+  TALUS_HD static Real coefficient(const LawNumbers<Real>& n, const Slip<Real>& slip) {
     return n[at_reference] * pow(slip.speed / n[reference_speed], n[exponent]);
-  }
-  template <class Real>
-  TALUS_HD static Real drag(const Real*, const Slip<Real>&) {
-    return Real(0);
-  }
-  template <class Real>
-  TALUS_HD static bool drags(const Real*) {
-    return false;
   }
 };
 

@@ -16,7 +16,7 @@ namespace {
 /// Friction that is told everything: mu = sigma / (1 MPa) + dt / (1 s).
 struct Told : FrictionlessLaw<Told> {
   static constexpr std::string_view name = "told";
-  static constexpr bool rubs = true, holds = false, asks_pressure = true;
+  static constexpr bool rubs = true, asks_pressure = true;
   template <class All>
   static std::string words(const All&) {
     return "told";
@@ -26,7 +26,7 @@ struct Told : FrictionlessLaw<Told> {
     return "friction";
   }
   template <class Real>
-  TALUS_HD static Real coefficient(const Real*, const Slip<Real>& slip) {
+  TALUS_HD static Real coefficient(const LawNumbers<Real>&, const Slip<Real>& slip) {
     return slip.normal_stress / Real(1e6) + slip.duration;
   }
 };
@@ -48,7 +48,7 @@ TEST(SpeedPower, has_the_coefficient_of_its_power) {
 
 TEST(SpeedPower, slows_a_node_on_the_bed) {
   const auto f = some_bed<SpeedPower, Laws>();  // 0.4 (v / 10)^(1/4)
-  const Vec3<double> v = meet_ground(f, f.uniform, Vec3<double>{10, 0, -2}, 0.0, 0.0, {.duration = 0.01});
+  const Vec3<double> v = meet_ground(f, 0, Vec3<double>{10, 0, -2}, 0.0, 0.0, {.duration = 0.01});
   EXPECT_DOUBLE_EQ(v.x, 10 - 0.4 * 2);
   EXPECT_EQ(v.z, 0);
 }
@@ -60,7 +60,7 @@ TEST(BasalLaws, are_told_normal_stress_and_step) {
   EXPECT_FALSE(f.has_traction());
   EXPECT_TRUE(f.asks_pressure());
   // 1 kg per m2 that loses 2 m/s in 10 ms presses with 200 Pa.
-  const Vec3<double> v = meet_ground(f, f.uniform, Vec3<double>{3, 0, -2}, 0.0, 0.0, {.duration = 0.01, .grip = 0.01});
+  const Vec3<double> v = meet_ground(f, 0, Vec3<double>{3, 0, -2}, 0.0, 0.0, {.duration = 0.01, .grip = 0.01});
   EXPECT_DOUBLE_EQ(v.x, 3 - (200 / 1e6 + 0.01) * 2);
 }
 

@@ -1,0 +1,20 @@
+// Zones of the bed's friction: rows by elevation, ground, volume and return period, as rasters of the bed.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/map/raster.hpp"
+#include "preprocess/options/bed.hpp"
+
+namespace talus::preprocess {
+
+/// This function lays the zones that hold for a released volume [m3] over the rasters of the bed, in the order of the
+/// recipe, and says how much ground each has. A cell that polygons cover in part gets that part: of the coefficient,
+/// and of the drag, which is proportional to 1 / xi. Throws DataError: polygons that are not valid, or a coefficient
+/// added where none is known or below 0.
+void lay_bed_zones(const BedRasters& options, const Raster& ground, double volume,
+                   std::vector<std::pair<std::string, Raster>>& bed);
+
+}  // namespace talus::preprocess

@@ -1,0 +1,198 @@
+// Columns that lie on the bed: their mass, what of the bed they cover, and their slip over it as a whole, which
+// depth-averaged laws mean.
+#pragma once
+
+#include <cstddef>
+
+#include "solver/boundary/base_friction.hpp"
+#include "solver/state/clock.hpp"
+#include "solver/state/grid_view.hpp"
+
+namespace talus {
+
+/// What lies on the bed in a step, column by column, [rows * columns]; valid where the column's block has storage.
+template <class Number>
+struct BedColumns {
+  Number* mass = nullptr;            ///< of all its nodes [kg]; null where no traction acts
+  unsigned char* pressed = nullptr;  ///< 1 where it presses on the bed
+};
+
+/// The highest layer whose node can lie on the bed of a column.
+template <class Real>
+TALUS_HD int bed_layer(const GridView<Real>& grid, int column) {
+  if (grid.mapping == Mapping::cartesian && grid.ground == GroundContact::points)
+    return static_cast<int>(floor(grid.terrain[column] / grid.layer_height)) + 1;
+  return grid.contact_layer(column);
+}
+
+/// The mass of the column that is dx, dy columns from column (i, j), 0 where there is none [kg].
+template <class Real, class Number>
+TALUS_HD Number mass_beside(const GridView<Real>& grid, const Number* mass, int i, int j, int dx, int dy) {
+  const int a = i + dx, b = j + dy;
+  if (a < 0 || b < 0 || a >= grid.columns || b >= grid.rows || grid.slot(a, b).offset < 0) return Number(0);
+  return mass[grid.column(a, b)];
+}
+
+/// The share of a column's bed that is covered by matter: 1 but within two columns of an empty one. The edge of the
+/// mass crosses those columns, and their nodes hold some of the matter beside it: they are covered as far as they hold
+/// the mass of the heaviest column within two of them, so that drag slows the rim as much as what is behind it.
+template <class Real, class Number>
+TALUS_HD Number cover(const GridView<Real>& grid, const Number* mass, int i, int j) {
+  bool at_edge = false;
+  const Number own = mass_beside(grid, mass, i, j, 0, 0);
+  Number most = own;
+  for (int dy = -1; dy <= 1; ++dy) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      for (int apart = 1; apart <= 2; ++apart) {
+        const Number beside = mass_beside(grid, mass, i, j, apart * dx, apart * dy);
+        at_edge = at_edge || !(beside > Number(0));
+        most = beside > most ? beside : most;
+      }
+    }
+  }
+  return at_edge ? own / most : Number(1);
+}
+
+/// A column's nodes in storage.
+struct ColumnNodes {
+  BlockSlot slot;
+  int i, j, column;
+  /// The stored node of layer k.
+  TALUS_HD int node(int k) const { return GridView<double>::node(slot, i, j, k); }
+  /// The first layer in storage.
+  TALUS_HD int begin() const { return slot.first_layer; }
+  /// The layer after the last one in storage.
+  TALUS_HD int end() const { return slot.first_layer + slot.layers; }
+};
+
+/// The matter in layers first to last - 1 of a column.
+template <class Number>
+struct LyingMatter {
+  int first = 0, last = 0;
+  Number mass = 0;          ///< [kg]
+  Vec3<Number> momentum{};  ///< [kg m/s]
+};
+
+/// This function sums the matter in layers first to last - 1. Nodes has mass(n) and velocity(n) of type Number.
+template <class Nodes, class Number = typename Nodes::Number>
+TALUS_HD LyingMatter<Number> matter_in(const Nodes& nodes, const ColumnNodes& at, int first, int last) {
+  LyingMatter<Number> sum{.first = first, .last = last};
+  for (int k = first; k < last; ++k) {
+    const Number m = nodes.mass(at.node(k));
+    if (!(m > Number(0))) continue;
+    sum.mass += m;
+    sum.momentum += nodes.velocity(at.node(k)) * m;
+  }
+  return sum;
+}
+/// This function sums what of a column lies on the bed: from its lowest node up to the first empty one. What flies
+/// above has no part in it.
+template <class Nodes, class Number = typename Nodes::Number>
+TALUS_HD LyingMatter<Number> lying_matter(const Nodes& nodes, const ColumnNodes& at) {
+  int first = at.begin();
+  while (first < at.end() && !(nodes.mass(at.node(first)) > Number(0))) ++first;
+  int last = first;
+  while (last < at.end() && nodes.mass(at.node(last)) > Number(0)) ++last;
+  return matter_in(nodes, at, first, last);
+}
+
+/// The bed under a column.
+template <class Number>
+struct ColumnBed {
+  Vec3<Number> normal;
+  Number area;  ///< of what is covered of it, along the slope [m2]
+};
+
+/// The bed under column (i, j), of the masses of all columns [kg].
+template <class Real, class Number>
+TALUS_HD ColumnBed<Number> bed_under(const GridView<Real>& grid, const Number* mass, int i, int j) {
+  const int column = grid.column(i, j);
+  const Number sx = grid.slope_x[column], sy = grid.slope_y[column], h = grid.spacing;
+  const Number steep = sqrt(Number(1) + sx * sx + sy * sy), scale = Number(1) / steep;
+  return {{-sx * scale, -sy * scale, scale}, cover(grid, mass, i, j) * h * h * steep};
+}
+
+/// The step in which columns slip.
+struct ColumnStep {
+  Clock* clock;             ///< of the step, with its budget; null: no more is known than its duration
+  double duration = 0;      ///< [s], without a clock
+  Vec3<double> gravity{};   ///< full with a clock, else that of the step [m/s2]
+  double gravity_ramp = 0;  ///< time over which it grows, with a clock [s]
+
+  /// The length of the step [s].
+  TALUS_HD double length() const { return clock ? clock->step_size : duration; }
+  /// The pull of gravity into a bed [m/s2].
+  template <class Number>
+  TALUS_HD Number press(const Vec3<Number>& normal) const {
+    const bool growing = clock && gravity_ramp > 0 && clock->time < gravity_ramp;
+    const double pull = -dot(gravity, widen(normal)) * (growing ? clock->time / gravity_ramp : 1);
+    return pull > 0 ? static_cast<Number>(pull) : Number(0);
+  }
+};
+
+/// The slip of a column over its bed as a whole: its mean speed, and its weight over what it covers.
+template <class Number>
+TALUS_HD Slip<Number> column_slip(const LyingMatter<Number>& matter, const ColumnBed<Number>& bed,
+                                  const ColumnStep& step) {
+  const Vec3<Number> mean = matter.momentum * (Number(1) / matter.mass);
+  const Number load = matter.mass / bed.area;
+  return {length(mean - bed.normal * dot(mean, bed.normal)), load * step.press(bed.normal),
+          static_cast<Number>(step.length()), load};
+}
+
+/// One thread: one column. It measures what SlowColumns needs, where no other kernel of the step has: a column presses
+/// on its bed when its node there would move into it under `gravity` [m/s2].
+template <class Real, class Nodes>
+struct MeasureColumns {
+  using Number = typename Nodes::Number;
+  GridView<Real> grid;
+  const int* active;
+  Nodes nodes;
+  BedColumns<Number> columns;
+  Vec3<Number> gravity;
+  Number step;  ///< [s]
+
+  TALUS_HD void operator()(int c) const {
+    const ActiveColumn at(grid, active, c);
+    if (!at.in_domain(grid)) return;
+    const BlockSlot slot = grid.slots[at.block];
+    const int column = grid.column(at.i, at.j), bed = bed_layer(grid, column);
+    Number mass = 0;
+    columns.pressed[column] = 0;
+    for (int k = slot.first_layer; k < slot.first_layer + slot.layers; ++k) {
+      const int n = GridView<Real>::node(slot, at.i, at.j, k);
+      const Number m = nodes.mass(n);
+      mass += m;
+      if (k != bed || !(m > Number(0))) continue;
+      const Vec3<Number> v = nodes.velocity(n) + gravity * step;
+      columns.pressed[column] = v.z < v.x * Number(grid.slope_x[column]) + v.y * Number(grid.slope_y[column]);
+    }
+    columns.mass[column] = mass;
+  }
+};
+
+/// One thread: one column. It measures the coefficient of friction of a law that asks for the column, as the step
+/// begins, for the masses that are known.
+template <class Real, class Nodes>
+struct MeasureCoefficients {
+  using Number = typename Nodes::Number;
+  GridView<Real> grid;
+  const int* active;
+  Nodes nodes;
+  BaseFriction<Number> friction;
+  const Number* mass;   ///< of the columns [kg]
+  Number* coefficient;  ///< of the columns; that of a column without mass stays
+  ColumnStep step;
+
+  TALUS_HD void operator()(int c) const {
+    if (step.clock && step.clock->halt != running) return;
+    const ActiveColumn place(grid, active, c);
+    if (!place.in_domain(grid)) return;
+    const ColumnNodes at{grid.slots[place.block], place.i, place.j, grid.column(place.i, place.j)};
+    if (!(mass[at.column] > Number(0))) return;
+    const Slip<Number> slip = column_slip(lying_matter(nodes, at), bed_under(grid, mass, at.i, at.j), step);
+    coefficient[at.column] = friction.coefficient(friction.at(at.column), slip);
+  }
+};
+
+}  // namespace talus

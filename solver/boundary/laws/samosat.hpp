@@ -1,0 +1,106 @@
+// The friction of SamosAT and of AvaFrame's com1DFA: Coulomb's, up to twice as much at low speed, a traction of
+// turbulence, and one that acts at any speed (T13c; Sampl & Zwinger 2004).
+#pragma once
+
+#include "solver/boundary/laws/basal_law.hpp"
+
+namespace talus {
+
+/// SamosAT's law (Sampl & Zwinger 2004), with the defaults of com1DFA.
+struct Samosat : BasalLaw {
+  static constexpr std::string_view name = "samosat";
+  static constexpr bool asks_column = true;
+
+  /// The keys of the law; mu, tau_0, R_s0, kappa, R and B of com1DFA.
+  struct Options {
+    double friction_coefficient = 0.155;  ///< mu, at high speed [-]
+    double minimum_shear = 0;             ///< tau_0 [Pa]
+    double weakening_number = 0.222;      ///< R_s0 [-]
+    double karman_constant = 0.43;        ///< kappa [-]
+    double roughness = 0.05;              ///< R [m]
+    double drag_offset = 4.13;            ///< B [-]
+
+    /// The method declares the keys with defaults and help.
+    void describe(recipe::Visitor& v, const LawTable&) {
+      v.number("friction_coefficient", friction_coefficient, recipe::not_negative,
+               "samosat: mu, at high speed; at rest it is twice as much");
+      v.number("minimum_shear_Pa", minimum_shear, recipe::not_negative, "samosat: tau_0, a traction at any speed");
+      v.number("weakening_number", weakening_number, recipe::not_negative,
+               "samosat: R_s0, the rho v^2 over normal stress at which half of what friction is more at rest is left");
+      v.number("karman_constant", karman_constant, recipe::positive, "samosat: kappa of the drag");
+      v.number("roughness_m", roughness, recipe::positive, "samosat: R of the drag; it falls with thickness over R");
+      v.number("drag_offset", drag_offset, recipe::positive, "samosat: B; drag rho v^2 / (ln(h / R) / kappa + B)^2");
+    }
+  };
+  /// Whether the law looks at a key.
+  static bool uses(std::string_view key) {
+    return key == "friction_coefficient" || key == "minimum_shear_Pa" || key == "weakening_number" ||
+           key == "karman_constant" || key == "roughness_m" || key == "drag_offset";
+  }
+  /// The law in a line, for plan and log.
+  template <class All>
+  static std::string words(const All& o) {
+    return "samosat, mu = " + six_digits(o.friction_coefficient) + ", tau_0 = " + six_digits(o.minimum_shear) +
+           " Pa, R_s0 = " + six_digits(o.weakening_number) + ", kappa = " + six_digits(o.karman_constant) +
+           ", R = " + six_digits(o.roughness) + " m, B = " + six_digits(o.drag_offset);
+  }
+  /// The law in a sentence of the report, "at its bed acts ...".
+  template <class All>
+  static std::string sentence(const All& o) {
+    return "SamosAT's law (Sampl & Zwinger 2004), mu = " + six_digits(o.friction_coefficient) +
+           ", \u03c4\u2080 = " + six_digits(o.minimum_shear) + " Pa, Rs\u2080 = " + six_digits(o.weakening_number) +
+           ", \u03ba = " + six_digits(o.karman_constant) + ", R = " + six_digits(o.roughness) +
+           " m, B = " + six_digits(o.drag_offset);
+  }
+
+  enum Number { mu, shear, rough, count };  ///< as kernels see them: mu [-], tau_0 [Pa], R [m]
+  /// This function makes the numbers from the options of all laws.
+  template <class All>
+  static void numbers(const All& o, const BedSetting& setting, double* n) {
+    n[mu] = setting.borne * o.friction_coefficient;
+    n[shear] = o.minimum_shear;
+    n[rough] = o.roughness;
+  }
+  enum Constant { weakening, inverse_karman, offset, density, constant_count };  ///< R_s0, 1/kappa, B [-], [kg/m3]
+  /// This function makes the numbers of the scene from the options of all laws.
+  template <class All>
+  static void constants(const All& o, const BedSetting& setting, double* c) {
+    c[weakening] = o.weakening_number;
+    c[inverse_karman] = 1 / o.karman_constant;
+    c[offset] = o.drag_offset;
+    c[density] = setting.density;
+  }
+
+  /// The ratio of friction to normal stress, the first term of (T13c) over it [-].
+  template <class Real>
+  TALUS_HD static Real coefficient(const LawNumbers<Real>& n, const Slip<Real>& slip) {
+    const Real at_rest = n.everywhere[weakening] * slip.normal_stress;
+    const Real sum = at_rest + n.everywhere[density] * slip.speed * slip.speed;
+    return n[mu] * (Real(1) + (sum > Real(0) ? at_rest / sum : Real(0)));
+  }
+  /// The traction of turbulence of (T13c) [Pa]; a column thinner than R counts as R, as in com1DFA.
+  template <class Real>
+  TALUS_HD static Real drag(const LawNumbers<Real>& n, const Slip<Real>& slip) {
+    const Real over_rough = slip.load / (n.everywhere[density] * n[rough]);
+    const Real profile =
+        n.everywhere[offset] + (over_rough > Real(1) ? log(over_rough) * n.everywhere[inverse_karman] : Real(0));
+    return n.everywhere[density] * slip.speed * slip.speed / (profile * profile);
+  }
+  /// Whether there is such a traction.
+  template <class Real>
+  TALUS_HD static bool drags(const LawNumbers<Real>&) {
+    return true;
+  }
+  /// The traction at any speed, tau_0 [Pa].
+  template <class Real>
+  TALUS_HD static Real yield(const LawNumbers<Real>& n, const Slip<Real>&) {
+    return n[shear];
+  }
+  /// Whether there is such a traction.
+  template <class Real>
+  TALUS_HD static bool yields(const LawNumbers<Real>& n) {
+    return n[shear] > Real(0);
+  }
+};
+
+}  // namespace talus

@@ -1,0 +1,169 @@
+// The laws whose numbers come from depth-averaged models, against their published formulas.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "solver/boundary/laws/pouliquen.hpp"
+#include "solver/boundary/laws/samosat.hpp"
+#include "solver/boundary/laws/voellmy.hpp"
+#include "solver/boundary/slip.hpp"
+#include "solver/options/solve.hpp"
+#include "tests/solver/boundary/any_law.hpp"
+
+namespace talus::testing {
+namespace {
+
+constexpr double density = 2000;  // of some_bed()
+double tangent(double angle) { return std::tan(angle * std::numbers::pi / 180); }
+
+/// A column of this depth on a slope, at a speed.
+Slip<double> column(double depth, double speed, double slope = 0) {
+  const double load = density * depth, cosine = std::cos(slope * std::numbers::pi / 180);
+  return {speed, load * 9.81 * cosine, 0.01, load};
+}
+
+TEST(Samosat, is_the_friction_of_com1DFA) {
+  OptionsOfLaws<FrictionLaws> o;
+  o.minimum_shear = 70;
+  const auto f = some_bed<Samosat, FrictionLaws>(o);
+  for (const double depth : {0.02, 0.5, 3.0}) {
+    for (const double speed : {0.0, 2.0, 40.0}) {
+      const Slip<double> slip = column(depth, speed);
+      const double sigma = slip.normal_stress, rs = density * speed * speed / sigma;
+      const double layer = std::log(std::max(depth / 0.05, 1.0)) / 0.43 + 4.13;
+      const double tau = 70 + sigma * 0.155 * (1 + 0.222 / (0.222 + rs)) + density * speed * speed / (layer * layer);
+      EXPECT_NEAR(f.coefficient(f.uniform, slip) * sigma + f.drag(f.uniform, slip) + f.yield(f.uniform, slip), tau,
+                  1e-9 * tau)
+          << depth << " m, " << speed << " m/s";
+    }
+  }
+  EXPECT_DOUBLE_EQ(f.coefficient(f.uniform, column(1, 0)), 2 * 0.155);
+  EXPECT_NEAR(f.coefficient(f.uniform, column(1, 1e4)), 0.155, 1e-6);
+}
+
+TEST(Voellmy, has_the_cohesion_of_bartelt) {
+  OptionsOfLaws<FrictionLaws> o;
+  o.friction_angle = 15;
+  o.bartelt_cohesion = 200;
+  const auto f = some_bed<Voellmy, FrictionLaws>(o);
+  const double mu = tangent(15);
+  for (const double normal : {1.0, 200.0, 1e4}) {
+    const Slip<double> slip{3, normal, 0.01, normal / 9.81};
+    const double expected = (1 - mu) * 200 - (1 - mu) * 200 * std::exp(-normal / 200);
+    EXPECT_NEAR(f.yield(f.uniform, slip), expected, 1e-12 * 200) << "N = " << normal;
+  }
+  EXPECT_EQ(f.yield(f.uniform, {3, 0, 0.01, 0}), 0) << "nothing presses";
+  EXPECT_NEAR(f.yield(f.uniform, {3, 1e-3, 0.01, 0}) / 1e-3, 1 - mu, 1e-4) << "next to nothing presses";
+  EXPECT_TRUE(f.has_traction());
+  o.friction_angle = 50;  // a raster may say so: the recipe is refused
+  const auto steep = some_bed<Voellmy, FrictionLaws>(o);
+  EXPECT_EQ(steep.yield(steep.uniform, {3, 1e3, 0.01, 1e2}), 0);
+}
+
+/// The bed of glass beads and its thicknesses at which flows stop and start.
+struct Beads {
+  OptionsOfLaws<FrictionLaws> o;
+  double h_stop(double slope) const {
+    return o.layer_length * (tangent(o.steepest_angle) - tangent(slope)) / (tangent(slope) - tangent(o.stop_angle));
+  }
+  double h_start(double slope) const {
+    const double spread = tangent(o.steepest_angle) - tangent(o.stop_angle);
+    return o.layer_length * (spread / (tangent(slope) - tangent(o.start_angle)) - 1);
+  }
+};
+
+TEST(Pouliquen, balances_a_slope_in_the_steady_flow_of_its_flow_rule) {
+  Beads b;
+  for (const double gamma : {0.0, 0.77}) {
+    b.o.flow_rule_offset = gamma;
+    b.o.flow_rule_slope = gamma > 0 ? 0.63 : 0.136;
+    b.o.slowest_froude = b.o.flow_rule_slope;
+    const auto f = some_bed<Pouliquen, FrictionLaws>(b.o);
+    for (const double slope : {23.0, 26.0, 29.0}) {
+      for (const double times : {2.5, 4.0, 20.0}) {
+        const double depth = times * b.h_stop(slope), froude = b.o.flow_rule_slope * times - gamma;
+        const double wave = std::sqrt(9.81 * depth * std::cos(slope * std::numbers::pi / 180));
+        EXPECT_NEAR(f.coefficient(f.uniform, column(depth, froude * wave, slope)), tangent(slope), 1e-12)
+            << slope << " deg, " << times << " h_stop";
+      }
+    }
+  }
+}
+
+TEST(Pouliquen, holds_what_rests_up_to_h_start_and_what_flows_slowest_up_to_h_stop) {
+  const Beads b;
+  const auto f = some_bed<Pouliquen, FrictionLaws>(b.o);
+  for (const double slope : {23.0, 26.0, 29.0}) {
+    EXPECT_NEAR(f.coefficient(f.uniform, column(b.h_start(slope), 0, slope)), tangent(slope), 1e-12);
+    const double depth = b.h_stop(slope), wave = std::sqrt(9.81 * depth * std::cos(slope * std::numbers::pi / 180));
+    EXPECT_NEAR(f.coefficient(f.uniform, column(depth, b.o.slowest_froude * wave, slope)), tangent(slope), 1e-12);
+    EXPECT_GT(b.h_start(slope), b.h_stop(slope));
+  }
+}
+
+TEST(Pouliquen, falls_from_rest_to_the_slowest_flow_and_grows_from_there) {
+  const Beads b;
+  const auto f = some_bed<Pouliquen, FrictionLaws>(b.o);
+  const double depth = 0.002, wave = std::sqrt(9.81 * depth);
+  double before = f.coefficient(f.uniform, column(depth, 0));
+  for (int n = 1; n <= 40; ++n) {
+    const double froude = b.o.slowest_froude * n / 20, mu = f.coefficient(f.uniform, column(depth, froude * wave));
+    EXPECT_EQ(mu < before, n <= 20) << "Froude number " << froude;
+    EXPECT_LT(std::abs(mu - before), 0.004) << "without a jump";
+    before = mu;
+  }
+}
+
+/// What is wrong with a recipe's bed.
+std::vector<Fault> faults_of(const std::function<void(solver::BaseOptions&)>& change) {
+  solver::SolveOptions o;
+  change(o.base);
+  std::vector<Fault> faults;
+  recipe::find_unmet(o, faults);
+  return faults;
+}
+
+TEST(Pouliquen, refuses_numbers_that_contradict_one_another) {
+  using solver::BaseOptions;
+  const auto chosen = [](auto change) {
+    return faults_of([&](BaseOptions& o) {
+      o.law = FrictionLaw::pouliquen;
+      change(o);
+    });
+  };
+  EXPECT_TRUE(chosen([](BaseOptions&) {}).empty());
+  EXPECT_EQ(chosen([](BaseOptions& o) { o.steepest_angle = 20; }).size(), 1u);
+  EXPECT_EQ(chosen([](BaseOptions& o) { o.start_angle = 20; }).size(), 1u);
+  EXPECT_EQ(chosen([](BaseOptions& o) { o.slowest_froude = 0.1; }).size(), 1u);
+  EXPECT_TRUE(faults_of([](BaseOptions& o) { o.steepest_angle = 20; }).empty()) << "another law is chosen";
+}
+
+TEST(Voellmy, refuses_a_cohesion_that_would_push) {
+  const auto faults = [](double angle, FrictionLaw law) {
+    return faults_of([&](solver::BaseOptions& o) {
+             o.law = law;
+             o.friction_angle = angle;
+             o.bartelt_cohesion = 100;
+           })
+        .size();
+  };
+  EXPECT_EQ(faults(50, FrictionLaw::voellmy), 1u);
+  EXPECT_EQ(faults(40, FrictionLaw::voellmy), 0u);
+  EXPECT_EQ(faults(50, FrictionLaw::coulomb), 0u);
+}
+
+TEST(SolveOptions, refuse_a_law_of_columns_with_contact_points) {
+  solver::SolveOptions o;
+  o.mapping = Mapping::cartesian;
+  o.ground_contact = GroundContact::points;
+  for (const auto& [law, count] : {std::pair{FrictionLaw::voellmy, 0u}, {FrictionLaw::samosat, 1u}}) {
+    o.base.law = law;
+    std::vector<Fault> faults;
+    recipe::find_unmet(o, faults);
+    EXPECT_EQ(faults.size(), count);
+  }
+}
+
+}  // namespace
+}  // namespace talus::testing
