@@ -5,7 +5,7 @@
 #include "solver/boundary/column_flow.hpp"
 #include "solver/parallel/atomics.hpp"
 #include "solver/parallel/buffer.hpp"
-#include "solver/parallel/for_each.hpp"
+#include "solver/parallel/columns.hpp"
 #include "solver/state/map_view.hpp"
 
 namespace talus {
@@ -20,8 +20,8 @@ TALUS_HD Number share_left_by_traction(Number speed, Number drag, Number cohesio
   return held < Number(1) ? (Number(1) - held) / (Number(1) + drag * rate / speed) : Number(0);
 }
 
-/// One thread: one column. Tractions slow what of it lies on the bed. Maps are recorded of what is left, where
-/// `records`. Nodes has mass(n), velocity(n) and add(n, change of velocity) of type Number.
+/// Tractions slow what of a column lies on the bed; a kernel of for_each_column_twice. Maps are recorded of what is
+/// left, where `records`. Nodes has mass(n), velocity(n) and add(n, change of velocity) of type Number.
 template <class Real, class Nodes, bool records>
 struct SlowColumns {
   using Number = typename Nodes::Number;
@@ -34,47 +34,105 @@ struct SlowColumns {
   bool with_yield;  ///< beside drag
   ColumnRecorder<Number> recorder;
 
-  TALUS_HD void operator()(int c) const {
-    if (step.clock && step.clock->halt != running) return;
+  /// A column of nodes as the kernel sees it; see ColumnTwice.
+  struct Column {
+    bool inside = false, presses = false;
+    int first = 0, last = 0;
+    ColumnNodes nodes;
+  };
+  /// The sums over the layers of a column that hold matter.
+  struct Sums {
+    static constexpr int far = 1 << 30;
+    Number mass = 0;          ///< [kg]
+    Vec3<Number> momentum{};  ///< [kg m/s]
+    int layers = 0, lowest = far, highest = -far;
+    TALUS_HD Sums& operator+=(const Sums& o) {
+      mass += o.mass;
+      momentum += o.momentum;
+      layers += o.layers;
+      lowest = o.lowest < lowest ? o.lowest : lowest;
+      highest = o.highest > highest ? o.highest : highest;
+      return *this;
+    }
+  };
+  /// What slows a column: its layers first to last - 1 keep the share `left` of their velocity along the bed.
+  struct Pass {
+    LyingMatter<Number> matter;
+    Vec3<Number> normal{};
+    Number left = 1;
+  };
+
+  /// The column number c; outside where it holds nothing.
+  TALUS_HD Column locate(int c) const {
+    Column at;
+    if (step.clock && step.clock->halt != running) return at;
     const ActiveColumn place(grid, active, c);
-    if (!place.in_domain(grid)) return;
-    const ColumnNodes at{grid.slots[place.block], place.i, place.j, grid.column(place.i, place.j)};
-    if (!(columns.mass[at.column] > Number(0))) return;
-    if (columns.pressed[at.column]) slow(at);
+    if (!place.in_domain(grid)) return at;
+    at.nodes = {grid.slots[place.block], place.i, place.j, grid.column(place.i, place.j)};
+    at.inside = columns.mass[at.nodes.column] > Number(0);
+    at.presses = columns.pressed[at.nodes.column] != 0;
+    at.first = at.nodes.begin();
+    at.last = at.nodes.end();
+    return at;
+  }
+
+  /// The method adds the matter of layer k.
+  TALUS_HD void layer(const Column& at, int k, Sums& sums) const {
+    const int n = at.nodes.node(k);
+    const Number m = nodes.mass(n);
+    if (!(m > Number(0))) return;
+    sums.mass += m;
+    sums.momentum += nodes.velocity(n) * m;
+    ++sums.layers;
+    sums.lowest = k < sums.lowest ? k : sums.lowest;
+    sums.highest = k > sums.highest ? k : sums.highest;
+  }
+
+  /// The share of its velocity that the column keeps.
+  TALUS_HD Pass between(const Column& at, const Sums& sums) const {
+    Pass pass;
+    if (!at.presses || sums.layers == 0) return pass;
+    const bool whole = sums.highest - sums.lowest + 1 == sums.layers;  // nothing flies over it
+    pass.matter = whole ? LyingMatter<Number>{sums.lowest, sums.highest + 1, sums.mass, sums.momentum}
+                        : lying_matter(nodes, at.nodes);
+    const ColumnBed<Number> under = bed_under(grid, columns.mass, at.nodes.i, at.nodes.j);
+    const Slip<Number> slip = column_slip(pass.matter, under, step);
+    const Bed<Number>& bed = friction.at(at.nodes.column);
+    const Number yield = with_yield ? friction.yield(bed, slip) : Number(0);
+    pass.normal = under.normal;
+    pass.left = share_left_by_traction(slip.speed, friction.drag(bed, slip), yield,
+                                       under.area * slip.duration / pass.matter.mass);
+    return pass;
+  }
+
+  /// The method slows the node in layer k.
+  TALUS_HD void again(const Column& at, const Pass& pass, int k) const {
+    if (k < pass.matter.first || k >= pass.matter.last) return;
+    const int n = at.nodes.node(k);
+    const Vec3<Number> v = nodes.velocity(n), change = change_of(pass, v);
+    nodes.add(n, change);
+    if (step.clock && step.clock->keeps_budget) count(*step.clock, static_cast<double>(nodes.mass(n)), v, change);
+  }
+
+  /// The method records the maps of what is left (T25).
+  TALUS_HD void finish(const Column& at, const Sums& sums, const Pass& pass) const {
     if constexpr (records) {
-      const auto all = matter_in(nodes, at, at.begin(), at.end());
-      recorder.record(at.column, all.mass, all.momentum, Number(grid.spacing), step.clock->time);
+      recorder.record(at.nodes.column, sums.mass, sums.momentum + change_of(pass, pass.matter.momentum),
+                      Number(grid.spacing), step.clock->time);
     }
   }
 
  private:
-  TALUS_HD void slow(const ColumnNodes& at) const {
-    const LyingMatter<Number> matter = lying_matter(nodes, at);
-    const ColumnBed<Number> under = bed_under(grid, columns.mass, at.i, at.j);
-    const Slip<Number> slip = column_slip(matter, under, step);
-    const Bed<Number>& bed = friction.at(at.column);
-    const Number yield = with_yield ? friction.yield(bed, slip) : Number(0);
-    const Number left =
-        share_left_by_traction(slip.speed, friction.drag(bed, slip), yield, under.area * slip.duration / matter.mass);
-    double loss = 0;
-    Vec3<double> reaction{};
-    for (int k = matter.first; k < matter.last; ++k) {
-      const int n = at.node(k);
-      const Vec3<Number> v = nodes.velocity(n), along = v - under.normal * dot(v, under.normal),
-                         change = along * (left - Number(1));
-      nodes.add(n, change);
-      const double m = static_cast<double>(nodes.mass(n));
-      loss -= m * static_cast<double>(dot(change, v + change * Number(0.5)));
-      reaction += widen(change) * m;
-    }
-    if (step.clock && step.clock->keeps_budget) count(*step.clock, loss, reaction);
+  TALUS_HD static Vec3<Number> change_of(const Pass& pass, const Vec3<Number>& v) {
+    return (v - pass.normal * dot(v, pass.normal)) * (pass.left - Number(1));
   }
-  TALUS_HD static void count(Clock& clock, double loss, const Vec3<double>& reaction) {
+  TALUS_HD static void count(Clock& clock, double mass, const Vec3<Number>& v, const Vec3<Number>& change) {
+    const double loss = -mass * static_cast<double>(dot(change, v + change * Number(0.5)));
     atomic_add(&clock.bed_loss, loss);
     atomic_add(&clock.transfer_loss, -loss);
-    atomic_add(&clock.reaction[0], reaction.x);
-    atomic_add(&clock.reaction[1], reaction.y);
-    atomic_add(&clock.reaction[2], reaction.z);
+    atomic_add(&clock.reaction[0], mass * static_cast<double>(change.x));
+    atomic_add(&clock.reaction[1], mass * static_cast<double>(change.y));
+    atomic_add(&clock.reaction[2], mass * static_cast<double>(change.z));
   }
 };
 

@@ -219,15 +219,15 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   template <NodeContent content>
   void slow_columns(const ColumnRecorder<Real>& recorder) {
     using Nodes = PackedNodes<Real>;
-    for_each(device_, grid_.active_blocks() * block_columns,
-             SlowColumns<Real, Nodes, true>{.grid = grid_.view(),
-                                            .active = grid_.active_list(),
-                                            .nodes = packed_nodes<content>(),
-                                            .friction = surroundings_.bed(),
-                                            .columns = traction_.columns(),
-                                            .step = column_step(),
-                                            .with_yield = true,
-                                            .recorder = recorder});
+    for_each_column_twice<block_columns>(device_, grid_.active_blocks(),
+                                         SlowColumns<Real, Nodes, true>{.grid = grid_.view(),
+                                                                        .active = grid_.active_list(),
+                                                                        .nodes = packed_nodes<content>(),
+                                                                        .friction = surroundings_.bed(),
+                                                                        .columns = traction_.columns(),
+                                                                        .step = column_step(),
+                                                                        .with_yield = true,
+                                                                        .recorder = recorder});
   }
 
   /// The nodes with the changes of their velocity, where a step keeps them.

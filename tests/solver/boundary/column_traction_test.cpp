@@ -8,7 +8,7 @@
 
 #include "solver/boundary/column_flow.hpp"
 #include "solver/boundary/contact_impulses.hpp"
-#include "solver/parallel/for_each.hpp"
+#include "solver/parallel/columns.hpp"
 #include "tests/solver/small_grid.hpp"
 
 namespace talus::solver::testing {
@@ -53,15 +53,16 @@ struct Sheet {
   void put(int i, int j, int k) { at(i, j, k) = {100, 3, 1, 3 * 0.3 - 1 * 0.2}; }
   void slow(bool with_yield = true) {
     const MapView maps{{maxima.data(), maxima.data(), maxima.data(), arrival.data()}, 0};
-    for_each(CpuDevice::make(), 4 * block_columns,
-             SlowColumns<double, PackedNodes<double>, true>{.grid = grid.view(),
-                                                            .active = grid.active.data(),
-                                                            .nodes = {nodes.data(), changes.data()},
-                                                            .friction = friction,
-                                                            .columns = {mass.data(), pressed.data()},
-                                                            .step = {&clock},
-                                                            .with_yield = with_yield,
-                                                            .recorder = {maps, 2000, nullptr}});
+    for_each_column_twice<block_columns>(
+        CpuDevice::make(), 4,
+        SlowColumns<double, PackedNodes<double>, true>{.grid = grid.view(),
+                                                       .active = grid.active.data(),
+                                                       .nodes = {nodes.data(), changes.data()},
+                                                       .friction = friction,
+                                                       .columns = {mass.data(), pressed.data()},
+                                                       .step = {&clock},
+                                                       .with_yield = with_yield,
+                                                       .recorder = {maps, 2000, nullptr}});
   }
 };
 

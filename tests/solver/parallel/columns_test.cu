@@ -31,6 +31,24 @@ struct SumLayers {
   TALUS_HD void finish(const Column& at, const Sums& sums) const { total[at.number] += sums.layers; }
 };
 
+/// One column: every layer takes the sum of the numbers in all of them, and the column says that it was finished.
+struct ShareSum {
+  double* number;
+  int* finished;
+  using Column = SumLayers::Column;
+  using Sums = SumLayers::Sums;
+  struct Pass {
+    double sum = 0;
+  };
+  TALUS_HD Column locate(int c) const { return {c % 5 != 0, c % 3, c % 3 + c % 23, c}; }
+  TALUS_HD void layer(const Column& at, int k, Sums& sums) const { sums.layers += number[at.number * 32 + k]; }
+  TALUS_HD Pass between(const Column&, const Sums& sums) const { return {sums.layers}; }
+  TALUS_HD void again(const Column& at, const Pass& pass, int k) const { number[at.number * 32 + k] = pass.sum; }
+  TALUS_HD void finish(const Column& at, const Sums& sums, const Pass& pass) const {
+    finished[at.number] += sums.layers == pass.sum ? 1 : -1;
+  }
+};
+
 class Columns : public InEachPlace {
  protected:
   template <class Device>
@@ -54,7 +72,39 @@ class Columns : public InEachPlace {
       EXPECT_EQ(sums[static_cast<std::size_t>(c)], expected) << "column " << c;
     }
   }
+
+  template <class Device>
+  static void share() {
+    const Device device = Device::make();
+    Buffer<double, Device> number(device);
+    Buffer<int, Device> finished(device);
+    std::vector<double> numbers(of_block * blocks * 32);
+    for (std::size_t n = 0; n < numbers.size(); ++n) numbers[n] = static_cast<double>(n % 7);
+    number.upload(numbers);
+    finished.upload(std::vector<int>(of_block * blocks, 0));
+    for_each_column_twice<of_block>(device, blocks, ShareSum{number.data(), finished.data()});
+    const auto after = number.download();
+    const auto times = finished.download();
+    for (int c = 0; c < of_block * blocks; ++c) {
+      const int first = c % 3, last = c % 3 + c % 23;
+      double sum = 0;  // of whole numbers: exact in any order
+      for (int k = first; k < last; ++k) sum += numbers[static_cast<std::size_t>(c * 32 + k)];
+      for (int k = 0; k < 32; ++k) {
+        const auto n = static_cast<std::size_t>(c * 32 + k);
+        const bool in = c % 5 != 0 && k >= first && k < last;
+        EXPECT_EQ(after[n], in ? sum : numbers[n]) << "column " << c << ", layer " << k;
+      }
+      EXPECT_EQ(times[static_cast<std::size_t>(c)], c % 5 != 0 ? 1 : 0) << "column " << c;
+    }
+  }
 };
+
+TEST_P(Columns, know_their_sum_when_they_meet_their_layers_again) {
+#if TALUS_FOR_GPU
+  if (GetParam() == On::gpu) return share<GpuDevice>();
+#endif
+  share<CpuDevice>();
+}
 
 TEST_P(Columns, meet_each_of_their_layers_once_and_finish_with_the_sum) {
 #if TALUS_FOR_GPU
