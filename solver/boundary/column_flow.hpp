@@ -13,9 +13,26 @@ namespace talus {
 /// What lies on the bed in a step, column by column, [rows * columns]; valid where the column's block has storage.
 template <class Number>
 struct BedColumns {
-  Number* mass = nullptr;            ///< of all its nodes [kg]; null where no traction acts
-  unsigned char* pressed = nullptr;  ///< 1 where it presses on the bed
+  Number* mass = nullptr;  ///< of all its nodes [kg]; null where no traction acts
+  Number* rise =
+      nullptr;  ///< speed at which its node on the bed would leave it, before they meet [m/s]; else `off_bed`
 };
+
+/// The rise of a column that has no matter on its bed [m/s].
+inline constexpr float off_bed = 1e30F;
+
+/// The speed at which a node of this velocity would leave ground of slopes (sx, sy) [m/s].
+template <class Number>
+TALUS_HD Number rise_from(const Vec3<Number>& v, Number sx, Number sy) {
+  return (v.z - v.x * sx - v.y * sy) / sqrt(Number(1) + sx * sx + sy * sy);
+}
+
+/// Whether a column `depth` [m] deep lies on its bed, or is thrown up by less than half of that: a mass that hops so
+/// low is one that flows (T13f). `press`: the pull of gravity into the bed [m/s2].
+template <class Number>
+TALUS_HD bool lies_on_bed(Number rise, Number press, Number depth) {
+  return rise <= Number(0) || rise * rise < press * depth;
+}
 
 /// The highest layer whose node can lie on the bed of a column.
 template <class Real>
@@ -140,8 +157,8 @@ TALUS_HD Slip<Number> column_slip(const LyingMatter<Number>& matter, const Colum
           static_cast<Number>(step.length()), load};
 }
 
-/// One thread: one column. It measures what SlowColumns needs, where no other kernel of the step has: a column presses
-/// on its bed when its node there would move into it under `gravity` [m/s2].
+/// One thread: one column. It measures what SlowColumns needs, where no other kernel of the step has: its mass, and its
+/// rise after a step under `gravity` [m/s2].
 template <class Real, class Nodes>
 struct MeasureColumns {
   using Number = typename Nodes::Number;
@@ -158,14 +175,14 @@ struct MeasureColumns {
     const BlockSlot slot = grid.slots[at.block];
     const int column = grid.column(at.i, at.j), bed = bed_layer(grid, column);
     Number mass = 0;
-    columns.pressed[column] = 0;
+    columns.rise[column] = Number(off_bed);
     for (int k = slot.first_layer; k < slot.first_layer + slot.layers; ++k) {
       const int n = GridView<Real>::node(slot, at.i, at.j, k);
       const Number m = nodes.mass(n);
       mass += m;
       if (k != bed || !(m > Number(0))) continue;
       const Vec3<Number> v = nodes.velocity(n) + gravity * step;
-      columns.pressed[column] = v.z < v.x * Number(grid.slope_x[column]) + v.y * Number(grid.slope_y[column]);
+      columns.rise[column] = rise_from(v, Number(grid.slope_x[column]), Number(grid.slope_y[column]));
     }
     columns.mass[column] = mass;
   }

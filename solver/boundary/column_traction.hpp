@@ -32,11 +32,13 @@ struct SlowColumns {
   BedColumns<Number> columns;
   ColumnStep step;
   bool with_yield;  ///< beside drag
+  Number density;   ///< of the mass [kg/m3]
   ColumnRecorder<Number> recorder;
 
   /// A column of nodes as the kernel sees it; see ColumnTwice.
   struct Column {
-    bool inside = false, presses = false;
+    bool inside = false;
+    Number rise = 0;  ///< see BedColumns
     int first = 0, last = 0;
     ColumnNodes nodes;
   };
@@ -70,7 +72,7 @@ struct SlowColumns {
     if (!place.in_domain(grid)) return at;
     at.nodes = {grid.slots[place.block], place.i, place.j, grid.column(place.i, place.j)};
     at.inside = columns.mass[at.nodes.column] > Number(0);
-    at.presses = columns.pressed[at.nodes.column] != 0;
+    at.rise = columns.rise[at.nodes.column];
     at.first = at.nodes.begin();
     at.last = at.nodes.end();
     return at;
@@ -91,12 +93,15 @@ struct SlowColumns {
   /// The share of its velocity that the column keeps.
   TALUS_HD Pass between(const Column& at, const Sums& sums) const {
     Pass pass;
-    if (!at.presses || sums.layers == 0) return pass;
+    if (!(at.rise < Number(off_bed)) || sums.layers == 0) return pass;
     const bool whole = sums.highest - sums.lowest + 1 == sums.layers;  // nothing flies over it
-    pass.matter = whole ? LyingMatter<Number>{sums.lowest, sums.highest + 1, sums.mass, sums.momentum}
-                        : lying_matter(nodes, at.nodes);
+    const LyingMatter<Number> matter =
+        whole ? LyingMatter<Number>{sums.lowest, sums.highest + 1, sums.mass, sums.momentum}
+              : lying_matter(nodes, at.nodes);
     const ColumnBed<Number> under = bed_under(grid, columns.mass, at.nodes.i, at.nodes.j);
-    const Slip<Number> slip = column_slip(pass.matter, under, step);
+    const Slip<Number> slip = column_slip(matter, under, step);
+    if (!lies_on_bed(at.rise, step.press(under.normal), slip.load / density)) return pass;
+    pass.matter = matter;
     const Bed<Number>& bed = friction.at(at.nodes.column);
     const Number yield = with_yield ? friction.yield(bed, slip) : Number(0);
     pass.normal = under.normal;
@@ -143,13 +148,13 @@ class ColumnTraction {
  public:
   /// The constructor takes the bed's friction, and the map's size; without tractions nothing is stored.
   ColumnTraction(const Device& device, const BaseFriction<Number>& friction, int map_columns, int map_rows)
-      : acts_(friction.has_traction()), mass_(device), pressed_(device), coefficient_(device) {
+      : acts_(friction.has_traction()), mass_(device), rise_(device), coefficient_(device) {
     if (!acts_ && !friction.asks_column()) return;
     const std::size_t count = static_cast<std::size_t>(map_columns) * static_cast<std::size_t>(map_rows);
     mass_.resize(count);
     mass_.fill_zero();
-    pressed_.resize(count);
-    pressed_.fill_zero();
+    rise_.resize(count);
+    rise_.fill_zero();
     if (!friction.asks_column()) return;
     coefficient_.resize(count);
     coefficient_.fill_zero();
@@ -160,7 +165,7 @@ class ColumnTraction {
   bool measures() const { return coefficient_.size() > 0; }
   /// The columns as kernels see them; null pointers where nothing is known of them.
   BedColumns<Number> columns() {
-    return mass_.size() > 0 ? BedColumns<Number>{mass_.data(), pressed_.data()} : BedColumns<Number>{};
+    return mass_.size() > 0 ? BedColumns<Number>{mass_.data(), rise_.data()} : BedColumns<Number>{};
   }
   /// The columns for what tractions need; null pointers without tractions.
   BedColumns<Number> slowed() { return acts_ ? columns() : BedColumns<Number>{}; }
@@ -172,12 +177,12 @@ class ColumnTraction {
     return friction;
   }
   /// The size of the arrays [bytes].
-  std::size_t bytes() const { return mass_.bytes() + pressed_.bytes() + coefficient_.bytes(); }
+  std::size_t bytes() const { return mass_.bytes() + rise_.bytes() + coefficient_.bytes(); }
 
  private:
   bool acts_;
   Buffer<Number, Device> mass_;
-  Buffer<unsigned char, Device> pressed_;
+  Buffer<Number, Device> rise_;
   Buffer<Number, Device> coefficient_;
 };
 

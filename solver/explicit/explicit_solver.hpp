@@ -227,6 +227,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
                                                                         .columns = traction_.columns(),
                                                                         .step = column_step(),
                                                                         .with_yield = true,
+                                                                        .density = materials_.list[0].density,
                                                                         .recorder = recorder});
   }
 

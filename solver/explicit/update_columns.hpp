@@ -99,7 +99,7 @@ struct UpdateColumns {
     const int n = GridView<Real>::node(at.slot, at.i, at.j, k);
     Vec4<Real> node = nodes[n];
     if (!(node.w > Real(0))) {
-      if (measures_press(at.column, k)) columns.pressed[at.column] = 0;
+      if (measures_rise(at.column, k)) columns.rise[at.column] = Real(off_bed);
       return;
     }
     const Vec3<Real> v = update(at, k, n, node, sums.losses);
@@ -114,7 +114,7 @@ struct UpdateColumns {
     if (columns.mass) {
       columns.mass[at.column] = sums.mass;
       const int bed = bed_layer(grid, at.column);
-      if (bed < at.first || bed >= at.last) columns.pressed[at.column] = 0;
+      if (bed < at.first || bed >= at.last) columns.rise[at.column] = Real(off_bed);
     }
     if (!(sums.mass > Real(0))) return;
     if constexpr (may_count) {
@@ -130,13 +130,9 @@ struct UpdateColumns {
   }
 
  private:
-  /// Whether the node in layer k says of its column whether it presses on the bed.
-  TALUS_HD bool measures_press(int column, int k) const {
+  /// Whether the node in layer k says of its column how fast it leaves the bed.
+  TALUS_HD bool measures_rise(int column, int k) const {
     return content != NodeContent::remapped && columns.mass && k == bed_layer(grid, column);
-  }
-  /// Whether a node of this velocity moves into the ground of a column.
-  TALUS_HD bool presses(int column, const Vec3<Real>& v) const {
-    return v.z < v.x * grid.slope_x[column] + v.y * grid.slope_y[column];
   }
 
   TALUS_HD Vec3<Real> update(const Column& at, int k, int n, const Vec4<Real>& node,
@@ -157,7 +153,9 @@ struct UpdateColumns {
       v += pull * dt;
     }
     const Vec3<Real> free = v;
-    if (measures_press(at.column, k)) columns.pressed[at.column] = presses(at.column, free);
+    if (measures_rise(at.column, k)) {
+      columns.rise[at.column] = rise_from(free, grid.slope_x[at.column], grid.slope_y[at.column]);
+    }
     if (k <= at.top_contact) v = meet_bed(at, k, v, node.w, dt);
     if (walls.count > 0) v = meet_walls(walls, at.i, at.j, k, v, content != NodeContent::remapped);
     if constexpr (may_count) {

@@ -35,7 +35,7 @@ struct Sheet {
   Clock clock;
   std::vector<Vec4<double>> nodes = std::vector<Vec4<double>>(SmallGrid::nodes), changes = nodes;
   std::vector<double> mass = std::vector<double>(64), maxima = mass, arrival = std::vector<double>(64, -1);
-  std::vector<unsigned char> pressed = std::vector<unsigned char>(64);
+  std::vector<double> rise = std::vector<double>(64, off_bed);
   BaseFriction<double> friction{FrictionLaw::voellmy, {{0.5, 3}, 0}};  // 3 Pa s2/m2
 
   Sheet() {
@@ -44,7 +44,7 @@ struct Sheet {
       for (int i = 2; i < 6; ++i) {
         for (int k = 0; k < 2; ++k) put(i, j, k);
         mass[column(i, j)] = 200;
-        pressed[column(i, j)] = 1;
+        rise[column(i, j)] = -1;
       }
     }
   }
@@ -59,9 +59,10 @@ struct Sheet {
                                                        .active = grid.active.data(),
                                                        .nodes = {nodes.data(), changes.data()},
                                                        .friction = friction,
-                                                       .columns = {mass.data(), pressed.data()},
-                                                       .step = {&clock},
+                                                       .columns = {mass.data(), rise.data()},
+                                                       .step = {&clock, 0, {0, 0, -9.81}},
                                                        .with_yield = with_yield,
+                                                       .density = 2000,
                                                        .recorder = {maps, 2000, nullptr}});
   }
 };
@@ -86,11 +87,25 @@ TEST(SlowColumns, gives_all_nodes_of_a_column_the_drag_of_its_whole_bed) {
 TEST(SlowColumns, leaves_alone_what_flies) {
   Sheet s;
   s.put(3, 3, 5);  // over the sheet, with empty nodes between
-  s.pressed[Sheet::column(4, 3)] = 0;
+  s.rise[Sheet::column(4, 3)] = off_bed;
   s.slow();
   EXPECT_LT(s.at(3, 3, 1).x, 3);
   EXPECT_EQ(s.at(3, 3, 5).x, 3);
   EXPECT_EQ(s.at(4, 3, 0).x, 3) << "a column that does not press";
+}
+
+TEST(SlowColumns, drags_what_hops_by_less_than_half_its_depth) {
+  // The speed at which the sheet would rise by half its depth, along the normal of the ground.
+  const double depth = 200 / area / 2000, press = 9.81 / 1.0630145812734649, speed = std::sqrt(press * depth);
+  for (const double rise : {-1.0, 0.0, 0.99 * speed, 1.01 * speed}) {
+    for (const double duration : {0.1, 1e-4}) {
+      Sheet s;
+      s.clock.step_size = duration;
+      s.rise[Sheet::column(3, 3)] = rise;
+      s.slow();
+      EXPECT_EQ(s.at(3, 3, 0).x < 3, rise < speed) << rise << " m/s, a step of " << duration << " s";
+    }
+  }
 }
 
 TEST(SlowColumns, takes_cohesion_where_asked) {

@@ -115,20 +115,21 @@ TEST(UpdateColumns, records_the_maps_of_the_column) {
   EXPECT_EQ(u.thickness[column + 1], 0);
 }
 
-TEST(UpdateColumns, leaves_the_maps_to_the_tractions_and_tells_them_what_presses) {
+TEST(UpdateColumns, leaves_the_maps_to_the_tractions_and_tells_them_how_fast_columns_rise) {
   Updated u;
   std::vector<double> mass(64);
-  std::vector<unsigned char> pressed(64);
-  u.columns = {mass.data(), pressed.data()};
+  std::vector<double> rise(64, off_bed);
+  u.columns = {mass.data(), rise.data()};
   u.update<NodeContent::impulse>();
   constexpr std::size_t column = 2 * SmallGrid::side + 5;
   EXPECT_EQ(mass[column], 200);
-  EXPECT_EQ(pressed[column], 1);
+  EXPECT_DOUBLE_EQ(rise[column], -1) << "what gravity makes of it in the step, before the bed";
+  EXPECT_EQ(rise[column + 1], off_bed) << "nothing there";
   EXPECT_EQ(mass[column + 1], 0);
   EXPECT_EQ(u.thickness[column], 0);
   u.at(u.nodes, 0) = {100, 0, 0, 200};  // leaves faster than it falls
   u.update<NodeContent::impulse>();
-  EXPECT_EQ(pressed[column], 0);
+  EXPECT_DOUBLE_EQ(rise[column], 1);
 }
 
 TEST(UpdateColumns, does_nothing_once_the_clock_has_halted) {
