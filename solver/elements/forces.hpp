@@ -55,11 +55,11 @@ struct ScatterForces : PointScatter<Real, Shape> {
 
 /// The law of ScatterForces that gives the stress for the displacement u, and stores the tangent (T17) as well where
 /// there is a store for it.
-template <class Real, class Shape>
+template <class Real, class Shape, class Laws = MaterialLaws>
 struct StressAt {
   /// In double precision the first cache has room for the local arrays of so many.
   static constexpr int tiles_at_once = sizeof(Real) == 8 ? 6 : 0;
-  Materials<Real> materials;
+  Materials<Real, Laws> materials;
   bool dilatant;
   bool definite;  ///< without the part of the tangent that compression makes negative
   MeanDilationView<Real> means;

@@ -16,11 +16,11 @@ struct NumberPoints {
 };
 
 /// One thread: one element. Its means (T17b): of the volume change, the stress, the bulk response and the gradients.
-template <class Real, class Shape>
+template <class Real, class Shape, class Laws>
 struct MeasureMeans {
   GridView<Real> grid;
   ParticleView<Real> points;
-  Materials<Real> materials;
+  Materials<Real, Laws> materials;
   bool dilatant;
   ElementView elements;
   const Vec3<double>* u;
@@ -121,10 +121,12 @@ template <class Real, class Device, class Shape>
 void MeanDilation<Real, Device, Shape>::measure(const ElementList<Real, Device, Shape>& list,
                                                 const GridView<Real>& grid, const ParticleView<Real>& points,
                                                 const Materials<Real>& materials, const Motion& motion) {
-  for_each(list.device(), list.count(),
-           MeasureMeans<Real, Shape>{grid, points, materials, motion.dilatant, list.view(), motion.u,
-                                     static_cast<Real>(motion.duration), increment_.data(), stress_.data(),
-                                     stiffness_.data(), gradient_.data()});
+  with_laws_of(materials, [&]<class Laws>(const Materials<Real, Laws>& known) {
+    for_each(list.device(), list.count(),
+             MeasureMeans<Real, Shape, Laws>{grid, points, known, motion.dilatant, list.view(), motion.u,
+                                             static_cast<Real>(motion.duration), increment_.data(), stress_.data(),
+                                             stiffness_.data(), gradient_.data()});
+  });
 }
 
 template <class Real, class Device, class Shape>

@@ -166,9 +166,17 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   template <Scatter what>
   void scatter() {
     const ProfilePhase<Device> phase(device_, "points to grid");
-    scatter_points(device_, points_.count(), grid_.groups(),
-                   ParticleToGrid<Real, Shape, what>{grid_.view(), points_.view(), materials_, clock_.data(),
-                                                     nodes_.data(), forces_.data(), loads_now_, affine_, dilatant_});
+    const auto run = [&]<class Laws>(const Materials<Real, Laws>& materials) {
+      scatter_points(
+          device_, points_.count(), grid_.groups(),
+          ParticleToGrid<Real, Shape, what, Laws>{grid_.view(), points_.view(), materials, clock_.data(), nodes_.data(),
+                                                  forces_.data(), loads_now_, affine_, dilatant_});
+    };
+    if constexpr (what == Scatter::momentum) {
+      run(materials_);  // asks for no stress
+    } else {
+      with_laws_of(materials_, run);
+    }
   }
 
   template <NodeContent content>
@@ -251,16 +259,18 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   template <Gather part>
   void gather() {
     const ProfilePhase<Device> phase(device_, "grid to points");
-    const auto run = [&](auto budget) {
+    const auto run = [&]<bool budget, class Laws>(const Materials<Real, Laws>& materials) {
       for_each(device_, points_.count(),
-               GridToParticle<Real, Shape, part, decltype(budget)::value>{
-                   grid_.view(), points_.view(), materials_, clock_.data(), nodes_.data(),
-                   keeps_ ? forces_.data() : nullptr, grid_.home(), affine_, dilatant_});
+               GridToParticle<Real, Shape, part, budget, Laws>{grid_.view(), points_.view(), materials, clock_.data(),
+                                                               nodes_.data(), keeps_ ? forces_.data() : nullptr,
+                                                               grid_.home(), affine_, dilatant_});
     };
     if (settings_.energy_budget) {
-      run(std::true_type{});
+      run.template operator()<true>(materials_);
+    } else if constexpr (part == Gather::motion) {
+      run.template operator()<false>(materials_);  // asks for no stress
     } else {
-      run(std::false_type{});
+      with_laws_of(materials_, [&](const auto& materials) { run.template operator()<false>(materials); });
     }
   }
 

@@ -55,11 +55,11 @@ struct AcceptedPart {
 };
 
 /// One thread: one point. It takes its state, velocity (T7) and position (T10) at the end of an accepted step.
-template <class Real, class Shape>
+template <class Real, class Shape, class Laws = MaterialLaws>
 struct AcceptStep {
   GridView<Real> grid;
   ParticleView<Real> points;
-  Materials<Real> materials;
+  Materials<Real, Laws> materials;
   Clock* clock;
   NodeArrays nodes;  ///< velocity, acceleration: at the start
   MotionAtEnd end;
@@ -75,8 +75,8 @@ struct AcceptStep {
     if (!part.deforms) return;
     const Mat3<Real> gradient = displacement_gradient(grid, g, strain_displacement);
     MaterialState<Real> state = state_of(points, p, dilatant);
-    advance_material(materials.of(points.material, points.plastic_shear, p), gradient, Real(clock->step_size), state,
-                     means.at_point(p));
+    const Material<Real, Laws> material = materials.of(points.material, points.plastic_shear, p);
+    advance_material(material, gradient, Real(clock->step_size), state, means.at_point(p));
     if (points.plastic_shear) points.plastic_shear[p] += state.plastic_shear;
     points.set_elastic(p, state.elastic);
     points.log_volume[p] = state.log_volume;
@@ -84,7 +84,7 @@ struct AcceptStep {
     if constexpr (Shape::averaged) points.stretch_box(p, gradient, g.s.slope_x, g.s.slope_y);
     const double across = static_cast<double>(grid.spacing), up = static_cast<double>(grid.layer_height);
     points.move_by(p, Vec3<double>{move.x / across, move.y / across, move.z / up}, grid.walls);
-    settle(p, g);
+    settle(p, g, wave_speed(material, state));
   }
 
  private:
@@ -132,7 +132,7 @@ struct AcceptStep {
     target[2][p] = static_cast<Real>(v.z);
   }
 
-  TALUS_HD void settle(int p, const PointGradients<Real, Shape>& g) const {
+  TALUS_HD void settle(int p, const PointGradients<Real, Shape>& g, Real wave_speed) const {
     const Real speed = length(points.velocity_of(p));
     if (!(speed < Real(1e6)) || !(fabs(points.log_volume[p]) < Real(1e3))) {
       raise_flag(&clock->failed_point, points.id[p]);
@@ -149,8 +149,6 @@ struct AcceptStep {
     }
     // Waves and speed over the cell, the bracket of (T11).
     const Real steep = Real(1) + g.s.slope_x * g.s.slope_x + g.s.slope_y * g.s.slope_y;
-    const Real wave_speed =
-        points.material ? materials.list[points.material[p]].wave_speed : materials.list[0].wave_speed;
     const Real waves = wave_speed * sqrt(Real(2) * g.across * g.across + steep * g.up * g.up);
     atomic_max_positive(&clock->rate_bits, static_cast<float>(waves + speed * (g.across + g.across + g.up)));
     atomic_max_positive(&clock->speed_bits, static_cast<float>(speed));

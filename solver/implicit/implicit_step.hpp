@@ -134,26 +134,8 @@ class ImplicitStep {
     contacts_.keep(scheme_.step);
     for_each(parts_.device, nodes_.count,
              EndOfStep{nodes(), scheme_, nodes_.velocity_end.data(), nodes_.acceleration_end.data()});
-    const bool dynamic = parts_.controls.dynamic;
-    AcceptStep<Real, Shape> kernel{.grid = parts_.grid.view(),
-                                   .points = parts_.points.view(),
-                                   .materials = parts_.materials,
-                                   .clock = clock,
-                                   .nodes = nodes(),
-                                   .end = {.velocity = dynamic ? nodes_.velocity_end.data() : nullptr,
-                                           .acceleration = nodes_.acceleration_end.data()},
-                                   .strain_displacement = nodes_.u.data(),
-                                   .kept = kept,
-                                   .affine = parts_.settings.transfer.affine,
-                                   .dilatant = parts_.dilatant,
-                                   .part = {},
-                                   .means = tangent_.stresses().means()};
-    if (dynamic && parts_.settings.transfer.remaps_velocity) {
-      remap_velocity(kernel);
-    } else {
-      tangent_.stresses().average(nodes_.u);
-    }
-    for_each(parts_.device, parts_.points.count(), kernel);
+    with_laws_of(parts_.materials,
+                 [&]<class Laws>(const Materials<Real, Laws>& materials) { accept_points(materials, clock, kept); });
   }
 
   /// The method records the maps of the end of the step at `time` [s]. `volumes` over the columns where densities
@@ -204,9 +186,34 @@ class ImplicitStep {
     copy(nodes_.saved_u, nodes_.u);
   }
 
+  template <class Laws>
+  void accept_points(const Materials<Real, Laws>& materials, Clock* clock, double kept) {
+    const bool dynamic = parts_.controls.dynamic;
+    AcceptStep<Real, Shape, Laws> kernel{.grid = parts_.grid.view(),
+                                         .points = parts_.points.view(),
+                                         .materials = materials,
+                                         .clock = clock,
+                                         .nodes = nodes(),
+                                         .end = {.velocity = dynamic ? nodes_.velocity_end.data() : nullptr,
+                                                 .acceleration = nodes_.acceleration_end.data()},
+                                         .strain_displacement = nodes_.u.data(),
+                                         .kept = kept,
+                                         .affine = parts_.settings.transfer.affine,
+                                         .dilatant = parts_.dilatant,
+                                         .part = {},
+                                         .means = tangent_.stresses().means()};
+    if (dynamic && parts_.settings.transfer.remaps_velocity) {
+      remap_velocity(kernel);
+    } else {
+      tangent_.stresses().average(nodes_.u);
+    }
+    for_each(parts_.device, parts_.points.count(), kernel);
+  }
+
   /// The method remaps velocity (MUSL): the particles take their velocity first, and their strain from what it makes of
   /// the nodes'.
-  void remap_velocity(AcceptStep<Real, Shape>& kernel) {
+  template <class Laws>
+  void remap_velocity(AcceptStep<Real, Shape, Laws>& kernel) {
     kernel.part = {.speeds = true, .deforms = false};
     for_each(parts_.device, parts_.points.count(), kernel);
     nodes_.change.fill_zero();

@@ -46,17 +46,20 @@ class ParticleStresses {
   /// `with_tangent`, without what compression makes negative in them where `definite`.
   void measure(const NodeVector<Device>& u, NodeVector<Device>& forces, bool with_tangent, bool definite) {
     average(u);
-    using Stress = StressAt<Real, Shape>;
-    scatter_points(parts_.device, parts_.points.count(), parts_.grid.groups(),
-                   ScatterForces<Real, Shape, Stress>{{parts_.grid.view(), parts_.points.view()},
-                                                      Stress{.materials = parts_.materials,
-                                                             .dilatant = parts_.dilatant,
-                                                             .definite = definite,
-                                                             .means = means(),
-                                                             .tangents = with_tangent ? store() : TangentStore<Real>{},
-                                                             .u = u.data(),
-                                                             .duration = static_cast<Real>(duration_)},
-                                                      forces.data()});
+    with_laws_of(parts_.materials, [&]<class Laws>(const Materials<Real, Laws>& materials) {
+      using Stress = StressAt<Real, Shape, Laws>;
+      scatter_points(
+          parts_.device, parts_.points.count(), parts_.grid.groups(),
+          ScatterForces<Real, Shape, Stress>{{parts_.grid.view(), parts_.points.view()},
+                                             Stress{.materials = materials,
+                                                    .dilatant = parts_.dilatant,
+                                                    .definite = definite,
+                                                    .means = means(),
+                                                    .tangents = with_tangent ? store() : TangentStore<Real>{},
+                                                    .u = u.data(),
+                                                    .duration = static_cast<Real>(duration_)},
+                                             forces.data()});
+    });
     if (springs().on()) apply_springs(elements_, springs(), u, forces);
   }
 

@@ -4,27 +4,37 @@
 //   keeps_strain              whether a point's `elastic` is its logarithmic strain (else it is what `advance` makes)
 //   pressure_follows_volume   whether the volume change alone decides the pressure, as B-bar needs
 //   stiffness_is_free         whether the flow hardly depends on the elastic moduli (stiffness = "auto" may lower them)
+//   steps_implicitly          whether Newton's iterations take it; else recipes with implicit integrators are refused
 //   LoadedAs, after_loading   the law that takes its part while gravity is loaded, and what remains of its strain
 //   Options                   keys of the recipe: describe(), softens(), dilates(); names of keys and members are the
 //                             law's own, for MaterialOptions has those of all laws
+//   Options::internal_friction  only where the strength is friction: its coefficient in slow shear
 //   words, sentence           the material in a line for plan and log, and in a sentence of the report ("It is ...")
 //   Numbers<Real>, numbers()  what kernels see of the options; soften(), round_tip(), couple_pressure()
 //   stress, energy            Kirchhoff stress [Pa] and elastic energy per initial volume [J/m3] of a state
 //   settle, respond           where keeps_strain: end of a step whose trial strain is in the state; principal stresses
 //                             of a trial and their derivatives. Both are given the length of the step
 //   advance, nominal_stress   elsewhere: the whole step; nominal stress and its tangent
+//   stiffening                only where a stretched point has faster waves: their modulus over that at rest
+//   largest_strain            only where the nominal stress falls beyond a stretch: the logarithm of that stretch
 #pragma once
 
 #include "solver/material/laws/corotated.hpp"
 #include "solver/material/laws/drucker_prager.hpp"
 #include "solver/material/laws/hencky.hpp"
+#include "solver/material/laws/herschel_bulkley.hpp"
 #include "solver/material/laws/linear_elastic.hpp"
+#include "solver/material/laws/mu_of_i.hpp"
+#include "solver/material/laws/neo_hookean.hpp"
 
 namespace talus {
 
 /// Every constitutive law, in the order of the recipe's choices; nothing else lists them.
-#define TALUS_MATERIAL_LAWS(LAW) \
-  LAW(drucker_prager, DruckerPrager) LAW(hencky, Hencky) LAW(corotated, Corotated) LAW(linear_elastic, LinearElastic)
+#define TALUS_MATERIAL_LAWS(LAW)                                                                                \
+  LAW(drucker_prager, DruckerPrager)                                                                            \
+  LAW(hencky, Hencky)                                                                                           \
+  LAW(corotated, Corotated) LAW(linear_elastic, LinearElastic) LAW(neo_hookean, NeoHookean) LAW(mu_of_i, MuOfI) \
+      LAW(herschel_bulkley, HerschelBulkley)
 
 #define TALUS_ENUMERATOR(name, Law) name,
 #define TALUS_TYPE(name, Law) , Law

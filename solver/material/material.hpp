@@ -62,20 +62,51 @@ void prepare_for_newton(Material<Real, Laws>& m, Real apex, bool exact_tangent) 
   });
 }
 
-/// The materials of a scene. A scene of one that does not soften has no arrays on its points, and they all take the
-/// first.
-template <class Real>
+/// The materials of a scene, of the laws `Laws`. A scene of one that does not soften has no arrays on its points, and
+/// they all take the first.
+template <class Real, class Laws = MaterialLaws>
 struct Materials {
-  Material<Real> list[most_materials];
+  using List = Laws;
+  Material<Real, Laws> list[most_materials];
 
   /// The material of point p. `which` and `plastic_shear` are the points' arrays; null where the scene needs none.
-  TALUS_HD Material<Real> of(const int* which, const Real* plastic_shear, int p) const {
-    const Material<Real>& m = which ? list[which[p]] : list[0];
+  TALUS_HD Material<Real, Laws> of(const int* which, const Real* plastic_shear, int p) const {
+    const Material<Real, Laws>& m = which ? list[which[p]] : list[0];
     return plastic_shear ? softened(m, plastic_shear[p]) : m;
   }
   /// The density of point p [kg/m3].
   TALUS_HD Real density(const int* which, int p) const { return which ? list[which[p]].density : list[0].density; }
+
+  /// Whether every material is of this law.
+  template <class Law>
+  bool all_of() const {
+    for (const Material<Real, Laws>& m : list) {
+      if (m.model != model_of<Law, Laws>) return false;
+    }
+    return true;
+  }
+  /// The same materials as kernels see them that know this law alone, which must be that of all of them.
+  template <class Law>
+  Materials<Real, LawList<Law>> only() const {
+    Materials<Real, LawList<Law>> alone;
+    for (int n = 0; n < most_materials; ++n) {
+      static_cast<Elasticity<Real>&>(alone.list[n]) = list[n];
+      alone.list[n].template numbers_of<Law>() = list[n].template numbers_of<Law>();
+    }
+    return alone;
+  }
 };
+
+/// This function calls run(materials) for a kernel that asks the law at every point: with Drucker-Prager alone where a
+/// scene has no other, so that no other law costs it registers, else with all laws.
+template <class Real, class Run>
+void with_laws_of(const Materials<Real>& all, const Run& run) {
+  if (all.template all_of<DruckerPrager>()) {
+    run(all.template only<DruckerPrager>());
+  } else {
+    run(all);
+  }
+}
 
 /// The Kirchhoff stress tau = J sigma [Pa].
 template <class Real, class Laws>
@@ -87,6 +118,19 @@ TALUS_HD Sym3<Real> kirchhoff_stress(const Material<Real, Laws>& m, const Materi
 template <class Real, class Laws>
 TALUS_HD Real elastic_energy(const Material<Real, Laws>& m, const MaterialState<Real>& s) {
   return m.with_law([&](auto law, const auto& numbers) { return law.energy(m, numbers, s); });
+}
+
+/// The speed of waves in a point of this state [m/s]: that of the material at rest, or where stretch stiffens its law
+/// (Law::stiffening), more.
+template <class Real, class Laws>
+TALUS_HD Real wave_speed(const Material<Real, Laws>& m, const MaterialState<Real>& s) {
+  return m.with_law([&](auto law, const auto& numbers) {
+    if constexpr (requires { law.stiffening(m, numbers, s); }) {
+      return m.wave_speed * Real(sqrt(law.stiffening(m, numbers, s)));
+    } else {
+      return m.wave_speed;
+    }
+  });
 }
 
 /// This function advances the state over a step of `seconds` with displacement gradient g = dt grad v, (T14), and the

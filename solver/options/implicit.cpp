@@ -11,9 +11,27 @@ bool pressure_by_volume(const SolveOptions& all) {
   return all.every_material([](const MaterialOptions& m) { return m.pressure_follows_volume(); });
 }
 
+/// This function declares that implicit integrators need laws that they can step; "auto" takes explicit steps of
+/// others.
+void need_implicit_laws(recipe::Visitor& v, const SolveOptions& all) {
+  const Integrator integrator = all.preset == Preset::reference ? Integrator::newmark : all.integrator;
+  std::string refused;
+  all.any_material([&](const MaterialOptions& m) {
+    if (refused.empty() && !m.steps_implicitly()) refused = m.name();
+    return false;
+  });
+  v.needs(
+      abilities_of(integrator).obey_cfl || refused.empty(),
+      {"[solve] integrator = \"newmark\", \"quasi-static\" or preset = \"reference\" does not go with model = \"" +
+           refused + "\"",
+       "its stress depends on the rate of shear, and Newton's iterations have not been shown to converge with it",
+       "Take integrator = \"explicit\""});
+}
+
 }  // namespace
 
 void ImplicitOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
+  need_implicit_laws(v, all);
   describe_newton(v);
   describe_linear(v, all);
   const StepAbilities steps = abilities_of(all.integrator);

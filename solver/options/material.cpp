@@ -14,6 +14,24 @@ bool MaterialOptions::dilates() const {
   return with_law([](auto, const auto& options) { return options.dilates(); });
 }
 
+double MaterialOptions::internal_friction() const {
+  return with_law([](auto, const auto& options) {
+    if constexpr (requires { options.internal_friction(); }) {
+      return options.internal_friction();
+    } else {
+      return 0.0;
+    }
+  });
+}
+
+bool MaterialOptions::steps_implicitly() const {
+  return with_law([](auto law, const auto&) { return law.steps_implicitly; });
+}
+
+std::string MaterialOptions::name() const {
+  return with_law([](auto law, const auto&) { return std::string(law.name); });
+}
+
 bool MaterialOptions::pressure_follows_volume() const {
   return with_law([](auto law, const auto&) { return law.pressure_follows_volume; });
 }
@@ -37,8 +55,7 @@ void MaterialOptions::describe(recipe::Visitor& v, const std::string& table) {
                  "auto: the lowest modulus up to that one which leaves the flow unchanged");
   v.flag("stiffness_check", stiffness_check, "run again with twice the modulus and say how far the deposit moves");
   v.number("poisson_ratio", poisson_ratio, recipe::Range{-1, 0.5, true, true}, "Poisson's ratio");
-  const auto name = visit_law(model, [](auto law) { return std::string_view(law.name); });
-  OptionsOfLaws::describe(v, {.name = table, .chosen = name});
+  OptionsOfLaws::describe(v, {.name = table, .chosen = name()});
 }
 
 void PartOptions::describe(recipe::Visitor& v) {

@@ -32,6 +32,12 @@ struct MaterialOptions : OptionsOfLaws<MaterialLaws> {
   bool softens() const;
   /// Whether shear changes the volume of the material.
   bool dilates() const;
+  /// The coefficient of friction inside, in slow shear; 0 where the strength is no friction [-].
+  double internal_friction() const;
+  /// Whether implicit steps take the law.
+  bool steps_implicitly() const;
+  /// The name of the law in recipes.
+  std::string name() const;
   /// Whether the volume change alone decides the pressure, as B-bar needs.
   bool pressure_follows_volume() const;
   /// The material in a line, for plan and log.
@@ -63,6 +69,10 @@ struct MassOptions {
   }
   /// Whether one of the materials is such.
   bool any_material(const std::function<bool(const MaterialOptions&)>& is) const;
+  /// Whether implicit steps take every law.
+  bool steps_implicitly() const {
+    return every_material([](const MaterialOptions& m) { return m.steps_implicitly(); });
+  }
   /// Whether parts have another density than the rest.
   bool densities_differ() const {
     return any_material([&](const MaterialOptions& m) { return m.density != material.density; });

@@ -32,7 +32,10 @@ std::string integrator_words(const SolveOptions& o) {
       return fmt::format("newmark, steps of {:g} s, {}", o.implicit.step,
                          o.implicit.newton_iterations == 1 ? "one linear solve each" : "Newton");
     case Integrator::quasi_static: return fmt::format("quasi-static, steps of {:g} s", o.implicit.step);
-    default: return "explicit or newmark, whichever takes less time";
+    default:
+      return o.steps_implicitly()
+                 ? "explicit or newmark, whichever takes less time"
+                 : fmt::format("explicit, {:g} of the CFL step: the law takes no implicit ones", o.cfl);
   }
 }
 

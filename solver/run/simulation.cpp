@@ -186,6 +186,7 @@ RunSummary Simulation::finish(RunSummary summary) {
   frames_.append_to(writer, memory_.frames);
   writer.finish(final_maps(end, stepper_.solver().thickness()), history_.rows(), summary);
   for (const std::string& line : history_.conclusions()) log_info(line);
+  for (const std::string& line : history_.warnings()) log_warning(line);
   log_detail(fmt::format("files: {:.1f} s after the last step", timer_.seconds() - memory_.wall_time));
   frames_.clear();
   std::error_code ignored;

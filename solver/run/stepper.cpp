@@ -12,11 +12,13 @@ namespace talus::solver {
 
 Stepper::Stepper(const Scene& scene, const SolveOptions& options, const AnyDevice& device)
     : scene_(scene), options_(options), device_(device) {
-  if (options.integrator == Integrator::automatic)
+  if (options.integrator == Integrator::automatic && options.steps_implicitly())
     choice_.emplace(std::min(scene.grid.spacing, scene.grid.layer_height), options.largest_step);
 }
 
 void Stepper::begin(const SolverState& state) {
+  if (options_.integrator == Integrator::automatic && !choice_)
+    log_info("integrator = \"auto\": explicit steps throughout, as a material's stress depends on the rate of shear");
   build(state);
   time_ = state.clock.time;
 }

@@ -31,6 +31,8 @@ class Stepper {
   Solver& solver() { return *solver_; }
   /// The solver that takes the steps, to read from.
   const Solver& solver() const { return *solver_; }
+  /// Whether it chooses between integrators as the run goes on.
+  bool chooses() const { return choice_.has_value(); }
   double time() const { return time_; }                ///< [s]
   double over_cfl() const { return over_cfl_; }        ///< last step over the CFL step [-]
   const AnyDevice& device() const { return device_; }  ///< that takes the steps

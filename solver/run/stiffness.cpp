@@ -18,7 +18,7 @@ constexpr double impact_strain = 0.02;
 /// The least friction the flow can meet: on its bed, or inside where the bed holds it.
 double least_friction(const SolveOptions& o) {
   const auto base = make_base_friction<double>(o);
-  if (base.holds()) return std::tan(o.material.friction_angle * M_PI / 180);
+  if (base.holds()) return o.material.internal_friction();
   // Friction falls or grows with speed, if it changes at all, and is least under the thickest flow.
   const auto at_speed = [&](double speed) {
     return base.coefficient(base.uniform, {.speed = speed, .normal_stress = 1e41, .duration = 0, .load = 1e40});

@@ -61,29 +61,64 @@ double bed_friction(const Domain& domain, const SolveOptions& o) {
   return most;
 }
 
+/// A key that gives an angle of friction inside, and the cone sqrt(J2) = slope p that it asks for.
+struct AskedCone {
+  const char* key;
+  double angle;  ///< [deg]
+  double slope;  ///< [-]
+};
+
+/// The cones that a material's keys ask for, the steepest last; none where its strength is no friction.
+std::vector<AskedCone> cones_of(const MaterialOptions& material) {
+  if (material.model == MaterialModel::drucker_prager) {
+    const auto& law = material.options_of<DruckerPrager>();
+    return {{"friction_angle_deg", law.friction_angle, law.asked_cone(law.friction_angle, law.cohesion).slope}};
+  }
+  if (material.model != MaterialModel::mu_of_i) return {};
+  const auto& law = material.options_of<MuOfI>();
+  return {{"static_friction_angle_deg", law.static_friction_angle, law.internal_friction()},
+          {"limiting_friction_angle_deg", law.limiting_friction_angle, law.limiting_friction()}};
+}
+
+/// The share of the pressure p [Pa] that a material holds in slow simple shear [-].
+double held_share(const MaterialOptions& material, double pressure) {
+  if (material.model == MaterialModel::mu_of_i) return std::min(material.internal_friction(), steepest_cone);
+  const auto& law = material.options_of<DruckerPrager>();
+  const ConeFit fit = law.cone_of(law.friction_angle, law.cohesion);
+  return (1 - law.pore_pressure_ratio) * fit.slope + (pressure > 0 ? fit.cohesion / pressure : 0);
+}
+
+/// What the grains of a material do not bear out; `table` is its table of the recipe.
+void warn_of_grains(const MaterialOptions& material, const std::string& table, std::vector<std::string>& lines) {
+  if (material.model != MaterialModel::mu_of_i) return;
+  const double grains = material.options_of<MuOfI>().grain_density;
+  if (material.density <= grains) return;
+  lines.push_back(fmt::format(
+      "{} density_kg_m3 = {:g} is that of the mass, pores included, and above grain_density_kg_m3 = {:g}. Dry grains "
+      "fill about 0.6 of the space: give {:g}",
+      table, material.density, grains, 0.6 * grains));
+}
+
 /// What a material's numbers do not bear out; `table` is its table of the recipe.
 void warn_of(const MaterialOptions& material, const std::string& table, double bed, double depth,
              std::vector<std::string>& lines) {
-  if (material.model != MaterialModel::drucker_prager) return;
-  const auto& law = material.options_of<DruckerPrager>();
-  const double asked = law.asked_cone(law.friction_angle, law.cohesion).slope;
-  if (asked > steepest_cone) {
+  warn_of_grains(material, table, lines);
+  const std::vector<AskedCone> cones = cones_of(material);
+  if (cones.empty()) return;
+  if (const AskedCone& asked = cones.back(); asked.slope > steepest_cone) {
     lines.push_back(
-        fmt::format("{} friction_angle_deg = {:g} asks for the cone sqrt(J2) = {:.3f} p, under which grains would "
-                    "carry tension. It is held to {:.3f} p, {:.1f} deg in simple shear",
-                    table, law.friction_angle, asked, steepest_cone, std::atan(steepest_cone) * degrees));
+        fmt::format("{} {} = {:g} asks for the cone sqrt(J2) = {:.3f} p, under which grains would carry "
+                    "tension. It is held to {:.3f} p, {:.1f} deg in simple shear",
+                    table, asked.key, asked.angle, asked.slope, steepest_cone, std::atan(steepest_cone) * degrees));
   }
-  const ConeFit fit = law.cone_of(law.friction_angle, law.cohesion);
-  const double pressure = material.density * 9.81 * depth;
-  const double held = (1 - law.pore_pressure_ratio) * fit.slope + (pressure > 0 ? fit.cohesion / pressure : 0);
+  const double held = held_share(material, material.density * 9.81 * depth);
   if (!(held < bed)) return;
   lines.push_back(fmt::format(
-      "the mass gives way inside before it slides on its bed: in simple shear it holds {:.3f} of the pressure ({} "
-      "friction_angle_deg = {:g}), the bed asks up to {:.3f} ({:.1f} deg). Where it does, it moves as on a bed of "
-      "{:.1f} deg. Give a "
-      "friction angle of {:.1f} deg or more (cone = \"simple-shear\"; {:g} times the bed's tangent), or lower the "
-      "bed's",
-      held, table, law.friction_angle, bed, std::atan(bed) * degrees, std::atan(held) * degrees,
+      "the mass gives way inside before it slides on its bed: in simple shear it holds {:.3f} of the pressure ({} {} = "
+      "{:g}), the bed asks up to {:.3f} ({:.1f} deg). Where it does, it moves as on a bed of {:.1f} deg. Give a "
+      "friction "
+      "angle of {:.1f} deg or more (in simple shear; {:g} times the bed's tangent), or lower the bed's",
+      held, table, cones.front().key, cones.front().angle, bed, std::atan(bed) * degrees, std::atan(held) * degrees,
       std::atan(recommended_ratio * bed) * degrees, recommended_ratio));
 }
 

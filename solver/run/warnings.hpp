@@ -9,8 +9,8 @@
 
 namespace talus::solver {
 
-/// The warnings of a scene, a sentence or two each: a mass that gives way inside before it slides on its bed, and a
-/// friction angle whose cone would carry tension.
+/// The warnings of a scene, a sentence or two each: a mass that gives way inside before it slides on its bed, a
+/// friction angle whose cone would carry tension, and grains that are lighter than the mass they make.
 std::vector<std::string> warnings(const Domain& domain, const SolveOptions& options);
 
 }  // namespace talus::solver

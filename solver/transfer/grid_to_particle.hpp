@@ -18,12 +18,12 @@ enum class Gather {
 /// The gather of velocity (T7, T8), velocity gradient (T9) and way (T10) of the points. One thread: one point. nodes[]
 /// holds mass and new velocity; changes[] the velocity change of the step, null where points keep nothing of their own
 /// velocity. `budget`: adds up what is lost (T24), for the clock.
-template <class Real, class Shape, Gather part, bool budget>
+template <class Real, class Shape, Gather part, bool budget, class Laws = MaterialLaws>
 struct GridToParticle {
   static constexpr int dense = part == Gather::all && !budget ? (sizeof(Real) == 8 ? 4 : 6) : 1;  ///< see run_dense
   GridView<Real> grid;
   ParticleView<Real> points;
-  Materials<Real> materials;
+  Materials<Real, Laws> materials;
   Clock* clock;
   const Vec4<Real>* nodes;
   const Vec4<Real>* changes;
@@ -55,8 +55,8 @@ struct GridToParticle {
     const Real dt = Real(clock->step_size);
     if constexpr (part != Gather::deformation) move_with(p, s, sums, dt);
     if constexpr (part != Gather::motion) {
-      deform(p, s, sums, dt);
-      settle(p, s, sums);
+      const Real waves = deform(p, s, sums, dt);
+      settle(p, s, sums, waves);
     }
   }
 
@@ -132,13 +132,14 @@ struct GridToParticle {
     }
   }
 
-  TALUS_HD void deform(int p, const Stencil<Real, Shape>& s, const Sums& sums, Real dt) const {
+  /// The method gives the point its new state; it returns the speed of waves in it [m/s].
+  TALUS_HD Real deform(int p, const Stencil<Real, Shape>& s, const Sums& sums, Real dt) const {
     const Real across = dt / grid.spacing, up = dt / grid.layer_height;
     const Vec3<Real> c = sums.gradient.c * up;
     const Mat3<Real> g{sums.gradient.a * across - c * s.slope_x, sums.gradient.b * across - c * s.slope_y, c};
     MaterialState<Real> state{points.elastic_of(p), points.log_volume[p],
                               dilatant ? points.plastic_log_volume[p] : Real(0)};
-    const Material<Real> material = materials.of(points.material, points.plastic_shear, p);
+    const Material<Real, Laws> material = materials.of(points.material, points.plastic_shear, p);
     const MaterialState<Real> before = state;
     advance_material(material, g, dt, state);
     if constexpr (budget) lose_to_flow(material, before, state, g, points.volume[p]);
@@ -150,10 +151,11 @@ struct GridToParticle {
     if constexpr (part == Gather::deformation) {
       points.move_by(p, Vec3<Real>{points.move[0][p], points.move[1][p], points.move[2][p]}, grid.walls);
     }
+    return wave_speed(material, state);
   }
 
   /// The work of the stress, less what is kept as elastic energy.
-  TALUS_HD void lose_to_flow(const Material<Real>& m, const MaterialState<Real>& before,
+  TALUS_HD void lose_to_flow(const Material<Real, Laws>& m, const MaterialState<Real>& before,
                              const MaterialState<Real>& after, const Mat3<Real>& g, Real volume) const {
     const Sym3<Real> tau = (kirchhoff_stress(m, before) + kirchhoff_stress(m, after)) * Real(0.5);
     const Real work = tau.xx * g.a.x + tau.yy * g.b.y + tau.zz * g.c.z + tau.xy * (g.a.y + g.b.x) +
@@ -164,7 +166,7 @@ struct GridToParticle {
 
   /// The method raises the alarms of the clock: not a number, left the domain, left the home cell's neighbourhood; and
   /// it measures the step size of the next step, the bracket of (T11).
-  TALUS_HD void settle(int p, const Stencil<Real, Shape>& s, const Sums& sums) const {
+  TALUS_HD void settle(int p, const Stencil<Real, Shape>& s, const Sums& sums, Real wave_speed) const {
     const Vec3<Real> v = points.velocity_of(p);
     const Real speed = length(v);
     // A point that crossed a cell in one step, or whose state is no number, has left the equations.
@@ -184,8 +186,6 @@ struct GridToParticle {
     }
     const Real steep = Real(1) + s.slope_x * s.slope_x + s.slope_y * s.slope_y;
     const Real hx = Real(1) / grid.spacing, hz = Real(1) / grid.layer_height;
-    const Real wave_speed =
-        points.material ? materials.list[points.material[p]].wave_speed : materials.list[0].wave_speed;
     const Real waves = wave_speed * sqrt(Real(2) * hx * hx + steep * hz * hz);
     const Real flow = fabs(v.x) * hx + fabs(v.y) * hx + fabs(sums.climb) * hz;
     atomic_max_positive(&clock->rate_bits, static_cast<float>(waves + flow));

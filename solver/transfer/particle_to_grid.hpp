@@ -16,14 +16,14 @@ enum class Scatter {
 };
 
 /// The scatter of the points to nodes[], mass (T3) and momentum (T4), and, for Scatter::force, to forces[] (T5).
-template <class Real, class Shape, Scatter what>
+template <class Real, class Shape, Scatter what, class Laws = MaterialLaws>
 struct ParticleToGrid {
   using Number = Real;
   static constexpr int width = Shape::width, columns_each = width * width, deep = width,
                        parts = what == Scatter::force ? 7 : 4;
   GridView<Real> grid;
   ParticleView<Real> points;
-  Materials<Real> materials;
+  Materials<Real, Laws> materials;
   const Clock* clock;
   Vec4<Real>* nodes;
   Vec4<Real>* forces;

@@ -146,6 +146,7 @@ struct DruckerPrager {
   static constexpr std::string_view name = "drucker-prager";
   static constexpr bool keeps_strain = true, pressure_follows_volume = true;
   static constexpr bool stiffness_is_free = true;  ///< strength bounds the stress, whatever the stiffness
+  static constexpr bool steps_implicitly = true;
   /// Gravity is loaded elastically: what is about to slide has no equilibrium of its own.
   using LoadedAs = Hencky;
 
@@ -171,6 +172,8 @@ struct DruckerPrager {
       const ConeFit asked = asked_cone(angle, shear_cohesion);
       return {std::min(asked.slope, steepest_cone), asked.cohesion};
     }
+    /// The friction coefficient inside [-].
+    double internal_friction() const { return std::tan(friction_angle * std::numbers::pi / 180); }
     /// Whether strength falls as the material shears.
     bool softens() const { return softening_slip > 0; }
     /// Whether shear changes the volume of the material.

@@ -9,7 +9,7 @@ namespace talus {
 /// The base of an elastic law; `Law` is the law itself, so that each has its own types.
 template <class Law>
 struct ElasticLaw {
-  static constexpr bool stiffness_is_free = false;
+  static constexpr bool stiffness_is_free = false, steps_implicitly = true;
   using LoadedAs = Law;
 
   /// The law has no keys of its own.

@@ -10,6 +10,9 @@ namespace talus {
 struct Hencky : ElasticLaw<Hencky> {
   static constexpr std::string_view name = "hencky";
   static constexpr bool keeps_strain = true, pressure_follows_volume = true;
+  /// In uniaxial tension the nominal stress E ln(stretch) / stretch falls beyond a stretch of e: what is pulled further
+  /// tears.
+  static constexpr double largest_strain = 1;
 
   /// The law in a line, for plan and log; `elasticity` states density and moduli.
   static std::string words(const Options&, const std::string& elasticity) { return "elastic (hencky), " + elasticity; }

@@ -2,6 +2,7 @@
 
 #include "solver/run/recorders/gauges.hpp"
 #include "solver/run/recorders/obstacles.hpp"
+#include "solver/run/recorders/stretch.hpp"
 
 namespace talus::solver {
 namespace {
@@ -52,6 +53,7 @@ std::vector<std::unique_ptr<Recorder>> make_recorders(const SolveOptions& option
   if (options.energy_budget) recorders.push_back(std::make_unique<RunRecorder>(budget_columns));
   if (!options.obstacles.empty()) recorders.push_back(std::make_unique<ObstacleRecorder>(options));
   if (!options.gauges.empty()) recorders.push_back(std::make_unique<GaugeRecorder>(options, scene));
+  if (StretchRecorder::watches(options)) recorders.push_back(std::make_unique<StretchRecorder>(options));
   return recorders;
 }
 
@@ -84,6 +86,14 @@ std::vector<std::string> History::conclusions() const {
   std::vector<std::string> lines;
   for (const auto& recorder : recorders_) {
     for (std::string& line : recorder->conclusions(rows_)) lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+std::vector<std::string> History::warnings() const {
+  std::vector<std::string> lines;
+  for (const auto& recorder : recorders_) {
+    for (std::string& line : recorder->warnings(rows_)) lines.push_back(std::move(line));
   }
   return lines;
 }

@@ -29,6 +29,8 @@ class History {
   double last(const std::string& name) const;
   /// The lines for the log at the end of the run.
   std::vector<std::string> conclusions() const;
+  /// What went wrong on the way, for the log at the end of the run.
+  std::vector<std::string> warnings() const;
 
  private:
   std::vector<std::unique_ptr<Recorder>> recorders_;

@@ -47,6 +47,8 @@ class Recorder {
   virtual void record(const Instant& now, RunHistory& history) const = 0;
   /// The lines for the log at the end of the run.
   virtual std::vector<std::string> conclusions(const RunHistory&) const { return {}; }
+  /// What went wrong on the way, for the log at the end of the run.
+  virtual std::vector<std::string> warnings(const RunHistory&) const { return {}; }
 };
 
 /// A recorder with the same columns for every one of its places.

@@ -34,6 +34,7 @@ Material<double, Laws> some_material() {
   m.density = 2000;
   m.shear_modulus = 4e6;
   m.bulk_modulus = 2e7 / 3;
+  m.wave_speed = std::sqrt((m.bulk_modulus + 4 * m.shear_modulus / 3) / m.density);
   m.template numbers_of<Law>() = Law::template numbers<double>(typename Law::Options{}, 1.0);
   prepare_for_newton(m, 0.0, true);
   return m;

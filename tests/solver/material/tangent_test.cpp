@@ -130,7 +130,7 @@ TEST(Tangent, of_a_yielding_point_is_exact_where_that_is_asked_for) {
       RandomTensors random(7);
       auto m = material(MaterialModel::drucker_prager, dilatancy);
       m.apex = apex;
-      m.exact_tangent = true;
+      m.numbers_of<DruckerPrager>().exact_tangent = true;
       int yielding = 0;
       double worst = 0;
       for (int n = 0; n < 200; ++n) {

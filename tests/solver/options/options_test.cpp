@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <string>
+#include <vector>
+
 #include "solver/options/implicit.hpp"
 #include "solver/options/names.hpp"
 #include "solver/options/time.hpp"
@@ -189,6 +193,57 @@ TEST(SolveOptions, every_integrator_says_what_its_steps_can_do) {
   }
   EXPECT_TRUE(abilities_of(Integrator::automatic).solve_systems);
   EXPECT_FALSE(abilities_of(Integrator::automatic).average_volume) << "some of its steps are explicit";
+}
+
+/// The TOML of the user guide that gives a material.
+std::vector<std::string> materials_of_the_guide() {
+  std::ifstream guide(TALUS_SOURCE_DIR "/docs/user-guide.md");
+  std::vector<std::string> blocks;
+  std::string line, block;
+  bool inside = false;
+  while (std::getline(guide, line)) {
+    if (inside && line == "```") {
+      if (block.find("[solve.material]") != std::string::npos) blocks.push_back(block);
+      inside = false;
+    } else if (inside) {
+      block += line + "\n";
+    } else if (line == "```toml") {
+      inside = true;
+      block.clear();
+    }
+  }
+  return blocks;
+}
+
+TEST(SolveOptions, materials_of_the_user_guide_are_sound) {
+  const auto blocks = materials_of_the_guide();
+  EXPECT_GE(blocks.size(), 3u);
+  for (const std::string& block : blocks) EXPECT_EQ(faults(block), "") << block;
+}
+
+TEST(SolveOptions, laws_whose_stress_depends_on_the_rate_take_explicit_steps) {
+  const std::string fault =
+      "[solve] integrator = \"newmark\", \"quasi-static\" or preset = \"reference\" does not go with model = "
+      "\"mu-of-i\" (its stress depends on the rate of shear, and Newton's iterations have not been shown to converge "
+      "with it). Take integrator = \"explicit\"";
+  const std::string law = "[solve.material]\nmodel = \"mu-of-i\"\n";
+  for (const char* integrator : {"newmark", "quasi-static"})
+    EXPECT_EQ(faults("[solve]\nintegrator = \"" + std::string(integrator) + "\"\n" + law), fault);
+  EXPECT_EQ(faults("[solve]\npreset = \"reference\"\n" + law), fault);
+  EXPECT_EQ(faults("[solve]\nintegrator = \"newmark\"\n[[solve.part]]\nrelease = \"a\"\nmodel = \"mu-of-i\"\n"), fault);
+  EXPECT_EQ(faults("[solve]\nintegrator = \"newmark\"\n[solve.material]\nmodel = \"neo-hookean\"\n"), "");
+  for (const char* integrator : {"explicit", "auto"})
+    EXPECT_EQ(faults("[solve]\nintegrator = \"" + std::string(integrator) + "\"\n" + law), "");
+}
+
+TEST(SolveOptions, friction_of_mu_of_i_grows_with_the_rate) {
+  EXPECT_EQ(
+      faults("[solve.material]\nmodel = \"mu-of-i\"\nstatic_friction_angle_deg = 33.0"),
+      "[solve.material] limiting_friction_angle_deg = 32.76 is not above static_friction_angle_deg = 33 (friction "
+      "grows with the rate of shear). Swap the two, or take model = \"drucker-prager\"");
+  EXPECT_NE(faults("[solve.material]\nslow_flow = \"creep\"\nstatic_friction_angle_deg = 32.5")
+                .find("slow_flow = \"creep\" does not go with friction angles of 32.5 to 32.76 deg"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -34,6 +34,16 @@ TEST(Plan, names_only_the_features_that_are_on) {
   EXPECT_EQ(more.size(), plain.size() + 4);
 }
 
+TEST(Plan, says_that_auto_takes_explicit_steps_of_a_law_that_takes_no_others) {
+  SolveOptions o;
+  o.integrator = Integrator::automatic;
+  const auto steps = [&] { return features(block(), o).front(); };
+  EXPECT_NE(steps().find("whichever takes less time"), std::string::npos) << steps();
+  o.material.model = MaterialModel::mu_of_i;
+  EXPECT_NE(steps().find("explicit, 0.5 of the CFL step: the law takes no implicit ones"), std::string::npos)
+      << steps();
+}
+
 TEST(Plan, names_every_gauge_and_its_place) {
   SolveOptions o;
   EXPECT_FALSE(has(features(block(), o), "gauge"));

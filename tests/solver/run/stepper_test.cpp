@@ -34,5 +34,18 @@ TEST(Stepper, meets_events_and_knows_its_step_over_the_cfl_step) {
   }
 }
 
+TEST(Stepper, chooses_no_implicit_steps_where_a_law_does_not_take_them) {
+  const Domain d = column_of_sand();
+  SolveOptions o;
+  o.integrator = Integrator::automatic;
+  for (const auto model : {MaterialModel::drucker_prager, MaterialModel::neo_hookean, MaterialModel::mu_of_i,
+                           MaterialModel::herschel_bulkley}) {
+    o.material.model = model;
+    const Scene scene = make_scene(d, o);
+    const Stepper stepper(scene, o, CpuDevice::make());
+    EXPECT_EQ(stepper.chooses(), model == MaterialModel::drucker_prager || model == MaterialModel::neo_hookean);
+  }
+}
+
 }  // namespace
 }  // namespace talus::solver::testing

@@ -112,6 +112,30 @@ TEST(Warnings, name_a_cone_that_would_carry_tension) {
   EXPECT_EQ(warnings(two_metres_of_mass(), triaxial).size(), 1u);
 }
 
+TEST(Warnings, look_at_the_angles_and_grains_of_mu_of_i) {
+  SolveOptions o = mass_on_bed(50, 20);  // whose angle is another law's
+  o.material.model = MaterialModel::mu_of_i;
+  o.material.density = 1500;
+  EXPECT_TRUE(warnings(two_metres_of_mass(), o).empty());
+  o.base.friction_angle = 25;
+  const auto weak = warnings(two_metres_of_mass(), o);
+  ASSERT_EQ(weak.size(), 1u);
+  for (const char* words : {"0.382", "static_friction_angle_deg = 20.9", "as on a bed of 20.9 deg", "33.1 deg or more"})
+    EXPECT_TRUE(says(weak, words)) << words << "\n" << weak[0];
+  o.base.friction_angle = 20;
+  o.material.limiting_friction_angle = 42;
+  EXPECT_TRUE(says(warnings(two_metres_of_mass(), o), "limiting_friction_angle_deg = 42"));
+  o.material.limiting_friction_angle = 33;
+  o.material.density = 2600;
+  EXPECT_TRUE(says(warnings(two_metres_of_mass(), o), "grain_density_kg_m3 = 2450"));
+}
+
+TEST(Warnings, are_silent_of_mud_whose_strength_is_no_friction) {
+  SolveOptions o = mass_on_bed(17, 25);
+  o.material.model = MaterialModel::herschel_bulkley;
+  EXPECT_TRUE(warnings(two_metres_of_mass(), o).empty());
+}
+
 TEST(Warnings, are_silent_of_a_bed_that_sticks_or_does_not_rub) {
   SolveOptions o = mass_on_bed(17, 25);
   for (const auto law : {FrictionLaw::none, FrictionLaw::stick}) {

@@ -1,0 +1,59 @@
+// Points that Hencky's law lets tear: counted at every record, and said at the end.
+#include "solver/run/recorders/stretch.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "solver/run/recorders/history.hpp"
+#include "solver/scene/make_solver.hpp"
+#include "tests/solver/scenes.hpp"
+
+namespace talus::solver::testing {
+namespace {
+
+/// What is said of a block of a law, eight of its points stretched along x by this factor, less as much across.
+std::vector<std::string> said_of(MaterialModel model, double stretch, RunHistory* rows = nullptr) {
+  Domain d = ground(12, 12, 1.0, 1.0, [](double, double) { return 0.0; });
+  fill(d, {4, 8, 4, 8, 0, 2});
+  SolveOptions o;
+  o.material.model = model;
+  Scene scene = make_scene(d, o);
+  for (std::size_t p = 0; p < 8; ++p) {
+    scene.points.elastic[0][p] = std::log(stretch);
+    scene.points.elastic[2][p] = -std::log(stretch);
+  }
+  History history(o, scene);
+  const auto solver = solver::make_solver(scene, o, make_device(On::cpu));
+  const RunMemory counted;
+  history.record({.time = 0,
+                  .clock = solver->clock(),
+                  .energies = solver->energies(),
+                  .step_over_cfl = 0,
+                  .counted = counted,
+                  .solver = *solver});
+  if (rows) *rows = history.rows();
+  return history.warnings();
+}
+
+TEST(StretchRecorder, names_the_points_that_hencky_tears_and_the_law_that_does_not) {
+  RunHistory rows;
+  const auto lines = said_of(MaterialModel::hencky, 3, &rows);
+  ASSERT_EQ(lines.size(), 1u);
+  for (const char* words : {"8 points", "factor of up to 3.", "e = 2.72", "neo-hookean"})
+    EXPECT_NE(lines[0].find(words), std::string::npos) << words << "\n" << lines[0];
+  EXPECT_EQ(rows.at("overstretched_points").values, std::vector<double>{8});
+  EXPECT_NEAR(rows.at("largest_stretch").values[0], 3, 1e-12);
+}
+
+TEST(StretchRecorder, is_silent_below_the_limit_and_of_other_laws) {
+  EXPECT_TRUE(said_of(MaterialModel::hencky, 2.7).empty());
+  for (const auto model : {MaterialModel::neo_hookean, MaterialModel::corotated, MaterialModel::drucker_prager}) {
+    RunHistory rows;
+    EXPECT_TRUE(said_of(model, 3, &rows).empty());
+    EXPECT_EQ(rows.find("overstretched_points"), nullptr) << "other laws do not pay for it";
+  }
+}
+
+}  // namespace
+}  // namespace talus::solver::testing

@@ -1,0 +1,211 @@
+// Slabs whose stress depends on the rate of shear, on an incline that holds their base: speeds and angles of the closed
+// forms.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <numbers>
+
+#include "solver/integrator/scene.hpp"
+#include "solver/options/solve.hpp"
+#include "solver/scene/make_scene.hpp"
+#include "solver/scene/make_solver.hpp"
+#include "tests/solver/scenes.hpp"
+
+namespace talus::solver::testing {
+namespace {
+
+constexpr double in_radians = std::numbers::pi / 180, gravity_size = 9.81;
+
+/// A slab 1 m thick along the vertical and one cell of 2 m wide, between smooth side walls, under its own weight: long
+/// enough that its ends do not reach its middle.
+struct HeldSlab {
+  static constexpr double cell = 2, upright = 1, from = 8, to = 56;
+  double slope;  ///< [deg]
+  int layers;
+  SolveOptions options;
+
+  HeldSlab(double slope_angle, MaterialModel model, double density, int layer_count = 8)
+      : slope(slope_angle), layers(layer_count) {
+    options.material.model = model;
+    options.material.density = density;
+    options.material.youngs_modulus = 3e6;
+    options.base.law = FrictionLaw::stick;
+    options.walls = {{Axis::y, 4, Side::above, WallKind::roller}, {Axis::y, 6, Side::below, WallKind::roller}};
+  }
+  /// Thickness along the normal [m].
+  double thickness() const { return upright * std::cos(slope * in_radians); }
+  /// Shear stress on the base [Pa].
+  double base_shear() const {
+    return options.material.density * gravity_size * thickness() * std::sin(slope * in_radians);
+  }
+  /// The slab under the pressure of its weight: what is left to come is the shear.
+  Scene scene() const {
+    const double fall = std::tan(slope * in_radians);
+    Domain d = ground(48, 6, cell, upright / layers, [&](double x, double) { return 200 - fall * x; });
+    d.grid.west = d.grid.south = -cell / 2;  // nodes at the walls
+    fill(d, {from, to, 4, 6, 0, upright});
+    Scene s = make_scene(d, options);
+    const double bulk = make_material<double>(options.material).bulk_modulus, cosine = std::cos(slope * in_radians);
+    for (std::size_t p = 0; p < s.points.size(); ++p) {
+      const double above = upright - d.points.height[static_cast<std::size_t>(s.points.id[p])];
+      s.points.log_volume[p] = -options.material.density * gravity_size * above * cosine * cosine / bulk;
+    }
+    return s;
+  }
+
+  struct Flow {
+    double mean, surface;  ///< speed along the slope over the thickness, and of the topmost points [m/s]
+    double misfit;         ///< root mean square over the points from a profile, over its largest speed [-]
+  };
+  /// The flow of what is within 4 m of the slab's middle; profile(height along the normal) [m/s].
+  Flow flow(const Solver& solver, const Scene& s, const std::function<double(double)>& profile) const {
+    const ParticleState points = solver.state().points;
+    const auto x = positions(s.map, s.grid, solver.ground(), points);
+    const double cosine = std::cos(slope * in_radians), sine = std::sin(slope * in_radians), layer = upright / layers;
+    const double middle = centre(solver, s).x;
+    double sum = 0, volume = 0, top = 0, highest = 0, squares = 0, count = 0;
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      if (std::abs(x[p][0] - middle) > 4) continue;
+      const double speed = points.velocity[0][p] * cosine - points.velocity[2][p] * sine;
+      const double height = (points.cell[2][p] + points.offset[2][p]) * layer * cosine;
+      sum += points.volume[p] * speed;
+      volume += points.volume[p];
+      squares += std::pow(speed - profile(height), 2);
+      ++count;
+      if (height > (upright - 0.6 * layer) * cosine) {
+        top += speed;
+        ++highest;
+      }
+    }
+    return {sum / volume, top / highest, std::sqrt(squares / count) / profile(thickness())};
+  }
+};
+
+class FlowOnIncline : public InEachPlace {};
+
+/// Bagnold's profile: mu(I) = tan(slope) asks for the same I at every height, so that with p = rho g cos(slope) (H - z)
+/// the rate of shear is (I / d) sqrt(rho g cos(slope) (H - z) / rho_s), and its integral
+///   u = (2 / 3) (I / d) sqrt(rho g cos(slope) / rho_s) (H^1.5 - (H - z)^1.5), of mean 3/5 of the surface's.
+TEST_P(FlowOnIncline, of_mu_of_i_has_bagnolds_profile) {
+  HeldSlab slab(26, MaterialModel::mu_of_i, 1500);
+  MaterialOptions& m = slab.options.material;
+  m.grain_diameter = 0.3;
+  const double friction = std::tan(slab.slope * in_radians), slow = m.internal_friction(),
+               fast = std::tan(m.limiting_friction_angle * in_radians);
+  // rise I^2 + (fast - friction) I - (friction - slow) I_0 = 0
+  const double half = 0.5 * (fast - friction) / m.fast_friction_rise;
+  const double number = std::sqrt(half * half + (friction - slow) * m.inertial_number / m.fast_friction_rise) - half;
+  const double depth = slab.thickness();
+  const double scale = 2.0 / 3 * number / m.grain_diameter *
+                       std::sqrt(m.density * gravity_size * std::cos(slab.slope * in_radians) / m.grain_density);
+  const auto bagnold = [&](double z) {
+    return scale * (std::pow(depth, 1.5) - std::pow(std::max(depth - z, 0.0), 1.5));
+  };
+  const Scene scene = slab.scene();
+  const auto solver = make_solver(scene, slab.options, GetParam());
+  run_to(*solver, 4.5);
+  const auto flow = slab.flow(*solver, scene, bagnold);
+  std::printf("  Bagnold, I = %.3f: mean %+.2f %%, surface %+.2f %%, misfit %.2f %%\n", number,
+              100 * (flow.mean / (0.6 * bagnold(depth)) - 1), 100 * (flow.surface / bagnold(depth) - 1),
+              100 * flow.misfit);
+  EXPECT_NEAR(flow.mean / (0.6 * bagnold(depth)), 1, 0.02);
+  EXPECT_NEAR(flow.surface / bagnold(depth), 1, 0.02);
+  EXPECT_LT(flow.misfit, 0.02);
+}
+
+/// Herschel-Bulkley: tau = rho g sin(slope) (H - z) = tau_y + k (du/dz)^n below z_s = H - tau_y / (rho g sin(slope)),
+/// and a plug above: with m = (n + 1) / n
+///   u = (rho g sin(slope) / k)^(1/n) / m (z_s^m - (z_s - z)^m).
+TEST_P(FlowOnIncline, of_mud_has_the_profile_of_herschel_and_bulkley) {
+  for (const double exponent : {0.5, 1.0}) {
+    HeldSlab slab(15, MaterialModel::herschel_bulkley, 1800);
+    MaterialOptions& mud = slab.options.material;
+    mud.yield_stress = 1500;
+    mud.flow_exponent = exponent;
+    mud.consistency = exponent == 1 ? 1500 : 2500;
+    const double depth = slab.thickness(), weight = slab.base_shear() / depth;
+    const double sheared = depth - mud.yield_stress / weight, power = (exponent + 1) / exponent;
+    const auto profile = [&](double z) {
+      return std::pow(weight / mud.consistency, 1 / exponent) / power *
+             (std::pow(sheared, power) - std::pow(std::max(sheared - z, 0.0), power));
+    };
+    // Its mean: the plug, and power / (power + 1) of its speed over what is sheared.
+    const double mean = profile(depth) * (1 - sheared / depth / (power + 1));
+    const Scene scene = slab.scene();
+    const auto solver = make_solver(scene, slab.options, GetParam());
+    run_to(*solver, 2.5);
+    const auto flow = slab.flow(*solver, scene, profile);
+    std::printf("  n = %g: mean %+.2f %%, surface %+.2f %%, misfit %.2f %%\n", exponent, 100 * (flow.mean / mean - 1),
+                100 * (flow.surface / profile(depth) - 1), 100 * flow.misfit);
+    EXPECT_NEAR(flow.mean / mean, 1, 0.02);
+    EXPECT_NEAR(flow.surface / profile(depth), 1, 0.02);
+    EXPECT_LT(flow.misfit, 0.02);
+  }
+}
+
+/// How far a slab's middle goes along x from one to two seconds after it was let go with this speed [m]. Later its toe,
+/// which nothing holds, would have reached it: the slab stretches from there.
+double way_of_middle(HeldSlab& slab, double speed, On on) {
+  const double angle = slab.slope * in_radians;
+  slab.options.initial_velocity = {speed * std::cos(angle), 0, -speed * std::sin(angle)};
+  const Scene scene = slab.scene();
+  const auto solver = make_solver(scene, slab.options, on);
+  const auto middle = [&] {
+    const ParticleState s = solver->state().points;
+    const auto x = positions(scene.map, scene.grid, solver->ground(), s);
+    double sum = 0, count = 0;
+    for (std::size_t p = 0; p < s.size(); ++p) {
+      if (std::abs(x[p][0] - 0.5 * (HeldSlab::from + HeldSlab::to)) > 4) continue;
+      sum += s.velocity[0][p];
+      ++count;
+    }
+    return sum / count;
+  };
+  run_to(*solver, 1);
+  double way = 0, before = middle();
+  for (int n = 1; n <= 20; ++n) {
+    run_to(*solver, 1 + 0.05 * n);
+    const double now = middle();
+    way += 0.025 * (before + now);
+    before = now;
+  }
+  return way;
+}
+
+TEST_P(FlowOnIncline, of_mud_is_none_below_the_yield_stress) {
+  for (const double share : {0.95, 1.25}) {
+    HeldSlab slab(15, MaterialModel::herschel_bulkley, 1800);
+    slab.options.material.yield_stress = slab.base_shear() / share;
+    slab.options.material.consistency = 900;
+    const double way = way_of_middle(slab, 0, GetParam());
+    std::printf("  mud at %g of its yield stress: %.4f m in 1 s\n", share, way);
+    if (share < 1) {
+      EXPECT_LT(std::abs(way), 0.005);
+    } else {
+      EXPECT_GT(way, 0.02);
+    }
+  }
+}
+
+/// Half a degree below the static angle a slab rests, and comes to rest; half a degree above it flows.
+TEST_P(FlowOnIncline, of_mu_of_i_starts_and_stops_at_the_static_angle) {
+  for (const double angle : {20.4, 21.4}) {
+    for (const double speed : {0.0, 0.2}) {
+      HeldSlab slab(angle, MaterialModel::mu_of_i, 1500);
+      slab.options.material.grain_diameter = 0.15;
+      const double way = way_of_middle(slab, speed, GetParam());
+      std::printf("  sand of 20.9 deg on %g deg, from %g m/s: %.4f m in 1 s\n", angle, speed, way);
+      if (angle < 20.9) {
+        EXPECT_LT(std::abs(way), 0.005);
+      } else {
+        EXPECT_GT(way, 0.05);
+      }
+    }
+  }
+}
+
+TALUS_IN_EACH_PLACE(FlowOnIncline);
+
+}  // namespace
+}  // namespace talus::solver::testing
