@@ -38,10 +38,9 @@ Columns columns_of(const ParticleState& s, const GridShape& grid, double density
   return all;
 }
 
-/// Half the mass [kg] that the median column has, by mass: columns that hold less are crossed by the rim.
-double rim_mass(const std::vector<double>& of_columns) {
-  std::vector<double> mass(of_columns.size());
-  std::partial_sort_copy(of_columns.begin(), of_columns.end(), mass.begin(), mass.end());
+/// Half the mass that the median column has, by mass, of the masses of columns [kg]: what holds less is at the rim.
+double rim_mass(std::vector<double> mass) {
+  std::sort(mass.begin(), mass.end());
   const double half = 0.5 * std::accumulate(mass.begin(), mass.end(), 0.0);
   double below = 0;
   for (const double m : mass) {
