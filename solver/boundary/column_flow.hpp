@@ -50,24 +50,49 @@ TALUS_HD Number mass_beside(const GridView<Real>& grid, const Number* mass, int 
   return mass[grid.column(a, b)];
 }
 
+/// What a line of columns from outside the mass (the first) inwards tells of how much of the second's bed is covered:
+/// its share of the heaviest column nearby where the mass ends in a wall, the slope of the masses about it over the
+/// slope further in where it ends in a wedge, whose masses fall with the depth as well. A wall's masses rise no further
+/// from the third of them on, a wedge's do.
+template <class Number>
+TALUS_HD Number cover_at_edge(const Number (&line)[5], Number heaviest) {
+  const Number as_wall = line[1] / heaviest;
+  const Number first = line[2] - line[1], second = line[3] - line[2], third = line[4] - line[3];
+  const Number slope = first > second ? first : second;
+  if (!(slope > Number(0)) || !(third > Number(0))) return as_wall;
+  const Number rise = (line[2] - line[0]) / (Number(2) * slope);
+  const Number as_wedge = rise < Number(0) ? Number(0) : rise < Number(1) ? rise : Number(1);
+  const Number wedge = third < slope ? third / slope : Number(1);
+  const Number mixed = as_wall + wedge * (as_wedge - as_wall);
+  return mixed > as_wall ? mixed : as_wall;
+}
+
 /// The share of a column's bed that is covered by matter: 1 but within two columns of an empty one. The edge of the
-/// mass crosses those columns, and their nodes hold some of the matter beside it: they are covered as far as they hold
-/// the mass of the heaviest column within two of them, so that drag slows the rim as much as what is behind it.
+/// mass crosses those columns, and their nodes hold some of the matter beside it (`cover_at_edge`, along the way to the
+/// heaviest column two from it).
 template <class Real, class Number>
 TALUS_HD Number cover(const GridView<Real>& grid, const Number* mass, int i, int j) {
   bool at_edge = false;
   const Number own = mass_beside(grid, mass, i, j, 0, 0);
-  Number most = own;
+  Number heaviest = own, inside = -1;
+  int in_x = 0, in_y = 0;
   for (int dy = -1; dy <= 1; ++dy) {
     for (int dx = -1; dx <= 1; ++dx) {
       for (int apart = 1; apart <= 2; ++apart) {
         const Number beside = mass_beside(grid, mass, i, j, apart * dx, apart * dy);
         at_edge = at_edge || !(beside > Number(0));
-        most = beside > most ? beside : most;
+        heaviest = beside > heaviest ? beside : heaviest;
+        if (apart == 1 || !(beside > inside)) continue;
+        inside = beside;
+        in_x = dx;
+        in_y = dy;
       }
     }
   }
-  return at_edge ? own / most : Number(1);
+  if (!at_edge) return Number(1);
+  Number line[5];
+  for (int k = 0; k < 5; ++k) line[k] = mass_beside(grid, mass, i, j, (k - 1) * in_x, (k - 1) * in_y);
+  return cover_at_edge(line, heaviest);
 }
 
 /// A column's nodes in storage.

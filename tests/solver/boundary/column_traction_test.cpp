@@ -191,34 +191,49 @@ TEST(Cover, is_whole_inside_and_the_share_of_the_mass_at_the_edge) {
   EXPECT_EQ(cover(s.grid.view(), s.mass.data(), 3, 3), 1) << "a thin place inside";
 }
 
-/// The masses of the nodes over a line, of a wall of matter from x = 0 to x = 4 spacings.
-std::vector<double> masses_of_a_wall(double first_node) {
+/// The masses of the nodes over a line, of matter from x = 0 to `length` spacings that is `depth`(x) deep.
+template <class Depth>
+std::vector<double> masses_over_line(double first_node, double length, Depth depth) {
   std::vector<double> masses(8);
-  constexpr int parts = 4000;
+  constexpr int parts = 8000;
   for (int p = 0; p < parts; ++p) {
-    const double x = 4 * (p + 0.5) / parts;
+    const double x = length * (p + 0.5) / parts;
     for (int n = 0; n < 8; ++n) {
       const double r = std::abs(x - (first_node + n));
       masses[static_cast<std::size_t>(n)] += (r < 0.5   ? 0.75 - r * r
                                               : r < 1.5 ? 0.5 * (1.5 - r) * (1.5 - r)
                                                         : 0) *
-                                             4 / parts;
+                                             depth(x) * length / parts;
     }
   }
   return masses;
 }
 
-TEST(Cover, adds_up_to_the_length_of_a_wall_wherever_it_lies_in_the_grid) {
+/// How much of the line the columns of its first nodes cover together, in spacings.
+double covered_length(const std::vector<double>& line, int nodes) {
   const SmallGrid grid;
+  std::vector<double> mass(64);
+  for (std::size_t j = 0; j < 8; ++j) {
+    for (std::size_t i = 0; i < 8; ++i) mass[j * 8 + i] = line[i];
+  }
+  double sum = 0;
+  for (int i = 0; i < nodes; ++i) sum += cover(grid.view(), mass.data(), i, 4);
+  return sum;
+}
+
+TEST(Cover, adds_up_to_the_length_of_a_wall_wherever_it_lies_in_the_grid) {
   for (const double first_node : {-2.0, -1.5, -1.75}) {
-    const auto line = masses_of_a_wall(first_node);
-    std::vector<double> mass(64);
-    for (std::size_t j = 0; j < 8; ++j) {
-      for (std::size_t i = 0; i < 8; ++i) mass[j * 8 + i] = line[i];
-    }
-    double sum = 0;
-    for (int i = 0; i < 8; ++i) sum += cover(grid.view(), mass.data(), i, 4);
-    EXPECT_NEAR(sum, 4, 0.1) << "first node at " << first_node;  // 1.6 % at each end
+    const auto line = masses_over_line(first_node, 4, [](double) { return 1.0; });
+    EXPECT_NEAR(covered_length(line, 8), 4, 0.11) << "first node at " << first_node;  // 1.4 % at each end
+  }
+}
+
+/// The mass of a rim that thins out falls with its depth as well: by its share of what lies further in, 0.4 to 0.8 of a
+/// spacing of each rim would lie on nothing.
+TEST(Cover, adds_up_to_the_length_of_a_wedge_wherever_its_tip_lies_in_the_grid) {
+  for (const double first_node : {-2.0, -1.75, -1.5, -1.25}) {
+    const auto line = masses_over_line(first_node, 8, [](double x) { return x; });
+    EXPECT_NEAR(covered_length(line, 5), first_node + 4.5, 0.2) << "first node at " << first_node;
   }
 }
 
