@@ -140,6 +140,7 @@ TALUS_HD void advance_material(const Material<Real, Laws>& m, const Mat3<Real>& 
                                MaterialState<Real>& s, const MeanVolume<Real>& mean = {}) {
   const Increment<Real> step(g, seconds, mean);
   s.log_volume += step.volume;
+  if (s.log_volume > Real(widest_opening)) s.log_volume = Real(widest_opening);
   if (m.keeps_strain()) s.elastic = advance_strain(s.elastic, g);
   m.with_law([&](auto law, const auto& numbers) {
     if constexpr (law.keeps_strain) {

@@ -19,6 +19,10 @@ struct Elasticity {
   TALUS_HD Real lame() const { return bulk_modulus - Real(2.0 / 3) * shear_modulus; }
 };
 
+/// The largest ln J that a point keeps. What has opened twenty thousand times is alone: its gradient is that of its own
+/// affine velocity, which nothing turns back, so that ln J would grow with time without end.
+inline constexpr double widest_opening = 10;
+
 /// The state of a material point. `elastic` is its elastic logarithmic strain, or its Cauchy stress where the law keeps
 /// that instead (Law::keeps_strain).
 template <class Real>

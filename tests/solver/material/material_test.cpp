@@ -278,6 +278,20 @@ TEST(DruckerPrager, opened_grain_must_close_before_it_carries_load) {
   EXPECT_GT(pressure_of(kirchhoff_stress(m, s)), 0);
 }
 
+/// A lone point opens by the same rate for ever: its gradient is that of its own affine velocity.
+TEST(DruckerPrager, lone_grain_that_opens_for_ever_keeps_a_state) {
+  const auto material = sand();
+  MaterialState<double> state;
+  Mat3<double> opens;
+  opens.a.x = opens.b.y = 0.02;
+  for (int step = 0; step < 100000; ++step) advance_material(material, opens, 1e-3, state);
+  EXPECT_EQ(state.log_volume, widest_opening);
+  EXPECT_EQ(kirchhoff_stress(material, state).xx, 0);
+  opens.a.x = opens.b.y = -0.02;
+  for (int step = 0; step < 300; ++step) advance_material(material, opens, 1e-3, state);
+  EXPECT_LT(kirchhoff_stress(material, state).xx, 0) << "it closes again";
+}
+
 TEST(DruckerPrager, dilates_as_it_shears_only_when_asked) {
   Matrix shear = Matrix::Zero();
   shear(0, 1) = 1e-4;
