@@ -30,11 +30,16 @@
 namespace talus {
 
 /// Every constitutive law, in the order of the recipe's choices; nothing else lists them.
-#define TALUS_MATERIAL_LAWS(LAW)                                                                                \
-  LAW(drucker_prager, DruckerPrager)                                                                            \
-  LAW(hencky, Hencky)                                                                                           \
-  LAW(corotated, Corotated) LAW(linear_elastic, LinearElastic) LAW(neo_hookean, NeoHookean) LAW(mu_of_i, MuOfI) \
-      LAW(herschel_bulkley, HerschelBulkley)
+// clang-format off
+#define TALUS_MATERIAL_LAWS(LAW)         \
+  LAW(drucker_prager, DruckerPrager)     \
+  LAW(hencky, Hencky)                    \
+  LAW(corotated, Corotated)              \
+  LAW(linear_elastic, LinearElastic)     \
+  LAW(neo_hookean, NeoHookean)           \
+  LAW(mu_of_i, MuOfI)                    \
+  LAW(herschel_bulkley, HerschelBulkley)
+// clang-format on
 
 #define TALUS_ENUMERATOR(name, Law) name,
 #define TALUS_TYPE(name, Law) , Law

@@ -20,12 +20,11 @@ void need_implicit_laws(recipe::Visitor& v, const SolveOptions& all) {
     if (refused.empty() && !m.steps_implicitly()) refused = m.name();
     return false;
   });
-  v.needs(
-      abilities_of(integrator).obey_cfl || refused.empty(),
-      {"[solve] integrator = \"newmark\", \"quasi-static\" or preset = \"reference\" does not go with model = \"" +
-           refused + "\"",
-       "its stress depends on the rate of shear, and Newton's iterations have not been shown to converge with it",
-       "Take integrator = \"explicit\""});
+  v.needs(abilities_of(integrator).obey_cfl || refused.empty(),
+          {"[solve] integrator = \"newmark\", \"quasi-static\" or preset = \"reference\" does not go with model = \"" +
+               refused + "\"",
+           "its stress depends on the rate of shear, and Newton's iterations have not been shown to converge with it",
+           "Take integrator = \"explicit\""});
 }
 
 }  // namespace
