@@ -22,7 +22,7 @@ struct Slab {
 class ThinFlow : public InEachPlace {
  protected:
   static constexpr double degree = std::numbers::pi / 180, slope = 30, bed = 12, turbulence = 60;
-  static constexpr double time = 5;
+  static constexpr double time = 4;  ///< [s]; longer, the thinning of the ends reaches what is measured
 
   static Domain domain(const Slab& s) {
     Domain d = ground(90, 8, 1.0, s.layer_height, [](double x, double) { return 100 - std::tan(slope * degree) * x; });

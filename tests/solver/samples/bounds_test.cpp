@@ -83,22 +83,33 @@ TEST_P(SampleBounds, drag_delivered_is_drag_due) {
   // ground, and 12 % after 20 s (decision 0020).
   for (const BoundedScene& bounded : {bounded_scenes[0], bounded_scenes[1]}) {
     SampleRun run(bounded.scene(), GetParam());
-    double delivered = 0, due = 0, least = 1, most = 1;
+    double delivered = 0, due = 0, least = 1;
     for (double time = bounded.interval; time < bounded.end + 1e-9; time += bounded.interval) {
       run.run_to(time);
       const Drag drag = drag_of(run, GetParam());
       delivered += drag.delivered;
       due += drag.due;
       least = std::min(least, drag.delivered / drag.due);
-      most = std::max(most, drag.delivered / drag.due);
+      EXPECT_LT(drag.delivered, 1.02 * drag.whole) << bounded.name << " at " << time << " s";
     }
-    std::printf("  %s: drag delivered over drag due %.3f, between %.3f and %.3f\n", bounded.name, delivered / due,
-                least, most);
-    // What is covered at the rim is known to some 5 %, and bumps throw up a part of the flow.
-    EXPECT_GT(delivered / due, 0.9) << bounded.name;
-    EXPECT_LT(delivered / due, 1.05) << bounded.name;
+    std::printf("  %s: drag delivered over drag due %.3f, %.3f or more\n", bounded.name, delivered / due, least);
+    // By what share of their bed the rim's columns are covered is known to some 10 % of the drag: a rim that thins out
+    // is covered more than its mass says. Bumps throw up a part of the flow.
+    EXPECT_NEAR(delivered / due, 1, 0.1) << bounded.name;
     EXPECT_GT(least, 0.85) << bounded.name;
-    EXPECT_LT(most, 1.1) << bounded.name;
+  }
+}
+
+/// A flow on rough ground hops. Columns that took drag only in the steps in which they press delivered 0.96, 0.75, 0.55
+/// and 0.44 of the drag due in steps of 20, 5, 2 and 0.1 ms.
+TEST_P(SampleBounds, drag_delivered_is_drag_due_whatever_the_step) {
+  SampleRun run(rough_slope_scene(), GetParam());
+  run.run_to(6);
+  for (const double share : {1.0, 0.1, 0.01}) {
+    const Drag drag = drag_of(run, GetParam(), share);
+    std::printf("  rough slope, %.2f of the CFL step: drag delivered over drag due %.3f\n", share,
+                drag.delivered / drag.due);
+    EXPECT_NEAR(drag.delivered / drag.due, 1, 0.1) << share << " of the CFL step";
   }
 }
 

@@ -50,16 +50,16 @@ double rim_mass(std::vector<double> mass) {
   return 0;
 }
 
-/// The momentum of the points one step after a state [kg m/s], and that step [s].
+/// The momentum of the points one step after a state [kg m/s], and that step [s], `share` of the CFL step.
 struct AfterStep {
   Vec3<double> momentum;
   double step;
 };
-AfterStep after_step(const SampleRun& run, const SolverState& state, double turbulence, On on) {
+AfterStep after_step(const SampleRun& run, const SolverState& state, double turbulence, double share, On on) {
   SolveOptions options = run.sample().options;
   options.base.turbulence = turbulence;
   const auto solver = resume_solver(run.scene(), options, on, state);
-  const double step = 0.99 * state.clock.courant / positive_from_bits(state.clock.rate_bits);
+  const double step = 0.99 * share * state.clock.courant / positive_from_bits(state.clock.rate_bits);
   solver->set_next_event(state.clock.time + step);
   while (solver->advance().clock.halt != at_event) {
   }
@@ -171,27 +171,28 @@ double reach_of(const std::vector<PointSeen>& points, double share) {
   return along.back().first;
 }
 
-Drag drag_of(const SampleRun& run, On on) {
+Drag drag_of(const SampleRun& run, On on, double share) {
   const SolverState state = run.solver().state();
   const SampleScene& sample = run.sample();
   const double xi = sample.options.base.turbulence, density = sample.options.material.density;
   // The same step with and without drag: nothing else of it differs.
-  const AfterStep with = after_step(run, state, xi, on), without = after_step(run, state, 1e30, on);
+  const AfterStep with = after_step(run, state, xi, share, on), without = after_step(run, state, 1e30, share, on);
   const Vec3<double> lost = (without.momentum - with.momentum) * (1 / with.step);
   const Vec3<double> way = without.momentum * (1 / length(without.momentum));
   const Columns columns = columns_of(state.points, run.scene().grid, density);
   const TerrainTables& ground = run.solver().ground();
   const double rim = rim_mass(columns.mass);
-  double due = 0;
+  Drag drag{dot(lost, way), 0, 0};
   for (std::size_t c = 0; c < columns.mass.size(); ++c) {
     if (!(columns.mass[c] > 0)) continue;
     const double sx = ground.slope_x[c], sy = ground.slope_y[c], steep = std::sqrt(1 + sx * sx + sy * sy);
     const Vec3<double> normal{-sx / steep, -sy / steep, 1 / steep}, mean = columns.momentum[c] * (1 / columns.mass[c]);
     const Vec3<double> along = mean - normal * dot(mean, normal);
-    const double area = std::min(1.0, columns.mass[c] / rim) * sample.cell * sample.cell * steep;
-    due += density * 9.81 / xi * length(along) * dot(along, way) * area;
+    const double force = density * 9.81 / xi * length(along) * dot(along, way) * sample.cell * sample.cell * steep;
+    drag.due += std::min(1.0, columns.mass[c] / rim) * force;
+    drag.whole += force;
   }
-  return {dot(lost, way), due};
+  return drag;
 }
 
 double common_cover(const std::vector<double>& a, const std::vector<double>& b, double threshold) {

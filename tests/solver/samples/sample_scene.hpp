@@ -75,12 +75,13 @@ Mean mean_of(const std::vector<PointSeen>& points);
 /// The x [m] below which a share of the volume lies.
 double reach_of(const std::vector<PointSeen>& points, double share);
 
-/// The drag of the bed [N] along the mean motion, at the state that a run is in.
+/// The drag of the bed [N] along the mean motion, at the state that a run is in, in a step of `share` of the CFL step.
 struct Drag {
   double delivered;  ///< what one step takes of the points' momentum because of it
-  double due;        ///< rho g U^2 / xi on the bed under every column that holds matter
+  double due;        ///< rho g U^2 / xi under every column that holds matter, under the rim in part
+  double whole;      ///< the same with all of the bed under the rim's columns
 };
-Drag drag_of(const SampleRun& run, On on);
+Drag drag_of(const SampleRun& run, On on, double share = 1);
 
 /// The share of the cells that either map covers (by `threshold` or more) which both cover.
 double common_cover(const std::vector<double>& a, const std::vector<double>& b, double threshold);
