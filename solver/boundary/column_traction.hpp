@@ -134,6 +134,7 @@ struct SlowColumns {
   TALUS_HD static void count(Clock& clock, double mass, const Vec3<Number>& v, const Vec3<Number>& change) {
     const double loss = -mass * static_cast<double>(dot(change, v + change * Number(0.5)));
     atomic_add(&clock.bed_loss, loss);
+    atomic_add(&clock.drag_loss, loss);
     atomic_add(&clock.transfer_loss, -loss);
     atomic_add(&clock.reaction[0], mass * static_cast<double>(change.x));
     atomic_add(&clock.reaction[1], mass * static_cast<double>(change.y));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "solver/boundary/bed_hold.hpp"
 #include "solver/explicit/make_explicit_solver.hpp"
 #include "solver/explicit/update_columns.hpp"
 #include "solver/integrator/point_solver.hpp"
@@ -75,6 +76,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
         forces_apart_(musl_ || settings.damping > 0 || keeps_ || settings.energy_budget) {
     Clock clock = read_clock();
     clock.accelerated = 0;
+    if (settings.energy_budget) pressed_.resize(scene.map.count());
     if (Device::is_gpu) clock.steps_between_sorts = steps_between_sorts_on_gpu<Shape>(points_.count());
     clock_.upload({clock});
     sort(0);
@@ -124,6 +126,8 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     MemoryShares shares = Base::memory();
     shares.emplace_back("nodes", nodes_.bytes() + forces_.bytes());
     if (traction_.bytes() > 0) shares.emplace_back("bed's tractions", traction_.bytes());
+    if (const std::size_t held = hold_.bytes() + pressed_.bytes(); held > 0)
+      shares.emplace_back("contact of columns", held);
     return shares;
   }
 
@@ -183,18 +187,66 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   void update() {
     if (content != NodeContent::remapped) this->measure_columns();
     if (content != NodeContent::remapped && traction_.measures()) measure_coefficients();
+    if (content == NodeContent::force && settings_.energy_budget) {
+      update_nodes<content, content == NodeContent::force>();
+      count_landing();
+    } else {
+      update_nodes<content, false>();
+    }
+    if (hold_.acts()) hold_columns<content>();
+    if (surroundings_.contact().on()) meet_surfaces<content>();
+    if (content != NodeContent::remapped && traction_.acts()) slow_columns<content>();
+  }
+
+  /// The method updates the nodes, in the kernel that does no more than is asked for.
+  template <NodeContent content, bool counts>
+  void update_nodes() {
     const ProfilePhase<Device> phase(device_, "grid");
     const Vec3<double>& gravity = settings_.gravity.acceleration;
     const Vec3<Real> g{static_cast<Real>(gravity.x), static_cast<Real>(gravity.y), static_cast<Real>(gravity.z)};
-    const ColumnRecorder<Real> recorder{maps_.view(), materials_.list[0].density, measures_.column_volumes()};
     for_each_column<block_columns>(
         device_, grid_.active_blocks(),
-        UpdateColumns<Real, content>{grid_.view(), grid_.active_list(), clock_.data(), nodes_.data(), forces_.data(), g,
-                                     settings_.gravity.ramp, walls_, traction_.seen_by(surroundings_.bed()),
-                                     static_cast<Real>(this->full_base()), static_cast<Real>(settings_.damping),
-                                     traction_.slowed(), recorder});
-    if (surroundings_.contact().on()) meet_surfaces<content>();
-    if (content != NodeContent::remapped && traction_.acts()) slow_columns<content>(recorder);
+        UpdateColumns<Real, content, counts>{
+            grid_.view(), grid_.active_list(), clock_.data(), nodes_.data(), forces_.data(), g, settings_.gravity.ramp,
+            walls_, traction_.seen_by(surroundings_.bed()), static_cast<Real>(this->full_base()),
+            static_cast<Real>(settings_.damping), traction_.slowed(), counts ? pressed_.data() : nullptr, recorder()});
+  }
+
+  /// The recording of maps from columns.
+  ColumnRecorder<Real> recorder() { return {maps_.view(), materials_.list[0].density, measures_.column_volumes()}; }
+
+  /// The method holds columns on the ground that would leave it (T12c). Which ones are shallow is settled as the step
+  /// begins.
+  template <NodeContent content>
+  void hold_columns() {
+    using Nodes = PackedNodes<Real>;
+    const ProfilePhase<Device> phase(device_, "grid");
+    constexpr bool first = content != NodeContent::remapped;
+    const int count = grid_.active_blocks() * block_columns;
+    const Nodes nodes = packed_nodes<content>();
+    if (first && hold_.measures())
+      for_each(device_, count,
+               MeasureLying<Real, Nodes>{grid_.view(), grid_.active_list(), clock_.data(), nodes, hold_.lying()});
+    for_each(device_, count,
+             HoldColumns<Real, Nodes>{.grid = grid_.view(),
+                                      .active = grid_.active_list(),
+                                      .clock = clock_.data(),
+                                      .nodes = nodes,
+                                      .walls = walls_,
+                                      .held = hold_.columns(),
+                                      .rise = first ? traction_.slowed().rise : nullptr});
+  }
+
+  /// The method adds what columns have lost by landing to the budget (T24a).
+  void count_landing() {
+    using Nodes = PackedNodes<Real>;
+    const ProfilePhase<Device> phase(device_, "grid");
+    for_each(device_, grid_.active_blocks() * block_columns,
+             CountLanding<Real, Nodes>{.grid = grid_.view(),
+                                       .active = grid_.active_list(),
+                                       .nodes = {nodes_.data(), nullptr},
+                                       .pressed = pressed_.data(),
+                                       .step = column_step()});
   }
 
   /// The step as columns see it.
@@ -225,7 +277,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
 
   /// The method lets drag and cohesion of the bed slow what lies on it (T13a).
   template <NodeContent content>
-  void slow_columns(const ColumnRecorder<Real>& recorder) {
+  void slow_columns() {
     using Nodes = PackedNodes<Real>;
     for_each_column_twice<block_columns>(device_, grid_.active_blocks(),
                                          SlowColumns<Real, Nodes, true>{.grid = grid_.view(),
@@ -236,7 +288,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
                                                                         .step = column_step(),
                                                                         .with_yield = true,
                                                                         .density = materials_.list[0].density,
-                                                                        .recorder = recorder});
+                                                                        .recorder = recorder()});
   }
 
   /// The nodes with the changes of their velocity, where a step keeps them.
@@ -291,6 +343,9 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   const Vec3<double>* loads_now_ = nullptr;
   Buffer<Vec4<Real>, Device> nodes_{device_}, forces_{device_};
   ColumnTraction<Real, Device> traction_{device_, surroundings_.bed(), grid_.shape().columns, grid_.shape().rows};
+  BedHold<Real, Device> hold_{device_, settings_.separation, static_cast<double>(materials_.list[0].density),
+                              grid_.shape().columns, grid_.shape().rows};
+  Buffer<Real, Device> pressed_{device_};  ///< impulse of the bed on every column [N s]; with a budget
 };
 
 /// The definition for the files in instances/; see make_explicit_solver.hpp.

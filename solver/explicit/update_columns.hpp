@@ -19,9 +19,11 @@ enum class NodeContent {
 };
 
 /// The update of the nodes' velocity (T6), damped and slowed by the bed, and with a budget what that takes (T24); a
-/// kernel of for_each_column. Mass stays, momentum becomes velocity.
-template <class Real, NodeContent content>
+/// kernel of for_each_column. Mass stays, momentum becomes velocity. With `counts` losses are counted, which wants
+/// forces apart.
+template <class Real, NodeContent content, bool counts = false>
 struct UpdateColumns {
+  static_assert(!counts || content == NodeContent::force);
   GridView<Real> grid;
   const int* active;
   Clock* clock;
@@ -34,6 +36,7 @@ struct UpdateColumns {
   Real full_base;                 ///< mass of a base node under a full layer [kg]
   Real damping;                   ///< Cundall's local factor [-]
   BedColumns<Real> columns;       ///< for the bed's tractions, which come after
+  Real* pressed;                  ///< impulse of the bed along its normal, where losses are counted [N s]
   ColumnRecorder<Real> recorder;  ///< at work here unless they do
 
   /// The memory that the kernel moves [bytes].
@@ -49,11 +52,14 @@ struct UpdateColumns {
     BlockSlot slot;
   };
   /// The losses of kinetic energy (T24) over a column [J]; what the points give to the grid and get back counts with
-  /// signs. And what bed and walls gave it [N s].
+  /// signs. `contact` is what bed and walls take, friction along the bed a part of it. And what the bed gave along its
+  /// normal, and bed and walls in all [N s].
   struct Losses {
-    double contact = 0, damping = 0, transfer = 0, reaction[3] = {0, 0, 0};
+    double contact = 0, friction = 0, pressed = 0, damping = 0, transfer = 0, reaction[3] = {0, 0, 0};
     TALUS_HD void operator+=(const Losses& o) {
       contact += o.contact;
+      friction += o.friction;
+      pressed += o.pressed;
       damping += o.damping;
       transfer += o.transfer;
       for (int a = 0; a < 3; ++a) reaction[a] += o.reaction[a];
@@ -63,12 +69,11 @@ struct UpdateColumns {
   struct NoLosses {
     TALUS_HD void operator+=(const NoLosses&) {}
   };
-  static constexpr bool may_count = content != NodeContent::impulse;  ///< a budget wants forces apart
   /// The sums over the layers of a column: mass [kg], momentum [kg m/s], losses.
   struct Sums {
     Real mass = 0;
     Vec3<Real> momentum{};
-    std::conditional_t<may_count, Losses, NoLosses> losses;
+    std::conditional_t<counts, Losses, NoLosses> losses;
     TALUS_HD Sums& operator+=(const Sums& o) {
       mass += o.mass;
       momentum += o.momentum;
@@ -116,15 +121,9 @@ struct UpdateColumns {
       const int bed = bed_layer(grid, at.column);
       if (bed < at.first || bed >= at.last) columns.rise[at.column] = Real(off_bed);
     }
+    if constexpr (counts) pressed[at.column] = static_cast<Real>(sums.losses.pressed);
     if (!(sums.mass > Real(0))) return;
-    if constexpr (may_count) {
-      if (clock->keeps_budget) {
-        atomic_add(&clock->bed_loss, sums.losses.contact);
-        atomic_add(&clock->damping_loss, sums.losses.damping);
-        atomic_add(&clock->transfer_loss, sums.losses.transfer);
-        for (int a = 0; a < 3; ++a) atomic_add(&clock->reaction[a], sums.losses.reaction[a]);
-      }
-    }
+    if constexpr (counts) add(sums.losses);
     // With tractions the maps are recorded once they have acted.
     if (!columns.mass) recorder.record(at.column, sums.mass, sums.momentum, grid.spacing, clock->time);
   }
@@ -157,10 +156,9 @@ struct UpdateColumns {
       columns.rise[at.column] = rise_from(free, grid.slope_x[at.column], grid.slope_y[at.column]);
     }
     if (k <= at.top_contact) v = meet_bed(at, k, v, node.w, dt);
+    const Vec3<Real> met = v;
     if (walls.count > 0) v = meet_walls(walls, at.i, at.j, k, v, content != NodeContent::remapped);
-    if constexpr (may_count) {
-      if (clock->keeps_budget) count(losses, static_cast<double>(node.w), {before, undamped, free, v});
-    }
+    if constexpr (counts) count(losses, at.column, node.w, {before, undamped, free, met, v});
     if constexpr (content == NodeContent::force) {
       const Vec3<Real> change = v - before;
       forces[n] = {Real(0), change.x, change.y, change.z};
@@ -184,19 +182,42 @@ struct UpdateColumns {
     Vec3<Real> before;    ///< of the points
     Vec3<Real> undamped;  ///< with all forces
     Vec3<Real> free;      ///< damped, without bed and walls
+    Vec3<Real> met;       ///< after contact with the bed
     Vec3<Real> after;
   };
   /// The method adds what a node of this mass has lost. Forces and impulses of a step act together, on the mean of its
   /// velocities: what rests loses nothing.
-  TALUS_HD void count(Losses& losses, double mass, const Velocities& v) const {
+  TALUS_HD void count(Losses& losses, int column, Real of_node, const Velocities& v) const {
     const Vec3<Real> mean = (v.before + v.after) * Real(0.5);
-    if (content == NodeContent::force && damping > Real(0))
-      losses.damping += mass * static_cast<double>(dot(v.undamped - v.free, mean));
+    const double mass = static_cast<double>(of_node);
+    if (damping > Real(0)) losses.damping += mass * static_cast<double>(dot(v.undamped - v.free, mean));
     losses.contact += mass * static_cast<double>(dot(v.free - v.after, mean));
     losses.transfer += mass * static_cast<double>(dot(v.after - v.before, mean));
     losses.reaction[0] += mass * static_cast<double>(v.after.x - v.free.x);
     losses.reaction[1] += mass * static_cast<double>(v.after.y - v.free.y);
     losses.reaction[2] += mass * static_cast<double>(v.after.z - v.free.z);
+    count_bed(losses, column, mass, {v.met - v.free, mean});
+  }
+  /// What the bed gave a node in a step, over its mass, and the node's mean velocity [m/s].
+  struct BedImpulse {
+    Vec3<Real> change, mean;
+  };
+  /// The method adds what a node has lost to friction, and what pressed on it.
+  TALUS_HD void count_bed(Losses& losses, int column, double mass, const BedImpulse& bed) const {
+    const Real sx = grid.slope_x[column], sy = grid.slope_y[column];
+    const Real scale = Real(1) / sqrt(Real(1) + sx * sx + sy * sy);
+    const Vec3<Real> normal{-sx * scale, -sy * scale, scale};
+    const Real pressing = dot(bed.change, normal);
+    losses.pressed += mass * static_cast<double>(pressing);
+    losses.friction -= mass * static_cast<double>(dot(bed.change - normal * pressing, bed.mean));
+  }
+  /// The method adds a column's losses to the clock's.
+  TALUS_HD void add(const Losses& losses) const {
+    atomic_add(&clock->bed_loss, losses.contact);
+    atomic_add(&clock->friction_loss, losses.friction);
+    atomic_add(&clock->damping_loss, losses.damping);
+    atomic_add(&clock->transfer_loss, losses.transfer);
+    for (int a = 0; a < 3; ++a) atomic_add(&clock->reaction[a], losses.reaction[a]);
   }
 
   /// The force that is left after local non-viscous damping (Cundall 1987): a share of the unbalanced force acts

@@ -7,6 +7,7 @@
 
 #include "solver/boundary/base_friction.hpp"
 #include "solver/boundary/plane_walls.hpp"
+#include "solver/boundary/separation.hpp"
 #include "solver/grid/shape_functions.hpp"
 #include "solver/integrator/loads.hpp"
 #include "solver/material/material.hpp"
@@ -65,6 +66,7 @@ struct IntegratorSettings {
   bool deterministic = false;  ///< the same bits on every run on a GPU too
   MaterialSettings materials;
   BaseFriction<double> bed;  ///< where the scene has no numbers of its own for a column
+  SeparationSettings separation;
   std::vector<PlaneWall> walls;
   std::vector<Load> loads;
 };

@@ -51,6 +51,16 @@ void BaseOptions::describe(recipe::Visitor& v) {
            "traction besides friction, wherever the mass touches its bed");
   v.number("pore_pressure_ratio", pore_pressure_ratio, recipe::Range{0, 1},
            "share of the normal stress on the bed that water carries (saturated ground); friction acts on the rest");
+  recipe::choice(v, "separation", separation,
+                 {{"free", Separation::free}, {"none", Separation::none}, {"thin", Separation::thin}},
+                 "what leaves the bed where that falls away below it: what moves so (free), nothing that lies on it "
+                 "(none), what is deeper than separation_depth_m (thin)");
+  v.number("separation_depth_m", separation_depth, recipe::not_negative,
+           "separation = \"thin\": depth along the normal of the bed below which columns are held; 0: spacing of the "
+           "grid");
+  v.needs(separation == Separation::thin || !(separation_depth > 0),
+          {"[solve.base] separation_depth_m with separation = \"" + separation_name() + "\"",
+           "it is the depth up to which \"thin\" holds columns", "Leave it out, or take separation = \"thin\""});
 }
 
 double* BaseOptions::named(std::string_view key) {
@@ -71,14 +81,24 @@ std::string BaseOptions::law_name() const {
   return visit_law(law, [](auto own) { return std::string(own.name); });
 }
 
+std::string BaseOptions::separation_name() const {
+  return separation == Separation::free ? "free" : separation == Separation::none ? "none" : "thin";
+}
+
 std::string BaseOptions::words() const {
-  return visit_law(law, [&](auto own) {
-    std::string text = own.words(*this);
-    if (!own.rubs) return text;
-    if (cohesion > 0) text += ", cohesion " + six_digits(cohesion) + " Pa";
-    if (pore_pressure_ratio > 0) text += ", water carries " + six_digits(pore_pressure_ratio) + " of the normal stress";
-    return text;
+  std::string text = visit_law(law, [&](auto own) {
+    std::string of_law = own.words(*this);
+    if (!own.rubs) return of_law;
+    if (cohesion > 0) of_law += ", cohesion " + six_digits(cohesion) + " Pa";
+    if (pore_pressure_ratio > 0)
+      of_law += ", water carries " + six_digits(pore_pressure_ratio) + " of the normal stress";
+    return of_law;
   });
+  if (separation == Separation::none) text += ", never left by what lies on it";
+  if (separation == Separation::thin)
+    text += ", left only by what is deeper than " +
+            (separation_depth > 0 ? six_digits(separation_depth) + " m" : std::string("the spacing of the grid"));
+  return text;
 }
 
 std::string BaseOptions::sentence() const {

@@ -6,6 +6,7 @@
 
 #include "common/recipe/recipe.hpp"
 #include "solver/boundary/base_friction.hpp"
+#include "solver/boundary/separation.hpp"
 
 namespace talus::solver {
 
@@ -17,6 +18,8 @@ struct BaseOptions : OptionsOfLaws<FrictionLaws> {
   FrictionLaw law = FrictionLaw::coulomb;
   double cohesion = 0;             ///< [Pa]
   double pore_pressure_ratio = 0;  ///< water's part of the normal stress [-]
+  Separation separation = Separation::free;
+  double separation_depth = 0;  ///< columns shallower than this are held, with `thin`; 0: the grid's spacing [m]
 
   /// The number that the recipe calls by this name, null where it has none.
   double* named(std::string_view key);
@@ -24,6 +27,8 @@ struct BaseOptions : OptionsOfLaws<FrictionLaws> {
   bool asks_column() const;               ///< whether the law's coefficient follows from weight and speed of a column
   /// The name of the chosen law.
   std::string law_name() const;
+  /// The chosen separation as recipes write it.
+  std::string separation_name() const;
   /// The bed in a line, for plan and log.
   std::string words() const;
   /// The law in a sentence of the report, "at its bed acts ...".

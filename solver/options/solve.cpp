@@ -3,6 +3,24 @@
 #include "solver/options/names.hpp"
 
 namespace talus::solver {
+namespace {
+
+/// This function declares what holding base nodes on the ground needs.
+void need_separation(recipe::Visitor& v, const SolveOptions& o) {
+  const bool is_free = o.base.separation == Separation::free;
+  const std::string key = "[solve.base] separation = \"" + o.base.separation_name() + "\" with ";
+  const Integrator integrator = o.preset == Preset::reference ? Integrator::newmark : o.integrator;
+  v.needs(is_free || !abilities_of(integrator).solve_systems,
+          {key + "integrator = \"newmark\", \"quasi-static\", \"auto\" or preset = \"reference\"",
+           "Newton's iterations free a base node whose reaction would pull",
+           "Take integrator = \"explicit\", or separation = \"free\""});
+  v.needs(is_free || o.mapping == Mapping::terrain_following,
+          {key + "mapping = \"cartesian\"",
+           "its nodes and contact points lie up to a layer beside the ground, and would hold what passes by",
+           "Take mapping = \"terrain-following\", or separation = \"free\""});
+}
+
+}  // namespace
 
 void SolveOptions::describe(recipe::Visitor& v) {
   TimeOptions::describe(v);
@@ -21,6 +39,7 @@ void SolveOptions::describe(recipe::Visitor& v) {
           {"[solve] ground_contact = \"points\" with [solve.base] law = \"" + base.law_name() + "\"",
            "the law's friction follows from whole columns, which contact points know nothing of",
            "Take ground_contact = \"nodes\", or another law"});
+  need_separation(v, *this);
 }
 
 std::string SolveOptions::contact_words() const {

@@ -39,6 +39,10 @@ PlaneWall make_wall(const WallOptions& o) {
 
 Load make_load(const LoadOptions& o) { return {.force = vector(o.force), .ramp = o.ramp, .from = o.from, .to = o.to}; }
 
+SeparationSettings make_separation(const SolveOptions& o, const GridShape& grid) {
+  return {.kind = o.base.separation, .depth = o.base.separation_depth > 0 ? o.base.separation_depth : grid.spacing};
+}
+
 IntegratorSettings make_common(const SolveOptions& o, const GridShape& grid) {
   IntegratorSettings s{.shape = o.shape,
                        .needs = needs_of(o),
@@ -58,6 +62,7 @@ IntegratorSettings make_common(const SolveOptions& o, const GridShape& grid) {
                                      .in_single = make_materials<float>(o, grid.spacing, grid.layer_height),
                                      .densities_differ = o.densities_differ()},
                        .bed = make_base_friction<double>(o),
+                       .separation = make_separation(o, grid),
                        .walls = {},
                        .loads = {}};
   std::transform(o.walls.begin(), o.walls.end(), std::back_inserter(s.walls), make_wall);
@@ -91,6 +96,7 @@ SolverSettings for_gravity_loading(SolverSettings s, int steps) {
   s.common.needs.plastic_volume = s.common.needs.softening = false;
   s.common.bed = {};
   s.common.bed.law = FrictionLaw::stick;
+  s.common.separation = {};
   std::erase_if(s.common.walls, [](const PlaneWall& wall) { return wall.from > 0; });
   for (PlaneWall& wall : s.common.walls) wall.to = 2;
   return s;

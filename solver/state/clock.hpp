@@ -36,6 +36,10 @@ struct Clock {
   int failed_point = -1;           ///< id of a point that failed
   int keeps_budget = 0;            ///< the sums below are kept
   double bed_loss = 0;             ///< energy lost so far to bed and walls [J]
+  double friction_loss = 0;        ///< of that, to friction on the bed [J]
+  double drag_loss = 0;            ///< to tractions of the bed that act on columns: drag, cohesion [J]
+  double landing_loss = 0;         ///< of columns' motion towards the bed, which that took [J]
+  double holding_loss = 0;         ///< to what holds columns on the bed that would leave it [J]
   double damping_loss = 0;         ///< to Cundall's damping [J]
   double plastic_loss = 0;         ///< to plastic flow [J]
   double transfer_loss = 0;        ///< between points and grid [J]

@@ -44,6 +44,10 @@ void visit_clock(AnyClock& c, Item&& item) {
   item("failed_point", c.failed_point);
   item("keeps_budget", c.keeps_budget);
   item("bed_loss", c.bed_loss);
+  item("friction_loss", c.friction_loss);
+  item("drag_loss", c.drag_loss);
+  item("landing_loss", c.landing_loss);
+  item("holding_loss", c.holding_loss);
   item("damping_loss", c.damping_loss);
   item("plastic_loss", c.plastic_loss);
   item("transfer_loss", c.transfer_loss);

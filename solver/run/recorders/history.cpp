@@ -29,6 +29,10 @@ constexpr Column<Instant> run_columns[] = {
 
 constexpr Column<Instant> budget_columns[] = {
     {"bed_loss_J", "J", [](const Instant& i) { return i.clock.bed_loss; }},
+    {"friction_loss_J", "J", [](const Instant& i) { return i.clock.friction_loss; }},
+    {"drag_loss_J", "J", [](const Instant& i) { return i.clock.drag_loss; }},
+    {"landing_loss_J", "J", [](const Instant& i) { return i.clock.landing_loss; }},
+    {"holding_loss_J", "J", [](const Instant& i) { return i.clock.holding_loss; }},
     {"damping_loss_J", "J", [](const Instant& i) { return i.clock.damping_loss; }},
     {"plastic_loss_J", "J", [](const Instant& i) { return i.clock.plastic_loss; }},
     {"transfer_loss_J", "J", [](const Instant& i) { return i.clock.transfer_loss; }},

@@ -130,6 +130,7 @@ TEST(SlowColumns, counts_what_the_bed_takes_and_records_what_is_left) {
   s.slow();
   after = energy();
   EXPECT_NEAR(s.clock.bed_loss, before - after, 1e-9);
+  EXPECT_NEAR(s.clock.drag_loss, before - after, 1e-9);
   EXPECT_NEAR(s.clock.transfer_loss, after - before, 1e-9);
   EXPECT_LT(s.clock.reaction[0], 0);
   EXPECT_EQ(s.arrival[Sheet::column(3, 3)], 0);

@@ -21,6 +21,7 @@ struct Updated {
   Walls<double> walls;
   double damping = 0, gravity_ramp = 0;
   BedColumns<double> columns;
+  std::vector<double> pressed = std::vector<double>(64, -1);
 
   Updated() {
     clock.step_size = 0.1;
@@ -31,23 +32,24 @@ struct Updated {
   Vec4<double>& at(std::vector<Vec4<double>>& of, int k) {
     return of[static_cast<std::size_t>(grid.view().find(5, 2, k))];
   }
-  template <NodeContent content>
+  template <NodeContent content, bool counts = false>
   void update() {
     const MapView maps{{thickness.data(), speed.data(), pressure.data(), arrival.data()}, 0};
     for_each_column<block_columns>(CpuDevice::make(), 4,
-                                   UpdateColumns<double, content>{.grid = grid.view(),
-                                                                  .active = grid.active.data(),
-                                                                  .clock = &clock,
-                                                                  .nodes = nodes.data(),
-                                                                  .forces = forces.data(),
-                                                                  .gravity = {0, 0, -10},
-                                                                  .gravity_ramp = gravity_ramp,
-                                                                  .walls = walls,
-                                                                  .friction = friction,
-                                                                  .full_base = 1e3,
-                                                                  .damping = damping,
-                                                                  .columns = columns,
-                                                                  .recorder = {maps, 2000, nullptr}});
+                                   UpdateColumns<double, content, counts>{.grid = grid.view(),
+                                                                          .active = grid.active.data(),
+                                                                          .clock = &clock,
+                                                                          .nodes = nodes.data(),
+                                                                          .forces = forces.data(),
+                                                                          .gravity = {0, 0, -10},
+                                                                          .gravity_ramp = gravity_ramp,
+                                                                          .walls = walls,
+                                                                          .friction = friction,
+                                                                          .full_base = 1e3,
+                                                                          .damping = damping,
+                                                                          .columns = columns,
+                                                                          .pressed = pressed.data(),
+                                                                          .recorder = {maps, 2000, nullptr}});
   }
 };
 
@@ -88,12 +90,25 @@ TEST(UpdateColumns, damps_a_share_of_the_force_against_the_velocity) {
 
 TEST(UpdateColumns, counts_what_the_bed_takes_where_a_budget_is_kept) {
   Updated u;
-  u.clock.keeps_budget = 1;
-  u.update<NodeContent::force>();
+  u.update<NodeContent::force, true>();
   EXPECT_NEAR(u.clock.reaction[0], -100 * 0.5, 1e-12);  // impulses of the base node, rounded
   EXPECT_NEAR(u.clock.reaction[2], 100 * 1, 1e-12);
   const double mean = 0.5 * (3 + 2.5);  // velocity along x during the step; that of z stays zero
   EXPECT_NEAR(u.clock.bed_loss, 100 * 0.5 * mean, 1e-10);
+  EXPECT_NEAR(u.clock.friction_loss, 100 * 0.5 * mean, 1e-10) << "all of it";
+  EXPECT_NEAR(u.pressed[2 * SmallGrid::side + 5], 100 * 1, 1e-12) << "the weight of the base node";
+  EXPECT_EQ(u.pressed[0], 0) << "nothing there";
+}
+
+TEST(UpdateColumns, tells_friction_from_what_presses_on_a_slope) {
+  Updated u;
+  u.grid = SmallGrid{0.75, 0};                     // normal (-0.6, 0, 0.8), along the slope (0.8, 0, 0.6)
+  u.at(u.nodes, 0) = {100, 100 * 7, 0, 100 * -1};  // 5 m/s along the slope, 5 into it
+  u.update<NodeContent::force, true>();
+  const double into = 5 + 0.8, along = 5 - 0.6, left = along - 0.5 * into;  // with the step's gravity, 1 m/s
+  EXPECT_NEAR(u.pressed[2 * SmallGrid::side + 5], 100 * into, 1e-9);
+  EXPECT_NEAR(u.clock.friction_loss, 100 * 0.5 * into * 0.5 * (5 + left), 1e-9);
+  EXPECT_NEAR(u.clock.bed_loss, u.clock.friction_loss + 100 * into * 0.5 * 5, 1e-9);
 }
 
 TEST(UpdateColumns, stops_at_a_fixed_wall) {

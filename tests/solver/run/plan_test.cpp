@@ -44,6 +44,18 @@ TEST(Plan, says_that_auto_takes_explicit_steps_of_a_law_that_takes_no_others) {
       << steps();
 }
 
+TEST(Plan, says_what_may_leave_the_bed) {
+  SolveOptions o;
+  const auto bed = [&] { return features(block(), o).at(3); };
+  EXPECT_EQ(bed().find("left"), std::string::npos) << bed();
+  o.base.separation = Separation::none;
+  EXPECT_NE(bed().find(", never left by what lies on it"), std::string::npos) << bed();
+  o.base.separation = Separation::thin;
+  EXPECT_NE(bed().find(", left only by what is deeper than the spacing of the grid"), std::string::npos) << bed();
+  o.base.separation_depth = 2.5;
+  EXPECT_NE(bed().find(", left only by what is deeper than 2.5 m"), std::string::npos) << bed();
+}
+
 TEST(Plan, names_every_gauge_and_its_place) {
   SolveOptions o;
   EXPECT_FALSE(has(features(block(), o), "gauge"));

@@ -50,11 +50,11 @@ TEST(History, has_the_columns_that_readers_know_in_their_order) {
   o.obstacles[0].name = "wall";
   o.obstacles[1].name = "house-2";
   auto names = names_of_every_run;
-  names.insert(
-      names.end(),
-      {"bed_loss_J", "damping_loss_J", "plastic_loss_J", "transfer_loss_J", "reaction_x_N_s", "reaction_y_N_s",
-       "reaction_z_N_s", "obstacle_wall_impulse_x_N_s", "obstacle_wall_impulse_y_N_s", "obstacle_wall_impulse_z_N_s",
-       "obstacle_house-2_impulse_x_N_s", "obstacle_house-2_impulse_y_N_s", "obstacle_house-2_impulse_z_N_s"});
+  names.insert(names.end(),
+               {"bed_loss_J", "friction_loss_J", "drag_loss_J", "landing_loss_J", "holding_loss_J", "damping_loss_J",
+                "plastic_loss_J", "transfer_loss_J", "reaction_x_N_s", "reaction_y_N_s", "reaction_z_N_s",
+                "obstacle_wall_impulse_x_N_s", "obstacle_wall_impulse_y_N_s", "obstacle_wall_impulse_z_N_s",
+                "obstacle_house-2_impulse_x_N_s", "obstacle_house-2_impulse_y_N_s", "obstacle_house-2_impulse_z_N_s"});
   const History history(o, scene);
   EXPECT_EQ(names_of(history.rows()), names);
   for (const HistoryColumn& column : history.rows().columns) EXPECT_FALSE(column.unit.empty()) << column.name;

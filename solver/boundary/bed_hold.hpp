@@ -1,0 +1,167 @@
+// What holds columns on the ground that would leave it (T12c): all that lie on it, or the shallow ones.
+#pragma once
+
+#include <cstddef>
+
+#include "solver/boundary/column_flow.hpp"
+#include "solver/boundary/separation.hpp"
+#include "solver/boundary/walls.hpp"
+#include "solver/parallel/atomics.hpp"
+#include "solver/parallel/buffer.hpp"
+#include "solver/state/clock.hpp"
+
+namespace talus {
+
+/// This function sums what lies on the bed of a column: from the base node up to the first empty one; nothing where the
+/// base node is empty. What flies above has no part in it.
+template <class Real, class Nodes>
+TALUS_HD LyingMatter<Real> matter_on_bed(const GridView<Real>& grid, const Nodes& nodes, const ColumnNodes& at) {
+  const int bed = bed_layer(grid, at.column);
+  if (bed < at.begin()) return {};
+  int last = bed;
+  while (last < at.end() && nodes.mass(at.node(last)) > Real(0)) ++last;
+  return matter_in(nodes, at, bed, last);
+}
+
+/// The columns that are held on the ground, as kernels see them.
+template <class Real>
+struct HeldColumns {
+  const Real* lying = nullptr;  ///< mass that lies on the bed of every column [kg]; null: all are held
+  Real load = 0;                ///< mass over area of bed from which a column is free [kg/m2]
+
+  /// Whether column (i, j) is held. The edge of the mass is as deep as the column that its cover is measured by: the
+  /// rim of a deep mass is free with it.
+  TALUS_HD bool holds(const GridView<Real>& grid, int i, int j) const {
+    return !lying || lying[grid.column(i, j)] < load * bed_under(grid, lying, i, j).area;
+  }
+};
+
+/// One thread: one column. It measures the mass that lies on the bed.
+template <class Real, class Nodes>
+struct MeasureLying {
+  GridView<Real> grid;
+  const int* active;
+  const Clock* clock;
+  Nodes nodes;
+  Real* lying;  ///< of the columns [kg]
+
+  TALUS_HD void operator()(int c) const {
+    if (clock->halt != running) return;
+    const ActiveColumn place(grid, active, c);
+    if (!place.in_domain(grid)) return;
+    const ColumnNodes at{grid.slots[place.block], place.i, place.j, grid.column(place.i, place.j)};
+    lying[at.column] = matter_on_bed(grid, nodes, at).mass;
+  }
+};
+
+/// One thread: one column. It holds what lies on the bed and would leave it (T12c), once the nodes have met bed and
+/// walls: the base node keeps no velocity away from the ground, and the nodes above lose what the column leaves by as a
+/// whole. It touches no velocity along the bed: what pulls gives no friction.
+template <class Real, class Nodes>
+struct HoldColumns {
+  GridView<Real> grid;
+  const int* active;
+  Clock* clock;
+  Nodes nodes;
+  Walls<Real> walls;
+  HeldColumns<Real> held;
+  Real* rise;  ///< see BedColumns; null where nobody asks
+
+  TALUS_HD void operator()(int c) const {
+    if (clock->halt != running) return;
+    const ActiveColumn place(grid, active, c);
+    if (!place.in_domain(grid)) return;
+    const ColumnNodes at{grid.slots[place.block], place.i, place.j, grid.column(place.i, place.j)};
+    const LyingMatter<Real> matter = matter_on_bed(grid, nodes, at);
+    if (!(matter.mass > Real(0))) return;
+    const Real sx = grid.slope_x[at.column], sy = grid.slope_y[at.column];
+    const Real leaves = rise_from(nodes.velocity(at.node(matter.first)), sx, sy);
+    if (!(leaves > Real(0)) || !held.holds(grid, at.i, at.j)) return;
+    const Real mean = rise_from(matter.momentum, sx, sy) / matter.mass,
+               lift = mean < leaves ? (mean > Real(0) ? mean : Real(0)) : leaves;
+    const Real scale = Real(1) / sqrt(Real(1) + sx * sx + sy * sy);
+    const Vec3<Real> normal{-sx * scale, -sy * scale, scale};
+    for (int k = matter.first; k < matter.last; ++k) take(at, k, normal * (k == matter.first ? leaves : lift));
+    if (rise) rise[at.column] = Real(0);
+  }
+
+ private:
+  /// The method takes a velocity [m/s] off the node in layer k, which stays before the walls that it has met.
+  TALUS_HD void take(const ColumnNodes& at, int k, const Vec3<Real>& velocity) const {
+    const int n = at.node(k);
+    const Vec3<Real> before = nodes.velocity(n);
+    Vec3<Real> after = before - velocity;
+    if (walls.count > 0) after = meet_walls(walls, at.i, at.j, k, after, false);
+    nodes.add(n, after - before);
+    if (clock->keeps_budget) count(static_cast<double>(nodes.mass(n)), before, after);
+  }
+  TALUS_HD void count(double mass, const Vec3<Real>& before, const Vec3<Real>& after) const {
+    const Vec3<Real> change = after - before;
+    const double loss = -mass * static_cast<double>(dot(change, before + after)) / 2;
+    atomic_add(&clock->bed_loss, loss);
+    atomic_add(&clock->holding_loss, loss);
+    atomic_add(&clock->transfer_loss, -loss);
+    atomic_add(&clock->reaction[0], mass * static_cast<double>(change.x));
+    atomic_add(&clock->reaction[1], mass * static_cast<double>(change.y));
+    atomic_add(&clock->reaction[2], mass * static_cast<double>(change.z));
+  }
+};
+
+/// One thread: one column. It adds to the budget what bed and weight took of the column's motion across the bed (T24a),
+/// once the nodes have met it; what springs back gives some of it again.
+template <class Real, class Nodes>
+struct CountLanding {
+  GridView<Real> grid;
+  const int* active;
+  Nodes nodes;
+  const Real* pressed;  ///< impulse of the bed on every column along its normal in the step [N s]
+  ColumnStep step;      ///< with a clock
+
+  TALUS_HD void operator()(int c) const {
+    if (step.clock->halt != running) return;
+    const ActiveColumn place(grid, active, c);
+    if (!place.in_domain(grid)) return;
+    const ColumnNodes at{grid.slots[place.block], place.i, place.j, grid.column(place.i, place.j)};
+    const LyingMatter<Real> matter = matter_on_bed(grid, nodes, at);
+    if (!(matter.mass > Real(0))) return;
+    const Real sx = grid.slope_x[at.column], sy = grid.slope_y[at.column];
+    const Real scale = Real(1) / sqrt(Real(1) + sx * sx + sy * sy);
+    const Real weight = step.press(Vec3<Real>{-sx * scale, -sy * scale, scale});
+    const Real excess = pressed[at.column] / matter.mass - weight * static_cast<Real>(step.length());
+    const Real mean = rise_from(matter.momentum, sx, sy) / matter.mass - excess / Real(2);
+    atomic_add(&step.clock->landing_loss, -static_cast<double>(matter.mass * excess * mean));
+  }
+};
+
+/// What the bed's hold on columns needs to know of them, on a device.
+template <class Real, class Device>
+class BedHold {
+ public:
+  /// The constructor takes the separation, the density of the mass [kg/m3], and the map's size; without a threshold
+  /// nothing is stored.
+  BedHold(const Device& device, const SeparationSettings& separation, double density, int map_columns, int map_rows)
+      : acts_(separation.kind != Separation::free),
+        load_(static_cast<Real>(density * separation.depth)),
+        lying_(device) {
+    if (separation.kind != Separation::thin) return;
+    lying_.resize(static_cast<std::size_t>(map_columns) * static_cast<std::size_t>(map_rows));
+    lying_.fill_zero();
+  }
+  /// Whether any column is held.
+  bool acts() const { return acts_; }
+  /// Whether that depends on what lies on the bed.
+  bool measures() const { return lying_.size() > 0; }
+  /// The columns as kernels see them.
+  HeldColumns<Real> columns() { return {measures() ? lying_.data() : nullptr, load_}; }
+  /// The masses that lie on the bed, for MeasureLying.
+  Real* lying() { return lying_.data(); }
+  /// The size of the array [bytes].
+  std::size_t bytes() const { return lying_.bytes(); }
+
+ private:
+  bool acts_;
+  Real load_;
+  Buffer<Real, Device> lying_;
+};
+
+}  // namespace talus
