@@ -23,16 +23,36 @@ TALUS_HD LyingMatter<Real> matter_on_bed(const GridView<Real>& grid, const Nodes
   return matter_in(nodes, at, bed, last);
 }
 
+/// The mass that says how deep the matter over column (i, j) is [kg]: its own but within two columns of an empty one,
+/// where it is that of the heaviest column within two. So the rim of a deep mass counts as deep.
+template <class Real>
+TALUS_HD Real mass_for_depth(const GridView<Real>& grid, const Real* mass, int i, int j) {
+  bool at_edge = false;
+  const Real own = mass_beside(grid, mass, i, j, 0, 0);
+  Real most = own;
+  for (int dy = -2; dy <= 2; ++dy) {
+    for (int dx = -2; dx <= 2; ++dx) {
+      const Real beside = mass_beside(grid, mass, i, j, dx, dy);
+      at_edge = at_edge || !(beside > Real(0));
+      most = beside > most ? beside : most;
+    }
+  }
+  return at_edge ? most : own;
+}
+
 /// The columns that are held on the ground, as kernels see them.
 template <class Real>
 struct HeldColumns {
   const Real* lying = nullptr;  ///< mass that lies on the bed of every column [kg]; null: all are held
   Real load = 0;                ///< mass over area of bed from which a column is free [kg/m2]
 
-  /// Whether column (i, j) is held. The edge of the mass is as deep as the column that its cover is measured by: the
-  /// rim of a deep mass is free with it.
+  /// Whether column (i, j) is held.
   TALUS_HD bool holds(const GridView<Real>& grid, int i, int j) const {
-    return !lying || lying[grid.column(i, j)] < load * bed_under(grid, lying, i, j).area;
+    if (!lying) return true;
+    const int column = grid.column(i, j);
+    const Real sx = grid.slope_x[column], sy = grid.slope_y[column];
+    const Real area = grid.spacing * grid.spacing * sqrt(Real(1) + sx * sx + sy * sy);
+    return mass_for_depth(grid, lying, i, j) < load * area;
   }
 };
 

@@ -104,6 +104,21 @@ TEST(HoldColumns, holds_up_to_the_depth_of_what_lies_on_the_bed) {
   EXPECT_NEAR(c.away(0), 0, 1e-14);
 }
 
+TEST(HoldColumns, takes_the_rim_of_a_deep_mass_for_deep) {
+  HeldColumn c(5, 2, 2);
+  c.lying.assign(64, 0);
+  for (std::size_t j = 0; j < 8; ++j) {
+    for (std::size_t i = 3; i < 8; ++i) c.lying[j * 8 + i] = i < 5 ? 50 : 800;
+  }
+  const auto view = c.grid.view();
+  EXPECT_EQ(mass_for_depth(view, c.lying.data(), 3, 3), 800) << "beside empty columns";
+  EXPECT_EQ(mass_for_depth(view, c.lying.data(), 4, 3), 800);
+  EXPECT_EQ(mass_for_depth(view, c.lying.data(), 5, 3), 800) << "inside: its own";
+  c.lying.assign(64, 800);
+  c.lying[3 * 8 + 4] = 50;
+  EXPECT_EQ(mass_for_depth(view, c.lying.data(), 4, 3), 50) << "a thin place inside";
+}
+
 TEST(CountLanding, counts_what_bed_and_weight_took_of_the_motion_across_the_bed) {
   for (const double impulse : {0.0, 160.0, 400.0, 2000.0}) {
     HeldColumn c(5, -1, -1);
