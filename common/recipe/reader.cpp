@@ -57,6 +57,12 @@ class Reader : public Visitor {
     });
   }
   void one_of(std::string_view key, int& index, const std::vector<std::string_view>& names, std::string_view) override;
+  void names(std::string_view key, std::vector<std::string>& value, const std::vector<std::string_view>& allowed,
+             std::string_view) override {
+    read_list(key, value, [&](const toml::node& node, const std::string& name, std::string& item) {
+      return read_plain(node, name, item, names_text(allowed).c_str()) && is_one_of(node, name, item, allowed);
+    });
+  }
   std::size_t begin_list(std::string_view key, std::size_t size, std::string_view) override {
     return walk_.push_list(key, size);
   }
@@ -77,6 +83,8 @@ class Reader : public Visitor {
     return false;
   }
 
+  bool is_one_of(const toml::node& node, std::string_view key, const std::string& word,
+                 const std::vector<std::string_view>& names);
   bool in_range(const toml::node& node, std::string_view key, double value, const Range& range) {
     if (inside(range, value)) return true;
     walk_.add(node, key, "out of range", "It must be " + range_text(range));
@@ -182,18 +190,21 @@ void Reader::path(std::string_view key, fs::path& value, std::string_view) {
   value = as_it_is ? fs::path(expanded) : (folder_ / expanded).lexically_normal();
 }
 
+bool Reader::is_one_of(const toml::node& node, std::string_view key, const std::string& word,
+                       const std::vector<std::string_view>& names) {
+  if (std::find(names.begin(), names.end(), word) != names.end()) return true;
+  const std::string near = nearest(word, {names.begin(), names.end()});
+  walk_.add(node, key, "no such choice",
+            (near.empty() ? "" : fmt::format("Did you mean \"{}\"? ", near)) + "It must be " + names_text(names));
+  return false;
+}
+
 void Reader::one_of(std::string_view key, int& index, const std::vector<std::string_view>& names, std::string_view) {
   const auto* node = walk_.find(key);
   std::string word;
   if (node == nullptr || !read_plain(*node, key, word, names_text(names).c_str())) return;
-  const auto found = std::find(names.begin(), names.end(), word);
-  if (found != names.end()) {
-    index = static_cast<int>(found - names.begin());
-    return;
-  }
-  const std::string near = nearest(word, {names.begin(), names.end()});
-  walk_.add(*node, key, "no such choice",
-            (near.empty() ? "" : fmt::format("Did you mean \"{}\"? ", near)) + "It must be " + names_text(names));
+  if (is_one_of(*node, key, word, names))
+    index = static_cast<int>(std::find(names.begin(), names.end(), word) - names.begin());
 }
 
 void Reader::renamed(std::string_view old_key, std::string_view key,

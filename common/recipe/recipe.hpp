@@ -53,6 +53,9 @@ class Visitor {
   /// One of `names`; index is its place in the list.
   virtual void one_of(std::string_view key, int& index, const std::vector<std::string_view>& names,
                       std::string_view help) = 0;
+  /// A list of names out of `allowed`; only readers and writers look.
+  virtual void names(std::string_view /*key*/, std::vector<std::string>& /*value*/,
+                     const std::vector<std::string_view>& /*allowed*/, std::string_view /*help*/) {}
   /// Array of tables [[..key]]: begin_list says how many items there are (reader: in the file; writer: `size`).
   virtual std::size_t begin_list(std::string_view key, std::size_t size, std::string_view help) = 0;
   virtual void begin_item(std::size_t item) = 0;

@@ -74,6 +74,12 @@ class Writer : public Visitor {
               std::string_view help) override {
     line(key, toml_text(names.at(static_cast<std::size_t>(index))), help, names_text(names));
   }
+  void names(std::string_view key, std::vector<std::string>& value, const std::vector<std::string_view>& allowed,
+             std::string_view help) override {
+    std::vector<std::string> words;
+    for (const std::string& word : value) words.push_back(toml_text(word));
+    line(key, fmt::format("[{}]", fmt::join(words, ", ")), help, names_text(allowed));
+  }
   std::size_t begin_list(std::string_view key, std::size_t size, std::string_view help) override {
     lists_.push_back({std::string(key), std::string(help), size == 0});
     return size == 0 && (with_help_ || extras_.collected != nullptr) ? 1 : size;

@@ -1,0 +1,50 @@
+#include "common/stage/acceptance.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/stage/stage.hpp"
+
+namespace talus {
+
+namespace {
+
+constexpr const char* prefix = "accepted.";
+
+}  // namespace
+
+void Acceptance::judge(const Implausible& finding) {
+  const auto& [name, fault] = finding;
+  if (std::find(names_.begin(), names_.end(), name) == names_.end()) {
+    throw DataError(Fault{fault.what, fault.why,
+                          fmt::format("{}. To insist on it: accept = [\"{}\"] in [{}]", fault.mend, name, table_)});
+  }
+  const std::string words = fmt::format("{} ({})", fault.what, fault.why), key = prefix + name;
+  const auto known = [&](const auto& fact) { return fact.first == key; };
+  if (std::any_of(facts_.begin(), facts_.end(), known)) return;
+  log_warning(fmt::format("accepted, \"{}\": {}", name, words));
+  facts_.emplace_back(key, words);
+}
+
+void Acceptance::warn_of_unmet() const {
+  for (const std::string& name : names_) {
+    const auto met = [&](const auto& fact) { return fact.first == prefix + name; };
+    if (std::none_of(facts_.begin(), facts_.end(), met))
+      log_warning(
+          fmt::format("[{}]: accept = [\"{}\"]: there was nothing of the kind to accept; leave it out, so that "
+                      "it is refused should it come",
+                      table_, name));
+  }
+}
+
+std::vector<std::pair<std::string, std::string>> accepted_in(
+    const std::vector<std::pair<std::string, std::string>>& facts) {
+  std::vector<std::pair<std::string, std::string>> accepted;
+  for (const auto& [key, words] : facts) {
+    if (key.starts_with(prefix)) accepted.emplace_back(key.substr(std::string(prefix).size()), words);
+  }
+  return accepted;
+}
+
+}  // namespace talus

@@ -1,0 +1,43 @@
+// What looks wrong but may be right: refused, unless the recipe insists on it by name.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/error.hpp"
+
+namespace talus {
+
+/// Something that is not meaningless but hardly ever right. The mend of its fault says what to do where it is wrong;
+/// how to insist on it is added by Acceptance.
+struct Implausible {
+  std::string name;  ///< by which a recipe accepts it: "swapped-surveys"
+  Fault fault;
+};
+
+/// What the analyst insists on: the key `accept` of a recipe's table, and what of it was met.
+class Acceptance {
+ public:
+  Acceptance() = default;
+  /// `table` as messages call it: "preprocess".
+  Acceptance(std::string table, std::vector<std::string> names) : table_(std::move(table)), names_(std::move(names)) {}
+
+  /// Throws DataError that names key and value of the recipe, unless it is accepted: then warns, and keeps it.
+  void judge(const Implausible& finding);
+  /// Warns of names in the recipe that nothing met: the next mistake of this kind would pass unseen.
+  void warn_of_unmet() const;
+  /// What was insisted on: a fact for each, "accepted.NAME" and the words of the refusal. It goes with the results.
+  const std::vector<std::pair<std::string, std::string>>& facts() const { return facts_; }
+
+ private:
+  std::string table_;
+  std::vector<std::string> names_;
+  std::vector<std::pair<std::string, std::string>> facts_;
+};
+
+/// Of facts kept with a result, those of what was insisted on: name, and the words of the refusal.
+std::vector<std::pair<std::string, std::string>> accepted_in(
+    const std::vector<std::pair<std::string, std::string>>& facts);
+
+}  // namespace talus
