@@ -1,0 +1,76 @@
+#include "preprocess/terrain/plausible_ground.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "common/gis/crs.hpp"
+#include "common/gis/ground_scale.hpp"
+#include "common/map/slope.hpp"
+#include "common/stage/stage.hpp"
+
+namespace talus::preprocess {
+
+namespace {
+
+constexpr double refused = 0.01, told = 0.001;  // parts of a length
+constexpr double steep_deg = 50;                // between what terrain is and what it is in feet
+constexpr double steep_share = 0.1;
+constexpr double highest_mountain = 9000;      // [m]
+constexpr std::size_t least_cells_told = 100;  // fewer cells have no usual slope
+
+/// The slope [deg] that a tenth of a surface exceeds; 0 where there is too little of it.
+double steep_tenth(const Raster& surface) {
+  const std::vector<double> all = slope_cosine(surface);
+  std::vector<double> cosine;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!std::isnan(surface.values[i])) cosine.push_back(all[i]);
+  }
+  if (cosine.size() < least_cells_told) return 0;
+  const auto tenth = cosine.begin() + static_cast<std::ptrdiff_t>(steep_share * static_cast<double>(cosine.size()));
+  std::nth_element(cosine.begin(), tenth, cosine.end());
+  return std::acos(std::min(1.0, *tenth)) * 180 / std::numbers::pi;
+}
+
+}  // namespace
+
+void judge_lengths(const MapGrid& grid, Acceptance& acceptance) {
+  const auto scale = grid_scale(grid);
+  if (!scale || scale->worst.falsity() <= told) return;
+  const auto& [middle, worst] = *scale;
+  const std::string words = fmt::format(
+      "working grid in {}: a metre on the ground is {:.4g} m along x and {:.4g} m along y on the map in its middle "
+      "({:.4g} and {:.4g} m where that is worst); areas and volumes come out {:.4g} times as large",
+      crs_name(grid.crs_wkt), middle.x, middle.y, worst.x, worst.y, middle.area);
+  const char* const mend = "set working_crs = \"utm\" in [preprocess], or name a CRS that keeps lengths there";
+  if (worst.falsity() > refused) {
+    acceptance.judge({"false-lengths",
+                      {words, fmt::format("lengths are off by {:.2g} %; 1 % is allowed", 100 * worst.falsity()),
+                       "S" + std::string(mend + 1)}});
+  } else {
+    log_warning(fmt::format("{}. To be free of it, {}", words, mend));
+  }
+}
+
+void judge_heights(const Raster& surface, const std::filesystem::path& file, Acceptance& acceptance) {
+  const double steep = steep_tenth(surface);
+  double highest = -INFINITY;
+  for (const double z : surface.values) {
+    if (z > highest) highest = z;  // false for nodata
+  }
+  if (steep <= steep_deg && highest <= highest_mountain) return;
+  acceptance.judge(
+      {"steep-ground",
+       {fmt::format("{}: a tenth of the ground is steeper than {:.0f} degrees, the highest lies at {:.0f} m",
+                    file.string(), steep, highest),
+        fmt::format("terrain has {:.0f} degrees at most there, and no mountain is higher than {:.0f} m: are heights in "
+                    "feet, which the file does not say, or places in another unit than heights? As feet it were {:.0f} "
+                    "degrees",
+                    steep_deg, highest_mountain,
+                    std::atan(std::tan(steep * std::numbers::pi / 180) * 0.3048) * 180 / std::numbers::pi),
+        "Say so: vertical_unit = \"foot\" (or \"us-survey-foot\") in [preprocess]"}});
+}
+
+}  // namespace talus::preprocess
