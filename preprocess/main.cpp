@@ -27,6 +27,7 @@ Facts facts_of(const preprocess::Prepared& prepared) {
               {"layer_height_m", fmt::format("{:g}", domain.layer_height)},
               {"material_points", std::to_string(prepared.point_count)}};
   for (auto& fact : preprocess::as_facts(prepared.total)) facts.push_back(std::move(fact));
+  facts.insert(facts.end(), prepared.accepted.begin(), prepared.accepted.end());
   if (prepared.sliding_surface) {
     facts.emplace_back(
         "sliding_surface",
@@ -54,6 +55,8 @@ void report(const preprocess::Prepared& prepared) {
   if (prepared.survey) {
     for (const std::string& line : preprocess::as_lines(*prepared.survey)) log_info(line);
   }
+  if (prepared.slide)
+    (prepared.slide->outside_is_large ? log_warning : log_info)(preprocess::outside_words(*prepared.slide));
   const std::string whole = prepared.by_release.size() == 1 ? prepared.by_release.front().first : "all releases";
   for (const std::string& line : preprocess::as_lines(whole, prepared.total)) log_info(line);
   const double count = static_cast<double>(prepared.point_count);
@@ -105,9 +108,11 @@ void run_difference(StageContext& context, const preprocess::Options& options) {
   std::vector<std::string> lines = preprocess::as_lines(survey);
   if (!context.check_only) context.results = preprocess::write_survey(context.out / "survey", survey, nullptr, lines);
   for (const std::string& line : lines) log_info(line);
+  Facts facts{{"crs", crs_name(survey.grid.crs_wkt)}};
+  facts.insert(facts.end(), survey.accepted.facts().begin(), survey.accepted.facts().end());
   if (!context.check_only)
     write_used_recipe(context, stage(), recipe::to_toml(options, "preprocess", false),
-                      {options.before_dem, options.after_dem}, {{"crs", crs_name(survey.grid.crs_wkt)}});
+                      {options.before_dem, options.after_dem}, facts);
 }
 
 preprocess::Options read_options(const StageContext& context) {

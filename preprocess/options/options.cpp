@@ -4,6 +4,8 @@ namespace talus::preprocess {
 
 void Options::describe(recipe::Visitor& v) {
   ElevationOptions::describe(v, *this);
+  v.names("accept", accept, {"swapped-surveys", "false-lengths", "steep-ground"},
+          "what is refused because it is hardly ever right, and here is; it goes with all results");
   recipe::table(v, "coregistration", coregistration, "for (1): after_dem brought onto before_dem", *this);
   recipe::table(v, "difference", difference, "for (1): after_dem less before_dem, and from where on it is believed",
                 *this);

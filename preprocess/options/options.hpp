@@ -1,6 +1,7 @@
 // What [preprocess] of a recipe holds. Every key is named once, in describe().
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "common/recipe/recipe.hpp"
@@ -21,6 +22,7 @@ enum class Way { before_and_after, before_and_sliding_surface, before_and_outlin
 
 /// The keys of [preprocess] itself, then its tables.
 struct Options : ElevationOptions {
+  std::vector<std::string> accept;  ///< what is refused as implausible, insisted on by name
   CoregistrationOptions coregistration;
   DifferenceOptions difference;
   SourceOptions source;

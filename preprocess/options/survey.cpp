@@ -49,10 +49,26 @@ double DifferenceOptions::given_sigma() const { return std::hypot(before_sigma, 
 
 void DepositOptions::describe(recipe::Visitor& v, const Options& all) {
   v.path("polygon", polygon,
-         "outline of the surveyed deposit; empty = what rose in the region of change that holds the source");
+         "outline of the surveyed deposit; empty = what rose in the regions of change that belong to the slide: beside "
+         "the source, beside one another, or down the way that a flow takes from them");
   need_second_model(v, all, !polygon.empty(), "deposit.polygon");
   v.number("threshold_m", threshold, recipe::not_negative,
            "rise beyond which (and beyond the level of detection) a cell belongs to it");
+  v.integer(
+      "bridge_cells", bridge_cells, recipe::Range{0, 1000},
+      "how far a region may lie beside the slide, or beside its way down, in cells: a thin sheet between them may "
+      "lie below the level of detection");
+  v.number("longest_gap", longest_gap, recipe::not_negative,
+           "how long the way down may be without any change, over the distance that the slide has come so far");
+  v.number("steepest_rest_deg", steepest_rest, recipe::Range{0, 90},
+           "steeper ground does not count to that gap, since nothing stays there");
+  v.number("sure_levels", sure_levels, recipe::not_negative,
+           "a region is no noise where enough of it stands out by so many levels of detection");
+  v.integer("sure_cells", sure_cells, recipe::Range{1, 1000000},
+            "how many cells that must be; without noise (level of detection 0) one is enough");
+  v.number("outside_share", outside_share, recipe::not_negative,
+           "no score from talus-preprocess's survey where more than this of the larger of source and deposit rose (or "
+           "fell) outside the slide and no fall (rise) there balances it");
 }
 
 }  // namespace talus::preprocess

@@ -42,7 +42,13 @@ struct DifferenceOptions {
 /// The keys of [preprocess.deposit]: what arrived, for after_dem.
 struct DepositOptions {
   std::filesystem::path polygon;
-  double threshold = 0.5;  ///< [m]
+  double threshold = 0.5;     ///< [m]
+  int bridge_cells = 10;      ///< [cells]
+  double longest_gap = 1;     ///< over the distance from the crown to where the gap begins
+  double steepest_rest = 30;  ///< [deg]
+  double sure_levels = 3;     ///< over the level of detection
+  int sure_cells = 5;
+  double outside_share = 0.2;  ///< of the larger of source and deposit
 
   /// The method declares the keys with defaults, help and what they need of `all` others.
   void describe(recipe::Visitor& v, const Options& all);

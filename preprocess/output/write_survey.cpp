@@ -15,6 +15,7 @@
 #include "common/qgis/project.hpp"
 #include "common/qgis/style.hpp"
 #include "common/stage/stage.hpp"
+#include "preprocess/survey/order.hpp"
 #include "preprocess/survey/survey_json.hpp"
 
 namespace talus::preprocess {
@@ -47,6 +48,12 @@ double correlation_length(const Survey& survey, const Prepared* prepared) {
   return survey.errors.variogram().equivalent_range(area, survey.grid.cell);
 }
 
+void remove_with_style(fs::path file) {
+  std::error_code none_there;
+  fs::remove(file, none_there);
+  fs::remove(file.replace_extension(".qml"), none_there);
+}
+
 /// The rasters over all that both surveys hold, and the volumes, in one walk.
 class BlockFiles {
  public:
@@ -54,9 +61,14 @@ class BlockFiles {
       : survey_(survey),
         before_(folder / "before_aligned.tif", survey.grid, tags_of("surface before")),
         after_(folder / "after_aligned.tif", survey.grid, tags_of("surface after, on the one before")),
-        difference_(folder / "difference.tif", survey.grid, tags_of("surface after less surface before")),
-        sigma_(folder / "difference_sigma.tif", survey.grid, tags_of("standard error of the difference")) {
-    sigma_.set_item("CORRELATION_LENGTH_M", fmt::format("{:.6g}", length));
+        difference_(folder / "difference.tif", survey.grid, tags_of("surface after less surface before")) {
+    const fs::path file = folder / "difference_sigma.tif";
+    if (survey.errors.is_known()) {
+      sigma_.emplace(file, survey.grid, tags_of("standard error of the difference"));
+      sigma_->set_item("CORRELATION_LENGTH_M", fmt::format("{:.6g}", length));
+    } else {
+      remove_with_style(file);  // of an earlier recipe, perhaps
+    }
     if (survey.applied)
       unaligned_.emplace(folder / "difference_unaligned.tif", survey.grid,
                          tags_of("surface after as it came less surface before"));
@@ -68,21 +80,39 @@ class BlockFiles {
       before_.write(block.before);
       after_.write(block.after);
       difference_.write(block.difference);
-      sigma_.write(block.sigma);
+      if (sigma_) sigma_->write(block.sigma);
       if (unaligned_) unaligned_->write(as_it_came(block));
       for (std::size_t i = 0; i < block.difference.values.size(); ++i) {
         const double d = block.difference.values[i], sigma = block.sigma.values[i];
         if (std::isnan(d)) continue;
         raw.add(d, sigma);
-        if (std::abs(d) > survey_.detection.level(sigma)) believed.add(d, sigma);
+        if (!(std::abs(d) > survey_.detection.level(sigma))) continue;
+        believed.add(d, sigma);
+        (d > 0 ? rise_ : fall_).add(std::abs(d), block.before.values[i] + d / 2);
       }
     });
-    for (RasterWriter* file : {&before_, &after_, &difference_, &sigma_}) file->finish();
+    for (RasterWriter* file : {&before_, &after_, &difference_}) file->finish();
+    if (sigma_) sigma_->finish();
     if (unaligned_) unaligned_->finish();
     return {raw.budget(survey_.errors, survey_.grid.cell), believed.budget(survey_.errors, survey_.grid.cell)};
   }
 
+  /// What rose and fell, of believed change; after walk().
+  Order order() const {
+    const double area = survey_.grid.cell * survey_.grid.cell;
+    return {rise_.volume.value() * area, fall_.volume.value() * area, rise_.height(), fall_.height()};
+  }
+
  private:
+  struct Heights {
+    Sum volume, moment;
+    void add(double size, double height) {
+      volume.add(size);
+      moment.add(size * height);
+    }
+    double height() const { return volume.value() > 0 ? moment.value() / volume.value() : 0; }
+  };
+
   Raster as_it_came(const Block& block) const {
     Elevation after = survey_.after;
     after.placement = {};
@@ -92,8 +122,9 @@ class BlockFiles {
   }
 
   const Survey& survey_;
-  RasterWriter before_, after_, difference_, sigma_;
-  std::optional<RasterWriter> unaligned_;
+  RasterWriter before_, after_, difference_;
+  std::optional<RasterWriter> sigma_, unaligned_;
+  Heights rise_, fall_;
 };
 
 /// 1 where ground counted as stable, 0 where not, nodata where nobody looked.
@@ -107,7 +138,10 @@ void write_stable(const fs::path& file, const Survey& survey) {
   writer.finish();
 }
 
-std::string words(const VolumeWithError& v) { return fmt::format("{} +- {} m3", grouped(v.volume), grouped(v.error)); }
+std::string words(const VolumeWithError& v) {
+  if (std::isnan(v.error)) return fmt::format("{} m3 (error not known)", grouped(v.volume));
+  return fmt::format("{} +- {} m3", grouped(v.volume), grouped(v.error));
+}
 
 void say_volumes(const Survey& survey, const Budgets& budgets, const Prepared* prepared,
                  std::vector<std::string>& lines) {
@@ -193,12 +227,11 @@ std::vector<fs::path> write_source(const fs::path& folder, const Prepared& prepa
       {"source", {{"source", outline_above(domain.release_thickness, 0), {{"volume_m3", prepared.total.volume}}}}}};
   if (prepared.slide) {
     const auto& [name, volume] = prepared.slide->volumes.back();
-    layers.front().features.front().numbers.emplace_back("volume_error_m3",
-                                                         prepared.slide->volumes.front().volume.error);
-    layers.push_back({name,
-                      {{name,
-                        outline_above(prepared.slide->deposit, 0),
-                        {{"volume_m3", volume.volume}, {"volume_error_m3", volume.error}}}}});
+    layers.push_back({name, {{name, outline_above(prepared.slide->deposit, 0), {{"volume_m3", volume.volume}}}}});
+    for (std::size_t side = 0; side < layers.size(); ++side) {
+      const double error = prepared.slide->volumes.at(side).volume.error;
+      if (!std::isnan(error)) layers[side].features.front().numbers.emplace_back("volume_error_m3", error);
+    }
   }
   files.push_back(folder / "outlines.gpkg");
   write_outlines(files.back(), domain.grid.crs_wkt, layers);
@@ -210,6 +243,9 @@ std::vector<fs::path> write_survey(const fs::path& folder, const Survey& survey,
   make_folder(folder);
   BlockFiles blocks(folder, survey, correlation_length(survey, prepared));
   const Budgets budgets = blocks.walk();
+  if (const auto wrong = wrong_order(blocks.order(), {survey.before.file.string(), survey.after.file.string()});
+      wrong && !prepared)
+    log_warning(to_string(wrong->fault));
   std::vector<fs::path> files;
   for (const char* name : {"before_aligned.tif", "after_aligned.tif"}) {
     files.push_back(folder / name);
@@ -221,8 +257,10 @@ std::vector<fs::path> write_survey(const fs::path& folder, const Survey& survey,
     files.push_back(folder / "difference_unaligned.tif");
     write_qgis_style(files.back(), difference_style(change_classes, "m"));
   }
-  files.push_back(folder / "difference_sigma.tif");
-  write_qgis_style(files.back(), class_style(sigma_classes, "m"));
+  if (survey.errors.is_known()) {
+    files.push_back(folder / "difference_sigma.tif");
+    write_qgis_style(files.back(), class_style(sigma_classes, "m"));
+  }
   if (!survey.stable.empty()) {
     files.push_back(folder / "stable_ground.tif");
     write_stable(files.back(), survey);

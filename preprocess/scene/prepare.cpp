@@ -3,27 +3,34 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
 #include "common/error.hpp"
+#include "common/map/crop.hpp"
 #include "common/map/slope.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/laboratory/laboratory.hpp"
 #include "preprocess/obstacle/obstacles.hpp"
+#include "preprocess/particles/coarseness.hpp"
 #include "preprocess/particles/seed.hpp"
 #include "preprocess/regions/polygon_cover.hpp"
 #include "preprocess/release/outline_source.hpp"
 #include "preprocess/release/releases.hpp"
 #include "preprocess/release/source.hpp"
 #include "preprocess/scene/bed_zones.hpp"
+#include "preprocess/survey/order.hpp"
 #include "preprocess/terrain/elevation.hpp"
+#include "preprocess/terrain/plausible_ground.hpp"
 #include "preprocess/terrain/surfaces.hpp"
 
 namespace talus::preprocess {
 
 namespace {
+
+constexpr int enough = 512;  // cells in the middle of a map, each way: they tell how steep it is
 
 struct SceneRasters {
   Raster before, bed;
@@ -67,6 +74,9 @@ SceneRasters from_before_and_after(const Options& options) {
   Source source =
       find_source({surfaces[0], surfaces[1], options.after_dem, false, survey.source, levels_of(survey, slide.sigma)},
                   options.source);
+  const Change change = change_between(survey, {surfaces[0], surfaces[1]}, options.deposit, slide);
+  judge_order(order_of(change, sure_regions(change, options.deposit), surfaces[0]),
+              {options.before_dem.string(), options.after_dem.string()}, survey.accepted);
   delineate(survey, {surfaces[0], surfaces[1], source.thickness}, options.deposit, slide);
   std::vector<double> lowering;
   for (std::size_t c = 0; c < surfaces[0].values.size(); ++c)
@@ -203,6 +213,16 @@ std::vector<std::pair<std::string, Raster>> read_bed(const Options& options, con
   return rasters;
 }
 
+/// What the recipe insists on, of what was found in the scene. Surveys were looked at when they were compared.
+Acceptance judged(const Options& options, const SceneRasters& scene) {
+  if (scene.survey) return scene.survey->accepted;
+  Acceptance acceptance("preprocess", options.accept);
+  if (options.way() == Way::laboratory) return acceptance;
+  judge_lengths(scene.bed.grid, acceptance);
+  judge_heights(scene.before, options.first_dem(), acceptance);
+  return acceptance;
+}
+
 /// Of what is released: the releases from the `first` one on.
 Raster total_thickness(const SceneRasters& scene, std::size_t first) {
   Raster total{scene.bed.grid, std::vector<double>(scene.bed.grid.count(), 0.0)};
@@ -268,7 +288,15 @@ Survey survey_of(const Options& given) {
   Elevation before = read_elevation("before_dem", options.before_dem, reading(options, options.before_vertical_unit));
   Elevation after = read_elevation("after_dem", options.after_dem, reading(options, options.after_vertical_unit));
   share_crs({&before, &after}, options.working_crs);
-  return compare_surveys(std::move(before), std::move(after), options);
+  Survey survey = compare_surveys(std::move(before), std::move(after), options);
+  survey.accepted = Acceptance("preprocess", options.accept);
+  judge_lengths(survey.grid, survey.accepted);
+  const MapGrid& grid = survey.grid;
+  const int columns = std::min(enough, grid.columns), rows = std::min(enough, grid.rows);
+  judge_heights(
+      onto_grid(survey.before, cut(grid, {(grid.columns - columns) / 2, (grid.rows - rows) / 2, columns, rows})),
+      options.before_dem, survey.accepted);
+  return survey;
 }
 
 namespace {
@@ -285,14 +313,22 @@ Prepared prepare(const Options& given, Points points) {
   require_sound(given);
   const Options options = with_utm_zone(given);
   SceneRasters scene = read_scene(options);
+  const Acceptance acceptance = judged(options, scene);
+  acceptance.warn_of_unmet();
   lay_erodible(options, scene);
   Prepared prepared;
+  prepared.accepted = acceptance.facts();
   prepared.domain.release_thickness = total_thickness(scene, options.erodible.size());
   const Seeding seeding = seeding_of(options.grid, layer_height(options, prepared.domain.release_thickness));
   prepared.inputs = inputs_of(options);
   const bool laboratory = options.way() == Way::laboratory;
   prepared.point_count = laboratory ? count_box_points(options) : count_points(scene.releases, seeding);
   require_countable(prepared.point_count, options.grid);
+  if (!laboratory) {
+    if (const auto words =
+            too_coarse(prepared.domain.release_thickness, seeding.layer_height, prepared.point_count, options.grid))
+      log_warning(*words);
+  }
 
   Domain& domain = prepared.domain;
   domain.grid = scene.bed.grid;

@@ -13,6 +13,7 @@ namespace talus::preprocess {
 namespace {
 
 constexpr double class_deg = 10;
+constexpr double the_same = 1e-3;            // [m] no survey of ground is as good
 constexpr std::size_t least_in_class = 200;  // of a class: the NMAD of fewer is off by more than 7 %
 
 struct Sample {
@@ -47,8 +48,13 @@ ErrorModel ErrorModel::learnt(const std::vector<Patch>& patches, const Placement
   for (const Patch& patch : patches) misfits.push_back(misfit(patch, placement));
   const std::vector<Sample> samples = samples_of(patches, misfits);
   model.given_ = given > 0;
-  model.typical_ = model.given_ ? given : nmad(misfits_in(samples, 0, INFINITY));
-  for (int n = 0; n * class_deg < 90 && !model.given_; ++n) {
+  const auto same = [](const Sample& s) { return std::abs(s.misfit) < the_same; };
+  model.same_share_ = samples.empty() ? 1.0
+                                      : static_cast<double>(std::count_if(samples.begin(), samples.end(), same)) /
+                                            static_cast<double>(samples.size());
+  model.known_ = model.given_ || model.same_share_ < 0.5;
+  model.typical_ = model.given_ ? given : model.known_ ? nmad(misfits_in(samples, 0, INFINITY)) : 0;
+  for (int n = 0; n * class_deg < 90 && !model.given_ && model.known_; ++n) {
     const double deg = n * class_deg;
     const auto rise = [](double angle) { return std::tan(std::min(angle, 89.9) * std::numbers::pi / 180); };
     const std::vector<double> in_class = misfits_in(samples, rise(deg), rise(deg + class_deg));
@@ -73,7 +79,7 @@ ErrorModel ErrorModel::learnt(const std::vector<Patch>& patches, const Placement
 ErrorModel ErrorModel::of(double given) {
   ErrorModel model;
   model.typical_ = given;
-  model.given_ = true;
+  model.given_ = model.known_ = given > 0;
   return model;
 }
 
@@ -95,6 +101,7 @@ std::vector<double> ErrorModel::sigmas(const Raster& surface) const {
 }
 
 double ErrorModel::of_mean(double mean_square, double area, double cell) const {
+  if (!known_) return std::numeric_limits<double>::quiet_NaN();
   return std::sqrt(mean_square * variogram_.of_mean(area, cell) + offset_ * offset_);
 }
 

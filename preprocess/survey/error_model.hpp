@@ -34,13 +34,19 @@ class ErrorModel {
   const Variogram& variogram() const { return variogram_; }
   double typical() const { return typical_; }  ///< over all stable ground [m]
   double offset() const { return offset_; }    ///< of the mean height of stable ground [m]
+  /// False where nothing tells the error: it is not given, and there is no stable ground, or the models are the same on
+  /// most of it (to 1 mm), as where one was made from the other. sigma() is 0 then, and of_mean() NaN.
+  bool is_known() const { return known_; }
+  /// The share of stable ground where both models are the same to 1 mm; two surveys never agree so.
+  double same_share() const { return same_share_; }
   /// True when the recipe gives the error, so that it was not learnt.
   bool is_given() const { return given_; }
 
  private:
   std::vector<double> slopes_, sigmas_;  // middle of each class [-], NMAD in it [m]
   double typical_ = 0, offset_ = 0;
-  bool given_ = false;
+  double same_share_ = 0;
+  bool given_ = false, known_ = false;
   Variogram variogram_;
 };
 

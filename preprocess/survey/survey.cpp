@@ -98,6 +98,31 @@ void warn_of_vague_shift(const Survey& s) {
       s.after.file.string(), error, error / s.grid.cell, error * std::tan(std::numbers::pi / 6)));
 }
 
+/// What is compared with itself shows no error; that is no sign that it has none.
+void warn_of_unknown_error(const Survey& s) {
+  constexpr double noticeable_share = 0.1;
+  const double same = s.errors.same_share();
+  const std::string mend =
+      "Give what the surveys themselves are good for: before_sigma_m and after_sigma_m in "
+      "[preprocess.difference]";
+  if (!s.errors.is_known()) {
+    log_warning(
+        fmt::format("{}: the error of its difference from {} is not known ({}): no error is stated, and changes "
+                    "count from threshold_m on. {}",
+                    s.after.file.string(), s.before.file.string(),
+                    s.fit.known ? fmt::format("they are the same to 1 mm on {:.0f} % of stable ground, so one "
+                                              "was made from the other",
+                                              100 * same)
+                                : "there is too little stable ground to learn it from",
+                    mend));
+  } else if (!s.errors.is_given() && same > noticeable_share) {
+    log_warning(
+        fmt::format("{} is the same as {} to 1 mm on {:.0f} % of stable ground: part of it was not surveyed "
+                    "twice, and the error learnt there is too small. {}",
+                    s.after.file.string(), s.before.file.string(), 100 * same, mend));
+  }
+}
+
 void say_alignment(const Survey& s) {
   if (!s.fit.known) {
     log_info(
@@ -136,12 +161,16 @@ Survey compare_surveys(Elevation before, Elevation after, const Options& options
   if (!s.fit.known && how.mode == Alignment::apply) refuse_alignment(s, s.grid.count());
   s.applied = how.mode == Alignment::apply;
   if (how.mode != Alignment::off) say_alignment(s);
-  if (!s.fit.known) return s;
+  if (!s.fit.known) {
+    warn_of_unknown_error(s);
+    return s;
+  }
   if (s.applied) {
     s.after.placement = s.fit.placement;
     s.grid = whole_overlap(s.before, s.after, options);
   }
   s.errors = ErrorModel::learnt(patches, s.applied ? s.fit.placement : Placement{}, given);
+  warn_of_unknown_error(s);
   for (Patch& patch : patches) s.stable.emplace_back(patch.before.grid, std::move(patch.stable));
   return s;
 }
@@ -157,6 +186,10 @@ std::vector<std::string> as_lines(const Survey& s) {
         was.median, is.median, was.nmad, is.nmad, was.median_absolute, is.median_absolute));
   else
     lines.push_back(fmt::format("after - before there: median {:+.3f} m, NMAD {:.3f} m", is.median, is.nmad));
+  if (!s.errors.is_known()) {
+    lines.push_back("error of the difference: not known");
+    return lines;
+  }
   const Variogram& v = s.errors.variogram();
   std::string line = fmt::format("error of the difference: {:.3f} m a cell{}; {:.0f} % of its variance independent",
                                  s.errors.typical(),

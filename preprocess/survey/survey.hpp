@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "common/map/polygon.hpp"
+#include "common/stage/acceptance.hpp"
 #include "preprocess/survey/coregistration.hpp"
 #include "preprocess/survey/difference.hpp"
+#include "preprocess/survey/slide_growth.hpp"
 #include "preprocess/terrain/voids.hpp"
 
 namespace talus::preprocess {
@@ -23,6 +25,7 @@ struct Survey {
   Detection detection;
   std::vector<MapPolygon> source, deposit;                    // outlines, where the recipe gives them
   std::vector<std::pair<MapGrid, std::vector<char>>> stable;  // of each patch that was looked at
+  Acceptance accepted;                                        // what the recipe insists on
 };
 
 /// Finds how the later survey lies on the earlier one, corrects it where the options say so, and learns the error of
@@ -48,24 +51,37 @@ struct SurveyedSlide {
   std::vector<double> fill_error;  // of what was filled alone, as much of sigma [m]; empty where nothing was
   Raster filled;  // 1 where the survey before was filled, 2 the one after, 3 both, else 0; no values where none was
   std::vector<SurveyedVolume> volumes;
+  ChangeOutside outside = {};     // what changed elsewhere
+  bool outside_is_large = false;  // and is not explained: beside source and deposit, by itself, or by a given outline
 };
 
 /// Standard error of every cell of a surface, and what was filled (in the order of the two surveys; empty = nothing);
 /// the rest is left to delineate().
 SurveyedSlide slide_on(const Survey& survey, const Raster& before, const std::vector<Filled>& filled);
 
+/// What changed outside the slide, in words.
+std::string outside_words(const SurveyedSlide& slide);
+
 /// Level of detection of every cell.
 std::vector<double> levels_of(const Survey& survey, const Raster& sigma);
+
+/// Two surfaces on the same cells.
+struct SurveyPair {
+  const Raster &before, &after;
+};
+
+/// After less before, with what of it is believed.
+Change change_between(const Survey& survey, const SurveyPair& surfaces, const DepositOptions& given,
+                      const SurveyedSlide& slide);
 
 /// Both surfaces, and the source's thickness on the same cells.
 struct SlideSurfaces {
   const Raster &before, &after, &source;
 };
 
-/// The deposit: within its polygon; else what rose beyond threshold and level of detection in regions of change that
-/// are no noise (five cells beyond three levels) and lie within ten cells of the source or of one another; else, where
-/// nothing rose there, the largest region that rose. Volumes of source and deposit with their errors: of the surveys,
-/// of what was filled, and of where the edge is drawn.
+/// The deposit: within its polygon; else what rose beyond threshold and level of detection in the slide as
+/// sure_regions() and grown_slide() find it, which may be nothing. Volumes of source and deposit with their errors: of
+/// the surveys, of what was filled, and of where the edge is drawn; and what changed outside the slide.
 void delineate(const Survey& survey, const SlideSurfaces& surfaces, const DepositOptions& given, SurveyedSlide& slide);
 
 }  // namespace talus::preprocess

@@ -18,7 +18,12 @@ Json json_of(const Residuals& r) {
           {"median_absolute_m", r.median_absolute}};
 }
 
-Json json_of(const VolumeWithError& v) { return {{"volume_m3", v.volume}, {"error_m3", v.error}, {"area_m2", v.area}}; }
+/// A number, null where it is not known.
+Json number_or_null(double value) { return std::isnan(value) ? Json(nullptr) : Json(value); }
+
+Json json_of(const VolumeWithError& v) {
+  return {{"volume_m3", v.volume}, {"error_m3", number_or_null(v.error)}, {"area_m2", v.area}};
+}
 
 Json json_of(const Budget& b) {
   return {{"erosion", json_of(b.erosion)}, {"deposition", json_of(b.deposition)}, {"net", json_of(b.net)}};
@@ -48,7 +53,11 @@ Json alignment_of(const Survey& s) {
 
 Json error_of(const Survey& s) {
   const Variogram& v = s.errors.variogram();
-  Json json{{"cell_m", s.errors.typical()}, {"given", s.errors.is_given()}, {"mean_height_m", s.errors.offset()}};
+  Json json{{"known", s.errors.is_known()}, {"same_share", s.errors.same_share()}};
+  if (!s.errors.is_known()) return json;
+  json["cell_m"] = s.errors.typical();
+  json["given"] = s.errors.is_given();
+  json["mean_height_m"] = s.errors.offset();
   for (int deg = 0; deg <= 60; deg += 10)
     json["by_slope_m"][std::to_string(deg) + "_deg"] = s.errors.sigma(std::tan(deg * 0.017453292519943295));
   json["variogram"] = {{"nugget", v.nugget},
@@ -60,6 +69,14 @@ Json error_of(const Survey& s) {
                        {"semivariance", v.semivariance}};
   json["level_of_detection_m"] = s.detection.level(s.errors.sigma(0));
   return json;
+}
+
+Json json_of(const ChangeOutside& o) {
+  return {{"rise_m3", o.rise},
+          {"fall_m3", o.fall},
+          {"sure_rise_m3", o.sure_rise},
+          {"sure_fall_m3", o.sure_fall},
+          {"largest_region_m3", o.largest}};
 }
 
 }  // namespace
@@ -75,7 +92,12 @@ std::string survey_json(const Survey& s, const Budgets& budgets, const std::opti
   json["volumes"] = {{"raw", json_of(budgets.raw)}, {"beyond_level_of_detection", json_of(budgets.thresholded)}};
   if (slide) {
     for (const SurveyedVolume& side : slide->volumes) json[side.name] = json_of(side.volume);
+    json["outside_slide"] = json_of(slide->outside);
+    json["outside_slide"]["large"] = slide->outside_is_large;
+    json["outside_slide"]["words"] = outside_words(*slide);
   }
+  json["accepted"] = Json::object();
+  for (const auto& [name, words] : accepted_in(s.accepted.facts())) json["accepted"][name] = words;
   return json.dump(2) + "\n";
 }
 

@@ -3,7 +3,9 @@
 #include "common/gis/polygons.hpp"
 #include "common/gis/read_raster.hpp"
 
+#include <fstream>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "common/map/statistics.hpp"
 #include "data_samples/terrains.hpp"
@@ -78,13 +80,53 @@ TEST(survey, warns_and_leaves_the_later_model_where_it_is_unless_told) {
   EXPECT_DOUBLE_EQ(given.errors.sigma(0.7), 0.5);
 }
 
-TEST(survey, has_no_error_where_the_later_model_was_made_from_the_earlier_one) {
+TEST(survey, states_no_error_where_the_later_model_was_made_from_the_earlier_one) {
   test::Scene scene;
   const Prepared prepared = scene.prepare();
-  EXPECT_EQ(prepared.survey->errors.typical(), 0);
-  EXPECT_EQ(prepared.slide->volumes[0].volume.error, 0);
+  EXPECT_FALSE(prepared.survey->errors.is_known());
+  EXPECT_DOUBLE_EQ(prepared.survey->errors.same_share(), 1);
+  EXPECT_TRUE(std::isnan(prepared.slide->volumes[0].volume.error));
   EXPECT_NEAR(prepared.slide->volumes[0].volume.volume, test::volume_of(scene.bowl),
               1e-6 * test::volume_of(scene.bowl));
+  std::vector<std::string> lines;
+  const auto folder = scene.scratch / "survey";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "difference_sigma.tif") << "of an earlier recipe";
+  write_survey(folder, *prepared.survey, &prepared, lines);
+  EXPECT_FALSE(std::filesystem::exists(folder / "difference_sigma.tif")) << "no raster of zeros to score with";
+  const nlohmann::json json = nlohmann::json::parse(std::ifstream(folder / "survey.json"));
+  EXPECT_EQ(json.at("error").at("known"), false);
+  EXPECT_TRUE(json.at("source").at("error_m3").is_null());
+  scene.options.difference.after_sigma = 0.2;
+  EXPECT_GT(scene.prepare().slide->volumes[0].volume.error, 0) << "given, it is known";
+}
+
+/// A tenth of a millimetre is below what a survey tells, a centimetre is not.
+TEST(survey, knows_the_error_of_two_surveys_however_good_they_are) {
+  for (const double sigma : {1e-4, 0.01}) {
+    const Scratch scratch;
+    std::mt19937 random(5);
+    std::normal_distribution<double> noise(0, sigma);
+    samples::Sample valley = samples::valley(10);
+    for (double& z : valley.rasters[1].second.values) z += noise(random);
+    Options options;
+    options.before_dem = test::write(scratch, "before.tif", valley.rasters[0].second);
+    options.after_dem = test::write(scratch, "after.tif", valley.rasters[1].second);
+    const Survey survey = survey_of(options);
+    EXPECT_TRUE(survey.fit.known);
+    EXPECT_EQ(survey.errors.is_known(), sigma > 1e-3) << sigma;
+  }
+}
+
+TEST(survey, without_stable_ground_states_no_error) {
+  test::Scene scene;
+  const MapGrid small = grid_of(9, 9, 10);
+  const auto plane = [](double x, double y) { return 0.3 * (x - 500000) + 0.1 * (y - 5100000); };
+  scene.rewrite_before(raster_of(small, plane));
+  scene.rewrite_after(raster_of(small, [&](double x, double y) { return plane(x, y) - 5; }));
+  const Survey survey = survey_of(scene.options);
+  EXPECT_FALSE(survey.fit.known);
+  EXPECT_FALSE(survey.errors.is_known());
 }
 
 TEST(survey, refuses_to_align_without_stable_ground) {
@@ -302,9 +344,9 @@ TEST(write_survey, leaves_rasters_outlines_and_styles_for_a_gis) {
   std::vector<std::string> lines;
   const auto files = write_survey(scene.scratch / "survey", *prepared.survey, &prepared, lines);
   for (const char* name :
-       {"before_aligned.tif", "after_aligned.tif", "difference.tif", "difference_sigma.tif", "stable_ground.tif",
-        "source_thickness.tif", "sliding_surface.tif", "deposit_surveyed.tif", "slide_difference.tif", "outlines.gpkg",
-        "survey.qgs", "survey.json", "difference.qml", "source_thickness.qml"})
+       {"before_aligned.tif", "after_aligned.tif", "difference.tif", "stable_ground.tif", "source_thickness.tif",
+        "sliding_surface.tif", "deposit_surveyed.tif", "slide_difference.tif", "outlines.gpkg", "survey.qgs",
+        "survey.json", "difference.qml", "source_thickness.qml"})
     EXPECT_TRUE(std::filesystem::exists(scene.scratch / "survey" / name)) << name;
   const Raster difference = read_raster(scene.scratch / "survey" / "difference.tif");
   for (std::size_t i = 0; i < difference.values.size(); ++i)

@@ -1,0 +1,34 @@
+// Which survey came first, by where mass went.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/stage/acceptance.hpp"
+#include "preprocess/survey/slide_growth.hpp"
+
+namespace talus::preprocess {
+
+/// What rose and what fell, and how high that lies on average, weighed by volume.
+struct Order {
+  double rise = 0, fall = 0;                // [m3]
+  double rise_height = 0, fall_height = 0;  // [m]
+};
+
+/// Of the cells of regions that are no noise; heights are those halfway between both surveys.
+Order order_of(const Change& change, const std::vector<Region>& sure, const Raster& before);
+
+/// The two files as messages call them.
+struct SurveyFiles {
+  std::string before, after;
+};
+
+/// "swapped-surveys" where mass would have gone uphill (what rose lies higher than what fell, and is more than a tenth
+/// of it) or would have come from nowhere (more than twice as much rose as fell); empty where neither is so.
+std::optional<Implausible> wrong_order(const Order& order, const SurveyFiles& files);
+
+/// Throws DataError where that is found, unless it is accepted.
+void judge_order(const Order& order, const SurveyFiles& files, Acceptance& acceptance);
+
+}  // namespace talus::preprocess

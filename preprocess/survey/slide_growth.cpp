@@ -1,0 +1,183 @@
+#include "preprocess/survey/slide_growth.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <unordered_map>
+
+#include "common/map/slope.hpp"
+#include "common/map/sum.hpp"
+#include "preprocess/regions/way_down.hpp"
+#include "preprocess/terrain/surfaces.hpp"
+
+namespace talus::preprocess {
+
+namespace {
+
+/// A slide that grows by regions.
+class Growth {
+ public:
+  Growth(const SlideGround& ground, const DepositOptions& how)
+      : ground_(ground), how_(how), way_(ground.before), cosine_(slope_cosine(ground.before)) {
+    slide_.resize(ground.source.values.size());
+    reached_.resize(slide_.size());
+    std::vector<std::size_t> cells;
+    Sum depth;
+    for (std::size_t c = 0; c < slide_.size(); ++c) {
+      if (!(ground.source.values[c] > 0)) continue;
+      if (cells.empty() || ground.before.values[c] > ground.before.values[crown_]) crown_ = c;
+      cells.push_back(c);
+      depth.add(ground.source.values[c]);
+    }
+    allowance_ = cells.empty() ? 0 : depth.value() / static_cast<double>(cells.size());
+    take(cells);
+  }
+
+  void take(const std::vector<std::size_t>& cells) {
+    for (const std::size_t c : cells) slide_[c] = reached_[c] = 1;
+    for (const std::size_t c : cells) follow(c);
+  }
+
+  bool reaches(const Region& region) const {
+    return std::any_of(region.cells.begin(), region.cells.end(), [&](std::size_t c) { return is_near(c); });
+  }
+
+  const std::vector<char>& slide() const { return slide_; }
+
+ private:
+  /// Marks the way down from a cell as far as its gap is allowed to be long.
+  void follow(std::size_t from) {
+    const MapGrid& grid = ground_.before.grid;
+    const double bridge = how_.bridge_cells,
+                 longest = std::max(bridge, how_.longest_gap * cells_between(grid, crown_, from)),
+                 resting = std::cos(how_.steepest_rest * std::numbers::pi / 180);
+    double gap = 0;
+    std::size_t here = from;
+    for (std::vector<std::size_t> way = way_.next(here); !way.empty(); way = way_.next(here)) {
+      for (const std::size_t next : way) {
+        if (slide_[next]) return;
+        if (cosine_[next] >= resting) gap += cells_between(grid, here, next);
+        if (gap > longest) return;
+        const auto [known, added] = left_.try_emplace(next, longest - gap);
+        if (!added && known->second >= longest - gap) return;  // another way went on from here, and further
+        known->second = longest - gap;
+        reached_[next] = 1;
+        here = next;
+      }
+    }
+  }
+
+  bool is_near(std::size_t cell) const {
+    const MapGrid& grid = ground_.before.grid;
+    const auto columns = static_cast<std::size_t>(grid.columns);
+    const int column = static_cast<int>(cell % columns), row = static_cast<int>(cell / columns),
+              bridge = how_.bridge_cells;
+    for (int r = std::max(0, row - bridge); r <= std::min(grid.rows - 1, row + bridge); ++r) {
+      for (int c = std::max(0, column - bridge); c <= std::min(grid.columns - 1, column + bridge); ++c) {
+        if (reached_[grid.index(c, r)] && !is_barred({column, row}, {c, r})) return true;
+      }
+    }
+    return false;
+  }
+
+  /// True where ground between two cells stands above both by more than a flow is thick.
+  bool is_barred(std::array<int, 2> a, std::array<int, 2> b) const {
+    const Raster& before = ground_.before;
+    const double highest = std::max(before.at(a[0], a[1]), before.at(b[0], b[1])) + allowance_;
+    const int steps = std::max(std::abs(b[0] - a[0]), std::abs(b[1] - a[1]));
+    for (int s = 1; s < steps; ++s) {
+      const double t = static_cast<double>(s) / steps;
+      const int column = static_cast<int>(std::lround(a[0] + t * (b[0] - a[0]))),
+                row = static_cast<int>(std::lround(a[1] + t * (b[1] - a[1])));
+      if (before.at(column, row) > highest) return true;  // false for NaN
+    }
+    return false;
+  }
+
+  const SlideGround& ground_;
+  const DepositOptions& how_;
+  WayDown way_;
+  std::vector<double> cosine_;
+  std::vector<char> slide_, reached_;             // of the slide; of it or of a way down from it
+  std::unordered_map<std::size_t, double> left_;  // how much longer the gap may grow on from a way's cell [cells]
+  std::size_t crown_ = 0;                         // highest cell of the source
+  double allowance_ = 0;                          // [m]
+};
+
+double signed_sum(const Change& change, const std::vector<std::size_t>& cells, const std::vector<char>& inside,
+                  double sign) {
+  Sum sum;
+  for (const std::size_t c : cells) {
+    if (!inside[c]) sum.add(std::max(0.0, sign * change.rise.values[c]));
+  }
+  return sum.value() * change.rise.grid.cell * change.rise.grid.cell;
+}
+
+}  // namespace
+
+bool Change::believed(std::size_t cell) const { return std::abs(rise.values[cell]) > levels[cell]; }
+
+bool Change::stands_out(std::size_t cell, double factor) const {
+  return believed(cell) && std::abs(rise.values[cell]) > factor * noise[cell];
+}
+
+std::vector<Region> sure_regions(const Change& change, const DepositOptions& how) {
+  const MapGrid& grid = change.rise.grid;
+  Raster marked{grid, std::vector<double>(grid.count())};
+  for (std::size_t i = 0; i < grid.count(); ++i) marked.values[i] = change.believed(i);
+  cut_fringe(grid, marked.values);
+  for (std::size_t i = 0; i < grid.count(); ++i) {
+    if (change.stands_out(i, how.sure_levels)) marked.values[i] = 1;
+  }
+  std::vector<Region> regions = lowering_regions(marked, 0.5);
+  std::erase_if(regions, [&](const Region& region) {
+    int sure = 0;
+    bool noisy = false;
+    for (const std::size_t c : region.cells) {
+      sure += change.stands_out(c, how.sure_levels);
+      noisy = noisy || change.noise[c] > 0;
+    }
+    return sure < (noisy ? how.sure_cells : 1);
+  });
+  return regions;
+}
+
+std::vector<char> grown_slide(const SlideGround& ground, std::vector<Region> regions, const DepositOptions& how) {
+  Growth growth(ground, how);
+  for (bool grown = true; grown;) {
+    grown = false;
+    for (Region& region : regions) {
+      if (region.cells.empty() || !growth.reaches(region)) continue;
+      growth.take(region.cells);
+      region.cells.clear();
+      grown = true;
+    }
+  }
+  return growth.slide();
+}
+
+double ChangeOutside::unbalanced() const { return std::abs(sure_rise - sure_fall); }
+
+ChangeOutside change_outside(const Change& change, const std::vector<Region>& sure, const std::vector<char>& inside) {
+  ChangeOutside outside;
+  std::vector<std::size_t> all;
+  for (std::size_t c = 0; c < inside.size(); ++c) {
+    if (change.believed(c)) all.push_back(c);
+  }
+  outside.rise = signed_sum(change, all, inside, 1);
+  outside.fall = signed_sum(change, all, inside, -1);
+  for (const Region& region : sure) {
+    const double rise = signed_sum(change, region.cells, inside, 1),
+                 fall = signed_sum(change, region.cells, inside, -1);
+    outside.sure_rise += rise;
+    outside.sure_fall += fall;
+    if (rise + fall <= outside.largest) continue;
+    outside.largest = rise + fall;
+    const auto cell = std::find_if(region.cells.begin(), region.cells.end(), [&](std::size_t c) { return !inside[c]; });
+    outside.place = place_of(change.rise.grid, *cell);
+  }
+  return outside;
+}
+
+}  // namespace talus::preprocess
