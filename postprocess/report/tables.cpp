@@ -3,6 +3,7 @@
 
 #include "common/map/slope.hpp"
 #include "common/recipe/used.hpp"
+#include "postprocess/fields/release.hpp"
 #include "postprocess/report/parts.hpp"
 #include "postprocess/score/mobility.hpp"
 
@@ -57,8 +58,15 @@ Json volumes_json(const Run& run, double deposit_threshold) {
   const auto cosine = slope_cosine({run.maps.grid, run.maps.terrain});
   const auto& maps = run.maps;
   auto bodies = Json::array();
-  bodies.push_back(
-      both_ways("Release", {maps.grid, maps.initial_thickness}, cosine, release_limit(maps, deposit_threshold)));
+  const double limit = release_limit(maps, deposit_threshold);
+  const ReleaseNumbers release = release_numbers(run, limit);
+  Json released = both_ways("Release", {maps.grid, maps.initial_thickness}, cosine, limit);
+  released["volume_if_normal"] = release.volume_if_normal;
+  released["area_projected"] = release.area;
+  released["area_true"] = release.true_area;
+  released["thickest"] = release.thickest;
+  released["thickest_normal"] = release.thickest_normal;
+  bodies.push_back(std::move(released));
   bodies.push_back(both_ways("Deposit", {maps.grid, maps.deposit_thickness}, cosine, deposit_threshold));
   if (!maps.eroded_depth.empty())
     bodies.push_back(both_ways("Eroded ground", {maps.grid, maps.eroded_depth}, cosine, 0));

@@ -1,8 +1,8 @@
 // What the run itself says: volumes, cost, extent.
 #include <algorithm>
 
-#include "common/map/slope.hpp"
 #include "postprocess/fields/fields.hpp"
+#include "postprocess/fields/release.hpp"
 #include "postprocess/score/sections.hpp"
 
 namespace talus::postprocess {
@@ -21,35 +21,11 @@ double area_above(const std::vector<double>& values, double threshold, double ce
          cell * cell;
 }
 
-/// The release by both conventions. A thickness t over a cell of area A on a slope s is the volume t A where t is
-/// vertical, and t A / cos(s) where it is normal to the slope; A / cos(s) is the true area of the cell.
-struct Release {
-  double volume_if_normal = 0;     // [m3]
-  double area = 0, true_area = 0;  // of the cells thicker than release_limit() [m2]
-  double thickest_normal = 0;      // [m]
-};
-
-Release release_of(const RunMaps& maps, double threshold) {
-  const auto cosine = slope_cosine({maps.grid, maps.terrain});
-  const double area = maps.grid.cell * maps.grid.cell, limit = release_limit(maps, threshold);
-  Release release;
-  for (std::size_t i = 0; i < cosine.size(); ++i) {
-    const double h = maps.initial_thickness[i];
-    if (!(h > 0)) continue;
-    release.volume_if_normal += h * area / cosine[i];
-    release.thickest_normal = std::max(release.thickest_normal, h * cosine[i]);
-    if (!(h > limit)) continue;
-    release.area += area;
-    release.true_area += area / cosine[i];
-  }
-  return release;
-}
-
 void volumes(const Scored& scored, Sheet& sheet) {
   const auto& run = scored.run;
   const auto& s = run.summary;
   const double on_map = volume_under(run.maps.deposit_thickness, run.maps.grid.cell);
-  const auto release = release_of(run.maps, scored.options.deposit_threshold);
+  const auto release = release_numbers(run, release_limit(run.maps, scored.options.deposit_threshold));
   sheet.section("Volume");
   sheet.number("volume_released_m3", "released", "m3", s.volume_released, 0);
   sheet.number("volume_if_thickness_were_slope_normal_m3", "if its thickness were normal to the slope", "m3",
@@ -66,7 +42,7 @@ void volumes(const Scored& scored, Sheet& sheet) {
   sheet.number("volume_on_map_m3", "under the deposit map", "m3", on_map, 0);
   sheet.number("volume_map_error", "(map - end) / released", "", (on_map - s.volume_final) / s.volume_released, 12,
                "nothing was released");
-  sheet.number("max_release_thickness_m", "thickest release", "m", largest(run.maps.initial_thickness), 2);
+  sheet.number("max_release_thickness_m", "thickest release", "m", release.thickest, 2);
   sheet.number("max_release_thickness_slope_normal_m", "thickest release, normal to the slope", "m",
                release.thickest_normal, 2);
 }
