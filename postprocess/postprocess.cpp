@@ -22,6 +22,8 @@
 #include "postprocess/picture/map_picture.hpp"
 #include "postprocess/report/report.hpp"
 #include "postprocess/score/score.hpp"
+#include "postprocess/survey/found_survey.hpp"
+#include "postprocess/survey/order.hpp"
 
 namespace talus::postprocess {
 namespace {
@@ -48,6 +50,12 @@ void check_volume(const fs::path& file, const Run& run) {
     throw DataError({what, fmt::format("they differ by {:.1e} of the release", error), "Run talus-solve again"});
   if (error > 1e-9)
     log_warning(fmt::format("{} ({:.1e} of the release; 1e-9 is expected in double precision)", what, error));
+}
+
+/// True where the analyst insisted on this in a stage before.
+bool accepted_before(const RunSummary& summary, const std::string& name) {
+  const auto accepted = accepted_in(summary.provenance);
+  return std::any_of(accepted.begin(), accepted.end(), [&](const auto& one) { return one.first == name; });
 }
 
 fs::path run_file(const StageContext& context, const Options& options) {
@@ -170,6 +178,7 @@ Dependencies depends(const StageContext& context) {
   options.survey.name_files(context.out);
   const fs::path run = run_file(context, options);
   const SurveyOptions& survey = options.survey;
+  if (survey.from_preprocess && lacks_error(context.out)) options.survey.sigma.clear();
   auto inputs = with_sidecars({survey.thickness, survey.difference, survey.after_dem, survey.before_dem, survey.sigma,
                                survey.peak_thickness, survey.polygon, options.thalweg});
   inputs.insert(inputs.begin(), run);
@@ -181,11 +190,22 @@ Dependencies depends(const StageContext& context) {
 void run(StageContext& context) {
   Job job;
   job.options = context.recipe.read<Options>("postprocess");
-  job.options.survey.find_in(context.out);
+  Acceptance acceptance("postprocess", job.options.accept);
+  const FoundSurvey found = job.options.survey.from_preprocess ? read_found_survey(context.out) : FoundSurvey{};
+  job.options.survey.find_in(context.out, found.error_known);
+  judge_outside(found, context.out, acceptance);
   job.file = run_file(context, job.options);
   job.run = read_run(job.file);
   check_volume(job.file, job.run);
   job.survey = read_survey(job.options.survey, job.run.maps, job.options.footprint_threshold);
+  if (job.survey && !accepted_before(job.run.summary, "swapped-surveys"))
+    judge_order(*job.survey, job.run.maps, acceptance);
+  if (!found.error_known)
+    job.survey->notes.push_back(
+        "Warning: the error of the survey is not known (talus-preprocess says why), so that no score carries one.");
+  acceptance.warn_of_unmet();
+  auto& facts = job.run.summary.provenance;
+  facts.insert(facts.end(), acceptance.facts().begin(), acceptance.facts().end());
   job.thalweg = thalweg_of(job.run, job.options);
   log_info(fmt::format("{}: {} x {} cells of {:g} m, {} frames; {}", job.file.string(), job.run.maps.grid.columns,
                        job.run.maps.grid.rows, job.run.maps.grid.cell, job.run.frames.time.size(),

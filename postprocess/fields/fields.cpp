@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "common/stage/acceptance.hpp"
+
 namespace talus::postprocess {
 
 std::vector<MapField> product_fields(const RunMaps& maps) {
@@ -54,6 +56,13 @@ std::string file_word(const std::string& name) {
     if (!plain) c = '-';
   }
   return word;
+}
+
+std::string accepted_words(const RunSummary& summary) {
+  std::string text;
+  for (const auto& [name, words] : accepted_in(summary.provenance))
+    text += (text.empty() ? "" : "; ") + name + ": " + words;
+  return text;
 }
 
 double volume_under(const std::vector<double>& thickness, double cell) {

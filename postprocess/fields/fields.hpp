@@ -27,6 +27,10 @@ Raster values_raster(const RunMaps& maps, const std::vector<double>& values, boo
 /// A name as part of a file's: letters, digits, dots and dashes, "-" for anything else.
 std::string file_word(const std::string& name);
 
+/// What the analyst insisted on, in the stages before and in this one, as one line for the metadata of maps; "" for
+/// nothing.
+std::string accepted_words(const RunSummary& summary);
+
 /// Volume under a thickness raster, NaN as nothing [m3]. Summed in extended precision: it is compared to 1e-9.
 double volume_under(const std::vector<double>& thickness, double cell);
 

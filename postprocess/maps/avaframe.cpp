@@ -36,7 +36,7 @@ RasterTags tags_of(const Run& run, const Product& product) {
   const double cell = maps.grid.cell;
   const double released = volume_under(maps.initial_thickness, cell);
   const double misread = volume_under(normal_thickness(maps, maps.initial_thickness), cell);
-  return {
+  RasterTags tags{
       fmt::format("{} [{}]", product.words, product.unit),
       product.unit,
       {{"TITLE", run.summary.title},
@@ -46,6 +46,9 @@ RasterTags tags_of(const Run& run, const Product& product) {
        {"RELEASE_VOLUME_MEANING", "vertical thickness over map area, or normal thickness over the area of the slope"},
        {"RELEASE_VOLUME_IF_NORMAL_WERE_VERTICAL_M3", fmt::format("{:.10g}", misread)},
        {"SOURCE", "Talus " + run.summary.version}}};
+  if (const std::string accepted = accepted_words(run.summary); !accepted.empty())
+    tags.metadata.emplace_back("ACCEPTED", accepted);
+  return tags;
 }
 
 /// Esri's ASCII grid, corner by the centre of the cell and nodata as nan, as AvaFrame writes them. Every number has a

@@ -37,6 +37,8 @@ std::vector<std::filesystem::path> write_geotiffs(const std::filesystem::path& f
         {"TIME_END_S", fmt::format("{}", run.summary.time_end)},
         {"NODATA_MEANING", meaning_of_nodata(zero_inside, outside)},
         {"SOURCE", "Talus " + run.summary.version}};
+    if (const std::string accepted = accepted_words(run.summary); !accepted.empty())
+      tags.metadata.emplace_back("ACCEPTED", accepted);
     files.push_back(folder / (name + ".tif"));
     write_cog(files.back(), raster, tags);
   };

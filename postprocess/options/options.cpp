@@ -66,11 +66,12 @@ void SurveyOptions::name_files(const std::filesystem::path& out) {
   sigma = out / "survey" / "difference_sigma.tif";
 }
 
-void SurveyOptions::find_in(const std::filesystem::path& out) {
+void SurveyOptions::find_in(const std::filesystem::path& out, bool error_known) {
   name_files(out);
   if (!from_preprocess) return;
+  if (!error_known) sigma.clear();
   for (const auto& file : {difference, sigma}) {
-    if (!std::filesystem::exists(file))
+    if (!file.empty() && !std::filesystem::exists(file))
       throw DataError({file.string() + ": no such file",
                        "[postprocess.survey] from_preprocess = true, and talus-preprocess writes it where before_dem "
                        "and after_dem are given",
@@ -124,6 +125,8 @@ void Options::describe(recipe::Visitor& v) {
       "lower limits of the map's thickness classes, rising; empty: 0.1 5 10 25 50 100, or 0.1 0.5 1 2 5 10 where the "
       "deposit is thinner than 12 m");
   need_classes(v, classes);
+  v.names("accept", accept, {"change-outside-slide", "swapped-surveys"},
+          "what is refused because it is hardly ever right, and here is; it goes with all results");
   v.text("institution", institution, "who made this, for the NetCDF file");
   v.flag("report", report, "write report.html: maps, profiles, scores and settings on one page to send on");
   recipe::choice(v, "animation", animation,

@@ -39,8 +39,8 @@ struct SurveyOptions {
   }  ///< not an outline only
   /// Names the files under `out` where from_preprocess asks for them, whether they are there or not.
   void name_files(const std::filesystem::path& out);
-  /// Names them likewise. Throws DataError when they are not there.
-  void find_in(const std::filesystem::path& out);
+  /// Names them likewise, without a sigma where talus-preprocess knows none. Throws DataError when they are not there.
+  void find_in(const std::filesystem::path& out, bool error_known = true);
   bool given() const { return measures() || !peak_thickness.empty() || !polygon.empty(); }
   /// The method declares the keys with defaults, help and what they need of one another.
   void describe(recipe::Visitor& v);
@@ -63,6 +63,7 @@ struct Options {
   std::filesystem::path thalweg;  // line along which run-out is measured; empty = found from the run
   AvaFrameFormat avaframe_format = AvaFrameFormat::tif;
   SurveyOptions survey;
+  std::vector<std::string> accept;  // what is refused as implausible, insisted on by name
 
   /// The method declares the keys with defaults, help and what they need of one another.
   void describe(recipe::Visitor& v);

@@ -1,5 +1,6 @@
 #include "postprocess/score/score.hpp"
 
+#include "common/stage/acceptance.hpp"
 #include "postprocess/score/sections.hpp"
 
 namespace talus::postprocess {
@@ -12,6 +13,18 @@ std::optional<double> Score::number(const std::string& key) const {
   }
   return std::nullopt;
 }
+
+namespace {
+
+/// What was refused as implausible, and insisted on.
+void add_accepted(const Run& run, Sheet& sheet) {
+  const auto accepted = accepted_in(run.summary.provenance);
+  if (accepted.empty()) return;
+  sheet.section("Accepted by the analyst");
+  for (const auto& [name, words] : accepted) sheet.text("accepted." + name, name, words);
+}
+
+}  // namespace
 
 Score make_score(const Run& run, const Options& options, const std::optional<Survey>& survey, const Thalweg& thalweg) {
   Scored scored{run, options, survey ? &*survey : nullptr, thalweg, crown(run.maps, options.deposit_threshold), 0};
@@ -26,6 +39,7 @@ Score make_score(const Run& run, const Options& options, const std::optional<Sur
   } else {
     sheet.skip({"footprint_csi", "deposit_csi", "thickness_rmse_m", "thickness_bias_m"}, "no survey is given");
   }
+  add_accepted(run, sheet);
   add_definitions(scored, sheet);
   return sheet.take();
 }

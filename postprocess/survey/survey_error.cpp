@@ -15,8 +15,15 @@
 namespace talus::postprocess {
 namespace {
 
-/// The raster of sigma on the survey's grid. A measured value without a sigma is not known well enough to be compared;
-/// 0 stands for ground that was mapped as untouched, and needs none.
+/// No survey is free of error: 0 is what comes out where one model was made from the other.
+void refuse_zeros(const std::filesystem::path& file, const Raster& sigma) {
+  if (std::any_of(sigma.values.begin(), sigma.values.end(), [](double s) { return s > 0; })) return;
+  throw DataError({file.string() + ": a standard error of 0 m everywhere", "no survey is free of error",
+                   "Give its true error (sigma_m), or leave sigma out: no score carries an error then"});
+}
+
+/// The raster of sigma on the survey's grid. A measured value without a sigma, or with one of 0, is not known well
+/// enough to be compared; a measured 0 stands for ground that was mapped as untouched, and needs none.
 std::vector<double> read_sigma(const SurveyOptions& options, const RunMaps& maps, Survey& survey) {
   if (options.sigma.empty()) return std::vector<double>(survey.grid.count(), options.sigma_m);
   auto raster = read_raster(options.sigma);
@@ -24,13 +31,14 @@ std::vector<double> read_sigma(const SurveyOptions& options, const RunMaps& maps
   survey.inputs.push_back(options.sigma);
   if (!options.thickness.empty()) to_vertical(raster, options, maps);
   if (!same_grid(raster.grid, survey.grid)) raster = resample_elevation(raster, survey.grid);
+  refuse_zeros(options.sigma, raster);
   std::size_t without = 0;
   for (std::size_t i = 0; i < raster.values.size(); ++i) {
     double& sigma = raster.values[i];
     if (sigma < 0)
       throw DataError({fmt::format("{}: a standard error of {:g} m", options.sigma.string(), sigma),
                        "it cannot be negative", "Give the raster of 1 sigma, in metres"});
-    if (!std::isnan(sigma) || std::isnan(survey.measured[i])) continue;
+    if (sigma > 0 || std::isnan(survey.measured[i])) continue;
     if (survey.measured[i] == 0) {
       sigma = 0;
       continue;

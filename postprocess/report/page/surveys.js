@@ -81,6 +81,11 @@ function alignmentRows({ alignment: a, cell_m: cell }) {
 }
 
 function errorRows({ error: e }) {
+  if (e.known === false)
+    return [
+      group("Error of the difference"),
+      row("standard error of a cell", "not known", "Nothing tells it: the models were not surveyed independently."),
+    ];
   const v = e.variogram,
     alike = [
       [v.short_sill, v.short_range_m],
@@ -109,7 +114,7 @@ function errorRows({ error: e }) {
   ];
 }
 
-function volumeRows({ volumes, source, deposit }) {
+function volumeRows({ volumes, source, deposit, outside_slide: outside }) {
   const rows = [group("Volumes, \u00b1 one standard error")];
   for (const [body, name] of [
     [source, "source"],
@@ -117,6 +122,15 @@ function volumeRows({ volumes, source, deposit }) {
   ]) {
     if (body) rows.push(row(`${name}, as surveyed`, volumeWords(body), `On ${area(body.area_m2)}.`));
   }
+  if (outside)
+    rows.push(
+      row(
+        "rise outside the slide, no noise",
+        volume(outside.sure_rise_m3),
+        outside.large ? "Too much for a score." : "",
+      ),
+      row("fall outside the slide, no noise", volume(outside.sure_fall_m3)),
+    );
   for (const [budget, name] of [
     [volumes.raw, "all cells"],
     [volumes.beyond_level_of_detection, "beyond the level of detection"],

@@ -60,6 +60,16 @@ TEST_F(MapFiles, geotiffs_keep_the_volume_and_say_what_they_are) {
   }
 }
 
+TEST_F(MapFiles, say_what_the_analyst_insisted_on) {
+  TALUS_NEED_TOOL("command -v gdalinfo", "gdal-bin");
+  auto run = run_;
+  run.summary.provenance = {{"accepted.swapped-surveys", "what rose lies higher"}};
+  for (const auto& file : write_geotiffs(scratch_.folder(), run)) {
+    const auto info = output_of("gdalinfo '" + file.string() + "'");
+    EXPECT_NE(info.find("ACCEPTED=swapped-surveys: what rose lies higher"), std::string::npos) << info;
+  }
+}
+
 TEST_F(MapFiles, geotiffs_pass_gdals_own_cog_validator) {
   TALUS_NEED_TOOL(TALUS_COG_VALIDATOR);
   for (const auto& file : write_geotiffs(scratch_.folder(), run_)) test::expect_valid_cog(file);

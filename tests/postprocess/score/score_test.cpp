@@ -111,6 +111,30 @@ TEST(Score, says_the_release_by_both_conventions) {
   EXPECT_NEAR(json.at("max_release_thickness_slope_normal_m").get<double>(), 4.8, 1e-9);
 }
 
+/// The map of the start is spread by shape functions; the release itself has sharp edges.
+TEST(Score, says_of_the_release_what_preprocess_said) {
+  auto run = small_run();
+  run.summary.provenance = {{"released_area_projected_m2", "3600"},
+                            {"released_area_true_m2", "4281.5"},
+                            {"volume_if_thickness_were_slope_normal_m3", "25999"},
+                            {"max_thickness_vertical_m", "15.69"},
+                            {"max_thickness_slope_normal_m", "14.88"}};
+  const auto json = json_of(run, {});
+  EXPECT_EQ(json.at("release_area_m2"), 3600);
+  EXPECT_EQ(json.at("release_true_area_m2"), 4281.5);
+  EXPECT_EQ(json.at("volume_if_thickness_were_slope_normal_m3"), 25999);
+  EXPECT_EQ(json.at("max_release_thickness_m"), 15.69);
+  EXPECT_EQ(json.at("max_release_thickness_slope_normal_m"), 14.88);
+}
+
+TEST(Score, names_what_the_analyst_insisted_on) {
+  auto run = small_run();
+  EXPECT_FALSE(json_of(run, {}).contains("accepted.swapped-surveys"));
+  run.summary.provenance = {{"scene", "small"}, {"accepted.swapped-surveys", "what rose lies higher"}};
+  EXPECT_EQ(json_of(run, {}).at("accepted.swapped-surveys"), "what rose lies higher");
+  EXPECT_NE(to_table(make_score(run, {}, {})).find("Accepted by the analyst"), std::string::npos);
+}
+
 TEST(Score, measures_runout_along_the_thalweg) {
   const auto run = small_run();
   const auto json = json_of(run, {});

@@ -10,6 +10,8 @@
 
 #include "common/gis/coordinates.hpp"
 #include "postprocess/fields/fields.hpp"
+#include "postprocess/survey/found_survey.hpp"
+#include "postprocess/survey/order.hpp"
 #include "tests/postprocess/scene.hpp"
 
 namespace talus::postprocess {
@@ -270,6 +272,69 @@ TEST_F(SurveyTest, finds_what_preprocess_left_or_says_what_is_missing) {
   options_.find_in(scratch_ / "out");
   EXPECT_EQ(options_.difference, scratch_ / "out" / "survey" / "slide_difference.tif");
   EXPECT_EQ(options_.sigma, scratch_ / "out" / "survey" / "difference_sigma.tif");
+}
+
+TEST_F(SurveyTest, takes_no_error_of_zero_for_a_known_one) {
+  options_.difference = raster("change.tif", small_grid(), some_change());
+  std::vector<double> sigma(small_grid().count(), 0.0);
+  options_.sigma = raster("zero.tif", small_grid(), sigma);
+  EXPECT_NE(fault().find("zero.tif: a standard error of 0 m everywhere"), std::string::npos) << fault();
+  const auto changed = some_change();
+  const auto cell = static_cast<std::size_t>(
+      std::find_if(changed.begin(), changed.end(), [](double change) { return change != 0; }) - changed.begin());
+  std::fill(sigma.begin(), sigma.end(), 0.3);
+  sigma[cell] = 0;
+  options_.sigma = raster("one.tif", small_grid(), sigma);
+  EXPECT_TRUE(std::isnan(read_survey(options_, run_.maps, 1.0)->measured[cell]));
+}
+
+TEST_F(SurveyTest, without_a_known_error_wants_no_raster_of_it) {
+  options_.from_preprocess = true;
+  std::filesystem::create_directories(scratch_ / "out" / "survey");
+  std::filesystem::copy_file(raster("slide_difference.tif", small_grid(), some_change()),
+                             scratch_ / "out" / "survey" / "slide_difference.tif");
+  EXPECT_THROW(options_.find_in(scratch_ / "out"), DataError);
+  options_.find_in(scratch_ / "out", false);
+  EXPECT_TRUE(options_.sigma.empty());
+}
+
+TEST_F(SurveyTest, refuses_to_score_when_much_changed_outside_the_slide) {
+  const auto out = scratch_ / "out";
+  std::filesystem::create_directories(out / "survey");
+  EXPECT_FALSE(read_found_survey(out).outside_is_large) << "no survey.json";
+  std::ofstream(out / "survey" / "survey.json")
+      << R"({"error": {"known": false}, "outside_slide": {"large": true, "words": "9,059 m3 rose"}})";
+  const FoundSurvey found = read_found_survey(out);
+  EXPECT_FALSE(found.error_known);
+  EXPECT_TRUE(lacks_error(out));
+  Acceptance none("postprocess", {}), insisted("postprocess", {"change-outside-slide"});
+  const std::string fault = test::fault_of<DataError>([&] { judge_outside(found, out, none); });
+  EXPECT_NE(fault.find("9,059 m3 rose"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("accept = [\"change-outside-slide\"] in [postprocess]"), std::string::npos) << fault;
+  judge_outside(found, out, insisted);
+  EXPECT_EQ(accepted_in(insisted.facts()).at(0).first, "change-outside-slide");
+  std::ofstream(out / "survey" / "survey.json") << "{\"error\": ";
+  EXPECT_THROW(read_found_survey(out), DataError);
+}
+
+/// The small slope falls to the east.
+TEST_F(SurveyTest, refuses_a_change_that_carries_mass_uphill) {
+  const talus::Run run = small_run();
+  Survey survey;
+  survey.grid = run.maps.grid;
+  survey.deposit_is_change = true;
+  survey.footprint_threshold = 1;
+  survey.measured = block(survey.grid, 3, 7, 10, 20, -6.0);
+  const auto risen = block(survey.grid, 25, 35, 10, 20, 2.4);
+  for (std::size_t i = 0; i < risen.size(); ++i) survey.measured[i] += risen[i];
+  Acceptance none("postprocess", {}), insisted("postprocess", {"swapped-surveys"});
+  judge_order(survey, run.maps, none);
+  for (double& change : survey.measured) change = -change;
+  const std::string fault = test::fault_of<DataError>([&] { judge_order(survey, run.maps, none); });
+  EXPECT_NE(fault.find("accept = [\"swapped-surveys\"] in [postprocess]"), std::string::npos) << fault;
+  judge_order(survey, run.maps, insisted);
+  survey.deposit_is_change = false;
+  judge_order(survey, run.maps, none);
 }
 
 }  // namespace

@@ -1,0 +1,55 @@
+#include "postprocess/survey/found_survey.hpp"
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+namespace talus::postprocess {
+
+namespace {
+
+using Json = nlohmann::json;
+
+std::filesystem::path file_in(const std::filesystem::path& out) { return out / "survey" / "survey.json"; }
+
+/// The file, null where there is none, discarded where it is no JSON.
+Json read_json(const std::filesystem::path& out) {
+  std::ifstream stream(file_in(out));
+  return stream ? Json::parse(stream, nullptr, false) : Json(nullptr);
+}
+
+Json table(const Json& in, const char* key) {
+  return in.is_object() && in.contains(key) && in.at(key).is_object() ? in.at(key) : Json::object();
+}
+
+bool flag(const Json& in, const char* key, bool otherwise) {
+  return in.contains(key) && in.at(key).is_boolean() ? in.at(key).get<bool>() : otherwise;
+}
+
+bool error_known(const Json& json) { return flag(table(json, "error"), "known", true); }
+
+}  // namespace
+
+FoundSurvey read_found_survey(const std::filesystem::path& out) {
+  const Json json = read_json(out);
+  if (json.is_null()) return {};
+  if (!json.is_object())
+    throw DataError(
+        {file_in(out).string() + ": it is no JSON", "it was cut short or edited", "Run talus-preprocess again"});
+  const Json outside = table(json, "outside_slide");
+  FoundSurvey found{error_known(json), flag(outside, "large", false), ""};
+  if (outside.contains("words") && outside.at("words").is_string())
+    found.outside_words = outside.at("words").get<std::string>();
+  return found;
+}
+
+bool lacks_error(const std::filesystem::path& out) { return !error_known(read_json(out)); }
+
+void judge_outside(const FoundSurvey& found, const std::filesystem::path& out, Acceptance& acceptance) {
+  if (!found.outside_is_large) return;
+  acceptance.judge({"change-outside-slide",
+                    {file_in(out).string() + ": " + found.outside_words,
+                     "the surveyed deposit, and every score against it, would lack what belongs to the slide",
+                     "Look at survey/survey.qgs, set these keys, and run talus-preprocess again"}});
+}
+
+}  // namespace talus::postprocess

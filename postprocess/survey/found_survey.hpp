@@ -1,0 +1,28 @@
+// What talus-preprocess says of the survey that it leaves for the score.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "common/stage/acceptance.hpp"
+
+namespace talus::postprocess {
+
+/// What OUT/survey/survey.json says.
+struct FoundSurvey {
+  bool error_known = true;
+  bool outside_is_large = false;  ///< much changed outside the slide, and nothing explains it
+  std::string outside_words;
+};
+
+/// Reads it; what it does not say (as those of earlier versions) is as above. Throws DataError where it is no JSON.
+FoundSurvey read_found_survey(const std::filesystem::path& out);
+
+/// True where it says that the error is not known, so that there is no raster of it. Never throws.
+bool lacks_error(const std::filesystem::path& out);
+
+/// Throws DataError unless accepted ("change-outside-slide") where much changed outside the slide: the deposit, and
+/// with it every score, would lack it.
+void judge_outside(const FoundSurvey& found, const std::filesystem::path& out, Acceptance& acceptance);
+
+}  // namespace talus::postprocess
