@@ -1,0 +1,43 @@
+// What is implausible is refused unless it is accepted by name.
+#include "common/stage/acceptance.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/common/scratch.hpp"
+
+namespace talus {
+namespace {
+
+const Implausible uphill{"swapped-surveys", {"after.tif: 9 m3 rose", "mass goes down", "Swap them"}};
+
+TEST(acceptance, refuses_with_the_key_by_which_to_insist) {
+  Acceptance none("preprocess", {"false-lengths"});
+  EXPECT_EQ(test::fault_of<DataError>([&] { none.judge(uphill); }),
+            "after.tif: 9 m3 rose (mass goes down). Swap them. To insist on it: accept = [\"swapped-surveys\"] in "
+            "[preprocess]");
+  EXPECT_TRUE(none.facts().empty());
+}
+
+TEST(acceptance, keeps_what_was_insisted_on_once) {
+  Acceptance insisted("preprocess", {"swapped-surveys"});
+  insisted.judge(uphill);
+  insisted.judge(uphill);
+  ASSERT_EQ(insisted.facts().size(), 1u);
+  const auto accepted = accepted_in({{"scene", "x"}, insisted.facts()[0]});
+  ASSERT_EQ(accepted.size(), 1u);
+  EXPECT_EQ(accepted[0].first, "swapped-surveys");
+  EXPECT_EQ(accepted[0].second, "after.tif: 9 m3 rose (mass goes down)");
+}
+
+TEST(acceptance, warns_of_a_name_that_nothing_met) {
+  Acceptance insisted("preprocess", {"swapped-surveys", "false-lengths"});
+  insisted.judge(uphill);
+  testing::internal::CaptureStderr();
+  insisted.warn_of_unmet();
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_NE(said.find("accept = [\"false-lengths\"]"), std::string::npos) << said;
+  EXPECT_EQ(said.find("swapped-surveys"), std::string::npos) << said;
+}
+
+}  // namespace
+}  // namespace talus
