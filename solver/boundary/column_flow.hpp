@@ -53,7 +53,7 @@ TALUS_HD Number mass_beside(const GridView<Real>& grid, const Number* mass, int 
 /// What a line of columns from outside the mass (the first) inwards tells of how much of the second's bed is covered:
 /// its share of the heaviest column nearby where the mass ends in a wall, the slope of the masses about it over the
 /// slope further in where it ends in a wedge, whose masses fall with the depth as well. A wall's masses rise no further
-/// from the third of them on, a wedge's do.
+/// from the third of them on, a wedge's do (T13g).
 template <class Number>
 TALUS_HD Number cover_at_edge(const Number (&line)[5], Number heaviest) {
   const Number as_wall = line[1] / heaviest;

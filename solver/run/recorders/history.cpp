@@ -57,7 +57,7 @@ std::vector<std::unique_ptr<Recorder>> make_recorders(const SolveOptions& option
   if (options.energy_budget) recorders.push_back(std::make_unique<RunRecorder>(budget_columns));
   if (!options.obstacles.empty()) recorders.push_back(std::make_unique<ObstacleRecorder>(options));
   if (!options.gauges.empty()) recorders.push_back(std::make_unique<GaugeRecorder>(options, scene));
-  if (StretchRecorder::watches(options)) recorders.push_back(std::make_unique<StretchRecorder>(options));
+  if (StretchRecorder::watches(options)) recorders.push_back(std::make_unique<StretchRecorder>(options, scene));
   return recorders;
 }
 

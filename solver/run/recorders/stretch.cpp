@@ -13,19 +13,12 @@ namespace {
 
 constexpr Column<Overstretched> stretch_columns[] = {
     {"overstretched_points", "1", [](const Overstretched& o) { return o.points; }},
+    {"points_apart", "1", [](const Overstretched& o) { return o.apart; }},
     {"largest_stretch", "1", [](const Overstretched& o) { return o.largest; }},
 };
 
-/// The logarithm of the stretch from which the law's nominal stress falls; infinite where it never does.
-double strain_limit(const MaterialOptions& material) {
-  return visit_law(material.model, [](auto law) {
-    if constexpr (requires { law.largest_strain; }) {
-      return law.largest_strain;
-    } else {
-      return std::numeric_limits<double>::infinity();
-    }
-  });
-}
+/// The least stretch that counts as parting, where points lie a cell apart from the start.
+constexpr double least_parting = 1.2;
 
 double largest_principal(const Sym3<double>& strain) {
   double values[3];
@@ -41,13 +34,23 @@ double most(const RunHistory& history, const char* column) {
 
 }  // namespace
 
-StretchRecorder::StretchRecorder(const SolveOptions& options)
-    : TableRecorder(stretch_columns, {Place{}}), limits_{strain_limit(options.material)} {
-  for (const PartOptions& part : options.parts) limits_.push_back(strain_limit(part.material));
+StretchRecorder::Limits StretchRecorder::limits_of(const MaterialOptions& material) {
+  return visit_law(material.model, [](auto law) {
+    Limits limits{law.keeps_strain && !law.stiffness_is_free, std::numeric_limits<double>::infinity()};
+    if constexpr (requires { law.largest_strain; }) limits.largest_strain = law.largest_strain;
+    return limits;
+  });
+}
+
+StretchRecorder::StretchRecorder(const SolveOptions& options, const Scene& scene)
+    : TableRecorder(stretch_columns, {Place{}}),
+      limits_{limits_of(options.material)},
+      cell_volume_(scene.grid.spacing * scene.grid.spacing * scene.grid.layer_height) {
+  for (const PartOptions& part : options.parts) limits_.push_back(limits_of(part.material));
 }
 
 bool StretchRecorder::watches(const SolveOptions& options) {
-  return options.any_material([](const MaterialOptions& m) { return std::isfinite(strain_limit(m)); });
+  return options.any_material([](const MaterialOptions& m) { return limits_of(m).elastic; });
 }
 
 std::vector<Overstretched> StretchRecorder::samples(const Instant& now) const {
@@ -55,29 +58,41 @@ std::vector<Overstretched> StretchRecorder::samples(const Instant& now) const {
   Overstretched found;
   double largest = 0;  // logarithmic
   for (std::size_t p = 0; p < points.size(); ++p) {
-    const double limit = limits_[static_cast<std::size_t>(points.material[p])];
-    if (points.cell[0][p] < 0 || !std::isfinite(limit)) continue;
+    const Limits& limits = limits_[static_cast<std::size_t>(points.material[p])];
+    if (points.cell[0][p] < 0 || !limits.elastic) continue;
     const auto& e = points.elastic;
     const Sym3<double> strain{e[0][p], e[1][p], e[2][p], e[3][p], e[4][p], e[5][p]};
+    const double parts = std::log(std::max(least_parting, widest_spacing * std::cbrt(cell_volume_ / points.volume[p])));
     // The tensor's size bounds its principal values: most points need no more than that.
-    const double bar = std::min(largest, limit);
+    const double bar = std::max(0.0, std::min({largest, limits.largest_strain, parts}));
     if (norm_squared(strain) <= bar * bar) continue;
     const double principal = largest_principal(strain);
     largest = std::max(largest, principal);
-    if (principal > limit) ++found.points;
+    if (principal > limits.largest_strain) ++found.points;
+    if (principal > parts) ++found.apart;
   }
   found.largest = std::exp(largest);
   return {found};
 }
 
 std::vector<std::string> StretchRecorder::warnings(const RunHistory& history) const {
-  const double points = most(history, "overstretched_points");
-  if (!(points > 0)) return {};
-  return {
-      fmt::format("{:.0f} points of model = \"hencky\" were stretched by a factor of up to {:.3g}. Beyond e = 2.72 "
-                  "their nominal stress falls, and what is pulled further tears. Take model = \"neo-hookean\", "
-                  "whose stress grows with every stretch",
-                  points, most(history, "largest_stretch"))};
+  std::vector<std::string> lines;
+  const double points = most(history, "overstretched_points"), apart = most(history, "points_apart");
+  const double largest = most(history, "largest_stretch");
+  if (points > 0)
+    lines.push_back(
+        fmt::format("{:.0f} points of model = \"hencky\" were stretched by a factor of up to {:.3g}. Beyond e = 2.72 "
+                    "their nominal stress falls, and what is pulled further tears. Take model = \"neo-hookean\", "
+                    "whose stress grows with every stretch",
+                    points, largest));
+  if (apart > 0)
+    lines.push_back(
+        fmt::format("{:.0f} points were stretched by a factor of up to {:.3g}, to more than {:g} of a cell from the "
+                    "next. There the grid hardly ties them together, and the body may part where no strength says "
+                    "so. Take more points_per_cell, or shape = \"gimp\"; the energies of the history show a tear as "
+                    "a fall",
+                    apart, largest, widest_spacing));
+  return lines;
 }
 
 }  // namespace talus::solver

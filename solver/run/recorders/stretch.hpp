@@ -6,18 +6,24 @@
 
 namespace talus::solver {
 
-/// The points beyond the stretch from which the nominal stress of their law falls (Law::largest_strain), so that they
-/// are torn apart by the law and not by a strength.
+/// The points of elastic bodies that are stretched far: beyond the stretch from which the nominal stress of their law
+/// falls (Law::largest_strain), so that they are torn apart by the law and not by a strength; and so far that they lie
+/// about a cell apart, where the functions of the grid hardly tie them to one another.
 struct Overstretched {
-  double points = 0;   ///< how many [-]
-  double largest = 0;  ///< stretch of any point of such a law [-]
+  double points = 0;   ///< beyond what their law bears [-]
+  double apart = 0;    ///< further than `widest_spacing` cells apart [-]
+  double largest = 0;  ///< stretch of any point [-]
 };
 
-/// The recorder that counts them at each record. Scenes without such a law have none; with one a record takes the
+/// The recorder that counts them at each record. Scenes without an elastic law have none; with one a record takes the
 /// points from the device.
 class StretchRecorder : public TableRecorder<Overstretched> {
  public:
-  explicit StretchRecorder(const SolveOptions& options);
+  /// The distance between points of a body [cells] from which they part: at 0.65 to 0.8 a cantilever with three points
+  /// along a cell came off its wall.
+  static constexpr double widest_spacing = 0.65;
+
+  StretchRecorder(const SolveOptions& options, const Scene& scene);
   /// Whether some material of the scene has such a law.
   static bool watches(const SolveOptions& options);
   /// What to say where points have gone beyond it; none where none has.
@@ -27,7 +33,15 @@ class StretchRecorder : public TableRecorder<Overstretched> {
   std::vector<Overstretched> samples(const Instant& now) const override;
 
  private:
-  std::vector<double> limits_;  ///< largest principal logarithmic strain of every material [-]
+  /// What is looked for in a material.
+  struct Limits {
+    bool elastic;           ///< whether strain is stretch; else nothing is
+    double largest_strain;  ///< principal, logarithmic, that its law bears [-]
+  };
+  static Limits limits_of(const MaterialOptions& material);
+
+  std::vector<Limits> limits_;  ///< of every material
+  double cell_volume_;          ///< [m3]
 };
 
 }  // namespace talus::solver

@@ -1,4 +1,4 @@
-// Points that Hencky's law lets tear: counted at every record, and said at the end.
+// Points of elastic bodies that are stretched far: counted at every record, and said at the end.
 #include "solver/run/recorders/stretch.hpp"
 
 #include <gtest/gtest.h>
@@ -39,20 +39,30 @@ std::vector<std::string> said_of(MaterialModel model, double stretch, RunHistory
 TEST(StretchRecorder, names_the_points_that_hencky_tears_and_the_law_that_does_not) {
   RunHistory rows;
   const auto lines = said_of(MaterialModel::hencky, 3, &rows);
-  ASSERT_EQ(lines.size(), 1u);
+  ASSERT_EQ(lines.size(), 2u);
   for (const char* words : {"8 points", "factor of up to 3.", "e = 2.72", "neo-hookean"})
     EXPECT_NE(lines[0].find(words), std::string::npos) << words << "\n" << lines[0];
   EXPECT_EQ(rows.at("overstretched_points").values, std::vector<double>{8});
   EXPECT_NEAR(rows.at("largest_stretch").values[0], 3, 1e-12);
 }
 
-TEST(StretchRecorder, is_silent_below_the_limit_and_of_other_laws) {
-  EXPECT_TRUE(said_of(MaterialModel::hencky, 2.7).empty());
-  for (const auto model : {MaterialModel::neo_hookean, MaterialModel::corotated, MaterialModel::drucker_prager}) {
+/// Two points along a cell, 0.65 of a cell apart at a stretch of 1.3.
+TEST(StretchRecorder, names_the_points_of_any_elastic_body_that_lie_far_apart) {
+  for (const auto model : {MaterialModel::hencky, MaterialModel::neo_hookean, MaterialModel::corotated}) {
     RunHistory rows;
-    EXPECT_TRUE(said_of(model, 3, &rows).empty());
-    EXPECT_EQ(rows.find("overstretched_points"), nullptr) << "other laws do not pay for it";
+    const auto lines = said_of(model, 1.35, &rows);
+    ASSERT_EQ(lines.size(), 1u);
+    for (const char* words : {"8 points", "factor of up to 1.35", "0.65 of a cell", "gimp"})
+      EXPECT_NE(lines[0].find(words), std::string::npos) << words << "\n" << lines[0];
+    EXPECT_EQ(rows.at("points_apart").values, std::vector<double>{8});
+    EXPECT_TRUE(said_of(model, 1.25).empty());
   }
+}
+
+TEST(StretchRecorder, is_silent_of_what_flows) {
+  RunHistory rows;
+  EXPECT_TRUE(said_of(MaterialModel::drucker_prager, 3, &rows).empty());
+  EXPECT_EQ(rows.find("overstretched_points"), nullptr) << "other laws do not pay for it";
 }
 
 }  // namespace
