@@ -74,7 +74,8 @@ def main():
                       thickness.y - rows.max() * thickness.cell, thickness.y - rows.min() * thickness.cell])
     box = [min(b[0] for b in boxes) - 60, max(b[1] for b in boxes) + 60, min(b[2] for b in boxes) - 60,
            max(b[3] for b in boxes) + 60]
-    figure, axes = plt.subplots(2, len(models), figsize=(3.4 * len(models), 7.4), constrained_layout=True, squeeze=False)
+    size = (3.4 * len(models), 7.4)
+    figure, axes = plt.subplots(2, len(models), figsize=size, constrained_layout=True, squeeze=False)
     for row, (title, top) in enumerate([("peak thickness, normal to the slope [m]", 15), ("peak speed [m/s]", 50)]):
         for column, model in enumerate(models):
             axis, raster = axes[row][column], model[1 + row]

@@ -16,12 +16,13 @@ def number(value, digits=4):
 
 
 def table(rows):
-    lines = ["| quantity | computed | reference | error | tolerance | | steps |", "| --- | --- | --- | --- | --- | --- | --- |"]
+    lines = ["| quantity | computed | reference | error | tolerance | | steps |", "|" + " --- |" * 7]
     for r in rows:
         judged = r["tolerance"] is not None
         verdict = ("met" if r["pass"] else "**missed**") if judged else "" if r["pass"] else "**failed**"
         edge = " (edge)" if r["tolerance"] == 0 else ""  # of the band that the value must lie in
-        cells = [r["quantity"], number(r["computed"], 5), number(r["reference"], 5) + edge, number(r["error"], 2) if judged else "-",
+        error = number(r["error"], 2) if judged else "-"
+        cells = [r["quantity"], number(r["computed"], 5), number(r["reference"], 5) + edge, error,
                  number(r["tolerance"], 2) if judged else "noted", verdict, number(r["steps"], 6)]
         lines.append("| " + " | ".join(cells).replace("|  |", "| |") + " |")
     return lines
@@ -38,8 +39,8 @@ def main():
     judged = [r for r in rows if r["tolerance"] is not None]
     missed = [r for r in judged if not r["pass"]]
     lines = ["# Rows of the validation", "", f"{words[0]}.", "",
-             f"{len(rows)} rows: {len(judged)} are judged, {len(missed)} of these miss their tolerance, the others are noted.",
-             "Cases and what they mean: [validation.md](validation.md). Written by `tools/tabulate-validation.py`."]
+             f"{len(rows)} rows: {len(judged)} are judged, {len(missed)} of these miss their tolerance, the others are",
+             "noted. Cases and what they mean: [validation.md](validation.md). Written by `tools/tabulate-validation.py`."]
     name = None
     for r in rows:
         if r["case"] != name:
