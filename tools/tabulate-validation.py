@@ -40,7 +40,8 @@ def main():
     missed = [r for r in judged if not r["pass"]]
     lines = ["# Rows of the validation", "", f"{words[0]}.", "",
              f"{len(rows)} rows: {len(judged)} are judged, {len(missed)} of these miss their tolerance, the others are",
-             "noted. Cases and what they mean: [validation.md](validation.md). Written by `tools/tabulate-validation.py`."]
+             "noted. Cases and what they mean: [validation.md](validation.md). Written by",
+             "`tools/tabulate-validation.py`."]
     name = None
     for r in rows:
         if r["case"] != name:

@@ -46,7 +46,7 @@ fills() {
   local stage=$1 kib=0 failures=0 code file
   shift
   while true; do
-    kib=$((kib + 4 + kib / 16 * 4))   # a page at first, later a quarter more
+    kib=$((kib + 4 + kib / 8 * 4))   # a page at first, later half as much again
     [[ $kib -lt 8192 ]] || fail "it does not succeed on $kib KiB either"
     code=0
     on_small_disk "$stage" $kib "$@" >stdout 2>stderr </dev/null || code=$?
