@@ -55,8 +55,7 @@ TALUS_HD Number mass_beside(const GridView<Real>& grid, const Number* mass, int 
 /// slope further in where it ends in a wedge, whose masses fall with the depth as well. A wall's masses rise no further
 /// from the third of them on, a wedge's do (T13g).
 template <class Number>
-TALUS_HD Number cover_at_edge(const Number (&line)[5], Number heaviest) {
-  const Number as_wall = line[1] / heaviest;
+TALUS_HD Number cover_at_edge(const Number (&line)[5], Number as_wall) {
   const Number first = line[2] - line[1], second = line[3] - line[2], third = line[4] - line[3];
   const Number slope = first > second ? first : second;
   if (!(slope > Number(0)) || !(third > Number(0))) return as_wall;
@@ -67,11 +66,15 @@ TALUS_HD Number cover_at_edge(const Number (&line)[5], Number heaviest) {
   return mixed > as_wall ? mixed : as_wall;
 }
 
+/// What the edge of the mass may be. The limits that implicit steps hold friction to take it for a wall: tractions on
+/// the light nodes of a wedge make Newton's iterations many.
+enum class Rim { any, wall };
+
 /// The share of a column's bed that is covered by matter: 1 but within two columns of an empty one. The edge of the
 /// mass crosses those columns, and their nodes hold some of the matter beside it (`cover_at_edge`, along the way to the
-/// heaviest column two from it).
+/// heaviest column two from it, or for `Rim::wall` its share of the heaviest).
 template <class Real, class Number>
-TALUS_HD Number cover(const GridView<Real>& grid, const Number* mass, int i, int j) {
+TALUS_HD Number cover(const GridView<Real>& grid, const Number* mass, int i, int j, Rim rim = Rim::any) {
   bool at_edge = false;
   const Number own = mass_beside(grid, mass, i, j, 0, 0);
   Number heaviest = own, inside = -1;
@@ -90,9 +93,11 @@ TALUS_HD Number cover(const GridView<Real>& grid, const Number* mass, int i, int
     }
   }
   if (!at_edge) return Number(1);
+  const Number as_wall = own / heaviest;
+  if (rim == Rim::wall) return as_wall;
   Number line[5];
   for (int k = 0; k < 5; ++k) line[k] = mass_beside(grid, mass, i, j, (k - 1) * in_x, (k - 1) * in_y);
-  return cover_at_edge(line, heaviest);
+  return cover_at_edge(line, as_wall);
 }
 
 /// A column's nodes in storage.
@@ -147,11 +152,11 @@ struct ColumnBed {
 
 /// The bed under column (i, j), of the masses of all columns [kg].
 template <class Real, class Number>
-TALUS_HD ColumnBed<Number> bed_under(const GridView<Real>& grid, const Number* mass, int i, int j) {
+TALUS_HD ColumnBed<Number> bed_under(const GridView<Real>& grid, const Number* mass, int i, int j, Rim rim = Rim::any) {
   const int column = grid.column(i, j);
   const Number sx = grid.slope_x[column], sy = grid.slope_y[column], h = grid.spacing;
   const Number steep = sqrt(Number(1) + sx * sx + sy * sy), scale = Number(1) / steep;
-  return {{-sx * scale, -sy * scale, scale}, cover(grid, mass, i, j) * h * h * steep};
+  return {{-sx * scale, -sy * scale, scale}, cover(grid, mass, i, j, rim) * h * h * steep};
 }
 
 /// The step in which columns slip.

@@ -125,7 +125,7 @@ struct PrepareNodes {
                             .duration = scheme.step};
     to.friction = base.base_coefficient(column, slip);
     if (held.traction && at.k == top && columns.mass[column] > 0) {
-      const ColumnBed<double> under = bed_under(grid, columns.mass, at.i, at.j);
+      const ColumnBed<double> under = bed_under(grid, columns.mass, at.i, at.j, Rim::wall);
       const LyingMatter<double> matter{.mass = columns.mass[column]};
       held.traction[n] =
           base.yield(base.at(column), column_slip(matter, under, {nullptr, scheme.step, gravity})) * under.area;
