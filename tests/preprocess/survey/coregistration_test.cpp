@@ -42,13 +42,13 @@ struct Pair {
   MapGrid grid;
 };
 
-struct Change {
+struct Alteration {
   double x = 0, y = 0, z = 0, tilt = 0, noise = 0;
   bool slide = false, voids = false;
 };
 
 /// A survey and a later one that lies `change` off, both of `cells` x `cells` of 5 m.
-Pair pair_of(std::mt19937& random, int cells, const Change& change) {
+Pair pair_of(std::mt19937& random, int cells, const Alteration& change) {
   Pair pair;
   pair.grid = grid_of(cells, cells, 5);
   const Relief relief(random, cells * 5.0);
@@ -94,7 +94,8 @@ TEST(coregistration, finds_a_known_sub_pixel_shift_to_a_twentieth_of_a_cell) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> part(-1, 1);
   for (int i = 0; i < 3; ++i) {
-    const Change change{12 * part(random), 12 * part(random), 3 * part(random), 0, 0.3, true, true};  // up to 2.4 cells
+    const Alteration change{
+        12 * part(random), 12 * part(random), 3 * part(random), 0, 0.3, true, true};  // up to 2.4 cells
     const Coregistration result = found(pair_of(random, 160, change));
     EXPECT_TRUE(result.converged);
     EXPECT_NEAR(result.placement.x, -change.x, 0.05 * 5);
