@@ -7,6 +7,7 @@
 #include "solver/options/solve.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "solver/scene/make_solver.hpp"
+#include "tests/solver/run/speed_inside.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
@@ -47,21 +48,6 @@ class ColumnLaws : public InEachPlace {
     o.implicit.newmark_alpha = 0.5;
     o.implicit.newmark_beta = 1;
     return o;
-  }
-  /// The mean velocity along the slope of what is within 4 m of the centre [m/s].
-  static double speed_inside(const Solver& solver, const Scene& scene, double slope) {
-    const ParticleState s = solver.state().points;
-    const auto x = positions(scene.map, scene.grid, solver.ground(), s);
-    const double middle = centre(solver, scene).x;
-    double sum = 0, volume = 0;
-    for (std::size_t p = 0; p < s.size(); ++p) {
-      if (std::abs(x[p][0] - middle) > 4) continue;
-      const double along =
-          s.velocity[0][p] * std::cos(slope * per_degree) - s.velocity[2][p] * std::sin(slope * per_degree);
-      sum += s.volume[p] * along;
-      volume += s.volume[p];
-    }
-    return sum / volume;
   }
   /// The speed that the inside of a slab has after a time [m/s].
   double speed_after(double time, const Sheet& s, const SolveOptions& o) {

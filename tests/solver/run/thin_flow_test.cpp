@@ -6,6 +6,7 @@
 #include "solver/options/solve.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "solver/scene/make_solver.hpp"
+#include "tests/solver/run/speed_inside.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
@@ -39,19 +40,6 @@ class ThinFlow : public InEachPlace {
     o.walls = {{Axis::y, 2, Side::above, WallKind::roller}, {Axis::y, 6, Side::below, WallKind::roller}};
     return o;
   }
-  /// The mean velocity along the slope of what is within 4 m of the centre [m/s].
-  static double speed_inside(const Solver& solver, const Scene& scene) {
-    const ParticleState s = solver.state().points;
-    const auto x = positions(scene.map, scene.grid, solver.ground(), s);
-    const double middle = centre(solver, scene).x;
-    double sum = 0, volume = 0;
-    for (std::size_t p = 0; p < s.size(); ++p) {
-      if (std::abs(x[p][0] - middle) > 4) continue;
-      sum += s.volume[p] * (s.velocity[0][p] * std::cos(slope * degree) - s.velocity[2][p] * std::sin(slope * degree));
-      volume += s.volume[p];
-    }
-    return sum / volume;
-  }
 };
 
 TEST_P(ThinFlow, reaches_the_speed_at_which_drag_and_weight_balance) {
@@ -65,7 +53,7 @@ TEST_P(ThinFlow, reaches_the_speed_at_which_drag_and_weight_balance) {
     const double across = s.thickness * std::cos(slope * degree);
     const double expected =
         std::sqrt(turbulence * across * (std::sin(slope * degree) - std::tan(bed * degree) * std::cos(slope * degree)));
-    const double error = speed_inside(*solver, scene) / expected - 1;
+    const double error = speed_inside(*solver, scene, slope) / expected - 1;
     std::printf("  layers of %g m, %g m thick, %g m above, %g deg inside: error %.2f %%\n", s.layer_height, s.thickness,
                 s.above, s.internal_friction, 100 * error);
     EXPECT_LT(std::abs(error), 0.02);
