@@ -119,12 +119,18 @@ struct BedStep {
   Real grip = {};  ///< duration over the node's mass per area of bed [m2 s/kg]; 0 where no law asks for pressure
 };
 
+/// The normal out of ground of slopes (sx, sy).
+template <class Real>
+TALUS_HD Vec3<Real> normal_of(Real sx, Real sy) {
+  const Real scale = Real(1) / sqrt(Real(1) + sx * sx + sy * sy);
+  return {-sx * scale, -sy * scale, scale};
+}
+
 /// The velocity of a column's base node after contact with ground of slopes (sx, sy), (T12) [m/s].
 template <class Real, class Laws>
 TALUS_HD Vec3<Real> meet_ground(const BaseFriction<Real, Laws>& friction, int column, const Vec3<Real>& v, Real sx,
                                 Real sy, const BedStep<Real>& step) {
-  const Real scale = Real(1) / sqrt(Real(1) + sx * sx + sy * sy);
-  const Vec3<Real> normal{-sx * scale, -sy * scale, scale};
+  const Vec3<Real> normal = normal_of(sx, sy);
   const Real along = dot(v, normal);
   if (friction.holds()) return along < Real(0) ? Vec3<Real>{} : v;
   const Slip<Real> slip{length(v - normal * along), step.grip > Real(0) ? -along / step.grip : Real(0), step.duration};

@@ -6,7 +6,6 @@
 #include "solver/boundary/column_flow.hpp"
 #include "solver/boundary/separation.hpp"
 #include "solver/boundary/walls.hpp"
-#include "solver/parallel/atomics.hpp"
 #include "solver/parallel/buffer.hpp"
 #include "solver/state/clock.hpp"
 
@@ -67,9 +66,8 @@ struct MeasureLying {
 
   TALUS_HD void operator()(int c) const {
     if (clock->halt != running) return;
-    const ActiveColumn place(grid, active, c);
-    if (!place.in_domain(grid)) return;
-    const ColumnNodes at{grid.slots[place.block], place.i, place.j, grid.column(place.i, place.j)};
+    const ColumnNodes at = ColumnNodes::find(grid, active, c);
+    if (!at.in_domain()) return;
     lying[at.column] = matter_on_bed(grid, nodes, at).mass;
   }
 };
@@ -89,9 +87,8 @@ struct HoldColumns {
 
   TALUS_HD void operator()(int c) const {
     if (clock->halt != running) return;
-    const ActiveColumn place(grid, active, c);
-    if (!place.in_domain(grid)) return;
-    const ColumnNodes at{grid.slots[place.block], place.i, place.j, grid.column(place.i, place.j)};
+    const ColumnNodes at = ColumnNodes::find(grid, active, c);
+    if (!at.in_domain()) return;
     const LyingMatter<Real> matter = matter_on_bed(grid, nodes, at);
     if (!(matter.mass > Real(0))) return;
     const Real sx = grid.slope_x[at.column], sy = grid.slope_y[at.column];
@@ -99,8 +96,7 @@ struct HoldColumns {
     if (!(leaves > Real(0)) || !held.holds(grid, at.i, at.j)) return;
     const Real mean = rise_from(matter.momentum, sx, sy) / matter.mass,
                lift = mean < leaves ? (mean > Real(0) ? mean : Real(0)) : leaves;
-    const Real scale = Real(1) / sqrt(Real(1) + sx * sx + sy * sy);
-    const Vec3<Real> normal{-sx * scale, -sy * scale, scale};
+    const Vec3<Real> normal = normal_of(sx, sy);
     for (int k = matter.first; k < matter.last; ++k) take(at, k, normal * (k == matter.first ? leaves : lift));
     if (rise) rise[at.column] = Real(0);
   }
@@ -113,17 +109,7 @@ struct HoldColumns {
     Vec3<Real> after = before - velocity;
     if (walls.count > 0) after = meet_walls(walls, at.i, at.j, k, after, false);
     nodes.add(n, after - before);
-    if (clock->keeps_budget) count(static_cast<double>(nodes.mass(n)), before, after);
-  }
-  TALUS_HD void count(double mass, const Vec3<Real>& before, const Vec3<Real>& after) const {
-    const Vec3<Real> change = after - before;
-    const double loss = -mass * static_cast<double>(dot(change, before + after)) / 2;
-    atomic_add(&clock->bed_loss, loss);
-    atomic_add(&clock->holding_loss, loss);
-    atomic_add(&clock->transfer_loss, -loss);
-    atomic_add(&clock->reaction[0], mass * static_cast<double>(change.x));
-    atomic_add(&clock->reaction[1], mass * static_cast<double>(change.y));
-    atomic_add(&clock->reaction[2], mass * static_cast<double>(change.z));
+    if (clock->keeps_budget) count_at_bed(*clock, clock->holding_loss, nodes.mass(n), before, after - before);
   }
 };
 
@@ -139,14 +125,12 @@ struct CountLanding {
 
   TALUS_HD void operator()(int c) const {
     if (step.clock->halt != running) return;
-    const ActiveColumn place(grid, active, c);
-    if (!place.in_domain(grid)) return;
-    const ColumnNodes at{grid.slots[place.block], place.i, place.j, grid.column(place.i, place.j)};
+    const ColumnNodes at = ColumnNodes::find(grid, active, c);
+    if (!at.in_domain()) return;
     const LyingMatter<Real> matter = matter_on_bed(grid, nodes, at);
     if (!(matter.mass > Real(0))) return;
     const Real sx = grid.slope_x[at.column], sy = grid.slope_y[at.column];
-    const Real scale = Real(1) / sqrt(Real(1) + sx * sx + sy * sy);
-    const Real weight = step.press(Vec3<Real>{-sx * scale, -sy * scale, scale});
+    const Real weight = step.press(normal_of(sx, sy));
     const Real excess = pressed[at.column] / matter.mass - weight * static_cast<Real>(step.length());
     const Real mean = rise_from(matter.momentum, sx, sy) / matter.mass - excess / Real(2);
     atomic_add(&step.clock->landing_loss, -static_cast<double>(matter.mass * excess * mean));

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "solver/boundary/base_friction.hpp"
+#include "solver/parallel/atomics.hpp"
 #include "solver/state/clock.hpp"
 #include "solver/state/grid_view.hpp"
 
@@ -110,6 +111,15 @@ struct ColumnNodes {
   TALUS_HD int begin() const { return slot.first_layer; }
   /// The layer after the last one in storage.
   TALUS_HD int end() const { return slot.first_layer + slot.layers; }
+  /// Whether there is such a column.
+  TALUS_HD bool in_domain() const { return column >= 0; }
+
+  /// The column number c of the active blocks; see ActiveColumn. In no domain where the block reaches beyond the map.
+  template <class Real>
+  TALUS_HD static ColumnNodes find(const GridView<Real>& grid, const int* active, int c) {
+    const ActiveColumn place(grid, active, c);
+    return {grid.slots[place.block], place.i, place.j, place.in_domain(grid) ? grid.column(place.i, place.j) : -1};
+  }
 };
 
 /// The matter in layers first to last - 1 of a column.
@@ -155,8 +165,8 @@ template <class Real, class Number>
 TALUS_HD ColumnBed<Number> bed_under(const GridView<Real>& grid, const Number* mass, int i, int j, Rim rim = Rim::any) {
   const int column = grid.column(i, j);
   const Number sx = grid.slope_x[column], sy = grid.slope_y[column], h = grid.spacing;
-  const Number steep = sqrt(Number(1) + sx * sx + sy * sy), scale = Number(1) / steep;
-  return {{-sx * scale, -sy * scale, scale}, cover(grid, mass, i, j, rim) * h * h * steep};
+  const Number steep = sqrt(Number(1) + sx * sx + sy * sy);
+  return {normal_of(sx, sy), cover(grid, mass, i, j, rim) * h * h * steep};
 }
 
 /// The step in which columns slip.
@@ -176,6 +186,20 @@ struct ColumnStep {
     return pull > 0 ? static_cast<Number>(pull) : Number(0);
   }
 };
+
+/// The budget takes up that the bed changed the velocity v of a node by `change` [m/s]; `cause` is the sum of the clock
+/// that tells such losses apart. Forces act on the mean of the velocities before and after.
+template <class Number>
+TALUS_HD void count_at_bed(Clock& clock, double& cause, Number mass, const Vec3<Number>& v,
+                           const Vec3<Number>& change) {
+  const double m = static_cast<double>(mass), loss = -m * static_cast<double>(dot(change, v + change * Number(0.5)));
+  atomic_add(&clock.bed_loss, loss);
+  atomic_add(&cause, loss);
+  atomic_add(&clock.transfer_loss, -loss);
+  atomic_add(&clock.reaction[0], m * static_cast<double>(change.x));
+  atomic_add(&clock.reaction[1], m * static_cast<double>(change.y));
+  atomic_add(&clock.reaction[2], m * static_cast<double>(change.z));
+}
 
 /// The slip of a column over its bed as a whole: its mean speed, and its weight over what it covers.
 template <class Number>
@@ -200,14 +224,13 @@ struct MeasureColumns {
   Number step;  ///< [s]
 
   TALUS_HD void operator()(int c) const {
-    const ActiveColumn at(grid, active, c);
-    if (!at.in_domain(grid)) return;
-    const BlockSlot slot = grid.slots[at.block];
-    const int column = grid.column(at.i, at.j), bed = bed_layer(grid, column);
+    const ColumnNodes at = ColumnNodes::find(grid, active, c);
+    if (!at.in_domain()) return;
+    const int column = at.column, bed = bed_layer(grid, column);
     Number mass = 0;
     columns.rise[column] = Number(off_bed);
-    for (int k = slot.first_layer; k < slot.first_layer + slot.layers; ++k) {
-      const int n = GridView<Real>::node(slot, at.i, at.j, k);
+    for (int k = at.begin(); k < at.end(); ++k) {
+      const int n = at.node(k);
       const Number m = nodes.mass(n);
       mass += m;
       if (k != bed || !(m > Number(0))) continue;
@@ -233,10 +256,8 @@ struct MeasureCoefficients {
 
   TALUS_HD void operator()(int c) const {
     if (step.clock && step.clock->halt != running) return;
-    const ActiveColumn place(grid, active, c);
-    if (!place.in_domain(grid)) return;
-    const ColumnNodes at{grid.slots[place.block], place.i, place.j, grid.column(place.i, place.j)};
-    if (!(mass[at.column] > Number(0))) return;
+    const ColumnNodes at = ColumnNodes::find(grid, active, c);
+    if (!at.in_domain() || !(mass[at.column] > Number(0))) return;
     const Slip<Number> slip = column_slip(lying_matter(nodes, at), bed_under(grid, mass, at.i, at.j), step);
     coefficient[at.column] = friction.coefficient(friction.at(at.column), slip);
   }

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "solver/boundary/column_flow.hpp"
-#include "solver/parallel/atomics.hpp"
 #include "solver/parallel/buffer.hpp"
 #include "solver/parallel/columns.hpp"
 #include "solver/state/map_view.hpp"
@@ -68,9 +67,8 @@ struct SlowColumns {
   TALUS_HD Column locate(int c) const {
     Column at;
     if (step.clock && step.clock->halt != running) return at;
-    const ActiveColumn place(grid, active, c);
-    if (!place.in_domain(grid)) return at;
-    at.nodes = {grid.slots[place.block], place.i, place.j, grid.column(place.i, place.j)};
+    at.nodes = ColumnNodes::find(grid, active, c);
+    if (!at.nodes.in_domain()) return at;
     at.inside = columns.mass[at.nodes.column] > Number(0);
     at.rise = columns.rise[at.nodes.column];
     at.first = at.nodes.begin();
@@ -116,7 +114,8 @@ struct SlowColumns {
     const int n = at.nodes.node(k);
     const Vec3<Number> v = nodes.velocity(n), change = change_of(pass, v);
     nodes.add(n, change);
-    if (step.clock && step.clock->keeps_budget) count(*step.clock, static_cast<double>(nodes.mass(n)), v, change);
+    if (step.clock && step.clock->keeps_budget)
+      count_at_bed(*step.clock, step.clock->drag_loss, nodes.mass(n), v, change);
   }
 
   /// The method records the maps of what is left (T25).
@@ -130,15 +129,6 @@ struct SlowColumns {
  private:
   TALUS_HD static Vec3<Number> change_of(const Pass& pass, const Vec3<Number>& v) {
     return (v - pass.normal * dot(v, pass.normal)) * (pass.left - Number(1));
-  }
-  TALUS_HD static void count(Clock& clock, double mass, const Vec3<Number>& v, const Vec3<Number>& change) {
-    const double loss = -mass * static_cast<double>(dot(change, v + change * Number(0.5)));
-    atomic_add(&clock.bed_loss, loss);
-    atomic_add(&clock.drag_loss, loss);
-    atomic_add(&clock.transfer_loss, -loss);
-    atomic_add(&clock.reaction[0], mass * static_cast<double>(change.x));
-    atomic_add(&clock.reaction[1], mass * static_cast<double>(change.y));
-    atomic_add(&clock.reaction[2], mass * static_cast<double>(change.z));
   }
 };
 

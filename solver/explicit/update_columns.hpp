@@ -204,9 +204,7 @@ struct UpdateColumns {
   };
   /// The method adds what a node has lost to friction, and what pressed on it.
   TALUS_HD void count_bed(Losses& losses, int column, double mass, const BedImpulse& bed) const {
-    const Real sx = grid.slope_x[column], sy = grid.slope_y[column];
-    const Real scale = Real(1) / sqrt(Real(1) + sx * sx + sy * sy);
-    const Vec3<Real> normal{-sx * scale, -sy * scale, scale};
+    const Vec3<Real> normal = normal_of(grid.slope_x[column], grid.slope_y[column]);
     const Real pressing = dot(bed.change, normal);
     losses.pressed += mass * static_cast<double>(pressing);
     losses.friction -= mass * static_cast<double>(dot(bed.change - normal * pressing, bed.mean));

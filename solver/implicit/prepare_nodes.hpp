@@ -114,8 +114,7 @@ struct PrepareNodes {
       return true;
     }
     const double sx = static_cast<double>(grid.slope_x[column]), sy = static_cast<double>(grid.slope_y[column]);
-    const double scale = 1 / sqrt(1 + sx * sx + sy * sy);
-    to.normal = {-sx * scale, -sy * scale, scale};
+    to.normal = normal_of(sx, sy);
     const int n = GridView<Real>::node(grid.slot(at.i, at.j), at.i, at.j, at.k);
     const Vec3<double> v = nodes.velocity[n];
     const double area = bed_area(nodes.mass[n], full_base, static_cast<double>(grid.spacing), sx, sy);

@@ -67,47 +67,55 @@ void for_each_column_twice(const CpuDevice& device, int blocks, const Kernel& ke
 namespace detail {
 inline constexpr int column_shares = 8;
 
+/// A column as one of the eight threads sees it that share it.
+template <int columns, class Kernel>
+struct SharedColumn {
+  using Sums = typename Kernel::Sums;
+  int share;
+  typename Kernel::Column column;
+
+  __device__ explicit SharedColumn(const Kernel& kernel)
+      : share(static_cast<int>(threadIdx.x) / columns),
+        column(kernel.locate(static_cast<int>(blockIdx.x * columns + threadIdx.x % columns))) {}
+  /// The method calls f(k) for the layers that are this thread's.
+  template <class F>
+  __device__ void each_layer(F&& f) const {
+    for (int k = column.first + share; column.inside && k < column.last; k += column_shares) f(k);
+  }
+  /// The sums over all layers, added in one order, for the threads that `ask`; all threads of the block have to call.
+  __device__ Sums sums(const Kernel& kernel, bool ask) const {
+    __shared__ alignas(16) unsigned char room[column_shares * columns * sizeof(Sums)];
+    auto* const shared = reinterpret_cast<Sums*>(room);
+    Sums own;
+    each_layer([&](int k) { kernel.layer(column, k, own); });
+    shared[threadIdx.x] = own;
+    __syncthreads();
+    if (!ask) return own;
+    Sums all = shared[threadIdx.x % columns];
+    for (int s = 1; s < column_shares; ++s) all += shared[threadIdx.x % columns + s * columns];
+    return all;
+  }
+};
+
 template <int columns, class Kernel>
 __global__ void run_columns(Kernel kernel) {
   begin_kernel();
-  using Sums = typename Kernel::Sums;
-  __shared__ alignas(16) unsigned char room[column_shares * columns * sizeof(Sums)];
-  auto* const shared = reinterpret_cast<Sums*>(room);
-  const int thread = static_cast<int>(threadIdx.x), share = thread / columns;
-  const typename Kernel::Column column = kernel.locate(static_cast<int>(blockIdx.x) * columns + thread % columns);
-  Sums sums;
-  if (column.inside) {
-    for (int k = column.first + share; k < column.last; k += column_shares) kernel.layer(column, k, sums);
-  }
-  shared[thread] = sums;
-  __syncthreads();
-  if (share > 0 || !column.inside) return;
-  for (int s = 1; s < column_shares; ++s) sums += shared[thread + s * columns];
-  kernel.finish(column, sums);
+  const SharedColumn<columns, Kernel> own(kernel);
+  const bool finishes = own.share == 0 && own.column.inside;
+  const typename Kernel::Sums sums = own.sums(kernel, finishes);
+  if (finishes) kernel.finish(own.column, sums);
 }
 
 template <int columns, class Kernel>
 __global__ void run_columns_twice(Kernel kernel) {
   begin_kernel();
-  using Sums = typename Kernel::Sums;
-  __shared__ alignas(16) unsigned char room[column_shares * columns * sizeof(Sums)];
-  auto* const shared = reinterpret_cast<Sums*>(room);
-  const int thread = static_cast<int>(threadIdx.x), share = thread / columns;
-  const typename Kernel::Column column = kernel.locate(static_cast<int>(blockIdx.x) * columns + thread % columns);
-  Sums own;
-  if (column.inside) {
-    for (int k = column.first + share; k < column.last; k += column_shares) kernel.layer(column, k, own);
-  }
-  shared[thread] = own;
-  __syncthreads();
-  Sums sums = shared[thread % columns];
-  for (int s = 1; s < column_shares; ++s) sums += shared[thread % columns + s * columns];
+  const SharedColumn<columns, Kernel> own(kernel);
+  const typename Kernel::Sums sums = own.sums(kernel, own.column.inside);
   typename Kernel::Pass pass;
-  if (column.inside) pass = kernel.between(column, sums);
+  if (own.column.inside) pass = kernel.between(own.column, sums);
   __syncthreads();  // between() may look at nodes that another thread changes the second time
-  if (!column.inside) return;
-  for (int k = column.first + share; k < column.last; k += column_shares) kernel.again(column, pass, k);
-  if (share == 0) kernel.finish(column, sums, pass);
+  own.each_layer([&](int k) { kernel.again(own.column, pass, k); });
+  if (own.share == 0 && own.column.inside) kernel.finish(own.column, sums, pass);
 }
 }  // namespace detail
 
