@@ -94,7 +94,8 @@ void log_plan(const Domain& domain, const SolveOptions& o, const AnyDevice& devi
   const Scene scene = make_scene(domain, o);
   const TerrainTables terrain = make_terrain_tables(scene.grid);
   const double wave_speed = fastest_wave(o);
-  const double step = std::min(o.cfl / first_rate(scene.grid, terrain, scene.points, wave_speed, 0), o.largest_step);
+  const FirstWaves waves{wave_speed, !abilities_of(o.integrator).solve_columns};
+  const double step = std::min(o.cfl / first_rate(scene.grid, terrain, scene.points, waves, 0), o.largest_step);
   const double volume = std::accumulate(scene.points.volume.begin(), scene.points.volume.end(), 0.0);
   log_info(fmt::format("{} material points, {:.0f} m3; grid {} x {} columns of {:g} m, layers of {:g} m",
                        scene.points.size(), volume, scene.grid.columns, scene.grid.rows, scene.grid.spacing,

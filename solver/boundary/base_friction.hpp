@@ -117,6 +117,7 @@ template <class Real>
 struct BedStep {
   Real duration;   ///< [s]
   Real grip = {};  ///< duration over the node's mass per area of bed [m2 s/kg]; 0 where no law asks for pressure
+  Real leverage = Real(1);  ///< change of velocity along the bed over that across it, for impulses of one size [-]
 };
 
 /// The normal out of ground of slopes (sx, sy).
@@ -134,7 +135,7 @@ TALUS_HD Vec3<Real> meet_ground(const BaseFriction<Real, Laws>& friction, int co
   const Real along = dot(v, normal);
   if (friction.holds()) return along < Real(0) ? Vec3<Real>{} : v;
   const Slip<Real> slip{length(v - normal * along), step.grip > Real(0) ? -along / step.grip : Real(0), step.duration};
-  return meet_surface(v, normal, friction.base_coefficient(column, slip));
+  return meet_surface(v, normal, friction.base_coefficient(column, slip) * step.leverage);
 }
 
 }  // namespace talus

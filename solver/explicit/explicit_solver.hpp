@@ -8,6 +8,7 @@
 
 #include "solver/boundary/bed_hold.hpp"
 #include "solver/explicit/make_explicit_solver.hpp"
+#include "solver/explicit/solve_columns.hpp"
 #include "solver/explicit/update_columns.hpp"
 #include "solver/integrator/point_solver.hpp"
 #include "solver/integrator/scene.hpp"
@@ -73,7 +74,8 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
         affine_(settings.transfer.affine),
         musl_(settings.transfer.remaps_velocity),
         keeps_(settings.transfer.time > settings.steps.cfl),
-        forces_apart_(musl_ || settings.damping > 0 || keeps_ || settings.energy_budget) {
+        solves_columns_(settings.steps.kappa > 0),
+        forces_apart_(musl_ || settings.damping > 0 || keeps_ || settings.energy_budget || solves_columns_) {
     Clock clock = read_clock();
     clock.accelerated = 0;
     if (settings.energy_budget) pressed_.resize(scene.map.count());
@@ -124,7 +126,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   /// The memory by its users; see Solver::memory().
   MemoryShares memory() const override {
     MemoryShares shares = Base::memory();
-    shares.emplace_back("nodes", nodes_.bytes() + forces_.bytes());
+    shares.emplace_back("nodes", nodes_.bytes() + forces_.bytes() + pivots_.bytes());
     if (traction_.bytes() > 0) shares.emplace_back("bed's tractions", traction_.bytes());
     if (const std::size_t held = hold_.bytes() + pressed_.bytes(); held > 0)
       shares.emplace_back("contact of columns", held);
@@ -141,7 +143,10 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   /// The step in four verbs: clear, scatter, update, gather. MUSL maps the points' new momentum back before the stress.
   void step() {
     clear(true);
-    if (forces_apart_) {
+    if (solves_columns_) {
+      scatter<Scatter::springs>();
+      update_by_columns();
+    } else if (forces_apart_) {
       scatter<Scatter::force>();
       update<NodeContent::force>();
     } else {
@@ -210,6 +215,44 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
             grid_.view(), grid_.active_list(), clock_.data(), nodes_.data(), forces_.data(), g, settings_.gravity.ramp,
             walls_, traction_.seen_by(surroundings_.bed()), static_cast<Real>(this->full_base()),
             static_cast<Real>(settings_.damping), traction_.slowed(), counts ? pressed_.data() : nullptr, recorder()});
+  }
+
+  /// The method makes the nodes' part of a column-implicit step.
+  void update_by_columns() {
+    this->measure_columns();
+    if (traction_.measures()) measure_coefficients();
+    {
+      const ProfilePhase<Device> phase(device_, "grid");
+      const Vec3<double>& gravity = settings_.gravity.acceleration;
+      for_each(device_, grid_.active_blocks() * block_columns,
+               SolveColumns<Real>{.grid = grid_.view(),
+                                  .active = grid_.active_list(),
+                                  .clock = clock_.data(),
+                                  .nodes = nodes_.data(),
+                                  .forces = forces_.data(),
+                                  .pivots = pivots_.data(),
+                                  .gravity = {static_cast<Real>(gravity.x), static_cast<Real>(gravity.y),
+                                              static_cast<Real>(gravity.z)},
+                                  .gravity_ramp = settings_.gravity.ramp,
+                                  .walls = walls_,
+                                  .friction = traction_.seen_by(surroundings_.bed()),
+                                  .full_base = static_cast<Real>(this->full_base()),
+                                  .kappa = static_cast<Real>(settings_.steps.kappa),
+                                  .softer = softer(),
+                                  .columns = traction_.slowed(),
+                                  .recorder = recorder()});
+    }
+    if (traction_.acts()) slow_columns<NodeContent::force>();
+  }
+
+  /// The modulus of shear over that of uniaxial strain, of the material where that is most [-].
+  Real softer() const {
+    Real most = 0;
+    for (const Material<Real>& m : materials_.list) {
+      const Real uniaxial = m.density * m.wave_speed * m.wave_speed;
+      if (uniaxial > Real(0)) most = std::max(most, m.shear_modulus / uniaxial);
+    }
+    return most;
   }
 
   /// The recording of maps from columns.
@@ -315,7 +358,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
       for_each(device_, points_.count(),
                GridToParticle<Real, Shape, part, budget, Laws>{grid_.view(), points_.view(), materials, clock_.data(),
                                                                nodes_.data(), keeps_ ? forces_.data() : nullptr,
-                                                               grid_.home(), affine_, dilatant_});
+                                                               grid_.home(), affine_, dilatant_, !solves_columns_});
     };
     if (settings_.energy_budget) {
       run.template operator()<true>(materials_);
@@ -332,16 +375,19 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     this->fit(outflow_count);
     nodes_.resize(static_cast<std::size_t>(grid_.nodes()));
     if (forces_apart_) forces_.resize(static_cast<std::size_t>(grid_.nodes()));
+    if (solves_columns_) pivots_.resize(static_cast<std::size_t>(grid_.nodes()));
   }
 
   Recording<Device> recording_{device_};  ///< of a step
   int expected_ = 32;                     ///< steps between sorts
   bool affine_, musl_;
-  bool keeps_;  ///< points keep some of the velocity that is finer than the grid
+  bool keeps_;           ///< points keep some of the velocity that is finer than the grid
+  bool solves_columns_;  ///< inertia is implicit by columns
   bool forces_apart_;
   Walls<Real> walls_;
   const Vec3<double>* loads_now_ = nullptr;
   Buffer<Vec4<Real>, Device> nodes_{device_}, forces_{device_};
+  Buffer<ColumnPivot<Real>, Device> pivots_{device_};  ///< of the nodes, where columns are solved
   ColumnTraction<Real, Device> traction_{device_, surroundings_.bed(), grid_.shape().columns, grid_.shape().rows};
   BedHold<Real, Device> hold_{device_, settings_.separation, static_cast<double>(materials_.list[0].density),
                               grid_.shape().columns, grid_.shape().rows};

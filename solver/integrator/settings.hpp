@@ -21,6 +21,7 @@ struct StepSettings {
   double largest = 1;        ///< upper bound [s]
   double fastest_wave = 0;   ///< of any of the materials [m/s]
   double initial_speed = 0;  ///< of the mass [m/s]
+  double kappa = 0;          ///< of inertia that is implicit by columns (T6a); 0: explicit steps
 };
 
 /// The settings of the way that velocity passes between particles and grid, (T7) and (T8).

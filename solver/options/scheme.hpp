@@ -25,6 +25,7 @@ struct SchemeOptions {
   StressUpdate stress_update = StressUpdate::last;
   double damping = 0;  ///< Cundall's local factor
   double cfl = 0.5;
+  double kappa = 0.3;       ///< column-implicit: (T6a)
   double largest_step = 1;  ///< [s]
   /// The method declares the keys with defaults and help.
   void describe(recipe::Visitor& v);

@@ -20,6 +20,26 @@ void need_separation(recipe::Visitor& v, const SolveOptions& o) {
            "Take mapping = \"terrain-following\", or separation = \"free\""});
 }
 
+/// What of the recipe inertia by columns cannot do; empty: nothing.
+std::string beyond_columns(const SolveOptions& o) {
+  if (o.mapping != Mapping::terrain_following) return "mapping = \"cartesian\"";
+  if (o.stress_update != StressUpdate::last) return "stress_update = \"musl\"";
+  if (o.damping > 0) return "damping";
+  if (o.base.separation != Separation::free) return "separation = \"" + o.base.separation_name() + "\"";
+  if (o.meets_points()) return o.contact_words();
+  for (const WallOptions& wall : o.walls)
+    if (wall.axis == Axis::z) return "a [[solve.wall]] across z";
+  return {};
+}
+
+/// This function declares what column-implicit steps need.
+void need_columns(recipe::Visitor& v, const SolveOptions& o) {
+  const std::string beyond = abilities_of(o.integrator).solve_columns ? beyond_columns(o) : "";
+  v.needs(beyond.empty(), {"[solve] integrator = \"column-implicit\" does not go with " + beyond,
+                           "nodes of a column are solved for together, with the bed as their one support",
+                           "Leave it out, or take integrator = \"explicit\""});
+}
+
 }  // namespace
 
 void SolveOptions::describe(recipe::Visitor& v) {
@@ -40,6 +60,7 @@ void SolveOptions::describe(recipe::Visitor& v) {
            "the law's friction follows from whole columns, which contact points know nothing of",
            "Take ground_contact = \"nodes\", or another law"});
   need_separation(v, *this);
+  need_columns(v, *this);
 }
 
 std::string SolveOptions::contact_words() const {

@@ -7,8 +7,9 @@
 
 namespace talus::solver {
 
-/// How steps are taken: explicitly, by Newmark's scheme, as a sequence of equilibria, or as the run needs it.
-enum class Integrator { explicit_, newmark, quasi_static, automatic };
+/// How steps are taken: explicitly, with inertia implicit along columns, by Newmark's scheme, as a sequence of
+/// equilibria, or as the run needs it.
+enum class Integrator { explicit_, column_implicit, newmark, quasi_static, automatic };
 /// The abilities of an integrator's steps; other keys, the scene and the plan ask for these, not for the integrator.
 struct StepAbilities {
   bool obey_cfl = false;        ///< their size follows waves and speed, for the first of the steps at least
@@ -17,6 +18,7 @@ struct StepAbilities {
   bool repeat_bits = false;     ///< the same on every run on a GPU
   bool solve_systems = false;   ///< some of the steps at least
   bool average_volume = false;  ///< over the particles of an element, all of the steps
+  bool solve_columns = false;   ///< inertia is implicit along the columns of the grid
 };
 /// The abilities of an integrator's steps.
 StepAbilities abilities_of(Integrator integrator);

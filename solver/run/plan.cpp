@@ -28,6 +28,9 @@ std::string span(double seconds) {
 std::string integrator_words(const SolveOptions& o) {
   switch (o.integrator) {
     case Integrator::explicit_: return fmt::format("explicit, {:g} of the CFL step", o.cfl);
+    case Integrator::column_implicit:
+      return fmt::format("explicit, inertia implicit along columns (kappa = {:g}), {:g} of the CFL step of the cells",
+                         o.kappa, o.cfl);
     case Integrator::newmark:
       return fmt::format("newmark, steps of {:g} s, {}", o.implicit.step,
                          o.implicit.newton_iterations == 1 ? "one linear solve each" : "Newton");
@@ -125,7 +128,9 @@ std::vector<std::string> plan(const Domain& domain, const SolveOptions& o, const
     const TerrainTables terrain = make_terrain_tables(scene.grid);
     const double wave = fastest_wave(o), fast = lowest_stiffness(domain, o).speed;
     const auto step_at = [&](double speed) {
-      return std::min(o.cfl / first_rate(scene.grid, terrain, scene.points, wave, speed), o.largest_step);
+      return std::min(o.cfl / first_rate(scene.grid, terrain, scene.points,
+                                         {wave, !abilities_of(o.integrator).solve_columns}, speed),
+                      o.largest_step);
     };
     fewest = o.end_time / step_at(0);
     most = o.end_time / std::min(step_at(fast), trial.step > 0 ? trial.step : 1e30);

@@ -182,8 +182,8 @@ std::vector<std::array<double, 3>> positions(const MapGrid& map, const GridShape
   return result;
 }
 
-double first_rate(const GridShape& shape, const TerrainTables& terrain, const ParticleState& points, double wave_speed,
-                  double speed) {
+double first_rate(const GridShape& shape, const TerrainTables& terrain, const ParticleState& points,
+                  const FirstWaves& waves, double speed) {
   double steepest = 0;
   if (shape.mapping == Mapping::terrain_following) {
     for (std::size_t p = 0; p < points.size(); ++p) {
@@ -192,8 +192,8 @@ double first_rate(const GridShape& shape, const TerrainTables& terrain, const Pa
     }
   }
   const double hx = 1 / shape.spacing, hz = 1 / shape.layer_height;
-  return wave_speed * std::sqrt(2 * hx * hx + (1 + steepest) * hz * hz) +
-         speed * (2 * hx + hz * std::sqrt(1 + steepest));
+  const double across_layers = waves.bound_by_layers ? (1 + steepest) * hz * hz : 0;
+  return waves.speed * std::sqrt(2 * hx * hx + across_layers) + speed * (2 * hx + hz * std::sqrt(1 + steepest));
 }
 
 }  // namespace talus::solver

@@ -18,9 +18,15 @@ Scene make_scene(const Domain& domain, const SolveOptions& options);
 std::vector<std::array<double, 3>> positions(const MapGrid& map, const GridShape& shape, const TerrainTables& terrain,
                                              const ParticleState& points);
 
+/// The waves that bound the first step.
+struct FirstWaves {
+  double speed;                 ///< [m/s]
+  bool bound_by_layers = true;  ///< those across the layers too
+};
+
 /// An upper bound of (wave speed + speed) over cell size for points at rest or moving at `speed`, for the first step
 /// [1/s].
-double first_rate(const GridShape& shape, const TerrainTables& terrain, const ParticleState& points, double wave_speed,
-                  double speed);
+double first_rate(const GridShape& shape, const TerrainTables& terrain, const ParticleState& points,
+                  const FirstWaves& waves, double speed);
 
 }  // namespace talus::solver

@@ -21,8 +21,8 @@ SolverState first_state(const Scene& scene, const IntegratorSettings& settings) 
   state.clock.transfer_time = settings.transfer.time;
   state.clock.keeps_budget = settings.energy_budget ? 1 : 0;
   const TerrainTables terrain = make_terrain_tables(scene.grid);
-  const auto rate =
-      static_cast<float>(first_rate(scene.grid, terrain, scene.points, steps.fastest_wave, steps.initial_speed));
+  const auto rate = static_cast<float>(
+      first_rate(scene.grid, terrain, scene.points, {steps.fastest_wave, !(steps.kappa > 0)}, steps.initial_speed));
   atomic_max_positive(&state.clock.rate_bits, rate);
   return state;
 }

@@ -43,16 +43,25 @@ SeparationSettings make_separation(const SolveOptions& o, const GridShape& grid)
   return {.kind = o.base.separation, .depth = o.base.separation_depth > 0 ? o.base.separation_depth : grid.spacing};
 }
 
+/// The transfer time in steps of the integrator (T8a). Column-implicit ones are longer than explicit steps by the ratio
+/// of the rates of waves (T11); what is finer than the grid decays by time with them too.
+double transfer_time(const SolveOptions& o, const GridShape& grid) {
+  if (!abilities_of(o.integrator).solve_columns) return o.transfer_time;
+  const double over = grid.spacing / grid.layer_height;
+  return o.transfer_time / std::sqrt(1 + over * over / 2);
+}
+
 IntegratorSettings make_common(const SolveOptions& o, const GridShape& grid) {
   IntegratorSettings s{.shape = o.shape,
                        .needs = needs_of(o),
                        .steps = {.cfl = o.cfl,
                                  .largest = o.largest_step,
                                  .fastest_wave = fastest_wave(o),
-                                 .initial_speed = size(o.initial_velocity)},
+                                 .initial_speed = size(o.initial_velocity),
+                                 .kappa = abilities_of(o.integrator).solve_columns ? o.kappa : 0},
                        .transfer = {.affine = o.transfer == Transfer::apic,
                                     .remaps_velocity = o.stress_update == StressUpdate::modified,
-                                    .time = o.transfer_time},
+                                    .time = transfer_time(o, grid)},
                        .gravity = {.acceleration = vector(o.gravity), .ramp = o.gravity_ramp},
                        .damping = o.damping,
                        .map_threshold = o.map_threshold,

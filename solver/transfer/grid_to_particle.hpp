@@ -30,6 +30,7 @@ struct GridToParticle {
   const std::uint64_t* home;  ///< key of the cell the point was sorted by (see particle_order.hpp)
   bool affine;
   bool dilatant;
+  bool bound_by_layers = true;  ///< waves across the layers bound the step: not where columns are implicit
 
   /// The memory that the kernel moves for that many points [bytes].
   double bytes(int count) const {
@@ -186,7 +187,7 @@ struct GridToParticle {
     }
     const Real steep = Real(1) + s.slope_x * s.slope_x + s.slope_y * s.slope_y;
     const Real hx = Real(1) / grid.spacing, hz = Real(1) / grid.layer_height;
-    const Real waves = wave_speed * sqrt(Real(2) * hx * hx + steep * hz * hz);
+    const Real waves = wave_speed * sqrt(Real(2) * hx * hx + (bound_by_layers ? steep * hz * hz : Real(0)));
     const Real flow = fabs(v.x) * hx + fabs(v.y) * hx + fabs(sums.climb) * hz;
     atomic_max_positive(&clock->rate_bits, static_cast<float>(waves + flow));
     atomic_max_positive(&clock->speed_bits, static_cast<float>(speed));

@@ -12,15 +12,22 @@ namespace talus {
 enum class Scatter {
   impulse,  ///< momentum + dt * internal force, in one
   force,    ///< momentum and internal force apart (FLIP, damping, MUSL)
+  springs,  ///< the same, and the springs between layers of column-implicit steps
   momentum  ///< momentum alone (second mapping of MUSL)
 };
 
-/// The scatter of the points to nodes[], mass (T3) and momentum (T4), and, for Scatter::force, to forces[] (T5).
+/// Whether forces are scattered apart from momentum.
+inline constexpr bool forces_apart(Scatter what) { return what == Scatter::force || what == Scatter::springs; }
+
+/// The scatter of the points to nodes[], mass (T3) and momentum (T4), and, where they are apart, to forces[] (T5),
+/// whose w takes the spring to the node above (T6b).
 template <class Real, class Shape, Scatter what, class Laws = MaterialLaws>
 struct ParticleToGrid {
   using Number = Real;
   static constexpr int width = Shape::width, columns_each = width * width, deep = width,
-                       parts = what == Scatter::force ? 7 : 4;
+                       parts = what == Scatter::springs ? 8
+                               : what == Scatter::force ? 7
+                                                        : 4;
   GridView<Real> grid;
   ParticleView<Real> points;
   Materials<Real, Laws> materials;
@@ -35,7 +42,7 @@ struct ParticleToGrid {
   double bytes(int count) const {
     const int state = what == Scatter::momentum ? 0 : dilatant ? 8 : 7;
     return count * (points.place_bytes + (4 + (affine ? 9 : 0) + state) * static_cast<double>(sizeof(Real))) +
-           grid.nodes * static_cast<double>((what == Scatter::force ? 4 : 2) * sizeof(*nodes));
+           grid.nodes * static_cast<double>((forces_apart(what) ? 4 : 2) * sizeof(*nodes));
   }
 
   /// A point as its nodes see it: the part of its stencil that they need. It is as small as can be, for it decides how
@@ -48,6 +55,7 @@ struct ParticleToGrid {
     Mat3<Real> turn{};    ///< its change per node
     Mat3<Real> pull{};    ///< columns of -V tau, mapped to reference coordinates and per cell
     Vec3<Real> pulled{};  ///< by its load, in the units of `pull`
+    Real stiffness = 0;   ///< of the springs between its layers, for a slope of one per cell [N/m]
 
     TALUS_HD Source(const ParticleToGrid& kernel, int p)
         : Source(kernel, p, Stencil<Real, Shape>(kernel.grid, kernel.points, p)) {}
@@ -72,6 +80,7 @@ struct ParticleToGrid {
         const Sym3<Real> tau = kirchhoff_stress(kernel.materials.of(points.material, points.plastic_shear, p), state);
         const Real dt = what == Scatter::impulse ? Real(kernel.clock->step_size) : Real(1);
         const Real across = -volume * dt / kernel.grid.spacing, up = -volume * dt / kernel.grid.layer_height;
+        if constexpr (what == Scatter::springs) stiffness = stiffness_of(kernel, p, s, state);
         pull.a = Vec3<Real>{tau.xx, tau.xy, tau.xz} * across;
         pull.b = Vec3<Real>{tau.xy, tau.yy, tau.yz} * across;
         pull.c = (Vec3<Real>{tau.xz, tau.yz, tau.zz} - Vec3<Real>{tau.xx, tau.xy, tau.xz} * s.slope_x -
@@ -90,11 +99,21 @@ struct ParticleToGrid {
     }
   };
 
+  /// The stiffness of point p across its layers (T6b) [N/m].
+  TALUS_HD static Real stiffness_of(const ParticleToGrid& kernel, int p, const Stencil<Real, Shape>& s,
+                                    const MaterialState<Real>& state) {
+    const Real waves = wave_speed(kernel.materials.of(kernel.points.material, kernel.points.plastic_shear, p), state),
+               layer = kernel.grid.layer_height, steep = Real(1) + s.slope_x * s.slope_x + s.slope_y * s.slope_y;
+    return kernel.points.volume[p] * kernel.materials.density(kernel.points.material, p) * waves * waves * steep /
+           (layer * layer);
+  }
+
   /// The sums that a node receives: mass [kg], momentum [kg m/s] and force [N], or impulse [N s] as part of the
   /// momentum.
   struct Sums {
     Real mass = 0;
     Vec3<Real> momentum, force;
+    Real spring = 0;  ///< to the node above [N/m]
   };
 
   /// One thread: one point. It scatters alone, as on a CPU.
@@ -116,14 +135,17 @@ struct ParticleToGrid {
     to[1] = sums.momentum.x;
     to[2] = sums.momentum.y;
     to[3] = sums.momentum.z;
-    if constexpr (what == Scatter::force) {
+    if constexpr (forces_apart(what)) {
       to[4] = sums.force.x;
       to[5] = sums.force.y;
       to[6] = sums.force.z;
     }
+    if constexpr (what == Scatter::springs) to[7] = sums.spring;
   }
   /// The location of part q of a stored node.
-  TALUS_HD Real* part(int node, int q) const { return q < 4 ? &nodes[node].w + q : &forces[node].x + (q - 4); }
+  TALUS_HD Real* part(int node, int q) const {
+    return q < 4 ? &nodes[node].w + q : q < 7 ? &forces[node].x + (q - 4) : &forces[node].w;
+  }
   /// Whether point p gives anything: it is in the domain, and the loop has not halted.
   TALUS_HD bool counts(int p) const { return clock->halt == running && points.cell[0][p] >= 0; }
 
@@ -146,14 +168,18 @@ struct ParticleToGrid {
       sums[c].momentum += velocity * share;
       if (affine) velocity += s.turn.c;
       if constexpr (what == Scatter::impulse) sums[c].momentum += sideways * s.wz[c] + upwards * s.gz[c];
-      if constexpr (what == Scatter::force) sums[c].force += sideways * s.wz[c] + upwards * s.gz[c];
+      if constexpr (forces_apart(what)) sums[c].force += sideways * s.wz[c] + upwards * s.gz[c];
+      // Slopes grow from one layer to the next: the lowest and the highest bound those of two springs.
+      if constexpr (what == Scatter::springs) {
+        if (c + 1 < deep) sums[c].spring += s.stiffness * weight * (c == 0 ? -s.gz[0] : s.gz[deep - 1]);
+      }
     }
   }
 
   /// The sums go to a stored node.
   TALUS_HD void add_to_node(int n, const Sums& sums) const {
     scatter_add(&nodes[n], sums.mass, sums.momentum);
-    if constexpr (what == Scatter::force) scatter_add(&forces[n], Real(0), sums.force);
+    if constexpr (forces_apart(what)) scatter_add(&forces[n], sums.spring, sums.force);
   }
 };
 
