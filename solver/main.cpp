@@ -16,6 +16,7 @@
 #include "solver/parallel/bandwidth.hpp"
 #include "solver/parallel/on.hpp"
 #include "solver/run/plan.hpp"
+#include "solver/run/plausible.hpp"
 #include "solver/run/profile_report.hpp"
 #include "solver/run/simulation.hpp"
 #include "solver/run/stiffness.hpp"
@@ -93,19 +94,30 @@ void report_profile(const RunSummary& summary, const AnyDevice& device, const st
 void log_plan(const Domain& domain, const SolveOptions& o, const AnyDevice& device) {
   const Scene scene = make_scene(domain, o);
   const TerrainTables terrain = make_terrain_tables(scene.grid);
-  const double wave_speed = fastest_wave(o);
-  const FirstWaves waves{wave_speed, !abilities_of(o.integrator).solve_columns};
+  const FirstWaves waves = first_waves(o);
   const double step = std::min(o.cfl / first_rate(scene.grid, terrain, scene.points, waves, 0), o.largest_step);
   const double volume = std::accumulate(scene.points.volume.begin(), scene.points.volume.end(), 0.0);
   log_info(fmt::format("{} material points, {:.0f} m3; grid {} x {} columns of {:g} m, layers of {:g} m",
                        scene.points.size(), volume, scene.grid.columns, scene.grid.rows, scene.grid.spacing,
                        scene.grid.layer_height));
-  log_info(fmt::format("wave speed {:.0f} m/s, first step {:.3g} s, about {:.0f} steps, on the {}", wave_speed, step,
-                       o.end_time / step, device.is_gpu() ? "GPU" : "CPU"));
+  const auto whole = [](double number) {
+    return fmt::format(fmt::runtime(number < 1e9 ? "{:.0f}" : "{:.3g}"), number);
+  };
+  log_info(fmt::format("wave speed {} m/s, first step {:.3g} s, about {} steps, on the {}", whole(waves.speed), step,
+                       whole(o.end_time / step), device.is_gpu() ? "GPU" : "CPU"));
 }
 
 void log_warnings(const Domain& domain, const SolveOptions& o) {
   for (const std::string& text : warnings(domain, o)) log_warning(text);
+}
+
+/// This function refuses what is implausible in a scene, and adds what is insisted on to the facts of its results.
+void judge(Domain& domain, const SolveOptions& o) {
+  Acceptance acceptance("solve", o.accept);
+  judge_scene(plausibility_of(domain, make_scene(domain, o), o), o, acceptance);
+  acceptance.warn_of_unmet();
+  const auto& facts = acceptance.facts();
+  domain.provenance.insert(domain.provenance.end(), facts.begin(), facts.end());
 }
 
 /// This function carries out stiffness = "auto", and logs the modulus.
@@ -182,8 +194,9 @@ void solve(StageContext& context, const SolveFlags& flags) {
   const AnyDevice device = make_device(choose_device(flags.on));
   auto inputs = inputs_of(options, context.out);
   const auto domain_file = inputs.front();
-  const Domain domain = read_domain(domain_file);
+  Domain domain = read_domain(domain_file);
   options = settle_stiffness(domain, options);
+  judge(domain, options);
   if (flags.plan) {
     for (const std::string& text : plan(domain, options, device)) log_info(text);
     log_warnings(domain, options);

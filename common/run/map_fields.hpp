@@ -16,7 +16,7 @@ namespace talus {
 template <class Values>
 struct RunningMaps {
   Values peak_thickness{};  // running maximum [m]
-  Values peak_speed{};      // running maximum of the depth-mean speed [m/s]
+  Values peak_speed{};      // largest speed of the mean motion of a column's points [m/s]
   Values peak_pressure{};   // running maximum of rho v^2 [Pa]
   Values arrival_time{};    // first time thicker than the threshold [s]; negative: not yet
 };
@@ -39,7 +39,7 @@ struct RunMaps {
   std::vector<double> initial_thickness;  // [m]
   std::vector<double> deposit_thickness;  // at the end, without what still lies where it was eroded from [m]
   std::vector<double> peak_thickness;     // running maximum [m]
-  std::vector<double> peak_speed;         // running maximum of the depth-mean speed [m/s]
+  std::vector<double> peak_speed;         // largest speed of the mean motion of a column's points [m/s]
   std::vector<double> peak_pressure_kPa;  // running maximum of rho v^2 [kPa]
   std::vector<double> arrival_time;       // [s], NaN where it never came
   std::vector<double> eroded_depth;       // of the ground that was eroded [m]; empty where nothing can be

@@ -80,6 +80,11 @@ RunSummary read_summary(const h5::File& file) {
   }
   for (const auto& item : run_layout::summary_integers) summary.*(item.value) = file.integer("/", item.name);
   for (const auto& item : run_layout::summary_numbers) summary.*(item.value) = file.number("/", item.name);
+  for (const SanityNumber& number : sanity_numbers) {
+    if (file.has_attribute("/", number.name)) summary.sanity.*(number.value) = file.number("/", number.name);
+  }
+  constexpr const char* words = run_layout::sanity_words;
+  if (file.has_attribute("/", words)) summary.sanity.words = file.text("/", words);
   for (const auto& phase : file.children("/profile")) {
     summary.profile.emplace_back(phase, file.read<double>("/profile/" + phase, {1}).front());
   }

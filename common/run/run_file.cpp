@@ -58,6 +58,8 @@ void write_summary(h5::File& file, const RunSummary& summary) {
   for (const auto& item : run_layout::summary_laws) file.set_text("/", item.name, summary.*(item.value));
   for (const auto& item : run_layout::summary_integers) file.set_integer("/", item.name, summary.*(item.value));
   for (const auto& item : run_layout::summary_numbers) file.set_number("/", item.name, summary.*(item.value));
+  for (const SanityNumber& number : sanity_numbers) file.set_number("/", number.name, summary.sanity.*(number.value));
+  file.set_text("/", run_layout::sanity_words, summary.sanity.words);
   file.make_group("/profile");
   for (const auto& [phase, seconds] : summary.profile) {
     file.write<double>("/profile/" + phase, {1}, std::vector<double>{seconds});

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/run/map_fields.hpp"
+#include "common/run/run_sanity.hpp"
 
 namespace talus {
 
@@ -51,6 +52,7 @@ struct RunSummary {
   double volume_entrained = 0;                            // eroded from the ground on the way [m3]
   double volume_final = 0;                                // [m3]
   double volume_outflow = 0;                              // [m3]
+  RunSanity sanity;                                       // what the run says of itself
   std::vector<std::pair<std::string, double>> profile;    // phases of the step loop [s]; empty unless measured
   std::vector<std::pair<std::string, double>> memory_of;  // its owners [bytes]
   std::vector<std::pair<std::string, std::string>> provenance;

@@ -26,6 +26,8 @@ inline constexpr SummaryItem<std::string> summary_texts[] = {
 /// Words that files of earlier versions lack.
 inline constexpr SummaryItem<std::string> summary_laws[] = {{"material", &RunSummary::material},
                                                             {"bed", &RunSummary::bed}};
+/// The attribute for RunSanity::words; files of earlier versions lack it and the numbers beside it (run_sanity.hpp).
+inline constexpr const char* sanity_words = "sanity";
 inline constexpr SummaryItem<std::int64_t> summary_integers[] = {{"particles", &RunSummary::particles},
                                                                  {"particles_outflow", &RunSummary::particles_outflow},
                                                                  {"steps", &RunSummary::steps}};

@@ -39,6 +39,7 @@ std::vector<std::filesystem::path> write_geotiffs(const std::filesystem::path& f
         {"SOURCE", "Talus " + run.summary.version}};
     if (const std::string accepted = accepted_words(run.summary); !accepted.empty())
       tags.metadata.emplace_back("ACCEPTED", accepted);
+    if (!run.summary.sanity.words.empty()) tags.metadata.emplace_back("SANITY", run.summary.sanity.words);
     files.push_back(folder / (name + ".tif"));
     write_cog(files.back(), raster, tags);
   };

@@ -74,6 +74,7 @@ void describe_file(Nc& nc, const Run& run, const NetcdfNotes& notes) {
   nc.text(NC_GLOBAL, "history",
           fmt::format("{:%Y-%m-%dT%H:%M:%SZ}: {}", fmt::gmtime(std::time(nullptr)), notes.command_line));
   if (const std::string accepted = accepted_words(s); !accepted.empty()) nc.text(NC_GLOBAL, "accepted", accepted);
+  if (!s.sanity.words.empty()) nc.text(NC_GLOBAL, "sanity", s.sanity.words);
   nc.text(NC_GLOBAL, "comment",
           "Thickness is vertical (along the plumb line), not normal to the slope, and counts released volume. Cells "
           "outside the computed domain hold the fill value; inside it 0 means that nothing is there.");

@@ -1,4 +1,4 @@
-// What the run itself says: volumes, cost, extent.
+// What the run itself says: volumes, cost, sanity, extent.
 #include <algorithm>
 
 #include "postprocess/fields/fields.hpp"
@@ -61,6 +61,15 @@ void computation(const Scored& scored, Sheet& sheet) {
   sheet.text("version", "version", s.version);
 }
 
+void sanity(const Scored& scored, Sheet& sheet) {
+  const RunSanity& found = scored.run.summary.sanity;
+  if (found.words.empty()) return;  // a run of an earlier version
+  sheet.section("Sanity");
+  sheet.text("sanity", "the run is", found.words);
+  for (const SanityNumber& number : sanity_numbers)
+    sheet.number(number.name, number.label, number.unit, found.*(number.value), number.decimals, number.missing);
+}
+
 void extent(const Scored& scored, Sheet& sheet) {
   const auto& maps = scored.run.maps;
   const auto& options = scored.options;
@@ -83,6 +92,7 @@ void extent(const Scored& scored, Sheet& sheet) {
 void add_run(const Scored& scored, Sheet& sheet) {
   volumes(scored, sheet);
   computation(scored, sheet);
+  sanity(scored, sheet);
   extent(scored, sheet);
 }
 

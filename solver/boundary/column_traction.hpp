@@ -19,9 +19,9 @@ TALUS_HD Number share_left_by_traction(Number speed, Number drag, Number cohesio
   return held < Number(1) ? (Number(1) - held) / (Number(1) + drag * rate / speed) : Number(0);
 }
 
-/// Tractions slow what of a column lies on the bed; a kernel of for_each_column_twice. Maps are recorded of what is
-/// left, where `records`. Nodes has mass(n), velocity(n) and add(n, change of velocity) of type Number.
-template <class Real, class Nodes, bool records>
+/// Tractions slow what of a column lies on the bed; a kernel of for_each_column_twice. Nodes has mass(n), velocity(n)
+/// and add(n, change of velocity) of type Number.
+template <class Real, class Nodes>
 struct SlowColumns {
   using Number = typename Nodes::Number;
   GridView<Real> grid;
@@ -31,8 +31,7 @@ struct SlowColumns {
   BedColumns<Number> columns;
   ColumnStep step;
   bool with_yield;  ///< beside drag
-  Number density;   ///< of the mass [kg/m3]
-  ColumnRecorder<Number> recorder;
+  ColumnDensity<Number> density;
 
   /// A column of nodes as the kernel sees it; see ColumnTwice.
   struct Column {
@@ -98,7 +97,9 @@ struct SlowColumns {
               : lying_matter(nodes, at.nodes);
     const ColumnBed<Number> under = bed_under(grid, columns.mass, at.nodes.i, at.nodes.j);
     const Slip<Number> slip = column_slip(matter, under, step);
-    if (!lies_on_bed(at.rise, step.press(under.normal), slip.load / density)) return pass;
+    const auto mass = static_cast<double>(columns.mass[at.nodes.column]);
+    const Number depth = slip.load / static_cast<Number>(density.of(at.nodes.column, mass));
+    if (!lies_on_bed(at.rise, step.press(under.normal), depth)) return pass;
     pass.matter = matter;
     const Bed<Number>& bed = friction.at(at.nodes.column);
     const Number yield = with_yield ? friction.yield(bed, slip) : Number(0);
@@ -116,14 +117,6 @@ struct SlowColumns {
     nodes.add(n, change);
     if (step.clock && step.clock->keeps_budget)
       count_at_bed(*step.clock, step.clock->drag_loss, nodes.mass(n), v, change);
-  }
-
-  /// The method records the maps of what is left (T25).
-  TALUS_HD void finish(const Column& at, const Sums& sums, const Pass& pass) const {
-    if constexpr (records) {
-      recorder.record(at.nodes.column, sums.mass, sums.momentum + change_of(pass, pass.matter.momentum),
-                      Number(grid.spacing), step.clock->time);
-    }
   }
 
  private:

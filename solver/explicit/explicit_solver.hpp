@@ -190,7 +190,10 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
 
   template <NodeContent content>
   void update() {
-    if (content != NodeContent::remapped) this->measure_columns();
+    if (content != NodeContent::remapped) {
+      this->measure_columns();
+      this->record_motion(clock_.data());
+    }
     if (content != NodeContent::remapped && traction_.measures()) measure_coefficients();
     if (content == NodeContent::force && settings_.energy_budget) {
       update_nodes<content, content == NodeContent::force>();
@@ -214,12 +217,14 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
         UpdateColumns<Real, content, counts>{
             grid_.view(), grid_.active_list(), clock_.data(), nodes_.data(), forces_.data(), g, settings_.gravity.ramp,
             walls_, traction_.seen_by(surroundings_.bed()), static_cast<Real>(this->full_base()),
-            static_cast<Real>(settings_.damping), traction_.slowed(), counts ? pressed_.data() : nullptr, recorder()});
+            static_cast<Real>(settings_.damping), traction_.slowed(), counts ? pressed_.data() : nullptr,
+            this->column_density(), maps_.view()});
   }
 
   /// The method makes the nodes' part of a column-implicit step.
   void update_by_columns() {
     this->measure_columns();
+    this->record_motion(clock_.data());
     if (traction_.measures()) measure_coefficients();
     {
       const ProfilePhase<Device> phase(device_, "grid");
@@ -240,7 +245,8 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
                                   .kappa = static_cast<Real>(settings_.steps.kappa),
                                   .softer = softer(),
                                   .columns = traction_.slowed(),
-                                  .recorder = recorder()});
+                                  .density = this->column_density(),
+                                  .maps = maps_.view()});
     }
     if (traction_.acts()) slow_columns<NodeContent::force>();
   }
@@ -254,9 +260,6 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     }
     return most;
   }
-
-  /// The recording of maps from columns.
-  ColumnRecorder<Real> recorder() { return {maps_.view(), materials_.list[0].density, measures_.column_volumes()}; }
 
   /// The method holds columns on the ground that would leave it (T12c). Which ones are shallow is settled as the step
   /// begins.
@@ -323,15 +326,14 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   void slow_columns() {
     using Nodes = PackedNodes<Real>;
     for_each_column_twice<block_columns>(device_, grid_.active_blocks(),
-                                         SlowColumns<Real, Nodes, true>{.grid = grid_.view(),
-                                                                        .active = grid_.active_list(),
-                                                                        .nodes = packed_nodes<content>(),
-                                                                        .friction = surroundings_.bed(),
-                                                                        .columns = traction_.columns(),
-                                                                        .step = column_step(),
-                                                                        .with_yield = true,
-                                                                        .density = materials_.list[0].density,
-                                                                        .recorder = recorder()});
+                                         SlowColumns<Real, Nodes>{.grid = grid_.view(),
+                                                                  .active = grid_.active_list(),
+                                                                  .nodes = packed_nodes<content>(),
+                                                                  .friction = surroundings_.bed(),
+                                                                  .columns = traction_.columns(),
+                                                                  .step = column_step(),
+                                                                  .with_yield = true,
+                                                                  .density = this->column_density()});
   }
 
   /// The nodes with the changes of their velocity, where a step keeps them.

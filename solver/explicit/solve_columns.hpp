@@ -32,11 +32,12 @@ struct SolveColumns {
   double gravity_ramp;        ///< time over which it grows [s]
   Walls<Real> walls;
   BaseFriction<Real> friction;
-  Real full_base;            ///< mass of a base node under a full layer [kg]
-  Real kappa;                ///< of (T6a)
-  Real softer;               ///< shear springs over uniaxial ones, of the material where that is most [-]
-  BedColumns<Real> columns;  ///< for the bed's tractions, which come after
-  ColumnRecorder<Real> recorder;
+  Real full_base;               ///< mass of a base node under a full layer [kg]
+  Real kappa;                   ///< of (T6a)
+  Real softer;                  ///< shear springs over uniaxial ones, of the material where that is most [-]
+  BedColumns<Real> columns;     ///< for the bed's tractions, which come after
+  ColumnDensity<Real> density;  ///< of the mass
+  MapView maps;
 
   /// The memory that the kernel moves [bytes].
   double bytes(int) const { return grid.nodes * static_cast<double>(6 * sizeof(*nodes) + 2 * sizeof(*pivots)); }
@@ -47,10 +48,11 @@ struct SolveColumns {
     if (!at.in_domain()) return;
     const Vec3<Real> normal = normal_of(grid.slope_x[at.column], grid.slope_y[at.column]);
     eliminate(at, normal);
-    const LyingMatter<Real> matter = substitute(at, normal);
-    if (columns.mass) columns.mass[at.column] = matter.mass;
-    if (matter.mass > Real(0) && !columns.mass)
-      recorder.record(at.column, matter.mass, matter.momentum, grid.spacing, clock->time);
+    const Real all = substitute(at, normal);
+    if (columns.mass) columns.mass[at.column] = all;
+    if (!(all > Real(0))) return;
+    const double mass = static_cast<double>(all);
+    record_column(maps, at.column, {mass, density.of(at.column, mass), static_cast<double>(grid.spacing)}, clock->time);
   }
 
  private:
@@ -99,9 +101,9 @@ struct SolveColumns {
     }
   }
 
-  /// The method goes up the column with the changes of velocity; it returns the matter and its new momentum.
-  TALUS_HD LyingMatter<Real> substitute(const ColumnNodes& at, const Vec3<Real>& normal) const {
-    LyingMatter<Real> sum{.first = at.begin(), .last = at.end()};
+  /// The method goes up the column with the changes of velocity; it returns the mass [kg].
+  TALUS_HD Real substitute(const ColumnNodes& at, const Vec3<Real>& normal) const {
+    Real sum = 0;
     if (columns.mass) columns.rise[at.column] = Real(off_bed);
     Vec3<Real> below{};  // change of the node below [m/s]
     Real tie = 0;        // spring to it
@@ -124,8 +126,7 @@ struct SolveColumns {
       below = v - before;
       nodes[n] = {node.w, v.x, v.y, v.z};
       forces[n] = {f.w, below.x, below.y, below.z};
-      sum.mass += node.w;
-      sum.momentum += v * node.w;
+      sum += node.w;
     }
     return sum;
   }

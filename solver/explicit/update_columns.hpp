@@ -1,4 +1,5 @@
-// The grid's part of an explicit step: new velocities from momentum, force and gravity, damping, the bed, and the maps.
+// The grid's part of an explicit step: new velocities from momentum, force and gravity, damping, the bed, and the maps
+// of thickness and arrival.
 #pragma once
 
 #include <type_traits>
@@ -33,11 +34,12 @@ struct UpdateColumns {
   double gravity_ramp;  ///< time over which it grows [s]
   Walls<Real> walls;
   BaseFriction<Real> friction;
-  Real full_base;                 ///< mass of a base node under a full layer [kg]
-  Real damping;                   ///< Cundall's local factor [-]
-  BedColumns<Real> columns;       ///< for the bed's tractions, which come after
-  Real* pressed;                  ///< impulse of the bed along its normal, where losses are counted [N s]
-  ColumnRecorder<Real> recorder;  ///< at work here unless they do
+  Real full_base;               ///< mass of a base node under a full layer [kg]
+  Real damping;                 ///< Cundall's local factor [-]
+  BedColumns<Real> columns;     ///< for the bed's tractions, which come after
+  Real* pressed;                ///< impulse of the bed along its normal, where losses are counted [N s]
+  ColumnDensity<Real> density;  ///< of the mass
+  MapView maps;
 
   /// The memory that the kernel moves [bytes].
   double bytes(int) const {
@@ -69,14 +71,12 @@ struct UpdateColumns {
   struct NoLosses {
     TALUS_HD void operator+=(const NoLosses&) {}
   };
-  /// The sums over the layers of a column: mass [kg], momentum [kg m/s], losses.
+  /// The sums over the layers of a column: mass [kg], losses.
   struct Sums {
     Real mass = 0;
-    Vec3<Real> momentum{};
     std::conditional_t<counts, Losses, NoLosses> losses;
     TALUS_HD Sums& operator+=(const Sums& o) {
       mass += o.mass;
-      momentum += o.momentum;
       losses += o.losses;
       return *this;
     }
@@ -110,10 +110,9 @@ struct UpdateColumns {
     const Vec3<Real> v = update(at, k, n, node, sums.losses);
     nodes[n] = {node.w, v.x, v.y, v.z};
     sums.mass += node.w;
-    sums.momentum += v * node.w;
   }
 
-  /// The method adds the losses to the clock's, and records the maps of the column (T25).
+  /// The method adds the losses to the clock's, and records thickness and arrival of the column (T25).
   TALUS_HD void finish(const Column& at, const Sums& sums) const {
     if constexpr (content == NodeContent::remapped) return;
     if (columns.mass) {
@@ -124,8 +123,8 @@ struct UpdateColumns {
     if constexpr (counts) pressed[at.column] = static_cast<Real>(sums.losses.pressed);
     if (!(sums.mass > Real(0))) return;
     if constexpr (counts) add(sums.losses);
-    // With tractions the maps are recorded once they have acted.
-    if (!columns.mass) recorder.record(at.column, sums.mass, sums.momentum, grid.spacing, clock->time);
+    const double mass = static_cast<double>(sums.mass), spacing = static_cast<double>(grid.spacing);
+    record_column(maps, at.column, {mass, density.of(at.column, mass), spacing}, clock->time);
   }
 
  private:

@@ -226,15 +226,14 @@ class ContactSet {
     if (!scheme.dynamic || !bed_.view().has_drag()) return;
     for_each_column_twice<block_columns>(
         parts_.device, parts_.grid.active_blocks(),
-        SlowColumns<Real, MomentumNodes, false>{.grid = parts_.grid.view(),
-                                                .active = parts_.grid.active_list(),
-                                                .nodes = columns,
-                                                .friction = bed_.view(),
-                                                .columns = traction_.columns(),
-                                                .step = step,
-                                                .with_yield = false,
-                                                .density = static_cast<double>(parts_.materials.list[0].density),
-                                                .recorder = {}});
+        SlowColumns<Real, MomentumNodes>{.grid = parts_.grid.view(),
+                                         .active = parts_.grid.active_list(),
+                                         .nodes = columns,
+                                         .friction = bed_.view(),
+                                         .columns = traction_.columns(),
+                                         .step = step,
+                                         .with_yield = false,
+                                         .density = {static_cast<double>(parts_.materials.list[0].density), nullptr}});
   }
 
   /// The method measures friction of the contact points for this step, and what they take at once.

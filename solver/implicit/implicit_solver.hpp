@@ -2,6 +2,7 @@
 // the files that instantiate it.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "solver/implicit/controls.hpp"
@@ -43,8 +44,10 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     clock.outflow_count = 0;
     clock.outflow_volume = 0;
     rate_ = static_cast<double>(positive_from_bits(clock.rate_bits));
+    clock.fastest_bits = std::max(clock.fastest_bits, clock.speed_bits);
     clock.rate_bits = clock.speed_bits = 0;
     fit_grid(clock.time);
+    record_points();
     BatchReport report;
     const double step = solve_step(clock, report.stats);
     first_ = false;
@@ -137,7 +140,14 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     const ProfilePhase<Device> phase(device_, "grid to points");
     step_.accept(clock_.data(), clock.share_kept(step, rate_));
     this->measure_columns();
-    step_.record_maps(maps_.view(), clock.time, measures_.column_volumes());
+    step_.record_maps(maps_.view(), clock.time, this->column_density());
+  }
+
+  /// The method records speed and pressure of the points as they are, sorted.
+  void record_points() {
+    if (!controls_.dynamic) return;
+    this->measure_columns();
+    this->record_motion(nullptr);
   }
 
   /// The method reports what the step ended with, and drops particles that left the domain.
@@ -145,10 +155,13 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     Clock clock = read_clock();
     report.outflow_count = clock.outflow_count;
     report.outflow_volume = clock.outflow_volume;
+    clock.fastest_bits = std::max(clock.fastest_bits, clock.speed_bits);
     report.stats.over_cfl = step * static_cast<double>(positive_from_bits(clock.rate_bits));
     if (clock.request == failed) clock.halt = failed;
     if (clock.halt != failed && clock.time >= clock.next_event) clock.halt = at_event;
-    if (report.outflow_count > 0) this->fit(report.outflow_count);
+    // What is looked at between steps, by cell and column, finds the points sorted.
+    if (report.outflow_count > 0 || clock.halt == at_event) this->fit(report.outflow_count);
+    if (clock.halt == at_event) record_points();
     report.sorted = true;
     report.clock = clock;
     clock.halt = clock.request = running;

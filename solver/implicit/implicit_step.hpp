@@ -138,16 +138,13 @@ class ImplicitStep {
                  [&]<class Laws>(const Materials<Real, Laws>& materials) { accept_points(materials, clock, kept); });
   }
 
-  /// The method records the maps of the end of the step at `time` [s]. `volumes` over the columns where densities
-  /// differ, else null [m3].
-  void record_maps(const MapView& maps, double time, const double* volumes) {
+  /// The method records thickness and arrival of the step that ends at `time` [s].
+  void record_maps(const MapView& maps, double time, const ColumnDensity<Real>& density) {
     for_each(parts_.device, parts_.grid.active_blocks() * block_columns,
              RecordColumns<Real>{.grid = parts_.grid.view(),
                                  .active = parts_.grid.active_list(),
                                  .mass = nodes_.mass.data(),
-                                 .velocity = parts_.controls.dynamic ? nodes_.velocity_end.data() : nullptr,
-                                 .density = static_cast<double>(parts_.materials.list[0].density),
-                                 .volumes = volumes,
+                                 .density = density,
                                  .time = time,
                                  .maps = maps});
   }

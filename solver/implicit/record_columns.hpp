@@ -1,4 +1,4 @@
-// Maps of the end of an implicit step.
+// Maps of an implicit step: thickness and arrival.
 #pragma once
 
 #include "solver/state/grid_view.hpp"
@@ -6,15 +6,13 @@
 
 namespace talus::solver {
 
-/// One thread: one column of nodes. What the maps keep of it at the end of a step: thickness, speed, pressure.
+/// One thread: one column of nodes. What the maps keep of it: thickness and arrival.
 template <class Real>
 struct RecordColumns {
   GridView<Real> grid;
   const int* active;
   const double* mass;
-  const Vec3<double>* velocity;  ///< null in statics
-  double density;                ///< where all points have the same [kg/m3]
-  const double* volumes;         ///< of the matter over each column, where they differ [m3]; else null
+  ColumnDensity<Real> density;
   double time;
   MapView maps;
   TALUS_HD void operator()(int c) const {
@@ -22,16 +20,11 @@ struct RecordColumns {
     if (!at.in_domain(grid)) return;
     const BlockSlot slot = grid.slots[at.block];
     double total = 0;
-    Vec3<double> momentum{};
-    for (int k = slot.first_layer; k < slot.first_layer + slot.layers; ++k) {
-      const int n = GridView<Real>::node(slot, at.i, at.j, k);
-      total += mass[n];
-      if (velocity && mass[n] > 0) momentum += velocity[n] * mass[n];
-    }
-    const double spacing = static_cast<double>(grid.spacing);
+    for (int k = slot.first_layer; k < slot.first_layer + slot.layers; ++k)
+      total += mass[GridView<Real>::node(slot, at.i, at.j, k)];
     const int column = grid.column(at.i, at.j);
-    const double mean = volumes && volumes[column] > 0 ? total / volumes[column] : density;
-    if (total > 0) record_column(maps, column, {total, length(momentum), mean, spacing}, time);
+    const double spacing = static_cast<double>(grid.spacing);
+    if (total > 0) record_column(maps, column, {total, density.of(column, total), spacing}, time);
   }
 };
 

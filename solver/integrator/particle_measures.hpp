@@ -1,10 +1,12 @@
-// What is measured of the particles as a whole: energies, thickness on the map, volumes over the columns.
+// What is measured of the particles as a whole: energies, thickness on the map, packing, volumes over the
+// columns.
 #pragma once
 
 #include <cstddef>
 #include <vector>
 
 #include "solver/grid/terrain.hpp"
+#include "solver/integrator/packing.hpp"
 #include "solver/integrator/point_sums.hpp"
 #include "solver/integrator/solver.hpp"
 #include "solver/parallel/for_each.hpp"
@@ -21,7 +23,7 @@ class ParticleMeasures {
 
   /// The constructor takes the grid whose cells the maps have.
   ParticleMeasures(const Device& device, const GridShape& shape)
-      : device_(device), columns_(shape.columns), rows_(shape.rows), spacing_(shape.spacing) {}
+      : device_(device), columns_(shape.columns), rows_(shape.rows), spacing_(shape.spacing), packing_(device) {}
 
   /// The sums over `count` particles; waits for the device.
   Energies energies(int count, const Energy& measure) {
@@ -43,6 +45,13 @@ class ParticleMeasures {
     return result;
   }
 
+  /// How densely the particles are packed in a grid that was sorted for them; waits for the device.
+  template <class Grid>
+  Packing packing(const ParticleView<Real>& points, Grid& grid) {
+    const ProfilePhase<Device> phase(device_, "records and frames");
+    return packing_.of(points, grid);
+  }
+
   /// The method measures the volumes over the columns, for the maps of particles whose densities differ: mass does not
   /// give their thickness.
   void measure_columns(const ParticleView<Real>& points, const PointGroups& groups) {
@@ -55,7 +64,7 @@ class ParticleMeasures {
   /// The memory for partial sums, which others on the device may use between calls.
   SumSpace<Device>& sums() { return sums_; }
   /// The size of maps and partial sums [bytes].
-  std::size_t bytes() const { return sums_.bytes() + column_volumes_.bytes() + thickness_.bytes(); }
+  std::size_t bytes() const { return sums_.bytes() + column_volumes_.bytes() + thickness_.bytes() + packing_.bytes(); }
 
  private:
   void scatter(const ParticleView<Real>& points, const PointGroups& groups, Buffer<double, Device>& volumes) {
@@ -69,6 +78,7 @@ class ParticleMeasures {
   double spacing_;  ///< [m]
   Buffer<double, Device> totals_{device_}, thickness_{device_}, column_volumes_{device_};
   SumSpace<Device> sums_{device_};
+  PackingMeasure<Real, Device> packing_;
 };
 
 }  // namespace talus::solver

@@ -4,6 +4,7 @@
 #include "solver/grid/sparse_grid.hpp"
 #include "solver/integrator/device_loads.hpp"
 #include "solver/integrator/device_maps.hpp"
+#include "solver/integrator/motion_maps.hpp"
 #include "solver/integrator/particle_measures.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/integrator/settings.hpp"
@@ -29,7 +30,8 @@ class PointSolver : public Solver {
         clock_(device),
         loads_(device, settings.loads, scene.load_volumes),
         maps_(device, state.maps, settings.map_threshold),
-        measures_(device, scene.grid) {
+        measures_(device, scene.grid),
+        motion_(device) {
     points_.upload(state.points);
     clock_.upload({state.clock});
   }
@@ -65,6 +67,9 @@ class PointSolver : public Solver {
                               {grid_.view(), points_.view(), materials_, settings_.gravity.acceleration, dilatant_});
   }
 
+  /// How densely the points are packed; waits for the device.
+  Packing packing() override { return measures_.packing(points_.view(), grid_); }
+
   /// The vertical thickness, h of (T25), [rows * columns] [m]; waits for the device.
   std::vector<double> thickness() override { return measures_.thickness(points_.view(), grid_.groups()); }
 
@@ -78,7 +83,7 @@ class PointSolver : public Solver {
   MemoryShares memory() const override {
     MemoryShares shares{{"points", points_.bytes()},
                         {"grid", grid_.bytes() + surroundings_.bed_bytes()},
-                        {"maps and records", maps_.bytes() + measures_.bytes()}};
+                        {"maps and records", maps_.bytes() + measures_.bytes() + motion_.bytes()}};
     if (const std::size_t sorting = sort_space_bytes(device_); sorting > 0) shares.emplace_back("sorting", sorting);
     if (surroundings_.contact().on()) shares.emplace_back("contact points", surroundings_.contact_bytes());
     return shares;
@@ -89,6 +94,14 @@ class PointSolver : public Solver {
   /// thickness.
   void measure_columns() {
     if (settings_.materials.densities_differ) measures_.measure_columns(points_.view(), grid_.groups());
+  }
+
+  /// The density of what lies over each column, as it was measured last.
+  ColumnDensity<Real> column_density() const { return {materials_.list[0].density, measures_.column_volumes()}; }
+  /// The method records the maps of speed and pressure of the points as they are, whenever the clock says so, or at
+  /// once where that is null; they must not have gone further since they were sorted than a step may begin with.
+  void record_motion(const Clock* clock) {
+    motion_.record(points_.view(), materials_, grid_, clock, column_density(), maps_.view());
   }
 
   /// The method sorts the points and fits the grid to them; the `outflow_count` last ones are dropped.
@@ -126,6 +139,7 @@ class PointSolver : public Solver {
   DeviceLoads<Device> loads_;
   DeviceMaps<Device> maps_;
   ParticleMeasures<Real, Device, Shape> measures_;
+  MotionMaps<Real, Device, Shape> motion_;
 };
 
 }  // namespace talus::solver

@@ -21,6 +21,13 @@ struct Energies {
   Vec3<double> momentum;                           ///< [kg m/s]
 };
 
+/// How densely points are packed: the volume of those in a cell about a node, over the room in it (T25b). 1: as at the
+/// density at which they were released.
+struct Packing {
+  double p99 = 0;      ///< 99 % of the volume is packed no denser, to 0.01 [-]
+  double largest = 0;  ///< of any cell [-]
+};
+
 /// The state that a checkpoint keeps.
 struct SolverState {
   ParticleState points;
@@ -66,6 +73,8 @@ class Solver {
   virtual ParticleState shown() const = 0;
   /// The sums over the points.
   virtual Energies energies() = 0;
+  /// How densely the points are packed; at an event, or just after a sort.
+  virtual Packing packing() = 0;
   /// The vertical thickness (T25), initial volume over cell area, [rows * columns] [m]; its sum times the cell area is
   /// the volume of the points to rounding.
   virtual std::vector<double> thickness() = 0;

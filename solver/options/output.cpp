@@ -1,5 +1,7 @@
 #include "solver/options/output.hpp"
 
+#include <iterator>
+
 #include "solver/options/names.hpp"
 #include "solver/options/solve.hpp"
 
@@ -37,6 +39,8 @@ void OutputOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
           {"[solve] deterministic = true does not go with this integrator or with energy_budget",
            "sums of implicit steps and of the budget are made in any order on a GPU",
            "Leave it out, or take integrator = \"explicit\" without energy_budget"});
+  v.names("accept", accept, {std::begin(acceptable), std::end(acceptable)},
+          "what is refused because it is hardly ever right, and here is; it goes with all results");
   recipe::list(v, "gauge", gauges, "points where thickness, speed and surface are recorded over time");
   need_names(v, "gauge", "its readings are recorded under its name", gauges);
 }

@@ -10,6 +10,9 @@ namespace talus::solver {
 
 struct SolveOptions;
 
+/// The names of what is implausible in a scene (solver/run/plausible.hpp), as `accept` takes them.
+inline constexpr const char* acceptable[] = {"weight-strain", "slow-waves", "fast-waves", "strong-loads"};
+
 /// The keys of [[solve.gauge]]: a point of the map at which the mass is watched.
 struct GaugeOptions {
   std::string name;
@@ -28,6 +31,7 @@ struct OutputOptions {
   bool vdb_frames = false;
   bool energy_budget = false;
   bool deterministic = false;
+  std::vector<std::string> accept;  ///< what is refused as implausible, insisted on by name
   std::vector<GaugeOptions> gauges;
   /// The method declares the keys with defaults, help and what they need of `all` others.
   void describe(recipe::Visitor& v, const SolveOptions& all);

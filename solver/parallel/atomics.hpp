@@ -89,6 +89,15 @@ TALUS_HD void atomic_increment(int* target) {
 #endif
 }
 
+/// This function adds to a whole number from many threads.
+TALUS_HD void add_to_bin(unsigned long long* target, unsigned long long value) {
+#if defined(__CUDA_ARCH__)
+  atomicAdd(target, value);
+#else
+  std::atomic_ref<unsigned long long>(*target).fetch_add(value, std::memory_order_relaxed);
+#endif
+}
+
 /// This function stores `value` where `expected` is found, and nowhere else.
 TALUS_HD void replace_if(int* target, int expected, int value) {
 #if defined(__CUDA_ARCH__)

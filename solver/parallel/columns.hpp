@@ -37,8 +37,7 @@ void for_each_column(const CpuDevice& device, int blocks, const Kernel& kernel) 
 /// WholeColumn names, but for finish(), a kernel has
 /// - Pass: what the second time needs;
 /// - between(column, sums): makes it;
-/// - again(column, pass, k): what happens in layer k the second time;
-/// - finish(column, sums, pass): what happens once for the column, at any time after between().
+/// - again(column, pass, k): what happens in layer k the second time.
 template <class Kernel>
 struct ColumnTwice {
   using Named = Kernel;
@@ -52,7 +51,6 @@ struct ColumnTwice {
     for (int k = column.first; k < column.last; ++k) kernel.layer(column, k, sums);
     const typename Kernel::Pass pass = kernel.between(column, sums);
     for (int k = column.first; k < column.last; ++k) kernel.again(column, pass, k);
-    kernel.finish(column, sums, pass);
   }
 };
 
@@ -115,7 +113,6 @@ __global__ void run_columns_twice(Kernel kernel) {
   if (own.column.inside) pass = kernel.between(own.column, sums);
   __syncthreads();  // between() may look at nodes that another thread changes the second time
   own.each_layer([&](int k) { kernel.again(own.column, pass, k); });
-  if (own.share == 0 && own.column.inside) kernel.finish(own.column, sums, pass);
 }
 }  // namespace detail
 

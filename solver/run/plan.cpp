@@ -126,17 +126,16 @@ std::vector<std::string> plan(const Domain& domain, const SolveOptions& o, const
   double fewest = o.end_time / o.implicit.step, most = fewest;
   if (abilities_of(o.integrator).obey_cfl) {
     const TerrainTables terrain = make_terrain_tables(scene.grid);
-    const double wave = fastest_wave(o), fast = lowest_stiffness(domain, o).speed;
+    const FirstWaves waves = first_waves(o);
+    const double fast = lowest_stiffness(domain, o).speed;
     const auto step_at = [&](double speed) {
-      return std::min(o.cfl / first_rate(scene.grid, terrain, scene.points,
-                                         {wave, !abilities_of(o.integrator).solve_columns}, speed),
-                      o.largest_step);
+      return std::min(o.cfl / first_rate(scene.grid, terrain, scene.points, waves, speed), o.largest_step);
     };
     fewest = o.end_time / step_at(0);
     most = o.end_time / std::min(step_at(fast), trial.step > 0 ? trial.step : 1e30);
     add("step",
         fmt::format("{:.3g} s at rest (waves of {:.0f} m/s), {:.3g} s at the {:.0f} m/s that the energy line allows",
-                    step_at(0), wave, step_at(fast), fast));
+                    step_at(0), waves.speed, step_at(fast), fast));
   } else {
     add("step", fmt::format("{:.3g} s, cut where it does not converge", o.implicit.step));
   }

@@ -1,7 +1,6 @@
 #include "solver/run/simulation.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,6 +10,7 @@
 #include "solver/run/gravity_loading.hpp"
 #include "solver/run/products.hpp"
 #include "solver/run/progress.hpp"
+#include "solver/run/sanity.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "solver/scene/make_solver.hpp"
 
@@ -26,7 +26,7 @@ Simulation::Simulation(const Domain& domain, const SolveOptions& options, const 
       schedule_(options_),
       stepper_(scene_, options_, device),
       history_(options_, scene_),
-      released_(std::accumulate(scene_.points.volume.begin(), scene_.points.volume.end(), 0.0)),
+      watch_(scene_, options_),
       frames_(scene_, options_, paths_.frames, paths_.vdb_frames) {}
 
 void Simulation::resume(const std::filesystem::path& file) {
@@ -85,6 +85,7 @@ void Simulation::count(const BatchReport& batch) {
   memory_.outflow_count += batch.outflow_count;
   if (batch.clock.halt == failed)
     refuse_lost_point(batch.clock, stepper_.solver().state().points, scene_.map, options_.cfl);
+  watch_.look(batch);
   if (batch.stats.newton == 0) return;
   memory_.newton += batch.stats.newton;
   memory_.linear += batch.stats.linear;
@@ -142,9 +143,15 @@ bool Simulation::calm() const {
          history_.last("kinetic_J") < options_.stop_kinetic_fraction * memory_.peak_kinetic;
 }
 
-/// The error of the mass by the last record, over the volume released [-].
+/// The error of the mass by the last record, over the volume of the first [-].
 double Simulation::mass_error() const {
-  return (history_.last("volume_m3") + history_.last("outflow_m3")) / released_ - 1;
+  const std::vector<double>& volumes = history_.rows().at("volume_m3").values;
+  return volumes.empty() ? 0 : (volumes.back() + history_.last("outflow_m3")) / volumes.front() - 1;
+}
+
+void Simulation::report_sanity(const RunSanity& sanity) const {
+  log_info(sanity_line(sanity));
+  for (const std::string& fault : insane(sanity)) log_warning(fault);
 }
 
 void Simulation::measure(const RunEnd& end, RunSummary& summary) const {
@@ -170,6 +177,7 @@ void Simulation::measure(const RunEnd& end, RunSummary& summary) const {
   summary.volume_final = volumes.final;
   summary.volume_outflow = memory_.outflow_volume;
   summary.provenance = domain_.provenance;
+  summary.sanity = sanity_of(end, history_.rows(), memory_.outflow_volume);
 }
 
 RunSummary Simulation::finish(RunSummary summary) {
@@ -187,6 +195,7 @@ RunSummary Simulation::finish(RunSummary summary) {
   writer.finish(final_maps(end, stepper_.solver().thickness()), history_.rows(), summary);
   for (const std::string& line : history_.conclusions()) log_info(line);
   for (const std::string& line : history_.warnings()) log_warning(line);
+  report_sanity(summary.sanity);
   log_detail(fmt::format("files: {:.1f} s after the last step", timer_.seconds() - memory_.wall_time));
   frames_.clear();
   std::error_code ignored;

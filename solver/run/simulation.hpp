@@ -14,6 +14,7 @@
 #include "solver/run/recorders/frames.hpp"
 #include "solver/run/recorders/history.hpp"
 #include "solver/run/schedule.hpp"
+#include "solver/run/step_watch.hpp"
 #include "solver/run/stepper.hpp"
 
 namespace talus::solver {
@@ -54,8 +55,8 @@ class Simulation {
   /// The method goes on from checkpoint.h5 instead of the start. It throws DataError.
   void resume(const std::filesystem::path& checkpoint);
 
-  /// The method steps to the end and writes run.h5. It throws NumericalError, DataError, and Interrupted (checkpoint
-  /// left).
+  /// The method steps to the end, writes run.h5 and says whether its numbers are sane. It throws NumericalError,
+  /// DataError, and Interrupted (checkpoint left).
   RunSummary run(const std::string& scene, const std::string& title);
 
  private:
@@ -69,6 +70,7 @@ class Simulation {
   void save_checkpoint();
   bool calm() const;
   double mass_error() const;
+  void report_sanity(const RunSanity& sanity) const;
   RunSummary finish(RunSummary summary);
   void measure(const RunEnd& end, RunSummary& summary) const;
 
@@ -82,7 +84,7 @@ class Simulation {
   History history_;
   RunMemory memory_;
   RunTimer timer_;
-  double released_;       ///< volume of all points at the start [m3]
+  StepWatch watch_;
   FrameRecorder frames_;  ///< last: what it writes needs the rest
 };
 

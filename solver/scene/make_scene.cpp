@@ -182,6 +182,10 @@ std::vector<std::array<double, 3>> positions(const MapGrid& map, const GridShape
   return result;
 }
 
+FirstWaves first_waves(const SolveOptions& options) {
+  return {fastest_wave(options), !abilities_of(options.integrator).solve_columns};
+}
+
 double first_rate(const GridShape& shape, const TerrainTables& terrain, const ParticleState& points,
                   const FirstWaves& waves, double speed) {
   double steepest = 0;

@@ -24,6 +24,9 @@ struct FirstWaves {
   bool bound_by_layers = true;  ///< those across the layers too
 };
 
+/// Those of a recipe: of the fastest of its materials.
+FirstWaves first_waves(const SolveOptions& options);
+
 /// An upper bound of (wave speed + speed) over cell size for points at rest or moving at `speed`, for the first step
 /// [1/s].
 double first_rate(const GridShape& shape, const TerrainTables& terrain, const ParticleState& points,

@@ -15,6 +15,11 @@ enum Halt : int {
   failed = 3       ///< a point's state is not a number
 };
 
+/// The maps of speed and pressure are recorded (T25) at every event, and between events as the fastest point has gone
+/// so far since [columns] or so many steps were taken: what passes a cell is seen there several times.
+inline constexpr double way_between_records = 0.25;
+inline constexpr int steps_between_records = 8;
+
 /// The time, step and alarms of a run, and the sums that kernels keep for it.
 struct Clock {
   double time = 0;            ///< at the end of the step under way [s]
@@ -26,10 +31,11 @@ struct Clock {
   double kept = 0;            ///< share of it that this step keeps
   double outflow_volume = 0;  ///< since the last sort [m3]
   std::int64_t step = 0;
-  std::uint32_t rate_bits = 0;   ///< largest (wave speed + speed) over cell of any point, as float bits [1/s]
-  std::uint32_t speed_bits = 0;  ///< largest speed of any point [m/s]
-  int halt = running;            ///< read by kernels: do nothing when set
-  int request = running;         ///< set by kernels, becomes halt at the next step's begin
+  std::uint32_t rate_bits = 0;     ///< largest (wave speed + speed) over cell of any point, as float bits [1/s]
+  std::uint32_t speed_bits = 0;    ///< largest speed of any point [m/s]
+  std::uint32_t fastest_bits = 0;  ///< the same, of all steps so far [m/s]
+  int halt = running;              ///< read by kernels: do nothing when set
+  int request = running;           ///< set by kernels, becomes halt at the next step's begin
   int steps_since_sort = 0;
   int steps_between_sorts = 32;    ///< for the sake of the memory's order; a point that strays asks for one at once
   int outflow_count = 0;           ///< since the last sort
@@ -45,6 +51,10 @@ struct Clock {
   double transfer_loss = 0;        ///< between points and grid [J]
   double reaction[3] = {0, 0, 0};  ///< impulse of bed and walls on the mass so far [N s]
   int accelerated = 0;             ///< the points know their acceleration: implicit steps were taken last
+  double column_spacing = 1;       ///< between columns of the map [m]
+  double way_unrecorded = 0;       ///< of the fastest point since the maps of speed were recorded [columns]
+  int steps_unrecorded = steps_between_records;  ///< since then; the first step records what the mass starts with
+  int records_motion = 0;  ///< read by kernels: the state before this step goes into the maps of speed and pressure
 
   /// The share (T8a) of the velocity finer than the grid that a step keeps: what is lost depends on time, not on the
   /// number of steps.
@@ -55,15 +65,19 @@ struct Clock {
 
   /// The method opens the next step: it settles its size (T11), or halts. One thread.
   TALUS_HD void begin_step() {
+    records_motion = 0;
     if (halt != running) return;
+    if (speed_bits > fastest_bits) fastest_bits = speed_bits;
     if (request == failed) {
       halt = failed;
     } else if (request != running || steps_since_sort >= steps_between_sorts) {
       halt = wants_sort;
     } else if (time >= next_event) {
       halt = at_event;
+      record_motion();
     }
     if (halt != running) return;
+    if (way_unrecorded >= way_between_records || steps_unrecorded >= steps_between_records) record_motion();
     const double rate = positive_from_bits(rate_bits);
     double full_step = rate > 0 ? courant / rate : largest_step;
     if (full_step > largest_step) full_step = largest_step;
@@ -77,10 +91,19 @@ struct Clock {
       time += step_size;
     }
     kept = share_kept(step_size, rate);
+    way_unrecorded += static_cast<double>(positive_from_bits(speed_bits)) * step_size / column_spacing;
+    ++steps_unrecorded;
     rate_bits = 0;
     speed_bits = 0;
     ++step;
     ++steps_since_sort;
+  }
+
+  /// The method lets kernels record the maps of speed and pressure from the points as they are.
+  TALUS_HD void record_motion() {
+    records_motion = 1;
+    way_unrecorded = 0;
+    steps_unrecorded = 0;
   }
 };
 

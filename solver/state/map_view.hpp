@@ -14,36 +14,38 @@ struct MapView : RunningMaps<double*> {
 
 /// The matter over a column of the map.
 struct ColumnMatter {
-  double mass, momentum;  ///< [kg], [kg m/s]
-  double density;         ///< [kg/m3]
-  double spacing;         ///< between columns [m]
+  double mass;     ///< [kg]
+  double density;  ///< [kg/m3]
+  double spacing;  ///< between columns [m]
+
+  /// Its vertical thickness [m].
+  TALUS_HD double thickness() const { return mass / (density * spacing * spacing); }
 };
 
-/// This function updates the running maxima (T25) of one column at `time` [s].
+/// This function updates the thickness and the arrival (T25) of one column at `time` [s].
 TALUS_HD void record_column(const MapView& maps, int column, const ColumnMatter& matter, double time) {
-  const double thickness = matter.mass / (matter.density * matter.spacing * matter.spacing);
+  const double thickness = matter.thickness();
   if (thickness > maps.peak_thickness[column]) maps.peak_thickness[column] = thickness;
-  if (thickness < maps.threshold) return;
-  const double speed = matter.momentum / matter.mass;
-  if (speed > maps.peak_speed[column]) {
-    maps.peak_speed[column] = speed;
-    maps.peak_pressure[column] = matter.density * speed * speed;
-  }
-  if (maps.arrival_time[column] < 0) maps.arrival_time[column] = time;
+  if (thickness >= maps.threshold && maps.arrival_time[column] < 0) maps.arrival_time[column] = time;
 }
 
-/// The recording of maps from sums over columns of nodes.
+/// This function updates the speed and the pressure (T25) of one column, from the momentum of its points [kg m/s].
+TALUS_HD void record_motion(const MapView& maps, int column, const ColumnMatter& matter, double momentum) {
+  if (!(matter.thickness() >= maps.threshold)) return;
+  const double speed = momentum / matter.mass, pressure = matter.density * speed * speed;
+  if (speed > maps.peak_speed[column]) maps.peak_speed[column] = speed;
+  if (pressure > maps.peak_pressure[column]) maps.peak_pressure[column] = pressure;
+}
+
+/// The density of the matter over each column.
 template <class Real>
-struct ColumnRecorder {
-  MapView maps;
-  Real density;           ///< where all points have the same [kg/m3]
+struct ColumnDensity {
+  Real uniform;           ///< where all points have the same [kg/m3]
   const double* volumes;  ///< of the matter over each column, where they differ [m3]; else null
 
-  /// The method records a column's mass [kg] and momentum [kg m/s] on nodes `spacing` apart [m] at `time` [s].
-  TALUS_HD void record(int column, Real mass, const Vec3<Real>& momentum, Real spacing, double time) const {
-    const double m = static_cast<double>(mass);
-    const double mean = volumes && volumes[column] > 0 ? m / volumes[column] : static_cast<double>(density);
-    record_column(maps, column, {m, static_cast<double>(length(momentum)), mean, static_cast<double>(spacing)}, time);
+  /// That of a column of a mass [kg].
+  TALUS_HD double of(int column, double mass) const {
+    return volumes && volumes[column] > 0 ? mass / volumes[column] : static_cast<double>(uniform);
   }
 };
 

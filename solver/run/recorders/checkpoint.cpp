@@ -11,7 +11,7 @@
 namespace talus::solver {
 namespace {
 
-constexpr const char* kind = "talus checkpoint 5";
+constexpr const char* kind = "talus checkpoint 6";
 constexpr const char* any_kind = "talus checkpoint ";
 
 /// Calls item(name, list) for every list of the points, so that writing and reading cannot differ.

@@ -36,6 +36,7 @@ void visit_clock(AnyClock& c, Item&& item) {
   item("step", c.step);
   item("rate_bits", c.rate_bits);
   item("speed_bits", c.speed_bits);
+  item("fastest_bits", c.fastest_bits);
   item("halt", c.halt);
   item("request", c.request);
   item("steps_since_sort", c.steps_since_sort);
@@ -55,6 +56,10 @@ void visit_clock(AnyClock& c, Item&& item) {
   item("reaction_y", c.reaction[1]);
   item("reaction_z", c.reaction[2]);
   item("accelerated", c.accelerated);
+  item("column_spacing", c.column_spacing);
+  item("way_unrecorded", c.way_unrecorded);
+  item("steps_unrecorded", c.steps_unrecorded);
+  item("records_motion", c.records_motion);
 }
 
 /// This function calls item(name, value) for every scalar and list of a run's memory but its history, whose columns

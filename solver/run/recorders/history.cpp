@@ -18,6 +18,8 @@ constexpr Column<Instant> run_columns[] = {
     {"outflow_m3", "m3", [](const Instant& i) { return i.counted.outflow_volume; }},
     {"speed_max_m_s", "m s-1",
      [](const Instant& i) { return static_cast<double>(positive_from_bits(i.clock.speed_bits)); }},
+    {"speed_max_so_far_m_s", "m s-1",
+     [](const Instant& i) { return static_cast<double>(positive_from_bits(i.clock.fastest_bits)); }},
     {"momentum_x_kg_m_s", "kg m s-1", [](const Instant& i) { return i.energies.momentum.x; }},
     {"momentum_y_kg_m_s", "kg m s-1", [](const Instant& i) { return i.energies.momentum.y; }},
     {"momentum_z_kg_m_s", "kg m s-1", [](const Instant& i) { return i.energies.momentum.z; }},
@@ -50,10 +52,25 @@ class RunRecorder : public TableRecorder<Instant> {
   std::vector<Instant> samples(const Instant& now) const override { return {now}; }
 };
 
+constexpr Column<Packing> packing_columns[] = {
+    {"packing_p99", "1", [](const Packing& p) { return p.p99; }},
+    {"packing_max", "1", [](const Packing& p) { return p.largest; }},
+};
+
+/// The recorder of how densely the points are packed.
+class PackingRecorder : public TableRecorder<Packing> {
+ public:
+  PackingRecorder() : TableRecorder(packing_columns, {Place{}}) {}
+
+ protected:
+  std::vector<Packing> samples(const Instant& now) const override { return {now.solver.packing()}; }
+};
+
 /// This function makes every recorder that the recipe asks for, in the order of their columns.
 std::vector<std::unique_ptr<Recorder>> make_recorders(const SolveOptions& options, const Scene& scene) {
   std::vector<std::unique_ptr<Recorder>> recorders;
   recorders.push_back(std::make_unique<RunRecorder>(run_columns));
+  recorders.push_back(std::make_unique<PackingRecorder>());
   if (options.energy_budget) recorders.push_back(std::make_unique<RunRecorder>(budget_columns));
   if (!options.obstacles.empty()) recorders.push_back(std::make_unique<ObstacleRecorder>(options));
   if (!options.gauges.empty()) recorders.push_back(std::make_unique<GaugeRecorder>(options, scene));

@@ -68,7 +68,8 @@ struct SolvedColumn {
                                   .kappa = kappa,
                                   .softer = softer,
                                   .columns = {},
-                                  .recorder = {maps, 2000, nullptr}});
+                                  .density = {2000, nullptr},
+                                  .maps = maps});
   }
 };
 

@@ -12,7 +12,9 @@ TEST(DeviceMaps, hold_what_kernels_left_in_what_the_run_started_from) {
   DeviceMaps<CpuDevice> maps(CpuDevice::make(), start, 0.25);
   const MapView view = maps.view();
   EXPECT_EQ(view.threshold, 0.25);
-  record_column(view, 1, {1000 * 4 * 2.5, 1000 * 4 * 2.5 * 6, 1000, 2}, 30);  // 2.5 m thick, at 6 m/s
+  const ColumnMatter matter{1000 * 4 * 2.5, 1000, 2};  // 2.5 m thick
+  record_column(view, 1, matter, 30);
+  record_motion(view, 1, matter, matter.mass * 6);  // at 6 m/s
   const RunningMaps<std::vector<double>> after = maps.download();
   EXPECT_EQ(after.peak_thickness, (std::vector<double>{1, 2.5, 3}));
   EXPECT_EQ(after.peak_speed, (std::vector<double>{4, 6, 6}));

@@ -15,7 +15,8 @@ struct TwoColumns {
   void record(double thick, double fast, double time) {
     const double mass = thick * density * spacing * spacing;
     const MapView maps{{thickness, speed, pressure, arrival}, 0.1};
-    record_column(maps, 1, {mass, mass * fast, density, spacing}, time);
+    record_column(maps, 1, {mass, density, spacing}, time);
+    record_motion(maps, 1, {mass, density, spacing}, mass * fast);
   }
 };
 
@@ -46,6 +47,15 @@ TEST(RunningMaps, count_speed_pressure_and_arrival_from_the_threshold_on) {
   maps.record(0.11, 5, 2);
   EXPECT_DOUBLE_EQ(maps.speed[1], 5);
   EXPECT_EQ(maps.arrival[1], 2);
+}
+
+TEST(RunningMaps, know_the_largest_pressure_where_it_is_not_at_the_largest_speed) {
+  TwoColumns maps;
+  maps.record(1, 7, 1);
+  const MapView view{{maps.thickness, maps.speed, maps.pressure, maps.arrival}, 0.1};
+  record_motion(view, 1, {8000, 4 * density, spacing}, 8000 * 5.0);  // denser and slower
+  EXPECT_DOUBLE_EQ(maps.speed[1], 7);
+  EXPECT_DOUBLE_EQ(maps.pressure[1], 4 * density * 25);
 }
 
 TEST(RunningMaps, leave_other_columns_alone) {

@@ -166,7 +166,7 @@ TEST(Checkpoint, an_older_kind_is_refused_in_words) {
   EXPECT_EQ(fault_of<DataError>([&] { read_checkpoint(path, ""); }),
             path.string() +
                 ": its kind is \"talus checkpoint 4\" (another version of this program wrote it, this one reads "
-                "\"talus checkpoint 5\"). Run talus-solve again without --restart, or go on with the version that "
+                "\"talus checkpoint 6\"). Run talus-solve again without --restart, or go on with the version that "
                 "wrote it");
 }
 

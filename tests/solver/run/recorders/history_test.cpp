@@ -32,13 +32,16 @@ const std::vector<std::string> names_of_every_run = {"time_s",
                                                      "volume_m3",
                                                      "outflow_m3",
                                                      "speed_max_m_s",
+                                                     "speed_max_so_far_m_s",
                                                      "momentum_x_kg_m_s",
                                                      "momentum_y_kg_m_s",
                                                      "momentum_z_kg_m_s",
                                                      "newton_iterations",
                                                      "linear_iterations",
                                                      "step_cuts",
-                                                     "step_over_cfl"};
+                                                     "step_over_cfl",
+                                                     "packing_p99",
+                                                     "packing_max"};
 
 TEST(History, has_the_columns_that_readers_know_in_their_order) {
   SolveOptions o;

@@ -1,0 +1,48 @@
+// What a recipe asks that hardly any slide does: refused before the run unless the recipe insists on it by name
+// (docs/decisions/0030-points-are-the-measure.md).
+#pragma once
+
+#include "common/domain/domain.hpp"
+#include "common/stage/acceptance.hpp"
+#include "solver/integrator/scene.hpp"
+#include "solver/options/solve.hpp"
+
+namespace talus::solver {
+
+/// The largest strain that a mass may have under its own weight [-]: pressure at its bed over the modulus of confined
+/// compression. With more its thickness and its density are not those that were released.
+inline constexpr double most_weight_strain = 0.5;
+/// The most times that the speed which the energy line allows may be that of waves: what is stopped at five times their
+/// speed is under a pressure of 25 moduli.
+inline constexpr double most_mach = 5;
+/// The fastest waves that a solid may have [m/s]: in rock they reach 7 km/s, in diamond 18.
+inline constexpr double fastest_solid_wave = 2e4;
+/// The largest strain that a load may cause [-]: its force over the section of what it pulls at, over the modulus.
+inline constexpr double most_load_strain = 1;
+
+/// The numbers of a scene by which it is judged.
+struct ScenePlausibility {
+  double weight_strain = 0;    ///< largest, of any material [-]
+  double weight = 0;           ///< pressure at the bed there [Pa]
+  double thickness = 0;        ///< of what lies there [m]
+  double weighed_modulus = 0;  ///< Young's, of that material [Pa]
+  double wave_speed = 0;       ///< of the slowest material [m/s]
+  double fastest_wave = 0;     ///< of the fastest material [m/s]
+  double speed = 0;            ///< that the energy line allows somewhere in the domain [m/s]
+  double load_strain = 0;      ///< largest, of any load [-]
+  double load = 0;             ///< its force [N]
+  double load_volume = 0;      ///< of what it pulls at [m3]
+
+  /// The speed that the energy line allows over that of the slowest waves [-].
+  double mach() const { return wave_speed > 0 ? speed / wave_speed : 0; }
+};
+
+/// The function measures a scene and its domain.
+ScenePlausibility plausibility_of(const Domain& domain, const Scene& scene, const SolveOptions& options);
+
+/// The function throws DataError for what is implausible in a scene, unless it is accepted: a mass that its own weight
+/// squashes ("weight-strain"), waves far slower than the flow ("slow-waves"), waves faster than in any solid
+/// ("fast-waves"), loads that squash what they pull at ("strong-loads").
+void judge_scene(const ScenePlausibility& numbers, const SolveOptions& options, Acceptance& acceptance);
+
+}  // namespace talus::solver

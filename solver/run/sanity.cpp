@@ -1,0 +1,126 @@
+#include "solver/run/sanity.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "solver/grid/terrain.hpp"
+#include "solver/scene/make_scene.hpp"
+
+namespace talus::solver {
+namespace {
+
+/// Whether something but gravity does work on the mass: loads, and walls that move.
+bool work_is_done(const SolveOptions& o) {
+  return !o.loads.empty() ||
+         std::any_of(o.walls.begin(), o.walls.end(), [](const WallOptions& wall) { return wall.speed != 0; });
+}
+
+double largest(const RunHistory& history, const char* name) {
+  const HistoryColumn* column = history.find(name);
+  if (!column || column->values.empty()) return RunSanity::unknown;
+  return *std::max_element(column->values.begin(), column->values.end());
+}
+
+/// The largest rise of kinetic, potential and elastic energy together from any earlier record, over what was turned
+/// over: the fall of the potential energy and the largest sum of the others. What flows out takes energy along.
+double energy_gain(const RunHistory& history) {
+  const auto& kinetic = history.at("kinetic_J").values;
+  const auto& potential = history.at("potential_J").values;
+  const auto& elastic = history.at("elastic_J").values;
+  if (kinetic.empty()) return RunSanity::unknown;
+  double least = 1e300, rise = 0, stored = 0, deepest = potential.front();
+  for (std::size_t n = 0; n < kinetic.size(); ++n) {
+    const double held = kinetic[n] + elastic[n], sum = held + potential[n];
+    least = std::min(least, sum);
+    rise = std::max(rise, sum - least);
+    stored = std::max(stored, held);
+    deepest = std::min(deepest, potential[n]);
+  }
+  const double turned = stored + potential.front() - deepest;
+  return turned > 0 ? rise / turned : 0;
+}
+
+/// The speed of a fall without loss [m/s], from the point that stands highest against gravity at the start to the
+/// lowest ground that the mass has reached.
+double speed_of_fall(const RunEnd& end) {
+  const SolveOptions& o = end.options;
+  const auto height = [&](double x, double y, double z) {
+    return -(o.gravity[0] * x + o.gravity[1] * y + o.gravity[2] * z);
+  };
+  double top = -1e300, low = 1e300;
+  const TerrainTables terrain = make_terrain_tables(end.scene.grid);
+  for (const auto& [x, y, z] : positions(end.scene.map, end.scene.grid, terrain, end.scene.points))
+    top = std::max(top, height(x, y, z));
+  const MapGrid& map = end.scene.map;
+  for (int row = 0; row < map.rows; ++row) {
+    for (int column = 0; column < map.columns; ++column) {
+      const double ground = end.domain.terrain.at(column, row);
+      if (end.state.maps.peak_thickness[map.index(column, row)] > 0 && std::isfinite(ground))
+        low = std::min(low, height(map.x(column), map.y(row), ground));
+    }
+  }
+  const double start = std::hypot(o.initial_velocity[0], o.initial_velocity[1], o.initial_velocity[2]);
+  return std::sqrt(start * start + 2 * std::max(0.0, top - low));
+}
+
+}  // namespace
+
+RunSanity sanity_of(const RunEnd& end, const RunHistory& history, double outflow) {
+  const auto total = [](const std::vector<double>& volumes) {
+    return std::accumulate(volumes.begin(), volumes.end(), 0.0);
+  };
+  const double released = total(end.scene.points.volume), kept = total(end.state.points.volume);
+  RunSanity sanity;
+  sanity.volume_error = (kept + outflow) / released - 1;
+  sanity.volume_left = outflow / released;
+  sanity.packing_p99 = largest(history, "packing_p99");
+  sanity.packing_max = largest(history, "packing_max");
+  sanity.speed_max = largest(history, "speed_max_so_far_m_s");
+  if (!work_is_done(end.options)) {
+    sanity.energy_gain = energy_gain(history);
+    sanity.speed_bound = speed_of_fall(end);
+  }
+  const std::vector<std::string> faults = insane(sanity);
+  sanity.words = faults.empty() ? "sane" : fmt::format("{}", fmt::join(faults, "; "));
+  return sanity;
+}
+
+std::vector<std::string> insane(const RunSanity& s, const SanityBounds& bounds) {
+  std::vector<std::string> faults;
+  if (std::abs(s.volume_error) > bounds.volume_error)
+    faults.push_back(fmt::format("volume is off by {:.2g} of what was there at the start", s.volume_error));
+  if (s.volume_left > bounds.volume_left)
+    faults.push_back(
+        fmt::format("{:.0f} % of the volume left the domain: the maps show the rest", 100 * s.volume_left));
+  if (s.packing_p99 > bounds.packing_p99)
+    faults.push_back(
+        fmt::format("a hundredth of the volume was packed {:.2f} times and denser: points have drifted together "
+                    "within cells, or a soft mass was squashed",
+                    s.packing_p99));
+  if (s.energy_gain > bounds.energy_gain)
+    faults.push_back(
+        fmt::format("the energy rose by {:.2g} of what was turned over, though nothing did work", s.energy_gain));
+  if (s.speed_max > bounds.speed_share * s.speed_bound)
+    faults.push_back(
+        fmt::format("a point ran at {:.4g} m/s, and a fall without loss to where the mass came gives "
+                    "{:.4g} m/s",
+                    s.speed_max, s.speed_bound));
+  return faults;
+}
+
+std::string sanity_line(const RunSanity& s) {
+  const auto or_none = [](double value, const std::string& text) { return std::isfinite(value) ? text : "unknown"; };
+  return fmt::format(
+      "sanity: volume error {:.1e}, {:.2g} of it left; packing {} for 99 % of the volume, {} at most; energy gain {}; "
+      "fastest point {}, fall without loss {}: {}",
+      s.volume_error, s.volume_left, or_none(s.packing_p99, fmt::format("{:.2f}", s.packing_p99)),
+      or_none(s.packing_max, fmt::format("{:.2f}", s.packing_max)),
+      or_none(s.energy_gain, fmt::format("{:.1e}", s.energy_gain)),
+      or_none(s.speed_max, fmt::format("{:.1f} m/s", s.speed_max)),
+      or_none(s.speed_bound, fmt::format("{:.1f} m/s", s.speed_bound)), s.words);
+}
+
+}  // namespace talus::solver

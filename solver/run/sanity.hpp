@@ -1,0 +1,28 @@
+// The sanity of a run at its end: its volume, packing, energy and speed against what a slide can have.
+#pragma once
+
+#include "common/run/run_file.hpp"
+#include "solver/run/products.hpp"
+
+namespace talus::solver {
+
+/// Bounds of what is sane; beyond them a run says so. The reasons stand in docs/decisions/0030.
+struct SanityBounds {
+  double volume_error = 1e-6;  ///< volumes in single precision are exact to 6e-8
+  double volume_left = 0.5;    ///< beyond it the map shows less than half of the slide
+  double packing_p99 = 4;      ///< a quarter above the worst of the samples and real events
+  double energy_gain = 0.02;   ///< of what was turned over
+  double speed_share = 1.05;   ///< of the speed of a fall without loss
+};
+
+/// The function measures a run at its end from its history, its maps and its points at the start. `outflow` is what
+/// left the domain [m3].
+RunSanity sanity_of(const RunEnd& end, const RunHistory& history, double outflow);
+
+/// The words on what is beyond its bound, with the numbers; empty where nothing is.
+std::vector<std::string> insane(const RunSanity& sanity, const SanityBounds& bounds = {});
+
+/// One line with all numbers.
+std::string sanity_line(const RunSanity& sanity);
+
+}  // namespace talus::solver

@@ -1,0 +1,66 @@
+#!/usr/bin/env bash
+# What hardly any slide does is refused by name or said; every run says at its end whether its numbers are sane.
+source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
+
+# scene_with TABLE LINE...: the scene with these lines put into a table of its recipe, and its domain.
+scene_with() {
+  local table=$1
+  shift
+  scene
+  sed -i "s/^\[$table\]/&\n$(printf '%s\\n' "$@")/" recipe.toml
+  expect_exit 0 preprocess
+}
+
+test_run_says_that_it_is_sane() {
+  scene
+  expect_exit 0 preprocess
+  expect_exit 0 solve
+  expect_words 'sanity: volume error' 'packing' 'fall without loss' ': sane'
+  expect_exit 0 postprocess
+  grep -q '"sanity": "sane"' out/score.json || fail "score.json does not say that the run is sane"
+  for name in volume_error packing_p99 packing_max energy_gain speed_max_m_s speed_bound_m_s; do
+    grep -q "\"sanity_$name\": [0-9-]" out/score.json || fail "score.json has no sanity_$name"
+  done
+  for name in packing_p99 packing_max speed_max_so_far_m_s; do
+    head -n 1 out/history.csv | grep -q "$name" || fail "history.csv has no $name"
+  done
+  grep -q 'Sanity' out/score.txt || fail "score.txt has no sanity"
+}
+
+test_mass_that_its_weight_squashes_is_refused_by_name() {
+  scene_with solve.material 'youngs_modulus_Pa = 1.0e4'
+  expect_exit 3 solve
+  expect_words 'strains by 6.54 under its own weight: 4 m of it press with 7.85e+04 Pa' \
+    'accept = ["weight-strain"] in [solve]'
+  expect_no_file out domain.vdb survey preprocess.used.toml
+  sed -i 's/^\[solve\]/&\naccept = ["weight-strain", "slow-waves"]/' recipe.toml
+  expect_exit 0 solve
+  expect_words 'accepted, "weight-strain"'
+  expect_exit 0 postprocess
+  grep -q '"accepted.weight-strain"' out/score.json || fail "score.json does not say what was insisted on"
+}
+
+test_stiffness_without_end_is_refused_and_ends_the_run_where_insisted_on() {
+  scene_with solve.material 'youngs_modulus_Pa = 1.0e300'
+  expect_exit 3 solve --check
+  expect_words 'youngs_modulus_Pa = 1e+300' 'accept = ["fast-waves"] in [solve]'
+  sed -i 's/^\[solve\]/&\naccept = ["fast-waves"]/' recipe.toml
+  expect_exit 4 timeout 60 "$bin/talus-solve" recipe.toml --out out --on cpu
+  expect_words 'time stands still' 'youngs_modulus_Pa'
+  expect_no_file out domain.vdb survey preprocess.used.toml .frames
+}
+
+test_load_that_throws_the_mass_out_is_refused_by_name() {
+  scene
+  cat >>recipe.toml <<'TOML'
+
+[[solve.load]]
+box_m = [500000.0, 500200.0, 5000000.0, 5000200.0, 0.0, 10.0]
+force_N = [0.0, 0.0, 1.0e15]
+TOML
+  expect_exit 0 preprocess
+  expect_exit 3 solve
+  expect_words '1e+15 N' 'accept = ["strong-loads"] in [solve]'
+}
+
+run_test "$@"

@@ -1,0 +1,80 @@
+// The clock as kernels keep it: when maps of speed are recorded, and the fastest point so far.
+#include "solver/state/clock.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace talus {
+namespace {
+
+/// A clock that steps `step` [s] at a time, far from any event.
+Clock stepping(double step) {
+  Clock clock;
+  clock.courant = clock.largest_step = step;
+  clock.next_event = 1e6;
+  clock.column_spacing = 10;
+  atomic_max_positive(&clock.rate_bits, 1.0F);
+  return clock;
+}
+
+/// The steps of so many that record, with points as fast as `speed` [m/s].
+std::vector<int> recording_steps(Clock& clock, int count, float speed) {
+  std::vector<int> steps;
+  for (int n = 0; n < count; ++n) {
+    clock.begin_step();
+    if (clock.records_motion != 0) steps.push_back(n);
+    atomic_max_positive(&clock.rate_bits, 1.0F);
+    atomic_max_positive(&clock.speed_bits, speed);
+  }
+  return steps;
+}
+
+TEST(ClockRecords, come_first_and_every_eight_steps_where_the_mass_is_slow) {
+  Clock clock = stepping(0.01);
+  EXPECT_EQ(recording_steps(clock, 20, 1), (std::vector<int>{0, 8, 16}));
+}
+
+TEST(ClockRecords, come_as_often_as_the_fastest_point_goes_a_quarter_of_a_column) {
+  Clock clock = stepping(0.01);
+  // 1.3 m a step; no speed is known before the first.
+  EXPECT_EQ(recording_steps(clock, 8, 130), (std::vector<int>{0, 3, 5, 7}));
+}
+
+TEST(ClockRecords, come_once_at_every_event) {
+  Clock clock = stepping(0.01);
+  recording_steps(clock, 3, 1);
+  clock.next_event = clock.time;
+  clock.begin_step();
+  EXPECT_EQ(clock.halt, at_event);
+  EXPECT_EQ(clock.records_motion, 1);
+  clock.begin_step();  // of a batch that goes on with nothing to do
+  EXPECT_EQ(clock.records_motion, 0);
+}
+
+TEST(ClockRecords, wait_for_a_sort) {
+  Clock clock = stepping(0.01);
+  clock.request = wants_sort;  // a point may have left the columns that have storage
+  clock.begin_step();
+  EXPECT_EQ(clock.halt, wants_sort);
+  EXPECT_EQ(clock.records_motion, 0);
+  clock.halt = clock.request = running;
+  clock.begin_step();
+  EXPECT_EQ(clock.records_motion, 1);
+}
+
+TEST(Clock, knows_the_fastest_point_of_all_steps) {
+  Clock clock = stepping(0.01);
+  for (const float speed : {3.0F, 7.0F, 5.0F}) {
+    clock.begin_step();
+    atomic_max_positive(&clock.rate_bits, 1.0F);
+    atomic_max_positive(&clock.speed_bits, speed);
+  }
+  clock.next_event = clock.time;
+  clock.begin_step();
+  EXPECT_EQ(positive_from_bits(clock.fastest_bits), 7);
+  EXPECT_EQ(positive_from_bits(clock.speed_bits), 5);
+}
+
+}  // namespace
+}  // namespace talus
