@@ -62,9 +62,14 @@ test: setup $(BUILD)/build.ninja ## everything built, every test run
 	@TALUS_REQUIRE_TOOLS=$(if $(filter no,$(SETUP)),,1) \
 	  ctest --test-dir $(BUILD) --output-on-failure --no-tests=error -j $(TEST_JOBS)
 
+# The table names the commit of the tree that was just built, with -dirty behind it where that has changes.
 validate: setup $(BUILD)/build.ninja ## error beside tolerance, docs/validation.md [LONG=1] [ON=cpu|gpu] [CASES="A1 B2"]
 	@cmake --build $(BUILD) -j $(JOBS) --target $(programs) talus-validate
-	@$(BUILD)/bin/talus-validate --on $(ON) $(if $(filter-out 0 no,$(LONG)),--long) $(CASES)
+	@code=0; $(BUILD)/bin/talus-validate --on $(ON) $(if $(filter-out 0 no,$(LONG)),--long) \
+	  --commit "$$(git describe --always --dirty --abbrev=9 --exclude='*' 2>/dev/null || echo unknown)" $(CASES) \
+	  || code=$$?; \
+	[[ $$code -gt 1 ]] || tools/tabulate-validation.py $(BUILD)/validation.json $(BUILD)/validation-table.md; \
+	exit $$code
 
 lint: ## formatting and static analysis of everything [CHANGED=n: analyse only the n units changed last]
 	@tools/install-dependencies.sh lint

@@ -1,8 +1,10 @@
-# talus_shell_tests(FILE...): every function test_NAME() of a *_test.sh becomes a CTest test. Exit code 77 is a skip.
+# talus_shell_tests(FILE... [QUICK FILE...]): every function test_NAME() of a *_test.sh becomes a CTest test, those of
+# the quick files with that label. Exit code 77 is a skip.
 find_program(TALUS_BASH bash REQUIRED)
 
 function(talus_shell_tests)
-  foreach(_file IN LISTS ARGN)
+  cmake_parse_arguments(_asked "" "" "QUICK" ${ARGN})
+  foreach(_file IN LISTS _asked_UNPARSED_ARGUMENTS _asked_QUICK)
     set(_path ${CMAKE_CURRENT_SOURCE_DIR}/${_file})
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${_path})
     get_filename_component(_group ${CMAKE_CURRENT_SOURCE_DIR} NAME)
@@ -15,6 +17,9 @@ function(talus_shell_tests)
       set(_variables TALUS_SOURCE=${CMAKE_SOURCE_DIR} TALUS_BUILD=${CMAKE_BINARY_DIR}
         TALUS_SCRATCH=${CMAKE_BINARY_DIR}/scratch/${_name})
       set_tests_properties(${_name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 300 ENVIRONMENT "${_variables}")
+      if(_file IN_LIST _asked_QUICK)
+        set_tests_properties(${_name} PROPERTIES LABELS quick)
+      endif()
     endforeach()
   endforeach()
 endfunction()

@@ -65,16 +65,20 @@ struct StressAt {
   MeanDilationView<Real> means;
   TangentStore<Real> tangents;
   const Vec3<double>* u;
-  Real duration;  ///< of the step [s]
+  Real duration;                        ///< of the step [s]
+  const Vec3<double>* ahead = nullptr;  ///< the way that the nodes are about to go from u [m]; null: not known
 
   /// The memory that the law moves for that many points, beside the scatter's own [bytes].
   double bytes(int count) const { return count * (7.0 * sizeof(Real) + tangents.bytes_each()); }
   TALUS_HD Mat3<Real> operator()(const GridView<Real>& grid, const ParticleView<Real>& points, int p,
                                  const PointGradients<Real, Shape>& g) const {
     PointTangent<Real> tangent;
-    const Mat3<Real> stress = nominal_stress(materials.of(points.material, points.plastic_shear, p),
-                                             state_of(points, p, dilatant), displacement_gradient(grid, g, u), duration,
-                                             tangents.on() ? &tangent : nullptr, means.at_point(p));
+    const auto way_ahead = [&] { return displacement_gradient(grid, g, ahead); };
+    const HeadedGradient<Real, decltype(way_ahead)> gradient{displacement_gradient(grid, g, u), ahead != nullptr,
+                                                             way_ahead};
+    const Mat3<Real> stress =
+        nominal_stress(materials.of(points.material, points.plastic_shear, p), state_of(points, p, dilatant), gradient,
+                       duration, tangents.on() ? &tangent : nullptr, means.at_point(p));
     if (tangents.on() && definite) make_definite(tangent);
     if (tangents.on()) tangents.put(p, tangent);
     return stress;

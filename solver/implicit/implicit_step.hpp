@@ -62,6 +62,8 @@ class ImplicitStep {
     if (!c.dynamic) return;
     sum_each<1>(parts_.device, nodes_.count, parts_.sums, SquareMomentum{nodes()},
                 KeepTotals<1>{&balance_.data()->momentum});
+    // Newton's iterations begin where these velocities lead; the one solve begins at rest, and has to be told.
+    if (c.once()) for_each(parts_.device, nodes_.count, LookAhead{nodes(), at.step, nodes_.ahead.data()});
     if (at.accelerates || parts_.settings.damping > 0) begin_forces(at.accelerates);
   }
 

@@ -42,6 +42,17 @@ struct SquareMomentum {
   }
 };
 
+/// One thread: one node. It takes the way that the node is about to go (T17c): that of its velocity at the start, and
+/// of what holds it.
+struct LookAhead {
+  NodeArrays nodes;
+  double step;
+  Vec3<double>* ahead;  ///< [m]
+  TALUS_HD void operator()(int n) const {
+    ahead[n] = nodes.mass[n] > 0 ? nodes.u[n] + nodes.freed[n] * (nodes.begin_velocity(n) * step) : Vec3<double>{};
+  }
+};
+
 /// One thread: one node. It takes the acceleration that a run begins with: that of the forces at its start.
 struct FirstAcceleration {
   NodeArrays nodes;

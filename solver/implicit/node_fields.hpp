@@ -19,6 +19,7 @@ struct NodeFields {
   NodeVector<Device> velocity_end{device}, acceleration_end{device};  ///< of the step
   NodeVector<Device> change{device};                                  ///< of u, from the linear system
   NodeVector<Device> saved_u{device};                                 ///< where a line search begins
+  NodeVector<Device> ahead{device};  ///< the way that the nodes are about to go, where a step is one linear solve [m]
   Buffer<Sym3<double>, Device> freed{device};
   Buffer<Touch, Device> touch{device};
 
@@ -32,7 +33,8 @@ struct NodeFields {
       v->resize(n);
       v->fill_zero();
     }
-    for (auto* v : {&internal, &u, &residual, &velocity_end, &acceleration_end, &change, &saved_u}) v->resize(n);
+    for (auto* v : {&internal, &u, &residual, &velocity_end, &acceleration_end, &change, &saved_u, &ahead})
+      v->resize(n);
     freed.resize(n);
     touch.resize(n);
   }
@@ -55,7 +57,7 @@ struct NodeFields {
   std::size_t bytes() const {
     std::size_t total = mass.bytes() + freed.bytes() + touch.bytes();
     for (const auto* v : {&velocity, &arrival, &acceleration, &external, &internal, &u, &residual, &velocity_end,
-                          &acceleration_end, &change, &saved_u})
+                          &acceleration_end, &change, &saved_u, &ahead})
       total += v->bytes();
     return total;
   }

@@ -43,8 +43,10 @@ class ParticleStresses {
   }
 
   /// The method adds f_int of (T16) for the displacement u to `forces`, both [nodes]; it stores the tangents too where
-  /// `with_tangent`, without what compression makes negative in them where `definite`.
-  void measure(const NodeVector<Device>& u, NodeVector<Device>& forces, bool with_tangent, bool definite) {
+  /// `with_tangent`, without what compression makes negative in them where `definite`. `ahead` is the way that the
+  /// nodes are about to go from there, [nodes] on the device, or null (T17c).
+  void measure(const NodeVector<Device>& u, NodeVector<Device>& forces, bool with_tangent, bool definite,
+               const Vec3<double>* ahead = nullptr) {
     average(u);
     with_laws_of(parts_.materials, [&]<class Laws>(const Materials<Real, Laws>& materials) {
       using Stress = StressAt<Real, Shape, Laws>;
@@ -57,7 +59,8 @@ class ParticleStresses {
                                                     .means = means(),
                                                     .tangents = with_tangent ? store() : TangentStore<Real>{},
                                                     .u = u.data(),
-                                                    .duration = static_cast<Real>(duration_)},
+                                                    .duration = static_cast<Real>(duration_),
+                                                    .ahead = ahead},
                                              forces.data()});
     });
     if (springs().on()) apply_springs(elements_, springs(), u, forces);

@@ -107,7 +107,8 @@ class TangentSystem {
   void measure(bool with_tangent, bool definite) {
     const ProfilePhase<Device> phase(parts_.device, "stress and tangent");
     nodes_.internal.fill_zero();
-    stresses_.measure(nodes_.u, nodes_.internal, with_tangent, definite);
+    const bool looks_ahead = with_tangent && parts_.controls.dynamic && parts_.controls.once();
+    stresses_.measure(nodes_.u, nodes_.internal, with_tangent, definite, looks_ahead ? nodes_.ahead.data() : nullptr);
     contacts_.scatter(with_tangent);
   }
 

@@ -69,6 +69,16 @@ struct PrincipalTrial {
   Real log_volume;          ///< at the end of the step
   Real plastic_log_volume;  ///< at its start
   Real duration;            ///< of the step [s]
+  bool heads = false;       ///< whether `ahead` is known
+  Real ahead[3]{};          ///< strain of the way that the point is about to go from here, in the same axes [-]
+};
+
+/// The displacement gradient of a point with the way that it is about to go from there: `ahead()` gives the gradient of
+/// that way, of any size, and is asked only where `heads`.
+template <class Real, class Ahead>
+struct HeadedGradient : Mat3<Real> {
+  bool heads;
+  Ahead ahead;
 };
 
 /// The principal Kirchhoff stresses tau_a [Pa] and their derivatives D_ab by the trial strains, row-major, of (T17).

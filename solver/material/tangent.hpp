@@ -10,6 +10,12 @@
 
 namespace talus {
 
+/// The inverse F^-1, for F = I + g.
+template <class Real>
+TALUS_HD Mat3<Real> inverse_deformation(const Mat3<Real>& g) {
+  return inverted(Mat3<Real>{{g.a.x + 1, g.a.y, g.a.z}, {g.b.x, g.b.y + 1, g.b.z}, {g.c.x, g.c.y, g.c.z + 1}});
+}
+
 /// The stress and stiffness of a point in the principal axes of its trial, `mean` volume change instead of its own
 /// where that is on.
 template <class Real>
@@ -18,11 +24,17 @@ struct PrincipalState {
   Mat3<Real> axes;
   PrincipalResponse<Real> response;
 
-  template <class Laws>
-  TALUS_HD PrincipalState(const Material<Real, Laws>& m, const MaterialState<Real>& start,
-                          const Increment<Real>& step) {
+  /// The constructor takes the deformation of the step; `ahead` is a HeadedGradient, or anything else where the way
+  /// ahead is not known.
+  template <class Laws, class Ahead>
+  TALUS_HD PrincipalState(const Material<Real, Laws>& m, const MaterialState<Real>& start, const Increment<Real>& step,
+                          const Ahead& ahead) {
     eigen_symmetric(advance_deviation(start.elastic, step.gradient), stretch, axes);
     PrincipalTrial<Real> trial;
+    if constexpr (requires { ahead.heads; }) {
+      trial.heads = ahead.heads;
+      if (ahead.heads) look_ahead(step.gradient, ahead.ahead(), trial.ahead);
+    }
     for (int a = 0; a < 3; ++a) trial.strain[a] = Real(0.5) * log1p(stretch[a]) + (step.volume - step.own) / Real(3);
     trial.log_volume = start.log_volume + step.volume;
     trial.plastic_log_volume = start.plastic_log_volume;
@@ -34,6 +46,14 @@ struct PrincipalState {
         response.refuse();
       }
     });
+  }
+
+ private:
+  /// The method takes what a further gradient dg does to the principal strains of the trial, n_a . dg F^-1 n_a.
+  TALUS_HD void look_ahead(const Mat3<Real>& g, const Mat3<Real>& dg, Real (&strain)[3]) const {
+    const Mat3<Real> inverse = inverse_deformation(g);
+    const Vec3<Real> n[3] = {axes.a, axes.b, axes.c};
+    for (int a = 0; a < 3; ++a) strain[a] = dot(n[a], dg * (inverse * n[a]));
   }
 };
 
@@ -48,14 +68,8 @@ template <class Real, class Laws>
 TALUS_HD VolumeResponse<Real> volume_response(const Material<Real, Laws>& m, const MaterialState<Real>& start,
                                               const Mat3<Real>& g, std::type_identity_t<Real> seconds,
                                               std::type_identity_t<Real> increment) {
-  const PrincipalState<Real> state(m, start, Increment<Real>(g, seconds, {true, increment, Real(0)}));
+  const PrincipalState<Real> state(m, start, Increment<Real>(g, seconds, {true, increment, Real(0)}), g);
   return {state.response.mean_stress(), state.response.bulk()};
-}
-
-/// The inverse F^-1, for F = I + g.
-template <class Real>
-TALUS_HD Mat3<Real> inverse_deformation(const Mat3<Real>& g) {
-  return inverted(Mat3<Real>{{g.a.x + 1, g.a.y, g.a.z}, {g.b.x, g.b.y + 1, g.b.z}, {g.c.x, g.c.y, g.c.z + 1}});
 }
 
 /// The nominal stress P without principal axes and tangent, which small strains can do without (T16).
@@ -105,9 +119,10 @@ TALUS_HD void put_tangent(const PrincipalState<Real>& state, const Vec3<Real> (&
 /// The nominal stress P of a point whose state at the start of the step is `start`, for the displacement gradient g of
 /// the step of `seconds` [Pa]; with `tangent` not null also the derivative of P by g (T16, T17). With `mean` on (B-bar)
 /// its mean stress is the element's, and the tangent is without the bulk part, which couples the element's points
-/// (mean_dilation.hpp).
-template <class Real, class Laws>
-TALUS_HD Mat3<Real> nominal_stress(const Material<Real, Laws>& m, const MaterialState<Real>& start, const Mat3<Real>& g,
+/// (mean_dilation.hpp). `g` is a Mat3, or a HeadedGradient: a state that lies on the edge of yielding has two tangents,
+/// and takes that of its way ahead, or where there is none the one of unloading (T17c).
+template <class Real, class Laws, class Gradient>
+TALUS_HD Mat3<Real> nominal_stress(const Material<Real, Laws>& m, const MaterialState<Real>& start, const Gradient& g,
                                    std::type_identity_t<Real> seconds, PointTangent<Real>* tangent,
                                    const MeanVolume<Real>& mean = {}) {
   if (!m.keeps_strain()) {
@@ -118,7 +133,7 @@ TALUS_HD Mat3<Real> nominal_stress(const Material<Real, Laws>& m, const Material
     return stress;
   }
   if (!tangent) return nominal_stress_alone(m, start, g, seconds, mean);
-  PrincipalState<Real> state(m, start, Increment<Real>(g, seconds, mean));
+  PrincipalState<Real> state(m, start, Increment<Real>(g, seconds, mean), g);
   Real* tau = state.response.tau;
   if (mean.on) {
     const Real shift = mean.stress - state.response.mean_stress(), bulk = state.response.bulk();

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # A full disk while writing: a small tmpfs, mounted where only this test sees it. Whatever its size, a stage either
-# succeeds or says that the disk is full, and every file that carries a final name is whole.
+# succeeds or says that the disk is full, and every file that carries a final name is whole. The sizes are few: a page,
+# parts of what the stage writes, and the edge found by bisection.
 source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
 
 # on_small_disk STAGE KIB [OPTIONS...]: the stage writes to disk/, which holds what is in out/ already and has KIB
@@ -11,8 +12,7 @@ on_small_disk() {
   cat >small_disk.sh <<SCRIPT
 set -e
 mkdir -p disk kept
-used=\$( (find out -type f -printf '%k\n' 2>/dev/null || true) | awk '{ sum += \$1 } END { print sum + 0 }')
-mount -t tmpfs -o size=\$((used + $kib))k tmpfs disk
+mount -t tmpfs -o size=$(($(room out) + kib))k tmpfs disk
 if [[ -d out ]]; then cp -r out/. disk/; fi
 code=0
 "$bin/talus-$stage" recipe.toml --out disk $* || code=\$?
@@ -41,23 +41,46 @@ whole() {
 full="^talus-[a-z]+: $TALUS_SCRATCH/disk(/[a-z_/.0-9]+)?: .*cannot (be written|be created|write) ?"
 full+=".*(disk is full|No space left on device).*--out"
 
-# fills STAGE [OPTIONS...]: tries disks of growing size until the stage succeeds.
+# room FOLDER: what its files take [KiB].
+room() { (find "$1" -type f -printf '%k\n' 2>/dev/null || true) | awk '{ sum += $1 } END { print sum + 0 }'; }
+
+# succeeds_on KIB STAGE [OPTIONS...]: whether the stage gets by with so much; where it does not, it has to say so, and
+# what it leaves has to be whole.
+succeeds_on() {
+  local kib=$1 stage=$2 code=0 file
+  shift 2
+  on_small_disk "$stage" "$kib" "$@" >stdout 2>stderr </dev/null || code=$?
+  [[ $code -ne 0 ]] || return 0
+  [[ $code -eq 3 ]] || fail "exit code $code instead of 3 on a disk of $kib KiB"
+  failures=$((failures + 1))
+  tail -n 1 stderr | grep -qE "$full" || fail "it does not say that the disk is full ($kib KiB)"
+  [[ ! -s stdout ]] || fail "it names results on a full disk"
+  [[ -z $(find kept -name '*.partial') ]] || fail "left behind: $(find kept -name '*.partial')"
+  while IFS= read -r file; do whole "$file"; done < <(find kept -type f -not -path 'kept/.frames/*')
+  return 1
+}
+
+# fills STAGE [OPTIONS...]: on a disk of a page, of an eighth and of half of what the stage writes; then the edge
+# between too small and large enough by bisection, to an eighth: there the last of its files meet the end of the disk.
 fills() {
-  local stage=$1 kib=0 failures=0 code file
+  local stage=$1 failures=0 low high middle needed kib
   shift
-  while true; do
-    kib=$((kib + 4 + kib / 8 * 4))   # a page at first, later half as much again
-    [[ $kib -lt 8192 ]] || fail "it does not succeed on $kib KiB either"
-    code=0
-    on_small_disk "$stage" $kib "$@" >stdout 2>stderr </dev/null || code=$?
-    [[ $code -ne 0 ]] || break
-    [[ $code -eq 3 ]] || fail "exit code $code instead of 3 on a disk of $kib KiB"
-    failures=$((failures + 1))
-    tail -n 1 stderr >>messages
-    tail -n 1 stderr | grep -qE "$full" || fail "it does not say that the disk is full ($kib KiB)"
-    [[ ! -s stdout ]] || fail "it names results on a full disk"
-    [[ -z $(find kept -name '*.partial') ]] || fail "left behind: $(find kept -name '*.partial')"
-    while IFS= read -r file; do whole "$file"; done < <(find kept -type f -not -path 'kept/.frames/*')
+  succeeds_on 65536 "$stage" "$@" || fail "it does not succeed on 64 MiB either"
+  needed=$(($(room kept) - $(room out)))
+  [[ $needed -ge 64 ]] || fail "it writes $needed KiB: this test looks at nothing"
+  low=4 high=65536
+  for kib in 4 $((needed / 8)) $((needed / 2)); do
+    succeeds_on "$kib" "$stage" "$@" && fail "it succeeds on $kib KiB, though it writes $needed"
+    low=$kib
+  done
+  # What is written aside and removed again may take more than what stays.
+  for ((kib = needed + needed / 4 + 8; high == 65536; kib *= 2)); do
+    [[ $kib -le 65536 ]] || fail "it writes $needed KiB and does not succeed on $((kib / 2))"
+    if succeeds_on "$kib" "$stage" "$@"; then high=$kib; else low=$kib; fi
+  done
+  while ((high - low > 4 + low / 8)); do
+    middle=$(((low + high) / 2))
+    if succeeds_on "$middle" "$stage" "$@"; then high=$middle; else low=$middle; fi
   done
   [[ $failures -ge 3 ]] || fail "only $failures disks were too small: this test looks at nothing"
 }

@@ -51,6 +51,9 @@ std::string last_line(const fs::path& file) {
   return last;
 }
 
+/// A count of the history, 0 where there is none.
+long whole_or_none(double value) { return std::isfinite(value) ? std::lround(value) : 0; }
+
 /// "quadratic, h = 50 / 4" as a folder: quadratic-h-50-4.
 std::string folder_of(const std::string& variant) {
   std::string folder;
@@ -101,6 +104,7 @@ Outcome Bench::run(const std::string& variant, const Overrides& overrides, bool 
   outcome.run = read_run(out / "run.h5");
   outcome.frames = read_points(out / "run.h5");
   fmt::print(stderr, "{:8.1f} s\n", outcome.run.summary.wall_time);
+  judge_cost(outcome);
   return outcome;
 }
 
@@ -124,6 +128,7 @@ Row Bench::row_of(const Outcome& outcome, const std::string& quantity) const {
 
 void Bench::judge(Row row) {
   if (!row.fault.empty()) row.computed = row.error = unknown;
+  row.judged = true;
   row.pass = row.fault.empty() && std::isfinite(row.error) && row.error <= row.tolerance;
   keep_(row);
 }
@@ -167,12 +172,25 @@ void Bench::within(const Outcome& outcome, const std::string& quantity, double c
 
 void Bench::note(const Outcome& outcome, const std::string& quantity, double computed) {
   Row row = row_of(outcome, quantity);
-  row.computed = computed;
-  row.reference = row.tolerance = unknown;
-  row.error = 0;
-  row.pass = row.fault.empty();
-  if (!row.pass) row.computed = row.error = unknown;
+  row.computed = row.fault.empty() ? computed : unknown;
+  row.reference = row.tolerance = row.error = unknown;
   keep_(row);
+}
+
+void Bench::judge_cost(const Outcome& outcome) {
+  const std::string run = outcome.variant.empty() ? name_ : name_ + " " + outcome.variant;
+  const Cost cost{static_cast<long>(outcome.run.summary.steps), whole_or_none(outcome.last_of("newton_iterations")),
+                  whole_or_none(outcome.last_of("linear_iterations"))};
+  costs_[run] = cost;
+  const auto known = request_.costs.find(run);
+  if (known == request_.costs.end()) return;
+  const auto judge_count = [&](const char* what, long count, long recorded) {
+    if (recorded > 0 || count > 0)
+      at_most(outcome, what, static_cast<double>(count), static_cast<double>(cost_bound(recorded)));
+  };
+  judge_count("cost: steps", cost.steps, known->second.steps);
+  judge_count("cost: Newton iterations", cost.newton, known->second.newton);
+  judge_count("cost: linear iterations", cost.linear, known->second.linear);
 }
 
 void Bench::picture(const std::string& name, const std::string& png) const {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/run/run_file.hpp"
+#include "tests/validation/costs.hpp"
 #include "tests/validation/points.hpp"
 #include "tests/validation/recipe_text.hpp"
 
@@ -18,6 +19,8 @@ struct Request {
   std::filesystem::path programs, recipes, out;  // folders: build/bin, tests/validation, build/validation
   std::string on = "auto";                       // auto | cpu | gpu
   bool complete = false;                         // with the long runs
+  bool coarse = false;                           // on coarse grids alone: seconds a case, for CTest
+  CostBook costs;                                // what runs have cost, and may again
 };
 
 /// A variant that was run. `fault` says why there is no result.
@@ -39,9 +42,13 @@ struct Outcome {
 struct Row {
   std::string name, quantity;  // "A1 quasi-static, pcg", "top displacement"
   double computed, reference, error, tolerance;
-  bool pass = false;
+  bool judged = false;  // against a tolerance, a band or a bound; else the number is noted and claims nothing
+  bool pass = false;    // where it is judged
   double wall_time = 0, particles = 0, steps = 0, newton = 0, cg = 0, over_cfl = 0;  // NaN: the run does not say
   std::string place, fault;
+
+  /// Whether something is wrong: a goal is missed, or there is no result.
+  bool failed() const { return judged ? !pass : !fault.empty(); }
 };
 
 class Bench {
@@ -53,10 +60,11 @@ class Bench {
   const std::string& name() const { return name_; }
   const Request& request() const { return request_; }
   bool complete() const { return request_.complete; }
+  bool coarse() const { return request_.coarse; }
   bool on_gpu() const { return request_.on == "gpu"; }
 
   /// Run the case's recipe with these overrides; results lie in OUT/CASE/VARIANT. Says on stderr what it does. With
-  /// `profile` the run measures its phases (RunSummary::profile).
+  /// `profile` the run measures its phases (RunSummary::profile). Rows judge its cost where the book knows the run.
   Outcome run(const std::string& variant, const Overrides& overrides, bool profile = false);
 
   /// A row whose error is |computed / reference - 1|, or |computed| where the reference is 0. A run without a result is
@@ -74,8 +82,11 @@ class Bench {
   void at_most(const Outcome& outcome, const std::string& quantity, double computed, double reference);
   /// A row that `computed` passes from `low` to `high`; its error is how far beyond the nearer end it lies, over that.
   void within(const Outcome& outcome, const std::string& quantity, double computed, double low, double high);
-  /// A row that says what was measured and claims nothing: it passes when the run did.
+  /// A row that says what was measured and claims nothing.
   void note(const Outcome& outcome, const std::string& quantity, double computed);
+
+  /// What the runs made so far have cost.
+  const CostBook& costs() const { return costs_; }
 
   /// Write a picture OUT/NAME.png.
   void picture(const std::string& name, const std::string& png) const;
@@ -83,10 +94,12 @@ class Bench {
  private:
   Row row_of(const Outcome& outcome, const std::string& quantity) const;
   void judge(Row row);
+  void judge_cost(const Outcome& outcome);
 
   std::string name_;
   const Request& request_;
   std::function<void(const Row&)> keep_;
+  CostBook costs_;
 };
 
 }  // namespace talus::validation

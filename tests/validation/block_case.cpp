@@ -81,7 +81,7 @@ void block_on_incline(Bench& bench) {
   // Less than 1e-4 of its length in 60 s, after the jolt of sudden gravity has died down; ten seconds where time is
   // short.
   const double time = bench.complete() ? 60 : 10;
-  const Outcome still = bench.run("25 deg, bed 30 deg: at rest",
+  const Outcome still = bench.run(fmt::format("25 deg, bed 30 deg: at rest for {:g} s", time),
                                   overrides_of({25, 30, 30, 2}) + Overrides{{"solve.material.youngs_modulus_Pa", 1e7},
                                                                             {"solve.end_time_s", time + 1}});
   if (still.ok()) {

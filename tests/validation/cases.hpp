@@ -34,6 +34,7 @@ struct Case {
   const char* title;
   bool quick;  // has rows that need no LONG=1
   void (*run)(Bench&);
+  bool coarse = false;  // has rows on coarse grids, seconds a case
 };
 
 const std::vector<Case>& cases();

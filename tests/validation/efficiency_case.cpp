@@ -108,8 +108,9 @@ SchemeLines lines_of(const Scheme& scheme, int colour) {
 
 /// Time and memory of one size.
 void time_size(Bench& bench, const Scheme& scheme, int cells, SchemeLines& lines) {
-  const std::string variant = fmt::format("{}, {} points", scheme.name, 36288 * cells);
-  const Overrides overrides = thick(cells, bench.complete() ? 200 : 10) + scheme.overrides;
+  const int steps = bench.complete() ? 200 : 10;
+  const std::string variant = fmt::format("{}, {} points, {} steps", scheme.name, 36288 * cells, steps);
+  const Overrides overrides = thick(cells, steps) + scheme.overrides;
   const Outcome o = bench.run(variant, overrides);
   const RunSummary& s = o.run.summary;
   const double points = static_cast<double>(s.particles), each = s.wall_time / (points * static_cast<double>(s.steps));

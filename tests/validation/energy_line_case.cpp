@@ -85,7 +85,9 @@ void energy_line(Bench& bench) {
   chart.x_label = "direction of descent, from east [deg]";
   chart.y_label = "way of the centre over that of a sliding point";
   int colour = 1;
-  const std::vector<double> cells = bench.complete() ? std::vector<double>{20, 10} : std::vector<double>{20};
+  const std::vector<double> cells = bench.complete() ? std::vector<double>{20, 10}
+                                    : bench.coarse() ? std::vector<double>{40}
+                                                     : std::vector<double>{20};
   for (const Terrain& terrain : terrains) {
     for (const char* mapping : {"terrain-following", "cartesian"}) {
       if (!bench.complete() && (terrain.line.kind != GroundLine::parabola || mapping[0] == 'c')) continue;

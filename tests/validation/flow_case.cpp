@@ -36,6 +36,7 @@ constexpr const char* mappings[] = {"terrain-following", "cartesian"};
 
 /// Layers over the thickness; cells are four layers wide.
 std::vector<int> layer_counts(const Bench& bench) {
+  if (bench.coarse()) return {2};
   return bench.complete() ? std::vector<int>{2, 4, 8} : std::vector<int>{2, 4};
 }
 
@@ -44,14 +45,29 @@ Chart error_chart(const Bench& bench) {
                    "error, root mean square over the reference's");
 }
 
-void note(Bench& bench, const Outcome& o, const std::string& what, const Norms& n) {
-  bench.note(o, what + ", root mean square", n.mean);
-  bench.note(o, what + ", largest", n.most);
+void judge(Bench& bench, const Outcome& o, const std::string& what, const Norms& n, const Norms& tolerance) {
+  bench.measure(o, what + ", root mean square", n.mean, tolerance.mean);
+  bench.measure(o, what + ", largest", n.most, tolerance.most);
 }
+
+/// What both cases promise of the bed's friction: block tests (B1) hold a per cent of a block's way, which is half of
+/// one of friction; a flow that thins out over its rim holds 2 %.
+constexpr double friction_error = 0.02;
 
 // B4 ---------------------------------------------------------------------------------------------------------------
 
 constexpr ParabolicCap cap{35 * degree, 25 * degree, 4, 80};
+
+/// A per cent of friction is two of the way: tan(35) is 1.5 times tan(25).
+const double cap_way_tolerance = friction_error * std::tan(cap.bed) / (std::tan(cap.slope) - std::tan(cap.bed));
+/// The closed form presses as much across the slope as along it. Sand that yields as it shears down the slope carries
+/// less that way, and somewhere between that and none lies what spreads it: a cap that spreads along the slope alone
+/// (1.121 times in 5 s, and not at all across) is off by these shares of the closed form's thickness.
+constexpr Norms cap_thickness_tolerance{0.134, 0.201};
+/// Beside the way's 4 %, the depth-averaged speed knows nothing of what shears over the depth: tan(25) is the sine of
+/// the friction angle inside, so that all of the sand above the bed is at yield, and its surface may lead. Refinement
+/// to 8 layers makes that larger, not smaller (10.5 % and 20.6 %); the bound is what it may be said to stay below.
+constexpr Norms cap_speed_tolerance{0.15, 0.25};
 
 /// Upright thickness over a point of the map [m]: where the upright line from the plane meets the surface, which leans
 /// downhill against it.
@@ -147,7 +163,19 @@ Series exact_section() {
 // B5 ---------------------------------------------------------------------------------------------------------------
 
 constexpr double slope = 22 * degree, bed = 21 * degree;
-constexpr double height = 1.08;          // of the dam, upright [m]
+constexpr double height = 1.08;  // of the dam, upright [m]
+
+/// The slope drives the layer with a twentieth of what weight and friction have each. So 2 % of friction are 0.35 m/s
+/// after 5 s, 24 % of the closed form's discharge (root mean square) and 26 % of its largest; the toe, which it has
+/// without thickness, takes a tenth more of the largest.
+constexpr Norms dam_discharge_tolerance{0.25, 0.35};
+/// The same 2 % move the wave by 0.9 m, 4 % of the depth where it is steepest; the third of a second, sqrt(h / g), in
+/// which the step falls as a block before it presses as a layer does, is as much again. On the Cartesian grid the bed
+/// is stairs of a layer's height, which hold back what lies between them: of first order in the layers.
+Norms dam_thickness_tolerance(const std::string& mapping, int layers) {
+  const double stairs = mapping == "cartesian" ? 1.0 / layers : 0;
+  return {0.1 + 0.2 * stairs, 0.15 + 0.3 * stairs};
+}
 constexpr double west = -30, east = 36;  // along the slope: what the upper end of the reservoir does not reach [m]
 
 /// Thickness across the slope and discharge along it, at the columns of the grid.
@@ -218,9 +246,9 @@ void parabolic_cap(Bench& bench) {
         if (layers == 4) section.series.push_back(line);
       }
       const CapErrors e = cap_errors(o);
-      note(bench, o, "thickness", e.thickness);
-      note(bench, o, "speed of the points", e.speed);
-      bench.note(o, "way of the centre, over the reference's less one", e.way);
+      judge(bench, o, "thickness", e.thickness, cap_thickness_tolerance);
+      judge(bench, o, "speed of the points", e.speed, cap_speed_tolerance);
+      bench.measure(o, "way of the centre, over the reference's less one", e.way, cap_way_tolerance);
       h.push_back(layer);
       error.push_back(e.thickness.mean);
     }
@@ -258,8 +286,14 @@ void dam_break(Bench& bench) {
         Series s{fmt::format("{}, {} layers", mapping, layers), computed.x, computed.thickness, colour++};
         if (layers == 4) thickness.series.push_back(s);
       }
-      note(bench, o, "thickness", of_thickness);
-      note(bench, o, "discharge", of_discharge);
+      judge(bench, o, "thickness", of_thickness, dam_thickness_tolerance(mapping, layers));
+      if (std::string(mapping) == "cartesian") {
+        // Stairs take more than their share of the friction, and a twentieth more stops the layer: nothing to promise.
+        bench.note(o, "discharge, root mean square", of_discharge.mean);
+        bench.note(o, "discharge, largest", of_discharge.most);
+      } else {
+        judge(bench, o, "discharge", of_discharge, dam_discharge_tolerance);
+      }
       h.push_back(layer);
       error.push_back(of_thickness.mean);
     }

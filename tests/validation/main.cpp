@@ -1,10 +1,12 @@
 // talus-validate: runs the validation cases through the programs, prints the table, writes validation.json and the
 // pictures.
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <ctime>
 #include <exception>
 #include <filesystem>
 
@@ -21,7 +23,8 @@ namespace fs = std::filesystem;
 struct Words {
   std::vector<std::string> names;
   std::string on = "auto", out, programs, recipes = TALUS_RECIPES;
-  bool complete = false, list = false;
+  std::string commit = version(), costs;
+  bool complete = false, coarse = false, list = false, record = false;
 };
 
 Words parse(int argc, char** argv) {
@@ -36,6 +39,10 @@ Words parse(int argc, char** argv) {
                  "Folder for runs, pictures and table (default: validation beside the programs' folder)");
   app.add_option("--programs", w.programs, "Folder of the programs (default: that of this one)");
   app.add_option("--recipes", w.recipes, "Folder with the cases' recipes");
+  app.add_flag("--coarse", w.coarse, "On coarse grids alone: seconds a case")->excludes("--long");
+  app.add_option("--commit", w.commit, "What the table calls the programs' commit (default: that of the build)");
+  app.add_option("--costs", w.costs, "The book of what runs have cost (default: costs.toml among the recipes)");
+  app.add_flag("--record-costs", w.record, "Write what these runs cost into that book, instead of judging it");
   app.add_flag("--list", w.list, "Name the cases and stop");
   try {
     app.parse(argc, argv);
@@ -53,8 +60,38 @@ Words parse(int argc, char** argv) {
 }
 
 bool wanted(const Words& words, const Case& c) {
+  if (words.coarse ? !c.coarse : !c.quick && !words.complete) return false;
   if (words.names.empty()) return true;
   return std::find(words.names.begin(), words.names.end(), c.name) != words.names.end();
+}
+
+/// Today, as 2026-11-22.
+std::string today() { return fmt::format("{:%Y-%m-%d}", fmt::localtime(std::time(nullptr))); }
+
+/// Runs the cases; returns what they cost.
+CostBook run_cases(const Words& words, const Request& request, std::vector<Row>& rows) {
+  Sitting sitting{.commit = words.commit,
+                  .date = today(),
+                  .on = words.on,
+                  .complete = words.complete,
+                  .coarse = words.coarse,
+                  .cases = {}};
+  const auto keep = [&](const Row& row) {  // at once, so that what is there survives a long run that is stopped
+    rows.push_back(row);
+    write_text(request.out.parent_path() / (request.out.filename().string() + ".json"), as_json(sitting, rows));
+  };
+  CostBook costs;
+  for (const Case& c : cases()) {
+    if (wanted(words, c)) sitting.cases.emplace_back(c.name);
+  }
+  for (const Case& c : cases()) {
+    if (!wanted(words, c)) continue;
+    fmt::print(stderr, "{}: {}\n", c.name, c.title);
+    Bench bench(c.name, request, keep);
+    c.run(bench);
+    for (const auto& [run, cost] : bench.costs()) costs[run] = cost;
+  }
+  return costs;
 }
 
 int run(const Words& words) {
@@ -66,23 +103,20 @@ int run(const Words& words) {
   request.on = words.on;
   request.complete = words.complete;
   fs::create_directories(request.out);
+  request.coarse = words.coarse;
+  const fs::path book = words.costs.empty() ? request.recipes / "costs.toml" : fs::absolute(words.costs);
+  CostBook known = read_costs(book);
+  if (!words.record) request.costs = known;
   std::vector<Row> rows;
-  const auto keep = [&](const Row& row) {  // at once, so that what is there survives a long run that is stopped
-    rows.push_back(row);
-    write_text(request.out.parent_path() / (request.out.filename().string() + ".json"), as_json(rows));
-  };
-  for (const Case& c : cases()) {
-    if (!wanted(words, c) || (!c.quick && !words.complete)) continue;
-    fmt::print(stderr, "{}: {}\n", c.name, c.title);
-    Bench bench(c.name, request, keep);
-    c.run(bench);
-  }
+  const CostBook costs = run_cases(words, request, rows);
   fmt::print("{}", as_table(rows));
-  if (rows.empty()) return 1;
-  for (const Row& row : rows) {
-    if (!row.pass) return 1;
+  if (words.record) {
+    for (const auto& [name, cost] : costs) known[name] = cost;
+    write_text(book, as_toml(known));
+    fmt::print(stderr, "{}\n", book.string());
   }
-  return 0;
+  const Counts c = count(rows);
+  return rows.empty() || c.missed + c.lost > 0 ? 1 : 0;
 }
 
 }  // namespace

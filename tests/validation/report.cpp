@@ -19,6 +19,11 @@ using Cells = std::array<std::string, 14>;
 const Cells header{"case",     "quantity", "computed", "reference", "error", "tolerance", "pass",
                    "wall [s]", "points",   "steps",    "Newton",    "CG",    "dt/CFL",    "place"};
 
+std::string verdict(const Row& r) {
+  if (!r.fault.empty()) return "FAILED";
+  return !r.judged ? "noted" : r.pass ? "yes" : "NO";
+}
+
 std::string shortened(const std::string& place) { return place.size() <= 28 ? place : place.substr(0, 27) + "~"; }
 
 Cells cells_of(const Row& r) {
@@ -28,7 +33,7 @@ Cells cells_of(const Row& r) {
           number(r.reference),
           number(r.error, "{:.2e}"),
           number(r.tolerance, "{:.2g}"),
-          r.pass ? "yes" : "NO",
+          verdict(r),
           number(r.wall_time, "{:.2f}"),
           number(r.particles, "{:.0f}"),
           number(r.steps, "{:.0f}"),
@@ -55,6 +60,15 @@ nlohmann::ordered_json plain(double value) {
 
 }  // namespace
 
+Counts count(const std::vector<Row>& rows) {
+  Counts c;
+  for (const Row& r : rows) {
+    (r.judged ? c.judged : c.noted) += 1;
+    if (r.failed()) (r.judged ? c.missed : c.lost) += 1;
+  }
+  return c;
+}
+
 std::string as_table(const std::vector<Row>& rows) {
   std::vector<Cells> lines{header};
   for (const Row& row : rows) lines.push_back(cells_of(row));
@@ -70,31 +84,36 @@ std::string as_table(const std::vector<Row>& rows) {
     last = row.name;
     text += fmt::format("{}: {}\n", row.name, row.fault);
   }
-  const auto failed = std::count_if(rows.begin(), rows.end(), [](const Row& r) { return !r.pass; });
-  return text + fmt::format("{} rows, {} failed\n", rows.size(), failed);
+  const Counts c = count(rows);
+  return text + fmt::format("{} rows: {} judged, of which {} failed; {} noted, of which {} without a result\n",
+                            rows.size(), c.judged, c.missed, c.noted, c.lost);
 }
 
-std::string as_json(const std::vector<Row>& rows) {
+std::string as_json(const Sitting& sitting, const std::vector<Row>& rows) {
   auto list = nlohmann::ordered_json::array();
   for (const Row& r : rows) {
-    nlohmann::ordered_json row{{"case", r.name},
-                               {"quantity", r.quantity},
-                               {"computed", plain(r.computed)},
-                               {"reference", plain(r.reference)},
-                               {"error", plain(r.error)},
-                               {"tolerance", plain(r.tolerance)},
-                               {"pass", r.pass},
-                               {"wall_time_s", plain(r.wall_time)},
-                               {"particles", plain(r.particles)},
-                               {"steps", plain(r.steps)},
-                               {"newton", plain(r.newton)},
-                               {"cg", plain(r.cg)},
-                               {"dt_over_cfl", plain(r.over_cfl)},
-                               {"place", r.place}};
+    nlohmann::ordered_json row{
+        {"case", r.name}, {"quantity", r.quantity}, {"judged", r.judged}, {"computed", plain(r.computed)}};
+    if (r.judged) {
+      row["reference"] = plain(r.reference);
+      row["error"] = plain(r.error);
+      row["tolerance"] = plain(r.tolerance);
+      row["pass"] = r.pass;
+    }
+    row["wall_time_s"] = plain(r.wall_time);
+    row["particles"] = plain(r.particles);
+    row["steps"] = plain(r.steps);
+    row["newton"] = plain(r.newton);
+    row["cg"] = plain(r.cg);
+    row["dt_over_cfl"] = plain(r.over_cfl);
+    row["place"] = r.place;
     if (!r.fault.empty()) row["fault"] = r.fault;
     list.push_back(std::move(row));
   }
-  return list.dump(1) + "\n";
+  const nlohmann::ordered_json all{{"commit", sitting.commit},     {"date", sitting.date},     {"on", sitting.on},
+                                   {"complete", sitting.complete}, {"coarse", sitting.coarse}, {"cases", sitting.cases},
+                                   {"rows", std::move(list)}};
+  return all.dump(1) + "\n";
 }
 
 }  // namespace talus::validation

@@ -8,10 +8,27 @@
 
 namespace talus::validation {
 
-/// Columns padded; below the table what went wrong in runs without a result.
+/// When and with what the rows were made.
+struct Sitting {
+  std::string commit, date;  // 1a2b3c4d5, "-dirty" behind it where the tree has changes; 2026-11-22
+  std::string on;            // auto | cpu | gpu
+  bool complete = false, coarse = false;
+  std::vector<std::string> cases;  // that were asked for
+};
+
+/// How many rows there are of each kind.
+struct Counts {
+  long judged = 0, missed = 0;  // of the judged ones: beyond their tolerance, or without a result
+  long noted = 0, lost = 0;     // of the noted ones: without a result
+};
+Counts count(const std::vector<Row>& rows);
+
+/// Columns padded; below the table what went wrong in runs without a result, and how many rows are judged, miss their
+/// tolerance and are noted.
 std::string as_table(const std::vector<Row>& rows);
 
-/// A list of objects; a number that is not known is null.
-std::string as_json(const std::vector<Row>& rows);
+/// An object of the sitting and the list `rows`; a number that is not known is null. A noted row has `judged` false,
+/// and neither error, tolerance nor `pass`.
+std::string as_json(const Sitting& sitting, const std::vector<Row>& rows);
 
 }  // namespace talus::validation

@@ -112,17 +112,23 @@ struct ConeReturn {
   Real left;                         ///< sqrt(J2) [Pa]
   Real dilation = 0;                 ///< plastic volume change
   Real pressure, give;               ///< pressure [Pa] and the slope of its cut-off there
+  Real raise;                        ///< of the pressure by the multiplier g, K beta [Pa]
   bool yields = false, tip = false;  ///< has yielded; no shear strength is left
+  bool on_cone;                      ///< the trial lies on the cone, inside or outside by rounding
 
   TALUS_HD ConeReturn(const Elasticity<Real>& m, const ConeNumbers<Real>& cone, Real shear, Real y) : left(shear) {
     CutPressure<Real> cut(cone, y);
     pressure = cut.value - cone.tension;
     give = cut.slope;
+    // An open point has no pressure to raise.
+    raise = give > Real(0) ? m.bulk_modulus * cone.dilatancy : Real(0);
     Real excess = shear - cone.friction * pressure - cone.shear_cohesion;
+    // Rounding of stresses that are kept as strains (2e-12 of them measured), and of the volume that the pressure comes
+    // from (an open point's is far larger than its strain).
+    constexpr Real share = sizeof(Real) == 8 ? 1e-9 : 1e-4, strain = sizeof(Real) == 8 ? 4e-16 : 2e-7;
+    on_cone = fabs(excess) <= share * shear + strain * m.shear_modulus;
     if (excess <= Real(0)) return;
     yields = true;
-    // An open point has no pressure to raise.
-    const Real raise = give > Real(0) ? m.bulk_modulus * cone.dilatancy : Real(0);
     Real multiplier = excess / (m.shear_modulus + cone.friction * raise * give);
     const int corrections = raise > Real(0) && cone.apex > Real(0) ? 4 : raise > Real(0) ? 1 : 0;
     for (int n = 0; n < corrections; ++n) {
@@ -230,10 +236,24 @@ struct DruckerPrager {
   }
 
   /// The principal stresses of a trial and D_ab. Unless the exact tangent is asked for, the friction of a yielding
-  /// point is held at its current pressure in D (frozen yield), which keeps D symmetric (T17).
+  /// point is held at its current pressure in D (frozen yield), which keeps D symmetric (T17). A trial that lies on the
+  /// cone has the D of its way ahead, the plastic one where that leads out (T17c).
   template <class Real>
   TALUS_HD static void respond(const Elasticity<Real>& m, const Numbers<Real>& cone, const PrincipalTrial<Real>& trial,
                                PrincipalResponse<Real>& out);
+
+  /// Whether a trial on the cone goes out of it on its way ahead: sqrt(J2) grows faster along `ahead` than the yield
+  /// stress does, (T17c). `s` is the deviator of the trial's strain and `size` sqrt(s : s / 2).
+  template <class Real>
+  TALUS_HD static bool goes_out(const Elasticity<Real>& m, const Numbers<Real>& cone, const ConeReturn<Real>& end,
+                                const PrincipalTrial<Real>& trial, const Real (&s)[3], Real size) {
+    if (!trial.heads) return false;
+    if (!(size > Real(0))) return true;  // an open point has no strength against any shear
+    const Real* e = trial.ahead;
+    const Real volume = e[0] + e[1] + e[2];
+    const Real shear = m.shear_modulus * (s[0] * e[0] + s[1] * e[1] + s[2] * e[2]) / size;
+    return shear > -cone.friction * m.bulk_modulus * end.give * volume;
+  }
 
   /// The state after loading: the deviator of `loaded`, as the pressure follows from the volume.
   template <class Real>
@@ -253,22 +273,23 @@ TALUS_HD void DruckerPrager::respond(const Elasticity<Real>& m, const Numbers<Re
   const Real size = sqrt(Real(0.5) * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2]));
   const Real shear = twice * size;
   const ConeReturn<Real> end(m, cone, shear, free_pressure(m, cone, trial.log_volume, trial.plastic_log_volume));
-  const Real left = end.left, pressure = end.pressure, bulk = m.bulk_modulus * end.give;
+  const Real left = end.left, pressure = end.pressure, raise = end.raise;
+  const bool flows = end.on_cone ? goes_out(m, cone, end, trial, s, size) : end.yields;
+  const bool tip = end.tip || !(shear > Real(0));
   Real slope = Real(1);  // of sqrt(J2) after the return by the trial's
-  if (end.yields) {
-    const Real raised = end.dilation > Real(0) ? cone.friction * cone.dilatancy * bulk : Real(0);
-    slope = end.tip ? Real(0) : raised / (m.shear_modulus + raised);
+  if (flows) {
+    const Real raised = cone.friction * raise * end.give;
+    slope = tip ? Real(0) : raised / (m.shear_modulus + raised);
   }
   // Exact: shear' = slope dS + pull dy, p' = hold dy + lift dS, with y = -K tr(e) the free pressure.
   Real pull = 0, hold = end.give, lift = 0;
-  if (cone.exact_tangent && end.yields && !end.tip) {
-    const Real raise = end.dilation > Real(0) ? m.bulk_modulus * cone.dilatancy : Real(0);
+  if (cone.exact_tangent && flows && !tip) {
     const Real stiff = m.shear_modulus + cone.friction * raise * end.give;
     pull = m.shear_modulus * cone.friction * end.give / stiff;
     hold = end.give * m.shear_modulus / stiff;
     lift = end.give * raise / stiff;
   }
-  const Real ratio = shear > Real(0) ? left / shear : Real(1);
+  const Real ratio = shear > Real(0) ? left / shear : flows ? Real(0) : Real(1);
   // d(2G s ratio) = 2G [ratio dev + (slope - ratio) n n^T], n = s / |s|
   const Real square = Real(2) * size * size;
   for (int a = 0; a < 3; ++a) {

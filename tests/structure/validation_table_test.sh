@@ -1,0 +1,56 @@
+#!/usr/bin/env bash
+# The table of the validation: one state of the programs, and what is judged told from what is noted.
+source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
+
+tabulate() { python3 "$TALUS_SOURCE/tools/tabulate-validation.py" "$@"; }
+
+# sitting COMMIT CASE ROW...: a validation.json.
+sitting() {
+  local commit=$1 name=$2 rows
+  shift 2
+  rows=$(IFS=, && echo "$*")
+  echo "{\"commit\": \"$commit\", \"date\": \"2026-11-22\", \"on\": \"cpu\", \"complete\": false, \"coarse\": false,
+    \"cases\": [\"$name\"], \"rows\": [$rows]}"
+}
+
+common='"case": "X1", "computed": 1.02, "steps": 20, "place": "a processor"'
+met="{$common, \"quantity\": \"way\", \"judged\": true, \"reference\": 1, \"error\": 0.02, \"tolerance\": 0.05,
+  \"pass\": true}"
+missed="{$common, \"quantity\": \"height\", \"judged\": true, \"reference\": 1, \"error\": 0.02, \"tolerance\": 0.01,
+  \"pass\": false}"
+noted="{$common, \"quantity\": \"speed\", \"judged\": false}"
+
+test_noted_rows_claim_nothing() {
+  need_tool python3
+  sitting 1a2b3c4d5 X1 "$met" "$missed" "$noted" >one.json
+  expect_exit 0 tabulate one.json table.md
+  grep -qF '| way | 1.02 | 1 | 0.02 | 0.05 | met | 20 |' table.md || fail "no row that is met: $(<table.md)"
+  grep -qF '| height | 1.02 | 1 | 0.02 | 0.01 | **missed** | 20 |' table.md || fail "no row that misses: $(<table.md)"
+  grep -qF '| speed | 1.02 | - | - | noted | | 20 |' table.md || fail "no row that is noted: $(<table.md)"
+  grep -qF '3 rows: 2 are judged, 1 of these miss their tolerance; 1 are noted' table.md || fail "counts: $(<table.md)"
+}
+
+test_commit_and_date_stand_in_it() {
+  need_tool python3
+  sitting 1a2b3c4d5 X1 "$met" >one.json
+  expect_exit 0 tabulate one.json table.md
+  grep -qF 'Commit 1a2b3c4d5, 2026-11-22, the quick runs, on a processor.' table.md || fail "heading: $(<table.md)"
+}
+
+test_rows_of_two_commits_are_refused() {
+  need_tool python3
+  sitting 1a2b3c4d5 X1 "$met" >one.json
+  sitting 9f8e7d6c5 X2 "$met" >two.json
+  expect_exit 1 tabulate one.json two.json table.md
+  expect_words 'different commits (1a2b3c4d5, 9f8e7d6c5)'
+  [[ ! -e table.md ]] || fail "it wrote a table of two states"
+}
+
+test_a_case_stands_in_it_once() {
+  need_tool python3
+  sitting 1a2b3c4d5 X1 "$met" >one.json
+  expect_exit 1 tabulate one.json one.json table.md
+  expect_words 'X1 in more than one file'
+}
+
+run_test "$@"
