@@ -19,7 +19,7 @@ quickly := $(if $(ccache),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_CUDA_COMP
 # What the build folder was configured for; another wish configures it again.
 asked := $(PRESET) $(CUDAARCHS)
 
-.PHONY: help setup build demo test validate lint docs bundle bundle-solver clean FORCE
+.PHONY: help setup build demo test validate check-faults lint docs bundle bundle-solver clean FORCE
 
 help: ## this list
 	@echo "make TARGET [PRESET=default|cpu|gpu|check] [JOBS=n]"
@@ -70,6 +70,11 @@ validate: setup $(BUILD)/build.ninja ## error beside tolerance, docs/validation.
 	  || code=$$?; \
 	[[ $$code -gt 1 ]] || tools/tabulate-validation.py $(BUILD)/validation.json $(BUILD)/validation-table.md; \
 	exit $$code
+
+check-faults: setup $(BUILD)/build.ninja ## kills, failing calls, processes in one folder, power cuts: all tables
+	@cmake --build $(BUILD) -j $(JOBS) --target $(programs) talus-faults
+	@python3 tests/faults/faults.py --full --bin $(BUILD)/bin --shim $(BUILD)/bin/talus-faults.so \
+	  --work $(BUILD)/scratch/check-faults --table $(BUILD)/faults.md
 
 lint: ## formatting and static analysis of everything [CHANGED=n: analyse only the n units changed last]
 	@tools/install-dependencies.sh lint

@@ -3,8 +3,10 @@
 MAKEFLAGS += --no-builtin-rules --no-builtin-variables
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
-.DELETE_ON_ERROR:
 .SUFFIXES:
+# A result carries its name only when it is whole, and the last one of a stage is written last: make deletes none, also
+# where it is interrupted.
+.PRECIOUS: domain.vdb run.h5 score.json
 
 # Names as the shell and as make's rules take them.
 quoted  = '$(subst ','\'',$1)'
@@ -20,7 +22,7 @@ domain.vdb: .inputs/preprocess.toml $(call escaped,$(value bin)/talus-preprocess
 	$(call run,preprocess)
 
 run.h5: .inputs/solve.toml $(call escaped,$(value bin)/talus-solve)
-	$(call run,solve) --on $(on)
+	$(call run,solve) --on $(on) --resume
 
 score.json: .inputs/postprocess.toml $(call escaped,$(value bin)/talus-postprocess)
 	$(call run,postprocess)

@@ -12,6 +12,7 @@
 #include "common/gis/crs.hpp"
 #include "common/gis/dataset_files.hpp"
 #include "common/run/run_file.hpp"
+#include "common/stage/identity.hpp"
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/maps/avaframe.hpp"
 #include "postprocess/maps/geotiff.hpp"
@@ -62,13 +63,6 @@ fs::path run_file(const StageContext& context, const Options& options) {
   return options.run.empty() ? context.out / "run.h5" : options.run;
 }
 
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error)
-    throw DataError({folder.string() + ": cannot be made", error.message(), "Choose another folder with --out"});
-}
-
 /// Time series of the run, a row for every record, time first.
 std::string history_table(const RunHistory& history) {
   std::vector<const HistoryColumn*> order;
@@ -92,11 +86,19 @@ std::optional<std::string> text_of(const fs::path& file) {
   return std::string(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
 }
 
-/// What preprocess and solve left beside the run about themselves.
-std::vector<StageText> texts_of_stages(const fs::path& folder) {
+/// What preprocess and solve left beside the run about themselves, where it is of this run.
+std::vector<StageText> texts_of_stages(const fs::path& folder, const RunSummary& run) {
   std::vector<StageText> texts;
-  for (const auto* stage : {"preprocess", "solve"})
-    texts.push_back({stage, text_of(folder / (std::string(stage) + ".used.toml"))});
+  const std::string domain = fact(run.provenance, domain_id);
+  for (const auto& [stage, id] : {std::pair{"preprocess", domain}, std::pair{"solve", fact(run.provenance, run_id)}}) {
+    const fs::path file = folder / (std::string(stage) + ".used.toml");
+    std::optional<std::string> text = text_of(file);
+    if (text && !is_used_recipe_of(*text, id)) {
+      log_warning(fmt::format("{}: it is of another run than {}; the report leaves it out", file.string(), id));
+      text.reset();
+    }
+    texts.push_back({stage, std::move(text)});
+  }
   return texts;
 }
 
@@ -106,7 +108,7 @@ std::string used_text(const StageContext& context, const Job& job) {
   inputs.insert(inputs.begin(), job.file);
   if (job.thalweg.given) inputs.push_back(job.options.thalweg);
   return used_recipe(context, stage(), recipe::to_used_toml(job.options, "postprocess"), inputs,
-                     {{"CRS", crs_name(job.run.maps.grid.crs_wkt)}});
+                     {{"run", fact(job.run.summary.provenance, run_id)}, {"CRS", crs_name(job.run.maps.grid.crs_wkt)}});
 }
 
 /// Everything under maps/.
@@ -142,6 +144,7 @@ void write_results(StageContext& context, const Job& job) {
   remove_older(context.out);
   write_maps(context, job);
   const auto write = [&](const char* name, const std::string& bytes) {
+    stop_if_interrupted(std::string("writing ") + name);
     context.results.push_back(context.out / name);
     write_text(context.results.back(), bytes);
   };
@@ -153,7 +156,7 @@ void write_results(StageContext& context, const Job& job) {
   const auto used = used_text(context, job);
   write("postprocess.used.toml", used);
   if (options.report) {
-    auto stages = texts_of_stages(file.parent_path());
+    auto stages = texts_of_stages(file.parent_path(), run.summary);
     stages.push_back({"postprocess", used});
     const auto comparison = text_of(file.parent_path() / "survey" / "survey.json");
     write("report.html", report_html({run, options, survey, score, thalweg, std::move(stages), comparison, file}));
@@ -187,15 +190,74 @@ Dependencies depends(const StageContext& context) {
   return {{context.out / "score.json"}, inputs};
 }
 
+namespace {
+
+/// Refuses a run of another recipe than the one at hand, or of a domain that another one made.
+Facts judge_run(const StageContext& context, const Job& job) {
+  const RunSummary& run = job.run.summary;
+  MadeBy made{.file = job.file,
+              .table = "solve",
+              .mark = fact(run.provenance, recipe_of_run),
+              .program = "talus-solve",
+              .key = "run in [postprocess]",
+              .named = !job.options.run.empty()};
+  Facts facts = judge_maker(context.recipe, made);
+  const bool domain_named = accepted_before(run, "another-recipe");
+  made.table = "preprocess";
+  made.mark = fact(run.provenance, recipe_of_domain);
+  made.program = "talus-preprocess and talus-solve";
+  if (!facts.empty() || fact(run.provenance, run_id).empty() || domain_named) return facts;
+  return judge_maker(context.recipe, made);
+}
+
+/// Refuses a survey that talus-preprocess did not come to the end of.
+void require_whole_survey(const fs::path& out) {
+  const fs::path file = out / "survey" / "survey.json";
+  if (!fs::exists(out / "survey" / "slide_difference.tif") || fs::exists(file)) return;
+  throw DataError({file.string() + ": no such file",
+                   "talus-preprocess writes it last; without it what lies beside it may be of two preparations",
+                   "Run talus-preprocess again"});
+}
+
+/// Refuses a survey that another recipe made, or that was prepared with another domain than the run's.
+void judge_survey(const StageContext& context, const FoundSurvey& found, const Job& job) {
+  const fs::path file = context.out / "survey" / "survey.json";
+  judge_maker(context.recipe, {.file = file,
+                               .table = "preprocess",
+                               .mark = found.recipe_mark,
+                               .program = "talus-preprocess",
+                               .key = "the rasters of [postprocess.survey] instead of from_preprocess"});
+  const std::string computed_on = fact(job.run.summary.provenance, domain_id);
+  if (found.id.empty() || computed_on.empty() || found.id == computed_on || !job.options.run.empty()) return;
+  throw DataError({fmt::format("{}: prepared with the domain {}", file.string(), found.id),
+                   fmt::format("{} was computed on the domain {}", job.file.string(), computed_on),
+                   "Run talus-preprocess and talus-solve again, one after the other"});
+}
+
+/// A run keeps the name and title it was computed under.
+void warn_of_other_title(const StageContext& context, const RunSummary& run) {
+  if (run.scene != context.recipe.scene_name() || run.title != context.recipe.title())
+    log_warning(
+        fmt::format("the run is called \"{}\" ({}), the recipe \"{}\" ({}): the results bear the run's words; "
+                    "run talus-solve again for those of the recipe",
+                    run.title, run.scene, context.recipe.title(), context.recipe.scene_name()));
+}
+
+}  // namespace
+
 void run(StageContext& context) {
   Job job;
   job.options = context.recipe.read<Options>("postprocess");
   Acceptance acceptance("postprocess", job.options.accept);
+  if (job.options.survey.from_preprocess) require_whole_survey(context.out);
   const FoundSurvey found = job.options.survey.from_preprocess ? read_found_survey(context.out) : FoundSurvey{};
   job.options.survey.find_in(context.out, found.error_known);
   judge_outside(found, context.out, acceptance);
   job.file = run_file(context, job.options);
   job.run = read_run(job.file);
+  Facts insisted = judge_run(context, job);
+  if (job.options.survey.from_preprocess) judge_survey(context, found, job);
+  warn_of_other_title(context, job.run.summary);
   check_volume(job.file, job.run);
   job.survey = read_survey(job.options.survey, job.run.maps, job.options.footprint_threshold);
   if (job.survey && !accepted_before(job.run.summary, "swapped-surveys"))
@@ -206,6 +268,7 @@ void run(StageContext& context) {
   acceptance.warn_of_unmet();
   auto& facts = job.run.summary.provenance;
   facts.insert(facts.end(), acceptance.facts().begin(), acceptance.facts().end());
+  facts.insert(facts.end(), insisted.begin(), insisted.end());
   job.thalweg = thalweg_of(job.run, job.options);
   log_info(fmt::format("{}: {} x {} cells of {:g} m, {} frames; {}", job.file.string(), job.run.maps.grid.columns,
                        job.run.maps.grid.rows, job.run.maps.grid.cell, job.run.frames.time.size(),

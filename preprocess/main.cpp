@@ -6,6 +6,7 @@
 #include "common/gis/crs.hpp"
 #include "common/gis/dataset_files.hpp"
 #include "common/map/sum.hpp"
+#include "common/stage/identity.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/output/write_survey.hpp"
 #include "preprocess/scene/prepare.hpp"
@@ -13,7 +14,6 @@
 namespace {
 
 using namespace talus;
-using Facts = std::vector<std::pair<std::string, std::string>>;
 
 constexpr double bytes_per_point =
     400;  // state of one material point in the solver, double precision, with its sorting
@@ -64,18 +64,35 @@ void report(const preprocess::Prepared& prepared) {
                        std::max(1.0, count * bytes_per_point * 1e-6)));
 }
 
-Facts provenance_of(const StageContext& context, const preprocess::Prepared& prepared, const Facts& facts) {
+/// Files with their checksums.
+Facts inputs_of(const std::vector<std::filesystem::path>& files) {
+  Facts inputs;
+  for (const auto& file : files) {
+    const std::string sum =
+        std::filesystem::is_regular_file(file) ? " sha256 " + sha256(file) : "";  // some formats are folders
+    inputs.emplace_back("input " + file.filename().string(), file.string() + sum);
+  }
+  return inputs;
+}
+
+/// Whose domain it is: the same for the same [preprocess], inputs and version, wherever they lie and whenever it runs.
+Facts marks_of(const StageContext& context, const Facts& inputs) {
+  const std::string mark = recipe_mark(context.recipe, "preprocess");
+  std::string text = version() + "\n" + mark + "\n";
+  for (const auto& [name, value] : inputs) {
+    const auto sum = value.rfind("sha256 ");
+    text += name + (sum == std::string::npos ? "" : value.substr(sum)) + "\n";
+  }
+  return {{domain_id, sha256_of_text(text).substr(0, mark_digits)}, {recipe_of_domain, mark}};
+}
+
+Facts provenance_of(const StageContext& context, const Facts& inputs, const Facts& marks, const Facts& facts) {
   Facts provenance{{"scene", context.recipe.scene_name()},
                    {"title", context.recipe.title()},
                    {"version", version()},
                    {"command", context.command_line},
                    {"hardware", hardware()}};
-  for (const auto& file : prepared.inputs) {
-    const std::string sum =
-        std::filesystem::is_regular_file(file) ? " sha256 " + sha256(file) : "";  // some formats are folders
-    provenance.emplace_back("input " + file.filename().string(), file.string() + sum);
-  }
-  provenance.insert(provenance.end(), facts.begin(), facts.end());
+  for (const Facts* more : {&inputs, &marks, &facts}) provenance.insert(provenance.end(), more->begin(), more->end());
   return provenance;
 }
 
@@ -87,13 +104,13 @@ struct PreprocessFlags {
 Stage stage();
 
 /// OUT/survey, where there is anything to put into it.
-void write_survey_files(StageContext& context, const preprocess::Prepared& prepared) {
+void write_survey_files(StageContext& context, const preprocess::Prepared& prepared, const Facts& marks) {
   const auto folder = context.out / "survey";
   std::vector<std::string> lines;
   std::vector<std::filesystem::path> files;
   std::error_code none_there;
   std::filesystem::remove(folder / "survey.json", none_there);  // of an earlier recipe, perhaps
-  if (prepared.survey) files = preprocess::write_survey(folder, *prepared.survey, &prepared, lines);
+  if (prepared.survey) files = preprocess::write_survey(folder, *prepared.survey, &prepared, marks, lines);
   if (prepared.sliding_surface) files = preprocess::write_source(folder, prepared);
   for (const std::string& line : lines) log_info(line);
   context.results.insert(context.results.end(), files.begin(), files.end());
@@ -105,14 +122,29 @@ void run_difference(StageContext& context, const preprocess::Options& options) {
     throw RecipeError(Fault{"--difference: [preprocess] does not give before_dem and after_dem",
                             "there is nothing to compare", "Give both, or leave --difference out"});
   const preprocess::Survey survey = preprocess::survey_of(options);
+  const Facts marks = marks_of(context, inputs_of({options.before_dem, options.after_dem}));
   std::vector<std::string> lines = preprocess::as_lines(survey);
-  if (!context.check_only) context.results = preprocess::write_survey(context.out / "survey", survey, nullptr, lines);
+  if (!context.check_only)
+    context.results = preprocess::write_survey(context.out / "survey", survey, nullptr, marks, lines);
   for (const std::string& line : lines) log_info(line);
   Facts facts{{"crs", crs_name(survey.grid.crs_wkt)}};
   facts.insert(facts.end(), survey.accepted.facts().begin(), survey.accepted.facts().end());
   if (!context.check_only)
     write_used_recipe(context, stage(), recipe::to_toml(options, "preprocess", false),
                       {options.before_dem, options.after_dem}, facts);
+}
+
+/// OUT/obstacles.vdb; the domain carries its checksum, so that nobody takes another one for it.
+void write_obstacles(StageContext& context, preprocess::Prepared& prepared) {
+  const auto bodies = context.out / "obstacles.vdb";
+  if (prepared.obstacles.empty()) {
+    std::error_code none_there;
+    std::filesystem::remove(bodies, none_there);
+    return;
+  }
+  write_level_sets(bodies, prepared.obstacles, prepared.obstacle_voxel);
+  context.results.push_back(bodies);
+  prepared.domain.provenance.emplace_back(obstacles_checksum, sha256(bodies));
 }
 
 preprocess::Options read_options(const StageContext& context) {
@@ -136,21 +168,17 @@ void run(StageContext& context, const PreprocessFlags& flags) {
       preprocess::prepare(options, context.check_only ? preprocess::Points::counted : preprocess::Points::seeded);
   report(prepared);
   if (context.check_only) return;
-  write_survey_files(context, prepared);
-  const Facts facts = facts_of(prepared);
-  prepared.domain.provenance = provenance_of(context, prepared, facts);
+  stop_if_interrupted("writing the domain");
+  const Facts inputs = inputs_of(prepared.inputs), marks = marks_of(context, inputs), facts = facts_of(prepared);
+  prepared.domain.provenance = provenance_of(context, inputs, marks, facts);
+  write_survey_files(context, prepared, marks);
+  write_obstacles(context, prepared);
   const auto file = context.out / "domain.vdb";
-  write_domain(file, prepared.domain);
   context.results.push_back(file);
-  const auto bodies = context.out / "obstacles.vdb";
-  if (prepared.obstacles.empty()) {
-    std::error_code none_there;
-    std::filesystem::remove(bodies, none_there);
-  } else {
-    write_level_sets(bodies, prepared.obstacles, prepared.obstacle_voxel);
-    context.results.push_back(bodies);
-  }
-  write_used_recipe(context, stage(), recipe::to_used_toml(options, "preprocess"), prepared.inputs, facts);
+  Facts told{{"id", fact(marks, domain_id)}};
+  told.insert(told.end(), facts.begin(), facts.end());
+  write_used_recipe(context, stage(), recipe::to_used_toml(options, "preprocess"), prepared.inputs, told);
+  write_domain(file, prepared.domain);  // last: where it lies, everything is there
 }
 
 Stage stage() {

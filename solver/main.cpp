@@ -10,6 +10,7 @@
 
 #include "common/domain/domain.hpp"
 #include "common/run/run_file.hpp"
+#include "common/stage/identity.hpp"
 #include "common/stage/stage.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/options/solve.hpp"
@@ -33,12 +34,14 @@ const char* const examples =
     "  talus-solve recipe.toml --out out/valley            # as the recipe says, on a GPU where there is one\n"
     "  talus-solve recipe.toml --out out/valley --on cpu   # on the processor\n"
     "  talus-solve recipe.toml --out out/valley --restart  # go on after Ctrl-C\n"
+    "  talus-solve recipe.toml --out out/valley --resume   # go on where there is something to go on from\n"
     "  talus-solve recipe.toml --out out/valley --plan     # say what is on, how many steps, how long; write nothing";
 
 /// The arguments of the command line beyond those that every stage takes.
 struct SolveFlags {
   On on = On::automatic;
   std::optional<std::filesystem::path> restart;  // empty path: OUT/checkpoint.h5
+  bool resume = false;
   bool profile = false;
   bool plan = false;
 };
@@ -58,6 +61,9 @@ std::vector<Flag> flags(SolveFlags& given) {
            .help = "Go on from a checkpoint (default: checkpoint.h5 in the results)",
            .value = "[FILE]",
            .set = [&](const std::string& file) { given.restart = file; }},
+          {.name = "--resume",
+           .help = "Go on from checkpoint.h5 in the results where it is one of this run, else begin anew",
+           .set = [&](const std::string&) { given.resume = true; }},
           {.name = "--profile",
            .help = "Measure where the time goes, phase by phase and kernel by kernel; say it at the end, and in "
                    "profile.csv",
@@ -189,12 +195,66 @@ Dependencies depends(const StageContext& context, const SolveFlags& flags) {
   return depends;
 }
 
+/// This function refuses a domain that another recipe made, and level sets that were not written with it.
+Facts judge_inputs(const StageContext& context, const SolveOptions& o, const std::filesystem::path& file,
+                   const Domain& domain) {
+  Facts facts = judge_maker(context.recipe, {.file = file,
+                                             .table = "preprocess",
+                                             .mark = fact(domain.provenance, recipe_of_domain),
+                                             .program = "talus-preprocess",
+                                             .key = "domain in [solve]",
+                                             .named = !o.domain.empty()});
+  const std::string written = fact(domain.provenance, obstacles_checksum);
+  const auto bodies = context.out / "obstacles.vdb";
+  const auto reads = [&](const ObstacleOptions& obstacle) { return obstacle.level_set == bodies; };
+  if (!written.empty() && std::filesystem::exists(bodies) &&
+      std::any_of(o.obstacles.begin(), o.obstacles.end(), reads)) {
+    if (const std::string found = sha256(bodies); found != written)
+      throw DataError(
+          {bodies.string() + ": not the file that was written with " + file.string(),
+           fmt::format("its SHA-256 is {:.16}..., that of the file written with it {:.16}...", found, written),
+           "Run talus-preprocess again"});
+  }
+  return facts;
+}
+
+/// This function goes on from a checkpoint where the flags ask for it. One of this very run that they do not ask for is
+/// refused: hours of work would go without a word.
+void take_up(Simulation& simulation, const SolveFlags& flags, const RunPaths& paths, const std::string& fingerprint) {
+  if (flags.restart) return simulation.resume(checkpoint_of(flags, paths));
+  if (!std::filesystem::exists(paths.checkpoint)) return;
+  const auto head = look_at_checkpoint(paths.checkpoint);
+  if (!head || head->fingerprint != fingerprint) {
+    log_info(fmt::format("{}: {}; it stays until this run has one of its own, or is whole", paths.checkpoint.string(),
+                         head ? "a checkpoint of another domain or other [solve] settings"
+                              : "no checkpoint that this version can read"));
+    return;
+  }
+  if (!flags.resume)
+    throw DataError({fmt::format("{}: it holds this very run at t = {:.3f} s, step {}", paths.checkpoint.string(),
+                                 head->time, head->step),
+                     "a run from the start would throw it away",
+                     "Go on from it with --restart, or remove it to begin anew"});
+  try {
+    simulation.resume(paths.checkpoint);
+  } catch (const DataError& error) {
+    log_warning(fmt::format("{} The run begins anew", error.what()));
+  }
+}
+
+/// What goes into the results beside the facts of the domain: the mark of the recipe.
+Facts made_by(const StageContext& context, Facts facts) {
+  facts.emplace_back(recipe_of_run, recipe_mark(context.recipe, "solve"));
+  return facts;
+}
+
 void solve(StageContext& context, const SolveFlags& flags) {
   auto options = read_options(context);
   const AnyDevice device = make_device(choose_device(flags.on));
   auto inputs = inputs_of(options, context.out);
   const auto domain_file = inputs.front();
   Domain domain = read_domain(domain_file);
+  const Facts insisted = judge_inputs(context, options, domain_file, domain);
   options = settle_stiffness(domain, options);
   judge(domain, options);
   if (flags.plan) {
@@ -213,15 +273,17 @@ void solve(StageContext& context, const SolveFlags& flags) {
   if (flags.profile) device.profile().turn_on();
   Simulation simulation(domain, options, device, paths, fingerprint);
   if (context.check_only) return;
-  if (flags.restart) simulation.resume(checkpoint_of(flags, paths));
-  const RunSummary summary = simulation.run(context.recipe.scene_name(), context.recipe.title());
+  take_up(simulation, flags, paths, fingerprint);
+  const RunSummary summary =
+      simulation.run(context.recipe.scene_name(), context.recipe.title(), made_by(context, insisted));
   log_info(fmt::format("{} at t = {:.2f} s after {} steps in {:.1f} s", summary.stop_reason, summary.time_end,
                        summary.steps, summary.wall_time));
   if (flags.profile) report_profile(summary, device, context.out);
   if (options.material.stiffness_check) check_stiffness(domain, options, device, context, paths.run);
   context.results.push_back(paths.run);
   write_used_recipe(context, stage(), recipe::to_used_toml(options, "solve"), inputs,
-                    {{"on", summary.on},
+                    {{"id", fact(summary.provenance, run_id)},
+                     {"on", summary.on},
                      {"wall_time_s", fmt::format("{:.3f}", summary.wall_time)},
                      {"steps", fmt::format("{}", summary.steps)},
                      {"stop_reason", summary.stop_reason}});

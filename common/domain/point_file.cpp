@@ -34,6 +34,7 @@ void write_point_file(const std::filesystem::path& path, const PointFile& points
     for (const auto& [name, values] : points.attributes) attach(sorted, name, values);
     sorted.grid()->setName("points");
     sorted.grid()->insertMeta("time_s", openvdb::DoubleMetadata(points.time));
+    sorted.grid()->insertMeta("run_id", openvdb::StringMetadata(points.run_id));
     openvdb::io::File file(pending.path().string());
     file.write({sorted.grid()});
     file.close();

@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <mutex>
 
+#include "common/stage/stage.hpp"
+
 namespace talus::gdal {
 namespace fs = std::filesystem;
 namespace {
@@ -42,6 +44,8 @@ void start() {
 }
 
 }  // namespace
+
+int CPL_STDCALL go_on_unless_interrupted(double, const char*, void*) { return interrupted() ? FALSE : TRUE; }
 
 QuietErrors::QuietErrors() {
   start();

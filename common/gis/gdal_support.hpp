@@ -32,6 +32,9 @@ class QuietErrors {
   std::vector<std::string> failures_;
 };
 
+/// For GDAL's long calls, as their progress function: they end, as failed, once a signal has come.
+int CPL_STDCALL go_on_unless_interrupted(double share, const char* message, void* data);
+
 /// Closes a dataset of GDAL when its owner goes.
 struct CloseDataset {
   void operator()(GDALDataset* dataset) const { GDALClose(dataset); }

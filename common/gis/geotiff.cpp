@@ -50,9 +50,11 @@ void write(const fs::path& file, const Raster& raster, const RasterTags& tags, c
     throw DataError({file.string() + ": cannot be written", std::string("this GDAL has no ") + driver_name + " driver",
                      "Install GDAL 3.1 or newer"});
   gdal::Dataset written(driver->CreateCopy(pending.path().c_str(), source.get(), TRUE,
-                                           const_cast<char**>(options.List()), nullptr, nullptr));
+                                           const_cast<char**>(options.List()), gdal::go_on_unless_interrupted,
+                                           nullptr));
   const bool made = written != nullptr;
   written.reset();  // closing flushes, and reports through `errors` alone
+  stop_if_interrupted("writing " + file.string());
   if (!made || errors.failed()) throw DataError(write_fault(file, errors.text()));
   if (!reads_back(pending.path(), *source)) throw DataError(write_fault(file, "it does not read back as written"));
   pending.commit();

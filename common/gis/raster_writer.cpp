@@ -91,9 +91,11 @@ void RasterWriter::finish() {
   if (std::max(open_->grid.columns, open_->grid.rows) >= large) {
     std::vector<int> factors;
     for (int f = 2; std::max(open_->grid.columns, open_->grid.rows) / f >= 256; f *= 2) factors.push_back(f);
-    if (open_->dataset->BuildOverviews("AVERAGE", static_cast<int>(factors.size()), factors.data(), 0, nullptr, nullptr,
-                                       nullptr) != CE_None)
+    if (open_->dataset->BuildOverviews("AVERAGE", static_cast<int>(factors.size()), factors.data(), 0, nullptr,
+                                       gdal::go_on_unless_interrupted, nullptr) != CE_None) {
+      stop_if_interrupted("writing " + open_->pending.final_path().string());
       open_->fail(errors);
+    }
   }
   open_->dataset.reset();  // closing flushes, and reports through `errors` alone
   if (errors.failed()) open_->fail(errors);

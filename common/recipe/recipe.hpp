@@ -143,6 +143,11 @@ class Recipe {
   std::string scene_name() const;  ///< [scene] name, or the file's stem
   std::string title() const;       ///< [scene] title, or the name
 
+  /// A table as the recipe writes it (defaults not filled in, variables in paths not replaced), in an order and a
+  /// spelling that do not depend on the file's: recipes with the same text here say the same. None: there is no such
+  /// table.
+  std::optional<std::string> canonical(std::string_view table) const;
+
   /// Read table `stage` into options. All faults at once: unknown keys (with "did you mean"), wrong types, values out
   /// of range, each with line and column; then what find_unmet() adds. Throws RecipeError if there is any.
   /// A top-level table other than scene, preprocess, solve and postprocess is unknown.

@@ -1,8 +1,14 @@
 #include "common/stage/interrupt.hpp"
 
+#include <sys/time.h>
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
+#include <cmath>
 #include <csignal>
+#include <cstring>
+#include <exception>
 
 #include "common/stage/stage.hpp"
 
@@ -10,23 +16,120 @@ namespace talus {
 namespace {
 
 volatile std::sig_atomic_t signals_seen = 0;
+std::atomic<const char*> own_end{nullptr};  ///< what is saved before the end; null: nothing is, and the grace counts
+itimerval grace_left{};
+std::array<char, 128> program_name{};
+
+/// Paths that a handler may read at any time: their memory is never given back.
+struct Slot {
+  enum State { unused, being_filled, filled };
+  std::atomic<int> state{unused};
+  std::array<char, 4096> path{};
+};
+std::array<Slot, 32> doomed;
+
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<const char*>::is_always_lock_free);
+
+/// The handlers call what POSIX allows in them, and setitimer, which is a bare system call here.
+void say(const char* text) {
+  if (::write(STDERR_FILENO, text, std::strlen(text)) < 0) return;  // nobody is left to tell
+}
+
+[[noreturn]] void end_at_once() {
+  for (Slot& slot : doomed)
+    if (slot.state.load() == Slot::filled) ::unlink(slot.path.data());
+  ::_exit(static_cast<int>(ExitCode::interrupted));
+}
 
 extern "C" void talus_on_signal(int) {
-  if (signals_seen != 0) ::_exit(static_cast<int>(ExitCode::interrupted));
+  if (signals_seen != 0) end_at_once();
   signals_seen = 1;
+  if (const char* saved = own_end.load(); saved != nullptr) {
+    say("\n");
+    say(program_name.data());
+    say(": interrupted; ");
+    say(saved);
+    say(" (a second Ctrl-C ends it at once)\n");
+  } else {
+    ::setitimer(ITIMER_REAL, &grace_left, nullptr);
+  }
+}
+
+extern "C" void talus_on_end_of_grace(int) {
+  if (own_end.load() != nullptr) return;
+  say("\n");
+  say(program_name.data());
+  say(": ended in the middle of its work (interrupted). What carries a final name is whole; run the stage again\n");
+  end_at_once();
+}
+
+void handle(int number, void (*handler)(int)) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  action.sa_flags = SA_RESTART;  // a library in the middle of a write must not see EINTR
+  sigemptyset(&action.sa_mask);
+  sigaction(number, &action, nullptr);
+}
+
+/// The name that the handler finds the file by, wherever the process stands.
+std::string whole_name(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::absolute(path, ignored).string();
+}
+
+bool is_ignored(int number) {
+  struct sigaction now {};
+  return sigaction(number, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
 }
 
 }  // namespace
 
-void watch_for_interrupts() {
-  struct sigaction action {};
-  action.sa_handler = talus_on_signal;
-  action.sa_flags = SA_RESTART;  // a library in the middle of a write must not see EINTR
-  sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+void watch_for_interrupts(const std::string& program, double grace) {
+  program.copy(program_name.data(), program_name.size() - 1);
+  grace_left.it_value.tv_sec = static_cast<time_t>(grace);
+  grace_left.it_value.tv_usec = static_cast<suseconds_t>((grace - std::floor(grace)) * 1e6);
+  handle(SIGALRM, talus_on_end_of_grace);
+  handle(SIGINT, talus_on_signal);
+  handle(SIGTERM, talus_on_signal);
+  if (!is_ignored(SIGHUP)) handle(SIGHUP, talus_on_signal);  // nohup
 }
 
 bool interrupted() { return signals_seen != 0; }
+
+void stop_if_interrupted(const std::string& doing) {
+  if (interrupted())
+    throw Interrupted(
+        {"stopped while " + doing, "interrupted", "What carries a final name is whole; run the stage again"});
+}
+
+OwnEnd::OwnEnd(const char* saved) {
+  own_end.store(saved);
+  const itimerval never{};
+  if (interrupted()) ::setitimer(ITIMER_REAL, &never, nullptr);
+}
+
+OwnEnd::~OwnEnd() {
+  own_end.store(nullptr);
+  const bool saved = std::uncaught_exceptions() > 0;  // on the way out, which may take as long as it takes
+  if (interrupted() && !saved) ::setitimer(ITIMER_REAL, &grace_left, nullptr);
+}
+
+void doom(const std::filesystem::path& path) {
+  const std::string name = whole_name(path);
+  if (name.size() >= Slot{}.path.size()) return;
+  for (Slot& slot : doomed) {
+    int expected = Slot::unused;
+    if (!slot.state.compare_exchange_strong(expected, Slot::being_filled)) continue;
+    std::memcpy(slot.path.data(), name.c_str(), name.size() + 1);
+    slot.state.store(Slot::filled);
+    return;
+  }
+}
+
+void spare(const std::filesystem::path& path) {
+  const std::string name = whole_name(path);
+  for (Slot& slot : doomed)
+    if (slot.state.load() == Slot::filled && name == slot.path.data()) slot.state.store(Slot::unused);
+}
 
 }  // namespace talus

@@ -5,7 +5,12 @@
 #include <cstdio>
 #include <fstream>
 #include <system_error>
+#include <vector>
 
+#include <fmt/format.h>
+
+#include "common/stage/interrupt.hpp"
+#include "common/stage/output_lock.hpp"
 #include "common/stage/stage.hpp"
 #include "common/stage/write_fault.hpp"
 
@@ -22,6 +27,23 @@ int sync_to_disk(const fs::path& path, int flags) {
   const int synced = ::fsync(descriptor) == 0 ? 0 : errno;
   const int closed = ::close(descriptor) == 0 ? 0 : errno;
   return synced != 0 ? synced : closed;
+}
+
+/// ".NAME."
+std::string stem_of_partials(const fs::path& file) { return "." + file.filename().string() + "."; }
+
+/// Removes the partial files of this name that killed processes left, and what GDAL left beside those.
+void sweep(const fs::path& file) {
+  const std::string stem = stem_of_partials(file);
+  std::vector<fs::path> left;
+  std::error_code ignored;
+  for (fs::directory_iterator entry(file.has_parent_path() ? file.parent_path() : fs::path("."), ignored), end;
+       entry != end && !ignored; entry.increment(ignored)) {
+    const std::string name = entry->path().filename().string();
+    const bool own = name.find(process_word()) != std::string::npos;
+    if (name.starts_with(stem) && name.find(".partial") != std::string::npos && !own) left.push_back(entry->path());
+  }
+  for (const fs::path& path : left) fs::remove(path, ignored);
 }
 
 }  // namespace
@@ -43,15 +65,17 @@ Fault write_fault(const fs::path& path, const std::string& reason) {
 }
 
 PendingFile::PendingFile(fs::path final_path)
-    : final_(std::move(final_path)), partial_(final_.parent_path() / ("." + final_.filename().string() + ".partial")) {
-  std::error_code ignored;
-  fs::remove(partial_, ignored);  // left by a run that was killed
+    : final_(std::move(final_path)),
+      partial_(final_.parent_path() / fmt::format("{}{}.partial", stem_of_partials(final_), process_word())) {
+  doom(partial_);
+  if (holds_output_lock()) sweep(final_);
 }
 
 PendingFile::~PendingFile() {
   if (committed_) return;
   std::error_code ignored;
   fs::remove(partial_, ignored);
+  spare(partial_);
 }
 
 void PendingFile::commit() {
@@ -59,8 +83,27 @@ void PendingFile::commit() {
     throw DataError(write_fault(final_, reason_of(code)));
   if (::rename(partial_.c_str(), final_.c_str()) != 0) throw DataError(write_fault(final_, reason_of(errno)));
   committed_ = true;
+  spare(partial_);
   // The rename itself lives in the folder; some file systems refuse to sync folders, and then there is no more to do.
   sync_to_disk(final_.has_parent_path() ? final_.parent_path() : fs::path("."), O_RDONLY | O_DIRECTORY);
+}
+
+void make_folder(const fs::path& folder) {
+  if (fs::is_directory(folder)) return;
+  const fs::path above = folder.parent_path();
+  if (!above.empty() && above != folder) make_folder(above);
+  std::error_code error;
+  fs::create_directory(folder, error);
+  if (error)
+    throw DataError(
+        {folder.string() + ": the folder cannot be made", error.message(), "Choose another one with --out DIR"});
+  sync_to_disk(above.empty() ? fs::path(".") : above, O_RDONLY | O_DIRECTORY);
+}
+
+void remove_for_good(const fs::path& file) {
+  std::error_code none_there;
+  if (fs::remove(file, none_there))
+    sync_to_disk(file.has_parent_path() ? file.parent_path() : fs::path("."), O_RDONLY | O_DIRECTORY);
 }
 
 void write_text(const fs::path& path, const std::string& text) {

@@ -3,13 +3,14 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <fstream>
 #include <new>
+#include <optional>
 #include <system_error>
 
 #include "common/stage/command_line.hpp"
 #include "common/stage/console.hpp"
 #include "common/stage/interrupt.hpp"
+#include "common/stage/output_lock.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus {
@@ -30,20 +31,10 @@ void check_output_folder(const fs::path& folder) {
     refuse_output_folder(folder, std::generic_category().message(errno));
 }
 
-/// Long work must not end in "permission denied": make the folder and write a few bytes there first.
-void prepare_output_folder(const fs::path& folder) {
+void make_output_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) refuse_output_folder(folder, error.message());
-  const fs::path probe = folder / ".writable.partial";
-  errno = 0;
-  std::ofstream stream(probe);
-  stream << "probe\n";
-  stream.close();
-  const int reason = errno;
-  const bool written = !stream.fail();
-  fs::remove(probe, error);
-  if (!written) refuse_output_folder(folder, std::generic_category().message(reason));
 }
 
 std::string joined(int argc, char** argv) {
@@ -90,8 +81,14 @@ void run(const CommandLine& line, const std::string& command, const Stage& stage
   const fs::path beside = context.recipe.file().parent_path() / "out";
   context.out = line.out.empty() ? beside : fs::absolute(line.out).lexically_normal();
   if (line.print_used || line.print_depends) return print_inputs(line, stage, context);
-  line.writes_nothing ? check_output_folder(context.out) : prepare_output_folder(context.out);
-  watch_for_interrupts();
+  watch_for_interrupts(stage.name);
+  std::optional<OutputLock> lock;
+  if (line.writes_nothing) {
+    check_output_folder(context.out);
+  } else {
+    make_output_folder(context.out);
+    lock.emplace(context.out, stage.name);  // shows besides that the folder takes anything, before long work begins
+  }
   stage.run(context);
   clear_progress_line();
   for (const auto& path : context.results) fmt::print("{}\n", path.string());

@@ -55,10 +55,15 @@ int run_stage(int argc, char** argv, const Stage& stage);
 /// True once SIGINT or SIGTERM has come. A second one ends the process at once.
 bool interrupted();
 
+/// Throws Interrupted once a signal has come: "stopped while DOING". For loops of stages that have nothing to save.
+void stop_if_interrupted(const std::string& doing);
+
 /// Version of the project, with the commit: "0.1.0 (1a2b3c4)".
 std::string version();
 
-/// A file written aside (".NAME.partial" beside it), synced and renamed by commit(); removed if never committed.
+/// A file written aside (".NAME.PROCESS.partial" beside it, so that two processes never write into one), synced and
+/// renamed by commit(); removed if never committed, also when a signal ends the process. What a killed process left
+/// under such a name is removed first, where the output folder is known to be this process's own.
 class PendingFile {
  public:
   explicit PendingFile(std::filesystem::path final_path);
@@ -73,6 +78,13 @@ class PendingFile {
   std::filesystem::path final_, partial_;
   bool committed_ = false;
 };
+
+/// Makes a folder and those above it that are missing, and forces their entries to the disk: a power cut after what is
+/// written there does not lose the folder. Throws DataError.
+void make_folder(const std::filesystem::path& folder);
+
+/// Removes a file, and forces its absence to the disk: what it counted on may go next. No fault where there is none.
+void remove_for_good(const std::filesystem::path& file);
 
 /// Write a text file whole, aside and renamed. Throws DataError with the path and the system's reason.
 void write_text(const std::filesystem::path& path, const std::string& text);

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iterator>
+#include <sstream>
 
 #include <fmt/format.h>
 
 #include "common/gis/geotiff.hpp"
 #include "common/map/slope.hpp"
+#include "common/stage/identity.hpp"
 #include "common/stage/stage.hpp"
 #include "postprocess/fields/fields.hpp"
 
@@ -40,6 +43,7 @@ RasterTags tags_of(const Run& run, const Product& product) {
       fmt::format("{} [{}]", product.words, product.unit),
       product.unit,
       {{"TITLE", run.summary.title},
+       {"RUN_ID", fact(run.summary.provenance, run_id)},
        {"QUANTITY", product.words},
        {"THICKNESS_CONVENTION", "normal to the slope: vertical thickness times the cosine of the bed's slope"},
        {"RELEASE_VOLUME_M3", fmt::format("{:.10g}", released)},
@@ -78,12 +82,17 @@ char size_letter(double volume) { return volume < 25e3 ? 'S' : volume < 60e3 ? '
 
 std::string settings_text(const Run& run, const fs::path& run_file) {
   std::string text;
-  std::ifstream used(run_file.parent_path() / "solve.used.toml");
+  std::ifstream stream(run_file.parent_path() / "solve.used.toml");
+  std::string whole(std::istreambuf_iterator<char>(stream), {});
+  std::istringstream used(is_used_recipe_of(whole, fact(run.summary.provenance, run_id)) ? whole : "");
   for (std::string line; std::getline(used, line);) {
     if (!line.empty() && line[0] != '#') text += line + "\n";
   }
   for (const auto& [key, value] : run.summary.provenance) {
     if (key == "command" || key == "hardware" || key == "version") continue;
+    if (key == run_id || key == domain_id || key == recipe_of_domain || key == recipe_of_run ||
+        key == obstacles_checksum)
+      continue;
     const auto checksum = key.starts_with("input ") ? value.find("sha256 ") : std::string::npos;
     text += key + " = " + (checksum == std::string::npos ? value : value.substr(checksum)) + "\n";
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/gis/geotiff.hpp"
+#include "common/stage/identity.hpp"
 #include "postprocess/fields/fields.hpp"
 
 namespace talus::postprocess {
@@ -31,6 +32,7 @@ std::vector<std::filesystem::path> write_geotiffs(const std::filesystem::path& f
     tags.metadata = {
         {"TITLE", run.summary.title},
         {"SCENE", run.summary.scene},
+        {"RUN_ID", fact(run.summary.provenance, run_id)},
         {"QUANTITY", long_name},
         {"THICKNESS_CONVENTION", "vertical thickness, measured along the plumb line (not normal to the slope)"},
         {"FLOW_THRESHOLD_M", fmt::format("{}", run.maps.threshold)},

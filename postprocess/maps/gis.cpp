@@ -8,6 +8,7 @@
 #include "common/gis/geotiff.hpp"
 #include "common/gis/outlines.hpp"
 #include "common/qgis/project.hpp"
+#include "common/stage/identity.hpp"
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/fields/styles.hpp"
 #include "postprocess/fields/window.hpp"
@@ -32,6 +33,7 @@ fs::path write_terrain(const fs::path& folder, const Run& run) {
              "m",
              {{"TITLE", run.summary.title},
               {"SCENE", run.summary.scene},
+              {"RUN_ID", fact(run.summary.provenance, run_id)},
               {"QUANTITY", "elevation of the ground before the failure"},
               {"SOURCE", "Talus " + run.summary.version}}});
   return file;

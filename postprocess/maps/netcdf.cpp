@@ -9,6 +9,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include "common/stage/identity.hpp"
 #include "common/stage/stage.hpp"
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/maps/cf_projection.hpp"
@@ -73,6 +74,8 @@ void describe_file(Nc& nc, const Run& run, const NetcdfNotes& notes) {
           fmt::format("Talus {}, material point method, {} precision on {}", s.version, s.precision, s.on));
   nc.text(NC_GLOBAL, "history",
           fmt::format("{:%Y-%m-%dT%H:%M:%SZ}: {}", fmt::gmtime(std::time(nullptr)), notes.command_line));
+  const std::string id = fact(s.provenance, run_id);
+  nc.text(NC_GLOBAL, "run_id", id.empty() ? "not known" : id);
   if (const std::string accepted = accepted_words(s); !accepted.empty()) nc.text(NC_GLOBAL, "accepted", accepted);
   if (!s.sanity.words.empty()) nc.text(NC_GLOBAL, "sanity", s.sanity.words);
   nc.text(NC_GLOBAL, "comment",

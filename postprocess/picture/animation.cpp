@@ -85,6 +85,7 @@ bool encode(const PictureInput& input, const std::string& tail, int rate) {
   std::optional<Pipe> pipe;
   Progress progress;
   for (std::size_t i = 0; i < frames.time.size(); ++i) {
+    stop_if_interrupted("drawing the animation");
     const auto flow = flow_thickness(input.run, i);
     const auto canvas =
         draw_map({input.run, input.options, input.survey, input.score, Instant{frames.time[i], flow, most}});

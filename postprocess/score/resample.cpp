@@ -85,8 +85,7 @@ Resampled resample(const Scored& scored, const OnSurveyGrid& simulated) {
   for (int draw = 0; draw < options.survey.resamples; ++draw) {
     if (progress.due())
       progress.update(fmt::format("survey {}/{} drawn within its error", draw, options.survey.resamples));
-    if (interrupted())
-      throw Interrupted({"ended while drawing surveys", "", "Nothing was written; run the stage again"});
+    stop_if_interrupted("drawing surveys within their error");
     auto value = errors.next();
     for (std::size_t i = 0; i < value.size(); ++i) {
       value[i] = survey.measured[i] == 0 ? 0 : survey.measured[i] + sigma[i] * value[i];

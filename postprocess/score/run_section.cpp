@@ -1,6 +1,7 @@
 // What the run itself says: volumes, cost, sanity, extent.
 #include <algorithm>
 
+#include "common/stage/identity.hpp"
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/fields/release.hpp"
 #include "postprocess/score/sections.hpp"
@@ -59,6 +60,7 @@ void computation(const Scored& scored, Sheet& sheet) {
   sheet.text("on", "computed on", s.on);
   sheet.text("precision", "precision", s.precision);
   sheet.text("version", "version", s.version);
+  if (const std::string id = fact(s.provenance, run_id); !id.empty()) sheet.text("run_id", "run", id);
 }
 
 void sanity(const Scored& scored, Sheet& sheet) {

@@ -25,6 +25,10 @@ bool flag(const Json& in, const char* key, bool otherwise) {
   return in.contains(key) && in.at(key).is_boolean() ? in.at(key).get<bool>() : otherwise;
 }
 
+std::string word_in(const Json& in, const char* key) {
+  return in.contains(key) && in.at(key).is_string() ? in.at(key).get<std::string>() : "";
+}
+
 bool error_known(const Json& json) { return flag(table(json, "error"), "known", true); }
 
 }  // namespace
@@ -39,6 +43,8 @@ FoundSurvey read_found_survey(const std::filesystem::path& out) {
   FoundSurvey found{error_known(json), flag(outside, "large", false), ""};
   if (outside.contains("words") && outside.at("words").is_string())
     found.outside_words = outside.at("words").get<std::string>();
+  found.id = word_in(json, "id");
+  found.recipe_mark = word_in(json, "recipe");
   return found;
 }
 

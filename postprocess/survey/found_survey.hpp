@@ -12,7 +12,9 @@ namespace talus::postprocess {
 struct FoundSurvey {
   bool error_known = true;
   bool outside_is_large = false;  ///< much changed outside the slide, and nothing explains it
-  std::string outside_words;
+  std::string outside_words = {};
+  std::string id = {};           ///< of the domain that was prepared with it; empty in files of earlier versions
+  std::string recipe_mark = {};  ///< of the [preprocess] that made it; likewise
 };
 
 /// Reads it; what it does not say (as those of earlier versions) is as above. Throws DataError where it is no JSON.

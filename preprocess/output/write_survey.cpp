@@ -14,6 +14,7 @@
 #include "common/map/sum.hpp"
 #include "common/qgis/project.hpp"
 #include "common/qgis/style.hpp"
+#include "common/stage/identity.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/survey/order.hpp"
 #include "preprocess/survey/survey_json.hpp"
@@ -28,15 +29,9 @@ const std::vector<double> change_classes{0.5, 1, 2, 5, 10, 25, 50};
 const std::vector<double> thickness_classes{0.1, 0.5, 1, 2, 5, 10, 25, 50, 100};
 const std::vector<double> sigma_classes{0.05, 0.1, 0.2, 0.5, 1, 2, 5};
 
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error)
-    throw DataError({folder.string() + ": cannot be made", error.message(), "Choose another folder with --out"});
-}
-
-RasterTags tags_of(const char* description) {
-  return {fmt::format("{} [m]", description), "m", {{"SOURCE", "Talus " + version()}}};
+/// What every raster carries: of which domain's preparation it is.
+RasterTags tags_of(const char* description, const std::string& id) {
+  return {fmt::format("{} [m]", description), "m", {{"SOURCE", "Talus " + version()}, {"DOMAIN_ID", id}}};
 }
 
 /// The range that makes the mean over a typical slide as uncertain as the variogram does; for the resampling of scores.
@@ -57,21 +52,21 @@ void remove_with_style(fs::path file) {
 /// The rasters over all that both surveys hold, and the volumes, in one walk.
 class BlockFiles {
  public:
-  BlockFiles(const fs::path& folder, const Survey& survey, double length)
+  BlockFiles(const fs::path& folder, const Survey& survey, double length, const std::string& id)
       : survey_(survey),
-        before_(folder / "before_aligned.tif", survey.grid, tags_of("surface before")),
-        after_(folder / "after_aligned.tif", survey.grid, tags_of("surface after, on the one before")),
-        difference_(folder / "difference.tif", survey.grid, tags_of("surface after less surface before")) {
+        before_(folder / "before_aligned.tif", survey.grid, tags_of("surface before", id)),
+        after_(folder / "after_aligned.tif", survey.grid, tags_of("surface after, on the one before", id)),
+        difference_(folder / "difference.tif", survey.grid, tags_of("surface after less surface before", id)) {
     const fs::path file = folder / "difference_sigma.tif";
     if (survey.errors.is_known()) {
-      sigma_.emplace(file, survey.grid, tags_of("standard error of the difference"));
+      sigma_.emplace(file, survey.grid, tags_of("standard error of the difference", id));
       sigma_->set_item("CORRELATION_LENGTH_M", fmt::format("{:.6g}", length));
     } else {
       remove_with_style(file);  // of an earlier recipe, perhaps
     }
     if (survey.applied)
       unaligned_.emplace(folder / "difference_unaligned.tif", survey.grid,
-                         tags_of("surface after as it came less surface before"));
+                         tags_of("surface after as it came less surface before", id));
   }
 
   Budgets walk() {
@@ -128,9 +123,10 @@ class BlockFiles {
 };
 
 /// 1 where ground counted as stable, 0 where not, nodata where nobody looked.
-void write_stable(const fs::path& file, const Survey& survey) {
-  RasterWriter writer(file, survey.grid,
-                      {"ground that counted as stable [1]", "1", {{"SOURCE", "Talus " + version()}}});
+void write_stable(const fs::path& file, const Survey& survey, const std::string& id) {
+  RasterWriter writer(
+      file, survey.grid,
+      {"ground that counted as stable [1]", "1", {{"SOURCE", "Talus " + version()}, {"DOMAIN_ID", id}}});
   for (const auto& [grid, stable] : survey.stable) {
     const MapGrid part = shared_part(grid, survey.grid);  // the rest of it was shared only before the later model moved
     if (part.count() > 0) writer.write(cut_to({grid, std::vector<double>(stable.begin(), stable.end())}, part));
@@ -159,9 +155,8 @@ void say_volumes(const Survey& survey, const Budgets& budgets, const Prepared* p
         fmt::format("{} as surveyed: {} on {} m2", side.name, words(side.volume), grouped(side.volume.area)));
 }
 
-void put(std::vector<fs::path>& files, const fs::path& file, const Raster& raster, const char* description,
+void put(std::vector<fs::path>& files, const fs::path& file, const Raster& raster, RasterTags tags,
          const RasterStyle& style) {
-  RasterTags tags = tags_of(description);
   tags.metadata.emplace_back("THICKNESS_CONVENTION",
                              "vertical, measured along the plumb line (not normal to the slope)");
   write_cog(file, raster, tags);
@@ -218,10 +213,12 @@ std::vector<fs::path> write_source(const fs::path& folder, const Prepared& prepa
   make_folder(folder);
   std::vector<fs::path> files;
   const Domain& domain = prepared.domain;
-  put(files, folder / "source_thickness.tif", domain.release_thickness, "thickness of the source, vertical",
+  put(files, folder / "source_thickness.tif", domain.release_thickness,
+      tags_of("thickness of the source, vertical", fact(domain.provenance, domain_id)),
       class_style(thickness_classes, "m"));
   files.push_back(folder / "sliding_surface.tif");
-  write_cog(files.back(), bed_of_source(domain), tags_of("surface that the source slides on"));
+  write_cog(files.back(), bed_of_source(domain),
+            tags_of("surface that the source slides on", fact(domain.provenance, domain_id)));
   write_qgis_hillshade_style(files.back());
   std::vector<OutlineLayer> layers{
       {"source", {{"source", outline_above(domain.release_thickness, 0), {{"volume_m3", prepared.total.volume}}}}}};
@@ -239,9 +236,10 @@ std::vector<fs::path> write_source(const fs::path& folder, const Prepared& prepa
 }
 
 std::vector<fs::path> write_survey(const fs::path& folder, const Survey& survey, const Prepared* prepared,
-                                   std::vector<std::string>& lines) {
+                                   const Facts& marks, std::vector<std::string>& lines) {
   make_folder(folder);
-  BlockFiles blocks(folder, survey, correlation_length(survey, prepared));
+  const std::string id = fact(marks, domain_id);
+  BlockFiles blocks(folder, survey, correlation_length(survey, prepared), id);
   const Budgets budgets = blocks.walk();
   if (const auto wrong = wrong_order(blocks.order(), {survey.before.file.string(), survey.after.file.string()});
       wrong && !prepared)
@@ -263,25 +261,25 @@ std::vector<fs::path> write_survey(const fs::path& folder, const Survey& survey,
   }
   if (!survey.stable.empty()) {
     files.push_back(folder / "stable_ground.tif");
-    write_stable(files.back(), survey);
+    write_stable(files.back(), survey, id);
   }
   if (prepared && prepared->slide) {
     for (const auto& file : write_source(folder, *prepared)) files.push_back(file);
-    put(files, folder / "deposit_surveyed.tif", prepared->slide->deposit, "surveyed rise of the surface in the deposit",
-        class_style(thickness_classes, "m"));
+    put(files, folder / "deposit_surveyed.tif", prepared->slide->deposit,
+        tags_of("surveyed rise of the surface in the deposit", id), class_style(thickness_classes, "m"));
   }
   if (prepared && prepared->slide)
     put(files, folder / "slide_difference.tif", prepared->slide->change,
-        "surface after less surface before, in the slide alone", difference_style(change_classes, "m"));
+        tags_of("surface after less surface before, in the slide alone", id), difference_style(change_classes, "m"));
   if (prepared && prepared->slide && !prepared->slide->filled.values.empty()) {
     files.push_back(folder / "filled.tif");
     write_cog(files.back(), prepared->slide->filled,
-              {"voids filled: 1 before, 2 after, 3 both", "1", {{"SOURCE", "Talus " + version()}}});
+              {"voids filled: 1 before, 2 after, 3 both", "1", {{"SOURCE", "Talus " + version()}, {"DOMAIN_ID", id}}});
   }
   say_volumes(survey, budgets, prepared, lines);
   write_project(folder, survey, files);
   files.push_back(folder / "survey.json");
-  write_text(files.back(), survey_json(survey, budgets, prepared ? prepared->slide : std::nullopt));
+  write_text(files.back(), survey_json(survey, budgets, prepared ? prepared->slide : std::nullopt, marks));
   return files;
 }
 

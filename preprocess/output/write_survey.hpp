@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/stage/identity.hpp"
 #include "preprocess/scene/prepare.hpp"
 
 namespace talus::preprocess {
@@ -13,10 +14,12 @@ namespace talus::preprocess {
 /// Writes before_aligned.tif, after_aligned.tif, difference.tif and difference_sigma.tif block by block (where the
 /// later survey was moved: difference_unaligned.tif too), stable_ground.tif, and survey.json with the alignment, the
 /// error and the volumes. With a slide also source_thickness.tif, sliding_surface.tif, deposit_surveyed.tif and
-/// outlines.gpkg. Styles for QGIS beside all of them. Returns the files; `lines` gains the volumes as people read them.
+/// outlines.gpkg. Styles for QGIS beside all of them. Rasters and survey.json carry the id of `marks` (identity.hpp),
+/// survey.json the mark of the recipe too. Returns the files; `lines` gains the volumes as people read them.
 /// Throws DataError (disk full).
 std::vector<std::filesystem::path> write_survey(const std::filesystem::path& folder, const Survey& survey,
-                                                const Prepared* prepared, std::vector<std::string>& lines);
+                                                const Prepared* prepared, const Facts& marks,
+                                                std::vector<std::string>& lines);
 
 /// Writes the files of a scene whose sliding surface was computed under an outline: source_thickness.tif,
 /// sliding_surface.tif and outlines.gpkg.

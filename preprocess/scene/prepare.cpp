@@ -340,6 +340,7 @@ Prepared prepare(const Options& given, Points points) {
     domain.release_names.push_back(release.name);
     prepared.by_release.emplace_back(release.name, volumes_of(release.thickness, cosine));
   }
+  stop_if_interrupted("preparing the domain");
   if (points == Points::seeded) {
     domain.points = laboratory ? seed_boxes(options) : seed_points(scene.releases, seeding);
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/map/crop.hpp"
+#include "common/stage/stage.hpp"
 
 namespace talus::preprocess {
 
@@ -67,6 +68,7 @@ void for_each_block(const Elevation& before, const Elevation& after, const MapGr
                     const std::function<void(const Block&)>& visit) {
   for (int row = 0; row < grid.rows; row += block_cells) {
     for (int column = 0; column < grid.columns; column += block_cells) {
+      stop_if_interrupted("comparing the surveys");
       const CellWindow window{column, row, std::min(block_cells, grid.columns - column),
                               std::min(block_cells, grid.rows - row)};
       visit(block_of(before, after, cut(grid, window), model));

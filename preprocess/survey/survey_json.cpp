@@ -81,12 +81,15 @@ Json json_of(const ChangeOutside& o) {
 
 }  // namespace
 
-std::string survey_json(const Survey& s, const Budgets& budgets, const std::optional<SurveyedSlide>& slide) {
+std::string survey_json(const Survey& s, const Budgets& budgets, const std::optional<SurveyedSlide>& slide,
+                        const Facts& marks) {
   Json json{{"before", s.before.file.string()},
             {"after", s.after.file.string()},
             {"cell_m", s.grid.cell},
             {"columns", s.grid.columns},
-            {"rows", s.grid.rows}};
+            {"rows", s.grid.rows},
+            {"id", fact(marks, domain_id)},
+            {"recipe", fact(marks, recipe_of_domain)}};
   json["alignment"] = alignment_of(s);
   json["error"] = error_of(s);
   json["volumes"] = {{"raw", json_of(budgets.raw)}, {"beyond_level_of_detection", json_of(budgets.thresholded)}};

@@ -34,6 +34,7 @@ void load_by_gravity(Scene& scene, const SolveOptions& options, const AnyDevice&
   loader->set_next_event(1);
   std::int64_t newton = 0, linear = 0;
   while (loader->clock().time < 1) {
+    stop_if_interrupted("bringing on gravity");
     const BatchReport batch = loader->advance();
     newton += batch.stats.newton;
     linear += batch.stats.linear;

@@ -21,7 +21,7 @@ Simulation::Simulation(const Domain& domain, const SolveOptions& options, const 
     : domain_(domain),
       options_(with_preset(options)),
       paths_(std::move(paths)),
-      fingerprint_(std::move(fingerprint)),
+      marks_{std::move(fingerprint)},
       scene_(make_scene(domain, options_)),
       schedule_(options_),
       stepper_(scene_, options_, device),
@@ -30,37 +30,47 @@ Simulation::Simulation(const Domain& domain, const SolveOptions& options, const 
       frames_(scene_, options_, paths_.frames, paths_.vdb_frames) {}
 
 void Simulation::resume(const std::filesystem::path& file) {
-  Checkpoint checkpoint = read_checkpoint(file, fingerprint_);
+  Checkpoint checkpoint = read_checkpoint(file, marks_.fingerprint);
+  frames_.belong_to(checkpoint.id);
+  frames_.expect(checkpoint.memory.frames);
+  marks_.id = checkpoint.id;
+  marks_.stop_reason = checkpoint.stop_reason;
   stepper_.begin(checkpoint.state);
   memory_ = std::move(checkpoint.memory);
   history_.restore(memory_.history);
-  frames_.expect(memory_.frames);
   timer_.resume(memory_.wall_time);
   log_info(fmt::format("going on from {} at t = {:.3f} s, step {}", file.string(), stepper_.time(),
                        checkpoint.state.clock.step));
 }
 
 void Simulation::start() {
-  frames_.clear();
-  std::error_code ignored;
-  for (const auto& stale : {paths_.run, paths_.checkpoint}) std::filesystem::remove(stale, ignored);
+  marks_.id = new_run_id();
+  frames_.belong_to(marks_.id);
   if (options_.gravity_loading_steps > 0) load_by_gravity(scene_, options_, stepper_.device());
   stepper_.begin(first_state(scene_, make_settings(options_, scene_.grid).common));
   for (const std::string& note : scene_.contacts.notes) log_info(note);
   memory_.initial_thickness = stepper_.solver().thickness();
 }
 
-RunSummary Simulation::run(const std::string& scene, const std::string& title) {
+RunSummary Simulation::run(const std::string& scene, const std::string& title, const Facts& made_by) {
   timer_.start();
   const bool fresh = !stepper_.begun();
   if (fresh) start();
+  const OwnEnd saving("the state is saved at the next step that allows it");
   timer_.start();
   if (fresh) pass_events(0.0);
+  if (marks_.stop_reason.empty()) {
+    const std::string reason = step_to_end();
+    if (schedule_.ends_between_frames(stepper_.time(), memory_)) put_frame(stepper_.time());
+    marks_.stop_reason = reason;
+  }
   RunSummary summary;
   summary.scene = scene;
   summary.title = title;
-  summary.stop_reason = step_to_end();
-  if (schedule_.ends_between_frames(stepper_.time(), memory_)) put_frame(stepper_.time());
+  summary.stop_reason = marks_.stop_reason;
+  summary.provenance = domain_.provenance;
+  summary.provenance.emplace_back(run_id, marks_.id);
+  summary.provenance.insert(summary.provenance.end(), made_by.begin(), made_by.end());
   return finish(std::move(summary));
 }
 
@@ -103,8 +113,19 @@ void Simulation::stop_or_save(const BatchReport& batch) {
   const bool due = schedule_.checkpoint_due(time, memory_), stopped = interrupted();
   if (due) ++memory_.checkpoints;
   if (due || stopped) save_checkpoint();
-  if (!stopped) return;
-  throw Interrupted({fmt::format("stopped at t = {:.3f} s, step {}", time, batch.clock.step), "interrupted",
+  if (stopped) stop();
+}
+
+/// The run file of many points takes long to write. The checkpoint says that there is no step left to take.
+void Simulation::stop_if_interrupted_at_the_end() {
+  if (!interrupted()) return;
+  save_checkpoint();
+  stop();
+}
+
+void Simulation::stop() {
+  throw Interrupted({fmt::format("stopped at t = {:.3f} s, step {}", stepper_.time(), stepper_.solver().clock().step),
+                     "interrupted",
                      fmt::format("Go on with --restart; {} holds the state", paths_.checkpoint.string())});
 }
 
@@ -135,7 +156,9 @@ void Simulation::save_checkpoint() {
   memory_.wall_time = timer_.seconds();
   memory_.history = history_.rows();
   frames_.settle();  // a checkpoint counts on its frames
-  write_checkpoint(paths_.checkpoint, {fingerprint_, stepper_.solver().state(), memory_});
+  write_checkpoint(paths_.checkpoint,
+                   {marks_.fingerprint, marks_.id, marks_.stop_reason, stepper_.solver().state(), memory_});
+  frames_.drop_others();  // of the run whose checkpoint this one has replaced
 }
 
 bool Simulation::calm() const {
@@ -176,7 +199,6 @@ void Simulation::measure(const RunEnd& end, RunSummary& summary) const {
   summary.volume_entrained = volumes.entrained;
   summary.volume_final = volumes.final;
   summary.volume_outflow = memory_.outflow_volume;
-  summary.provenance = domain_.provenance;
   summary.sanity = sanity_of(end, history_.rows(), memory_.outflow_volume);
 }
 
@@ -189,18 +211,26 @@ RunSummary Simulation::finish(RunSummary summary) {
                    .state = state,
                    .initial_thickness = memory_.initial_thickness};
   measure(end, summary);
-  frames_.settle();
-  RunWriter writer(paths_.run);
-  frames_.append_to(writer, memory_.frames);
-  writer.finish(final_maps(end, stepper_.solver().thickness()), history_.rows(), summary);
+  write_run(end, summary);
   for (const std::string& line : history_.conclusions()) log_info(line);
   for (const std::string& line : history_.warnings()) log_warning(line);
   report_sanity(summary.sanity);
   log_detail(fmt::format("files: {:.1f} s after the last step", timer_.seconds() - memory_.wall_time));
-  frames_.clear();
-  std::error_code ignored;
-  std::filesystem::remove(paths_.checkpoint, ignored);  // the run is whole: nothing is left to go on with
+  remove_for_good(paths_.checkpoint);  // the run is whole: nothing is left to go on with
+  frames_.clear();                     // after the checkpoint that counts on them
+  frames_.drop_older_vdb(memory_.frames);
   return summary;
+}
+
+/// The method writes run.h5, which takes the place of an older one once it is whole.
+void Simulation::write_run(const RunEnd& end, const RunSummary& summary) {
+  frames_.settle();
+  RunWriter writer(paths_.run);
+  for (std::int64_t number = 0; number < memory_.frames; ++number) {
+    stop_if_interrupted_at_the_end();
+    frames_.append_to(writer, number);
+  }
+  writer.finish(final_maps(end, stepper_.solver().thickness()), history_.rows(), summary);
 }
 
 }  // namespace talus::solver

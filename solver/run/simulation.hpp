@@ -6,6 +6,8 @@
 #include <string>
 
 #include "common/domain/domain.hpp"
+#include "common/stage/identity.hpp"
+#include "common/stage/interrupt.hpp"
 #include "common/stage/stage.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/parallel/any_device.hpp"
@@ -24,6 +26,13 @@ struct RunPaths {
   std::filesystem::path run, checkpoint, frames, vdb_frames;
   explicit RunPaths(const std::filesystem::path& out)
       : run(out / "run.h5"), checkpoint(out / "checkpoint.h5"), frames(out / ".frames"), vdb_frames(out / "frames") {}
+};
+
+/// What a run's files say of where they belong.
+struct RunMarks {
+  std::string fingerprint;       ///< of domain and settings
+  std::string id = {};           ///< of the run; a restart keeps it
+  std::string stop_reason = {};  ///< once the steps have come to their end
 };
 
 /// The wall time of a run, that before an interruption included.
@@ -52,18 +61,21 @@ class Simulation {
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
-  /// The method goes on from checkpoint.h5 instead of the start. It throws DataError.
+  /// The method goes on from checkpoint.h5 instead of the start. It throws DataError, and then changes nothing.
   void resume(const std::filesystem::path& checkpoint);
 
-  /// The method steps to the end, writes run.h5 and says whether its numbers are sane. It throws NumericalError,
-  /// DataError, and Interrupted (checkpoint left).
-  RunSummary run(const std::string& scene, const std::string& title);
+  /// The method steps to the end and writes run.h5, with whether its numbers are sane. It throws NumericalError, DataError, and Interrupted (checkpoint
+  /// left). An older run.h5 stays until the new one is whole, an older checkpoint with its frames until this run has
+  /// one of its own or is whole. `made_by` are facts that go with those of the domain.
+  RunSummary run(const std::string& scene, const std::string& title, const Facts& made_by = {});
 
  private:
   void start();
   std::string step_to_end();
   void count(const BatchReport& batch);
   void stop_or_save(const BatchReport& batch);
+  void stop_if_interrupted_at_the_end();
+  [[noreturn]] void stop();
   void pass_events(double time);
   void record(double time);
   void put_frame(double time);
@@ -72,12 +84,13 @@ class Simulation {
   double mass_error() const;
   void report_sanity(const RunSanity& sanity) const;
   RunSummary finish(RunSummary summary);
+  void write_run(const RunEnd& end, const RunSummary& summary);
   void measure(const RunEnd& end, RunSummary& summary) const;
 
   const Domain& domain_;
   SolveOptions options_;
   RunPaths paths_;
-  std::string fingerprint_;
+  RunMarks marks_;
   Scene scene_;
   Schedule schedule_;
   Stepper stepper_;

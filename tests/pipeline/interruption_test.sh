@@ -17,7 +17,7 @@ long_scene() {
 
 test_solve_leaves_a_checkpoint() {
   long_scene
-  interrupt INT out/.frames/frame_00001.h5 "$bin/talus-solve" recipe.toml --out out --on cpu
+  interrupt INT 'out/.frames/*/frame_00001.h5' "$bin/talus-solve" recipe.toml --out out --on cpu
   [[ -s out/checkpoint.h5 ]] || fail "no checkpoint was left"
   expect_words "(interrupted). Go on with --restart; $PWD/out/checkpoint.h5 holds the state"
   grep -qE '^talus-solve: stopped at t = [0-9.]+ s, step [1-9][0-9]* ' stderr || fail "it does not say where it stopped"
@@ -26,7 +26,7 @@ test_solve_leaves_a_checkpoint() {
 
 test_termination_is_the_same() {
   long_scene
-  interrupt TERM out/.frames/frame_00001.h5 "$bin/talus-solve" recipe.toml --out out --on cpu
+  interrupt TERM 'out/.frames/*/frame_00001.h5' "$bin/talus-solve" recipe.toml --out out --on cpu
   [[ -s out/checkpoint.h5 ]] || fail "no checkpoint was left"
   nothing_looks_finished
 }
@@ -69,6 +69,112 @@ test_checkpoint_of_another_recipe_is_refused() {
     "settings (going on from it would mix two runs). Restore the recipe and domain.vdb it was made with, or run " \
     "talus-solve without --restart"
   [[ ! -e out/run.h5 ]] || fail "a run came of it"
+}
+
+# The run of before stays, with its maps, until the new one is whole.
+test_a_run_that_fails_leaves_the_one_of_before() {
+  scene
+  expect_exit 0 preprocess
+  expect_exit 0 solve
+  cp out/run.h5 before.h5
+  sed -i 's/^end_time_s.*/end_time_s = 1000000.0/' recipe.toml
+  interrupt KILL 'out/.frames/*/frame_00001.h5' "$bin/talus-solve" recipe.toml --out out --on cpu
+  cmp out/run.h5 before.h5 || fail "the run of before is gone, or another one"
+  rm -r out/.frames   # of the killed run: the sign below is to be the next one's
+  interrupt TERM 'out/.frames/*/frame_00001.h5' "$bin/talus-solve" recipe.toml --out out --on cpu
+  cmp out/run.h5 before.h5 || fail "the run of before is gone, or another one"
+  expect_exit 3 postprocess   # and nobody takes it for one of the new recipe
+  expect_words "$PWD/out/run.h5: another recipe made it"
+}
+
+test_a_checkpoint_of_this_run_is_not_thrown_away() {
+  scene
+  make_checkpoint out
+  cp out/checkpoint.h5 before.h5
+  expect_exit 3 solve
+  grep -qE "^talus-solve: $PWD/out/checkpoint.h5: it holds this very run at t = [0-9.]+ s, step [0-9]+ " stderr ||
+    fail "it does not say what the checkpoint holds"
+  expect_words "Go on from it with --restart, or remove it to begin anew"
+  cmp out/checkpoint.h5 before.h5 || fail "the checkpoint was touched"
+  expect_exit 0 solve --resume
+  expect_words "going on from $PWD/out/checkpoint.h5"
+  expect_exit 0 solve --resume   # nothing to go on from: from the start
+  ! grep -q "going on" stderr || fail "it goes on from nothing"
+}
+
+test_a_checkpoint_of_another_recipe_stays_until_it_is_replaced() {
+  scene
+  make_checkpoint out
+  cp out/checkpoint.h5 before.h5
+  sed -i 's/^friction_angle_deg = 15.0/friction_angle_deg = 16.0/; s/^checkpoint_interval_s.*//' recipe.toml
+  interrupt KILL 'out/.frames/*/frame_00003.h5' "$bin/talus-solve" recipe.toml --out out --on cpu --resume
+  expect_words "a checkpoint of another domain or other [solve] settings; it stays until this run has one of its own"
+  cmp out/checkpoint.h5 before.h5 || fail "the checkpoint of the other recipe is gone"
+  sed -i 's/^friction_angle_deg = 16.0/friction_angle_deg = 15.0/; s/^end_time_s.*/&\ncheckpoint_interval_s = 5.0/' \
+    recipe.toml
+  expect_exit 0 solve --restart   # its frames are there too
+}
+
+# A checkpoint whose frames were lost is said, and the pipeline's --resume begins anew.
+test_resume_without_frames_begins_anew() {
+  scene
+  make_checkpoint out
+  rm -r out/.frames
+  expect_exit 3 solve --restart
+  expect_words "this frame of the broken-off run is missing"
+  expect_exit 0 solve --resume
+  expect_words "this frame of the broken-off run is missing" "The run begins anew"
+}
+
+# hears STAGE DELAY...: SIGTERM after each of these delays ends the stage with 130, in far less time than its work
+# takes, and leaves nothing hidden. The limit is for a busy machine; the end itself comes within a second.
+hears() {
+  local stage=$1 delay code process begun heard=0
+  shift
+  for delay in "$@"; do
+    code=0
+    "$bin/talus-$stage" recipe.toml --out out >stdout 2>stderr </dev/null &
+    process=$!
+    sleep "$delay"
+    begun=$SECONDS
+    kill -TERM $process 2>/dev/null || true
+    wait $process || code=$?
+    # 143: it had not come to its first line yet, a busy machine still loaded its libraries.
+    [[ $code -eq 130 || $code -eq 0 || $code -eq 143 ]] || fail "exit code $code after SIGTERM"
+    [[ $code -ne 130 ]] || heard=$((heard + 1))
+    [[ $((SECONDS - begun)) -le 20 ]] || fail "talus-$stage went on for $((SECONDS - begun)) s after SIGTERM"
+    [[ -z $(find out -name '.*' -type f) ]] || fail "left behind: $(find out -name '.*' -type f)"
+  done
+  [[ $heard -ge 1 ]] || fail "talus-$stage was always done before the signal: this test looks at nothing"
+}
+
+test_preprocess_hears_the_signal() {
+  need_tool gdal_translate
+  scene
+  local name
+  for name in before after; do
+    gdal_translate -q -outsize 2000 2000 -r bilinear -a_srs EPSG:32611 $name.asc $name.tif
+  done
+  sed -i 's/\.asc"/.tif"/' recipe.toml
+  hears preprocess 0.3 1 2 4 8
+}
+
+test_postprocess_hears_the_signal() {
+  scene
+  sed -i 's/^thickness = .*/from_preprocess = true\nresamples = 100000/' recipe.toml
+  sed -i 's/^after_dem.*/&\n\n[preprocess.difference]\nbefore_sigma_m = 0.2\nafter_sigma_m = 0.2/' recipe.toml
+  expect_exit 0 preprocess
+  expect_exit 0 solve
+  hears postprocess 0.3 1 2 4 8 16
+}
+
+# Gravity loading has nothing to save: it stops at once.
+test_gravity_loading_hears_the_signal() {
+  scene
+  sed -i 's/^end_time_s.*/end_time_s = 1.0\ngravity_loading_steps = 100000/' recipe.toml
+  expect_exit 0 preprocess
+  interrupt TERM out/.talus.lock "$bin/talus-solve" recipe.toml --out out --on cpu
+  expect_no_file out domain.vdb preprocess.used.toml survey
 }
 
 test_restart_without_checkpoint_is_refused() {

@@ -106,6 +106,29 @@ test_out_is_relative_to_where_the_user_stands() {
   [[ -f results/scene/score.json ]] || fail "no results in elsewhere/results"
 }
 
+test_two_makes_in_one_folder_are_refused() {
+  stage_pipelines
+  mkdir -p out/scene/.inputs
+  exec {held}>out/scene/.inputs/lock
+  flock "$held"
+  expect_exit 2 make -C pipelines scene DATA=data BIN=bin OUT=out
+  expect_words "$TALUS_SCRATCH/out/scene: another make -C pipelines is at work there"
+  [[ ! -f calls ]] || fail "a stage ran beside another make"
+  exec {held}>&-
+  runs preprocess solve postprocess
+}
+
+# A solver that was broken off goes on; what it wrote before stays where the new run fails.
+test_solver_goes_on_and_an_older_run_stays() {
+  stage_pipelines
+  runs preprocess solve postprocess
+  grep -q -- '--on auto --resume' arguments || fail "talus-solve was not told to go on: $(<arguments)"
+  change 's/end_time_s = 10.0/end_time_s = 20.0/'
+  sed -i '/^for name/i echo broken >\&2; exit 4' bin/talus-solve
+  expect_exit 2 make -C pipelines scene DATA=data BIN=bin OUT=out
+  [[ -f out/scene/run.h5 ]] || fail "the run of before is gone"
+}
+
 test_failed_stage_is_run_again() {
   stage_pipelines
   sed -i '/^for name/i echo broken >\&2; exit 4' bin/talus-solve

@@ -52,20 +52,23 @@ preprocess() { "$bin/talus-preprocess" recipe.toml --out out "$@"; }
 solve() { "$bin/talus-solve" recipe.toml --out out --on cpu "$@"; }
 postprocess() { "$bin/talus-postprocess" recipe.toml --out out "$@"; }
 
-# interrupt SIGNAL FILE COMMAND...: start it, wait until FILE is there, send the signal, and expect exit code 130.
+# interrupt SIGNAL PATTERN COMMAND...: start it, wait until a file of this pattern is there, send the signal, and expect
+# exit code 130 (137 after KILL).
 # Shells start background work with SIGINT ignored, hence env --default-signal.
 interrupt() {
   local signal=$1 sign=$2 code=0
   shift 2
   env --default-signal=INT,TERM "$@" >stdout 2>stderr </dev/null &
   local process=$!
-  while [[ ! -e $sign ]]; do
+  while ! compgen -G "$sign" >/dev/null; do
     kill -0 $process 2>/dev/null || fail "it ended by itself before $sign was there: $*"
     sleep 0.02
   done
   kill -"$signal" $process 2>/dev/null || fail "it ended by itself before the signal: $*"
   wait $process || code=$?
-  [[ $code -eq 130 ]] || fail "exit code $code instead of 130 after SIG$signal"
+  local expected=130
+  [[ $signal != KILL ]] || expected=137
+  [[ $code -eq $expected ]] || fail "exit code $code instead of $expected after SIG$signal"
 }
 
 # make_checkpoint DIR: preprocess into DIR and leave a checkpoint there, some 5 s into a run of 100 s.

@@ -108,10 +108,23 @@ void write_checkpoint(const std::filesystem::path& path, const Checkpoint& check
   h5::File file = h5::File::create(pending.path(), {path, "Free some space, or name another folder with --out DIR"});
   file.set_text("/", "kind", kind);
   file.set_text("/", "fingerprint", checkpoint.fingerprint);
+  file.set_text("/", "id", checkpoint.id);
+  file.set_text("/", "stop_reason", checkpoint.stop_reason);
   visit(checkpoint, [&](const char* group) { return ItemWriter(file, group); });
   write_history(file, checkpoint.memory.history);
   file.close();
   pending.commit();
+}
+
+std::optional<CheckpointHead> look_at_checkpoint(const std::filesystem::path& path) {
+  if (!std::filesystem::exists(path)) return std::nullopt;
+  try {
+    const h5::File file = h5::File::open(path, {path, ""});
+    check_kind(path, file);
+    return CheckpointHead{file.text("/", "fingerprint"), file.number("/clock", "time"), file.integer("/clock", "step")};
+  } catch (const DataError&) {
+    return std::nullopt;  // broken, or of another version
+  }
 }
 
 Checkpoint read_checkpoint(const std::filesystem::path& path, const std::string& fingerprint) {
@@ -124,6 +137,8 @@ Checkpoint read_checkpoint(const std::filesystem::path& path, const std::string&
                      "going on from it would mix two runs",
                      "Restore the recipe and domain.vdb it was made with, or run talus-solve without --restart"});
   }
+  if (file.has_attribute("/", "id")) c.id = file.text("/", "id");
+  if (file.has_attribute("/", "stop_reason")) c.stop_reason = file.text("/", "stop_reason");
   visit(c, [&](const char* group) { return ItemReader(file, group); });
   c.memory.history = read_history(file);
   return c;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "common/run/run_file.hpp"
@@ -82,6 +83,8 @@ void visit_memory(AnyMemory& m, Item&& item) {
 /// The content of checkpoint.h5.
 struct Checkpoint {
   std::string fingerprint;  ///< of domain and settings; a checkpoint of other ones is refused
+  std::string id;           ///< of the run, which its frames carry too; empty in checkpoints of earlier versions
+  std::string stop_reason;  ///< why the steps came to their end; empty where there are more to come
   SolverState state;
   RunMemory memory;
 };
@@ -89,6 +92,16 @@ struct Checkpoint {
 /// This function writes a checkpoint to `file`, aside and renamed at the end. It throws DataError (disk full, not
 /// writable).
 void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint);
+
+/// What a look at a checkpoint tells, without reading the state.
+struct CheckpointHead {
+  std::string fingerprint;
+  double time = 0;        ///< [s]
+  std::int64_t step = 0;  ///< taken so far
+};
+
+/// The head of the checkpoint in `file`; none where there is no such file, or none that this version can read.
+std::optional<CheckpointHead> look_at_checkpoint(const std::filesystem::path& file);
 
 /// The checkpoint in `file`, bit for bit what was written. The function throws DataError when the file is missing,
 /// truncated, of another kind (an older version of this program), or made from another domain or other settings.

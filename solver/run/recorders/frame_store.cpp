@@ -27,23 +27,28 @@ void FrameStore::clear() {
   std::filesystem::remove_all(folder_, ignored);
 }
 
+void FrameStore::drop_others() const {
+  std::error_code ignored;
+  std::vector<std::filesystem::path> others;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_, ignored))
+    if (entry.path().filename() != run_id_) others.push_back(entry.path());
+  for (const auto& path : others) std::filesystem::remove_all(path, ignored);
+}
+
 std::filesystem::path FrameStore::file(std::int64_t number) const {
-  return folder_ / fmt::format("frame_{:05}.h5", number);
+  return folder_ / run_id_ / fmt::format("frame_{:05}.h5", number);
 }
 
 void FrameStore::put(std::int64_t number, const PointFrame& f, const MapGrid& grid,
                      const std::vector<double>& thickness) {
-  std::error_code error;
-  std::filesystem::create_directories(folder_, error);
-  if (error)
-    throw DataError(
-        {folder_.string() + ": the folder cannot be made", error.message(), "Name another one with --out DIR"});
+  make_folder(folder_ / run_id_);
   PendingFile pending(file(number));
   h5::File out =
       h5::File::create(pending.path(), {file(number), "Free some space, or name another folder with --out DIR"});
   out.leave_plain();  // to compress takes longer than the steps between two frames; run.h5 is compressed
   const auto count = static_cast<hsize_t>(f.id.size());
   out.set_number("/", "time", f.time);
+  out.set_text("/", "run_id", run_id_);
   out.write<double>("/position", {count, 3}, flat(f.position));
   out.write<float>("/velocity", {count, 3}, flat(f.velocity));
   out.write<float>("/volume", {count}, f.volume);
@@ -63,20 +68,23 @@ void FrameStore::expect(std::int64_t count) const {
   }
 }
 
-void FrameStore::append_to(RunWriter& run, std::int64_t count, const MapGrid& grid) const {
-  for (std::int64_t n = 0; n < count; ++n) {
-    const h5::File in = h5::File::open(file(n), {file(n), "Run talus-solve again without --restart"});
-    PointFrame f;
-    f.time = in.number("/", "time");
-    f.position = rows_of(in.read<double>("/position"));
-    f.velocity = rows_of(in.read<float>("/velocity"));
-    f.volume = in.read<float>("/volume");
-    f.pressure = in.read<float>("/pressure");
-    f.id = in.read<std::int32_t>("/id");
-    f.release = in.read<std::int32_t>("/release");
-    if (!f.id.empty()) run.append(f);
-    run.append_thickness(f.time, grid, in.read<double>("/thickness"));
-  }
+void FrameStore::append_to(RunWriter& run, std::int64_t number, const MapGrid& grid) const {
+  const std::filesystem::path path = file(number);
+  const h5::File in = h5::File::open(path, {path, "Run talus-solve again without --restart"});
+  const std::string owner = in.has_attribute("/", "run_id") ? in.text("/", "run_id") : "";
+  if (owner != run_id_)
+    throw DataError({fmt::format("{}: a frame of the run {}", path.string(), owner),
+                     fmt::format("this is the run {}", run_id_), "Run talus-solve again without --restart"});
+  PointFrame f;
+  f.time = in.number("/", "time");
+  f.position = rows_of(in.read<double>("/position"));
+  f.velocity = rows_of(in.read<float>("/velocity"));
+  f.volume = in.read<float>("/volume");
+  f.pressure = in.read<float>("/pressure");
+  f.id = in.read<std::int32_t>("/id");
+  f.release = in.read<std::int32_t>("/release");
+  if (!f.id.empty()) run.append(f);
+  run.append_thickness(f.time, grid, in.read<double>("/thickness"));
 }
 
 }  // namespace talus::solver

@@ -8,25 +8,31 @@
 
 namespace talus::solver {
 
-/// A folder of frames by number.
+/// A folder of frames by number, in a folder for every run, so that those of an older run stay until they are dropped.
 class FrameStore {
  public:
   explicit FrameStore(std::filesystem::path folder) : folder_(std::move(folder)) {}
-  void clear();  ///< forget all frames
+  /// From now on frames are those of this run; each carries its id. Empty: of a version that knew no ids.
+  void belong_to(const std::string& run_id) { run_id_ = run_id; }
+  void clear();              ///< drops all frames, of whichever run
+  void drop_others() const;  ///< drops the frames of other runs
   /// The method writes one frame, aside and renamed at the end. It throws DataError (disk full, not writable).
   void put(std::int64_t number, const PointFrame& points, const MapGrid& grid, const std::vector<double>& thickness);
   /// The method throws DataError unless frames 0 .. count-1 are there.
   void expect(std::int64_t count) const;
-  /// The method hands frames 0 .. count-1 to the run file. It throws DataError when one is missing.
-  void append_to(RunWriter& run, std::int64_t count, const MapGrid& grid) const;
+  /// The method hands frame `number` to the run file. It throws DataError when it is missing or another run's.
+  void append_to(RunWriter& run, std::int64_t number, const MapGrid& grid) const;
 
  private:
   std::filesystem::path file(std::int64_t number) const;
   std::filesystem::path folder_;
+  std::string run_id_ = {};
 };
 
 /// This function writes the points of a frame as `file` (OpenVDB PointDataGrid with velocity, volume, pressure, id),
-/// for Houdini, Blender, ParaView. It throws DataError when it cannot be written.
-void write_points_vdb(const std::filesystem::path& file, const PointFrame& frame, double spacing);
+/// for Houdini, Blender, ParaView, with the id of the run in its metadata. It throws DataError when it cannot be
+/// written.
+void write_points_vdb(const std::filesystem::path& file, const PointFrame& frame, double spacing,
+                      const std::string& run_id);
 
 }  // namespace talus::solver

@@ -38,13 +38,28 @@ PointFrame FrameRecorder::point_frame(double time, const ParticleState& s) const
   return frame;
 }
 
+void FrameRecorder::belong_to(const std::string& run_id) {
+  run_id_ = run_id;
+  store_.belong_to(run_id);
+}
+
+std::filesystem::path FrameRecorder::vdb_file(std::int64_t number) const {
+  return vdb_folder_ / fmt::format("points_{:05}.vdb", number);
+}
+
+void FrameRecorder::drop_older_vdb(std::int64_t count) const {
+  if (!options_.vdb_frames) return;
+  std::error_code none_there;
+  for (std::int64_t number = count; std::filesystem::remove(vdb_file(number), none_there); ++number) {
+  }
+}
+
 void FrameRecorder::put(double time, std::int64_t number, Solver& solver) {
   const bool points = options_.point_frames || options_.vdb_frames;
   writing_.start(
       [this, time, number, thickness = solver.thickness(), state = points ? solver.shown() : ParticleState{}] {
         PointFrame frame = point_frame(time, state);
-        if (options_.vdb_frames)
-          write_points_vdb(vdb_folder_ / fmt::format("points_{:05}.vdb", number), frame, scene_.map.cell);
+        if (options_.vdb_frames) write_points_vdb(vdb_file(number), frame, scene_.map.cell, run_id_);
         if (!options_.point_frames) {
           frame = {};
           frame.time = time;

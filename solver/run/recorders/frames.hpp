@@ -18,7 +18,11 @@ class FrameRecorder {
   FrameRecorder(const Scene& scene, const SolveOptions& options, std::filesystem::path store,
                 std::filesystem::path vdb_folder);
 
-  void clear() { store_.clear(); }  ///< drops the frames of an older run
+  /// From now on frames are those of this run; each carries its id.
+  void belong_to(const std::string& run_id);
+  void clear() { store_.clear(); }                ///< drops all frames, of whichever run
+  void drop_others() { store_.drop_others(); }    ///< drops the frames of other runs
+  void drop_older_vdb(std::int64_t count) const;  ///< drops points as .vdb that a longer run before has left
   /// The method throws DataError unless frames 0 .. count-1 are there.
   void expect(std::int64_t count) const { store_.expect(count); }
   /// The method takes the state at once; the file is written while the run goes on. It throws what writing the frame
@@ -27,16 +31,18 @@ class FrameRecorder {
   /// The method waits until every frame is on disk. It throws what writing the last one threw. HDF5 does one thing at a
   /// time: this is called before another file is written.
   void settle() { writing_.settle(); }
-  /// The method hands frames 0 .. count-1 to the run file. It throws DataError when one is missing.
-  void append_to(RunWriter& run, std::int64_t count) const { store_.append_to(run, count, scene_.map); }
+  /// The method hands a frame to the run file. It throws DataError when it is missing or another run's.
+  void append_to(RunWriter& run, std::int64_t number) const { store_.append_to(run, number, scene_.map); }
 
  private:
+  std::filesystem::path vdb_file(std::int64_t number) const;
   PointFrame point_frame(double time, const ParticleState& points) const;
 
   const Scene& scene_;
   const SolveOptions& options_;
   TerrainTables terrain_;
   std::filesystem::path vdb_folder_;
+  std::string run_id_ = {};
   FrameStore store_;
   SideWork writing_;  ///< last: what it does needs the rest
 };

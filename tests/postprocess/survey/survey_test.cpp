@@ -303,10 +303,13 @@ TEST_F(SurveyTest, refuses_to_score_when_much_changed_outside_the_slide) {
   std::filesystem::create_directories(out / "survey");
   EXPECT_FALSE(read_found_survey(out).outside_is_large) << "no survey.json";
   std::ofstream(out / "survey" / "survey.json")
-      << R"({"error": {"known": false}, "outside_slide": {"large": true, "words": "9,059 m3 rose"}})";
+      << R"({"error": {"known": false}, "outside_slide": {"large": true, "words": "9,059 m3 rose"},)"
+      << R"("id": "d1", "recipe": "5e"})";
   const FoundSurvey found = read_found_survey(out);
   EXPECT_FALSE(found.error_known);
   EXPECT_TRUE(lacks_error(out));
+  EXPECT_EQ(found.id, "d1");
+  EXPECT_EQ(found.recipe_mark, "5e");
   Acceptance none("postprocess", {}), insisted("postprocess", {"change-outside-slide"});
   const std::string fault = test::fault_of<DataError>([&] { judge_outside(found, out, none); });
   EXPECT_NE(fault.find("9,059 m3 rose"), std::string::npos) << fault;

@@ -92,7 +92,7 @@ TEST(survey, states_no_error_where_the_later_model_was_made_from_the_earlier_one
   const auto folder = scene.scratch / "survey";
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "difference_sigma.tif") << "of an earlier recipe";
-  write_survey(folder, *prepared.survey, &prepared, lines);
+  write_survey(folder, *prepared.survey, &prepared, {}, lines);
   EXPECT_FALSE(std::filesystem::exists(folder / "difference_sigma.tif")) << "no raster of zeros to score with";
   const nlohmann::json json = nlohmann::json::parse(std::ifstream(folder / "survey.json"));
   EXPECT_EQ(json.at("error").at("known"), false);
@@ -331,7 +331,7 @@ TEST(write_survey, outlines_given_back_give_the_same_slide) {
   test::Scene scene;
   const Prepared prepared = scene.prepare();
   std::vector<std::string> lines;
-  write_survey(scene.scratch / "survey", *prepared.survey, &prepared, lines);
+  write_survey(scene.scratch / "survey", *prepared.survey, &prepared, {}, lines);
   scene.options.source.polygon = scene.options.deposit.polygon = scene.scratch / "survey" / "outlines.gpkg";
   const Prepared again = scene.prepare();
   EXPECT_NEAR(again.total.volume / prepared.total.volume, 1, 0.02);
@@ -342,7 +342,7 @@ TEST(write_survey, leaves_rasters_outlines_and_styles_for_a_gis) {
   test::Scene scene;
   const Prepared prepared = scene.prepare();
   std::vector<std::string> lines;
-  const auto files = write_survey(scene.scratch / "survey", *prepared.survey, &prepared, lines);
+  const auto files = write_survey(scene.scratch / "survey", *prepared.survey, &prepared, {}, lines);
   for (const char* name :
        {"before_aligned.tif", "after_aligned.tif", "difference.tif", "stable_ground.tif", "source_thickness.tif",
         "sliding_surface.tif", "deposit_surveyed.tif", "slide_difference.tif", "outlines.gpkg", "survey.qgs",

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <fstream>
 #include <limits>
 #include <set>
 
@@ -74,6 +75,8 @@ auto memory_bits(const RunMemory& memory) {
 Checkpoint sample() {
   Checkpoint c;
   c.fingerprint = "a domain and its settings";
+  c.id = "0123456789abcdef";
+  c.stop_reason = "end of the simulated time";
   Domain domain = testing::ground(12, 12, 10, 5, [](double x, double) { return 0.1 * x; });
   testing::fill(domain, {50, 60, 50, 60, 0, 5}, 1, 1);
   const SolveOptions options;
@@ -108,6 +111,8 @@ TEST(Checkpoint, every_scalar_comes_back_bit_for_bit) {
   write_checkpoint(scratch / "checkpoint.h5", c);
   EXPECT_EQ(scratch.files(), 1u);
   const Checkpoint back = read_checkpoint(scratch / "checkpoint.h5", c.fingerprint);
+  EXPECT_EQ(back.id, c.id);
+  EXPECT_EQ(back.stop_reason, c.stop_reason);
   EXPECT_EQ(clock_bits(back.state.clock), clock_bits(c.state.clock));
   EXPECT_EQ(memory_bits(back.memory), memory_bits(c.memory));
   ASSERT_EQ(back.memory.history.columns.size(), 2u);
@@ -144,7 +149,7 @@ TEST(Checkpoint, a_run_goes_on_from_a_file_bit_for_bit) {
   while (!batch.sorted) batch = unbroken->advance();
 
   const Scratch scratch;
-  write_checkpoint(scratch / "checkpoint.h5", {"fingerprint", unbroken->state(), {}});
+  write_checkpoint(scratch / "checkpoint.h5", {"fingerprint", "a1", "", unbroken->state(), {}});
   const Checkpoint half_way = read_checkpoint(scratch / "checkpoint.h5", "fingerprint");
   EXPECT_GT(half_way.state.clock.step, 0);
   expect_same_points(half_way.state.points, unbroken->state().points);
@@ -155,6 +160,21 @@ TEST(Checkpoint, a_run_goes_on_from_a_file_bit_for_bit) {
   EXPECT_EQ(clock_bits(resumed->clock()), clock_bits(unbroken->clock()));
   expect_same_points(resumed->state().points, unbroken->state().points);
   EXPECT_EQ(resumed->state().maps.peak_speed, unbroken->state().maps.peak_speed);
+}
+
+TEST(Checkpoint, a_look_at_it_tells_whose_it_is_and_how_far_it_is) {
+  const Scratch scratch;
+  const auto path = scratch / "checkpoint.h5";
+  EXPECT_FALSE(look_at_checkpoint(path).has_value());
+  std::ofstream(path) << "no checkpoint";
+  EXPECT_FALSE(look_at_checkpoint(path).has_value());
+  const Checkpoint c = sample();
+  write_checkpoint(path, c);
+  const auto head = look_at_checkpoint(path);
+  ASSERT_TRUE(head.has_value());
+  EXPECT_EQ(head->fingerprint, c.fingerprint);
+  EXPECT_EQ(head->time, c.state.clock.time);
+  EXPECT_EQ(head->step, c.state.clock.step);
 }
 
 TEST(Checkpoint, an_older_kind_is_refused_in_words) {

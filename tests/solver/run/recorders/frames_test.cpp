@@ -23,6 +23,7 @@ TEST(FrameRecorder, hands_every_frame_to_the_run_file) {
   const Scene scene = make_scene(d, o);
   const auto solver = make_solver(scene, o, On::cpu);
   FrameRecorder frames(scene, o, scratch / "frames", scratch / "vdb");
+  frames.belong_to("a1");
   frames.put(0, 0, *solver);
   run_to(*solver, 0.1);
   frames.put(0.1, 1, *solver);
@@ -31,7 +32,7 @@ TEST(FrameRecorder, hands_every_frame_to_the_run_file) {
   EXPECT_THROW(frames.expect(3), DataError);
   {
     RunWriter writer(scratch / "run.h5");
-    frames.append_to(writer, 2);
+    for (const int number : {0, 1}) frames.append_to(writer, number);
     RunMaps maps;
     maps.grid = scene.map;
     const std::vector<double> zero(scene.map.count(), 0.0);
@@ -48,6 +49,25 @@ TEST(FrameRecorder, hands_every_frame_to_the_run_file) {
   EXPECT_THROW(frames.expect(1), DataError);
 }
 
+TEST(FrameStore, keeps_the_frames_of_runs_apart) {
+  const test::Scratch scratch;
+  const MapGrid grid{.columns = 1, .rows = 1, .west = 0, .south = 0, .cell = 1, .crs_wkt = ""};
+  FrameStore store(scratch / "frames");
+  for (const char* run : {"a1", "b2"}) {
+    store.belong_to(run);
+    store.put(0, {}, grid, {1.0});
+  }
+  store.belong_to("a1");
+  store.expect(1);
+  std::filesystem::copy_file(scratch / "frames/b2/frame_00000.h5", scratch / "frames/a1/frame_00001.h5");
+  RunWriter writer(scratch / "run.h5");
+  store.append_to(writer, 0, grid);
+  const std::string fault = test::fault_of<DataError>([&] { store.append_to(writer, 1, grid); });
+  EXPECT_NE(fault.find("frame_00001.h5: a frame of the run b2 (this is the run a1)"), std::string::npos) << fault;
+  store.drop_others();
+  EXPECT_EQ(test::names_in(scratch / "frames"), std::vector<std::string>{"a1"});
+}
+
 TEST(PointsVdb, that_cannot_be_written_are_a_fault_like_that_of_any_other_file) {
   const test::Scratch scratch;
   const auto file = scratch / "points.vdb";
@@ -59,7 +79,7 @@ TEST(PointsVdb, that_cannot_be_written_are_a_fault_like_that_of_any_other_file) 
                          .pressure = {0},
                          .id = {0},
                          .release = {0}};
-  const std::string fault = test::fault_of<DataError>([&] { write_points_vdb(file, frame, 1); });
+  const std::string fault = test::fault_of<DataError>([&] { write_points_vdb(file, frame, 1, "a1"); });
   EXPECT_EQ(fault.rfind(file.string() + ": cannot be written (", 0), 0u) << fault;
 }
 

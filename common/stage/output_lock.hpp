@@ -1,0 +1,33 @@
+// One process at a time in an output folder.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace talus {
+
+/// The lock of an output folder, ".talus.lock" in it, which names its holder. The system lets go of it when the process
+/// ends, however it ends; a file that a killed process left is no lock. Reading what lies in the folder needs none.
+class OutputLock {
+ public:
+  /// Takes the lock for `program`. Throws DataError: another process holds it (who, where, since when), or nothing can
+  /// be written there. Where the file system knows no locks (some network file systems) it warns and goes on: each file
+  /// is still written aside under a name of this process's own and carries the id of its run.
+  OutputLock(const std::filesystem::path& folder, const std::string& program);
+  OutputLock(const OutputLock&) = delete;
+  OutputLock& operator=(const OutputLock&) = delete;
+  ~OutputLock();
+
+ private:
+  std::filesystem::path file_;
+  int descriptor_;
+};
+
+/// True while this process holds the lock of its output folder: a partial file there is then one that a killed process
+/// left.
+bool holds_output_lock();
+
+/// A word for this process that no other has, for names of partial files: "1234-9f3c21ab".
+const std::string& process_word();
+
+}  // namespace talus

@@ -1,0 +1,140 @@
+// The end of processes by signals, each in a process of its own: what it wrote, its exit code, what it left.
+#include "common/stage/interrupt.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <functional>
+
+#include "common/stage/output_lock.hpp"
+#include "common/stage/stage.hpp"
+#include "tests/common/scratch.hpp"
+
+namespace talus {
+namespace {
+
+using namespace std::chrono_literals;
+using test::Scratch;
+using test::text_of;
+
+/// The exit code of a process that watches for signals with a short grace, sends itself SIGTERM, and does `then`.
+int exit_code_of(const Scratch& scratch, const std::function<void()>& then) {
+  const std::string log = (scratch / "log").string();
+  const pid_t child = ::fork();
+  if (child == 0) {
+    if (std::freopen(log.c_str(), "w", stderr) == nullptr) ::_exit(97);
+    watch_for_interrupts("talus-sample", 0.05);
+    then();
+    ::_exit(98);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+}
+
+/// What a library does that cannot be asked to stop; the test's time limit ends it where nothing else does.
+void work_on_for_ever() {
+  for (;;) ::usleep(1000);
+}
+
+TEST(Interrupt, ends_a_process_that_a_library_keeps_busy) {
+  const Scratch scratch;
+  const int code = exit_code_of(scratch, [&] {
+    const OutputLock lock(scratch.folder(), "talus-sample");
+    const PendingFile pending(scratch / "map.tif");
+    std::ofstream(pending.path()) << "half";
+    write_text(scratch / "whole.txt", "whole");
+    ::raise(SIGTERM);
+    work_on_for_ever();
+  });
+  EXPECT_EQ(code, 130);
+  EXPECT_EQ(test::names_in(scratch.folder()), (std::vector<std::string>{"log", "whole.txt"}));
+  EXPECT_EQ(
+      text_of(scratch / "log"),
+      "\ntalus-sample: ended in the middle of its work (interrupted). What carries a final name is whole; run the "
+      "stage again\n");
+}
+
+TEST(Interrupt, leaves_time_to_whoever_has_something_to_save) {
+  const Scratch scratch;
+  const int code = exit_code_of(scratch, [&] {
+    const OwnEnd saving("the state is saved first");
+    ::raise(SIGTERM);
+    const auto begun = std::chrono::steady_clock::now();
+    while (std::chrono::steady_clock::now() - begun < 200ms) ::usleep(1000);  // four times the grace
+    write_text(scratch / "state", "saved");
+    ::_exit(interrupted() ? 5 : 6);
+  });
+  EXPECT_EQ(code, 5);
+  EXPECT_EQ(text_of(scratch / "state"), "saved");
+  EXPECT_EQ(text_of(scratch / "log"),
+            "\ntalus-sample: interrupted; the state is saved first (a second Ctrl-C ends it at once)\n");
+}
+
+TEST(Interrupt, counts_the_grace_once_nothing_is_left_to_save) {
+  const Scratch scratch;
+  EXPECT_EQ(exit_code_of(scratch,
+                         [] {
+                           {
+                             const OwnEnd saving("the state is saved first");
+                             ::raise(SIGTERM);
+                           }
+                           work_on_for_ever();
+                         }),
+            130);
+}
+
+TEST(Interrupt, a_second_signal_does_not_wait_for_what_is_saved) {
+  const Scratch scratch;
+  EXPECT_EQ(exit_code_of(scratch,
+                         [&] {
+                           const OwnEnd saving("the state is saved first");
+                           const PendingFile pending(scratch / "state");
+                           std::ofstream(pending.path()) << "half";
+                           ::raise(SIGINT);
+                           ::raise(SIGTERM);
+                         }),
+            130);
+  EXPECT_EQ(test::names_in(scratch.folder()), std::vector<std::string>{"log"});
+}
+
+TEST(Interrupt, heeds_the_terminal_that_closes_unless_told_to_ignore_it) {
+  const Scratch scratch;
+  EXPECT_EQ(exit_code_of(scratch,
+                         [] {
+                           ::raise(SIGHUP);
+                           ::_exit(interrupted() ? 5 : 6);
+                         }),
+            5);
+  const auto before = std::signal(SIGHUP, SIG_IGN);
+  EXPECT_EQ(exit_code_of(scratch,
+                         [] {
+                           ::raise(SIGHUP);
+                           ::_exit(interrupted() ? 5 : 6);
+                         }),
+            6);
+  std::signal(SIGHUP, before);
+}
+
+TEST(Interrupt, loops_stop_at_their_next_look) {
+  const Scratch scratch;
+  EXPECT_EQ(exit_code_of(scratch,
+                         [] {
+                           int done = 0;
+                           try {
+                             for (; done < 10; ++done) {
+                               stop_if_interrupted("counting");
+                               if (done == 3) ::raise(SIGINT);
+                             }
+                           } catch (const Interrupted& error) {
+                             const std::string words = error.what();
+                             ::_exit(words.starts_with("stopped while counting (interrupted). ") ? 10 + done : 1);
+                           }
+                         }),
+            14);
+}
+
+}  // namespace
+}  // namespace talus

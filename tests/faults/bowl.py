@@ -1,0 +1,174 @@
+"""The scene of the fault tests, and what its files say: a digest of every file that does not change with time, ids and
+places, so that two runs of one recipe agree."""
+import hashlib
+import json
+import pathlib
+import re
+import shutil
+import sqlite3
+import subprocess
+
+try:  # they spare a process for every file
+    import h5py
+except ImportError:
+    h5py = None
+try:
+    from osgeo import gdal
+    gdal.UseExceptions()
+except ImportError:
+    gdal = None
+
+STAGES = ("preprocess", "solve", "postprocess")
+
+RECIPE = """[scene]
+name = "bowl"
+title = "Bowl"
+[preprocess]
+before_dem = "before.asc"
+after_dem = "after.asc"
+[preprocess.grid]
+layer_height_m = {layer}
+[[preprocess.obstacle]]
+name = "wall"
+polygons = "wall.geojson"
+height_m = 6.0
+[solve]
+end_time_s = {end}
+frame_interval_s = 0.25
+checkpoint_interval_s = 0.4
+[solve.material]
+friction_angle_deg = 30.0
+[solve.base]
+friction_angle_deg = 15.0
+[[solve.obstacle]]
+name = "wall"
+[postprocess.survey]
+thickness = "survey.asc"
+"""
+
+WALL = """{"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {}, "geometry":
+{"type": "Polygon", "coordinates":
+[[[500120, 5000070], [500140, 5000070], [500140, 5000130], [500120, 5000130], [500120, 5000070]]]}}]}
+"""
+
+
+def write_grid(file, height):
+    """An ASCII grid of 20 x 20 cells of 10 m; height(column, row) [m], row 0 southernmost."""
+    rows = "".join(" ".join(f"{height(i, j):.6g}" for i in range(20)) + "\n" for j in reversed(range(20)))
+    file.write_text("ncols 20\nnrows 20\nxllcorner 500000\nyllcorner 5000000\ncellsize 10\n" + rows)
+
+
+def make_scene(folder, layer=2.0, end=1.0):
+    """Elevation models and recipe.toml in `folder`: a block of 4 x 4 cells, 4 m thick, fails in a bowl."""
+    def bowl(i, j):
+        return 0.004 * ((10 * i - 95) ** 2 + (10 * j - 95) ** 2)
+
+    def inside(i, j, west):
+        return west <= i < west + 4 and 8 <= j < 12
+
+    folder.mkdir(parents=True, exist_ok=True)
+    write_grid(folder / "before.asc", bowl)
+    write_grid(folder / "after.asc", lambda i, j: bowl(i, j) - 4 * inside(i, j, 3))
+    write_grid(folder / "survey.asc", lambda i, j: 2 * inside(i, j, 7))
+    (folder / "wall.geojson").write_text(WALL)
+    (folder / "recipe.toml").write_text(RECIPE.format(layer=layer, end=end))
+
+
+def is_final(name):
+    """A name under which results are shown: not hidden."""
+    return not any(part.startswith(".") for part in pathlib.PurePath(name).parts)
+
+
+def of_hdf5(file):
+    # Ids, times, versions and the history of commands stand in attributes and in two groups.
+    if h5py is not None:
+        said = []
+        with h5py.File(file, "r") as root:
+            root.visititems(lambda name, item: said.append((name, hashlib.sha256(item[()].tobytes()).hexdigest()))
+                            if isinstance(item, h5py.Dataset) and not name.startswith("profile") else None)
+        return repr(sorted(said))
+    text = subprocess.run(["h5dump", "-m", "%.17g", file], capture_output=True, text=True, check=True).stdout
+    text = re.sub(r'(?s)GROUP "(profile|provenance)" \{.*?\n   \}\n', "", text)
+    text = re.sub(r'(?s)ATTRIBUTE "[^"]*" \{.*?\n\s*\}\n\s*\}\n', "", text)
+    return text.replace(str(file), "")
+
+
+def of_raster(file):
+    if gdal is not None:
+        raster = gdal.Open(str(file))
+        bands = [raster.GetRasterBand(i + 1) for i in range(raster.RasterCount)]
+        return repr([(raster.GetGeoTransform(), band.DataType, hashlib.sha256(band.ReadRaster()).hexdigest())
+                     for band in bands])
+    text = subprocess.run(["gdalinfo", "-checksum", file], capture_output=True, text=True, check=True).stdout
+    if "Checksum=" not in text or "ERROR" in text:
+        raise ValueError("no checksum")
+    return "".join(line for line in text.splitlines(True) if not re.search(r"_ID=|Files:|SOURCE=|ACCEPTED", line))
+
+
+def of_geopackage(file):
+    base = sqlite3.connect(f"file:{file}?mode=ro", uri=True)
+    if base.execute("pragma integrity_check").fetchone() != ("ok",):
+        raise ValueError("broken data base")
+    tables = [row[0] for row in base.execute("select table_name from gpkg_contents order by 1")]
+    return repr([(table, sorted(map(repr, base.execute(f'select * from "{table}"')))) for table in tables])
+
+
+def of_openvdb(file):
+    data = file.read_bytes()
+    data = re.sub(rb"[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}", b"", data)  # OpenVDB's own id of each file
+    return hashlib.sha256(re.sub(rb"obstacles.sha256.{0,16}[0-9a-f]{64}", b"", data, flags=re.S)).hexdigest()
+
+
+def of_json(file):
+    values = json.loads(file.read_text())
+    volatile = re.compile("wall|run_id|version|memory|per_second|hardware|^on$")
+    return json.dumps({key: value for key, value in values.items() if not volatile.search(key)})
+
+
+def of_text(file):
+    text = file.read_text()
+    if not text.endswith("\n"):
+        raise ValueError("ends within a line")
+    volatile = re.compile("^#|wall|version|memory|steps per|points per|  run  |computed on|  on  ")
+    return "".join(line for line in text.splitlines(True) if not volatile.search(line))
+
+
+def of_page(file):
+    if not file.read_text().rstrip().endswith("</html>"):
+        raise ValueError("ends within the page")
+    return "whole"
+
+
+READERS = {".h5": of_hdf5, ".nc": of_hdf5, ".tif": of_raster, ".gpkg": of_geopackage, ".vdb": of_openvdb,
+           ".json": of_json, ".html": of_page, ".toml": of_text, ".txt": of_text, ".csv": of_text}
+
+
+def digest(file):
+    """What a file says, or "BROKEN: why"."""
+    try:
+        reader = READERS.get(file.suffix)
+        said = reader(file) if reader else hashlib.sha256(file.read_bytes()).hexdigest()
+        return hashlib.sha256(said.encode()).hexdigest()[:16]
+    except (ValueError, OSError, RuntimeError, sqlite3.Error, subprocess.CalledProcessError) as fault:
+        return f"BROKEN: {fault}"
+
+
+def digests(out, names=None):
+    """name -> digest, of everything in an output folder that carries a final name, but a checkpoint."""
+    found = {}
+    for file in sorted(out.rglob("*")):
+        name = str(file.relative_to(out))
+        if file.is_file() and is_final(name) and name != "checkpoint.h5" and (names is None or name in names):
+            found[name] = digest(file)
+    return found
+
+
+def hidden(out):
+    """Names of what is hidden in an output folder."""
+    return sorted(str(file.relative_to(out)) for file in out.rglob("*")
+                  if file.is_file() and not is_final(str(file.relative_to(out))))
+
+
+def fresh_copy(source, target):
+    shutil.rmtree(target, ignore_errors=True)
+    shutil.copytree(source, target)
