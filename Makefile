@@ -10,6 +10,8 @@ OUT    ?= pipelines/out
 ON     ?= auto
 LONG   ?=
 CASES  ?=
+RECIPES ?= 500
+RECIPE_JOBS ?= 2
 
 programs := talus-preprocess talus-solve talus-postprocess talus-make-terrain
 # With a compiler cache every source is a unit of its own; without one those of a folder are compiled together.
@@ -19,7 +21,7 @@ quickly := $(if $(ccache),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_CUDA_COMP
 # What the build folder was configured for; another wish configures it again.
 asked := $(PRESET) $(CUDAARCHS)
 
-.PHONY: help setup build demo test validate check-faults lint docs bundle bundle-solver clean FORCE
+.PHONY: help setup build demo test validate check-faults check-recipes lint docs bundle bundle-solver clean FORCE
 
 help: ## this list
 	@echo "make TARGET [PRESET=default|cpu|gpu|check] [JOBS=n]"
@@ -75,6 +77,9 @@ check-faults: setup $(BUILD)/build.ninja ## kills, failing calls, processes in o
 	@cmake --build $(BUILD) -j $(JOBS) --target $(programs) talus-faults
 	@python3 tests/faults/faults.py --full --bin $(BUILD)/bin --shim $(BUILD)/bin/talus-faults.so \
 	  --work $(BUILD)/scratch/check-faults --table $(BUILD)/faults.md
+
+check-recipes: build ## random recipes on a tiny scene: a result that holds or a clear refusal [RECIPES=500] [RECIPE_JOBS=2]
+	@tools/check-recipes.py --bin $(BUILD)/bin --out $(BUILD)/recipes --count $(RECIPES) --jobs $(RECIPE_JOBS)
 
 lint: ## formatting and static analysis of everything [CHANGED=n: analyse only the n units changed last]
 	@tools/install-dependencies.sh lint

@@ -13,6 +13,7 @@
 #include "common/gis/dataset_files.hpp"
 #include "common/run/run_file.hpp"
 #include "common/stage/identity.hpp"
+#include "common/stage/input_file.hpp"
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/maps/avaframe.hpp"
 #include "postprocess/maps/geotiff.hpp"
@@ -81,6 +82,7 @@ std::string history_table(const RunHistory& history) {
 }
 
 std::optional<std::string> text_of(const fs::path& file) {
+  require_plain(file);
   std::ifstream stream(file, std::ios::binary);
   if (!stream) return std::nullopt;
   return std::string(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
@@ -252,19 +254,25 @@ void run(StageContext& context) {
   if (job.options.survey.from_preprocess) require_whole_survey(context.out);
   const FoundSurvey found = job.options.survey.from_preprocess ? read_found_survey(context.out) : FoundSurvey{};
   job.options.survey.find_in(context.out, found.error_known);
+  acceptance.collect();
   judge_outside(found, context.out, acceptance);
-  job.file = run_file(context, job.options);
-  job.run = read_run(job.file);
-  Facts insisted = judge_run(context, job);
-  if (job.options.survey.from_preprocess) judge_survey(context, found, job);
-  warn_of_other_title(context, job.run.summary);
-  check_volume(job.file, job.run);
-  job.survey = read_survey(job.options.survey, job.run.maps, job.options.footprint_threshold);
+  Facts insisted;
+  acceptance.meanwhile([&] {
+    job.file = run_file(context, job.options);
+    job.run = read_run(job.file);
+    insisted = judge_run(context, job);
+    if (job.options.survey.from_preprocess) judge_survey(context, found, job);
+    warn_of_other_title(context, job.run.summary);
+    check_volume(job.file, job.run);
+    job.survey = read_survey(job.options.survey, job.run.maps, job.options.footprint_threshold);
+  });
   if (job.survey && !accepted_before(job.run.summary, "swapped-surveys"))
     judge_order(*job.survey, job.run.maps, acceptance);
+  acceptance.settle();
   if (!found.error_known)
     job.survey->notes.push_back(
         "Warning: the error of the survey is not known (talus-preprocess says why), so that no score carries one.");
+  if (found.outside_is_doubtful && job.survey) job.survey->notes.push_back("Warning: " + found.outside_words);
   acceptance.warn_of_unmet();
   auto& facts = job.run.summary.provenance;
   facts.insert(facts.end(), acceptance.facts().begin(), acceptance.facts().end());

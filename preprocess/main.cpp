@@ -3,10 +3,12 @@
 
 #include <algorithm>
 
+#include "common/domain/threads.hpp"
 #include "common/gis/crs.hpp"
 #include "common/gis/dataset_files.hpp"
 #include "common/map/sum.hpp"
 #include "common/stage/identity.hpp"
+#include "common/stage/machine.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/output/write_survey.hpp"
 #include "preprocess/scene/prepare.hpp"
@@ -28,6 +30,7 @@ Facts facts_of(const preprocess::Prepared& prepared) {
               {"material_points", std::to_string(prepared.point_count)}};
   for (auto& fact : preprocess::as_facts(prepared.total)) facts.push_back(std::move(fact));
   facts.insert(facts.end(), prepared.accepted.begin(), prepared.accepted.end());
+  if (!prepared.coarse.empty()) facts.emplace_back("warning.coarse_grid", prepared.coarse);
   if (prepared.sliding_surface) {
     facts.emplace_back(
         "sliding_surface",
@@ -56,7 +59,8 @@ void report(const preprocess::Prepared& prepared) {
     for (const std::string& line : preprocess::as_lines(*prepared.survey)) log_info(line);
   }
   if (prepared.slide)
-    (prepared.slide->outside_is_large ? log_warning : log_info)(preprocess::outside_words(*prepared.slide));
+    (prepared.slide->outside_is_large || prepared.slide->outside_is_doubtful ? log_warning : log_info)(
+        preprocess::outside_words(*prepared.slide));
   const std::string whole = prepared.by_release.size() == 1 ? prepared.by_release.front().first : "all releases";
   for (const std::string& line : preprocess::as_lines(whole, prepared.total)) log_info(line);
   const double count = static_cast<double>(prepared.point_count);
@@ -121,7 +125,8 @@ void run_difference(StageContext& context, const preprocess::Options& options) {
   if (options.way() != preprocess::Way::before_and_after)
     throw RecipeError(Fault{"--difference: [preprocess] does not give before_dem and after_dem",
                             "there is nothing to compare", "Give both, or leave --difference out"});
-  const preprocess::Survey survey = preprocess::survey_of(options);
+  preprocess::Survey survey = preprocess::survey_of(options);
+  survey.accepted.settle();
   const Facts marks = marks_of(context, inputs_of({options.before_dem, options.after_dem}));
   std::vector<std::string> lines = preprocess::as_lines(survey);
   if (!context.check_only)
@@ -209,6 +214,9 @@ int main(int argc, char** argv) {
        .help = "Compare before_dem and after_dem, write what changed with its error (OUT/survey), and stop",
        .set = [&](const std::string&) { given.difference = true; }}};
   program.depends = [&](const StageContext& context) { return depends(context, given); };
-  program.run = [&](StageContext& context) { run(context, given); };
+  program.run = [&](StageContext& context) {
+    limit_threads_of_libraries(thread_limit());
+    run(context, given);
+  };
   return talus::run_stage(argc, argv, program);
 }

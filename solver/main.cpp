@@ -9,8 +9,10 @@
 #include <fmt/format.h>
 
 #include "common/domain/domain.hpp"
+#include "common/domain/threads.hpp"
 #include "common/run/run_file.hpp"
 #include "common/stage/identity.hpp"
+#include "common/stage/machine.hpp"
 #include "common/stage/stage.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/options/solve.hpp"
@@ -110,10 +112,13 @@ void log_plan(const Domain& domain, const SolveOptions& o, const AnyDevice& devi
     return fmt::format(fmt::runtime(number < 1e9 ? "{:.0f}" : "{:.3g}"), number);
   };
   log_info(fmt::format("wave speed {} m/s, first step {:.3g} s, about {} steps, on the {}", whole(waves.speed), step,
-                       whole(o.end_time / step), device.is_gpu() ? "GPU" : "CPU"));
+                       whole(o.end_time / step + records_of(o)), device.is_gpu() ? "GPU" : "CPU"));
 }
 
+/// What talus-preprocess warned of stands in the domain, so that it is said where the run is planned, too.
 void log_warnings(const Domain& domain, const SolveOptions& o) {
+  for (const auto& [name, words] : domain.provenance)
+    if (name.starts_with("warning.")) log_warning(words);
   for (const std::string& text : warnings(domain, o)) log_warning(text);
 }
 
@@ -296,6 +301,9 @@ int main(int argc, char** argv) {
   Stage s = stage();
   s.flags = flags(given);
   s.depends = [&](const StageContext& context) { return depends(context, given); };
-  s.run = [&](StageContext& context) { solve(context, given); };
+  s.run = [&](StageContext& context) {
+    limit_threads_of_libraries(thread_limit());
+    solve(context, given);
+  };
   return run_stage(argc, argv, s);
 }

@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "common/error.hpp"
+#include "common/stage/input_file.hpp"
 #include "common/stage/stage.hpp"
 #include "common/stage/write_fault.hpp"
 
@@ -27,6 +28,7 @@ openvdb::FloatGrid::Ptr open_grid(const fs::path& file, const std::string& name)
     refuse_file(
         file, "no such file", "",
         "Check [[solve.obstacle]] level_set; talus-preprocess writes obstacles.vdb from [[preprocess.obstacle]]");
+  require_plain(file);
   try {
     openvdb::io::File archive(file.string());
     archive.open();

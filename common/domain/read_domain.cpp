@@ -8,6 +8,7 @@
 
 #include "common/domain/domain.hpp"
 #include "common/domain/domain_layout.hpp"
+#include "common/stage/input_file.hpp"
 #include "common/stage/write_fault.hpp"
 
 #ifdef __SANITIZE_ADDRESS__
@@ -37,6 +38,7 @@ struct Contents {
 /// Through a stream that throws at the end of the file: OpenVDB itself would go on with whatever it has.
 Contents read_all(const fs::path& file) {
   if (!fs::exists(file)) refuse(file, "no such file", "", "Run talus-preprocess first, with the same --out");
+  require_plain(file);
   std::ifstream stream(file, std::ios::binary);
   if (!stream || fs::is_directory(file))
     refuse(file, "cannot be read", fs::is_directory(file) ? "it is a folder" : "no permission", "Check the path");

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "common/gis/gdal_support.hpp"
+#include "common/gis/local_only.hpp"
 
 namespace talus {
 namespace fs = std::filesystem;
@@ -20,6 +21,11 @@ bool cheap_to_open(const fs::path& file) {
 }
 
 std::vector<fs::path> files_of_dataset(const fs::path& file) {
+  try {
+    gdal::require_local(file);
+  } catch (const DataError&) {
+    return {};  // whoever reads it says so
+  }
   const gdal::QuietErrors errors;
   if (!cheap_to_open(file)) return {};
   const gdal::Dataset dataset(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_VECTOR | GDAL_OF_READONLY));

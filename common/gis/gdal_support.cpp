@@ -1,5 +1,7 @@
 #include "common/gis/gdal_support.hpp"
 
+#include "common/gis/local_only.hpp"
+
 #include <cpl_conv.h>
 #include <fmt/format.h>
 
@@ -38,6 +40,7 @@ void start() {
   std::call_once(once, [] {
     use_bundled_data();
     GDALAllRegister();
+    close_the_network();
     // GDAL would keep a twentieth of all memory of cells it has read; large rasters are read here once, by windows.
     if (CPLGetConfigOption("GDAL_CACHEMAX", nullptr) == nullptr) GDALSetCacheMax64(GIntBig{128} << 20);
   });

@@ -5,12 +5,14 @@
 
 #include "common/gis/ascii_grid.hpp"
 #include "common/gis/gdal_support.hpp"
+#include "common/gis/local_only.hpp"
 
 namespace talus {
 namespace fs = std::filesystem;
 namespace {
 
 gdal::Dataset open(const fs::path& file, unsigned kind) {
+  gdal::require_local(file);
   return gdal::Dataset(GDALDataset::Open(file.c_str(), kind | GDAL_OF_READONLY));
 }
 

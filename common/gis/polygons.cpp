@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/gis/gdal_support.hpp"
+#include "common/gis/local_only.hpp"
 
 namespace talus {
 namespace fs = std::filesystem;
@@ -14,6 +15,7 @@ namespace {
 using Ring = std::vector<std::array<double, 2>>;
 
 gdal::Dataset open(const fs::path& file) {
+  gdal::require_local(file);
   const gdal::QuietErrors errors;
   gdal::Dataset dataset(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
   if (dataset && dataset->GetLayerCount() > 0) return dataset;

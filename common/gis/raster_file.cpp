@@ -10,6 +10,7 @@
 
 #include "common/gis/crs.hpp"
 #include "common/gis/gdal_support.hpp"
+#include "common/gis/grid_limits.hpp"
 #include "common/gis/raster_source.hpp"
 #include "common/stage/stage.hpp"
 
@@ -69,7 +70,9 @@ void warn_if_degrees(const fs::path& file, const MapGrid& grid) {
 MapGrid grid_of(const RasterSource& source) {
   const GeoTransform& g = source.transform();
   const double south = g[5] < 0 ? g[3] + g[5] * source.lines() : g[3];
-  return {source.columns(), source.lines(), g[0], south, g[1], gdal::horizontal_wkt(source.srs())};
+  MapGrid grid{source.columns(), source.lines(), g[0], south, g[1], gdal::horizontal_wkt(source.srs())};
+  require_told_apart(grid, source.file().string());
+  return grid;
 }
 
 bool to_be_reprojected(const RasterSource& source, const std::string& to_crs) {
@@ -145,6 +148,9 @@ Raster RasterFile::read(const CellWindow& w) const {
   raster.grid.south = whole.south + w.row * whole.cell;
   raster.grid.columns = w.columns;
   raster.grid.rows = w.rows;
+  require_room(w.columns, w.rows, sizeof(double), file().string(),
+               "Crop it (gdal_translate -projwin), take larger cells (gdalwarp -tr), or give the working grid bounds "
+               "(west_m, south_m, east_m, north_m in [preprocess.grid])");
   raster.values.resize(raster.grid.count());
   if (raster.values.empty()) return raster;
   const std::size_t before = parts_->source.undeclared_nodata();

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "common/gis/gdal_support.hpp"
+#include "common/gis/grid_limits.hpp"
+#include "common/gis/local_only.hpp"
 #include "common/gis/vertical_unit.hpp"
 #include "common/stage/stage.hpp"
 
@@ -41,6 +43,7 @@ Dataset open(const fs::path& file, const AsciiGrid& ascii) {
 }
 
 std::unique_ptr<AsciiGrid> ascii_grid(const fs::path& file) {
+  require_local(file);
   const QuietErrors errors;
   return std::make_unique<AsciiGrid>(file);
 }
@@ -66,6 +69,9 @@ RasterSource::RasterSource(fs::path file, const std::string& vertical_unit)
       ascii_(ascii_grid(file_)),
       dataset_(open(file_, *ascii_)),
       band_(dataset_->GetRasterBand(1)) {
+  const auto [across, along] = block();
+  require_room(across, along, 2 * sizeof(double), file_.string() + " is stored in blocks; one of them",
+               "Write it in tiles: gdal_translate -co TILED=YES in.tif out.tif");
   const QuietErrors errors;
   placed_ = dataset_->GetGeoTransform(transform_.data()) == CE_None;
   scale_ = band_->GetScale();

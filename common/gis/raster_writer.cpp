@@ -7,6 +7,7 @@
 
 #include "common/gis/gdal_support.hpp"
 #include "common/gis/geotiff.hpp"
+#include "common/stage/machine.hpp"
 #include "common/stage/stage.hpp"
 #include "common/stage/write_fault.hpp"
 
@@ -23,9 +24,9 @@ CPLStringList creation_options() {
                                     {"COMPRESS", "DEFLATE"},
                                     {"PREDICTOR", "3"},
                                     {"ZLEVEL", "1"},
-                                    {"NUM_THREADS", "ALL_CPUS"},
                                     {"BIGTIFF", "IF_SAFER"}})
     options.SetNameValue(name, value);
+  options.SetNameValue("NUM_THREADS", std::to_string(thread_limit()).c_str());
   return options;
 }
 

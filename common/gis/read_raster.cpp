@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "common/gis/gdal_support.hpp"
+#include "common/gis/local_only.hpp"
 #include "common/gis/raster_file.hpp"
 #include "common/gis/raster_source.hpp"
 
@@ -40,6 +41,7 @@ std::string utm_crs_of(const fs::path& file) {
 }
 
 std::optional<double> raster_item(const std::filesystem::path& file, const std::string& name) {
+  gdal::require_local(file);
   const gdal::QuietErrors errors;
   const gdal::Dataset dataset(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
   if (!dataset)

@@ -5,6 +5,17 @@
 
 namespace talus {
 
+namespace {
+
+/// XML has no way to write most control characters; names in files may hold them.
+std::string writable(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') c = ' ';
+  return text;
+}
+
+}  // namespace
+
 XmlElement XmlElement::add(const char* name, Attributes attributes) {
   XmlElement child(CPLCreateXMLNode(node_, CXT_Element, name));
   for (const auto& [key, value] : attributes) child.set(key, value);
@@ -12,11 +23,11 @@ XmlElement XmlElement::add(const char* name, Attributes attributes) {
 }
 
 XmlElement XmlElement::add_text(const char* name, const std::string& text) {
-  return XmlElement(CPLCreateXMLElementAndValue(node_, name, text.c_str()));
+  return XmlElement(CPLCreateXMLElementAndValue(node_, name, writable(text).c_str()));
 }
 
 void XmlElement::set(const char* key, const std::string& value) {
-  CPLAddXMLAttributeAndValue(node_, key, value.c_str());
+  CPLAddXMLAttributeAndValue(node_, key, writable(value).c_str());
 }
 
 XmlDocument::XmlDocument(const char* root, XmlElement::Attributes attributes)

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "common/recipe/shown_paths.hpp"
 #include "common/recipe/suggest.hpp"
 #include "common/recipe/values.hpp"
 #include "common/recipe/walk.hpp"
@@ -18,7 +19,7 @@ class Reader : public Visitor {
  public:
   Reader(const toml::table& root, std::string shown, fs::path folder, std::string_view stage,
          std::vector<Fault>& faults)
-      : walk_(root, std::move(shown), faults), folder_(std::move(folder)) {
+      : walk_(root, shown, faults), folder_(std::move(folder)), shown_(std::move(shown)) {
     walk_.push_table(stage);
   }
   Reader(const Reader&) = delete;
@@ -98,6 +99,7 @@ class Reader : public Visitor {
 
   Walk walk_;
   fs::path folder_;
+  std::string shown_;  // the recipe as the user wrote it
 };
 
 bool Reader::read_number(const toml::node& node, std::string_view key, double& value, const Range& range, bool finite) {
@@ -188,6 +190,10 @@ void Reader::path(std::string_view key, fs::path& value, std::string_view) {
   if (!unset.empty()) return;
   const bool as_it_is = expanded.empty() || names_a_dataset(expanded);
   value = as_it_is ? fs::path(expanded) : (folder_ / expanded).lexically_normal();
+  if (as_it_is || fs::path(given).is_absolute()) return;
+  const bool by_environment = given != expanded;
+  const fs::path from_here = fs::path(shown_).parent_path() / given;
+  show_path_as(value, by_environment ? given : from_here.lexically_normal().string(), given);
 }
 
 bool Reader::is_one_of(const toml::node& node, std::string_view key, const std::string& word,

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "common/recipe/parsed.hpp"
+#include "common/recipe/shown_paths.hpp"
 #include "common/recipe/suggest.hpp"
 
 namespace talus::recipe {
@@ -23,7 +24,12 @@ std::string read_whole(const fs::path& file) {
   if (fs::is_directory(file)) refuse("it is a folder");
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
-  std::string text(std::istreambuf_iterator<char>(stream), {});
+  constexpr std::size_t most = 16 << 20;  // far beyond any recipe: a device would never end
+  std::string text;
+  for (auto c = std::istreambuf_iterator<char>(stream); c != std::istreambuf_iterator<char>() && text.size() <= most;
+       ++c)
+    text += *c;
+  if (text.size() > most) refuse("it is longer than 16 MB");
   if (!stream) refuse(std::generic_category().message(errno));
   return text;
 }
@@ -66,6 +72,8 @@ Recipe::Recipe(const fs::path& file) : parsed_(std::make_unique<Parsed>()) {
   parsed_->root = parse(file);
   parsed_->file = fs::absolute(file).lexically_normal();
   parsed_->shown = file.string();
+  show_path_as(parsed_->file, parsed_->shown, file.filename().string());
+  show_path_as(parsed_->file.parent_path(), file.parent_path().string(), "");
 }
 
 Recipe::~Recipe() = default;
@@ -74,7 +82,11 @@ const fs::path& Recipe::file() const { return parsed_->file; }
 
 std::string Recipe::scene_name() const {
   const std::string name = scene_of(parsed_->root).name;
-  return name.empty() ? parsed_->file.stem().string() : name;
+  if (!name.empty()) return name;
+  std::string stem = parsed_->file.stem().string();
+  for (char& c : stem)
+    if (!fit_for_a_file_name(std::string(1, c))) c = '_';
+  return stem;
 }
 
 std::string Recipe::title() const {

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "common/error.hpp"
+#include "common/stage/input_file.hpp"
 #include "common/stage/write_fault.hpp"
 
 namespace talus::h5 {
@@ -99,6 +100,7 @@ File File::create(const std::filesystem::path& path, Naming naming) {
 File File::open(const std::filesystem::path& path, Naming naming) {
   prepare_library();
   if (!std::filesystem::exists(path)) throw DataError({naming.shown.string() + ": no such file", "", naming.mend});
+  require_plain(path);
   File file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), std::move(naming), false);
   if (file.id_ < 0) file.fail("cannot be opened as HDF5");
   return file;

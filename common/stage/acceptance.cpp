@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "common/recipe/shown_paths.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus {
@@ -17,14 +18,20 @@ constexpr const char* prefix = "accepted.";
 void Acceptance::judge(const Implausible& finding) {
   const auto& [name, fault] = finding;
   if (std::find(names_.begin(), names_.end(), name) == names_.end()) {
-    throw DataError(Fault{fault.what, fault.why,
-                          fmt::format("{}. To insist on it: accept = [\"{}\"] in [{}]", fault.mend, name, table_)});
+    refused_.push_back({fault.what, fault.why,
+                        fmt::format("{}. To insist on it: accept = [\"{}\"] in [{}]", fault.mend, name, table_)});
+    if (!collecting_) settle();
+    return;
   }
-  const std::string words = fmt::format("{} ({})", fault.what, fault.why), key = prefix + name;
+  const std::string words = with_shown_paths(fmt::format("{} ({})", fault.what, fault.why)), key = prefix + name;
   const auto known = [&](const auto& fact) { return fact.first == key; };
   if (std::any_of(facts_.begin(), facts_.end(), known)) return;
   log_warning(fmt::format("accepted, \"{}\": {}", name, words));
   facts_.emplace_back(key, words);
+}
+
+void Acceptance::settle() {
+  if (!refused_.empty()) throw DataError(std::exchange(refused_, {}));
 }
 
 void Acceptance::warn_of_unmet() const {

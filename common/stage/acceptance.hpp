@@ -23,8 +23,22 @@ class Acceptance {
   /// `table` as messages call it: "preprocess".
   Acceptance(std::string table, std::vector<std::string> names) : table_(std::move(table)), names_(std::move(names)) {}
 
+  /// From now on judge() keeps what it refuses for settle(), so that a stage says all of it at once.
+  void collect() { collecting_ = true; }
   /// Throws DataError that names key and value of the recipe, unless it is accepted: then warns, and keeps it.
   void judge(const Implausible& finding);
+  /// Throws one DataError of all that was refused since collect().
+  void settle();
+  /// What `work` returns. Where a DataError ends it, what was refused before stands in front of it: it may be why.
+  template <class Work>
+  auto meanwhile(const Work& work) {
+    try {
+      return work();
+    } catch (const DataError& error) {
+      refused_.insert(refused_.end(), error.faults().begin(), error.faults().end());
+      throw DataError(std::exchange(refused_, {}));
+    }
+  }
   /// Warns of names in the recipe that nothing met: the next mistake of this kind would pass unseen.
   void warn_of_unmet() const;
   /// What was insisted on: a fact for each, "accepted.NAME" and the words of the refusal. It goes with the results.
@@ -34,6 +48,8 @@ class Acceptance {
   std::string table_;
   std::vector<std::string> names_;
   std::vector<std::pair<std::string, std::string>> facts_;
+  bool collecting_ = false;
+  std::vector<Fault> refused_;
 };
 
 /// Of facts kept with a result, those of what was insisted on: name, and the words of the refusal.

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <deque>
 
+#include "common/stage/machine.hpp"
+
 namespace talus {
 namespace {
 
@@ -14,6 +16,8 @@ constexpr auto exit_codes =
     "Exit codes: 0 done, 1 a bug, 2 the recipe or the command line is wrong, 3 a file is wrong or cannot be written,\n"
     "4 the computation failed, 130 ended by Ctrl-C.\n"
     "Result paths go to stdout, everything for people to stderr.";
+
+constexpr int most_threads = 4096;
 
 /// A flag of the stage's own on the command line.
 struct Own {
@@ -72,6 +76,12 @@ void declare(CLI::App& app, const Stage& stage, CommandLine& line, Words& words)
                "Print [scene] and this stage's recipe table as they would be used, defaults filled in; run nothing");
   app.add_flag("--depends", line.print_depends,
                "Print what this stage reads, as rules for make; run and write nothing");
+  app.add_option("--threads", line.threads,
+                 fmt::format("Threads to take at most (default: as many as this process may run at once, {} here)",
+                             usable_threads()))
+      ->type_name("N")
+      ->check(CLI::Range(1, most_threads).description(""));
+  app.add_flag("--network", line.network, "Let inputs name places on a network and databases, which GDAL then opens");
   for (Flag& flag : own_flags(stage)) declare(app, words.own.emplace_back(Own{std::move(flag)}));
   auto* verbose = app.add_flag("-v,--verbose", words.verbose, "Say more");
   app.add_flag("-q,--quiet", words.quiet, "Say nothing but errors")->excludes(verbose);
@@ -102,8 +112,9 @@ std::string usage(const Stage& stage) {
     const std::string value = shown_value(flag);
     own += fmt::format(" [{}{}{}]", flag.name, value.empty() ? "" : " ", value);
   }
-  return fmt::format("Usage: {} recipe.toml [--out DIR] [--check] [--template]{} [-v|-q] (all of it: {} --help)",
-                     stage.name, own, stage.name);
+  return fmt::format(
+      "Usage: {} recipe.toml [--out DIR] [--check] [--template] [--threads N]{} [-v|-q] (all of it: {} --help)",
+      stage.name, own, stage.name);
 }
 
 std::variant<CommandLine, Answer> parse_command_line(int argc, char** argv, const Stage& stage) {

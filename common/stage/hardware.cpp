@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include <fstream>
-#include <thread>
 
+#include "common/stage/machine.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus {
@@ -20,7 +20,7 @@ std::string processor_name() {
 }  // namespace
 
 std::string hardware() {
-  const unsigned threads = std::thread::hardware_concurrency();
+  const int threads = thread_limit();
   return fmt::format("{}, {} thread{}", processor_name(), threads, threads == 1 ? "" : "s");
 }
 

@@ -1,6 +1,7 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "common/recipe/shown_paths.hpp"
 #include "common/stage/console.hpp"
 #include "common/stage/stage.hpp"
 
@@ -18,6 +19,15 @@ spdlog::logger& logger() {
 
 Verbosity current = Verbosity::normal;
 
+/// A message as it is shown: paths as the user wrote them, and no control characters, which names in files may hold and
+/// a terminal would obey.
+std::string shown(const std::string& text) {
+  std::string plain = with_shown_paths(text);
+  for (char& c : plain)
+    if ((static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') || c == 0x7f) c = '?';
+  return plain;
+}
+
 }  // namespace
 
 void set_verbosity(Verbosity verbosity) {
@@ -33,22 +43,22 @@ Verbosity verbosity() { return current; }
 
 void log_info(const std::string& text) {
   clear_progress_line();
-  logger().info(text);
+  logger().info(shown(text));
 }
 
 void log_warning(const std::string& text) {
   clear_progress_line();
-  logger().warn("warning: " + text);
+  logger().warn("warning: " + shown(text));
 }
 
 void log_detail(const std::string& text) {
   if (current == Verbosity::verbose) clear_progress_line();
-  logger().debug(text);
+  logger().debug(shown(text));
 }
 
 void log_error(const std::string& text) {
   clear_progress_line();
-  logger().error(text);
+  logger().error(shown(text));
 }
 
 }  // namespace talus

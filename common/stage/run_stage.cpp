@@ -7,9 +7,12 @@
 #include <optional>
 #include <system_error>
 
+#include "common/recipe/shown_paths.hpp"
 #include "common/stage/command_line.hpp"
 #include "common/stage/console.hpp"
+#include "common/stage/input_file.hpp"
 #include "common/stage/interrupt.hpp"
+#include "common/stage/machine.hpp"
 #include "common/stage/output_lock.hpp"
 #include "common/stage/stage.hpp"
 
@@ -80,6 +83,7 @@ void run(const CommandLine& line, const std::string& command, const Stage& stage
       .recipe = recipe::Recipe(line.recipe), .out = {}, .check_only = line.check_only, .command_line = command};
   const fs::path beside = context.recipe.file().parent_path() / "out";
   context.out = line.out.empty() ? beside : fs::absolute(line.out).lexically_normal();
+  if (!line.out.empty()) show_path_as(context.out, line.out.lexically_normal().string(), line.out.filename().string());
   if (line.print_used || line.print_depends) return print_inputs(line, stage, context);
   watch_for_interrupts(stage.name);
   std::optional<OutputLock> lock;
@@ -106,6 +110,8 @@ int guarded(int argc, char** argv, const Stage& stage) {
   } else {
     const auto& line = std::get<CommandLine>(parsed);
     set_verbosity(line.verbosity);
+    set_thread_limit(line.threads);
+    allow_network(line.network);
     run(line, joined(argc, argv), stage);
   }
   errno = 0;

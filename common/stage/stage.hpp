@@ -48,7 +48,8 @@ struct Stage {
 
 /// Parses the command line, runs the stage, prints faults on stderr and result paths on stdout. Returns the exit code.
 /// Options of every stage: recipe.toml, --out DIR (default: the recipe's folder / "out"), --check, --template, --used,
-/// --depends, --on (which only a stage that runs kernels heeds), -v, -q, --help (exit codes and examples included),
+/// --depends, --threads N, --on (which only a stage that runs kernels heeds), -v, -q, --help (exit codes and examples
+/// included),
 /// --version (with the commit); and those of stage.flags.
 int run_stage(int argc, char** argv, const Stage& stage);
 
@@ -108,7 +109,7 @@ void write_used_recipe(StageContext& context, const Stage& stage, const std::str
                        const std::vector<std::filesystem::path>& inputs,
                        const std::vector<std::pair<std::string, std::string>>& facts);
 
-/// Name of the processor and count of hardware threads: "AMD EPYC 7B13, 2 threads".
+/// Name of the processor and the number of threads that this process takes at most: "AMD EPYC 7B13, 2 threads".
 std::string hardware();
 
 /// One line redrawn on a terminal; elsewhere one line every ten seconds. Goes to stderr; silent under -q.

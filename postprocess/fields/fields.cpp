@@ -1,5 +1,8 @@
 #include "postprocess/fields/fields.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -46,6 +49,20 @@ Raster values_raster(const RunMaps& maps, const std::vector<double>& values, boo
       raster.values[i] = 0;
   }
   return raster;
+}
+
+std::vector<std::string> file_words(const std::vector<std::pair<std::string, std::vector<double>>>& named) {
+  std::vector<std::string> words;
+  const auto taken = [&](const std::string& word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+  };
+  for (const auto& [name, values] : named) {
+    const std::string plain = file_word(name);
+    std::string word = plain;
+    for (int k = 2; taken(word); ++k) word = fmt::format("{}-{}", plain, k);
+    words.push_back(word);
+  }
+  return words;
 }
 
 std::string file_word(const std::string& name) {

@@ -27,6 +27,9 @@ Raster values_raster(const RunMaps& maps, const std::vector<double>& values, boo
 /// A name as part of a file's: letters, digits, dots and dashes, "-" for anything else.
 std::string file_word(const std::string& name);
 
+/// Those of several names, in their order: where two would be the same, the later one ends in "-2", "-3", ...
+std::vector<std::string> file_words(const std::vector<std::pair<std::string, std::vector<double>>>& named);
+
 /// What the analyst insisted on, in the stages before and in this one, as one line for the metadata of maps; "" for
 /// nothing.
 std::string accepted_words(const RunSummary& summary);

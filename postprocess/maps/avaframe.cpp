@@ -11,6 +11,7 @@
 #include "common/gis/geotiff.hpp"
 #include "common/map/slope.hpp"
 #include "common/stage/identity.hpp"
+#include "common/stage/input_file.hpp"
 #include "common/stage/stage.hpp"
 #include "postprocess/fields/fields.hpp"
 
@@ -82,6 +83,7 @@ char size_letter(double volume) { return volume < 25e3 ? 'S' : volume < 60e3 ? '
 
 std::string settings_text(const Run& run, const fs::path& run_file) {
   std::string text;
+  require_plain(run_file.parent_path() / "solve.used.toml");
   std::ifstream stream(run_file.parent_path() / "solve.used.toml");
   std::string whole(std::istreambuf_iterator<char>(stream), {});
   std::istringstream used(is_used_recipe_of(whole, fact(run.summary.provenance, run_id)) ? whole : "");

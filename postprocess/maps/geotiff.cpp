@@ -47,8 +47,10 @@ std::vector<std::filesystem::path> write_geotiffs(const std::filesystem::path& f
   };
   for (const MapField& field : product_fields(run.maps))
     put(field.name, field.product.title, field.unit, field.product.zero_inside, field_raster(run.maps, field));
-  for (const auto& [release, values] : run.maps.deposit_of) {
-    put("deposit_thickness_" + file_word(release), "deposit thickness of one release, vertical", "m", true,
+  const std::vector<std::string> words = file_words(run.maps.deposit_of);
+  for (std::size_t r = 0; r < words.size(); ++r) {
+    const std::vector<double>& values = run.maps.deposit_of[r].second;
+    put("deposit_thickness_" + words[r], "deposit thickness of one release, vertical", "m", true,
         values_raster(run.maps, values, true));
   }
   return files;

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "common/stage/machine.hpp"
 #include "common/stage/stage.hpp"
 #include "postprocess/score/thalweg.hpp"
 
@@ -90,9 +91,9 @@ bool encode(const PictureInput& input, const std::string& tail, int rate) {
     const auto canvas =
         draw_map({input.run, input.options, input.survey, input.score, Instant{frames.time[i], flow, most}});
     if (!pipe)
-      pipe.emplace(
-          fmt::format("ffmpeg -nostdin -loglevel error -y -f rawvideo -pix_fmt bgr0 -s {}x{} -r {} -i pipe:0 {}",
-                      canvas.width(), canvas.height(), rate, tail));
+      pipe.emplace(fmt::format(
+          "ffmpeg -nostdin -loglevel error -y -f rawvideo -pix_fmt bgr0 -s {}x{} -r {} -i pipe:0 -threads {} {}",
+          canvas.width(), canvas.height(), rate, thread_limit(), tail));
     const auto pixels = canvas.pixels();
     const int times = i + 1 == frames.time.size() ? 1 + seconds_at_the_end * rate : 1;
     for (int k = 0; k < times; ++k)

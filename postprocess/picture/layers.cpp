@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -82,21 +83,26 @@ void label_contour(Canvas& canvas, const View& view, const Polyline& line, doubl
   canvas.text(words, x + 6 * std::sin(angle), y + 6 * std::cos(angle), style);
 }
 
-/// Lowest and highest elevation inside the frame.
-std::pair<double, double> relief(const View& view, const RunMaps& maps) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
+/// Elevations inside the frame [m], nodata left out.
+std::vector<double> elevations(const View& view, const RunMaps& maps) {
+  std::vector<double> inside;
   const auto& grid = maps.grid;
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
       const double x = grid.x(column), y = grid.y(row), z = maps.before[grid.index(column, row)];
-      if (std::isnan(z) || x < view.window.west || x > view.window.east || y < view.window.south ||
-          y > view.window.north)
-        continue;
-      low = std::min(low, z);
-      high = std::max(high, z);
+      if (std::isfinite(z) && x >= view.window.west && x <= view.window.east && y >= view.window.south &&
+          y <= view.window.north)
+        inside.push_back(z);
     }
   }
-  return {low, high};
+  return inside;
+}
+
+/// The elevation below which a part of the cells lies; `all` is put into another order.
+double quantile(std::vector<double>& all, double part) {
+  const auto place = all.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(all.size() - 1));
+  std::nth_element(all.begin(), place, all.end());
+  return *place;
 }
 
 }  // namespace
@@ -143,11 +149,9 @@ void draw_ground(Canvas& canvas, const View& view, const RunMaps& maps, const st
   canvas.image(static_cast<int>(view.box.x), static_cast<int>(view.box.y), width, height, pixels);
 }
 
-void draw_contours(Canvas& canvas, const View& view, const RunMaps& maps, double interval) {
-  if (interval <= 0) return;
-  const auto [least, most] = relief(view, maps);
-  for (long k = std::lround(std::ceil(least / interval)); static_cast<double>(k) * interval <= most; ++k) {
-    const double level = static_cast<double>(k) * interval;
+void draw_contours(Canvas& canvas, const View& view, const RunMaps& maps, const ContourLevels& levels) {
+  for (long k = levels.first; k <= levels.last; ++k) {
+    const double level = static_cast<double>(k) * levels.interval;
     const auto lines = isolines(maps.grid, maps.before, level, AtEdge::end);
     for (const auto& line : lines) canvas.line(on_canvas(view, line), contour_pen(k % 5 == 0));
     if (k % 5 != 0 || lines.empty()) continue;
@@ -181,9 +185,22 @@ void draw_outlines(Canvas& canvas, const View& view, const RunMaps& maps, const 
   draw(canvas, view, lines, survey_style());
 }
 
-double contour_interval(const View& view, const RunMaps& maps) {
-  const auto [low, high] = relief(view, maps);
-  return high - low > 0 ? round_below((high - low) / 10) : 0;
+ContourLevels contour_levels(const View& view, const RunMaps& maps) {
+  constexpr double rare = 0.005;  // of the cells, at either end
+  std::vector<double> all = elevations(view, maps);
+  if (all.empty()) return {};
+  const auto [least, most] = std::minmax_element(all.begin(), all.end());
+  const double low = *least, high = *most;
+  if (!(high > low)) return {};
+  double bottom = quantile(all, rare), top = quantile(all, 1 - rare);
+  if (!(top > bottom)) bottom = low, top = high;  // a plain with something on it
+  const double interval = round_below((top - bottom) / 10), relief = top - bottom;
+  // Summits and gorges beyond the usual get their contours too, as far again as the relief; spikes do not.
+  const double from = std::max(low, bottom - relief / 2), to = std::min(high, top + relief / 2);
+  const double first = std::ceil(from / interval), last = std::floor(to / interval);
+  constexpr double countable = 1e15;  // a relief of nothing at an elevation without end has no contours
+  if (!(std::abs(first) < countable && std::abs(last) < countable)) return {};
+  return {interval, static_cast<long>(first), static_cast<long>(last)};
 }
 
 }  // namespace talus::postprocess

@@ -33,13 +33,20 @@ Pen contour_pen(bool is_index);
 /// Hillshade and thickness classes, pixel by pixel.
 void draw_ground(Canvas& canvas, const View& view, const RunMaps& maps, const std::vector<double>& limits);
 
-/// Contours at multiples of `interval`, every fifth heavier and labelled.
-void draw_contours(Canvas& canvas, const View& view, const RunMaps& maps, double interval);
+/// Contours lie at `interval` [m] times the whole numbers from `first` to `last`; none where the interval is 0.
+struct ContourLevels {
+  double interval = 0;
+  long first = 0, last = -1;
+};
+
+/// About a dozen contours over the relief inside the frame, without the hundredth of the cells that are highest and
+/// lowest: a spike draws no more than some forty. None on a plain.
+ContourLevels contour_levels(const View& view, const RunMaps& maps);
+
+/// Contours at these levels, every fifth heavier and labelled.
+void draw_contours(Canvas& canvas, const View& view, const RunMaps& maps, const ContourLevels& levels);
 
 /// Outlines: release, footprint, and the survey's deposit and footprint, or whichever of the two it has.
 void draw_outlines(Canvas& canvas, const View& view, const RunMaps& maps, const PictureInput& input);
-
-/// Interval of about a dozen contours over the relief shown; 0 on a plain.
-double contour_interval(const View& view, const RunMaps& maps);
 
 }  // namespace talus::postprocess

@@ -46,20 +46,20 @@ Canvas draw_map(const PictureInput& input) {
   const auto limits = class_limits(
       input.options.classes, input.instant ? input.instant->thickest : thickest(input.run.maps.deposit_thickness));
   const auto maps = shown_maps(input, window);
-  const double interval = contour_interval(view, maps);
+  const ContourLevels contours = contour_levels(view, maps);
   const double width = left + view.box.width + gap + sidebar + right;
   const double height = top + std::max(view.box.height, least_height) + bottom;
 
   Canvas canvas(static_cast<int>(width), static_cast<int>(height));
   canvas.clip(view.box);
   draw_ground(canvas, view, maps, limits);
-  draw_contours(canvas, view, maps, interval);
+  draw_contours(canvas, view, maps, contours);
   draw_outlines(canvas, view, maps, input);
   canvas.unclip();
   canvas.frame(view.box, {{0.1, 0.1, 0.12}, 2.5, {}, 1});
   draw_coordinates(canvas, view);
   draw_title(canvas, input, left, 30, width - left - right);
-  draw_sidebar(canvas, input, view, limits, interval,
+  draw_sidebar(canvas, input, view, limits, contours.interval,
                {left + view.box.width + gap, top, sidebar, height - top - bottom});
   draw_footer(canvas, input, left, height - 26);
   if (input.instant) draw_time(canvas, input.instant->time, view);

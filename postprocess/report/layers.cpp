@@ -138,9 +138,12 @@ void Layers::simulated() {
     if (!field.optional) of_run(field);
   }
   const auto deposit = thickness_classes(maps_.deposit_thickness);
-  for (const auto& [name, values] : maps_.deposit_of)
-    add({"deposit_" + file_word(name), "Deposit from " + name, "m", deposit, values_raster(maps_, values, true),
+  const std::vector<std::string> words = file_words(maps_.deposit_of);
+  for (std::size_t r = 0; r < words.size(); ++r) {
+    const auto& [name, values] = maps_.deposit_of[r];
+    add({"deposit_" + words[r], "Deposit from " + name, "m", deposit, values_raster(maps_, values, true),
          MergedCells::mean, 2, "The part of the deposit that came from this release, vertical."});
+  }
   for (const MapField& field : map_fields) {
     if (field.optional) of_run(field);
   }

@@ -30,19 +30,10 @@ Json outline(const MapGrid& grid, const std::vector<double>& values, double leve
 }
 
 Json contours(const RunMaps& maps, const Window& window) {
-  const double interval = contour_interval({window, {}}, maps);
-  Json json{{"interval", interval}, {"levels", Json::array()}};
-  if (interval <= 0) return json;
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const double z : maps.before) {
-    if (z < low) low = z;
-    if (z > high) high = z;
-  }
-  if (!(low <= high)) return json;
-  const auto first = static_cast<long>(std::ceil(low / interval)),
-             last = static_cast<long>(std::floor(high / interval));
-  for (long k = first; k <= last; ++k) {
-    const double level = static_cast<double>(k) * interval;
+  const ContourLevels levels = contour_levels({window, {}}, maps);
+  Json json{{"interval", levels.interval}, {"levels", Json::array()}};
+  for (long k = levels.first; k <= levels.last; ++k) {
+    const double level = static_cast<double>(k) * levels.interval;
     auto lines = lines_json(isolines(maps.grid, maps.before, level, AtEdge::end), window);
     if (!lines.empty())
       json["levels"].push_back({{"level", level}, {"index", k % 5 == 0}, {"lines", std::move(lines)}});

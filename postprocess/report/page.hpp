@@ -5,7 +5,8 @@
 namespace talus::postprocess {
 
 /// The page without its data: page/ and the libraries it uses, put together when the program is built. The data belong
-/// where "@DATA@" stands, the title where "@TITLE@" does.
+/// where "@DATA@" stands, the title where "@TITLE@" does, and the hashes of its scripts and styles where
+/// "@HASHES_OF_SCRIPTS@" and "@HASHES_OF_STYLES@" do.
 std::string_view page_template();
 
 }  // namespace talus::postprocess

@@ -3,6 +3,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "common/stage/input_file.hpp"
+
 namespace talus::postprocess {
 
 namespace {
@@ -13,6 +15,7 @@ std::filesystem::path file_in(const std::filesystem::path& out) { return out / "
 
 /// The file, null where there is none, discarded where it is no JSON.
 Json read_json(const std::filesystem::path& out) {
+  require_plain(file_in(out));
   std::ifstream stream(file_in(out));
   return stream ? Json::parse(stream, nullptr, false) : Json(nullptr);
 }
@@ -40,7 +43,7 @@ FoundSurvey read_found_survey(const std::filesystem::path& out) {
     throw DataError(
         {file_in(out).string() + ": it is no JSON", "it was cut short or edited", "Run talus-preprocess again"});
   const Json outside = table(json, "outside_slide");
-  FoundSurvey found{error_known(json), flag(outside, "large", false), ""};
+  FoundSurvey found{error_known(json), flag(outside, "large", false), flag(outside, "doubtful", false), ""};
   if (outside.contains("words") && outside.at("words").is_string())
     found.outside_words = outside.at("words").get<std::string>();
   found.id = word_in(json, "id");

@@ -11,7 +11,8 @@ namespace talus::postprocess {
 /// What OUT/survey/survey.json says.
 struct FoundSurvey {
   bool error_known = true;
-  bool outside_is_large = false;  ///< much changed outside the slide, and nothing explains it
+  bool outside_is_large = false;     ///< much changed outside the slide, and nothing explains it
+  bool outside_is_doubtful = false;  ///< much of what counts as noise lies within reach of the slide
   std::string outside_words = {};
   std::string id = {};           ///< of the domain that was prepared with it; empty in files of earlier versions
   std::string recipe_mark = {};  ///< of the [preprocess] that made it; likewise

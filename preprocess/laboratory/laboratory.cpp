@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "common/gis/grid_limits.hpp"
 #include "preprocess/options/laboratory.hpp"
 #include "preprocess/particles/shift.hpp"
 
@@ -18,7 +19,7 @@ std::array<long, 3> lattice_of(const BoxOptions& box, const GridOptions& grid) {
   const auto sides = sides_of(box);
   const auto spacing = point_spacing(grid);
   std::array<long, 3> counts{};
-  for (std::size_t a = 0; a < 3; ++a) counts[a] = std::lround(sides[a].length() / spacing[a]);
+  for (std::size_t a = 0; a < 3; ++a) counts[a] = std::lround(std::min(sides[a].length() / spacing[a], 1e18));
   return counts;
 }
 
@@ -44,6 +45,9 @@ Raster cover_of(const MapGrid& grid, const BoxOptions& box) {
 Raster laboratory_ground(const Options& options) {
   const LaboratoryOptions& lab = options.laboratory;
   const MapGrid grid = laboratory_grid(options);
+  constexpr double bytes_per_cell = 100;
+  require_told_apart(grid, "[preprocess.laboratory]");
+  require_room(grid.columns, grid.rows, bytes_per_cell, "[preprocess.laboratory]", "Give fewer columns or rows");
   Raster ground{grid, std::vector<double>(grid.count())};
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
@@ -73,12 +77,12 @@ Raster box_surface(const Options& options, const Raster& ground) {
 }
 
 std::size_t count_box_points(const Options& options) {
-  std::size_t count = 0;
+  double count = 0;  // beyond all that can be counted before it overflows
   for (const BoxOptions& box : options.box) {
     const auto n = lattice_of(box, options.grid);
-    count += static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]) * static_cast<std::size_t>(n[2]);
+    count += static_cast<double>(n[0]) * static_cast<double>(n[1]) * static_cast<double>(n[2]);
   }
-  return count;
+  return static_cast<std::size_t>(std::min(count, 1e18));
 }
 
 SeedPoints seed_boxes(const Options& options) {

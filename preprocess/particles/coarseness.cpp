@@ -1,9 +1,12 @@
 #include "preprocess/particles/coarseness.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "common/map/sum.hpp"
 #include "preprocess/particles/seed.hpp"
@@ -65,14 +68,17 @@ std::optional<std::string> too_coarse(const Raster& thickness, double layer_heig
   for (const double t : thickness.values) volume.add(t > 0 ? t : 0);
   double wanted = volume.value() * cell * cell / (spacing * spacing * layer);
   for (const int n : grid.points_per_cell) wanted *= n;
+  std::vector<std::string> keys;  // those that change
+  if (spacing < cell) keys.push_back(fmt::format("spacing_m = {:g}", spacing));
+  if (layer < layer_height || keys.empty() || grid.layer_height > 0)
+    keys.push_back(fmt::format("layer_height_m = {:g}", layer));
   return fmt::format(
       "the grid is coarse for this release: about {:.3g} m wide, it has {:.2g} cells of {:g} m across, and over its "
       "thickness of {:.2g} m (median by volume) {:.2g} layers of {:g} m; {} material points are all of it. Run-out and "
-      "thickness depend on the cells then. For {:g} cells and {:g} layers put spacing_m = {:g} and layer_height_m = "
-      "{:g} "
-      "into [preprocess.grid] (some {} points)",
+      "thickness depend on the cells then. For {:g} cells and {:g} layers put {} into [preprocess.grid] (some {} "
+      "points)",
       f.width, f.across, cell, f.median, f.layers, layer_height, grouped(static_cast<double>(points)), enough_across,
-      enough_layers, spacing, layer, grouped(wanted));
+      enough_layers, fmt::join(keys, " and "), grouped(wanted));
 }
 
 }  // namespace talus::preprocess

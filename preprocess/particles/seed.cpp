@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numeric>
 
 #include "preprocess/particles/shift.hpp"
@@ -10,6 +11,8 @@
 namespace talus::preprocess {
 
 namespace {
+
+constexpr double most = std::numeric_limits<int>::max();
 
 struct Counts {
   int x, y, z;
@@ -21,7 +24,7 @@ struct Counts {
 Counts counts_for(double thickness, const Seeding& s) {
   if (thickness < s.minimum_thickness) return {1, 1, 1};
   const double layers = std::round(thickness / s.layer_height * s.in_height);
-  return {s.along_x, s.along_y, static_cast<int>(std::max(1.0, layers))};
+  return {s.along_x, s.along_y, static_cast<int>(std::clamp(layers, 1.0, most))};
 }
 
 struct Column {
@@ -88,11 +91,15 @@ Seeding seeding_of(const GridOptions& options, double layer_height) {
 }
 
 std::size_t count_points(const std::vector<Release>& releases, const Seeding& seeding) {
-  std::size_t count = 0;
+  double count = 0;  // exact up to 2^53, and beyond all that can be counted before it overflows
   for (const Release& release : releases) {
-    for (double t : release.thickness.values) count += t > 0 ? counts_for(t, seeding).all() : 0;
+    for (double t : release.thickness.values) {
+      if (!(t > 0)) continue;
+      const Counts n = counts_for(t, seeding);
+      count += static_cast<double>(n.x) * n.y * n.z;
+    }
   }
-  return count;
+  return static_cast<std::size_t>(std::min(count, 1e18));
 }
 
 SeedPoints seed_points(const std::vector<Release>& releases, const Seeding& seeding) {

@@ -11,6 +11,8 @@
 #include "common/error.hpp"
 #include "common/map/crop.hpp"
 #include "common/map/slope.hpp"
+#include "common/map/sum.hpp"
+#include "common/stage/machine.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/laboratory/laboratory.hpp"
 #include "preprocess/obstacle/obstacles.hpp"
@@ -46,6 +48,12 @@ ReadOptions reading(const Options& options, VerticalUnit of_model = VerticalUnit
   return dem_reading(options.working_crs, of_model == VerticalUnit::same ? options.vertical_unit : of_model);
 }
 
+/// The unit that the recipe gives for the heights of the first elevation model.
+VerticalUnit unit_of_first(const Options& options) {
+  const bool own = !options.before_dem.empty() && options.before_vertical_unit != VerticalUnit::same;
+  return own ? options.before_vertical_unit : options.vertical_unit;
+}
+
 std::vector<Raster> align(const std::vector<const Elevation*>& dems, const Options& options,
                           std::vector<Filled>* filled = nullptr) {
   return align(
@@ -69,14 +77,20 @@ SceneRasters from_source(Raster before, Source source) {
 SceneRasters from_before_and_after(const Options& options) {
   Survey survey = survey_of(options);
   std::vector<Filled> filled;
-  std::vector<Raster> surfaces = align({&survey.before, &survey.after}, options, &filled);
-  SurveyedSlide slide = slide_on(survey, surfaces[0], filled);
-  Source source =
-      find_source({surfaces[0], surfaces[1], options.after_dem, false, survey.source, levels_of(survey, slide.sigma)},
-                  options.source);
+  std::vector<Raster> surfaces;
+  SurveyedSlide slide = survey.accepted.meanwhile([&] {
+    surfaces = align({&survey.before, &survey.after}, options, &filled);
+    return slide_on(survey, surfaces[0], filled);
+  });
+  Source source = survey.accepted.meanwhile([&] {
+    return find_source(
+        {surfaces[0], surfaces[1], options.after_dem, false, survey.source, levels_of(survey, slide.sigma)},
+        options.source);
+  });
   const Change change = change_between(survey, {surfaces[0], surfaces[1]}, options.deposit, slide);
   judge_order(order_of(change, sure_regions(change, options.deposit), surfaces[0]),
-              {options.before_dem.string(), options.after_dem.string()}, survey.accepted);
+              {options.before_dem.string(), options.after_dem.string(), survey.applied}, survey.accepted);
+  survey.accepted.settle();
   delineate(survey, {surfaces[0], surfaces[1], source.thickness}, options.deposit, slide);
   std::vector<double> lowering;
   for (std::size_t c = 0; c < surfaces[0].values.size(); ++c)
@@ -218,8 +232,10 @@ Acceptance judged(const Options& options, const SceneRasters& scene) {
   if (scene.survey) return scene.survey->accepted;
   Acceptance acceptance("preprocess", options.accept);
   if (options.way() == Way::laboratory) return acceptance;
-  judge_lengths(scene.bed.grid, acceptance);
-  judge_heights(scene.before, options.first_dem(), acceptance);
+  acceptance.collect();
+  judge_lengths(scene.bed.grid, options.working_crs, acceptance);
+  judge_heights(scene.before, {options.first_dem(), unit_of_first(options)}, acceptance);
+  acceptance.settle();
   return acceptance;
 }
 
@@ -252,10 +268,16 @@ void warn_at_edge(const Raster& thickness) {
 }
 
 void require_countable(std::size_t count, const GridOptions& grid) {
-  if (count <= static_cast<std::size_t>(std::numeric_limits<int>::max())) return;
-  throw RecipeError(Fault{fmt::format("[preprocess.grid]: {} material points", count), "points are numbered in 32 bits",
-                          fmt::format("Take a larger layer_height_m or spacing_m, or fewer points_per_cell than [{}]",
-                                      fmt::join(grid.points_per_cell, ", "))});
+  constexpr double bytes_per_seed = 64;  // places, volume, extents, release
+  const bool dense = grid.points_per_cell[0] * grid.points_per_cell[1] * grid.points_per_cell[2] > 1;
+  const std::string mend =
+      "Take a larger layer_height_m or spacing_m" +
+      (dense ? fmt::format(", or fewer points_per_cell than [{}]", fmt::join(grid.points_per_cell, ", "))
+             : std::string());
+  const std::string what = fmt::format("[preprocess.grid]: {} material points", grouped(static_cast<double>(count)));
+  if (count > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+    throw RecipeError(Fault{what, "points are numbered in 32 bits", mend});
+  require_memory(bytes_per_seed * static_cast<double>(count), what, mend);
 }
 
 }  // namespace
@@ -290,12 +312,13 @@ Survey survey_of(const Options& given) {
   share_crs({&before, &after}, options.working_crs);
   Survey survey = compare_surveys(std::move(before), std::move(after), options);
   survey.accepted = Acceptance("preprocess", options.accept);
-  judge_lengths(survey.grid, survey.accepted);
+  survey.accepted.collect();
+  judge_lengths(survey.grid, given.working_crs, survey.accepted);
   const MapGrid& grid = survey.grid;
   const int columns = std::min(enough, grid.columns), rows = std::min(enough, grid.rows);
   judge_heights(
       onto_grid(survey.before, cut(grid, {(grid.columns - columns) / 2, (grid.rows - rows) / 2, columns, rows})),
-      options.before_dem, survey.accepted);
+      {options.before_dem, unit_of_first(options)}, survey.accepted);
   return survey;
 }
 
@@ -313,7 +336,7 @@ Prepared prepare(const Options& given, Points points) {
   require_sound(given);
   const Options options = with_utm_zone(given);
   SceneRasters scene = read_scene(options);
-  const Acceptance acceptance = judged(options, scene);
+  const Acceptance acceptance = judged(given, scene);
   acceptance.warn_of_unmet();
   lay_erodible(options, scene);
   Prepared prepared;
@@ -325,9 +348,10 @@ Prepared prepare(const Options& given, Points points) {
   prepared.point_count = laboratory ? count_box_points(options) : count_points(scene.releases, seeding);
   require_countable(prepared.point_count, options.grid);
   if (!laboratory) {
-    if (const auto words =
-            too_coarse(prepared.domain.release_thickness, seeding.layer_height, prepared.point_count, options.grid))
-      log_warning(*words);
+    prepared.coarse =
+        too_coarse(prepared.domain.release_thickness, seeding.layer_height, prepared.point_count, options.grid)
+            .value_or("");
+    if (!prepared.coarse.empty()) log_warning(prepared.coarse);
   }
 
   Domain& domain = prepared.domain;

@@ -86,6 +86,17 @@ std::string outside_words(const SurveyedSlide& slide) {
       "no noise",
       grouped(o.rise), grouped(o.fall), grouped(o.sure_rise), grouped(o.sure_fall));
   if (!o.place.empty()) words += fmt::format(" (the largest region, {} m3, at {})", grouped(o.largest), o.place);
+  if (slide.outside_is_doubtful) {
+    words += fmt::format(
+        ". Of what counts as noise, {} m3 of rise and {} m3 of fall lie within reach of the slide, {:.0f} % of what "
+        "fell "
+        "or rose in it: so much may be missing in source, deposit and run-out, and in every score against them. If it "
+        "belongs to the slide, lower sure_cells = {} or sure_levels = {:g} in [preprocess.deposit], or draw the "
+        "deposit "
+        "(polygon)",
+        grouped(slide.near.rise), grouped(slide.near.fall),
+        100 * std::max(slide.near.rise, slide.near.fall) / larger_of(slide), slide.sure_cells, slide.sure_levels);
+  }
   if (!slide.outside_is_large) return words;
   return words + fmt::format(
                      ". That is {:.0f} % of what fell or rose in the slide, too much for a score: if it belongs to the "
@@ -124,8 +135,13 @@ void delineate(const Survey& survey, const SlideSurfaces& surfaces, const Deposi
   slide.volumes = {
       {"source", volume_in(source, slide, survey.source.empty() ? &change : nullptr, survey.errors)},
       {"deposit", volume_in(slide.deposit, slide, survey.deposit.empty() ? &change : nullptr, survey.errors)}};
-  slide.outside_is_large =
-      survey.deposit.empty() && slide.outside.unbalanced() > given.outside_share * larger_of(slide);
+  const double share = given.outside_share * larger_of(slide);
+  slide.outside_is_large = survey.deposit.empty() && slide.outside.unbalanced() > share;
+  slide.sure_cells = given.sure_cells;
+  slide.sure_levels = given.sure_levels;
+  if (!survey.deposit.empty() || slide.outside_is_large) return;
+  slide.near = change_near({before, source}, change, inside, given);
+  slide.outside_is_doubtful = std::max(slide.near.rise, slide.near.fall) > share;
 }
 
 }  // namespace talus::preprocess

@@ -44,10 +44,11 @@ std::optional<Implausible> wrong_order(const Order& o, const SurveyFiles& files)
                    "goes down",
                    o.rise_height - o.fall_height, o.rise_height, o.fall_height)
              : fmt::format("more than {:g} times as much rose as fell, and mass comes from somewhere", swells);
-  return Implausible{"swapped-surveys",
-                     {what, why,
-                      "Is before_dem the later one? Then swap before_dem and after_dem. Is one too high? Then "
-                      "mode = \"apply\" in [preprocess.coregistration]"}};
+  return Implausible{
+      "swapped-surveys",
+      {what, why,
+       std::string("Is before_dem the later one? Then swap before_dem and after_dem") +
+           (files.aligned ? "" : ". Is one too high? Then mode = \"apply\" in [preprocess.coregistration]")}};
 }
 
 void judge_order(const Order& order, const SurveyFiles& files, Acceptance& acceptance) {

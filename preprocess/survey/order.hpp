@@ -22,6 +22,7 @@ Order order_of(const Change& change, const std::vector<Region>& sure, const Rast
 /// The two files as messages call them.
 struct SurveyFiles {
   std::string before, after;
+  bool aligned = false;  ///< the later one was moved onto the earlier
 };
 
 /// "swapped-surveys" where mass would have gone uphill (what rose lies higher than what fell, and is more than a tenth

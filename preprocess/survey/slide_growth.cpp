@@ -157,6 +157,28 @@ std::vector<char> grown_slide(const SlideGround& ground, std::vector<Region> reg
   return growth.slide();
 }
 
+Near change_near(const SlideGround& ground, const Change& change, const std::vector<char>& inside,
+                 const DepositOptions& how) {
+  const MapGrid& grid = change.rise.grid;
+  Growth growth(ground, how);
+  std::vector<std::size_t> slide;
+  Raster marked{grid, std::vector<double>(grid.count(), 0.0)};
+  for (std::size_t c = 0; c < inside.size(); ++c) {
+    if (inside[c])
+      slide.push_back(c);
+    else if (change.believed(c))
+      marked.values[c] = 1;
+  }
+  growth.take(slide);
+  Near near;
+  for (const Region& region : lowering_regions(marked, 0.5)) {
+    if (!growth.reaches(region)) continue;
+    near.rise += signed_sum(change, region.cells, inside, 1);
+    near.fall += signed_sum(change, region.cells, inside, -1);
+  }
+  return near;
+}
+
 double ChangeOutside::unbalanced() const { return std::abs(sure_rise - sure_fall); }
 
 ChangeOutside change_outside(const Change& change, const std::vector<Region>& sure, const std::vector<char>& inside) {

@@ -38,6 +38,16 @@ struct SlideGround {
 /// above both its ends by more than the mean thickness of the source: the next valley is not beside this one.
 std::vector<char> grown_slide(const SlideGround& ground, std::vector<Region> regions, const DepositOptions& how);
 
+/// What is believed to have risen and fallen within reach of a slide without belonging to it [m3].
+struct Near {
+  double rise = 0, fall = 0;
+};
+
+/// Of the believed change that `inside` leaves out, the regions that would belong to the slide if they were no noise.
+/// They reach no further regions: noise hangs together with noise all over a map.
+Near change_near(const SlideGround& ground, const Change& change, const std::vector<char>& inside,
+                 const DepositOptions& how);
+
 /// What changed elsewhere than in the slide.
 struct ChangeOutside {
   double rise = 0, fall = 0;            ///< of all believed change, a share of which is noise [m3]

@@ -48,7 +48,15 @@ std::vector<MapPolygon> changed_ground(const Survey& s, const std::filesystem::p
 /// The overlap of both in cells of the first, whatever part of it and spacing the scene is computed with.
 MapGrid whole_overlap(const Elevation& before, const Elevation& after, const Options& options) {
   const double spacing = before.scattered ? options.grid.spacing : 0;
-  return working_grid({&before, &after}, {.crs = options.working_crs, .spacing = spacing});
+  MapGrid grid = working_grid({&before, &after}, {.crs = options.working_crs, .spacing = spacing});
+  constexpr double longest = 1e8, most = 1e11;  // cells: at some 10 million a second a night's work
+  const double cells = static_cast<double>(grid.columns) * grid.rows;
+  if (grid.columns > longest || grid.rows > longest || cells > most)
+    throw DataError(Fault{fmt::format("{} and {} share {} x {} cells", before.file.string(), after.file.string(),
+                                      grid.columns, grid.rows),
+                          fmt::format("surveys of up to {:g} cells, {:g} along a side, are compared", most, longest),
+                          "Cut the slide and its surroundings out of both (gdal_translate -projwin)"});
+  return grid;
 }
 
 [[noreturn]] void refuse_alignment(const Survey& s, std::size_t shared) {

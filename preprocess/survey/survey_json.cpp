@@ -97,6 +97,9 @@ std::string survey_json(const Survey& s, const Budgets& budgets, const std::opti
     for (const SurveyedVolume& side : slide->volumes) json[side.name] = json_of(side.volume);
     json["outside_slide"] = json_of(slide->outside);
     json["outside_slide"]["large"] = slide->outside_is_large;
+    json["outside_slide"]["noise_within_reach_rise_m3"] = slide->near.rise;
+    json["outside_slide"]["noise_within_reach_fall_m3"] = slide->near.fall;
+    json["outside_slide"]["doubtful"] = slide->outside_is_doubtful;
     json["outside_slide"]["words"] = outside_words(*slide);
   }
   json["accepted"] = Json::object();

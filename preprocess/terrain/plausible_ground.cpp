@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <numbers>
 
@@ -34,9 +35,26 @@ double steep_tenth(const Raster& surface) {
   return std::acos(std::min(1.0, *tenth)) * 180 / std::numbers::pi;
 }
 
+std::string capitalised(std::string words) {
+  words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
+  return words;
+}
+
+/// What to do about heights that cannot be metres, by what the recipe says of them.
+std::string unit_advice(VerticalUnit unit) {
+  switch (unit) {
+    case VerticalUnit::foot:
+    case VerticalUnit::us_survey_foot:
+      return "The recipe says that they are in feet and they are taken so: check places and nodata of the file";
+    case VerticalUnit::metre:
+      return "The recipe says metres: if it is wrong, say vertical_unit = \"foot\" in [preprocess]";
+    default: return "Say so: vertical_unit = \"foot\" (or \"us-survey-foot\") in [preprocess]";
+  }
+}
+
 }  // namespace
 
-void judge_lengths(const MapGrid& grid, Acceptance& acceptance) {
+void judge_lengths(const MapGrid& grid, const std::string& working_crs, Acceptance& acceptance) {
   const auto scale = grid_scale(grid);
   if (!scale || scale->worst.falsity() <= told) return;
   const auto& [middle, worst] = *scale;
@@ -44,17 +62,22 @@ void judge_lengths(const MapGrid& grid, Acceptance& acceptance) {
       "working grid in {}: a metre on the ground is {:.4g} m along x and {:.4g} m along y on the map in its middle "
       "({:.4g} and {:.4g} m where that is worst); areas and volumes come out {:.4g} times as large",
       crs_name(grid.crs_wkt), middle.x, middle.y, worst.x, worst.y, middle.area);
-  const char* const mend = "set working_crs = \"utm\" in [preprocess], or name a CRS that keeps lengths there";
+  const char* const mend =
+      working_crs == "utm"
+          ? "crop the working grid (west_m, south_m, east_m, north_m in [preprocess.grid]): its corners "
+            "lie far outside one UTM zone"
+      : working_crs.empty() ? "set working_crs = \"utm\" in [preprocess], or name a CRS that keeps lengths there"
+                            : "name another working_crs in [preprocess], \"utm\" or one that keeps lengths there";
   if (worst.falsity() > refused) {
     acceptance.judge({"false-lengths",
                       {words, fmt::format("lengths are off by {:.2g} %; 1 % is allowed", 100 * worst.falsity()),
-                       "S" + std::string(mend + 1)}});
+                       capitalised(mend)}});
   } else {
     log_warning(fmt::format("{}. To be free of it, {}", words, mend));
   }
 }
 
-void judge_heights(const Raster& surface, const std::filesystem::path& file, Acceptance& acceptance) {
+void judge_heights(const Raster& surface, const HeightSource& source, Acceptance& acceptance) {
   const double steep = steep_tenth(surface);
   double highest = -INFINITY;
   for (const double z : surface.values) {
@@ -64,13 +87,13 @@ void judge_heights(const Raster& surface, const std::filesystem::path& file, Acc
   acceptance.judge(
       {"steep-ground",
        {fmt::format("{}: a tenth of the ground is steeper than {:.0f} degrees, the highest lies at {:.0f} m",
-                    file.string(), steep, highest),
+                    source.file.string(), steep, highest),
         fmt::format("terrain has {:.0f} degrees at most there, and no mountain is higher than {:.0f} m: are heights in "
                     "feet, which the file does not say, or places in another unit than heights? As feet it were {:.0f} "
                     "degrees",
                     steep_deg, highest_mountain,
                     std::atan(std::tan(steep * std::numbers::pi / 180) * 0.3048) * 180 / std::numbers::pi),
-        "Say so: vertical_unit = \"foot\" (or \"us-survey-foot\") in [preprocess]"}});
+        unit_advice(source.unit)}});
 }
 
 }  // namespace talus::preprocess

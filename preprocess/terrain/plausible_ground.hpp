@@ -5,16 +5,24 @@
 
 #include "common/map/raster.hpp"
 #include "common/stage/acceptance.hpp"
+#include "preprocess/options/elevation.hpp"
 
 namespace talus::preprocess {
 
 /// Measures the scale of the grid's CRS in its middle and its corners. Where lengths are off by more than a hundredth
 /// ("false-lengths"), throws DataError unless accepted; beyond a thousandth, warns. Volumes are off by twice as much.
-void judge_lengths(const MapGrid& grid, Acceptance& acceptance);
+/// `working_crs` is the recipe's, so that nothing is advised that is done.
+void judge_lengths(const MapGrid& grid, const std::string& working_crs, Acceptance& acceptance);
+
+/// Where heights come from, and what the recipe says they are in.
+struct HeightSource {
+  std::filesystem::path file;
+  VerticalUnit unit = VerticalUnit::declared;
+};
 
 /// Throws DataError unless accepted ("steep-ground") where a tenth of a surface [m] is steeper than 50 degrees or some
 /// of it is higher than 9,000 m, as where feet are taken for metres. On the terrain at hand (docs/decisions/0029) a
 /// tenth is steeper than 26 to 43 degrees, and read as feet 58 to 72.
-void judge_heights(const Raster& surface, const std::filesystem::path& file, Acceptance& acceptance);
+void judge_heights(const Raster& surface, const HeightSource& source, Acceptance& acceptance);
 
 }  // namespace talus::preprocess

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "common/error.hpp"
+#include "common/stage/input_file.hpp"
 
 namespace talus::preprocess {
 
@@ -135,6 +136,7 @@ std::optional<HeightName> height_name(std::string_view text) {
 }
 
 ScatteredPoints read_point_table(const std::filesystem::path& file, PointHeights heights) {
+  require_plain(file);
   std::ifstream stream(file);
   if (!stream)
     throw DataError(Fault{file.string() + ": cannot be opened", "missing or not readable", "Check the path"});

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "common/gis/crs.hpp"
+#include "common/gis/grid_limits.hpp"
 #include "common/map/crop.hpp"
 #include "common/map/sum.hpp"
 #include "common/stage/stage.hpp"
@@ -174,6 +175,9 @@ void require_data(const Raster& raster, const std::filesystem::path& file) {
 std::vector<Raster> align(const std::vector<const Elevation*>& dems, const AlignRequest& request,
                           std::vector<Filled>* filled) {
   const MapGrid grid = working_grid(dems, request.grid);
+  constexpr double bytes_per_cell = 100;  // surfaces, bed, releases, marks and errors of a cell, at least
+  require_room(grid.columns, grid.rows, bytes_per_cell, "the working grid",
+               "Take a larger spacing_m, or a smaller part: west_m, south_m, east_m, north_m in [preprocess.grid]");
   std::vector<Raster> rasters;
   for (const Elevation* dem : dems) {
     log_resampling(*dem, grid);

@@ -10,11 +10,14 @@
 #include "common/error.hpp"
 #include "common/gis/coordinates.hpp"
 #include "common/gis/crs.hpp"
+#include "common/gis/grid_limits.hpp"
 
 namespace talus::preprocess {
 
 namespace {
 
+constexpr auto finer_mend =
+    "Take a larger spacing_m, or a smaller part: west_m, south_m, east_m, north_m in [preprocess.grid]";
 constexpr double lattice_tolerance = 1e-4;  // of a cell: coordinates in files carry their own rounding
 
 Extent intersection(const Extent& a, const Extent& b) {
@@ -47,8 +50,11 @@ MapGrid cells_inside(const Extent& extent, double west, double south, double cel
   const double first_row = std::ceil((extent.south - south) / cell - lattice_tolerance);
   grid.west = west + first_column * cell;
   grid.south = south + first_row * cell;
-  grid.columns = static_cast<int>(std::floor((extent.east - grid.west) / cell + lattice_tolerance));
-  grid.rows = static_cast<int>(std::floor((extent.north - grid.south) / cell + lattice_tolerance));
+  const double columns = std::floor((extent.east - grid.west) / cell + lattice_tolerance),
+               rows = std::floor((extent.north - grid.south) / cell + lattice_tolerance);
+  require_room(columns, rows, 0, "the working grid", finer_mend);
+  grid.columns = static_cast<int>(columns);
+  grid.rows = static_cast<int>(rows);
   return grid;
 }
 
@@ -130,6 +136,7 @@ MapGrid working_grid(const std::vector<const Elevation*>& dems, const GridReques
         "the working grid is empty", "Check west_m, south_m, east_m, north_m and spacing_m in [preprocess.grid]"});
   }
   grid.crs_wkt = crs;
+  require_told_apart(grid, "the working grid");
   return grid;
 }
 

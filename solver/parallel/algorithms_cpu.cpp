@@ -11,15 +11,36 @@
 #include <vector>
 
 #include "solver/parallel/algorithms.hpp"
+#include "solver/parallel/pace.hpp"
 
 namespace talus {
+
+namespace {
+
+constexpr int leaf = 4096;  // products that are added up one after the other
+
+/// Halves a range as oneTBB's simple_partitioner does, so that the sum has the same bits on one thread as on many.
+double sum_of_products(const double* a, const double* b, int begin, int end) {
+  if (end - begin > leaf) {
+    const int middle = begin + (end - begin) / 2;
+    return sum_of_products(a, b, begin, middle) + sum_of_products(a, b, middle, end);
+  }
+  double total = 0;
+  for (int i = begin; i < end; ++i) total += a[i] * b[i];
+  return total;
+}
+
+}  // namespace
 
 void sort_order(const CpuDevice&, Buffer<std::uint64_t, CpuDevice>& keys, Buffer<int, CpuDevice>& order, int) {
   const int count = static_cast<int>(keys.size());
   order.resize(keys.size());
   std::vector<std::pair<std::uint64_t, int>> pairs(keys.size());
   for (int i = 0; i < count; ++i) pairs[static_cast<std::size_t>(i)] = {keys.data()[i], i};
-  tbb::parallel_sort(pairs);  // the index makes every pair distinct, so the order is that of a stable sort
+  // The index makes every pair distinct, so the order is that of a stable sort, whoever sorts.
+  static const char kind = 0;
+  detail::paced(
+      &kind, count, [&] { std::sort(pairs.begin(), pairs.end()); }, [&] { tbb::parallel_sort(pairs); });
   for (int i = 0; i < count; ++i) {
     keys.data()[i] = pairs[static_cast<std::size_t>(i)].first;
     order.data()[i] = pairs[static_cast<std::size_t>(i)].second;
@@ -44,13 +65,17 @@ std::array<int, 2> exclusive_sums(const CpuDevice& device, int* first, int* seco
 }
 
 double inner_product(const CpuDevice&, const double* a, const double* b, int count) {
-  return tbb::parallel_deterministic_reduce(
-      tbb::blocked_range<int>(0, count, 4096), 0.0,
-      [=](const tbb::blocked_range<int>& range, double total) {
-        for (int i = range.begin(); i < range.end(); ++i) total += a[i] * b[i];
-        return total;
-      },
-      [](double x, double y) { return x + y; }, tbb::simple_partitioner());
+  const auto alone = [=] { return sum_of_products(a, b, 0, count); };
+  if (count <= leaf) return alone();
+  static const char kind = 0;
+  return detail::paced(&kind, count, alone, [=] {
+    return tbb::parallel_deterministic_reduce(
+        tbb::blocked_range<int>(0, count, leaf), 0.0,
+        [=](const tbb::blocked_range<int>& range, double total) {
+          return total + sum_of_products(a, b, range.begin(), range.end());
+        },
+        [](double x, double y) { return x + y; }, tbb::simple_partitioner());
+  });
 }
 
 void gather(const CpuDevice&, const double* from, const int* order, double* to, int count) {

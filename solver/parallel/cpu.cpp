@@ -6,6 +6,7 @@
 #include <new>
 
 #include "solver/parallel/for_each.hpp"
+#include "solver/parallel/pace.hpp"
 
 namespace talus {
 
@@ -30,8 +31,12 @@ void cpu_parallel(int count, int grain, void (*body)(const void*, int, int), con
     body(kernel, 0, count);
     return;
   }
-  tbb::parallel_for(tbb::blocked_range<int>(0, count, static_cast<std::size_t>(grain)),
-                    [=](const tbb::blocked_range<int>& range) { body(kernel, range.begin(), range.end()); });
+  paced(
+      reinterpret_cast<const void*>(body), count, [=] { body(kernel, 0, count); },
+      [=] {
+        tbb::parallel_for(tbb::blocked_range<int>(0, count, static_cast<std::size_t>(grain)),
+                          [=](const tbb::blocked_range<int>& range) { body(kernel, range.begin(), range.end()); });
+      });
 }
 
 }  // namespace detail

@@ -66,6 +66,12 @@ Trial try_steps(const Scene& scene, const SolveOptions& o, const AnyDevice& devi
 
 }  // namespace
 
+double records_of(const SolveOptions& o) {
+  const double per_second =
+      1 / o.frame_interval + 1 / o.history_interval + (o.checkpoint_interval > 0 ? 1 / o.checkpoint_interval : 0);
+  return o.end_time * per_second;
+}
+
 std::vector<std::string> features(const Domain& domain, const SolveOptions& o) {
   std::vector<std::string> lines;
   const auto add = [&](const std::string& name, const std::string& words) {
@@ -123,7 +129,8 @@ std::vector<std::string> plan(const Domain& domain, const SolveOptions& o, const
                   scene.active.cell_count(), scene.active.block_count()));
   add("memory",
       fmt::format("{:.1f} MB now, on the {}", static_cast<double>(trial.bytes) / 1e6, device.is_gpu() ? "GPU" : "CPU"));
-  double fewest = o.end_time / o.implicit.step, most = fewest;
+  const double records = records_of(o);
+  double fewest = o.end_time / o.implicit.step + records, most = fewest;
   if (abilities_of(o.integrator).obey_cfl) {
     const TerrainTables terrain = make_terrain_tables(scene.grid);
     const FirstWaves waves = first_waves(o);
@@ -131,8 +138,8 @@ std::vector<std::string> plan(const Domain& domain, const SolveOptions& o, const
     const auto step_at = [&](double speed) {
       return std::min(o.cfl / first_rate(scene.grid, terrain, scene.points, waves, speed), o.largest_step);
     };
-    fewest = o.end_time / step_at(0);
-    most = o.end_time / std::min(step_at(fast), trial.step > 0 ? trial.step : 1e30);
+    fewest = o.end_time / step_at(0) + records;
+    most = o.end_time / std::min(step_at(fast), trial.step > 0 ? trial.step : 1e30) + records;
     add("step",
         fmt::format("{:.3g} s at rest (waves of {:.0f} m/s), {:.3g} s at the {:.0f} m/s that the energy line allows",
                     step_at(0), waves.speed, step_at(fast), fast));

@@ -25,7 +25,7 @@ void place(double position, int& cell, double& offset) {
 }
 
 /// This function marks the points that start inside a load's box.
-void attach_loads(const Domain& domain, const SolveOptions& options, Scene& scene) {
+void attach_loads(const Domain& domain, const SolveOptions& options, Scene& scene, std::vector<Fault>& faults) {
   for (std::size_t l = 0; l < options.loads.size(); ++l) {
     const auto& b = options.loads[l].box;
     double volume = 0;
@@ -36,16 +36,16 @@ void attach_loads(const Domain& domain, const SolveOptions& options, Scene& scen
       volume += domain.points.volume[p];
     }
     if (!(volume > 0)) {
-      throw RecipeError({fmt::format("[[solve.load]] number {}: no material point starts inside its box", l + 1),
-                         "the load would pull at nothing",
-                         "Widen box_m (west, east, south, north, bottom, top above the ground)"});
+      faults.push_back({fmt::format("[[solve.load]] number {}: no material point starts inside its box", l + 1),
+                        "the load would pull at nothing",
+                        "Widen box_m (west, east, south, north, bottom, top above the ground)"});
     }
     scene.load_volumes.push_back(volume);
   }
 }
 
 /// This function gives the points of each part its material.
-void attach_materials(const Domain& domain, const SolveOptions& options, Scene& scene) {
+void attach_materials(const Domain& domain, const SolveOptions& options, Scene& scene, std::vector<Fault>& faults) {
   for (std::size_t part = 0; part < options.parts.size(); ++part) {
     const std::string& name = options.parts[part].release;
     bool found = false;
@@ -55,9 +55,9 @@ void attach_materials(const Domain& domain, const SolveOptions& options, Scene& 
       found = true;
     }
     if (found) continue;
-    throw RecipeError({fmt::format("[[solve.part]] release = \"{}\": no material point is of that release", name),
-                       fmt::format("domain.vdb has {}", fmt::join(domain.release_names, ", ")),
-                       "Name one of those, or leave the part out"});
+    faults.push_back({fmt::format("[[solve.part]] release = \"{}\": no material point is of that release", name),
+                      fmt::format("domain.vdb has {}", fmt::join(domain.release_names, ", ")),
+                      "Name one of those, or leave the part out"});
   }
 }
 
@@ -80,12 +80,12 @@ std::vector<Bed<double>> make_bed(const Domain& domain, const SolveOptions& opti
 }
 
 /// This function refuses rasters that the law does not look at, which are a mistake in the recipe.
-void check_bed(const Domain& domain, const SolveOptions& options) {
+void check_bed(const Domain& domain, const SolveOptions& options, std::vector<Fault>& faults) {
   for (const auto& [name, raster] : domain.bed) {
     if (options.base.uses(name)) continue;
-    throw RecipeError({fmt::format("[preprocess.bed] {} is given, but [solve.base] law does not use it", name),
-                       "the raster would have no effect",
-                       "Name the law that does, or leave the raster out and run talus-preprocess again"});
+    faults.push_back({fmt::format("[preprocess.bed] {} is given, but [solve.base] law does not use it", name),
+                      "the raster would have no effect",
+                      "Name the law that does, or leave the raster out and run talus-preprocess again"});
   }
 }
 
@@ -162,9 +162,11 @@ Scene make_scene(const Domain& domain, const SolveOptions& options) {
   const TerrainTables terrain = make_terrain_tables(scene.grid);
   scene.active = domain.active ? *domain.active : active_cells(domain.grid, domain.layer_height, domain.points);
   scene.points = place_points(domain, options, scene.grid, terrain, scene.active);
-  attach_loads(domain, options, scene);
-  attach_materials(domain, options, scene);
-  check_bed(domain, options);
+  std::vector<Fault> faults;
+  attach_loads(domain, options, scene, faults);
+  attach_materials(domain, options, scene, faults);
+  check_bed(domain, options, faults);
+  if (!faults.empty()) throw RecipeError(std::move(faults));
   scene.bed = make_bed(domain, options);
   scene.contacts = make_contact_points(domain.grid, scene.grid, terrain, make_obstacles(options.obstacles));
   return scene;

@@ -1,4 +1,4 @@
-"""Opens a report in Chromium and uses it as a person would: report_browser.py OUT clicks|prints.
+"""Opens a report in Chromium and uses it as a person would: report_browser.py OUT clicks|prints|payload|accepted.
 
 OUT holds report.html and the maps it was made from. Any fault ends with an assertion that says what was seen.
 """
@@ -239,6 +239,51 @@ def clicks(browser, out):
     check_console(browser)
 
 
+def payload(browser, out):
+    """Names that would run as scripts stand there as text, and the page holds no element that they ask for."""
+    assert browser.execute_script("return window.pwned") is None, "a name ran as a script"
+    title = os.environ["TITLE"]
+    assert browser.execute_script("return document.getElementById('title').textContent") == title
+    assert browser.title == " ".join(title.split()), f"the window is called {browser.title}"
+    assert os.environ["INSTITUTION"] in browser.execute_script("return document.getElementById('byline').textContent")
+    for kind in ["img", "svg[onload]", "iframe", "object", "embed", "form", "base", "link", "[onerror]", "[onclick]"]:
+        found = browser.execute_script(f"return document.querySelectorAll('{kind}').length")
+        assert found == 0, f"{found} elements {kind}"
+    scripts = browser.execute_script("return document.querySelectorAll('script').length")
+    assert scripts == 4, f"{scripts} scripts instead of those of the page"
+    # What is injected later does not run either.
+    browser.execute_script(
+        "const s = document.createElement('script'); s.textContent = 'window.pwned = 2'; document.body.append(s);"
+        "const b = document.createElement('b'); document.body.append(b);"
+        "b.innerHTML = '<i style=\"color:red\" onclick=\"window.pwned = 3\">x</i>'; b.firstChild.click();"
+    )
+    assert browser.execute_script("return window.pwned") is None, "an inline script runs: the policy does not hold"
+    styled = browser.execute_script("return getComputedStyle(document.querySelector('body > b > i')).color")
+    assert styled != "rgb(255, 0, 0)", "an inline style holds"
+    browser.execute_script("document.querySelectorAll('body > b, body > script:last-child').forEach((e) => e.remove())")
+    browser.get_log("browser")  # the refusals of the two above
+    check_layers_and_console(browser)
+
+
+def check_layers_and_console(browser):
+    for button in browser.find_elements(By.CSS_SELECTOR, "#layers input"):
+        button.find_element(By.XPATH, "..").click()
+    assert browser.execute_script("return window.pwned") is None
+    check_console(browser)
+
+
+def accepted(browser, out):
+    """What was insisted on is seen, with its words, in the scores."""
+    text = browser.find_element(By.ID, "score").text
+    assert "swapped-surveys" in text and "mass goes down" in text, f"the scores do not say what was accepted: {text}"
+    row = browser.find_element(By.CSS_SELECTOR, "#score td[data-key^='accepted.']")
+    table = browser.find_element(By.CSS_SELECTOR, "#score table")
+    assert row.is_displayed() and table.size["width"] <= 1300, f"the table is {table.size['width']} wide"
+    browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", row)
+    browser.save_screenshot(f"{out}/accepted.png")
+    check_console(browser)
+
+
 def prints(browser, out):
     pdf = browser.execute_cdp_cmd("Page.printToPDF", {"printBackground": True, "preferCSSPageSize": True})
     with open(f"{out}/report.pdf", "wb") as file:
@@ -251,7 +296,7 @@ def main():
     browser = open_browser()
     try:
         open_report(browser, out)
-        {"clicks": clicks, "prints": prints}[task](browser, out)
+        {"clicks": clicks, "prints": prints, "payload": payload, "accepted": accepted}[task](browser, out)
     finally:
         browser.quit()
 

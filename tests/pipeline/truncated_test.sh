@@ -25,7 +25,7 @@ test_domain() {
   for part in "${parts[@]}"; do
     cut_file out/domain.vdb $part
     expect_exit 3 solve
-    expect_error "talus-solve: $PWD/out/domain.vdb: ends too early (the file is truncated: its writing or copying " \
+    expect_error "talus-solve: out/domain.vdb: ends too early (the file is truncated: its writing or copying " \
       "was cut short). Run talus-preprocess again, or copy it again"
     expect_no_file out domain.vdb domain.vdb.whole preprocess.used.toml survey
   done
@@ -36,7 +36,7 @@ test_domain_of_another_kind() {
   mkdir out
   echo "not a volume" >out/domain.vdb
   expect_exit 3 solve
-  expect_error "talus-solve: $PWD/out/domain.vdb: not an OpenVDB file (its first bytes say so). " \
+  expect_error "talus-solve: out/domain.vdb: not an OpenVDB file (its first bytes say so). " \
     "Make it with talus-preprocess"
 }
 
@@ -48,7 +48,7 @@ test_checkpoint() {
   for part in "${parts[@]}"; do
     cut_file out/checkpoint.h5 $part
     expect_exit 3 solve --restart
-    says_cut "talus-solve: $PWD/out/checkpoint.h5" "Run talus-solve again without --restart"
+    says_cut "talus-solve: out/checkpoint.h5" "Run talus-solve again without --restart"
     [[ ! -e out/run.h5 ]] || fail "a truncated checkpoint ($part per mille) gave a run.h5"
   done
   mv out/checkpoint.h5.whole out/checkpoint.h5
@@ -64,7 +64,7 @@ test_run() {
   for part in "${parts[@]}"; do
     cut_file out/run.h5 $part
     expect_exit 3 postprocess
-    says_cut "talus-postprocess: $PWD/out/run.h5" "Run talus-solve again"
+    says_cut "talus-postprocess: out/run.h5" "Run talus-solve again"
     [[ ! -e out/score.json && ! -e out/maps && ! -e out/map.png ]] ||
       fail "a truncated run.h5 ($part per mille) gave results"
   done

@@ -65,8 +65,10 @@ export function scaled(largest) {
 export function h(name, attributes = {}, ...children) {
   const element = document.createElement(name);
   for (const [key, value] of Object.entries(attributes)) {
-    if (value !== null && value !== undefined && value !== false)
-      element.setAttribute(key, value === true ? "" : value);
+    if (value === null || value === undefined || value === false) continue;
+    if (key === "style")
+      element.style.cssText = value; // a style attribute would need 'unsafe-inline'
+    else element.setAttribute(key, value === true ? "" : value);
   }
   for (const child of children.flat()) {
     if (child !== null && child !== undefined) element.append(child);

@@ -48,6 +48,19 @@ function table(head, rows) {
   );
 }
 
+/** Whole sentences, as of what the analyst accepted, take the place of the definition too, where they can wrap. */
+function scoreRow(item) {
+  const { key, label, value } = item.entry,
+    sentence = typeof value === "string" && value.length > 40;
+  return h(
+    "tr",
+    {},
+    h("td", {}, label),
+    h("td", { class: sentence ? "plain" : "number", colspan: sentence ? 2 : null, "data-key": key }, scoreWords(item)),
+    sentence ? null : h("td", { class: "plain" }, definition(key)),
+  );
+}
+
 export function drawScores(data) {
   const box = document.getElementById("score"),
     { score } = data;
@@ -57,18 +70,9 @@ export function drawScores(data) {
   const ordered = [...sections].sort((a, b) => b.title.startsWith("Agreement") - a.title.startsWith("Agreement"));
   for (const section of ordered) {
     rows.push(h("tr", { class: "group" }, h("td", { colspan: 3 }, section.title)));
-    for (const item of section.items) {
-      rows.push(
-        h(
-          "tr",
-          {},
-          h("td", {}, item.entry.label),
-          h("td", { class: "number", "data-key": item.entry.key }, scoreWords(item)),
-          h("td", { class: "plain" }, definition(item.entry.key)),
-        ),
-      );
-    }
+    for (const item of section.items) rows.push(scoreRow(item));
   }
+  if (score.not_scored.length) rows.push(h("tr", { class: "group" }, h("td", { colspan: 3 }, "Not scored")));
   for (const { key, why } of score.not_scored) {
     rows.push(
       h(

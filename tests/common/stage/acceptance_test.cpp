@@ -29,6 +29,28 @@ TEST(acceptance, keeps_what_was_insisted_on_once) {
   EXPECT_EQ(accepted[0].second, "after.tif: 9 m3 rose (mass goes down)");
 }
 
+TEST(acceptance, says_all_that_it_refuses_at_once_where_it_collects) {
+  const Implausible steep{"steep-ground", {"after.tif: steep", "feet", "Say so"}};
+  Acceptance none("preprocess", {});
+  none.collect();
+  none.judge(uphill);
+  none.judge(steep);
+  const std::string all = test::fault_of<DataError>([&] { none.settle(); });
+  EXPECT_NE(all.find("accept = [\"swapped-surveys\"]"), std::string::npos) << all;
+  EXPECT_NE(all.find("accept = [\"steep-ground\"]"), std::string::npos) << all;
+  EXPECT_NO_THROW(none.settle()) << "said once";
+}
+
+TEST(acceptance, what_was_refused_stands_before_the_fault_that_came_meanwhile) {
+  Acceptance none("preprocess", {});
+  none.collect();
+  none.judge(uphill);
+  const std::string all = test::fault_of<DataError>([&] {
+    none.meanwhile([] { throw DataError({"nothing fell", "", ""}); });
+  });
+  EXPECT_LT(all.find("swapped-surveys"), all.find("nothing fell")) << all;
+}
+
 TEST(acceptance, warns_of_a_name_that_nothing_met) {
   Acceptance insisted("preprocess", {"swapped-surveys", "false-lengths"});
   insisted.judge(uphill);

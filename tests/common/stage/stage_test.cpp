@@ -227,12 +227,33 @@ TEST_F(RunStage, check_writes_nothing) {
   EXPECT_FALSE(std::filesystem::exists(scratch / "new"));
 }
 
+TEST_F(RunStage, names_in_messages_do_not_command_the_terminal) {
+  stage.run = [](StageContext&) {
+    log_warning("release \x1b[2J\x07gone\r");
+    throw DataError({"\x1b]0;owned\x07", "", ""});
+  };
+  EXPECT_EQ(run({recipe()}), 3);
+  EXPECT_EQ(err, "warning: release ?[2J?gone?\ntalus-sample: ?]0;owned?\n");
+}
+
+TEST_F(RunStage, shows_paths_as_they_were_given) {
+  stage.run = [&](StageContext& context) {
+    log_info(context.out.string() + "/run.h5 and " + (scratch / "a").string());
+  };
+  const auto file = recipe();
+  const auto from = std::filesystem::current_path();
+  std::filesystem::current_path(scratch.folder());
+  EXPECT_EQ(run({"r.toml", "--out", "results"}), 0);
+  std::filesystem::current_path(from);
+  EXPECT_EQ(err, "results/run.h5 and a\n");
+}
+
 TEST_F(RunStage, no_recipe_is_a_usage_error) {
   EXPECT_EQ(run({}), 2);
-  EXPECT_EQ(
-      err,
-      "talus-sample: no recipe was given. Usage: talus-sample recipe.toml [--out DIR] [--check] [--template] [--on "
-      "auto|cpu|gpu] [--restart [FILE]] [--profile] [--plan] [-v|-q] (all of it: talus-sample --help)\n");
+  EXPECT_EQ(err,
+            "talus-sample: no recipe was given. Usage: talus-sample recipe.toml [--out DIR] [--check] [--template] "
+            "[--threads N] [--on "
+            "auto|cpu|gpu] [--restart [FILE]] [--profile] [--plan] [-v|-q] (all of it: talus-sample --help)\n");
   EXPECT_EQ(out, "");
 }
 

@@ -72,6 +72,22 @@ TEST(Isolines, lie_at_the_level_on_a_plane_and_end_at_the_edge) {
   for (const auto& point : lines[0]) EXPECT_DOUBLE_EQ(point[0], 17.5);
 }
 
+TEST(Contours, of_a_model_with_a_spike_are_those_of_the_ground) {
+  RunMaps maps;
+  maps.grid = {.columns = 50, .rows = 50, .west = 0, .south = 0, .cell = 10, .crs_wkt = ""};
+  for (int i = 0; i < 2500; ++i) maps.before.push_back(0.1 * (i % 50) * 10);  // 0 to 49 m
+  const View whole{{0, 0, 500, 500}, {}};
+  EXPECT_EQ(contour_levels(whole, maps).interval, 2);
+  maps.before[1234] = 1e9;
+  maps.before[77] = -1e9;
+  const ContourLevels spiked = contour_levels(whole, maps);
+  EXPECT_EQ(spiked.interval, 2);
+  EXPECT_LE(spiked.last - spiked.first, 80) << "each level goes over the whole map";
+  const View beside{{0, 0, 200, 200}, {}};
+  EXPECT_LE(contour_levels(beside, maps).last - contour_levels(beside, maps).first, 80) << "a spike outside the frame";
+  EXPECT_LT(contour_levels(whole, {}).last, contour_levels(whole, {}).first) << "nothing there";
+}
+
 TEST(View, shows_what_is_affected_with_a_margin_inside_the_grid) {
   const auto run = small_run();
   const auto window = affected_window(run.maps, {}, {});

@@ -48,6 +48,23 @@ TEST(plausible, surveys_in_the_wrong_order_are_refused_and_accepted_by_name) {
   EXPECT_NE(prepared.accepted[0].second.find("before.tif"), std::string::npos);
 }
 
+TEST(plausible, all_that_is_implausible_is_said_at_once) {
+  Valley valley(0.3048, "EPSG:3857");
+  std::swap(valley.options.before_dem, valley.options.after_dem);
+  const std::string fault = valley.fault();
+  for (const std::string name : {"swapped-surveys", "false-lengths", "steep-ground"})
+    EXPECT_NE(fault.find("accept = [\"" + name + "\"] in [preprocess]"), std::string::npos) << name << ": " << fault;
+}
+
+TEST(plausible, nothing_is_advised_that_the_recipe_does_already) {
+  Valley valley(0.3048, "EPSG:3857");
+  valley.options.working_crs = "EPSG:3857";
+  valley.options.vertical_unit = VerticalUnit::metre;
+  const std::string fault = valley.fault();
+  EXPECT_NE(fault.find("Name another working_crs"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("The recipe says metres"), std::string::npos) << fault;
+}
+
 /// A scar whose deposit the river took: swapped, mass comes from nowhere.
 TEST(plausible, more_rise_than_any_fall_gives_is_refused) {
   Scratch scratch;
@@ -101,13 +118,13 @@ TEST(plausible, a_release_of_few_cells_is_warned_of_with_numbers_that_help) {
   const auto coarse = too_coarse(release(10), 3, 288, {});
   ASSERT_TRUE(coarse.has_value());
   EXPECT_NE(coarse->find("6 cells of 10 m across"), std::string::npos) << *coarse;
-  EXPECT_NE(coarse->find("spacing_m = 7.5 and layer_height_m = 3 "), std::string::npos) << *coarse;
+  EXPECT_NE(coarse->find("put spacing_m = 7.5 into"), std::string::npos) << *coarse;
   EXPECT_FALSE(too_coarse(release(5), 3, 2304, {}).has_value()) << "finer than it asks for";
   GridOptions given;
   given.layer_height = 5;
   const auto thin = too_coarse(release(5), 5, 1000, given);
   ASSERT_TRUE(thin.has_value()) << "1.2 layers over the thickness";
-  EXPECT_NE(thin->find("spacing_m = 5 and layer_height_m = 3 "), std::string::npos) << *thin;
+  EXPECT_NE(thin->find("put layer_height_m = 3 into"), std::string::npos) << *thin;
   EXPECT_FALSE(too_coarse(raster_of(grid_of(9, 9, 10), [](double, double) { return 0.0; }), 3, 0, {}).has_value());
 }
 

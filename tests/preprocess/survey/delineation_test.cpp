@@ -75,6 +75,24 @@ TEST(delineation, a_gap_longer_than_allowed_leaves_the_lobe_outside_and_says_how
   EXPECT_NE(outside_words(slide).find("longest_gap"), std::string::npos) << outside_words(slide);
 }
 
+/// Heaps of four cells each stand out, and are noise by the number of their cells; together they are much of the slide.
+TEST(delineation, much_within_reach_that_counts_as_noise_is_said_with_its_volume) {
+  std::vector<Cap> caps{scar, near_lobe};
+  double heaps = 0;
+  for (double y = 700; y < 1000; y += 60) {
+    for (double x = 90; x <= 210; x += 60) caps.push_back({x, y, 14, 8});
+  }
+  MadeSlide made({}, caps);
+  made.options.difference.before_sigma = 0.3;
+  for (std::size_t c = 2; c < caps.size(); ++c) heaps += made.volume(caps[c]);
+  const SurveyedSlide slide = made.slide();
+  EXPECT_NEAR(slide.near.rise / heaps, 1, 0.1) << "cells at their rims lie below the level";
+  EXPECT_TRUE(slide.outside_is_doubtful);
+  EXPECT_NE(outside_words(slide).find("within reach of the slide"), std::string::npos) << outside_words(slide);
+  made.options.deposit.sure_cells = 2;
+  EXPECT_FALSE(made.slide().outside_is_doubtful) << "what it says helps";
+}
+
 TEST(delineation, a_lobe_in_the_next_valley_does_not_belong_to_the_slide) {
   const Cap other{450, 720, 45, 6};
   const SurveyedSlide slide = MadeSlide({}, {scar, near_lobe, other}).slide();

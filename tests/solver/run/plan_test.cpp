@@ -20,6 +20,16 @@ Domain block() {
   return d;
 }
 
+TEST(Plan, counts_the_steps_that_frames_ask_for) {
+  SolveOptions o;
+  o.end_time = 3;
+  o.frame_interval = 1e-3;
+  o.history_interval = 0.5;
+  EXPECT_DOUBLE_EQ(records_of(o), 3006);
+  o.checkpoint_interval = 1;
+  EXPECT_DOUBLE_EQ(records_of(o), 3009);
+}
+
 TEST(Plan, names_only_the_features_that_are_on) {
   SolveOptions o;
   const auto plain = features(block(), o);

@@ -1,0 +1,97 @@
+#include "common/recipe/shown_paths.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <string_view>
+#include <vector>
+
+namespace talus {
+namespace {
+
+struct Shown {
+  std::string path, message, report;
+};
+
+/// The longest path first.
+std::vector<Shown>& known() {
+  static std::vector<Shown> paths;
+  return paths;
+}
+
+bool of_a_name(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '_' || c == '-' || c == '/' ||
+         static_cast<unsigned char>(c) >= 0x80;
+}
+
+/// True where `path` stands in `text` at `at` as whole names.
+bool stands_at(std::string_view text, std::size_t at, std::string_view path) {
+  if (text.substr(at, path.size()) != path) return false;
+  const std::size_t end = at + path.size();
+  // A full stop ends a sentence more often than it begins the rest of a name.
+  return end == text.size() || text[end] == '/' || !of_a_name(text[end]) ||
+         (text[end] == '.' && (end + 1 == text.size() || text[end + 1] == ' '));
+}
+
+std::string replaced(const std::string& text, std::string Shown::*shown) {
+  std::string result;
+  for (std::size_t at = 0; at < text.size();) {
+    const bool begins = text[at] == '/' && (at == 0 || !of_a_name(text[at - 1]));
+    const auto found = !begins ? known().end() : std::find_if(known().begin(), known().end(), [&](const Shown& one) {
+      return stands_at(text, at, one.path);
+    });
+    if (found == known().end()) {
+      result += text[at++];
+      continue;
+    }
+    at += found->path.size();
+    const std::string& name = (*found).*shown;
+    const bool below = at < text.size() && text[at] == '/';
+    if (name.empty() && below) ++at;
+    result += name.empty() && !below ? "." : name;
+  }
+  return result;
+}
+
+/// What no name of a path holds, for the end of one that stands in a text.
+bool ends_path(char c) {
+  return std::isspace(static_cast<unsigned char>(c)) != 0 ||
+         std::string_view("\"',;()[]<>|").find(c) != std::string_view::npos;
+}
+
+}  // namespace
+
+void show_path_as(const std::filesystem::path& path, const std::string& shown, const std::string& in_report) {
+  std::string plain = path.lexically_normal().string();
+  while (plain.size() > 1 && plain.back() == '/') plain.pop_back();
+  if (plain.size() < 2 || plain.front() != '/') return;
+  std::erase_if(known(), [&](const Shown& one) { return one.path == plain; });
+  const auto shorter = [&](const Shown& one) { return one.path.size() < plain.size(); };
+  known().insert(std::find_if(known().begin(), known().end(), shorter), {plain, shown, in_report});
+}
+
+void forget_shown_paths() { known().clear(); }
+
+std::string with_shown_paths(const std::string& text) { return replaced(text, &Shown::message); }
+
+std::string without_absolute_paths(const std::string& text) {
+  const std::string relative = replaced(text, &Shown::report);
+  std::string result;
+  for (std::size_t at = 0; at < relative.size();) {
+    const char before = at == 0 ? ' ' : relative[at - 1];
+    const bool begins = relative[at] == '/' && (ends_path(before) || before == '=' || before == ':') &&
+                        at + 1 < relative.size() && relative[at + 1] != '/' && !ends_path(relative[at + 1]);
+    if (!begins) {
+      result += relative[at++];
+      continue;
+    }
+    std::size_t end = at;
+    while (end < relative.size() && !ends_path(relative[end])) ++end;
+    std::string path = relative.substr(at, end - at);
+    while (path.size() > 1 && path.back() == '/') path.pop_back();
+    result += "\u2026" + path.substr(path.rfind('/'));
+    at = end;
+  }
+  return result;
+}
+
+}  // namespace talus

@@ -1,0 +1,33 @@
+#include "common/stage/input_file.hpp"
+
+#include "common/stage/write_fault.hpp"
+
+namespace talus {
+namespace fs = std::filesystem;
+namespace {
+
+bool allowed_by_command_line = false;
+
+const char* kind_of(fs::file_type type) {
+  switch (type) {
+    case fs::file_type::fifo: return "it is a pipe";
+    case fs::file_type::socket: return "it is a socket";
+    case fs::file_type::character:
+    case fs::file_type::block: return "it is a device";
+    default: return nullptr;
+  }
+}
+
+}  // namespace
+
+void require_plain(const fs::path& file) {
+  std::error_code unknown;
+  const char* kind = kind_of(fs::status(file, unknown).type());
+  if (kind != nullptr)
+    refuse_file(file, "cannot be read", kind, "Give a plain file: it is read from several places, some of them twice");
+}
+
+bool network_allowed() { return allowed_by_command_line; }
+void allow_network(bool allowed) { allowed_by_command_line = allowed; }
+
+}  // namespace talus

@@ -1,0 +1,16 @@
+// What an input must be to be opened at all.
+#pragma once
+
+#include <filesystem>
+
+namespace talus {
+
+/// Throws DataError where `file` is a pipe, a socket or a device: inputs are read from several places, some of them
+/// twice, and a pipe that nobody writes to would be waited for without end. What is missing, a file or a folder passes.
+void require_plain(const std::filesystem::path& file);
+
+/// True where inputs may name places on a network (--network).
+bool network_allowed();
+void allow_network(bool allowed);
+
+}  // namespace talus

@@ -1,0 +1,131 @@
+#include "common/stage/machine.hpp"
+
+#include <fmt/format.h>
+#include <sched.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <thread>
+
+#include "common/error.hpp"
+
+namespace talus {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+
+int asked_for = 0;  // by --threads
+
+/// The first words of a small file of the system as numbers; "max" and what is missing: empty.
+std::optional<double> number_in(const fs::path& file, int word = 0) {
+  std::ifstream stream(file);
+  std::string text;
+  for (int i = 0; i <= word; ++i)
+    if (!(stream >> text)) return std::nullopt;
+  std::istringstream digits(text);
+  double value = 0;
+  return digits >> value ? std::optional(value) : std::nullopt;
+}
+
+/// A folder of control groups and those above it, for the group that this process is in.
+struct Group {
+  fs::path mount, path;
+};
+
+/// Groups of a controller: version 2 ("0::/path") and version 1 ("4:memory:/path").
+std::vector<Group> groups_of(const std::string& controller) {
+  std::vector<Group> groups;
+  std::ifstream stream("/proc/self/cgroup");
+  for (std::string line; std::getline(stream, line);) {
+    const std::size_t first = line.find(':'), second = line.find(':', first + 1);
+    if (first == std::string::npos || second == std::string::npos) continue;
+    const std::string names = "," + line.substr(first + 1, second - first - 1) + ",";
+    const fs::path path = fs::path(line.substr(second + 1)).relative_path();
+    if (names == ",,") groups.push_back({"/sys/fs/cgroup", path});
+    if (names.find("," + controller + ",") != std::string::npos)
+      groups.push_back({fs::path("/sys/fs/cgroup") / names.substr(1, names.size() - 2), path});
+  }
+  return groups;
+}
+
+/// The least of `limit_in(folder)` over the groups of a controller and all above them.
+template <class LimitIn>
+double least_limit(const std::string& controller, const LimitIn& limit_in) {
+  double least = unlimited;
+  for (const Group& group : groups_of(controller)) {
+    for (fs::path path = group.path;; path = path.parent_path()) {
+      least = std::min(least, limit_in(group.mount / path));
+      if (path.empty()) break;
+    }
+  }
+  return least;
+}
+
+double processors_in(const fs::path& folder) {
+  const auto quota = number_in(folder / "cpu.max"), period = number_in(folder / "cpu.max", 1);
+  if (quota && period && *period > 0) return *quota / *period;
+  const auto old_quota = number_in(folder / "cpu.cfs_quota_us"), old_period = number_in(folder / "cpu.cfs_period_us");
+  return old_quota && old_period && *old_quota > 0 && *old_period > 0 ? *old_quota / *old_period : unlimited;
+}
+
+double memory_in(const fs::path& folder) {
+  return std::min(number_in(folder / "memory.max").value_or(unlimited),
+                  number_in(folder / "memory.limit_in_bytes").value_or(unlimited));
+}
+
+double memory_of_machine() {
+  std::ifstream stream("/proc/meminfo");
+  std::string name, unit;
+  double kilobytes = 0;
+  while (stream >> name >> kilobytes) {
+    std::getline(stream, unit);
+    if (name == "MemTotal:") return kilobytes * 1024;
+  }
+  return unlimited;
+}
+
+double own_limit(int resource) {
+  rlimit limit{};
+  if (getrlimit(static_cast<__rlimit_resource_t>(resource), &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+    return unlimited;
+  return static_cast<double>(limit.rlim_cur);
+}
+
+std::string size_words(double bytes) {
+  return bytes < 1e12 ? fmt::format("{:.3g} GB", bytes * 1e-9) : fmt::format("{:.3g} TB", bytes * 1e-12);
+}
+
+}  // namespace
+
+int usable_threads() {
+  double threads = std::max(1U, std::thread::hardware_concurrency());
+  cpu_set_t mask;
+  CPU_ZERO(&mask);
+  if (sched_getaffinity(0, sizeof mask, &mask) == 0) threads = std::min(threads, static_cast<double>(CPU_COUNT(&mask)));
+  return static_cast<int>(std::max(1.0, std::min(threads, std::ceil(least_limit("cpu", processors_in)))));
+}
+
+int thread_limit() { return asked_for > 0 ? asked_for : usable_threads(); }
+
+void set_thread_limit(int threads) { asked_for = threads; }
+
+double usable_memory() {
+  return std::min(
+      {memory_of_machine(), least_limit("memory", memory_in), own_limit(RLIMIT_AS), own_limit(RLIMIT_DATA)});
+}
+
+void require_memory(double bytes, const std::string& what, const std::string& mend) {
+  const double limit = usable_memory();
+  if (bytes <= limit) return;
+  throw DataError(
+      Fault{what, fmt::format("{} are needed, this process may have {}", size_words(bytes), size_words(limit)), mend});
+}
+
+}  // namespace talus

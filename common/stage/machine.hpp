@@ -1,0 +1,26 @@
+// What this process may take of the machine: threads and memory.
+#pragma once
+
+#include <string>
+
+namespace talus {
+
+/// Processors that this process may run on at once: the least of its affinity mask, the limit of its control group
+/// (cpu.max, rounded up) and what the machine has; at least 1.
+int usable_threads();
+
+/// Threads that this process takes at most: what --threads gave, else usable_threads().
+int thread_limit();
+
+/// Sets the number of threads to take at most; 0 = usable_threads(). More than are usable are taken as they are.
+void set_thread_limit(int threads);
+
+/// Memory that this process may have at most [bytes]: the least of the machine's, that of its control groups and its
+/// own limits (ulimit -v). Infinity where nothing is known.
+double usable_memory();
+
+/// Throws DataError "what (why). mend" where `bytes` are more than usable_memory(); why says both numbers. To be called
+/// before they are allocated.
+void require_memory(double bytes, const std::string& what, const std::string& mend);
+
+}  // namespace talus

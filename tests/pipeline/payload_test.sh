@@ -1,0 +1,124 @@
+#!/usr/bin/env bash
+# Names that would run, close or climb if anything took them for more than text: in titles, releases, surveys, files and
+# coordinate systems, on the page in a real browser, in maps, styles and tables.
+source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
+
+# What each of them sets or makes where it is taken for a program: a variable of the page, a file.
+script='</script><script>window.pwned=1</script>'
+image='<img src=x onerror=window.pwned=1>'
+shell='$(touch pwned)`touch pwned`;touch pwned;'
+title="$script $image \"><svg onload=window.pwned=1> @DATA@ @TITLE@ \${7*7} {{7*7}} %s%n & ]]> <!--"
+file="b'\"<img src=x onerror=window.pwned=1>%s;\$(touch pwned).asc"
+
+# quoted TEXT: a TOML basic string.
+quoted() { printf '"%s"' "$(sed 's/\\/\\\\/g; s/"/\\"/g' <<<"$1")"; }
+
+hostile_scene() {
+  scene
+  mkdir -p "in <b>&'\"x"
+  cd "in <b>&'\"x"
+  grid "$file" "$bowl - 4 * $in_source"
+  grid one.asc "4 * (i >= 3 && i < 5 && j >= 8 && j < 12)"
+  grid two.asc "4 * (i >= 5 && i < 7 && j >= 8 && j < 12)"
+  cp ../survey.asc "$image.asc"
+  gdalsrsinfo -o wkt1 EPSG:32633 | tr -d '\n' >utm.wkt
+  sed "s|WGS 84 / UTM zone 33N|$image|; s|,AUTHORITY\[\"EPSG\",\"32633\"\]||" utm.wkt >b.wkt
+  local raster
+  for raster in "$file" one.asc two.asc "$image.asc"; do cp b.wkt "${raster%.asc}.prj"; done
+  cat >recipe.toml <<TOML
+[scene]
+name = "..-hostile"
+title = $(quoted "$title")
+
+[preprocess]
+base_dem = $(quoted "$file")
+
+[[preprocess.release]]
+name = $(quoted "../../$script")
+thickness_raster = "one.asc"
+
+[[preprocess.release]]
+name = $(quoted "..-..-$shell$image")
+thickness_raster = "two.asc"
+
+[preprocess.grid]
+layer_height_m = 2.0
+
+[solve]
+end_time_s = 2.0
+frame_interval_s = 1.0
+
+[postprocess]
+institution = $(quoted "$image $shell")
+
+[postprocess.survey]
+name = $(quoted "$image\" '\\u2028")
+thickness = $(quoted "$image.asc")
+TOML
+  expect_exit 0 preprocess
+  expect_exit 0 solve
+  expect_exit 0 postprocess
+}
+
+test_nothing_of_them_runs_on_the_page() {
+  if [[ $(. /etc/os-release && echo "$ID") != debian ]]; then
+    skip "the page is not opened in a browser: only Debian packages one that tests can drive"
+  fi
+  need_tool chromium
+  need_tool chromedriver
+  /usr/bin/python3 -c 'import selenium, osgeo' 2>/dev/null || need_tool python3-selenium
+  hostile_scene
+  mkdir -p "$TALUS_SCRATCH/page"
+  cp out/report.html "$TALUS_SCRATCH/page/"
+  TITLE=$title INSTITUTION="$image $shell" expect_exit 0 /usr/bin/python3 \
+    "$TALUS_SOURCE/tests/pipeline/report_browser.py" "$TALUS_SCRATCH/page" payload
+}
+
+test_the_page_holds_no_path_of_this_machine() {
+  hostile_scene
+  sed -n 's/.*id="data">\(.*\)<\/script>.*/\1/p' out/report.html >data.json
+  [[ -s data.json ]] || fail "the page holds no data"
+  ! grep -qF "$TALUS_SCRATCH" out/report.html || fail "the page names $TALUS_SCRATCH"
+  ! grep -qE '"(/|[^"]* /)(home|tmp|root|work|usr|build)/' data.json || fail "the page holds an absolute path"
+  ! grep -q "unsafe-" out/report.html || fail "the page allows inline scripts or styles"
+}
+
+test_nothing_is_written_outside_the_output_folder() {
+  (cd "$TALUS_SCRATCH" && find . -type f | sort >"$TALUS_SCRATCH.before")
+  hostile_scene
+  cd "$TALUS_SCRATCH"
+  find . -name '*pwned*' -newer "$TALUS_SCRATCH.before" | grep -v -e "^./in" -e '.asc$' -e '.prj$' >found || true
+  [[ ! -s found ]] || fail "something ran: $(<found)"
+  # The scene's own files, and what this test writes.
+  find . -type f -newer "$TALUS_SCRATCH.before" | grep -vE '^\./(before|after|survey)\.asc$|^\./recipe.toml$' |
+    grep -vE '^\./std(out|err)$|^\./found$' | grep -vE "^\./in <b>&'\"x/(out/|[^/]*$)" >found || true
+  [[ ! -s found ]] || fail "written outside --out: $(<found)"
+  rm -f "$TALUS_SCRATCH.before"
+}
+
+test_styles_and_projects_are_well_formed_and_say_the_names_as_text() {
+  hostile_scene
+  expect_exit 0 /usr/bin/python3 - "$title" <<'PYTHON'
+import pathlib, sys, xml.etree.ElementTree as tree
+files = [f for f in pathlib.Path("out").rglob("*") if f.suffix in (".qgs", ".qml")]
+assert len(files) > 5, files
+texts = [text for f in files for text in tree.parse(f).getroot().itertext()]
+attributes = [v for f in files for node in tree.parse(f).getroot().iter() for v in node.attrib.values()]
+assert any(sys.argv[1] in text for text in texts + attributes), "the title does not stand in the project"
+PYTHON
+  local map
+  for map in out/maps/*.tif; do
+    gdalinfo -json "$map" >info.json
+    /usr/bin/python3 -c 'import json, sys
+assert json.load(open("info.json"))["metadata"][""]["TITLE"] == sys.argv[1]' \
+      "$title" || fail "$map does not say its title as it is"
+  done
+  [[ $(ls out/maps/deposit_thickness_*.tif | wc -l) -eq 2 ]] || fail "there are not two deposits: $(ls out/maps)"
+  ogrinfo -al -q out/maps/outlines.gpkg >outlines
+  grep -qF "$image" outlines || fail "outlines.gpkg does not say the survey's name as it is"
+  /usr/bin/python3 -c 'import csv
+assert len({len(row) for row in csv.reader(open("out/history.csv"))}) == 1' ||
+    fail "history.csv has rows of several lengths"
+}
+
+run_test "$@"
