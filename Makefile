@@ -1,7 +1,7 @@
 # The commands of the project; 'make' alone lists them. Everything is built by CMake (see CMakePresets.json).
 SHELL  := /bin/bash
 PRESET ?= default
-BUILD  ?= $(if $(filter cpu check,$(PRESET)),build-$(PRESET),build)
+BUILD  ?= $(if $(filter cpu check check-threads fuzz,$(PRESET)),build-$(PRESET),build)
 RELEASE_BUILD ?= build-release
 JOBS   ?= $(shell nproc)
 TEST_JOBS ?= 2
@@ -21,10 +21,11 @@ quickly := $(if $(ccache),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_CUDA_COMP
 # What the build folder was configured for; another wish configures it again.
 asked := $(PRESET) $(CUDAARCHS)
 
-.PHONY: help setup build demo test validate check-faults check-recipes lint docs bundle bundle-solver clean FORCE
+.PHONY: help setup build demo test check check-threads check-faults check-recipes fuzz validate lint docs bundle \
+  bundle-solver clean FORCE
 
 help: ## this list
-	@echo "make TARGET [PRESET=default|cpu|gpu|check] [JOBS=n]"
+	@echo "make TARGET [PRESET=default|cpu|gpu|check|check-threads] [JOBS=n]"
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-14s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
 
 setup: ## install what is missing through apt (Debian 12, Ubuntu 24.04); SETUP=no leaves this out
@@ -63,6 +64,27 @@ test: setup $(BUILD)/build.ninja ## everything built, every test run
 	@cmake --build $(BUILD) -j $(JOBS)
 	@TALUS_REQUIRE_TOOLS=$(if $(filter no,$(SETUP)),,1) \
 	  ctest --test-dir $(BUILD) --output-on-failure --no-tests=error -j $(TEST_JOBS)
+
+check: ## tests under address and undefined-behaviour sanitizers [TESTS=regex: only those]
+	@$(MAKE) --no-print-directory sanitized PRESET=check
+
+check-threads: ## tests of what runs in threads under the thread sanitizer [TESTS=regex]
+	@$(MAKE) --no-print-directory sanitized PRESET=check-threads
+
+# What needs no programs from outside and ends in time under a sanitizer; docs/reliability.md says when it last passed.
+check_tests         := ^(common|preprocess|postprocess|solver|fuzz)[.]
+check-threads_tests := ^(preprocess|postprocess|solver)[.]
+test_programs       := talus-tests-common talus-tests-preprocess talus-tests-postprocess talus-tests-solver talus-replay
+
+sanitized: setup $(BUILD)/build.ninja
+	@cmake --build $(BUILD) -j $(JOBS) --target $(test_programs)
+	@ASAN_OPTIONS=abort_on_error=0 UBSAN_OPTIONS=print_stacktrace=1 \
+	  TSAN_OPTIONS="suppressions=$(CURDIR)/tests/tsan-suppressions.txt second_deadlock_stack=1" \
+	  ctest --test-dir $(BUILD) --output-on-failure --no-tests=error -j $(TEST_JOBS) -R '$(or $(TESTS),$($(PRESET)_tests))'
+
+fuzz: ## the fuzz targets, with clang, for FUZZ_SECONDS each [FUZZ_SECONDS=60] [TARGETS="recipe run"]
+	@tools/install-dependencies.sh fuzz
+	@tools/fuzz.sh '$(or $(FUZZ_SECONDS),60)' $(TARGETS)
 
 # The table names the commit of the tree that was just built, with -dirty behind it where that has changes.
 validate: setup $(BUILD)/build.ninja ## error beside tolerance, docs/validation.md [LONG=1] [ON=cpu|gpu] [CASES="A1 B2"]
@@ -104,4 +126,4 @@ bundle-solver: setup $(RELEASE_BUILD)/build.ninja ## the solver and its tests: b
 	@tools/make-bundle.sh $(RELEASE_BUILD) --solver
 
 clean: ## remove the build folder and the pipelines' results
-	rm -rf $(BUILD) $(RELEASE_BUILD) build-docs build-lint pipelines/out
+	rm -rf $(BUILD) $(RELEASE_BUILD) build-check build-check-threads build-fuzz build-docs build-lint pipelines/out

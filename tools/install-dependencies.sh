@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing to build, run and test Talus on Debian 12 or Ubuntu 24.04. Quick when nothing is missing.
-# usage: tools/install-dependencies.sh [lint|docs] [--list]     (lint, docs: what `make lint` or `make docs` needs)
+# usage: tools/install-dependencies.sh [lint|docs|fuzz] [--list]     (what `make lint`, docs or fuzz needs)
 set -euo pipefail
 
 packages=(
@@ -29,6 +29,7 @@ fail() { echo "tools/install-dependencies.sh: $*" >&2; exit 1; }
 case ${1:-} in
   lint) packages+=(clang-format clang-tidy) && shift ;;
   docs) packages=(doxygen) && shift ;;
+  fuzz) packages+=(clang) && shift ;;   # libFuzzer comes with its run-time library
 esac
 
 if [[ ${1:-} == --list ]]; then

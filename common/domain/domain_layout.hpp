@@ -9,7 +9,10 @@
 
 namespace talus::layout {
 
-inline constexpr int format = 4;  ///< raised when a reader of today would misread the file
+/// Raised when a reader of today would misread the file or miss something in it; the format before is read as well
+/// (docs/formats.md). 5: sealed (common/stage/checksum.hpp). 4: the same without a seal.
+inline constexpr int format = 5;
+inline constexpr int oldest_format = 4;
 inline constexpr auto kind = "talus-domain";
 
 inline constexpr auto points = "points";

@@ -6,11 +6,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <ios>
+#include <stdexcept>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "common/error.hpp"
+#include "common/stage/checksum.hpp"
+#include "common/stage/child_reading.hpp"
 #include "common/stage/input_file.hpp"
 #include "common/stage/stage.hpp"
 #include "common/stage/write_fault.hpp"
@@ -22,6 +27,15 @@ namespace {
 using Vector = openvdb::Vec3d;
 
 constexpr double band = 3;  // of a level set on either side of its surface, in voxels
+constexpr std::size_t most_facets = 50'000'000;
+constexpr auto write_it = "Write it again (Houdini: VDB from Polygons; OpenVDB: tools::meshToLevelSet)";
+
+/// What is asked for.
+struct Wanted {
+  fs::path file;
+  std::string grid;               ///< its name; empty: the only one
+  std::array<double, 3> largest;  ///< extent of a facet [m]
+};
 
 openvdb::FloatGrid::Ptr open_grid(const fs::path& file, const std::string& name) {
   if (!fs::exists(file))
@@ -50,8 +64,30 @@ openvdb::FloatGrid::Ptr open_grid(const fs::path& file, const std::string& name)
     }
     return typed;
   } catch (const openvdb::Exception& error) {
-    refuse_file(file, "cannot be read", error.what(), "Write it again");
+    refuse_file(file, "cannot be read", error.what(), write_it);
+  } catch (const std::ios_base::failure& error) {
+    refuse_file(file, "cannot be read", error.what(), write_it);
   }
+}
+
+/// This function refuses a grid whose numbers are not those of a level set in space.
+void check_numbers(const fs::path& file, const openvdb::FloatGrid& grid) {
+  const auto refuse = [&](const std::string& why) {
+    refuse_file(file, fmt::format("the level set \"{}\" cannot be", grid.getName()), why, write_it);
+  };
+  if (!grid.transform().isLinear()) refuse("its voxels are not all of one size");
+  const openvdb::Mat4d place = grid.transform().baseMap()->getAffineMap()->getMat4();
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column)
+      if (!(std::abs(place[row][column]) < 1e12)) refuse(fmt::format("its transform holds {:g}", place[row][column]));
+  const double volume = std::abs(place.getMat3().det());
+  if (!(volume > 1e-18 && volume < 1e18)) refuse(fmt::format("its voxels have {:g} m3", volume));
+  if (!(grid.background() > 0) || !std::isfinite(grid.background()))
+    refuse(fmt::format("the distance far from its surface is {:g}", grid.background()));
+  for (auto value = grid.cbeginValueAll(); value; ++value)
+    if (!std::isfinite(*value))
+      refuse(fmt::format("at voxel {} {} {} it holds {:g}", value.getCoord().x(), value.getCoord().y(),
+                         value.getCoord().z(), *value));
 }
 
 /// Adds a triangle in pieces that are small enough.
@@ -77,16 +113,34 @@ void add_triangle(BodySurface& surface, const std::array<double, 3>& largest, co
     }
     return;
   }
+  if (surface.facets.size() == most_facets) throw std::length_error("facets");
   const Vector area = 0.5 * ab.cross(-ca), centre = (a + b + c) / 3;
   surface.volume += area.dot(centre - Vector(surface.low[0], surface.low[1], surface.low[2])) / 3;
   surface.facets.push_back({{centre[0], centre[1], centre[2]}, {area[0], area[1], area[2]}});
 }
 
-}  // namespace
+/// How many pieces a body of this extent may have at least, from its bounding box: a broken transform makes it endless.
+bool too_many(const BodySurface& surface, const std::array<double, 3>& largest) {
+  double longest = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    longest = std::max(longest, (surface.high[axis] - surface.low[axis]) / largest[axis]);
+  return !(longest < static_cast<double>(most_facets));
+}
 
-BodySurface read_level_set(const fs::path& file, const std::string& name, const std::array<double, 3>& largest) {
+[[noreturn]] void refuse_fine(const Wanted& wanted, const std::string& name, const BodySurface& surface) {
+  refuse_file(wanted.file, fmt::format("the level set \"{}\" is too large for this grid", name),
+              fmt::format("it spans {:g} x {:g} x {:g} m, and its surface would be cut into more than {} pieces",
+                          surface.high[0] - surface.low[0], surface.high[1] - surface.low[1],
+                          surface.high[2] - surface.low[2], most_facets),
+              "Check its unit, which must be the metre, and its place");
+}
+
+BodySurface read_here(const Wanted& wanted) {
   openvdb::initialize();
-  const auto grid = open_grid(file, name);
+  const fs::path& file = wanted.file;
+  const std::array<double, 3>& largest = wanted.largest;
+  const auto grid = open_grid(file, wanted.grid);
+  check_numbers(file, *grid);
   std::vector<openvdb::Vec3s> corners;
   std::vector<openvdb::Vec3I> triangles;
   std::vector<openvdb::Vec4I> quads;
@@ -103,11 +157,15 @@ BodySurface read_level_set(const fs::path& file, const std::string& name, const 
       surface.high[axis] = std::max(surface.high[axis], p[static_cast<int>(axis)]);
     }
   }
-  // OpenVDB's faces run clockwise seen from outside.
-  for (const auto& t : triangles) add_triangle(surface, largest, at(t[0]), at(t[2]), at(t[1]));
-  for (const auto& q : quads) {
-    add_triangle(surface, largest, at(q[0]), at(q[2]), at(q[1]));
-    add_triangle(surface, largest, at(q[0]), at(q[3]), at(q[2]));
+  if (!corners.empty() && too_many(surface, largest)) refuse_fine(wanted, grid->getName(), surface);
+  try {  // OpenVDB's faces run clockwise seen from outside.
+    for (const auto& t : triangles) add_triangle(surface, largest, at(t[0]), at(t[2]), at(t[1]));
+    for (const auto& q : quads) {
+      add_triangle(surface, largest, at(q[0]), at(q[2]), at(q[1]));
+      add_triangle(surface, largest, at(q[0]), at(q[3]), at(q[2]));
+    }
+  } catch (const std::length_error&) {
+    refuse_fine(wanted, grid->getName(), surface);
   }
   if (surface.facets.empty() || !(surface.volume > 0)) {
     refuse_file(
@@ -116,6 +174,50 @@ BodySurface read_level_set(const fs::path& file, const std::string& name, const 
         "A level set is negative inside the body; write it with smaller voxels if the body is thinner than one");
   }
   return surface;
+}
+
+/// A surface as bytes, from one process of this program to another.
+std::string bytes_of(const BodySurface& surface) {
+  std::string bytes(reinterpret_cast<const char*>(surface.facets.data()), surface.facets.size() * sizeof(Facet));
+  bytes.append(reinterpret_cast<const char*>(&surface.volume), sizeof surface.volume);
+  bytes.append(reinterpret_cast<const char*>(&surface.low), sizeof surface.low);
+  bytes.append(reinterpret_cast<const char*>(&surface.high), sizeof surface.high);
+  return bytes;
+}
+
+BodySurface surface_of(const fs::path& file, const std::string& bytes) {
+  BodySurface surface;
+  constexpr std::size_t tail = sizeof surface.volume + sizeof surface.low + sizeof surface.high;
+  if (bytes.size() < tail || (bytes.size() - tail) % sizeof(Facet) != 0)
+    refuse_file(file, "cannot be read", "reading it broke off", write_it);
+  surface.facets.resize((bytes.size() - tail) / sizeof(Facet));
+  const char* at = bytes.data();
+  const auto take = [&](void* to, std::size_t size) {
+    if (size > 0) std::memcpy(to, at, size);
+    at += size;
+  };
+  take(surface.facets.data(), surface.facets.size() * sizeof(Facet));
+  take(&surface.volume, sizeof surface.volume);
+  take(&surface.low, sizeof surface.low);
+  take(&surface.high, sizeof surface.high);
+  return surface;
+}
+
+const KnownChildReading level_set("level-set", [](const std::vector<std::string>& words) {
+  return bytes_of(
+      read_here({words.at(0), words.at(1), {std::stod(words.at(2)), std::stod(words.at(3)), std::stod(words.at(4))}}));
+});
+
+}  // namespace
+
+BodySurface read_level_set(const fs::path& file, const std::string& name, const std::array<double, 3>& largest) {
+  if (check_seal(file, "Run talus-preprocess again, or copy it again") || !fs::is_regular_file(file))
+    return read_here({file, name, largest});
+  const auto exactly = [](double number) { return fmt::format("{:.17g}", number); };
+  return surface_of(file, read_in_child({.name = "level-set",
+                                         .words = {name, exactly(largest[0]), exactly(largest[1]), exactly(largest[2])},
+                                         .file = file,
+                                         .mend = write_it}));
 }
 
 void write_level_sets(const fs::path& file, const std::vector<SolidBody>& bodies, double voxel) {
@@ -156,6 +258,7 @@ void write_level_sets(const fs::path& file, const std::vector<SolidBody>& bodies
   } catch (const openvdb::Exception& error) {
     throw DataError(write_fault(file, error.what()));
   }
+  seal_file(pending.path(), file);
   pending.commit();
 }
 

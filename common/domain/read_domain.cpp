@@ -6,8 +6,11 @@
 #include <fstream>
 #include <limits>
 
+#include "common/domain/check_domain.hpp"
 #include "common/domain/domain.hpp"
 #include "common/domain/domain_layout.hpp"
+#include "common/stage/checksum.hpp"
+#include "common/stage/child_reading.hpp"
 #include "common/stage/input_file.hpp"
 #include "common/stage/write_fault.hpp"
 
@@ -24,6 +27,7 @@ using openvdb::points::AttributeHandle;
 using openvdb::points::PointDataGrid;
 
 constexpr auto make_it = "Make it with talus-preprocess";
+constexpr auto again = "Run talus-preprocess again, or copy it again";
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& what, const std::string& why,
                          const std::string& mend = make_it) {
@@ -54,11 +58,9 @@ Contents read_all(const fs::path& file) {
     openvdb::io::Stream archive(stream, false);
     return {archive.getGrids(), archive.getMetadata()};
   } catch (const std::ios_base::failure&) {
-    refuse(file, "ends too early", "the file is truncated: its writing or copying was cut short",
-           "Run talus-preprocess again, or copy it again");
+    refuse(file, "ends too early", "the file is truncated: its writing or copying was cut short", again);
   } catch (const std::exception& error) {  // OpenVDB throws its own and std:: kinds on bytes that make no sense
-    refuse(file, "cannot be read", std::string("the file is damaged: ") + error.what(),
-           "Run talus-preprocess again, or copy it again");
+    refuse(file, "cannot be read", std::string("the file is damaged: ") + error.what(), again);
   }
 }
 
@@ -78,6 +80,12 @@ class Facts {
     if (value < 0) refuse(file_, "not a domain of talus-preprocess", "the entry \"" + name + "\" is negative");
     return static_cast<std::size_t>(value);
   }
+  int number(const std::string& name) const {
+    const auto value = count(name);
+    if (value > std::numeric_limits<int>::max())
+      refuse(file_, "not a whole domain", "the entry \"" + name + "\" is " + std::to_string(value));
+    return static_cast<int>(value);
+  }
   std::string text(const std::string& name) const { return get<std::string>(name); }
 
  private:
@@ -85,14 +93,18 @@ class Facts {
   const openvdb::MetaMap& meta_;
 };
 
-void check_kind(const fs::path& file, const openvdb::MetaMap& meta) {
+void check_kind(const fs::path& file, const openvdb::MetaMap& meta, bool sealed) {
   const auto kind = meta.getMetadata<openvdb::StringMetadata>("kind");
   if (!kind || kind->value() != layout::kind)
     refuse(file, "not a domain of talus-preprocess", "an OpenVDB file of another program");
   const auto format = Facts(file, meta).count("format");
-  if (format != layout::format)
-    refuse(file, "its format is " + std::to_string(format),
-           "this program reads format " + std::to_string(layout::format), "Run the talus-preprocess of this version");
+  if (format < layout::oldest_format || format > layout::format)
+    refuse(
+        file, "its format is " + std::to_string(format),
+        "this program reads formats " + std::to_string(layout::oldest_format) + " to " + std::to_string(layout::format),
+        "Run the talus-preprocess of this version");
+  if (format == layout::format && !sealed)
+    refuse(file, "is damaged", "its checksum is missing: another program changed it, or its end is lost");
 }
 
 template <class Grid>
@@ -105,6 +117,9 @@ typename Grid::Ptr grid_named(const fs::path& file, const Contents& contents, co
 
 Raster sheet(const fs::path& file, const Contents& contents, const char* name, const MapGrid& map) {
   const auto grid = grid_named<openvdb::DoubleGrid>(file, contents, name);
+  const openvdb::CoordBBox cells(openvdb::Coord(0, 0, 0), openvdb::Coord(map.columns - 1, map.rows - 1, 0));
+  if (const auto box = grid->evalActiveVoxelBoundingBox(); !box.empty() && !cells.isInside(box))
+    refuse(file, "not a whole domain", std::string("the grid \"") + name + "\" goes beyond the map");
   const auto accessor = grid->getConstAccessor();
   Raster raster{map, std::vector<double>(map.count(), std::nan(""))};
   double value = 0;
@@ -123,8 +138,8 @@ ActiveCells active_mask(const fs::path& file, const Contents& contents, const Do
       facts.get<double>(layout::mask_h_z) != domain.layer_height)
     refuse(file, "not a whole domain", "the mask \"active\" has other cells than the grid");
   ActiveCells cells(domain.grid.columns, domain.grid.rows);
-  const openvdb::CoordBBox map(openvdb::Coord(0, 0, 0),
-                               openvdb::Coord(cells.columns - 1, cells.rows - 1, std::numeric_limits<int>::max()));
+  constexpr int most_layers = 1 << 20;
+  const openvdb::CoordBBox map(openvdb::Coord(0, 0, 0), openvdb::Coord(cells.columns - 1, cells.rows - 1, most_layers));
   for (auto value = grid->cbeginValueOn(); value; ++value) {
     openvdb::CoordBBox box;  // a voxel, or a tile of many
     value.getBoundingBox(box);
@@ -140,7 +155,7 @@ ActiveCells active_mask(const fs::path& file, const Contents& contents, const Do
 
 /// Points of one leaf, each to the place its id names.
 void take_leaf(const fs::path& file, const PointDataGrid::TreeType::LeafNodeType& leaf, const MapGrid& map,
-               SeedPoints& points) {
+               SeedPoints& points, std::vector<bool>& taken) {
   const AttributeHandle<openvdb::Vec3f> position(leaf.constAttributeArray("P"));
   const AttributeHandle<double> volume(leaf.constAttributeArray(layout::volume)),
       height(leaf.constAttributeArray(layout::height)), extent_x(leaf.constAttributeArray(layout::extent_x)),
@@ -150,6 +165,8 @@ void take_leaf(const fs::path& file, const PointDataGrid::TreeType::LeafNodeType
   for (auto point = leaf.beginIndexOn(); point; ++point) {
     const auto p = static_cast<std::size_t>(id.get(*point));
     if (p >= points.size()) refuse(file, "not a whole domain", "a point has an id beyond the count of points");
+    if (taken[p]) refuse(file, "not a whole domain", "two points have the id " + std::to_string(p));
+    taken[p] = true;
     const openvdb::Coord voxel = point.getCoord();
     const openvdb::Vec3f offset = position.get(*point);  // from the voxel's centre, in voxels
     points.x[p] = map.west + (voxel.x() + 0.5 + static_cast<double>(offset.x())) * map.cell;
@@ -170,6 +187,7 @@ SeedPoints seed_points(const fs::path& file, const Contents& contents, const Map
          {"P", layout::volume, layout::height, layout::extent_x, layout::extent_y, layout::release, layout::id})
       if (!leaf->hasAttribute(name))
         refuse(file, "not a whole domain", std::string("points have no attribute \"") + name + "\"");
+    leaf->validateOffsets();  // throws
     found += leaf->onPointCount();
   }
   if (found != count)
@@ -178,20 +196,18 @@ SeedPoints seed_points(const fs::path& file, const Contents& contents, const Map
   for (auto* values : {&points.x, &points.y, &points.height, &points.volume, &points.extent_x, &points.extent_y})
     values->resize(count);
   points.release.resize(count);
-  for (auto leaf = grid->tree().cbeginLeaf(); leaf; ++leaf) take_leaf(file, *leaf, map, points);
+  std::vector<bool> taken(count);
+  for (auto leaf = grid->tree().cbeginLeaf(); leaf; ++leaf) take_leaf(file, *leaf, map, points, taken);
   return points;
 }
 
 Domain assemble(const fs::path& file, const Contents& contents) {
   const Facts facts(file, *contents.meta);
   Domain domain;
-  domain.grid = {static_cast<int>(facts.count("columns")),
-                 static_cast<int>(facts.count("rows")),
-                 facts.get<double>("west_m"),
-                 facts.get<double>("south_m"),
-                 facts.get<double>("cell_m"),
-                 facts.text("crs_wkt")};
+  domain.grid = {facts.number("columns"),      facts.number("rows"),        facts.get<double>("west_m"),
+                 facts.get<double>("south_m"), facts.get<double>("cell_m"), facts.text("crs_wkt")};
   domain.layer_height = facts.get<double>("layer_height_m");
+  check_domain_grid(file, domain.grid, domain.layer_height);
   domain.terrain = sheet(file, contents, layout::terrain, domain.grid);
   domain.before = sheet(file, contents, layout::before, domain.grid);
   domain.release_thickness = sheet(file, contents, layout::release_thickness, domain.grid);
@@ -203,26 +219,39 @@ Domain assemble(const fs::path& file, const Contents& contents) {
   }
   for (std::size_t i = 0; i < facts.count("releases"); ++i)
     domain.release_names.push_back(facts.text(layout::numbered("release_name", i)));
-  domain.erodible = static_cast<int>(facts.count("erodible"));
+  domain.erodible = facts.number("erodible");
   for (std::size_t i = 0; i < facts.count("facts"); ++i)
     domain.provenance.emplace_back(facts.text(layout::numbered("fact_name", i)),
                                    facts.text(layout::numbered("fact_value", i)));
   domain.points = seed_points(file, contents, domain.grid, facts.count("points"));
   domain.active = active_mask(file, contents, domain);
+  check_domain(file, domain);
   return domain;
 }
 
-}  // namespace
-
-Domain read_domain(const fs::path& file) {
+Domain read_here(const fs::path& file, bool sealed) {
   openvdb::initialize();
   const Contents contents = read_all(file);
-  check_kind(file, *contents.meta);
+  check_kind(file, *contents.meta, sealed);
   try {
     return assemble(file, contents);
   } catch (const openvdb::Exception& error) {
     refuse(file, "not a whole domain", error.what());
   }
+}
+
+const KnownChildReading trial("domain", [](const std::vector<std::string>& words) {
+  read_here(words.at(0), false);
+  return std::string();
+});
+
+}  // namespace
+
+Domain read_domain(const fs::path& file) {
+  const bool sealed = check_seal(file, again);
+  if (!sealed && fs::is_regular_file(file))  // OpenVDB crashes on some files that are not as they were written
+    read_in_child({.name = "domain", .words = {}, .file = file, .mend = again});
+  return read_here(file, sealed);
 }
 
 }  // namespace talus

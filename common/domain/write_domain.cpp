@@ -6,6 +6,7 @@
 #include "common/domain/domain_layout.hpp"
 #include "common/domain/point_grid.hpp"
 #include "common/map/bilinear.hpp"
+#include "common/stage/checksum.hpp"
 #include "common/stage/stage.hpp"
 #include "common/stage/write_fault.hpp"
 
@@ -160,6 +161,7 @@ void write_domain(const fs::path& file, const Domain& domain) {
   } catch (const openvdb::Exception& error) {
     throw DataError(write_fault(file, error.what()));
   }
+  seal_file(pending.path(), file);
   verify(pending.path(), file, domain, active);
   pending.commit();
 }

@@ -86,6 +86,9 @@ std::size_t product(const Dims& dims) {
   return std::accumulate(dims.begin(), dims.end(), std::size_t{1}, std::multiplies<>());
 }
 
+/// "3 x 4"
+std::string shape_text(const Dims& dims) { return fmt::format("{}", fmt::join(dims, " x ")); }
+
 }  // namespace
 
 File File::create(const std::filesystem::path& path, Naming naming) {
@@ -144,6 +147,19 @@ bool File::exists(const std::string& path) const {
 
 bool File::has_attribute(const std::string& object, const std::string& name) const {
   return H5Aexists_by_name(id_, object.c_str(), name.c_str(), H5P_DEFAULT) > 0;
+}
+
+bool File::is_group(const std::string& path) const {
+  const Id object(H5Oopen(id_, path.c_str(), H5P_DEFAULT), H5Oclose);
+  if (object.bad()) fail(fmt::format("{} cannot be opened", path));
+  return H5Iget_type(object) == H5I_GROUP;
+}
+
+H5T_class_t File::class_of(const std::string& path) const {
+  const Id set(H5Dopen2(id_, path.c_str(), H5P_DEFAULT), H5Dclose);
+  if (set.bad()) fail(fmt::format("has no dataset {}", path));
+  const Id type(H5Dget_type(set), H5Tclose);
+  return H5Tget_class(type);
 }
 
 std::vector<std::string> File::children(const std::string& group) const {
@@ -219,13 +235,32 @@ void File::set_integers(const std::string& object, const std::string& name, std:
   }
 }
 
+namespace {
+
+constexpr std::size_t longest_text = std::size_t{1} << 24;  // bytes; the longest that is written is a CRS
+
+/// Whether a type of a file is one number of the class (whole, real) of a type in memory.
+bool same_class(hid_t in_file, hid_t in_memory) { return H5Tget_class(in_file) == H5Tget_class(in_memory); }
+
+/// Whether an attribute holds one value.
+bool is_single(hid_t attribute) {
+  const Id space(H5Aget_space(attribute), H5Sclose);
+  return !space.bad() && H5Sget_simple_extent_npoints(space) == 1;
+}
+
+}  // namespace
+
 std::string File::text(const std::string& object, const std::string& name) const {
   const auto problem = fmt::format("attribute {} {} cannot be read", object, name);
   const Id attribute(H5Aopen_by_name(id_, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
   if (attribute.bad()) fail(problem);
   const Id type(H5Aget_type(attribute), H5Tclose);
-  if (type.bad() || H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0) fail(problem);
-  std::string value(H5Tget_size(type), '\0');
+  if (type.bad() || H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 || !is_single(attribute))
+    refuse(problem, "it is not one text");
+  const std::size_t size = H5Tget_size(type);
+  if (size > longest_text || size > H5Aget_storage_size(attribute))
+    refuse(problem, fmt::format("it claims to have {} bytes", size));
+  std::string value(size, '\0');
   if (H5Aread(attribute, type, value.data()) < 0) fail(problem);
   value.resize(std::min(value.find('\0'), value.size()));
   return value;
@@ -235,9 +270,9 @@ namespace {
 
 bool read_scalar(hid_t file, const std::string& object, const std::string& name, hid_t type, void* value) {
   const Id attribute(H5Aopen_by_name(file, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-  if (attribute.bad()) return false;
-  const Id space(H5Aget_space(attribute), H5Sclose);
-  return !space.bad() && H5Sget_simple_extent_npoints(space) == 1 && H5Aread(attribute, type, value) >= 0;
+  if (attribute.bad() || !is_single(attribute)) return false;
+  const Id in_file(H5Aget_type(attribute), H5Tclose);
+  return !in_file.bad() && same_class(in_file, type) && H5Aread(attribute, type, value) >= 0;
 }
 
 }  // namespace
@@ -305,15 +340,65 @@ Dims File::dims(const std::string& path) const {
   if (set.bad()) fail(fmt::format("has no dataset {}", path));
   const Id space(H5Dget_space(set), H5Sclose);
   Dims dims(static_cast<std::size_t>(std::max(H5Sget_simple_extent_ndims(space), 0)));
-  H5Sget_simple_extent_dims(space, dims.data(), nullptr);
+  if (space.bad() || H5Sget_simple_extent_type(space) == H5S_NULL ||
+      H5Sget_simple_extent_dims(space, dims.data(), nullptr) < 0) {
+    fail(fmt::format("dataset {} has no shape", path));
+  }
   return dims;
 }
 
-std::size_t File::checked_count(const std::string& path, const Dims& expected) const {
+std::size_t File::length(const std::string& path) const {
   const auto found = dims(path);
-  if (found == expected) return product(expected);
-  throw DataError({fmt::format("{}: dataset {} has shape {}", naming_.shown.string(), path, fmt::join(found, " x ")),
-                   fmt::format("the rest of the file asks for {}", fmt::join(expected, " x ")), naming_.mend});
+  if (found.size() != 1) refuse_shape(path, found, "a list is asked for");
+  return found[0];
+}
+
+void File::refuse(const std::string& problem, const std::string& why) const {
+  throw DataError({fmt::format("{}: {}", naming_.shown.string(), problem), why, naming_.mend});
+}
+
+void File::refuse_shape(const std::string& path, const Dims& found, const std::string& why) const {
+  refuse(fmt::format("dataset {} has shape {}", path, found.empty() ? "of one number" : shape_text(found)), why);
+}
+
+std::size_t File::checked_count(const std::string& path, const Dims& expected, hid_t type) const {
+  const auto found = dims(path);
+  if (found != expected)
+    refuse_shape(path, found, fmt::format("the rest of the file asks for {}", shape_text(expected)));
+  check_stored(path, found, type);
+  return product(expected);
+}
+
+std::size_t File::checked_rows(const std::string& path, hsize_t first, hsize_t rows, const Dims& row,
+                               hid_t type) const {
+  const auto found = dims(path);
+  if (found.empty() || Dims(found.begin() + 1, found.end()) != row) {
+    refuse_shape(path, found,
+                 row.empty() ? "a list is asked for" : fmt::format("rows of {} are asked for", shape_text(row)));
+  }
+  if (rows > found[0] || first > found[0] - rows)
+    refuse_shape(path, found, fmt::format("the rest of the file speaks of rows {} to {}", first, first + rows));
+  check_stored(path, found, type);
+  return rows * product(row);
+}
+
+/// A shape is only a claim: deflate packs zeros 1032 times at most, so what takes less room than that is not there.
+void File::check_stored(const std::string& path, const Dims& shape, hid_t type) const {
+  const Id set(H5Dopen2(id_, path.c_str(), H5P_DEFAULT), H5Dclose);
+  const Id in_file(H5Dget_type(set), H5Tclose);
+  if (set.bad() || in_file.bad()) fail(fmt::format("dataset {} cannot be read", path));
+  if (!same_class(in_file, type)) {
+    refuse(fmt::format("dataset {} holds values of another kind", path),
+           H5Tget_class(type) == H5T_INTEGER ? "whole numbers are asked for" : "real numbers are asked for");
+  }
+  constexpr double most_packed = 1100;
+  double bytes = static_cast<double>(H5Tget_size(in_file));
+  for (const hsize_t count : shape) bytes *= static_cast<double>(count);
+  const auto stored = static_cast<double>(H5Dget_storage_size(set));
+  if (bytes > most_packed * stored) {
+    refuse(fmt::format("dataset {} has shape {}", path, shape_text(shape)),
+           fmt::format("but only {:.0f} bytes in the file", stored));
+  }
 }
 
 void File::read_raw(const std::string& path, hid_t type, void* data) const {
@@ -331,8 +416,7 @@ void File::read_rows_raw(const std::string& path, hsize_t first, hsize_t rows, h
   const Id set(H5Dopen2(id_, path.c_str(), H5P_DEFAULT), H5Dclose);
   const Id there(H5Dget_space(set), H5Sclose);
   const Id here(H5Screate_simple(static_cast<int>(block.size()), block.data(), nullptr), H5Sclose);
-  const bool chosen = first + rows <= shape[0] &&
-                      H5Sselect_hyperslab(there, H5S_SELECT_SET, start.data(), nullptr, block.data(), nullptr) >= 0;
+  const bool chosen = H5Sselect_hyperslab(there, H5S_SELECT_SET, start.data(), nullptr, block.data(), nullptr) >= 0;
   if (!chosen || H5Dread(set, type, here, there, H5P_DEFAULT, data) < 0) {
     fail(fmt::format("dataset {} cannot be read", path));
   }

@@ -71,6 +71,12 @@ class File {
   bool exists(const std::string& path) const;
   /// True when a group or dataset has an attribute of that name.
   bool has_attribute(const std::string& object, const std::string& name) const;
+  /// True where a path leads to a group.
+  bool is_group(const std::string& path) const;
+  /// True where a dataset holds whole numbers.
+  bool is_whole(const std::string& path) const { return class_of(path) == H5T_INTEGER; }
+  /// True where a dataset holds real numbers.
+  bool is_real(const std::string& path) const { return class_of(path) == H5T_FLOAT; }
   std::vector<std::string> children(const std::string& group) const;          ///< in order of creation
   std::vector<std::string> attribute_names(const std::string& object) const;  ///< in order of creation
 
@@ -105,34 +111,36 @@ class File {
   }
   /// The shape of a dataset.
   Dims dims(const std::string& path) const;
-  /// Read a whole dataset whose shape must be `expected`.
+  /// The length of a list: of a dataset that must have one dimension.
+  std::size_t length(const std::string& path) const;
+  /// Read a whole dataset whose shape must be `expected`. Like the readings below it throws DataError where the dataset
+  /// holds numbers of another kind, or far fewer bytes than its shape asks for.
   template <class T>
   std::vector<T> read(const std::string& path, const Dims& expected) const {
-    std::vector<T> values(checked_count(path, expected));
-    read_raw(path, native_type<T>(), values.data());
+    std::vector<T> values(checked_count(path, expected, native_type<T>()));
+    if (!values.empty()) read_raw(path, native_type<T>(), values.data());
     return values;
   }
 
-  /// Read a whole dataset of any shape, flat.
+  /// Read a list of any length.
   template <class T>
-  std::vector<T> read(const std::string& path) const {
-    return read<T>(path, dims(path));
+  std::vector<T> read_list(const std::string& path) const {
+    return read<T>(path, {length(path)});
   }
 
-  /// Read rows [first, first + rows) of a dataset, flat.
+  /// Read rows [first, first + rows) of a dataset whose rows must have the shape `row` (empty: single numbers), flat.
   template <class T>
-  std::vector<T> read_rows(const std::string& path, hsize_t first, hsize_t rows) const {
-    auto shape = dims(path);
-    std::size_t count = rows;
-    for (std::size_t d = 1; d < shape.size(); ++d) count *= shape[d];
-    std::vector<T> values(count);
-    if (count > 0) read_rows_raw(path, first, rows, native_type<T>(), values.data());
+  std::vector<T> read_rows(const std::string& path, hsize_t first, hsize_t rows, const Dims& row) const {
+    std::vector<T> values(checked_rows(path, first, rows, row, native_type<T>()));
+    if (!values.empty()) read_rows_raw(path, first, rows, native_type<T>(), values.data());
     return values;
   }
 
   /// Throws the DataError of this file: "FILE: `problem` (reason HDF5 gives). mend", or where it is being written, what
   /// write_fault() says of it.
   [[noreturn]] void fail(const std::string& problem) const;
+  /// Throws "FILE: `problem` (why). mend" of something that was read but cannot be right.
+  [[noreturn]] void refuse(const std::string& problem, const std::string& why) const;
 
  private:
   File(hid_t id, Naming naming, bool writing) : id_(id), naming_(std::move(naming)), writing_(writing) {}
@@ -140,7 +148,11 @@ class File {
   void append_raw(const std::string& path, hsize_t rows, const Dims& row, hid_t type, const void* data,
                   std::size_t count);
   void create_extendible(const std::string& path, const Dims& row, hid_t type);
-  std::size_t checked_count(const std::string& path, const Dims& expected) const;
+  H5T_class_t class_of(const std::string& path) const;
+  std::size_t checked_count(const std::string& path, const Dims& expected, hid_t type) const;
+  std::size_t checked_rows(const std::string& path, hsize_t first, hsize_t rows, const Dims& row, hid_t type) const;
+  [[noreturn]] void refuse_shape(const std::string& path, const Dims& found, const std::string& why) const;
+  void check_stored(const std::string& path, const Dims& shape, hid_t type) const;
   void read_raw(const std::string& path, hid_t type, void* data) const;
   void read_rows_raw(const std::string& path, hsize_t first, hsize_t rows, hid_t type, void* data) const;
 

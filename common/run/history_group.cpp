@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "common/run/check_values.hpp"
+
 namespace talus {
 
 const HistoryColumn* RunHistory::find(const std::string& name) const {
@@ -39,15 +41,21 @@ RunHistory read_history(const h5::File& file) {
   RunHistory history;
   for (const auto& name : file.children("/history")) {
     const auto path = "/history/" + name;
-    const auto dims = history.columns.empty() ? file.dims(path) : h5::Dims{history.columns[0].values.size()};
+    const h5::Dims dims{history.columns.empty() ? file.length(path) : history.columns[0].values.size()};
     const auto word = [&](const char* attribute) {
       return file.has_attribute(path, attribute) ? file.text(path, attribute) : std::string();
     };
+    std::vector<double> values = file.read<double>(path, dims);
+    if (name == "time_s") {
+      h5::check_growing(file, path, values, false);
+    } else {
+      h5::check_values<double>(file, path, values, h5::finite_or_none);
+    }
     history.columns.push_back({.name = name,
                                .unit = word("unit"),
                                .quantity = word("quantity"),
                                .place = word("place"),
-                               .values = file.read<double>(path, dims)});
+                               .values = std::move(values)});
   }
   return history;
 }

@@ -2,57 +2,73 @@
 #include <limits>
 #include <string>
 
+#include <fmt/format.h>
+
 #include "common/error.hpp"
+#include "common/run/check_values.hpp"
 #include "common/run/hdf5.hpp"
 #include "common/run/history_group.hpp"
 #include "common/run/run_file.hpp"
 #include "common/run/run_layout.hpp"
+#include "common/run/trusted_file.hpp"
 
 namespace talus {
 namespace {
 
 constexpr const char* mend = "Run talus-solve again";
 
-void check_format(const h5::File& file, const std::filesystem::path& path) {
+void check_format(const h5::TrustedFile& trusted, const std::filesystem::path& path) {
+  const h5::File& file = trusted.file;
   if (!file.has_attribute("/", "format") || file.text("/", "format") != run_layout::format) {
     throw DataError({path.string() + ": not a run of Talus", "an HDF5 file without the mark talus-solve leaves",
                      "Give the run.h5 that talus-solve wrote"});
   }
   const auto version = file.integer("/", "format_version");
-  if (version != run_layout::format_version) {
-    throw DataError({path.string() + ": layout version " + std::to_string(version),
-                     "this program reads version " + std::to_string(run_layout::format_version), mend});
+  if (version < run_layout::oldest_version || version > run_layout::format_version) {
+    throw DataError(
+        {fmt::format("{}: layout version {}", path.string(), version),
+         fmt::format("this program reads versions {} to {}", run_layout::oldest_version, run_layout::format_version),
+         version > run_layout::format_version ? "Take the talus-postprocess that belongs to it" : mend});
   }
+  if (version == run_layout::format_version) h5::expect_seal(trusted);
 }
 
 MapGrid read_grid(const h5::File& file) {
   const auto columns = file.integer("/maps", "columns"), rows = file.integer("/maps", "rows");
   constexpr auto limit = std::numeric_limits<int>::max();
-  MapGrid grid{.columns = static_cast<int>(columns),
-               .rows = static_cast<int>(rows),
-               .west = file.number("/maps", "west_m"),
-               .south = file.number("/maps", "south_m"),
-               .cell = file.number("/maps", "cell_m"),
-               .crs_wkt = file.text("/maps", "crs_wkt")};
-  if (columns < 1 || rows < 1 || columns > limit || rows > limit || !(grid.cell > 0))
-    file.fail("holds an impossible map grid");
-  return grid;
+  if (columns < 1 || rows < 1 || columns > limit || rows > limit)
+    file.refuse("holds an impossible map grid", fmt::format("of {} columns and {} rows", columns, rows));
+  constexpr h5::Allowed a_cell{.low = std::numeric_limits<double>::min(), .why = "a cell has a size"};
+  return {.columns = static_cast<int>(columns),
+          .rows = static_cast<int>(rows),
+          .west = h5::checked_number(file, "/maps", "west_m", h5::finite),
+          .south = h5::checked_number(file, "/maps", "south_m", h5::finite),
+          .cell = h5::checked_number(file, "/maps", "cell_m", a_cell),
+          .crs_wkt = file.text("/maps", "crs_wkt")};
 }
 
 h5::Dims shape_of(const MapGrid& grid) { return {static_cast<hsize_t>(grid.rows), static_cast<hsize_t>(grid.columns)}; }
 
+/// One map, whose values are finite or none; of a quantity, such as a thickness, never negative.
+std::vector<double> read_map(const h5::File& file, const std::string& path, const MapGrid& grid, bool elevation) {
+  auto values = file.read<double>(path, shape_of(grid));
+  h5::check_values<double>(file, path, values, elevation ? h5::finite_or_none : h5::not_negative_or_none);
+  return values;
+}
+
 RunMaps read_maps(const h5::File& file) {
   RunMaps maps;
   maps.grid = read_grid(file);
-  maps.threshold = file.number("/maps", "threshold_m");
+  maps.threshold = h5::checked_number(file, "/maps", "threshold_m", h5::not_negative);
   for (const MapField& field : map_fields) {
     const auto path = std::string("/maps/") + field.name;
-    if (!field.optional || file.exists(path)) maps.*(field.values) = file.read<double>(path, shape_of(maps.grid));
+    const bool elevation = field.values == &RunMaps::terrain || field.values == &RunMaps::before;
+    if (!field.optional || file.exists(path)) maps.*(field.values) = read_map(file, path, maps.grid, elevation);
   }
   if (file.exists("/maps/deposit_of")) {
     for (std::size_t r = 0; file.exists("/maps/deposit_of/" + std::to_string(r)); ++r) {
       const auto path = "/maps/deposit_of/" + std::to_string(r);
-      maps.deposit_of.emplace_back(file.text(path, "release"), file.read<double>(path, shape_of(maps.grid)));
+      maps.deposit_of.emplace_back(file.text(path, "release"), read_map(file, path, maps.grid, false));
     }
   }
   return maps;
@@ -61,10 +77,12 @@ RunMaps read_maps(const h5::File& file) {
 RunFrames read_frames(const h5::File& file, const MapGrid& grid) {
   RunFrames frames;
   if (!file.exists("/frames/time")) return frames;
-  frames.time = file.read<double>("/frames/time", file.dims("/frames/time"));
+  frames.time = file.read_list<double>("/frames/time");
+  h5::check_growing(file, "/frames/time", frames.time, true);
   auto shape = shape_of(grid);
   shape.insert(shape.begin(), frames.time.size());
   const auto all = file.read<double>("/frames/thickness", shape);
+  h5::check_values<double>(file, "/frames/thickness", all, h5::not_negative_or_none);
   for (std::size_t i = 0; i < frames.time.size(); ++i) {
     const auto start = all.begin() + static_cast<std::ptrdiff_t>(i * grid.count());
     frames.thickness.emplace_back(start, start + static_cast<std::ptrdiff_t>(grid.count()));
@@ -78,15 +96,22 @@ RunSummary read_summary(const h5::File& file) {
   for (const auto& item : run_layout::summary_laws) {
     if (file.has_attribute("/", item.name)) summary.*(item.value) = file.text("/", item.name);
   }
-  for (const auto& item : run_layout::summary_integers) summary.*(item.value) = file.integer("/", item.name);
-  for (const auto& item : run_layout::summary_numbers) summary.*(item.value) = file.number("/", item.name);
+  for (const auto& item : run_layout::summary_integers) {
+    summary.*(item.value) = file.integer("/", item.name);
+    if (summary.*(item.value) < 0)
+      file.refuse(fmt::format("attribute / {} is {}", item.name, summary.*(item.value)), "a count is not negative");
+  }
+  for (const auto& item : run_layout::summary_numbers)
+    summary.*(item.value) = h5::checked_number(file, "/", item.name, h5::not_negative);
   for (const SanityNumber& number : sanity_numbers) {
     if (file.has_attribute("/", number.name)) summary.sanity.*(number.value) = file.number("/", number.name);
   }
   constexpr const char* words = run_layout::sanity_words;
   if (file.has_attribute("/", words)) summary.sanity.words = file.text("/", words);
   for (const auto& phase : file.children("/profile")) {
-    summary.profile.emplace_back(phase, file.read<double>("/profile/" + phase, {1}).front());
+    const auto seconds = file.read<double>("/profile/" + phase, {1});
+    h5::check_values<double>(file, "/profile/" + phase, seconds, h5::not_negative);
+    summary.profile.emplace_back(phase, seconds.front());
   }
   for (const auto& name : file.children("/provenance")) {
     const auto group = "/provenance/" + name;
@@ -98,8 +123,9 @@ RunSummary read_summary(const h5::File& file) {
 }  // namespace
 
 Run read_run(const std::filesystem::path& path) {
-  const auto file = h5::File::open(path, {path, mend});
-  check_format(file, path);
+  const h5::TrustedFile trusted = h5::open_trusted(path, {path, mend});
+  check_format(trusted, path);
+  const h5::File& file = trusted.file;
   Run run;
   run.maps = read_maps(file);
   run.frames = read_frames(file, run.maps.grid);

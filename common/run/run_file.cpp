@@ -13,6 +13,7 @@
 #include "common/run/history_group.hpp"
 #include "common/run/run_layout.hpp"
 #include "common/run/vtkhdf.hpp"
+#include "common/stage/checksum.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus {
@@ -112,6 +113,7 @@ void RunWriter::finish(const RunMaps& maps, const RunHistory& history, const Run
   write_history(open_->file, history);
   write_summary(open_->file, summary);
   open_->file.close();
+  seal_file(open_->pending.path(), open_->pending.final_path());
   open_->pending.commit();
 }
 

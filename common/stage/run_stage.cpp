@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "common/recipe/shown_paths.hpp"
+#include "common/stage/child_reading.hpp"
 #include "common/stage/command_line.hpp"
 #include "common/stage/console.hpp"
 #include "common/stage/input_file.hpp"
@@ -124,6 +125,7 @@ int guarded(int argc, char** argv, const Stage& stage) {
 }  // namespace
 
 int run_stage(int argc, char** argv, const Stage& stage) {
+  serve_child_reading(argc, argv);
   try {
     return guarded(argc, argv, stage);
   } catch (const Error& error) {

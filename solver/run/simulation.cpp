@@ -10,6 +10,7 @@
 #include "solver/run/gravity_loading.hpp"
 #include "solver/run/products.hpp"
 #include "solver/run/progress.hpp"
+#include "solver/run/recorders/check_checkpoint.hpp"
 #include "solver/run/sanity.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "solver/scene/make_solver.hpp"
@@ -31,6 +32,7 @@ Simulation::Simulation(const Domain& domain, const SolveOptions& options, const 
 
 void Simulation::resume(const std::filesystem::path& file) {
   Checkpoint checkpoint = read_checkpoint(file, marks_.fingerprint);
+  check_checkpoint(file, checkpoint, scene_);
   frames_.belong_to(checkpoint.id);
   frames_.expect(checkpoint.memory.frames);
   marks_.id = checkpoint.id;

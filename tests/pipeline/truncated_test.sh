@@ -2,7 +2,7 @@
 # Files between the stages cut short: by a copy that broke off, say. At any place: the exit code, the message, and no
 # result.
 source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
-parts=(0 1 3 10 60 100 300 500 700 900 990 999)   # per mille
+parts=(0 1 3 10 60 100 300 500 700 900 990 995)   # per mille; the last 128 bytes are the seal
 
 # cut_file FILE PER_MILLE: the first part of FILE.whole.
 cut_file() {
@@ -28,6 +28,60 @@ test_domain() {
     expect_error "talus-solve: out/domain.vdb: ends too early (the file is truncated: its writing or copying " \
       "was cut short). Run talus-preprocess again, or copy it again"
     expect_no_file out domain.vdb domain.vdb.whole preprocess.used.toml survey
+  done
+}
+
+# The contents are whole, but nothing says so any more; and a byte that changed on the way.
+test_seal() {
+  scene
+  expect_exit 0 preprocess
+  expect_exit 0 solve
+  local file stage mend
+  while read -r stage file mend; do
+    cp "out/$file" whole
+    head -c -1 whole >"out/$file"
+    expect_exit 3 "$stage"
+    expect_words "talus-$stage: $PWD/out/$file: is damaged (its checksum is missing: another program changed it, or"
+    cp whole "out/$file"
+    printf '\x7f' | dd of="out/$file" bs=1 seek=5000 conv=notrunc status=none
+    if cmp -s whole "out/$file"; then fail "the test changed nothing"; fi
+    expect_exit 3 "$stage"
+    expect_words "talus-$stage: $PWD/out/$file: is damaged (bytes have changed since it was written: " "$mend"
+    cp whole "out/$file"
+    expect_exit 0 "$stage"
+  done <<'FILES'
+solve domain.vdb Run talus-preprocess again, or copy it again
+postprocess run.h5 Run talus-solve again
+FILES
+}
+
+# The formats before have no seal: they are read all the same.
+test_the_formats_before_are_read() {
+  scene
+  sed -i 's/layer_height_m = 2.0/layer_height_m = 4.0/' recipe.toml
+  mkdir out
+  cp "$TALUS_SOURCE/tests/golden/domain-4.vdb" out/domain.vdb
+  expect_exit 0 solve
+  cp "$TALUS_SOURCE/tests/golden/run-3.h5" out/run.h5
+  expect_exit 0 postprocess
+  [[ -s out/score.json ]] || fail "no score"
+}
+
+# A level set of another program, damaged: an error, whatever OpenVDB does with it.
+test_damaged_level_sets() {
+  scene
+  expect_exit 0 preprocess
+  printf '\n[[solve.obstacle]]\nname = "wall"\nlevel_set = "wall.vdb"\nfriction_angle_deg = 10.0\n' >>recipe.toml
+  cp "$TALUS_SOURCE/tests/golden/level_set-unsealed.vdb" wall.vdb
+  expect_exit 0 solve --plan
+  local size seed code
+  size=$(stat -c %s wall.vdb)
+  for seed in 1 2 3 4 5 6 7 8; do
+    cp "$TALUS_SOURCE/tests/golden/level_set-unsealed.vdb" wall.vdb
+    printf '\xff\xff\xff' | dd of=wall.vdb bs=1 seek=$((size * seed / 97)) conv=notrunc status=none
+    code=0
+    solve --plan >stdout 2>stderr || code=$?
+    [[ $code -eq 0 || $code -eq 3 ]] || fail "exit code $code with three bytes changed at $((size * seed / 97))"
   done
 }
 

@@ -1,18 +1,26 @@
 #include "solver/run/recorders/checkpoint.hpp"
 
 #include <type_traits>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "common/run/check_values.hpp"
 #include "common/run/hdf5.hpp"
 #include "common/run/history_group.hpp"
+#include "common/run/trusted_file.hpp"
+#include "common/stage/checksum.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus::solver {
 namespace {
 
+// Raised when a reader of today would misread the file or miss something in it; the kind before is read as well
+// (docs/formats.md). 6: sealed (common/stage/checksum.hpp), with the way since maps were recorded. 5: without either.
 constexpr const char* kind = "talus checkpoint 6";
+constexpr const char* kind_before = "talus checkpoint 5";
 constexpr const char* any_kind = "talus checkpoint ";
+constexpr const char* mend = "Run talus-solve again without --restart";
 
 /// Calls item(name, list) for every list of the points, so that writing and reading cannot differ.
 template <class State, class Item>
@@ -69,36 +77,91 @@ class ItemWriter {
   std::string group_;
 };
 
-/// Reads what ItemWriter wrote.
+/// Reads what ItemWriter wrote. Of the kind before, items that it did not have yet keep their defaults.
 class ItemReader {
  public:
-  ItemReader(const h5::File& file, std::string group) : file_(file), group_(std::move(group)) {}
+  ItemReader(const h5::File& file, std::string group, bool before)
+      : file_(file), group_(std::move(group)), before_(before) {}
 
   void operator()(const std::string& name, std::vector<int>& list) const {
-    list = file_.read<std::int32_t>(group_ + "/" + name);
+    if (before_ && !file_.exists(group_ + "/" + name)) return;
+    list = file_.read_list<std::int32_t>(group_ + "/" + name);
   }
   void operator()(const std::string& name, std::vector<double>& list) const {
-    list = file_.read<double>(group_ + "/" + name);
+    if (before_ && !file_.exists(group_ + "/" + name)) return;
+    list = file_.read_list<double>(group_ + "/" + name);
+    h5::check_values<double>(file_, group_ + "/" + name, list, h5::finite);
   }
-  void operator()(const std::string& name, double& number) const { number = file_.number(group_, name); }
+  void operator()(const std::string& name, double& number) const {
+    if (before_ && !file_.has_attribute(group_, name)) return;
+    number = h5::checked_number(file_, group_, name, h5::finite);
+  }
   template <class Integer>
   requires std::is_integral_v<Integer>
   void operator()(const std::string& name, Integer& count) const {
-    count = static_cast<Integer>(file_.integer(group_, name));
+    if (before_ && !file_.has_attribute(group_, name)) return;
+    const std::int64_t value = file_.integer(group_, name);
+    if (!std::in_range<Integer>(value))
+      file_.refuse(fmt::format("attribute {} {} is {}", group_, name, value), "it is out of range");
+    count = static_cast<Integer>(value);
   }
 
  private:
   const h5::File& file_;
   std::string group_;
+  bool before_;
 };
 
-void check_kind(const std::filesystem::path& path, const h5::File& file) {
+/// Fields of points that the kind before did not have get their initial values.
+void fill_new_fields(ParticleState& points) {
+  const auto fill = [&](const ParticleField& field, int, auto& list) {
+    if (field.kept >= Kept::in_checkpoint && list.empty()) list.assign(points.size(), field.initial);
+  };
+  visit_particle_fields(fill, points);
+}
+
+/// Whether a checkpoint is of the kind before; those of other kinds are refused.
+bool is_of_kind_before(const std::filesystem::path& path, const h5::TrustedFile& trusted) {
+  const h5::File& file = trusted.file;
   const std::string found = file.has_attribute("/", "kind") ? file.text("/", "kind") : "";
-  if (found == kind) return;
+  if (found == kind) h5::expect_seal(trusted);
+  if (found == kind || found == kind_before) return found == kind_before;
   if (!found.starts_with(any_kind)) file.fail("this is no checkpoint of this program");
-  throw DataError({fmt::format("{}: its kind is \"{}\"", path.string(), found),
-                   fmt::format("another version of this program wrote it, this one reads \"{}\"", kind),
-                   "Run talus-solve again without --restart, or go on with the version that wrote it"});
+  throw DataError(
+      {fmt::format("{}: its kind is \"{}\"", path.string(), found),
+       fmt::format("another version of this program wrote it, this one reads \"{}\" and \"{}\"", kind_before, kind),
+       "Run talus-solve again without --restart, or go on with the version that wrote it"});
+}
+
+/// Lists that must be of one length: those of the points, those of the map, those of the contact points.
+class OneLength {
+ public:
+  OneLength(const h5::File& file, std::string group) : file_(file), group_(std::move(group)) {}
+
+  void operator()(const std::string& name, const auto& list) {
+    if (first_.empty()) {
+      first_ = name;
+      length_ = list.size();
+    } else if (list.size() != length_) {
+      file_.refuse(fmt::format("dataset {}/{} has {} values", group_, name, list.size()),
+                   fmt::format("{} has {}", first_, length_));
+    }
+  }
+
+ private:
+  const h5::File& file_;
+  std::string group_, first_;
+  std::size_t length_ = 0;
+};
+
+void check_lengths(const h5::File& file, const Checkpoint& c) {
+  visit_points(c.state.points, OneLength(file, "/points"));
+  OneLength maps(file, "/maps");
+  visit_maps(c.state.maps, maps);
+  visit_contacts(c.state.contacts, OneLength(file, "/contacts"));
+  if (c.state.contacts.force.size() % 3 != 0)
+    file.refuse(fmt::format("dataset /contacts/force has {} values", c.state.contacts.force.size()),
+                "three belong together");
 }
 
 }  // namespace
@@ -113,14 +176,16 @@ void write_checkpoint(const std::filesystem::path& path, const Checkpoint& check
   visit(checkpoint, [&](const char* group) { return ItemWriter(file, group); });
   write_history(file, checkpoint.memory.history);
   file.close();
+  seal_file(pending.path(), path);
   pending.commit();
 }
 
 std::optional<CheckpointHead> look_at_checkpoint(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) return std::nullopt;
   try {
-    const h5::File file = h5::File::open(path, {path, ""});
-    check_kind(path, file);
+    const h5::TrustedFile trusted = h5::open_trusted(path, {path, mend});
+    is_of_kind_before(path, trusted);
+    const h5::File& file = trusted.file;
     return CheckpointHead{file.text("/", "fingerprint"), file.number("/clock", "time"), file.integer("/clock", "step")};
   } catch (const DataError&) {
     return std::nullopt;  // broken, or of another version
@@ -128,8 +193,9 @@ std::optional<CheckpointHead> look_at_checkpoint(const std::filesystem::path& pa
 }
 
 Checkpoint read_checkpoint(const std::filesystem::path& path, const std::string& fingerprint) {
-  const h5::File file = h5::File::open(path, {path, "Run talus-solve again without --restart"});
-  check_kind(path, file);
+  const h5::TrustedFile trusted = h5::open_trusted(path, {path, mend});
+  const bool before = is_of_kind_before(path, trusted);
+  const h5::File& file = trusted.file;
   Checkpoint c;
   c.fingerprint = file.text("/", "fingerprint");
   if (c.fingerprint != fingerprint) {
@@ -139,8 +205,10 @@ Checkpoint read_checkpoint(const std::filesystem::path& path, const std::string&
   }
   if (file.has_attribute("/", "id")) c.id = file.text("/", "id");
   if (file.has_attribute("/", "stop_reason")) c.stop_reason = file.text("/", "stop_reason");
-  visit(c, [&](const char* group) { return ItemReader(file, group); });
+  visit(c, [&](const char* group) { return ItemReader(file, group, before); });
+  if (before) fill_new_fields(c.state.points);
   c.memory.history = read_history(file);
+  check_lengths(file, c);
   return c;
 }
 

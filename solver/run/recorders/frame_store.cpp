@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "common/run/check_values.hpp"
 #include "common/run/hdf5.hpp"
+#include "common/run/trusted_file.hpp"
+#include "common/stage/checksum.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus::solver {
@@ -19,6 +22,32 @@ std::vector<std::array<T, 3>> rows_of(const std::vector<T>& values) {
   for (std::size_t r = 0; r < rows.size(); ++r) rows[r] = {values[3 * r], values[3 * r + 1], values[3 * r + 2]};
   return rows;
 }
+
+/// A whole dataset of this shape whose values are allowed.
+template <class T>
+std::vector<T> read_all(const h5::File& in, const std::string& path, const h5::Dims& shape,
+                        const h5::Allowed& allowed = h5::finite) {
+  auto values = in.read<T>(path, shape);
+  h5::check_values<T>(in, path, values, allowed);
+  return values;
+}
+
+/// The points of a frame, all lists as long as the first.
+PointFrame points_in(const h5::File& in) {
+  PointFrame f;
+  f.time = h5::checked_number(in, "/", "time", h5::not_negative);
+  const auto count = static_cast<hsize_t>(in.length("/id"));
+  f.position = rows_of(read_all<double>(in, "/position", {count, 3}));
+  f.velocity = rows_of(read_all<float>(in, "/velocity", {count, 3}));
+  f.volume = read_all<float>(in, "/volume", {count}, h5::not_negative);
+  f.pressure = read_all<float>(in, "/pressure", {count});
+  f.id = read_all<std::int32_t>(in, "/id", {count}, h5::not_negative);
+  f.release = read_all<std::int32_t>(in, "/release", {count}, h5::not_negative);
+  return f;
+}
+
+hsize_t rows_in(const MapGrid& grid) { return static_cast<hsize_t>(grid.rows); }
+hsize_t columns_in(const MapGrid& grid) { return static_cast<hsize_t>(grid.columns); }
 
 }  // namespace
 
@@ -57,6 +86,7 @@ void FrameStore::put(std::int64_t number, const PointFrame& f, const MapGrid& gr
   out.write<std::int32_t>("/release", {count}, f.release);
   out.write<double>("/thickness", {static_cast<hsize_t>(grid.rows), static_cast<hsize_t>(grid.columns)}, thickness);
   out.close();
+  seal_file(pending.path(), file(number));
   pending.commit();
 }
 
@@ -70,21 +100,16 @@ void FrameStore::expect(std::int64_t count) const {
 
 void FrameStore::append_to(RunWriter& run, std::int64_t number, const MapGrid& grid) const {
   const std::filesystem::path path = file(number);
-  const h5::File in = h5::File::open(path, {path, "Run talus-solve again without --restart"});
-  const std::string owner = in.has_attribute("/", "run_id") ? in.text("/", "run_id") : "";
+  const h5::TrustedFile trusted = h5::open_trusted(path, {path, "Run talus-solve again without --restart"});
+  const std::string owner = trusted.file.has_attribute("/", "run_id") ? trusted.file.text("/", "run_id") : "";
   if (owner != run_id_)
     throw DataError({fmt::format("{}: a frame of the run {}", path.string(), owner),
                      fmt::format("this is the run {}", run_id_), "Run talus-solve again without --restart"});
-  PointFrame f;
-  f.time = in.number("/", "time");
-  f.position = rows_of(in.read<double>("/position"));
-  f.velocity = rows_of(in.read<float>("/velocity"));
-  f.volume = in.read<float>("/volume");
-  f.pressure = in.read<float>("/pressure");
-  f.id = in.read<std::int32_t>("/id");
-  f.release = in.read<std::int32_t>("/release");
+  const PointFrame f = points_in(trusted.file);
   if (!f.id.empty()) run.append(f);
-  run.append_thickness(f.time, grid, in.read<double>("/thickness"));
+  run.append_thickness(
+      f.time, grid,
+      read_all<double>(trusted.file, "/thickness", {rows_in(grid), columns_in(grid)}, h5::not_negative_or_none));
 }
 
 }  // namespace talus::solver

@@ -5,11 +5,16 @@
 
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <random>
 
 #include "common/error.hpp"
+#include "common/stage/checksum.hpp"
+#include "tests/common/damage.hpp"
 #include "tests/common/rasters.hpp"
 #include "tests/common/scratch.hpp"
+
+namespace fs = std::filesystem;
 
 namespace talus {
 namespace {
@@ -95,7 +100,8 @@ TEST(DomainFile, every_truncation_is_noticed) {
   const Scratch scratch;
   write_domain(scratch / "domain.vdb", sample(50));
   const std::string whole = text_of(scratch / "domain.vdb");
-  for (std::size_t length = 0; length < whole.size(); length += length < 200 ? 1 : 211) {
+  const std::size_t end = whole.size() - 200;  // before the last bytes of the contents, and the seal
+  for (std::size_t length = 0; length < end; length += length < 200 ? 13 : 1511) {
     const auto cut = scratch.write("cut.vdb", whole.substr(0, length));
     EXPECT_EQ(
         fault_of<DataError>([&] { read_domain(cut); }),
@@ -104,8 +110,13 @@ TEST(DomainFile, every_truncation_is_noticed) {
             "again, or copy it again")
         << length << " of " << whole.size() << " bytes";
   }
-  const auto last = scratch.write("cut.vdb", whole.substr(0, whole.size() - 1));
-  EXPECT_NE(fault_of<DataError>([&] { read_domain(last); }), "");
+  for (const std::size_t lost : {1, 64, 128}) {  // the contents are whole
+    const auto cut = scratch.write("cut.vdb", whole.substr(0, whole.size() - lost));
+    EXPECT_EQ(fault_of<DataError>([&] { read_domain(cut); }),
+              cut.string() +
+                  ": is damaged (its checksum is missing: another program changed it, or its end is lost). Make it "
+                  "with talus-preprocess");
+  }
 }
 
 TEST(DomainFile, foreign_files_are_refused) {
@@ -133,6 +144,7 @@ std::string fault_after(const std::function<void(const openvdb::GridPtrVec& grid
   for (const auto& grid : *grids)
     if (grid->getName() == "active") change(*grids, *header, *openvdb::gridPtrCast<openvdb::MaskGrid>(grid));
   openvdb::io::File(file.filename()).write(*grids, *header);
+  seal_file(file.filename(), file.filename());
   return fault_of<DataError>([&] { read_domain(scratch / "domain.vdb"); })
       .substr((scratch / "domain.vdb").string().size());
 }
@@ -141,12 +153,73 @@ TEST(DomainFile, a_domain_that_was_only_copied_is_read) {
   EXPECT_THROW(fault_after([](const auto&, auto&, auto&) {}), std::out_of_range) << "there is no fault to cut";
 }
 
-TEST(DomainFile, older_formats_are_refused) {
+TEST(DomainFile, formats_older_than_the_one_before_are_refused) {
   EXPECT_EQ(fault_after([](const auto&, auto& header, auto&) {
               header.removeMeta("format");
               header.insertMeta("format", openvdb::Int64Metadata(3));
             }),
-            ": its format is 3 (this program reads format 4). Run the talus-preprocess of this version");
+            ": its format is 3 (this program reads formats 4 to 5). Run the talus-preprocess of this version");
+}
+
+TEST(DomainFile, the_format_before_is_read) {
+  const Domain domain = read_domain(fs::path(TALUS_SOURCE_DIR) / "tests/golden/domain-4.vdb");
+  EXPECT_EQ(domain.grid.columns, 20);
+  EXPECT_EQ(domain.grid.rows, 20);
+  EXPECT_EQ(domain.grid.cell, 10);
+  EXPECT_EQ(domain.layer_height, 4);
+  EXPECT_EQ(domain.points.size(), 128u);
+  EXPECT_NEAR(std::accumulate(domain.points.volume.begin(), domain.points.volume.end(), 0.0), 6400, 1e-9);
+  EXPECT_EQ(domain.terrain.at(10, 10), 0.004 * 50) << "0.004 ((x - 100)^2 + (y - 100)^2) at 105, 105";
+  EXPECT_EQ(domain.release_names.size(), 1u);
+}
+
+TEST(DomainFile, a_changed_byte_is_noticed_before_openvdb_sees_it) {
+  const Scratch scratch;
+  write_domain(scratch / "domain.vdb", sample(50));
+  const std::string whole = text_of(scratch / "domain.vdb");
+  for (std::size_t place = 20; place < whole.size() - 128; place += 997) {
+    std::string changed = whole;
+    changed[place] = static_cast<char>(changed[place] ^ 0x40);
+    const auto file = scratch.write("changed.vdb", changed);
+    EXPECT_TRUE(fault_of<DataError>([&] {
+                  read_domain(file);
+                }).starts_with(file.string() + ": is damaged (bytes have changed since it was written"))
+        << place;
+  }
+}
+
+TEST(DomainFile, damaged_files_without_a_seal_end_in_an_error_or_a_domain) {
+  const std::string whole = text_of(fs::path(TALUS_SOURCE_DIR) / "tests/golden/domain-4.vdb");
+  EXPECT_GT(test::refused_of(12, whole, [](const fs::path& file) { read_domain(file); }), 2);
+}
+
+/// What reading says of a domain with one number changed in memory before it was written, without the file's name.
+std::string fault_with(const std::function<void(Domain&)>& change) {
+  const Scratch scratch;
+  Domain domain = sample(50);
+  change(domain);
+  const std::string file = (scratch / "domain.vdb").string();
+  const std::string fault = fault_of<DataError>([&] { write_domain(file, domain); });  // which reads it back
+  return fault.empty() ? fault : fault.substr(file.size());
+}
+
+TEST(DomainFile, numbers_that_cannot_be_are_refused_with_their_place) {
+  const std::string no_domain = ": cannot be written (it does not read back as written: ";
+  const auto said = [&](const std::string& fault) { return fault.substr(0, fault.find("). Check")); };
+  EXPECT_EQ(fault_with([](Domain&) {}), "");
+  EXPECT_EQ(said(fault_with([](Domain& d) { d.terrain.at(3, 2) = 1e6; })),
+            no_domain + "the grid \"terrain\" holds 1e+06 in column 3, row 2; -100000 to 100000 is possible");
+  EXPECT_EQ(said(fault_with([](Domain& d) { d.release_thickness.at(3, 2) = -1; })),
+            no_domain + "the grid \"release_thickness\" holds -1 in column 3, row 2; 0 to 100000 is possible");
+  EXPECT_EQ(said(fault_with([](Domain& d) { d.points.release[7] = 2; })),
+            no_domain + "point 7 is of release 2, of which there are 2");
+  EXPECT_NE(fault_with([](Domain& d) { d.points.volume[7] = 0; }).find("\"volume\" of point 7 is 0"),
+            std::string::npos);
+  EXPECT_NE(fault_with([](Domain& d) { d.points.height[7] = std::nan(""); }).find("of point 7 is nan"),
+            std::string::npos);
+  EXPECT_NE(fault_with([](Domain& d) { d.points.extent_x[7] = -1; }).find("of point 7 is -1"), std::string::npos);
+  EXPECT_NE(fault_with([](Domain& d) { d.erodible = 3; }).find("3 of its 2 releases"), std::string::npos);
+  EXPECT_NE(fault_with([](Domain& d) { d.bed = {{"colour", d.terrain}}; }).find("bed.colour"), std::string::npos);
 }
 
 TEST(DomainFile, masks_of_other_grids_are_refused) {

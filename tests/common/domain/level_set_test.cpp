@@ -1,12 +1,16 @@
 #include "common/domain/level_set.hpp"
 
 #include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
 
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <numbers>
 
 #include "common/domain/domain.hpp"
 #include "common/error.hpp"
+#include "tests/common/damage.hpp"
 #include "tests/common/scratch.hpp"
 
 namespace talus {
@@ -54,6 +58,69 @@ TEST(LevelSet, several_bodies_are_told_apart_by_name) {
   EXPECT_NE(fault_of<DataError>([&] {
               read_level_set(scratch / "two.vdb", "medium", {9, 9, 9});
             }).find("large, small"),
+            std::string::npos);
+}
+
+TEST(LevelSet, a_file_of_another_program_is_read_to_the_same_surface) {
+  const Scratch scratch;
+  write_level_sets(scratch / "ball.vdb", {ball("ball", 512345.3, 5432100.7, 1234.5, 4)}, 0.5);
+  const BodySurface ours = read_level_set(scratch / "ball.vdb", "", {0.3, 0.3, 0.3});
+  const auto foreign = scratch.write("foreign.vdb", test::without_seal(scratch / "ball.vdb"));
+  const BodySurface theirs = read_level_set(foreign, "ball", {0.3, 0.3, 0.3});
+  EXPECT_EQ(theirs.volume, ours.volume);
+  EXPECT_EQ(theirs.low, ours.low);
+  EXPECT_EQ(theirs.high, ours.high);
+  ASSERT_EQ(theirs.facets.size(), ours.facets.size());
+  EXPECT_EQ(theirs.facets.back().centre, ours.facets.back().centre);
+  EXPECT_EQ(theirs.facets.back().area, ours.facets.back().area);
+}
+
+TEST(LevelSet, a_changed_byte_is_noticed_before_openvdb_sees_it) {
+  const Scratch scratch;
+  write_level_sets(scratch / "ball.vdb", {ball("ball", 0, 0, 0, 3)}, 0.5);
+  std::string changed = test::text_of(scratch / "ball.vdb");
+  changed[changed.size() / 2] = static_cast<char>(changed[changed.size() / 2] ^ 1);
+  const auto file = scratch.write("changed.vdb", changed);
+  EXPECT_NE(fault_of<DataError>([&] {
+              read_level_set(file, "", {1, 1, 1});
+            }).find("is damaged (bytes have changed"),
+            std::string::npos);
+}
+
+TEST(LevelSet, damaged_files_of_other_programs_end_in_an_error_or_a_surface) {
+  const Scratch scratch;
+  write_level_sets(scratch / "ball.vdb", {ball("ball", 0, 0, 0, 3)}, 0.5);
+  const std::string bytes = test::without_seal(scratch / "ball.vdb");
+  EXPECT_GT(test::refused_of(20, bytes, [](const auto& file) { read_level_set(file, "", {1, 1, 1}); }), 2);
+}
+
+/// What reading says of a level set that was changed after it was written.
+std::string level_set_fault_after(const std::function<void(openvdb::FloatGrid&)>& change) {
+  const Scratch scratch;
+  const auto path = scratch / "ball.vdb";
+  write_level_sets(path, {ball("ball", 0, 0, 0, 3)}, 0.5);
+  openvdb::io::File file(path.string());
+  file.open(false);
+  const auto grids = file.getGrids();
+  file.close();
+  change(*openvdb::gridPtrCast<openvdb::FloatGrid>(grids->front()));
+  openvdb::io::File(path.string()).write(*grids);
+  return fault_of<DataError>([&] { read_level_set(path, "", {1, 1, 1}); });
+}
+
+TEST(LevelSet, numbers_that_cannot_be_are_refused) {
+  EXPECT_EQ(level_set_fault_after([](openvdb::FloatGrid&) {}), "");
+  EXPECT_NE(level_set_fault_after([](openvdb::FloatGrid& grid) {
+              grid.setTransform(openvdb::math::Transform::createLinearTransform(1e8));
+            }).find("its voxels have 1e+24 m3"),
+            std::string::npos);
+  EXPECT_NE(level_set_fault_after([](openvdb::FloatGrid& grid) {
+              grid.setTransform(openvdb::math::Transform::createLinearTransform(1e5));
+            }).find("is too large for this grid (it spans"),
+            std::string::npos);
+  EXPECT_NE(level_set_fault_after([](openvdb::FloatGrid& grid) {
+              grid.tree().setValueOn({0, 0, 6}, std::numeric_limits<float>::quiet_NaN());
+            }).find("at voxel 0 0 6 it holds nan"),
             std::string::npos);
 }
 

@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 
 #include "common/error.hpp"
+#include "common/run/motion.hpp"
+#include "tests/common/damage.hpp"
 #include "tests/common/scratch.hpp"
 #include "tests/common/tools.hpp"
 
@@ -182,6 +184,67 @@ TEST_F(RunFile, refuses_a_truncated_file_at_any_length_and_says_how_to_mend_it) 
     EXPECT_NE(fault.what.find("cut.h5"), std::string::npos) << fault.what;
     EXPECT_NE(fault.mend.find("talus-solve"), std::string::npos) << fault.mend;
   }
+}
+
+TEST_F(RunFile, notices_a_changed_byte_before_hdf5_sees_it) {
+  write_some_run(file_);
+  const std::string whole = test::text_of(file_);
+  for (std::size_t place = 0; place < whole.size() - 128; place += 997) {
+    std::string changed = whole;
+    changed[place] = static_cast<char>(changed[place] ^ 0x40);
+    EXPECT_TRUE(fault_of(scratch_.write("changed.h5", changed)).why.starts_with("bytes have changed since")) << place;
+  }
+}
+
+TEST_F(RunFile, refuses_a_run_whose_seal_is_gone) {
+  write_some_run(file_);
+  EXPECT_EQ(fault_of(scratch_.write("unsealed.h5", test::without_seal(file_))).why,
+            "its checksum is missing: another program changed it, or its end is lost");
+}
+
+TEST_F(RunFile, reads_the_version_before) {
+  const auto run = read_run(fs::path(TALUS_SOURCE_DIR) / "tests/golden/run-3.h5");
+  EXPECT_EQ(run.summary.scene, "bowl");
+  EXPECT_EQ(run.summary.steps, 56);
+  EXPECT_EQ(run.summary.particles, 128);
+  EXPECT_NEAR(run.summary.volume_released, 6400, 1e-9);
+  EXPECT_EQ(run.maps.grid.columns, 20);
+  EXPECT_EQ(run.frames.time, (std::vector<double>{0, 0.5, 1}));
+  double volume = 0;
+  for (const double thickness : run.maps.deposit_thickness) volume += 100 * thickness;
+  EXPECT_NEAR(volume, run.summary.volume_final, 1e-6) << "cells of 100 m2";
+  EXPECT_EQ(run.history.at("time_s").values.back(), 1);
+  EXPECT_EQ(read_motion(fs::path(TALUS_SOURCE_DIR) / "tests/golden/run-3.h5", 0.1).time, run.frames.time);
+}
+
+TEST_F(RunFile, ends_in_an_error_or_a_run_for_damaged_files_without_a_seal) {
+  const std::string whole = test::text_of(fs::path(TALUS_SOURCE_DIR) / "tests/golden/run-3.h5");
+  test::refused_of(12, whole, [](const fs::path& file) { read_run(file); });
+}
+
+TEST_F(RunFile, refuses_numbers_that_cannot_be_with_their_place) {
+  const auto fault_with = [&](const auto& change) {
+    RunMaps maps = some_maps();
+    RunHistory history = some_history;
+    RunSummary summary = some_summary();
+    change(maps, history, summary);
+    RunWriter(file_).finish(maps, history, summary);
+    const Fault fault = fault_of(file_);
+    return fault.what.substr(file_.string().size());
+  };
+  EXPECT_EQ(fault_with([](RunMaps& maps, auto&, auto&) { maps.peak_speed[3] = -1; }),
+            ": dataset /maps/peak_speed holds -1 at place 3");
+  EXPECT_EQ(fault_with([](RunMaps& maps, auto&, auto&) { maps.terrain[11] = 1.0 / 0.0; }),
+            ": dataset /maps/terrain holds inf at place 11");
+  EXPECT_EQ(fault_with([](auto&, RunHistory& history, auto&) {
+              history.columns[0].values = {1, 0};
+            }),
+            ": dataset /history/time_s holds 0 behind 1");
+  EXPECT_EQ(fault_with([](auto&, auto&, RunSummary& summary) { summary.particles = -1; }),
+            ": attribute / particles is -1");
+  EXPECT_EQ(fault_with([](auto&, auto&, RunSummary& summary) { summary.density = std::nan(""); }),
+            ": attribute / density_kg_m3 is nan");
+  EXPECT_EQ(fault_with([](RunMaps& maps, auto&, auto&) { maps.grid.cell = 0; }), ": attribute /maps cell_m is 0");
 }
 
 TEST_F(RunFile, refuses_a_file_that_is_something_else) {

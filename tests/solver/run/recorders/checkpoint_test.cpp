@@ -4,11 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <limits>
+#include <numeric>
 #include <set>
 
 #include "common/run/hdf5.hpp"
+#include "solver/run/recorders/check_checkpoint.hpp"
 #include "solver/scene/make_solver.hpp"
 #include "solver/state/contact_state.hpp"
 #include "solver/state/particle_fields.hpp"
@@ -177,6 +181,87 @@ TEST(Checkpoint, a_look_at_it_tells_whose_it_is_and_how_far_it_is) {
   EXPECT_EQ(head->step, c.state.clock.step);
 }
 
+TEST(Checkpoint, the_kind_before_is_read) {
+  const auto path = std::filesystem::path(TALUS_SOURCE_DIR) / "tests/golden/checkpoint-5.h5";
+  const Checkpoint c = read_checkpoint(path, h5::File::open(path, {path, ""}).text("/", "fingerprint"));
+  EXPECT_EQ(c.state.clock.step, 352);
+  EXPECT_EQ(c.state.clock.time, 6.5);
+  EXPECT_EQ(c.memory.frames, 13);
+  EXPECT_EQ(c.state.points.size(), 128u);
+  EXPECT_NEAR(std::accumulate(c.state.points.volume.begin(), c.state.points.volume.end(), 0.0), 6400, 1e-9);
+  const auto check_length = [&](const ParticleField& field, int component, const auto& list) {
+    if (field.kept >= Kept::in_checkpoint) {
+      EXPECT_EQ(list.size(), 128u) << field.name_of(component);
+    }
+  };
+  visit_particle_fields(check_length, c.state.points);
+}
+
+TEST(Checkpoint, a_changed_byte_is_noticed) {
+  const Scratch scratch;
+  write_checkpoint(scratch / "checkpoint.h5", sample());
+  std::string bytes = test::text_of(scratch / "checkpoint.h5");
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+  const auto changed = scratch.write("changed.h5", bytes);
+  EXPECT_NE(fault_of<DataError>([&] { read_checkpoint(changed, ""); }).find("is damaged (bytes have changed since"),
+            std::string::npos);
+}
+
+TEST(Checkpoint, lists_of_different_lengths_are_refused) {
+  const auto fault_with = [](const auto& change) {
+    const Scratch scratch;
+    Checkpoint c = sample();
+    change(c);
+    write_checkpoint(scratch / "c.h5", c);
+    const std::string fault = fault_of<DataError>([&] { read_checkpoint(scratch / "c.h5", c.fingerprint); });
+    return fault.empty() ? fault : fault.substr((scratch / "c.h5").string().size());
+  };
+  EXPECT_EQ(fault_with([](Checkpoint&) {}), "");
+  EXPECT_TRUE(fault_with([](Checkpoint& c) {
+                c.state.points.velocity[1].pop_back();
+              }).starts_with(": dataset /points/velocity_1 has 0 values (cell_0 has 1)"));
+  EXPECT_TRUE(fault_with([](Checkpoint& c) {
+                c.state.maps.peak_speed.push_back(0);
+              }).starts_with(": dataset /maps/peak_speed has 145 values (peak_thickness has 144)"));
+  EXPECT_TRUE(fault_with([](Checkpoint& c) {
+                c.state.contacts.impulse.clear();
+              }).starts_with(": dataset /contacts/impulse has 0 values (force has 3)"));
+  EXPECT_TRUE(fault_with([](Checkpoint& c) {
+                c.state.points.offset[0][0] = std::nan("");
+              }).starts_with(": dataset /points/offset_0 holds nan at place 0 (numbers must be finite)"));
+}
+
+TEST(Checkpoint, what_does_not_fit_the_scene_is_refused_before_a_kernel_sees_it) {
+  Domain domain = testing::ground(12, 12, 10, 5, [](double x, double) { return 0.1 * x; });
+  testing::fill(domain, {50, 60, 50, 60, 0, 5}, 1, 1);
+  const SolveOptions options;
+  const Scene scene = make_scene(domain, options);
+  const auto fault_with = [&](const auto& change) {
+    Checkpoint c;
+    c.state = first_state(scene, make_settings(options, scene.grid).common);
+    c.memory.initial_thickness.assign(scene.map.count(), 0.0);
+    change(c);
+    return fault_of<DataError>([&] { check_checkpoint("c.h5", c, scene); });
+  };
+  const std::string no_fit = "c.h5: the checkpoint does not fit the scene (";
+  EXPECT_EQ(fault_with([](Checkpoint&) {}), "");
+  EXPECT_TRUE(fault_with([](Checkpoint& c) {
+                c.state.points.cell[1][0] = 12;
+              }).starts_with(no_fit + "cell_1 of point 0 is 12; 0 to 11 is possible)"));
+  EXPECT_TRUE(fault_with([](Checkpoint& c) { c.state.points.offset[2][0] = 1; }).starts_with(no_fit + "offset of"));
+  EXPECT_TRUE(fault_with([](Checkpoint& c) { c.state.points.id[0] = -1; }).starts_with(no_fit + "id of point 0 is -1"));
+  EXPECT_TRUE(fault_with([](Checkpoint& c) { c.state.points.material[0] = 1; }).starts_with(no_fit + "material of"));
+  EXPECT_TRUE(fault_with([](Checkpoint& c) { c.state.points.load[0] = 0; }).starts_with(no_fit + "load of point 0"));
+  EXPECT_TRUE(fault_with([](Checkpoint& c) { c.state.points.id.push_back(0); }).starts_with(no_fit + "it holds"));
+  EXPECT_TRUE(fault_with([](Checkpoint& c) {
+                c.state.maps.peak_speed.pop_back();
+              }).starts_with(no_fit + "peak_speed has 143 values, the scene asks for 144)"));
+  EXPECT_TRUE(fault_with([](Checkpoint& c) {
+                c.state.contacts.force = {1, 2, 3};
+              }).starts_with(no_fit + "force has 3"));
+  EXPECT_TRUE(fault_with([](Checkpoint& c) { c.state.clock.halt = 9; }).starts_with(no_fit + "its clock stands at"));
+}
+
 TEST(Checkpoint, an_older_kind_is_refused_in_words) {
   const Scratch scratch;
   const auto path = scratch / "checkpoint.h5";
@@ -186,7 +271,8 @@ TEST(Checkpoint, an_older_kind_is_refused_in_words) {
   EXPECT_EQ(fault_of<DataError>([&] { read_checkpoint(path, ""); }),
             path.string() +
                 ": its kind is \"talus checkpoint 4\" (another version of this program wrote it, this one reads "
-                "\"talus checkpoint 6\"). Run talus-solve again without --restart, or go on with the version that "
+                "\"talus checkpoint 5\" and \"talus checkpoint 6\"). Run talus-solve again without --restart, or go on "
+                "with the version that "
                 "wrote it");
 }
 

@@ -1,0 +1,38 @@
+// Checksums of files, and the seal by which a file says that it is whole.
+//
+// A seal is the last line of a file of this program, in 128 bytes: the length of what stands before it and its SHA-256.
+// OpenVDB and HDF5 read what they need from the front and by offsets, so other programs open a sealed file as ever.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+
+namespace talus {
+
+/// SHA-256 (FIPS 180-4) of bytes that come in parts.
+class Sha256 {
+ public:
+  Sha256();
+  /// The method takes the next bytes.
+  void add(std::span<const std::uint8_t> bytes);
+  /// The digest of all bytes so far, in hex; nothing may be added after it.
+  std::string digest();
+
+ private:
+  std::uint32_t state_[8];
+  std::uint8_t rest_[64] = {};  ///< bytes that do not fill a block yet
+  std::uint64_t length_ = 0;    ///< of all bytes so far
+};
+
+/// This function adds the seal to a file that is written and closed. It throws the DataError of a file that cannot be
+/// written, under the name `shown`.
+void seal_file(const std::filesystem::path& file, const std::filesystem::path& shown);
+
+/// Whether a file is sealed. The function throws DataError with `mend` where the seal is that of other bytes, or where
+/// the file cannot be read. A file that is cut short has lost its seal and counts as one that never had any.
+bool check_seal(const std::filesystem::path& file, const std::string& mend);
+
+}  // namespace talus

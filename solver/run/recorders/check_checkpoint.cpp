@@ -1,0 +1,89 @@
+#include "solver/run/recorders/check_checkpoint.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "common/stage/write_fault.hpp"
+
+namespace talus::solver {
+namespace {
+
+/// Refuses one file, and looks at its lists.
+class Fits {
+ public:
+  explicit Fits(const std::filesystem::path& file) : file_(file) {}
+
+  [[noreturn]] void refuse(const std::string& why) const {
+    refuse_file(file_, "the checkpoint does not fit the scene", why, "Run talus-solve again without --restart");
+  }
+  void length(const char* name, std::size_t found, std::size_t expected) const {
+    if (found != expected) refuse(fmt::format("{} has {} values, the scene asks for {}", name, found, expected));
+  }
+  template <class T>
+  void within(const char* name, const std::vector<T>& values, double low, double high) const {
+    for (std::size_t p = 0; p < values.size(); ++p) {
+      if (values[p] >= low && values[p] <= high) continue;
+      refuse(fmt::format("{} of point {} is {}; {:g} to {:g} is possible", name, p, values[p], low, high));
+    }
+  }
+  void all_different(const char* name, const std::vector<int>& values, std::size_t count) const {
+    std::vector<bool> taken(count);
+    for (const int value : values) {
+      const auto place = static_cast<std::size_t>(value);
+      if (taken[place]) refuse(fmt::format("two points have the {} {}", name, value));
+      taken[place] = true;
+    }
+  }
+
+ private:
+  const std::filesystem::path& file_;
+};
+
+double largest(const std::vector<int>& values) {
+  return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
+}
+
+void check_points(const Fits& fits, const ParticleState& points, const Scene& scene) {
+  constexpr double most_layers = 1 << 20, tiny = std::numeric_limits<double>::min();
+  const std::size_t seeded = scene.points.size();
+  if (points.size() > seeded)
+    fits.refuse(fmt::format("it holds {} points, of which the scene has {}", points.size(), seeded));
+  fits.within("cell_0", points.cell[0], 0, scene.grid.columns - 1);
+  fits.within("cell_1", points.cell[1], 0, scene.grid.rows - 1);
+  fits.within("cell_2", points.cell[2], 0, most_layers);
+  for (const auto& offset : points.offset) fits.within("offset", offset, -0.5001, 0.5001);  // single precision rounds
+  fits.within("volume", points.volume, tiny, 1e30);
+  fits.within("id", points.id, 0, static_cast<double>(seeded) - 1);
+  fits.all_different("id", points.id, seeded);
+  fits.within("release", points.release, 0, largest(scene.points.release));
+  fits.within("load", points.load, -1, static_cast<double>(scene.load_volumes.size()) - 1);
+  fits.within("material", points.material, 0, largest(scene.points.material));
+}
+
+}  // namespace
+
+void check_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint, const Scene& scene) {
+  const Fits fits(file);
+  check_points(fits, checkpoint.state.points, scene);
+  const std::size_t cells = scene.map.count();
+  for_each_running_map([&](const RunningMap& map, const auto& values) { fits.length(map.name, values.size(), cells); },
+                       checkpoint.state.maps);
+  fits.length("initial_thickness", checkpoint.memory.initial_thickness.size(), cells);
+  const ContactState& contacts = checkpoint.state.contacts;
+  const std::size_t count = contacts.force.empty() ? 0 : 3 * scene.contacts.size();
+  fits.length("force", contacts.force.size(), count);
+  fits.length("impulse", contacts.impulse.size(), count);
+  const Clock& clock = checkpoint.state.clock;
+  const bool counted = clock.step >= 0 && clock.outflow_count >= 0 && clock.steps_between_sorts > 0 &&
+                       clock.halt >= running && clock.halt <= failed && clock.request >= running &&
+                       clock.request <= failed;
+  if (!(clock.time >= 0) || !(clock.step_size >= 0) || !(clock.courant >= 0) || !counted)
+    fits.refuse(fmt::format("its clock stands at {:g} s, step {}, of {:g} s", clock.time, clock.step, clock.step_size));
+  const RunMemory& memory = checkpoint.memory;
+  if (std::min({memory.frames, memory.records, memory.checkpoints, memory.outflow_count}) < 0)
+    fits.refuse("its counts of frames, records, checkpoints or points that left are negative");
+}
+
+}  // namespace talus::solver

@@ -1,0 +1,97 @@
+// What the layer over HDF5 refuses: datasets of another kind or shape than asked for, and shapes without data.
+#include "common/run/hdf5.hpp"
+
+#include <gtest/gtest.h>
+
+#include "common/error.hpp"
+#include "common/run/check_values.hpp"
+#include "tests/common/scratch.hpp"
+
+namespace talus {
+namespace {
+
+class Hdf5Reading : public ::testing::Test {
+ protected:
+  Hdf5Reading() {
+    h5::File out = h5::File::create(path_, {path_, ""});
+    out.write<double>("/reals", {2, 3}, std::vector<double>{0, 1, 2, 3, 4, 5});
+    out.write<std::int32_t>("/wholes", {4}, std::vector<std::int32_t>{1, 2, 3, 4});
+    const std::vector<std::int64_t> two{1, 2};
+    out.set_integers("/", "two", two);
+    out.set_number("/", "real", 0.5);
+    out.close();
+    claim_more_than_there_is();
+  }
+
+  /// Grows a dataset without writing anything into it: a shape of which the file holds nothing.
+  void claim_more_than_there_is() const {
+    const hid_t file = H5Fopen(path_.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    const hsize_t dims = hsize_t{1} << 40, chunk = 1024;
+    const hid_t space = H5Screate_simple(1, &dims, nullptr), list = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_chunk(list, 1, &chunk);
+    const hid_t set = H5Dcreate2(file, "/claim", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, list, H5P_DEFAULT);
+    H5Dclose(set);
+    H5Pclose(list);
+    H5Sclose(space);
+    H5Fclose(file);
+  }
+
+  template <class Read>
+  std::string fault(Read&& read) const {
+    const h5::File file = h5::File::open(path_, {path_, "Mend it"});
+    const std::string text = test::fault_of<DataError>([&] { read(file); });
+    return text.empty() ? text : text.substr(path_.string().size());
+  }
+
+  const test::Scratch scratch_;
+  const std::filesystem::path path_ = scratch_ / "file.h5";
+};
+
+TEST_F(Hdf5Reading, refuses_values_of_another_kind) {
+  EXPECT_EQ(fault([](const h5::File& file) { file.read_list<double>("/wholes"); }),
+            ": dataset /wholes holds values of another kind (real numbers are asked for). Mend it");
+  EXPECT_EQ(fault([](const h5::File& file) {
+              file.read<std::int32_t>("/reals", {2, 3});
+            }),
+            ": dataset /reals holds values of another kind (whole numbers are asked for). Mend it");
+  EXPECT_NE(fault([](const h5::File& file) { file.integer("/", "real"); }), "");
+  EXPECT_NE(fault([](const h5::File& file) { file.integer("/", "two"); }), "");
+  EXPECT_NE(fault([](const h5::File& file) { file.text("/", "real"); }), "");
+}
+
+TEST_F(Hdf5Reading, refuses_other_shapes) {
+  EXPECT_EQ(fault([](const h5::File& file) {
+              file.read<double>("/reals", {3, 2});
+            }),
+            ": dataset /reals has shape 2 x 3 (the rest of the file asks for 3 x 2). Mend it");
+  EXPECT_EQ(fault([](const h5::File& file) { file.read_list<double>("/reals"); }),
+            ": dataset /reals has shape 2 x 3 (a list is asked for). Mend it");
+  EXPECT_EQ(fault([](const h5::File& file) { file.read_rows<double>("/reals", 1, 2, {3}); }),
+            ": dataset /reals has shape 2 x 3 (the rest of the file speaks of rows 1 to 3). Mend it");
+  EXPECT_EQ(fault([](const h5::File& file) { file.read_rows<double>("/reals", 0, 1, {4}); }),
+            ": dataset /reals has shape 2 x 3 (rows of 4 are asked for). Mend it");
+  EXPECT_NE(fault([](const h5::File& file) { file.read_rows<double>("/reals", ~hsize_t{0}, 2, {3}); }), "")
+      << "the sum of first and rows overflows";
+}
+
+TEST_F(Hdf5Reading, refuses_a_shape_of_which_the_file_holds_nothing) {
+  EXPECT_EQ(fault([](const h5::File& file) { file.read_list<double>("/claim"); }),
+            ": dataset /claim has shape 1099511627776 (but only 0 bytes in the file). Mend it");
+}
+
+TEST_F(Hdf5Reading, names_place_and_value_of_what_cannot_be) {
+  const auto checked = [](const h5::Allowed& allowed, std::vector<double> values) {
+    return [=](const h5::File& file) { h5::check_values<double>(file, "/x", values, allowed); };
+  };
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(fault(checked(h5::finite, {0, -1e300})), "");
+  EXPECT_EQ(fault(checked(h5::finite, {0, nan})),
+            ": dataset /x holds nan at place 1 (numbers must be finite). Mend it");
+  EXPECT_NE(fault(checked(h5::finite_or_none, {inf})), "");
+  EXPECT_EQ(fault(checked(h5::finite_or_none, {nan})), "");
+  EXPECT_NE(fault(checked(h5::not_negative, {-1e-300})), "");
+  EXPECT_EQ(fault(checked(h5::not_negative_or_none, {nan, 0, 1e300})), "");
+}
+
+}  // namespace
+}  // namespace talus
