@@ -100,7 +100,7 @@ check-faults: setup $(BUILD)/build.ninja ## kills, failing calls, processes in o
 	@python3 tests/faults/faults.py --full --bin $(BUILD)/bin --shim $(BUILD)/bin/talus-faults.so \
 	  --work $(BUILD)/scratch/check-faults --table $(BUILD)/faults.md
 
-check-recipes: build ## random recipes on a tiny scene: a result that holds or a clear refusal [RECIPES=500] [RECIPE_JOBS=2]
+check-recipes: build ## random recipes: a result that holds or a clear refusal [RECIPES=500] [RECIPE_JOBS=2]
 	@tools/check-recipes.py --bin $(BUILD)/bin --out $(BUILD)/recipes --count $(RECIPES) --jobs $(RECIPE_JOBS)
 
 lint: ## formatting and static analysis of everything [CHANGED=n: analyse only the n units changed last]

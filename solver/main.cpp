@@ -124,8 +124,12 @@ void log_warnings(const Domain& domain, const SolveOptions& o) {
 
 /// This function refuses what is implausible in a scene, and adds what is insisted on to the facts of its results.
 void judge(Domain& domain, const SolveOptions& o) {
-  Acceptance acceptance("solve", o.accept);
+  std::vector<std::string> before_the_run = o.accept;
+  std::erase(before_the_run, torn_body);
+  Acceptance acceptance("solve", before_the_run);
+  acceptance.collect();
   judge_scene(plausibility_of(domain, make_scene(domain, o), o), o, acceptance);
+  acceptance.settle();
   acceptance.warn_of_unmet();
   const auto& facts = acceptance.facts();
   domain.provenance.insert(domain.provenance.end(), facts.begin(), facts.end());

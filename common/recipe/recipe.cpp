@@ -26,9 +26,12 @@ std::string read_whole(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   constexpr std::size_t most = 16 << 20;  // far beyond any recipe: a device would never end
   std::string text;
-  for (auto c = std::istreambuf_iterator<char>(stream); c != std::istreambuf_iterator<char>() && text.size() <= most;
-       ++c)
-    text += *c;
+  const std::istreambuf_iterator<char> end;
+  try {
+    for (auto c = std::istreambuf_iterator<char>(stream); c != end && text.size() <= most; ++c) text += *c;
+  } catch (const std::ios_base::failure&) {  // the disk fails under the stream
+    refuse(std::generic_category().message(errno));
+  }
   if (text.size() > most) refuse("it is longer than 16 MB");
   if (!stream) refuse(std::generic_category().message(errno));
   return text;

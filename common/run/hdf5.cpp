@@ -1,6 +1,7 @@
 #include "common/run/hdf5.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <functional>
 #include <numeric>
 #include <stdexcept>
@@ -75,6 +76,9 @@ herr_t set_compression(hid_t list, const Dims& chunk) {
 /// anyway.
 void prepare_library() {
   static const bool once = [] {
+    // Its own locks fail where a file system has none, and guard nothing here: files are read under their final names,
+    // when they are whole, and the output folder has a lock (common/stage/output_lock.hpp).
+    ::setenv("HDF5_USE_FILE_LOCKING", "FALSE", 0);
     H5dont_atexit();
     return true;
   }();

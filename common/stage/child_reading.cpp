@@ -26,7 +26,7 @@ namespace talus {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* asked_for = "--read-in-child";
+constexpr const char* child_flag = "--read-in-child";
 constexpr double mebi = 1 << 20;
 bool served = false;  // main() has called serve_child_reading(): this program can be started for a reading
 
@@ -94,7 +94,7 @@ class Child {
     int ends[2] = {-1, -1};
     if (::pipe2(ends, O_CLOEXEC) != 0) fail("a pipe cannot be made");
     from_ = ends[0];
-    std::vector<std::string> words{"/proc/self/exe", asked_for, task.name, task.file.string()};
+    std::vector<std::string> words{"/proc/self/exe", child_flag, task.name, task.file.string()};
     words.insert(words.end(), task.words.begin(), task.words.end());
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
@@ -180,7 +180,7 @@ KnownChildReading::KnownChildReading(const char* name, ChildReading reading) { r
 
 void serve_child_reading(int argc, char** argv) {
   served = true;
-  if (argc < 4 || std::strcmp(argv[1], asked_for) != 0) return;
+  if (argc < 4 || std::strcmp(argv[1], child_flag) != 0) return;
   const auto found = readings().find(argv[2]);
   if (found == readings().end()) ::_exit(static_cast<int>(ExitCode::bug));
   limit_this_process(argv[3]);

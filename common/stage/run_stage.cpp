@@ -3,6 +3,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <ios>
 #include <new>
 #include <optional>
 #include <system_error>
@@ -133,6 +134,9 @@ int run_stage(int argc, char** argv, const Stage& stage) {
   } catch (const std::bad_alloc&) {
     return report(stage, DataError({"the scene does not fit into memory", "an allocation failed",
                                     "Take a larger spacing, fewer points per cell or a smaller extent"}));
+  } catch (const std::ios_base::failure& error) {  // what a stream throws where the disk fails under it
+    return report(stage, DataError({"a file cannot be read or written", error.what(),
+                                    "Look at the disk or the network that it is on, and run it again"}));
   } catch (const std::exception& error) {
     log_error(fmt::format("{}: {} (this is a bug). Please report it, with the recipe and the version: {}", stage.name,
                           error.what(), version()));

@@ -64,9 +64,10 @@ class Simulation {
   /// The method goes on from checkpoint.h5 instead of the start. It throws DataError, and then changes nothing.
   void resume(const std::filesystem::path& checkpoint);
 
-  /// The method steps to the end and writes run.h5, with whether its numbers are sane. It throws NumericalError, DataError, and Interrupted (checkpoint
-  /// left). An older run.h5 stays until the new one is whole, an older checkpoint with its frames until this run has
-  /// one of its own or is whole. `made_by` are facts that go with those of the domain.
+  /// The method steps to the end and writes run.h5, with whether its numbers are sane. It throws NumericalError,
+  /// DataError, and Interrupted (checkpoint left). An older run.h5 stays until the new one is whole, an older
+  /// checkpoint with its frames until this run has one of its own or is whole. `made_by` are facts that go with those
+  /// of the domain.
   RunSummary run(const std::string& scene, const std::string& title, const Facts& made_by = {});
 
  private:

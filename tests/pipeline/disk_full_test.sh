@@ -38,7 +38,7 @@ whole() {
   esac
 }
 
-full="^talus-[a-z]+: $TALUS_SCRATCH/disk(/[a-z_/.0-9]+)?: .*cannot (be written|be created|write) ?"
+full="^talus-[a-z]+: disk(/[a-z_/.0-9]+)?: .*cannot (be written|be created|write) ?"
 full+=".*(disk is full|No space left on device).*--out"
 
 # room FOLDER: what its files take [KiB].

@@ -84,7 +84,7 @@ test_a_run_that_fails_leaves_the_one_of_before() {
   interrupt TERM 'out/.frames/*/frame_00001.h5' "$bin/talus-solve" recipe.toml --out out --on cpu
   cmp out/run.h5 before.h5 || fail "the run of before is gone, or another one"
   expect_exit 3 postprocess   # and nobody takes it for one of the new recipe
-  expect_words "$PWD/out/run.h5: another recipe made it"
+  expect_words "out/run.h5: another recipe made it"
 }
 
 test_a_checkpoint_of_this_run_is_not_thrown_away() {
@@ -92,12 +92,12 @@ test_a_checkpoint_of_this_run_is_not_thrown_away() {
   make_checkpoint out
   cp out/checkpoint.h5 before.h5
   expect_exit 3 solve
-  grep -qE "^talus-solve: $PWD/out/checkpoint.h5: it holds this very run at t = [0-9.]+ s, step [0-9]+ " stderr ||
+  grep -qE "^talus-solve: out/checkpoint.h5: it holds this very run at t = [0-9.]+ s, step [0-9]+ " stderr ||
     fail "it does not say what the checkpoint holds"
   expect_words "Go on from it with --restart, or remove it to begin anew"
   cmp out/checkpoint.h5 before.h5 || fail "the checkpoint was touched"
   expect_exit 0 solve --resume
-  expect_words "going on from $PWD/out/checkpoint.h5"
+  expect_words "going on from out/checkpoint.h5"
   expect_exit 0 solve --resume   # nothing to go on from: from the start
   ! grep -q "going on" stderr || fail "it goes on from nothing"
 }

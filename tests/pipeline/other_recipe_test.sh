@@ -7,8 +7,8 @@ source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
 refused_for() {
   local mark='[0-9a-f]{16}' text
   expect_exit 3 "${@:3}"
-  text="^talus-[a-z]+: $PWD/$1: another recipe made it \\(the checksum of its \\[$2\\] is $mark, that of "
-  text+="$PWD/recipe.toml is $mark\\)\\. Run talus-"
+  text="^talus-[a-z]+: $1: another recipe made it \\(the checksum of its \\[$2\\] is $mark, that of "
+  text+="recipe.toml is $mark\\)\\. Run talus-"
   grep -qE "$text" stderr || fail "it does not name both recipes"
 }
 
@@ -72,10 +72,10 @@ test_a_survey_of_another_preparation_is_refused() {
   sed -i '7s/^72.2/72.1/' after.asc   # other data, the same recipe
   expect_exit 0 preprocess
   expect_exit 3 postprocess
-  expect_words "$PWD/out/survey/survey.json: prepared with the domain " "$PWD/out/run.h5 was computed on the domain "
+  expect_words "out/survey/survey.json: prepared with the domain " "out/run.h5 was computed on the domain "
   rm out/survey/survey.json
   expect_exit 3 postprocess
-  expect_words "$PWD/out/survey/survey.json: no such file (talus-preprocess writes it last"
+  expect_words "out/survey/survey.json: no such file (talus-preprocess writes it last"
 }
 
 test_level_sets_of_another_preparation_are_refused() {
@@ -93,7 +93,7 @@ JSON
   expect_exit 0 "$bin/talus-preprocess" other.toml --out other
   cp other/obstacles.vdb out/
   expect_exit 3 solve
-  expect_words "$PWD/out/obstacles.vdb: not the file that was written with $PWD/out/domain.vdb"
+  expect_words "out/obstacles.vdb: not the file that was written with out/domain.vdb"
 }
 
 test_every_file_of_a_run_carries_its_id() {

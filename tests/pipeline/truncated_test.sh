@@ -41,12 +41,12 @@ test_seal() {
     cp "out/$file" whole
     head -c -1 whole >"out/$file"
     expect_exit 3 "$stage"
-    expect_words "talus-$stage: $PWD/out/$file: is damaged (its checksum is missing: another program changed it, or"
+    expect_words "talus-$stage: out/$file: is damaged (its checksum is missing: another program changed it, or"
     cp whole "out/$file"
     printf '\x7f' | dd of="out/$file" bs=1 seek=5000 conv=notrunc status=none
     if cmp -s whole "out/$file"; then fail "the test changed nothing"; fi
     expect_exit 3 "$stage"
-    expect_words "talus-$stage: $PWD/out/$file: is damaged (bytes have changed since it was written: " "$mend"
+    expect_words "talus-$stage: out/$file: is damaged (bytes have changed since it was written: " "$mend"
     cp whole "out/$file"
     expect_exit 0 "$stage"
   done <<'FILES'

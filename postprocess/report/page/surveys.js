@@ -130,7 +130,8 @@ function volumeRows({ volumes, source, deposit, outside_slide: outside }) {
         outside.large
           ? "Too much for a score."
           : outside.doubtful
-            ? `Of what counts as noise ${volume(outside.noise_within_reach_rise_m3)} of rise lie within reach of the slide.`
+            ? `Of what counts as noise ${volume(outside.noise_within_reach_rise_m3)} of rise ` +
+              "lie within reach of the slide."
             : "",
       ),
       row("fall outside the slide, no noise", volume(outside.sure_fall_m3)),

@@ -45,7 +45,9 @@ StretchRecorder::Limits StretchRecorder::limits_of(const MaterialOptions& materi
 StretchRecorder::StretchRecorder(const SolveOptions& options, const Scene& scene)
     : TableRecorder(stretch_columns, {Place{}}),
       limits_{limits_of(options.material)},
-      cell_volume_(scene.grid.spacing * scene.grid.spacing * scene.grid.layer_height) {
+      cell_volume_(scene.grid.spacing * scene.grid.spacing * scene.grid.layer_height),
+      bears_gaps_(options.shape == ShapeKind::gimp ||
+                  std::find(options.accept.begin(), options.accept.end(), torn_body) != options.accept.end()) {
   for (const PartOptions& part : options.parts) limits_.push_back(limits_of(part.material));
 }
 
@@ -72,7 +74,20 @@ std::vector<Overstretched> StretchRecorder::samples(const Instant& now) const {
     if (principal > parts) ++found.apart;
   }
   found.largest = std::exp(largest);
+  if (found.apart > 0 && !bears_gaps_) refuse_torn(found, now.time);
   return {found};
+}
+
+void StretchRecorder::refuse_torn(const Overstretched& found, double time) const {
+  throw NumericalError(
+      {fmt::format("t = {:.6g} s: {:.0f} points of an elastic body were stretched by a factor of up to {:.3g}, to more "
+                   "than {:g} of a cell from the next",
+                   time, found.apart, found.largest, widest_spacing),
+       "the grid hardly ties them together there, and the body may part where no strength says so",
+       fmt::format(
+           "Take more points_per_cell, or shape = \"gimp\", whose boxes stretch with the points; or insist with "
+           "[solve] accept = [\"{}\"]",
+           torn_body)});
 }
 
 std::vector<std::string> StretchRecorder::warnings(const RunHistory& history) const {

@@ -16,7 +16,8 @@ struct Overstretched {
 };
 
 /// The recorder that counts them at each record. Scenes without an elastic law have none; with one a record takes the
-/// points from the device.
+/// points from the device. It ends a run whose body may have parted between its points, unless the recipe accepts a
+/// "torn-body", or the functions are averaged over boxes that stretch with the points (gimp).
 class StretchRecorder : public TableRecorder<Overstretched> {
  public:
   /// The distance between points of a body [cells] from which they part: at 0.65 to 0.8 a cantilever with three points
@@ -40,8 +41,12 @@ class StretchRecorder : public TableRecorder<Overstretched> {
   };
   static Limits limits_of(const MaterialOptions& material);
 
+  /// The method throws NumericalError where points lie so far apart that their body may have torn.
+  void refuse_torn(const Overstretched& found, double time) const;
+
   std::vector<Limits> limits_;  ///< of every material
   double cell_volume_;          ///< [m3]
+  bool bears_gaps_;             ///< points apart are said at the end, and do not end the run
 };
 
 }  // namespace talus::solver

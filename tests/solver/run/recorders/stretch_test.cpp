@@ -12,12 +12,15 @@
 namespace talus::solver::testing {
 namespace {
 
-/// What is said of a block of a law, eight of its points stretched along x by this factor, less as much across.
-std::vector<std::string> said_of(MaterialModel model, double stretch, RunHistory* rows = nullptr) {
+/// What is said of a block of a law, eight of its points stretched along x by this factor, less as much across, where
+/// the recipe bears that they part.
+std::vector<std::string> said_of(MaterialModel model, double stretch, RunHistory* rows = nullptr,
+                                 const std::vector<std::string>& accept = {torn_body}) {
   Domain d = ground(12, 12, 1.0, 1.0, [](double, double) { return 0.0; });
   fill(d, {4, 8, 4, 8, 0, 2});
   SolveOptions o;
   o.material.model = model;
+  o.accept = accept;
   Scene scene = make_scene(d, o);
   for (std::size_t p = 0; p < 8; ++p) {
     scene.points.elastic[0][p] = std::log(stretch);
@@ -57,6 +60,18 @@ TEST(StretchRecorder, names_the_points_of_any_elastic_body_that_lie_far_apart) {
     EXPECT_EQ(rows.at("points_apart").values, std::vector<double>{8});
     EXPECT_TRUE(said_of(model, 1.25).empty());
   }
+}
+
+TEST(StretchRecorder, ends_a_run_whose_body_may_have_parted_unless_that_is_accepted) {
+  try {
+    said_of(MaterialModel::neo_hookean, 1.35, nullptr, {});
+    FAIL() << "a torn body was borne";
+  } catch (const NumericalError& error) {
+    const std::string words = error.what();
+    for (const char* part : {"8 points", "factor of up to 1.35", "0.65 of a cell", "gimp", "accept = [\"torn-body\"]"})
+      EXPECT_NE(words.find(part), std::string::npos) << part << "\n" << words;
+  }
+  EXPECT_TRUE(said_of(MaterialModel::neo_hookean, 1.25, nullptr, {}).empty());
 }
 
 TEST(StretchRecorder, is_silent_of_what_flows) {
