@@ -80,17 +80,6 @@ double memory_in(const fs::path& folder) {
                   number_in(folder / "memory.limit_in_bytes").value_or(unlimited));
 }
 
-double memory_of_machine() {
-  std::ifstream stream("/proc/meminfo");
-  std::string name, unit;
-  double kilobytes = 0;
-  while (stream >> name >> kilobytes) {
-    std::getline(stream, unit);
-    if (name == "MemTotal:") return kilobytes * 1024;
-  }
-  return unlimited;
-}
-
 double own_limit(int resource) {
   rlimit limit{};
   if (getrlimit(static_cast<__rlimit_resource_t>(resource), &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
@@ -116,9 +105,20 @@ int thread_limit() { return asked_for > 0 ? asked_for : usable_threads(); }
 
 void set_thread_limit(int threads) { asked_for = threads; }
 
+double memory_of_machine(std::string_view name) {
+  std::ifstream stream("/proc/meminfo");
+  std::string found, unit;
+  double kilobytes = 0;
+  while (stream >> found >> kilobytes) {
+    std::getline(stream, unit);
+    if (found.size() == name.size() + 1 && found.starts_with(name)) return kilobytes * 1024;
+  }
+  return unlimited;
+}
+
 double usable_memory() {
   return std::min(
-      {memory_of_machine(), least_limit("memory", memory_in), own_limit(RLIMIT_AS), own_limit(RLIMIT_DATA)});
+      {memory_of_machine("MemTotal"), least_limit("memory", memory_in), own_limit(RLIMIT_AS), own_limit(RLIMIT_DATA)});
 }
 
 void require_memory(double bytes, const std::string& what, const std::string& mend) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace talus {
 
@@ -14,6 +15,10 @@ int thread_limit();
 
 /// Sets the number of threads to take at most; 0 = usable_threads(). More than are usable are taken as they are.
 void set_thread_limit(int threads);
+
+/// What the system says of its memory under a name of /proc/meminfo, as "MemTotal" or "MemAvailable" [bytes]. Infinity
+/// where it does not.
+double memory_of_machine(std::string_view name);
 
 /// Memory that this process may have at most [bytes]: the least of the machine's, that of its control groups and its
 /// own limits (ulimit -v). Infinity where nothing is known.

@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <limits>
-#include <string>
 #include <utility>
 #include <vector>
 
+#include "common/stage/machine.hpp"
 #include "solver/parallel/algorithms.hpp"
 #include "solver/parallel/pace.hpp"
 
@@ -86,15 +84,6 @@ void scatter(const CpuDevice&, const double* from, const int* order, double* to,
   for (int i = 0; i < count; ++i) to[order[i]] = from[i];
 }
 
-double free_memory(const CpuDevice&) {
-  std::ifstream file("/proc/meminfo");
-  std::string name, unit;
-  double kilobytes = 0;
-  while (file >> name >> kilobytes) {
-    std::getline(file, unit);
-    if (name == "MemAvailable:") return kilobytes * 1024;
-  }
-  return std::numeric_limits<double>::infinity();  // a system that does not report it
-}
+double free_memory(const CpuDevice&) { return memory_of_machine("MemAvailable"); }
 
 }  // namespace talus

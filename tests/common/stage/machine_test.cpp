@@ -2,7 +2,9 @@
 #include "common/stage/machine.hpp"
 
 #include <gtest/gtest.h>
+
 #include <sched.h>
+#include <cmath>
 
 #include "common/error.hpp"
 #include "common/stage/input_file.hpp"
@@ -54,6 +56,13 @@ TEST(Input, refuses_what_cannot_be_sought_in) {
   EXPECT_NO_THROW(require_plain(scratch / "missing"));
   EXPECT_NO_THROW(require_plain(scratch.folder()));
   EXPECT_NO_THROW(require_plain(scratch.write("plain", "x")));
+}
+
+TEST(Machine, tells_what_the_system_says_of_its_memory_by_whole_names) {
+  const double all = memory_of_machine("MemTotal"), free = memory_of_machine("MemAvailable");
+  EXPECT_GT(free, 0);
+  EXPECT_LT(free, all);
+  EXPECT_TRUE(std::isinf(memory_of_machine("Mem")));
 }
 
 }  // namespace
