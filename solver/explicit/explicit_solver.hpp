@@ -190,11 +190,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
 
   template <NodeContent content>
   void update() {
-    if (content != NodeContent::remapped) {
-      this->measure_columns();
-      this->record_motion(clock_.data());
-    }
-    if (content != NodeContent::remapped && traction_.measures()) measure_coefficients();
+    if (content != NodeContent::remapped) look_at_points();
     if (content == NodeContent::force && settings_.energy_budget) {
       update_nodes<content, content == NodeContent::force>();
       count_landing();
@@ -206,29 +202,37 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     if (content != NodeContent::remapped && traction_.acts()) slow_columns<content>();
   }
 
+  /// The method measures what the nodes' part of a step asks of the points, and records what they did.
+  void look_at_points() {
+    this->measure_columns();
+    this->record_motion(clock_.data());
+    if (traction_.measures()) measure_coefficients();
+  }
+
+  /// Gravity in the precision of the nodes [m/s2].
+  Vec3<Real> gravity() const {
+    const Vec3<double>& full = settings_.gravity.acceleration;
+    return {static_cast<Real>(full.x), static_cast<Real>(full.y), static_cast<Real>(full.z)};
+  }
+
   /// The method updates the nodes, in the kernel that does no more than is asked for.
   template <NodeContent content, bool counts>
   void update_nodes() {
     const ProfilePhase<Device> phase(device_, "grid");
-    const Vec3<double>& gravity = settings_.gravity.acceleration;
-    const Vec3<Real> g{static_cast<Real>(gravity.x), static_cast<Real>(gravity.y), static_cast<Real>(gravity.z)};
     for_each_column<block_columns>(
         device_, grid_.active_blocks(),
         UpdateColumns<Real, content, counts>{
-            grid_.view(), grid_.active_list(), clock_.data(), nodes_.data(), forces_.data(), g, settings_.gravity.ramp,
-            walls_, traction_.seen_by(surroundings_.bed()), static_cast<Real>(this->full_base()),
-            static_cast<Real>(settings_.damping), traction_.slowed(), counts ? pressed_.data() : nullptr,
-            this->column_density(), maps_.view()});
+            grid_.view(), grid_.active_list(), clock_.data(), nodes_.data(), forces_.data(), gravity(),
+            settings_.gravity.ramp, walls_, traction_.seen_by(surroundings_.bed()),
+            static_cast<Real>(this->full_base()), static_cast<Real>(settings_.damping), traction_.slowed(),
+            counts ? pressed_.data() : nullptr, this->column_density(), maps_.view()});
   }
 
   /// The method makes the nodes' part of a column-implicit step.
   void update_by_columns() {
-    this->measure_columns();
-    this->record_motion(clock_.data());
-    if (traction_.measures()) measure_coefficients();
+    look_at_points();
     {
       const ProfilePhase<Device> phase(device_, "grid");
-      const Vec3<double>& gravity = settings_.gravity.acceleration;
       for_each(device_, grid_.active_blocks() * block_columns,
                SolveColumns<Real>{.grid = grid_.view(),
                                   .active = grid_.active_list(),
@@ -236,8 +240,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
                                   .nodes = nodes_.data(),
                                   .forces = forces_.data(),
                                   .pivots = pivots_.data(),
-                                  .gravity = {static_cast<Real>(gravity.x), static_cast<Real>(gravity.y),
-                                              static_cast<Real>(gravity.z)},
+                                  .gravity = gravity(),
                                   .gravity_ramp = settings_.gravity.ramp,
                                   .walls = walls_,
                                   .friction = traction_.seen_by(surroundings_.bed()),
