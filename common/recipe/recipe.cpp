@@ -84,7 +84,7 @@ Recipe::~Recipe() = default;
 const fs::path& Recipe::file() const { return parsed_->file; }
 
 std::string Recipe::scene_name() const {
-  const std::string name = scene_of(parsed_->root).name;
+  std::string name = scene_of(parsed_->root).name;
   if (!name.empty()) return name;
   std::string stem = parsed_->file.stem().string();
   for (char& c : stem)
@@ -93,7 +93,7 @@ std::string Recipe::scene_name() const {
 }
 
 std::string Recipe::title() const {
-  const std::string title = scene_of(parsed_->root).title;
+  std::string title = scene_of(parsed_->root).title;
   return title.empty() ? scene_name() : title;
 }
 

@@ -20,8 +20,6 @@
 #include "common/stage/stage.hpp"
 #include "common/stage/write_fault.hpp"
 
-extern char** environ;
-
 namespace talus {
 namespace fs = std::filesystem;
 namespace {

@@ -80,7 +80,7 @@ TEST_F(Hdf5Reading, refuses_a_shape_of_which_the_file_holds_nothing) {
 }
 
 TEST_F(Hdf5Reading, names_place_and_value_of_what_cannot_be) {
-  const auto checked = [](const h5::Allowed& allowed, std::vector<double> values) {
+  const auto checked = [](const h5::Allowed& allowed, const std::vector<double>& values) {
     return [=](const h5::File& file) { h5::check_values<double>(file, "/x", values, allowed); };
   };
   constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
