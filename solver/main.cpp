@@ -148,7 +148,6 @@ SolveOptions settle_stiffness(const Domain& domain, SolveOptions o) {
 /// The run once more, twice as stiff, and the difference of the deposits as a share of the volume.
 void check_stiffness(const Domain& domain, SolveOptions o, const AnyDevice& device, const StageContext& context,
                      const std::filesystem::path& first) {
-  o.transfer_time *= std::sqrt(2.0);
   o.material.youngs_modulus *= 2;
   for (PartOptions& part : o.parts) part.material.youngs_modulus *= 2;
   log_info(fmt::format("stiffness check: once more with {:.3g} Pa", o.material.youngs_modulus));

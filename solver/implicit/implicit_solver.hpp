@@ -17,7 +17,7 @@
 namespace talus::solver {
 
 /// The integrator of implicit steps, by Newmark's scheme or as a sequence of equilibria: particles are sorted before
-/// every step, a step that does not converge is cut in half.
+/// every step, a step that does not converge is cut.
 template <class Real, class Device, class Shape>
 class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
   using Base = PointSolver<Real, Device, Shape>;
@@ -30,7 +30,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
       : Base(device, scene, settings, state, needs(settings), 0),
         controls_(with_materials(controls, scene.grid.layer_height)),
         step_(parts(), DeviceBed<double, Device>(device, settings.bed, scene.bed)),
-        length_(controls.step),
+        length_(controls.step, controls.newton.iterations),
         first_(state.clock.accelerated == 0),
         midway_(state.clock.step > 0) {
     this->fit(0);
@@ -43,7 +43,6 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     clock.halt = clock.request = running;
     clock.outflow_count = 0;
     clock.outflow_volume = 0;
-    rate_ = static_cast<double>(positive_from_bits(clock.rate_bits));
     clock.fastest_bits = std::max(clock.fastest_bits, clock.speed_bits);
     clock.rate_bits = clock.speed_bits = 0;
     fit_grid(clock.time);
@@ -57,7 +56,6 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     ++clock.step;
     clock_.upload({clock});
     accept(clock, step);
-    if (report.stats.cuts == 0) length_.grow();
     close(report, step);
     return report;
   }
@@ -124,21 +122,24 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
                    .backward_euler = first_ && midway_,
                    .loads = loads_.upload(clock.time + step)});
       const NewtonReport found = step_.solve();
-      stats = {.newton = found.iterations,
-               .linear = found.linear_iterations,
-               .cuts = cut,
-               .residual = found.residual,
-               .linear_residual = found.linear_residual,
-               .indefinite = found.indefinite};
-      if (found.converged) return step;
+      stats.newton += found.iterations;
+      stats.linear += found.linear_iterations;
+      stats.cuts = cut;
+      stats.residual = found.residual;
+      stats.linear_residual = found.linear_residual;
+      stats.indefinite = found.indefinite;
+      if (found.converged) {
+        length_.accept(step, found.iterations, found.motion);
+        return step;
+      }
       if (cut >= controls_.step_cuts) refuse_step(clock, step, stats, controls_.dynamic);
-      step = length_.halve(step);
+      step = length_.refuse(step, found.motion);
     }
   }
 
   void accept(const Clock& clock, double step) {
     const ProfilePhase<Device> phase(device_, "grid to points");
-    step_.accept(clock_.data(), clock.share_kept(step, rate_));
+    step_.accept(clock_.data(), clock.share_kept(step));
     this->measure_columns();
     step_.record_maps(maps_.view(), clock.time, this->column_density());
   }
@@ -171,9 +172,8 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
   ImplicitControls controls_;
   ImplicitStep<Real, Device, Shape> step_;
   StepLength length_;
-  double rate_ = 0;  ///< CFL steps per time, as the last step ended [1/s]
-  bool first_;       ///< no acceleration is known yet
-  bool midway_;      ///< the run began with explicit steps
+  bool first_;   ///< no acceleration is known yet
+  bool midway_;  ///< the run began with explicit steps
 };
 
 /// This function makes a solver of one precision and kind of shape functions, on a device.

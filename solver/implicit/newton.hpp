@@ -44,6 +44,7 @@ struct NewtonReport {
   double residual = 0;         ///< unbalanced force over the size of the forces
   double linear_residual = 0;  ///< relative, of the last system
   bool indefinite = false;     ///< a tangent was no minimum's
+  double motion = 0;           ///< way of the farthest point over what it may go, where that was looked at [-]
 };
 
 namespace detail {
@@ -111,6 +112,7 @@ NewtonReport newton(Problem& problem, const NewtonControls& controls) {
     if (!std::isfinite(report.residual)) return report;
     if (report.residual <= controls.tolerance && !now.changed) {
       const Motion moved = problem.farthest_motion();
+      report.motion = moved.share;
       if (moved.share > 1) return report;
       if (!smoothing.too_wide_for(moved.length)) {
         smoothing.narrow_after(report.iterations);
@@ -143,7 +145,8 @@ NewtonReport solve_once(Problem& problem, const NewtonControls& controls) {
   const bool solved = detail::find_change(problem, controls.linear_tolerance, report);
   problem.apply_change(1.0);
   report.residual = report.linear_residual;
-  report.converged = solved && problem.farthest_motion().share <= 1;
+  report.motion = problem.farthest_motion().share;
+  report.converged = solved && report.motion <= 1;
   return report;
 }
 

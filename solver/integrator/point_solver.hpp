@@ -33,7 +33,9 @@ class PointSolver : public Solver {
         measures_(device, scene.grid),
         motion_(device) {
     points_.upload(state.points);
-    clock_.upload({state.clock});
+    Clock clock = state.clock;
+    clock.transfer_time = settings.transfer.time;
+    clock_.upload({clock});
   }
 
   ~PointSolver() override { drop_sort_space(device_); }

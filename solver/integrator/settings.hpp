@@ -28,7 +28,7 @@ struct StepSettings {
 struct TransferSettings {
   bool affine = true;            ///< particles carry the affine part of their velocity (APIC)
   bool remaps_velocity = false;  ///< the particles' new velocity goes back to the grid before the strain (MUSL)
-  double time = 10;              ///< over which velocity finer than the grid decays [CFL steps]
+  double time = 0;               ///< over which velocity finer than the grid decays [s]; 0: at every step
 };
 
 /// The settings of gravity.

@@ -53,6 +53,11 @@ void MaterialOptions::describe(recipe::Visitor& v, const std::string& table) {
            "stiffness; sets the step size, see docs/user-guide.md");
   recipe::choice(v, "stiffness", stiffness, {{"as-given", StiffnessKind::as_given}, {"auto", StiffnessKind::automatic}},
                  "auto: the lowest modulus up to that one which leaves the flow unchanged");
+  v.number("stiffness_strain", stiffness_strain, recipe::Range{0, 0.5, true, false},
+           "stiffness = \"auto\": strain that the dynamic pressure of the fastest flow may cause");
+  v.needs(stiffness == StiffnessKind::automatic || stiffness_strain == default_stiffness_strain,
+          {table + " stiffness_strain has no effect", "it is what stiffness = \"auto\" goes by",
+           "Give stiffness = \"auto\", or leave it out"});
   v.flag("stiffness_check", stiffness_check, "run again with twice the modulus and say how far the deposit moves");
   v.number("poisson_ratio", poisson_ratio, recipe::Range{-1, 0.5, true, true}, "Poisson's ratio");
   OptionsOfLaws::describe(v, {.name = table, .chosen = name()});

@@ -13,6 +13,10 @@ namespace talus::solver {
 /// Whether Young's modulus is the one given, or the lowest that leaves the flow unchanged (decision 0008).
 enum class StiffnessKind { as_given, automatic };
 
+/// The strain under the dynamic pressure of the flow to which a chosen stiffness holds, unless the recipe says
+/// otherwise.
+inline constexpr double default_stiffness_strain = 0.02;
+
 /// The keys of [solve.material]: those of every material, then those of the laws (solver/material/laws), each law's
 /// declared in its header.
 struct MaterialOptions : OptionsOfLaws<MaterialLaws> {
@@ -20,8 +24,9 @@ struct MaterialOptions : OptionsOfLaws<MaterialLaws> {
   double density = 2000;        ///< [kg/m3]
   double youngs_modulus = 1e7;  ///< [Pa]
   StiffnessKind stiffness = StiffnessKind::as_given;
-  bool stiffness_check = false;  ///< run again, twice as stiff
-  double poisson_ratio = 0.25;   ///< [-]
+  double stiffness_strain = default_stiffness_strain;  ///< that the dynamic pressure may cause, where it is chosen [-]
+  bool stiffness_check = false;                        ///< run again, twice as stiff
+  double poisson_ratio = 0.25;                         ///< [-]
 
   /// The method calls visit(Law{}, options of that law) for the chosen law, and returns what that returns.
   template <class Visit>

@@ -24,17 +24,18 @@ void OutputOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
   v.flag("point_frames", point_frames, "write the material points of each frame into run.h5");
   v.flag("vdb_frames", vdb_frames, "write the material points of each frame as frames/*.vdb as well");
   v.flag("energy_budget", energy_budget,
-         "explicit steps: keep what is lost to the bed, to plastic flow, to damping and between points and grid, and "
+         "explicit and column-implicit steps: keep what is lost to the bed, to plastic flow, to damping and between "
+         "points and grid, and "
          "the impulse of bed and walls (two to three times as slow on a GPU)");
   v.needs(!energy_budget || (steps.count_losses && all.stress_update == StressUpdate::last),
           {"[solve] energy_budget = true does not go with this integrator or stress_update",
-           "losses are counted in explicit steps with stress_update = \"usl\"",
+           "losses are counted in explicit and column-implicit steps with stress_update = \"usl\"",
            "Leave it out, or take integrator = \"explicit\""});
   v.needs(!energy_budget || !all.meets_points(),
           {all.contact_words() + " does not go with energy_budget = true", "what is lost between nodes is not counted",
            "Leave energy_budget out"});
   v.flag("deterministic", deterministic,
-         "explicit steps: the same bits on every run on a GPU too, as on the CPU always (slower)");
+         "explicit and column-implicit steps: the same bits on every run on a GPU too, as on the CPU always (slower)");
   v.needs(!deterministic || (steps.repeat_bits && !energy_budget),
           {"[solve] deterministic = true does not go with this integrator or with energy_budget",
            "sums of implicit steps and of the budget are made in any order on a GPU",

@@ -19,13 +19,15 @@ void SchemeOptions::describe(recipe::Visitor& v) {
                  "functions of the grid: B-splines, hats averaged over the box of each point, or hats");
   recipe::choice(v, "transfer", transfer, {{"apic", Transfer::apic}, {"flip", Transfer::flip}},
                  "how velocity passes between points and grid");
-  v.number("transfer_time", transfer_time, recipe::not_negative,
-           "CFL steps over which velocity finer than the grid decays; 0: at every step");
-  v.renamed("flip_fraction", "transfer_time", [](const std::string&) { return std::string(); });
+  v.optional_number("transfer_time_s", transfer_time, recipe::not_negative,
+                    "time over which velocity finer than the grid decays; 0: at every step; none: 0.3 of the root of "
+                    "layer height over gravity");
+  v.renamed("flip_fraction", "transfer_time_s", [](const std::string&) { return std::string(); });
   recipe::choice(v, "stress_update", stress_update, {{"usl", StressUpdate::last}, {"musl", StressUpdate::modified}},
                  "stress from the grid's new velocity (usl), or from the points' mapped back (musl)");
   v.number("damping", damping, recipe::Range{0, 1, false, true}, "local non-viscous damping factor (Cundall)");
-  v.number("cfl", cfl, recipe::Range{0, 0.8, true, false}, "step size over the CFL step");
+  v.number("cfl", cfl, recipe::Range{0, 1, true, false},
+           "step size over the CFL step; 0.8 at most, with column-implicit steps 1");
   v.number("kappa", kappa, recipe::Range{0.25, 1},
            "column-implicit: inertia of springs between layers; 0.25 is the least that is stable");
   v.number("largest_step_s", largest_step, recipe::positive, "upper bound of the step size");

@@ -1,6 +1,8 @@
 // The numerical scheme that all integrators share: numbers, grid, transfer, step size.
 #pragma once
 
+#include <optional>
+
 #include "common/recipe/recipe.hpp"
 #include "solver/grid/shape_functions.hpp"
 #include "solver/state/grid_view.hpp"
@@ -14,6 +16,9 @@ enum class Transfer { apic, flip };
 /// The time at which stress is updated: after the nodes' step (USL), or after velocity went back to them (MUSL).
 enum class StressUpdate { last, modified };  ///< USL, MUSL
 
+/// The share of a step's change of velocity that springs between layers feel (T6a), unless the recipe says otherwise.
+inline constexpr double default_kappa = 0.3;
+
 /// The keys of [solve] for the numerical scheme that all integrators share.
 struct SchemeOptions {
   Precision precision = Precision::double_;
@@ -21,12 +26,12 @@ struct SchemeOptions {
   GroundContact ground_contact = GroundContact::nodes;
   ShapeKind shape = ShapeKind::quadratic;
   Transfer transfer = Transfer::apic;
-  double transfer_time = 10;  ///< CFL steps
+  std::optional<double> transfer_time;  ///< [s]; none: transfer_time_of()
   StressUpdate stress_update = StressUpdate::last;
   double damping = 0;  ///< Cundall's local factor
   double cfl = 0.5;
-  double kappa = 0.3;       ///< column-implicit: (T6a)
-  double largest_step = 1;  ///< [s]
+  double kappa = default_kappa;  ///< column-implicit: (T6a)
+  double largest_step = 1;       ///< [s]
   /// The method declares the keys with defaults and help.
   void describe(recipe::Visitor& v);
 };

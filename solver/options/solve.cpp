@@ -1,9 +1,16 @@
 #include "solver/options/solve.hpp"
 
+#include <cstdlib>
+
+#include <fmt/format.h>
+
 #include "solver/options/names.hpp"
 
 namespace talus::solver {
 namespace {
+
+/// The longest stable explicit step over the CFL step (T11), for points that have a cell to themselves.
+constexpr double most_explicit_cfl = 0.8;
 
 /// This function declares what holding base nodes on the ground needs.
 void need_separation(recipe::Visitor& v, const SolveOptions& o) {
@@ -20,24 +27,42 @@ void need_separation(recipe::Visitor& v, const SolveOptions& o) {
            "Take mapping = \"terrain-following\", or separation = \"free\""});
 }
 
-/// What of the recipe inertia by columns cannot do; empty: nothing.
-std::string beyond_columns(const SolveOptions& o) {
-  if (o.mapping != Mapping::terrain_following) return "mapping = \"cartesian\"";
-  if (o.stress_update != StressUpdate::last) return "stress_update = \"musl\"";
-  if (o.damping > 0) return "damping";
-  if (o.base.separation != Separation::free) return "separation = \"" + o.base.separation_name() + "\"";
-  if (o.meets_points()) return o.contact_words();
+/// What of the recipe inertia by columns cannot do, and why.
+struct BeyondColumns {
+  std::string key;  ///< empty: nothing
+  const char* reason = "";
+};
+BeyondColumns beyond_columns(const SolveOptions& o) {
+  const char* where = "contact between the nodes acts after the columns have been solved for, and could not hold them";
+  if (o.meets_points()) return {o.contact_words(), where};
   for (const WallOptions& wall : o.walls)
-    if (wall.axis == Axis::z) return "a [[solve.wall]] across z";
+    if (wall.axis == Axis::z && wall.material_is == Side::below)
+      return {"a [[solve.wall]] across z above the material", "columns are solved for from their foot upwards"};
   return {};
 }
 
-/// This function declares what column-implicit steps need.
+/// This function declares what column-implicit steps need, and what needs them.
 void need_columns(recipe::Visitor& v, const SolveOptions& o) {
-  const std::string beyond = abilities_of(o.integrator).solve_columns ? beyond_columns(o) : "";
-  v.needs(beyond.empty(), {"[solve] integrator = \"column-implicit\" does not go with " + beyond,
-                           "nodes of a column are solved for together, with the bed as their one support",
-                           "Leave it out, or take integrator = \"explicit\""});
+  const bool by_columns = abilities_of(o.integrator).solve_columns;
+  v.needs(by_columns || o.kappa == default_kappa,
+          {"[solve] kappa has no effect", "it belongs to integrator = \"column-implicit\"",
+           "Leave it out, or take that integrator"});
+  v.needs(by_columns || o.cfl <= most_explicit_cfl,
+          {fmt::format("[solve] cfl = {:g} is too large for this integrator", o.cfl),
+           "points that have a cell to themselves would be thrown off", "Take 0.8 at most"});
+  const BeyondColumns beyond = by_columns ? beyond_columns(o) : BeyondColumns{};
+  v.needs(beyond.key.empty(), {"[solve] integrator = \"column-implicit\" does not go with " + beyond.key, beyond.reason,
+                               "Leave it out, or take integrator = \"explicit\""});
+}
+
+/// The text that says in seconds what `transfer_time` said in explicit steps of the length by which waves cross a
+/// layer; empty: the old value is no number.
+std::string seconds_of(const std::string& steps, const SolveOptions& o) {
+  char* end = nullptr;
+  const double count = std::strtod(steps.c_str(), &end);
+  if (steps.empty() || *end != '\0') return {};
+  if (!(count > 0) || count > 1e6) return steps;  // never, or at every step
+  return fmt::format("{:.3g} times the layers' height in metres, or leave it out", count / fastest_wave(o));
 }
 
 }  // namespace
@@ -61,6 +86,7 @@ void SolveOptions::describe(recipe::Visitor& v) {
            "Take ground_contact = \"nodes\", or another law"});
   need_separation(v, *this);
   need_columns(v, *this);
+  v.renamed("transfer_time", "transfer_time_s", [this](const std::string& steps) { return seconds_of(steps, *this); });
 }
 
 std::string SolveOptions::contact_words() const {

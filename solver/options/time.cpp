@@ -6,7 +6,9 @@ StepAbilities abilities_of(Integrator integrator) {
   switch (integrator) {
     case Integrator::explicit_:
       return {.obey_cfl = true, .carry_inertia = true, .count_losses = true, .repeat_bits = true};
-    case Integrator::column_implicit: return {.obey_cfl = true, .carry_inertia = true, .solve_columns = true};
+    case Integrator::column_implicit:
+      return {
+          .obey_cfl = true, .carry_inertia = true, .count_losses = true, .repeat_bits = true, .solve_columns = true};
     case Integrator::newmark: return {.carry_inertia = true, .solve_systems = true, .average_volume = true};
     case Integrator::quasi_static: return {.solve_systems = true, .average_volume = true};
     case Integrator::automatic: return {.obey_cfl = true, .carry_inertia = true, .solve_systems = true};

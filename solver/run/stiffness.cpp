@@ -11,10 +11,6 @@
 namespace talus::solver {
 namespace {
 
-/// The strain that the dynamic pressure may cause [-]. The energy line begins above what is released, so its weight
-/// makes no more than half of that.
-constexpr double impact_strain = 0.02;
-
 /// The least friction the flow can meet: on its bed, or inside where the bed holds it.
 double least_friction(const SolveOptions& o) {
   const auto base = make_base_friction<double>(o);
@@ -65,25 +61,13 @@ StiffnessDemand lowest_stiffness(const Domain& domain, const SolveOptions& o) {
   const double wave_speed = make_material<double>(m).wave_speed;
   const double confined =
       m.density * wave_speed * wave_speed / m.youngs_modulus;  // modulus of confined compression over Young's
-  struct Need {
-    double modulus;
-    std::string why;
-  } needs[] = {{m.density * demand.speed * demand.speed / impact_strain / confined,
-                fmt::format("the dynamic pressure at {:.3g} m/s, which the energy line allows, strains it by 2 %",
-                            demand.speed)},
-               // Its decay time in seconds stays; where that is no more than a step, it would no longer be resolved.
-               {o.transfer_time > 0 ? m.youngs_modulus * std::pow(o.cfl / o.transfer_time, 2) : 0,
-                "velocity finer than the grid decays within a step"}};
-  const Need& most = *std::max_element(std::begin(needs), std::end(needs),
-                                       [](const Need& a, const Need& b) { return a.modulus < b.modulus; });
-  if (most.modulus >= m.youngs_modulus) {
-    demand.modulus = m.youngs_modulus;
-    demand.reason = fmt::format("it is no more than is needed: at {:.3g} Pa {}", most.modulus, most.why);
-  } else {
-    demand.modulus = most.modulus;
-    demand.reason = most.why;
-  }
-  demand.transfer_time = o.transfer_time * std::sqrt(demand.modulus / m.youngs_modulus);
+  const double needed = m.density * demand.speed * demand.speed / m.stiffness_strain / confined;
+  const std::string why =
+      fmt::format("the dynamic pressure at {:.3g} m/s, which the energy line allows, strains it by {:.3g} %",
+                  demand.speed, 100 * m.stiffness_strain);
+  demand.modulus = std::min(needed, m.youngs_modulus);
+  demand.reason =
+      needed < m.youngs_modulus ? why : fmt::format("it is no more than is needed: at {:.3g} Pa {}", needed, why);
   return demand;
 }
 
@@ -92,7 +76,6 @@ SolveOptions with_stiffness(SolveOptions o, const StiffnessDemand& demand) {
   o.material.stiffness = StiffnessKind::as_given;
   for (PartOptions& part : o.parts)
     part.material.youngs_modulus = std::min(part.material.youngs_modulus, demand.modulus);
-  o.transfer_time = demand.transfer_time;
   return o;
 }
 

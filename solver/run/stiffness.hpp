@@ -10,14 +10,13 @@ namespace talus::solver {
 
 /// The demand of a scene on the stiffness.
 struct StiffnessDemand {
-  double speed = 0;          ///< that the energy line allows somewhere in the domain [m/s]
-  double modulus = 0;        ///< Young's modulus chosen [Pa]
-  double transfer_time = 0;  ///< that goes with it: the same time in seconds [CFL steps]
+  double speed = 0;    ///< that the energy line allows somewhere in the domain [m/s]
+  double modulus = 0;  ///< Young's modulus chosen [Pa]
   std::string reason;
 };
 
-/// The modulus that keeps the dynamic pressure at the highest speed to a strain of 2 %, and with it the weight of what
-/// is released to 1 %, and the decay of velocity finer than the grid above a step; never more than the recipe's own.
+/// The modulus that keeps the dynamic pressure at the highest speed to a strain of `stiffness_strain`, and with it the
+/// weight of what is released to half of that, for the energy line begins above it; never more than the recipe's own.
 /// Pressures are over the modulus of confined compression.
 StiffnessDemand lowest_stiffness(const Domain& domain, const SolveOptions& options);
 

@@ -18,7 +18,6 @@ SolverState first_state(const Scene& scene, const IntegratorSettings& settings) 
   const StepSettings& steps = settings.steps;
   state.clock.courant = steps.cfl;
   state.clock.largest_step = steps.largest;
-  state.clock.transfer_time = settings.transfer.time;
   state.clock.column_spacing = scene.grid.spacing;
   state.clock.keeps_budget = settings.energy_budget ? 1 : 0;
   const TerrainTables terrain = make_terrain_tables(scene.grid);

@@ -10,6 +10,10 @@
 namespace talus::solver {
 namespace {
 
+/// The transfer time of a recipe without one, over the root of layer height over gravity; without gravity, over the
+/// time in which a wave crosses a layer (docs/decisions/0004).
+constexpr double transfer_falls = 0.3, transfer_waves = 10;
+
 /// The coefficient of friction of an angle in degrees.
 double coefficient(double degrees) { return std::tan(degrees * (std::numbers::pi / 180)); }
 
@@ -43,14 +47,6 @@ SeparationSettings make_separation(const SolveOptions& o, const GridShape& grid)
   return {.kind = o.base.separation, .depth = o.base.separation_depth > 0 ? o.base.separation_depth : grid.spacing};
 }
 
-/// The transfer time in steps of the integrator (T8a). Column-implicit ones are longer than explicit steps by the ratio
-/// of the rates of waves (T11); what is finer than the grid decays by time with them too.
-double transfer_time(const SolveOptions& o, const GridShape& grid) {
-  if (!abilities_of(o.integrator).solve_columns) return o.transfer_time;
-  const double over = grid.spacing / grid.layer_height;
-  return o.transfer_time / std::sqrt(1 + over * over / 2);
-}
-
 IntegratorSettings make_common(const SolveOptions& o, const GridShape& grid) {
   IntegratorSettings s{.shape = o.shape,
                        .needs = needs_of(o),
@@ -61,7 +57,7 @@ IntegratorSettings make_common(const SolveOptions& o, const GridShape& grid) {
                                  .kappa = abilities_of(o.integrator).solve_columns ? o.kappa : 0},
                        .transfer = {.affine = o.transfer == Transfer::apic,
                                     .remaps_velocity = o.stress_update == StressUpdate::modified,
-                                    .time = transfer_time(o, grid)},
+                                    .time = transfer_time_of(o, grid)},
                        .gravity = {.acceleration = vector(o.gravity), .ramp = o.gravity_ramp},
                        .damping = o.damping,
                        .map_threshold = o.map_threshold,
@@ -86,6 +82,13 @@ void hold(Materials<Real>& materials) {
 }
 
 }  // namespace
+
+double transfer_time_of(const SolveOptions& o, const GridShape& grid) {
+  if (o.transfer_time) return *o.transfer_time;
+  const double g = size(o.gravity);
+  return g > 0 ? transfer_falls * std::sqrt(grid.layer_height / g)
+               : transfer_waves * grid.layer_height / fastest_wave(o);
+}
 
 SolverSettings make_settings(const SolveOptions& options, const GridShape& grid) {
   return {.precision = options.precision,

@@ -20,6 +20,9 @@ struct SolverSettings {
   ImplicitControls implicit;  ///< looked at by implicit integrators
 };
 
+/// The time over which velocity finer than the grid decays (T8a) [s]: the recipe's, or the scene's own.
+double transfer_time_of(const SolveOptions& options, const GridShape& grid);
+
 /// The settings that the options ask for on this grid; presets are resolved already (with_preset).
 SolverSettings make_settings(const SolveOptions& options, const GridShape& grid);
 

@@ -1,6 +1,7 @@
 // Time, step and alarms, kept where the kernels run so that a batch of steps needs nothing from the host.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "solver/parallel/atomics.hpp"
@@ -27,7 +28,7 @@ struct Clock {
   double next_event = 0;      ///< never stepped over [s]
   double courant = 0;         ///< step_size = courant / rate
   double largest_step = 0;    ///< upper bound of step_size [s]
-  double transfer_time = 0;   ///< CFL steps over which velocity finer than the grid decays
+  double transfer_time = 0;   ///< over which velocity finer than the grid decays [s]
   double kept = 0;            ///< share of it that this step keeps
   double outflow_volume = 0;  ///< since the last sort [m3]
   std::int64_t step = 0;
@@ -56,12 +57,9 @@ struct Clock {
   int steps_unrecorded = steps_between_records;  ///< since then; the first step records what the mass starts with
   int records_motion = 0;  ///< read by kernels: the state before this step goes into the maps of speed and pressure
 
-  /// The share (T8a) of the velocity finer than the grid that a step keeps: what is lost depends on time, not on the
-  /// number of steps.
-  TALUS_HD double share_kept(double step_of, double rate) const {
-    const double lost = transfer_time > 0 ? step_of * rate / transfer_time : 1;
-    return lost < 1 - 1e-9 ? 1 - lost : 0;
-  }
+  /// The share (T8a) of the velocity finer than the grid that a step of this length [s] keeps: what is lost depends on
+  /// time, not on the number of steps.
+  TALUS_HD double share_kept(double length) const { return transfer_time > 0 ? exp(-length / transfer_time) : 0; }
 
   /// The method opens the next step: it settles its size (T11), or halts. One thread.
   TALUS_HD void begin_step() {
@@ -90,7 +88,7 @@ struct Clock {
       step_size = remaining < 2 * full_step ? 0.5 * remaining : full_step;
       time += step_size;
     }
-    kept = share_kept(step_size, rate);
+    kept = share_kept(step_size);
     way_unrecorded += static_cast<double>(positive_from_bits(speed_bits)) * step_size / column_spacing;
     ++steps_unrecorded;
     rate_bits = 0;

@@ -84,7 +84,7 @@ Overrides paper_dynamics(const char* integrator, double step) {
   return {{"solve.integrator", words(integrator)},
           {"solve.shape", words("linear")},
           {"solve.transfer", words("flip")},
-          {"solve.transfer_time", 1e30},
+          {"solve.transfer_time_s", 1e30},
           {"solve.stress_update", words("musl")},
           {"solve.implicit.step_s", step},
           {"solve.largest_step_s", step},

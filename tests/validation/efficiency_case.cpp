@@ -40,7 +40,7 @@ struct Scheme {
 std::vector<Scheme> schemes() {
   const Overrides explicit_steps{{"solve.preset", words("none")},  {"solve.integrator", words("explicit")},
                                  {"solve.shape", words("linear")}, {"solve.transfer", words("flip")},
-                                 {"solve.transfer_time", 1e30},    {"solve.stress_update", words("musl")},
+                                 {"solve.transfer_time_s", 1e30},  {"solve.stress_update", words("musl")},
                                  {"solve.largest_step_s", step},   {"solve.cfl", 0.8}};
   return {
       {"PCG", {{"solve.implicit.linear_solver", words("pcg")}}, 2e-7, pcg_memory, {1, 2}, {1, 2, 4, 8, 16, 32}, {128}},

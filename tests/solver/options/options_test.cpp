@@ -44,13 +44,16 @@ TEST(SolveOptions, vectors_and_boxes_have_their_number_of_values) {
 TEST(SolveOptions, the_energy_budget_needs_explicit_steps_and_contact_at_nodes) {
   EXPECT_EQ(faults("[solve]\nenergy_budget = true\nintegrator = \"newmark\""),
             "[solve] energy_budget = true does not go with this integrator or stress_update (losses are counted in "
-            "explicit steps with stress_update = \"usl\"). Leave it out, or take integrator = \"explicit\"");
+            "explicit and column-implicit steps with stress_update = \"usl\"). Leave it out, or take integrator = "
+            "\"explicit\"");
   EXPECT_EQ(faults("[solve]\nenergy_budget = true\nstress_update = \"musl\""),
             "[solve] energy_budget = true does not go with this integrator or stress_update (losses are counted in "
-            "explicit steps with stress_update = \"usl\"). Leave it out, or take integrator = \"explicit\"");
+            "explicit and column-implicit steps with stress_update = \"usl\"). Leave it out, or take integrator = "
+            "\"explicit\"");
   EXPECT_EQ(faults("[solve]\nenergy_budget = true\nintegrator = \"auto\""),
             "[solve] energy_budget = true does not go with this integrator or stress_update (losses are counted in "
-            "explicit steps with stress_update = \"usl\"). Leave it out, or take integrator = \"explicit\"");
+            "explicit and column-implicit steps with stress_update = \"usl\"). Leave it out, or take integrator = "
+            "\"explicit\"");
   EXPECT_EQ(faults("[solve]\nenergy_budget = true\nground_contact = \"points\"\nmapping=\"cartesian\""),
             "[solve] ground_contact = \"points\" does not go with energy_budget = true (what is lost between nodes is "
             "not counted). Leave energy_budget out");
@@ -205,10 +208,33 @@ TEST(SolveOptions, at_most_as_many_walls_as_kernels_hold) {
 
 TEST(SolveOptions, an_old_key_is_refused_with_the_new_one) {
   const std::string found = faults("[solve]\nflip_fraction = 0.95");
-  EXPECT_NE(found.find("r.toml:2:17: [solve] flip_fraction = 0.95 (transfer_time has taken its place). Write "
-                       "transfer_time instead"),
+  EXPECT_NE(found.find("r.toml:2:17: [solve] flip_fraction = 0.95 (transfer_time_s has taken its place). Write "
+                       "transfer_time_s instead"),
             std::string::npos)
       << found;
+}
+
+TEST(SolveOptions, an_old_transfer_time_is_refused_with_the_seconds_to_write) {
+  // Waves of 1,000 m/s: sqrt(E (1 - nu) / ((1 + nu) (1 - 2 nu)) / rho).
+  const std::string material = "\n[solve.material]\nyoungs_modulus_Pa=2e9\npoisson_ratio=0.0\ndensity_kg_m3=2000";
+  EXPECT_NE(faults("[solve]\ntransfer_time=5" + material)
+                .find("Write transfer_time_s = 0.005 times the layers' height in metres, or leave it out"),
+            std::string::npos);
+  EXPECT_NE(faults("[solve]\ntransfer_time=0" + material).find("Write transfer_time_s = 0"), std::string::npos);
+  EXPECT_NE(faults("[solve]\ntransfer_time=1e30" + material).find("Write transfer_time_s = 1e+30"), std::string::npos);
+}
+
+TEST(SolveOptions, what_would_have_no_effect_is_refused) {
+  EXPECT_NE(faults("[solve]\nkappa=0.4").find("[solve] kappa has no effect"), std::string::npos);
+  EXPECT_EQ(faults("[solve]\nkappa=0.4\nintegrator=\"column-implicit\""), "");
+  EXPECT_NE(faults("[solve.material]\nstiffness_strain=0.1").find("stiffness_strain has no effect"), std::string::npos);
+  EXPECT_EQ(faults("[solve.material]\nstiffness_strain=0.1\nstiffness=\"auto\""), "");
+}
+
+TEST(SolveOptions, steps_longer_than_lone_points_bear_are_for_columns) {
+  EXPECT_EQ(faults("[solve]\ncfl=0.8"), "");
+  EXPECT_NE(faults("[solve]\ncfl=0.9").find("[solve] cfl = 0.9 is too large"), std::string::npos);
+  EXPECT_EQ(faults("[solve]\ncfl=1.0\nintegrator=\"column-implicit\""), "");
 }
 
 TEST(SolveOptions, what_goes_together_is_taken) {

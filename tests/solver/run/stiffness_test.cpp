@@ -47,7 +47,9 @@ TEST(Stiffness, follows_the_energy_line_of_the_scene) {
   const double confined = 0.75 / (1.25 * 0.5);
   EXPECT_NEAR(demand.modulus, 2000 * demand.speed * demand.speed / 0.02 / confined, 1e-6 * demand.modulus);
   EXPECT_NE(demand.reason.find("dynamic pressure"), std::string::npos) << demand.reason;
-  EXPECT_NEAR(demand.transfer_time, 10 * std::sqrt(demand.modulus / 1e9), 1e-12) << "the same time in seconds";
+  SolveOptions finer = sliding(1e9);
+  finer.material.stiffness_strain = 0.08;
+  EXPECT_NEAR(lowest_stiffness(d, finer).modulus, demand.modulus / 4, 1e-6 * demand.modulus);
 }
 
 TEST(Stiffness, carries_the_weight_of_a_deep_release) {
@@ -60,13 +62,7 @@ TEST(Stiffness, carries_the_weight_of_a_deep_release) {
 TEST(Stiffness, is_never_more_than_the_recipe_gives) {
   const StiffnessDemand demand = lowest_stiffness(slope(20), sliding(1e6));
   EXPECT_EQ(demand.modulus, 1e6);
-  EXPECT_EQ(demand.transfer_time, 10);
   EXPECT_NE(demand.reason.find("no more than is needed"), std::string::npos) << demand.reason;
-}
-
-TEST(Stiffness, keeps_the_decay_of_fine_velocity_above_a_step) {
-  const StiffnessDemand demand = lowest_stiffness(slope(20), sliding(1e13));
-  EXPECT_NEAR(demand.transfer_time, 0.5, 1e-12) << "the step at cfl = 0.5";
 }
 
 TEST(Stiffness, of_an_elastic_body_is_its_own) {

@@ -86,6 +86,21 @@ TEST(Settings, steps_transfer_and_gravity_are_those_of_the_recipe) {
   EXPECT_EQ(s.gravity.ramp, 3);
 }
 
+TEST(Settings, velocity_finer_than_the_grid_decays_as_fast_as_layers_fall) {
+  SolveOptions o;
+  const auto time = [&] { return make_settings(o, grid).common.transfer.time; };
+  const double of_layer = std::sqrt(grid.layer_height / 9.81);
+  EXPECT_NEAR(time(), 0.3 * of_layer, 1e-12);
+  o.material.youngs_modulus *= 100;
+  o.cfl = 0.1;
+  o.integrator = Integrator::column_implicit;
+  EXPECT_NEAR(time(), 0.3 * of_layer, 1e-12) << "whatever the stiffness and the steps";
+  o.gravity = {0, 0, 0};
+  EXPECT_NEAR(time(), 10 * grid.layer_height / fastest_wave(o), 1e-12) << "waves where nothing falls";
+  o.transfer_time = 0;
+  EXPECT_EQ(time(), 0);
+}
+
 TEST(Settings, scheme_materials_and_loads_need_fields_of_the_particles) {
   SolveOptions o;
   const ParticleNeeds plain = make_settings(o, grid).common.needs;
