@@ -7,6 +7,7 @@
 #include "solver/boundary/base_friction.hpp"
 #include "solver/parallel/atomics.hpp"
 #include "solver/state/clock.hpp"
+#include "solver/state/gravity.hpp"
 #include "solver/state/grid_view.hpp"
 
 namespace talus {
@@ -173,16 +174,14 @@ TALUS_HD ColumnBed<Number> bed_under(const GridView<Real>& grid, const Number* m
 struct ColumnStep {
   Clock* clock;             ///< of the step, with its budget; null: no more is known than its duration
   double duration = 0;      ///< [s], without a clock
-  Vec3<double> gravity{};   ///< full with a clock, else that of the step [m/s2]
-  double gravity_ramp = 0;  ///< time over which it grows, with a clock [s]
+  Gravity<double> gravity;  ///< without a clock that of the step
 
   /// The length of the step [s].
   TALUS_HD double length() const { return clock ? clock->step_size : duration; }
   /// The pull of gravity into a bed [m/s2].
   template <class Number>
   TALUS_HD Number press(const Vec3<Number>& normal) const {
-    const bool growing = clock && gravity_ramp > 0 && clock->time < gravity_ramp;
-    const double pull = -dot(gravity, widen(normal)) * (growing ? clock->time / gravity_ramp : 1);
+    const double pull = -dot(gravity.full, widen(normal)) * (clock ? gravity.share(clock->time) : 1);
     return pull > 0 ? static_cast<Number>(pull) : Number(0);
   }
 };

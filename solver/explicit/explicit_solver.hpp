@@ -6,7 +6,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "solver/boundary/bed_hold.hpp"
+#include "solver/explicit/column_contact.hpp"
 #include "solver/explicit/make_explicit_solver.hpp"
 #include "solver/explicit/solve_columns.hpp"
 #include "solver/explicit/update_columns.hpp"
@@ -73,12 +73,13 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
       : Base(device, scene, settings, state, needs(settings), settings.deterministic ? 1 : drift_between_sorts<Device>),
         affine_(settings.transfer.affine),
         musl_(settings.transfer.remaps_velocity),
-        keeps_(settings.transfer.time > settings.steps.cfl),
+        keeps_(settings.transfer.time > 0),
         solves_columns_(settings.steps.kappa > 0),
-        forces_apart_(musl_ || settings.damping > 0 || keeps_ || settings.energy_budget || solves_columns_) {
+        forces_apart_(musl_ || settings.damping > 0 || keeps_ || settings.energy_budget || solves_columns_),
+        softer_(softer(scene, settings)),
+        columns_(device, surroundings_.bed(), settings, static_cast<double>(materials_.list[0].density), scene.grid) {
     Clock clock = read_clock();
     clock.accelerated = 0;
-    if (settings.energy_budget) pressed_.resize(scene.map.count());
     if (Device::is_gpu) clock.steps_between_sorts = steps_between_sorts_on_gpu<Shape>(points_.count());
     clock_.upload({clock});
     sort(0);
@@ -127,9 +128,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   MemoryShares memory() const override {
     MemoryShares shares = Base::memory();
     shares.emplace_back("nodes", nodes_.bytes() + forces_.bytes() + pivots_.bytes());
-    if (traction_.bytes() > 0) shares.emplace_back("bed's tractions", traction_.bytes());
-    if (const std::size_t held = hold_.bytes() + pressed_.bytes(); held > 0)
-      shares.emplace_back("contact of columns", held);
+    columns_.list_memory(shares);
     return shares;
   }
 
@@ -145,7 +144,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     clear(true);
     if (solves_columns_) {
       scatter<Scatter::springs>();
-      update_by_columns();
+      update<NodeContent::force>();
     } else if (forces_apart_) {
       scatter<Scatter::force>();
       update<NodeContent::force>();
@@ -190,159 +189,106 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
 
   template <NodeContent content>
   void update() {
-    if (content != NodeContent::remapped) look_at_points();
+    constexpr bool first = content != NodeContent::remapped;
+    const StepNodes<Real> at = step_nodes<content>();
+    if (first) look_at_points(at);
     if (content == NodeContent::force && settings_.energy_budget) {
       update_nodes<content, content == NodeContent::force>();
-      count_landing();
+      columns_.count_landing(at);
     } else {
       update_nodes<content, false>();
     }
-    if (hold_.acts()) hold_columns<content>();
+    columns_.hold(at, walls_, first);
     if (surroundings_.contact().on()) meet_surfaces<content>();
-    if (content != NodeContent::remapped && traction_.acts()) slow_columns<content>();
+    if (first) columns_.slow(at, surroundings_.bed(), this->column_density());
   }
 
   /// The method measures what the nodes' part of a step asks of the points, and records what they did.
-  void look_at_points() {
+  void look_at_points(const StepNodes<Real>& at) {
     this->measure_columns();
     this->record_motion(clock_.data());
-    if (traction_.measures()) measure_coefficients();
+    columns_.measure(at, surroundings_.bed());
   }
 
-  /// Gravity in the precision of the nodes [m/s2].
-  Vec3<Real> gravity() const {
+  /// Gravity in the precision of the nodes.
+  Gravity<Real> gravity() const {
     const Vec3<double>& full = settings_.gravity.acceleration;
-    return {static_cast<Real>(full.x), static_cast<Real>(full.y), static_cast<Real>(full.z)};
+    return {{static_cast<Real>(full.x), static_cast<Real>(full.y), static_cast<Real>(full.z)}, settings_.gravity.ramp};
+  }
+
+  /// The nodes of a step, with the changes of their velocity where it keeps them.
+  template <NodeContent content>
+  StepNodes<Real> step_nodes() {
+    return {.grid = grid_.view(),
+            .active = grid_.active_list(),
+            .blocks = grid_.active_blocks(),
+            .nodes = {nodes_.data(), content == NodeContent::force ? forces_.data() : nullptr},
+            .step = {clock_.data(), 0, {settings_.gravity.acceleration, settings_.gravity.ramp}}};
   }
 
   /// The method updates the nodes, in the kernel that does no more than is asked for.
   template <NodeContent content, bool counts>
   void update_nodes() {
     const ProfilePhase<Device> phase(device_, "grid");
+    if constexpr (content == NodeContent::force) {
+      if (solves_columns_) {
+        solve_columns<counts>();
+        return;
+      }
+    }
     for_each_column<block_columns>(
         device_, grid_.active_blocks(),
-        UpdateColumns<Real, content, counts>{
-            grid_.view(), grid_.active_list(), clock_.data(), nodes_.data(), forces_.data(), gravity(),
-            settings_.gravity.ramp, walls_, traction_.seen_by(surroundings_.bed()),
-            static_cast<Real>(this->full_base()), static_cast<Real>(settings_.damping), traction_.slowed(),
-            counts ? pressed_.data() : nullptr, this->column_density(), maps_.view()});
+        UpdateColumns<Real, content, counts>{.grid = grid_.view(),
+                                             .active = grid_.active_list(),
+                                             .clock = clock_.data(),
+                                             .nodes = nodes_.data(),
+                                             .forces = forces_.data(),
+                                             .gravity = gravity(),
+                                             .walls = walls_,
+                                             .friction = columns_.seen_by(surroundings_.bed()),
+                                             .full_base = static_cast<Real>(this->full_base()),
+                                             .damping = static_cast<Real>(settings_.damping),
+                                             .columns = columns_.slowed(),
+                                             .pressed = counts ? columns_.pressed() : nullptr,
+                                             .density = this->column_density(),
+                                             .maps = maps_.view()});
   }
 
   /// The method makes the nodes' part of a column-implicit step.
-  void update_by_columns() {
-    look_at_points();
-    {
-      const ProfilePhase<Device> phase(device_, "grid");
-      for_each(device_, grid_.active_blocks() * block_columns,
-               SolveColumns<Real>{.grid = grid_.view(),
-                                  .active = grid_.active_list(),
-                                  .clock = clock_.data(),
-                                  .nodes = nodes_.data(),
-                                  .forces = forces_.data(),
-                                  .pivots = pivots_.data(),
-                                  .gravity = gravity(),
-                                  .gravity_ramp = settings_.gravity.ramp,
-                                  .walls = walls_,
-                                  .friction = traction_.seen_by(surroundings_.bed()),
-                                  .full_base = static_cast<Real>(this->full_base()),
-                                  .kappa = static_cast<Real>(settings_.steps.kappa),
-                                  .softer = softer(),
-                                  .columns = traction_.slowed(),
-                                  .density = this->column_density(),
-                                  .maps = maps_.view()});
-    }
-    if (traction_.acts()) slow_columns<NodeContent::force>();
+  template <bool counts>
+  void solve_columns() {
+    for_each(device_, grid_.active_blocks() * block_columns,
+             SolveColumns<Real, counts>{.grid = grid_.view(),
+                                        .active = grid_.active_list(),
+                                        .clock = clock_.data(),
+                                        .nodes = nodes_.data(),
+                                        .forces = forces_.data(),
+                                        .pivots = pivots_.data(),
+                                        .gravity = gravity(),
+                                        .walls = walls_,
+                                        .friction = columns_.seen_by(surroundings_.bed()),
+                                        .full_base = static_cast<Real>(this->full_base()),
+                                        .damping = static_cast<Real>(settings_.damping),
+                                        .kappa = static_cast<Real>(settings_.steps.kappa),
+                                        .softer = softer_,
+                                        .columns = columns_.slowed(),
+                                        .pressed = counts ? columns_.pressed() : nullptr,
+                                        .density = this->column_density(),
+                                        .maps = maps_.view()});
   }
 
-  /// The modulus of shear over that of uniaxial strain, of the material where that is most [-].
-  Real softer() const {
+  /// The springs along the bed over those across it (T6b) [-]: the modulus of shear over that of uniaxial strain, of
+  /// the material where that is most. Where columns stand on more than their bed (walls across z), or not across it
+  /// (Cartesian grids), springs are the same in all directions, which is an upper bound too.
+  static Real softer(const Scene& scene, const IntegratorSettings& settings) {
+    const auto across_z = [](const PlaneWall& wall) { return wall.axis == 2; };
+    if (scene.grid.mapping == Mapping::cartesian || std::ranges::any_of(settings.walls, across_z)) return Real(1);
     Real most = 0;
-    for (const Material<Real>& m : materials_.list) {
+    for (const Material<Real>& m : settings.materials.in<Real>().list) {
       const Real uniaxial = m.density * m.wave_speed * m.wave_speed;
       if (uniaxial > Real(0)) most = std::max(most, m.shear_modulus / uniaxial);
     }
     return most;
-  }
-
-  /// The method holds columns on the ground that would leave it (T12c). Which ones are shallow is settled as the step
-  /// begins.
-  template <NodeContent content>
-  void hold_columns() {
-    using Nodes = PackedNodes<Real>;
-    const ProfilePhase<Device> phase(device_, "grid");
-    constexpr bool first = content != NodeContent::remapped;
-    const int count = grid_.active_blocks() * block_columns;
-    const Nodes nodes = packed_nodes<content>();
-    if (first && hold_.measures())
-      for_each(device_, count,
-               MeasureLying<Real, Nodes>{grid_.view(), grid_.active_list(), clock_.data(), nodes, hold_.lying()});
-    for_each(device_, count,
-             HoldColumns<Real, Nodes>{.grid = grid_.view(),
-                                      .active = grid_.active_list(),
-                                      .clock = clock_.data(),
-                                      .nodes = nodes,
-                                      .walls = walls_,
-                                      .held = hold_.columns(),
-                                      .rise = first ? traction_.slowed().rise : nullptr});
-  }
-
-  /// The method adds what columns have lost by landing to the budget (T24a).
-  void count_landing() {
-    using Nodes = PackedNodes<Real>;
-    const ProfilePhase<Device> phase(device_, "grid");
-    for_each(device_, grid_.active_blocks() * block_columns,
-             CountLanding<Real, Nodes>{.grid = grid_.view(),
-                                       .active = grid_.active_list(),
-                                       .nodes = {nodes_.data(), nullptr},
-                                       .pressed = pressed_.data(),
-                                       .step = column_step()});
-  }
-
-  /// The step as columns see it.
-  ColumnStep column_step() { return {clock_.data(), 0, settings_.gravity.acceleration, settings_.gravity.ramp}; }
-
-  /// The method measures the coefficients of friction of a law that asks for the column.
-  void measure_coefficients() {
-    using Nodes = PackedMomenta<Real>;
-    const ProfilePhase<Device> phase(device_, "grid");
-    const int count = grid_.active_blocks() * block_columns;
-    const Nodes nodes{nodes_.data()};
-    for_each(device_, count,
-             MeasureColumns<Real, Nodes>{.grid = grid_.view(),
-                                         .active = grid_.active_list(),
-                                         .nodes = nodes,
-                                         .columns = traction_.columns(),
-                                         .gravity = {},
-                                         .step = 0});
-    for_each(device_, count,
-             MeasureCoefficients<Real, Nodes>{.grid = grid_.view(),
-                                              .active = grid_.active_list(),
-                                              .nodes = nodes,
-                                              .friction = surroundings_.bed(),
-                                              .mass = traction_.columns().mass,
-                                              .coefficient = traction_.coefficients(),
-                                              .step = column_step()});
-  }
-
-  /// The method lets drag and cohesion of the bed slow what lies on it (T13a).
-  template <NodeContent content>
-  void slow_columns() {
-    using Nodes = PackedNodes<Real>;
-    for_each_column_twice<block_columns>(device_, grid_.active_blocks(),
-                                         SlowColumns<Real, Nodes>{.grid = grid_.view(),
-                                                                  .active = grid_.active_list(),
-                                                                  .nodes = packed_nodes<content>(),
-                                                                  .friction = surroundings_.bed(),
-                                                                  .columns = traction_.columns(),
-                                                                  .step = column_step(),
-                                                                  .with_yield = true,
-                                                                  .density = this->column_density()});
-  }
-
-  /// The nodes with the changes of their velocity, where a step keeps them.
-  template <NodeContent content>
-  PackedNodes<Real> packed_nodes() {
-    return {nodes_.data(), content == NodeContent::force ? forces_.data() : nullptr};
   }
 
   /// The method lets the nodes meet obstacles, and ground between the nodes (T12a). What is mapped back a second time
@@ -351,7 +297,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   void meet_surfaces() {
     const ProfilePhase<Device> phase(device_, "contact");
     constexpr bool first = content != NodeContent::remapped;
-    const PackedNodes<Real> nodes = packed_nodes<content>();
+    const PackedNodes<Real> nodes = step_nodes<content>().nodes;
     surroundings_.impulses().run(surroundings_.contact(), grid_.view(), nodes, grid_.nodes(), this->layer_mass(),
                                  {clock_.data(), 0, first, first});
   }
@@ -393,10 +339,8 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   const Vec3<double>* loads_now_ = nullptr;
   Buffer<Vec4<Real>, Device> nodes_{device_}, forces_{device_};
   Buffer<ColumnPivot<Real>, Device> pivots_{device_};  ///< of the nodes, where columns are solved
-  ColumnTraction<Real, Device> traction_{device_, surroundings_.bed(), grid_.shape().columns, grid_.shape().rows};
-  BedHold<Real, Device> hold_{device_, settings_.separation, static_cast<double>(materials_.list[0].density),
-                              grid_.shape().columns, grid_.shape().rows};
-  Buffer<Real, Device> pressed_{device_};  ///< impulse of the bed on every column [N s]; with a budget
+  Real softer_;                                        ///< see softer()
+  ColumnContact<Real, Device> columns_;
 };
 
 /// The definition for the files in instances/; see make_explicit_solver.hpp.

@@ -212,7 +212,7 @@ class ContactSet {
                                                  .columns = traction_.columns(),
                                                  .gravity = gravity,
                                                  .step = scheme.step});
-    const ColumnStep step{nullptr, scheme.step, gravity};
+    const ColumnStep step{nullptr, scheme.step, {gravity}};
     if (traction_.measures()) {
       for_each(parts_.device, count,
                MeasureCoefficients<Real, MomentumNodes>{.grid = parts_.grid.view(),

@@ -32,14 +32,20 @@ Overrides overrides_of(const Incline& c) {
           {"solve.base.friction_angle_deg", c.friction}};
 }
 
-/// The terrain-following grid, and with the long runs the Cartesian one.
-struct Grid {
+/// Explicit steps on the terrain-following grid, and with the long runs the Cartesian one and column-implicit steps.
+struct BlockVariant {
   const char* words;
   Overrides overrides;
 };
-std::vector<Grid> grids(const Bench& bench) {
-  std::vector<Grid> list{{"", {}}};
-  if (bench.complete()) list.push_back({", cartesian", {{"solve.mapping", words("cartesian")}}});
+std::vector<BlockVariant> block_variants(const Bench& bench) {
+  std::vector<BlockVariant> list{{"", {}}};
+  if (bench.complete()) {
+    const Overrides cartesian{{"solve.mapping", words("cartesian")}},
+        columns{{"solve.integrator", words("column-implicit")}};
+    list.push_back({", cartesian", cartesian});
+    list.push_back({", column-implicit", columns});
+    list.push_back({", cartesian, column-implicit", cartesian + columns});
+  }
   return list;
 }
 
@@ -67,11 +73,11 @@ void block_on_incline(Bench& bench) {
       slopes.push_back(more);
     }
   }
-  for (const Grid& grid : grids(bench)) {
+  for (const BlockVariant& variant : block_variants(bench)) {
     for (const Incline& c : slopes) {
       const Outcome o = bench.run(fmt::format("{:g} deg towards {:g}, bed {:g} deg, {} cells{}", c.angle, c.direction,
-                                              c.friction, c.layers, grid.words),
-                                  overrides_of(c) + grid.overrides);
+                                              c.friction, c.layers, variant.words),
+                                  overrides_of(c) + variant.overrides);
       const double mu = std::tan(c.friction * degree);
       const double exact = SlidingBlock{c.angle * degree, mu, mu}.way(0, 2) * std::cos(c.angle * degree);
       // validation.md B1: 1 % at four cells, 3 % at one.
@@ -93,8 +99,8 @@ void block_on_incline(Bench& bench) {
 }
 
 void velocity_weakening(Bench& bench) {
-  for (const Grid& grid : grids(bench)) {
-    const Outcome o = bench.run(std::string("30 deg, mu 0.5 to 0.2") + grid.words, grid.overrides);
+  for (const BlockVariant& variant : block_variants(bench)) {
+    const Outcome o = bench.run(std::string("30 deg, mu 0.5 to 0.2") + variant.words, variant.overrides);
     const double exact = SlidingBlock{30 * degree, 0.5, 0.2, 2}.way(1, 2) * std::cos(30 * degree);
     bench.compare(o, "distance", way_of(o), exact, 0.01);
   }

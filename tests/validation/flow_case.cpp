@@ -32,7 +32,15 @@ Norms norms(const std::vector<double>& computed, const std::vector<double>& exac
   return {std::sqrt(square / size), most / largest};
 }
 
-constexpr const char* mappings[] = {"terrain-following", "cartesian"};
+/// A grid, and how steps are taken on it.
+struct Way {
+  const char* name;
+  const char* mapping;
+  const char* integrator;
+};
+constexpr Way ways[] = {{"terrain-following", "terrain-following", "explicit"},
+                        {"cartesian", "cartesian", "explicit"},
+                        {"terrain-following, column-implicit", "terrain-following", "column-implicit"}};
 
 /// Layers over the thickness; cells are four layers wide.
 std::vector<int> layer_counts(const Bench& bench) {
@@ -230,17 +238,18 @@ void parabolic_cap(Bench& bench) {
   section.x_label = "map distance from where the middle began [m]";
   section.y_label = "thickness, upright [m]";
   const auto layer_of = [](int layers) { return cap.depth / std::cos(cap.slope) / layers; };
-  std::map<int, Overrides> scenes;  // one for both grids
+  std::map<int, Overrides> scenes;  // one for all ways
   for (const int layers : layer_counts(bench)) scenes[layers] = lay_out(bench, 4 * layer_of(layers));
   int colour = 1;
-  for (const char* mapping : mappings) {
+  for (const Way& way : ways) {
     std::vector<double> h, error;
     for (const int layers : layer_counts(bench)) {
       const double layer = layer_of(layers), cell = 4 * layer;
-      const std::string variant = fmt::format("{}, {} layers", mapping, layers);
+      const std::string variant = fmt::format("{}, {} layers", way.name, layers);
       const Outcome o = bench.run(variant, scenes[layers] + Overrides{{"preprocess.grid.spacing_m", cell},
                                                                       {"preprocess.grid.layer_height_m", layer},
-                                                                      {"solve.mapping", words(mapping)}});
+                                                                      {"solve.mapping", words(way.mapping)},
+                                                                      {"solve.integrator", words(way.integrator)}});
       if (o.ok()) {
         const Series line = middle_section(o, variant, colour++);
         if (layers == 4) section.series.push_back(line);
@@ -252,7 +261,7 @@ void parabolic_cap(Bench& bench) {
       h.push_back(layer);
       error.push_back(e.thickness.mean);
     }
-    errors.series.push_back(convergence(mapping, h, error, colour++));
+    errors.series.push_back(convergence(way.name, h, error, colour++));
   }
   section.series.insert(section.series.begin(), exact_section());
   bench.picture("B4-section", png_of(section));
@@ -265,29 +274,30 @@ void dam_break(Bench& bench) {
   thickness.x_label = "along the slope [m]";
   thickness.y_label = "thickness [m]";
   int colour = 1;
-  for (const char* mapping : mappings) {
+  for (const Way& way : ways) {
     std::vector<double> h, error;
     for (const int layers : layer_counts(bench)) {
       const double layer = height / layers, cell = 4 * layer;
-      const Outcome o = bench.run(fmt::format("{}, {} layers", mapping, layers),
+      const Outcome o = bench.run(fmt::format("{}, {} layers", way.name, layers),
                                   {{"preprocess.grid.spacing_m", cell},
                                    {"preprocess.grid.layer_height_m", layer},
                                    {"preprocess.laboratory.columns", whole(std::lround(100 / cell) + 8)},
                                    {"preprocess.laboratory.west_m", -54 - 3.5 * cell},
                                    {"preprocess.laboratory.south_m", -3.5 * cell},
                                    {"preprocess.box[0].north_m", cell},
-                                   {"solve.mapping", words(mapping)},
+                                   {"solve.mapping", words(way.mapping)},
+                                   {"solve.integrator", words(way.integrator)},
                                    {"solve.wall[1].position_m", cell}});
       Norms of_thickness, of_discharge;
       if (o.ok()) {
         const Profile computed = profile_of(o.last(), cell), exact = exact_at(computed.x, o.last().time);
         of_thickness = norms(computed.thickness, exact.thickness);
         of_discharge = norms(computed.discharge, exact.discharge);
-        Series s{fmt::format("{}, {} layers", mapping, layers), computed.x, computed.thickness, colour++};
+        Series s{fmt::format("{}, {} layers", way.name, layers), computed.x, computed.thickness, colour++};
         if (layers == 4) thickness.series.push_back(s);
       }
-      judge(bench, o, "thickness", of_thickness, dam_thickness_tolerance(mapping, layers));
-      if (std::string(mapping) == "cartesian") {
+      judge(bench, o, "thickness", of_thickness, dam_thickness_tolerance(way.mapping, layers));
+      if (std::string(way.mapping) == "cartesian") {
         // Stairs take more than their share of the friction, and a twentieth more stops the layer: nothing to promise.
         bench.note(o, "discharge, root mean square", of_discharge.mean);
         bench.note(o, "discharge, largest", of_discharge.most);
@@ -297,7 +307,7 @@ void dam_break(Bench& bench) {
       h.push_back(layer);
       error.push_back(of_thickness.mean);
     }
-    errors.series.push_back(convergence(mapping, h, error, colour++));
+    errors.series.push_back(convergence(way.name, h, error, colour++));
   }
   std::vector<double> x;
   for (int n = 0; west + 0.25 * n <= east; ++n) x.push_back(west + 0.25 * n);

@@ -60,14 +60,15 @@ struct SolvedColumn {
                                   .nodes = nodes.data(),
                                   .forces = forces.data(),
                                   .pivots = pivots.data(),
-                                  .gravity = gravity,
-                                  .gravity_ramp = 0,
+                                  .gravity = {gravity},
                                   .walls = walls,
                                   .friction = friction,
                                   .full_base = 1e3,
+                                  .damping = 0,
                                   .kappa = kappa,
                                   .softer = softer,
                                   .columns = {},
+                                  .pressed = nullptr,
                                   .density = {2000, nullptr},
                                   .maps = maps});
   }

@@ -111,8 +111,8 @@ Vec3<double> angular_momentum(const Solver& solver, const Scene& scene, double d
 
 TEST_P(Conservation, spins_an_elastic_body_without_loss_of_angular_momentum) {
   // APIC keeps it exactly in space; symplectic Euler about the moving points costs O(dt) of the stress's moment. What
-  // points keep of their own velocity (transfer_time) is not that of the grid where they go: a hundredth in a turn.
-  for (const double transfer_time : {0.0, SolveOptions{}.transfer_time}) {
+  // points keep of their own velocity (transfer_time_s) is not that of the grid where they go: a hundredth in a turn.
+  for (const double transfer_time : {0.0, 0.2}) {
     const Domain d = cube();
     SolveOptions o = options();
     o.transfer_time = transfer_time;
@@ -130,7 +130,7 @@ TEST_P(Conservation, spins_an_elastic_body_without_loss_of_angular_momentum) {
     const Vec3<double> start = angular_momentum(*solver, scene, 1000);
     run_to(*solver, 3);  // nearly one turn
     const Vec3<double> end = angular_momentum(*solver, scene, 1000);
-    std::printf("  angular momentum, transfer_time %g: relative change %.2e\n", transfer_time, end.z / start.z - 1);
+    std::printf("  angular momentum, transfer_time_s %g: relative change %.2e\n", transfer_time, end.z / start.z - 1);
     const double tolerance = transfer_time > 0 ? 0.02 : 1e-3;
     EXPECT_NEAR(end.z / start.z, 1, tolerance);
     EXPECT_NEAR(end.x / start.z, 0, tolerance);
@@ -159,10 +159,10 @@ TEST_P(Conservation, loses_velocity_finer_than_the_grid_by_time_and_not_by_steps
       run_to(*solver, 0.08);  // about five CFL steps of 1 m over 32 m/s by sqrt(3)
       return solver->energies().kinetic / start;
     };
-    const double few = left(0.5, 10), many = left(0.05, 10), at_once = left(0.05, 0);
+    const double few = left(0.5, 0.18), many = left(0.05, 0.18), at_once = left(0.05, 0);
     std::printf("  %s: random velocity, energy left %.3f at 0.5 CFL, %.3f at 0.05; %.3f where nothing is kept\n",
                 transfer == Transfer::apic ? "apic" : "flip", few, many, at_once);
-    EXPECT_NEAR(few / many, 1, 0.1);  // (1 - x / n)^n against exp(-x), and what the grid carries swings
+    EXPECT_NEAR(few / many, 1, 0.1);  // what the grid carries swings
     EXPECT_LT(at_once, 0.5 * many);
   }
 }
@@ -305,8 +305,12 @@ TEST_P(Conservation, maps_the_points_volume) {
 TEST_P(Conservation, closes_the_energy_budget_of_a_slide) {
   Domain d = ground(40, 16, 1.0, 0.5, [](double x, double) { return x < 20 ? 0.03 * (20 - x) * (20 - x) : 0.0; });
   fill(d, {4, 9, 5, 11, 0, 2});
-  for (const double damping : {0.0, 0.05}) {
+  for (const auto& [integrator, damping] : {std::pair{Integrator::explicit_, 0.0},
+                                            {Integrator::explicit_, 0.05},
+                                            {Integrator::column_implicit, 0.0},
+                                            {Integrator::column_implicit, 0.05}}) {
     SolveOptions o;
+    o.integrator = integrator;
     o.energy_budget = true;
     o.damping = damping;
     o.material.cohesion = 1000;

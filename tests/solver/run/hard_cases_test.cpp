@@ -19,6 +19,7 @@ struct Way {
 };
 constexpr Way ways[] = {{"explicit, quadratic", Integrator::explicit_, ShapeKind::quadratic},
                         {"explicit, gimp", Integrator::explicit_, ShapeKind::gimp},
+                        {"column-implicit, quadratic", Integrator::column_implicit, ShapeKind::quadratic},
                         {"newmark, quadratic", Integrator::newmark, ShapeKind::quadratic}};
 
 SolveOptions options_for(const Way& way) {
@@ -127,8 +128,11 @@ TEST_P(HardCases, impact_at_fifty_metres_a_second_stays_above_the_rock) {  // C5
 TEST_P(HardCases, impact_on_rock_and_wall_balances_momentum) {
   Domain d = ground(48, 120, 1.0, 1.0, [](double x, double) { return 0.1 * x; });
   fill(d, {22, 26, 58, 62, 1, 5});
-  for (const auto law : {FrictionLaw::coulomb, FrictionLaw::stick}) {
+  for (const auto& [integrator, law] : {std::pair{Integrator::explicit_, FrictionLaw::coulomb},
+                                        {Integrator::explicit_, FrictionLaw::stick},
+                                        {Integrator::column_implicit, FrictionLaw::coulomb}}) {
     SolveOptions o;
+    o.integrator = integrator;
     o.energy_budget = true;
     o.initial_velocity = {50, 5, -20};
     o.base.law = law;

@@ -1,0 +1,133 @@
+// What the bed does to whole columns in explicit steps, beside what its nodes feel: friction of laws that ask for the
+// column, tractions, and the hold on columns that would leave it.
+#pragma once
+
+#include "solver/boundary/bed_hold.hpp"
+#include "solver/boundary/column_traction.hpp"
+#include "solver/boundary/contact_impulses.hpp"
+#include "solver/grid/terrain.hpp"
+#include "solver/integrator/settings.hpp"
+#include "solver/integrator/solver.hpp"
+#include "solver/parallel/for_each.hpp"
+#include "solver/parallel/profile.hpp"
+
+namespace talus::solver {
+
+/// The nodes of a step, column by column.
+template <class Real>
+struct StepNodes {
+  GridView<Real> grid;
+  const int* active;        ///< the blocks in use
+  int blocks;               ///< their number
+  PackedNodes<Real> nodes;  ///< with the changes of their velocity, where the step keeps them
+  ColumnStep step;          ///< with a clock
+};
+
+/// The contact of whole columns with the bed, on a device.
+template <class Real, class Device>
+class ColumnContact {
+ public:
+  /// The constructor takes the bed's friction, what the recipe asks for, the density of the mass [kg/m3] and the grid.
+  ColumnContact(const Device& device, const BaseFriction<Real>& bed, const IntegratorSettings& settings, double density,
+                const GridShape& grid)
+      : device_(device),
+        traction_(device, bed, grid.columns, grid.rows),
+        hold_(device, settings.separation, density, grid.columns, grid.rows),
+        pressed_(device) {
+    if (settings.energy_budget)
+      pressed_.resize(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows));
+  }
+
+  /// The bed's friction, with the coefficients where they are measured.
+  BaseFriction<Real> seen_by(const BaseFriction<Real>& bed) { return traction_.seen_by(bed); }
+  /// The columns for what tractions need; null pointers without tractions.
+  BedColumns<Real> slowed() { return traction_.slowed(); }
+  /// The impulse of the bed on every column [N s], with an energy budget.
+  Real* pressed() { return pressed_.data(); }
+
+  /// The method measures the coefficients of friction of a law that asks for the column, as a step begins.
+  void measure(const StepNodes<Real>& at, const BaseFriction<Real>& bed) {
+    if (!traction_.measures()) return;
+    using Nodes = PackedMomenta<Real>;
+    const ProfilePhase<Device> phase(device_, "grid");
+    const Nodes nodes{at.nodes.nodes};
+    for_each(device_, columns(at),
+             MeasureColumns<Real, Nodes>{.grid = at.grid,
+                                         .active = at.active,
+                                         .nodes = nodes,
+                                         .columns = traction_.columns(),
+                                         .gravity = {},
+                                         .step = 0});
+    for_each(device_, columns(at),
+             MeasureCoefficients<Real, Nodes>{.grid = at.grid,
+                                              .active = at.active,
+                                              .nodes = nodes,
+                                              .friction = bed,
+                                              .mass = traction_.columns().mass,
+                                              .coefficient = traction_.coefficients(),
+                                              .step = at.step});
+  }
+
+  /// The method adds what columns have lost by landing to the budget (T24a), once their nodes have met the bed.
+  void count_landing(const StepNodes<Real>& at) {
+    using Nodes = PackedNodes<Real>;
+    const ProfilePhase<Device> phase(device_, "grid");
+    for_each(device_, columns(at),
+             CountLanding<Real, Nodes>{.grid = at.grid,
+                                       .active = at.active,
+                                       .nodes = {at.nodes.nodes, nullptr},
+                                       .pressed = pressed_.data(),
+                                       .step = at.step});
+  }
+
+  /// The method holds columns on the ground that would leave it (T12c). Which ones are shallow is settled as a step
+  /// begins, by the `first` of the updates that it makes.
+  void hold(const StepNodes<Real>& at, const Walls<Real>& walls, bool first) {
+    if (!hold_.acts()) return;
+    using Nodes = PackedNodes<Real>;
+    const ProfilePhase<Device> phase(device_, "grid");
+    if (first && hold_.measures())
+      for_each(device_, columns(at),
+               MeasureLying<Real, Nodes>{at.grid, at.active, at.step.clock, at.nodes, hold_.lying()});
+    for_each(device_, columns(at),
+             HoldColumns<Real, Nodes>{.grid = at.grid,
+                                      .active = at.active,
+                                      .clock = at.step.clock,
+                                      .nodes = at.nodes,
+                                      .walls = walls,
+                                      .held = hold_.columns(),
+                                      .rise = first ? traction_.slowed().rise : nullptr});
+  }
+
+  /// The method lets drag and cohesion of the bed slow what lies on it (T13a).
+  void slow(const StepNodes<Real>& at, const BaseFriction<Real>& bed, const ColumnDensity<Real>& density) {
+    if (!traction_.acts()) return;
+    using Nodes = PackedNodes<Real>;
+    for_each_column_twice<block_columns>(device_, at.blocks,
+                                         SlowColumns<Real, Nodes>{.grid = at.grid,
+                                                                  .active = at.active,
+                                                                  .nodes = at.nodes,
+                                                                  .friction = bed,
+                                                                  .columns = traction_.columns(),
+                                                                  .step = at.step,
+                                                                  .with_yield = true,
+                                                                  .density = density});
+  }
+
+  /// The method adds the memory of its arrays to a list.
+  void list_memory(MemoryShares& shares) const {
+    if (traction_.bytes() > 0) shares.emplace_back("bed's tractions", traction_.bytes());
+    if (const std::size_t held = hold_.bytes() + pressed_.bytes(); held > 0)
+      shares.emplace_back("contact of columns", held);
+  }
+
+ private:
+  static int columns(const StepNodes<Real>& at) { return at.blocks * block_columns; }
+
+  Device device_;
+  ColumnTraction<Real, Device> traction_;
+  BedHold<Real, Device> hold_;
+  Buffer<Real, Device> pressed_;  ///< impulse of the bed on every column [N s]; with a budget
+};
+
+}  // namespace talus::solver
