@@ -183,12 +183,13 @@ SolveOptions read_options(const StageContext& context) {
   return options;
 }
 
-/// The domain first, then the level sets of obstacles.
+/// The domain first, then the level sets of obstacles, then the accelerogram.
 std::vector<std::filesystem::path> inputs_of(const SolveOptions& options, const std::filesystem::path& out) {
   std::vector<std::filesystem::path> inputs{options.domain.empty() ? out / "domain.vdb" : options.domain};
   for (const ObstacleOptions& obstacle : options.obstacles)
     if (std::find(inputs.begin(), inputs.end(), obstacle.level_set) == inputs.end())
       inputs.push_back(obstacle.level_set);
+  if (options.shaking.acts()) inputs.push_back(options.shaking.file);
   return inputs;
 }
 
@@ -250,9 +251,10 @@ void take_up(Simulation& simulation, const SolveFlags& flags, const RunPaths& pa
   }
 }
 
-/// What goes into the results beside the facts of the domain: the mark of the recipe.
-Facts made_by(const StageContext& context, Facts facts) {
+/// What goes into the results beside the facts of the domain: the mark of the recipe, the checksum of the accelerogram.
+Facts made_by(const StageContext& context, const SolveOptions& o, Facts facts) {
   facts.emplace_back(recipe_of_run, recipe_mark(context.recipe, "solve"));
+  if (o.shaking.acts()) facts.emplace_back(shaking_checksum, sha256(o.shaking.file));
   return facts;
 }
 
@@ -276,6 +278,7 @@ void solve(StageContext& context, const SolveFlags& flags) {
   const std::string settings = recipe::to_toml(options, "solve", false);
   std::string fingerprint = sha256(domain_file) + "\n" + settings;
   for (const ObstacleOptions& obstacle : options.obstacles) fingerprint += sha256(obstacle.level_set) + "\n";
+  if (options.shaking.acts()) fingerprint += sha256(options.shaking.file) + "\n";
   inputs.insert(inputs.begin(), context.recipe.file());
   const RunPaths paths(context.out);
   if (flags.profile) device.profile().turn_on();
@@ -283,7 +286,7 @@ void solve(StageContext& context, const SolveFlags& flags) {
   if (context.check_only) return;
   take_up(simulation, flags, paths, fingerprint);
   const RunSummary summary =
-      simulation.run(context.recipe.scene_name(), context.recipe.title(), made_by(context, insisted));
+      simulation.run(context.recipe.scene_name(), context.recipe.title(), made_by(context, options, insisted));
   log_info(fmt::format("{} at t = {:.2f} s after {} steps in {:.1f} s", summary.stop_reason, summary.time_end,
                        summary.steps, summary.wall_time));
   if (flags.profile) report_profile(summary, device, context.out);

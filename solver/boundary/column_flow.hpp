@@ -174,14 +174,14 @@ TALUS_HD ColumnBed<Number> bed_under(const GridView<Real>& grid, const Number* m
 struct ColumnStep {
   Clock* clock;             ///< of the step, with its budget; null: no more is known than its duration
   double duration = 0;      ///< [s], without a clock
-  Gravity<double> gravity;  ///< without a clock that of the step
+  Gravity<double> gravity;  ///< without a clock that of the step, with its shaking
 
   /// The length of the step [s].
   TALUS_HD double length() const { return clock ? clock->step_size : duration; }
-  /// The pull of gravity into a bed [m/s2].
+  /// The pull of gravity into a bed, with that of the shaking [m/s2].
   template <class Number>
   TALUS_HD Number press(const Vec3<Number>& normal) const {
-    const double pull = -dot(gravity.full, widen(normal)) * (clock ? gravity.share(clock->time) : 1);
+    const double pull = -dot(clock ? gravity.at(*clock) : gravity.full, widen(normal));
     return pull > 0 ? static_cast<Number>(pull) : Number(0);
   }
 };

@@ -16,6 +16,7 @@
 #include "solver/parallel/any_device.hpp"
 #include "solver/parallel/columns.hpp"
 #include "solver/parallel/recording.hpp"
+#include "solver/state/shaking.hpp"
 #include "solver/transfer/grid_to_particle.hpp"
 #include "solver/transfer/particle_to_grid.hpp"
 
@@ -46,12 +47,14 @@ struct BeginStep {
   Vec4<Real>* forces;  ///< null when forces are folded into the momentum
   int count;
   bool opens;
+  ShakingView shaking{};
   /// The memory that the kernel moves [bytes].
   double bytes(int) const { return count * static_cast<double>((forces ? 2 : 1) * sizeof(*nodes)); }
   TALUS_HD void operator()(int n) const {
     if (n == 0 && opens) {
       Clock now = *clock;  // read at once, not number by number as it is needed
       now.begin_step();
+      if (shaking.acts() && now.halt == running) now.shake(shaking.velocity_at(now.time));
       *clock = now;
     }
     if (n >= count) return;
@@ -65,7 +68,7 @@ template <class Real, class Device, class Shape>
 class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   using Base = PointSolver<Real, Device, Shape>;
   using Base::clock_, Base::device_, Base::dilatant_, Base::grid_, Base::loads_, Base::maps_, Base::materials_,
-      Base::measures_, Base::points_, Base::read_clock, Base::settings_, Base::surroundings_;
+      Base::measures_, Base::points_, Base::read_clock, Base::settings_, Base::shaking_, Base::surroundings_;
 
  public:
   ExplicitSolverOf(const Device& device, const Scene& scene, const IntegratorSettings& settings,
@@ -166,9 +169,9 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   void clear(bool opens) {
     const ProfilePhase<Device> phase(device_, "clear the grid");
     const int count = grid_.nodes();
-    for_each(
-        device_, std::max(count, 1),
-        BeginStep<Real>{clock_.data(), nodes_.data(), forces_apart_ && opens ? forces_.data() : nullptr, count, opens});
+    for_each(device_, std::max(count, 1),
+             BeginStep<Real>{clock_.data(), nodes_.data(), forces_apart_ && opens ? forces_.data() : nullptr, count,
+                             opens, shaking_.view()});
   }
 
   template <Scatter what>

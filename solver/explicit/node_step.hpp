@@ -39,7 +39,7 @@ struct GivenImpulses {
 /// signs. `contact` is what bed and walls take, friction along the bed a part of it. And what the bed gave along its
 /// normal, and bed and walls in all [N s].
 struct ColumnLosses {
-  double contact = 0, friction = 0, pressed = 0, damping = 0, transfer = 0, reaction[3] = {0, 0, 0};
+  double contact = 0, friction = 0, pressed = 0, damping = 0, transfer = 0, shaking = 0, reaction[3] = {0, 0, 0};
 
   TALUS_HD void operator+=(const ColumnLosses& o) {
     contact += o.contact;
@@ -47,6 +47,7 @@ struct ColumnLosses {
     pressed += o.pressed;
     damping += o.damping;
     transfer += o.transfer;
+    shaking += o.shaking;
     for (int a = 0; a < 3; ++a) reaction[a] += o.reaction[a];
   }
 
@@ -70,12 +71,19 @@ struct ColumnLosses {
     transfer += static_cast<double>(mass) * static_cast<double>(dot(after - before, (before + after) * Real(0.5)));
   }
 
+  /// The method adds the work that the shaking of the ground does on a node of this mass and mean velocity [m/s].
+  template <class Real>
+  TALUS_HD void add_shaking(Real mass, const Vec3<Real>& mean, const Clock& clock) {
+    shaking -= static_cast<double>(mass) * clock.step_size * dot(clock.ground_acceleration(), widen(mean));
+  }
+
   /// The method adds the losses to the clock's.
   TALUS_HD void add_to(Clock& clock) const {
     atomic_add(&clock.bed_loss, contact);
     atomic_add(&clock.friction_loss, friction);
     atomic_add(&clock.damping_loss, damping);
     atomic_add(&clock.transfer_loss, transfer);
+    atomic_add(&clock.shaking_work, shaking);
     for (int a = 0; a < 3; ++a) atomic_add(&clock.reaction[a], reaction[a]);
   }
 };

@@ -84,7 +84,7 @@ struct SolveColumns {
   /// The method eliminates from the top: pivots, and in `forces` the impulses with what the nodes above hand down.
   TALUS_HD void eliminate(const ColumnNodes& at, const Vec3<Real>& normal) const {
     const Real dt = Real(clock->step_size);
-    const Vec3<Real> g = gravity.at(clock->time);
+    const Vec3<Real> g = gravity.at(*clock);
     ColumnPivot<Real> above{};
     Vec3<Real> handed{};
     for (int k = at.end() - 1; k >= at.begin(); --k) {
@@ -190,6 +190,7 @@ struct SolveColumns {
   TALUS_HD void count(ColumnLosses& losses, const Vec3<Real>& normal, const ColumnPivot<Real>& pivot,
                       const Below& below, const Velocities& v) const {
     const Vec3<Real> mean = (v.before + v.after) * Real(0.5);
+    losses.add_shaking(v.mass, mean, *clock);
     const ColumnPivot<Real> tie{below.spring, below.spring * softer};
     const Parts bed(v.met - v.free, normal), wall(v.after - v.met, normal);
     losses.take(GivenImpulses<Real>{bed.times(normal, pivot), wall.times(normal, pivot)}, mean, normal);

@@ -122,7 +122,7 @@ struct UpdateColumns {
   TALUS_HD Vec3<Real> update(const Column& at, int k, int n, const Vec4<Real>& node,
                              decltype(Sums::losses)& losses) const {
     const Real dt = Real(clock->step_size);
-    const Vec3<Real> g = gravity.at(clock->time);
+    const Vec3<Real> g = gravity.at(*clock);
     const Vec3<Real> before{node.x / node.w, node.y / node.w, node.z / node.w};
     Vec3<Real> v = before, undamped = before;
     if constexpr (content == NodeContent::impulse) v += g * dt;
@@ -146,6 +146,7 @@ struct UpdateColumns {
                   normal_of(grid.slope_x[at.column], grid.slope_y[at.column]));
       losses.pass_on(node.w, before, v);
       if (damping > Real(0)) losses.damping += static_cast<double>(node.w * dot(undamped - free, mean));
+      losses.add_shaking(node.w, mean, *clock);
     }
     if constexpr (content == NodeContent::force) {
       const Vec3<Real> change = v - before;

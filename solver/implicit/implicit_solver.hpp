@@ -22,7 +22,7 @@ template <class Real, class Device, class Shape>
 class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
   using Base = PointSolver<Real, Device, Shape>;
   using Base::clock_, Base::device_, Base::dilatant_, Base::grid_, Base::loads_, Base::maps_, Base::materials_,
-      Base::measures_, Base::points_, Base::read_clock, Base::settings_, Base::surroundings_;
+      Base::measures_, Base::points_, Base::read_clock, Base::settings_, Base::shaking_, Base::surroundings_;
 
  public:
   ImplicitSolver(const Device& device, const Scene& scene, const IntegratorSettings& settings,
@@ -53,6 +53,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     clock.accelerated = 1;
     clock.step_size = step;
     clock.time = clock.next_event - clock.time <= step * (1 + 1e-12) ? clock.next_event : clock.time + step;
+    if (shaking_.host().acts()) clock.shake(shaking_.host().view().velocity_at(clock.time));
     ++clock.step;
     clock_.upload({clock});
     accept(clock, step);
@@ -109,10 +110,24 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     step_.group(this->template set_walls<double>(time));
   }
 
+  /// The time to what a step may not pass over: the next event, or a sample of the accelerogram, between which the
+  /// ground's acceleration is linear [s]. Samples that follow at once, as the edges of a pulse do, ask for no step.
+  double remaining(const Clock& clock) const {
+    constexpr double least = 0.01;  // of the longest step
+    return std::min(clock.next_event, shaking_.host().next_sample(clock.time, least * controls_.step)) - clock.time;
+  }
+  /// The acceleration of the ground, its mean over a step (T42) [m/s2].
+  Vec3<double> shaking_of(Clock clock, double step) const {
+    if (!shaking_.host().acts()) return {};
+    clock.step_size = step;
+    clock.shake(shaking_.host().view().velocity_at(clock.time + step));
+    return clock.ground_acceleration();
+  }
+
   /// The method solves for the end of the next step and returns its length [s]. It throws NumericalError where no
   /// halving helps.
   double solve_step(const Clock& clock, StepStats& stats) {
-    double step = length_.next(clock.next_event - clock.time);
+    double step = length_.next(remaining(clock));
     for (int cut = 0;; ++cut) {
       // After explicit steps, light nodes are far out of balance: backward Euler asks for no acceleration to begin
       // with.
@@ -120,7 +135,9 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
                    .step = step,
                    .accelerates = first_ && !midway_,
                    .backward_euler = first_ && midway_,
-                   .loads = loads_.upload(clock.time + step)});
+                   .loads = loads_.upload(clock.time + step),
+                   .shaking = shaking_of(clock, step),
+                   .shaking_before = first_ ? shaking_of(clock, step) : clock.ground_acceleration()});
       const NewtonReport found = step_.solve();
       stats.newton += found.iterations;
       stats.linear += found.linear_iterations;

@@ -19,6 +19,8 @@ struct StepBegin {
   bool accelerates = false;             ///< no acceleration is known yet: that of the forces at the start is taken
   bool backward_euler = false;          ///< in place of Newmark's numbers
   const Vec3<double>* loads = nullptr;  ///< force per volume of every load at the end of the step [N/m3]; null: none
+  Vec3<double> shaking{};               ///< acceleration of the ground, its mean over the step [m/s2]
+  Vec3<double> shaking_before{};        ///< over the step before, which the accelerations at the start know [m/s2]
 };
 
 /// A step from its beginning to its end; a NewtonProblem in between.
@@ -58,7 +60,8 @@ class ImplicitStep {
                                                c.dynamic,
                                                at.loads,
                                                nodes()});
-    contacts_.begin(scheme_, walls_, gravity_at(at.start + at.step));
+    contacts_.begin(scheme_, walls_, gravity_at(at.start + at.step) - at.shaking);
+    missed_ = (at.shaking_before - at.shaking) * (at.step * (1 - scheme_.beta));
     if (!c.dynamic) return;
     sum_each<1>(parts_.device, nodes_.count, parts_.sums, SquareMomentum{nodes()},
                 KeepTotals<1>{&balance_.data()->momentum});
@@ -135,7 +138,7 @@ class ImplicitStep {
   void accept(Clock* clock, double kept) {
     contacts_.keep(scheme_.step);
     for_each(parts_.device, nodes_.count,
-             EndOfStep{nodes(), scheme_, nodes_.velocity_end.data(), nodes_.acceleration_end.data()});
+             EndOfStep{nodes(), scheme_, nodes_.velocity_end.data(), nodes_.acceleration_end.data(), missed_});
     with_laws_of(parts_.materials,
                  [&]<class Laws>(const Materials<Real, Laws>& materials) { accept_points(materials, clock, kept); });
   }
@@ -231,6 +234,7 @@ class ImplicitStep {
   ContactSet<Real, Device, Shape> contacts_;
   TangentSystem<Real, Device, Shape> tangent_;
   NewmarkScheme scheme_;
+  Vec3<double> missed_{};  ///< velocity that the shaking gives and Newmark's rule for it does not (T43) [m/s]
   Walls<double> walls_;
   Buffer<std::uint32_t, Device> farthest_{parts_.device};
 };

@@ -84,12 +84,13 @@ struct EndOfStep {
   NewmarkScheme scheme;
   Vec3<double>* velocity;
   Vec3<double>* acceleration;
+  Vec3<double> missed{};  ///< of the shaking's impulse per mass (T43) [m/s]
   TALUS_HD void operator()(int n) const {
     const Vec3<double> v = nodes.begin_velocity(n), u = nodes.u[n];
     const Vec3<double> a = nodes.acceleration ? nodes.acceleration[n] : Vec3<double>{};
     const double dt = scheme.step;
     const Vec3<double> a1 = (u - v * dt) * (1 / (scheme.alpha * dt * dt)) - a * (1 / (2 * scheme.alpha) - 1);
-    const Vec3<double> v1 = v + a * (dt * (1 - scheme.beta)) + a1 * (dt * scheme.beta);
+    const Vec3<double> v1 = v + a * (dt * (1 - scheme.beta)) + a1 * (dt * scheme.beta) + missed;
     // Where a node is held it moves as its support does.
     const Vec3<double> prescribed = u * (1 / dt);
     velocity[n] = prescribed + nodes.freed[n] * (v1 - prescribed);

@@ -19,8 +19,8 @@ struct PrepareNodes {
   Constraints held;
   Walls<double> walls;
   BaseFriction<double> base;
-  double full_base;  ///< mass of a base node under a full layer [kg]
-  Vec3<double> gravity;
+  double full_base;      ///< mass of a base node under a full layer [kg]
+  Vec3<double> gravity;  ///< of the step, with its shaking [m/s2]
   NewmarkScheme scheme;
   BedColumns<double> columns;  ///< for what of the bed's tractions does not grow with speed
   bool predict;                ///< start from the displacement of the present velocity
@@ -33,6 +33,9 @@ struct PrepareNodes {
   }
 
  private:
+  /// The acceleration by which a node's own weight presses on what it meets [m/s2]; shaking may lift it off.
+  TALUS_HD double pressing(const Vec3<double>& normal) const { return fmax(-dot(gravity, normal), 0.0); }
+
   TALUS_HD void prepare(int n, int i, int j, int k) const {
     const double m = nodes.mass[n];
     nodes.touch[n] = Touch::none;
@@ -91,7 +94,7 @@ struct PrepareNodes {
     const Vec3<double> v = freed * nodes.begin_velocity(n);
     const double speed = length(v);
     const double pull = held.traction ? held.traction[n] / nodes.mass[n] : 0;
-    if (speed <= (friction * fabs(dot(gravity, normal)) + pull) * scheme.step) return Touch::sticks;
+    if (speed <= (friction * pressing(normal) + pull) * scheme.step) return Touch::sticks;
     held.direction[n] = v * (1 / speed);
     if (held.way) held.way[n] = v * scheme.step;
     return Touch::slips;
@@ -120,7 +123,7 @@ struct PrepareNodes {
     const double area = bed_area(nodes.mass[n], full_base, static_cast<double>(grid.spacing), sx, sy);
     // The reaction is not known yet; the node's own weight presses.
     const Slip<double> slip{.speed = length(v - to.normal * dot(v, to.normal)),
-                            .normal_stress = nodes.mass[n] * fabs(dot(gravity, to.normal)) / area,
+                            .normal_stress = nodes.mass[n] * pressing(to.normal) / area,
                             .duration = scheme.step};
     to.friction = base.base_coefficient(column, slip);
     if (held.traction && at.k == top && columns.mass[column] > 0) {

@@ -8,6 +8,7 @@
 #include "solver/integrator/particle_measures.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/integrator/settings.hpp"
+#include "solver/integrator/shaking.hpp"
 #include "solver/integrator/solver.hpp"
 #include "solver/integrator/surroundings.hpp"
 #include "solver/parallel/algorithms.hpp"
@@ -29,6 +30,7 @@ class PointSolver : public Solver {
         surroundings_(device, scene, settings, state.contacts, grid_.ground().datum),
         clock_(device),
         loads_(device, settings.loads, scene.load_volumes),
+        shaking_(device, scene.shaking),
         maps_(device, state.maps, settings.map_threshold),
         measures_(device, scene.grid),
         motion_(device) {
@@ -85,7 +87,7 @@ class PointSolver : public Solver {
   MemoryShares memory() const override {
     MemoryShares shares{{"points", points_.bytes()},
                         {"grid", grid_.bytes() + surroundings_.bed_bytes()},
-                        {"maps and records", maps_.bytes() + measures_.bytes() + motion_.bytes()}};
+                        {"maps and records", maps_.bytes() + measures_.bytes() + motion_.bytes() + shaking_.bytes()}};
     if (const std::size_t sorting = sort_space_bytes(device_); sorting > 0) shares.emplace_back("sorting", sorting);
     if (surroundings_.contact().on()) shares.emplace_back("contact points", surroundings_.contact_bytes());
     return shares;
@@ -139,6 +141,7 @@ class PointSolver : public Solver {
   Surroundings<Real, Device, Shape> surroundings_;
   Buffer<Clock, Device> clock_;
   DeviceLoads<Device> loads_;
+  DeviceShaking<Device> shaking_;
   DeviceMaps<Device> maps_;
   ParticleMeasures<Real, Device, Shape> measures_;
   MotionMaps<Real, Device, Shape> motion_;

@@ -8,6 +8,7 @@
 #include "solver/boundary/base_friction.hpp"
 #include "solver/boundary/contact_points.hpp"
 #include "solver/grid/terrain.hpp"
+#include "solver/integrator/shaking.hpp"
 #include "solver/state/particles.hpp"
 
 namespace talus::solver {
@@ -21,6 +22,7 @@ struct Scene {
   std::vector<double> load_volumes;  ///< volume of the points each load pulls at [m3]
   std::vector<Bed<double>> bed;      ///< of every column; empty where it is the same everywhere
   ContactPoints contacts;
+  Shaking shaking;  ///< of the ground
 };
 
 }  // namespace talus::solver

@@ -13,7 +13,8 @@ struct SolveOptions;
 /// The names of what is implausible in a scene (solver/run/plausible.hpp), as `accept` takes them.
 /// "torn-body" is met, if at all, as a run goes on.
 inline constexpr const char* torn_body = "torn-body";
-inline constexpr const char* acceptable[] = {"weight-strain", "slow-waves", "fast-waves", "strong-loads", torn_body};
+inline constexpr const char* acceptable[] = {"weight-strain", "slow-waves",     "fast-waves",
+                                             "strong-loads",  "strong-shaking", torn_body};
 
 /// The keys of [[solve.gauge]]: a point of the map at which the mass is watched.
 struct GaugeOptions {

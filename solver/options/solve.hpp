@@ -11,6 +11,7 @@
 #include "solver/options/obstacles.hpp"
 #include "solver/options/output.hpp"
 #include "solver/options/scheme.hpp"
+#include "solver/options/shaking.hpp"
 #include "solver/options/time.hpp"
 #include "solver/options/walls.hpp"
 
@@ -22,6 +23,7 @@ struct SolveOptions : TimeOptions, SchemeOptions, GravityOptions, OutputOptions,
   std::vector<WallOptions> walls;
   std::vector<ObstacleOptions> obstacles;
   std::vector<LoadOptions> loads;
+  ShakingOptions shaking;
   BaseOptions base;
 
   /// Whether the mass meets anything between nodes.

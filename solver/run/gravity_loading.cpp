@@ -28,6 +28,7 @@ void take_strains(const ParticleState& loaded, const SolveOptions& options, Part
 
 void load_by_gravity(Scene& scene, const SolveOptions& options, const AnyDevice& device) {
   Scene resting = scene;
+  resting.shaking = {};
   for (auto& component : resting.points.velocity) std::fill(component.begin(), component.end(), 0.0);
   const SolverSettings settings = make_settings(options, scene.grid);
   const auto loader = make_solver(resting, for_gravity_loading(settings, options.gravity_loading_steps), device);

@@ -11,6 +11,7 @@
 #include "solver/integrator/solver.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/run/recorders/history.hpp"
+#include "solver/run/shaking_words.hpp"
 #include "solver/run/stiffness.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "solver/scene/make_solver.hpp"
@@ -113,6 +114,7 @@ std::vector<std::string> features(const Domain& domain, const SolveOptions& o) {
 std::vector<std::string> plan(const Domain& domain, const SolveOptions& o, const AnyDevice& device) {
   std::vector<std::string> lines = features(domain, o);
   const Scene scene = make_scene(domain, o);
+  if (scene.shaking.acts()) lines.push_back(fmt::format("{:<12} {}", "shaking", shaking_words(scene.shaking)));
   const History recorded(o, scene);  // refuses what cannot be recorded
   for (const std::string& note : scene.contacts.notes) lines.push_back(note);
   const Trial trial = try_steps(scene, o, device);

@@ -110,6 +110,16 @@ void judge_loads(const ScenePlausibility& n, Acceptance& acceptance) {
                     n.load * most_load_strain / n.load_strain)}});
 }
 
+void judge_shaking(const ScenePlausibility& n, const SolveOptions& o, Acceptance& acceptance) {
+  if (!(n.shaking > strongest_shaking)) return;
+  acceptance.judge({"strong-shaking",
+                    {fmt::format("[solve.shaking] file shakes the ground with up to {:.3g} m/s2 (scale = {:g})",
+                                 n.shaking, o.shaking.scale),
+                     fmt::format("records of earthquakes stay below {:.3g} m/s2", strongest_shaking),
+                     fmt::format("Check unit, which is \"g\", \"cm/s2\" or \"m/s2\", or give a scale of {:.2g} or less",
+                                 std::abs(o.shaking.scale) * strongest_shaking / n.shaking)}});
+}
+
 }  // namespace
 
 ScenePlausibility plausibility_of(const Domain& domain, const Scene& scene, const SolveOptions& options) {
@@ -121,6 +131,7 @@ ScenePlausibility plausibility_of(const Domain& domain, const Scene& scene, cons
   for (const MaterialOptions* m : materials_of(options))
     found.wave_speed = std::min(found.wave_speed, make_material<double>(*m).wave_speed);
   found.speed = lowest_stiffness(domain, options).speed;
+  found.shaking = scene.shaking.peak_acceleration();
   return found;
 }
 
@@ -128,6 +139,7 @@ void judge_scene(const ScenePlausibility& numbers, const SolveOptions& options, 
   judge_weight(numbers, acceptance);
   judge_waves(numbers, options, acceptance);
   judge_loads(numbers, acceptance);
+  judge_shaking(numbers, options, acceptance);
 }
 
 }  // namespace talus::solver

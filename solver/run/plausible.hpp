@@ -20,6 +20,10 @@ inline constexpr double fastest_solid_wave = 2e4;
 /// The largest strain that a load may cause [-]: its force over the section of what it pulls at, over the modulus.
 inline constexpr double most_load_strain = 1;
 
+/// The strongest shaking that an accelerogram may have [m/s2]: five times standard gravity, below which
+/// records of earthquakes stay.
+inline constexpr double strongest_shaking = 5 * 9.80665;
+
 /// The numbers of a scene by which it is judged.
 struct ScenePlausibility {
   double weight_strain = 0;    ///< largest, of any material [-]
@@ -32,6 +36,7 @@ struct ScenePlausibility {
   double load_strain = 0;      ///< largest, of any load [-]
   double load = 0;             ///< its force [N]
   double load_volume = 0;      ///< of what it pulls at [m3]
+  double shaking = 0;          ///< largest acceleration of the ground [m/s2]
 
   /// The speed that the energy line allows over that of the slowest waves [-].
   double mach() const { return wave_speed > 0 ? speed / wave_speed : 0; }
@@ -42,7 +47,8 @@ ScenePlausibility plausibility_of(const Domain& domain, const Scene& scene, cons
 
 /// The function throws DataError for what is implausible in a scene, unless it is accepted: a mass that its own weight
 /// squashes ("weight-strain"), waves far slower than the flow ("slow-waves"), waves faster than in any solid
-/// ("fast-waves"), loads that squash what they pull at ("strong-loads").
+/// ("fast-waves"), loads that squash what they pull at ("strong-loads"), ground that shakes as none does
+/// ("strong-shaking").
 void judge_scene(const ScenePlausibility& numbers, const SolveOptions& options, Acceptance& acceptance);
 
 }  // namespace talus::solver

@@ -12,9 +12,9 @@
 namespace talus::solver {
 namespace {
 
-/// Whether something but gravity does work on the mass: loads, and walls that move.
+/// Whether something but gravity does work on the mass: loads, shaking, and walls that move.
 bool work_is_done(const SolveOptions& o) {
-  return !o.loads.empty() ||
+  return !o.loads.empty() || o.shaking.acts() ||
          std::any_of(o.walls.begin(), o.walls.end(), [](const WallOptions& wall) { return wall.speed != 0; });
 }
 

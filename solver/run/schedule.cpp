@@ -20,6 +20,7 @@ Schedule::Schedule(const SolveOptions& options)
       end_time_(options.end_time) {
   for (const WallOptions& wall : options.walls) changes_.insert(changes_.end(), {wall.from, wall.to});
   for (const LoadOptions& load : options.loads) changes_.insert(changes_.end(), {load.from, load.to});
+  if (options.shaking.acts()) changes_.push_back(options.shaking.start);
 }
 
 double Schedule::next_event(double time, const RunMemory& passed) const {

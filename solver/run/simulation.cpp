@@ -164,7 +164,7 @@ void Simulation::save_checkpoint() {
 }
 
 bool Simulation::calm() const {
-  return options_.stop_kinetic_fraction > 0 &&
+  return options_.stop_kinetic_fraction > 0 && stepper_.time() >= scene_.shaking.end() &&
          history_.last("kinetic_J") < options_.stop_kinetic_fraction * memory_.peak_kinetic;
 }
 

@@ -7,6 +7,7 @@
 
 #include "solver/boundary/base_friction.hpp"
 #include "solver/options/solve.hpp"
+#include "solver/scene/read_shaking.hpp"
 
 namespace talus::solver {
 namespace {
@@ -55,7 +56,7 @@ StiffnessDemand lowest_stiffness(const Domain& domain, const SolveOptions& o) {
     }
   }
   const double start = std::hypot(o.initial_velocity[0], o.initial_velocity[1], o.initial_velocity[2]);
-  demand.speed = std::sqrt(2 * g * head) + start;
+  demand.speed = std::sqrt(2 * g * head) + start + read_shaking(o.shaking).velocity_range();
 
   const MaterialOptions& m = o.material;
   const double wave_speed = make_material<double>(m).wave_speed;
@@ -63,8 +64,8 @@ StiffnessDemand lowest_stiffness(const Domain& domain, const SolveOptions& o) {
       m.density * wave_speed * wave_speed / m.youngs_modulus;  // modulus of confined compression over Young's
   const double needed = m.density * demand.speed * demand.speed / m.stiffness_strain / confined;
   const std::string why =
-      fmt::format("the dynamic pressure at {:.3g} m/s, which the energy line allows, strains it by {:.3g} %",
-                  demand.speed, 100 * m.stiffness_strain);
+      fmt::format("the dynamic pressure at {:.3g} m/s, which the energy line{}, strains it by {:.3g} %", demand.speed,
+                  o.shaking.acts() ? " and the shaking allow" : " allows", 100 * m.stiffness_strain);
   demand.modulus = std::min(needed, m.youngs_modulus);
   demand.reason =
       needed < m.youngs_modulus ? why : fmt::format("it is no more than is needed: at {:.3g} Pa {}", needed, why);

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 
 #include "solver/boundary/base_friction.hpp"
+#include "solver/run/shaking_words.hpp"
+#include "solver/scene/read_shaking.hpp"
 
 namespace talus::solver {
 namespace {
@@ -130,6 +132,7 @@ std::vector<std::string> warnings(const Domain& domain, const SolveOptions& opti
   warn_of(options.material, "[solve.material]", bed, depth, lines);
   for (const PartOptions& part : options.parts)
     warn_of(part.material, fmt::format("[[solve.part]] \"{}\"", part.release), bed, depth, lines);
+  for (const std::string& line : shaking_warnings(read_shaking(options.shaking), options)) lines.push_back(line);
   return lines;
 }
 

@@ -1,6 +1,7 @@
 #include "solver/scene/make_scene.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/options/solve.hpp"
+#include "solver/scene/read_shaking.hpp"
 #include "solver/scene/settings.hpp"
 
 #include <cmath>
@@ -169,6 +170,7 @@ Scene make_scene(const Domain& domain, const SolveOptions& options) {
   if (!faults.empty()) throw RecipeError(std::move(faults));
   scene.bed = make_bed(domain, options);
   scene.contacts = make_contact_points(domain.grid, scene.grid, terrain, make_obstacles(options.obstacles));
+  scene.shaking = read_shaking(options.shaking);
   return scene;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "solver/parallel/atomics.hpp"
+#include "solver/parallel/math.hpp"
 
 namespace talus {
 
@@ -50,12 +51,15 @@ struct Clock {
   double damping_loss = 0;         ///< to Cundall's damping [J]
   double plastic_loss = 0;         ///< to plastic flow [J]
   double transfer_loss = 0;        ///< between points and grid [J]
+  double shaking_work = 0;         ///< done by the shaking of the ground so far [J]
   double reaction[3] = {0, 0, 0};  ///< impulse of bed and walls on the mass so far [N s]
   int accelerated = 0;             ///< the points know their acceleration: implicit steps were taken last
   double column_spacing = 1;       ///< between columns of the map [m]
   double way_unrecorded = 0;       ///< of the fastest point since the maps of speed were recorded [columns]
   int steps_unrecorded = steps_between_records;  ///< since then; the first step records what the mass starts with
   int records_motion = 0;  ///< read by kernels: the state before this step goes into the maps of speed and pressure
+  double shaking[3] = {0, 0, 0};          ///< acceleration of the ground, its mean over the step (T42) [m/s2]
+  double ground_velocity[3] = {0, 0, 0};  ///< at the end of the step [m/s]
 
   /// The share (T8a) of the velocity finer than the grid that a step of this length [s] keeps: what is lost depends on
   /// time, not on the number of steps.
@@ -96,6 +100,18 @@ struct Clock {
     ++step;
     ++steps_since_sort;
   }
+
+  /// The method sets the shaking of the step that has been opened from the velocity of the ground at its end [m/s].
+  /// What steps have of it adds up to the change of that velocity, whatever their length.
+  TALUS_HD void shake(const Vec3<double>& velocity) {
+    const double now[3] = {velocity.x, velocity.y, velocity.z};
+    for (int a = 0; a < 3; ++a) {
+      shaking[a] = (now[a] - ground_velocity[a]) / step_size;
+      ground_velocity[a] = now[a];
+    }
+  }
+  /// The acceleration of the ground in the step [m/s2].
+  TALUS_HD Vec3<double> ground_acceleration() const { return {shaking[0], shaking[1], shaking[2]}; }
 
   /// The method lets kernels record the maps of speed and pressure from the points as they are.
   TALUS_HD void record_motion() {

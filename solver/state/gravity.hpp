@@ -1,7 +1,8 @@
-// Gravity as kernels see it.
+// Gravity as kernels see it, and with it the shaking of the ground.
 #pragma once
 
 #include "solver/parallel/math.hpp"
+#include "solver/state/clock.hpp"
 
 namespace talus {
 
@@ -13,8 +14,11 @@ struct Gravity {
 
   /// The share of it that acts at a time [-].
   TALUS_HD double share(double time) const { return ramp > 0 && time < ramp ? time / ramp : 1; }
-  /// Its acceleration at a time [m/s2].
-  TALUS_HD Vec3<Real> at(double time) const { return full * Real(share(time)); }
+  /// The acceleration by which a step pulls, in the frame of the ground (T42): gravity, less what the ground
+  /// accelerates by [m/s2].
+  TALUS_HD Vec3<Real> at(const Clock& clock) const {
+    return full * Real(share(clock.time)) - narrow<Real>(clock.ground_acceleration());
+  }
 };
 
 }  // namespace talus

@@ -52,6 +52,7 @@ void visit_clock(AnyClock& c, Item&& item) {
   item("damping_loss", c.damping_loss);
   item("plastic_loss", c.plastic_loss);
   item("transfer_loss", c.transfer_loss);
+  item("shaking_work", c.shaking_work);
   item("reaction_x", c.reaction[0]);
   item("reaction_y", c.reaction[1]);
   item("reaction_z", c.reaction[2]);
@@ -60,6 +61,12 @@ void visit_clock(AnyClock& c, Item&& item) {
   item("way_unrecorded", c.way_unrecorded);
   item("steps_unrecorded", c.steps_unrecorded);
   item("records_motion", c.records_motion);
+  item("shaking_x", c.shaking[0]);
+  item("shaking_y", c.shaking[1]);
+  item("shaking_z", c.shaking[2]);
+  item("ground_velocity_x", c.ground_velocity[0]);
+  item("ground_velocity_y", c.ground_velocity[1]);
+  item("ground_velocity_z", c.ground_velocity[2]);
 }
 
 /// This function calls item(name, value) for every scalar and list of a run's memory but its history, whose columns

@@ -43,6 +43,19 @@ constexpr Column<Instant> budget_columns[] = {
     {"reaction_z_N_s", "N s", [](const Instant& i) { return i.clock.reaction[2]; }},
 };
 
+constexpr Column<Instant> shaking_columns[] = {
+    {"shaking_x_m_s2", "m s-2", [](const Instant& i) { return i.clock.shaking[0]; }},
+    {"shaking_y_m_s2", "m s-2", [](const Instant& i) { return i.clock.shaking[1]; }},
+    {"shaking_z_m_s2", "m s-2", [](const Instant& i) { return i.clock.shaking[2]; }},
+    {"ground_velocity_x_m_s", "m s-1", [](const Instant& i) { return i.clock.ground_velocity[0]; }},
+    {"ground_velocity_y_m_s", "m s-1", [](const Instant& i) { return i.clock.ground_velocity[1]; }},
+    {"ground_velocity_z_m_s", "m s-1", [](const Instant& i) { return i.clock.ground_velocity[2]; }},
+};
+
+constexpr Column<Instant> shaking_budget_columns[] = {
+    {"shaking_work_J", "J", [](const Instant& i) { return i.clock.shaking_work; }},
+};
+
 /// The recorder of the numbers of the whole run.
 class RunRecorder : public TableRecorder<Instant> {
  public:
@@ -72,6 +85,10 @@ std::vector<std::unique_ptr<Recorder>> make_recorders(const SolveOptions& option
   recorders.push_back(std::make_unique<RunRecorder>(run_columns));
   recorders.push_back(std::make_unique<PackingRecorder>());
   if (options.energy_budget) recorders.push_back(std::make_unique<RunRecorder>(budget_columns));
+  if (options.shaking.acts()) {
+    recorders.push_back(std::make_unique<RunRecorder>(shaking_columns));
+    if (options.energy_budget) recorders.push_back(std::make_unique<RunRecorder>(shaking_budget_columns));
+  }
   if (!options.obstacles.empty()) recorders.push_back(std::make_unique<ObstacleRecorder>(options));
   if (!options.gauges.empty()) recorders.push_back(std::make_unique<GaugeRecorder>(options, scene));
   if (StretchRecorder::watches(options)) recorders.push_back(std::make_unique<StretchRecorder>(options, scene));

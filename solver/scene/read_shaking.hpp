@@ -1,0 +1,13 @@
+// Accelerograms from text files.
+#pragma once
+
+#include "solver/integrator/shaking.hpp"
+#include "solver/options/shaking.hpp"
+
+namespace talus::solver {
+
+/// The shaking that the options ask for, in SI units, along x, y and z of the map, from `start` on; none where they
+/// name no file. The function throws DataError, with the line, for what is no accelerogram: see docs/formats.md.
+Shaking read_shaking(const ShakingOptions& options);
+
+}  // namespace talus::solver
