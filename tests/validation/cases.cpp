@@ -22,6 +22,7 @@ const std::vector<Case>& cases() {
       {"B4", "parabolic cap on a plane", true, parabolic_cap, true},
       {"B5", "dam break on a slope", true, dam_break, true},
       {"B6", "vibrating bar, free fall, patch test", true, elastic_motion},
+      {"B7", "block on shaking ground", true, shaken_block},
       {"C1", "sand column in long steps", true, large_steps, true},
   };
   return list;

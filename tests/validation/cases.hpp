@@ -57,6 +57,7 @@ void energy_line(Bench&);           // B3
 void parabolic_cap(Bench&);         // B4
 void dam_break(Bench&);             // B5
 void elastic_motion(Bench&);        // B6
+void shaken_block(Bench&);          // B7
 void large_steps(Bench&);           // C1
 
 }  // namespace talus::validation
