@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "common/error.hpp"
+#include "common/recipe/outside_quotes.hpp"
 
 namespace talus::recipe {
 namespace {
@@ -95,6 +96,10 @@ class UsedReader {
 }  // namespace
 
 UsedRecipe read_used_recipe(const std::string& text, const std::string& shown) {
+  if (const auto letter = foreign_letter_outside_quotes(text)) {
+    throw DataError({fmt::format("{}:{}: not TOML", shown, letter->line),
+                     "a letter beyond ASCII stands outside of quotes and comments", "Run its stage again"});
+  }
   try {
     const toml::table root = toml::parse(text, shown);
     return UsedReader(text).read(root);

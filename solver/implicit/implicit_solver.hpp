@@ -144,7 +144,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
       stats.cuts = cut;
       stats.residual = found.residual;
       stats.linear_residual = found.linear_residual;
-      stats.indefinite = found.indefinite;
+      stats.indefinite = stats.indefinite || found.indefinite;
       if (found.converged) {
         length_.accept(step, found.iterations, found.motion);
         return step;

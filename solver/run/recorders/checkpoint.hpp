@@ -31,6 +31,7 @@ void visit_clock(AnyClock& c, Item&& item) {
   item("next_event", c.next_event);
   item("courant", c.courant);
   item("largest_step", c.largest_step);
+  item("transfer_time_s", c.transfer_time);
   item("kept", c.kept);
   item("outflow_volume", c.outflow_volume);
   item("step", c.step);

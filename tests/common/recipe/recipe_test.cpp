@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 
+#include "common/recipe/outside_quotes.hpp"
 #include "common/recipe/suggest.hpp"
 #include "tests/common/sample_options.hpp"
 #include "tests/common/scratch.hpp"
@@ -174,6 +175,29 @@ TEST_F(RecipeFile, says_where_a_file_is_not_toml) {
   const std::string found = faults("[solve]\nsteps = = 3\n");
   EXPECT_TRUE(found.starts_with("r.toml:2:9: this is not TOML (")) << found;
   EXPECT_EQ(faults("[solve]\nsteps = 3\nsteps = 4\n").find("r.toml:3:"), 0u);
+}
+
+TEST_F(RecipeFile, refuses_letters_beyond_ascii_outside_of_quotes) {
+  const std::string found = faults("[solve]\n# für\nsteps = 3 ö\n");
+  EXPECT_EQ(found,
+            "r.toml:3:11: this is not TOML (a letter beyond ASCII stands outside of quotes and comments). Mend the "
+            "line, or put quotes around the text");
+  EXPECT_EQ(faults("[solve]\nstéps = 3").find("r.toml:2:3: this is not TOML"), 0u);
+}
+
+TEST(OutsideQuotes, are_found_where_strings_and_comments_end) {
+  const auto place = [](const std::string& text) {
+    const auto found = recipe::foreign_letter_outside_quotes(text);
+    return found ? std::to_string(found->line) + ":" + std::to_string(found->column) : "none";
+  };
+  EXPECT_EQ(place("a = \"ä\" # ö\nb = 'ü'\n"), "none");
+  EXPECT_EQ(place("a = \"\\\"ä\"\n"), "none") << "an escaped quote ends no string";
+  EXPECT_EQ(place("a = '\\'ä"), "1:8") << "nothing is escaped between single quotes";
+  EXPECT_EQ(place("a = \"\"\"\nä \"ö\n\"\"\"\"\"\nü"), "4:1");
+  EXPECT_EQ(place("a = '''ä'''é"), "1:12");
+  EXPECT_EQ(place("\xEF\xBB\xBFkey = 1"), "none") << "a byte order mark";
+  EXPECT_EQ(place("a = \"ä\nö"), "2:1") << "a line ends a string that is not closed";
+  EXPECT_EQ(place("a = \"\"\nb = \"\" é"), "2:8");
 }
 
 TEST_F(RecipeFile, says_that_a_file_is_missing) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "solver/explicit/column_contact.hpp"
 #include "solver/state/clock.hpp"
 
 namespace talus::solver::testing {
