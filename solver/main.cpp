@@ -1,5 +1,6 @@
 // talus-solve: domain.vdb -> run.h5.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -22,6 +23,7 @@
 #include "solver/run/plausible.hpp"
 #include "solver/run/profile_report.hpp"
 #include "solver/run/simulation.hpp"
+#include "solver/run/stability/stability_products.hpp"
 #include "solver/run/stiffness.hpp"
 #include "solver/run/warnings.hpp"
 #include "solver/scene/make_scene.hpp"
@@ -251,11 +253,65 @@ void take_up(Simulation& simulation, const SolveFlags& flags, const RunPaths& pa
   }
 }
 
+/// What of the command line a search for the factor of safety does not know.
+void refuse_flags_of_runs(const SolveFlags& flags) {
+  if (!flags.restart && !flags.profile) return;
+  throw RecipeError({flags.restart ? "--restart" : "--profile",
+                     "a search for the factor of safety takes no steps in time",
+                     "Leave it out; a search that was broken off begins anew"});
+}
+
 /// What goes into the results beside the facts of the domain: the mark of the recipe, the checksum of the accelerogram.
 Facts made_by(const StageContext& context, const SolveOptions& o, Facts facts) {
   facts.emplace_back(recipe_of_run, recipe_mark(context.recipe, "solve"));
   if (o.shaking.acts()) facts.emplace_back(shaking_checksum, sha256(o.shaking.file));
   return facts;
+}
+
+/// What run.h5 says of a search beside its maps; `facts` are those of the outcome.
+RunSummary summary_of_search(const StageContext& context, const SolveOptions& options, const AnyDevice& device,
+                             const std::vector<Facts>& facts) {
+  RunSummary summary;
+  summary.scene = context.recipe.scene_name();
+  summary.title = context.recipe.title();
+  summary.on = device.is_gpu() ? gpu_name(device.gpu().index()) : hardware();
+  summary.precision = "double";
+  summary.version = version();
+  summary.stop_reason = "factor of safety by strength reduction";
+  summary.material = options.material.sentence();
+  summary.bed = options.base.sentence();
+  for (const Facts& some : facts) summary.provenance.insert(summary.provenance.end(), some.begin(), some.end());
+  return summary;
+}
+
+/// This function finds the factor of safety in place of a run in time (T40), and writes run.h5 and stability.json.
+/// `facts` are what is insisted on.
+void find_stability(StageContext& context, const SolveOptions& options, const AnyDevice& device, const Domain& domain,
+                    const Facts& facts) {
+  StabilitySearch search(domain, options, device);
+  log_info(
+      fmt::format("factor of safety: {} material points; tan(friction) and cohesion are divided until no "
+                  "equilibrium is left",
+                  search.scene().points.size()));
+  if (context.check_only) return;
+  const auto begun = std::chrono::steady_clock::now();
+  const Stability found = search.run();
+  const CriticalMass mass = critical_mass(search.scene(), search.options(), found.failure);
+  for (const std::string& line : stability_lines(found, mass)) log_info(line);
+  for (const std::string& line : stability_warnings(found, mass)) log_warning(line);
+  const Facts outcome = stability_facts(found, mass), id{{run_id, new_run_id()}};
+  RunSummary summary =
+      summary_of_search(context, options, device, {domain.provenance, id, made_by(context, options, facts), outcome});
+  summary.wall_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  const auto run = RunPaths(context.out).run, json = context.out / "stability.json";
+  write_stability_run(run, domain, search, mass, summary, device);
+  write_text(json, stability_json(summary.scene, found, mass));
+  context.results = {run, json};
+  auto inputs = inputs_of(options, context.out);
+  inputs.insert(inputs.begin(), context.recipe.file());
+  Facts used{{"id", id.front().second}, {"on", summary.on}, {"wall_time_s", fmt::format("{:.3f}", summary.wall_time)}};
+  used.insert(used.end(), outcome.begin(), outcome.end());
+  write_used_recipe(context, stage(), recipe::to_used_toml(options, "solve"), inputs, used);
 }
 
 void solve(StageContext& context, const SolveFlags& flags) {
@@ -265,6 +321,12 @@ void solve(StageContext& context, const SolveFlags& flags) {
   const auto domain_file = inputs.front();
   Domain domain = read_domain(domain_file);
   const Facts insisted = judge_inputs(context, options, domain_file, domain);
+  if (options.stability.factor_of_safety) {
+    refuse_flags_of_runs(flags);
+    context.check_only = context.check_only || flags.plan;
+    find_stability(context, options, device, domain, insisted);
+    return;
+  }
   options = settle_stiffness(domain, options);
   judge(domain, options);
   if (flags.plan) {

@@ -43,6 +43,9 @@ struct RunMaps {
   std::vector<double> peak_pressure_kPa;  // running maximum of rho v^2 [kPa]
   std::vector<double> arrival_time;       // [s], NaN where it never came
   std::vector<double> eroded_depth;       // of the ground that was eroded [m]; empty where nothing can be
+  // Of a search for the factor of safety; empty in runs in time.
+  std::vector<double> critical_thickness;    // of the mass that fails first [m]
+  std::vector<double> failure_displacement;  // of a column's points as it fails, over the way of that mass [-]
   std::vector<std::pair<std::string, std::vector<double>>>
       deposit_of;        // deposit_thickness by release, where there are several [m]
   double threshold = 0;  // thickness from which speed, pressure and arrival count [m]
@@ -69,7 +72,7 @@ void for_each_running_map(Visit&& visit, Maps&&... maps) {
 }
 
 /// What the classes of a map are, and so its colours.
-enum class MapClasses { thickness, speed, pressure, time };
+enum class MapClasses { thickness, speed, pressure, time, share };
 
 /// What stands for several cells that are shown as one.
 enum class MergedCells { mean, largest, smallest };
@@ -215,6 +218,36 @@ inline constexpr MapField map_fields[] = {
                .title = "Eroded depth",
                .unit = "m",
                .about = "Depth of the ground that went along, vertical.",
+               .merge = MergedCells::mean,
+               .ramp = Ramp::sea}},
+    {.name = "critical_thickness",
+     .values = &RunMaps::critical_thickness,
+     .unit = "m",
+     .meaning = "thickness of the mass that fails first, vertical",
+     .optional = true,
+     .product = {.title = "thickness of the mass that fails first, vertical",
+                 .netcdf_name = "critical_thickness",
+                 .cell_methods = "area: mean",
+                 .legend = "Critical mass, vertical thickness [m]"},
+     .layer = {.id = "critical",
+               .title = "Critical mass",
+               .unit = "m",
+               .about = "Thickness of the mass that fails first as strength is lowered, vertical.",
+               .merge = MergedCells::mean}},
+    {.name = "failure_displacement",
+     .values = &RunMaps::failure_displacement,
+     .unit = "1",
+     .meaning = "displacement at failure over that of the mass that fails",
+     .optional = true,
+     .product = {.title = "displacement at failure over that of the mass that fails",
+                 .netcdf_name = "failure_displacement",
+                 .cell_methods = "area: mean",
+                 .legend = "Displacement at failure, share [-]",
+                 .classes = MapClasses::share},
+     .layer = {.id = "failure",
+               .title = "Displacement at failure",
+               .unit = "",
+               .about = "Mean displacement of the ground under a place as it fails, over that of the mass that fails.",
                .merge = MergedCells::mean,
                .ramp = Ramp::sea}},
 };

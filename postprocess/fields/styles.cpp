@@ -52,6 +52,7 @@ std::vector<double> map_limits(const MapField& field, const RunMaps& maps, const
     case MapClasses::pressure: return pressure_limits(values);
     case MapClasses::speed: return speed_limits(values);
     case MapClasses::time: return time_limits(values);
+    case MapClasses::share: return {0.1, 0.25, 0.5, 0.75, 1};
     case MapClasses::thickness: break;
   }
   return thickness_limits(given_classes, values);
@@ -66,6 +67,7 @@ RasterStyle map_style(const std::string& name, const RunMaps& maps, const std::v
     case MapClasses::pressure: return class_style(limits, "kPa");
     case MapClasses::speed: return class_style(limits, "m/s", Ramp::sea);
     case MapClasses::time: return time_style(limits, "s");
+    case MapClasses::share: return class_style(limits, "", Ramp::sea);
     case MapClasses::thickness: break;
   }
   return class_style(limits, "m");

@@ -1,7 +1,9 @@
 #include "postprocess/maps/gis.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -25,18 +27,28 @@ const OutlineStyle deposit_line{{0.47, 0.15, 0.0}, 0.5, false};
 const OutlineStyle class_line{{0.47, 0.15, 0.0}, 0.2, false};
 const OutlineStyle pressure_line{{0.45, 0.0, 0.45}, 0.35, false};
 const OutlineStyle survey_line{{0.0, 0.30, 0.70}, 0.7, true};
+const OutlineStyle critical_line{{0.75, 0.0, 0.10}, 0.7, false};
 
-fs::path write_terrain(const fs::path& folder, const Run& run) {
-  fs::path file = folder / "terrain.tif";
-  write_cog(file, {run.maps.grid, run.maps.before},
-            {"elevation of the ground before the failure [m]",
+fs::path write_elevation(fs::path file, const Run& run, const std::vector<double>& values,
+                         const std::string& quantity) {
+  write_cog(file, {run.maps.grid, values},
+            {quantity + " [m]",
              "m",
              {{"TITLE", run.summary.title},
               {"SCENE", run.summary.scene},
               {"RUN_ID", fact(run.summary.provenance, run_id)},
-              {"QUANTITY", "elevation of the ground before the failure"},
+              {"QUANTITY", quantity},
               {"SOURCE", "Talus " + run.summary.version}}});
   return file;
+}
+
+/// The surface under the mass that fails first, as talus-preprocess takes it (`sliding_surface`): no data beside it.
+std::vector<double> surface_under(const RunMaps& maps) {
+  std::vector<double> surface(maps.grid.count(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t c = 0; c < surface.size(); ++c) {
+    if (maps.critical_thickness[c] > maps.threshold) surface[c] = maps.before[c] - maps.critical_thickness[c];
+  }
+  return surface;
 }
 
 ProjectLayer outline(const std::string& name, const std::string& layer, const OutlineStyle& style, bool shown = true) {
@@ -49,6 +61,8 @@ ProjectGroup outline_group(const GisInput& input) {
   if (input.survey) group.layers.push_back(outline("Survey: " + input.survey->name, "survey", survey_line));
   const double deposit = options.deposit_threshold, footprint = options.footprint_threshold;
   group.layers.push_back(outline("Release", "release", release_line));
+  if (!input.run.maps.critical_thickness.empty())
+    group.layers.push_back(outline("Critical mass", "critical", critical_line));
   group.layers.push_back(outline(fmt::format("Deposit above {:g} m", deposit),
                                  fmt::format("deposit|subset=threshold_m = {}", deposit), deposit_line));
   group.layers.push_back(outline(fmt::format("Peak thickness above {:g} m", footprint), "footprint", footprint_line));
@@ -92,7 +106,12 @@ std::vector<fs::path> write_gis(const fs::path& folder, const std::vector<fs::pa
   std::vector<fs::path> files;
   for (const auto& map : maps)
     files.push_back(write_qgis_style(map, map_style(map.stem().string(), run.maps, input.options.classes)));
-  const fs::path terrain = write_terrain(folder, run), outlines = folder / "outlines.gpkg";
+  const fs::path outlines = folder / "outlines.gpkg";
+  const fs::path terrain =
+      write_elevation(folder / "terrain.tif", run, run.maps.before, "elevation of the ground before the failure");
+  if (!run.maps.critical_thickness.empty())
+    files.push_back(write_elevation(folder / "sliding_surface.tif", run, surface_under(run.maps),
+                                    "elevation of the surface under the mass that fails first"));
   write_outlines(outlines, run.maps.grid.crs_wkt, map_outlines(run, input.options, input.survey));
   const fs::path project = folder / (file_word(run.summary.scene) + ".qgs");
   write_qgis_project(project, project_of(maps, input));

@@ -58,6 +58,9 @@ std::vector<OutlineLayer> map_outlines(const Run& run, const Options& options, c
   layers.push_back(pressure_layer(run));
   layers.push_back(
       {"release", {above({maps.grid, maps.initial_thickness}, "release", options.deposit_threshold, "m")}});
+  if (!maps.critical_thickness.empty())
+    layers.push_back(
+        {"critical", {above({maps.grid, maps.critical_thickness}, "critical mass", options.deposit_threshold, "m")}});
   if (survey) layers.push_back(survey_layer(*survey, options));
   return layers;
 }

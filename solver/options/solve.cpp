@@ -73,6 +73,7 @@ void SolveOptions::describe(recipe::Visitor& v) {
   GravityOptions::describe(v);
   OutputOptions::describe(v, *this);
   recipe::table(v, "implicit", implicit, "implicit steps", *this);
+  recipe::table(v, "stability", stability, "factor of safety by strength reduction", *this);
   recipe::list(v, "wall", walls, "plane walls, gates");
   need_few(v, walls);
   recipe::list(v, "obstacle", obstacles, "bodies in the way: walls, barriers, buildings");

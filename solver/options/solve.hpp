@@ -12,6 +12,7 @@
 #include "solver/options/output.hpp"
 #include "solver/options/scheme.hpp"
 #include "solver/options/shaking.hpp"
+#include "solver/options/stability.hpp"
 #include "solver/options/time.hpp"
 #include "solver/options/walls.hpp"
 
@@ -20,6 +21,7 @@ namespace talus::solver {
 /// The keys of [solve] itself by their concern, then its tables.
 struct SolveOptions : TimeOptions, SchemeOptions, GravityOptions, OutputOptions, MassOptions {
   ImplicitOptions implicit;
+  StabilityOptions stability;
   std::vector<WallOptions> walls;
   std::vector<ObstacleOptions> obstacles;
   std::vector<LoadOptions> loads;

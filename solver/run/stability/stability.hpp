@@ -1,0 +1,77 @@
+// Factor of safety by strength reduction (T40), and the mass that fails first.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "common/domain/domain.hpp"
+#include "solver/integrator/scene.hpp"
+#include "solver/integrator/solver.hpp"
+#include "solver/options/solve.hpp"
+#include "solver/parallel/any_device.hpp"
+#include "solver/run/stability/factor_search.hpp"
+
+namespace talus::solver {
+
+/// A factor that was tried: whether the ground so weakened finds an equilibrium under its weight.
+struct StabilityTrial {
+  double factor = 0;
+  bool holds = false;
+  std::int64_t newton = 0, linear = 0;  ///< iterations; 0 where none was found
+  double way = 0;                       ///< of the farthest point from where it was without weight [m]; 0: none found
+  bool by_motion = false;               ///< Newton's iterations found none, but the ground let go stays
+};
+
+/// The ground as it fails (T40b): weakened by a little more than the factor, let go from the last equilibrium.
+struct Failure {
+  double factor = 0;                ///< by which its strength is divided
+  double time = 0;                  ///< since it was let go [s]
+  bool moves = false;               ///< its kinetic energy grows as that of a mass that falls
+  double way = 0;                   ///< of the mass that fails: mean over its points, weighed by their own ways [m]
+  std::vector<double> shares = {};  ///< of every point of the domain, by id: its way over that [-]; empty: not computed
+};
+
+/// The outcome of a search.
+struct Stability {
+  FactorBracket factor;
+  std::vector<StabilityTrial> trials;  ///< in their order
+  double stiffening = 1;               ///< factor of the moduli that it was computed with (T40a)
+  Failure failure;                     ///< only with a closed bracket
+};
+
+/// The search for the factor of safety of a scene.
+class StabilitySearch {
+ public:
+  /// The constructor keeps references to `domain` and makes the scene. It throws RecipeError and DataError as
+  /// make_scene() does.
+  StabilitySearch(const Domain& domain, const SolveOptions& options, const AnyDevice& device);
+
+  /// The method brackets the factor and lets the mass fail. It throws Interrupted.
+  Stability run();
+
+  /// The scene that it looks at, without weight.
+  const Scene& scene() const { return scene_; }
+  /// The options that the ground is computed with: stiffer than the recipe's where that is soft.
+  const SolveOptions& options() const { return options_; }
+
+ private:
+  Scene weakened_scene(double factor) const;
+  std::optional<SolverState> rest(double factor, const SolverState* from, StabilityTrial& trial) const;
+  StabilityTrial attempt(double factor);
+  Failure fail(double factor);
+  double farthest(const SolverState& state) const;
+
+  const Domain& domain_;
+  double stiffening_;
+  SolveOptions options_;
+  AnyDevice device_;
+  Scene scene_;
+  std::vector<std::array<double, 3>> seeds_;  ///< positions of the points, by id [m]
+  SolverState held_;                          ///< the equilibrium of the largest factor that held
+  double held_factor_ = 0;
+  double first_way_ = 0, held_way_ = 0;  ///< of the farthest point in the first equilibrium and in that one [m]
+};
+
+}  // namespace talus::solver

@@ -1,0 +1,33 @@
+// Ground whose strength is divided by a factor (T40), as searches for the factor of safety try it.
+#pragma once
+
+#include <vector>
+
+#include "common/domain/domain.hpp"
+#include "solver/boundary/base_friction.hpp"
+#include "solver/options/solve.hpp"
+
+namespace talus::solver {
+
+/// The weight of the deepest column over the modulus of the softest material that a search allows: points then stay
+/// where they are, far below a cell's size [-].
+inline constexpr double strain_of_searches = 1e-3;
+
+/// The factor, at least 1, by which all moduli have to be multiplied so that the ground strains no more than that under
+/// its own weight.
+double stiffening_of(const Domain& domain, const SolveOptions& options);
+
+/// The options with all moduli multiplied by this factor.
+SolveOptions stiffened(SolveOptions options, double factor);
+
+/// The options with tan(friction angle) and cohesion of every material divided by the factor, the dilatancy angle no
+/// larger than the friction angle that is left; elastic bodies stay as they are.
+SolveOptions weakened(SolveOptions options, double factor);
+
+/// The law of a bed with friction and cohesion divided by the factor; a bed that holds, or has no friction, stays.
+BaseFriction<double> weakened(BaseFriction<double> bed, double factor);
+
+/// The numbers of all columns of a bed with this law, divided by the factor.
+std::vector<Bed<double>> weakened(std::vector<Bed<double>> columns, FrictionLaw law, double factor);
+
+}  // namespace talus::solver
