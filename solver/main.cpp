@@ -314,11 +314,44 @@ void find_stability(StageContext& context, const SolveOptions& options, const An
   write_used_recipe(context, stage(), recipe::to_used_toml(options, "solve"), inputs, used);
 }
 
+/// What identifies the work of a run: a checkpoint of other inputs or settings is not taken up.
+std::string fingerprint_of(const std::filesystem::path& domain, const SolveOptions& options) {
+  std::string fingerprint = sha256(domain) + "\n" + recipe::to_toml(options, "solve", false);
+  for (const ObstacleOptions& obstacle : options.obstacles) fingerprint += sha256(obstacle.level_set) + "\n";
+  if (options.shaking.acts()) fingerprint += sha256(options.shaking.file) + "\n";
+  return fingerprint;
+}
+
+/// This function makes the run in time and writes its results. `facts` are what is insisted on.
+void run_in_time(StageContext& context, const SolveFlags& flags, const SolveOptions& options, const AnyDevice& device,
+                 const Domain& domain, const Facts& facts) {
+  auto inputs = inputs_of(options, context.out);
+  const std::string fingerprint = fingerprint_of(inputs.front(), options);
+  inputs.insert(inputs.begin(), context.recipe.file());
+  const RunPaths paths(context.out);
+  if (flags.profile) device.profile().turn_on();
+  Simulation simulation(domain, options, device, paths, fingerprint);
+  if (context.check_only) return;
+  take_up(simulation, flags, paths, fingerprint);
+  const RunSummary summary =
+      simulation.run(context.recipe.scene_name(), context.recipe.title(), made_by(context, options, facts));
+  log_info(fmt::format("{} at t = {:.2f} s after {} steps in {:.1f} s", summary.stop_reason, summary.time_end,
+                       summary.steps, summary.wall_time));
+  if (flags.profile) report_profile(summary, device, context.out);
+  if (options.material.stiffness_check) check_stiffness(domain, options, device, context, paths.run);
+  context.results.push_back(paths.run);
+  write_used_recipe(context, stage(), recipe::to_used_toml(options, "solve"), inputs,
+                    {{"id", fact(summary.provenance, run_id)},
+                     {"on", summary.on},
+                     {"wall_time_s", fmt::format("{:.3f}", summary.wall_time)},
+                     {"steps", fmt::format("{}", summary.steps)},
+                     {"stop_reason", summary.stop_reason}});
+}
+
 void solve(StageContext& context, const SolveFlags& flags) {
   auto options = read_options(context);
   const AnyDevice device = make_device(choose_device(flags.on));
-  auto inputs = inputs_of(options, context.out);
-  const auto domain_file = inputs.front();
+  const auto domain_file = inputs_of(options, context.out).front();
   Domain domain = read_domain(domain_file);
   const Facts insisted = judge_inputs(context, options, domain_file, domain);
   if (options.stability.factor_of_safety) {
@@ -336,30 +369,7 @@ void solve(StageContext& context, const SolveFlags& flags) {
   }
   log_plan(domain, options, device);
   log_warnings(domain, options);
-
-  const std::string settings = recipe::to_toml(options, "solve", false);
-  std::string fingerprint = sha256(domain_file) + "\n" + settings;
-  for (const ObstacleOptions& obstacle : options.obstacles) fingerprint += sha256(obstacle.level_set) + "\n";
-  if (options.shaking.acts()) fingerprint += sha256(options.shaking.file) + "\n";
-  inputs.insert(inputs.begin(), context.recipe.file());
-  const RunPaths paths(context.out);
-  if (flags.profile) device.profile().turn_on();
-  Simulation simulation(domain, options, device, paths, fingerprint);
-  if (context.check_only) return;
-  take_up(simulation, flags, paths, fingerprint);
-  const RunSummary summary =
-      simulation.run(context.recipe.scene_name(), context.recipe.title(), made_by(context, options, insisted));
-  log_info(fmt::format("{} at t = {:.2f} s after {} steps in {:.1f} s", summary.stop_reason, summary.time_end,
-                       summary.steps, summary.wall_time));
-  if (flags.profile) report_profile(summary, device, context.out);
-  if (options.material.stiffness_check) check_stiffness(domain, options, device, context, paths.run);
-  context.results.push_back(paths.run);
-  write_used_recipe(context, stage(), recipe::to_used_toml(options, "solve"), inputs,
-                    {{"id", fact(summary.provenance, run_id)},
-                     {"on", summary.on},
-                     {"wall_time_s", fmt::format("{:.3f}", summary.wall_time)},
-                     {"steps", fmt::format("{}", summary.steps)},
-                     {"stop_reason", summary.stop_reason}});
+  run_in_time(context, flags, options, device, domain, insisted);
 }
 
 }  // namespace
