@@ -230,6 +230,25 @@ Profile exact_at(const std::vector<double>& x, double time) {
   return p;
 }
 
+/// Cells of B5 over the height of a layer: as coarse as a map's.
+constexpr double dam_aspect = 4;
+
+/// What the recipe of B5 holds of one grid: cells, the ground that they cover, the box and the walls that are one cell
+/// from its middle.
+/// @param layer height of a layer [m]
+Overrides dam_scene(const Way& way, double layer) {
+  const double cell = dam_aspect * layer;
+  return {{"preprocess.grid.spacing_m", cell},
+          {"preprocess.grid.layer_height_m", layer},
+          {"preprocess.laboratory.columns", whole(std::lround(100 / cell) + 8)},
+          {"preprocess.laboratory.west_m", -54 - 3.5 * cell},
+          {"preprocess.laboratory.south_m", -3.5 * cell},
+          {"preprocess.box[0].north_m", cell},
+          {"solve.mapping", words(way.mapping)},
+          {"solve.integrator", words(way.integrator)},
+          {"solve.wall[1].position_m", cell}};
+}
+
 }  // namespace
 
 void parabolic_cap(Bench& bench) {
@@ -281,17 +300,8 @@ void dam_break(Bench& bench) {
     if (!bench.complete() && std::string(way.integrator) == "column-implicit") continue;
     std::vector<double> h, error;
     for (const int layers : layer_counts(bench)) {
-      const double layer = height / layers, cell = 4 * layer;
-      const Outcome o = bench.run(fmt::format("{}, {} layers", way.name, layers),
-                                  {{"preprocess.grid.spacing_m", cell},
-                                   {"preprocess.grid.layer_height_m", layer},
-                                   {"preprocess.laboratory.columns", whole(std::lround(100 / cell) + 8)},
-                                   {"preprocess.laboratory.west_m", -54 - 3.5 * cell},
-                                   {"preprocess.laboratory.south_m", -3.5 * cell},
-                                   {"preprocess.box[0].north_m", cell},
-                                   {"solve.mapping", words(way.mapping)},
-                                   {"solve.integrator", words(way.integrator)},
-                                   {"solve.wall[1].position_m", cell}});
+      const double layer = height / layers, cell = dam_aspect * layer;
+      const Outcome o = bench.run(fmt::format("{}, {} layers", way.name, layers), dam_scene(way, layer));
       Norms of_thickness, of_discharge;
       if (o.ok()) {
         const Profile computed = profile_of(o.last(), cell), exact = exact_at(computed.x, o.last().time);
