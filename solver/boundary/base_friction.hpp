@@ -102,14 +102,15 @@ TALUS_HD Real bed_area(Real mass, Real full, Real spacing, Real sx, Real sy) {
 
 /// The velocity (T12) of a node after contact with a surface of this normal and friction coefficient [m/s]. A node
 /// moving into the surface loses its normal velocity; the impulse that takes it away bounds the friction impulse,
-/// |dv_t| <= mu dv_n, so that stick holds exactly.
+/// |dv_t| <= mu dv_n, so that stick holds exactly. A surface that turns towards the node asks for `turn` of normal
+/// velocity [m/s] (T12d).
 template <class Real>
-TALUS_HD Vec3<Real> meet_surface(const Vec3<Real>& v, const Vec3<Real>& normal, Real coefficient) {
-  const Real approach = -dot(v, normal);
+TALUS_HD Vec3<Real> meet_surface(const Vec3<Real>& v, const Vec3<Real>& normal, Real coefficient, Real turn = Real(0)) {
+  const Real along = dot(v, normal), approach = turn - along;
   if (approach <= Real(0)) return v;
-  const Vec3<Real> slip = v + normal * approach;
+  const Vec3<Real> slip = v - normal * along;
   const Real speed = length(slip), loss = coefficient * approach;
-  return loss < speed ? slip * (Real(1) - loss / speed) : Vec3<Real>{};
+  return loss < speed ? slip * (Real(1) - loss / speed) + normal * turn : Vec3<Real>{};
 }
 
 /// The step of a base node on its bed.
@@ -118,6 +119,7 @@ struct BedStep {
   Real duration;   ///< [s]
   Real grip = {};  ///< duration over the node's mass per area of bed [m2 s/kg]; 0 where no law asks for pressure
   Real leverage = Real(1);  ///< change of velocity along the bed over that across it, for impulses of one size [-]
+  Real turn = {};           ///< velocity across the bed by which the ground turns in half the step (T12d) [m/s]
 };
 
 /// The normal out of ground of slopes (sx, sy).
@@ -133,9 +135,10 @@ TALUS_HD Vec3<Real> meet_ground(const BaseFriction<Real, Laws>& friction, int co
                                 Real sy, const BedStep<Real>& step) {
   const Vec3<Real> normal = normal_of(sx, sy);
   const Real along = dot(v, normal);
-  if (friction.holds()) return along < Real(0) ? Vec3<Real>{} : v;
-  const Slip<Real> slip{length(v - normal * along), step.grip > Real(0) ? -along / step.grip : Real(0), step.duration};
-  return meet_surface(v, normal, friction.base_coefficient(column, slip) * step.leverage);
+  if (friction.holds()) return along < step.turn ? Vec3<Real>{} : v;
+  const Real stress = step.grip > Real(0) ? (step.turn - along) / step.grip : Real(0);
+  const Slip<Real> slip{length(v - normal * along), stress, step.duration};
+  return meet_surface(v, normal, friction.base_coefficient(column, slip) * step.leverage, step.turn);
 }
 
 }  // namespace talus

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "solver/boundary/column_flow.hpp"
+#include "solver/boundary/ground_turn.hpp"
 #include "solver/boundary/separation.hpp"
 #include "solver/boundary/walls.hpp"
 #include "solver/parallel/buffer.hpp"
@@ -92,9 +93,11 @@ struct HoldColumns {
     const LyingMatter<Real> matter = matter_on_bed(grid, nodes, at);
     if (!(matter.mass > Real(0))) return;
     const Real sx = grid.slope_x[at.column], sy = grid.slope_y[at.column];
-    const Real leaves = rise_from(nodes.velocity(at.node(matter.first)), sx, sy);
+    const Vec3<Real> base = nodes.velocity(at.node(matter.first));
+    const Real turn = turn_of_ground(grid, at.i, at.j, base, static_cast<Real>(clock->step_size));
+    const Real leaves = rise_from(base, sx, sy) - turn;
     if (!(leaves > Real(0)) || !held.holds(grid, at.i, at.j)) return;
-    const Real mean = rise_from(matter.momentum, sx, sy) / matter.mass,
+    const Real mean = rise_from(matter.momentum, sx, sy) / matter.mass - turn,
                lift = mean < leaves ? (mean > Real(0) ? mean : Real(0)) : leaves;
     const Vec3<Real> normal = normal_of(sx, sy);
     for (int k = matter.first; k < matter.last; ++k) take(at, k, normal * (k == matter.first ? leaves : lift));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "solver/boundary/column_traction.hpp"
+#include "solver/boundary/ground_turn.hpp"
 #include "solver/boundary/walls.hpp"
 #include "solver/explicit/node_step.hpp"
 #include "solver/state/clock.hpp"
@@ -170,10 +171,12 @@ struct SolveColumns {
                                const ColumnPivot<Real>& pivot) const {
     const Real dt = Real(clock->step_size), sx = grid.slope_x[at.column], sy = grid.slope_y[at.column];
     const bool on_top = k == grid.contact_layer(at.column);
-    if (columns.mass && on_top) columns.rise[at.column] = rise_from(v, sx, sy);
+    const Real turn = turn_of_ground(grid, at.i, at.j, v, dt);
+    if (columns.mass && on_top) columns.rise[at.column] = rise_from(v, sx, sy) - turn;
     const Real area = friction.asks_pressure() && on_top ? bed_area(mass, full_base, grid.spacing, sx, sy) : Real(0);
-    return meet_ground(friction, at.column, v, sx, sy,
-                       {.duration = dt, .grip = area * dt / pivot.across, .leverage = pivot.across / pivot.along});
+    return meet_ground(
+        friction, at.column, v, sx, sy,
+        {.duration = dt, .grip = area * dt / pivot.across, .leverage = pivot.across / pivot.along, .turn = turn});
   }
 
   /// The velocities of a node in a step [m/s], and its mass [kg].

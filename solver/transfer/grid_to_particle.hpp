@@ -45,6 +45,7 @@ struct GridToParticle {
     Vec3<Real> velocity;  ///< [m/s]
     Mat3<Real> gradient;  ///< by reference coordinates, per cell
     Real climb = 0;       ///< rate of zeta [m/s]
+    Vec3<Real> bend;      ///< gradient of the ground's slopes: xx, yy, twice xy, per cell
     Mat3<Real> moment;    ///< of velocity about the point, in cells
     Vec3<Real> change;    ///< of the velocity in the step, where points keep some of their own [m/s]
   };
@@ -95,6 +96,10 @@ struct GridToParticle {
         sums.velocity += mean * w;
         sums.change += change * w;
         sums.climb += (mean.z - nx * mean.x - ny * mean.y) * w;
+        if (follows) {
+          const Real across = s.gx[a] * s.wy[b], along = s.wx[a] * s.gy[b];
+          sums.bend += Vec3<Real>{nx * across, ny * along, ny * across + nx * along};
+        }
         sums.gradient.a += mean * (s.gx[a] * s.wy[b]);
         sums.gradient.b += mean * (s.wx[a] * s.gy[b]);
         sums.gradient.c += rise * w;
@@ -123,7 +128,7 @@ struct GridToParticle {
     points.velocity[2][p] = v.z;
     if (affine) points.set_affine(p, s.affine_velocity(sums.moment, sums.gradient));
     const Vec3<Real> move{sums.velocity.x * dt / grid.spacing, sums.velocity.y * dt / grid.spacing,
-                          sums.climb * dt / grid.layer_height};
+                          (sums.climb - climb_ahead(sums, dt)) * dt / grid.layer_height};
     if constexpr (part == Gather::motion) {
       points.move[0][p] = move.x;
       points.move[1][p] = move.y;
@@ -131,6 +136,13 @@ struct GridToParticle {
     } else {
       points.move_by(p, move, grid.walls);
     }
+  }
+
+  /// What the ground climbs before the point in half a step over what the slopes under it give (T12d) [m/s].
+  TALUS_HD Real climb_ahead(const Sums& sums, Real dt) const {
+    const Vec3<Real>& v = sums.velocity;
+    return dt / (Real(2) * grid.spacing) *
+           (v.x * v.x * sums.bend.x + v.y * v.y * sums.bend.y + v.x * v.y * sums.bend.z);
   }
 
   /// The method gives the point its new state; it returns the speed of waves in it [m/s].
