@@ -24,6 +24,7 @@
 #include "solver/run/profile_report.hpp"
 #include "solver/run/simulation.hpp"
 #include "solver/run/stability/stability_products.hpp"
+#include "solver/run/step_choice.hpp"
 #include "solver/run/stiffness.hpp"
 #include "solver/run/warnings.hpp"
 #include "solver/scene/make_scene.hpp"
@@ -137,14 +138,26 @@ void judge(Domain& domain, const SolveOptions& o) {
   domain.provenance.insert(domain.provenance.end(), facts.begin(), facts.end());
 }
 
-/// This function carries out stiffness = "auto", and logs the modulus.
+/// This function carries out stiffness = "auto", and what `accuracy` says of it, and logs the modulus.
 SolveOptions settle_stiffness(const Domain& domain, SolveOptions o) {
+  if (o.accuracy && o.material.stiffness_is_free()) {
+    o.material.stiffness = StiffnessKind::automatic;
+    o.material.stiffness_strain = strain_for(*o.accuracy);
+  }
   if (o.material.stiffness != StiffnessKind::automatic) return o;
   const StiffnessDemand demand = lowest_stiffness(domain, o);
   const double full = o.material.youngs_modulus;
   log_info(fmt::format("stiffness: {:.3g} Pa instead of {:.3g} Pa, steps {:.3g} times as long: {}", demand.modulus,
                        full, std::sqrt(full / demand.modulus), demand.reason));
   return with_stiffness(o, demand);
+}
+
+/// This function carries out integrator = "auto", and logs why steps are as they are.
+SolveOptions settle_steps(const Domain& domain, SolveOptions o) {
+  if (o.integrator != Integrator::automatic) return o;
+  const StepChoice choice = choose_steps(domain, o);
+  for (const std::string& reason : choice.reasons) log_info("steps: " + reason);
+  return with_steps(std::move(o), choice);
 }
 
 /// The run once more, twice as stiff, and the difference of the deposits as a share of the volume.
@@ -322,9 +335,15 @@ std::string fingerprint_of(const std::filesystem::path& domain, const SolveOptio
   return fingerprint;
 }
 
+/// The options of a run as the recipe has them, and as they are settled for its scene.
+struct RunOptions {
+  SolveOptions asked, settled;
+};
+
 /// This function makes the run in time and writes its results. `facts` are what is insisted on.
-void run_in_time(StageContext& context, const SolveFlags& flags, const SolveOptions& options, const AnyDevice& device,
+void run_in_time(StageContext& context, const SolveFlags& flags, const RunOptions& run, const AnyDevice& device,
                  const Domain& domain, const Facts& facts) {
+  const SolveOptions& options = run.settled;
   auto inputs = inputs_of(options, context.out);
   const std::string fingerprint = fingerprint_of(inputs.front(), options);
   inputs.insert(inputs.begin(), context.recipe.file());
@@ -340,7 +359,7 @@ void run_in_time(StageContext& context, const SolveFlags& flags, const SolveOpti
   if (flags.profile) report_profile(summary, device, context.out);
   if (options.material.stiffness_check) check_stiffness(domain, options, device, context, paths.run);
   context.results.push_back(paths.run);
-  write_used_recipe(context, stage(), recipe::to_used_toml(options, "solve"), inputs,
+  write_used_recipe(context, stage(), recipe::to_used_toml(run.asked, "solve"), inputs,
                     {{"id", fact(summary.provenance, run_id)},
                      {"on", summary.on},
                      {"wall_time_s", fmt::format("{:.3f}", summary.wall_time)},
@@ -360,7 +379,8 @@ void solve(StageContext& context, const SolveFlags& flags) {
     find_stability(context, options, device, domain, insisted);
     return;
   }
-  options = settle_stiffness(domain, options);
+  const SolveOptions asked = settle_stiffness(domain, options);
+  options = settle_steps(domain, asked);
   judge(domain, options);
   if (flags.plan) {
     for (const std::string& text : plan(domain, options, device)) log_info(text);
@@ -369,7 +389,7 @@ void solve(StageContext& context, const SolveFlags& flags) {
   }
   log_plan(domain, options, device);
   log_warnings(domain, options);
-  run_in_time(context, flags, options, device, domain, insisted);
+  run_in_time(context, flags, {asked, options}, device, domain, insisted);
 }
 
 }  // namespace

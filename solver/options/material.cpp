@@ -28,6 +28,10 @@ bool MaterialOptions::steps_implicitly() const {
   return with_law([](auto law, const auto&) { return law.steps_implicitly; });
 }
 
+bool MaterialOptions::stiffness_is_free() const {
+  return with_law([](auto law, const auto&) { return law.stiffness_is_free; });
+}
+
 std::string MaterialOptions::name() const {
   return with_law([](auto law, const auto&) { return std::string(law.name); });
 }
@@ -85,8 +89,7 @@ void MassOptions::describe(recipe::Visitor& v) {
                                           "Give releases of the same material the same name, or leave some out"});
   const std::string table = "[solve.material]";
   recipe::table(v, "material", material, "the sliding mass", table);
-  const bool stiffness_is_free = material.with_law([](auto law, const auto&) { return law.stiffness_is_free; });
-  v.needs(material.stiffness == StiffnessKind::as_given || stiffness_is_free,
+  v.needs(material.stiffness == StiffnessKind::as_given || material.stiffness_is_free(),
           {table + " stiffness = \"auto\" does not go with this model",
            "what an elastic body does depends on its stiffness",
            "Take model = \"drucker-prager\", or leave stiffness out"});

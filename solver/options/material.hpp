@@ -41,6 +41,8 @@ struct MaterialOptions : OptionsOfLaws<MaterialLaws> {
   double internal_friction() const;
   /// Whether implicit steps take the law.
   bool steps_implicitly() const;
+  /// Whether what the material does leaves its stiffness free, as that of a flow does.
+  bool stiffness_is_free() const;
   /// The name of the law in recipes.
   std::string name() const;
   /// Whether the volume change alone decides the pressure, as B-bar needs.
@@ -74,10 +76,6 @@ struct MassOptions {
   }
   /// Whether one of the materials is such.
   bool any_material(const std::function<bool(const MaterialOptions&)>& is) const;
-  /// Whether implicit steps take every law.
-  bool steps_implicitly() const {
-    return every_material([](const MaterialOptions& m) { return m.steps_implicitly(); });
-  }
   /// Whether parts have another density than the rest.
   bool densities_differ() const {
     return any_material([&](const MaterialOptions& m) { return m.density != material.density; });

@@ -19,6 +19,9 @@ enum class StressUpdate { last, modified };  ///< USL, MUSL
 /// The share of a step's change of velocity that springs between layers feel (T6a), unless the recipe says otherwise.
 inline constexpr double default_kappa = 0.3;
 
+/// The step over the CFL step, unless the recipe says otherwise.
+inline constexpr double default_cfl = 0.5;
+
 /// The keys of [solve] for the numerical scheme that all integrators share.
 struct SchemeOptions {
   Precision precision = Precision::double_;
@@ -29,7 +32,7 @@ struct SchemeOptions {
   std::optional<double> transfer_time;  ///< [s]; none: transfer_time_of()
   StressUpdate stress_update = StressUpdate::last;
   double damping = 0;  ///< Cundall's local factor
-  double cfl = 0.5;
+  double cfl = default_cfl;
   double kappa = default_kappa;  ///< column-implicit: (T6a)
   double largest_step = 1;       ///< [s]
   /// The method declares the keys with defaults and help.

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "solver/options/hindrances.hpp"
 #include "solver/options/names.hpp"
 
 namespace talus::solver {
@@ -17,8 +18,8 @@ void need_separation(recipe::Visitor& v, const SolveOptions& o) {
   const bool is_free = o.base.separation == Separation::free;
   const std::string key = "[solve.base] separation = \"" + o.base.separation_name() + "\" with ";
   const Integrator integrator = o.preset == Preset::reference ? Integrator::newmark : o.integrator;
-  v.needs(is_free || !abilities_of(integrator).solve_systems,
-          {key + "integrator = \"newmark\", \"quasi-static\", \"auto\" or preset = \"reference\"",
+  v.needs(is_free || abilities_of(integrator).obey_cfl,
+          {key + "integrator = \"newmark\", \"quasi-static\" or preset = \"reference\"",
            "Newton's iterations free a base node whose reaction would pull",
            "Take integrator = \"explicit\", or separation = \"free\""});
   v.needs(is_free || o.mapping == Mapping::terrain_following,
@@ -27,32 +28,27 @@ void need_separation(recipe::Visitor& v, const SolveOptions& o) {
            "Take mapping = \"terrain-following\", or separation = \"free\""});
 }
 
-/// What of the recipe inertia by columns cannot do, and why.
-struct BeyondColumns {
-  std::string key;  ///< empty: nothing
-  const char* reason = "";
-};
-BeyondColumns beyond_columns(const SolveOptions& o) {
-  const char* where = "contact between the nodes acts after the columns have been solved for, and could not hold them";
-  if (o.meets_points()) return {o.contact_words(), where};
-  for (const WallOptions& wall : o.walls)
-    if (wall.axis == Axis::z && wall.material_is == Side::below)
-      return {"a [[solve.wall]] across z above the material", "columns are solved for from their foot upwards"};
-  return {};
-}
-
 /// This function declares what column-implicit steps need, and what needs them.
 void need_columns(recipe::Visitor& v, const SolveOptions& o) {
   const bool by_columns = abilities_of(o.integrator).solve_columns;
-  v.needs(by_columns || o.kappa == default_kappa,
+  v.needs(by_columns || o.integrator == Integrator::automatic || o.kappa == default_kappa,
           {"[solve] kappa has no effect", "it belongs to integrator = \"column-implicit\"",
            "Leave it out, or take that integrator"});
   v.needs(by_columns || o.cfl <= most_explicit_cfl,
           {fmt::format("[solve] cfl = {:g} is too large for this integrator", o.cfl),
            "points that have a cell to themselves would be thrown off", "Take 0.8 at most"});
-  const BeyondColumns beyond = by_columns ? beyond_columns(o) : BeyondColumns{};
-  v.needs(beyond.key.empty(), {"[solve] integrator = \"column-implicit\" does not go with " + beyond.key, beyond.reason,
-                               "Leave it out, or take integrator = \"explicit\""});
+  const Hindrance beyond = by_columns ? beyond_columns(o) : Hindrance{};
+  v.needs(!beyond, {"[solve] integrator = \"column-implicit\" does not go with " + beyond.key, beyond.reason,
+                    "Leave it out, or take integrator = \"explicit\" or \"auto\""});
+}
+
+/// This function declares what `accuracy` settles, and is not given beside it.
+void need_accuracy(recipe::Visitor& v, const SolveOptions& o) {
+  const std::string why = "it follows from accuracy", mend = "Leave it out, or leave accuracy out";
+  v.needs(!o.accuracy || o.cfl == default_cfl, {"[solve] cfl beside accuracy", why, mend});
+  v.needs(!o.accuracy || o.kappa == default_kappa, {"[solve] kappa beside accuracy", why, mend});
+  v.needs(!o.accuracy || o.material.stiffness_strain == default_stiffness_strain,
+          {"[solve.material] stiffness_strain beside [solve] accuracy", why, mend});
 }
 
 /// The text that says in seconds what `transfer_time` said in explicit steps of the length by which waves cross a
@@ -88,6 +84,7 @@ void SolveOptions::describe(recipe::Visitor& v) {
            "Take ground_contact = \"nodes\", or another law"});
   need_separation(v, *this);
   need_columns(v, *this);
+  need_accuracy(v, *this);
   v.renamed("transfer_time", "transfer_time_s", [this](const std::string& steps) { return seconds_of(steps, *this); });
 }
 

@@ -34,6 +34,9 @@ struct SolveOptions : TimeOptions, SchemeOptions, GravityOptions, OutputOptions,
   /// The keys that make it so, for messages.
   std::string contact_words() const;
 
+  /// The integrator of the steps of a flow.
+  Integrator flow_integrator() const { return integrator == Integrator::automatic ? flow : integrator; }
+
   /// The method declares all keys of [solve] and its tables with defaults, help and what they need of one another.
   void describe(recipe::Visitor& v);
 };

@@ -11,7 +11,9 @@ StepAbilities abilities_of(Integrator integrator) {
           .obey_cfl = true, .carry_inertia = true, .count_losses = true, .repeat_bits = true, .solve_columns = true};
     case Integrator::newmark: return {.carry_inertia = true, .solve_systems = true, .average_volume = true};
     case Integrator::quasi_static: return {.solve_systems = true, .average_volume = true};
-    case Integrator::automatic: return {.obey_cfl = true, .carry_inertia = true, .solve_systems = true};
+    case Integrator::automatic:
+      return {
+          .obey_cfl = true, .carry_inertia = true, .count_losses = true, .repeat_bits = true, .solve_systems = true};
   }
   return {};
 }
@@ -26,7 +28,12 @@ void TimeOptions::describe(recipe::Visitor& v) {
        {"newmark", Integrator::newmark},
        {"quasi-static", Integrator::quasi_static},
        {"auto", Integrator::automatic}},
-      "time integration; auto: explicit or newmark, whichever takes less time, found by trying as the run goes on");
+      "time integration; auto: explicit or column-implicit in a flow, newmark at rest, whichever takes less work");
+  v.optional_number("accuracy", accuracy, recipe::Range{0.001, 0.2},
+                    "auto: share of the deposit that steps and stiffness may move; cfl and stiffness follow from it");
+  v.needs(!accuracy || integrator == Integrator::automatic,
+          {"[solve] accuracy has no effect", "it belongs to integrator = \"auto\"",
+           "Leave it out, or take that integrator"});
   v.number("gravity_ramp_s", gravity_ramp, recipe::not_negative, "time over which gravity grows to its full size");
   v.integer("gravity_loading_steps", gravity_loading_steps, recipe::Range{0, 100000},
             "quasi-static steps that bring the mass to equilibrium before the start; 0: start from zero stress");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "common/recipe/recipe.hpp"
 
@@ -30,11 +31,13 @@ enum class Preset { none, reference };
 struct TimeOptions {
   Preset preset = Preset::none;
   Integrator integrator = Integrator::explicit_;
-  double gravity_ramp = 0;           ///< [s]
-  int gravity_loading_steps = 0;     ///< quasi-static steps before the start
-  std::filesystem::path domain;      ///< empty: OUT/domain.vdb
-  double end_time = 60;              ///< [s]
-  double stop_kinetic_fraction = 0;  ///< of its peak; 0: never
+  std::optional<double> accuracy;           ///< "auto": share of the deposit that may lie elsewhere
+  Integrator flow = Integrator::explicit_;  ///< "auto": steps of a flow; no key, settle_steps() chooses
+  double gravity_ramp = 0;                  ///< [s]
+  int gravity_loading_steps = 0;            ///< quasi-static steps before the start
+  std::filesystem::path domain;             ///< empty: OUT/domain.vdb
+  double end_time = 60;                     ///< [s]
+  double stop_kinetic_fraction = 0;         ///< of its peak; 0: never
   /// The method declares the keys with defaults and help.
   void describe(recipe::Visitor& v);
 };

@@ -1,78 +1,95 @@
-// integrator = "auto": explicit or Newmark steps, whichever take less wall time per simulated time, found by trying
-// both now and then.
+// integrator = "auto" as the run goes on: steps of a flow, or Newmark's where all is at rest and they take less work.
 #pragma once
 
 #include <string>
 
-#include "solver/options/solve.hpp"
+#include "solver/options/time.hpp"
 
 namespace talus::solver {
 
-/// The cost of the steps from one sort of the points to the next.
-struct BatchCost {
-  double simulated = 0, wall = 0;  ///< [s]
-  double wave_step = 0;            ///< the CFL step [s]
-  double speed = 0;                ///< of the fastest point [m/s]
+/// What the steps from one sort of the points to the next did.
+struct BatchWork {
+  double simulated = 0;  ///< [s]
+  double work = 0;       ///< in explicit steps, see work_of()
+  double wave_step = 0;  ///< the CFL step [s]
+  double speed = 0;      ///< of the fastest point [m/s]
 };
 
-/// The choice of `integrator = "auto"`: it runs one integrator, tries the other for a few steps, and goes on with the
-/// cheaper. Trials take no more than a twentieth of the time, less where they keep turning out the same.
+/// The iterations or steps of a batch.
+struct BatchCount {
+  long long steps = 0;   ///< steps of a flow
+  long long newton = 0;  ///< Newton iterations, of attempts that failed too
+  long long linear = 0;  ///< iterations of the linear solver
+};
+
+/// The work of a batch, in explicit steps: what kernels read and write, not what a clock says, so that a recipe takes
+/// the same steps on every machine. A column-implicit step counts as 1.5, a Newton iteration as 10, one of the linear
+/// solver as 0.65 (docs/decisions/0009-choice-of-integrator.md).
+double work_of(Integrator flow, const BatchCount& count);
+
+/// The choice of `integrator = "auto"`: steps of the flow while anything moves. Where nothing would move by a
+/// thousandth of a cell in ten CFL steps, Newmark takes four steps as long as `largest_step_s` allows; whichever takes
+/// less work per simulated time (by a tenth at least) goes on. Trials take no more than a twentieth of the work, less
+/// where they keep turning out the same. What begins to move ends Newmark's steps.
 class IntegratorChoice {
  public:
-  /// `cell` is the smaller of spacing and layer height [m]; `largest_step` [s].
-  IntegratorChoice(double cell, double largest_step) : cell_(cell), largest_step_(largest_step) {}
+  /// `cell` is the smaller of spacing and layer height [m]; `largest_step` [s]; `flow` takes the steps of a flow.
+  IntegratorChoice(double cell, double largest_step, Integrator flow)
+      : cell_(cell), largest_step_(largest_step), flow_(flow), current_(flow) {}
 
   /// The integrator to run.
   Integrator current() const { return current_; }
-  /// The length of implicit steps from here on: ten CFL steps in a flow, where longer ones miss its way; at rest, or
-  /// nearly, as long as nothing moves by more than a quarter of a cell [s].
+  /// The length of implicit steps from here on: as long as nothing moves by more than a quarter of a cell [s].
   double implicit_step() const { return step_.implicit; }
 
-  /// The method counts the cost of a batch. It returns true when the solver must be built anew: for the other
+  /// The method counts the work of a batch. It returns true when the solver must be built anew: for the other
   /// integrator, or for implicit steps of another length.
-  bool note(const BatchCost& batch);
-  /// The method goes back to explicit steps after an implicit one that failed beyond rescue; `wall`: what it took [s].
-  void note_failure(double wall);
+  bool note(const BatchWork& batch);
+  /// The method goes back to steps of the flow after an implicit one that failed beyond rescue; `work`: what it took.
+  void note_failure(double work);
 
   /// The decision since the last call, with its reason; empty when there was none.
   std::string take_decision();
 
  private:
   struct Cost {
-    double simulated = 0, wall = 0;
+    double simulated = 0, work = 0;
     /// The method adds a batch; `memory` is the weight that earlier ones keep [-].
-    void add(const BatchCost& batch, double memory);
-    /// The wall time per simulated time [-]; 0 before the first batch.
-    double rate() const { return simulated > 0 ? wall / simulated : 0; }
+    void add(const BatchWork& batch, double memory);
+    /// The work per simulated time [1/s]; 0 before the first batch.
+    double rate() const { return simulated > 0 ? work / simulated : 0; }
   };
 
-  Integrator other() const { return current_ == Integrator::explicit_ ? Integrator::newmark : Integrator::explicit_; }
-  Cost& cost_of(Integrator i) { return i == Integrator::explicit_ ? explicit_ : implicit_; }
-  int trial_batches() const { return current_ == Integrator::explicit_ ? 3 : 4; }
-  void measure(const BatchCost& batch);
+  bool flows() const { return current_ == flow_; }
+  Integrator other() const { return flows() ? Integrator::newmark : flow_; }
+  Cost& cost_of(Integrator i) { return i == flow_ ? cost_of_flow_ : cost_at_rest_; }
+  void measure(const BatchWork& batch);
+  bool moves() const;
   bool worth_trying() const;
   void begin_trial();
   bool end_trial();
+  bool follow_trial(const BatchWork& batch);
+  bool fit_step();
   void change_to(Integrator to);
 
   /// A trial of the other integrator, the one under way or the last one.
   struct Trial {
     bool under_way = false;
-    double wall = 0;        ///< what it took [s]
+    double work = 0;        ///< what it took
     double speed = -1;      ///< of the fastest point when it began [m/s]; negative: there was none
-    double wall_since = 0;  ///< its end [s]
+    double work_since = 0;  ///< its end
     double patience = 1;    ///< grows while trials change nothing
   };
   /// The lengths of steps [s].
   struct StepLengths {
     double implicit = 0;  ///< taken now
-    double suitable = 0;  ///< that the flow asks for
+    double suitable = 0;  ///< that the state asks for
     double wave = 0;      ///< the CFL step
   };
 
   double cell_, largest_step_;
-  Integrator current_ = Integrator::explicit_;
-  Cost explicit_, implicit_;
+  Integrator flow_, current_;
+  Cost cost_of_flow_, cost_at_rest_;
   Trial trial_;
   StepLengths step_;
   int batches_ = 0;   ///< since the last change

@@ -26,20 +26,21 @@ std::string span(double seconds) {
   return fmt::format("{:.1f} h", seconds / 3600);
 }
 
+std::string flow_words(const SolveOptions& o) {
+  if (o.flow_integrator() == Integrator::explicit_) return fmt::format("explicit, {:g} of the CFL step", o.cfl);
+  return fmt::format("explicit, inertia implicit along columns (kappa = {:g}), {:g} of the CFL step of the cells",
+                     o.kappa, o.cfl);
+}
+
 std::string integrator_words(const SolveOptions& o) {
   switch (o.integrator) {
-    case Integrator::explicit_: return fmt::format("explicit, {:g} of the CFL step", o.cfl);
-    case Integrator::column_implicit:
-      return fmt::format("explicit, inertia implicit along columns (kappa = {:g}), {:g} of the CFL step of the cells",
-                         o.kappa, o.cfl);
+    case Integrator::explicit_:
+    case Integrator::column_implicit: return flow_words(o);
     case Integrator::newmark:
       return fmt::format("newmark, steps of {:g} s, {}", o.implicit.step,
                          o.implicit.newton_iterations == 1 ? "one linear solve each" : "Newton");
     case Integrator::quasi_static: return fmt::format("quasi-static, steps of {:g} s", o.implicit.step);
-    default:
-      return o.steps_implicitly()
-                 ? "explicit or newmark, whichever takes less time"
-                 : fmt::format("explicit, {:g} of the CFL step: the law takes no implicit ones", o.cfl);
+    default: return flow_words(o) + "; at rest newmark where that takes less work";
   }
 }
 

@@ -1,30 +1,30 @@
 #include "solver/run/stepper.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "solver/options/hindrances.hpp"
 #include "solver/scene/make_solver.hpp"
 
 namespace talus::solver {
 
 Stepper::Stepper(const Scene& scene, const SolveOptions& options, const AnyDevice& device)
     : scene_(scene), options_(options), device_(device) {
-  if (options.integrator == Integrator::automatic && options.steps_implicitly())
-    choice_.emplace(std::min(scene.grid.spacing, scene.grid.layer_height), options.largest_step);
+  if (options.integrator == Integrator::automatic && !beyond_rest(options))
+    choice_.emplace(std::min(scene.grid.spacing, scene.grid.layer_height), options.largest_step, options.flow);
 }
 
 void Stepper::begin(const SolverState& state) {
-  if (options_.integrator == Integrator::automatic && !choice_)
-    log_info("integrator = \"auto\": explicit steps throughout, as a material's stress depends on the rate of shear");
   build(state);
   time_ = state.clock.time;
+  step_ = static_cast<long long>(state.clock.step);
 }
 
 void Stepper::build(const SolverState& state) {
   SolveOptions o = options_;
+  o.integrator = o.flow_integrator();
   if (choice_) {
     o.integrator = choice_->current();
     o.implicit.step = choice_->implicit_step();
@@ -40,6 +40,7 @@ void Stepper::log_decision() {
 BatchReport Stepper::advance(double next_event) {
   const BatchReport batch = take_batch(next_event);
   time_ = batch.clock.time;
+  step_ = static_cast<long long>(batch.clock.step);
   const double rate = positive_from_bits(batch.clock.rate_bits);
   if (batch.stats.newton > 0) {
     over_cfl_ = batch.stats.over_cfl;
@@ -49,30 +50,33 @@ BatchReport Stepper::advance(double next_event) {
   return batch;
 }
 
-/// A batch of steps, and with integrator = "auto" what follows from its cost.
+BatchCount Stepper::count_of(const BatchReport& batch) const {
+  if (batch.stats.newton > 0) return {.newton = batch.stats.newton, .linear = batch.stats.linear};
+  return {.steps = static_cast<long long>(batch.clock.step) - step_};
+}
+
+/// A batch of steps, and with integrator = "auto" what follows from its work.
 BatchReport Stepper::take_batch(double next_event) {
-  using WallClock = std::chrono::steady_clock;
   solver_->set_next_event(next_event);
   if (!choice_) return solver_->advance();
-  const auto begun = WallClock::now();
-  const auto wall = [&] { return std::chrono::duration<double>(WallClock::now() - begun).count(); };
   BatchReport batch;
   try {
     batch = solver_->advance();
   } catch (const NumericalError&) {
-    if (choice_->current() == Integrator::explicit_) throw;
-    choice_->note_failure(wall());
+    if (choice_->current() == options_.flow) throw;
+    const int attempts = options_.implicit.step_cuts + 1;
+    choice_->note_failure(work_of(options_.flow, {.newton = attempts * options_.implicit.newton_iterations}));
     log_decision();
     build(solver_->state());  // that of the last step that was accepted
     return take_batch(next_event);
   }
-  cost_.simulated += batch.clock.time - time_;
-  cost_.wall += wall();
+  work_.simulated += batch.clock.time - time_;
+  work_.work += work_of(options_.flow, count_of(batch));
   if (!batch.sorted || batch.clock.halt == failed) return batch;  // points that have left are still among the others
   const double rate = positive_from_bits(batch.clock.rate_bits);
-  cost_.wave_step = rate > 0 ? 1 / rate : 0;
-  cost_.speed = positive_from_bits(batch.clock.speed_bits);
-  if (choice_->note(std::exchange(cost_, {}))) build(solver_->state());
+  work_.wave_step = rate > 0 ? 1 / rate : 0;
+  work_.speed = positive_from_bits(batch.clock.speed_bits);
+  if (choice_->note(std::exchange(work_, {}))) build(solver_->state());
   log_decision();
   return batch;
 }

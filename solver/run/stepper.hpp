@@ -1,4 +1,4 @@
-// The steps of a run: of one integrator, or with integrator = "auto" of whichever costs less.
+// The steps of a run: of one integrator, or with integrator = "auto" of whichever takes less work.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@
 
 namespace talus::solver {
 
-/// The stepper owns the solver of a run, and builds it anew where another integrator is cheaper.
+/// The stepper owns the solver of a run, and builds it anew where another integrator takes less work.
 class Stepper {
  public:
   /// The constructor keeps references to scene and options.
@@ -40,14 +40,16 @@ class Stepper {
  private:
   void build(const SolverState& state);
   BatchReport take_batch(double next_event);
+  BatchCount count_of(const BatchReport& batch) const;
   void log_decision();
 
   const Scene& scene_;
   const SolveOptions& options_;
   AnyDevice device_;
   std::optional<IntegratorChoice> choice_;  ///< integrator = "auto"
-  BatchCost cost_;                          ///< since the last sort
+  BatchWork work_;                          ///< since the last sort
   double time_ = 0;                         ///< [s]
+  long long step_ = 0;                      ///< number of the last step
   double over_cfl_ = 0;
   std::unique_ptr<Solver> solver_;
 };

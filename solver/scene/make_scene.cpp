@@ -187,7 +187,7 @@ std::vector<std::array<double, 3>> positions(const MapGrid& map, const GridShape
 }
 
 FirstWaves first_waves(const SolveOptions& options) {
-  return {fastest_wave(options), !abilities_of(options.integrator).solve_columns};
+  return {fastest_wave(options), !abilities_of(options.flow_integrator()).solve_columns};
 }
 
 double first_rate(const GridShape& shape, const TerrainTables& terrain, const ParticleState& points,

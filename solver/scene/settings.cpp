@@ -54,7 +54,7 @@ IntegratorSettings make_common(const SolveOptions& o, const GridShape& grid) {
                                  .largest = o.largest_step,
                                  .fastest_wave = fastest_wave(o),
                                  .initial_speed = size(o.initial_velocity),
-                                 .kappa = abilities_of(o.integrator).solve_columns ? o.kappa : 0},
+                                 .kappa = abilities_of(o.flow_integrator()).solve_columns ? o.kappa : 0},
                        .transfer = {.affine = o.transfer == Transfer::apic,
                                     .remaps_velocity = o.stress_update == StressUpdate::modified,
                                     .time = transfer_time_of(o, grid)},

@@ -50,10 +50,7 @@ TEST(SolveOptions, the_energy_budget_needs_explicit_steps_and_contact_at_nodes) 
             "[solve] energy_budget = true does not go with this integrator or stress_update (losses are counted in "
             "explicit and column-implicit steps with stress_update = \"usl\"). Leave it out, or take integrator = "
             "\"explicit\"");
-  EXPECT_EQ(faults("[solve]\nenergy_budget = true\nintegrator = \"auto\""),
-            "[solve] energy_budget = true does not go with this integrator or stress_update (losses are counted in "
-            "explicit and column-implicit steps with stress_update = \"usl\"). Leave it out, or take integrator = "
-            "\"explicit\"");
+  EXPECT_EQ(faults("[solve]\nenergy_budget = true\nintegrator = \"auto\""), "");
   EXPECT_EQ(faults("[solve]\nenergy_budget = true\nground_contact = \"points\"\nmapping=\"cartesian\""),
             "[solve] ground_contact = \"points\" does not go with energy_budget = true (what is lost between nodes is "
             "not counted). Leave energy_budget out");
@@ -77,13 +74,12 @@ TEST(SolveOptions, contact_by_points_needs_a_level_grid_and_a_solver_without_ass
 }
 
 TEST(SolveOptions, holding_the_mass_on_its_bed_needs_explicit_steps_on_a_grid_that_follows_it) {
-  for (const std::string steps : {"integrator = \"newmark\"", "integrator = \"quasi-static\"", "integrator = \"auto\"",
-                                  "preset = \"reference\""}) {
-    EXPECT_EQ(
-        faults("[solve]\n" + steps + "\n[solve.base]\nseparation = \"none\""),
-        "[solve.base] separation = \"none\" with integrator = \"newmark\", \"quasi-static\", \"auto\" or preset = "
-        "\"reference\" (Newton's iterations free a base node whose reaction would pull). Take integrator = "
-        "\"explicit\", or separation = \"free\"");
+  for (const std::string steps :
+       {"integrator = \"newmark\"", "integrator = \"quasi-static\"", "preset = \"reference\""}) {
+    EXPECT_EQ(faults("[solve]\n" + steps + "\n[solve.base]\nseparation = \"none\""),
+              "[solve.base] separation = \"none\" with integrator = \"newmark\", \"quasi-static\" or preset = "
+              "\"reference\" (Newton's iterations free a base node whose reaction would pull). Take integrator = "
+              "\"explicit\", or separation = \"free\"");
   }
   for (const std::string contact : {"", "ground_contact = \"points\"\n"}) {
     EXPECT_EQ(
@@ -124,10 +120,7 @@ TEST(SolveOptions, repeated_bits_need_explicit_steps_without_a_budget) {
             "[solve] deterministic = true does not go with this integrator or with energy_budget (sums of implicit "
             "steps and of the budget are made in any order on a GPU). Leave it out, or take integrator = \"explicit\" "
             "without energy_budget");
-  EXPECT_EQ(faults("[solve]\ndeterministic = true\nintegrator = \"auto\""),
-            "[solve] deterministic = true does not go with this integrator or with energy_budget (sums of implicit "
-            "steps and of the budget are made in any order on a GPU). Leave it out, or take integrator = \"explicit\" "
-            "without energy_budget");
+  EXPECT_EQ(faults("[solve]\ndeterministic = true\nintegrator = \"auto\""), "");
 }
 
 TEST(SolveOptions, means_over_elements_need_implicit_steps_and_a_pressure_of_the_volume) {
@@ -231,6 +224,24 @@ TEST(SolveOptions, what_would_have_no_effect_is_refused) {
   EXPECT_EQ(faults("[solve.material]\nstiffness_strain=0.1\nstiffness=\"auto\""), "");
 }
 
+TEST(SolveOptions, an_accuracy_is_for_the_integrator_that_chooses) {
+  EXPECT_EQ(faults("[solve]\nintegrator=\"auto\"\naccuracy=0.01"), "");
+  EXPECT_NE(faults("[solve]\naccuracy=0.01")
+                .find("[solve] accuracy has no effect (it belongs to integrator = "
+                      "\"auto\")"),
+            std::string::npos);
+  EXPECT_NE(faults("[solve]\nintegrator=\"auto\"\naccuracy=0.5").find("accuracy = 0.5"), std::string::npos);
+}
+
+TEST(SolveOptions, what_follows_from_accuracy_is_not_given_beside_it) {
+  const std::string asked = "[solve]\nintegrator=\"auto\"\naccuracy=0.01\n", why = " (it follows from accuracy)";
+  EXPECT_NE(faults(asked + "cfl=0.3").find("[solve] cfl beside accuracy" + why), std::string::npos);
+  EXPECT_NE(faults(asked + "kappa=0.4").find("[solve] kappa beside accuracy" + why), std::string::npos);
+  EXPECT_NE(faults(asked + "[solve.material]\nstiffness=\"auto\"\nstiffness_strain=0.1")
+                .find("[solve.material] stiffness_strain beside [solve] accuracy" + why),
+            std::string::npos);
+}
+
 TEST(SolveOptions, steps_longer_than_lone_points_bear_are_for_columns) {
   EXPECT_EQ(faults("[solve]\ncfl=0.8"), "");
   EXPECT_NE(faults("[solve]\ncfl=0.9").find("[solve] cfl = 0.9 is too large"), std::string::npos);
@@ -258,6 +269,7 @@ TEST(SolveOptions, every_integrator_says_what_its_steps_can_do) {
   }
   EXPECT_TRUE(abilities_of(Integrator::automatic).solve_systems);
   EXPECT_FALSE(abilities_of(Integrator::automatic).average_volume) << "some of its steps are explicit";
+  EXPECT_TRUE(abilities_of(Integrator::automatic).count_losses) << "it takes no others where losses are counted";
 }
 
 /// The TOML of the user guide that gives a material.

@@ -1,4 +1,4 @@
-// integrator = "auto": the choice by cost, and what a change of integrator must leave alone.
+// integrator = "auto": the choice by work, and what a change of integrator must leave alone.
 #include "solver/run/integrator_choice.hpp"
 
 #include "solver/integrator/scene.hpp"
@@ -10,82 +10,120 @@
 namespace talus::solver::testing {
 namespace {
 
-/// A run that never was: its steps cost what the test says.
-struct Costs {
-  double explicit_rate, implicit_rate;  // wall time per simulated time
-  double speed = 1;                     // [m/s]
-  double wall = 0, on_trials = 0, implicit_time = 0, time = 0;
+/// A run that never was: its steps take the work that the test says.
+struct Works {
+  double flow_rate, rest_rate;  // work per simulated time [1/s]
+  double speed = 0.01;          // [m/s]; at rest for cells of 1 m and CFL steps of a millisecond
+  double work = 0, implicit_time = 0, time = 0;
 
   /// Runs until `end`; returns all that was said.
   std::string run(IntegratorChoice& choice, double end) {
     constexpr double wave_step = 1e-3;
     std::string said;
     while (time < end) {
-      const bool is_explicit = choice.current() == Integrator::explicit_;
-      const double simulated = is_explicit ? 16 * wave_step : choice.implicit_step();
-      const double cost = simulated * (is_explicit ? explicit_rate : implicit_rate);
+      const bool flows = choice.current() == Integrator::explicit_;
+      const double simulated = flows ? 16 * wave_step : choice.implicit_step();
+      const double taken = simulated * (flows ? flow_rate : rest_rate);
       time += simulated;
-      wall += cost;
-      if (!is_explicit) implicit_time += simulated;
-      choice.note({simulated, cost, wave_step, speed});
+      work += taken;
+      if (!flows) implicit_time += simulated;
+      choice.note({simulated, taken, wave_step, speed});
       said += choice.take_decision();
     }
     return said;
   }
 };
 
-TEST(IntegratorChoice, turns_to_cheaper_implicit_steps_and_says_why) {
-  IntegratorChoice choice(1.0, 0.5);
-  Costs run{1.0, 0.1};
+constexpr Integrator flowing = Integrator::explicit_;
+
+TEST(IntegratorChoice, turns_to_implicit_steps_of_less_work_and_says_why) {
+  IntegratorChoice choice(1.0, 0.5, flowing);
+  Works run{1.0, 0.1};
   const std::string said = run.run(choice, 200);
   EXPECT_EQ(choice.current(), Integrator::newmark);
   EXPECT_GT(run.implicit_time, 0.95 * run.time);
-  EXPECT_LT(run.wall, 1.1 * 0.1 * run.time + 2);
-  EXPECT_NE(said.find("newmark steps from here on: 0.1 s of wall time per simulated second instead of 1 s"),
+  EXPECT_LT(run.work, 1.1 * 0.1 * run.time + 2);
+  EXPECT_NE(said.find("newmark steps from here on: the work of 0.1 explicit steps a simulated second, not 1, in steps "
+                      "of 0.5 s"),
             std::string::npos)
       << said;
-  EXPECT_NEAR(choice.implicit_step(), 0.01, 1e-12) << "ten CFL steps in a flow";
 }
 
-TEST(IntegratorChoice, leaves_explicit_steps_alone_at_a_small_price) {
+TEST(IntegratorChoice, takes_no_implicit_step_while_anything_moves) {
+  // 0.11 m/s move a point by 1.1 thousandths of a cell in ten CFL steps.
+  IntegratorChoice choice(1.0, 0.5, flowing);
+  Works run{1.0, 0.001, 0.11};
+  EXPECT_EQ(run.run(choice, 200), "");
+  EXPECT_EQ(run.implicit_time, 0);
+}
+
+TEST(IntegratorChoice, goes_back_at_once_where_points_begin_to_move) {
+  for (const Integrator flow : {Integrator::explicit_, Integrator::column_implicit}) {
+    IntegratorChoice choice(1.0, 0.5, flow);
+    while (choice.current() == flow) choice.note({0.016, 0.016, 1e-3, 0.01});
+    for (int i = 0; i < 10; ++i) choice.note({choice.implicit_step(), 0.1 * choice.implicit_step(), 1e-3, 0.01});
+    ASSERT_EQ(choice.current(), Integrator::newmark);
+    choice.take_decision();
+    EXPECT_TRUE(choice.note({0.5, 0.05, 1e-3, 0.5}));
+    EXPECT_EQ(choice.current(), flow);
+    EXPECT_NE(choice.take_decision().find("steps from here on: points move, at 0.5 m/s"), std::string::npos);
+  }
+}
+
+TEST(IntegratorChoice, leaves_steps_of_the_flow_alone_at_a_small_price) {
   for (const double dear : {1.2, 3.0, 30.0}) {
-    IntegratorChoice choice(1.0, 0.5);
-    Costs run{1.0, dear};
-    EXPECT_EQ(run.run(choice, 200), "");
-    EXPECT_LT(run.wall, 1.1 * run.time) << "implicit steps cost " << dear << " times as much";
+    IntegratorChoice choice(1.0, 0.5, flowing);
+    Works run{1.0, dear};
+    EXPECT_EQ(run.run(choice, 300), "");
+    EXPECT_LT(run.work, 1.1 * run.time) << "implicit steps take " << dear << " times the work";
     EXPECT_GT(run.implicit_time, 0) << "never tried";
   }
 }
 
-TEST(IntegratorChoice, comes_back_when_the_costs_change) {
-  IntegratorChoice choice(1.0, 0.5);
-  Costs run{1.0, 0.1};
+TEST(IntegratorChoice, comes_back_when_the_work_changes) {
+  IntegratorChoice choice(1.0, 0.5, flowing);
+  Works run{1.0, 0.1};
   run.run(choice, 100);
   ASSERT_EQ(choice.current(), Integrator::newmark);
-  run.implicit_rate = 5;
+  run.rest_rate = 5;
   const std::string said = run.run(choice, 300);
   EXPECT_EQ(choice.current(), Integrator::explicit_);
   EXPECT_NE(said.find("explicit steps from here on"), std::string::npos) << said;
 }
 
-TEST(IntegratorChoice, takes_longer_steps_at_rest_and_shorter_ones_where_points_fly) {
-  IntegratorChoice choice(1.0, 0.5);
-  Costs run{1.0, 0.1, 1e-4};
-  run.run(choice, 200);
+TEST(IntegratorChoice, takes_shorter_steps_where_points_creep) {
+  IntegratorChoice choice(0.1, 0.5, flowing);  // cells of 0.1 m
+  Works run{1.0, 0.01, 1e-3};
+  run.run(choice, 100);
+  ASSERT_EQ(choice.current(), Integrator::newmark);
   EXPECT_NEAR(choice.implicit_step(), 0.5, 1e-12) << "the longest allowed";
-  run.speed = 100;  // a quarter of a cell in 2.5 CFL steps
-  run.run(choice, 201);
-  EXPECT_LE(choice.implicit_step(), 2.5e-3 * 1.0001);
+  run.speed = 0.035;  // below where the flow begins again: 0.04 m/s
+  run.run(choice, 110);
+  ASSERT_EQ(choice.current(), Integrator::newmark);
+  EXPECT_NEAR(choice.implicit_step(), 0.5, 1e-12) << "0.71 s would do";
+  IntegratorChoice longer(0.1, 10, flowing);
+  Works slow{1.0, 0.01, 1e-3};
+  slow.run(longer, 100);
+  EXPECT_NEAR(longer.implicit_step(), 10, 1e-12);
+  slow.speed = 0.035;
+  slow.run(longer, 200);
+  EXPECT_NEAR(longer.implicit_step(), 0.25 * 0.1 / 0.035, 1e-9) << "a quarter of a cell";
 }
 
 TEST(IntegratorChoice, survives_a_step_that_fails) {
-  IntegratorChoice choice(1.0, 0.5);
-  Costs run{1.0, 0.1};
+  IntegratorChoice choice(1.0, 0.5, flowing);
+  Works run{1.0, 0.1};
   run.run(choice, 100);
   ASSERT_EQ(choice.current(), Integrator::newmark);
   choice.note_failure(1);
   EXPECT_EQ(choice.current(), Integrator::explicit_);
   EXPECT_NE(choice.take_decision().find("found no solution"), std::string::npos);
+}
+
+TEST(IntegratorChoice, work_is_counted_in_explicit_steps) {
+  EXPECT_EQ(work_of(Integrator::explicit_, {.steps = 7}), 7);
+  EXPECT_EQ(work_of(Integrator::column_implicit, {.steps = 4}), 6);
+  EXPECT_EQ(work_of(Integrator::explicit_, {.newton = 2, .linear = 20}), 33);
 }
 
 class ChangeOfIntegrator : public InEachPlace {

@@ -1,0 +1,36 @@
+#include "solver/options/hindrances.hpp"
+
+#include <fmt/format.h>
+
+#include "solver/options/solve.hpp"
+
+namespace talus::solver {
+
+Hindrance beyond_columns(const SolveOptions& o) {
+  if (o.meets_points())
+    return {o.contact_words(),
+            "contact between the nodes acts after the columns have been solved for, and could not hold them"};
+  for (const WallOptions& wall : o.walls)
+    if (wall.axis == Axis::z && wall.material_is == Side::below)
+      return {"a [[solve.wall]] across z above the material", "columns are solved for from their foot upwards"};
+  return {};
+}
+
+Hindrance beyond_rest(const SolveOptions& o) {
+  std::string law;
+  o.any_material([&](const MaterialOptions& m) {
+    if (law.empty() && !m.steps_implicitly()) law = m.name();
+    return false;
+  });
+  if (!law.empty())
+    return {fmt::format("model = \"{}\"", law),
+            "its stress depends on the rate of shear, and Newton's iterations have not been shown to converge with it"};
+  if (o.base.separation != Separation::free)
+    return {fmt::format("[solve.base] separation = \"{}\"", o.base.separation_name()),
+            "Newton's iterations free a base node whose reaction would pull"};
+  if (o.deterministic) return {"[solve] deterministic = true", "sums of implicit steps are made in any order on a GPU"};
+  if (o.energy_budget) return {"[solve] energy_budget = true", "losses are counted in steps of a flow alone"};
+  return {};
+}
+
+}  // namespace talus::solver

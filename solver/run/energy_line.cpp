@@ -1,0 +1,77 @@
+#include "solver/run/energy_line.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/boundary/base_friction.hpp"
+#include "solver/options/solve.hpp"
+
+namespace talus::solver {
+namespace {
+
+/// The least friction the flow can meet: on its bed, or inside where the bed holds it.
+double least_friction(const SolveOptions& o) {
+  const auto base = make_base_friction<double>(o);
+  if (base.holds()) return o.material.internal_friction();
+  // Friction falls or grows with speed, if it changes at all, and is least under the thickest flow.
+  const auto at_speed = [&](double speed) {
+    return base.coefficient(base.uniform, {.speed = speed, .normal_stress = 1e41, .duration = 0, .load = 1e40});
+  };
+  return std::min(at_speed(0), at_speed(1e30));
+}
+
+/// The mean of something over cells.
+struct Mean {
+  double sum = 0;
+  long long count = 0;
+  void add(double value) {
+    if (!std::isfinite(value)) return;
+    sum += value;
+    ++count;
+  }
+};
+
+}  // namespace
+
+double EnergyLine::head(const Raster& terrain, int column, int row) const {
+  const MapGrid& grid = terrain.grid;
+  return z - terrain.at(column, row) - friction * std::hypot(grid.x(column) - x, grid.y(row) - y);
+}
+
+double EnergyLine::largest_head(const Raster& terrain) const {
+  double largest = 0;
+  for (int row = 0; row < terrain.grid.rows; ++row) {
+    for (int column = 0; column < terrain.grid.columns; ++column)
+      largest = std::max(largest, head(terrain, column, row));  // NaN leaves it as it is
+  }
+  return largest;
+}
+
+EnergyLine energy_line_of(const Domain& domain, const SolveOptions& options) {
+  EnergyLine line{.friction = least_friction(options)};
+  for (int row = 0; row < domain.grid.rows; ++row) {
+    for (int column = 0; column < domain.grid.columns; ++column) {
+      const double thickness = domain.release_thickness.at(column, row), ground = domain.terrain.at(column, row);
+      if (!(thickness > 0) || !(ground + thickness > line.z)) continue;
+      line.x = domain.grid.x(column);
+      line.y = domain.grid.y(row);
+      line.z = ground + thickness;
+    }
+  }
+  return line;
+}
+
+double bend_in_layers(const Domain& domain, const EnergyLine& line) {
+  const Raster& z = domain.terrain;
+  Mean bend;
+  for (int row = 1; row + 1 < z.grid.rows; ++row) {
+    for (int column = 1; column + 1 < z.grid.columns; ++column) {
+      if (!(line.head(z, column, row) > 0)) continue;
+      bend.add(std::abs(z.at(column - 1, row) - 2 * z.at(column, row) + z.at(column + 1, row)));
+      bend.add(std::abs(z.at(column, row - 1) - 2 * z.at(column, row) + z.at(column, row + 1)));
+    }
+  }
+  return bend.count > 0 ? bend.sum / static_cast<double>(bend.count) / 8 / domain.layer_height : 0;
+}
+
+}  // namespace talus::solver

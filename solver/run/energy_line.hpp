@@ -1,0 +1,28 @@
+// The energy line of a scene: what bounds the speed of a flow, and where it can go.
+#pragma once
+
+#include "common/domain/domain.hpp"
+
+namespace talus::solver {
+
+struct SolveOptions;
+
+/// A cone that falls from the top of what is released by the least friction the flow can meet (Heim 1932).
+struct EnergyLine {
+  double x = 0, y = 0, z = -1e30;  ///< the highest place of what is released [m]
+  double friction = 0;             ///< the cone's slope [-]
+
+  /// Its height above the ground at a cell of the terrain, negative where nothing gets; NaN outside the terrain [m].
+  double head(const Raster& terrain, int column, int row) const;
+  /// The largest height above the ground; 0 where nothing is released [m].
+  double largest_head(const Raster& terrain) const;
+};
+
+EnergyLine energy_line_of(const Domain& domain, const SolveOptions& options);
+
+/// How much the ground bends within a cell, over a layer's height: the mean, where the energy line lies above the
+/// ground, of the rise of an arc over its chord of a cell's width, |b' - b| h / 8 with b and b' the slopes of
+/// neighbouring cells [-].
+double bend_in_layers(const Domain& domain, const EnergyLine& line);
+
+}  // namespace talus::solver

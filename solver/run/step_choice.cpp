@@ -1,0 +1,100 @@
+#include "solver/run/step_choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "solver/options/hindrances.hpp"
+#include "solver/run/energy_line.hpp"
+#include "solver/run/integrator_choice.hpp"
+#include "solver/run/stiffness.hpp"
+
+namespace talus::solver {
+namespace {
+
+// Shares of the CFL step that keep to an accuracy, over that accuracy, and their limits
+// (docs/decisions/0009-choice-of-integrator.md).
+constexpr double explicit_per_accuracy = 80, rough_per_accuracy = 50, columns_per_accuracy = 100;
+constexpr double most_explicit = 0.8, most_columns = 1, least_cfl = 0.1;
+constexpr double roughest = 0.03;  // bend of the ground, in layers, up to which long steps keep to their accuracy
+
+/// A way of stepping a flow: the share of the CFL step that it may take, and 1 over the CFL step [1/s].
+struct Way {
+  Integrator integrator;
+  double cfl, rate;
+  /// Its work, in explicit steps a simulated second.
+  double work() const { return work_of(integrator, {.steps = 1}) * rate / cfl; }
+};
+
+/// The rate at which waves and a flow of `speed` cross cells, and layers unless columns are solved for [1/s].
+double crossing_rate(const Domain& domain, const SolveOptions& o, Integrator integrator, double speed) {
+  const double across = 1 / domain.grid.cell, up = 1 / domain.layer_height;
+  const bool by_layers = !abilities_of(integrator).solve_columns;
+  return fastest_wave(o) * std::sqrt(2 * across * across + (by_layers ? up * up : 0)) + speed * (2 * across + up);
+}
+
+Way way_of(const Domain& domain, const SolveOptions& o, Integrator integrator, double speed, bool rough) {
+  const bool columns = abilities_of(integrator).solve_columns;
+  const double most = columns ? most_columns : most_explicit;
+  const double per_accuracy = columns ? columns_per_accuracy : rough ? rough_per_accuracy : explicit_per_accuracy;
+  return {integrator, o.accuracy ? std::clamp(per_accuracy * *o.accuracy, least_cfl, most) : o.cfl,
+          crossing_rate(domain, o, integrator, speed)};
+}
+
+/// What is in the way of columns in this scene, in words; empty: nothing. `bend`: of the ground, in layers.
+std::string against_columns(const SolveOptions& o, double bend) {
+  if (const Hindrance beyond = beyond_columns(o)) return beyond.key + ": " + beyond.reason;
+  if (bend > roughest)
+    return fmt::format(
+        "within a cell the ground bends by {:.2g} of a layer's height on the mean, and above {:g} steps "
+        "longer than layers take lose it",
+        bend, roughest);
+  return {};
+}
+
+std::string comparison(const Way& taken, const Way& other) {
+  const auto words = [](const Way& way) {
+    return fmt::format("{} steps of {:g} CFL", way.integrator == Integrator::explicit_ ? "explicit" : "column-implicit",
+                       way.cfl);
+  };
+  return fmt::format("a flow takes {}: the work of {:.3g} explicit steps a simulated second, {} that of {:.3g}",
+                     words(taken), taken.work(), words(other), other.work());
+}
+
+}  // namespace
+
+double strain_for(double accuracy) { return std::clamp(200 * accuracy * accuracy, 1e-3, 0.1); }
+
+StepChoice choose_steps(const Domain& domain, const SolveOptions& o) {
+  const double speed = lowest_stiffness(domain, o).speed / 2;  // about what a flow has when it is fast
+  const double bend = bend_in_layers(domain, energy_line_of(domain, o));
+  const Way by_points = way_of(domain, o, Integrator::explicit_, speed, bend > roughest),
+            by_columns = way_of(domain, o, Integrator::column_implicit, speed, false);
+  StepChoice choice;
+  if (const std::string why_not = against_columns(o, bend); !why_not.empty()) {
+    choice.cfl = by_points.cfl;
+    choice.reasons.push_back(fmt::format("a flow takes explicit steps of {:g} CFL: {}", choice.cfl, why_not));
+  } else {
+    const bool columns = by_columns.work() < by_points.work();
+    const Way& taken = columns ? by_columns : by_points;
+    choice.flow = taken.integrator;
+    choice.cfl = taken.cfl;
+    choice.reasons.push_back(comparison(taken, columns ? by_points : by_columns));
+  }
+  const Hindrance moving = beyond_rest(o);
+  choice.rests = !moving;
+  choice.reasons.push_back(moving ? fmt::format("no implicit steps at rest: {}, {}", moving.key, moving.reason)
+                                  : "newmark's steps where all is at rest and they take less work");
+  return choice;
+}
+
+SolveOptions with_steps(SolveOptions o, const StepChoice& choice) {
+  o.flow = choice.flow;
+  o.cfl = choice.cfl;
+  o.accuracy.reset();
+  if (!choice.rests) o.integrator = choice.flow;
+  return o;
+}
+
+}  // namespace talus::solver

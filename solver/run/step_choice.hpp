@@ -1,0 +1,31 @@
+// What integrator = "auto" and `accuracy` settle before a run, from the scene alone.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/domain/domain.hpp"
+#include "solver/options/solve.hpp"
+
+namespace talus::solver {
+
+/// The steps of a flow, and why they are taken.
+struct StepChoice {
+  Integrator flow = Integrator::explicit_;  ///< explicit or column-implicit
+  double cfl = 0;                           ///< [-]
+  bool rests = false;                       ///< Newmark's steps may follow where all is at rest
+  std::vector<std::string> reasons;         ///< a sentence each
+};
+
+/// The strain by which `stiffness = "auto"` goes at an accuracy: sqrt(strain) grows with the share of the deposit that
+/// lies elsewhere (docs/decisions/0008-stiffness.md).
+double strain_for(double accuracy);
+
+/// The steps that take the least work at the accuracy asked for, of those that the scene allows; without one, at the
+/// recipe's own `cfl`.
+StepChoice choose_steps(const Domain& domain, const SolveOptions& options);
+
+/// The options with the choice carried out.
+SolveOptions with_steps(SolveOptions options, const StepChoice& choice);
+
+}  // namespace talus::solver
