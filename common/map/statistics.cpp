@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <numeric>
 
 namespace talus {
 
@@ -18,6 +20,20 @@ double quantile(std::vector<double> values, double q) {
 }
 
 double median(const std::vector<double>& values) { return quantile(values, 0.5); }
+
+double median_thickness(const Raster& thickness) {
+  std::vector<double> columns;
+  std::copy_if(thickness.values.begin(), thickness.values.end(), std::back_inserter(columns),
+               [](double t) { return t > 0; });
+  std::sort(columns.begin(), columns.end());
+  const double half = 0.5 * std::accumulate(columns.begin(), columns.end(), 0.0);
+  double below = 0;
+  for (double t : columns) {
+    below += t;
+    if (below >= half) return t;
+  }
+  return 0;
+}
 
 double nmad(const std::vector<double>& values) {
   const double middle = median(values);

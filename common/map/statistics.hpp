@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include "common/map/raster.hpp"
+
 namespace talus {
 
 /// The value below which the share `q` (0 to 1) of the values lies, linear between the sorted values (Hyndman and Fan
@@ -11,6 +13,9 @@ double quantile(std::vector<double> values, double q);
 
 /// The middle value: quantile() at 0.5. NaN where there is none.
 double median(const std::vector<double>& values);
+
+/// The median thickness by volume [m]: half the volume stands in columns that are thicker. 0 where there is none.
+double median_thickness(const Raster& thickness);
 
 /// 1.4826 median(|v - median(v)|): the standard deviation of a normal distribution, unmoved by outliers (Hoehle &
 /// Hoehle 2009, Tab. 2). NaN where there is no value.

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/map/statistics.hpp"
 #include "common/map/sum.hpp"
 #include "preprocess/particles/seed.hpp"
 

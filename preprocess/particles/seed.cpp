@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
-#include <numeric>
 
+#include "common/map/statistics.hpp"
 #include "preprocess/particles/shift.hpp"
 
 namespace talus::preprocess {
@@ -58,20 +57,6 @@ void reserve(SeedPoints& points, std::size_t count) {
 }
 
 }  // namespace
-
-double median_thickness(const Raster& thickness) {
-  std::vector<double> columns;
-  std::copy_if(thickness.values.begin(), thickness.values.end(), std::back_inserter(columns),
-               [](double t) { return t > 0; });
-  std::sort(columns.begin(), columns.end());
-  const double half = 0.5 * std::accumulate(columns.begin(), columns.end(), 0.0);
-  double below = 0;
-  for (double t : columns) {
-    below += t;
-    if (below >= half) return t;
-  }
-  return 0;
-}
 
 double default_layer_height(const Raster& thickness, double spacing) {
   const double half = 0.5 * median_thickness(thickness);

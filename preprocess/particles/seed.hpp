@@ -19,9 +19,6 @@ struct Seeding {
   std::uint64_t jitter_seed = 1;
 };
 
-/// The median thickness by volume [m]: half the released volume stands in columns that are thicker. 0 without release.
-double median_thickness(const Raster& thickness);
-
 /// The height of a layer where the recipe gives none [m]: half the median thickness, so that most of the release has
 /// two layers or more, rounded down to two digits, and at most the spacing; the spacing without release.
 double default_layer_height(const Raster& thickness, double spacing);

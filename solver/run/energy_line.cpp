@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/map/statistics.hpp"
 #include "solver/boundary/base_friction.hpp"
 #include "solver/options/solve.hpp"
 
@@ -61,7 +62,7 @@ EnergyLine energy_line_of(const Domain& domain, const SolveOptions& options) {
   return line;
 }
 
-double bend_in_layers(const Domain& domain, const EnergyLine& line) {
+double bend_over_thickness(const Domain& domain, const EnergyLine& line) {
   const Raster& z = domain.terrain;
   Mean bend;
   for (int row = 1; row + 1 < z.grid.rows; ++row) {
@@ -71,7 +72,8 @@ double bend_in_layers(const Domain& domain, const EnergyLine& line) {
       bend.add(std::abs(z.at(column, row - 1) - 2 * z.at(column, row) + z.at(column, row + 1)));
     }
   }
-  return bend.count > 0 ? bend.sum / static_cast<double>(bend.count) / 8 / domain.layer_height : 0;
+  const double thickness = median_thickness(domain.release_thickness);
+  return bend.count > 0 && thickness > 0 ? bend.sum / static_cast<double>(bend.count) / 8 / thickness : 0;
 }
 
 }  // namespace talus::solver

@@ -20,9 +20,9 @@ struct EnergyLine {
 
 EnergyLine energy_line_of(const Domain& domain, const SolveOptions& options);
 
-/// How much the ground bends within a cell, over a layer's height: the mean, where the energy line lies above the
-/// ground, of the rise of an arc over its chord of a cell's width, |b' - b| h / 8 with b and b' the slopes of
-/// neighbouring cells [-].
-double bend_in_layers(const Domain& domain, const EnergyLine& line);
+/// How much the ground bends within a cell, over the thickness of what is released (its median by volume): the mean,
+/// where the energy line lies above the ground, of the rise of an arc over its chord of a cell's width, |b' - b| h / 8
+/// with b and b' the slopes of neighbouring cells [-]. 0 where nothing is released.
+double bend_over_thickness(const Domain& domain, const EnergyLine& line);
 
 }  // namespace talus::solver

@@ -17,7 +17,7 @@ namespace {
 // (docs/decisions/0009-choice-of-integrator.md).
 constexpr double explicit_per_accuracy = 80, rough_per_accuracy = 50, columns_per_accuracy = 100;
 constexpr double most_explicit = 0.8, most_columns = 1, least_cfl = 0.1;
-constexpr double roughest = 0.03;  // bend of the ground, in layers, up to which long steps keep to their accuracy
+constexpr double roughest = 0.01;  // bend of the ground over the thickness up to which long steps keep to it
 
 /// A way of stepping a flow: the share of the CFL step that it may take, and 1 over the CFL step [1/s].
 struct Way {
@@ -42,13 +42,14 @@ Way way_of(const Domain& domain, const SolveOptions& o, Integrator integrator, d
           crossing_rate(domain, o, integrator, speed)};
 }
 
-/// What is in the way of columns in this scene, in words; empty: nothing. `bend`: of the ground, in layers.
+/// What is in the way of columns in this scene, in words; empty: nothing. `bend`: of the ground, over the thickness.
 std::string against_columns(const SolveOptions& o, double bend) {
   if (const Hindrance beyond = beyond_columns(o)) return beyond.key + ": " + beyond.reason;
   if (bend > roughest)
     return fmt::format(
-        "within a cell the ground bends by {:.2g} of a layer's height on the mean, and above {:g} steps "
-        "longer than layers take lose it",
+        "within a cell the ground bends by {:.2g} of the thickness of what is released, and above {:g} steps by "
+        "columns "
+        "lose it",
         bend, roughest);
   return {};
 }
@@ -68,7 +69,7 @@ double strain_for(double accuracy) { return std::clamp(200 * accuracy * accuracy
 
 StepChoice choose_steps(const Domain& domain, const SolveOptions& o) {
   const double speed = lowest_stiffness(domain, o).speed / 2;  // about what a flow has when it is fast
-  const double bend = bend_in_layers(domain, energy_line_of(domain, o));
+  const double bend = bend_over_thickness(domain, energy_line_of(domain, o));
   const Way by_points = way_of(domain, o, Integrator::explicit_, speed, bend > roughest),
             by_columns = way_of(domain, o, Integrator::column_implicit, speed, false);
   StepChoice choice;

@@ -30,5 +30,14 @@ TEST(Statistics, spread_leaves_out_draws_without_a_value) {
   EXPECT_TRUE(std::isnan(spread_of({}).mean));
 }
 
+TEST(Statistics, half_of_the_volume_stands_in_columns_thicker_than_the_median) {
+  const MapGrid grid{10, 10, 0, 0, 20, ""};
+  Raster rim{grid, std::vector<double>(grid.count(), 1.0)};  // half of the columns, a tenth of the volume
+  for (std::size_t n = 0; n < rim.values.size() / 2; ++n) rim.values[n] = 9;
+  EXPECT_EQ(median_thickness(rim), 9.0);
+  for (double& t : rim.values) t = 0;
+  EXPECT_EQ(median_thickness(rim), 0);
+}
+
 }  // namespace
 }  // namespace talus

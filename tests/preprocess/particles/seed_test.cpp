@@ -59,7 +59,6 @@ TEST(default_layer_height, is_half_the_thickness_of_most_of_the_volume) {
   const auto of = [&](auto thickness) { return test::raster_of(grid, thickness); };
   // A rim of 1 m holds half of the columns and a tenth of the volume.
   const Raster rim = of([](double x, double) { return x < 100 ? 9.0 : 1.0; });
-  EXPECT_EQ(median_thickness(rim), 9.0);
   EXPECT_DOUBLE_EQ(default_layer_height(rim, 20), 4.5);
   EXPECT_DOUBLE_EQ(default_layer_height(rim, 3), 3) << "at most the spacing";
   EXPECT_DOUBLE_EQ(default_layer_height(of([](double, double) { return 1.2399; }), 20), 0.61) << "two digits";
