@@ -56,6 +56,10 @@ HardTerrain cliff_bench();
 /// about a metre.
 HardTerrain thinning_slide();
 
+/// A slope of sound rock, 30 degrees, that runs out on 4 degrees, 480 m x 260 m, under up to 16 m of weathered ground,
+/// which lies there at rest: a scene for slope stability. The cover is what a scene calls its release.
+HardTerrain weathered_slope();
+
 /// The elevation [m] that a slope has lost at x: tangent `steep` up to `from`, `gentle` from `from + over` on, changing
 /// smoothly between them.
 double fall(double x, double steep, double gentle, double from, double over);

@@ -21,8 +21,8 @@ Maker fixed(Sample (*made)(double cell)) {
   return [made](double cell, const Pose& pose) {
     if (pose.mirrored || pose.turned_deg != 0)
       throw talus::RecipeError({"this terrain cannot be mirrored or turned",
-                                "rough-slope, bent-gully, cliff-bench and thinning-slide alone are given on axes of "
-                                "their own",
+                                "rough-slope, bent-gully, cliff-bench, thinning-slide and weathered-slope alone are "
+                                "given on axes of their own",
                                 "Leave out --mirror and --turn, or make one of those"});
     return made(cell);
   };
@@ -39,7 +39,8 @@ const std::map<std::string, Maker> kinds{{"bent-gully", laid(bent_gully)},
                                          {"rock-slope", fixed(rock_slope)},
                                          {"rough-slope", laid(rough_slope)},
                                          {"thinning-slide", laid(thinning_slide)},
-                                         {"valley", fixed(valley)}};
+                                         {"valley", fixed(valley)},
+                                         {"weathered-slope", laid(weathered_slope)}};
 
 std::string names() {
   std::string all;

@@ -10,6 +10,8 @@
 
 #include <fmt/format.h>
 
+#include "postprocess/picture/search_words.hpp"
+
 namespace talus::postprocess {
 namespace {
 
@@ -108,7 +110,10 @@ class Column {
 };
 
 void draw_legend(Column& column, const PictureInput& input, const std::vector<double>& limits, double interval) {
-  column.heading(input.instant ? "Thickness, vertical [m]" : "Deposit thickness, vertical [m]");
+  const bool search = shows_search(input);
+  column.heading(search          ? "What fails first, vertical [m]"
+                 : input.instant ? "Thickness, vertical [m]"
+                                 : "Deposit thickness, vertical [m]");
   for (auto i = limits.size(); i-- > 0;) column.swatch(class_colour(i, limits.size()), class_label(i, limits));
   column.space(22);
   const auto& options = input.options;
@@ -123,8 +128,8 @@ void draw_legend(Column& column, const PictureInput& input, const std::vector<do
       column.line(has_deposit ? survey_footprint_style() : survey_style(), survey.name + what);
     }
   }
-  column.line(footprint_style(), fmt::format("Simulated: peak > {:g} m", options.footprint_threshold));
-  column.line(release_style(), "Release");
+  if (!search) column.line(footprint_style(), fmt::format("Simulated: peak > {:g} m", options.footprint_threshold));
+  column.line(release_style(), search ? "Ground that was looked at" : "Release");
   if (interval > 0) column.line({{{}, 0, {}, 1}, contour_pen(true)}, fmt::format("Contours every {:g} m", interval));
 }
 
@@ -202,7 +207,7 @@ std::string volume_words(double volume) {
 
 void draw_title(Canvas& canvas, const PictureInput& input, double x, double y, double width) {
   const auto& title = input.run.summary.title;
-  const auto words = key_numbers(input);
+  const auto words = shows_search(input) ? search_line(input) : key_numbers(input);
   draw_fitting(canvas, title, x, y + 48, {.size = 46, .bold = true, .colour = ink}, width);
   draw_fitting(canvas, words, x, y + 100, {.size = 28, .colour = soft_ink}, width);
 }
@@ -234,7 +239,9 @@ void draw_sidebar(Canvas& canvas, const PictureInput& input, const View& view, c
   draw_scale_bar(canvas, view, box.x + 8, column.y() + 30, box.width - 170);
   draw_north_arrow(canvas, box.x + box.width - 40, column.y() - 4);
   column.space(112);
-  draw_numbers(column, input);
+  if (!shows_search(input)) return draw_numbers(column, input);
+  column.heading("Strength reduction");
+  for (const auto& [words, value] : search_numbers(input)) column.pair(words, value);
 }
 
 void draw_time(Canvas& canvas, double time, const View& view) {

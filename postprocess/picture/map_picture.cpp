@@ -6,6 +6,7 @@
 #include "postprocess/fields/classes.hpp"
 #include "postprocess/picture/furniture.hpp"
 #include "postprocess/picture/layers.hpp"
+#include "postprocess/picture/search_words.hpp"
 
 namespace talus::postprocess {
 namespace {
@@ -28,11 +29,14 @@ double thickest(const std::vector<double>& thickness) {
   return most;
 }
 
-/// The part of the maps that is drawn; at an instant the flow takes the deposit's place.
+/// The part of the maps that is drawn; at an instant the flow takes the deposit's place, after a search what fails
+/// first.
 RunMaps shown_maps(const PictureInput& input, const Window& window) {
-  if (!input.instant) return cropped(input.run.maps, window);
+  const bool search = shows_search(input);
+  if (!input.instant && !search) return cropped(input.run.maps, window);
   auto maps = input.run.maps;
-  maps.deposit_thickness = input.instant->thickness;
+  maps.deposit_thickness = search ? maps.critical_thickness : input.instant->thickness;
+  if (search) maps.peak_thickness.assign(maps.peak_thickness.size(), 0);  // nothing has moved
   return cropped(maps, window);
 }
 
@@ -43,9 +47,9 @@ std::string map_picture(const PictureInput& input) { return draw_map(input).png(
 Canvas draw_map(const PictureInput& input) {
   const auto window = affected_window(input.run.maps, input.options, input.survey);
   const View view{window, map_box(window)};
-  const auto limits = class_limits(
-      input.options.classes, input.instant ? input.instant->thickest : thickest(input.run.maps.deposit_thickness));
   const auto maps = shown_maps(input, window);
+  const auto limits =
+      class_limits(input.options.classes, input.instant ? input.instant->thickest : thickest(maps.deposit_thickness));
   const ContourLevels contours = contour_levels(view, maps);
   const double width = left + view.box.width + gap + sidebar + right;
   const double height = top + std::max(view.box.height, least_height) + bottom;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "common/gis/grid_limits.hpp"
 #include "preprocess/options/laboratory.hpp"
@@ -27,6 +28,38 @@ std::array<long, 3> lattice_of(const BoxOptions& box, const GridOptions& grid) {
 double covered(double low, double size, double from, double to) {
   const double length = std::min(low + size, to) - std::max(low, from);
   return length > rounding * size ? std::min(length / size, 1.0) : 0.0;
+}
+
+/// The boxes with level tops that a box consists of: itself, or one for each column of its lattice of points, as high
+/// as the points whose places lie under its top.
+std::vector<BoxOptions> pieces_of(const BoxOptions& box, const GridOptions& grid) {
+  if (!box.top_east) return {box};
+  const auto n = lattice_of(box, grid);
+  const auto side = sides_of(box);
+  const double width = side[0].length() / static_cast<double>(n[0]),
+               height = side[2].length() / static_cast<double>(n[2]);
+  std::vector<BoxOptions> pieces;
+  for (long i = 0; i < n[0]; ++i) {
+    BoxOptions piece = box;
+    piece.top_east.reset();
+    piece.west = box.west + static_cast<double>(i) * width;
+    piece.east = box.west + static_cast<double>(i + 1) * width;
+    const double under = box.top_at(0.5 * (piece.west + piece.east)) - box.bottom;
+    const double points = std::round(under / height * (1 - rounding));
+    if (points < 1) continue;
+    piece.top = box.bottom + points * height;
+    pieces.push_back(piece);
+  }
+  return pieces;
+}
+
+/// All boxes as such pieces, with the index of the box that each belongs to.
+std::vector<std::pair<BoxOptions, std::size_t>> all_pieces(const Options& options) {
+  std::vector<std::pair<BoxOptions, std::size_t>> pieces;
+  for (std::size_t b = 0; b < options.box.size(); ++b) {
+    for (BoxOptions& piece : pieces_of(options.box[b], options.grid)) pieces.emplace_back(std::move(piece), b);
+  }
+  return pieces;
 }
 
 Raster cover_of(const MapGrid& grid, const BoxOptions& box) {
@@ -60,16 +93,25 @@ Raster laboratory_ground(const Options& options) {
 
 Release box_release(const Options& options, std::size_t item) {
   const BoxOptions& box = options.box.at(item);
-  Raster thickness = cover_of(laboratory_grid(options), box);
-  for (double& value : thickness.values) value *= box.top - box.bottom;
+  const MapGrid grid = laboratory_grid(options);
+  Raster thickness{grid, std::vector<double>(grid.count(), 0.0)};
+  for (const BoxOptions& piece : pieces_of(box, options.grid)) {
+    const Raster cover = cover_of(grid, piece);
+    for (std::size_t i = 0; i < cover.values.size(); ++i)
+      thickness.values[i] += cover.values[i] * (piece.top - piece.bottom);
+  }
   return {box_name(box, item), std::move(thickness)};
 }
 
 Raster box_surface(const Options& options, const Raster& ground) {
   std::vector<double> height(ground.values.size(), 0.0);
   for (const BoxOptions& box : options.box) {
-    const Raster cover = cover_of(ground.grid, box);
-    for (std::size_t i = 0; i < height.size(); ++i) height[i] = std::max(height[i], cover.values[i] * box.top);
+    Raster own{ground.grid, std::vector<double>(height.size(), 0.0)};
+    for (const BoxOptions& piece : pieces_of(box, options.grid)) {
+      const Raster cover = cover_of(ground.grid, piece);
+      for (std::size_t i = 0; i < height.size(); ++i) own.values[i] += cover.values[i] * piece.top;
+    }
+    for (std::size_t i = 0; i < height.size(); ++i) height[i] = std::max(height[i], own.values[i]);
   }
   Raster surface = ground;
   for (std::size_t i = 0; i < height.size(); ++i) surface.values[i] += height[i];
@@ -78,7 +120,7 @@ Raster box_surface(const Options& options, const Raster& ground) {
 
 std::size_t count_box_points(const Options& options) {
   double count = 0;  // beyond all that can be counted before it overflows
-  for (const BoxOptions& box : options.box) {
+  for (const auto& [box, item] : all_pieces(options)) {
     const auto n = lattice_of(box, options.grid);
     count += static_cast<double>(n[0]) * static_cast<double>(n[1]) * static_cast<double>(n[2]);
   }
@@ -88,9 +130,9 @@ std::size_t count_box_points(const Options& options) {
 SeedPoints seed_boxes(const Options& options) {
   SeedPoints points;
   Shift shift(options.grid.jitter, static_cast<std::uint64_t>(options.grid.jitter_seed));
-  for (std::size_t b = 0; b < options.box.size(); ++b) {
-    const auto n = lattice_of(options.box[b], options.grid);
-    const auto side = sides_of(options.box[b]);
+  for (const auto& [box, item] : all_pieces(options)) {
+    const auto n = lattice_of(box, options.grid);
+    const auto side = sides_of(box);
     const auto place = [&](std::size_t axis, long step) {
       return side[axis].low +
              (static_cast<double>(step) + 0.5 + shift()) * side[axis].length() / static_cast<double>(n[axis]);
@@ -106,7 +148,7 @@ SeedPoints seed_boxes(const Options& options) {
           points.volume.push_back(volume);
           points.extent_x.push_back(side[0].length() / static_cast<double>(n[0]));
           points.extent_y.push_back(side[1].length() / static_cast<double>(n[1]));
-          points.release.push_back(static_cast<int>(b));
+          points.release.push_back(static_cast<int>(item));
         }
       }
     }

@@ -70,12 +70,14 @@ void BoxOptions::describe(recipe::Visitor& v) {
   v.number("north_m", north, recipe::any, "northern side");
   v.number("bottom_m", bottom, recipe::not_negative, "lower side, above the ground");
   v.number("top_m", top, recipe::not_negative, "upper side, above the ground");
+  v.optional_number("top_east_m", top_east, recipe::not_negative,
+                    "upper side at the eastern end, where it slopes; none = top_m");
 }
 
 std::array<BoxSide, 3> sides_of(const BoxOptions& b) {
   return {{{"west_m", "east_m", b.west, b.east},
            {"south_m", "north_m", b.south, b.north},
-           {"bottom_m", "top_m", b.bottom, b.top}}};
+           {"bottom_m", "top_m", b.bottom, std::max(b.top, b.top_east.value_or(b.top))}}};
 }
 
 std::string box_name(const BoxOptions& box, std::size_t item) {
@@ -121,6 +123,9 @@ class BoxChecker {
           "Name it otherwise");
     const auto sides = sides_of(b);
     const auto spacing = point_spacing(o_.grid);
+    if (std::min(b.top, b.top_east.value_or(b.top)) < b.bottom && b.top_east)
+      add(fmt::format("box {}: top_m = {}, top_east_m = {}, bottom_m = {}", item + 1, b.top, *b.top_east, b.bottom),
+          "the top falls below the bottom", "Give tops from bottom_m on, and end the box where they meet");
     for (std::size_t a = 0; a < 3; ++a) {
       if (extends(sides[a], item)) fits(sides[a], spacing[a], item);
     }

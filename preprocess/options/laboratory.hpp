@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,10 @@ struct LaboratoryOptions {
 struct BoxOptions {
   std::string name;
   double west = 0, east = 0, south = 0, north = 0, bottom = 0, top = 0;  ///< [m]
+  std::optional<double> top_east = {};  ///< the top there, where it is not level: a slope [m]
 
+  /// The height of the top over a place between west and east [m].
+  double top_at(double x) const { return top + (top_east.value_or(top) - top) * (x - west) / (east - west); }
   /// The method declares the keys with defaults and help.
   void describe(recipe::Visitor& v);
 };

@@ -22,6 +22,7 @@ struct NewtonControls {
   double tolerance = 1e-6;  ///< of the unbalanced force, over the size of the forces that balance
   Forcing forcing = Forcing::eisenstat_walker;
   double linear_tolerance = 1e-8;  ///< the finest relative residual that a linear system is solved to
+  int patience = 0;                ///< iterations without a halving after which a step is given up; 0: all of them
 };
 
 /// How the linear system of an iteration is solved.

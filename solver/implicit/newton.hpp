@@ -9,6 +9,7 @@
 #include "solver/implicit/friction_smoothing.hpp"
 #include "solver/implicit/line_search.hpp"
 #include "solver/implicit/linear_forcing.hpp"
+#include "solver/implicit/stall.hpp"
 #include "solver/linear/krylov/linear_report.hpp"
 
 namespace talus::solver {
@@ -97,13 +98,14 @@ class Progress {
 
 /// Newton's method makes the iterations of one step from the problem's u. Refused steps end with `converged` false: the
 /// unbalanced force is no number, the linear system has no solution, no share of its change helps, points move too far,
-/// or iterations run out.
+/// the unbalanced force stays, or iterations run out.
 template <NewtonProblem Problem>
 NewtonReport newton(Problem& problem, const NewtonControls& controls) {
   NewtonReport report;
   FrictionSmoothing& smoothing = problem.smoothing();
   detail::Progress progress;
   LinearForcing forcing;
+  Stall stall(controls.patience);
   problem.measure(Linearisation::consistent);
   for (report.iterations = 0; report.iterations < controls.iterations; ++report.iterations) {
     Unbalanced now = detail::settle_contacts(problem);
@@ -126,6 +128,7 @@ NewtonReport newton(Problem& problem, const NewtonControls& controls) {
       report.residual = now.force / size;
       if (report.residual <= controls.tolerance) continue;
     }
+    if (stall.gives_up(report.residual)) return report;
     if (progress.stalls(report.residual, FrictionSmoothing::patience) && smoothing.widen()) progress = {};
     if (!detail::find_change(problem, forcing.next(report.residual, controls), report)) return report;
     if (line_search(problem, now.force, size)) continue;

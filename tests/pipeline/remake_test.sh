@@ -91,6 +91,25 @@ test_data_and_programs_rerun_their_stage_and_those_after() {
   runs solve postprocess
 }
 
+# A scene with a stability.toml, whose results its recipe reads.
+stage_search() {
+  stage_pipelines
+  stand_in postprocess 'maps/sliding.tif score.json'
+  cp pipelines/scene/recipe.toml pipelines/scene/stability.toml
+  change 's,^sliding_surface.*,sliding_surface = "${TALUS_RESULTS}/stability/maps/sliding.tif",'
+}
+
+test_what_is_searched_first_runs_first_and_its_results_rerun_the_scene() {
+  stage_search
+  runs preprocess solve postprocess preprocess solve postprocess
+  grep -q 'stability.toml .*out/scene/stability' arguments || fail "the search has no folder of its own: $(<arguments)"
+  runs
+  change 's/end_time_s = 10.0/end_time_s = 20.0/'
+  runs solve postprocess
+  sed -i 's/end_time_s = 10.0/end_time_s = 30.0/' pipelines/scene/stability.toml
+  runs solve postprocess preprocess solve postprocess
+}
+
 test_place_is_handed_to_the_solver() {
   stage_pipelines
   runs preprocess solve postprocess -- ON=cpu

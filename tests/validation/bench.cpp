@@ -114,7 +114,7 @@ Row Bench::row_of(const Outcome& outcome, const std::string& quantity) const {
   row.quantity = quantity;
   row.fault = outcome.fault;
   row.wall_time = row.particles = row.steps = row.newton = row.cg = row.over_cfl = unknown;
-  if (!outcome.ok() || outcome.frames.empty()) return row;
+  if (!outcome.ok() || outcome.run.summary.particles == 0) return row;
   const RunSummary& s = outcome.run.summary;
   row.wall_time = s.wall_time;
   row.particles = static_cast<double>(s.particles);

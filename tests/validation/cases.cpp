@@ -24,6 +24,10 @@ const std::vector<Case>& cases() {
       {"B6", "vibrating bar, free fall, patch test", true, elastic_motion},
       {"B7", "block on shaking ground", true, shaken_block},
       {"C1", "sand column in long steps", true, large_steps, true},
+      {"D1", "factor of safety of a homogeneous slope", true, homogeneous_slope, true},
+      {"D2", "the same on a foundation layer", true, slope_on_foundation},
+      {"D3", "factor of safety of a slope on a weak seam", true, slope_on_seam},
+      {"D4", "factor of safety of a wedge", true, rock_wedge},
   };
   return list;
 }

@@ -59,5 +59,9 @@ void dam_break(Bench&);             // B5
 void elastic_motion(Bench&);        // B6
 void shaken_block(Bench&);          // B7
 void large_steps(Bench&);           // C1
+void homogeneous_slope(Bench&);     // D1
+void slope_on_foundation(Bench&);   // D2
+void slope_on_seam(Bench&);         // D3
+void rock_wedge(Bench&);            // D4
 
 }  // namespace talus::validation

@@ -46,6 +46,7 @@ Points frame_of(const Columns& c, std::size_t first, std::size_t count, std::siz
 
 std::vector<Points> read_points(const std::filesystem::path& run) {
   const auto file = h5::File::open(run, {run, "Run talus-solve again"});
+  if (!file.exists("/VTKHDF/Steps/Values")) return {};
   const auto times = file.read<double>("/VTKHDF/Steps/Values", file.dims("/VTKHDF/Steps/Values"));
   const auto counts = file.read<std::int64_t>("/VTKHDF/NumberOfPoints", file.dims("/VTKHDF/NumberOfPoints"));
   const Columns columns = read_columns(file);

@@ -17,7 +17,7 @@ struct Points {
   std::size_t size() const { return position.size(); }
 };
 
-/// From group VTKHDF of run.h5. Throws DataError.
+/// From group VTKHDF of run.h5; none where it has no frames of points, as a search for a factor. Throws DataError.
 std::vector<Points> read_points(const std::filesystem::path& run);
 
 /// Where a deposit along x ends: the last point before a gap of one cell, and half a point more (single grains roll on)

@@ -23,7 +23,9 @@ struct FactorBounds {
 };
 
 /// The function brackets the factor up to which `holds` is true, which must not become true again beyond it. It begins
-/// at 1, goes up or down by a quarter until the answer changes, and halves the bracket from there on.
-FactorBracket bracket_factor(const std::function<bool(double)>& holds, const FactorBounds& bounds);
+/// at 1 and goes up or down by a quarter until the answer changes; above a lower end that is `known` it goes up by 2 %
+/// first, and by more each time. It halves the bracket from there on.
+FactorBracket bracket_factor(const std::function<bool(double)>& holds, const FactorBounds& bounds,
+                             FactorBracket known = {});
 
 }  // namespace talus::solver

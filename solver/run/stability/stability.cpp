@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "solver/run/stability/trial_settings.hpp"
 #include "solver/run/stability/weaken.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "solver/scene/make_solver.hpp"
@@ -12,61 +13,14 @@
 namespace talus::solver {
 namespace {
 
-/// An equilibrium is found where this share of the forces is left unbalanced, at most; what fails leaves some
-/// thousandths (docs/decisions/0036).
-constexpr double balanced = 1e-4;
-constexpr int most_iterations = 80;
-
 /// The factor under which the mass is let go, over the one that did not hold.
 constexpr double overload = 1.02;
 /// The way, in cells, that a mass falling under that part of its weight takes until its motion is looked at.
-constexpr double fall = 0.5;
+constexpr double fall = 0.1;
 constexpr int fall_steps = 8;
 /// The kinetic energy at the end over that at half time from which on the mass moves: a free one has four times as
 /// much, one that finds a new equilibrium less than before.
 constexpr double growing = 2;
-/// The way of the last equilibrium over that of the first from which on a failure is believed without letting the mass
-/// go: ways grow without bound towards the limit.
-constexpr double grown = 2;
-
-/// The settings of one step that brings gravity on, from time 0 to 1.
-SolverSettings static_settings(const SolveOptions& options, const GridShape& grid, double factor) {
-  SolverSettings s = make_settings(weakened(options, factor), grid);
-  s.precision = Precision::double_;
-  s.integrator = Integrator::quasi_static;
-  s.common.gravity.ramp = 1;
-  s.common.bed = weakened(s.common.bed, factor);
-  s.common.separation = {};
-  s.common.damping = 0;
-  std::erase_if(s.common.walls, [](const PlaneWall& wall) { return wall.from > 0; });
-  for (PlaneWall& wall : s.common.walls) wall.to = 1e30;
-  std::erase_if(s.common.loads, [](const Load& load) { return load.from > 0; });
-  for (Load& load : s.common.loads) {
-    load.ramp = 1;
-    load.to = 1e30;
-  }
-  s.implicit.dynamic = false;
-  s.implicit.step = 1;
-  s.implicit.step_cuts = 0;
-  s.implicit.tangent = Tangent::frozen_yield;
-  s.implicit.b_bar = true;
-  s.implicit.newton.iterations = std::max(s.implicit.newton.iterations, most_iterations);
-  s.implicit.newton.tolerance = balanced;
-  return s;
-}
-
-/// The same for backward Euler steps of this length [s], with all gravity there.
-SolverSettings falling_settings(const SolveOptions& options, const GridShape& grid, double factor, double step) {
-  SolverSettings s = static_settings(options, grid, factor);
-  s.integrator = Integrator::newmark;
-  s.implicit.dynamic = true;
-  s.implicit.alpha = 0.5;
-  s.implicit.beta = 1;
-  s.implicit.step = step;
-  s.implicit.step_cuts = 8;
-  s.common.gravity.ramp = 0;
-  return s;
-}
 
 /// The function steps to a time and adds up the iterations.
 StepStats advance_to(Solver& solver, double time) {
@@ -143,9 +97,18 @@ Stability StabilitySearch::run() {
     log_info(words(trial));
     return trial.holds;
   };
-  const StabilityOptions& o = options_.stability;
-  found.factor = bracket_factor(holds, {.tolerance = o.tolerance, .largest = o.largest_factor});
-  if (found.factor.closed()) found.failure = fail(overload * found.factor.high);
+  const FactorBounds bounds{.tolerance = options_.stability.tolerance, .largest = options_.stability.largest_factor};
+  found.factor = bracket_factor(holds, bounds);
+  if (!found.factor.closed()) return found;
+  const double failed = found.factor.high;
+  StabilityTrial& last = *std::ranges::find(found.trials, failed, &StabilityTrial::factor);
+  look_again(last);
+  if (last.holds) {
+    log_info(words(last));
+    trusting_ = false;
+    found.factor = bracket_factor(holds, bounds, {.low = failed});
+  }
+  if (found.factor.closed()) found.failure = std::move(nearest_);
   return found;
 }
 
@@ -153,7 +116,7 @@ Stability StabilitySearch::run() {
 /// no equilibrium is found.
 std::optional<SolverState> StabilitySearch::rest(double factor, const SolverState* from, StabilityTrial& trial) const {
   const Scene scene = weakened_scene(factor);
-  SolverSettings settings = static_settings(options_, scene_.grid, factor);
+  SolverSettings settings = static_settings(options_, scene_, factor);
   if (from) settings.common.gravity.ramp = 0;
   const auto solver = from ? resume_solver(scene, settings, device_, *from) : make_solver(scene, settings, device_);
   try {
@@ -176,28 +139,33 @@ Scene StabilitySearch::weakened_scene(double factor) const {
   return scene;
 }
 
-/// A trial: gravity brought on. Where that finds no equilibrium though the last one gave no sign of a limit: the way
-/// from there, then the mass let go.
+/// A trial: gravity brought on. The word of Newton's iterations is taken until it has been wrong once: what happens at
+/// the limit itself is looked at when that is found.
 StabilityTrial StabilitySearch::attempt(double factor) {
   StabilityTrial trial{.factor = factor};
-  const bool from_below = held_factor_ > 0 && factor > held_factor_;
-  std::optional<SolverState> state = rest(factor, nullptr, trial);
-  const bool doubtful = from_below && held_way_ < grown * first_way_;
-  if (!state && doubtful) state = rest(factor, &held_, trial);
-  if (state) {
-    trial.holds = true;
-    trial.way = farthest(*state);
-    if (first_way_ == 0) first_way_ = trial.way;
-    if (factor > held_factor_) {
-      held_ = std::move(*state);
-      held_way_ = trial.way;
-      held_factor_ = factor;
-    }
-  } else if (doubtful) {
-    const Failure failure = fail(overload * factor);
-    trial.holds = trial.by_motion = !failure.shares.empty() && !failure.moves;
-  }
+  if (!keep(rest(factor, nullptr, trial), trial) && !trusting_) look_again(trial);
   return trial;
+}
+
+/// The method takes note of an equilibrium; it returns false where there is none.
+bool StabilitySearch::keep(std::optional<SolverState> state, StabilityTrial& trial) {
+  if (!state) return false;
+  trial.holds = true;
+  trial.way = farthest(*state);
+  if (trial.factor > held_factor_) {
+    held_ = std::move(*state);
+    held_factor_ = trial.factor;
+  }
+  return true;
+}
+
+/// The second look at a trial that found no equilibrium: the way from the last one, then the mass let go.
+void StabilitySearch::look_again(StabilityTrial& trial) {
+  if (held_factor_ == 0 || trial.factor < held_factor_) return;
+  if (keep(rest(trial.factor, &held_, trial), trial)) return;
+  Failure failure = fail(overload * trial.factor);
+  trial.holds = trial.by_motion = !failure.shares.empty() && !failure.moves;
+  if (!trial.holds && !(nearest_.factor > 0 && nearest_.factor < failure.factor)) nearest_ = std::move(failure);
 }
 
 /// The mass let go from the last equilibrium, with its strength divided by `factor`.
@@ -208,7 +176,7 @@ Failure StabilitySearch::fail(double factor) {
   Failure failure{.factor = factor, .time = std::sqrt(2 * fall * cell / ((overload - 1) * gravity))};
   const double begun = held_.clock.time;
   const auto solver = resume_solver(
-      weakened_scene(factor), falling_settings(options_, grid, factor, failure.time / fall_steps), device_, held_);
+      weakened_scene(factor), falling_settings(options_, scene_, factor, failure.time / fall_steps), device_, held_);
   double half = 0, end = 0;
   try {
     advance_to(*solver, begun + 0.5 * failure.time);
@@ -220,6 +188,9 @@ Failure StabilitySearch::fail(double factor) {
     return failure;
   }
   failure.moves = end > growing * half;
+  log_detail(
+      fmt::format("let go with strength / {:.4g}: kinetic energy {:.3g} J after {:.3g} s, {:.3g} J after {:.3g} s",
+                  factor, half, 0.5 * failure.time, end, failure.time));
   const std::vector<double> way = ways(scene_, solver->ground(), held_.points, solver->state().points);
   failure.way = way_of_what_moves(way, scene_.points.volume);
   for (const double own : way) failure.shares.push_back(failure.way > 0 ? own / failure.way : 0);

@@ -60,6 +60,8 @@ class StabilitySearch {
   Scene weakened_scene(double factor) const;
   std::optional<SolverState> rest(double factor, const SolverState* from, StabilityTrial& trial) const;
   StabilityTrial attempt(double factor);
+  bool keep(std::optional<SolverState> state, StabilityTrial& trial);
+  void look_again(StabilityTrial& trial);
   Failure fail(double factor);
   double farthest(const SolverState& state) const;
 
@@ -71,7 +73,8 @@ class StabilitySearch {
   std::vector<std::array<double, 3>> seeds_;  ///< positions of the points, by id [m]
   SolverState held_;                          ///< the equilibrium of the largest factor that held
   double held_factor_ = 0;
-  double first_way_ = 0, held_way_ = 0;  ///< of the farthest point in the first equilibrium and in that one [m]
+  Failure nearest_;       ///< of the least factor at which a second look found no equilibrium
+  bool trusting_ = true;  ///< Newton's iterations have not yet missed an equilibrium that is there
 };
 
 }  // namespace talus::solver

@@ -99,11 +99,6 @@ std::vector<std::string> stability_warnings(const Stability& found, const Critic
         fmt::format("no factor of safety: the ground rests even with its strength over {:.4g}. It is "
                     "level, or held by what has no strength to divide",
                     f.low));
-  if (f.closed() && !found.failure.shares.empty() && !found.failure.moves)
-    warnings.push_back(
-        fmt::format("Newton's iterations found no equilibrium at {:.4g}, but the ground let go at {:.4g} "
-                    "comes to rest: the factor of safety is larger than {:.4g}. Finer cells help",
-                    f.high, found.failure.factor, f.low));
   if (mass.share > nearly_all)
     warnings.push_back(
         fmt::format("{:.0f} % of the ground fails at once: the scene ends where the slide may not. Take "
@@ -117,6 +112,7 @@ std::vector<std::pair<std::string, std::string>> stability_facts(const Stability
                                                          {"stability.upper_factor", number(found.factor.high)}};
   if (!found.factor.closed()) return facts;
   facts.insert(facts.begin(), {"stability.factor_of_safety", fmt::format("{:.4f}", found.factor.middle())});
+  facts.emplace_back("stability.trials", std::to_string(found.trials.size()));
   facts.emplace_back("stability.failure_confirmed", found.failure.moves ? "yes" : "no");
   facts.emplace_back("stability.critical_volume_m3", number(mass.volume));
   facts.emplace_back("stability.critical_area_m2", number(mass.area));

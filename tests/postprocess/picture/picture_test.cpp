@@ -10,6 +10,7 @@
 #include "postprocess/picture/furniture.hpp"
 #include "postprocess/picture/hillshade.hpp"
 #include "postprocess/picture/map_picture.hpp"
+#include "postprocess/picture/search_words.hpp"
 #include "postprocess/picture/view.hpp"
 #include "tests/postprocess/scene.hpp"
 
@@ -159,6 +160,38 @@ TEST(Picture, shows_the_deposit_in_its_classes) {
   empty.maps.deposit_thickness.assign(run.maps.grid.count(), 0.0);
   const auto bare = colours_of(map_picture({empty, {}, no_survey, make_score(empty, {}, no_survey)}));
   EXPECT_LT(coloured_pixels(bare, 60, 150), 10000) << "no deposit: only the legend is coloured";
+}
+
+TEST(Picture, of_a_search_shows_what_fails_first_in_place_of_a_deposit) {
+  auto run = small_run();
+  const std::optional<Survey> no_survey;
+  const auto dark = [&] {
+    return coloured_pixels(colours_of(map_picture({run, {}, no_survey, make_score(run, {}, no_survey)})), 60, 150);
+  };
+  run.maps.critical_thickness.assign(run.maps.grid.count(), 0.0);
+  EXPECT_LT(dark(), 10000) << "nothing fails: only the legend is coloured, though ground lies there";
+  std::swap(run.maps.critical_thickness, run.maps.deposit_thickness);
+  EXPECT_GT(dark(), 10000);
+}
+
+TEST(Picture, of_a_search_says_the_factor_and_the_mass) {
+  auto run = small_run();
+  const std::optional<Survey> no_survey;
+  const Options options;
+  const Score score;
+  const PictureInput input{run, options, no_survey, score};
+  EXPECT_FALSE(shows_search(input));
+  run.maps.critical_thickness = run.maps.deposit_thickness;
+  run.summary.volume_released = 103000;
+  run.summary.provenance.emplace_back("stability.lower_factor", "1.2112");
+  EXPECT_TRUE(shows_search(input));
+  EXPECT_NE(search_line(input).find("no factor of safety"), std::string::npos) << "the bracket is not closed";
+  EXPECT_EQ(search_numbers(input).size(), 2U) << "ground and lower end";
+  run.summary.provenance.emplace_back("stability.factor_of_safety", "1.2174");
+  run.summary.provenance.emplace_back("stability.critical_volume_m3", "44318.5");
+  EXPECT_EQ(search_line(input).find("factor of safety 1.22"), 0U) << search_line(input);
+  const auto numbers = search_numbers(input);
+  EXPECT_EQ(std::ranges::count(numbers, std::pair<std::string, std::string>("Fails first", volume_words(44300))), 1);
 }
 
 int blue_pixels(const talus::Run& run, const std::optional<Survey>& survey) {

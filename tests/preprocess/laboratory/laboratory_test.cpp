@@ -1,5 +1,7 @@
 #include "preprocess/laboratory/laboratory.hpp"
 
+#include <map>
+
 #include "common/map/sum.hpp"
 #include "preprocess/scene/prepare.hpp"
 #include "tests/preprocess/scene.hpp"
@@ -121,6 +123,47 @@ TEST(laboratory, counts_what_it_would_seed_and_jitters_inside_the_spacing) {
   EXPECT_GT(largest, 0.1);
   EXPECT_LE(largest, 0.2);
   EXPECT_NEAR(volume_of(shaken, 0), 15, 1e-12);
+}
+
+TEST(laboratory, fills_a_box_with_a_sloping_top_up_to_it) {
+  // 5 m high in the west; 2 or 8 m in the east, 4 m on.
+  for (const double top_east : {2.0, 8.0}) {
+    Options o = bench();
+    o.box[0] = {"", 3, 7, 4, 5, 0, 5};
+    o.box[0].top_east = top_east;
+    const Domain domain = prepared(o).domain;
+    std::map<double, double> top;
+    for (std::size_t p = 0; p < domain.points.size(); ++p) {
+      double& highest = top[domain.points.x[p]];
+      highest = std::max(highest, domain.points.height[p] + 0.25);
+    }
+    ASSERT_EQ(top.size(), 8U);
+    for (const auto& [x, height] : top) {
+      // A point belongs to the box where its place does: a column ends within half a point of the top.
+      EXPECT_NEAR(height, 5 + (top_east - 5) * (x - 3) / 4, 0.25 + 1e-9) << x;
+    }
+    EXPECT_NEAR(volume_of(domain.points, 0), 4 * (5 + top_east) / 2, 1e-9) << "what is left out above is put in below";
+  }
+}
+
+TEST(laboratory, counts_the_points_under_a_sloping_top) {
+  Options o = bench();
+  o.box[0] = {"", 3, 7, 4, 5, 0, 5};
+  o.box[0].top_east = 0;
+  EXPECT_EQ(count_box_points(o), seed_boxes(o).size());
+  EXPECT_LT(count_box_points(o), 8U * 2 * 10 * 6 / 10);
+  Sum thickness;
+  const Release release = box_release(o, 0);
+  for (const double value : release.thickness.values) thickness.add(value);
+  EXPECT_NEAR(thickness.value(), volume_of(seed_boxes(o), 0), 1e-9) << "the map holds what the points stand for";
+}
+
+TEST(laboratory, refuses_a_top_that_falls_below_the_bottom) {
+  Options o = bench();
+  o.box[0].bottom = 1;
+  o.box[0].top_east = 0.5;
+  const std::string faults = faults_of(o);
+  EXPECT_NE(faults.find("top_east_m = 0.5"), std::string::npos) << faults;
 }
 
 TEST(laboratory, refuses_a_box_that_the_points_would_not_fill) {

@@ -55,6 +55,7 @@ TEST(samples, are_what_the_program_makes) {
   expect_committed("rough-slope", hard_sample(samples::rough_slope(), 2));
   expect_committed("thinning-slide", hard_sample(samples::thinning_slide(), 5));
   expect_committed("valley", samples::valley(10));
+  expect_committed("weathered-slope", hard_sample(samples::weathered_slope(), 5));
 }
 
 TEST(samples, are_small) {

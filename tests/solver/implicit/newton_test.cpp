@@ -128,6 +128,29 @@ TEST(Newton, ends_when_iterations_run_out) {
   EXPECT_EQ(report.iterations, 2);
 }
 
+TEST(Newton, gives_up_a_body_that_moves_on_without_an_equilibrium) {
+  // Pulled by 1.1, held by no more than 1; the tangent is that of the start, so each change lets it go a little
+  // further.
+  const auto pulled = [](double by) {
+    return scalar_problem(
+        0, [by](double u) { return by - u / (1 + u); }, [](double) { return 1.0; });
+  };
+  ToyProblem falls = pulled(1.1), rests = pulled(0.6);
+  NewtonControls patient = controls(1e-4);
+  patient.iterations = 80;
+  const NewtonReport all = newton(falls, patient);
+  EXPECT_FALSE(all.converged);
+  EXPECT_EQ(all.iterations, 80);
+  falls.u(0) = 0;
+  patient.patience = 8;
+  const NewtonReport few = newton(falls, patient);
+  EXPECT_FALSE(few.converged);
+  EXPECT_LT(few.iterations, 40);
+  const NewtonReport slow = newton(rests, patient);
+  EXPECT_TRUE(slow.converged);
+  EXPECT_GT(slow.iterations, 2 * patient.patience) << "it must need more iterations than the test waits for";
+}
+
 /// Two blocks on a rough bed, each on a spring of its own and with one between them; the first is pulled.
 ToyProblem two_blocks(double pull, double first_limit, double second_limit) {
   ToyProblem p;

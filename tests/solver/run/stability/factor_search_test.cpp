@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 namespace talus::solver::testing {
 namespace {
@@ -29,6 +30,16 @@ TEST(FactorSearch, says_when_all_or_none_held) {
   EXPECT_EQ(none.low, 0);
   EXPECT_EQ(none.high, 0.01);
   EXPECT_FALSE(all.closed() || none.closed());
+}
+
+TEST(FactorSearch, goes_on_from_what_is_known) {
+  std::vector<double> tried;
+  const FactorBracket found = bracket_factor([&](double factor) { return tried.push_back(factor), factor <= 2; },
+                                             {.tolerance = 0.005}, {.low = 1.6});
+  EXPECT_LE(found.low, 2);
+  EXPECT_GT(found.high, 2);
+  EXPECT_EQ(tried.front(), 1.02 * 1.6) << "neither 1 again nor below what held: what is known may be near the limit";
+  EXPECT_LT(tried.size(), 14U) << "and it may be far from it";
 }
 
 TEST(FactorSearch, tries_no_more_often_than_the_bracket_asks_for) {

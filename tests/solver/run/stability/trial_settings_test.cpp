@@ -1,0 +1,61 @@
+// How trials are computed.
+#include "solver/run/stability/trial_settings.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/solver/scenes.hpp"
+
+namespace talus::solver::testing {
+namespace {
+
+/// Points that fill so many cells along each axis, one in each corner cell.
+ParticleState corners_of(int nx, int ny, int nz) {
+  ParticleState points;
+  points.cell[0] = {3, 2 + nx};
+  points.cell[1] = {5, 4 + ny};
+  points.cell[2] = {0, nz - 1};
+  return points;
+}
+
+TEST(TrialSettings, call_strips_narrow_and_slopes_of_some_width_not) {
+  EXPECT_TRUE(narrow(corners_of(200, 1, 60))) << "one cell wide, 60 high: 2 x 61 nodes in a section";
+  EXPECT_FALSE(narrow(corners_of(200, 1, 70)));
+  EXPECT_TRUE(narrow(corners_of(1, 200, 30))) << "whatever the axis";
+  EXPECT_TRUE(narrow(corners_of(2, 5, 300)));
+  EXPECT_FALSE(narrow(corners_of(20, 20, 10)));
+  EXPECT_FALSE(narrow({})) << "nothing to factorise";
+}
+
+TEST(TrialSettings, factorise_narrow_ground_only_where_nobody_asked_for_another_solver) {
+  Scene strip, wide;
+  strip.points = corners_of(40, 1, 20);
+  wide.points = corners_of(40, 40, 20);
+  SolveOptions options;
+  EXPECT_EQ(static_settings(options, strip, 1).implicit.linear.solver, LinearSolver::cholesky);
+  EXPECT_EQ(static_settings(options, wide, 1).implicit.linear.solver, LinearSolver::pcg);
+  options.implicit.linear_solver = LinearSolver::bicgstab;
+  EXPECT_EQ(static_settings(options, strip, 1).implicit.linear.solver, LinearSolver::bicgstab);
+}
+
+TEST(TrialSettings, bring_on_all_that_acts_from_the_start_and_nothing_else) {
+  Scene scene;
+  scene.points = corners_of(4, 4, 4);
+  SolveOptions options;
+  options.walls.push_back({Axis::x, 0, Side::above, WallKind::roller});
+  options.walls.push_back({Axis::y, 0, Side::above, WallKind::roller});
+  options.walls[0].to = 3;
+  options.walls[1].from = 1;
+  const SolverSettings rest = static_settings(options, scene, 1.2), fall = falling_settings(options, scene, 1.2, 0.1);
+  EXPECT_EQ(rest.integrator, Integrator::quasi_static);
+  EXPECT_EQ(rest.common.gravity.ramp, 1);
+  ASSERT_EQ(rest.common.walls.size(), 1U) << "the second comes later";
+  EXPECT_GT(rest.common.walls[0].to, 1e9) << "the first stays";
+  EXPECT_EQ(fall.integrator, Integrator::newmark);
+  EXPECT_EQ(fall.common.gravity.ramp, 0);
+  EXPECT_EQ(fall.implicit.step, 0.1);
+  EXPECT_GT(rest.implicit.newton.patience, fall.implicit.newton.patience) << "a step in time can be cut";
+  EXPECT_GT(fall.implicit.newton.patience, 0);
+}
+
+}  // namespace
+}  // namespace talus::solver::testing
