@@ -272,8 +272,8 @@ def flat(node):
 
 
 def announced_steps(said):
-    found = re.search(r"about ([0-9.e+]+|inf) steps", said)
-    return float(found.group(1)) if found else 0.0
+    found = re.findall(r"(?:about|gravity is brought on first, in) ([0-9.e+]+|inf) steps", said)
+    return max(map(float, found), default=0.0)
 
 
 def judged(args, folder, changes):
@@ -288,7 +288,7 @@ def judged(args, folder, changes):
             implicit = "integrator" in (folder / "recipe.toml").read_text()
             if stage != "solve" or not (implicit or steps > 1000):
                 raise Fault(f"{stage} still goes on after {args.time:g} s; it spoke of {steps:g} steps: {said[-200:]}")
-            if "--restart" not in said:
+            if "--restart" not in said and "run the stage again" not in said:
                 raise Fault(f"stopped without a word on how to go on: {said[-200:]}")
             return "stopped", f"{steps:.3g} steps were announced"
         if code != 0:

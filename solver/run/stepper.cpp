@@ -69,6 +69,7 @@ BatchReport Stepper::take_batch(double next_event) {
   cost_.simulated += batch.clock.time - time_;
   cost_.wall += wall();
   if (!batch.sorted || batch.clock.halt == failed) return batch;  // points that have left are still among the others
+  if (interrupted()) return batch;  // the step may have been given up, and its cost says nothing
   const double rate = positive_from_bits(batch.clock.rate_bits);
   cost_.wave_step = rate > 0 ? 1 / rate : 0;
   cost_.speed = positive_from_bits(batch.clock.speed_bits);
