@@ -39,6 +39,8 @@ import time
 STAGES = ("preprocess", "solve", "postprocess")
 # Keys that name files, places or other items of a recipe: a random text says nothing about numbers.
 LEFT_OUT = {"end_time_s", "accept", "working_crs", "classes_m", "animation", "stiffness_check"}
+# Tables that nothing can be said in without a file.
+LEFT_OUT_TABLES = {"solve.shaking"}
 Key = collections.namedtuple("Key", "table name default words low high open_low open_high whole")
 
 
@@ -66,7 +68,7 @@ def parsed(table, name, value, help_line):
     inside = found.group(1) if found else ""
     default = json.loads(value.replace("'", '"')) if not value.startswith('"') else value[1:-1]
     words = re.findall(r'"([^"]*)"', inside)
-    if name in LEFT_OUT or (isinstance(default, str) and not words):
+    if name in LEFT_OUT or table in LEFT_OUT_TABLES or (isinstance(default, str) and not words):
         return None
     low, high, open_low, open_high = -math.inf, math.inf, False, False
     for sign, number in re.findall(r"(>=|<=|>|<) (-?[0-9.e+-]+)", inside):
@@ -300,7 +302,11 @@ def judged(args, folder, changes):
 def one(args, n, keys):
     """Draws a recipe, runs it, and says how it ended: a row of the table."""
     rng = random.Random(f"{args.seed}/{n}")
-    changes = [(key, drawn(rng, key)) for key in rng.sample(keys, rng.randint(1, 8))]
+    chosen = rng.sample(keys, rng.randint(1, 8))
+    always = [key for key in keys if f"{key.table}.{key.name}" in args.always]
+    if always and not set(always) & set(chosen):
+        chosen.append(rng.choice(always))
+    changes = [(key, drawn(rng, key)) for key in chosen]
     folder = args.out / f"recipe-{n:04d}"
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir()
@@ -323,6 +329,8 @@ def main():
     parser.add_argument("--first", type=int, default=0, help="number of the first recipe")
     parser.add_argument("--seed", type=int, default=20)
     parser.add_argument("--time", type=float, default=20, help="seconds of processor time that a stage may take")
+    parser.add_argument("--always", action="append", default=[], metavar="TABLE.KEY",
+                        help="every recipe has this key, or one of these")
     parser.add_argument("--jobs", type=int, default=1, help="recipes at a time")
     args = parser.parse_args()
     args.bin = args.bin.resolve()
