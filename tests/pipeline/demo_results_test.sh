@@ -41,17 +41,14 @@ test_maps_pass_gdals_own_cog_validator() {
   done
 }
 
-# 99 % of the volume has been seen packed up to 2.0. A point is an eighth of a full cell: four more of them are allowed
-# for, since which cell they lie in is decided by rounding, and as many again in the one densest cell.
+# Points that gather within cells are denser than points that lie by chance.
 test_points_do_not_drift_together() {
-  /usr/bin/python3 - "$out/history.csv" >stdout 2>stderr <<'PYTHON' || fail "the points of the valley are packed"
-import csv, sys
-with open(sys.argv[1]) as file:
-    rows = list(csv.DictReader(file))
-packing, densest = (max(float(row[name]) for row in rows) for name in ("packing_p99", "packing_max"))
-print(f"99 % of the volume below {packing}, densest cell {densest}")
-sys.exit(not (1 <= packing < 2.5 and packing <= densest < 3))
+  PYTHONPATH=$TALUS_SOURCE/tests/pipeline /usr/bin/python3 -B - "$out" >stdout 2>stderr <<'PYTHON' ||
+import sys
+import packing
+sys.exit(", ".join(packing.faults(sys.argv[1])) or None)
 PYTHON
+    fail "the points of the valley are packed"
 }
 
 # The volume on the map, summed up by GDAL, against the solver's own count of its points.
