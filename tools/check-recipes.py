@@ -15,8 +15,9 @@ Each recipe ends in one of these ways, and anything else is a fault:
     result   exit 0 of all stages; maps finite, volume kept, nothing faster than its energy allows, within
              --time (of processor time)
     refused  exit 2 or 3 (before the run) or 4 (the computation failed), with words that name a key, a file or a mend
-    stopped  still going at --time, which it had said before (the number of steps); ended by SIGTERM within 5 s, with
-             130 and a word on how to go on
+    stopped  still going at --time, which it had said before (the number of steps; not that of implicit ones, nor how
+             long a search for the factor of safety takes); ended by SIGTERM within 5 s, with 130 and a word on how to
+             go on
 
 Written to OUT: table.csv, and the folder of each recipe that is a fault. Exit 1 where there is one.
 """
@@ -287,7 +288,8 @@ def judged(args, folder, changes):
         code, said = run([str(word) for word in command], args.time, folder / f"{stage}.log")
         if code == "stopped":
             steps = announced_steps(said)
-            implicit = "integrator" in (folder / "recipe.toml").read_text()
+            text = (folder / "recipe.toml").read_text()
+            implicit = "integrator" in text or "factor_of_safety = true" in text
             if stage != "solve" or not (implicit or steps > 1000):
                 raise Fault(f"{stage} still goes on after {args.time:g} s; it spoke of {steps:g} steps: {said[-200:]}")
             if "--restart" not in said and "run the stage again" not in said:
