@@ -15,9 +15,9 @@ Each recipe ends in one of these ways, and anything else is a fault:
     result   exit 0 of all stages; maps finite, volume kept, nothing faster than its energy allows, within
              --time (of processor time)
     refused  exit 2 or 3 (before the run) or 4 (the computation failed), with words that name a key, a file or a mend
-    stopped  still going at --time, which it had said before (the number of steps; not that of implicit ones, nor how
-             long a search for the factor of safety takes); ended by SIGTERM within 5 s, with 130 and a word on how to
-             go on
+    stopped  still going at --time, which it had said before (the number of steps and points: more than a thousand steps
+             of the scene's 128 points; implicit steps and the search for the factor of safety announce none); ended by
+             SIGTERM within 5 s, with 130 and a word on how to go on
 
 Written to OUT: table.csv, and the folder of each recipe that is a fault. Exit 1 where there is one.
 """
@@ -274,9 +274,12 @@ def flat(node):
     return found
 
 
-def announced_steps(said):
+def announced_work(said):
+    """Steps times points, as the solver spoke of them before its first step, and the steps alone."""
     found = re.findall(r"(?:about|gravity is brought on first, in) ([0-9.e+]+|inf) steps", said)
-    return max(map(float, found), default=0.0)
+    points = re.search(r"(\d+) material points", said)
+    steps = max(map(float, found), default=0.0)
+    return steps * (int(points.group(1)) if points else 0), steps
 
 
 def judged(args, folder, changes):
@@ -287,10 +290,10 @@ def judged(args, folder, changes):
         command += ["--on", "cpu"] if stage == "solve" else []
         code, said = run([str(word) for word in command], args.time, folder / f"{stage}.log")
         if code == "stopped":
-            steps = announced_steps(said)
+            work, steps = announced_work(said)
             text = (folder / "recipe.toml").read_text()
             implicit = "integrator" in text or "factor_of_safety = true" in text
-            if stage != "solve" or not (implicit or steps > 1000):
+            if stage != "solve" or not (implicit or work > 1000 * 128):
                 raise Fault(f"{stage} still goes on after {args.time:g} s; it spoke of {steps:g} steps: {said[-200:]}")
             if "--restart" not in said and "run the stage again" not in said:
                 raise Fault(f"stopped without a word on how to go on: {said[-200:]}")
@@ -306,7 +309,7 @@ def one(args, n, keys):
     rng = random.Random(f"{args.seed}/{n}")
     chosen = rng.sample(keys, rng.randint(1, 8))
     always = [key for key in keys if f"{key.table}.{key.name}" in args.always]
-    if always and not set(always) & set(chosen):
+    if always and not any(key in chosen for key in always):
         chosen.append(rng.choice(always))
     changes = [(key, drawn(rng, key)) for key in chosen]
     folder = args.out / f"recipe-{n:04d}"
