@@ -54,7 +54,8 @@ def faults(out):
                     given("poisson_ratio"))
     p99, densest = (max(float(row[name]) for row in rows) for name in ("packing_p99", "packing_max"))
     most_p99, most = (weight * by_chance(cells / score["particles"], cells, len(rows), volume) for volume in (0.01, 0))
-    print(f"packing: 99 % of the volume below {p99:.3g} (bound {most_p99:.3g}), densest cell {densest:.3g} ({most:.3g})")
+    print(f"packing: 99 % of the volume below {p99:.3g} (bound {most_p99:.3g}), "
+          f"densest cell {densest:.3g} ({most:.3g})")
     found = []
     if not 1 <= p99 <= most_p99:
         found.append("packing of 99 % of the volume")

@@ -88,8 +88,8 @@ TEST_P(SampleBounds, no_slide_has_more_energy_than_it_fell_through) {
     const std::vector<PointSeen> start = run.points();
     Shares worst;
     Packing packing;
-    for (double time = bounded.interval; time < bounded.end + 1e-9; time += bounded.interval) {
-      run.run_to(time);
+    for (int n = 1; n * bounded.interval <= bounded.end; ++n) {
+      run.run_to(n * bounded.interval);
       look(run, start, worst);
       look_at_packing(run, packing);
     }
@@ -110,7 +110,8 @@ TEST_P(SampleBounds, drag_delivered_is_drag_due) {
   for (const BoundedScene& bounded : {bounded_scenes[0], bounded_scenes[1]}) {
     SampleRun run(bounded.scene(), GetParam());
     double delivered = 0, due = 0, least = 1;
-    for (double time = bounded.interval; time < bounded.end + 1e-9; time += bounded.interval) {
+    for (int n = 1; n * bounded.interval <= bounded.end; ++n) {
+      const double time = n * bounded.interval;
       run.run_to(time);
       const Drag drag = drag_of(run, GetParam());
       delivered += drag.delivered;
