@@ -13,6 +13,10 @@ if(TALUS_WERROR)
   list(APPEND _warnings -Werror)
 endif()
 target_compile_options(talus_warnings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:${_warnings}>)
+# What has no kernels is also clean of conversions that may change a value or a sign.
+add_library(talus_strict_warnings INTERFACE)
+target_link_libraries(talus_strict_warnings INTERFACE talus_warnings)
+target_compile_options(talus_strict_warnings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wconversion;-Wsign-conversion>)
 # Sanitizers. An undefined operation ends the test rather than being told of. FORTIFY and sanitizers do not go together.
 if(TALUS_FUZZ)
   if(NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")

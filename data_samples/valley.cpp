@@ -146,7 +146,7 @@ class SurveyError {
   explicit SurveyError(unsigned seed) : seed_(seed), random_(seed) {}
   double operator()(double x, double y) {
     double sum = 0;  // of twelve uniform numbers: near enough to normal, and the same on every machine
-    for (int i = 0; i < 12; ++i) sum += random_() / 4294967296.0;
+    for (int i = 0; i < 12; ++i) sum += static_cast<double>(random_()) / 4294967296.0;
     return 0.15 * (sum - 6) + 0.4 * noise(x / 60, y / 60, seed_);
   }
 

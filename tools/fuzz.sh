@@ -22,14 +22,17 @@ for target in "${targets[@]}"; do
   for golden in tests/golden/"$target"-*; do
     if [[ -f $golden ]]; then cp "$golden" "$seen"; fi
   done
+  leaks=1
   options=(-max_total_time="$seconds" -timeout=20 -rss_limit_mb=4096 -max_len=262144 -artifact_prefix="$findings/")
   # Where a library reads the bytes first, its crashes are its own (programs read such files in a child): count, go on.
+  # What OpenVDB leaves behind when it throws would end every job; the child gives it back when it ends.
   case $target in
     run | checkpoint | domain | level_set)
+      leaks=0
       options+=(-fork=1 -ignore_crashes=1 -ignore_timeouts=1 -ignore_ooms=1) ;;
   esac
-  build-fuzz/bin/talus-fuzz-"$target" "${options[@]}" "$seen" tests/fuzz/corpus/"$target" \
-    >"build-fuzz/$target.log" 2>&1 || failed=1
+  ASAN_OPTIONS=detect_leaks=$leaks build-fuzz/bin/talus-fuzz-"$target" "${options[@]}" "$seen" \
+    tests/fuzz/corpus/"$target" >"build-fuzz/$target.log" 2>&1 || failed=1
   runs=$(grep -oE '^#[0-9]+' "build-fuzz/$target.log" | tail -n 1 | tr -d '#' || true)
   printf '%-20s %10s inputs in %s s, %s findings (%s)\n' "$target" "${runs:-0}" "$seconds" \
     "$(find "$findings" -type f | wc -l)" "$findings"

@@ -44,10 +44,10 @@ std::optional<GroundScale> ground_scale_at(const std::string& crs_wkt, double x,
   if (!way || way->Transform(5, xs.data(), ys.data()) == 0) return std::nullopt;
   const double radian = geographic->GetAngularUnits();
   const Radii radii = radii_of(srs, ys[0] * radian);
-  const auto east = [&](int a, int b) {
+  const auto east = [&](std::size_t a, std::size_t b) {
     return std::remainder((xs.at(b) - xs.at(a)) * radian, 2 * std::numbers::pi) * radii.parallel;
   };
-  const auto north = [&](int a, int b) { return (ys.at(b) - ys.at(a)) * radian * radii.meridian; };
+  const auto north = [&](std::size_t a, std::size_t b) { return (ys.at(b) - ys.at(a)) * radian * radii.meridian; };
   const double xe = east(1, 2), xn = north(1, 2), ye = east(3, 4), yn = north(3, 4);
   const GroundScale scale{2 * half / std::hypot(xe, xn), 2 * half / std::hypot(ye, yn),
                           4 * half * half / std::abs(xe * yn - xn * ye)};

@@ -23,6 +23,10 @@ struct NewtonControls {
   Forcing forcing = Forcing::eisenstat_walker;
   double linear_tolerance = 1e-8;  ///< the finest relative residual that a linear system is solved to
   int patience = 0;                ///< iterations without a halving after which a step is given up; 0: all of them
+  /// It is asked between iterations, of linear systems too, whether the step is given up; null: never.
+  bool (*give_up)() = nullptr;
+  /// Whether the step is given up: its iterations end as they are, and nothing of it is kept.
+  bool gives_up() const { return give_up && give_up(); }
 };
 
 /// How the linear system of an iteration is solved.

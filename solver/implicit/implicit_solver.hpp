@@ -37,7 +37,8 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
   }
 
   /// The method makes one step, or a part of one where it had to be cut; see Solver::advance(). It throws
-  /// NumericalError where the smallest step does not converge.
+  /// NumericalError where the smallest step does not converge. Where the controls give up, the state stays that of the
+  /// step's start, and the report counts no iteration.
   BatchReport advance() override {
     Clock clock = read_clock();
     clock.halt = clock.request = running;
@@ -49,6 +50,12 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     record_points();
     BatchReport report;
     const double step = solve_step(clock, report.stats);
+    if (!(step > 0)) {
+      report.sorted = true;
+      report.clock = clock;
+      report.stats = {};
+      return report;
+    }
     first_ = false;
     clock.accelerated = 1;
     clock.step_size = step;
@@ -124,8 +131,8 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     return clock.ground_acceleration();
   }
 
-  /// The method solves for the end of the next step and returns its length [s]. It throws NumericalError where no
-  /// halving helps.
+  /// The method solves for the end of the next step and returns its length [s]; 0: it was given up. It throws
+  /// NumericalError where no halving helps.
   double solve_step(const Clock& clock, StepStats& stats) {
     double step = length_.next(remaining(clock));
     for (int cut = 0;; ++cut) {
@@ -149,6 +156,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
         length_.accept(step, found.iterations, found.motion);
         return step;
       }
+      if (controls_.newton.gives_up()) return 0;
       if (cut >= controls_.step_cuts) refuse_step(clock, step, stats, controls_.dynamic);
       step = length_.refuse(step, found.motion);
     }

@@ -33,13 +33,13 @@ concept SearchProblem = requires(P& p, double number) {
 /// The line search takes u += s change with the largest s = 1, 1/2, 1/4 ... after which less force is unbalanced than
 /// `before`, or less of it along the change: a sheet that must turn passes through larger forces on its way, but
 /// downhill in energy. It leaves the tangent there too: the first share is nearly always taken, and the next iteration
-/// begins with it. It returns false, and leaves u as it was, where no share down to 1/512 does. `size`: of the forces
-/// [N].
-template <SearchProblem Problem>
-bool line_search(Problem& problem, double before, double size) {
+/// begins with it. It returns false, and leaves u as it was, where no share down to 1/512 does, or where gives_up()
+/// says so before. `size`: of the forces [N].
+template <SearchProblem Problem, class GivesUp>
+bool line_search(Problem& problem, double before, double size, const GivesUp& gives_up) {
   const double downhill = problem.begin_search();
   double share = 1;
-  for (int halving = 0; halving < 10; ++halving) {
+  for (int halving = 0; halving < 10 && !gives_up(); ++halving) {
     problem.apply_change(share);
     problem.stick_reversed();
     problem.measure(Linearisation::consistent);
@@ -53,6 +53,11 @@ bool line_search(Problem& problem, double before, double size) {
     share *= 0.5;
   }
   return false;
+}
+/// The same to its end.
+template <SearchProblem Problem>
+bool line_search(Problem& problem, double before, double size) {
+  return line_search(problem, before, size, [] { return false; });
 }
 
 }  // namespace talus::solver

@@ -98,7 +98,7 @@ class Progress {
 
 /// Newton's method makes the iterations of one step from the problem's u. Refused steps end with `converged` false: the
 /// unbalanced force is no number, the linear system has no solution, no share of its change helps, points move too far,
-/// the unbalanced force stays, or iterations run out.
+/// the unbalanced force stays, iterations run out, or the controls give up.
 template <NewtonProblem Problem>
 NewtonReport newton(Problem& problem, const NewtonControls& controls) {
   NewtonReport report;
@@ -107,7 +107,7 @@ NewtonReport newton(Problem& problem, const NewtonControls& controls) {
   LinearForcing forcing;
   Stall stall(controls.patience);
   problem.measure(Linearisation::consistent);
-  for (report.iterations = 0; report.iterations < controls.iterations; ++report.iterations) {
+  for (report.iterations = 0; report.iterations < controls.iterations && !controls.gives_up(); ++report.iterations) {
     Unbalanced now = detail::settle_contacts(problem);
     const double size = now.size;
     report.residual = now.force / size;
@@ -131,7 +131,7 @@ NewtonReport newton(Problem& problem, const NewtonControls& controls) {
     if (stall.gives_up(report.residual)) return report;
     if (progress.stalls(report.residual, FrictionSmoothing::patience) && smoothing.widen()) progress = {};
     if (!detail::find_change(problem, forcing.next(report.residual, controls), report)) return report;
-    if (line_search(problem, now.force, size)) continue;
+    if (line_search(problem, now.force, size, [&] { return controls.gives_up(); })) continue;
     if (!smoothing.widen()) return report;
     problem.measure(Linearisation::consistent);  // where the search began
   }

@@ -63,7 +63,9 @@ class TangentSystem {
     if (direct()) return cholesky_.solve(stresses_.view(), held_nodes(), b, x);
     refresh();
     const ProfilePhase<Device> phase(parts_.device, "conjugate gradients");
-    const KrylovLimits limits{.tolerance = tolerance, .iterations = parts_.controls.linear.iterations};
+    const KrylovLimits limits{.tolerance = tolerance,
+                              .iterations = parts_.controls.linear.iterations,
+                              .give_up = parts_.controls.newton.give_up};
     Product product{*this};
     return parts_.controls.linear.solver == LinearSolver::pcg ? cg_.solve(product, preconditioner_, b, x, limits)
                                                               : bicgstab_.solve(product, preconditioner_, b, x, limits);

@@ -33,6 +33,7 @@ void load_by_gravity(Scene& scene, const SolveOptions& options, const AnyDevice&
   const SolverSettings settings = make_settings(options, scene.grid);
   const auto loader = make_solver(resting, for_gravity_loading(settings, options.gravity_loading_steps), device);
   loader->set_next_event(1);
+  log_info(fmt::format("gravity is brought on first, in {} steps at least", options.gravity_loading_steps));
   std::int64_t newton = 0, linear = 0;
   while (loader->clock().time < 1) {
     stop_if_interrupted("bringing on gravity");

@@ -73,6 +73,7 @@ BatchReport Stepper::take_batch(double next_event) {
   work_.simulated += batch.clock.time - time_;
   work_.work += work_of(options_.flow, count_of(batch));
   if (!batch.sorted || batch.clock.halt == failed) return batch;  // points that have left are still among the others
+  if (interrupted()) return batch;  // the step may have been given up, and its cost says nothing
   const double rate = positive_from_bits(batch.clock.rate_bits);
   work_.wave_step = rate > 0 ? 1 / rate : 0;
   work_.speed = positive_from_bits(batch.clock.speed_bits);

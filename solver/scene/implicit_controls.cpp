@@ -1,5 +1,7 @@
 #include "solver/scene/implicit_controls.hpp"
 
+#include "common/stage/stage.hpp"
+
 namespace talus::solver {
 
 ImplicitControls make_implicit_controls(const SolveOptions& options) {
@@ -12,7 +14,8 @@ ImplicitControls make_implicit_controls(const SolveOptions& options) {
           .newton = {.iterations = o.newton_iterations,
                      .tolerance = o.newton_tolerance,
                      .forcing = o.forcing,
-                     .linear_tolerance = o.linear_tolerance},
+                     .linear_tolerance = o.linear_tolerance,
+                     .give_up = interrupted},
           .linear = {.solver = o.linear_solver,
                      .iterations = o.linear_iterations,
                      .form = o.operator_,

@@ -2,6 +2,7 @@
 places, so that two runs of one recipe agree."""
 import hashlib
 import json
+import os
 import pathlib
 import re
 import shutil
@@ -20,31 +21,17 @@ except ImportError:
 
 STAGES = ("preprocess", "solve", "postprocess")
 
-RECIPE = """[scene]
-name = "bowl"
-title = "Bowl"
-[preprocess]
-before_dem = "before.asc"
-after_dem = "after.asc"
-[preprocess.grid]
-layer_height_m = {layer}
+# What the pipeline's scene has not: a wall, and more events in less time.
+OBSTACLE = """
 [[preprocess.obstacle]]
 name = "wall"
 polygons = "wall.geojson"
 height_m = 6.0
-[solve]
-end_time_s = {end}
-frame_interval_s = 0.25
-checkpoint_interval_s = 0.4
-[solve.material]
-friction_angle_deg = 30.0
-[solve.base]
-friction_angle_deg = 15.0
+
 [[solve.obstacle]]
 name = "wall"
-[postprocess.survey]
-thickness = "survey.asc"
 """
+EVENTS = "frame_interval_s = 0.25\ncheckpoint_interval_s = 0.4"
 
 WALL = """{"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {}, "geometry":
 {"type": "Polygon", "coordinates":
@@ -52,26 +39,26 @@ WALL = """{"type": "FeatureCollection", "features": [{"type": "Feature", "proper
 """
 
 
-def write_grid(file, height):
-    """An ASCII grid of 20 x 20 cells of 10 m; height(column, row) [m], row 0 southernmost."""
-    rows = "".join(" ".join(f"{height(i, j):.6g}" for i in range(20)) + "\n" for j in reversed(range(20)))
-    file.write_text("ncols 20\nnrows 20\nxllcorner 500000\nyllcorner 5000000\ncellsize 10\n" + rows)
+def with_key(recipe, key, line):
+    """The recipe with another line in the place of the one that sets `key`."""
+    changed, count = re.subn(rf"(?m)^{key} = .*$", line, recipe)
+    if count != 1:
+        raise ValueError(f"{count} lines of the recipe of tests/pipeline/scene.sh set {key}, and one is needed")
+    return changed
 
 
 def make_scene(folder, layer=2.0, end=1.0):
-    """Elevation models and recipe.toml in `folder`: a block of 4 x 4 cells, 4 m thick, fails in a bowl."""
-    def bowl(i, j):
-        return 0.004 * ((10 * i - 95) ** 2 + (10 * j - 95) ** 2)
-
-    def inside(i, j, west):
-        return west <= i < west + 4 and 8 <= j < 12
-
+    """The scene of tests/pipeline/scene.sh in `folder`, with a wall in it: elevation models and recipe.toml. A block of
+    4 x 4 cells, 4 m thick, fails in a bowl; `layer` [m], `end` [s]."""
     folder.mkdir(parents=True, exist_ok=True)
-    write_grid(folder / "before.asc", bowl)
-    write_grid(folder / "after.asc", lambda i, j: bowl(i, j) - 4 * inside(i, j, 3))
-    write_grid(folder / "survey.asc", lambda i, j: 2 * inside(i, j, 7))
+    script = pathlib.Path(__file__).resolve().parent.parent / "pipeline" / "scene.sh"
+    asked_for = {name: str(folder.resolve()) for name in ("TALUS_SOURCE", "TALUS_BUILD", "TALUS_SCRATCH")}
+    subprocess.run(["bash", "-c", 'source "$0" && scene', script], cwd=folder, env=os.environ | asked_for, check=True)
     (folder / "wall.geojson").write_text(WALL)
-    (folder / "recipe.toml").write_text(RECIPE.format(layer=layer, end=end))
+    recipe = (folder / "recipe.toml").read_text()
+    recipe = with_key(recipe, "layer_height_m", f"layer_height_m = {layer}")
+    recipe = with_key(recipe, "end_time_s", f"end_time_s = {end}\n{EVENTS}")
+    (folder / "recipe.toml").write_text(recipe + OBSTACLE)
 
 
 def is_final(name):

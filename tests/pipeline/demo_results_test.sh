@@ -41,6 +41,16 @@ test_maps_pass_gdals_own_cog_validator() {
   done
 }
 
+# Points that gather within cells are denser than points that lie by chance.
+test_points_do_not_drift_together() {
+  PYTHONPATH=$TALUS_SOURCE/tests/pipeline /usr/bin/python3 -B - "$out" >stdout 2>stderr <<'PYTHON' ||
+import sys
+import packing
+sys.exit(", ".join(packing.faults(sys.argv[1])) or None)
+PYTHON
+    fail "the points of the valley are packed"
+}
+
 # The volume on the map, summed up by GDAL, against the solver's own count of its points.
 test_map_volume_is_the_volume_of_the_points() {
   need_tool h5dump

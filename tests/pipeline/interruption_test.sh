@@ -177,6 +177,33 @@ test_gravity_loading_hears_the_signal() {
   expect_no_file out domain.vdb preprocess.used.toml survey
 }
 
+# A step of these takes minutes of processor time: it is given up where the signal comes, and the state of its start is
+# saved. The limit is for a busy machine; the end itself comes within a second.
+implicit_step_is_given_up() {
+  local begun
+  scene
+  sed -i "s/^layer_height_m.*/layer_height_m = 0.25\nspacing_m = 5.0/" recipe.toml
+  sed -i "s/^end_time_s.*/&\nintegrator = \"$1\"/" recipe.toml
+  cat >>recipe.toml <<'TOML'
+
+[solve.implicit]
+step_s = 1.0
+newton_tolerance = 1e-13
+newton_iterations = 1000
+linear_tolerance = 1e-14
+linear_iterations = 1000000
+TOML
+  expect_exit 0 preprocess
+  begun=$SECONDS
+  interrupt TERM 'out/.frames/*/frame_00000.h5' "$bin/talus-solve" recipe.toml --out out --on cpu
+  [[ $((SECONDS - begun)) -le 30 ]] || fail "the run took $((SECONDS - begun)) s from its start to its end"
+  expect_words 'stopped at t = 0.000 s, step 0 (interrupted). Go on with --restart; out/checkpoint.h5 holds the state'
+  nothing_looks_finished
+}
+
+test_a_step_towards_equilibrium_hears_the_signal() { implicit_step_is_given_up quasi-static; }
+test_a_newmark_step_hears_the_signal() { implicit_step_is_given_up newmark; }
+
 test_restart_without_checkpoint_is_refused() {
   scene
   expect_exit 0 preprocess

@@ -39,7 +39,8 @@ class BiCgStab {
       return report.converged;
     };
     Scalars scalars;
-    while (report.iterations < limits.iterations && round(scalars, preconditioner, apply, advance)) {
+    while (report.iterations < limits.iterations && !limits.gives_up() &&
+           round(scalars, preconditioner, apply, advance)) {
     }
     return report;
   }

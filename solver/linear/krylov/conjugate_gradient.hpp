@@ -44,7 +44,7 @@ class ConjugateGradient {
         preconditioner.apply_after(detail::StepAlong{s, p_.data(), ap_.data(), x.data(), r_.data()}, r_, z_, s);
       });
       state = state_.download().front();
-      if (state.halt != CgState::no) break;
+      if (state.halt != CgState::no || limits.gives_up()) break;
       ahead = Device::is_gpu ? std::max(2, ahead / 4) : 1;
     }
     last_ = state.iterations;

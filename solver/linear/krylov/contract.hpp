@@ -35,6 +35,10 @@ concept LinearPreconditioner = requires(B& b, const detail::StepAlong& step, con
 struct KrylovLimits {
   double tolerance = 1e-8;  ///< of |b - A x| / |b| [-]
   int iterations = 5000;    ///< at most
+  /// It is asked now and then whether to end without a solution; null: never.
+  bool (*give_up)() = nullptr;
+  /// Whether to end without a solution.
+  bool gives_up() const { return give_up && give_up(); }
 };
 
 namespace detail {

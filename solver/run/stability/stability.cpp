@@ -27,6 +27,7 @@ StepStats advance_to(Solver& solver, double time) {
   StepStats sum;
   solver.set_next_event(time);
   while (solver.clock().time < time) {
+    stop_if_interrupted("looking for the factor of safety");
     const BatchReport batch = solver.advance();
     sum.newton += batch.stats.newton;
     sum.linear += batch.stats.linear;

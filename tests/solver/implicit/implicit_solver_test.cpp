@@ -1,6 +1,8 @@
 // A step of the implicit solver: its clock and what it reports.
 #include "solver/implicit/implicit_solver.hpp"
 
+#include <memory>
+
 #include "tests/solver/parts_bench.hpp"
 
 namespace talus::solver::testing {
@@ -25,6 +27,72 @@ TEST(ImplicitSolver, makes_steps_of_the_recipe_up_to_the_next_event) {
   EXPECT_LE(clock.time, 0.01);
   run_to(solver, 0.015);
   EXPECT_EQ(solver.clock().time, 0.015);
+}
+
+bool gives_up = false;
+
+/// The lists of two states are the same, bit for bit.
+void expect_same_points(const ParticleState& a, const ParticleState& b) {
+  EXPECT_EQ(a.id, b.id);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(a.offset[k], b.offset[k]);
+    EXPECT_EQ(a.velocity[k], b.velocity[k]);
+  }
+  for (std::size_t k = 0; k < 6; ++k) EXPECT_EQ(a.elastic[k], b.elastic[k]);
+}
+
+/// A block in one of the implicit ways, whose steps are given up where gives_up says so.
+class GivenUp {
+ public:
+  using Tested = ImplicitSolver<double, CpuDevice, PartsBench::Shape>;
+
+  explicit GivenUp(Integrator integrator)
+      : options_(options_of(integrator)),
+        scene_(PartsBench::make(options_)),
+        settings_(make_settings(options_, scene_.grid)) {
+    settings_.implicit.newton.give_up = [] { return gives_up; };
+  }
+  std::unique_ptr<Tested> begin_at(const SolverState& state) const {
+    auto solver = std::make_unique<Tested>(CpuDevice::make(), scene_, settings_.common, settings_.implicit, state);
+    solver->set_next_event(0.01);
+    return solver;
+  }
+  SolverState start() const { return first_state(scene_, settings_.common); }
+
+ private:
+  SolveOptions options_;
+  Scene scene_;
+  SolverSettings settings_;
+};
+
+TEST(ImplicitSolver, keeps_nothing_of_a_step_that_is_given_up) {
+  gives_up = true;
+  for (const Integrator integrator : {Integrator::newmark, Integrator::quasi_static}) {
+    SCOPED_TRACE(integrator == Integrator::newmark ? "newmark" : "quasi-static");
+    const GivenUp run(integrator);
+    const auto stopped = run.begin_at(run.start());
+    const SolverState start = stopped->state();
+    const BatchReport report = stopped->advance();
+    EXPECT_TRUE(report.sorted) << "a checkpoint may be taken";
+    EXPECT_EQ(report.stats.newton, 0);
+    EXPECT_EQ(report.clock.time, 0);
+    EXPECT_EQ(stopped->clock().step, 0);
+    expect_same_points(stopped->state().points, start.points);
+  }
+}
+
+TEST(ImplicitSolver, goes_on_from_a_step_that_was_given_up_as_if_it_had_never_begun_it) {
+  const GivenUp run(Integrator::newmark);
+  gives_up = true;
+  const auto stopped = run.begin_at(run.start());
+  stopped->advance();
+  gives_up = false;
+  const auto unbroken = run.begin_at(run.start()), resumed = run.begin_at(stopped->state());
+  EXPECT_GE(unbroken->advance().stats.newton, 1);
+  EXPECT_GE(resumed->advance().stats.newton, 1);
+  EXPECT_GT(resumed->clock().time, 0);
+  EXPECT_EQ(resumed->clock().time, unbroken->clock().time);
+  expect_same_points(resumed->state().points, unbroken->state().points);
 }
 
 }  // namespace

@@ -46,6 +46,14 @@ TEST(LineSearch, goes_back_where_no_share_helps) {
   EXPECT_EQ(p.u(0), 0.25);
 }
 
+TEST(LineSearch, goes_back_where_it_is_told_to_give_up) {
+  ToyProblem p = spring(0);
+  const double before = begin(p, 5);  // the third share would do
+  int asked = 0;
+  EXPECT_FALSE(line_search(p, before, 1, [&] { return ++asked > 2; }));
+  EXPECT_EQ(p.u(0), 0);
+}
+
 TEST(LineSearch, takes_a_larger_force_where_it_leads_downhill) {
   // Along the change the force vanishes, across it there is more than before.
   ToyProblem p;

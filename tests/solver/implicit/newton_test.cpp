@@ -234,5 +234,18 @@ TEST(Newton, solves_once_with_the_tangent_at_the_start) {
   EXPECT_FALSE(solve_once(p, controls()).converged);
 }
 
+TEST(Newton, gives_up_between_iterations_where_it_is_told_to) {
+  // Near enough that each change is taken whole.
+  ToyProblem p = scalar_problem(
+      1, [](double u) { return 3 - u - u * u * u; }, [](double u) { return 1 + 3 * u * u; });
+  static int asked;  // what is asked holds no state of its own
+  asked = 0;
+  NewtonControls c = controls();
+  c.give_up = [] { return ++asked > 4; };  // before each iteration, and before each share of a change
+  const NewtonReport report = newton(p, c);
+  EXPECT_FALSE(report.converged);
+  EXPECT_EQ(report.iterations, 2);
+}
+
 }  // namespace
 }  // namespace talus::solver::testing

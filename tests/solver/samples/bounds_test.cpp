@@ -1,10 +1,11 @@
 // Bounds that a slide on the terrains of data_samples/hard_terrains.hpp may not pass: the energy it has fallen through,
-// the drag that is due, its volume, the ground.
+// the drag that is due, its volume, the ground, how densely it is packed.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "common/map/statistics.hpp"
+#include "tests/solver/samples/chance.hpp"
 #include "tests/solver/samples/sample_scene.hpp"
 
 namespace talus::solver::testing {
@@ -30,6 +31,28 @@ class SampleBounds : public InEachPlace {
     double high = 0;    ///< at the 99.9th percentile, friction on the way beyond the release taken off
     double centre = 0;  ///< of all of the mass, friction on the way of its centre taken off
   };
+
+  /// The largest packing of a run so far, at the instants that are looked at.
+  static void look_at_packing(const SampleRun& run, Packing& worst) {
+    const Packing now = run.packing();
+    worst.p99 = std::max(worst.p99, now.p99);
+    worst.largest = std::max(worst.largest, now.largest);
+  }
+
+  /// Points that gather within cells, as nothing of the grid forbids, are denser than points that lie by chance.
+  static void expect_no_denser_than_chance(const SampleRun& run, const BoundedScene& bounded, const Packing& worst) {
+    const SampleScene& sample = run.sample();
+    const double cells = run.released() / (sample.cell * sample.cell * sample.layer_height);
+    const PointsByChance chance{cells, static_cast<double>(run.scene().points.size()), bounded.end / bounded.interval};
+    const std::vector<double> thickness = run.peak_thickness();
+    const double squashed = squash(*std::max_element(thickness.begin(), thickness.end()), sample.options.material);
+    const double p99 = squashed * chance.packing(0.01), largest = squashed * chance.packing(0);
+    std::printf("  %s, packing: 99 %% of the volume below %.2f (by chance %.2f), densest cell %.2f (%.2f)\n",
+                bounded.name, worst.p99, p99, worst.largest, largest);
+    EXPECT_LT(worst.p99, p99);
+    EXPECT_LT(worst.largest, largest);
+    EXPECT_GE(worst.p99, 1) << "99 % of what lies in heaps is not looser than at the start";
+  }
 
   static double friction_of(const SampleScene& scene) {
     return std::tan(scene.options.base.friction_angle * M_PI / 180);
@@ -64,9 +87,11 @@ TEST_P(SampleBounds, no_slide_has_more_energy_than_it_fell_through) {
     SampleRun run(bounded.scene(), GetParam());
     const std::vector<PointSeen> start = run.points();
     Shares worst;
-    for (double time = bounded.interval; time < bounded.end + 1e-9; time += bounded.interval) {
-      run.run_to(time);
+    Packing packing;
+    for (int n = 1; n * bounded.interval <= bounded.end; ++n) {
+      run.run_to(n * bounded.interval);
       look(run, start, worst);
+      look_at_packing(run, packing);
     }
     std::printf(
         "  %s, kinetic energy over that of the fall: fastest point %.2f, 99.9 %% with friction %.2f, centre %.3f\n",
@@ -75,6 +100,7 @@ TEST_P(SampleBounds, no_slide_has_more_energy_than_it_fell_through) {
     EXPECT_LT(worst.high, 1);
     EXPECT_LT(worst.centre, 1.02);  // what flies owes the friction of its way until it lands
     EXPECT_LT(run.left(), 1e-4 * run.released());
+    expect_no_denser_than_chance(run, bounded, packing);
   }
 }
 
@@ -84,7 +110,8 @@ TEST_P(SampleBounds, drag_delivered_is_drag_due) {
   for (const BoundedScene& bounded : {bounded_scenes[0], bounded_scenes[1]}) {
     SampleRun run(bounded.scene(), GetParam());
     double delivered = 0, due = 0, least = 1;
-    for (double time = bounded.interval; time < bounded.end + 1e-9; time += bounded.interval) {
+    for (int n = 1; n * bounded.interval <= bounded.end; ++n) {
+      const double time = n * bounded.interval;
       run.run_to(time);
       const Drag drag = drag_of(run, GetParam());
       delivered += drag.delivered;

@@ -49,6 +49,8 @@ class SampleRun {
   /// The vertical thickness [m] and its largest so far, [rows * columns].
   std::vector<double> thickness() const { return solver_->thickness(); }
   std::vector<double> peak_thickness() const { return solver_->state().maps.peak_thickness; }
+  /// How densely the points are packed where run_to() has come to.
+  Packing packing() const { return solver_->packing(); }
   const MapGrid& map() const { return scene_.map; }
   /// Volume that was released, and that has left the map [m3].
   double released() const { return released_; }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common/stage/stage.hpp"
 #include "solver/options/implicit.hpp"
 
 namespace talus::solver {
@@ -45,6 +46,7 @@ TEST(ImplicitControls, are_those_of_the_recipe) {
   EXPECT_EQ(c.apex, 0.2);
   EXPECT_TRUE(c.b_bar);
   EXPECT_EQ(c.filler, 1e-2);
+  EXPECT_EQ(c.newton.give_up, interrupted) << "a step ends where a signal asks for the end";
 }
 
 TEST(ImplicitControls, are_static_and_one_linear_solve_where_the_recipe_says_so) {

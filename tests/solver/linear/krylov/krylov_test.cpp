@@ -132,6 +132,18 @@ TYPED_TEST(Krylov, solves_a_symmetric_system) {
   EXPECT_LT(distance(this->x, expected), 1e-11);
 }
 
+TYPED_TEST(Krylov, ends_without_a_solution_where_it_is_told_to) {
+  DenseMatrix a = random_matrix(this->nodes, this->symmetric);
+  static int asked;  // what is asked holds no state of its own
+  asked = 0;
+  const LinearReport report =
+      this->solve(a, random_vectors(this->nodes, 4),
+                  {.tolerance = 1e-12, .iterations = 500, .give_up = [] { return ++asked > 2; }});
+  EXPECT_FALSE(report.converged);
+  EXPECT_FALSE(report.indefinite);
+  EXPECT_LE(report.iterations, 4) << "two rounds, of two half steps at most";
+}
+
 TYPED_TEST(Krylov, reports_that_it_ran_out_of_iterations) {
   DenseMatrix a = random_matrix(this->nodes, this->symmetric);
   const LinearReport report = this->solve(a, random_vectors(this->nodes, 4), {.tolerance = 1e-12, .iterations = 2});
