@@ -223,7 +223,8 @@ def prepare(arguments, chosen):
             if command(words, home / "log")[0] != 0:
                 sys.exit((home / "log").read_text(encoding="utf-8"))
         recipe = recipe_of(scene, method)
-        recipe = {"scene": recipe["scene"], "solve": recipe["solve"] | {"domain": f"../domains/{scene.place()}/domain.vdb"}}
+        solve = recipe["solve"] | {"domain": f"../domains/{scene.place()}/domain.vdb"}
+        recipe = {"scene": recipe["scene"], "solve": solve}
         write(folder_of(arguments.out, scene, method) / "recipe.toml", recipe)
 
 
@@ -284,8 +285,8 @@ class Deposit:
 def row_of(arguments, name, scene, method, finest, plain, coarsest_cell):
     home = folder_of(arguments.out, scene, method)
     row = {
-        "set": name, "scene": scene.name, "method": method.name, "asked": method.asked, "spacing_m": f"{scene.spacing:g}",
-        "layer_height_m": f"{scene.layer:g}",
+        "set": name, "scene": scene.name, "method": method.name, "asked": method.asked,
+        "spacing_m": f"{scene.spacing:g}", "layer_height_m": f"{scene.layer:g}",
     }  # fmt: skip
     if not (home / "run.h5").exists():
         return row | {"steps": "failed"}
