@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Runs the slides of pipelines/ at several resolutions and writes one CSV: points, steps, time, score.
-# usage: scenes.sh BIN OUT ON MOST [SCENE]     (SCENE: that one alone)
+# usage: scenes.sh BIN OUT ON MOST
 set -euo pipefail
-bin=$1 out=$2 on=$3 most=$4 only=${5:-}
+bin=$1 out=$2 on=$3 most=$4
 pipelines=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 mkdir -p "$out"
 table=$out/scenes.csv
@@ -15,7 +15,6 @@ value() { sed -nE "s/^ *\"$2\": *\"?([^\"]*[^\",])\"?,?$/\1/p" "$1" | head -n 1 
 
 # run SCENE SPACING LAYER
 run() {
-  [[ -z $only || $only == "$1" ]] || return 0
   local scene=$1 folder=$out/$1-$2-$3 recipe
   mkdir -p "$folder"
   recipe=$pipelines/$scene/.bench-$2-$3.toml   # beside its own, so that the paths in it lead where they did

@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# The table of speed against error: rows of one commit and one machine, every method at the same modulus.
+source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
+
+table=$TALUS_SOURCE/docs/benchmarks/speed-against-error.csv
+
+# column NAME: the values of a column where there is a result.
+column() {
+  python3 - "$table" "$1" <<'PYTHON'
+import csv, sys
+with open(sys.argv[1], newline="") as file:
+    for row in csv.DictReader(file):
+        if row["steps"] != "failed":
+            print(row[sys.argv[2]])
+PYTHON
+}
+
+test_rows_are_of_one_commit_and_machine() {
+  need_tool python3
+  local key
+  for key in commit machine; do
+    [[ $(column "$key" | sort -u | wc -l) -eq 1 ]] || fail "rows of more than one $key: $(column "$key" | sort | uniq -c)"
+  done
+  [[ $(column steps | wc -l) -gt 50 ]] || fail "only $(column steps | wc -l) rows have a result"
+}
+
+test_rows_of_two_commits_are_refused() {
+  need_tool python3
+  local commit
+  commit=$(column commit | head -n 1)
+  sed "\$s/,$commit,/,0123abcde,/" "$table" >mixed.csv
+  ! cmp -s "$table" mixed.csv || fail "the last row does not name $commit"
+  expect_exit 1 python3 "$TALUS_SOURCE/tools/plot-speed-against-error.py" mixed.csv drawn.png
+  local both
+  both=$(printf '%s\n' 0123abcde "$commit" | sort | paste -sd, | sed 's/,/, /')
+  grep -qF "rows of more than one commit ($both)" stderr || fail "no reason: $(<stderr)"
+  [[ ! -e drawn.png ]] || fail "it was drawn"
+}
+
+run_test "$@"
