@@ -147,8 +147,10 @@ SolveOptions settle_stiffness(const Domain& domain, SolveOptions o) {
   if (o.material.stiffness != StiffnessKind::automatic) return o;
   const StiffnessDemand demand = lowest_stiffness(domain, o);
   const double full = o.material.youngs_modulus;
-  log_info(fmt::format("stiffness: {:.3g} Pa instead of {:.3g} Pa, steps {:.3g} times as long: {}", demand.modulus,
-                       full, std::sqrt(full / demand.modulus), demand.reason));
+  log_info(demand.modulus < full
+               ? fmt::format("stiffness: {:.3g} Pa instead of {:.3g} Pa, steps {:.3g} times as long: {}",
+                             demand.modulus, full, std::sqrt(full / demand.modulus), demand.reason)
+               : fmt::format("stiffness: {:.3g} Pa as given, for {}", full, demand.reason));
   return with_stiffness(o, demand);
 }
 
