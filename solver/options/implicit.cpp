@@ -52,12 +52,15 @@ void ImplicitOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
 
 void ImplicitOptions::describe_newton(recipe::Visitor& v) {
   v.number("step_s", step, recipe::positive, "step size; cut where a step does not converge, grown again after");
-  v.number("newmark_alpha", newmark_alpha, recipe::Range{0, 1, true, false}, "newmark: alpha (0.25: trapezoid)");
-  v.number("newmark_beta", newmark_beta, recipe::fraction, "newmark: beta (0.5: trapezoid; more damps)");
+  v.optional_number("newmark_alpha", newmark_alpha, recipe::Range{0, 1, true, false},
+                    "newmark: alpha (0.25: trapezoid); left out: 0.5 for what flows, else 0.25");
+  v.optional_number("newmark_beta", newmark_beta, recipe::fraction,
+                    "newmark: beta (0.5: trapezoid; more damps); left out: 1 for what flows, else 0.5");
   v.integer("newton_iterations", newton_iterations, recipe::Range{1, 1000},
             "most Newton iterations a step; 1: one linear solve");
-  v.number("newton_tolerance", newton_tolerance, recipe::Range{0, 1, true, true},
-           "unbalanced force over the forces' size");
+  v.optional_number(
+      "newton_tolerance", newton_tolerance, recipe::Range{0, 1, true, true},
+      "unbalanced force over the forces' size; left out: 1e-2 for newmark's steps of what flows, else 1e-6");
   recipe::choice(
       v, "tangent", tangent, {{"frozen-yield", Tangent::frozen_yield}, {"exact", Tangent::exact}},
       "frozen-yield: symmetric, friction at the pressure of the last iteration; exact: not symmetric, needs bicgstab");
@@ -95,6 +98,15 @@ void ImplicitOptions::describe_linear(recipe::Visitor& v, const SolveOptions& al
                   {"multigrid", Preconditioner::multigrid}},
                  "pcg, bicgstab: the diagonal, 3 x 3 blocks, whole columns of nodes, Gauss-Seidel over columns, or "
                  "multigrid with that");
+}
+
+NewtonScheme scheme_of(const SolveOptions& o) {
+  NewtonScheme scheme;
+  if (o.integrator == Integrator::newmark && o.material.stiffness_is_free()) scheme = {0.5, 1, 1e-2};
+  scheme.alpha = o.implicit.newmark_alpha.value_or(scheme.alpha);
+  scheme.beta = o.implicit.newmark_beta.value_or(scheme.beta);
+  scheme.tolerance = o.implicit.newton_tolerance.value_or(scheme.tolerance);
+  return scheme;
 }
 
 }  // namespace talus::solver

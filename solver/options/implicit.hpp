@@ -1,6 +1,8 @@
 // Options of implicit steps: Newton, its linear solver and preconditioner.
 #pragma once
 
+#include <optional>
+
 #include "common/recipe/recipe.hpp"
 #include "solver/implicit/controls.hpp"
 
@@ -10,11 +12,10 @@ struct SolveOptions;
 
 /// The keys of [solve.implicit].
 struct ImplicitOptions {
-  double step = 0.01;  ///< [s]
-  double newmark_alpha = 0.25;
-  double newmark_beta = 0.5;
-  int newton_iterations = 30;      ///< 1: the single linear solve of the reference paper
-  double newton_tolerance = 1e-6;  ///< unbalanced force over the forces' size
+  double step = 0.01;                                 ///< [s]
+  std::optional<double> newmark_alpha, newmark_beta;  ///< none: those of scheme_of()
+  int newton_iterations = 30;                         ///< 1: the single linear solve of the reference paper
+  std::optional<double> newton_tolerance;  ///< unbalanced force over the forces' size; none: that of scheme_of()
   Tangent tangent = Tangent::frozen_yield;
   LinearSolver linear_solver = LinearSolver::pcg;
   double linear_tolerance = 1e-8;
@@ -33,5 +34,17 @@ struct ImplicitOptions {
   void describe_newton(recipe::Visitor& v);
   void describe_linear(recipe::Visitor& v, const SolveOptions& all);
 };
+
+/// What Newton's iterations of a step go for.
+struct NewtonScheme {
+  double alpha = 0.25, beta = 0.5;  ///< Newmark's; the trapezoid
+  double tolerance = 1e-6;          ///< unbalanced force over the forces' size
+};
+
+/// The scheme that the recipe gives. Where it leaves it open: for newmark's steps of a material that flows backward
+/// Euler (0.5, 1) to 1e-2, which leaves less of the deposit elsewhere than the trapezoid to 1e-6 does in a third of the
+/// time (docs/decisions/0006-newton-in-flowing-sand.md); for anything else, statics, elastic bodies and what is at rest
+/// (integrator = "auto"), the trapezoid to 1e-6.
+NewtonScheme scheme_of(const SolveOptions& options);
 
 }  // namespace talus::solver

@@ -26,8 +26,12 @@ void Stepper::build(const SolverState& state) {
   SolveOptions o = options_;
   o.integrator = o.flow_integrator();
   if (choice_) {
+    const NewtonScheme rest = scheme_of(options_);
     o.integrator = choice_->current();
     o.implicit.step = choice_->implicit_step();
+    o.implicit.newmark_alpha = rest.alpha;
+    o.implicit.newmark_beta = rest.beta;
+    o.implicit.newton_tolerance = rest.tolerance;
   }
   solver_ = resume_solver(scene_, o, device_, state);
 }

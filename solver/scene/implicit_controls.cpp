@@ -6,13 +6,14 @@ namespace talus::solver {
 
 ImplicitControls make_implicit_controls(const SolveOptions& options) {
   const ImplicitOptions& o = options.implicit;
+  const NewtonScheme scheme = scheme_of(options);
   return {.dynamic = abilities_of(options.integrator).carry_inertia,
           .step = o.step,
           .step_cuts = o.step_cuts,
-          .alpha = o.newmark_alpha,
-          .beta = o.newmark_beta,
+          .alpha = scheme.alpha,
+          .beta = scheme.beta,
           .newton = {.iterations = o.newton_iterations,
-                     .tolerance = o.newton_tolerance,
+                     .tolerance = scheme.tolerance,
                      .forcing = o.forcing,
                      .linear_tolerance = o.linear_tolerance,
                      .give_up = interrupted},

@@ -17,9 +17,10 @@ PYTHON
 
 test_rows_are_of_one_commit_and_machine() {
   need_tool python3
-  local key
+  local key kinds
   for key in commit machine; do
-    [[ $(column "$key" | sort -u | wc -l) -eq 1 ]] || fail "rows of more than one $key: $(column "$key" | sort | uniq -c)"
+    kinds=$(column "$key" | sort | uniq -c)
+    [[ $(wc -l <<<"$kinds") -eq 1 ]] || fail "rows of more than one $key: $kinds"
   done
   [[ $(column steps | wc -l) -gt 50 ]] || fail "only $(column steps | wc -l) rows have a result"
 }

@@ -125,7 +125,7 @@ TEST_P(SurfaceContactTest, wall_takes_the_momentum_of_what_it_stops) {
     for (const auto& x : positions(scene.map, scene.grid, solver->ground(), s)) farthest = std::max(farthest, x[0]);
     std::printf("  %s: came with %.6g, left with %.6g, wall was given %.6g; farthest %.2f m\n", name_of(integrator),
                 came, left, given, farthest);
-    EXPECT_NEAR(came - left, given, (integrator == Integrator::newmark ? o.implicit.newton_tolerance : 1e-9) * came);
+    EXPECT_NEAR(came - left, given, (integrator == Integrator::newmark ? scheme_of(o).tolerance : 1e-9) * came);
     EXPECT_LT(left, 0);  // elastic: it comes back
     EXPECT_LT(farthest, 24.3);
   }

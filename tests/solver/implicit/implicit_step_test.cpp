@@ -64,7 +64,7 @@ TEST(ImplicitStep, is_solved_by_newtons_method) {
   StepBench bench(o);
   const NewtonReport report = bench.step.solve();
   EXPECT_TRUE(report.converged);
-  EXPECT_LE(report.residual, o.implicit.newton_tolerance);
+  EXPECT_LE(report.residual, scheme_of(o).tolerance);
   EXPECT_LT(bench.step.farthest_motion().share, 1);
   EXPECT_GT(bench.step.farthest_motion().length, 0);
 }

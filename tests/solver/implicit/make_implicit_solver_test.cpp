@@ -14,6 +14,7 @@ class ImplicitSolvers : public InEachPlace {
     SolveOptions o;
     o.integrator = Integrator::newmark;
     o.implicit.step = 0.05;
+    o.implicit.newton_tolerance = 1e-6;
     o.shape = kind_of<Shape>;
     const Scene scene = falling_body(o);
     const SolverSettings settings = make_settings(o, scene.grid);

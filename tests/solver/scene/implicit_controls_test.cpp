@@ -58,5 +58,25 @@ TEST(ImplicitControls, are_static_and_one_linear_solve_where_the_recipe_says_so)
   EXPECT_TRUE(make_implicit_controls(o).once());
 }
 
+TEST(ImplicitControls, of_what_flows_are_damped_and_loose_where_the_recipe_leaves_them_open) {
+  SolveOptions o;
+  o.integrator = Integrator::newmark;
+  const ImplicitControls flow = make_implicit_controls(o);
+  EXPECT_EQ(flow.alpha, 0.5);
+  EXPECT_EQ(flow.beta, 1);
+  EXPECT_EQ(flow.newton.tolerance, 1e-2);
+  const auto is_exact = [](const SolveOptions& options) {
+    const ImplicitControls c = make_implicit_controls(options);
+    return c.alpha == 0.25 && c.beta == 0.5 && c.newton.tolerance == 1e-6;
+  };
+  o.integrator = Integrator::quasi_static;
+  EXPECT_TRUE(is_exact(o)) << "statics";
+  o.integrator = Integrator::automatic;
+  EXPECT_TRUE(is_exact(o)) << "at rest";
+  o.integrator = Integrator::newmark;
+  o.material.model = MaterialModel::hencky;
+  EXPECT_TRUE(is_exact(o)) << "an elastic body";
+}
+
 }  // namespace
 }  // namespace talus::solver
