@@ -138,30 +138,6 @@ void judge(Domain& domain, const SolveOptions& o) {
   domain.provenance.insert(domain.provenance.end(), facts.begin(), facts.end());
 }
 
-/// This function carries out stiffness = "auto", and what `accuracy` says of it, and logs the modulus.
-SolveOptions settle_stiffness(const Domain& domain, SolveOptions o) {
-  if (o.accuracy && o.material.stiffness_is_free()) {
-    o.material.stiffness = StiffnessKind::automatic;
-    o.material.stiffness_strain = strain_for(*o.accuracy);
-  }
-  if (o.material.stiffness != StiffnessKind::automatic) return o;
-  const StiffnessDemand demand = lowest_stiffness(domain, o);
-  const double full = o.material.youngs_modulus;
-  log_info(demand.modulus < full
-               ? fmt::format("stiffness: {:.3g} Pa instead of {:.3g} Pa, steps {:.3g} times as long: {}",
-                             demand.modulus, full, std::sqrt(full / demand.modulus), demand.reason)
-               : fmt::format("stiffness: {:.3g} Pa as given, for {}", full, demand.reason));
-  return with_stiffness(o, demand);
-}
-
-/// This function carries out integrator = "auto", and logs why steps are as they are.
-SolveOptions settle_steps(const Domain& domain, SolveOptions o) {
-  if (o.integrator != Integrator::automatic) return o;
-  const StepChoice choice = choose_steps(domain, o);
-  for (const std::string& reason : choice.reasons) log_info("steps: " + reason);
-  return with_steps(std::move(o), choice);
-}
-
 /// The run once more, twice as stiff, and the difference of the deposits as a share of the volume.
 void check_stiffness(const Domain& domain, SolveOptions o, const AnyDevice& device, const StageContext& context,
                      const std::filesystem::path& first) {

@@ -11,6 +11,7 @@ import argparse
 import copy
 import csv
 import dataclasses
+import functools
 import json
 import math
 import os
@@ -285,15 +286,21 @@ class Deposit:
         return 50 * float(numpy.abs(mine - yours).sum())
 
 
+@functools.cache
+def deposit_of(home):
+    """The deposit in a folder, read once; None where the run has failed."""
+    return Deposit(home) if (home / "run.h5").exists() else None
+
+
 def row_of(arguments, name, scene, method, finest, plain, coarsest_cell):
     home = folder_of(arguments.out, scene, method)
+    deposit = deposit_of(home)
     row = {
         "set": name, "scene": scene.name, "method": method.name, "asked": method.asked,
         "spacing_m": f"{scene.spacing:g}", "layer_height_m": f"{scene.layer:g}",
     }  # fmt: skip
-    if not (home / "run.h5").exists():
+    if deposit is None:
         return row | {"steps": "failed"}
-    deposit = Deposit(home)
     facts, history = deposit.facts, deposit.history
     text = lambda value: value.decode() if isinstance(value, bytes) else str(value)
     over = history["step_over_cfl"]
@@ -321,15 +328,14 @@ def row_of(arguments, name, scene, method, finest, plain, coarsest_cell):
 
 
 def table(arguments, chosen):
-    def deposit_of(scene, method):
-        home = folder_of(arguments.out, scene, method)
-        return Deposit(home) if (home / "run.h5").exists() else None
+    def by_short_steps(scene):
+        return deposit_of(folder_of(arguments.out, scene, explicit(0.25)))
 
     rows = []
     for name, scene, method in chosen:
         scenes = PICTURE.get(name)
-        finest = deposit_of(scenes[-1], explicit(0.25)) if scenes else None
-        plain = deposit_of(scene, explicit(0.25))
+        finest = by_short_steps(scenes[-1]) if scenes else None
+        plain = by_short_steps(scene)
         rows.append(row_of(arguments, name, scene, method, finest, plain, scenes[0].spacing if scenes else None))
     path = arguments.out / "speed-against-error.csv"
     with open(path, "w", newline="", encoding="utf-8") as file:

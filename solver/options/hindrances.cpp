@@ -16,15 +16,19 @@ Hindrance beyond_columns(const SolveOptions& o) {
   return {};
 }
 
-Hindrance beyond_rest(const SolveOptions& o) {
-  std::string law;
+Hindrance law_beyond_newton(const SolveOptions& o) {
+  Hindrance law;
   o.any_material([&](const MaterialOptions& m) {
-    if (law.empty() && !m.steps_implicitly()) law = m.name();
-    return false;
+    if (m.steps_implicitly()) return false;
+    law = {fmt::format("model = \"{}\"", m.name()),
+           "its stress depends on the rate of shear, and Newton's iterations have not been shown to converge with it"};
+    return true;
   });
-  if (!law.empty())
-    return {fmt::format("model = \"{}\"", law),
-            "its stress depends on the rate of shear, and Newton's iterations have not been shown to converge with it"};
+  return law;
+}
+
+Hindrance beyond_rest(const SolveOptions& o) {
+  if (Hindrance law = law_beyond_newton(o)) return law;
   if (o.base.separation != Separation::free)
     return {fmt::format("[solve.base] separation = \"{}\"", o.base.separation_name()),
             "Newton's iterations free a base node whose reaction would pull"};

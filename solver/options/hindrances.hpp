@@ -18,6 +18,9 @@ struct Hindrance {
 /// What is in the way of inertia implicit along columns.
 Hindrance beyond_columns(const SolveOptions& options);
 
+/// The first law of a material that Newton's iterations do not step.
+Hindrance law_beyond_newton(const SolveOptions& options);
+
 /// What keeps integrator = "auto" from Newmark's steps where all is at rest.
 Hindrance beyond_rest(const SolveOptions& options);
 

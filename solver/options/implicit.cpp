@@ -1,5 +1,6 @@
 #include "solver/options/implicit.hpp"
 
+#include "solver/options/hindrances.hpp"
 #include "solver/options/solve.hpp"
 
 namespace talus::solver {
@@ -15,16 +16,10 @@ bool pressure_by_volume(const SolveOptions& all) {
 /// others.
 void need_implicit_laws(recipe::Visitor& v, const SolveOptions& all) {
   const Integrator integrator = all.preset == Preset::reference ? Integrator::newmark : all.integrator;
-  std::string refused;
-  all.any_material([&](const MaterialOptions& m) {
-    if (refused.empty() && !m.steps_implicitly()) refused = m.name();
-    return false;
-  });
-  v.needs(abilities_of(integrator).obey_cfl || refused.empty(),
-          {"[solve] integrator = \"newmark\", \"quasi-static\" or preset = \"reference\" does not go with model = \"" +
-               refused + "\"",
-           "its stress depends on the rate of shear, and Newton's iterations have not been shown to converge with it",
-           "Take integrator = \"explicit\""});
+  const Hindrance law = law_beyond_newton(all);
+  v.needs(abilities_of(integrator).obey_cfl || !law,
+          {"[solve] integrator = \"newmark\", \"quasi-static\" or preset = \"reference\" does not go with " + law.key,
+           law.reason, "Take integrator = \"explicit\""});
 }
 
 }  // namespace

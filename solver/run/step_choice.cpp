@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "common/stage/stage.hpp"
 #include "solver/options/hindrances.hpp"
 #include "solver/run/energy_line.hpp"
 #include "solver/run/integrator_choice.hpp"
@@ -65,8 +67,6 @@ std::string comparison(const Way& taken, const Way& other) {
 
 }  // namespace
 
-double strain_for(double accuracy) { return std::clamp(200 * accuracy * accuracy, 1e-3, 0.1); }
-
 StepChoice choose_steps(const Domain& domain, const SolveOptions& o) {
   const double speed = lowest_stiffness(domain, o).speed / 2;  // about what a flow has when it is fast
   const double bend = bend_over_thickness(domain, energy_line_of(domain, o));
@@ -96,6 +96,13 @@ SolveOptions with_steps(SolveOptions o, const StepChoice& choice) {
   o.accuracy.reset();
   if (!choice.rests) o.integrator = choice.flow;
   return o;
+}
+
+SolveOptions settle_steps(const Domain& domain, SolveOptions o) {
+  if (o.integrator != Integrator::automatic) return o;
+  const StepChoice choice = choose_steps(domain, o);
+  for (const std::string& reason : choice.reasons) log_info("steps: " + reason);
+  return with_steps(std::move(o), choice);
 }
 
 }  // namespace talus::solver

@@ -17,15 +17,14 @@ struct StepChoice {
   std::vector<std::string> reasons;         ///< a sentence each
 };
 
-/// The strain by which `stiffness = "auto"` goes at an accuracy: sqrt(strain) grows with the share of the deposit that
-/// lies elsewhere (docs/decisions/0008-stiffness.md).
-double strain_for(double accuracy);
-
 /// The steps that take the least work at the accuracy asked for, of those that the scene allows; without one, at the
 /// recipe's own `cfl`.
 StepChoice choose_steps(const Domain& domain, const SolveOptions& options);
 
 /// The options with the choice carried out.
 SolveOptions with_steps(SolveOptions options, const StepChoice& choice);
+
+/// The function carries out integrator = "auto", and logs why steps are as they are.
+SolveOptions settle_steps(const Domain& domain, SolveOptions options);
 
 }  // namespace talus::solver

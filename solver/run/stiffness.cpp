@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "common/stage/stage.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/run/energy_line.hpp"
 #include "solver/scene/read_shaking.hpp"
@@ -31,6 +32,8 @@ StiffnessDemand lowest_stiffness(const Domain& domain, const SolveOptions& o) {
   return demand;
 }
 
+double strain_for(double accuracy) { return std::clamp(200 * accuracy * accuracy, 1e-3, 0.1); }
+
 SolveOptions with_stiffness(SolveOptions o, const StiffnessDemand& demand) {
   o.material.youngs_modulus = demand.modulus;
   o.material.stiffness = StiffnessKind::as_given;
@@ -38,6 +41,21 @@ SolveOptions with_stiffness(SolveOptions o, const StiffnessDemand& demand) {
   for (PartOptions& part : o.parts)
     part.material.youngs_modulus = std::min(part.material.youngs_modulus, demand.modulus);
   return o;
+}
+
+SolveOptions settle_stiffness(const Domain& domain, SolveOptions o) {
+  if (o.accuracy && o.material.stiffness_is_free()) {
+    o.material.stiffness = StiffnessKind::automatic;
+    o.material.stiffness_strain = strain_for(*o.accuracy);
+  }
+  if (o.material.stiffness != StiffnessKind::automatic) return o;
+  const StiffnessDemand demand = lowest_stiffness(domain, o);
+  const double full = o.material.youngs_modulus;
+  log_info(demand.modulus < full
+               ? fmt::format("stiffness: {:.3g} Pa instead of {:.3g} Pa, steps {:.3g} times as long: {}",
+                             demand.modulus, full, std::sqrt(full / demand.modulus), demand.reason)
+               : fmt::format("stiffness: {:.3g} Pa as given, for {}", full, demand.reason));
+  return with_stiffness(o, demand);
 }
 
 }  // namespace talus::solver

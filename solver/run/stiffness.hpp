@@ -20,7 +20,14 @@ struct StiffnessDemand {
 /// Pressures are over the modulus of confined compression.
 StiffnessDemand lowest_stiffness(const Domain& domain, const SolveOptions& options);
 
+/// The strain by which `stiffness = "auto"` goes at an accuracy: sqrt(strain) grows with the share of the deposit that
+/// lies elsewhere (docs/decisions/0008-stiffness.md).
+double strain_for(double accuracy);
+
 /// The options with `stiffness = "auto"` carried out.
 SolveOptions with_stiffness(SolveOptions options, const StiffnessDemand& demand);
+
+/// The function carries out `stiffness = "auto"`, and what `accuracy` says of it, and logs the modulus.
+SolveOptions settle_stiffness(const Domain& domain, SolveOptions options);
 
 }  // namespace talus::solver

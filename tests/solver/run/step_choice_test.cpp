@@ -121,5 +121,20 @@ TEST(StepChoice, what_a_stiffness_went_by_is_not_asked_for_again) {
   EXPECT_TRUE(faults.empty());
 }
 
+TEST(StepChoice, is_settled_from_the_recipe_in_two_steps) {
+  SolveOptions o = chosen_at(0.01);
+  o.material.youngs_modulus = 1e12;
+  const Domain d = slab_on_layers(1);
+  const SolveOptions soft = settle_stiffness(d, o), settled = settle_steps(d, soft);
+  EXPECT_LT(soft.material.youngs_modulus, 1e12);
+  EXPECT_EQ(soft.accuracy, o.accuracy) << "the recipe as used asks for it again";
+  EXPECT_EQ(settled.flow, choose_steps(d, soft).flow);
+  EXPECT_FALSE(settled.accuracy);
+  o.integrator = Integrator::explicit_;
+  o.accuracy.reset();
+  EXPECT_EQ(settle_stiffness(d, o).material.youngs_modulus, 1e12);
+  EXPECT_EQ(settle_steps(d, o).integrator, Integrator::explicit_);
+}
+
 }  // namespace
 }  // namespace talus::solver::testing
