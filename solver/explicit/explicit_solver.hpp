@@ -34,9 +34,13 @@ int steps_between_sorts_on_gpu(int points) {
   return Shape::width > 2 && points >= points_that_keep_a_gpu_busy ? busy_gpu_steps_between_sorts
                                                                    : gpu_steps_between_sorts;
 }
-/// The cells that points may drift before they are sorted: a sort takes as long as a dozen steps of a small scene.
+/// The way that points may go before they are sorted: a sort takes as long as a dozen steps of a small scene, and more
+/// empty columns are stored at the rim for it. Layers are fewer, for steps by columns go through them one by one.
 template <class Device>
-inline constexpr int drift_between_sorts = Device::is_gpu ? 3 : 1;
+Drift drift_between_sorts(bool deterministic) {
+  if (!Device::is_gpu || deterministic) return {};
+  return {.columns = 6, .layers = 3};
+}
 inline constexpr int most_batch_steps = 64;  // given to the device before the host looks at the clock
 
 /// One thread: one node. It clears the node; the first one also opens the step.
@@ -68,12 +72,13 @@ template <class Real, class Device, class Shape>
 class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   using Base = PointSolver<Real, Device, Shape>;
   using Base::clock_, Base::device_, Base::dilatant_, Base::grid_, Base::loads_, Base::maps_, Base::materials_,
-      Base::measures_, Base::points_, Base::read_clock, Base::settings_, Base::shaking_, Base::surroundings_;
+      Base::measures_, Base::motion_, Base::points_, Base::read_clock, Base::settings_, Base::shaking_,
+      Base::surroundings_;
 
  public:
   ExplicitSolverOf(const Device& device, const Scene& scene, const IntegratorSettings& settings,
                    const SolverState& state)
-      : Base(device, scene, settings, state, needs(settings), settings.deterministic ? 1 : drift_between_sorts<Device>),
+      : Base(device, scene, settings, state, needs(settings), drift_between_sorts<Device>(settings.deterministic)),
         affine_(settings.transfer.affine),
         musl_(settings.transfer.remaps_velocity),
         keeps_(settings.transfer.time > 0),
@@ -109,11 +114,12 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     clock = read_clock();
     // What the last step of the batch asked for, no further one has answered.
     const int halt = clock.halt == running ? clock.request : clock.halt;
-    // A sort comes before an event of the same time (Clock::begin_step), so that the event's records see who has left.
-    if (halt == wants_sort) {
+    if (halt == at_event) this->record_motion();
+    if (halt == wants_sort) expected_ = clock.steps_since_sort + 1;
+    // A sort comes before an event of the same time (Clock::begin_step), and the event's records see who has left.
+    if (halt == wants_sort || (halt == at_event && clock.outflow_count > 0)) {
       report.outflow_volume = clock.outflow_volume;
       report.outflow_count = clock.outflow_count;
-      expected_ = clock.steps_since_sort + 1;
       sort(clock.outflow_count);
       clock.outflow_volume = 0;
       clock.outflow_count = 0;
@@ -130,7 +136,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   /// The memory by its users; see Solver::memory().
   MemoryShares memory() const override {
     MemoryShares shares = Base::memory();
-    shares.emplace_back("nodes", nodes_.bytes() + forces_.bytes() + pivots_.bytes());
+    shares.emplace_back("nodes", nodes_.bytes() + forces_.bytes() + mobilities_.bytes());
     columns_.list_memory(shares);
     return shares;
   }
@@ -206,10 +212,11 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     if (first) columns_.slow(at, surroundings_.bed(), this->column_density());
   }
 
-  /// The method measures what the nodes' part of a step asks of the points, and records what they did.
+  /// The method measures what the nodes' part of a step asks of the points, and sums up what they do; the update of the
+  /// columns records it.
   void look_at_points(const StepNodes<Real>& at) {
     this->measure_columns();
-    this->record_motion(clock_.data());
+    this->sum_motion(clock_.data());
     columns_.measure(at, surroundings_.bed());
   }
 
@@ -254,7 +261,8 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
                                              .columns = columns_.slowed(),
                                              .pressed = counts ? columns_.pressed() : nullptr,
                                              .density = this->column_density(),
-                                             .maps = maps_.view()});
+                                             .maps = maps_.view(),
+                                             .motion = motion_.sums()});
   }
 
   /// The method makes the nodes' part of a column-implicit step.
@@ -266,7 +274,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
                                         .clock = clock_.data(),
                                         .nodes = nodes_.data(),
                                         .forces = forces_.data(),
-                                        .pivots = pivots_.data(),
+                                        .mobilities = mobilities_.data(),
                                         .gravity = gravity(),
                                         .walls = walls_,
                                         .friction = columns_.seen_by(surroundings_.bed()),
@@ -277,7 +285,8 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
                                         .columns = columns_.slowed(),
                                         .pressed = counts ? columns_.pressed() : nullptr,
                                         .density = this->column_density(),
-                                        .maps = maps_.view()});
+                                        .maps = maps_.view(),
+                                        .motion = motion_.sums()});
   }
 
   /// The springs along the bed over those across it (T6b) [-]: the modulus of shear over that of uniaxial strain, of
@@ -329,7 +338,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     this->fit(outflow_count);
     nodes_.resize(static_cast<std::size_t>(grid_.nodes()));
     if (forces_apart_) forces_.resize(static_cast<std::size_t>(grid_.nodes()));
-    if (solves_columns_) pivots_.resize(static_cast<std::size_t>(grid_.nodes()));
+    if (solves_columns_) mobilities_.resize(static_cast<std::size_t>(grid_.nodes()));
   }
 
   Recording<Device> recording_{device_};  ///< of a step
@@ -341,8 +350,8 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   Walls<Real> walls_;
   const Vec3<double>* loads_now_ = nullptr;
   Buffer<Vec4<Real>, Device> nodes_{device_}, forces_{device_};
-  Buffer<ColumnPivot<Real>, Device> pivots_{device_};  ///< of the nodes, where columns are solved
-  Real softer_;                                        ///< see softer()
+  Buffer<Mobility<Real>, Device> mobilities_{device_};  ///< of the nodes, where columns are solved
+  Real softer_;                                         ///< see softer()
   ColumnContact<Real, Device> columns_;
 };
 

@@ -12,10 +12,10 @@
 
 namespace talus {
 
-/// The pivots of a node in the elimination down its column: the mass that an impulse on it sets in motion when the
-/// nodes above follow, across the bed and along it [kg].
+/// What an impulse on a node does when the nodes above follow, across the bed and along it: the reciprocals of its
+/// pivots in the elimination down its column [1/kg]. 0 where there is no matter.
 template <class Real>
-struct ColumnPivot {
+struct Mobility {
   Real across = 0, along = 0;
 };
 
@@ -29,9 +29,9 @@ struct SolveColumns {
   GridView<Real> grid;
   const int* active;
   Clock* clock;
-  Vec4<Real>* nodes;          ///< in: mass and momentum; out: mass and velocity
-  Vec4<Real>* forces;         ///< in: force, and in w the spring to the node above [N/m]; out: change of velocity
-  ColumnPivot<Real>* pivots;  ///< of the nodes; made here
+  Vec4<Real>* nodes;           ///< in: mass and momentum; out: mass and velocity
+  Vec4<Real>* forces;          ///< in: force, and in w the spring to the node above [N/m]; out: change of velocity
+  Mobility<Real>* mobilities;  ///< of the nodes; made here
   Gravity<Real> gravity;
   Walls<Real> walls;
   BaseFriction<Real> friction;
@@ -43,18 +43,22 @@ struct SolveColumns {
   Real* pressed;                ///< impulse of the bed along its normal, where losses are counted [N s]
   ColumnDensity<Real> density;  ///< of the mass
   MapView maps;
+  Vec4<Real>* motion;  ///< see record_motion()
 
   /// The memory that the kernel moves [bytes].
-  double bytes(int) const { return grid.nodes * static_cast<double>(6 * sizeof(*nodes) + 2 * sizeof(*pivots)); }
+  double bytes(int) const { return grid.nodes * static_cast<double>(6 * sizeof(*nodes) + 2 * sizeof(*mobilities)); }
 
   TALUS_HD void operator()(int c) const {
     if (clock->halt != running) return;
-    const ColumnNodes at = ColumnNodes::find(grid, active, c);
-    if (!at.in_domain()) return;
-    const Vec3<Real> normal = normal_of(grid.slope_x[at.column], grid.slope_y[at.column]);
-    eliminate(at, normal);
+    const ColumnNodes nodes_of = ColumnNodes::find(grid, active, c);
+    if (!nodes_of.in_domain()) return;
+    const Real dt = Real(clock->step_size);
+    const Column at{nodes_of, normal_of(grid.slope_x[nodes_of.column], grid.slope_y[nodes_of.column]), dt,
+                    kappa * dt * dt};
+    eliminate(at);
     ColumnLosses losses;
-    const Real all = substitute(at, normal, losses);
+    const Real all = substitute(at, losses);
+    record_motion(maps, at.column, *clock, motion, density, grid.spacing);
     if (columns.mass) columns.mass[at.column] = all;
     if constexpr (counts) pressed[at.column] = static_cast<Real>(losses.pressed);
     if (!(all > Real(0))) return;
@@ -64,51 +68,61 @@ struct SolveColumns {
   }
 
  private:
+  /// A column, and what does not change along it. It is read once: what is stored in between might be the clock, as far
+  /// as a compiler knows.
+  struct Column : ColumnNodes {
+    Vec3<Real> normal;
+    Real dt;       ///< [s]
+    Real inertia;  ///< of a spring of 1 N/m, kappa dt^2 [s2]
+  };
+
   /// A vector's part across the bed, and the rest of it along.
   struct Parts {
     Real across;
     Vec3<Real> along;
     TALUS_HD Parts(const Vec3<Real>& v, const Vec3<Real>& normal)
         : across(dot(v, normal)), along(v - normal * across) {}
-    /// The vector whose parts are these by `pivot`.
-    TALUS_HD Vec3<Real> times(const Vec3<Real>& normal, const ColumnPivot<Real>& pivot) const {
-      return normal * (across * pivot.across) + along * pivot.along;
+    /// The vector whose parts are these by `by_across` and `by_along`.
+    TALUS_HD Vec3<Real> times(const Vec3<Real>& normal, Real by_across, Real by_along) const {
+      return normal * (across * by_across) + along * by_along;
     }
   };
 
-  /// The spring between the nodes in layers k and k + 1, times kappa dt^2 [kg].
-  TALUS_HD Real spring(const ColumnNodes& at, int k) const {
-    const Real dt = Real(clock->step_size);
-    return k < at.begin() ? Real(0) : kappa * dt * dt * forces[at.node(k)].w;
+  /// What is stored of a node. It is read a layer ahead of its use: a thread that goes through its column alone would
+  /// wait for memory at every layer otherwise.
+  struct Stored {
+    Vec4<Real> node, force;
+  };
+  TALUS_HD Stored stored(const Column& at, int k) const {
+    if (k < at.begin() || k >= at.end()) return {};
+    const int n = at.node(k);
+    return {nodes[n], forces[n]};
   }
 
-  /// The method eliminates from the top: pivots, and in `forces` the impulses with what the nodes above hand down.
-  TALUS_HD void eliminate(const ColumnNodes& at, const Vec3<Real>& normal) const {
-    const Real dt = Real(clock->step_size);
+  /// The method eliminates from the top: mobilities, and in `forces` the impulses with what the nodes above hand down.
+  TALUS_HD void eliminate(const Column& at) const {
     const Vec3<Real> g = gravity.at(*clock);
-    ColumnPivot<Real> above{};
+    Mobility<Real> above{};
     Vec3<Real> handed{};
+    Stored next = stored(at, at.end() - 1);
     for (int k = at.end() - 1; k >= at.begin(); --k) {
       const int n = at.node(k);
-      const Vec4<Real> node = nodes[n];
-      ColumnPivot<Real> pivot{};
+      const Vec4<Real> node = next.node, f = next.force;
+      next = stored(at, k - 1);
+      Mobility<Real> own{};
       if (node.w > Real(0)) {
-        const Vec4<Real> f = forces[n];
-        const Real up = above.across > Real(0) ? spring(at, k) : Real(0), both = up + spring(at, k - 1);
-        pivot = {node.w + both, node.w + softer * both};
-        Vec3<Real> impulse = (Vec3<Real>{f.x, f.y, f.z} + g * node.w) * dt;
+        const Real up = above.across > Real(0) ? at.inertia * f.w : Real(0), both = up + at.inertia * next.force.w;
+        const Real share_across = up * above.across, share_along = softer * up * above.along;
+        Vec3<Real> impulse = (Vec3<Real>{f.x, f.y, f.z} + g * node.w) * at.dt;
         if (damping > Real(0)) impulse = damped(impulse, {node.x, node.y, node.z}, damping);
-        if (up > Real(0)) {
-          const ColumnPivot<Real> share{up / above.across, softer * up / above.along};
-          pivot.across -= share.across * up;
-          pivot.along -= share.along * softer * up;
-          impulse += Parts(handed, normal).times(normal, share);
-        }
+        if (up > Real(0)) impulse += Parts(handed, at.normal).times(at.normal, share_across, share_along);
+        own = {Real(1) / (node.w + both - share_across * up),
+               Real(1) / (node.w + softer * both - share_along * softer * up)};
         forces[n] = {f.w, impulse.x, impulse.y, impulse.z};
         handed = impulse;
       }
-      pivots[n] = pivot;
-      above = pivot;
+      mobilities[n] = own;
+      above = own;
     }
   }
 
@@ -120,31 +134,37 @@ struct SolveColumns {
   };
 
   /// The method goes up the column with the changes of velocity; it returns the mass [kg].
-  TALUS_HD Real substitute(const ColumnNodes& at, const Vec3<Real>& normal, ColumnLosses& losses) const {
+  TALUS_HD Real substitute(const Column& at, ColumnLosses& losses) const {
     Real sum = 0;
     if (columns.mass) columns.rise[at.column] = Real(off_bed);
     Below below;
+    Stored next = stored(at, at.begin());
+    Mobility<Real> next_mobility = at.begin() < at.end() ? mobilities[at.node(at.begin())] : Mobility<Real>{};
     for (int k = at.begin(); k < at.end(); ++k) {
       const int n = at.node(k);
-      const Vec4<Real> node = nodes[n], f = forces[n];
+      const Vec4<Real> node = next.node, f = next.force;
+      const Mobility<Real> mobility = next_mobility;
+      next = stored(at, k + 1);
+      if (k + 1 < at.end()) next_mobility = mobilities[at.node(k + 1)];
       if (!(node.w > Real(0))) {
         below.spring = 0;
         continue;
       }
-      const ColumnPivot<Real> pivot = pivots[n];
-      const Parts own({f.x, f.y, f.z}, normal), carried(below.change, normal);
       const Vec3<Real> before = Vec3<Real>{node.x, node.y, node.z} * (Real(1) / node.w);
-      const Vec3<Real> free = before + normal * ((own.across + below.spring * carried.across) / pivot.across) +
-                              (own.along + carried.along * (below.spring * softer)) * (Real(1) / pivot.along);
-      const Vec3<Real> met = k <= grid.contact_layer(at.column) ? meet_bed(at, k, free, node.w, pivot) : free;
+      const Parts own({f.x, f.y, f.z}, at.normal), carried(below.change, at.normal);
+      const Vec3<Real> free =
+          before + own.times(at.normal, mobility.across, mobility.along) +
+          carried.times(at.normal, below.spring * mobility.across, below.spring * softer * mobility.along);
+      const Vec3<Real> met = k <= grid.contact_layer(at.column) ? meet_bed(at, k, free, node.w, mobility) : free;
       const Vec3<Real> v = walls.count > 0 ? meet_walls(walls, at.i, at.j, k, met, true) : met;
       if constexpr (counts) {
-        count(losses, normal, pivot, below, {.before = before, .free = free, .met = met, .after = v, .mass = node.w});
+        count(losses, at.normal, mobility, below,
+              {.before = before, .free = free, .met = met, .after = v, .mass = node.w});
         if (damping > Real(0))
-          losses.damping += static_cast<double>(
-              dot(taken_by_damping(own_impulse(at, k, normal), before, damping), (v + before) * Real(0.5)));
+          losses.damping +=
+              static_cast<double>(dot(taken_by_damping(own_impulse(at, k), before, damping), (v + before) * Real(0.5)));
       }
-      below = {v - before, (v + before) * Real(0.5), spring(at, k)};
+      below = {v - before, (v + before) * Real(0.5), at.inertia * f.w};
       nodes[n] = {node.w, v.x, v.y, v.z};
       forces[n] = {f.w, below.change.x, below.change.y, below.change.z};
       sum += node.w;
@@ -153,30 +173,32 @@ struct SolveColumns {
   }
 
   /// The damped impulse on the node in layer k alone [N s], before the nodes above it handed theirs down.
-  TALUS_HD Vec3<Real> own_impulse(const ColumnNodes& at, int k, const Vec3<Real>& normal) const {
+  TALUS_HD Vec3<Real> own_impulse(const Column& at, int k) const {
     const Vec4<Real> f = forces[at.node(k)];
     const Vec3<Real> all{f.x, f.y, f.z};
     if (k + 1 >= at.end()) return all;
-    const ColumnPivot<Real> above = pivots[at.node(k + 1)];
+    const Mobility<Real> above = mobilities[at.node(k + 1)];
     if (!(above.across > Real(0))) return all;
     const Vec4<Real> handed = forces[at.node(k + 1)];
-    const Real up = spring(at, k);
-    return all - Parts({handed.x, handed.y, handed.z}, normal)
-                     .times(normal, ColumnPivot<Real>{up / above.across, softer * up / above.along});
+    const Real up = at.inertia * f.w;
+    return all - Parts({handed.x, handed.y, handed.z}, at.normal)
+                     .times(at.normal, up * above.across, softer * up * above.along);
   }
 
   /// The velocity of a node at the bed, with a mass of its own and the inertia of what lies on it, after contact with
   /// the bed [m/s]. On a Cartesian grid the nodes inside the ground touch no bed of their own.
-  TALUS_HD Vec3<Real> meet_bed(const ColumnNodes& at, int k, const Vec3<Real>& v, Real mass,
-                               const ColumnPivot<Real>& pivot) const {
-    const Real dt = Real(clock->step_size), sx = grid.slope_x[at.column], sy = grid.slope_y[at.column];
+  TALUS_HD Vec3<Real> meet_bed(const Column& at, int k, const Vec3<Real>& v, Real mass,
+                               const Mobility<Real>& mobility) const {
+    const Real sx = grid.slope_x[at.column], sy = grid.slope_y[at.column];
     const bool on_top = k == grid.contact_layer(at.column);
-    const Real turn = turn_of_ground(grid, at.i, at.j, v, dt);
+    const Real turn = turn_of_ground(grid, at.i, at.j, v, at.dt);
     if (columns.mass && on_top) columns.rise[at.column] = rise_from(v, sx, sy) - turn;
     const Real area = friction.asks_pressure() && on_top ? bed_area(mass, full_base, grid.spacing, sx, sy) : Real(0);
-    return meet_ground(
-        friction, at.column, v, sx, sy,
-        {.duration = dt, .grip = area * dt / pivot.across, .leverage = pivot.across / pivot.along, .turn = turn});
+    return meet_ground(friction, at.column, v, sx, sy,
+                       {.duration = at.dt,
+                        .grip = area * at.dt * mobility.across,
+                        .leverage = mobility.along / mobility.across,
+                        .turn = turn});
   }
 
   /// The velocities of a node in a step [m/s], and its mass [kg].
@@ -190,18 +212,20 @@ struct SolveColumns {
   /// The method adds the losses of a node: what the inertia of its spring downwards took of the motion goes to those
   /// between points and grid. The node below was solved for without what bed and walls gave this one: it is as if they
   /// had taken a share of that back from it.
-  TALUS_HD void count(ColumnLosses& losses, const Vec3<Real>& normal, const ColumnPivot<Real>& pivot,
+  TALUS_HD void count(ColumnLosses& losses, const Vec3<Real>& normal, const Mobility<Real>& mobility,
                       const Below& below, const Velocities& v) const {
     const Vec3<Real> mean = (v.before + v.after) * Real(0.5);
     losses.add_shaking(v.mass, mean, *clock);
-    const ColumnPivot<Real> tie{below.spring, below.spring * softer};
+    const Real across = Real(1) / mobility.across, along = Real(1) / mobility.along;
+    const Real tie_across = below.spring, tie_along = below.spring * softer;
     const Parts bed(v.met - v.free, normal), wall(v.after - v.met, normal);
-    losses.take(GivenImpulses<Real>{bed.times(normal, pivot), wall.times(normal, pivot)}, mean, normal);
-    losses.take(GivenImpulses<Real>{bed.times(normal, tie) * Real(-1), wall.times(normal, tie) * Real(-1)}, below.mean,
-                normal);
+    losses.take(GivenImpulses<Real>{bed.times(normal, across, along), wall.times(normal, across, along)}, mean, normal);
+    losses.take(GivenImpulses<Real>{bed.times(normal, tie_across, tie_along) * Real(-1),
+                                    wall.times(normal, tie_across, tie_along) * Real(-1)},
+                below.mean, normal);
     losses.pass_on(v.mass, v.before, v.after);
     const Parts apart(v.after - v.before - below.change, normal);
-    losses.transfer += static_cast<double>(dot(apart.times(normal, tie), mean - below.mean));
+    losses.transfer += static_cast<double>(dot(apart.times(normal, tie_across, tie_along), mean - below.mean));
   }
 };
 

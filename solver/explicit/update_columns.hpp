@@ -41,6 +41,7 @@ struct UpdateColumns {
   Real* pressed;                ///< impulse of the bed along its normal, where losses are counted [N s]
   ColumnDensity<Real> density;  ///< of the mass
   MapView maps;
+  Vec4<Real>* motion;  ///< see record_motion()
 
   /// The memory that the kernel moves [bytes].
   double bytes(int) const {
@@ -102,6 +103,7 @@ struct UpdateColumns {
   /// The method adds the losses to the clock's, and records thickness and arrival of the column (T25).
   TALUS_HD void finish(const Column& at, const Sums& sums) const {
     if constexpr (content == NodeContent::remapped) return;
+    record_motion(maps, at.column, *clock, motion, density, grid.spacing);
     if (columns.mass) {
       columns.mass[at.column] = sums.mass;
       const int bed = bed_layer(grid, at.column);

@@ -21,18 +21,20 @@ struct ForgetExtents {
 template <class Real>
 struct MeasureExtents {
   ParticleView<Real> points;
-  int columns, rows, blocks_x, reach;
+  int columns, rows, blocks_x;
+  Reach reach;
   int* lowest;
   int* highest;
   TALUS_HD void operator()(int p) const {
     const int i = points.cell[0][p], j = points.cell[1][p], k = points.cell[2][p];
-    const int i0 = i > reach ? i - reach : 0, i1 = i + reach < columns ? i + reach : columns - 1;
-    const int j0 = j > reach ? j - reach : 0, j1 = j + reach < rows ? j + reach : rows - 1;
-    const int k0 = k > reach ? k - reach : 0;
+    const int around = reach.columns;
+    const int i0 = i > around ? i - around : 0, i1 = i + around < columns ? i + around : columns - 1;
+    const int j0 = j > around ? j - around : 0, j1 = j + around < rows ? j + around : rows - 1;
+    const int k0 = k > reach.layers ? k - reach.layers : 0;
     for (int bj = j0 >> 2; bj <= j1 >> 2; ++bj) {
       for (int bi = i0 >> 2; bi <= i1 >> 2; ++bi) {
         atomic_min(&lowest[bj * blocks_x + bi], k0);
-        atomic_max(&highest[bj * blocks_x + bi], k + reach);
+        atomic_max(&highest[bj * blocks_x + bi], k + reach.layers);
       }
     }
   }
@@ -80,14 +82,14 @@ BlockStorage<Device>::BlockStorage(const Device& device, int columns, int rows)
 
 template <class Device>
 template <class Real>
-void BlockStorage<Device>::fit(const ParticleView<Real>& points, int reach) {
+void BlockStorage<Device>::fit(const ParticleView<Real>& points, const Reach& reach) {
   measure_extents(points, reach);
   give_storage();
 }
 
 template <class Device>
 template <class Real>
-void BlockStorage<Device>::measure_extents(const ParticleView<Real>& points, int reach) {
+void BlockStorage<Device>::measure_extents(const ParticleView<Real>& points, const Reach& reach) {
   for_each(device_, static_cast<int>(lowest_.size()), ForgetExtents{lowest_.data(), highest_.data()});
   for_each(
       device_, points.count,
@@ -112,12 +114,12 @@ std::size_t BlockStorage<Device>::bytes() const {
 }
 
 template class BlockStorage<CpuDevice>;
-template void BlockStorage<CpuDevice>::fit(const ParticleView<float>&, int);
-template void BlockStorage<CpuDevice>::fit(const ParticleView<double>&, int);
+template void BlockStorage<CpuDevice>::fit(const ParticleView<float>&, const Reach&);
+template void BlockStorage<CpuDevice>::fit(const ParticleView<double>&, const Reach&);
 #if TALUS_FOR_GPU
 template class BlockStorage<GpuDevice>;
-template void BlockStorage<GpuDevice>::fit(const ParticleView<float>&, int);
-template void BlockStorage<GpuDevice>::fit(const ParticleView<double>&, int);
+template void BlockStorage<GpuDevice>::fit(const ParticleView<float>&, const Reach&);
+template void BlockStorage<GpuDevice>::fit(const ParticleView<double>&, const Reach&);
 #endif
 
 }  // namespace talus

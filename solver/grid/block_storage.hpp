@@ -9,6 +9,12 @@
 
 namespace talus {
 
+/// The way that a point reaches: what it may go before it is sorted again, and its stencil.
+struct Reach {
+  int columns;  ///< along x and y
+  int layers;
+};
+
 /// The owner of the blocks' places in storage. A block has storage for all of its columns, from the lowest to the
 /// highest layer that any point near it reaches, or none.
 template <class Device>
@@ -17,9 +23,9 @@ class BlockStorage {
   /// The constructor makes the storage of a map without points: no block has any.
   BlockStorage(const Device& device, int columns, int rows);
 
-  /// The method gives storage to every column and layer within `reach` cells of a point, and takes it from all others.
+  /// The method gives storage to every column and layer within `reach` of a point, and takes it from all others.
   template <class Real>
-  void fit(const ParticleView<Real>& points, int reach);
+  void fit(const ParticleView<Real>& points, const Reach& reach);
 
   /// The place in storage of every block, [blocks in y * blocks in x] on the device.
   const BlockSlot* slots() const { return slots_.data(); }
@@ -34,7 +40,7 @@ class BlockStorage {
 
  private:
   template <class Real>
-  void measure_extents(const ParticleView<Real>& points, int reach);
+  void measure_extents(const ParticleView<Real>& points, const Reach& reach);
   void give_storage();
 
   Device device_;

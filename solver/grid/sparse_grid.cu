@@ -3,7 +3,7 @@
 namespace talus {
 
 template <class Real, class Device>
-SparseGrid<Real, Device>::SparseGrid(const Device& device, const GridShape& shape, int drift, bool in_order,
+SparseGrid<Real, Device>::SparseGrid(const Device& device, const GridShape& shape, const Drift& drift, bool in_order,
                                      bool by_lowest_node)
     : device_(device),
       shape_(shape),
@@ -23,7 +23,8 @@ GridView<Real> SparseGrid<Real, Device>::view() const {
   v.spacing = static_cast<Real>(shape_.spacing);
   v.layer_height = static_cast<Real>(shape_.layer_height);
   v.lowest_weighed = static_cast<Real>(shape_.lowest_weighed);
-  v.drift = drift_;
+  v.drift = drift_.columns;
+  v.climb = drift_.layers;
   v.homes_below = order_.by_lowest_node();
   v.walls = walls_;
   v.mapping = shape_.mapping;
@@ -36,7 +37,7 @@ GridView<Real> SparseGrid<Real, Device>::view() const {
 template <class Real, class Device>
 void SparseGrid<Real, Device>::fit(Particles<Real, Device>& points, int outflow_count) {
   order_.sort(points, outflow_count);
-  storage_.fit(points.view(), 1 + drift_);
+  storage_.fit(points.view(), {.columns = 1 + drift_.columns, .layers = 1 + drift_.layers});
 }
 
 template class SparseGrid<float, CpuDevice>;

@@ -8,16 +8,22 @@
 
 namespace talus {
 
+/// The way that a point may go from home before it is sorted again.
+struct Drift {
+  int columns = 1;  ///< along x and y [cells]
+  int layers = 1;
+};
+
 /// The background grid with its storage, and the order of the points in it.
 template <class Real, class Device>
 class SparseGrid {
  public:
-  /// The constructor makes a grid without points. `drift` is how far a point may go from home before it is sorted again
-  /// [cells], at most one on the CPU, where blocks of the same colour are four columns apart. With `in_order` scatters
+  /// The constructor makes a grid without points. `drift` is how far a point may go from home before it is sorted
+  /// again, at most one on the CPU, where blocks of the same colour are four columns apart. With `in_order` scatters
   /// give the same bits on every run on a GPU too; the drift is at most one there as well. With `by_lowest_node` points
   /// are sorted by the lowest of their nodes, where no order asks for more: with hats, those of one cell do not have
   /// the same nodes.
-  SparseGrid(const Device& device, const GridShape& shape, int drift, bool in_order = false,
+  SparseGrid(const Device& device, const GridShape& shape, const Drift& drift, bool in_order = false,
              bool by_lowest_node = false);
 
   /// The method sorts the points by home cell, drops those that left (the `outflow_count` last ones after sorting), and
@@ -50,7 +56,7 @@ class SparseGrid {
  private:
   Device device_;
   GridShape shape_;
-  int drift_;
+  Drift drift_;
   TerrainTables tables_;
   WallNodes walls_;
   DeviceTerrain<Real, Device> terrain_;

@@ -27,7 +27,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
  public:
   ImplicitSolver(const Device& device, const Scene& scene, const IntegratorSettings& settings,
                  const ImplicitControls& controls, const SolverState& state)
-      : Base(device, scene, settings, state, needs(settings), 0),
+      : Base(device, scene, settings, state, needs(settings), {.columns = 0, .layers = 0}),
         controls_(with_materials(controls, scene.grid.layer_height)),
         step_(parts(), DeviceBed<double, Device>(device, settings.bed, scene.bed)),
         length_(controls.step, controls.newton.iterations),
@@ -173,7 +173,8 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
   void record_points() {
     if (!controls_.dynamic) return;
     this->measure_columns();
-    this->record_motion(nullptr);
+    this->sum_motion(nullptr);
+    this->record_motion();
   }
 
   /// The method reports what the step ended with, and drops particles that left the domain.

@@ -20,7 +20,7 @@ template <class Real, class Device, class Shape>
 class PointSolver : public Solver {
  public:
   PointSolver(const Device& device, const Scene& scene, const IntegratorSettings& settings, const SolverState& state,
-              ParticleNeeds needs, int drift)
+              ParticleNeeds needs, const Drift& drift)
       : device_(device),
         settings_(settings),
         materials_(settings.materials.in<Real>()),
@@ -102,11 +102,11 @@ class PointSolver : public Solver {
 
   /// The density of what lies over each column, as it was measured last.
   ColumnDensity<Real> column_density() const { return {materials_.list[0].density, measures_.column_volumes()}; }
-  /// The method records the maps of speed and pressure of the points as they are, whenever the clock says so, or at
-  /// once where that is null; they must not have gone further since they were sorted than a step may begin with.
-  void record_motion(const Clock* clock) {
-    motion_.record(points_.view(), materials_, grid_, clock, column_density(), maps_.view());
-  }
+  /// The method sums up the motion of the points as they are over the columns, whenever the clock says so, or at once
+  /// where that is null; they must not have gone further since they were sorted than a step may begin with.
+  void sum_motion(const Clock* clock) { motion_.sum(points_.view(), materials_, grid_, clock); }
+  /// The method records the maps of speed and pressure from the motion that was summed up.
+  void record_motion() { motion_.record(grid_, column_density(), maps_.view()); }
 
   /// The method sorts the points and fits the grid to them; the `outflow_count` last ones are dropped.
   void fit(int outflow_count) {

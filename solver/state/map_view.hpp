@@ -4,6 +4,7 @@
 #include "common/run/map_fields.hpp"
 #include "solver/parallel/macros.hpp"
 #include "solver/parallel/math.hpp"
+#include "solver/state/clock.hpp"
 
 namespace talus {
 
@@ -48,5 +49,25 @@ struct ColumnDensity {
     return volumes && volumes[column] > 0 ? mass / volumes[column] : static_cast<double>(uniform);
   }
 };
+
+/// This function records speed and pressure of one column from the sums of its points, and clears them.
+/// `motion`: mass [kg] and momentum [kg m/s], [rows * columns].
+template <class Real>
+TALUS_HD void record_motion_sums(const MapView& maps, int column, Vec4<Real>* motion,
+                                 const ColumnDensity<Real>& density, Real spacing) {
+  const Vec4<Real> sum = motion[column];
+  motion[column] = Vec4<Real>{};
+  if (!(sum.w > Real(0))) return;
+  const double mass = static_cast<double>(sum.w);
+  const Vec3<double> momentum{static_cast<double>(sum.x), static_cast<double>(sum.y), static_cast<double>(sum.z)};
+  record_motion(maps, column, {mass, density.of(column, mass), static_cast<double>(spacing)}, length(momentum));
+}
+
+/// This function does so in a step in which the clock says that motion is recorded; `motion` may be null.
+template <class Real>
+TALUS_HD void record_motion(const MapView& maps, int column, const Clock& clock, Vec4<Real>* motion,
+                            const ColumnDensity<Real>& density, Real spacing) {
+  if (motion && clock.records_motion != 0) record_motion_sums(maps, column, motion, density, spacing);
+}
 
 }  // namespace talus

@@ -194,8 +194,7 @@ struct GridToParticle {
       points.cell[0][p] = -1;
       atomic_add(&clock->outflow_volume, static_cast<double>(points.volume[p]));
       atomic_increment(&clock->outflow_count);
-      request_sort();
-      return;
+      return;  // it takes no part in the next steps, and is dropped at the next sort
     }
     const Real steep = Real(1) + s.slope_x * s.slope_x + s.slope_y * s.slope_y;
     const Real hx = Real(1) / grid.spacing, hz = Real(1) / grid.layer_height;
@@ -208,11 +207,10 @@ struct GridToParticle {
 
   TALUS_HD bool strayed(std::uint64_t key, int i, int j, int k) const {
     const HomeCell at(grid.block_columns_x, key);
-    const int most = grid.drift,
-              least = grid.homes_below ? 1 - most
-                                       : -most;  // storage goes by where a point was, a cell above its home at most
+    const int below = grid.homes_below ? 1 : 0;  // storage goes by where a point was, a cell above its home at most
     const int di = i - at.i, dj = j - at.j, dk = k - at.k;
-    return di > most || di < least || dj > most || dj < least || dk > most || dk < least;
+    return di > grid.drift || di < below - grid.drift || dj > grid.drift || dj < below - grid.drift ||
+           dk > grid.climb || dk < below - grid.climb;
   }
   TALUS_HD void request_sort() const { replace_if(&clock->request, running, wants_sort); }
 };

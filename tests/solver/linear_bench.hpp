@@ -128,7 +128,7 @@ struct LinearBench {
   double inertia = 1e3;
 
   explicit LinearBench(const Setting& setting) : LinearBench(random_scene(setting), setting) {}
-  LinearBench(const Scene& scene, const Setting& setting) : grid(device, scene.grid, 1), b_bar(setting.b_bar) {
+  LinearBench(const Scene& scene, const Setting& setting) : grid(device, scene.grid, {}), b_bar(setting.b_bar) {
     points.upload(scene.points);
     MaterialOptions mo;
     mo.model = setting.model;

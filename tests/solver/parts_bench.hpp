@@ -49,7 +49,7 @@ struct PartsBench {
         settings(make_settings(o, scene.grid)),
         materials(settings.common.materials.in<double>()),
         points(device, needs(settings.common)),
-        grid(device, scene.grid, 0),
+        grid(device, scene.grid, {.columns = 0, .layers = 0}),
         surfaces(device, scene.contacts, settings.common.bed, scene.grid, {}, false),
         impulses(device) {
     points.upload(scene.points);

@@ -19,7 +19,7 @@ struct SolvedColumn {
   SmallGrid grid{0.3, -0.2};
   Vec3<double> gravity{0, 0, -9.81};
   std::vector<Vec4<double>> nodes{SmallGrid::nodes}, forces{SmallGrid::nodes};
-  std::vector<ColumnPivot<double>> pivots{SmallGrid::nodes};
+  std::vector<Mobility<double>> mobilities{SmallGrid::nodes};
   std::vector<double> thickness = std::vector<double>(64), speed = thickness, pressure = thickness, arrival = thickness;
   Walls<double> walls;
   BaseFriction<double> friction;
@@ -59,7 +59,7 @@ struct SolvedColumn {
                                   .clock = &clock,
                                   .nodes = nodes.data(),
                                   .forces = forces.data(),
-                                  .pivots = pivots.data(),
+                                  .mobilities = mobilities.data(),
                                   .gravity = {gravity},
                                   .walls = walls,
                                   .friction = friction,
@@ -70,7 +70,8 @@ struct SolvedColumn {
                                   .columns = {},
                                   .pressed = nullptr,
                                   .density = {2000, nullptr},
-                                  .maps = maps});
+                                  .maps = maps,
+                                  .motion = nullptr});
   }
 };
 

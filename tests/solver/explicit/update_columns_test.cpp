@@ -49,7 +49,8 @@ struct Updated {
                                                                           .columns = columns,
                                                                           .pressed = pressed.data(),
                                                                           .density = {2000, nullptr},
-                                                                          .maps = maps});
+                                                                          .maps = maps,
+                                                                          .motion = nullptr});
   }
 };
 

@@ -46,7 +46,7 @@ TEST_P(BlockStorageOn, holds_the_columns_and_layers_within_reach_of_a_point_and_
     BlockStorage storage(device, grid_columns, grid_rows);
     EXPECT_EQ(storage.nodes(), 0);
     auto points = points_at(device, {{4, 5, 3}});  // columns 3 to 5: blocks 0 and 1 of the second row; layers 2 to 4
-    storage.fit(points.view(), 1);
+    storage.fit(points.view(), {1, 1});
     EXPECT_EQ(active(device, storage), (std::vector<int>{5, 6}));
     EXPECT_EQ(storage.nodes(), 2 * 3 * block_columns);
     const std::vector<BlockSlot> all = slots(device, storage);
@@ -66,7 +66,7 @@ TEST_P(BlockStorageOn, ends_at_the_edges_of_the_map_and_at_the_terrain) {
   on_device([](const auto& device) {
     BlockStorage storage(device, grid_columns, grid_rows);
     auto points = points_at(device, {{0, 0, 0}, {1, 2, 7}, {19, 11, 1}});
-    storage.fit(points.view(), 2);
+    storage.fit(points.view(), {2, 2});
     EXPECT_EQ(active(device, storage), (std::vector<int>{0, 5, 14}));
     const std::vector<BlockSlot> all = slots(device, storage);
     EXPECT_EQ(all[0].first_layer, 0);
@@ -80,10 +80,10 @@ TEST_P(BlockStorageOn, is_taken_from_blocks_that_points_have_left) {
   on_device([](const auto& device) {
     BlockStorage storage(device, grid_columns, grid_rows);
     auto before = points_at(device, {{2, 2, 0}, {17, 2, 4}});
-    storage.fit(before.view(), 1);
+    storage.fit(before.view(), {1, 1});
     EXPECT_EQ(active(device, storage), (std::vector<int>{0, 4}));
     auto after = points_at(device, {{10, 9, 0}});
-    storage.fit(after.view(), 1);
+    storage.fit(after.view(), {1, 1});
     EXPECT_EQ(active(device, storage), (std::vector<int>{12}));
     EXPECT_EQ(storage.nodes(), 2 * block_columns);
     EXPECT_EQ(slots(device, storage)[0].offset, -1);

@@ -52,7 +52,7 @@ TEST(SparseGrid, stores_every_node_a_point_can_reach_before_the_next_sort) {
   const CpuDevice device = CpuDevice::make();
   Particles<double, CpuDevice> points(device, {});
   points.upload(scene.points);
-  SparseGrid<double, CpuDevice> grid(device, scene.grid, 1);
+  SparseGrid<double, CpuDevice> grid(device, scene.grid, {});
   grid.fit(points, 0);
   const ParticleState s = points.download();
   for (std::size_t p = 0; p < s.size(); ++p) ASSERT_NO_FATAL_FAILURE(expect_stored_around(s, p, grid)) << "point " << p;

@@ -32,10 +32,8 @@ struct MovingPoints {
   }
   template <class Shape>
   void record(std::vector<OnePoint>& points, double threshold = 0) {
-    for (OnePoint& p : points)
-      ScatterMotion<double, Shape>{p.view(), materials, SmallGrid::side, &clock, motion.data()}(0);
-    const RecordMotion<double> kernel{grid.view(),     grid.active.data(), &clock,
-                                      {2000, nullptr}, motion.data(),      maps(threshold)};
+    for (OnePoint& p : points) ScatterMotion<double, Shape>{grid.view(), p.view(), materials, &clock, motion.data()}(0);
+    const RecordMotion<double> kernel{grid.view(), grid.active.data(), {2000, nullptr}, motion.data(), maps(threshold)};
     for (int c = 0; c < 4 * block_columns; ++c) kernel(c);
   }
 };

@@ -14,7 +14,7 @@ namespace {
 class StandingStill final : public PointSolver<double, CpuDevice, Quadratic> {
  public:
   StandingStill(const Scene& scene, const IntegratorSettings& settings, const SolverState& state)
-      : PointSolver(CpuDevice::make(), scene, settings, state, settings.needs, 1) {
+      : PointSolver(CpuDevice::make(), scene, settings, state, settings.needs, {}) {
     fit(0);
   }
   BatchReport advance() override { return {}; }

@@ -191,7 +191,7 @@ class Transfers : public InEachPlace {
     const Device device = Device::make();
     Particles<Real, Device> points(device, {.affine_transfer = true, .boxes = Shape::averaged});
     points.upload(s.points);
-    SparseGrid<Real, Device> grid(device, s.grid, 1, false, Shape::width == 2);
+    SparseGrid<Real, Device> grid(device, s.grid, {}, false, Shape::width == 2);
     grid.fit(points, 0);
     if (shuffled) shuffle(device, points);
     const auto got = scattered<Shape>(device, grid, points, dt);
@@ -244,7 +244,7 @@ class Transfers : public InEachPlace {
     const Device device = Device::make();
     Particles<Real, Device> points(device, {.affine_transfer = true, .boxes = Shape::averaged});
     points.upload(s.points);
-    SparseGrid<Real, Device> grid(device, s.grid, 1);
+    SparseGrid<Real, Device> grid(device, s.grid, {});
     grid.fit(points, 0);
     Buffer<Vec4<Real>, Device> nodes(device);
     nodes.upload(linear_field(grid));
