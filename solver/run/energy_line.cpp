@@ -32,6 +32,16 @@ struct Mean {
   }
 };
 
+/// This function calls f(column, row) for every inner cell that lies below the energy line.
+template <class F>
+void each_cell_below(const EnergyLine& line, const Raster& terrain, F&& f) {
+  for (int row = 1; row + 1 < terrain.grid.rows; ++row) {
+    for (int column = 1; column + 1 < terrain.grid.columns; ++column) {
+      if (line.head(terrain, column, row) > 0) f(column, row);
+    }
+  }
+}
+
 }  // namespace
 
 double EnergyLine::head(const Raster& terrain, int column, int row) const {
@@ -65,15 +75,24 @@ EnergyLine energy_line_of(const Domain& domain, const SolveOptions& options) {
 double bend_over_thickness(const Domain& domain, const EnergyLine& line) {
   const Raster& z = domain.terrain;
   Mean bend;
-  for (int row = 1; row + 1 < z.grid.rows; ++row) {
-    for (int column = 1; column + 1 < z.grid.columns; ++column) {
-      if (!(line.head(z, column, row) > 0)) continue;
-      bend.add(std::abs(z.at(column - 1, row) - 2 * z.at(column, row) + z.at(column + 1, row)));
-      bend.add(std::abs(z.at(column, row - 1) - 2 * z.at(column, row) + z.at(column, row + 1)));
-    }
-  }
+  each_cell_below(line, z, [&](int column, int row) {
+    bend.add(std::abs(z.at(column - 1, row) - 2 * z.at(column, row) + z.at(column + 1, row)));
+    bend.add(std::abs(z.at(column, row - 1) - 2 * z.at(column, row) + z.at(column, row + 1)));
+  });
   const double thickness = median_thickness(domain.release_thickness);
   return bend.count > 0 && thickness > 0 ? bend.sum / static_cast<double>(bend.count) / 8 / thickness : 0;
+}
+
+double steepness(const Domain& domain, const EnergyLine& line) {
+  const Raster& z = domain.terrain;
+  const double over = 1 / (2 * z.grid.cell);
+  Mean steep;
+  each_cell_below(line, z, [&](int column, int row) {
+    const double x = (z.at(column + 1, row) - z.at(column - 1, row)) * over,
+                 y = (z.at(column, row + 1) - z.at(column, row - 1)) * over;
+    steep.add(1 + x * x + y * y);
+  });
+  return steep.count > 0 ? steep.sum / static_cast<double>(steep.count) : 1;
 }
 
 }  // namespace talus::solver

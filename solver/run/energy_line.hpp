@@ -25,4 +25,8 @@ EnergyLine energy_line_of(const Domain& domain, const SolveOptions& options);
 /// with b and b' the slopes of neighbouring cells [-]. 0 where nothing is released.
 double bend_over_thickness(const Domain& domain, const EnergyLine& line);
 
+/// How much a layer is thinner across itself than upwards: the mean of 1 + b_x^2 + b_y^2 over the slopes b of the
+/// ground, where the energy line lies above it [-]. 1 where nothing is released.
+double steepness(const Domain& domain, const EnergyLine& line);
+
 }  // namespace talus::solver

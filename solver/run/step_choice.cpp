@@ -29,19 +29,25 @@ struct Way {
   double work() const { return work_of(integrator, {.steps = 1}) * rate / cfl; }
 };
 
-/// The rate at which waves and a flow of `speed` cross cells, and layers unless columns are solved for [1/s].
-double crossing_rate(const Domain& domain, const SolveOptions& o, Integrator integrator, double speed) {
+/// What of a scene decides how long its steps are.
+struct Pace {
+  double speed;  ///< about what a flow has when it is fast [m/s]
+  double steep;  ///< steepness() of the ground that layers follow
+};
+
+/// The rate at which waves and a flow cross cells, and layers unless columns are solved for (T11) [1/s].
+double crossing_rate(const Domain& domain, const SolveOptions& o, Integrator integrator, const Pace& pace) {
   const double across = 1 / domain.grid.cell, up = 1 / domain.layer_height;
-  const bool by_layers = !abilities_of(integrator).solve_columns;
-  return fastest_wave(o) * std::sqrt(2 * across * across + (by_layers ? up * up : 0)) + speed * (2 * across + up);
+  const double by_layers = abilities_of(integrator).solve_columns ? 0 : pace.steep * up * up;
+  return fastest_wave(o) * std::sqrt(2 * across * across + by_layers) + pace.speed * (2 * across + up);
 }
 
-Way way_of(const Domain& domain, const SolveOptions& o, Integrator integrator, double speed, bool rough) {
+Way way_of(const Domain& domain, const SolveOptions& o, Integrator integrator, const Pace& pace, bool rough) {
   const bool columns = abilities_of(integrator).solve_columns;
   const double most = columns ? most_columns : most_explicit;
   const double per_accuracy = columns ? columns_per_accuracy : rough ? rough_per_accuracy : explicit_per_accuracy;
   return {integrator, o.accuracy ? std::clamp(per_accuracy * *o.accuracy, least_cfl, most) : o.cfl,
-          crossing_rate(domain, o, integrator, speed)};
+          crossing_rate(domain, o, integrator, pace)};
 }
 
 /// What is in the way of columns in this scene, in words; empty: nothing. `bend`: of the ground, over the thickness.
@@ -68,10 +74,12 @@ std::string comparison(const Way& taken, const Way& other) {
 }  // namespace
 
 StepChoice choose_steps(const Domain& domain, const SolveOptions& o) {
-  const double speed = lowest_stiffness(domain, o).speed / 2;  // about what a flow has when it is fast
-  const double bend = bend_over_thickness(domain, energy_line_of(domain, o));
-  const Way by_points = way_of(domain, o, Integrator::explicit_, speed, bend > roughest),
-            by_columns = way_of(domain, o, Integrator::column_implicit, speed, false);
+  const EnergyLine line = energy_line_of(domain, o);
+  const Pace pace{.speed = lowest_stiffness(domain, o).speed / 2,
+                  .steep = o.mapping == Mapping::terrain_following ? steepness(domain, line) : 1};
+  const double bend = bend_over_thickness(domain, line);
+  const Way by_points = way_of(domain, o, Integrator::explicit_, pace, bend > roughest),
+            by_columns = way_of(domain, o, Integrator::column_implicit, pace, false);
   StepChoice choice;
   if (const std::string why_not = against_columns(o, bend); !why_not.empty()) {
     choice.cfl = by_points.cfl;

@@ -52,6 +52,13 @@ TEST(EnergyLine, ground_bends_by_the_rise_of_an_arc_over_its_chord) {
   EXPECT_NEAR(bend(0.01, 0.6), 0.5 * 100 * 0.01 / 8 / 5, 1e-12);
 }
 
+TEST(EnergyLine, layers_are_thinner_across_themselves_on_steep_ground) {
+  const Domain slope = with_release([](double x, double y) { return 300 - 0.6 * x + 0.2 * y; });
+  EXPECT_NEAR(steepness(slope, energy_line_of(slope, bed_of(10))), 1 + 0.36 + 0.04, 1e-12);
+  Domain empty = ground(8, 8, 10, 2, [](double x, double) { return 50 - x; });
+  EXPECT_EQ(steepness(empty, energy_line_of(empty, bed_of(20))), 1) << "nothing is released";
+}
+
 TEST(EnergyLine, ground_above_it_and_voids_do_not_count) {
   // Bumps west of the release, which lies at the foot of the ground that rises there.
   Domain d =
