@@ -36,9 +36,23 @@ void Stepper::build(const SolverState& state) {
   solver_ = resume_solver(scene_, o, device_, state);
 }
 
-void Stepper::log_decision() {
+void Stepper::log_decision(const std::string& taken_over) {
   const std::string decision = choice_->take_decision();
-  if (!decision.empty()) log_info(fmt::format("t {:.2f} s: {}", time_, decision));
+  if (!decision.empty()) log_info(fmt::format("t {:.2f} s: {}{}", time_, decision, taken_over));
+}
+
+/// The method builds the solver that goes on, at the state of the one before, and says what that state holds on both
+/// sides.
+void Stepper::hand_over() {
+  const Energies before = solver_->energies();
+  build(solver_->state());
+  const Energies after = solver_->energies();
+  const Vec3<double> change = after.momentum - before.momentum;
+  log_decision(
+      fmt::format("; taken over: kinetic energy {:.4g} J, elastic {:.4g} J, momentum {:.4g} kg m/s, changed by {:.1g} "
+                  "J, {:.1g} J, {:.1g} kg m/s",
+                  before.kinetic, before.elastic, length(before.momentum), after.kinetic - before.kinetic,
+                  after.elastic - before.elastic, length(change)));
 }
 
 BatchReport Stepper::advance(double next_event) {
@@ -70,8 +84,7 @@ BatchReport Stepper::take_batch(double next_event) {
     if (choice_->current() == options_.flow) throw;
     const int attempts = options_.implicit.step_cuts + 1;
     choice_->note_failure(work_of(options_.flow, {.newton = attempts * options_.implicit.newton_iterations}));
-    log_decision();
-    build(solver_->state());  // that of the last step that was accepted
+    hand_over();  // at the state of the last step that was accepted
     return take_batch(next_event);
   }
   work_.simulated += batch.clock.time - time_;
@@ -81,8 +94,11 @@ BatchReport Stepper::take_batch(double next_event) {
   const double rate = positive_from_bits(batch.clock.rate_bits);
   work_.wave_step = rate > 0 ? 1 / rate : 0;
   work_.speed = positive_from_bits(batch.clock.speed_bits);
-  if (choice_->note(std::exchange(work_, {}))) build(solver_->state());
-  log_decision();
+  if (choice_->note(std::exchange(work_, {}))) {
+    hand_over();
+  } else {
+    log_decision();
+  }
   return batch;
 }
 

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "common/stage/stage.hpp"
 #include "solver/integrator/scene.hpp"
@@ -41,7 +42,8 @@ class Stepper {
   void build(const SolverState& state);
   BatchReport take_batch(double next_event);
   BatchCount count_of(const BatchReport& batch) const;
-  void log_decision();
+  void hand_over();
+  void log_decision(const std::string& taken_over = {});
 
   const Scene& scene_;
   const SolveOptions& options_;
