@@ -15,9 +15,8 @@ bool pressure_by_volume(const SolveOptions& all) {
 /// This function declares that implicit integrators need laws that they can step; "auto" takes explicit steps of
 /// others.
 void need_implicit_laws(recipe::Visitor& v, const SolveOptions& all) {
-  const Integrator integrator = all.preset == Preset::reference ? Integrator::newmark : all.integrator;
   const Hindrance law = law_beyond_newton(all);
-  v.needs(abilities_of(integrator).obey_cfl || !law,
+  v.needs(abilities_of(all.asked_integrator()).obey_cfl || !law,
           {"[solve] integrator = \"newmark\", \"quasi-static\" or preset = \"reference\" does not go with " + law.key,
            law.reason, "Take integrator = \"explicit\""});
 }
@@ -28,7 +27,7 @@ void ImplicitOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
   need_implicit_laws(v, all);
   describe_newton(v);
   describe_linear(v, all);
-  const StepAbilities steps = abilities_of(all.integrator);
+  const StepAbilities steps = abilities_of(all.asked_integrator());
   v.integer("step_cuts", step_cuts, recipe::Range{0, 30}, "halvings of a step before the run gives up");
   v.number("apex", apex, recipe::not_negative,
            "drucker-prager: pressure over which the tip of the cone is rounded, in weights of a cell");
@@ -73,7 +72,7 @@ void ImplicitOptions::describe_linear(recipe::Visitor& v, const SolveOptions& al
       {{"pcg", LinearSolver::pcg}, {"bicgstab", LinearSolver::bicgstab}, {"cholesky", LinearSolver::cholesky}},
       "conjugate gradients, or stabilised bi-conjugate ones, never assembled; or sparse Cholesky");
   const bool takes_contact = linear_solver == LinearSolver::pcg || linear_solver == LinearSolver::bicgstab;
-  v.needs(takes_contact || !abilities_of(all.integrator).solve_systems || !all.meets_points(),
+  v.needs(takes_contact || !abilities_of(all.asked_integrator()).solve_systems || !all.meets_points(),
           {all.contact_words() + " does not go with [solve.implicit] linear_solver = \"cholesky\"",
            "contact between nodes is not in the assembled matrix", "Take linear_solver = \"pcg\""});
   v.number("linear_tolerance", linear_tolerance, recipe::Range{0, 1, true, true},

@@ -14,7 +14,7 @@ void GaugeOptions::describe(recipe::Visitor& v) {
 }
 
 void OutputOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
-  const StepAbilities steps = abilities_of(all.integrator);
+  const StepAbilities steps = abilities_of(all.asked_integrator());
   v.number("frame_interval_s", frame_interval, recipe::positive, "time between frames");
   v.number("history_interval_s", history_interval, recipe::positive, "time between records of energy and mass");
   v.number("checkpoint_interval_s", checkpoint_interval, recipe::not_negative,

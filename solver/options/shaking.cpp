@@ -22,9 +22,7 @@ void ShakingOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
   v.needs(!acts() || start < all.end_time,
           {fmt::format("[solve.shaking] start_s = {:g} with end_time_s = {:g}", start, all.end_time),
            "the run ends before the ground shakes", "Give a smaller start_s, or a larger end_time_s"});
-  const bool inert = all.preset == Preset::reference ? all.integrator != Integrator::quasi_static
-                                                     : abilities_of(all.integrator).carry_inertia;
-  v.needs(!acts() || inert,
+  v.needs(!acts() || abilities_of(all.asked_integrator()).carry_inertia,
           {"[solve.shaking] does not go with integrator = \"quasi-static\"",
            "shaking acts by inertia, which a sequence of equilibria leaves out",
            "Take integrator = \"explicit\", \"column-implicit\" or \"newmark\"; for a pseudo-static analysis leave "

@@ -17,8 +17,7 @@ constexpr double most_explicit_cfl = 0.8;
 void need_separation(recipe::Visitor& v, const SolveOptions& o) {
   const bool is_free = o.base.separation == Separation::free;
   const std::string key = "[solve.base] separation = \"" + o.base.separation_name() + "\" with ";
-  const Integrator integrator = o.preset == Preset::reference ? Integrator::newmark : o.integrator;
-  v.needs(is_free || abilities_of(integrator).obey_cfl,
+  v.needs(is_free || abilities_of(o.asked_integrator()).obey_cfl,
           {key + "integrator = \"newmark\", \"quasi-static\" or preset = \"reference\"",
            "Newton's iterations free a base node whose reaction would pull",
            "Take integrator = \"explicit\", or separation = \"free\""});
@@ -30,7 +29,7 @@ void need_separation(recipe::Visitor& v, const SolveOptions& o) {
 
 /// This function declares what column-implicit steps need, and what needs them.
 void need_columns(recipe::Visitor& v, const SolveOptions& o) {
-  const bool by_columns = abilities_of(o.integrator).solve_columns;
+  const bool by_columns = abilities_of(o.asked_integrator()).solve_columns;
   v.needs(by_columns || o.integrator == Integrator::automatic || o.kappa == default_kappa,
           {"[solve] kappa has no effect", "it belongs to integrator = \"column-implicit\"",
            "Leave it out, or take that integrator"});
@@ -49,6 +48,19 @@ void need_accuracy(recipe::Visitor& v, const SolveOptions& o) {
   v.needs(!o.accuracy || o.kappa == default_kappa, {"[solve] kappa beside accuracy", why, mend});
   v.needs(!o.accuracy || o.material.stiffness_strain == default_stiffness_strain,
           {"[solve.material] stiffness_strain beside [solve] accuracy", why, mend});
+}
+
+/// This function declares what a preset sets, and is not given otherwise beside it. The defaults of its keys cannot be
+/// told from what was left out, and are taken for that.
+void need_preset(recipe::Visitor& v, const SolveOptions& o) {
+  const bool free = o.preset != Preset::reference;
+  const auto sets = [&](const char* key, bool left_out) {
+    v.needs(free || left_out, {fmt::format("[solve] {} beside preset = \"reference\"", key), "the preset sets it",
+                               "Leave one of them out"});
+  };
+  sets("integrator", o.integrator != Integrator::column_implicit && o.integrator != Integrator::automatic);
+  sets("shape", o.shape == ShapeKind::quadratic || o.shape == ShapeKind::linear);
+  sets("transfer_time_s", !o.transfer_time);
 }
 
 /// The text that says in seconds what `transfer_time` said in explicit steps of the length by which waves cross a
@@ -85,6 +97,7 @@ void SolveOptions::describe(recipe::Visitor& v) {
   need_separation(v, *this);
   need_columns(v, *this);
   need_accuracy(v, *this);
+  need_preset(v, *this);
   v.renamed("transfer_time", "transfer_time_s", [this](const std::string& steps) { return seconds_of(steps, *this); });
 }
 
@@ -94,7 +107,7 @@ std::string SolveOptions::contact_words() const {
 
 SolveOptions with_preset(SolveOptions o) {
   if (o.preset != Preset::reference) return o;
-  if (o.integrator != Integrator::quasi_static) o.integrator = Integrator::newmark;
+  o.integrator = o.asked_integrator();
   o.shape = ShapeKind::linear;
   o.transfer = Transfer::flip;
   o.transfer_time = 1e30;

@@ -34,6 +34,11 @@ struct SolveOptions : TimeOptions, SchemeOptions, GravityOptions, OutputOptions,
   /// The keys that make it so, for messages.
   std::string contact_words() const;
 
+  /// The integrator that the recipe asks for, by its name or by a preset.
+  Integrator asked_integrator() const {
+    const bool dynamic = preset == Preset::reference && integrator != Integrator::quasi_static;
+    return dynamic ? Integrator::newmark : integrator;
+  }
   /// The integrator of the steps of a flow.
   Integrator flow_integrator() const { return integrator == Integrator::automatic ? flow : integrator; }
 

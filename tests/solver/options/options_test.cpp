@@ -292,6 +292,24 @@ std::vector<std::string> materials_of_the_guide() {
   return blocks;
 }
 
+TEST(SolveOptions, what_a_preset_sets_is_not_given_otherwise_beside_it) {
+  for (const auto& [key, given] : {std::pair{"integrator", "integrator = \"column-implicit\""},
+                                   {"integrator", "integrator = \"auto\""},
+                                   {"shape", "shape = \"gimp\""},
+                                   {"transfer_time_s", "transfer_time_s = 0.5"}}) {
+    EXPECT_EQ(
+        faults("[solve]\npreset = \"reference\"\n" + std::string(given)),
+        "[solve] " + std::string(key) + " beside preset = \"reference\" (the preset sets it). Leave one of them out");
+  }
+  EXPECT_EQ(faults("[solve]\npreset = \"reference\"\nintegrator = \"quasi-static\"\nshape = \"linear\""), "");
+}
+
+TEST(SolveOptions, a_preset_refuses_what_its_steps_cannot_do) {
+  EXPECT_NE(faults("[solve]\npreset = \"reference\"\nenergy_budget = true").find("energy_budget"), std::string::npos);
+  EXPECT_NE(faults("[solve]\npreset = \"reference\"\ndeterministic = true").find("deterministic"), std::string::npos);
+  EXPECT_EQ(faults("[solve]\npreset = \"reference\"\n[solve.implicit]\nb_bar = true"), "");
+}
+
 TEST(SolveOptions, materials_of_the_user_guide_are_sound) {
   const auto blocks = materials_of_the_guide();
   EXPECT_GE(blocks.size(), 3u);
