@@ -80,7 +80,8 @@ def newton(steps):
 
 def reference(steps):
     """Our reading of the reference paper's scheme."""
-    return Method("reference preset", f"{steps:g}", {"solve": {"preset": "reference", "implicit": {"step_cfl": steps}}})
+    solve = {"preset": "reference", "integrator": "newmark", "implicit": {"step_cfl": steps}}
+    return Method("reference preset", f"{steps:g}", {"solve": solve})
 
 
 FRANK = "pipelines/frank-slide/recipe.toml"
@@ -189,6 +190,8 @@ def recipe_of(scene, method=None):
         recipe["solve"]["material"]["youngs_modulus_Pa"] = scene.modulus
     if method:
         recipe = merged(recipe, method.changes)
+        if "cfl" not in method.changes["solve"]:
+            recipe["solve"].pop("cfl", None)  # it belongs to the recipe's own integrator
         if method.name == "auto" and recipe["solve"]["material"].get("stiffness") == "as-given":
             del recipe["solve"]["material"]["stiffness"]  # it follows from accuracy
         steps = recipe["solve"].get("implicit", {}).pop("step_cfl", None)
