@@ -151,9 +151,6 @@ def runs(long):
             yield "goals", scene, method
         for method in (columns(0.5), columns(0.8), columns(1.0), automatic(0.01)):
             yield "goals", scene, method
-        if scene.name == "xinmo":
-            for method in (newton(3), newton(10), reference(4)):
-                yield "goals", scene, method
 
 
 def merged(base, changes):
