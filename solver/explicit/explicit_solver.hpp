@@ -100,7 +100,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     const int left = clock.steps_between_sorts - clock.steps_since_sort;
     clock_.upload({clock});
     walls_ = this->template set_walls<Real>(clock.time);
-    loads_now_ = loads_.upload(clock.time);
+    loads_now_ = loads_.upload(clock.time, clock.time);
     if (!settings_.walls.empty()) recording_.forget();  // they come, go and move
     // One more than the steps left: the last one's begin halts the clock at the sort. As many as lay between the last
     // two sorts or lead to the next event, and then a few at a time: what is started after the clock has halted does

@@ -46,6 +46,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     clock.outflow_volume = 0;
     clock.fastest_bits = std::max(clock.fastest_bits, clock.speed_bits);
     clock.rate_bits = clock.speed_bits = 0;
+    if (clock.step > 0 && loads_.jump_at(clock.time)) first_ = midway_ = true;
     fit_grid(clock.time);
     record_points();
     BatchReport report;
@@ -142,7 +143,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
                    .step = step,
                    .accelerates = first_ && !midway_,
                    .backward_euler = first_ && midway_,
-                   .loads = loads_.upload(clock.time + step),
+                   .loads = loads_.upload(clock.time, clock.time + step),
                    .shaking = shaking_of(clock, step),
                    .shaking_before = first_ ? shaking_of(clock, step) : clock.ground_acceleration()});
       const NewtonReport found = step_.solve();
@@ -198,8 +199,8 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
   ImplicitControls controls_;
   ImplicitStep<Real, Device, Shape> step_;
   StepLength length_;
-  bool first_;   ///< no acceleration is known yet
-  bool midway_;  ///< the run began with explicit steps
+  bool first_;   ///< no acceleration is known that goes on: none yet, or a force has jumped
+  bool midway_;  ///< the step is not the run's first
 };
 
 /// This function makes a solver of one precision and kind of shape functions, on a device.

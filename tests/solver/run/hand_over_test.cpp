@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "solver/run/gravity_loading.hpp"
 #include "solver/run/stepper.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "solver/scene/make_solver.hpp"
@@ -14,7 +15,7 @@ namespace {
 
 constexpr double pushed_slope = 20 * M_PI / 180, pushed_bed = 25 * M_PI / 180;
 constexpr double push = 3;         // [m/s2]
-constexpr double push_begins = 1;  // [s]
+constexpr double push_begins = 8;  // [s]
 constexpr double block_mass = 6 * 4 * 2 * 2000.0;
 
 SolveOptions pushed_block() {
@@ -26,7 +27,7 @@ SolveOptions pushed_block() {
   o.material.youngs_modulus = 1e8;
   o.material.density = 2000;
   o.base.friction_angle = 25;
-  o.damping = 0;
+  o.gravity_loading_steps = 5;
   LoadOptions load;
   load.box = {0, 1000, 0, 1000, -10, 10};
   load.force = {block_mass * push * std::cos(pushed_slope), 0, -block_mass * push * std::sin(pushed_slope)};
@@ -69,8 +70,9 @@ TEST(HandOver, from_rest_by_newmark_to_a_slide_by_columns_keeps_the_way_of_a_rig
   Domain d = ground(40, 12, 1.0, 1.0, [](double x, double) { return 100 - std::tan(pushed_slope) * x; });
   fill(d, {6, 12, 4, 8, 0, 2});
   const SolveOptions o = pushed_block();
-  const Scene scene = make_scene(d, o);
-  constexpr double end = 3;
+  Scene scene = make_scene(d, o);
+  load_by_gravity(scene, o, CpuDevice::make());
+  constexpr double end = 10;
   ::testing::internal::CaptureStderr();
   const HandedOver found = run_pushed(scene, o, end);
   const std::string said = ::testing::internal::GetCapturedStderr();
@@ -84,6 +86,24 @@ TEST(HandOver, from_rest_by_newmark_to_a_slide_by_columns_keeps_the_way_of_a_rig
   EXPECT_NEAR(found.momentum, block_mass * pull * (end - push_begins), 0.02 * block_mass * pull * (end - push_begins));
   EXPECT_NE(said.find("taken over: kinetic energy"), std::string::npos) << said;
   EXPECT_NE(said.find("changed by 0 J, 0 J, 0 kg m/s"), std::string::npos) << said;
+}
+
+TEST(HandOver, a_push_gives_its_impulse_from_its_own_time_on_whatever_the_steps) {
+  Domain d = ground(40, 12, 1.0, 1.0, [](double, double) { return 0.0; });
+  fill(d, {6, 12, 4, 8, 20, 22});
+  SolveOptions o = pushed_block();
+  o.integrator = Integrator::newmark;
+  o.implicit.step = 0.5;
+  o.implicit.newton_tolerance = 1e-9;
+  o.gravity = {0, 0, 0};
+  o.gravity_loading_steps = 0;
+  const Scene scene = make_scene(d, o);
+  Stepper stepper(scene, o, CpuDevice::make());
+  stepper.begin(first_state(scene, make_settings(o, scene.grid).common));
+  while (stepper.time() < push_begins) stepper.advance(push_begins);
+  EXPECT_LT(length(stepper.solver().energies().momentum), 1e-9 * block_mass * push);
+  while (stepper.time() < push_begins + 2) stepper.advance(push_begins + 2);
+  EXPECT_NEAR(length(stepper.solver().energies().momentum), block_mass * push * 2, 1e-6 * block_mass * push);
 }
 
 }  // namespace
