@@ -13,7 +13,9 @@ CASES  ?=
 RECIPES ?= 500
 RECIPE_JOBS ?= 2
 
-programs := talus-preprocess talus-solve talus-postprocess talus-make-terrain
+PREFIX ?= /usr/local
+
+programs := talus-preprocess talus-solve talus-postprocess talus-make-terrain talus-manuals
 # With a compiler cache every source is a unit of its own; without one those of a folder are compiled together.
 ccache := $(shell command -v ccache)
 quickly := $(if $(ccache),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_CUDA_COMPILER_LAUNCHER=ccache,-DTALUS_BATCHES=ON)
@@ -21,17 +23,24 @@ quickly := $(if $(ccache),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_CUDA_COMP
 # What the build folder was configured for; another wish configures it again.
 asked := $(PRESET) $(CUDAARCHS)
 
-.PHONY: help setup build demo test check check-threads check-faults check-recipes fuzz validate lint docs bundle \
-  bundle-solver clean FORCE
+# What is installed through apt: what building and running needs, and the rest for those who test.
+for_tests := test setup-tests sanitized check check-threads check-faults validate
+groups := $(if $(filter $(for_tests),$(MAKECMDGOALS)),tests) \
+  $(if $(filter package check-install,$(MAKECMDGOALS)),package)
+
+.PHONY: help setup setup-tests build demo install package check-install test check check-threads check-faults \
+  check-recipes fuzz validate lint docs bundle bundle-solver clean with-tests FORCE
 
 help: ## this list
 	@echo "make TARGET [PRESET=default|cpu|gpu|check|check-threads] [JOBS=n]"
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-14s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
 
-setup: ## install what is missing through apt (Debian 12, Ubuntu 24.04); SETUP=no leaves this out
+setup: ## install through apt what building and running needs (Debian 12, Ubuntu 24.04); SETUP=no leaves this out
 ifneq ($(SETUP),no)
-	@tools/install-dependencies.sh
+	@tools/install-dependencies.sh $(groups)
 endif
+
+setup-tests: setup ## install what the tests need besides: a browser, readers that are not ours, ffmpeg
 
 $(BUILD)/asked.txt: FORCE
 	@mkdir -p $(@D); [[ -f $@ && "$$(<$@)" == '$(asked)' ]] || echo '$(asked)' >$@
@@ -59,7 +68,21 @@ demo: build ## the synthetic valley from its two elevation models to a scored ma
 	  '  score.json, score.txt        the numbers above' \
 	  '  run.h5                       the points over time, for ParaView'
 
-test: setup $(BUILD)/build.ninja ## everything built, every test run
+install: build ## the programs with recipes, styles, manuals and documents, to PREFIX [PREFIX=/usr/local] [DESTDIR=]
+	@cmake --install $(BUILD) --prefix '$(PREFIX)' --strip >$(BUILD)/install.log
+	@echo "Installed $$(grep -c '^-- Inst' $(BUILD)/install.log) files: $${DESTDIR:-}$(PREFIX)"
+
+package: build ## Debian packages, in build/packages/: talus (or talus-gpu, with kernels for GPUs) and talus-doc
+	@tools/make-packages.sh $(BUILD)
+
+check-install: package ## the packages in a fresh Debian 12: installed, run on the shipped example, removed
+	@tools/check-install.sh $(BUILD)/packages
+
+# A folder that was configured before GoogleTest was there gets its tests now.
+with-tests: setup-tests $(BUILD)/build.ninja
+	@[[ -f $(BUILD)/tests/CTestTestfile.cmake ]] || cmake -B $(BUILD) -S . >/dev/null
+
+test: with-tests ## everything built, every test run
 	@cat $(BUILD)/kernels.txt
 	@cmake --build $(BUILD) -j $(JOBS)
 	@TALUS_REQUIRE_TOOLS=$(if $(filter no,$(SETUP)),,1) \
@@ -76,7 +99,7 @@ check_tests         := ^(common|preprocess|postprocess|solver|fuzz)[.]
 check-threads_tests := ^(preprocess|postprocess|solver)[.]
 test_programs       := talus-tests-common talus-tests-preprocess talus-tests-postprocess talus-tests-solver talus-replay
 
-sanitized: setup $(BUILD)/build.ninja
+sanitized: with-tests
 	@cmake --build $(BUILD) -j $(JOBS) --target $(test_programs)
 	@ASAN_OPTIONS=abort_on_error=0 UBSAN_OPTIONS=print_stacktrace=1 \
 	  TSAN_OPTIONS="suppressions=$(CURDIR)/tests/tsan-suppressions.txt second_deadlock_stack=1" \
@@ -87,7 +110,7 @@ fuzz: ## the fuzz targets, with clang, for FUZZ_SECONDS each [FUZZ_SECONDS=60] [
 	@tools/fuzz.sh '$(or $(FUZZ_SECONDS),60)' $(TARGETS)
 
 # The table names the commit of the tree that was just built, with -dirty behind it where that has changes.
-validate: setup $(BUILD)/build.ninja ## error beside tolerance, docs/validation.md [LONG=1] [ON=cpu|gpu] [CASES="A1 B2"]
+validate: with-tests ## error beside tolerance, docs/validation.md [LONG=1] [ON=cpu|gpu] [CASES="A1 B2"]
 	@cmake --build $(BUILD) -j $(JOBS) --target $(programs) talus-validate
 	@code=0; $(BUILD)/bin/talus-validate --on $(ON) $(if $(filter-out 0 no,$(LONG)),--long) \
 	  --commit "$$(git describe --always --dirty --abbrev=9 --exclude='*' 2>/dev/null || echo unknown)" $(CASES) \
@@ -95,7 +118,7 @@ validate: setup $(BUILD)/build.ninja ## error beside tolerance, docs/validation.
 	[[ $$code -gt 1 ]] || tools/tabulate-validation.py $(BUILD)/validation.json $(BUILD)/validation-table.md; \
 	exit $$code
 
-check-faults: setup $(BUILD)/build.ninja ## kills, failing calls, processes in one folder, power cuts: all tables
+check-faults: with-tests ## kills, failing calls, processes in one folder, power cuts: all tables
 	@cmake --build $(BUILD) -j $(JOBS) --target $(programs) talus-faults
 	@python3 tests/faults/faults.py --full --bin $(BUILD)/bin --shim $(BUILD)/bin/talus-faults.so \
 	  --work $(BUILD)/scratch/check-faults --table $(BUILD)/faults.md

@@ -7,7 +7,7 @@ script=$TALUS_SOURCE/tools/install-dependencies.sh
 tools() {
   mkdir -p tools
   local tool
-  for tool in bash env sed grep printf cat; do ln -s "$(command -v $tool)" "tools/$tool"; done
+  for tool in bash env sed grep printf cat paste; do ln -s "$(command -v $tool)" "tools/$tool"; done
   for tool in "$@"; do
     printf '#!%s\n%s\n' "$(command -v bash)" "${tool#*=}" >"tools/${tool%%=*}"
     chmod +x "tools/${tool%%=*}"
