@@ -9,6 +9,7 @@ SETUP  ?= yes
 OUT    ?= pipelines/out
 ON     ?= auto
 LONG   ?=
+WITH_TESTS ?=
 CASES  ?=
 RECIPES ?= 500
 RECIPE_JOBS ?= 2
@@ -25,7 +26,7 @@ asked := $(PRESET) $(CUDAARCHS)
 
 # What is installed through apt: what building and running needs, and the rest for those who test.
 for_tests := test setup-tests sanitized check check-threads check-faults validate
-groups := $(if $(filter $(for_tests),$(MAKECMDGOALS)),tests) \
+groups := $(if $(filter $(for_tests),$(MAKECMDGOALS))$(filter-out 0 no,$(WITH_TESTS)),tests) \
   $(if $(filter package check-install,$(MAKECMDGOALS)),package)
 
 .PHONY: help setup setup-tests build demo install package check-install test check check-threads check-faults \
@@ -140,13 +141,15 @@ $(RELEASE_BUILD)/build.ninja: CMakePresets.json | setup
 	  $(if $(CUDAARCHS),-DCMAKE_CUDA_ARCHITECTURES='$(CUDAARCHS)',-DTALUS_ALL_GPUS=ON)
 	@touch $@
 
-bundle: setup $(RELEASE_BUILD)/build.ninja ## programs and tests with their libraries: build-release/talus-bundle.tar.xz
-	@cmake --build $(RELEASE_BUILD) -j $(JOBS)
-	@tools/make-bundle.sh $(RELEASE_BUILD)
+# WITH_TESTS=1 takes the tests along, to run them on a machine that has no compiler.
+bundled := $(if $(filter-out 0 no,$(WITH_TESTS)),,--target $(programs))
+bundle: setup $(RELEASE_BUILD)/build.ninja ## programs, libraries, recipes: build-release/talus-bundle.tar.xz
+	@cmake --build $(RELEASE_BUILD) -j $(JOBS) $(bundled)
+	@tools/make-bundle.sh $(RELEASE_BUILD) $(if $(bundled),,--with-tests)
 
-bundle-solver: setup $(RELEASE_BUILD)/build.ninja ## the solver and its tests: build-release/talus-bundle-solver.tar.xz
-	@cmake --build $(RELEASE_BUILD) -j $(JOBS)
-	@tools/make-bundle.sh $(RELEASE_BUILD) --solver
+bundle-solver: setup $(RELEASE_BUILD)/build.ninja ## the solver alone [WITH_TESTS=1: tests go along]
+	@cmake --build $(RELEASE_BUILD) -j $(JOBS) $(bundled)
+	@tools/make-bundle.sh $(RELEASE_BUILD) --solver $(if $(bundled),,--with-tests)
 
 clean: ## remove the build folder and the pipelines' results
 	rm -rf $(BUILD) $(RELEASE_BUILD) build-check build-check-threads build-fuzz build-docs build-lint pipelines/out

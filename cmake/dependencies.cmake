@@ -94,7 +94,7 @@ if(BUILD_TESTING)
   find_package(GTest CONFIG QUIET)
   if(NOT GTest_FOUND)
     # Building and running need none of it; `make test` installs it and configures again.
-    message(STATUS "Talus: no tests, since GoogleTest was not found (make setup-tests, or apt-get install libgtest-dev)")
+    message(STATUS "Talus: no tests, since GoogleTest was not found (make setup-tests, or libgtest-dev)")
     set(BUILD_TESTING OFF)
   endif()
 endif()

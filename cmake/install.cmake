@@ -57,6 +57,14 @@ add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/changelog.gz
   DEPENDS ${CMAKE_SOURCE_DIR}/CHANGELOG.md VERBATIM)
 add_custom_target(talus-changelog DEPENDS ${CMAKE_BINARY_DIR}/changelog.gz)
 add_dependencies(talus-manuals talus-changelog)
+# The licences of headers and scripts that the programs hold.
+add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/notices/README.md
+  COMMAND ${CMAKE_SOURCE_DIR}/tools/collect-notices.sh ${CMAKE_BINARY_DIR}/notices
+  DEPENDS ${CMAKE_SOURCE_DIR}/tools/collect-notices.sh VERBATIM)
+add_custom_target(talus-notices DEPENDS ${CMAKE_BINARY_DIR}/notices/README.md)
+add_dependencies(talus-manuals talus-notices)
+install(DIRECTORY ${CMAKE_BINARY_DIR}/notices
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${TALUS_PACKAGE} COMPONENT runtime)
 install(FILES packaging/copyright CITATION.cff ${CMAKE_BINARY_DIR}/changelog.gz
   DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${TALUS_PACKAGE} COMPONENT runtime)
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE

@@ -23,6 +23,7 @@ set(CPACK_COMPONENT_DOCS_COPYRIGHT_GROUP docs)
 
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 
@@ -48,7 +49,7 @@ set(CPACK_DEBIAN_DOCS_PACKAGE_NAME talus-doc)
 set(CPACK_DEBIAN_DOCS_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_DOCS_PACKAGE_SECTION doc)
 set(CPACK_DEBIAN_DOCS_DESCRIPTION
-"User guide, theory, file formats, validation, benchmarks and decisions of Talus.")
+"User guide, theory, file formats, validation, benchmarks and decisions.")
 
 # Policy asks for a copyright file under each package's own name.
 install(FILES packaging/copyright ${CMAKE_BINARY_DIR}/changelog.gz

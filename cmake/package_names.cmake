@@ -16,5 +16,6 @@ else()
   set(TALUS_PACKAGE_SUGGESTS_MORE "")
 endif()
 if(CMAKE_SCRIPT_MODE_FILE)
-  message(STATUS "Package: ${TALUS_PACKAGE}, conflicts with ${TALUS_PACKAGE_OTHER}, provides: ${TALUS_PACKAGE_PROVIDES}")
+  message(STATUS
+    "Package: ${TALUS_PACKAGE}, conflicts with ${TALUS_PACKAGE_OTHER}, provides: ${TALUS_PACKAGE_PROVIDES}")
 endif()

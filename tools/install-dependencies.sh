@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs what is missing on Debian 12 or Ubuntu 24.04, and says before how much that is. Quick when nothing is missing.
+# Installs what is missing on Debian 12 or Ubuntu 24.04, and says before how much that is. Quick when nothing is
+# missing.
 # usage: tools/install-dependencies.sh [GROUP...] [--list]
 #   build     what building and running Talus needs; always among them
 #   tests     what `make test` needs besides: GoogleTest, a browser, readers that are not ours, ffmpeg for animations

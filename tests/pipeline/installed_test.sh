@@ -5,7 +5,9 @@ manuals=$TALUS_BUILD/manuals
 programs=(talus-preprocess talus-solve talus-postprocess talus-make-terrain)
 if [[ -x $bin/talus ]]; then programs+=(talus); fi
 
-need_manuals() { [[ -d $manuals ]] || skip "no manuals were made (sanitizers, or no Python when the build was configured)"; }
+need_manuals() {
+  [[ -d $manuals/man ]] || skip "no manuals were made (a build with sanitizers, or without Python)"
+}
 
 # options PROGRAM: those that its --help names at the start of a line.
 options() { "$bin/$1" --help | sed -nE 's/^ {1,4}(-[^ ]+).*/\1/p' | tr ',' '\n' | grep -E '^--?[a-zA-Z]'; }
@@ -32,8 +34,8 @@ test_every_option_stands_in_man_page_and_completions() {
 
 # completed PROGRAM WORD...: what bash offers for the last word.
 completed() {
-  bash -c 'source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); "_${1//-/_}"; printf "%s\n" "${COMPREPLY[@]}"' \
-    completed "$manuals/bash/$1" "$@"
+  bash -c 'source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); "_${1//-/_}"
+    printf "%s\n" "${COMPREPLY[@]}"' completed "$manuals/bash/$1" "$@"
 }
 
 test_bash_completes_options_words_and_recipes() {
@@ -121,7 +123,20 @@ test_styles_documents_and_licences_are_installed() {
   compgen -G 'prefix/share/doc/talus*/copyright' >/dev/null || fail "no copyright file was installed"
   file=prefix/share/talus/styles/thick/deposit_thickness.qml
   grep -q '100 m' "$file" || fail "$file has no class above 100 m"
-  if grep -q '100 m' prefix/share/talus/styles/thin/deposit_thickness.qml; then fail "thin deposits have thick classes"; fi
+  file=prefix/share/talus/styles/thin/deposit_thickness.qml
+  if grep -q '100 m' "$file"; then fail "$file has the classes of thick deposits"; fi
+}
+
+# Libraries whose scripts the report holds say their names in their own first lines.
+test_report_names_the_licence_of_every_library_in_it() {
+  local page=$TALUS_BUILD/postprocess/report/page.html name found=0
+  local licences=$TALUS_SOURCE/postprocess/report/page/licences.txt
+  while IFS= read -r name; do
+    found=$((found + 1))
+    grep -qF "$name" "$licences" || fail "$licences does not name $name, which the report holds"
+    grep -qF "$name" "$TALUS_SOURCE/packaging/copyright" || fail "packaging/copyright does not name $name"
+  done < <(sed -nE 's/^ \* (@?[A-Za-z][A-Za-z./-]*) v?[0-9]+\.[0-9]+.*/\1/p' "$page" | sort -u)
+  [[ $found -ge 2 ]] || fail "only $found libraries were found in the report: this test looks at nothing"
 }
 
 # The package with kernels for GPUs takes the place of the one without.
