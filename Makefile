@@ -29,7 +29,7 @@ for_tests := test setup-tests sanitized check check-threads check-faults validat
 groups := $(if $(filter $(for_tests),$(MAKECMDGOALS))$(filter-out 0 no,$(WITH_TESTS)),tests) \
   $(if $(filter package check-install,$(MAKECMDGOALS)),package)
 
-.PHONY: help setup setup-tests build demo install package check-install test check check-threads check-faults \
+.PHONY: help say-demo setup setup-tests build demo install package check-install test check check-threads check-faults \
   check-recipes fuzz validate lint docs bundle bundle-solver clean with-tests FORCE
 
 help: ## this list
@@ -54,19 +54,26 @@ build: setup $(BUILD)/build.ninja ## the programs, in build/bin/ [CUDAARCHS=90-r
 	@cat $(BUILD)/kernels.txt
 	@cmake --build $(BUILD) -j $(JOBS) --target $(programs)
 
-demo: build ## the synthetic valley from its two elevation models to a scored map
-	@touch $(BUILD)/.demo-begins
+# What compiling takes where nothing is compiled yet, in minutes of one processor.
+BUILD_MINUTES := 9
+say-demo:
+	@[[ -x $(BUILD)/bin/talus-solve ]] || printf '%s\n' \
+	  'First what is missing comes through apt (how much, is said before it is fetched).' \
+	  "Then the programs are compiled, about $$(( ($(BUILD_MINUTES) + $(JOBS) - 1) / $(JOBS) )) minutes on" \
+	  "$(JOBS) processors, and the valley is run, half a minute. Nothing is installed for tests." >&2
+
+demo: say-demo build ## the synthetic valley from its two elevation models to a scored map
 	@$(MAKE) --no-print-directory -C pipelines synthetic-valley \
 	  OUT="$$(realpath -ms -- '$(OUT)')" BIN="$$(realpath -ms -- '$(BUILD)/bin')"
-	@# A run has printed its table; where nothing was left to do, show it again.
-	@table='$(OUT)/synthetic-valley/score.txt'; [[ $$table -nt $(BUILD)/.demo-begins ]] || cat "$$table"
+	@echo
+	@tools/show-six-numbers.sh '$(OUT)/synthetic-valley/score.txt'
 	@printf '%s\n' '' "Results in $$(realpath -ms -- '$(OUT)')/synthetic-valley:" \
 	  '  report.html                  all of it on one page, for a browser' \
 	  '  map.png                      the map as a picture' \
 	  '  history.csv                  energy, volume, speed and steps over time' \
 	  '  maps/synthetic-valley.qgs    all of it in QGIS: maps, outlines, hillshade' \
 	  '  maps/*.tif, maps/results.nc  the fields, for a GIS' \
-	  '  score.json, score.txt        the numbers above' \
+	  '  score.json, score.txt        these numbers and all others' \
 	  '  run.h5                       the points over time, for ParaView'
 
 install: build ## the programs with recipes, styles, manuals and documents, to PREFIX [PREFIX=/usr/local] [DESTDIR=]

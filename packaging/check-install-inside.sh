@@ -38,7 +38,7 @@ else
 fi
 [[ -s results/valley/report.html && -s results/valley/map.png ]] || fail "no report: $(ls results/valley)"
 echo "the example ran to its report in $((SECONDS - began)) s ($(nproc) processors)"
-cat results/valley/score.txt
+grep -E '^  (released|H/L|deposit CSI|largest peak speed) {2,}' results/valley/score.txt
 for file in /usr/share/man/man1/talus-solve.1.gz /usr/share/bash-completion/completions/talus-solve \
   /usr/share/talus/styles/thick/deposit_thickness.qml; do
   [[ -s $file ]] || fail "$file was not installed"   # some images leave out /usr/share/man: this one does not
