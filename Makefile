@@ -27,9 +27,9 @@ asked := $(PRESET) $(CUDAARCHS)
 # What is installed through apt: what building and running needs, and the rest for those who test.
 for_tests := test setup-tests sanitized check check-threads check-faults validate
 groups := $(if $(filter $(for_tests),$(MAKECMDGOALS))$(filter-out 0 no,$(WITH_TESTS)),tests) \
-  $(if $(filter package check-install,$(MAKECMDGOALS)),package)
+  $(if $(filter package check-install image,$(MAKECMDGOALS)),package)
 
-.PHONY: help say-demo setup setup-tests build demo install package check-install test check check-threads check-faults \
+.PHONY: help say-demo setup setup-tests build demo install package check-install image test check check-threads check-faults \
   check-recipes fuzz validate lint docs bundle bundle-solver clean with-tests FORCE
 
 help: ## this list
@@ -55,7 +55,7 @@ build: setup $(BUILD)/build.ninja ## the programs, in build/bin/ [CUDAARCHS=90-r
 	@cmake --build $(BUILD) -j $(JOBS) --target $(programs)
 
 # What compiling takes where nothing is compiled yet, in minutes of one processor.
-BUILD_MINUTES := 9
+BUILD_MINUTES := 14
 say-demo:
 	@[[ -x $(BUILD)/bin/talus-solve ]] || printf '%s\n' \
 	  'First what is missing comes through apt (how much, is said before it is fetched).' \
@@ -85,6 +85,9 @@ package: build ## Debian packages, in build/packages/: talus (or talus-gpu, with
 
 check-install: package ## the packages in a fresh Debian 12: installed, run on the shipped example, removed
 	@tools/check-install.sh $(BUILD)/packages
+
+image: package ## an image of the packages, by buildah, podman or docker [IMAGE=talus] [BASE=debian:12]
+	@tools/make-image.sh $(BUILD) '$(or $(IMAGE),talus)' $(BASE)
 
 # A folder that was configured before GoogleTest was there gets its tests now.
 with-tests: setup-tests $(BUILD)/build.ninja
