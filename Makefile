@@ -29,14 +29,14 @@ for_tests := test setup-tests sanitized check check-threads check-faults validat
 groups := $(if $(filter $(for_tests),$(MAKECMDGOALS))$(filter-out 0 no,$(WITH_TESTS)),tests) \
   $(if $(filter package check-install image,$(MAKECMDGOALS)),package)
 
-.PHONY: help say-demo setup setup-tests build demo install package check-install image test check check-threads check-faults \
-  check-recipes fuzz validate lint docs bundle bundle-solver clean with-tests FORCE
+.PHONY: help setup setup-tests build say-demo demo install package check-install image with-tests test sanitized check \
+  check-threads check-faults check-recipes fuzz validate lint docs bundle bundle-solver clean FORCE
 
 help: ## this list
 	@echo "make TARGET [PRESET=default|cpu|gpu|check|check-threads] [JOBS=n]"
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-14s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
 
-setup: ## install through apt what building and running needs (Debian 12, Ubuntu 24.04); SETUP=no leaves this out
+setup: ## install through apt what building and running needs; SETUP=no leaves this out
 ifneq ($(SETUP),no)
 	@tools/install-dependencies.sh $(groups)
 endif

@@ -54,7 +54,7 @@ test_programs_named_in_readme_are_built() {
   cd "$TALUS_SOURCE"
   local program documents=(README.md docs/user-guide.md docs/architecture.md docs/formats.md)
   for program in $(grep -ohE '\btalus-[a-z-]*[a-z]' "${documents[@]}" | sort -u); do
-    [[ $program =~ ^talus-(bundle|run|seal|stage|tests).*$ || -x $bin/$program ]] ||
+    [[ $program =~ ^talus-(bundle|doc|gpu|recipe|run|seal|stage|tests).*$ || -x $bin/$program ]] ||
       fail "the documents name $program, which the build does not make"
   done
 }

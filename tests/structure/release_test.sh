@@ -20,8 +20,8 @@ test_version_is_written_once() {
   cd "$TALUS_SOURCE"
   local version found
   version=$(version_of .)
-  found=$(grep -rnF "$version" CMakeLists.txt cmake packaging tools Makefile | grep -v '^CMakeLists.txt:[0-9]*:project' ||
-    true)
+  found=$(grep -rnF "$version" CMakeLists.txt cmake packaging tools Makefile |
+    grep -v '^CMakeLists.txt:[0-9]*:project' || true)
   [[ -z $found ]] || fail "the version is written again:"$'\n'"$found"
 }
 
@@ -30,7 +30,8 @@ test_release_sets_version_date_and_heading() {
   export TALUS_RELEASE_OF=$TALUS_SCRATCH
   expect_exit 0 "$TALUS_SOURCE/tools/release.sh" 97.1.2 2097-05-04
   [[ $(version_of .) == 97.1.2 ]] || fail "CMakeLists.txt has $(version_of .)"
-  grep -qx 'version: 97.1.2' CITATION.cff && grep -qx 'date-released: 2097-05-04' CITATION.cff || fail "$(<CITATION.cff)"
+  grep -qx 'version: 97.1.2' CITATION.cff && grep -qx 'date-released: 2097-05-04' CITATION.cff ||
+    fail "$(<CITATION.cff)"
   grep -A2 -x '## \[Unreleased\]' CHANGELOG.md | grep -qx '## \[97.1.2\] - 2097-05-04' || fail "$(head CHANGELOG.md)"
   expect_exit 1 "$TALUS_SOURCE/tools/release.sh" 97.1.2
   expect_words "CHANGELOG.md has a release 97.1.2 already"
@@ -41,7 +42,7 @@ test_release_sets_version_date_and_heading() {
 # From the day on which CMakeLists.txt has its lines, every source has.
 test_every_source_says_its_licence() {
   cd "$TALUS_SOURCE"
-  git rev-parse --is-inside-work-tree >/dev/null 2>&1 || skip "this is no checkout: which files are sources is not known"
+  git rev-parse --is-inside-work-tree >/dev/null 2>&1 || skip "this is no checkout, which knows what is a source"
   grep -q 'SPDX-License-Identifier' CMakeLists.txt || skip "the sources have no licence lines yet"
   expect_exit 0 python3 tools/add-licence-lines.py --check
 }
