@@ -3,20 +3,7 @@
 set(TALUS_SHARE ${CMAKE_INSTALL_DATADIR}/talus)
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)   # the tests need not be built for it: make build, then cmake --install
 
-# `talus`, one command over the stages, belongs to them where it is part of the build.
-set(TALUS_PROGRAMS talus-preprocess talus-solve talus-postprocess talus-make-terrain)
-if(TARGET talus)
-  list(APPEND TALUS_PROGRAMS talus)
-endif()
-foreach(_program IN LISTS TALUS_PROGRAMS)
-  get_target_property(_type ${_program} TYPE)
-  if(_type STREQUAL "EXECUTABLE")
-    install(TARGETS ${_program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
-  else()
-    install(PROGRAMS ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/${_program}
-      DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
-  endif()
-endforeach()
+install(TARGETS ${TALUS_PROGRAMS} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
 
 # Recipes with the Makefile that chains the stages, and the samples that they name by ../../data_samples. Results of
 # installed pipelines go to where the user stands, since the folder is seldom the user's own.

@@ -12,33 +12,31 @@ elseif(NOT TALUS_SANITIZE AND NOT TALUS_FUZZ)
   set(TALUS_WITH_MANUALS ON)
 endif()
 
-# talus_manual(NAME PROGRAM [DEPENDS ...]): the pages of a program, a target's file or a script.
-function(talus_manual name program)
-  cmake_parse_arguments(_asked "" "" "DEPENDS" ${ARGN})
+# The programs that are installed; `talus`, one command over the stages, where it is part of the build.
+set(TALUS_PROGRAMS talus-preprocess talus-solve talus-postprocess talus-make-terrain)
+if(TARGET talus)
+  list(PREPEND TALUS_PROGRAMS talus)
+endif()
+
+# talus_manual(PROGRAM): man page and completions of a program.
+function(talus_manual name)
   if(NOT TALUS_WITH_MANUALS)
     return()
   endif()
   set(_page ${TALUS_MANUALS}/man/${name}.1)
   set(_script ${CMAKE_SOURCE_DIR}/tools/make-manuals.py)
   add_custom_command(OUTPUT ${_page} ${_page}.gz ${TALUS_MANUALS}/bash/${name} ${TALUS_MANUALS}/zsh/_${name}
-    COMMAND ${Python3_EXECUTABLE} ${_script} ${program} --to ${TALUS_MANUALS} --version ${PROJECT_VERSION}
-    DEPENDS ${_script} ${_asked_DEPENDS} VERBATIM)
+    COMMAND ${Python3_EXECUTABLE} ${_script} $<TARGET_FILE:${name}> --to ${TALUS_MANUALS} --version ${PROJECT_VERSION}
+      --pages ${TALUS_PROGRAMS}
+    DEPENDS ${_script} ${name} VERBATIM)
   add_custom_target(talus-manual-of-${name} DEPENDS ${_page})
   add_dependencies(talus-manuals talus-manual-of-${name})
   set(TALUS_MANUAL_PAGES ${TALUS_MANUAL_PAGES} ${name} PARENT_SCOPE)
 endfunction()
 
-foreach(_program talus-preprocess talus-solve talus-postprocess talus-make-terrain)
-  talus_manual(${_program} $<TARGET_FILE:${_program}> DEPENDS ${_program})
+foreach(_program IN LISTS TALUS_PROGRAMS)
+  talus_manual(${_program})
 endforeach()
-if(TARGET talus)   # one command over the stages, compiled or a script that a custom target puts beside them
-  get_target_property(_type talus TYPE)
-  if(_type STREQUAL "EXECUTABLE")
-    talus_manual(talus $<TARGET_FILE:talus> DEPENDS talus)
-  else()
-    talus_manual(talus ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/talus DEPENDS talus)
-  endif()
-endif()
 
 if(TALUS_WITH_MANUALS)
   set(_page ${TALUS_MANUALS}/man/talus-recipe.5)
@@ -46,7 +44,7 @@ if(TALUS_WITH_MANUALS)
   add_custom_command(OUTPUT ${_page} ${_page}.gz
     COMMAND ${Python3_EXECUTABLE} ${CMAKE_SOURCE_DIR}/tools/make-manuals.py --recipe
       "$<TARGET_FILE:talus-preprocess>" "$<TARGET_FILE:talus-solve>" "$<TARGET_FILE:talus-postprocess>"
-      --to ${TALUS_MANUALS} --version ${PROJECT_VERSION}
+      --to ${TALUS_MANUALS} --version ${PROJECT_VERSION} --pages ${TALUS_PROGRAMS}
     DEPENDS ${CMAKE_SOURCE_DIR}/tools/make-manuals.py ${_stages} VERBATIM)
   add_custom_target(talus-manual-of-recipe DEPENDS ${_page})
   add_dependencies(talus-manuals talus-manual-of-recipe)

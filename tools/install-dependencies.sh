@@ -24,7 +24,7 @@ tests=(
   # the readers that are not ours: gdalinfo, the COG validator, ncdump, cdo, what the CF checker takes, vdb_print,
   # h5dump, pdfinfo; ffmpeg makes animations where they are asked for
   gdal-bin python3-gdal netcdf-bin cdo python3-netcdf4 udunits-bin libopenvdb-tools hdf5-tools
-  python3-selenium poppler-utils ffmpeg
+  python3-selenium poppler-utils ffmpeg dpkg-dev
 )
 lint=(clang-format clang-tidy)
 docs=(doxygen)

@@ -2,8 +2,8 @@
 """Makes the man page and the completions (bash, zsh) of a program from its own --help, and the man page of the recipe
 from the stages' --template. No option is written down here: what a program does not say of itself is not in them.
 
-usage: tools/make-manuals.py PROGRAM... --to DIR --version VERSION
-       tools/make-manuals.py --recipe PROGRAM... --to DIR --version VERSION
+usage: tools/make-manuals.py PROGRAM... --to DIR --version VERSION [--pages NAME...]
+       tools/make-manuals.py --recipe PROGRAM... --to DIR --version VERSION [--pages NAME...]
 
 Writes DIR/man/NAME.1, DIR/bash/NAME and DIR/zsh/_NAME, or DIR/man/talus-recipe.5.
 """
@@ -16,10 +16,9 @@ import sys
 
 SECTION = re.compile(r"^(Positionals|Options|Subcommands|Commands):$")
 ITEM = re.compile(r"^ {1,4}(\S.*?)(?: {2,}(\S.*))?$")
+COLUMN = 30   # where CLI11 begins the help of an item; names that fill the way there are one space away from it
 MORE = re.compile(r"^ {12,}(\S.*)$")
 WORDS = re.compile(r"^[\w.+-]+(\|[\w.+-]+)+$")
-SEE_ALSO = ["talus-preprocess(1)", "talus-solve(1)", "talus-postprocess(1)", "talus-make-terrain(1)",
-            "talus-recipe(5)"]
 
 
 class Item:
@@ -57,7 +56,10 @@ class Help:
             elif section and self.after == [] and item and MORE.match(line):
                 item.text += " " + line.strip()
             elif section and self.after == [] and ITEM.match(line):
-                item = Item(*(part or "" for part in ITEM.match(line).groups()))
+                head, help_text = ITEM.match(line).groups()
+                if help_text is None and line[COLUMN - 1:COLUMN] == " ":
+                    head, help_text = line[:COLUMN].strip(), line[COLUMN:]
+                item = Item(head, help_text or "")
                 self.items[section].append(item)
             elif line.startswith("Usage: "):
                 self.usage = line.removeprefix("Usage: ")
@@ -118,11 +120,11 @@ def title(name, section, version):
     return f'.TH {name.upper()} {section} "" "Talus {version}" "Talus"'
 
 
-def closing(name, section):
-    others = [page for page in SEE_ALSO if page != f"{name}({section})"]
+def closing(name, section, pages):
+    """What every page ends on; `pages` are the programs that have one."""
+    others = [page for page in [*(f"{p}(1)" for p in pages), "talus-recipe(5)"] if page != f"{name}({section})"]
     return [".SH REPORTING BUGS", "The file CONTRIBUTING.md of the sources says where, and what a report should hold.",
-            ".SH SEE ALSO", ",\n".join(re.sub(r"(.*)\((\d)\)", r".BR \1 (\2)", page) for page in others)
-            .replace("),\n", ") ,\n"), ".SH COPYRIGHT",
+            ".SH SEE ALSO", *(re.sub(r"(.*)\((\d)\)", r".BR \1 (\2)", page) for page in others), ".SH COPYRIGHT",
             "The Talus authors. GNU General Public License, version 3 or later."]
 
 
@@ -136,8 +138,8 @@ def synopsis(name, items):
     return " ".join(words)
 
 
-def man_page(top, subcommands, version):
-    lines = ['.\\" Made by tools/make-manuals.py from --help; changes here are lost.', title(top.name, 1, version),
+def man_page(top, subcommands, asked):
+    lines = ['.\\" Made by tools/make-manuals.py from --help; changes here are lost.', title(top.name, 1, asked.version),
              ".SH NAME", f"{roff(top.name)} \\- {roff(top.summary.rstrip('.'))}", ".SH SYNOPSIS",
              synopsis(top.name, top.items)]
     for sub in subcommands:
@@ -152,7 +154,7 @@ def man_page(top, subcommands, version):
         heading = {"Exit codes": "EXIT STATUS", None: "DESCRIPTION OF OUTPUT"}.get(heading, (heading or "").upper())
         lines.append(f".SH {heading}")
         lines += roff_example(text) if heading == "EXAMPLES" else [roff(line) for line in text]
-    return "\n".join(lines + closing(top.name, 1)) + "\n"
+    return "\n".join(lines + closing(top.name, 1, asked.pages)) + "\n"
 
 
 def bash_reply(item):
@@ -199,7 +201,7 @@ def bash_completion(top, subcommands):
             lines += bash_options("        ", sub) + ["        return", "      fi", "      ;;"]
         lines += ["  esac", "  if [[ $COMP_CWORD -eq 1 && $current != -* ]]; then",
                   f"    mapfile -t COMPREPLY < <(compgen -W '{names}' -- \"$current\")", "    return", "  fi"]
-    lines += bash_options("  ", top) + ["}", f"complete -o filenames -F {function} {top.name}"]
+    lines += bash_options("  ", top) + ["}", f"complete -o filenames -o default -F {function} {top.name}"]
     return "\n".join(lines) + "\n"
 
 
@@ -244,18 +246,18 @@ def zsh_completion(top, subcommands):
     return "\n".join(lines) + "\n"
 
 
-def recipe_page(programs, version):
+def recipe_page(asked):
     """talus-recipe(5): the stages' templates as they print them."""
     lines = ['.\\" Made by tools/make-manuals.py from --template; changes here are lost.',
-             title("talus-recipe", 5, version), ".SH NAME", "talus\\-recipe \\- one TOML file that drives the stages",
+             title("talus-recipe", 5, asked.version), ".SH NAME", "talus\\-recipe \\- one TOML file that drives the stages",
              ".SH DESCRIPTION",
              "Each stage reads its own table and [scene]. Below stands every key with its default, its range and its",
              "meaning, as the stage prints it (\\fB\\-\\-template\\fR)."]
-    for program in programs:
+    for program in asked.programs:
         run = subprocess.run([str(program), "--template"], capture_output=True, text=True, check=True)
         table = program.name.removeprefix("talus-").upper()
         lines += [f".SH {table}", *roff_example(run.stdout.splitlines())]
-    return "\n".join(lines + closing("talus-recipe", 5)) + "\n"
+    return "\n".join(lines + closing("talus-recipe", 5, asked.pages)) + "\n"
 
 
 def write(path, text):
@@ -271,14 +273,15 @@ def main():
     parser.add_argument("--recipe", action="store_true")
     parser.add_argument("--to", type=pathlib.Path, required=True)
     parser.add_argument("--version", required=True)
+    parser.add_argument("--pages", nargs="*", default=[], help="programs that have a page, for SEE ALSO")
     asked = parser.parse_args()
     if asked.recipe:
-        write(asked.to / "man/talus-recipe.5", recipe_page(asked.programs, asked.version))
+        write(asked.to / "man/talus-recipe.5", recipe_page(asked))
         return
     for program in asked.programs:
         top = read_help(program)
         subcommands = [read_help(program, item.names[0]) for item in top.items["Subcommands"]]
-        write(asked.to / f"man/{program.name}.1", man_page(top, subcommands, asked.version))
+        write(asked.to / f"man/{program.name}.1", man_page(top, subcommands, asked))
         write(asked.to / f"bash/{program.name}", bash_completion(top, subcommands))
         write(asked.to / f"zsh/_{program.name}", zsh_completion(top, subcommands))
 

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Debian packages of a build (talus or talus-gpu, and talus-doc), in BUILD/packages. Nothing is compiled: what `make
-# build` has made is installed into them by the rules of cmake/install.cmake.
-# usage: tools/make-packages.sh BUILD
+# Debian packages of a build (talus or talus-gpu, and talus-doc), in BUILD/packages or DIR. Nothing is compiled: what
+# `make build` has made is installed into them by the rules of cmake/install.cmake.
+# usage: tools/make-packages.sh BUILD [DIR]
 set -euo pipefail
-build=${1:?usage: tools/make-packages.sh BUILD}
+build=${1:?usage: tools/make-packages.sh BUILD [DIR]}
+folder=${2:-$build/packages}
 
 fail() { echo "tools/make-packages.sh: $*" >&2; exit 1; }
 for tool in cpack dpkg-deb dpkg-shlibdeps; do
@@ -11,14 +12,15 @@ for tool in cpack dpkg-deb dpkg-shlibdeps; do
 done
 [[ -f $build/CPackConfig.cmake ]] || fail "$build holds no configured build. Make it: make build"
 
-rm -rf "$build/packages"
-mkdir -p "$build/packages"
-cpack --config "$build/CPackConfig.cmake" -G DEB >"$build/packages.log" 2>&1 || {
-  tail -n 20 "$build/packages.log" >&2
-  fail "cpack failed; all that it said is in $build/packages.log"
+rm -rf "$folder"
+mkdir -p "$folder"
+cpack --config "$build/CPackConfig.cmake" -G DEB -B "$(realpath "$folder")" >"$folder/cpack.log" 2>&1 || {
+  tail -n 20 "$folder/cpack.log" >&2
+  fail "cpack failed; all that it said is in $folder/cpack.log"
 }
-rm -rf "$build/packages/_CPack_Packages"
-for package in "$build"/packages/*.deb; do
+rm -rf "$folder/_CPack_Packages"
+compgen -G "$folder/*.deb" >/dev/null || fail "cpack made no package; all that it said is in $folder/cpack.log"
+for package in "$folder"/*.deb; do
   printf '%s: %s, %s MB installed\n' "$package" "$(du -h "$package" | cut -f 1)" \
     "$(dpkg-deb -f "$package" Installed-Size | awk '{ printf "%.0f", $1 / 1024 }')"
 done

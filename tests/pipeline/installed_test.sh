@@ -9,8 +9,16 @@ need_manuals() {
   [[ -d $manuals/man ]] || skip "no manuals were made (a build with sanitizers, or without Python)"
 }
 
-# options PROGRAM: those that its --help names at the start of a line.
-options() { "$bin/$1" --help | sed -nE 's/^ {1,4}(-[^ ]+).*/\1/p' | tr ',' '\n' | grep -E '^--?[a-zA-Z]'; }
+# options PROGRAM: those that its --help, and that of its subcommands, names at the start of a line.
+options() {
+  local word
+  {
+    "$bin/$1" --help
+    for word in $("$bin/$1" --help | sed -nE '1,/^Subcommands:/d; s/^  ([a-z-]+) .*/\1/p'); do
+      "$bin/$1" "$word" --help
+    done
+  } | sed -nE 's/^ {1,4}(-[^ ]+).*/\1/p' | tr ',' '\n' | grep -E '^--?[a-zA-Z]' | sort -u
+}
 
 # installed: everything, in a folder of this test.
 installed() {
@@ -137,6 +145,27 @@ test_report_names_the_licence_of_every_library_in_it() {
     grep -qF "$name" "$TALUS_SOURCE/packaging/copyright" || fail "packaging/copyright does not name $name"
   done < <(sed -nE 's/^ \* (@?[A-Za-z][A-Za-z./-]*) v?[0-9]+\.[0-9]+.*/\1/p' "$page" | sort -u)
   [[ $found -ge 2 ]] || fail "only $found libraries were found in the report: this test looks at nothing"
+}
+
+# Not the dependencies as such, but that they are those of the programs: without GDAL nothing would start.
+test_packages_ask_for_the_libraries_of_the_programs() {
+  need_tool dpkg-shlibdeps
+  expect_exit 0 "$TALUS_SOURCE/tools/make-packages.sh" "$TALUS_BUILD" packages
+  local package library held
+  package=$(compgen -G 'packages/talus_*.deb' || compgen -G 'packages/talus-gpu_*.deb') || fail "made: $(ls packages)"
+  for library in gdal hdf5 openvdb netcdf cairo tbb cholmod; do
+    dpkg-deb -f "$package" Depends | grep -q "lib$library" || fail "it does not ask for lib$library"
+  done
+  held=$(dpkg-deb -c "$package" | awk '{ print $6 }')
+  for file in usr/bin/talus-solve usr/share/man/man1/talus-solve.1.gz usr/share/doc/talus/copyright \
+    usr/share/talus/pipelines/synthetic-valley/recipe.toml usr/share/talus/styles/thick/deposit_thickness.qml; do
+    grep -qE "^\./${file/doc\/talus/doc/talus(-gpu)?}$" <<<"$held" || fail "$package holds no $file"
+  done
+  if grep -qE 'talus-(tests|validate|bench)' <<<"$held"; then fail "$package holds tests"; fi
+  dpkg-deb -x "$package" tree
+  [[ -z $(readelf -d tree/usr/bin/talus-solve | grep -iE 'r(un)?path') ]] || fail "a path of this machine is in it"
+  dpkg-deb -c packages/talus-doc_*.deb | grep 'usr/share/doc/talus/docs/theory.md' >found ||
+    fail "talus-doc has no documents"
 }
 
 # The package with kernels for GPUs takes the place of the one without.
