@@ -31,7 +31,9 @@ foreach(_name IN LISTS TALUS_MANUAL_PAGES)
   install(FILES ${TALUS_MANUALS}/bash/${_name}
     DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT runtime)
   install(FILES ${TALUS_MANUALS}/zsh/_${_name}
-    DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions COMPONENT runtime)
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT zsh)
+  install(FILES ${TALUS_MANUALS}/zsh/_${_name}   # where Debian's packages have theirs
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions COMPONENT zsh_vendor EXCLUDE_FROM_ALL)
 endforeach()
 if(TALUS_WITH_MANUALS)
   install(FILES ${TALUS_MANUALS}/man/talus-recipe.5.gz

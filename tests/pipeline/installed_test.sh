@@ -124,6 +124,11 @@ test_recipes_find_their_samples() {
 test_styles_documents_and_licences_are_installed() {
   installed
   local file
+  if [[ -d $manuals/man ]]; then
+    for file in man/man1/talus-solve.1.gz bash-completion/completions/talus-solve zsh/site-functions/_talus-solve; do
+      [[ -s prefix/share/$file ]] || fail "share/$file was not installed"
+    done
+  fi
   for file in share/talus/styles/thick/deposit_thickness.qml share/talus/styles/thin/peak_speed.qml \
     share/talus/styles/thick/terrain.qml share/doc/talus/LICENSE share/doc/talus/docs/user-guide.md; do
     [[ -s prefix/$file ]] || fail "$file was not installed"
@@ -158,6 +163,7 @@ test_packages_ask_for_the_libraries_of_the_programs() {
   done
   held=$(dpkg-deb -c "$package" | awk '{ print $6 }')
   for file in usr/bin/talus-solve usr/share/man/man1/talus-solve.1.gz usr/share/doc/talus/copyright \
+    usr/share/zsh/vendor-completions/_talus-solve \
     usr/share/talus/pipelines/synthetic-valley/recipe.toml usr/share/talus/styles/thick/deposit_thickness.qml; do
     grep -qE "^\./${file/doc\/talus/doc/talus(-gpu)?}$" <<<"$held" || fail "$package holds no $file"
   done
