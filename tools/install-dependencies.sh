@@ -9,7 +9,7 @@ set -euo pipefail
 
 build=(
   # compiler and tools; python3 makes man pages and completions, patchelf and xz bundles
-  g++ make cmake ninja-build pkg-config git ca-certificates xz-utils patchelf python3-minimal
+  g++ make cmake ninja-build pkg-config git ca-certificates xz-utils patchelf python3
   # libraries, as cmake/dependencies.cmake looks for them
   libeigen3-dev libsuitesparse-dev libopenblas0-serial libtbb-dev libfmt-dev libspdlog-dev libcli11-dev
   nlohmann-json3-dev libtomlplusplus-dev
