@@ -14,7 +14,7 @@ archived=yes
 with_tests=no
 while [[ $# -gt 0 ]]; do
   case $1 in
-    --solver) name=bundle-solver ;;
+    --solver) name='bundle-solver' ;;
     --with-tests) with_tests=yes ;;
     --to)
       folder=${2:?$usage}

@@ -139,7 +139,8 @@ def synopsis(name, items):
 
 
 def man_page(top, subcommands, asked):
-    lines = ['.\\" Made by tools/make-manuals.py from --help; changes here are lost.', title(top.name, 1, asked.version),
+    lines = ['.\\" Made by tools/make-manuals.py from --help; changes here are lost.',
+             title(top.name, 1, asked.version),
              ".SH NAME", f"{roff(top.name)} \\- {roff(top.summary.rstrip('.'))}", ".SH SYNOPSIS",
              synopsis(top.name, top.items)]
     for sub in subcommands:
@@ -249,8 +250,8 @@ def zsh_completion(top, subcommands):
 def recipe_page(asked):
     """talus-recipe(5): the stages' templates as they print them."""
     lines = ['.\\" Made by tools/make-manuals.py from --template; changes here are lost.',
-             title("talus-recipe", 5, asked.version), ".SH NAME", "talus\\-recipe \\- one TOML file that drives the stages",
-             ".SH DESCRIPTION",
+             title("talus-recipe", 5, asked.version),
+             ".SH NAME", "talus\\-recipe \\- one TOML file that drives the stages", ".SH DESCRIPTION",
              "Each stage reads its own table and [scene]. Below stands every key with its default, its range and its",
              "meaning, as the stage prints it (\\fB\\-\\-template\\fR)."]
     for program in asked.programs:
