@@ -9,6 +9,7 @@ SETUP  ?= yes
 OUT    ?= pipelines/out
 ON     ?= auto
 LONG   ?=
+WITH_TESTS ?=
 CASES  ?=
 RECIPES ?= 500
 RECIPE_JOBS ?= 2
@@ -18,20 +19,31 @@ programs := talus-preprocess talus-solve talus-postprocess talus-make-terrain
 ccache := $(shell command -v ccache)
 quickly := $(if $(ccache),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_CUDA_COMPILER_LAUNCHER=ccache,-DTALUS_BATCHES=ON)
 
+# Man pages, completions, styles and notices go with the programs (cmake/manuals.cmake).
+programs += talus-manuals
+PREFIX ?= /usr/local
+
 # What the build folder was configured for; another wish configures it again.
 asked := $(PRESET) $(CUDAARCHS)
 
-.PHONY: help setup build demo test check check-threads check-faults check-recipes fuzz validate lint docs bundle \
-  bundle-solver clean FORCE
+# What is installed through apt: what building and running needs, and the rest for those who test.
+for_tests := test setup-tests sanitized check check-threads check-faults validate
+groups := $(if $(filter $(for_tests),$(MAKECMDGOALS))$(filter-out 0 no,$(WITH_TESTS)),tests) \
+  $(if $(filter package check-install image,$(MAKECMDGOALS)),package)
+
+.PHONY: help setup setup-tests build say-demo demo install package check-install image with-tests test sanitized check \
+  check-threads check-faults check-recipes fuzz validate lint docs bundle bundle-solver clean FORCE
 
 help: ## this list
 	@echo "make TARGET [PRESET=default|cpu|gpu|check|check-threads] [JOBS=n]"
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-14s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
 
-setup: ## install what is missing through apt (Debian 12, Ubuntu 24.04); SETUP=no leaves this out
+setup: ## install through apt what building and running needs; SETUP=no leaves this out
 ifneq ($(SETUP),no)
-	@tools/install-dependencies.sh
+	@tools/install-dependencies.sh $(groups)
 endif
+
+setup-tests: setup ## install what the tests need besides: a browser, readers that are not ours, ffmpeg
 
 $(BUILD)/asked.txt: FORCE
 	@mkdir -p $(@D); [[ -f $@ && "$$(<$@)" == '$(asked)' ]] || echo '$(asked)' >$@
@@ -44,22 +56,46 @@ build: setup $(BUILD)/build.ninja ## the programs, in build/bin/ [CUDAARCHS=90-r
 	@cat $(BUILD)/kernels.txt
 	@cmake --build $(BUILD) -j $(JOBS) --target $(programs)
 
-demo: build ## the synthetic valley from its two elevation models to a scored map
-	@touch $(BUILD)/.demo-begins
+# What compiling takes where nothing is compiled yet, in minutes of one processor.
+BUILD_MINUTES := 14
+say-demo:
+	@[[ -x $(BUILD)/bin/talus-solve ]] || printf '%s\n' \
+	  'First what is missing comes through apt (how much, is said before it is fetched).' \
+	  "Then the programs are compiled, about $$(( ($(BUILD_MINUTES) + $(JOBS) - 1) / $(JOBS) )) minutes on" \
+	  "$(JOBS) processors, and the valley is run, half a minute. Nothing is installed for tests." >&2
+
+demo: say-demo build ## the synthetic valley from its two elevation models to a scored map
 	@$(MAKE) --no-print-directory -C pipelines synthetic-valley \
 	  OUT="$$(realpath -ms -- '$(OUT)')" BIN="$$(realpath -ms -- '$(BUILD)/bin')"
-	@# A run has printed its table; where nothing was left to do, show it again.
-	@table='$(OUT)/synthetic-valley/score.txt'; [[ $$table -nt $(BUILD)/.demo-begins ]] || cat "$$table"
+	@echo
+	@tools/show-six-numbers.sh '$(OUT)/synthetic-valley/score.txt'
 	@printf '%s\n' '' "Results in $$(realpath -ms -- '$(OUT)')/synthetic-valley:" \
 	  '  report.html                  all of it on one page, for a browser' \
 	  '  map.png                      the map as a picture' \
 	  '  history.csv                  energy, volume, speed and steps over time' \
 	  '  maps/synthetic-valley.qgs    all of it in QGIS: maps, outlines, hillshade' \
 	  '  maps/*.tif, maps/results.nc  the fields, for a GIS' \
-	  '  score.json, score.txt        the numbers above' \
+	  '  score.json, score.txt        these numbers and all others' \
 	  '  run.h5                       the points over time, for ParaView'
 
-test: setup $(BUILD)/build.ninja ## everything built, every test run
+install: build ## the programs with recipes, styles, manuals and documents, to PREFIX [PREFIX=/usr/local] [DESTDIR=]
+	@cmake --install $(BUILD) --prefix '$(PREFIX)' --strip >$(BUILD)/install.log
+	@echo "Installed $$(grep -c '^-- Inst' $(BUILD)/install.log) files: $${DESTDIR:-}$(PREFIX)"
+
+package: build ## Debian packages, in build/packages/: talus (or talus-gpu, with kernels for GPUs) and talus-doc
+	@tools/make-packages.sh $(BUILD)
+
+check-install: package ## the packages in a fresh Debian 12: installed, run on the shipped example, removed
+	@tools/check-install.sh $(BUILD)/packages
+
+image: package ## an image of the packages, by buildah, podman or docker [IMAGE=talus] [BASE=debian:12]
+	@tools/make-image.sh $(BUILD) '$(or $(IMAGE),talus)' $(BASE)
+
+# A folder that was configured before GoogleTest was there gets its tests now.
+with-tests: setup-tests $(BUILD)/build.ninja
+	@[[ -f $(BUILD)/tests/CTestTestfile.cmake ]] || cmake -B $(BUILD) -S . >/dev/null
+
+test: with-tests ## everything built, every test run
 	@cat $(BUILD)/kernels.txt
 	@cmake --build $(BUILD) -j $(JOBS)
 	@TALUS_REQUIRE_TOOLS=$(if $(filter no,$(SETUP)),,1) \
@@ -76,7 +112,7 @@ check_tests         := ^(common|preprocess|postprocess|solver|fuzz)[.]
 check-threads_tests := ^(preprocess|postprocess|solver)[.]
 test_programs       := talus-tests-common talus-tests-preprocess talus-tests-postprocess talus-tests-solver talus-replay
 
-sanitized: setup $(BUILD)/build.ninja
+sanitized: with-tests
 	@cmake --build $(BUILD) -j $(JOBS) --target $(test_programs)
 	@ASAN_OPTIONS=abort_on_error=0 UBSAN_OPTIONS=print_stacktrace=1 \
 	  TSAN_OPTIONS="suppressions=$(CURDIR)/tests/tsan-suppressions.txt second_deadlock_stack=1" \
@@ -87,7 +123,7 @@ fuzz: ## the fuzz targets, with clang, for FUZZ_SECONDS each [FUZZ_SECONDS=60] [
 	@tools/fuzz.sh '$(or $(FUZZ_SECONDS),60)' $(TARGETS)
 
 # The table names the commit of the tree that was just built, with -dirty behind it where that has changes.
-validate: setup $(BUILD)/build.ninja ## error beside tolerance, docs/validation.md [LONG=1] [ON=cpu|gpu] [CASES="A1 B2"]
+validate: with-tests ## error beside tolerance, docs/validation.md [LONG=1] [ON=cpu|gpu] [CASES="A1 B2"]
 	@cmake --build $(BUILD) -j $(JOBS) --target $(programs) talus-validate
 	@code=0; $(BUILD)/bin/talus-validate --on $(ON) $(if $(filter-out 0 no,$(LONG)),--long) \
 	  --commit "$$(git describe --always --dirty --abbrev=9 --exclude='*' 2>/dev/null || echo unknown)" $(CASES) \
@@ -95,7 +131,7 @@ validate: setup $(BUILD)/build.ninja ## error beside tolerance, docs/validation.
 	[[ $$code -gt 1 ]] || tools/tabulate-validation.py $(BUILD)/validation.json $(BUILD)/validation-table.md; \
 	exit $$code
 
-check-faults: setup $(BUILD)/build.ninja ## kills, failing calls, processes in one folder, power cuts: all tables
+check-faults: with-tests ## kills, failing calls, processes in one folder, power cuts: all tables
 	@cmake --build $(BUILD) -j $(JOBS) --target $(programs) talus-faults
 	@python3 tests/faults/faults.py --full --bin $(BUILD)/bin --shim $(BUILD)/bin/talus-faults.so \
 	  --work $(BUILD)/scratch/check-faults --table $(BUILD)/faults.md
@@ -117,13 +153,15 @@ $(RELEASE_BUILD)/build.ninja: CMakePresets.json | setup
 	  $(if $(CUDAARCHS),-DCMAKE_CUDA_ARCHITECTURES='$(CUDAARCHS)',-DTALUS_ALL_GPUS=ON)
 	@touch $@
 
-bundle: setup $(RELEASE_BUILD)/build.ninja ## programs and tests with their libraries: build-release/talus-bundle.tar.xz
-	@cmake --build $(RELEASE_BUILD) -j $(JOBS)
-	@tools/make-bundle.sh $(RELEASE_BUILD)
+# WITH_TESTS=1 takes the tests along, to run them on a machine that has no compiler.
+bundled := $(if $(filter-out 0 no,$(WITH_TESTS)),,--target $(programs))
+bundle: setup $(RELEASE_BUILD)/build.ninja ## programs, libraries, recipes: build-release/talus-bundle.tar.xz
+	@cmake --build $(RELEASE_BUILD) -j $(JOBS) $(bundled)
+	@tools/make-bundle.sh $(RELEASE_BUILD) $(if $(bundled),,--with-tests)
 
-bundle-solver: setup $(RELEASE_BUILD)/build.ninja ## the solver and its tests: build-release/talus-bundle-solver.tar.xz
-	@cmake --build $(RELEASE_BUILD) -j $(JOBS)
-	@tools/make-bundle.sh $(RELEASE_BUILD) --solver
+bundle-solver: setup $(RELEASE_BUILD)/build.ninja ## the solver alone [WITH_TESTS=1: tests go along]
+	@cmake --build $(RELEASE_BUILD) -j $(JOBS) $(bundled)
+	@tools/make-bundle.sh $(RELEASE_BUILD) --solver $(if $(bundled),,--with-tests)
 
 clean: ## remove the build folder and the pipelines' results
 	rm -rf $(BUILD) $(RELEASE_BUILD) build-check build-check-threads build-fuzz build-docs build-lint pipelines/out

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/error.hpp"
+#include "common/stage/stage.hpp"
 #include "data_samples/hard_terrains.hpp"
 #include "data_samples/terrains.hpp"
 #include "data_samples/write_sample.hpp"
@@ -51,17 +52,24 @@ std::string names() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Makes a small synthetic terrain: elevation models, outlines and release thickness."};
+  CLI::App app{"Makes a small synthetic terrain: elevation models, outlines and release thickness.",
+               "talus-make-terrain"};
   std::string kind, out;
   double cell = 10;
-  app.add_option("kind", kind, "one of " + names())->required()->check(CLI::IsMember(kinds));
-  app.add_option("--out", out, "folder to write to")->required();
-  app.add_option("--cell", cell, "cell size [m]")->check(CLI::Range(0.5, 50.0))->capture_default_str();
+  app.add_option("kind", kind, "One of " + names())
+      ->required()
+      ->type_name("KIND")
+      ->check(CLI::IsMember(kinds).description(""));
+  app.add_option("--out", out, "Folder to write to, made if missing")->required()->type_name("DIR");
+  app.add_option("--cell", cell, "Cell size [m], 0.5 to 50 (default: 10)")
+      ->type_name("M")
+      ->check(CLI::Range(0.5, 50.0).description(""));
   Pose pose;
-  app.add_flag("--mirror", pose.mirrored, "left for right, seen down the slope");
-  app.add_option("--turn", pose.turned_deg, "counter-clockwise [degrees]")
-      ->check(CLI::Range(-360.0, 360.0))
-      ->capture_default_str();
+  app.add_flag("--mirror", pose.mirrored, "Left for right, seen down the slope");
+  app.add_option("--turn", pose.turned_deg, "Counter-clockwise [degrees], -360 to 360 (default: 0)")
+      ->type_name("DEG")
+      ->check(CLI::Range(-360.0, 360.0).description(""));
+  app.set_version_flag("--version", "talus-make-terrain " + talus::version(), "Print the version and its commit");
   try {
     app.parse(argc, argv);
     for (const auto& file : talus::samples::write_sample(out, kinds.at(kind)(cell, pose)))

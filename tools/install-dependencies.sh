@@ -1,38 +1,57 @@
 #!/usr/bin/env bash
-# Installs what is missing to build, run and test Talus on Debian 12 or Ubuntu 24.04. Quick when nothing is missing.
-# usage: tools/install-dependencies.sh [lint|docs|fuzz] [--list]     (what `make lint`, docs or fuzz needs)
+# Installs what is missing on Debian 12 or Ubuntu 24.04, and says before how much that is. Quick when nothing is
+# missing.
+# usage: tools/install-dependencies.sh [GROUP...] [--list]
+#   build     what building and running Talus needs; always among them
+#   tests     what `make test` needs besides: GoogleTest, a browser, readers that are not ours, ffmpeg for animations
+#   lint, docs, fuzz, package     what `make lint`, `make docs`, `make fuzz` and `make check-install` need
 set -euo pipefail
 
-packages=(
-  # compiler and tools
-  g++ make cmake ninja-build pkg-config git ca-certificates xz-utils patchelf
+build=(
+  # compiler and tools; python3 makes man pages and completions, patchelf and xz bundles
+  g++ make cmake ninja-build pkg-config git ca-certificates xz-utils patchelf python3
   # libraries, as cmake/dependencies.cmake looks for them
   libeigen3-dev libsuitesparse-dev libopenblas0-serial libtbb-dev libfmt-dev libspdlog-dev libcli11-dev
   nlohmann-json3-dev libtomlplusplus-dev
   libgdal-dev libhdf5-dev libnetcdf-dev libcgal-dev
   libopenvdb-dev libboost-iostreams-dev libblosc-dev
   libcairo2-dev fonts-dejavu-core zlib1g-dev
-  # what report.html is made of, and what bundles its scripts; ffmpeg makes animations where they are asked for
-  libjs-leaflet libjs-chart.js esbuild ffmpeg
-  # tests, and the readers that are not ours: gdalinfo, the COG validator, ncdump, cdo, what the CF checker takes,
-  # vdb_print, h5dump, pdfinfo
-  libgtest-dev gdal-bin python3-gdal netcdf-bin cdo python3-netcdf4 udunits-bin libopenvdb-tools hdf5-tools
-  python3-selenium poppler-utils
+  # what report.html is made of, and what bundles its scripts
+  libjs-leaflet libjs-chart.js esbuild
 )
+tests=(
+  libgtest-dev
+  # the readers that are not ours: gdalinfo, the COG validator, ncdump, cdo, what the CF checker takes, vdb_print,
+  # h5dump, pdfinfo; ffmpeg makes animations where they are asked for
+  gdal-bin python3-gdal netcdf-bin cdo python3-netcdf4 udunits-bin libopenvdb-tools hdf5-tools
+  python3-selenium poppler-utils ffmpeg dpkg-dev
+)
+lint=(clang-format clang-tidy)
+docs=(doxygen)
+fuzz=(clang)   # libFuzzer comes with its run-time library
+package=(dpkg-dev mmdebstrap)
 
 # The report is opened in a browser by its test: Debian's. Ubuntu's packages of these names only lead to the snap store,
 # whose browser cannot be driven; the test says so there and is skipped.
-if grep -qx 'ID=debian' /etc/os-release; then packages+=(chromium chromium-driver); fi
+if grep -qx 'ID=debian' /etc/os-release; then tests+=(chromium chromium-driver); fi
 
 fail() { echo "tools/install-dependencies.sh: $*" >&2; exit 1; }
 
-case ${1:-} in
-  lint) packages+=(clang-format clang-tidy) && shift ;;
-  docs) packages=(doxygen) && shift ;;
-  fuzz) packages+=(clang) && shift ;;   # libFuzzer comes with its run-time library
-esac
-
-if [[ ${1:-} == --list ]]; then
+packages=("${build[@]}")
+list=no
+for group in "$@"; do
+  case $group in
+    build) ;;
+    tests) packages+=("${tests[@]}") ;;
+    lint) packages+=("${tests[@]}" "${lint[@]}") ;;   # it reads the tests as well
+    docs) packages=("${docs[@]}") ;;
+    fuzz) packages+=("${tests[@]}" "${fuzz[@]}") ;;
+    package) packages+=("${package[@]}") ;;
+    --list) list=yes ;;
+    *) fail "no such group: $group (build, tests, lint, docs, fuzz, package)" ;;
+  esac
+done
+if [[ $list == yes ]]; then
   printf '%s\n' "${packages[@]}"
   exit 0
 fi
@@ -64,10 +83,23 @@ if [[ $(id -u) -ne 0 ]]; then
   as_root=(sudo)
 fi
 
-echo "Installing ${#missing[@]} packages through apt: ${missing[*]}" >&2
 apt_get() {
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=300 -qq "$@" </dev/null >&2 ||
     fail "'apt-get $1' failed (its message is above). Mend that, then run the same make command again."
 }
 apt_get update
+
+# announce: how many packages come with the missing ones, and how much that is, as apt reckons it.
+announce() {
+  local plan count sizes
+  plan=$(LC_ALL=C apt-get --assume-no --no-install-recommends install "${missing[@]}" 2>/dev/null </dev/null || true)
+  count=$(sed -nE 's/.* ([0-9]+) newly installed.*/\1/p' <<<"$plan")
+  sizes=$(sed -nE 's/^Need to get (.*) of archives\.$/\1 to fetch/p; s/^After this operation, (.*) of .*/\1 on disk/p' \
+    <<<"$plan" | paste -sd, | sed 's/,/, /')
+  echo "Installing through apt: ${count:-${#missing[@]}} packages${sizes:+, $sizes} (${missing[*]}" \
+    "and what they need)" >&2
+}
+announce
+began=$SECONDS
 apt_get install --yes --no-install-recommends "${missing[@]}"
+echo "Installed in $((SECONDS - began)) s" >&2

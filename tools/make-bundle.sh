@@ -1,25 +1,21 @@
 #!/usr/bin/env bash
-# Copies the programs and tests of a build with the shared libraries they need into one relocatable folder, packs it,
-# and checks that it stands alone. What every Linux machine with GCC's run-time has (glibc, libstdc++, libgcc_s) and
-# NVIDIA's driver stay outside.
-# usage: tools/make-bundle.sh BUILD [--solver] [--to DIR] [--no-archive]
+# Puts the programs of a build, with recipes, styles, manuals and the shared libraries they need, into one relocatable
+# folder, packs it, and checks that it stands alone. What every Linux machine with GCC's run-time has (glibc, libstdc++,
+# libgcc_s) and NVIDIA's driver stay outside. With tests, those of the build and what times and validates go along.
+# usage: tools/make-bundle.sh BUILD [--solver] [--with-tests] [--to DIR] [--no-archive]
 set -euo pipefail
 
-usage='usage: tools/make-bundle.sh BUILD [--solver] [--to DIR] [--no-archive]'
+usage='usage: tools/make-bundle.sh BUILD [--solver] [--with-tests] [--to DIR] [--no-archive]'
 build=${1:?$usage}
 shift
 name=bundle
 folder=$build
 archived=yes
-programs=(talus-preprocess talus-solve talus-postprocess talus-make-terrain talus-validate talus-bench)
-tests=("$build"/bin/talus-tests-*)
+with_tests=no
 while [[ $# -gt 0 ]]; do
   case $1 in
-    --solver)
-      name=bundle-solver
-      programs=(talus-solve)
-      tests=("$build"/bin/talus-tests-solver*)
-      ;;
+    --solver) name='bundle-solver' ;;
+    --with-tests) with_tests=yes ;;
     --to)
       folder=${2:?$usage}
       shift
@@ -34,6 +30,12 @@ while [[ $# -gt 0 ]]; do
 done
 bundle=$folder/$name
 archive=$folder/talus-$name.tar.xz
+tests=()
+if [[ $with_tests == yes && $name == bundle ]]; then
+  tests=("$build"/bin/{talus-validate,talus-bench} "$build"/bin/talus-tests-*)
+elif [[ $with_tests == yes ]]; then
+  tests=("$build"/bin/talus-tests-solver*)
+fi
 
 fail() { echo "tools/make-bundle.sh: $*" >&2; exit 1; }
 for tool in patchelf ldd xz; do
@@ -46,28 +48,40 @@ outside+='|libstdc\+\+\.|libgcc_s\.|libcuda\.|libnvidia-)'
 
 rm -rf "$bundle" "$archive"
 mkdir -p "$bundle"/{bin,lib}
-for program in "${programs[@]}"; do
-  [[ -x $build/bin/$program ]] || fail "$build/bin/$program is missing. Build it: make build"
-  cp "$build/bin/$program" "$bundle/bin/"
-done
+if [[ $name == bundle ]]; then
+  cmake --install "$build" --prefix "$bundle" --component runtime >/dev/null ||
+    fail "'cmake --install $build' failed. Build what it installs: make build"
+else
+  [[ -x $build/bin/talus-solve ]] || fail "$build/bin/talus-solve is missing. Build it: make build"
+  cp "$build/bin/talus-solve" "$bundle/bin/"
+fi
+mapfile -t programs < <(cd "$bundle/bin" && for file in *; do
+  if head -c 4 "$file" | grep -q ELF; then echo "$file"; fi   # a script needs no libraries
+done)
 for test in "${tests[@]}"; do
-  if [[ -x $test ]]; then cp "$test" "$bundle/bin/"; fi
+  if [[ -x $test ]]; then
+    cp "$test" "$bundle/bin/"
+    programs+=("$(basename "$test")")
+  fi
 done
-strip --strip-debug "$bundle"/bin/*
-for program in "$bundle"/bin/*; do
+(cd "$bundle/bin" && strip --strip-debug "${programs[@]}")
+for program in "${programs[@]/#/$bundle/bin/}"; do
   # Only the bundle; DT_RPATH rather than RUNPATH, because it holds for the libraries' own dependencies too.
   patchelf --force-rpath --set-rpath '$ORIGIN/../lib' "$program"
 done
 
 # The closure is that of the built files, which know the way to every library on this machine.
-built=$(cd "$bundle/bin" && printf "$build/bin/%s\n" *)
+built=$(printf "$build/bin/%s\n" "${programs[@]}")
 needed=$(xargs ldd <<<"$built")
 unresolved=$(grep 'not found' <<<"$needed" || true)
 [[ -z $unresolved ]] || fail "libraries not found on this machine: $unresolved"
-awk '$2 == "=>" && $3 ~ /^\// { print $1, $3 }' <<<"$needed" | sort -u |
-  while read -r soname path; do
-    if [[ ! $soname =~ $outside ]]; then cp -L "$path" "$bundle/lib/$soname"; fi
-  done
+carried=()   # what of others is in the bundle, by its place on this machine
+while read -r soname path; do
+  if [[ ! $soname =~ $outside ]]; then
+    cp -L "$path" "$bundle/lib/$soname"
+    carried+=("$path")
+  fi
+done < <(awk '$2 == "=>" && $3 ~ /^\// { print $1, $3 }' <<<"$needed" | sort -u)
 
 # A library with a search path of its own would look there instead of in the bundle.
 chmod u+w "$bundle"/lib/*
@@ -80,24 +94,31 @@ done
 if compgen -G "$bundle/lib/libproj.*" >/dev/null; then
   mkdir -p "$bundle/share/proj"
   cp /usr/share/proj/proj.db "$bundle/share/proj/"
+  carried+=(/usr/share/proj/proj.db)
 fi
 if compgen -G "$bundle/lib/libgdal.*" >/dev/null; then
   cp -r "$(gdal-config --datadir)" "$bundle/share/gdal"
+  carried+=("$(gdal-config --datadir)/gdalvrt.xsd")
 fi
 if compgen -G "$bundle/lib/libfontconfig.*" >/dev/null; then
   mkdir -p "$bundle"/share/{fonts,fontconfig}
   cp /usr/share/fonts/truetype/dejavu/DejaVuSans{,-Bold}.ttf "$bundle/share/fonts/"
+  carried+=(/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf)
   cat >"$bundle/share/fontconfig/fonts.conf" <<XML
 <?xml version="1.0"?>
 <!DOCTYPE fontconfig SYSTEM "fonts.dtd">
 <fontconfig><dir prefix="relative">../fonts</dir><cachedir prefix="xdg">fontconfig</cachedir></fontconfig>
 XML
 fi
-if [[ -f LICENSE ]]; then cp LICENSE "$bundle/"; fi
+source=$(dirname "${BASH_SOURCE[0]}")/..
+cp "$source/LICENSE" "$bundle/"
+if [[ $name == bundle ]]; then cp "$source/packaging/bundle-readme.md" "$bundle/README.md"; fi
+rm -rf "$bundle"/share/doc/*/notices   # those of what is compiled in: they are among all that is carried
+"$source/tools/collect-notices.sh" "$bundle/share/doc/notices" "${carried[@]}"
 
 # The check: with an empty environment, every library must come from the bundle or be one of those outside.
 strangers=0
-for program in "$bundle"/bin/*; do
+for program in "${programs[@]/#/$bundle/bin/}"; do
   while read -r soname path; do
     real=$(realpath "$path")
     if [[ $real != "$(realpath "$bundle")"/* && ! $soname =~ $outside ]]; then
@@ -120,7 +141,7 @@ done
 
 count() { find "$1" -type f | wc -l; }
 size="$bundle: $(du -sh "$bundle" | cut -f1)"
-size+=", $(count "$bundle/bin") programs and tests, $(count "$bundle/lib") libraries"
+size+=", $(count "$bundle/bin") programs, $(count "$bundle/lib") libraries"
 if [[ $archived == yes ]]; then   # last: it is there only if the check has passed
   XZ_OPT=-T0 tar -C "$folder" -cJf "$archive" "$name"
   size+="; $archive: $(du -h "$archive" | cut -f1)"

@@ -13,6 +13,7 @@ bundle() {
 stands_alone() {
   local program soname path own='^(lib(c|m|mvec|dl|pthread|rt|resolv|util|anl|stdc\+\+|gcc_s|cuda)\.so)'
   for program in "$1"/bin/*; do
+    if ! head -c 4 "$program" | grep -q ELF; then continue; fi
     while read -r soname path; do
       [[ $path == "$1"/bin/../lib/* || $soname =~ $own ]] ||
         fail "$program takes $soname from '$path'"
@@ -24,7 +25,7 @@ test_whole_pipeline_runs_from_a_bundle_that_was_moved() {
   need_tool patchelf
   scene
   bundle
-  grep -qE 'bundle: [0-9.]+M, [0-9]+ programs and tests, [0-9]+ libraries' stdout || fail "no sizes were printed"
+  grep -qE 'bundle: [0-9.]+M, [0-9]+ programs, [0-9]+ libraries' stdout || fail "no sizes were printed"
   mv bundle moved
   stands_alone "$PWD/moved"
   local stage
@@ -32,6 +33,24 @@ test_whole_pipeline_runs_from_a_bundle_that_was_moved() {
     expect_exit 0 env -i moved/bin/talus-$stage recipe.toml --out out
   done
   [[ -s out/score.json && -s out/map.png ]] || fail "no results"
+  carries_what_people_need moved
+}
+
+# carries_what_people_need BUNDLE: recipes, styles, a README, no tests, and the licence of each library.
+carries_what_people_need() {
+  local file library notices=$1/share/doc/notices
+  for file in README.md LICENSE share/talus/pipelines/synthetic-valley/recipe.toml \
+    share/talus/data_samples/valley/before_dem.tif share/talus/styles/thick/deposit_thickness.qml; do
+    [[ -s $1/$file ]] || fail "the bundle has no $file"
+  done
+  if compgen -G "$1/bin/talus-tests-*" >/dev/null; then fail "the bundle holds tests"; fi
+  for library in "$1"/lib/*; do
+    grep -qE "[|,] ${library##*/}[, ]" "$notices/README.md" || fail "no notice names ${library##*/}"
+  done
+  while IFS= read -r file; do
+    [[ -s $notices/$file ]] || fail "the list of notices names $file, which is not there"
+  done < <(grep -oE '\([^)]+\.txt\)' "$notices/README.md" | tr -d '()')
+  grep -q 'libjs-leaflet' "$notices/README.md" || fail "nothing is said of what is compiled in"
 }
 
 test_solver_bundle_holds_the_solver_without_gdal() {

@@ -173,4 +173,10 @@ test_picture_is_a_picture() {
   shows 'Driver: PNG'
 }
 
+test_demo_ends_on_six_numbers() {
+  expect_exit 0 "$TALUS_SOURCE/tools/show-six-numbers.sh" "$out/score.txt"
+  [[ $(wc -l <stdout) -eq 6 ]] || fail "these are not six: $(<stdout)"
+  [[ $(grep -cE ' {2,}[0-9]' stdout) -eq 6 ]] || fail "a line has no number: $(<stdout)"
+}
+
 run_test "$@"

@@ -7,7 +7,7 @@ script=$TALUS_SOURCE/tools/install-dependencies.sh
 tools() {
   mkdir -p tools
   local tool
-  for tool in bash env sed grep printf cat; do ln -s "$(command -v $tool)" "tools/$tool"; done
+  for tool in bash env sed grep printf cat paste; do ln -s "$(command -v $tool)" "tools/$tool"; done
   for tool in "$@"; do
     printf '#!%s\n%s\n' "$(command -v bash)" "${tool#*=}" >"tools/${tool%%=*}"
     chmod +x "tools/${tool%%=*}"
@@ -42,6 +42,29 @@ test_only_what_is_missing_is_installed() {
   expect_exit 0 install
   grep -q ' update$' calls && grep -qE 'install --yes --no-install-recommends libgdal-dev$' calls ||
     fail "called: $(<calls)"
+}
+
+test_how_much_comes_is_said_before_it_is_fetched() {
+  tools id='echo 0' dpkg-query="$all_but_gdal" apt-get="case \"\$*\" in
+    --assume-no*) echo '0 upgraded, 77 newly installed, 0 to remove and 0 not upgraded.'
+      echo 'Need to get 61.2 MB of archives.'
+      echo 'After this operation, 250 MB of additional disk space will be used.' ;;
+    *' install '*) echo FETCHED >&2 ;; esac"
+  expect_exit 0 install
+  local said='Installing through apt: 77 packages, 61.2 MB to fetch, 250 MB on disk (libgdal-dev and what they need)'
+  expect_error "$said"
+  [[ $(grep -n FETCHED stderr | cut -d : -f 1) -gt $(grep -nF "$said" stderr | cut -d : -f 1) ]] || fail "said too late"
+}
+
+test_groups_bring_what_they_are_for() {
+  expect_exit 0 "$script" --list
+  cp stdout build
+  expect_exit 0 "$script" tests --list
+  [[ $(comm -23 <(sort build) <(sort stdout)) == '' ]] || fail "the tests' group lacks what building needs"
+  grep -qx libgtest-dev stdout || fail "tests come without GoogleTest"
+  if grep -qx libgtest-dev build; then fail "building brings GoogleTest"; fi
+  expect_exit 1 "$script" toys
+  expect_words "no such group: toys"
 }
 
 test_removed_but_configured_package_counts_as_missing() {

@@ -1,0 +1,62 @@
+# What `cmake --install` lays where. Two components: `runtime` (what runs, with recipes, samples, styles, man pages and
+# completions) and `docs`. Packages and bundles are made of the same rules (cmake/package.cmake, tools/make-bundle.sh).
+set(TALUS_SHARE ${CMAKE_INSTALL_DATADIR}/talus)
+set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)   # the tests need not be built for it: make build, then cmake --install
+
+install(TARGETS ${TALUS_PROGRAMS} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
+
+# Recipes with the Makefile that chains the stages, and the samples that they name by ../../data_samples. Results of
+# installed pipelines go to where the user stands, since the folder is seldom the user's own.
+file(GLOB _recipes CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR} ${CMAKE_SOURCE_DIR}/pipelines/*/recipe.toml)
+foreach(_recipe IN LISTS _recipes)
+  get_filename_component(_folder ${_recipe} DIRECTORY)
+  install(DIRECTORY ${_folder}/ DESTINATION ${TALUS_SHARE}/${_folder} COMPONENT runtime FILES_MATCHING
+    PATTERN out EXCLUDE PATTERN "*.toml" PATTERN "*.md" PATTERN "*.csv" PATTERN "*.geojson" PATTERN "*.tif")
+endforeach()
+install(FILES pipelines/Makefile pipelines/stages.mk DESTINATION ${TALUS_SHARE}/pipelines COMPONENT runtime)
+install(PROGRAMS pipelines/run-scene DESTINATION ${TALUS_SHARE}/pipelines COMPONENT runtime)
+file(RELATIVE_PATH _bin ${CMAKE_INSTALL_FULL_DATADIR}/talus/pipelines ${CMAKE_INSTALL_FULL_BINDIR})
+file(WRITE ${CMAKE_BINARY_DIR}/installed.mk "# Installed: the programs, and where the user stands.
+BIN  ?= $(CURDIR)/${_bin}
+OUT  ?= talus-out
+DATA ?= data
+")
+install(FILES ${CMAKE_BINARY_DIR}/installed.mk DESTINATION ${TALUS_SHARE}/pipelines COMPONENT runtime)
+install(DIRECTORY data_samples/ DESTINATION ${TALUS_SHARE}/data_samples COMPONENT runtime FILES_MATCHING
+  PATTERN "*.tif" PATTERN "*.geojson" PATTERN "*.csv" PATTERN README.md)
+
+install(DIRECTORY ${TALUS_STYLES}/ DESTINATION ${TALUS_SHARE}/styles COMPONENT runtime)
+foreach(_name IN LISTS TALUS_MANUAL_PAGES)
+  install(FILES ${TALUS_MANUALS}/man/${_name}.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime)
+  install(FILES ${TALUS_MANUALS}/bash/${_name}
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT runtime)
+  install(FILES ${TALUS_MANUALS}/zsh/_${_name}
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT zsh)
+  install(FILES ${TALUS_MANUALS}/zsh/_${_name}   # where Debian's packages have theirs
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions COMPONENT zsh_vendor EXCLUDE_FROM_ALL)
+endforeach()
+if(TALUS_WITH_MANUALS)
+  install(FILES ${TALUS_MANUALS}/man/talus-recipe.5.gz
+    DESTINATION ${CMAKE_INSTALL_MANDIR}/man5 COMPONENT runtime)
+endif()
+
+include(package_names)
+add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/changelog.gz
+  COMMAND sh -c "gzip -9nc \"$1\" >\"$2\"" gzip ${CMAKE_SOURCE_DIR}/CHANGELOG.md ${CMAKE_BINARY_DIR}/changelog.gz
+  DEPENDS ${CMAKE_SOURCE_DIR}/CHANGELOG.md VERBATIM)
+add_custom_target(talus-changelog DEPENDS ${CMAKE_BINARY_DIR}/changelog.gz)
+add_dependencies(talus-manuals talus-changelog)
+# The licences of headers and scripts that the programs hold.
+add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/notices/README.md
+  COMMAND ${CMAKE_SOURCE_DIR}/tools/collect-notices.sh ${CMAKE_BINARY_DIR}/notices
+  DEPENDS ${CMAKE_SOURCE_DIR}/tools/collect-notices.sh VERBATIM)
+add_custom_target(talus-notices DEPENDS ${CMAKE_BINARY_DIR}/notices/README.md)
+add_dependencies(talus-manuals talus-notices)
+install(DIRECTORY ${CMAKE_BINARY_DIR}/notices
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${TALUS_PACKAGE} COMPONENT runtime)
+install(FILES packaging/copyright CITATION.cff ${CMAKE_BINARY_DIR}/changelog.gz
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${TALUS_PACKAGE} COMPONENT runtime)
+install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/talus COMPONENT docs)
+install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/talus/docs COMPONENT docs FILES_MATCHING
+  PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg")
