@@ -26,7 +26,8 @@ struct Bench {
     o.initial_velocity = {3, 0, 0};
     return make_scene(d, o);
   }
-  explicit Bench(const Device& device) : points(device, {}), grid(device, scene.grid, {}), measures(device, scene.grid) {
+  explicit Bench(const Device& device)
+      : points(device, {}), grid(device, scene.grid, {}), measures(device, scene.grid) {
     points.upload(scene.points);
     grid.fit(points, 0);
   }
