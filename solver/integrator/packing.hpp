@@ -34,7 +34,7 @@ struct ScatterParts {
     if (i < 0) return;
     const double cell =
         static_cast<double>(grid.spacing) * static_cast<double>(grid.spacing) * static_cast<double>(grid.layer_height);
-    const auto held = static_cast<CellParts>(static_cast<double>(points.volume[p]) / cell * parts_of_cell + 0.5);
+    const auto held = static_cast<CellParts>(floor(static_cast<double>(points.volume[p]) / cell * parts_of_cell + 0.5));
     scatter_add(&parts[GridView<Real>::node(grid.slot(i, j), i, j, points.cell[2][p])], held);
   }
 };
