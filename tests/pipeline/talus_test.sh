@@ -1,0 +1,195 @@
+#!/usr/bin/env bash
+# talus: one command over the stages.
+source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
+
+run() { "$bin/talus" run recipe.toml --out out --on cpu "$@"; }
+
+# runs STAGES...: talus runs exactly these stages, and says of the others that they are up to date.
+runs() {
+  local stage expected
+  expect_exit 0 run "${arguments[@]}"
+  for stage in preprocess solve postprocess; do
+    expected=up
+    [[ " $* " != *" $stage "* ]] || expected=runs
+    if grep -qE "^$stage: [a-z0-9.]+ is up to date$" stderr; then
+      [[ $expected == up ]] || fail "$stage did not run"
+    else
+      [[ $expected == runs ]] || fail "$stage ran: $(grep "^$stage: " stderr)"
+    fi
+  done
+  expect_stdout_paths
+  sleep 0.05   # file times are coarse
+}
+arguments=()
+change() { sed -i "$1" recipe.toml; }
+
+test_runs_a_scene_from_any_folder_and_skips_what_is_up_to_date() {
+  scene
+  mkdir elsewhere
+  cd elsewhere
+  expect_exit 0 "$bin/talus" run ../recipe.toml --on cpu
+  cd ..
+  [[ -f out/report.html && -f out/score.json ]] || fail "no report beside the recipe"
+  expect_words 'preprocess: there is no domain.vdb' 'solve: there is no run.h5' 'postprocess: there is no score.json'
+  runs
+  touch recipe.toml
+  runs
+}
+
+test_each_part_of_the_recipe_reruns_its_stage_and_those_after_with_the_reason() {
+  scene
+  expect_exit 0 run
+  change 's/^friction_angle_deg = 15.0/friction_angle_deg = 16.0/'
+  runs solve postprocess
+  expect_words 'solve: [solve] or [scene] has changed'
+  change 's/^thickness = .*/&\nname = "drawn"/'
+  runs postprocess
+  change 's/layer_height_m = 2.0/layer_height_m = 1.0/'
+  runs preprocess solve postprocess
+  expect_words 'preprocess: [preprocess] or [scene] has changed'
+  touch survey.asc
+  runs postprocess
+  expect_words "survey.asc is newer than score.json"
+  touch before.asc
+  runs preprocess solve postprocess
+  change 's/^\[solve\]/# a remark\n\n[solve]/'
+  runs
+  rm out/run.h5
+  runs solve postprocess
+}
+
+test_set_values_count_like_the_recipes_and_are_checked_before_anything_runs() {
+  scene
+  arguments=(--set solve.end_time_s=2)
+  runs preprocess solve postprocess
+  grep -qF 'end_time_s = 2.0' out/solve.used.toml || fail "the run has another end"
+  runs
+  arguments=()
+  runs solve postprocess
+  expect_exit 2 run --set postprocess.deposit_threshold_m=-1 --set preprocess.grid.spacing_m=-1
+  expect_error 'talus: --set postprocess.deposit_threshold_m=-1: [postprocess] deposit_threshold_m = -1 (out of range).' \
+    ' It must be > 0'
+  expect_words '--set preprocess.grid.spacing_m=-1: [preprocess.grid] spacing_m = -1 (out of range)'
+}
+
+# What the stages made by themselves, or make, counts as well: the checksums in the results tell.
+test_results_of_the_stages_themselves_count() {
+  scene
+  expect_exit 0 preprocess
+  expect_exit 0 solve
+  runs postprocess
+  runs
+  # A domain of another recipe, made behind the command's back.
+  expect_exit 0 preprocess --set preprocess.grid.layer_height_m=1
+  runs preprocess solve postprocess
+  expect_words 'preprocess: domain.vdb: another recipe made it: the checksum of its [preprocess] is '
+  # Nor is a run of another recipe taken, whatever its time.
+  expect_exit 0 solve --set solve.end_time_s=2
+  runs solve postprocess
+  expect_words 'solve: run.h5: another recipe made it: the checksum of its [solve] is '
+}
+
+test_a_stale_domain_without_its_data_is_refused_with_the_reason() {
+  scene
+  expect_exit 0 run
+  rm before.asc
+  runs
+  expect_words "warning: domain.vdb is of this very recipe; whether its inputs are still the same cannot be told"
+  change 's/layer_height_m = 2.0/layer_height_m = 1.0/'
+  expect_exit 3 run
+  expect_words 'preprocess: [preprocess] or [scene] has changed' 'before.asc: '
+  [[ -f out/run.h5 && -f out/score.json ]] || fail "the results of before are gone"
+}
+
+test_a_checkpoint_of_the_run_is_taken_up_and_said() {
+  scene
+  make_checkpoint out
+  expect_exit 3 solve
+  expect_words 'it holds this very run at t = ' 'Go on from it with --restart'
+  change 's/^end_time_s.*/end_time_s = 100.0/'
+  expect_exit 0 run
+  expect_words 'going on from out/checkpoint.h5 at t = '
+}
+
+test_a_signal_reaches_the_stage_and_the_next_call_goes_on() {
+  scene
+  change 's/^end_time_s.*/end_time_s = 100.0\ncheckpoint_interval_s = 5.0/'
+  expect_exit 0 preprocess
+  interrupt TERM out/checkpoint.h5 "$bin/talus" run recipe.toml --out out --on cpu
+  [[ -f out/checkpoint.h5 && ! -f out/run.h5 ]] || fail "no checkpoint was left"
+  expect_exit 0 run
+  expect_words 'preprocess: domain.vdb is up to date' 'going on from out/checkpoint.h5 at t = '
+}
+
+test_a_failing_stage_ends_the_command_with_its_exit_code() {
+  scene
+  expect_exit 2 run --set 'solve.gauge=[{name = "far", x_m = 0, y_m = 0}]'
+  expect_words 'talus-solve: ' 'far'
+  [[ ! -f out/score.json ]] || fail "scores of no run"
+}
+
+test_two_commands_in_one_folder_are_refused() {
+  scene
+  mkdir -p out/.inputs
+  exec {held}>out/.inputs/lock
+  flock "$held"
+  expect_exit 3 run
+  expect_words 'another talus run, or make -C pipelines, is at work there'
+  exec {held}>&-
+}
+
+test_make_and_talus_share_their_notes() {
+  need_tool make
+  scene
+  mkdir -p pipelines/bowl
+  cp "$TALUS_SOURCE"/pipelines/{Makefile,run-scene,stages.mk} pipelines/
+  mv recipe.toml before.asc after.asc survey.asc pipelines/bowl/
+  expect_exit 0 make -C pipelines bowl BIN="$bin" OUT=out ON=cpu
+  expect_exit 0 "$bin/talus" run pipelines/bowl/recipe.toml --out out/bowl --on cpu
+  [[ $(grep -c 'is up to date$' stderr) -eq 3 ]] || fail "talus ran what make had made"
+  sed -i 's/end_time_s = 3.0/end_time_s = 2.0/' pipelines/bowl/recipe.toml
+  expect_exit 0 "$bin/talus" run pipelines/bowl/recipe.toml --out out/bowl --on cpu
+  expect_exit 0 make -C pipelines bowl BIN="$bin" OUT=out ON=cpu
+  ! grep -q 'talus-solve' stdout || fail "make ran what talus had made: $(<stdout)"
+}
+
+test_check_lists_the_faults_of_all_tables_and_writes_nothing() {
+  scene
+  printf '%s\n' 'typo = 1' '[preprocess.coregistration]' 'mode = "aply"' >tail.toml
+  sed -i 's/layer_height_m = 2.0/layer_height_m = -2.0/; s/end_time_s = 3.0/end_tme_s = 3.0/; s/^thickness = .*/thicknes = 1/' \
+    recipe.toml
+  expect_exit 2 "$bin/talus" check recipe.toml
+  expect_error 'preprocess: recipe.toml:10:18: [preprocess.grid] layer_height_m = -2.0 (out of range). It must be >= 0'
+  expect_words 'solve: recipe.toml:13:1: unknown key "end_tme_s" in [solve]' \
+    'postprocess: recipe.toml:22:1: unknown key "thicknes" in [postprocess.survey]' 'recipe.toml: 3 faults, no warnings'
+  [[ ! -e out ]] || fail "talus check made the output folder"
+}
+
+test_check_looks_at_physics_and_data_too() {
+  scene
+  expect_exit 0 "$bin/talus" check recipe.toml
+  expect_words 'recipe.toml: no faults'
+  [[ ! -e out ]] || fail "talus check made the output folder"
+  # Weaker than its bed: a warning of the solver, which has to see the domain.
+  expect_exit 0 "$bin/talus" check recipe.toml --set solve.base.friction_angle_deg=35
+  expect_words 'warning: solve: the mass gives way inside before it slides on its bed'
+  # A gauge off the map, and a survey that is not there: two stages, one listing.
+  rm survey.asc
+  expect_exit 3 "$bin/talus" check recipe.toml --set 'solve.gauge=[{name = "far", x_m = 0, y_m = 0}]'
+  expect_words 'solve: ' '"far"' 'survey.asc: no such file' 'recipe.toml: 2 faults'
+}
+
+test_without_a_command_or_with_a_wrong_one_it_says_how() {
+  expect_exit 2 "$bin/talus"
+  expect_error 'talus: no command was given. See talus --help'
+  expect_exit 2 "$bin/talus" rum recipe.toml
+  expect_exit 2 "$bin/talus" run
+  expect_exit 0 "$bin/talus" --help
+  grep -qF 'run' stdout || fail "--help names no command"
+  expect_exit 0 "$bin/talus" run --help
+  grep -qF -- '--set' stdout || fail "run --help names no option"
+  expect_exit 0 "$bin/talus" --version
+  grep -qE '^talus [0-9]+\.[0-9]+\.[0-9]+ \(' stdout || fail "no version"
+}
+
+run_test "$@"
