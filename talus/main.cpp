@@ -11,6 +11,7 @@
 #include "common/stage/console.hpp"
 #include "common/stage/stage.hpp"
 #include "talus/check.hpp"
+#include "talus/new.hpp"
 #include "talus/run.hpp"
 
 namespace {
@@ -22,6 +23,8 @@ constexpr const char* footer =
     "Examples:\n"
     "  talus run my-slide/recipe.toml                     every stage whose results are not up to date\n"
     "  talus run recipe.toml --set solve.end_time_s=60    with another value than the recipe's\n"
+    "  talus new before.tif after.tif                     a first recipe: spacing, layers and end time from the "
+    "release\n"
     "  talus check recipe.toml                            every fault of all stages, nothing is written\n"
     "\n"
     "Exit codes: 0 done, 1 a bug, 2 the recipe or the command line is wrong, 3 a file is wrong or cannot be written,\n"
@@ -72,6 +75,16 @@ void declare(CLI::App& app, Asked& asked) {
   check->callback([&] { asked.command = [&] { return check_scene(scene_request(asked)); }; });
 }
 
+void declare_new(CLI::App& app, NewScene& scene, Asked& asked) {
+  CLI::App* command =
+      app.add_subcommand("new", "Write a recipe for a slide from the elevation models before and after");
+  command->add_option("before", scene.before, "Elevation model from before the slide")->type_name("BEFORE")->required();
+  command->add_option("after", scene.after, "Elevation model from after it")->type_name("AFTER")->required();
+  command->add_option("--recipe", scene.recipe, "File to be written (default: recipe.toml)")->type_name("FILE");
+  command->add_flag("--overwrite", scene.overwrite, "Write over a recipe that is there already");
+  command->callback([&] { asked.command = [&] { return new_scene(scene); }; });
+}
+
 int guarded(int argc, char** argv) {
   Asked asked;
   CLI::App app("One command over the stages of Talus", "talus");
@@ -83,6 +96,8 @@ int guarded(int argc, char** argv) {
   bool asks_version = false;
   app.add_flag("--version", asks_version, "Print the version and its commit");
   declare(app, asked);
+  NewScene scene{.before = {}, .after = {}, .recipe = "recipe.toml"};
+  declare_new(app, scene, asked);
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {

@@ -34,7 +34,7 @@ class Names {
  private:
   bool is_line_joint() const { return text_.substr(at_, 2) == "\\\n"; }
   void skip_spaces() {
-    while (at_ < text_.size() && (text_[at_] == ' ' || is_line_joint())) at_ += text_[at_] == ' ' ? 1 : 2;
+    while (at_ < text_.size() && (text_[at_] == ' ' || is_line_joint())) at_ += text_[at_] == ' ' ? 1U : 2U;
   }
 
   /// A character of a name, with the backslashes before it, as it was before make's escapes.

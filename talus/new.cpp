@@ -1,0 +1,177 @@
+#include "talus/new.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <iterator>
+
+#include <nlohmann/json.hpp>
+
+#include "common/domain/domain.hpp"
+#include "common/gis/read_raster.hpp"
+#include "common/recipe/values.hpp"
+#include "common/stage/identity.hpp"
+#include "common/stage/stage.hpp"
+#include "talus/request.hpp"
+#include "talus/slide.hpp"
+#include "talus/temporary_folder.hpp"
+
+namespace talus::command {
+namespace fs = std::filesystem;
+namespace {
+
+/// Smaller than this many times its standard error a volume may be nothing but error.
+constexpr double sure_errors = 3;
+/// A release of fewer cells tells nothing of its shape.
+constexpr double fewest_cells = 9;
+
+fs::path whole(const fs::path& file) { return fs::absolute(file).lexically_normal(); }
+
+std::string first_recipe(const NewScene& scene) {
+  return fmt::format("[preprocess]\nbefore_dem = {}\nafter_dem = {}\n",
+                     recipe::toml_text(whole(scene.before).string()),
+                     recipe::toml_text(whole(scene.after).string()));
+}
+
+[[noreturn]] void refuse(const NewScene& scene, const std::string& why, const std::string& mend) {
+  throw DataError(Fault{fmt::format("{} and {}: no slide was found between them, so that no recipe was written",
+                                    scene.before.string(), scene.after.string()),
+                        why, mend});
+}
+
+/// The first stage on the two models alone, into a folder that goes again. Throws with its own words where it refuses
+/// them.
+void compare_models(const NewScene& scene, const fs::path& folder) {
+  Request request;
+  request.recipe = folder / "recipe.toml";
+  request.out = folder / "out";
+  write_text(request.recipe, first_recipe(scene));
+  const Outcome outcome = run_stage_program(request, "preprocess", {}, Keep::everything);
+  if (outcome.code == 0) return;
+  std::vector<std::string> said = lines_said(outcome.err);
+  refuse(scene, said.empty() ? "talus-preprocess ended without a word" : said.back(),
+         "Look at both in a GIS: the first must be the ground before the slide, the second after it");
+}
+
+struct Found {
+  Slide slide;
+  double volume_error = nan;  ///< of the release [m3]
+};
+
+Found find_slide(const NewScene& scene, const fs::path& out) {
+  const Domain domain = read_domain(out / "domain.vdb");
+  const fs::path rose = out / "survey" / "deposit_surveyed.tif";
+  std::optional<Raster> deposit;
+  if (fs::exists(rose)) deposit = read_raster(rose);
+  if (deposit && deposit->values.size() != domain.grid.count()) deposit.reset();
+  Found found{measure_slide(domain.before, domain.release_thickness, deposit)};
+  std::ifstream stream(out / "survey" / "survey.json");
+  const auto survey = nlohmann::json::parse(stream, nullptr, false);
+  if (!survey.is_discarded() && survey.contains("source") && survey["source"]["error_m3"].is_number())
+    found.volume_error = survey["source"]["error_m3"].get<double>();
+  const double cells = found.slide.area / (found.slide.cell * found.slide.cell);
+  if (cells < fewest_cells)
+    refuse(
+        scene,
+        fmt::format("what went down is {:.0f} cells of {:g} m, {:.0f} m3", cells, found.slide.cell, found.slide.volume),
+        "Give elevation models with smaller cells, or write the recipe by hand (talus-preprocess --template)");
+  if (found.slide.volume < sure_errors * found.volume_error)
+    refuse(scene,
+           fmt::format("what went down most, {:.0f} m3, is no more than the error of the difference makes of nothing "
+                       "({:.0f} m3, one standard error)",
+                       found.slide.volume, found.volume_error),
+           "If a slide is there all the same, write the recipe by hand with source.polygon around it");
+  return found;
+}
+
+/// A name for files, from that of the recipe's folder.
+std::string scene_name(const fs::path& recipe) {
+  std::string name = whole(recipe).parent_path().filename().string();
+  for (char& c : name)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-' && c != '_') c = '-';
+  return name.empty() ? "slide" : name;
+}
+
+/// As the recipe names a file: from its own folder, where that leads there without leaving it far.
+std::string named(const fs::path& file, const fs::path& recipe) {
+  const fs::path relative = whole(file).lexically_relative(whole(recipe).parent_path());
+  return recipe::toml_text(relative.empty() ? whole(file).string() : relative.generic_string());
+}
+
+std::string way_words(const Slide& s) {
+  if (!s.has_deposit())
+    return "The models show no deposit: friction is the usual one for the volume, the end a guess. Look at both.";
+  return fmt::format("It fell {:.0f} m over {:.0f} m, H/L {:.2f}; its centre of mass went at {:.2f}.", s.drop, s.length,
+                     s.drop / s.length, s.travel_tangent);
+}
+
+std::string recipe_text(const NewScene& scene, const Found& found) {
+  const Slide& s = found.slide;
+  const Proposal p = propose(s);
+  const std::string before = named(scene.before, scene.recipe), after = named(scene.after, scene.recipe);
+  return fmt::format(
+      R"(# Written by talus new (Talus {version}) from two elevation models. Every number is a proposal: change what you know
+# better. All keys with their meaning: talus-preprocess --template, talus-solve --template, talus-postprocess --template
+#
+# Found: {volume:.0f} m3 went down on {area:.0f} m2, {width:.0f} m wide, {median:.3g} m thick (median by volume).
+# {way}
+[scene]
+name = "{name}"
+title = "{name}"
+
+[preprocess]
+before_dem = {before}
+after_dem = {after}
+
+[preprocess.grid]
+spacing_m = {spacing:g}          # {across:.0f} cells across the release
+layer_height_m = {layer:g}       # {layers:.1f} layers over its median thickness; four or more
+points_per_cell = [2, 2, 2]      # about {points:.0f} material points
+
+[solve]
+end_time_s = {end:g}             # generous: the run stops by itself when all is at rest
+stop_kinetic_fraction = 0.001
+
+[solve.material]
+model = "drucker-prager"
+density_kg_m3 = 2000.0
+friction_angle_deg = {inside:g}  # inside the mass: 1.4 times the bed's as tangents, where nothing else is known
+stiffness = "auto"               # the lowest modulus that leaves the flow unchanged
+
+[solve.base]
+law = "coulomb"
+friction_angle_deg = {bed:g}     # {bed_words}
+
+[postprocess.survey]
+from_preprocess = true           # scored against what rose between the two models, with its error
+)",
+      fmt::arg("version", version()), fmt::arg("volume", s.volume), fmt::arg("area", s.area),
+      fmt::arg("width", s.width), fmt::arg("median", s.median_thickness), fmt::arg("way", way_words(s)),
+      fmt::arg("name", scene_name(scene.recipe)), fmt::arg("before", before), fmt::arg("after", after),
+      fmt::arg("spacing", p.spacing), fmt::arg("across", p.cells_across), fmt::arg("layer", p.layer_height),
+      fmt::arg("layers", p.layers), fmt::arg("points", p.points), fmt::arg("end", p.end_time),
+      fmt::arg("inside", p.internal_angle), fmt::arg("bed", p.bed_angle),
+      fmt::arg("bed_words", s.has_deposit() ? "the angle at which its centre of mass went: a first guess, to be refined"
+                                            : "usual for this volume (Scheidegger 1973, Corominas 1996): a guess"));
+}
+
+}  // namespace
+
+int new_scene(const NewScene& scene) {
+  if (fs::exists(scene.recipe) && !scene.overwrite)
+    throw DataError(Fault{scene.recipe.string() + ": it is there already", "nothing is written over",
+                          "Name another file with --recipe FILE, or give --overwrite"});
+  const TemporaryFolder folder("talus-new");
+  compare_models(scene, folder.path());
+  const Found found = find_slide(scene, folder.path() / "out");
+  if (const fs::path parent = scene.recipe.parent_path(); !parent.empty()) make_folder(parent);
+  write_text(scene.recipe, recipe_text(scene, found));
+  log_info(fmt::format("{:.0f} m3 failed. {}", found.slide.volume, way_words(found.slide)));
+  log_info(fmt::format("Read it, then: talus run {}", scene.recipe.string()));
+  fmt::print("{}\n", scene.recipe.string());
+  return 0;
+}
+
+}  // namespace talus::command
