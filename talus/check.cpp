@@ -86,7 +86,7 @@ void check_together(const Request& request, const std::vector<std::string>& tabl
     listing.add("preprocess", run_stage_program(request, "preprocess", {"--check"}, Keep::everything));
   } else if (recipe.canonical("preprocess")) {
     folder.emplace("talus-check");
-    at_work.out = folder->path();
+    at_work.out = at_work.shown = folder->path();
     const Outcome outcome = run_stage_program(at_work, "preprocess", {}, Keep::everything);
     listing.add("preprocess", outcome);
     if (outcome.code != 0) {

@@ -58,6 +58,7 @@ void declare_scene(CLI::App& app, Asked& asked) {
 Request scene_request(const Asked& asked) {
   Request request = asked.request;
   request.recipe = asked.recipe;
+  request.shown = asked.out;
   const auto folder = std::filesystem::absolute(request.recipe).lexically_normal().parent_path();
   request.out = asked.out.empty() ? folder / "out" : std::filesystem::absolute(asked.out).lexically_normal();
   if (request.out.filename().empty()) request.out = request.out.parent_path();

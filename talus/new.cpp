@@ -30,8 +30,7 @@ constexpr double fewest_cells = 9;
 fs::path whole(const fs::path& file) { return fs::absolute(file).lexically_normal(); }
 
 std::string first_recipe(const NewScene& scene) {
-  return fmt::format("[preprocess]\nbefore_dem = {}\nafter_dem = {}\n",
-                     recipe::toml_text(whole(scene.before).string()),
+  return fmt::format("[preprocess]\nbefore_dem = {}\nafter_dem = {}\n", recipe::toml_text(whole(scene.before).string()),
                      recipe::toml_text(whole(scene.after).string()));
 }
 
@@ -46,7 +45,7 @@ std::string first_recipe(const NewScene& scene) {
 void compare_models(const NewScene& scene, const fs::path& folder) {
   Request request;
   request.recipe = folder / "recipe.toml";
-  request.out = folder / "out";
+  request.out = request.shown = folder / "out";
   write_text(request.recipe, first_recipe(scene));
   const Outcome outcome = run_stage_program(request, "preprocess", {}, Keep::everything);
   if (outcome.code == 0) return;

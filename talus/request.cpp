@@ -9,8 +9,9 @@
 namespace talus::command {
 namespace {
 
-std::vector<std::string> words(const Request& request) {
-  std::vector<std::string> words{request.recipe.string(), "--out", request.out.string()};
+std::vector<std::string> words(const Request& request, const std::filesystem::path& out) {
+  std::vector<std::string> words{request.recipe.string()};
+  if (!out.empty()) words.insert(words.end(), {"--out", out.string()});
   for (const std::string& value : request.set) words.insert(words.end(), {"--set", value});
   if (request.network) words.emplace_back("--network");
   return words;
@@ -43,14 +44,14 @@ std::vector<std::string> lines_said(const std::string& text) {
 }
 
 Outcome ask(const Request& request, const std::string& stage, const std::string& question) {
-  std::vector<std::string> arguments = words(request);
+  std::vector<std::string> arguments = words(request, request.out);
   arguments.push_back(question);
   return run_program(program_of(stage), arguments, Keep::everything);
 }
 
 Outcome run_stage_program(const Request& request, const std::string& stage, const std::vector<std::string>& more,
                           Keep keep) {
-  std::vector<std::string> arguments = words(request);
+  std::vector<std::string> arguments = words(request, request.shown);
   if (request.threads > 0) arguments.insert(arguments.end(), {"--threads", std::to_string(request.threads)});
   if (request.verbose) arguments.emplace_back("-v");
   if (request.quiet) arguments.emplace_back("-q");

@@ -17,6 +17,7 @@ inline constexpr std::array<const char*, 3> stage_names{"preprocess", "solve", "
 struct Request {
   std::filesystem::path recipe;
   std::filesystem::path out = {};     ///< absolute
+  std::filesystem::path shown = {};   ///< the same as the user gave it, for what the stages say; empty: not given
   std::vector<std::string> set = {};  ///< values that take the place of the recipe's
   std::string on = "auto";            ///< where talus-solve runs
   int threads = 0;                    ///< to take at most; 0: as many as a process may run at once

@@ -107,6 +107,7 @@ int search_first(const Request& request) {
   Request before = request;
   before.recipe = search;
   before.out = request.out / "stability";
+  before.shown = request.shown.empty() ? before.out : request.shown / "stability";
   before.set.clear();
   log_info(fmt::format("{}: it runs first, into {}", search.string(), before.out.string()));
   return run_scene(before);
