@@ -11,6 +11,7 @@
 #include "common/stage/console.hpp"
 #include "common/stage/stage.hpp"
 #include "talus/check.hpp"
+#include "talus/compare.hpp"
 #include "talus/new.hpp"
 #include "talus/run.hpp"
 
@@ -26,6 +27,7 @@ constexpr const char* footer =
     "  talus new before.tif after.tif                     a first recipe: spacing, layers and end time from the "
     "release\n"
     "  talus check recipe.toml                            every fault of all stages, nothing is written\n"
+    "  talus compare out-a out-b                          two runs beside one another: out-a/comparison.html\n"
     "\n"
     "Exit codes: 0 done, 1 a bug, 2 the recipe or the command line is wrong, 3 a file is wrong or cannot be written,\n"
     "4 the computation failed, 130 ended by Ctrl-C.\n"
@@ -86,6 +88,20 @@ void declare_new(CLI::App& app, NewScene& scene, Asked& asked) {
   command->callback([&] { asked.command = [&] { return new_scene(scene); }; });
 }
 
+/// The folders of two runs.
+struct Pair {
+  std::filesystem::path first, second;
+};
+
+void declare_compare(CLI::App& app, Pair& pair, Asked& asked) {
+  CLI::App* command = app.add_subcommand("compare", "Two runs on one page: FIRST/comparison.html");
+  command->add_option("first", pair.first, "Folder of results of a run")->type_name("FIRST")->required();
+  command->add_option("second", pair.second, "Folder of another, which is compared with it")
+      ->type_name("SECOND")
+      ->required();
+  command->callback([&] { asked.command = [&] { return compare_runs(pair.first, pair.second, asked.request); }; });
+}
+
 int guarded(int argc, char** argv) {
   Asked asked;
   CLI::App app("One command over the stages of Talus", "talus");
@@ -99,6 +115,8 @@ int guarded(int argc, char** argv) {
   declare(app, asked);
   NewScene scene{.before = {}, .after = {}, .recipe = "recipe.toml"};
   declare_new(app, scene, asked);
+  Pair pair;
+  declare_compare(app, pair, asked);
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {

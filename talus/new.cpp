@@ -25,7 +25,7 @@ namespace {
 /// Smaller than this many times its standard error a volume may be nothing but error.
 constexpr double sure_errors = 3;
 /// A release of fewer cells tells nothing of its shape.
-constexpr double fewest_cells = 9;
+constexpr double fewest_released_cells = 9;
 
 fs::path whole(const fs::path& file) { return fs::absolute(file).lexically_normal(); }
 
@@ -71,7 +71,7 @@ Found find_slide(const NewScene& scene, const fs::path& out) {
   if (!survey.is_discarded() && survey.contains("source") && survey["source"]["error_m3"].is_number())
     found.volume_error = survey["source"]["error_m3"].get<double>();
   const double cells = found.slide.area / (found.slide.cell * found.slide.cell);
-  if (cells < fewest_cells)
+  if (cells < fewest_released_cells)
     refuse(
         scene,
         fmt::format("what went down is {:.0f} cells of {:g} m, {:.0f} m3", cells, found.slide.cell, found.slide.volume),
