@@ -106,54 +106,45 @@ std::string way_words(const Slide& s) {
                      s.drop / s.length, s.travel_tangent);
 }
 
-std::string recipe_text(const NewScene& scene, const Found& found) {
-  const Slide& s = found.slide;
-  const Proposal p = propose(s);
-  const std::string before = named(scene.before, scene.recipe), after = named(scene.after, scene.recipe);
+/// "key = value          # remark"
+std::string line(const std::string& key, const std::string& value, const std::string& remark) {
+  return fmt::format("{:<30} # {}\n", key + " = " + value, remark);
+}
+
+std::string head(const NewScene& scene, const Slide& s) {
   return fmt::format(
-      R"(# Written by talus new (Talus {version}) from two elevation models. Every number is a proposal: change what you know
-# better. All keys with their meaning: talus-preprocess --template, talus-solve --template, talus-postprocess --template
-#
-# Found: {volume:.0f} m3 went down on {area:.0f} m2, {width:.0f} m wide, {median:.3g} m thick (median by volume).
-# {way}
-[scene]
-name = "{name}"
-title = "{name}"
+      "# Written by talus new (Talus {}) from two elevation models. Every number is a proposal:\n"
+      "# change what you know better. All keys with their meaning: talus-preprocess --template, and so on.\n"
+      "#\n"
+      "# Found: {:.0f} m3 went down on {:.0f} m2, {:.0f} m wide, {:.3g} m thick (median by volume).\n"
+      "# {}\n"
+      "[scene]\nname = \"{}\"\n\n",
+      version(), s.volume, s.area, s.width, s.median_thickness, way_words(s), scene_name(scene.recipe));
+}
 
-[preprocess]
-before_dem = {before}
-after_dem = {after}
-
-[preprocess.grid]
-spacing_m = {spacing:g}          # {across:.0f} cells across the release
-layer_height_m = {layer:g}       # {layers:.1f} layers over its median thickness; four or more
-points_per_cell = [2, 2, 2]      # about {points:.0f} material points
-
-[solve]
-end_time_s = {end:g}             # generous: the run stops by itself when all is at rest
-stop_kinetic_fraction = 0.001
-
-[solve.material]
-model = "drucker-prager"
-density_kg_m3 = 2000.0
-friction_angle_deg = {inside:g}  # inside the mass: 1.4 times the bed's as tangents, where nothing else is known
-stiffness = "auto"               # the lowest modulus that leaves the flow unchanged
-
-[solve.base]
-law = "coulomb"
-friction_angle_deg = {bed:g}     # {bed_words}
-
-[postprocess.survey]
-from_preprocess = true           # scored against what rose between the two models, with its error
-)",
-      fmt::arg("version", version()), fmt::arg("volume", s.volume), fmt::arg("area", s.area),
-      fmt::arg("width", s.width), fmt::arg("median", s.median_thickness), fmt::arg("way", way_words(s)),
-      fmt::arg("name", scene_name(scene.recipe)), fmt::arg("before", before), fmt::arg("after", after),
-      fmt::arg("spacing", p.spacing), fmt::arg("across", p.cells_across), fmt::arg("layer", p.layer_height),
-      fmt::arg("layers", p.layers), fmt::arg("points", p.points), fmt::arg("end", p.end_time),
-      fmt::arg("inside", p.internal_angle), fmt::arg("bed", p.bed_angle),
-      fmt::arg("bed_words", s.has_deposit() ? "the angle at which its centre of mass went: a first guess, to be refined"
-                                            : "usual for this volume (Scheidegger 1973, Corominas 1996): a guess"));
+std::string recipe_text(const NewScene& scene, const Slide& s) {
+  const Proposal p = propose(s);
+  const auto number = [](double value) { return recipe::toml_number(value); };
+  std::string text = head(scene, s);
+  text += "[preprocess]\nbefore_dem = " + named(scene.before, scene.recipe) +
+          "\nafter_dem = " + named(scene.after, scene.recipe) + "\n\n[preprocess.grid]\n";
+  text += line("spacing_m", number(p.spacing), fmt::format("{:.0f} cells across the release", p.cells_across));
+  text += line("layer_height_m", number(p.layer_height),
+               fmt::format("{:.1f} layers over its median thickness; four or more", p.layers));
+  text += line("points_per_cell", "[2, 2, 2]", fmt::format("about {:.0f} material points", p.points));
+  text += "\n[solve]\n";
+  text += line("end_time_s", number(p.end_time), "generous: the run stops by itself when all is at rest");
+  text += line("stop_kinetic_fraction", "0.001", "at rest: kinetic energy below this part of its peak");
+  text += "\n[solve.material]\nmodel = \"drucker-prager\"\ndensity_kg_m3 = 2000.0\n";
+  text += line("friction_angle_deg", number(p.internal_angle), "inside the mass: 1.4 times the bed's, as tangents");
+  text += line("stiffness", "\"auto\"", "the lowest modulus that leaves the flow unchanged");
+  text += "\n[solve.base]\nlaw = \"coulomb\"\n";
+  text += line("friction_angle_deg", number(p.bed_angle),
+               s.has_deposit() ? "the angle at which its centre of mass went: a first guess"
+                               : "usual for this volume (Scheidegger 1973, Corominas 1996)");
+  text += "\n[postprocess.survey]\n";
+  text += line("from_preprocess", "true", "scored against what rose between the two models");
+  return text;
 }
 
 }  // namespace
@@ -166,7 +157,7 @@ int new_scene(const NewScene& scene) {
   compare_models(scene, folder.path());
   const Found found = find_slide(scene, folder.path() / "out");
   if (const fs::path parent = scene.recipe.parent_path(); !parent.empty()) make_folder(parent);
-  write_text(scene.recipe, recipe_text(scene, found));
+  write_text(scene.recipe, recipe_text(scene, found.slide));
   log_info(fmt::format("{:.0f} m3 failed. {}", found.slide.volume, way_words(found.slide)));
   log_info(fmt::format("Read it, then: talus run {}", scene.recipe.string()));
   fmt::print("{}\n", scene.recipe.string());

@@ -13,14 +13,19 @@ constexpr double gravity = 9.81;
 constexpr double degrees = 180 / std::numbers::pi;
 constexpr double cells_wanted = 20, fewest_cells = 8, layers_wanted = 4.5, points_in_a_cell = 8;
 
+/// The number of `count` digits at the place of `digit`, without the noise of binary fractions.
+double of_digits(double count, double digit) { return digit < 1 ? count / std::round(1 / digit) : count * digit; }
+
 /// Two digits, not more than the number.
 double round_down(double value) {
   const double digit = std::pow(10.0, std::floor(std::log10(value)) - 1);
-  return std::floor(value / digit + 1e-9) * digit;
+  return of_digits(std::floor(value / digit + 1e-9), digit);
 }
+
+/// Two digits, not less than the number.
 double round_up(double value) {
   const double digit = std::pow(10.0, std::floor(std::log10(value)) - 1);
-  return std::ceil(value / digit - 1e-9) * digit;
+  return of_digits(std::ceil(value / digit - 1e-9), digit);
 }
 
 bool is_in(const Raster& raster, int column, int row) {

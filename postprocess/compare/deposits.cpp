@@ -16,6 +16,11 @@ namespace {
 
 double thickness(double value) { return std::isfinite(value) ? value : 0; }
 
+bool same_cells(const MapGrid& a, const MapGrid& b) {
+  return a.columns == b.columns && a.rows == b.rows && a.west == b.west && a.south == b.south && a.cell == b.cell &&
+         a.crs_wkt == b.crs_wkt;
+}
+
 /// What is shown: wherever one of the two flows came, with a margin.
 Window window_of(const RunMaps& first, const RunMaps& second, double threshold) {
   const double far = 1e30;
@@ -93,7 +98,9 @@ std::vector<double> difference_limits(const DepositDifference& found) {
 }
 
 DepositDifference deposit_difference(const RunMaps& first, const RunMaps& second, double threshold) {
-  const Raster other = resample_thickness({second.grid, second.deposit_thickness}, first.grid);
+  const Raster theirs_as_is{second.grid, second.deposit_thickness};
+  const Raster other =
+      same_cells(first.grid, second.grid) ? theirs_as_is : resample_thickness(theirs_as_is, first.grid);
   DepositDifference found{.difference = {first.grid, std::vector<double>(first.grid.count(), nan)}};
   Sum ours, theirs, squares;
   std::size_t both = 0, either = 0;

@@ -46,7 +46,7 @@ std::string html(const std::string& text) {
 /// "wall_time_s" -> "wall time [s]"
 std::string label_of(const std::string& key) {
   static const std::pair<const char*, const char*> units[] = {
-      {"_m3", "m\u00b3"},       {"_m2", "m\u00b2"}, {"_m_s", "m/s"}, {"_kPa", "kPa"}, {"_deg", "\u00b0"},
+      {"_m3", "m\u00b3"},       {"_m2", "m\u00b2"}, {"_m_s", "m/s"}, {"_kpa", "kPa"}, {"_deg", "\u00b0"},
       {"_kg_m3", "kg/m\u00b3"}, {"_J", "J"},        {"_N", "N"},     {"_s", "s"},     {"_m", "m"}};
   std::string words = key, unit;
   for (const auto& [end, name] : units) {

@@ -189,10 +189,10 @@ test_new_writes_a_recipe_that_runs_through() {
     awk '/ layers over its median thickness/ { if ($5 >= 4) found = 1 } END { exit !found }' "$sample/recipe.toml" ||
       fail "$sample: fewer than four layers: $(grep layers "$sample/recipe.toml")"
     expect_exit 0 "$bin/talus" check "$sample/recipe.toml"
-    expect_words 'recipe.toml: no faults, no warnings'
+    expect_words 'recipe.toml: no faults'
     # To the end in seconds: the first stretch of it, on cells twice as wide.
     local spacing
-    spacing=$(sed -n 's/^spacing_m = \([0-9.]*\) .*/\1/p' "$sample/recipe.toml")
+    spacing=$(sed -n 's/^spacing_m = \([0-9]*\).*/\1/p' "$sample/recipe.toml")
     expect_exit 0 "$bin/talus" run "$sample/recipe.toml" --on cpu --set "preprocess.grid.spacing_m=$((2 * spacing))" \
       --set solve.end_time_s=5
     grep -qF '"deposit_csi"' "$sample/out/score.json" || fail "$sample: no score against the survey"
@@ -201,20 +201,46 @@ test_new_writes_a_recipe_that_runs_through() {
 
 test_new_refuses_politely_what_is_no_slide() {
   scene
-  expect_exit 3 "$bin/talus" new before.asc before.asc
+  expect_exit 3 "$bin/talus" new --recipe new.toml before.asc before.asc
   expect_words 'before.asc and before.asc: no slide was found between them, so that no recipe was written ('
-  expect_exit 3 "$bin/talus" new after.asc before.asc      # the wrong way round
+  expect_exit 3 "$bin/talus" new --recipe new.toml after.asc before.asc      # the wrong way round
   expect_words 'no slide was found between them'
   # Noise alone, of 1 m.
   grid noisy.asc "$bowl + 2 * rand() - 1"
-  expect_exit 3 "$bin/talus" new before.asc noisy.asc
+  expect_exit 3 "$bin/talus" new --recipe new.toml before.asc noisy.asc
   expect_words 'no slide was found between them'
-  expect_exit 3 "$bin/talus" new before.asc none.asc
+  expect_exit 3 "$bin/talus" new --recipe new.toml before.asc none.asc
   expect_words 'none.asc'
-  [[ ! -e recipe.toml.bak && $(grep -c end_time_s recipe.toml) -eq 1 ]] || fail "a recipe was written over"
+  [[ ! -e new.toml ]] || fail "a recipe was written"
   expect_exit 3 "$bin/talus" new before.asc after.asc
   expect_error 'talus: recipe.toml: it is there already (nothing is written over). Name another file with --recipe' \
     ' FILE, or give --overwrite'
+}
+
+test_compare_puts_two_runs_on_one_page() {
+  scene
+  expect_exit 0 "$bin/talus" run recipe.toml --out a --on cpu
+  expect_exit 0 "$bin/talus" run recipe.toml --out b --on cpu --set preprocess.grid.spacing_m=5 \
+    --set solve.base.friction_angle_deg=10 --set 'scene.title=A <b> title'
+  expect_exit 0 "$bin/talus" compare a b
+  expect_stdout_paths
+  local page=a/comparison.html word
+  for word in 'data:image/png;base64,iVBOR' '<h2>Volumes</h2>' '<h2>Run-out and extent</h2>' \
+    '<h2>Against the survey</h2>' '<h2>Cost</h2>' 'fahrboeschung' '[solve.base] friction_angle_deg' \
+    'The grids differ (20 x 20 cells of 10 m and 40 x 40 of 5 m)' 'A &lt;b> title'; do
+    grep -qF -- "$word" $page || fail "the page does not show: $word"
+  done
+  ! grep -qE "<script|https?://|$TALUS_SCRATCH" $page || fail "the page runs scripts, loads something or names folders"
+  # The same run is the same deposit.
+  cp -r a c
+  expect_exit 0 "$bin/talus" compare a c
+  grep -qF '<td class="n">0 %</td>' $page || fail "a run differs from itself"
+  grep -qF 'The two were computed with the same values.' $page || fail "its recipe differs from itself"
+  expect_exit 3 "$bin/talus" compare a none
+  expect_error 'talus: none: there is no run.h5 in it. Name the folder of results of a run: what --out was, or out' \
+    ' beside its recipe'
+  expect_exit 2 "$bin/talus" compare a a
+  expect_words 'this is the run itself'
 }
 
 test_without_a_command_or_with_a_wrong_one_it_says_how() {
