@@ -13,6 +13,7 @@
 #include "talus/check.hpp"
 #include "talus/compare.hpp"
 #include "talus/new.hpp"
+#include "talus/public_data.hpp"
 #include "talus/run.hpp"
 
 namespace {
@@ -28,6 +29,7 @@ constexpr const char* footer =
     "release\n"
     "  talus check recipe.toml                            every fault of all stages, nothing is written\n"
     "  talus compare out-a out-b                          two runs beside one another: out-a/comparison.html\n"
+    "  talus data cascade2021                             a public example, fetched and checked\n"
     "\n"
     "Exit codes: 0 done, 1 a bug, 2 the recipe or the command line is wrong, 3 a file is wrong or cannot be written,\n"
     "4 the computation failed, 130 ended by Ctrl-C.\n"
@@ -102,6 +104,19 @@ void declare_compare(CLI::App& app, Pair& pair, Asked& asked) {
   command->callback([&] { asked.command = [&] { return compare_runs(pair.first, pair.second, asked.request); }; });
 }
 
+void declare_data(CLI::App& app, DataRequest& data, Asked& asked) {
+  CLI::App* command = app.add_subcommand("data", "List the public examples, or make one of them");
+  command->add_option("name", data.name, "Example to be made (default: list them)")->type_name("NAME");
+  command->add_option("--out", data.out, "Folder in which that of the example is made (default: data)")
+      ->type_name("DIR");
+  command
+      ->add_option("--from", data.from,
+                   "Folder that holds its sources, or its files (default: the sources are fetched)")
+      ->type_name("DIR");
+  command->add_option("--table", data.table, "A table of examples of one's own (TOML)")->type_name("FILE");
+  command->callback([&] { asked.command = [&] { return make_data(data); }; });
+}
+
 int guarded(int argc, char** argv) {
   Asked asked;
   CLI::App app("One command over the stages of Talus", "talus");
@@ -117,6 +132,8 @@ int guarded(int argc, char** argv) {
   declare_new(app, scene, asked);
   Pair pair;
   declare_compare(app, pair, asked);
+  DataRequest data{.name = {}, .out = "data", .from = {}, .table = {}};
+  declare_data(app, data, asked);
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {

@@ -81,7 +81,7 @@ void draw_outline(Canvas& canvas, const View& view, const RunMaps& maps, double 
   for (const Polyline& line : isolines(maps.grid, maps.deposit_thickness, threshold, AtEdge::close)) {
     Pixels points;
     for (const auto& [x, y] : line) points.push_back(view.pixel(x, y));
-    canvas.line(points, {{1, 1, 1}, pen.width + 2.5, {}, 0.8});
+    if (pen.dashes.empty()) canvas.line(points, {{1, 1, 1}, pen.width + 2.5, {}, 0.8});  // dashes lie on the other line
     canvas.line(points, pen);
   }
 }

@@ -243,6 +243,78 @@ test_compare_puts_two_runs_on_one_page() {
   expect_words 'this is the run itself'
 }
 
+# A made-up source: what was fetched is checked, added up and compared with what it must be.
+made_up_table() {
+  grid one.asc 'i == 0 ? -9999 : 100 + i'
+  grid two.asc 'j == 0 ? -9999 : -1'
+  mkdir sources
+  mv one.asc two.asc sources/
+  cat >table.toml <<TOML
+[made-up]
+title = "a slope that sinks by a metre"
+folder = "made_up"
+licence = "none needed"
+repository = "https://example.org/made-up"
+commit = "0123456789abcdef"
+url = "file://$PWD/sources"
+crs = "EPSG:32633"
+sources = [{ name = "one.asc", sha256 = "$(sha256sum sources/one.asc | cut -d' ' -f1)" }, { name = "two.asc" }]
+file = [
+  { name = "before_dem.tif", sum = ["one.asc"], cells = 380, smallest = 101, largest = 119, mean = 110 },
+  { name = "after_dem.tif", sum = ["one.asc", "two.asc"], cells = 380, smallest = 100, largest = 119, mean = 109.05 },
+]
+TOML
+}
+
+test_data_makes_a_made_up_example_from_its_sources() {
+  made_up_table
+  expect_exit 0 "$bin/talus" data --table table.toml
+  local word
+  for word in 'made-up: a slope' 'licence: none needed' 'commit: 0123' 'made: after_dem.tif = one.asc + two.asc' 'sha256 '; do
+    grep -qF -- "$word" stdout || fail "the list does not show: $word"
+  done
+  expect_exit 0 "$bin/talus" data made-up --table table.toml --out data --from sources
+  expect_stdout_paths
+  gdalinfo data/made_up/after_dem.tif >info
+  grep -qF '32633' info || fail "the CRS is missing"
+  grep -qF 'url: file://' data/made_up/SOURCE.md || fail "SOURCE.md names no source"
+  # Files already made are taken as they are.
+  expect_exit 0 "$bin/talus" data made-up --table table.toml --out again --from data/made_up
+  cmp data/made_up/after_dem.tif again/made_up/after_dem.tif || fail "the file that was there is another one"
+  if command -v curl >/dev/null; then
+    expect_exit 0 "$bin/talus" data made-up --table table.toml --out fetched
+    [[ -f fetched/made_up/after_dem.tif ]] || fail "nothing was made of what was fetched"
+  fi
+}
+
+test_data_refuses_other_sources_and_other_files() {
+  made_up_table
+  sed -i '7s/101/102/' sources/two.asc sources/one.asc
+  echo >>sources/one.asc
+  expect_exit 3 "$bin/talus" data made-up --table table.toml --from sources
+  expect_words 'one.asc: other bytes than the example was made of (its SHA-256 is '
+  sed -i 's/, sha256 = "[0-9a-f]*"//; s/mean = 109.05/mean = 109.06/' table.toml
+  expect_exit 3 "$bin/talus" data made-up --table table.toml --from sources
+  expect_words 'after_dem.tif: what was made of its sources is not that file of the example (it has 380 cells'
+  rm sources/two.asc
+  expect_exit 3 "$bin/talus" data made-up --table table.toml --from sources
+  expect_words 'two.asc: no such file'
+  expect_exit 2 "$bin/talus" data made-pu --table table.toml --from sources
+  expect_error 'talus: made-pu: no such example. Did you mean "made-up"?'
+}
+
+# The examples of this program, as somebody has them here.
+test_data_knows_the_public_examples() {
+  expect_exit 0 "$bin/talus" data
+  [[ $(grep -c '^  licence: ' stdout) -ge 2 && $(grep -cE '^  commit: [0-9a-f]{40}$' stdout) -ge 2 ]] ||
+    fail "an example has no licence or no commit"
+  local data=$TALUS_SOURCE/../shared/data
+  [[ -d $data ]] || skip "$data is not there: the public examples are not looked at"
+  expect_exit 0 "$bin/talus" data cascade2021 --from "$data/cascade2021" --out data
+  expect_exit 0 "$bin/talus" data frank-slide --from "$data/frank_slide" --out data
+  expect_exit 3 "$bin/talus" data frank-slide --from "$data/cascade2021" --out data
+}
+
 test_without_a_command_or_with_a_wrong_one_it_says_how() {
   expect_exit 2 "$bin/talus"
   expect_error 'talus: no command was given. See talus --help'
