@@ -28,6 +28,7 @@ class Listing {
       at = end + 1;
       if (line.starts_with(name)) put(faults_, stage, line.substr(name.size()));
       if (line.starts_with("warning: ")) put(warnings_, stage, line.substr(9));
+      if (line.starts_with("advice: ")) put(advice_, stage, line.substr(8));
     }
   }
   void add_fault(const std::string& stage, const std::string& fault, ExitCode code) {
@@ -39,6 +40,7 @@ class Listing {
   int print(const std::string& scene) const {
     for (const std::string& text : notes_) log_info(text);
     for (const auto& [stage, text] : warnings_) log_warning(stage + ": " + text);
+    for (const auto& [stage, text] : advice_) log_info("advice: " + stage + ": " + text);
     for (const auto& [stage, text] : faults_) log_error(stage + ": " + text);
     log_info(fmt::format("{}: {}, {}", scene, counted(faults_.size(), "fault"), counted(warnings_.size(), "warning")));
     return code_;
@@ -55,7 +57,7 @@ class Listing {
     if (std::none_of(lines.begin(), lines.end(), known)) lines.emplace_back(stage, text);
   }
 
-  Lines faults_, warnings_;
+  Lines faults_, warnings_, advice_;
   std::vector<std::string> notes_;
   int code_ = 0;
 };

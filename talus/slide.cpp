@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "common/map/statistics.hpp"
+#include "common/map/usual_reach.hpp"
 
 namespace talus::command {
 namespace {
@@ -129,8 +130,9 @@ Slide measure_slide(const Raster& before, const Raster& release, const std::opti
 }
 
 double usual_reach_tangent(double volume) {
-  const double digits = std::log10(volume);
-  return volume >= 1e5 ? std::pow(10, 0.62419 - 0.15666 * digits) : std::pow(10, -0.047 - 0.085 * digits);
+  for (const ReachRegression& one : reach_regressions())
+    if (volume >= one.from_volume) return one.tangent(volume);
+  return reach_regressions().back().tangent(volume);
 }
 
 Proposal propose(const Slide& slide) {
