@@ -74,12 +74,21 @@ Example example_of(const toml::table& table) {
   return example;
 }
 
+/// Where files of a repository at a commit lie, as bytes.
+std::string address_of(const Example& example) {
+  const std::string github = "https://github.com/", repository = example.word("repository");
+  if (!example.word("url").empty() || !repository.starts_with(github)) return example.word("url");
+  return fmt::format("https://raw.githubusercontent.com/{}/{}/{}", repository.substr(github.size()),
+                     example.word("commit"), example.word("path"));
+}
+
 Examples read_examples(const fs::path& file) {
   Examples examples;
   try {
     const toml::table root = file.empty() ? toml::parse(public_data_table()) : toml::parse_file(file.string());
     for (const auto& [name, node] : root)
       if (const toml::table* table = node.as_table()) examples[std::string(name.str())] = example_of(*table);
+    for (auto& [name, example] : examples) example.words["url"] = address_of(example);
   } catch (const toml::parse_error& error) {
     throw DataError(Fault{file.string() + ": this is no table of examples", std::string(error.description()), ""});
   }

@@ -11,7 +11,7 @@ shift
 name=bundle
 folder=$build
 archived=yes
-programs=(talus-preprocess talus-solve talus-postprocess talus-make-terrain talus-validate talus-bench)
+programs=(talus talus-preprocess talus-solve talus-postprocess talus-make-terrain talus-validate talus-bench)
 tests=("$build"/bin/talus-tests-*)
 while [[ $# -gt 0 ]]; do
   case $1 in

@@ -67,8 +67,8 @@ test_set_values_count_like_the_recipes_and_are_checked_before_anything_runs() {
   arguments=()
   runs solve postprocess
   expect_exit 2 run --set postprocess.deposit_threshold_m=-1 --set preprocess.grid.spacing_m=-1
-  expect_error 'talus: --set postprocess.deposit_threshold_m=-1: [postprocess] deposit_threshold_m = -1 (out of range).' \
-    ' It must be > 0'
+  expect_error 'talus: --set postprocess.deposit_threshold_m=-1: [postprocess] deposit_threshold_m = -1' \
+    ' (out of range). It must be > 0'
   expect_words '--set preprocess.grid.spacing_m=-1: [preprocess.grid] spacing_m = -1 (out of range)'
 }
 
@@ -154,9 +154,8 @@ test_make_and_talus_share_their_notes() {
 
 test_check_lists_the_faults_of_all_tables_and_writes_nothing() {
   scene
-  printf '%s\n' 'typo = 1' '[preprocess.coregistration]' 'mode = "aply"' >tail.toml
-  sed -i 's/layer_height_m = 2.0/layer_height_m = -2.0/; s/end_time_s = 3.0/end_tme_s = 3.0/; s/^thickness = .*/thicknes = 1/' \
-    recipe.toml
+  change 's/layer_height_m = 2.0/layer_height_m = -2.0/; s/end_time_s = 3.0/end_tme_s = 3.0/'
+  change 's/^thickness = .*/thicknes = 1/'
   expect_exit 2 "$bin/talus" check recipe.toml
   expect_error 'preprocess: recipe.toml:10:18: [preprocess.grid] layer_height_m = -2.0 (out of range). It must be >= 0'
   expect_words 'solve: recipe.toml:13:1: unknown key "end_tme_s" in [solve]' \
@@ -270,7 +269,8 @@ test_data_makes_a_made_up_example_from_its_sources() {
   made_up_table
   expect_exit 0 "$bin/talus" data --table table.toml
   local word
-  for word in 'made-up: a slope' 'licence: none needed' 'commit: 0123' 'made: after_dem.tif = one.asc + two.asc' 'sha256 '; do
+  for word in 'made-up: a slope' 'licence: none needed' 'commit: 0123' 'made: after_dem.tif = one.asc + two.asc' \
+    'sha256 '; do
     grep -qF -- "$word" stdout || fail "the list does not show: $word"
   done
   expect_exit 0 "$bin/talus" data made-up --table table.toml --out data --from sources
@@ -289,7 +289,6 @@ test_data_makes_a_made_up_example_from_its_sources() {
 
 test_data_refuses_other_sources_and_other_files() {
   made_up_table
-  sed -i '7s/101/102/' sources/two.asc sources/one.asc
   echo >>sources/one.asc
   expect_exit 3 "$bin/talus" data made-up --table table.toml --from sources
   expect_words 'one.asc: other bytes than the example was made of (its SHA-256 is '
@@ -313,6 +312,29 @@ test_data_knows_the_public_examples() {
   expect_exit 0 "$bin/talus" data cascade2021 --from "$data/cascade2021" --out data
   expect_exit 0 "$bin/talus" data frank-slide --from "$data/frank_slide" --out data
   expect_exit 3 "$bin/talus" data frank-slide --from "$data/cascade2021" --out data
+}
+
+# What a recipe could do better: said by check, by --plan, and in the report.
+test_advice_is_said_before_the_run_and_in_the_report() {
+  scene
+  local set=(--set solve.end_time_s=0.5 --set solve.material.youngs_modulus_Pa=1e9)
+  expect_exit 0 "$bin/talus" check recipe.toml "${set[@]}"
+  expect_words 'advice: solve: end_time_s = 0.5 is likely before rest' 'advice: solve: youngs_modulus_Pa = 1e+09 makes' \
+    'stiffness = "auto"'
+  expect_exit 0 run "${set[@]}"
+  expect_words 'advice: end_time_s = 0.5 is likely before rest'
+  expect_exit 0 solve --plan "${set[@]}"
+  expect_words 'advice: end_time_s = 0.5 is likely before rest'
+  local word
+  for word in 'Advice: end_time_s = 0.5' 'Warning: the run ended before rest, at 0.5 s with ' \
+    'Warning: the grid is coarse for this release'; do
+    grep -qF -- "$word" out/report.html || fail "the report does not say: $word"
+    grep -qF -- "$word" out/score.json || fail "the score does not say: $word"
+  done
+  # At rest, with a stiffness that is needed, there is nothing to say.
+  expect_exit 0 run --set solve.end_time_s=60 --set solve.stop_kinetic_fraction=0.001
+  ! grep -q 'advice: ' stderr || fail "advice without need: $(grep 'advice: ' stderr)"
+  ! grep -q 'ended before rest' out/score.json || fail "a run that came to rest is said to have ended before"
 }
 
 test_without_a_command_or_with_a_wrong_one_it_says_how() {
