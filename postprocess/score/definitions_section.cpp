@@ -98,7 +98,7 @@ void of_end(const Run& run, Sheet& sheet) {
   const double peak = *std::max_element(kinetic->values.begin(), kinetic->values.end()), last = kinetic->values.back();
   if (!(last > at_rest * peak)) return;
   sheet.note(
-      fmt::format("Warning: the run ended before rest, at {:.3g} s with {:.2g} % of its largest kinetic energy: "
+      fmt::format("Warning: the run ended before rest, at {:.3g} s with {:.3g} % of its largest kinetic energy: "
                   "the deposit is no final one. Give a larger end_time_s in [solve], and stop_kinetic_fraction "
                   "= 0.001, which ends the run at rest.",
                   run.summary.time_end, 100 * last / peak));

@@ -7,7 +7,8 @@ test_help_shows_options_examples_and_exit_codes() {
   local program word
   for program in "${programs[@]}"; do
     expect_exit 0 "$bin/$program" --help
-    for word in --out --set --check --template --on --version 'Examples:' 'Exit codes:' '130 ended by Ctrl-C' "$program "; do
+    for word in --out --set --check --template --on --version 'Examples:' 'Exit codes:' '130 ended by Ctrl-C' \
+      "$program "; do
       grep -qF -- "$word" stdout || fail "$program --help does not show: $word"
     done
   done
