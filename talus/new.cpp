@@ -29,9 +29,26 @@ constexpr double fewest_released_cells = 9;
 
 fs::path whole(const fs::path& file) { return fs::absolute(file).lexically_normal(); }
 
-std::string first_recipe(const NewScene& scene) {
-  return fmt::format("[preprocess]\nbefore_dem = {}\nafter_dem = {}\n", recipe::toml_text(whole(scene.before).string()),
-                     recipe::toml_text(whole(scene.after).string()));
+/// What the first stage needs to be told to read two models; the fewest such keys are taken.
+struct Reading {
+  bool utm = false;    ///< bring degrees and feet to metres
+  bool align = false;  ///< the later model lies beside the earlier one
+
+  std::string keys() const {
+    std::string text;
+    if (utm) text += "working_crs = \"utm\"            # the models are not in metres\n";
+    text += "\n[preprocess.voids]\nfill = true                    # cells without data inside the models\n";
+    if (align)
+      text +=
+          "\n[preprocess.coregistration]\nmode = \"apply\"                 # the later model lies beside the earlier\n";
+    return text;
+  }
+};
+
+std::string first_recipe(const NewScene& scene, const Reading& reading) {
+  return fmt::format("[preprocess]\nbefore_dem = {}\nafter_dem = {}\n{}",
+                     recipe::toml_text(whole(scene.before).string()), recipe::toml_text(whole(scene.after).string()),
+                     reading.keys());
 }
 
 [[noreturn]] void refuse(const NewScene& scene, const std::string& why, const std::string& mend) {
@@ -40,15 +57,33 @@ std::string first_recipe(const NewScene& scene) {
                         why, mend});
 }
 
-/// The first stage on the two models alone, into a folder that goes again. Throws with its own words where it refuses
-/// them.
-void compare_models(const NewScene& scene, const fs::path& folder) {
+/// The first stage on the two models alone, into a folder that goes again.
+Outcome prepare(const NewScene& scene, const Reading& reading, const fs::path& folder) {
   Request request;
   request.recipe = folder / "recipe.toml";
   request.out = request.shown = folder / "out";
-  write_text(request.recipe, first_recipe(scene));
-  const Outcome outcome = run_stage_program(request, "preprocess", {}, Keep::everything);
-  if (outcome.code == 0) return;
+  write_text(request.recipe, first_recipe(scene, reading));
+  return run_stage_program(request, "preprocess", {}, Keep::everything);
+}
+
+bool asks_for(const Outcome& outcome, const char* key) { return outcome.err.find(key) != std::string::npos; }
+
+/// Prepares the two models as far as they can be; what that takes is returned. Throws with the stage's own words where
+/// it refuses them.
+Reading compare_models(const NewScene& scene, const fs::path& folder) {
+  Reading reading;
+  Outcome outcome = prepare(scene, reading, folder);
+  if (outcome.code != 0 && asks_for(outcome, "working_crs = \"utm\"")) {
+    reading.utm = true;
+    outcome = prepare(scene, reading, folder);
+  }
+  if (asks_for(outcome, "mode = \"apply\"")) {  // also a warning, of a run that went through
+    const Reading aligned{reading.utm, true};
+    const Outcome second = prepare(scene, aligned, folder);
+    if (second.code == 0) return aligned;
+    outcome = prepare(scene, reading, folder);
+  }
+  if (outcome.code == 0) return reading;
   std::vector<std::string> said = lines_said(outcome.err);
   refuse(scene, said.empty() ? "talus-preprocess ended without a word" : said.back(),
          "Look at both in a GIS: the first must be the ground before the slide, the second after it");
@@ -93,10 +128,12 @@ std::string scene_name(const fs::path& recipe) {
   return name.empty() ? "slide" : name;
 }
 
-/// As the recipe names a file: from its own folder, where that leads there without leaving it far.
+/// As the recipe names a file: from its own folder where both lie below a folder of their own, whole otherwise.
 std::string named(const fs::path& file, const fs::path& recipe) {
-  const fs::path relative = whole(file).lexically_relative(whole(recipe).parent_path());
-  return recipe::toml_text(relative.empty() ? whole(file).string() : relative.generic_string());
+  const fs::path there = whole(file), folder = whole(recipe).parent_path();
+  const bool near = there.has_relative_path() && folder.has_relative_path() &&
+                    *there.relative_path().begin() == *folder.relative_path().begin();
+  return recipe::toml_text(near ? there.lexically_relative(folder).generic_string() : there.string());
 }
 
 std::string way_words(const Slide& s) {
@@ -122,12 +159,12 @@ std::string head(const NewScene& scene, const Slide& s) {
       version(), s.volume, s.area, s.width, s.median_thickness, way_words(s), scene_name(scene.recipe));
 }
 
-std::string recipe_text(const NewScene& scene, const Slide& s) {
+std::string recipe_text(const NewScene& scene, const Slide& s, const Reading& reading) {
   const Proposal p = propose(s);
   const auto number = [](double value) { return recipe::toml_number(value); };
   std::string text = head(scene, s);
   text += "[preprocess]\nbefore_dem = " + named(scene.before, scene.recipe) +
-          "\nafter_dem = " + named(scene.after, scene.recipe) + "\n\n[preprocess.grid]\n";
+          "\nafter_dem = " + named(scene.after, scene.recipe) + "\n" + reading.keys() + "\n[preprocess.grid]\n";
   text += line("spacing_m", number(p.spacing), fmt::format("{:.0f} cells across the release", p.cells_across));
   text += line("layer_height_m", number(p.layer_height),
                fmt::format("{:.1f} layers over its median thickness; four or more", p.layers));
@@ -154,10 +191,10 @@ int new_scene(const NewScene& scene) {
     throw DataError(Fault{scene.recipe.string() + ": it is there already", "nothing is written over",
                           "Name another file with --recipe FILE, or give --overwrite"});
   const TemporaryFolder folder("talus-new");
-  compare_models(scene, folder.path());
+  const Reading reading = compare_models(scene, folder.path());
   const Found found = find_slide(scene, folder.path() / "out");
   if (const fs::path parent = scene.recipe.parent_path(); !parent.empty()) make_folder(parent);
-  write_text(scene.recipe, recipe_text(scene, found.slide));
+  write_text(scene.recipe, recipe_text(scene, found.slide, reading));
   log_info(fmt::format("{:.0f} m3 failed. {}", found.slide.volume, way_words(found.slide)));
   log_info(fmt::format("Read it, then: talus run {}", scene.recipe.string()));
   fmt::print("{}\n", scene.recipe.string());

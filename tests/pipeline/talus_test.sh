@@ -180,7 +180,7 @@ test_check_looks_at_physics_and_data_too() {
 # talus new on the shipped samples: four layers or more, and the recipe runs through to a score.
 test_new_writes_a_recipe_that_runs_through() {
   local sample
-  for sample in valley rock-slope; do
+  for sample in valley rock-slope raw-valley; do
     mkdir "$sample"
     expect_exit 0 "$bin/talus" new "$TALUS_SOURCE/data_samples/$sample/before_dem.tif" \
       "$TALUS_SOURCE/data_samples/$sample/after_dem.tif" --recipe "$sample/recipe.toml"
