@@ -17,6 +17,12 @@ std::vector<std::string> words(const Request& request, const std::filesystem::pa
   return words;
 }
 
+/// Ctrl-C reaches a stage that answers as well, and is no fault of the recipe.
+void stop_if_ended_by_signal(const Outcome& outcome) {
+  constexpr int first_signal = 128;
+  if (outcome.code > first_signal) throw Interrupted({"stopped", "interrupted", "Start it again"});
+}
+
 /// The faults of a stage that would not answer, as they stand on its stderr.
 void add_faults(const Outcome& outcome, std::vector<Fault>& faults) {
   for (std::string& line : lines_said(outcome.err)) {
@@ -65,6 +71,7 @@ std::vector<std::string> used_tables(const Request& request) {
   std::vector<Fault> faults;
   for (const char* stage : stage_names) {
     Outcome outcome = ask(request, stage, "--used");
+    stop_if_ended_by_signal(outcome);
     if (outcome.code != 0) add_faults(outcome, faults);
     tables.push_back(std::move(outcome.out));
   }
@@ -75,6 +82,7 @@ std::vector<std::string> used_tables(const Request& request) {
 Dependencies depends_of(const Request& request, const std::string& stage) {
   const Outcome outcome = ask(request, stage, "--depends");
   if (outcome.code == 0) return read_make_rules(outcome.out);
+  stop_if_ended_by_signal(outcome);
   std::vector<Fault> faults;
   add_faults(outcome, faults);
   throw RecipeError(std::move(faults));
