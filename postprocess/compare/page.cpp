@@ -168,7 +168,7 @@ std::string legend(const DepositDifference& found, const ComparedRun& first, con
       "Deposit of {} less that of {}, vertical, in metres. Outlines at {:g} m: solid {}, dashed green {}.<br>",
       html(second.name), html(first.name), threshold, html(first.name), html(second.name));
   for (const bool gain : {false, true}) {
-    text += gain ? " thicker:" : "thinner:";
+    text += gain ? "<br>thicker:" : "thinner:";
     for (std::size_t i = 0; i < limits.size(); ++i)
       text += fmt::format("<span class=\"k\" style=\"background:{}\"></span>{}",
                           hex(difference_colour(gain, i, limits.size())), class_label(i, limits));
