@@ -39,9 +39,9 @@ class Listing {
 
   int print(const std::string& scene) const {
     for (const std::string& text : notes_) log_info(text);
-    for (const auto& [stage, text] : warnings_) log_warning(stage + ": " + text);
-    for (const auto& [stage, text] : advice_) log_info("advice: " + stage + ": " + text);
-    for (const auto& [stage, text] : faults_) log_error(stage + ": " + text);
+    for (const auto& [stage, text] : warnings_) log_warning(fmt::format("{}: {}", stage, text));
+    for (const auto& [stage, text] : advice_) log_info(fmt::format("advice: {}: {}", stage, text));
+    for (const auto& [stage, text] : faults_) log_error(fmt::format("{}: {}", stage, text));
     log_info(fmt::format("{}: {}, {}", scene, counted(faults_.size(), "fault"), counted(warnings_.size(), "warning")));
     return code_;
   }

@@ -127,7 +127,7 @@ Outcome run_program(const fs::path& program, const std::vector<std::string>& arg
 }
 
 fs::path program_of(const std::string& stage) {
-  const fs::path own = fs::read_symlink("/proc/self/exe"), program = own.parent_path() / ("talus-" + stage);
+  fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / ("talus-" + stage);
   if (::access(program.c_str(), X_OK) != 0)
     throw DataError(Fault{program.string() + " is missing",
                           "talus runs the program of each stage, which lies beside it",

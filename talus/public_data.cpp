@@ -108,7 +108,7 @@ std::string description(const std::string& name, const Example& example) {
     if (!example.word(key).empty()) text += fmt::format("  {}: {}\n", key, example.word(key));
   for (const Source& source : example.sources)
     text += fmt::format("  source: {}{}\n", source.name, source.sha256.empty() ? "" : "  sha256 " + source.sha256);
-  for (const DataFile& file : example.files) text += "  made: " + how_made(file) + "\n";
+  for (const DataFile& file : example.files) text += fmt::format("  made: {}\n", how_made(file));
   return text;
 }
 
@@ -152,22 +152,23 @@ void fetch(const std::string& url, const fs::path& file) {
 /// The sources of an example in a folder, checked.
 void get_sources(const Example& example, const fs::path& from, const fs::path& into) {
   for (const Source& source : example.sources) {
+    const std::string url = fmt::format("{}/{}", example.word("url"), source.name);
     const fs::path file = into / source.name;
     if (from.empty()) {
-      log_info("fetching " + example.word("url") + "/" + source.name);
-      fetch(example.word("url") + "/" + source.name, file);
+      log_info("fetching " + url);
+      fetch(url, file);
     } else if (fs::exists(from / source.name)) {
       fs::copy_file(from / source.name, file);
     } else {
       throw DataError(Fault{(from / source.name).string() + ": no such file",
                             "neither the sources nor all files made of them are in that folder",
-                            "Fetch it from " + example.word("url") + "/" + source.name});
+                            "Fetch it from " + url});
     }
     const std::string found = sha256(file);
     if (!source.sha256.empty() && found != source.sha256)
       throw DataError(Fault{source.name + ": other bytes than the example was made of",
                             fmt::format("its SHA-256 is {}, wanted is {}", found, source.sha256),
-                            "Fetch it from " + example.word("url") + "/" + source.name});
+                            "Fetch it from " + url});
     log_info(fmt::format("{}  sha256 {}", source.name, found));
   }
 }
@@ -181,7 +182,8 @@ Raster sum_of(const DataFile& file, const Example& example, const fs::path& sour
       continue;
     }
     if (next.values.size() != sum.values.size() || next.grid.columns != sum.grid.columns)
-      throw DataError(Fault{name + ": another grid than that of " + file.sum.front(), "", "Fetch both again"});
+      throw DataError(
+          Fault{fmt::format("{}: another grid than that of {}", name, file.sum.front()), "", "Fetch both again"});
     for (std::size_t i = 0; i < sum.values.size(); ++i)
       if (std::isfinite(next.values[i])) sum.values[i] += next.values[i];
   }

@@ -1,5 +1,7 @@
 #include "talus/request.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string_view>
 
@@ -42,8 +44,7 @@ std::vector<std::string> lines_said(const std::string& text) {
     std::string line = text.substr(at, end - at);
     at = end + 1;
     for (const char* stage : stage_names)
-      if (const std::string name = std::string("talus-") + stage + ": "; line.starts_with(name))
-        line.erase(0, name.size());
+      if (const std::string name = fmt::format("talus-{}: ", stage); line.starts_with(name)) line.erase(0, name.size());
     if (!line.empty() && std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(std::move(line));
   }
   return lines;

@@ -89,7 +89,8 @@ void draw_outline(Canvas& canvas, const View& view, const RunMaps& maps, double 
 }  // namespace
 
 std::vector<double> difference_limits(const DepositDifference& found) {
-  const double most = std::max({found.larger, found.smaller, 1e-6});
+  const double most = std::max(found.larger, found.smaller);
+  if (!(most > 1e-6)) return {};  // the deposits are the same
   const double least = round_below(most / 50);
   std::vector<double> limits;
   for (const double factor : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0})

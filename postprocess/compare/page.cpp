@@ -167,6 +167,7 @@ std::string legend(const DepositDifference& found, const ComparedRun& first, con
   std::string text = fmt::format(
       "Deposit of {} less that of {}, vertical, in metres. Outlines at {:g} m: solid {}, dashed green {}.<br>",
       html(second.name), html(first.name), threshold, html(first.name), html(second.name));
+  if (limits.empty()) return text + "The deposits are the same.";
   for (const bool gain : {false, true}) {
     text += gain ? "<br>thicker:" : "thinner:";
     for (std::size_t i = 0; i < limits.size(); ++i)

@@ -234,6 +234,7 @@ test_compare_puts_two_runs_on_one_page() {
   cp -r a c
   expect_exit 0 "$bin/talus" compare a c
   grep -qF '<td class="n">0 %</td>' $page || fail "a run differs from itself"
+  grep -qF 'The deposits are the same.' $page || fail "a deposit differs from itself"
   grep -qF 'The two were computed with the same values.' $page || fail "its recipe differs from itself"
   expect_exit 3 "$bin/talus" compare a none
   expect_error 'talus: none: there is no run.h5 in it. Name the folder of results of a run: what --out was, or out' \
