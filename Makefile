@@ -14,7 +14,7 @@ CASES  ?=
 RECIPES ?= 500
 RECIPE_JOBS ?= 2
 
-programs := talus-preprocess talus-solve talus-postprocess talus-make-terrain
+programs := talus talus-preprocess talus-solve talus-postprocess talus-make-terrain
 # With a compiler cache every source is a unit of its own; without one those of a folder are compiled together.
 ccache := $(shell command -v ccache)
 quickly := $(if $(ccache),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_CUDA_COMPILER_LAUNCHER=ccache,-DTALUS_BATCHES=ON)

@@ -19,6 +19,7 @@
 #include "solver/options/solve.hpp"
 #include "solver/parallel/bandwidth.hpp"
 #include "solver/parallel/on.hpp"
+#include "solver/run/advice.hpp"
 #include "solver/run/plan.hpp"
 #include "solver/run/plausible.hpp"
 #include "solver/run/profile_report.hpp"
@@ -118,11 +119,21 @@ void log_plan(const Domain& domain, const SolveOptions& o, const AnyDevice& devi
                        whole(o.end_time / step + records_of(o)), device.is_gpu() ? "GPU" : "CPU"));
 }
 
-/// What talus-preprocess warned of stands in the domain, so that it is said where the run is planned, too.
-void log_warnings(const Domain& domain, const SolveOptions& o) {
+/// What talus-preprocess warned of stands in the domain, so that it is said where the run is planned, too. What is
+/// said here goes into the results: the facts "warning.solve.N" and "advice.NAME".
+void log_warnings(Domain& domain, const SolveOptions& o) {
   for (const auto& [name, words] : domain.provenance)
     if (name.starts_with("warning.")) log_warning(words);
-  for (const std::string& text : warnings(domain, o)) log_warning(text);
+  Facts said;
+  for (const std::string& text : warnings(domain, o)) {
+    log_warning(text);
+    said.emplace_back(fmt::format("warning.solve.{}", said.size()), text);
+  }
+  for (const auto& [name, words] : advice(domain, o)) {
+    log_info("advice: " + words);
+    said.emplace_back("advice." + name, words);
+  }
+  domain.provenance.insert(domain.provenance.end(), said.begin(), said.end());
 }
 
 /// This function refuses what is implausible in a scene, and adds what is insisted on to the facts of its results.

@@ -18,8 +18,11 @@ struct Recipe::Parsed {
 /// The tables a recipe may hold.
 inline constexpr std::string_view known_tables[] = {"scene", "preprocess", "solve", "postprocess"};
 
-/// "recipe.toml:12:3"
+/// "recipe.toml:12:3", or "--set key=value" where the value was given so
 std::string place(const std::string& file, const toml::source_region& source);
+
+/// Puts the values of set_overrides() into a parsed recipe. What cannot be put in adds to `faults`.
+void apply_overrides(toml::table& root, const std::vector<std::string>& overrides, std::vector<Fault>& faults);
 
 /// Reads `stage` from `root`; the faults, in the order of the file, are added to `faults` when it ends.
 std::unique_ptr<Visitor> make_table_reader(const toml::table& root, std::string shown, std::filesystem::path folder,

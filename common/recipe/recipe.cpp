@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "common/recipe/outside_quotes.hpp"
+#include "common/recipe/overrides.hpp"
 #include "common/recipe/parsed.hpp"
 #include "common/recipe/shown_paths.hpp"
 #include "common/recipe/suggest.hpp"
@@ -75,11 +76,15 @@ bool fit_for_a_file_name(const std::string& name) {
 }  // namespace
 
 std::string place(const std::string& file, const toml::source_region& source) {
+  if (source.path && source.path->starts_with(set_mark)) return *source.path;
   return fmt::format("{}:{}:{}", file, source.begin.line, source.begin.column);
 }
 
 Recipe::Recipe(const fs::path& file) : parsed_(std::make_unique<Parsed>()) {
   parsed_->root = parse(file);
+  std::vector<Fault> faults;
+  apply_overrides(parsed_->root, overrides(), faults);
+  if (!faults.empty()) throw RecipeError(std::move(faults));
   parsed_->file = fs::absolute(file).lexically_normal();
   parsed_->shown = file.string();
   show_path_as(parsed_->file, parsed_->shown, file.filename().string());

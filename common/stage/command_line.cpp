@@ -69,6 +69,10 @@ void declare(CLI::App& app, const Stage& stage, CommandLine& line, Words& words)
   app.add_option("recipe", words.recipe, "The scene's recipe (TOML)")->type_name("recipe.toml");
   app.add_option("--out", words.out, "Folder for the results, made if missing (default: out, beside the recipe)")
       ->type_name("DIR");
+  app.add_option("--set", line.set,
+                 "A value that takes the place of the recipe's (solve.end_time_s=60); may be given many times")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
   app.add_flag("--check", line.check_only, "Read and test everything cheap; compute and write nothing");
   app.add_flag("--template", line.print_template,
                "Print this stage's recipe table with every key, its default and its meaning");
@@ -113,7 +117,8 @@ std::string usage(const Stage& stage) {
     own += fmt::format(" [{}{}{}]", flag.name, value.empty() ? "" : " ", value);
   }
   return fmt::format(
-      "Usage: {} recipe.toml [--out DIR] [--check] [--template] [--threads N]{} [-v|-q] (all of it: {} --help)",
+      "Usage: {} recipe.toml [--out DIR] [--set KEY=VALUE] [--check] [--template] [--threads N]{} [-v|-q] (all of it: "
+      "{} --help)",
       stage.name, own, stage.name);
 }
 

@@ -17,9 +17,10 @@ struct CommandLine {
   bool print_template = false;
   bool print_used = false;
   bool print_depends = false;
-  bool network = false;         ///< inputs may name places on a network
-  bool writes_nothing = false;  ///< --check, or a flag of the stage's own that writes nothing
-  int threads = 0;              ///< to take at most; 0: as many as this process may run at once
+  bool network = false;               ///< inputs may name places on a network
+  bool writes_nothing = false;        ///< --check, or a flag of the stage's own that writes nothing
+  std::vector<std::string> set = {};  ///< values that take the place of the recipe's
+  int threads = 0;                    ///< to take at most; 0: as many as this process may run at once
   Verbosity verbosity = Verbosity::normal;
 };
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <system_error>
 
+#include "common/recipe/overrides.hpp"
 #include "common/recipe/shown_paths.hpp"
 #include "common/stage/child_reading.hpp"
 #include "common/stage/command_line.hpp"
@@ -114,6 +115,7 @@ int guarded(int argc, char** argv, const Stage& stage) {
     set_verbosity(line.verbosity);
     set_thread_limit(line.threads);
     allow_network(line.network);
+    recipe::set_overrides(line.set);
     run(line, joined(argc, argv), stage);
   }
   errno = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/recipe/overrides.hpp"
 #include "common/recipe/values.hpp"
 #include "common/stage/stage.hpp"
 
@@ -33,6 +34,7 @@ std::string used_recipe(const StageContext& context, const Stage& stage, const s
   text += comment("program", stage.name + " " + version());
   text += comment("command", context.command_line);
   text += comment("recipe", context.recipe.file().string() + "  " + checksum(context.recipe.file()));
+  for (const std::string& value : recipe::overrides()) text += comment("set", value);
   for (const auto& input : inputs)
     if (!input.empty()) text += comment("input", input.string() + "  " + checksum(input));
   const auto tells_hardware = [](const auto& fact) { return fact.first == "hardware"; };

@@ -7,7 +7,8 @@ test_help_shows_options_examples_and_exit_codes() {
   local program word
   for program in "${programs[@]}"; do
     expect_exit 0 "$bin/$program" --help
-    for word in --out --check --template --on --version 'Examples:' 'Exit codes:' '130 ended by Ctrl-C' "$program "; do
+    for word in --out --set --check --template --on --version 'Examples:' 'Exit codes:' '130 ended by Ctrl-C' \
+      "$program "; do
       grep -qF -- "$word" stdout || fail "$program --help does not show: $word"
     done
   done
@@ -119,6 +120,42 @@ test_used_recipes_are_recipes() {
     grep -q 'sha256' out/$stage.used.toml || fail "$stage.used.toml names no checksum"
     expect_exit 0 "$bin/talus-$stage" out/$stage.used.toml --out out
   done
+}
+
+# --set: as if the recipe said it, in every stage, with --check and --plan too.
+test_set_values_take_the_place_of_the_recipes() {
+  scene
+  expect_exit 0 preprocess --set preprocess.grid.layer_height_m=1 --set scene.title=Other
+  grep -qxF '# set: preprocess.grid.layer_height_m=1' out/preprocess.used.toml || fail "the used recipe does not say it"
+  grep -qF 'layer_height_m = 1.0' out/preprocess.used.toml || fail "the used recipe has another layer height"
+  grep -qxF 'title = "Other"' out/preprocess.used.toml || fail "the used recipe has another title"
+
+  # The domain is one of other values than the recipe's file has.
+  expect_exit 3 solve --check
+  expect_words 'another recipe made it'
+  local set=(--set preprocess.grid.layer_height_m=1)
+  expect_exit 0 solve "${set[@]}" --plan --set solve.end_time_s=2
+  expect_words 'steps to 2 s'
+  expect_exit 2 solve "${set[@]}" --check --set solve.end_time_s=-2
+  expect_error 'talus-solve: --set solve.end_time_s=-2: [solve] end_time_s = -2 (out of range). It must be > 0'
+  expect_exit 0 solve "${set[@]}" --set solve.end_time_s=2
+  grep -qF 'end_time_s = 2.0' out/solve.used.toml || fail "the used recipe has another end"
+
+  # A run of other values is refused as one of another recipe is; with the values it is taken.
+  expect_exit 3 postprocess "${set[@]}"
+  expect_words 'another recipe made it'
+  expect_exit 0 postprocess "${set[@]}" --set solve.end_time_s=2 --set postprocess.deposit_threshold_m=0.3
+  grep -qF 'deposit_threshold_m = 0.3' out/postprocess.used.toml || fail "the used recipe has another threshold"
+  grep -qF 'postprocess.deposit_threshold_m=0.3' out/report.html || fail "the report does not name what was set"
+}
+
+test_set_values_count_in_used_and_depends() {
+  scene
+  cp before.asc other.asc
+  expect_exit 0 preprocess --used --set preprocess.before_dem=other.asc
+  grep -qF 'other.asc' stdout || fail "--used has the recipe's own value"
+  expect_exit 0 preprocess --depends --set preprocess.before_dem=other.asc
+  grep -qF 'other.asc' stdout || fail "--depends has the recipe's own value"
 }
 
 test_gpu_that_is_not_there_is_refused() {

@@ -31,6 +31,13 @@ test_stages_include_common_and_never_one_another() {
   done | refuse "a stage includes another (they meet only in files)"
 }
 
+test_talus_includes_common_and_no_stage() {
+  cd "$TALUS_SOURCE"
+  some_includes talus
+  includes talus | { grep -E ': (preprocess|solver|postprocess|data_samples|tests)/' || true; } |
+    refuse "talus/ includes a stage (it runs their programs)"
+}
+
 test_common_knows_no_stage() {
   cd "$TALUS_SOURCE"
   some_includes common
@@ -41,7 +48,7 @@ test_common_knows_no_stage() {
 # No way round through ../: includes name their file from the project's root.
 test_includes_start_at_the_root() {
   cd "$TALUS_SOURCE"
-  includes common preprocess solver postprocess | { grep -F '../' || true; } |
+  includes common preprocess solver postprocess talus | { grep -F '../' || true; } |
     refuse "an include climbs out of its folder"
 }
 
@@ -80,7 +87,7 @@ test_openvdb_stands_in_sources_only() {
   cd "$TALUS_SOURCE"
   includes common preprocess solver postprocess | { grep -E '\.(cu|cuh): openvdb/' || true; } |
     refuse "OpenVDB is included in a kernel file"
-  private_headers 'openvdb/' common preprocess solver postprocess |
+  private_headers 'openvdb/' common preprocess solver postprocess talus |
     refuse "a header that includes OpenVDB is included outside its folder's sources"
 }
 

@@ -251,8 +251,8 @@ TEST_F(RunStage, shows_paths_as_they_were_given) {
 TEST_F(RunStage, no_recipe_is_a_usage_error) {
   EXPECT_EQ(run({}), 2);
   EXPECT_EQ(err,
-            "talus-sample: no recipe was given. Usage: talus-sample recipe.toml [--out DIR] [--check] [--template] "
-            "[--threads N] [--on "
+            "talus-sample: no recipe was given. Usage: talus-sample recipe.toml [--out DIR] [--set KEY=VALUE] "
+            "[--check] [--template] [--threads N] [--on "
             "auto|cpu|gpu] [--restart [FILE]] [--profile] [--plan] [-v|-q] (all of it: talus-sample --help)\n");
   EXPECT_EQ(out, "");
 }

@@ -1,0 +1,35 @@
+#include "talus/compare.hpp"
+
+#include "common/error.hpp"
+
+namespace talus::command {
+namespace fs = std::filesystem;
+namespace {
+
+void require_run(const fs::path& folder) {
+  if (fs::exists(folder / "run.h5")) return;
+  throw DataError(Fault{folder.string() + ": there is no run.h5 in it", "",
+                        "Name the folder of results of a run: what --out was, or out beside its recipe"});
+}
+
+/// What was used in a folder is a recipe of it.
+fs::path recipe_in(const fs::path& folder) {
+  for (const char* name : {"postprocess.used.toml", "solve.used.toml"})
+    if (fs::exists(folder / name)) return folder / name;
+  throw DataError(Fault{folder.string() + ": neither postprocess.used.toml nor solve.used.toml is there",
+                        "they say what the run was computed with", "Run talus-postprocess on it again"});
+}
+
+}  // namespace
+
+int compare_runs(const fs::path& first, const fs::path& second, const Request& request) {
+  require_run(first);
+  require_run(second);
+  Request asked = request;
+  asked.recipe = recipe_in(first);
+  asked.out = fs::absolute(first).lexically_normal();
+  asked.shown = first;
+  return run_stage_program(asked, "postprocess", {"--against", second.string()}, Keep::nothing).code;
+}
+
+}  // namespace talus::command

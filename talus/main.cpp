@@ -1,0 +1,167 @@
+// talus: one command over the stages.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+#include <functional>
+
+#include "common/error.hpp"
+#include "common/recipe/shown_paths.hpp"
+#include "common/stage/child_reading.hpp"
+#include "common/stage/console.hpp"
+#include "common/stage/stage.hpp"
+#include "talus/check.hpp"
+#include "talus/compare.hpp"
+#include "talus/new.hpp"
+#include "talus/public_data.hpp"
+#include "talus/run.hpp"
+
+namespace {
+
+using namespace talus;
+using namespace talus::command;
+
+constexpr const char* footer =
+    "Examples:\n"
+    "  talus run my-slide/recipe.toml                     every stage whose results are not up to date\n"
+    "  talus run recipe.toml --set solve.end_time_s=60    with another value than the recipe's\n"
+    "  talus new before.tif after.tif                     a first recipe: spacing, layers and end time from the "
+    "release\n"
+    "  talus check recipe.toml                            every fault of all stages, nothing is written\n"
+    "  talus compare out-a out-b                          two runs beside one another: out-a/comparison.html\n"
+    "  talus data cascade2021                             a public example, fetched and checked\n"
+    "\n"
+    "Exit codes: 0 done, 1 a bug, 2 the recipe or the command line is wrong, 3 a file is wrong or cannot be written,\n"
+    "4 the computation failed, 130 ended by Ctrl-C.\n"
+    "Result paths go to stdout, everything for people to stderr.";
+
+/// Words of the command line, and what is to be done with them.
+struct Asked {
+  Request request;
+  std::string recipe, out;
+  std::function<int()> command;
+};
+
+/// The options of what runs the stages.
+void declare_scene(CLI::App& app, Asked& asked) {
+  app.add_option("recipe", asked.recipe, "The scene's recipe (TOML)")->type_name("recipe.toml")->required();
+  app.add_option("--out", asked.out, "Folder of the results (default: out, beside the recipe)")->type_name("DIR");
+  app.add_option("--set", asked.request.set, "A value that takes the place of the recipe's; may be given many times")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  app.add_option("--on", asked.request.on, "Where talus-solve runs; auto takes the GPU where there is one")
+      ->type_name("auto|cpu|gpu")
+      ->check(CLI::IsMember({"auto", "cpu", "gpu"}).description(""));
+  app.add_option("--threads", asked.request.threads, "Threads to take at most")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4096).description(""));
+  app.add_flag("--network", asked.request.network, "Let inputs name places on a network");
+}
+
+/// The request of a command over a scene, with its paths settled.
+Request scene_request(const Asked& asked) {
+  Request request = asked.request;
+  request.recipe = asked.recipe;
+  request.shown = asked.out;
+  const auto folder = std::filesystem::absolute(request.recipe).lexically_normal().parent_path();
+  request.out = asked.out.empty() ? folder / "out" : std::filesystem::absolute(asked.out).lexically_normal();
+  if (request.out.filename().empty()) request.out = request.out.parent_path();
+  ::setenv("TALUS_RESULTS", request.out.c_str(), 1);  // recipes may name what a search before them has found there
+  if (!asked.out.empty()) show_path_as(request.out, asked.out, request.out.filename().string());
+  return request;
+}
+
+void declare(CLI::App& app, Asked& asked) {
+  CLI::App* run = app.add_subcommand("run", "Run the stages of a scene whose results are not up to date");
+  declare_scene(*run, asked);
+  run->callback([&] { asked.command = [&] { return run_scene(scene_request(asked)); }; });
+  CLI::App* check = app.add_subcommand("check", "Every fault of all stages in one listing; writes nothing");
+  declare_scene(*check, asked);
+  check->callback([&] { asked.command = [&] { return check_scene(scene_request(asked)); }; });
+}
+
+void declare_new(CLI::App& app, NewScene& scene, Asked& asked) {
+  CLI::App* command =
+      app.add_subcommand("new", "Write a recipe for a slide from the elevation models before and after");
+  command->add_option("before", scene.before, "Elevation model from before the slide")->type_name("BEFORE")->required();
+  command->add_option("after", scene.after, "Elevation model from after it")->type_name("AFTER")->required();
+  command->add_option("--recipe", scene.recipe, "File to be written (default: recipe.toml)")->type_name("FILE");
+  command->add_flag("--overwrite", scene.overwrite, "Write over a recipe that is there already");
+  command->callback([&] { asked.command = [&] { return new_scene(scene); }; });
+}
+
+/// The folders of two runs.
+struct Pair {
+  std::filesystem::path first, second;
+};
+
+void declare_compare(CLI::App& app, Pair& pair, Asked& asked) {
+  CLI::App* command = app.add_subcommand("compare", "Two runs on one page: FIRST/comparison.html");
+  command->add_option("first", pair.first, "Folder of results of a run")->type_name("FIRST")->required();
+  command->add_option("second", pair.second, "Folder of another, which is compared with it")
+      ->type_name("SECOND")
+      ->required();
+  command->callback([&] { asked.command = [&] { return compare_runs(pair.first, pair.second, asked.request); }; });
+}
+
+void declare_data(CLI::App& app, DataRequest& data, Asked& asked) {
+  CLI::App* command = app.add_subcommand("data", "List the public examples, or make one of them");
+  command->add_option("name", data.name, "Example to be made (default: list them)")->type_name("NAME");
+  command->add_option("--out", data.out, "Folder in which that of the example is made (default: data)")
+      ->type_name("DIR");
+  command
+      ->add_option("--from", data.from,
+                   "Folder that holds its sources, or its files (default: the sources are fetched)")
+      ->type_name("DIR");
+  command->add_option("--table", data.table, "A table of examples of one's own (TOML)")->type_name("FILE");
+  command->callback([&] { asked.command = [&] { return make_data(data); }; });
+}
+
+int guarded(int argc, char** argv) {
+  Asked asked;
+  CLI::App app("One command over the stages of Talus", "talus");
+  app.require_subcommand(0, 1);
+  app.fallthrough();
+  app.footer(footer);
+  auto* verbose = app.add_flag("-v,--verbose", asked.request.verbose, "Say more");
+  app.add_flag("-q,--quiet", asked.request.quiet, "Say nothing but errors")->excludes(verbose);
+  bool asks_version = false;
+  app.add_flag("--version", asks_version, "Print the version and its commit");
+  declare(app, asked);
+  NewScene scene{.before = {}, .after = {}, .recipe = "recipe.toml"};
+  declare_new(app, scene, asked);
+  Pair pair;
+  declare_compare(app, pair, asked);
+  DataRequest data{.name = {}, .out = "data", .from = {}, .table = {}};
+  declare_data(app, data, asked);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    const auto chosen = app.get_subcommands();
+    fmt::print("{}", chosen.empty() ? app.help() : chosen.front()->help());
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    throw RecipeError(Fault{error.what(), "", "See talus --help, or talus COMMAND --help"});
+  }
+  if (asks_version) return fmt::print("talus {}\n", version()), 0;
+  if (!asked.command) throw RecipeError(Fault{"no command was given", "", "See talus --help"});
+  if (asked.request.quiet) set_verbosity(Verbosity::quiet);
+  if (asked.request.verbose) set_verbosity(Verbosity::verbose);
+  return asked.command();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  serve_child_reading(argc, argv);
+  try {
+    return guarded(argc, argv);
+  } catch (const Error& error) {
+    for (const Fault& fault : error.faults()) log_error("talus: " + to_string(fault));
+    return static_cast<int>(error.code());
+  } catch (const std::exception& error) {
+    log_error(fmt::format("talus: {} (this is a bug). Please report it, with the recipe and the version: {}",
+                          error.what(), version()));
+  }
+  return static_cast<int>(ExitCode::bug);
+}

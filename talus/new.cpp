@@ -1,0 +1,204 @@
+#include "talus/new.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <iterator>
+
+#include <nlohmann/json.hpp>
+
+#include "common/domain/domain.hpp"
+#include "common/gis/read_raster.hpp"
+#include "common/recipe/values.hpp"
+#include "common/stage/identity.hpp"
+#include "common/stage/stage.hpp"
+#include "talus/request.hpp"
+#include "talus/slide.hpp"
+#include "talus/temporary_folder.hpp"
+
+namespace talus::command {
+namespace fs = std::filesystem;
+namespace {
+
+/// Smaller than this many times its standard error a volume may be nothing but error.
+constexpr double sure_errors = 3;
+/// A release of fewer cells tells nothing of its shape.
+constexpr double fewest_released_cells = 9;
+
+fs::path whole(const fs::path& file) { return fs::absolute(file).lexically_normal(); }
+
+/// What the first stage needs to be told to read two models; the fewest such keys are taken.
+struct Reading {
+  bool utm = false;    ///< bring degrees and feet to metres
+  bool align = false;  ///< the later model lies beside the earlier one
+
+  std::string keys() const {
+    std::string text;
+    if (utm) text += "working_crs = \"utm\"            # the models are not in metres\n";
+    text += "\n[preprocess.voids]\nfill = true                    # cells without data inside the models\n";
+    if (align)
+      text +=
+          "\n[preprocess.coregistration]\nmode = \"apply\"                 # the later model lies beside the earlier\n";
+    return text;
+  }
+};
+
+std::string first_recipe(const NewScene& scene, const Reading& reading) {
+  return fmt::format("[preprocess]\nbefore_dem = {}\nafter_dem = {}\n{}",
+                     recipe::toml_text(whole(scene.before).string()), recipe::toml_text(whole(scene.after).string()),
+                     reading.keys());
+}
+
+[[noreturn]] void refuse(const NewScene& scene, const std::string& why, const std::string& mend) {
+  throw DataError(Fault{fmt::format("{} and {}: no slide was found between them, so that no recipe was written",
+                                    scene.before.string(), scene.after.string()),
+                        why, mend});
+}
+
+/// The first stage on the two models alone, into a folder that goes again.
+Outcome prepare(const NewScene& scene, const Reading& reading, const fs::path& folder) {
+  Request request;
+  request.recipe = folder / "recipe.toml";
+  request.out = request.shown = folder / "out";
+  write_text(request.recipe, first_recipe(scene, reading));
+  return run_stage_program(request, "preprocess", {}, Keep::everything);
+}
+
+bool asks_for(const Outcome& outcome, const char* key) { return outcome.err.find(key) != std::string::npos; }
+
+/// Prepares the two models as far as they can be; what that takes is returned. Throws with the stage's own words where
+/// it refuses them.
+Reading compare_models(const NewScene& scene, const fs::path& folder) {
+  Reading reading;
+  Outcome outcome = prepare(scene, reading, folder);
+  if (outcome.code != 0 && asks_for(outcome, "working_crs = \"utm\"")) {
+    reading.utm = true;
+    outcome = prepare(scene, reading, folder);
+  }
+  if (asks_for(outcome, "mode = \"apply\"")) {  // also a warning, of a run that went through
+    const Reading aligned{reading.utm, true};
+    const Outcome second = prepare(scene, aligned, folder);
+    if (second.code == 0) return aligned;
+    outcome = prepare(scene, reading, folder);
+  }
+  if (outcome.code == 0) return reading;
+  std::vector<std::string> said = lines_said(outcome.err);
+  refuse(scene, said.empty() ? "talus-preprocess ended without a word" : said.back(),
+         "Look at both in a GIS: the first must be the ground before the slide, the second after it");
+}
+
+struct Found {
+  Slide slide;
+  double volume_error = nan;  ///< of the release [m3]
+};
+
+Found find_slide(const NewScene& scene, const fs::path& out) {
+  const Domain domain = read_domain(out / "domain.vdb");
+  const fs::path rose = out / "survey" / "deposit_surveyed.tif";
+  std::optional<Raster> deposit;
+  if (fs::exists(rose)) deposit = read_raster(rose);
+  if (deposit && deposit->values.size() != domain.grid.count()) deposit.reset();
+  Found found{measure_slide(domain.before, domain.release_thickness, deposit)};
+  std::ifstream stream(out / "survey" / "survey.json");
+  const auto survey = nlohmann::json::parse(stream, nullptr, false);
+  if (!survey.is_discarded() && survey.contains("source") && survey["source"]["error_m3"].is_number())
+    found.volume_error = survey["source"]["error_m3"].get<double>();
+  const double cells = found.slide.area / (found.slide.cell * found.slide.cell);
+  if (cells < fewest_released_cells)
+    refuse(
+        scene,
+        fmt::format("what went down is {:.0f} cells of {:g} m, {:.0f} m3", cells, found.slide.cell, found.slide.volume),
+        "Give elevation models with smaller cells, or write the recipe by hand (talus-preprocess --template)");
+  if (found.slide.volume < sure_errors * found.volume_error)
+    refuse(scene,
+           fmt::format("what went down most, {:.0f} m3, is no more than the error of the difference makes of nothing "
+                       "({:.0f} m3, one standard error)",
+                       found.slide.volume, found.volume_error),
+           "If a slide is there all the same, write the recipe by hand with source.polygon around it");
+  return found;
+}
+
+/// A name for files, from that of the recipe's folder.
+std::string scene_name(const fs::path& recipe) {
+  std::string name = whole(recipe).parent_path().filename().string();
+  for (char& c : name)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-' && c != '_') c = '-';
+  return name.empty() ? "slide" : name;
+}
+
+/// As the recipe names a file: from its own folder where both lie below a folder of their own, whole otherwise.
+std::string named(const fs::path& file, const fs::path& recipe) {
+  const fs::path there = whole(file), folder = whole(recipe).parent_path();
+  const bool near = there.has_relative_path() && folder.has_relative_path() &&
+                    *there.relative_path().begin() == *folder.relative_path().begin();
+  return recipe::toml_text(near ? there.lexically_relative(folder).generic_string() : there.string());
+}
+
+std::string way_words(const Slide& s) {
+  if (!s.has_deposit())
+    return "The models show no deposit: friction is the usual one for the volume, the end a guess. Look at both.";
+  return fmt::format("It fell {:.0f} m over {:.0f} m, H/L {:.2f}; its centre of mass went at {:.2f}.", s.drop, s.length,
+                     s.drop / s.length, s.travel_tangent);
+}
+
+/// "key = value          # remark"
+std::string line(const std::string& key, const std::string& value, const std::string& remark) {
+  return fmt::format("{:<30} # {}\n", key + " = " + value, remark);
+}
+
+std::string head(const NewScene& scene, const Slide& s) {
+  return fmt::format(
+      "# Written by talus new (Talus {}) from two elevation models. Every number is a proposal:\n"
+      "# change what you know better. All keys with their meaning: talus-preprocess --template, and so on.\n"
+      "#\n"
+      "# Found: {:.0f} m3 went down on {:.0f} m2, {:.0f} m wide, {:.3g} m thick (median by volume).\n"
+      "# {}\n"
+      "[scene]\nname = \"{}\"\n\n",
+      version(), s.volume, s.area, s.width, s.median_thickness, way_words(s), scene_name(scene.recipe));
+}
+
+std::string recipe_text(const NewScene& scene, const Slide& s, const Reading& reading) {
+  const Proposal p = propose(s);
+  const auto number = [](double value) { return recipe::toml_number(value); };
+  std::string text = head(scene, s);
+  text += "[preprocess]\nbefore_dem = " + named(scene.before, scene.recipe) +
+          "\nafter_dem = " + named(scene.after, scene.recipe) + "\n" + reading.keys() + "\n[preprocess.grid]\n";
+  text += line("spacing_m", number(p.spacing), fmt::format("{:.0f} cells across the release", p.cells_across));
+  text += line("layer_height_m", number(p.layer_height),
+               fmt::format("{:.1f} layers over its median thickness; four or more", p.layers));
+  text += line("points_per_cell", "[2, 2, 2]", fmt::format("about {:.0f} material points", p.points));
+  text += "\n[solve]\n";
+  text += line("end_time_s", number(p.end_time), "generous: the run stops by itself when all is at rest");
+  text += line("stop_kinetic_fraction", "0.001", "at rest: kinetic energy below this part of its peak");
+  text += "\n[solve.material]\nmodel = \"drucker-prager\"\ndensity_kg_m3 = 2000.0\n";
+  text += line("friction_angle_deg", number(p.internal_angle), "inside the mass: 1.4 times the bed's, as tangents");
+  text += line("stiffness", "\"auto\"", "the lowest modulus that leaves the flow unchanged");
+  text += "\n[solve.base]\nlaw = \"coulomb\"\n";
+  text += line("friction_angle_deg", number(p.bed_angle),
+               s.has_deposit() ? "the angle at which its centre of mass went: a first guess"
+                               : "usual for this volume (Scheidegger 1973, Corominas 1996)");
+  text += "\n[postprocess.survey]\n";
+  text += line("from_preprocess", "true", "scored against what rose between the two models");
+  return text;
+}
+
+}  // namespace
+
+int new_scene(const NewScene& scene) {
+  if (fs::exists(scene.recipe) && !scene.overwrite)
+    throw DataError(Fault{scene.recipe.string() + ": it is there already", "nothing is written over",
+                          "Name another file with --recipe FILE, or give --overwrite"});
+  const TemporaryFolder folder("talus-new");
+  const Reading reading = compare_models(scene, folder.path());
+  const Found found = find_slide(scene, folder.path() / "out");
+  if (const fs::path parent = scene.recipe.parent_path(); !parent.empty()) make_folder(parent);
+  write_text(scene.recipe, recipe_text(scene, found.slide, reading));
+  log_info(fmt::format("{:.0f} m3 failed. {}", found.slide.volume, way_words(found.slide)));
+  log_info(fmt::format("Read it, then: talus run {}", scene.recipe.string()));
+  fmt::print("{}\n", scene.recipe.string());
+  return 0;
+}
+
+}  // namespace talus::command

@@ -1,0 +1,250 @@
+#include "talus/public_data.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <optional>
+
+#include "common/gis/crs.hpp"
+#include "common/gis/geotiff.hpp"
+#include "common/gis/read_raster.hpp"
+#include "common/map/sum.hpp"
+#include "common/recipe/suggest.hpp"
+#include "common/stage/stage.hpp"
+#include "talus/child.hpp"
+#include "talus/temporary_folder.hpp"
+
+namespace talus::command {
+namespace fs = std::filesystem;
+namespace {
+
+/// Of the range of a file's values: what is stored in single precision differs by less, another file by more.
+constexpr double alike = 1e-6;
+
+/// A file of an example, and what it must hold.
+struct DataFile {
+  std::string name;
+  std::vector<std::string> sum;  ///< names of its sources
+  double cells = 0, smallest = 0, largest = 0, mean = 0;
+};
+
+struct Source {
+  std::string name, sha256;
+};
+
+struct Example {
+  std::map<std::string, std::string> words;  ///< title, folder, licence, repository, commit, url, crs, note, pipeline
+  std::vector<Source> sources;
+  std::vector<DataFile> files;
+  std::string word(const char* name) const {
+    const auto found = words.find(name);
+    return found == words.end() ? "" : found->second;
+  }
+};
+using Examples = std::map<std::string, Example>;
+
+Example example_of(const toml::table& table) {
+  Example example;
+  for (const auto& [key, value] : table)
+    if (const auto text = value.value<std::string>()) example.words[std::string(key.str())] = *text;
+  if (const toml::array* sources = table["sources"].as_array())
+    for (const toml::node& item : *sources)
+      if (const toml::table* source = item.as_table())
+        example.sources.push_back(
+            {(*source)["name"].value_or(std::string()), (*source)["sha256"].value_or(std::string())});
+  if (const toml::array* files = table["file"].as_array()) {
+    for (const toml::node& item : *files) {
+      const toml::table* file = item.as_table();
+      if (file == nullptr) continue;
+      DataFile made{(*file)["name"].value_or(std::string()), {}};
+      made.cells = (*file)["cells"].value_or(0.0);
+      made.smallest = (*file)["smallest"].value_or(0.0);
+      made.largest = (*file)["largest"].value_or(0.0);
+      made.mean = (*file)["mean"].value_or(0.0);
+      if (const toml::array* sum = (*file)["sum"].as_array())
+        for (const toml::node& name : *sum) made.sum.push_back(name.value_or(std::string()));
+      example.files.push_back(std::move(made));
+    }
+  }
+  return example;
+}
+
+/// Where files of a repository at a commit lie, as bytes.
+std::string address_of(const Example& example) {
+  const std::string github = "https://github.com/", repository = example.word("repository");
+  if (!example.word("url").empty() || !repository.starts_with(github)) return example.word("url");
+  return fmt::format("https://raw.githubusercontent.com/{}/{}/{}", repository.substr(github.size()),
+                     example.word("commit"), example.word("path"));
+}
+
+Examples read_examples(const fs::path& file) {
+  Examples examples;
+  try {
+    const toml::table root = file.empty() ? toml::parse(public_data_table()) : toml::parse_file(file.string());
+    for (const auto& [name, node] : root)
+      if (const toml::table* table = node.as_table()) examples[std::string(name.str())] = example_of(*table);
+    for (auto& [name, example] : examples) example.words["url"] = address_of(example);
+  } catch (const toml::parse_error& error) {
+    throw DataError(Fault{file.string() + ": this is no table of examples", std::string(error.description()), ""});
+  }
+  return examples;
+}
+
+std::string how_made(const DataFile& file) {
+  std::string text = file.name + " = ";
+  for (std::size_t i = 0; i < file.sum.size(); ++i) text += (i == 0 ? "" : " + ") + file.sum[i];
+  return text;
+}
+
+/// What is said of an example, in the list and in SOURCE.md.
+std::string description(const std::string& name, const Example& example) {
+  std::string text = fmt::format("{}: {}\n", name, example.word("title"));
+  for (const char* key : {"licence", "repository", "commit", "url", "crs", "note"})
+    if (!example.word(key).empty()) text += fmt::format("  {}: {}\n", key, example.word(key));
+  for (const Source& source : example.sources)
+    text += fmt::format("  source: {}{}\n", source.name, source.sha256.empty() ? "" : "  sha256 " + source.sha256);
+  for (const DataFile& file : example.files) text += fmt::format("  made: {}\n", how_made(file));
+  return text;
+}
+
+/// Whether a raster holds what the file must hold; empty: it does.
+std::string difference_from(const Raster& raster, const DataFile& wanted) {
+  double count = 0, smallest = 1e300, largest = -1e300;
+  Sum sum;
+  for (const double value : raster.values) {
+    if (!std::isfinite(value)) continue;
+    ++count;
+    smallest = std::min(smallest, value);
+    largest = std::max(largest, value);
+    sum.add(value);
+  }
+  const double mean = count > 0 ? sum.value() / count : 0;
+  const double near = alike * std::max({std::abs(wanted.smallest), std::abs(wanted.largest), 1e-3});
+  const auto same = [](double a, double b, double within) { return std::abs(a - b) <= within; };
+  // The table has six digits of the extremes, and eight of the mean, which tells the rest.
+  if (count == wanted.cells && same(smallest, wanted.smallest, 5 * near) && same(largest, wanted.largest, 5 * near) &&
+      same(mean, wanted.mean, near))
+    return "";
+  return fmt::format(
+      "it has {} cells, {:.6g} to {:.6g}, mean {:.8g}; wanted are {} cells, {:.6g} to {:.6g}, mean {:.8g}", count,
+      smallest, largest, mean, wanted.cells, wanted.smallest, wanted.largest, wanted.mean);
+}
+
+void fetch(const std::string& url, const fs::path& file) {
+  const char* const curl = "/usr/bin/curl";
+  if (!fs::exists(curl))
+    throw DataError(Fault{"the program curl is missing", "it fetches the sources",
+                          fmt::format("apt-get install curl; or fetch {} by other means, and give its folder with "
+                                      "--from DIR",
+                                      url)});
+  const Outcome outcome = run_program(
+      curl, {"--fail", "--silent", "--show-error", "--location", "--output", file.string(), url}, Keep::everything);
+  if (outcome.code != 0)
+    throw DataError(Fault{url + ": cannot be fetched", outcome.err.substr(0, outcome.err.find('\n')),
+                          "Fetch it by other means, and give its folder with --from DIR"});
+}
+
+/// The sources of an example in a folder, checked.
+void get_sources(const Example& example, const fs::path& from, const fs::path& into) {
+  for (const Source& source : example.sources) {
+    const std::string url = fmt::format("{}/{}", example.word("url"), source.name);
+    const fs::path file = into / source.name;
+    if (from.empty()) {
+      log_info("fetching " + url);
+      fetch(url, file);
+    } else if (fs::exists(from / source.name)) {
+      fs::copy_file(from / source.name, file);
+    } else {
+      throw DataError(Fault{(from / source.name).string() + ": no such file",
+                            "neither the sources nor all files made of them are in that folder",
+                            "Fetch it from " + url});
+    }
+    const std::string found = sha256(file);
+    if (!source.sha256.empty() && found != source.sha256)
+      throw DataError(Fault{source.name + ": other bytes than the example was made of",
+                            fmt::format("its SHA-256 is {}, wanted is {}", found, source.sha256),
+                            "Fetch it from " + url});
+    log_info(fmt::format("{}  sha256 {}", source.name, found));
+  }
+}
+
+Raster sum_of(const DataFile& file, const Example& example, const fs::path& sources) {
+  Raster sum;
+  for (const std::string& name : file.sum) {
+    Raster next = read_raster(sources / name);
+    if (sum.values.empty()) {
+      sum = std::move(next);
+      continue;
+    }
+    if (next.values.size() != sum.values.size() || next.grid.columns != sum.grid.columns)
+      throw DataError(
+          Fault{fmt::format("{}: another grid than that of {}", name, file.sum.front()), "", "Fetch both again"});
+    for (std::size_t i = 0; i < sum.values.size(); ++i)
+      if (std::isfinite(next.values[i])) sum.values[i] += next.values[i];
+  }
+  if (!example.word("crs").empty()) sum.grid.crs_wkt = crs_by_name(example.word("crs"));
+  return sum;
+}
+
+/// Takes the files of an example as they lie in a folder, where all are there. False: not all are.
+bool take_made(const Example& example, const fs::path& from, const fs::path& out) {
+  const auto is_there = [&](const DataFile& file) { return fs::exists(from / file.name); };
+  if (from.empty() || !std::all_of(example.files.begin(), example.files.end(), is_there)) return false;
+  for (const DataFile& file : example.files) {
+    if (const std::string other = difference_from(read_raster(from / file.name), file); !other.empty())
+      throw DataError(Fault{(from / file.name).string() + ": not that file of the example", other,
+                            "Give another folder, or leave --from out to fetch the sources"});
+    if (!fs::equivalent(from, out))
+      fs::copy_file(from / file.name, out / file.name, fs::copy_options::overwrite_existing);
+  }
+  return true;
+}
+
+void make_files(const Example& example, const fs::path& sources, const fs::path& out) {
+  for (const DataFile& file : example.files) {
+    const Raster raster = sum_of(file, example, sources);
+    if (const std::string other = difference_from(raster, file); !other.empty())
+      throw DataError(Fault{file.name + ": what was made of its sources is not that file of the example", other,
+                            "The sources have changed or are not whole: fetch them again"});
+    write_geotiff(out / file.name, raster, {how_made(file), "m", {{"SOURCE", example.word("url")}}});
+  }
+}
+
+const Example& chosen(const Examples& examples, const std::string& name) {
+  const auto found = examples.find(name);
+  if (found != examples.end()) return found->second;
+  std::vector<std::string> known;
+  for (const auto& [one, unused] : examples) known.push_back(one);
+  throw RecipeError(Fault{name + ": no such example", "", recipe::did_you_mean(name, known)});
+}
+
+}  // namespace
+
+int make_data(const DataRequest& request) {
+  const Examples examples = read_examples(request.table);
+  if (request.name.empty()) {
+    for (const auto& [name, example] : examples) fmt::print("{}\n", description(name, example));
+    return 0;
+  }
+  const Example& example = chosen(examples, request.name);
+  const fs::path out = request.out / example.word("folder");
+  make_folder(out);
+  if (!take_made(example, request.from, out)) {
+    const TemporaryFolder sources("talus-data");
+    get_sources(example, request.from, sources.path());
+    make_files(example, sources.path(), out);
+  }
+  write_text(out / "SOURCE.md", "# " + description(request.name, example));
+  for (const DataFile& file : example.files) fmt::print("{}\n", (out / file.name).string());
+  if (!example.word("pipeline").empty())
+    log_info(fmt::format("Now: TALUS_DATA={} talus run .../pipelines/{}/recipe.toml",
+                         fs::absolute(request.out).string(), example.word("pipeline")));
+  return 0;
+}
+
+}  // namespace talus::command

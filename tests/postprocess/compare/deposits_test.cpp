@@ -1,0 +1,66 @@
+#include <gtest/gtest.h>
+
+#include "postprocess/compare/compare.hpp"
+#include "postprocess/compare/difference_classes.hpp"
+#include "tests/postprocess/scene.hpp"
+
+namespace talus::postprocess {
+namespace {
+
+TEST(CompareDeposits, of_a_run_with_itself_differ_by_nothing) {
+  const talus::Run run = test::small_run();
+  const DepositDifference same = deposit_difference(run.maps, run.maps, 0.5);
+  EXPECT_EQ(same.moved, 0);
+  EXPECT_EQ(same.overlap, 1);
+  EXPECT_EQ(same.rms, 0);
+  EXPECT_EQ(same.volume, 0);
+  EXPECT_EQ(same.larger, 0);
+  EXPECT_EQ(same.smaller, 0);
+}
+
+/// Cells of 2 and 1 m on a bar of 10 x 1 cells of 10 m: shifted by a cell, a tenth of ten lies elsewhere.
+TEST(CompareDeposits, shifted_by_a_cell_are_measured) {
+  RunMaps first;
+  first.grid = {.columns = 12, .rows = 3, .west = 0, .south = 0, .cell = 10, .crs_wkt = ""};
+  first.deposit_thickness.assign(first.grid.count(), 0);
+  RunMaps second = first;
+  for (int column = 0; column < 10; ++column) {
+    first.deposit_thickness[first.grid.index(column, 1)] = 2;
+    second.deposit_thickness[first.grid.index(column + 1, 1)] = 2;
+  }
+  const DepositDifference found = deposit_difference(first, second, 0.5);
+  EXPECT_DOUBLE_EQ(found.moved, 0.1);
+  EXPECT_DOUBLE_EQ(found.overlap, 9.0 / 11);
+  EXPECT_DOUBLE_EQ(found.larger, 2);
+  EXPECT_DOUBLE_EQ(found.smaller, 2);
+  EXPECT_DOUBLE_EQ(found.volume, 0);
+  EXPECT_DOUBLE_EQ(found.rms, std::sqrt(8.0 / 11));
+  EXPECT_EQ(found.difference.at(0, 1), -2);
+  EXPECT_TRUE(std::isnan(found.difference.at(0, 0)));
+}
+
+/// The same body on cells half as wide keeps its volume, and on the wide cells all of its shape.
+TEST(CompareDeposits, of_other_cells_are_brought_to_the_first_grid_with_their_volume) {
+  RunMaps coarse, fine;
+  coarse.grid = {.columns = 4, .rows = 4, .west = 100, .south = 0, .cell = 10, .crs_wkt = ""};
+  fine.grid = {.columns = 8, .rows = 8, .west = 100, .south = 0, .cell = 5, .crs_wkt = ""};
+  coarse.deposit_thickness.assign(16, 0);
+  fine.deposit_thickness.assign(64, 0);
+  coarse.deposit_thickness[coarse.grid.index(1, 2)] = 4;
+  for (int row = 4; row < 6; ++row)
+    for (int column = 2; column < 4; ++column) fine.deposit_thickness[fine.grid.index(column, row)] = 5;
+  const DepositDifference found = deposit_difference(coarse, fine, 0.5);
+  EXPECT_DOUBLE_EQ(found.volume, 100);  // 1 m more on 100 m2
+  EXPECT_DOUBLE_EQ(found.moved, 0);     // the same place
+  EXPECT_DOUBLE_EQ(found.larger, 1);
+}
+
+TEST(CompareDeposits, have_classes_up_to_the_largest_difference) {
+  DepositDifference found;
+  found.larger = 3;
+  found.smaller = 12;
+  EXPECT_EQ(difference_limits(found), (std::vector<double>{0.2, 0.4, 1, 2, 4, 10}));
+}
+
+}  // namespace
+}  // namespace talus::postprocess

@@ -1,0 +1,86 @@
+// What a recipe is told that could do better.
+#include "solver/run/advice.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "solver/options/solve.hpp"
+#include "tests/solver/scenes.hpp"
+
+namespace talus::solver::testing {
+namespace {
+
+/// 90,000 m3 on a slope of 1 in 2 that ends on level ground, cells of 10 m.
+Domain slide_above_a_plain(int in_a_cell = 2) {
+  Domain d = ground(60, 12, 10.0, 5.0, [](double x, double) { return std::max(0.0, 150 - 0.5 * x); });
+  fill(d, {20, 110, 20, 120, 0, 10}, in_a_cell, in_a_cell);
+  d.release_thickness = d.terrain;
+  for (double& t : d.release_thickness.values) t = 0;
+  for (int row = 2; row < 12; ++row)
+    for (int column = 2; column < 11; ++column) d.release_thickness.at(column, row) = 10;
+  return d;
+}
+
+SolveOptions sensible() {
+  SolveOptions o;
+  o.end_time = 120;
+  o.base.friction_angle = 18;
+  o.material.youngs_modulus = 1e6;
+  return o;
+}
+
+std::string said(const Advice& lines, const std::string& name) {
+  const auto found = std::find_if(lines.begin(), lines.end(), [&](const auto& line) { return line.first == name; });
+  return found == lines.end() ? "" : found->second;
+}
+
+TEST(Advice, is_silent_of_a_sensible_recipe) {
+  const Advice lines = advice(slide_above_a_plain(), sensible());
+  EXPECT_TRUE(lines.empty()) << lines.front().second;
+}
+
+TEST(Advice, names_an_end_before_the_bed_could_brake_the_mass) {
+  SolveOptions o = sensible();
+  o.end_time = 5;
+  const std::string words = said(advice(slide_above_a_plain(), o), "end-time");
+  EXPECT_NE(words.find("end_time_s = 5 is likely before rest"), std::string::npos) << words;
+  EXPECT_NE(words.find("stop_kinetic_fraction"), std::string::npos) << words;
+}
+
+TEST(Advice, names_a_stiffness_far_above_need) {
+  SolveOptions o = sensible();
+  o.material.youngs_modulus = 5e10;
+  const std::string words = said(advice(slide_above_a_plain(), o), "stiffness");
+  EXPECT_NE(words.find("youngs_modulus_Pa = 5e+10"), std::string::npos) << words;
+  EXPECT_NE(words.find("stiffness = \"auto\""), std::string::npos) << words;
+  o.integrator = Integrator::newmark;  // its steps do not follow the waves
+  EXPECT_EQ(said(advice(slide_above_a_plain(), o), "stiffness"), "");
+}
+
+/// 90,000 m3: Corominas (1996) gives H/L = 10^(-0.047 - 0.085 log10 9e4) = 0.340; half and twice of it are 9.7 and
+/// 34.2 degrees.
+TEST(Advice, names_a_friction_far_from_usual_for_the_volume_with_its_sources) {
+  SolveOptions o = sensible();
+  o.base.friction_angle = 8;
+  const std::string words = said(advice(slide_above_a_plain(), o), "friction");
+  EXPECT_NE(words.find("0.34 (Corominas 1996, all landslides)"), std::string::npos) << words;
+  EXPECT_EQ(words.find("Scheidegger"), std::string::npos) << "it is for larger volumes: " << words;
+  EXPECT_NE(words.find("10 to 34 deg"), std::string::npos) << words;
+  o.base.friction_angle = 33;
+  EXPECT_EQ(said(advice(slide_above_a_plain(), o), "friction"), "");
+  o.base.friction_angle = 36;
+  EXPECT_NE(said(advice(slide_above_a_plain(), o), "friction"), "");
+  Domain by_place = slide_above_a_plain();
+  by_place.bed.emplace_back("friction_angle_deg", by_place.terrain);
+  EXPECT_EQ(said(advice(by_place, o), "friction"), "") << "a raster of angles is the analyst's own knowledge";
+}
+
+TEST(Advice, names_too_few_points_in_a_cell) {
+  EXPECT_NE(said(advice(slide_above_a_plain(1), sensible()), "points").find("a cell holds 1 material points"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace talus::solver::testing
