@@ -1,3 +1,5 @@
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The commands of the project; 'make' alone lists them. Everything is built by CMake (see CMakePresets.json).
 SHELL  := /bin/bash
 PRESET ?= default

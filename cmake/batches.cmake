@@ -1,3 +1,5 @@
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The sources of a folder compiled as one unit, so that the headers that they share are read once: half of the time
 # from scratch, but a change compiles its whole folder again. `make` asks for it where no compiler cache is found.
 option(TALUS_BATCHES "Compile the sources of a folder as one unit" OFF)

@@ -1,3 +1,5 @@
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # One line per dependency: find it, or say which Debian package holds it. tools/install-dependencies.sh installs them
 # all.
 function(talus_missing name package)

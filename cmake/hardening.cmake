@@ -1,3 +1,5 @@
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A program that writes beyond its bounds ends there: lengths in calls of the C library are checked (FORTIFY), and a
 # mark before the return address of functions that hold arrays. What it costs: docs/reliability.md. Sanitizers see more
 # and do not go together with FORTIFY; kernels that nvcc compiles are left as they are. Containers check their indices

@@ -1,3 +1,5 @@
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # What `cmake --install` lays where. Two components: `runtime` (what runs, with recipes, samples, styles, man pages and
 # completions) and `docs`. Packages and bundles are made of the same rules (cmake/package.cmake, tools/make-bundle.sh).
 set(TALUS_SHARE ${CMAKE_INSTALL_DATADIR}/talus)

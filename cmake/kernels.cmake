@@ -1,3 +1,5 @@
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # How a kernel file (.cu) is compiled: by nvcc where kernels are wanted, by the host compiler otherwise. The code for
 # both devices lives in one binary; TALUS_WITH_CUDA says whether that for GPUs is there.
 #

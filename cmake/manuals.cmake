@@ -1,3 +1,5 @@
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Man pages and completions, from what the programs say of themselves (tools/make-manuals.py), and the styles for QGIS.
 # They belong to `make build`, so that what is installed is never older than the programs.
 add_custom_target(talus-manuals ALL)

@@ -1,3 +1,5 @@
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Debian packages by CPack, from the rules of cmake/install.cmake: `make package`. What the programs need is read off
 # them by dpkg-shlibdeps, so a package fits the distribution on which it was made.
 set(TALUS_CONTACT "The Talus authors" CACHE STRING "Maintainer of the packages: Name <address>")

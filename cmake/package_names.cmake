@@ -1,3 +1,5 @@
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The Debian packages by name, with what they say of one another. A build with kernels for GPUs makes talus-gpu instead
 # of talus: the same programs with more in them, so that one takes the place of the other.
 # Shown without a build: cmake -DTALUS_WITH_CUDA=ON -P cmake/package_names.cmake

@@ -1,3 +1,5 @@
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The commit that --version names; "unknown" outside a git checkout. It is taken when CMake configures, and what git
 # writes with every commit and checkout makes it configure anew.
 execute_process(COMMAND git -C ${CMAKE_SOURCE_DIR} rev-parse --short=9 HEAD

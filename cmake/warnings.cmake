@@ -1,3 +1,5 @@
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # One interface target carries the warnings of all our own code; third-party headers are SYSTEM.
 add_library(talus_warnings INTERFACE)
 set(_warnings -Wall -Wextra -Wnon-virtual-dtor -Woverloaded-virtual)

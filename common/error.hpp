@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Faults a program can meet, in three parts, and the exit code each kind ends with.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Terrains that are as hard on a solver as real ones: rough, bent, steep to a cliff, open. Each is a ground and a
 // release that lies on it, given by formulas, which can be laid on the map mirrored and at any angle.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // talus-make-terrain KIND --out DIR: writes one of the synthetic terrains; paths go to stdout.
 #include <CLI/CLI.hpp>
 #include <functional>

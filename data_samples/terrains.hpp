@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Small synthetic terrains, given by formulas: the same on every machine and at any cell size.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Samples as files: small GeoTIFFs and GeoJSON.
 #pragma once
 

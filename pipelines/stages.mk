@@ -1,3 +1,5 @@
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The three stages of one scene, seen from the folder of its results: names in it need no path, so that spaces in the
 # path do no harm. run-scene sets recipe, results, bin, on and TALUS_DATA, and writes .inputs.
 MAKEFLAGS += --no-builtin-rules --no-builtin-variables

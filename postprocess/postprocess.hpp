@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The stage talus-postprocess: run.h5 -> maps/ (GeoTIFF, NetCDF, outlines, QGIS project), map.png, report.html,
 // history.csv, score.json, score.txt.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // talus-write-styles DIR: the styles for QGIS that lie beside every run's maps, for rasters from elsewhere. It is part
 // of the build and is not installed. The classes are those of the maps: DIR/thick for deposits of 12 m and more,
 // DIR/thin below that.

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // talus-preprocess: from elevation models to domain.vdb.
 #include <fmt/format.h>
 

@@ -1,3 +1,5 @@
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Writes the table of public examples into a source: cmake -DTABLE=... -DOUTPUT=... -P embed.cmake
 file(READ ${TABLE} _text)
 file(WRITE ${OUTPUT}

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // talus new: a commented recipe from the elevation models before and after a slide.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // talus data: public examples, made from sources that anybody can fetch.
 #pragma once
 

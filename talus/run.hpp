@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // talus run: the stages of a scene, those whose results are not up to date.
 #pragma once
 

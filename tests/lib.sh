@@ -1,3 +1,5 @@
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # What the shell tests share. A test script sources this, defines test_NAME() functions and ends with: run_test "$@"
 # CTest sets TALUS_SOURCE (the project), TALUS_BUILD (its build) and TALUS_SCRATCH (an empty folder of this test).
 # GDAL must not leave statistics (.aux.xml) beside files that another test looks at meanwhile.

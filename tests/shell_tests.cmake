@@ -1,3 +1,5 @@
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # talus_shell_tests(FILE... [QUICK FILE...]): every function test_NAME() of a *_test.sh becomes a CTest test, those of
 # the quick files with that label. Exit code 77 is a skip.
 find_program(TALUS_BASH bash REQUIRED)

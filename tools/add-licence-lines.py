@@ -1,4 +1,6 @@
 #!/usr/bin/env python3
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Puts the two SPDX lines (copyright, licence) at the top of every source, behind a #! line where there is one.
 
 usage: tools/add-licence-lines.py [--check]

@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Installs the packages in a fresh root of Debian (made by mmdebstrap, from this machine's mirror), runs the shipped
 # example to its report, removes them, and looks for what was left. Nothing stays on this machine.
 # usage: tools/check-install.sh PACKAGES [SUITE [MIRROR]]     (PACKAGES: a folder with *.deb; SUITE: bookworm)

@@ -1,4 +1,6 @@
 #!/usr/bin/python3
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Random recipes within the ranges that the reader allows, on a tiny scene: --bin build/bin --out DIR [--count N]
 
 Keys, defaults, ranges and words come from `--template` of each program, so that new keys are drawn by themselves. Each

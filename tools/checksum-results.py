@@ -1,4 +1,6 @@
 #!/usr/bin/env python3
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Checksums of results, to see whether a change of the code has changed a number.
 
     tools/checksum-results.py --bin build/bin --out DIR [--data DIR] [--only TEXT] > table.txt

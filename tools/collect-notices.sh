@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Copies the licences of what Talus carries: of the libraries that are compiled in (headers, scripts of the report), and
 # of the packages that own the files named. Each comes from the copyright file of its package (Debian, Ubuntu).
 # usage: tools/collect-notices.sh DIR [FILE...]     writes DIR/PACKAGE.txt and DIR/README.md, the list

@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Builds the fuzz targets (tests/fuzz) with clang and lets libFuzzer run each for some seconds, from the inputs in
 # tests/fuzz/corpus. What ends a target lies in build-fuzz/findings/TARGET; copy it to tests/fuzz/corpus/TARGET once
 # mended, where an ordinary test replays it. One line for each target on stdout.

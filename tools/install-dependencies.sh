@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Installs what is missing on Debian 12 or Ubuntu 24.04, and says before how much that is. Quick when nothing is
 # missing.
 # usage: tools/install-dependencies.sh [GROUP...] [--list]

@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Formatting of every source by clang-format 14 (Debian 12's), headers that build alone, and static analysis of every
 # source, kernels included, by clang-tidy 14 with the checks of .clang-tidy: all of them in batches of a folder (see
 # cmake/batches.cmake), which reads the headers that they share once. What was clean is not looked at again until it, a

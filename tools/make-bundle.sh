@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Puts the programs of a build, with recipes, styles, manuals and the shared libraries they need, into one relocatable
 # folder, packs it, and checks that it stands alone. What every Linux machine with GCC's run-time has (glibc, libstdc++,
 # libgcc_s) and NVIDIA's driver stay outside. With tests, those of the build and what times and validates go along.

@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The programmers' reference by Doxygen: every header, and the documents. A warning of Doxygen is an error.
 # usage: tools/make-docs.sh DIR
 set -euo pipefail

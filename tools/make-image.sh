@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # An image of the packages of a build, by whichever of buildah, podman and docker is here.
 # usage: tools/make-image.sh BUILD [NAME [BASE]]     (NAME: talus; BASE: this machine's distribution, as debian:12)
 set -euo pipefail

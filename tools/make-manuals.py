@@ -1,4 +1,6 @@
 #!/usr/bin/env python3
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Makes the man page and the completions (bash, zsh) of a program from its own --help, and the man page of the recipe
 from the stages' --template. No option is written down here: what a program does not say of itself is not in them.
 

@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Debian packages of a build (talus or talus-gpu, and talus-doc), in BUILD/packages or DIR. Nothing is compiled: what
 # `make build` has made is installed into them by the rules of cmake/install.cmake.
 # usage: tools/make-packages.sh BUILD [DIR]

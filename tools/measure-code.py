@@ -1,4 +1,6 @@
 #!/usr/bin/env python3
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The table of docs/decisions/0016-inner-architecture.md: sizes, docstrings, formatting, cycles, compile times.
 
     tools/measure-code.py [--source DIR] [--build DIR]

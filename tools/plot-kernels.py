@@ -1,4 +1,6 @@
 #!/usr/bin/env python3
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Draws docs/pictures/kernels-time.png, time and memory over the number of points.
 
 They are read from docs/benchmarks/kernels-h200.csv.

@@ -1,4 +1,6 @@
 #!/usr/bin/env python3
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Draws peak thickness (normal to the slope) and peak speed of a run beside those of other models.
 
 usage: tools/plot-peaks.py PNG DEM.tif RUN=OUT_FOLDER NAME=FOLDER/PREFIX...

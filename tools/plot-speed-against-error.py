@@ -1,4 +1,6 @@
 #!/usr/bin/env python3
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Draws docs/pictures/speed-against-error.png, and headline.png beside it.
 
 They are drawn from docs/benchmarks/speed-against-error.csv, which pipelines/benchmarks/speed_against_error.py writes.

@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Makes a release of what is here: the version in CMakeLists.txt (all else reads it there), version and date in
 # CITATION.cff, and the heading of CHANGELOG.md under which the unreleased changes come. It commits nothing.
 # usage: tools/release.sh VERSION [DATE]     (2.0.1; the date of today, as 2026-12-31)

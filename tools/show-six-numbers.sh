@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The six numbers by which a run is first judged, from its score.txt.
 # usage: tools/show-six-numbers.sh SCORE.txt
 set -euo pipefail

@@ -1,4 +1,6 @@
 #!/usr/bin/env python3
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Writes all rows of a run of `make validate` as one table, from its validation.json, which names commit and day.
 
 usage: tools/tabulate-validation.py JSON... [MARKDOWN]        (default: docs/validation-table.md)

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The cells of the background grid that matter exchanges with at the start, in whole blocks of columns.
 //
 // A cell (column, row, layer) has the node of that number at its centre: the column over map cell (column, row), layer

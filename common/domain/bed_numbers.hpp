@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Numbers of the bed's friction that may change from place to place: what talus-preprocess reads as rasters and
 // talus-solve takes in place of [solve.base].
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Is a domain possible? Every number of domain.vdb is looked at before the solver uses it.
 #pragma once
 

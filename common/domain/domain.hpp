@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // domain.vdb: what talus-preprocess hands to talus-solve. OpenVDB stays behind domain.cpp.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Names inside domain.vdb, shared by its writer and its reader.
 #pragma once
 

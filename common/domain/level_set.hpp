@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Bodies given as OpenVDB level sets: signed distance to their surface [m], negative inside, over map coordinates and
 // elevation. OpenVDB stays behind level_set.cpp.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Points with attributes in an OpenVDB file of their own, for Houdini, Blender and ParaView.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // An OpenVDB grid of points with attributes, as domain.vdb and the frames of a run hold it.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // ASCII grids (Arc/Info's .asc) in the dialects that GDAL refuses or misreads, put right in memory before it sees them.
 #pragma once
 

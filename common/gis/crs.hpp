@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Coordinate reference systems: are two the same, what are they called, are they in metres.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What every file that calls GDAL shares: start-up, quiet errors, handles, coordinate systems. Nobody else includes it.
 #pragma once
 

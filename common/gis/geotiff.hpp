@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Rasters written as GeoTIFF, aside and renamed.
 #pragma once
 

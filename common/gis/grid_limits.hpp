@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a grid may be like to be computed on: cells that numbers tell apart, and that memory holds.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What GDAL may open: plain files of this machine, and nothing over a network unless that is asked for.
 #pragma once
 

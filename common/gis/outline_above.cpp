@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Rings of equal value put together to polygons with holes.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Outlines as a GeoPackage, through OGR. Made in memory and written as bytes: SQLite on a full disk would leave its
 // journal beside a broken file.
 #include <cpl_vsi.h>

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Outlines of what lies above a threshold, and vector files of them.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Any GDAL raster into memory, whole or by windows, or a refusal with the command that mends the file.
 #include "common/gis/raster_file.hpp"
 

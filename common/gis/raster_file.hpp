@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The one door for rasters: every file is opened, checked and read here, whole or by windows, in metres and north up.
 #pragma once
 

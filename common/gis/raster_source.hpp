@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A raster as it lies in its file, with its cells made plain: metres, NaN for nodata. For the sources of this folder.
 #pragma once
 

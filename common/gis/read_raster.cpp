@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/gis/read_raster.hpp"
 
 #include <cpl_string.h>

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Whole rasters into memory, and what a raster file says of its CRS and of itself.
 #pragma once
 

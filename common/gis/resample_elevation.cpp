@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Elevation from grid to grid: exact area mean where cells grow, bilinear where they shrink, through PROJ where the CRS
 // changes.
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Thickness from grid to grid by exact area weights: what is a volume stays a volume.
 #include <fmt/format.h>
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Reprojection by GDAL's warper, lazily: only what is asked for is read and computed.
 #include <cpl_string.h>
 #include <fmt/format.h>

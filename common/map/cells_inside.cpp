@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/map/cells_inside.hpp"
 
 #include "common/map/polygon.hpp"

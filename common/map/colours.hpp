@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Colours and words of map classes, one definition for pictures and styles. Knows nothing of GDAL.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Cutting along cells: nothing is interpolated, and what lies beyond the edge of a raster is NaN, everywhere.
 #pragma once
 

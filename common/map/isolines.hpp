@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Lines of equal value on a raster. Knows nothing of GDAL.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Rasters in memory. Row 0 is the SOUTHERNMOST row, so that row and y grow together; files (north first) are flipped by
 // raster_io. Knows nothing of GDAL.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Slope of a surface, where thickness is turned between vertical and slope-normal.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A project of QGIS that shows a folder of results at once: layers in groups, drawn in their styles.
 #pragma once
 

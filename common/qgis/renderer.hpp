@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What styles and projects of QGIS say of how a layer is drawn.
 #pragma once
 

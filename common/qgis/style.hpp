@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Styles for QGIS beside rasters: NAME.qml beside NAME.tif is applied by QGIS when the raster is opened.
 #pragma once
 

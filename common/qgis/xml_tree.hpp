@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // An XML document being made. GDAL's tree stands behind it.
 #pragma once
 

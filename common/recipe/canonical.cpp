@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A table of a recipe in one way of writing: what two recipes share that say the same in other words.
 #include <fmt/format.h>
 

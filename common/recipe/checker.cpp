@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The visitor that looks at what options need of one another, once they have been read.
 #include <cstdlib>
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Values of a recipe that are given on the command line: --set key=value.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A recipe file as toml++ holds it, and the reader's stand on it. Only the recipe's own .cpp files see this header.
 #pragma once
 

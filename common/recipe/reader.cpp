@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The visitor that fills options from a parsed table and notes every fault on the way.
 #include <fmt/format.h>
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Recipes: one TOML file per scene with a table per stage. A stage's options are a plain struct whose
 // describe(Visitor&) names every key once; the reader, the template and the used recipe are visitors of it.
 #pragma once

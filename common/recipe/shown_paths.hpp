@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Paths in messages as the user wrote them, though files are opened by their absolute ones.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Values as recipes write them: shared by the reader's messages and the writer.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The way through a recipe's tables: where the reader stands, which keys it asked for, and the faults found, by place.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The visitor that writes options as TOML. TOML wants a table's keys before its sub-tables, whatever the order of the
 // visit, so a tree is built first and written at the end.
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Are the numbers of a file possible? What is read is looked at before it is used.
 #pragma once
 

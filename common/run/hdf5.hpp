@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A thin layer over the HDF5 C API: every call is checked, every failure is a DataError that names the file and the
 // system's reason. Objects are named by their path in the file ("/maps/terrain"), so no handle leaves this header.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Group /history of run.h5 and of checkpoint.h5: a data set per column, unit, quantity and place as its attributes.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The maps of a run, in one table: what each holds, in which unit, where it is written and how it is drawn. A new map
 // is a member and a row here, and a line in the kernel or recorder that fills it.
 #pragma once

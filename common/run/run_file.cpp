@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Writing run.h5. Layout: attributes of / = summary; /VTKHDF = points (vtkhdf.hpp); /maps, /frames, /history,
 // /profile, /provenance.
 #include "common/run/run_file.hpp"

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // run.h5: what talus-solve hands to talus-postprocess. HDF5 stays behind run_file.cpp.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a finished run says of itself: whether its numbers are those that a slide can have.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // HDF5 files of this program, opened only where they are as they were written.
 #pragma once
 

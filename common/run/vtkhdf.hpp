@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Group VTKHDF of run.h5: material points as an UnstructuredGrid of vertices over time.
 #pragma once
 

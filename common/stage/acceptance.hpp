@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What looks wrong but may be right: refused, unless the recipe insists on it by name.
 #pragma once
 

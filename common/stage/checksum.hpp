@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Checksums of files, and the seal by which a file says that it is whole.
 //
 // A seal is the last line of a file of this program, in 128 bytes: the length of what stands before it and its SHA-256.

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Reading a file in a process of its own, so that a broken one on which a library crashes or hangs ends in an error.
 //
 // The process is this program started anew, with posix_spawn: nothing of the parent's memory is copied, none of its

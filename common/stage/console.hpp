@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How much is said on stderr, and the progress line that log lines must not run into. Shared by log, progress and
 // runner.
 #pragma once

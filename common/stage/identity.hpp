@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Which run, and which recipe, a file between the stages belongs to.
 #pragma once
 

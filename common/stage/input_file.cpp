@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/stage/input_file.hpp"
 
 #include "common/stage/write_fault.hpp"

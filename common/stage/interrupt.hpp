@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Ctrl-C and SIGTERM: a flag that loops ask for, and the end of a process that does not ask in time.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // SHA-256 (FIPS 180-4), for the checksums of inputs. Written out here so that the solver links no crypto library.
 #include <algorithm>
 #include <array>

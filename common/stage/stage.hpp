@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The one main() of the three programs: command line, log, exit codes, files written aside, Ctrl-C, progress line.
 #pragma once
 

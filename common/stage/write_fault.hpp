@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Faults of files: one that cannot be written (a full disk has a text of its own), and one that is refused.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What steps and kernels cost, measured without files: a block of sand that slides along, from 1e4 points on.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // talus-bench: what steps cost, and time against error. Checks what it times; writes CSV and pictures.
 #include <fmt/format.h>
 

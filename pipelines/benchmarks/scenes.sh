@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Runs the slides of pipelines/ at several resolutions and writes one CSV: points, steps, time, score.
 # usage: scenes.sh BIN OUT ON MOST
 set -euo pipefail

@@ -1,4 +1,6 @@
 #!/usr/bin/env python3
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Makes the table of speed against error: every way of stepping on the same scenes, at the same modulus, at one commit.
 
 usage: speed_against_error.py prepare|run|table|all OUT [--bin DIR] [--data DIR] [--on gpu] [--only TEXT] [--long]

@@ -1,4 +1,6 @@
 #!/usr/bin/env python3
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Solves the rock slope of Xinmo's proportions in four ways, to the end, and makes one table of them.
 
 usage: xinmo_variants.py prepare|run|table|all OUT [--bin DIR] [--on gpu] [--only TEXT]

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The difference of two deposits, in numbers and as a map.
 #include <algorithm>
 #include <cmath>

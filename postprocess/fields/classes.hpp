@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Thickness classes of the picture and of the styles beside the maps; their colours are those of common/map/colours.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How each map is drawn in a GIS: the thresholds of hazard work, in classes.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Peak maps as AvaFrame's AIMEC and the ISeeSnow intercomparison name and measure them.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "postprocess/maps/cf_projection.hpp"
 
 #include <algorithm>

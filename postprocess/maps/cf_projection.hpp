@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What CF wants to know of a projected CRS, taken from its WKT2.
 #pragma once
 

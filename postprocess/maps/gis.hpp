@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What makes the maps ready for a GIS: styles beside them, outlines, the terrain below, and a project of QGIS.
 #pragma once
 

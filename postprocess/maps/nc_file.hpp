@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A NetCDF file being made. For the sources of this folder alone.
 #pragma once
 

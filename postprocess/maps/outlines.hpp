@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Outlines of what a run touched, left and released, and of the survey, for the GeoPackage beside the maps.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A picture in memory, drawn with Cairo. Coordinates are pixels, y downwards. Cairo stays behind canvas.cpp.
 #pragma once
 

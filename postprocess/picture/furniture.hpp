@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What stands around the map: title, coordinates, legend, scale, north arrow, numbers.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the picture of a search for the factor of safety says in place of a run's numbers.
 #pragma once
 

@@ -1,3 +1,5 @@
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Puts page.html together from its parts and writes it as C++: cmake -DHTML=... -DSTYLE=... -DSCRIPT=...
 # -DLEAFLET_STYLE=... -DLEAFLET=... -DCHART=... -DLICENCES=... -DOUTPUT=page.cpp -P build_page.cmake Arguments are
 # quoted throughout: scripts are full of semicolons, which CMake would take for lists.

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Curves of the report: along the thalweg and over time.
 #include <algorithm>
 #include <cmath>

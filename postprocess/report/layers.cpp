@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The grids the report's map shows, with their classes.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Class limits of the report's difference map; the other maps have those of maps/styles.hpp, as in a GIS.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Grids as a page can hold them: cut to the map shown, coarsened where they are large, quantised, deflated, base64.
 #pragma once
 

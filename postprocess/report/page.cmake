@@ -1,3 +1,5 @@
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The report's page: page/*.js bundled by esbuild (which also refuses what does not parse), put into page/report.html
 # with the style and the libraries, and compiled in as bytes. Nothing is fetched; see cmake/dependencies.cmake.
 set(_page ${CMAKE_CURRENT_SOURCE_DIR}/report/page)

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The parts of the report's data, each a function of the input; report.cpp puts them together.
 #pragma once
 

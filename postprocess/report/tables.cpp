@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Tables of the report: scores, volumes read both ways, what each stage used.
 #include <cmath>
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Simulation against survey, cell by cell, in volume and in reach.
 #include <algorithm>
 #include <cmath>

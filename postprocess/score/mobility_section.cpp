@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How far the mass went: straight, along the thalweg, and by its centre.
 #include <algorithm>
 #include <cmath>

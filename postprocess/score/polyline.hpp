@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a line in the plane can do: be walked in even steps, and be smoothed.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Survey errors as they might have been: random, but alike where cells are near.
 #pragma once
 

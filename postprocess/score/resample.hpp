@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The scores that other surveys, as likely as the one at hand, would have given.
 #pragma once
 

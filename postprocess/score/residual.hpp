@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What is left between simulation and survey, measured by the survey's own error.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the run itself says: volumes, cost, sanity, extent.
 #include <algorithm>
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The numbers of a run, and how well it agrees with a survey.
 //
 // Definitions (the same words stand under score.txt; those of single scores with the functions that compute them):

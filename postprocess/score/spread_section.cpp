@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How much of a score hangs on the survey's own error.
 #include <fmt/format.h>
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // score.json and score.txt from the same entries.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What talus-preprocess says of the survey that it leaves for the score.
 #pragma once
 

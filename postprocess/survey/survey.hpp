@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The survey a run is scored against, and the one place where survey and simulation are brought to one grid.
 #pragma once
 

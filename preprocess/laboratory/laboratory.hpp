@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Laboratory scenes: boxes of material on or above a plane, without any elevation model.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "preprocess/obstacle/obstacles.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Bodies in the way, from polygons on the map: walls, barriers, buildings.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The bed's friction from place to place: rasters of its numbers, and zones.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Laboratory scenes as the recipe gives them: the grid, the boxes, their sides, and what must hold of them.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What [preprocess] of a recipe holds. Every key is named once, in describe().
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Layers given by rasters or polygons: what is released, and what can be taken along.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Two elevation models compared: how they are brought together, which changes are believed, and what arrived.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // OUT/survey: what the two elevation models say, for a GIS, for the score and for people.
 #pragma once
 

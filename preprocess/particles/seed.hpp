@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Material points in the released mass: cell by cell, a column of the release's thickness at a time.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The source under an outline alone, or an outline and points of depth: what [preprocess.source.sliding_surface] asks
 // for.
 #pragma once

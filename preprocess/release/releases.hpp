@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Releases onto a base DEM: rasters of thickness, or polygons with a thickness.
 #pragma once
 

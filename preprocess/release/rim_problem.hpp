@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Laplace's operator within an outline, zero on it: what the sliding surface's equations are made of.
 #pragma once
 

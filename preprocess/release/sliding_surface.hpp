@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A smooth sliding surface under a source known by its outline, and by a depth, a volume or points of depth. Rasters
 // in, rasters out; no files.
 #pragma once

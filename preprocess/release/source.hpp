@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Which cells fail, when two surfaces are given: a polygon, or a connected region of lowering.
 #pragma once
 

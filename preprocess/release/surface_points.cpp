@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The sliding surface through points of known depth.
 #include <Eigen/Dense>
 #include <algorithm>

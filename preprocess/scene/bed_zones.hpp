@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Zones of the bed's friction: rows by elevation, ground, volume and return period, as rasters of the bed.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // From options to the domain: what talus-preprocess does between reading its recipe and writing its file.
 #pragma once
 

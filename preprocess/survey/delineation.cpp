@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The slide on the working grid: what arrived, and how much, with its error.
 #include <fmt/format.h>
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // After less before, cell by cell, with its level of detection, block by block.
 #pragma once
 

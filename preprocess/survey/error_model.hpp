@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the difference of two surveys is worth: its standard deviation cell by cell, and that of volumes.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What of a patch tells a shift, as waves: fields on its cells, without a plane and without holes, faded out at the
 // rim.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Pieces of two surveys from which their misfit is learnt: the whole where it is small, else an even spread of it.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One step of an alignment: what the misfit of stable cells says of the shift that is left.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Which changed ground belongs to the slide: from the source on, beside it and down the way that a flow takes.
 #pragma once
 

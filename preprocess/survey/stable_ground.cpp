@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Which cells may tell how two surveys lie on one another.
 #include <cmath>
 #include <numbers>

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Two elevation models as one survey of what changed: aligned, compared, with the error of the comparison.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How alike the errors of neighbouring cells are, and what that does to a mean over many.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The shift that is left between two surveys, by bands of wavelengths.
 #pragma once
 

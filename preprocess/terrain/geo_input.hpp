@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Scattered elevations out of text and vector files, and the CRS that a recipe names.
 #pragma once
 

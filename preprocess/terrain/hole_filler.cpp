@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "preprocess/terrain/hole_filler.hpp"
 
 #include <CGAL/Delaunay_triangulation_2.h>

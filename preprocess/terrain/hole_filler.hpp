@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One hole in a raster, filled from its rim. CGAL stays behind hole_filler.cpp.
 #pragma once
 

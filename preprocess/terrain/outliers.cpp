@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Spikes and pits: cells that stand out from their neighbours more than the ground around is rough.
 #include <fmt/format.h>
 

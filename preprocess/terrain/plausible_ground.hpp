@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Whether lengths and heights of a ground can be true: scale of its CRS, slopes, elevations.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Elevations at scattered points, triangulated and read off on a grid. CGAL stays behind scattered.cpp.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Elevation models aligned on the working grid, with their nodata accounted for.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Holes in elevation models filled from their rims, with what the filling is worth; cells that stand out.
 #pragma once
 

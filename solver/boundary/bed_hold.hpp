@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What holds columns on the ground that would leave it (T12c): all that lie on it, or the shallow ones.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Columns that lie on the bed: their mass, what of the bed they cover, and their slip over it as a whole, which
 // depth-averaged laws mean.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Tractions of the bed that are a force per area, not a share of the normal stress: drag and cohesion. They act on the
 // whole column that lies on the bed (T13a), as the depth-averaged models mean them from which their numbers come.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Contact points in velocities: impulses that let no surface be run through, with friction, found by sweeps over all
 // points at once.
 //

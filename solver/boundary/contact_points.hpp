@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Surfaces that the mass meets between the nodes of the grid: obstacles, and on a Cartesian grid the ground. They are
 // points with a normal and an area, finer than the nodes; contact_impulses.hpp and contact_forces.hpp act on them.
 #pragma once

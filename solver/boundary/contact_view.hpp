@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Contact points as kernels see them: the mass before a point, the resistance to a slip there, and the law of contact.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The basal laws: what holds the mass back along its bed. A law is a type with static members; what each must have:
 //
 //   name                 in recipes

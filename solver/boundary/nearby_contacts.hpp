@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The contact points beside the mass: those of the blocks of columns that have storage.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Plane walls over time: which of them are there at a time, and where, as kernels see them.
 #pragma once
 

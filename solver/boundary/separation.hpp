@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Separation of the mass from its bed: which base nodes are held on the ground where they would leave it (T12c).
 #pragma once
 

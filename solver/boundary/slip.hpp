@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a basal law knows of the slip of the mass over its bed at one place.
 #pragma once
 

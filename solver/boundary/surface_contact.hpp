@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Contact points where the kernels run (see contact_points.hpp): what they gave so far, and how kernels go over those
 // beside the mass.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Plane walls along the axes of the grid: rollers, fixed and frictional ones, gates that go at a stated time.
 #pragma once
 

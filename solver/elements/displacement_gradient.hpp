@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // State of a material point and its displacement gradient, as the laws of the elements take them.
 #pragma once
 

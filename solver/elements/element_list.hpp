@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Elements: the points whose stencils start at the same node, with the W^3 nodes they share (W = Shape::width).
 //
 // Elements are sorted by the column block of their first node. Their nodes lie in that block and the next one along x

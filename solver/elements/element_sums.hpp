@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The tangent of an element, summed over its points: K_ab = sum_p V_p grad N_a . C_p . grad N_b, a 3 x 3 block for
 // every pair of its nodes, handed one by one to what stores them.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Statics on a body that does not fill its cells: nodes at its rim carry next to no material, and compression makes the
 // tangent there indefinite (a rim cell turns about a point like a hinge). Weak springs hold such nodes to where the
 // nodes further in would have them, in each of their elements (T17a; cf. the extension of Hoellig, Reif & Wipper 2001).

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Forces on the nodes from the points' stresses, or from their changes by the tangents: f_int of (T16), and K x.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/elements/mean_dilation.hpp"
 
 #include "solver/elements/displacement_gradient.hpp"

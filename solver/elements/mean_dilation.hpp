@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // B-bar: the volume change of an element's points replaced by their mean, in stress, tangent and state (T17b; Hughes
 // 1980; for finite strain Simo, Taylor & Pister 1985). Without it nearly incompressible material locks.
 //

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The points' tangents in storage, and all that the tangent of a step is summed from.
 #pragma once
 

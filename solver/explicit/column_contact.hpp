@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the bed does to whole columns in explicit steps, beside what its nodes feel: friction of laws that ask for the
 // column, tractions, and the hold on columns that would leave it.
 #pragma once

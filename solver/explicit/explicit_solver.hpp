@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The explicit step, written once for both devices, both precisions and both shapes. Included by the files that
 // instantiate it.
 #pragma once

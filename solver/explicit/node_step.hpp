@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the nodes' kernels of explicit and of column-implicit steps share: local damping, and the losses of energy over
 // a column (T24).
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The grid's part of a column-implicit step: inertia is implicit along the columns of the grid, so that the height of
 // its layers does not bound the step.
 #pragma once

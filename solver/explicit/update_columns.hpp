@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The grid's part of an explicit step: new velocities from momentum, force and gravity, damping, the bed, and the maps
 // of thickness and arrival.
 #pragma once

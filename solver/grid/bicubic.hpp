@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The ground between the nodes of a Cartesian grid where it is met by points: bicubic through the terrain (Catmull &
 // Rom 1974).
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/grid/block_storage.hpp"
 
 #include "solver/parallel/algorithms.hpp"

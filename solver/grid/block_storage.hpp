@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Storage of the nodes: which blocks of columns hold material, over which layers, and where their nodes lie.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Templates of the linear algebra are compiled once, at the foot of their .cu: for both precisions, both devices and
 // all shapes.
 #pragma once

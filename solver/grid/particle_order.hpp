@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The order of the particles: by home cell, block of columns by block of columns.
 #pragma once
 

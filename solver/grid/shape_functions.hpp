@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Weights of a material point on the nodes around it, one direction at a time. The offset is the distance from the
 // nearest node in cells, -0.5 <= offset < 0.5; node `first(offset)` cells away from the nearest one carries weight[0].
 // `half` is half the side of the box that the point stands for, in cells; only functions that are `averaged` over it

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Owner of the background grid: terrain, storage of the columns that hold material, points sorted by column block.
 #pragma once
 

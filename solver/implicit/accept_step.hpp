@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The way back to the points: how far they go in an implicit step, and their state at its end.
 #pragma once
 

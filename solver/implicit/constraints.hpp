@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What holds the nodes of an implicit step: rollers, surfaces that they can touch, and friction there.
 #pragma once
 

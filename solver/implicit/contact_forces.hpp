@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Contact points in an implicit step: springs that push the mass off the surface and hold it back along it, up to
 // friction's limit (penalty with return to Coulomb's cone; Simo & Laursen 1992). Their force goes on from that of the
 // last step, so that what rests stays where it is, whatever the stiffness.

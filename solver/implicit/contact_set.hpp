@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The contacts of an implicit step: of the nodes with bed and walls, and of the contact points between nodes.
 #pragma once
 

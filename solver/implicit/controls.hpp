@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What only implicit steps read of a recipe: plain numbers in SI units. The scene fills them from the options; nothing
 // in this folder knows those. What all integrators read is in integrator/settings.hpp.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Implicit steps: Newton on the unbalanced force of the end of the step, shape functions held at its start. Included by
 // the files that instantiate it.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One implicit step: the equations (T16) of its end as Newton's method takes them, and what an accepted step leaves
 // with the particles.
 #pragma once

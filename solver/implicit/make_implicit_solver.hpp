@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Solvers of implicit steps. Each precision and shape is compiled in a file of its own, in instances/: together they
 // take minutes.
 #pragma once

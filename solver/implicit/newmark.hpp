@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Newmark's time scheme: what the displacement of a step makes of velocity and acceleration.
 #pragma once
 

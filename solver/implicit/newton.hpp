@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Newton's method on the unbalanced force of a step, with an active set of contacts. It knows neither particles nor
 // grids nor devices: a problem is anything with the verbs of NewtonProblem.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Arrays over the stored nodes that the kernels of an implicit step read and write.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Stress and tangent of the particles for a displacement of the grid.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The unbalanced force of an implicit step (T16), its sums over the nodes, and the nodes' part of its tangent.
 #pragma once
 

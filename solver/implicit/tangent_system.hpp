@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The linear system of a Newton iteration: forces and tangent for a displacement, and the change of displacement that
 // the tangent asks for.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The maps of speed and pressure (T25), made of what the points do: their momentum over the columns around them.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How densely the points are packed: the volume of the points in a cell about a node, over the room in it. Sums over
 // shape functions would not do: what drifts within a cell is what they do not see.
 #pragma once

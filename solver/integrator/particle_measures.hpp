@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What is measured of the particles as a whole: energies, thickness on the map, packing, volumes over the
 // columns.
 #pragma once

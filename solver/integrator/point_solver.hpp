@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What every integrator has: the points, the grid, the clock and the maps, and how they are read.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Kernels that measure the points: energies, and thickness on the map.
 #pragma once
 

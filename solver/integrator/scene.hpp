@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What an integrator starts from: the grid's shape, the material points, their loads and what they can touch.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What integrators and their kernels see of a recipe: SI units, coefficients instead of angles, presets resolved.
 // scene/settings.hpp makes them of the options, once.
 #pragma once

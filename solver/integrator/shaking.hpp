@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The shaking of the ground over a run: an accelerogram, and its copy where kernels read it.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // All that the mass can touch: bed, walls, and surfaces between the nodes.
 #pragma once
 

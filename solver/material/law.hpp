@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The constitutive laws. A law is a type with static members; what each must have:
 //
 //   name                      in recipes

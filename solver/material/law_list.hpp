@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A list of laws, and how the one that is meant at run time is found in it: by comparisons that are inlined into the
 // kernel, without virtual calls or pointers to functions.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Materials as kernels see them, and what their laws make of a point: stress, energy, the state after a step.
 #pragma once
 

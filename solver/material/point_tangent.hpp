@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The tangent of a material point in principal axes, and its products.
 //
 // The force on a node is V P grad N with P = tau F^-T, F = I + G, G the displacement gradient of the step. A change dG

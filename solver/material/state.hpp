@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a constitutive law knows of a material point: its elasticity, its state and the deformation of a step.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Logarithmic (Hencky) strain: to and from the left Cauchy-Green tensor's deviation B = b - I, and its update over a
 // step.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Trial stress of a point for a displacement of the grid, and its consistent tangent in principal axes (see
 // point_tangent.hpp).
 //

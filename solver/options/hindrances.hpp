@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a recipe holds that a way of stepping cannot do, and why.
 #pragma once
 

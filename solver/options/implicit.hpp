@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Options of implicit steps: Newton, its linear solver and preconditioner.
 #pragma once
 

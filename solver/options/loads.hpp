@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Gravity, the velocity at the start, and forces on parts of the mass.
 #pragma once
 

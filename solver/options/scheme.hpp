@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The numerical scheme that all integrators share: numbers, grid, transfer, step size.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The shaking of the ground: an accelerogram that acts on the mass as a body force.
 #pragma once
 

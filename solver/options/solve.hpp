@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The options of a recipe's [solve] table. Every key, its default and its help are in describe() and nowhere else.
 #pragma once
 

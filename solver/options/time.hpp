@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a run simulates: how its steps are taken, from which domain, how long.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sort, scan and gather on either device: oneTBB on the CPU, CUB and Thrust on the GPU. Pointers are into the memory of
 // the device that is named with them.
 #pragma once

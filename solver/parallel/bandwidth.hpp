@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How fast memory can be copied: what the bytes of a kernel are held against.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Loops over the columns of the grid's blocks: one thread a column on the CPU; on a GPU eight threads share a column's
 // layers, of which a small scene has more than it has columns.
 #pragma once

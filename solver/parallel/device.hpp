@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The devices that kernels run on: CpuDevice (oneTBB) and GpuDevice (CUDA), both in one binary, chosen at run time.
 #pragma once
 

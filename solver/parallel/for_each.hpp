@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Loops over an index on either device. A kernel is a plain struct of pointers and numbers with operator()(int index)
 // const.
 #pragma once

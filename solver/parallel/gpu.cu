@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // GPU devices: streams, memory, events, recordings. Without a CUDA compiler this file states that there is no GPU.
 #include <cstring>
 #include <stdexcept>

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a GpuDevice owns. For the CUDA files of this folder alone.
 #pragma once
 

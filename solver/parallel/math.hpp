@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Vectors and matrices of three, small enough to live in registers; the same on both devices.
 #pragma once
 

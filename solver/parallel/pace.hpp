@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Whether a loop on the CPU goes to all threads or stays on the calling one, by what either took.
 #pragma once
 

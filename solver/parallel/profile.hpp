@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Where the time of a run goes: named phases of a step and the kernels in them, measured when asked for (--profile) and
 // free of cost otherwise.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Work that is given to the device again and again: recorded once, and then started as a whole (a CUDA graph), which
 // takes a fraction of the time of starting its kernels one by one.
 #pragma once

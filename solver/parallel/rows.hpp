@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sums of many terms for each of many indices, such as a row of a matrix times a vector.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Runs of equal keys in a sorted array: what a reduction by key works on.
 #pragma once
 

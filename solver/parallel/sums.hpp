@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sums over a range of indices that are finished on the device where they are made: a loop there needs nothing from the
 // host.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Scatters by tiles: points that lie side by side in memory mostly share their nodes, so that a GPU can sum what they
 // give before it goes to memory.
 #pragma once

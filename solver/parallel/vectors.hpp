@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Vectors over the nodes (three doubles each) and the few verbs that Krylov methods are written in.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a recipe could do better: said by --check, by --plan, before a run and in the report, with what to change.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The energy line of a scene: what bounds the speed of a flow, and where it can go.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Start from equilibrium: gravity brought on in quasi-static steps before the run begins.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // integrator = "auto" as the run goes on: steps of a flow, or Newmark's where all is at rest and they take less work.
 #pragma once
 

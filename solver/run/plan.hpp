@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // talus-solve --plan: what a recipe switches on, and what it will cost.
 #pragma once
 

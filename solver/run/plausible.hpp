@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a recipe asks that hardly any slide does: refused before the run unless the recipe insists on it by name
 // (docs/decisions/0030-points-are-the-measure.md).
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a run leaves behind: maps of its end and the volumes of the slide.
 #pragma once
 

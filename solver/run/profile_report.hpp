@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The report of --profile at the end of a run: phases, kernels with the bytes they move, memory by owner.
 #pragma once
 

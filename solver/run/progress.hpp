@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The progress line of a run, and the error that names a point which lost its state.
 #pragma once
 

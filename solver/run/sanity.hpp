@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The sanity of a run at its end: its volume, packing, energy and speed against what a slide can have.
 #pragma once
 

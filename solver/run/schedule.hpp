@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // When a run records, writes frames and checkpoints, and what times its steps must meet.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A run from domain to run.h5: steps, events in time, the end.
 #pragma once
 

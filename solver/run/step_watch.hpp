@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The watch over the steps of a run: one that does not advance ends it, and one that has become far shorter is said.
 #pragma once
 

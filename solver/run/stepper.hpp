@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The steps of a run: of one integrator, or with integrator = "auto" of whichever takes less work.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The lowest stiffness that leaves a flow unchanged ([solve.material] stiffness = "auto"; docs/decisions/0008).
 #pragma once
 

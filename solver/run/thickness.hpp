@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Thickness over the map of some of the points, on the host: the maps of the end of a run.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a recipe asks that its numbers do not bear out: said before the run, with the numbers.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // From a recipe's options to what implicit steps are controlled by.
 #pragma once
 

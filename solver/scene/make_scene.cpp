@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/scene/make_scene.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/options/solve.hpp"

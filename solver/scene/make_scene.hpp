@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // From a domain and a recipe to the scene that an integrator starts from.
 #pragma once
 

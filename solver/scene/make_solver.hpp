@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The choice among the integrators: of a scene at its start, or from a checkpoint.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // From the options of a recipe to settings: the one place where degrees become coefficients, keys become SI units and
 // words become laws and numbers that kernels see.
 #pragma once

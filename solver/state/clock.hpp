@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Time, step and alarms, kept where the kernels run so that a batch of steps needs nothing from the host.
 #pragma once
 

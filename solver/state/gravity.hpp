@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Gravity as kernels see it, and with it the shaking of the ground.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The background grid as a kernel sees it: which columns hold storage, where a node lies in it, and the terrain below.
 //
 // Reference coordinates are (x, y, zeta), zeta = z - b(x, y) over the terrain b (terrain-following mapping) or z -

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The material points: arrays of their state, owned (Particles) and as a kernel sees them (ParticleView).
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The shaking of the ground as kernels see it: an accelerogram and its integral over time.
 #pragma once
 

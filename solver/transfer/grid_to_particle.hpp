@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Grid to particle (G2P): velocity, its gradient, the move and the new stress of the points.
 #pragma once
 

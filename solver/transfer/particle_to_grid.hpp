@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Particle to grid (P2G): mass, momentum and force of the points onto the nodes around them.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Interpolation at the points of an implicit step: gradients by position, and how what they give to the nodes is
 // scattered.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A point's weights on the nodes around it, and the slope of the terrain under it from the same weights.
 #pragma once
 

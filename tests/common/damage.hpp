@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Files as a bad disk, a broken copy or an enemy leave them.
 #pragma once
 

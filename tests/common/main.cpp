@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The main() of these tests: like those of the programs it can be started for a reading (child_reading.hpp).
 #include <gtest/gtest.h>
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Helpers of the tests: a folder that goes away again, and a fault caught with its exact text.
 #pragma once
 

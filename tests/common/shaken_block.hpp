@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A rigid block on an inclined plane whose ground shakes, integrated finely (Newmark 1965), and records to shake it
 // with. Nothing here knows the solver.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Foreign tools run by tests: what they print or make, and a loud skip where they are missing.
 #pragma once
 

@@ -1,3 +1,5 @@
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The scene of the fault tests, and what its files say: a digest of every file that does not change with time, ids and
 places, so that two runs of one recipe agree."""
 import hashlib

@@ -1,4 +1,6 @@
 #!/usr/bin/env python3
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Faults on purpose, in all three stages: the n-th call fails or kills, memory runs out, processes meet in one
 folder, the power goes. After each: every file that carries a name is whole and of one recipe, what went wrong is said,
 and the next run ends with the results of a run that nothing disturbed.

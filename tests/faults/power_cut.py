@@ -1,3 +1,5 @@
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What a power cut may leave, from the recorded order of a program's calls: what was written and not forced to the disk
 may be lost, in any order, and so may names."""
 import os

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 /* Preloaded into a program, it makes the n-th of its system calls on files of a folder fail, or the process end there,
  * or writes all of them down. The kernel hands every such call over (seccomp, SIGSYS), whichever library made it: the C
  * library's own streams are seen too. x86-64 and Linux alone.

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Any bytes as an ASCII grid: put right for GDAL, or refused by line.
 #include "common/gis/ascii_grid.hpp"
 

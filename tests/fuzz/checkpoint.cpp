@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Any bytes as checkpoint.h5 of the version before, which has no seal: lists of one length, or refused in words.
 #include "solver/run/recorders/checkpoint.hpp"
 #include "common/run/hdf5.hpp"

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Any bytes as domain.vdb of the format before, which has no seal: a domain whose points lie on its map, or refused.
 #include "common/domain/domain.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Any bytes as a level set of another program: a surface of finite facets, or refused in words.
 #include "common/domain/level_set.hpp"
 

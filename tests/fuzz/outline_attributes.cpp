@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Any bytes as names and numbers of a GeoPackage: written and read back as the same number of polygons, or refused.
 #include "common/gis/outlines.hpp"
 

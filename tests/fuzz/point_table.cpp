@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Any bytes as a table of points: as many x as y as z, or refused by line.
 #include "preprocess/terrain/point_table.hpp"
 

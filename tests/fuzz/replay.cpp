@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Runs a fuzz target over files, as a test: talus-replay TARGET FOLDER|FILE... Whatever ended a fuzzer once lies there.
 #include <algorithm>
 #include <cstdio>

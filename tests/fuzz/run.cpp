@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Any bytes as run.h5 of the version before, which has no seal: read, or refused in words.
 #include "common/run/motion.hpp"
 #include "common/run/run_file.hpp"

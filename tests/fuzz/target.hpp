@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the fuzz targets share: each is a function of bytes, called by libFuzzer (make fuzz) or, over the files of
 // tests/fuzz/corpus, by an ordinary test (replay.cpp).
 #pragma once

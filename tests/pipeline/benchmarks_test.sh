@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The benchmarks at their smallest, so that they cannot rot: what they time is checked, and the tables are whole.
 source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
 

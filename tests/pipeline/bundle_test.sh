@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The relocatable bundle: it stands alone, wherever it lies.
 source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
 

@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # From two raw surveys to a score: the valley as noisy, shifted surveys with holes see it, beside the same valley as
 # it is.
 source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"

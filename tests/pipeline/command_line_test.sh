@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The command line that the three programs share.
 source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
 programs=(talus-preprocess talus-solve talus-postprocess)

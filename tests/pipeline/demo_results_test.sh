@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The demo's results, read by tools that are not ours. demo_test.sh has made them.
 source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 out=$TALUS_BUILD/scratch/demo/synthetic-valley

@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # What 'make demo' does, from the valley's two elevation models to its score.
 source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 out=$TALUS_BUILD/scratch/demo/synthetic-valley

@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # --depends and --used: what a stage would read, as rules for make, and what it would take from its recipe.
 source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
 

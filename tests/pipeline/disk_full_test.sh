@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A full disk while writing: a small tmpfs, mounted where only this test sees it. Whatever its size, a stage either
 # succeeds or says that the disk is full, and every file that carries a final name is whole. The sizes are few: a page,
 # parts of what the stage writes, and the edge found by bisection.

@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Ground that can be taken along, through the three programs: told apart on the maps and in the score.
 source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
 

@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # tools/install-dependencies.sh where it cannot install: stand-ins take the place of the system's tools.
 source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 script=$TALUS_SOURCE/tools/install-dependencies.sh

@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # What `cmake --install` lays where, and what is made of the programs' own descriptions: man pages and completions.
 source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 manuals=$TALUS_BUILD/manuals

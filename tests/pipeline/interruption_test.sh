@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Ctrl-C: a checkpoint is left from which the run goes on to the same result; nothing looks finished.
 source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
 

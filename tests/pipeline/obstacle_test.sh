@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A wall from a polygon, through the three programs: its force is recorded, and what is wrong with it is said.
 source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
 

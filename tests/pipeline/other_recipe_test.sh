@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Files of another recipe, or of another preparation: a stage refuses them, names both, and says what to do. What a file
 # does not depend on does not count.
 source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"

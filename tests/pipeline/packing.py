@@ -1,3 +1,5 @@
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 """How densely points lie that nothing moved but chance and their own weight: what a run may show at most.
 
 Points that drift within cells gather where nothing holds them apart (decision 0030). A flow that stirs them leaves them

@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Names that would run, close or climb if anything took them for more than text: in titles, releases, surveys, files and
 # coordinate systems, on the page in a real browser, in maps, styles and tables.
 source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"

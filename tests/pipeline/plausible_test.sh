@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # What hardly any slide does is refused by name or said; every run says at its end whether its numbers are sane.
 source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
 

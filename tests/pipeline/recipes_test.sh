@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Random recipes within the allowed ranges end in a result that holds, or in a clear refusal (tools/check-recipes.py);
 # `make check-recipes` draws 500.
 source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"

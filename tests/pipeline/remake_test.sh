@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # pipelines/Makefile: which stage runs again, and when. The programs are stand-ins that note their call and write their
 # result; what a stage reads they ask of the real ones.
 source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"

@@ -1,3 +1,5 @@
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Opens a report in Chromium and uses it as a person would: report_browser.py OUT clicks|prints|payload|accepted.
 
 OUT holds report.html and the maps it was made from. Any fault ends with an assertion that says what was seen.

@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # report.html in a real browser: what it shows, what happens when it is clicked, and what comes out of its printer.
 source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
 

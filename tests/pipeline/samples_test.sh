@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The recipes of the samples that are as hard as the world, on coarser cells and for their first seconds, through the
 # three programs: what their maps and histories must hold whatever the model.
 source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"

@@ -1,3 +1,5 @@
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A small scene for the tests of this folder: a bowl of 20 x 20 cells of 10 m in which a block of 4 x 4 cells, 4 m
 # thick, fails.
 source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"

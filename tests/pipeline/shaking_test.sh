@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Ground that shakes, through the programs: what acts is recorded, and another accelerogram is another run.
 source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
 

@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # From stability to run-out: what a search for the factor of safety finds is what the run of the same scene lets go.
 source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 

@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Files between the stages cut short: by a copy that broke off, say. At any place: the exit code, the message, and no
 # result.
 source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"

@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Wrong input: the exit code, the whole message, and that nothing is left which looks like a result.
 source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
 

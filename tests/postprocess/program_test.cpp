@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The stage as a whole: recipe and run.h5 in, results out.
 #include <gtest/gtest.h>
 

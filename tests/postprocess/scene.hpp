@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A small run for the tests: a slope of 40 x 30 cells falling to the east, a release at its top, a deposit at its foot.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Outlines for tests: ellipses, and the outline of marked cells.
 #pragma once
 

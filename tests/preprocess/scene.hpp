@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A small scene on disk: a random terrain before, and after it with a bowl taken out and a heap laid down elsewhere.
 #pragma once
 

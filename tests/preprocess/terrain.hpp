@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Terrains of the preprocess tests: random ones, with the seed printed, and files made of them.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A body far above the ground, which falls freely whatever steps it is computed with.
 #pragma once
 

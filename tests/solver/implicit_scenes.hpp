@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the tests of implicit steps share: a column between rollers, a cantilever, and steps to a time.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What tests of the linear algebra share: random points on wavy ground with their tangents, masses and constraints.
 #pragma once
 

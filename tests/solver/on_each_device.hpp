@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Tests of kernel files (.cu) that run on a device of each kind, whichever the files are compiled for.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A block on a slope with all that a step of it works on, as an implicit solver would hold it.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A small grid and a point in it, in the test's own memory, for what one thread of a kernel does.
 #pragma once
 

@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Documents that drift from the tree: commands, links, packages, paths.
 source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 

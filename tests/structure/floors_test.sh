@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Folders are floors: a folder includes what lies below it, and itself (docs/architecture.md). Equations of
 # docs/theory.md are named in the sources that compute them.
 source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"

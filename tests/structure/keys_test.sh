@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Keys of recipes and the members that hold them (docs/architecture.md).
 source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 

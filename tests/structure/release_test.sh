@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # One version, said in one place and repeated right; the licence in every source; what a repository says of itself.
 source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 

@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The table of speed against error: rows of one commit and one machine, every method at the same modulus.
 source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 

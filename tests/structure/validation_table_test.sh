@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The table of the validation: one state of the programs, and what is judged told from what is noted.
 source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 

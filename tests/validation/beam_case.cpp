@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A2: a cantilever bent far by a load at its tip.
 #include <fmt/format.h>
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Runs variants of a case's recipe through the programs and keeps the rows of the table.
 #pragma once
 

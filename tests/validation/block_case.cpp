@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // B1 and B2: blocks on an incline.
 #include <fmt/format.h>
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The cases of the validation. Each runs its recipe's variants, adds rows to the table and draws its pictures.
 #pragma once
 

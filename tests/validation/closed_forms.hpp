@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Solutions that the cases are held against. Nothing here knows the solver.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The closed forms against values from elsewhere, so that the table leans on something.
 #include "tests/validation/closed_forms.hpp"
 

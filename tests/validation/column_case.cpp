@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A1 and A1b: columns under their own weight.
 #include <fmt/format.h>
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the runs of the validation cost, in integers that do not depend on the machine: the book of what they have cost
 // (costs.toml), and the bounds that follow from it.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A4: time and memory of a step over the number of points, and the share of its parts (the paper's Tables 3 and 4, Figs
 // 14 and 15).
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // B3: a heap of sand on curved ground, whatever way that faces.
 #include <fmt/format.h>
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // D1 to D4: factors of safety by strength reduction against published ones.
 #include <fmt/format.h>
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // B4 and B5: a parabolic cap and a dam break on a slope, against closed forms of the depth-averaged equations.
 #include <fmt/format.h>
 

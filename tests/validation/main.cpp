@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // talus-validate: runs the validation cases through the programs, prints the table, writes validation.json and the
 // pictures.
 #include <fmt/chrono.h>

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Scenes on maps of the driver's own making: ground and release as GeoTIFFs beside the runs.
 #pragma once
 

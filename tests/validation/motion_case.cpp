@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // B6: an elastic bar in vibration, free fall, the patch test.
 #include <fmt/format.h>
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A case's recipe with some keys overridden: how the driver makes the variants of a case.
 #pragma once
 

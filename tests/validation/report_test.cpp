@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The rows of the validation: what is judged, what is noted, and what the table and its JSON say of either.
 #include "tests/validation/report.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A3b and A3c: sand columns of other aspect ratios, in a slice and round.
 #include <fmt/format.h>
 

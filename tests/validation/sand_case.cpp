@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A3: the sand column of the reference paper, which collapses onto a rough floor.
 #include <fmt/format.h>
 

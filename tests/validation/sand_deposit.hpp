@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a column of sand leaves behind: how far and how high it lies, and its profile.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What laboratories found of columns of sand that collapse onto a level floor. Run-outs are (d_inf - d_0) / d_0,
 // heights h_inf / d_0, d_0 the width of the column (or its radius), over the aspect ratio height by width.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The sand columns of A3, A3b and C1: grid, box and walls of a recipe for any size of cell.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The factor of safety of simple slopes by slices: Bishop's simplified method (Bishop 1955) on the circle on which it
 // is least, which is how Bishop & Morgenstern (1960) made their charts. Nothing here knows the solver.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The factors by slices against published ones.
 #include "tests/validation/slices.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // C1: the sand column of A3 in steps of 1 to 30 times the CFL step, against explicit steps on the same grid.
 #include <fmt/format.h>
 

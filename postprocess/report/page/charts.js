@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Charts of the report, drawn by Chart.js: lines over a linear x, all of one make.
 import { h, number } from "./format.js";
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Profile along the thalweg, and numbers over time.
 import { colours, lineChart, points } from "./charts.js";
 import { number, scaled, unitOfPowers } from "./format.js";

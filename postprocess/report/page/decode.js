@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Grids as the page holds them (pack.hpp): base64 of a zlib stream of 16-bit numbers, high bytes first; 0 is no data.
 
 /** Bytes of base64 text, inflated by the browser itself. */

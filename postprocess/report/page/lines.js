@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The lines of the map: what they are called, how they look, where they run. Shared by the map and the printed plates.
 
 /** Styles: colour, width and dashes of the line, width of the white casing below it. */

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The report: reads its data and fills the page.
 import { readMap } from "./decode.js";
 import { drawProfile, drawSeries } from "./curves.js";

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The map: Leaflet on plain metres (CRS.Simple), y = north. Leaflet's latitude is y, its longitude x.
 import { blending, paintGround, Painter } from "./paint.js";
 import { number } from "./format.js";

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Method and its limits, in words that follow the parameters used.
 import { h } from "./format.js";
 import { steps } from "./words.js";

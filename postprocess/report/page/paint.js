@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Grids to pixels. Colours are those of the legend, shaded by the ground, so that the relief shows through.
 
 const widest = 1500; // pixels along the longer side; edges of classes are smooth at this size

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Beside the map: which layer, its legend, what is drawn on top, values under the cursor, and the player below it.
 import { h, number, unitWords } from "./format.js";
 import { sample } from "./lines.js";

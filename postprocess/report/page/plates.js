@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Maps for paper: every layer as a still plate with frame, coordinates, scale bar, north arrow and legend.
 import { blending } from "./paint.js";
 import { h, number, unitWords } from "./format.js";

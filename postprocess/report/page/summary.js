@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Title block and key numbers.
 import { area, h, number, quantity, volume } from "./format.js";
 import { scoreSections, scoreWords } from "./tables.js";

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What talus-preprocess found between the two elevation models: how they lay, what their difference is worth, and what
 // moved.
 import { area, h, number, quantity, volume } from "./format.js";

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Scores, volumes, inputs, parameters, versions.
 import { area, h, number, quantity, unitWords, volume } from "./format.js";
 import { definition } from "./words.js";

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What most basal laws have in common: no numbers of the scene, no traction besides friction.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Coulomb friction of the bed: mu = tan(angle) (T13).
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the laws without a friction coefficient have in common: no options, no numbers, no force that follows from slip.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Friction of grains over a rough bed, mu(h, Fr): thin layers are held better than thick ones, what flows fast is held
 // better than what flows slowly, and what rests better than what has just stopped (T13d, T13e; Pouliquen & Forterre
 // 2002, Edwards et al. 2017).

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The friction of SamosAT and of AvaFrame's com1DFA: Coulomb's, up to twice as much at low speed, a traction of
 // turbulence, and one that acts at any speed (T13c; Sampl & Zwinger 2004).
 #pragma once

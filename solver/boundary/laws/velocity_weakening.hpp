@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Friction that falls with slip speed: mu(v) = mu_s + (mu_p - mu_s) / (1 + v / v_c) (T13; Lucas, Mangeney & Ampuero
 // 2014).
 #pragma once

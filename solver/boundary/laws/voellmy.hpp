@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Voellmy's law: Coulomb friction, a traction rho g v^2 / xi besides (T13a; Voellmy 1955), and with Bartelt's cohesion
 // one that goes to zero with the normal stress (T13b; Bartelt et al. 2015).
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The solver of explicit steps in double precision with quadratic B-splines.
 #include "solver/explicit/explicit_solver.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The solver of implicit steps in single precision with quadratic B-splines.
 #include "solver/implicit/implicit_solver.hpp"
 

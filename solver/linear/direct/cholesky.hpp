@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sparse Cholesky factorisation: CHOLMOD on the CPU (Chen, Davis, Hager & Rajamanickam 2008; Eigen's where it was not
 // found), cuSOLVER on the GPU. Ordering and symbolic factor are kept while the matrix keeps its pattern.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The reference paper's case 1: the tangent assembled and factorised. Between steps: begin_step(); for each Newton
 // iteration: solve().
 #pragma once

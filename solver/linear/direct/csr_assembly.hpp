@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // From element matrices to CSR as the reference paper does it: active nodes to degrees of freedom, (row, column, value)
 // triples, sort by key, reduce by key. A triple here is the 3 x 3 block of two nodes: a ninth of the keys to
 // sort, the same sums.

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Kernels from element matrices to CSR: numbering of the unknowns, keys, pattern, and the reduction of the triples.
 #pragma once
 

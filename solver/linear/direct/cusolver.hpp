@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The part of cuSOLVER that sparse Cholesky needs, loaded when it is first used, so that the program starts on machines
 // without it. All of cusolverSp is marked deprecated in CUDA 13 in favour of cuDSS, which the toolkit does not contain;
 // it works.

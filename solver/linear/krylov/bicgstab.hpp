@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Stabilised bi-conjugate gradients (van der Vorst 1992), preconditioned from the right, for tangents that are not
 // symmetric.
 #pragma once

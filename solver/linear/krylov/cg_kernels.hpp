@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The kernels of conjugate gradients, and the state that they keep where the vectors are.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Preconditioned conjugate gradients (Hestenes & Stiefel 1952). Step lengths and the end of the loop are found where
 // the vectors are: the host only looks, now and then, whether it is over.
 #pragma once

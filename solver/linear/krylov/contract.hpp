@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The one contract of operators and preconditioners with every Krylov method.
 //
 // It has two parts more than the textbook's y = A x and z = B^-1 r, both so that a loop on a GPU has few kernels: what

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The tangent assembled on the sparse nodes: for every node that an element touches, 3 x 3 blocks to the (2 W - 1)^3
 // nodes around it (27 for hats, 125 for quadratic functions), stored in full with one table of neighbours instead of
 // column indices. Rows only gather, so y += K x has no race and the same sums on every run, on either device.

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Dense element matrices (Bathe 1996, section 4.2): K x element by element, never assembled.
 #pragma once
 

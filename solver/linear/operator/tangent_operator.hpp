@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // y = K x in the three forms of [solve.implicit] operator: per point, stored elements, assembled stencil.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Which blocks of columns a grid stores, on the host: what a GridView points to.
 #pragma once
 

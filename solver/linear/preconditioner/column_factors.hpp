@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The blocks of a column of nodes over its layers, factorised (block L D L^T; Golub & Van Loan 2013, section 4.5).
 #pragma once
 

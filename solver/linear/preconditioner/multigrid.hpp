@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Gauss-Seidel over columns of nodes, forth and back, on one grid or on a hierarchy of them (V cycle; Trottenberg,
 // Oosterlee & Schueller 2001). Columns are solved whole, so grids grow coarse along x and y alone; coarse operators are
 // the fine one's on the coarse functions (Galerkin), which the fine grid's functions hold exactly (two_scale.hpp).

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // 3 x 3 blocks of nodes: products and inverses. A Mat3 holds columns.
 #pragma once
 

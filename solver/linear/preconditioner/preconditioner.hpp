@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // z = B^-1 r for Krylov methods: the diagonal, a node's own 3 x 3 block, a whole column of nodes at once, Gauss-Seidel
 // over columns, multigrid.
 //

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The kinds of preconditioner of a linear system over the nodes.
 #pragma once
 

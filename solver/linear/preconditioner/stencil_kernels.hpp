@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The kernels of a grid of the multigrid hierarchy: rows and their neighbours, what holds them, the coarse operator
 // R A R^T with R as in (T20), and the sweeps over columns. For stencil_level.cu.
 #pragma once

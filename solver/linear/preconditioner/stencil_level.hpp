@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One grid of a multigrid hierarchy: the tangent as a stencil of blocks, its columns' factors, and Gauss-Seidel over
 // whole columns.
 //

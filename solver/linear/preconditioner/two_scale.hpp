@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Functions of twice the spacing as sums of those of one (T20; subdivision, Lane & Riesenfeld 1980), one direction at a
 // time. Spaces are nested, so that a coarse displacement is one of the fine grid, to the digit.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Corotated elasticity: stress linear in the stretch, P = R (2G (U - I) + lambda tr(U - I) I), so that a bar keeps
 // force = E times engineering strain (Chao et al. 2010).
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Drucker-Prager sand: shear as in Hencky's law, on a cone; the pressure is a function of the total volume alone, so
 // that a grain that has opened must close again before it carries load (cf. Tampubolon et al. 2017, volume correction).
 // A point keeps the deviator of its elastic logarithmic strain.

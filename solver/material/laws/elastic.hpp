@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What laws without plastic flow have in common: no options or numbers of their own, and a trial that is the end.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What laws have in common whose shear strength depends on the rate of shear: elasticity of Hencky's law up to the
 // strength, no tension, and one scalar equation for the plastic strain of a step (T26).
 //

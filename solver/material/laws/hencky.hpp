@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Hencky elasticity: Kirchhoff stress linear in the logarithmic strain (Hencky 1928; de Souza Neto et al. 2008, ch.
 // 13).
 #pragma once

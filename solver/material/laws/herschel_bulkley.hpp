@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Herschel-Bulkley mud: rigid (elastic) below a yield stress, a fluid of power-law viscosity above it (Herschel &
 // Bulkley 1926); Bingham's with an exponent of 1 (T28).
 //

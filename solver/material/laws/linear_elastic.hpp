@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Small-strain elasticity, the stress update of the reference paper: Hooke's law on the strain of a step, the stress
 // turned with the spin (Jaumann rate). A point keeps its Cauchy stress [Pa] instead of a strain.
 #pragma once

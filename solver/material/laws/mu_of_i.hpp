@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Granular flow whose friction grows with the rate of shear: mu(I) rheology (Jop, Forterre & Pouliquen 2006), with the
 // growth at high I and the creep at low I of Barker & Gray (2017), who made it well posed (T27).
 //

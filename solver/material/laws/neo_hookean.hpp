@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Neo-Hookean elasticity, compressible (Simo & Pister 1984; Bonet & Wood 2008): its nominal stress grows with every
 // stretch, so that a body that is pulled long does not tear by its law.
 #pragma once

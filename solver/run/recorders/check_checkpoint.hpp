@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Does a checkpoint fit the scene that goes on from it? Kernels take its cells and numbers as indices.
 #pragma once
 

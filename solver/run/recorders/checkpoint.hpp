@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // checkpoint.h5: everything from which --restart gives the result of an unbroken run.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Frames in files: one each in a folder of their own while the run goes on, so that a run broken off and resumed ends
 // with the same run.h5.
 #pragma once

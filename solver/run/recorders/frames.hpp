@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Recorder of frames: the points and the thickness of the whole map at chosen times.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Recorder of gauges: thickness, speed and elevation of the surface at points of the map.
 #pragma once
 

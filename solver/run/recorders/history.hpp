@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // History: the numbers of a run over time, written as /history of run.h5.
 #pragma once
 

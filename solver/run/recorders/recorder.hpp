@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What fills the history of a run: recorders, each with a table of columns.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Work done beside the run: one piece at a time, in order, its errors thrown where the next one is started.
 #pragma once
 

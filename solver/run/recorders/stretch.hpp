@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Recorder of points that are stretched beyond what their law bears: no tearing in silence.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Factor of safety by strength reduction (T40), and the mass that fails first.
 #pragma once
 

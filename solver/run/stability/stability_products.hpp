@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a search for the factor of safety leaves behind: maps of the mass that fails, facts, stability.json.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Ground whose strength is divided by a factor (T40), as searches for the factor of safety try it.
 #pragma once
 

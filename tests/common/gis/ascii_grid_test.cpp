@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One small grid in every dialect that is met in the wild; each must read as the same raster, to the bit.
 #include <gtest/gtest.h>
 

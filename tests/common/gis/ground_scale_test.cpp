@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Lengths on the map over lengths on the ground.
 #include "common/gis/ground_scale.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Nothing is fetched, and nothing waited for: what GDAL is let open.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

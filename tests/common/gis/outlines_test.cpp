@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Outlines at thresholds: areas and holes with known answers, and files read back by our reader and by ogrinfo.
 #include "common/gis/outlines.hpp"
 #include "common/gis/polygons.hpp"

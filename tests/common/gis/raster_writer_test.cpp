@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Rasters written block by block.
 #include "common/gis/raster_writer.hpp"
 #include "common/gis/crs.hpp"

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Cutting along cells, and the one rule beyond the edge.
 #include "common/map/crop.hpp"
 #include "common/gis/resampling.hpp"

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Waves taken apart and put together again.
 #include "common/map/fourier.hpp"
 

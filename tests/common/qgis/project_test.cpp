@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A project of QGIS as an XML document: what stands in it, and what QGIS asks of it.
 #include "common/qgis/project.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Styles for QGIS: the classes, and the file as an XML document.
 #include "common/qgis/style.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Paths in messages as the user wrote them, and none that is absolute in what is sent on.
 #include "common/recipe/shown_paths.hpp"
 

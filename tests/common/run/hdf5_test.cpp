@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the layer over HDF5 refuses: datasets of another kind or shape than asked for, and shapes without data.
 #include "common/run/hdf5.hpp"
 

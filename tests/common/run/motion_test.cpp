@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Volume in motion, from the points of run.h5.
 #include "common/run/motion.hpp"
 

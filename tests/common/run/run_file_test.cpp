@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // run.h5: what is written comes back, a foreign tool sees VTKHDF in it, and broken files are named as such.
 #include "common/run/run_file.hpp"
 

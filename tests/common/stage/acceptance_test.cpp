@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What is implausible is refused unless it is accepted by name.
 #include "common/stage/acceptance.hpp"
 

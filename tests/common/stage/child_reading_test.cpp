@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a library does with a broken file stays in the process that reads it.
 #include "common/stage/child_reading.hpp"
 

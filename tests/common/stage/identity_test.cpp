@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Marks of recipes: what counts, what does not, and what is said of a file of another one.
 #include "common/stage/identity.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The end of processes by signals, each in a process of its own: what it wrote, its exit code, what it left.
 #include "common/stage/interrupt.hpp"
 

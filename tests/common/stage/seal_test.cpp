@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A sealed file says of itself whether it is whole.
 #include <gtest/gtest.h>
 

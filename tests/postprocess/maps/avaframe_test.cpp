@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Aliases for AvaFrame: names as it takes them apart, thickness normal to the slope, units, nodata.
 #include "postprocess/maps/avaframe.hpp"
 #include "common/gis/read_raster.hpp"

@@ -1,4 +1,6 @@
 #!/usr/bin/python3
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Breaks copies of a file without faults, one requirement of CF at a time: check_cf.py must find every break.
 
 usage: break_cf.py FILE.nc               breaks that were not found, one a line; exit code 1 if there are any

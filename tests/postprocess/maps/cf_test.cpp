@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The NetCDF file against the list of requirements of the CF conventions, and read by tools that know them.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,6 @@
 #!/usr/bin/python3
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The requirements of the CF conventions 1.8 that bear on a file of gridded maps, one check each, by their sections.
 
 usage: check_cf.py FILE.nc...            faults, one a line; exit code 1 if there are any

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What is written of the mass that fails first: its outline, and the surface under it.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

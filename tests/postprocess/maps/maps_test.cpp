@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // GeoTIFF and NetCDF: what they hold, read by our reader and by tools that are not ours.
 #include <gtest/gtest.h>
 #include <netcdf.h>

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The report's data: what is packed comes back, and the page holds what it should.
 #include "postprocess/report/report.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The survey on disk and the one grid both sides are compared on.
 #include "postprocess/survey/survey.hpp"
 #include "common/gis/crs.hpp"

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The source under an outline: from files to the released mass, and what is refused.
 #include "preprocess/release/outline_source.hpp"
 #include "common/gis/coordinates.hpp"

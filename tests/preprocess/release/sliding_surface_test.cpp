@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The computed sliding surface against closed forms, and what must hold on any ground.
 #include "preprocess/release/sliding_surface.hpp"
 #include "common/map/polygon.hpp"

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Wrong outlines and sliding surfaces of a source, with the message that each prints.
 #include "tests/preprocess/scene.hpp"
 

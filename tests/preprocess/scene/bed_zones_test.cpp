@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Rows of a table of the bed's friction, as rasters.
 #include "preprocess/scene/bed_zones.hpp"
 

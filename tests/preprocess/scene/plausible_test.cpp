@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What is only implausible is refused by name, and goes on where the recipe insists.
 #include "common/gis/crs.hpp"
 #include "data_samples/terrains.hpp"

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Real terrain beside the project (../shared/data, or the folder TALUS_DATA names). Skipped aloud where it is missing.
 #include <algorithm>
 #include <iostream>

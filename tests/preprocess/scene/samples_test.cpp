@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The terrains in data_samples/ are what talus-make-terrain makes.
 #include <map>
 

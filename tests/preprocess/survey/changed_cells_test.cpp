@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Ground that changed is left out, wherever on the map it lies.
 #include "preprocess/survey/changed_cells.hpp"
 

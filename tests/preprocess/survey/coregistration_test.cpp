@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Known shifts of synthetic and real terrain, found again.
 #include "preprocess/survey/coregistration.hpp"
 #include "common/gis/read_raster.hpp"

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Which changed ground belongs to a slide: made ones with split deposits, neighbours and noise, and all pairs of
 // surveys at hand.
 #include <cstdlib>

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Shifts between coarse posts of rough terrain, with their stated errors.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Difference of two surveys: its error, its volumes, what of it is the slide.
 #include "preprocess/survey/survey.hpp"
 #include "common/gis/polygons.hpp"

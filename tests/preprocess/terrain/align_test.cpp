@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Different grids, CRS, extents and registrations brought to one grid.
 #include "common/gis/coordinates.hpp"
 #include "common/gis/crs.hpp"

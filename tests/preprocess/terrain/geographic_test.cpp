@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Elevation models in degrees and in feet, brought to metres on request.
 #include <fmt/format.h>
 

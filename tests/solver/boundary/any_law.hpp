@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What every basal law must hold, whatever it is: checked over a list of laws.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The bed: impulses of a base node.
 #include "solver/boundary/base_friction.hpp"
 

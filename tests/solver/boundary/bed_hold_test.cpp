@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Columns that are held on the ground, and what landing takes of their motion.
 #include "solver/boundary/bed_hold.hpp"
 

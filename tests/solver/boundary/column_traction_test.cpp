@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Drag and cohesion of the bed, which act on columns.
 #include "solver/boundary/column_traction.hpp"
 

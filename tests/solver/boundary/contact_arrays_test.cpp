@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Contact points on a device: what kernels are shown, and the history that a checkpoint keeps.
 #include "solver/boundary/contact_arrays.hpp"
 

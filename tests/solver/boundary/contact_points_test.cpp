@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The points of the ground where it is met between the nodes of a Cartesian grid.
 #include "solver/boundary/contact_points.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Contact points as kernels see them: the law of contact, and which mass a surface is before.
 #include "solver/boundary/contact_view.hpp"
 

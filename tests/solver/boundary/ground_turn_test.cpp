@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How far the ground turns under a node in half a step.
 #include "solver/boundary/ground_turn.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The list of basal laws: what holds for every one of them, and the numbers that rasters give.
 #include "solver/boundary/law.hpp"
 

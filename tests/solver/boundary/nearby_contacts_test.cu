@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Kernels are run once for every contact point of the blocks in use, and for no other.
 #include "solver/boundary/nearby_contacts.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Contact between the nodes: obstacles given as level sets, and the ground of a Cartesian grid met by points.
 #include <algorithm>
 #include <filesystem>

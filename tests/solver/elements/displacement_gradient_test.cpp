@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The displacement gradient at a point: that of a motion which is linear in space is its matrix.
 #include "solver/elements/displacement_gradient.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Elements: the points that share a stencil, and their nodes.
 #include "solver/elements/element_list.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sums over the points of an element: the tiles of the GPU against those of the CPU.
 #include "solver/elements/element_sums.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What couples the points of an element: B-bar and the springs of nearly empty nodes.
 #include "solver/elements/filler_springs.hpp"
 #include "solver/elements/mean_dilation.hpp"

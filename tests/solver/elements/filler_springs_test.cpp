@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The springs (T17a) that hold nearly empty nodes in statics: which nodes they take, and what they do not feel.
 #include "solver/elements/filler_springs.hpp"
 

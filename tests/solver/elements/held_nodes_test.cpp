@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a node has on the diagonal of the system (T19).
 #include "solver/elements/held_nodes.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How explicit steps begin, and how often a GPU sorts its points.
 #include "solver/explicit/explicit_solver.hpp"
 

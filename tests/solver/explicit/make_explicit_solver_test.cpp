@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A solver of explicit steps as it is made for a precision and a shape: a body far above the ground falls freely.
 #include "solver/explicit/make_explicit_solver.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The work of the shaking on a node, among the other sums of a column.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The update of the nodes of one column in an explicit step: gravity, forces, bed, walls, budget and maps.
 #include "solver/explicit/update_columns.hpp"
 

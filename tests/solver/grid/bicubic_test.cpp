@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The surface between the nodes of a Cartesian grid: through its nodes, smooth, exact for planes.
 #include "solver/grid/bicubic.hpp"
 

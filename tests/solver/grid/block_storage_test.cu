@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Which blocks have storage, over which layers, for points at known cells.
 #include "solver/grid/block_storage.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The tables of the terrain as a grid shows them to kernels.
 #include "solver/grid/device_terrain.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Points sorted by home cell: the keys, those that left, and the ranges by block.
 #include "solver/grid/particle_order.hpp"
 

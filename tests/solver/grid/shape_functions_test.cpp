@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Shape functions reproduce positions and linear fields, inside the grid and beside its edges.
 #include "solver/grid/shape_functions.hpp"
 

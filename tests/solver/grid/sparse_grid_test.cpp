@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Order of the points and storage of the sparse grid together, on a scene.
 #include "solver/grid/sparse_grid.hpp"
 

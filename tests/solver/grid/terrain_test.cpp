@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The terrain of a grid on the host: slopes of planes, and where points may be.
 #include "solver/grid/terrain.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How far a point goes in an implicit step, and its state at the end.
 #include "solver/implicit/accept_step.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What holds a node: projectors, counts of changes, and friction with its derivative.
 #include "solver/implicit/constraints.hpp"
 

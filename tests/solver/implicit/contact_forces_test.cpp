@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The force (T12b) of a contact point: it pushes, sticks within Coulomb's cone, slips on it, and has the derivative
 // that goes with that.
 #include "solver/implicit/contact_forces.hpp"

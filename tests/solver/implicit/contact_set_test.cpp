@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The contacts of a step: what holds the nodes at its start, and the stiffness that friction adds.
 #include "solver/implicit/contact_set.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The active set of contacts, node by node: opening, closing, slipping, sticking again.
 #include "solver/implicit/decide_contact.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Over which slip friction grows, from step to step and within one.
 #include "solver/implicit/friction_smoothing.hpp"
 

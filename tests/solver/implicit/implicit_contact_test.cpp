@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Implicit steps with contact, without equilibrium, and of flowing sand.
 #include <algorithm>
 #include <array>

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A step of the implicit solver: its clock and what it reports.
 #include "solver/implicit/implicit_solver.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // An implicit step as Newton's method sees it: its linear system is the derivative of its residual, on particles, bed
 // and grid as they are in a run.
 #include "solver/implicit/implicit_step.hpp"

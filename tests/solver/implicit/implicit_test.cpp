@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Implicit steps of elastic bodies against closed forms, explicit steps and one another.
 #include <numbers>
 #include <numeric>

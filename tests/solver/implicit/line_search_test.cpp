@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The line search alone: which share of a change is taken, and what is left where none is.
 #include "solver/implicit/line_search.hpp"
 

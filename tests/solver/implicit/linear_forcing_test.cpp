@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How exactly linear systems are asked for.
 #include "solver/implicit/linear_forcing.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Newmark's scheme node by node: what it is exact for, statics, damping, remapped displacements.
 #include "solver/implicit/newmark.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Newton's method on toy problems: smooth, with a kink, with a singular tangent, with stick and slip, and without a
 // solution.
 #include "solver/implicit/newton.hpp"

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The node buffers of an implicit step: their sizes, what begins at zero, and what statics goes without.
 #include "solver/implicit/node_fields.hpp"
 

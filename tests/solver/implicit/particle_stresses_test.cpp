@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The internal force of the particles: none without strain, in balance under any, and linear where strains are small.
 #include "solver/implicit/particle_stresses.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The nodes at the start of an implicit step: velocities, loads, what holds them and how contacts begin.
 #include "solver/implicit/prepare_nodes.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The maps that an implicit step leaves of a column of nodes.
 #include "solver/implicit/record_columns.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The unbalanced force of a node, and that the product that closes the tangent is its derivative.
 #include "solver/implicit/residual.hpp"
 

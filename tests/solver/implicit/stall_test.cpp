@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // When the iterations of a step are given up.
 #include "solver/implicit/stall.hpp"
 

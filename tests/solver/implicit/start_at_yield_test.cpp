@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A step of one linear solve that begins with sand on its yield cone: its tangent is that of the way which the nodes
 // are about to go (T17c), not what rounding makes of it.
 #include <gtest/gtest.h>

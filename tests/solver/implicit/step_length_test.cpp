@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The length of implicit steps: over events, after failures, with iterations, and with the way of the farthest point.
 #include "solver/implicit/step_length.hpp"
 

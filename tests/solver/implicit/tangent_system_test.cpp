@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The linear system of a step: every solver of it has the same solution.
 #include "solver/implicit/tangent_system.hpp"
 

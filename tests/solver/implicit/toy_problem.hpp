@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A problem of a few unknowns for Newton's method: dense, solved by factorisation, with a contact per unknown where a
 // test wants that.
 #pragma once

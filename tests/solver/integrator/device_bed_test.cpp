@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The bed's friction beside the grid, in the precision of the kernels.
 #include "solver/integrator/device_bed.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The loads as kernels read them, at one time after the other.
 #include "solver/integrator/device_loads.hpp"
 

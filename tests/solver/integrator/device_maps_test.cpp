@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The running maps on a device: kernels write into what the run started from.
 #include "solver/integrator/device_maps.hpp"
 

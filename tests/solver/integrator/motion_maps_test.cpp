@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Speed and pressure over the map are those of the points: no column exceeds them, however light it is.
 #include "solver/integrator/motion_maps.hpp"
 

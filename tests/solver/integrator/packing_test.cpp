@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How densely points are packed: 1 where they lie as they were released, twice that where two lie in the room of one.
 #include "solver/integrator/packing.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sums and maps over particles that are known.
 #include "solver/integrator/particle_measures.hpp"
 

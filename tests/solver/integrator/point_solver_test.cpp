@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What every integrator has, on a body that is never moved.
 #include "solver/integrator/point_solver.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sums over the points: energies and momentum of a point that are known, and thickness that keeps the volume.
 #include "solver/integrator/point_sums.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Accelerograms: the velocity of the ground between samples, and what is asked of them as a whole.
 #include "solver/integrator/shaking.hpp"
 

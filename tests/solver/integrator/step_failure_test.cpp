@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What is said of a step that no halving could bring to convergence.
 #include "solver/integrator/step_failure.hpp"
 

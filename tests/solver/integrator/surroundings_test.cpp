@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Bed, walls and contact points of a scene in one place.
 #include "solver/integrator/surroundings.hpp"
 

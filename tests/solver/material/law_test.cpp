@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The list of constitutive laws: what holds for every one of them.
 #include "solver/material/law.hpp"
 

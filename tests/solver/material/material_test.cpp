@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Constitutive laws against plain references: eigenvalue forms by Eigen, finite differences of the energy, the cone.
 #include "solver/material/material.hpp"
 

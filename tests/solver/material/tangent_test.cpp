@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Consistent tangents against finite differences, at random states and on the cone.
 #include "solver/material/tangent.hpp"
 

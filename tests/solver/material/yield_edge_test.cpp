@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The tangent of a point that lies on the yield cone, where a step has left it (T17c).
 #include <gtest/gtest.h>
 

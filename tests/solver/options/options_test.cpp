@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What keys of [solve] need of one another, and the texts of the refusals.
 #include "solver/options/solve.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the keys of [solve.shaking] need of one another and of the rest.
 #include "solver/options/shaking.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sorts and sums of integers against those of the standard library.
 #include "solver/parallel/algorithms.hpp"
 

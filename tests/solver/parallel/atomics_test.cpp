@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Atomic updates of one location from many threads, against what a plain loop leaves there.
 #include "solver/parallel/atomics.hpp"
 

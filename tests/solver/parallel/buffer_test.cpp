@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Arrays on devices: sizes, copies both ways, swaps.
 #include "solver/parallel/buffer.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Loops over the layers of columns, on both devices, against a plain loop.
 #include "solver/parallel/columns.hpp"
 

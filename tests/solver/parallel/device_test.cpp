@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Two solvers of one process, each on a device of its own: neither sees the other.
 #include "solver/parallel/device.hpp"
 

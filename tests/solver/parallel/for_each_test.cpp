@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Loops over an index: every index once, and grouped points colour by colour in the order of their blocks.
 #include "solver/parallel/for_each.hpp"
 

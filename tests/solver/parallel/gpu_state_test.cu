@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a GPU's state keeps for the next call; there is none where the program was built without CUDA.
 #include "solver/parallel/macros.hpp"
 #if TALUS_FOR_GPU

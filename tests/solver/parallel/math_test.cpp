@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Vectors and matrices of three against their definitions, on random matrices (fixed seed) and at the awkward ones.
 #include "solver/parallel/math.hpp"
 

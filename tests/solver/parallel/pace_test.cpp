@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Whether a loop goes to all threads or stays on one: by what either takes, and never seen in a result.
 #include "solver/parallel/pace.hpp"
 

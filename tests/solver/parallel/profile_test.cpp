@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // --profile: every kernel of a step by its name, and what it says that it moves.
 #include "solver/parallel/profile.hpp"
 

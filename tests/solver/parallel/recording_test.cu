@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Work that repeats, recorded on a GPU and done as it is given on the CPU.
 #include "solver/parallel/recording.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sums over the terms of every row, on both devices, against a plain loop.
 #include "solver/parallel/rows.hpp"
 

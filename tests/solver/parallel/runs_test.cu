@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Runs of equal keys, on both devices, against a plain loop.
 #include "solver/parallel/runs.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sums that are finished where they are made.
 #include "solver/parallel/sums.hpp"
 #include "tests/solver/scenes.hpp"

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The verbs of Krylov methods on vectors over the nodes, on both devices, against plain loops.
 #include "solver/parallel/vectors.hpp"
 

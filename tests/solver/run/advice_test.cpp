@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a recipe is told that could do better.
 #include "solver/run/advice.hpp"
 

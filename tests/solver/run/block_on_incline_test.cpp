@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Validation B1: a block on an incline accelerates with g (sin t - mu cos t), or stays where mu > tan t.
 #include <limits>
 #include <numbers>

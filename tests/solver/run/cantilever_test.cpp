@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A soft cantilever that gravity bends at once, until its outer fibres are pulled to a multiple of their length.
 #include <algorithm>
 #include <cstdio>

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Steps with inertia implicit along columns: closed forms of a block and a slab in steps that the height of the layers
 // does not bound, and the deposit of explicit steps.
 #include <cmath>

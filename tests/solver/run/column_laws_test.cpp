@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Laws of depth-averaged models on a slab that flows down an incline: speeds, starts and stops of their closed forms,
 // for layers thinner and thicker than the slab, in explicit and in implicit steps.
 #include <cmath>

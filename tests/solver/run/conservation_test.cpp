@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What an explicit step must keep: mass, momentum, angular momentum, a body in free fall.
 #include <algorithm>
 #include <cmath>

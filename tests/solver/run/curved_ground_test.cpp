@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Steps over curved ground: a body that slides without friction keeps its energy however long they are (T12d).
 #include <algorithm>
 #include <cmath>

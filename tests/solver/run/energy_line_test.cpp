@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The energy line of a scene, and how much the ground bends below it.
 #include "solver/run/energy_line.hpp"
 

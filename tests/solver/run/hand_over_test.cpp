@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // From initiation to run-out in one run: a block that rests by Newmark's steps is pushed, and slides by steps implicit
 // along columns.
 #include <gtest/gtest.h>

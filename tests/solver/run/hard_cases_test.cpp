@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Scenes that are hard on purpose (docs/validation.md, C): each ends with the invariant it names.
 #include <cmath>
 #include <cstdio>

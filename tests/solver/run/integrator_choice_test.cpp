@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // integrator = "auto": the choice by work, and what a change of integrator must leave alone.
 #include "solver/run/integrator_choice.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What `--plan` prints: the features that are on, and what the run will cost.
 #include "solver/run/plan.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What hardly any slide does is refused with its numbers, unless the recipe insists on it by name.
 #include "solver/run/plausible.hpp"
 

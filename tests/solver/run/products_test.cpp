@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a run leaves behind: maps and volumes of its end.
 #include "solver/run/products.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a run of explicit steps must give again: the same bits on every CPU run and after a restart, the same slide on a
 // GPU.
 #include <cmath>

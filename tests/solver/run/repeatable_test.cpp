@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // deterministic = true: the same bits on every run, and the same slide.
 #include "solver/integrator/scene.hpp"
 #include "solver/options/solve.hpp"

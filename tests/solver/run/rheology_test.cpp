@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Slabs whose stress depends on the rate of shear, on an incline that holds their base: speeds and angles of the closed
 // forms.
 #include <algorithm>

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a run says of itself at its end.
 #include "solver/run/sanity.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Events of a run: which time comes next, and what is due at a time.
 #include "solver/run/schedule.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Separation of a mass from its bed: what is thrown over a crest, what falls, and what both cost in energy.
 #include <cmath>
 #include <cstdio>

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Ground that shakes: a block slides on its plane as Newmark (1965) says, and a free mass takes up the integral of the
 // accelerogram, with every integrator.
 #include <cmath>

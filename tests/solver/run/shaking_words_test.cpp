@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What is said and refused of an accelerogram before a run, and what follows from it for the run's other numbers.
 #include "solver/run/shaking_words.hpp"
 

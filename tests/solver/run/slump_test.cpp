@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A Bingham dam break on level ground: the shape in which it comes to rest.
 #include <algorithm>
 #include <cmath>

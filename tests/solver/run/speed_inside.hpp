@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The speed of the inside of a slab on a slope, away from its ends.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What integrator = "auto" and accuracy settle before a run: which steps, how long, how stiff, and why.
 #include "solver/run/step_choice.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Steps that do not advance end the run; steps that have collapsed are said.
 #include "solver/run/step_watch.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The steps of a run: from event to event, by whichever integrator.
 #include "solver/run/stepper.hpp"
 

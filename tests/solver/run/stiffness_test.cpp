@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // stiffness = "auto": what it chooses and why, and that the flow stays the same.
 #include <cmath>
 #include <cstdio>

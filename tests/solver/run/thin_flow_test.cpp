@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Thin flows on an incline: a slab under Voellmy's drag reaches the closed form's speed, however it lies in the grid.
 #include <cmath>
 #include <numbers>

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What is said of a recipe whose numbers do not bear out what it asks.
 #include "solver/run/warnings.hpp"
 

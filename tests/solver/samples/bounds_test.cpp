@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Bounds that a slide on the terrains of data_samples/hard_terrains.hpp may not pass: the energy it has fallen through,
 // the drag that is due, its volume, the ground, how densely it is packed.
 #include <algorithm>

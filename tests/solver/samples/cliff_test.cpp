@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A slide that goes over a cliff falls as a stone does, lands on the bench, and goes on below it.
 #include <cmath>
 #include <cstdio>

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The footprint of a thin flow is the terrain's, not that of the grid or of the friction inside.
 #include <cstdio>
 

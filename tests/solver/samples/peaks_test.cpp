@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The maps of peak speed and pressure hold what points did, and no slide is faster than its fall.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Scenes on the terrains of data_samples/hard_terrains.hpp, made in memory, and what is measured of their runs.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The terrains of data_samples/hard_terrains.hpp mirrored and turned: the slide must not know how its map lies.
 #include <cmath>
 #include <cstdio>

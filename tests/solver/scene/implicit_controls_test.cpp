@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The controls of implicit steps are the options of the recipe, each in its place.
 #include "solver/scene/implicit_controls.hpp"
 

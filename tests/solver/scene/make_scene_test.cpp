@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // From a domain to a scene: points on the grid that was made for them, or none.
 #include "solver/scene/make_scene.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the options of a recipe become: SI units, coefficients, laws.
 #include "solver/scene/settings.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The clock as kernels keep it: when maps of speed are recorded, and the fastest point so far.
 #include "solver/state/clock.hpp"
 

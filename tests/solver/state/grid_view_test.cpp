@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Keys that sort points by block, column and layer, and where nodes are stored.
 #include "solver/state/grid_view.hpp"
 

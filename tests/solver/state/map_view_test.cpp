@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The running maps of one column (T25).
 #include "solver/state/map_view.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Every field of the table is stored, sorted, copied to the host and counted; a field that is added is tested with
 // them.
 #include "solver/state/particles.hpp"

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Gradients by position at a point: those of a field that is linear in space are exact, over sloping ground too.
 #include "solver/transfer/point_gradients.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A point's weights on the nodes around it: they hold constants and linear functions exactly, and know the slope of
 // the terrain.
 #include "solver/transfer/stencil.hpp"

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // P2G and G2P against a plain reference: dense sums in double, written from the definitions.
 #include <algorithm>
 #include <map>

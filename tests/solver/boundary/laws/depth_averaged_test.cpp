@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The laws whose numbers come from depth-averaged models, against their published formulas.
 #include <gtest/gtest.h>
 

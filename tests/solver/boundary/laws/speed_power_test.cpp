@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Two laws put into the list behind the solver's own: speed, normal stress and the length of the step reach them.
 #include "tests/solver/boundary/laws/speed_power.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Cholesky against conjugate gradients on random points, states and constraints: its analysis, what it reports, what it
 // refuses.
 #include "solver/linear/direct/cholesky_solver.hpp"

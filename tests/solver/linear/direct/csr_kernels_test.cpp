@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The kernels that number unknowns and place blocks in a sparse matrix, on numbers small enough to check by hand.
 #include "solver/linear/direct/csr_kernels.hpp"
 

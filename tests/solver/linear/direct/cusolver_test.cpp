@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // cuSOLVER is loaded when it is first used, as a whole or not at all.
 #include "solver/linear/direct/cusolver.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A matrix in another order is the same operator.
 #include "solver/linear/direct/renumbered_matrix.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The state of conjugate gradients: when a loop halts, and what a node's step does.
 #include "solver/linear/krylov/cg_kernels.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Both Krylov methods through the one contract (contract.hpp): the same operators and preconditioners, handed over in
 // the same way, to conjugate gradients and to BiCGSTAB.
 #include <gtest/gtest.h>

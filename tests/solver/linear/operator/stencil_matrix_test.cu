@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The assembled stencil: rows and neighbours of the nodes that elements touch.
 #include "solver/linear/operator/stencil_matrix.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The tangent's three forms against one another, on random points, states and constraints.
 #include "solver/linear/operator/tangent_operator.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Storage of coarse grids and the colours of columns.
 #include "solver/linear/preconditioner/block_layout.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The factors of a column of nodes: solved by L D L^T, its blocks give back the vector they were multiplied with.
 #include "solver/linear/preconditioner/column_factors.hpp"
 

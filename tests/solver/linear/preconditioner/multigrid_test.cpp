@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Gauss-Seidel and the V cycle as conjugate gradients need them: symmetric, positive, and nearer to the solution.
 #include "solver/linear/preconditioner/multigrid.hpp"
 

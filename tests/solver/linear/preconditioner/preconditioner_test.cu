@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Preconditioners: the solution does not depend on them, the number of iterations does.
 #include <cstdio>
 

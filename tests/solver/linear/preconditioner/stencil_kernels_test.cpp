@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The kernels between grids: what goes to the finer one is the transpose of what goes to the coarser, (T20).
 #include "solver/linear/preconditioner/stencil_kernels.hpp"
 

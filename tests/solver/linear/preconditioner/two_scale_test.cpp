@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Coarse functions as sums of fine ones (T20): both ways of reading the weights agree, and constants are kept.
 #include "solver/linear/preconditioner/two_scale.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What laws without plastic flow have in common.
 #include "solver/material/laws/elastic.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Herschel-Bulkley mud: its stress at a given rate of shear against the closed form, whatever the step.
 #include "solver/material/laws/herschel_bulkley.hpp"
 

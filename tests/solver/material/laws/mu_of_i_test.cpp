@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // mu(I) rheology: its friction at a given rate of shear against the closed form, whatever the step.
 #include "solver/material/laws/mu_of_i.hpp"
 

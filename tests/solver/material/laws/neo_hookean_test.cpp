@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Neo-Hookean elasticity against its closed form, and that its nominal stress never falls.
 #include "solver/material/laws/neo_hookean.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A checkpoint gives back, bit for bit, all that was written, and other files are refused in words.
 #include "solver/run/recorders/checkpoint.hpp"
 

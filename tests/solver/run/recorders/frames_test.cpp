@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Frames: written beside the run, in run.h5 at its end.
 #include "solver/run/recorders/frames.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Gauges: what they read of a block that slides past, and which are refused.
 #include "solver/run/recorders/gauges.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The history of a run: its columns, and the recorders that fill them.
 #include "solver/run/recorders/history.hpp"
 

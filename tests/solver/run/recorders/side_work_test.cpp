@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Work beside the run: in order, and its errors reach who waits for it.
 #include "solver/run/recorders/side_work.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Points of elastic bodies that are stretched far: counted at every record, and said at the end.
 #include "solver/run/recorders/stretch.hpp"
 

@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Factor of safety against closed forms and a published slope, and the mass that fails.
 #include "solver/run/stability/stability.hpp"
 

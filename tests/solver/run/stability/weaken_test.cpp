@@ -1,3 +1,5 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Strength divided by a factor, and the stiffness that searches compute with.
 #include "solver/run/stability/weaken.hpp"
 
