@@ -103,22 +103,25 @@ test: with-tests ## everything built, every test run
 	@TALUS_REQUIRE_TOOLS=$(if $(filter no,$(SETUP)),,1) \
 	  ctest --test-dir $(BUILD) --output-on-failure --no-tests=error -j $(TEST_JOBS)
 
-check: ## tests under address and undefined-behaviour sanitizers [TESTS=regex: only those]
+check: ## tests under address and undefined-behaviour sanitizers [TESTS=regex: only those] [SLOW=1: all]
 	@$(MAKE) --no-print-directory sanitized PRESET=check
 
-check-threads: ## tests of what runs in threads under the thread sanitizer [TESTS=regex]
+check-threads: ## tests of what runs in threads under the thread sanitizer [TESTS=regex] [SLOW=1]
 	@$(MAKE) --no-print-directory sanitized PRESET=check-threads
 
-# What needs no programs from outside and ends in time under a sanitizer; docs/reliability.md says when it last passed.
-check_tests         := ^(common|preprocess|postprocess|solver|fuzz)[.]
-check-threads_tests := ^(preprocess|postprocess|solver)[.]
-test_programs       := talus-tests-common talus-tests-preprocess talus-tests-postprocess talus-tests-solver talus-replay
+# What needs no programs from outside and ends in time under a sanitizer: of each folder what the label "quick" names,
+# and the replays. docs/reliability.md says when it last passed.
+check_tests            := ^(common|preprocess|postprocess|solver|fuzz)[.]
+check_programs         := $(addprefix talus-tests-,common preprocess postprocess solver) talus-replay
+check-threads_tests    := ^(preprocess|postprocess|solver)[.]
+check-threads_programs := $(addprefix talus-tests-,preprocess postprocess solver)
 
 sanitized: with-tests
-	@cmake --build $(BUILD) -j $(JOBS) --target $(test_programs)
+	@cmake --build $(BUILD) -j $(JOBS) --target $($(PRESET)_programs)
 	@ASAN_OPTIONS=abort_on_error=0 UBSAN_OPTIONS=print_stacktrace=1 \
-	  TSAN_OPTIONS="suppressions=$(CURDIR)/tests/tsan-suppressions.txt second_deadlock_stack=1" \
-	  ctest --test-dir $(BUILD) --output-on-failure --no-tests=error -j $(TEST_JOBS) -R '$(or $(TESTS),$($(PRESET)_tests))'
+	  TSAN_OPTIONS="suppressions=$(CURDIR)/tests/tsan-suppressions.txt second_deadlock_stack=1 report_mutex_bugs=0" \
+	  ctest --test-dir $(BUILD) --output-on-failure --no-tests=error -j $(TEST_JOBS) $(if $(SLOW),,-L 'quick|fuzz') \
+	  -R '$(or $(TESTS),$($(PRESET)_tests))'
 
 fuzz: ## the fuzz targets, with clang, for FUZZ_SECONDS each [FUZZ_SECONDS=60] [TARGETS="recipe run"]
 	@tools/install-dependencies.sh fuzz

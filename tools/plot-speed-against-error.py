@@ -54,8 +54,8 @@ def place(row):
     return float(row["loop_s"]), float(row["elsewhere_than_finest_percent"])
 
 
-def note(axes, row, text):
-    axes.annotate(text, place(row), textcoords="offset points", xytext=(5, 5), fontsize=7.5,
+def note(axes, row, text, below=False):
+    axes.annotate(text, place(row), textcoords="offset points", xytext=(5, -11 if below else 5), fontsize=7.5,
                   color=COLOURS[row["method"]])  # fmt: skip
 
 
@@ -77,22 +77,28 @@ def draw(axes, rows):
             line = sorted(line, key=lambda row: float(row["loop_s"]))
         step = ", over its step" if swept else f", {LINES[method]} CFL, over the grids"
         axes.plot(*zip(*map(place, line)), "o-", color=colour, markersize=6, label=NAMES[method] + step)
-        for row in line:
+        for number, row in enumerate(line):
             if swept:
-                note(axes, row, f"{row['asked']} CFL")
+                note(axes, row, f"{row['asked']} CFL", below=number % 2 == 1)  # steps of like cost lie side by side
             elif method != "column-implicit":  # whose grids are those of its neighbour
                 note(axes, row, grid_of(row))
         others = [row for row in runs if row not in line]
         if others:
             axes.plot(*zip(*map(place, others)), "o", color=colour, markersize=4, markerfacecolor="white")
+    axes.plot([], [], "o", color="#777777", markersize=4, markerfacecolor="white", label="other lengths of step")
     axes.set_xscale("log")
     axes.set_yscale("log")
     plain_ticks(axes.xaxis, [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50])
     plain_ticks(axes.yaxis, [0.5, 1, 2, 3, 5, 10, 20, 30])
-    axes.margins(x=0.12, y=0.12)
+    axes.margins(x=0.16, y=0.12)  # names stand to the right of their marks
     axes.set_xlabel("time of the steps [s]")
     axes.grid(color="#dddddd")
     axes.set_axisbelow(True)
+
+
+def legend_below(axes):
+    """Under the axis, where it hides no point."""
+    axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.13), ncol=2, frameon=False)
 
 
 def main():
@@ -112,17 +118,17 @@ def main():
         draw(axis, of(rows, name))
         axis.set_ylabel(label)
         axis.set_title(title, loc="left", fontweight="bold")
-    axes[0].legend(fontsize=8, loc="upper left")
-    figure.supxlabel(f"{machine}, {commit}; small marks: other lengths of step", fontsize=8)
+    legend_below(axes[0])
+    figure.supxlabel(f"{machine}, {commit}", fontsize=8)
     PICTURE.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(PICTURE)
     print(PICTURE)
-    figure, axis = plt.subplots(figsize=(7.5, 4), dpi=110, layout="constrained")
+    figure, axis = plt.subplots(figsize=(7.5, 4.6), dpi=110, layout="constrained")
     draw(axis, of(rows, "Frank Slide"))
     axis.set_ylabel("deposit elsewhere [%]")
     axis.set_title("Frank Slide: error over time to solution", loc="left", fontweight="bold")
     axis.set_ylim(1, 50)
-    axis.legend(fontsize=8, loc="upper left")
+    legend_below(axis)
     figure.savefig(PICTURE.with_name("headline.png"))
     print(PICTURE.with_name("headline.png"))
 

@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "common/domain/write_grids.hpp"
 #include "common/error.hpp"
 #include "common/stage/checksum.hpp"
 #include "common/stage/child_reading.hpp"
@@ -256,7 +257,7 @@ void write_level_sets(const fs::path& file, const std::vector<SolidBody>& bodies
   }
   PendingFile pending(file);
   try {
-    openvdb::io::File(pending.path().string()).write(grids);
+    write_grids(pending.path(), file, grids);
   } catch (const openvdb::Exception& error) {
     throw DataError(write_fault(file, error.what()));
   }

@@ -5,6 +5,7 @@
 #include <openvdb/openvdb.h>
 
 #include "common/domain/point_grid.hpp"
+#include "common/domain/write_grids.hpp"
 #include "common/stage/stage.hpp"
 #include "common/stage/write_fault.hpp"
 
@@ -37,9 +38,7 @@ void write_point_file(const std::filesystem::path& path, const PointFile& points
     sorted.grid()->setName("points");
     sorted.grid()->insertMeta("time_s", openvdb::DoubleMetadata(points.time));
     sorted.grid()->insertMeta("run_id", openvdb::StringMetadata(points.run_id));
-    openvdb::io::File file(pending.path().string());
-    file.write({sorted.grid()});
-    file.close();
+    write_grids(pending.path(), path, {sorted.grid()});
   } catch (const openvdb::Exception& error) {
     throw DataError(write_fault(path, error.what()));
   }

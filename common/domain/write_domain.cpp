@@ -7,6 +7,7 @@
 #include "common/domain/domain.hpp"
 #include "common/domain/domain_layout.hpp"
 #include "common/domain/point_grid.hpp"
+#include "common/domain/write_grids.hpp"
 #include "common/map/bilinear.hpp"
 #include "common/stage/checksum.hpp"
 #include "common/stage/stage.hpp"
@@ -159,7 +160,7 @@ void write_domain(const fs::path& file, const Domain& domain) {
       grids.push_back(sheet<openvdb::DoubleGrid>(domain, raster, (layout::bed_prefix + name).c_str(),
                                                  [](double cell) { return cell; }));
     }
-    openvdb::io::File(pending.path().string()).write(grids, metadata_of(domain));
+    write_grids(pending.path(), file, grids, metadata_of(domain));
   } catch (const openvdb::Exception& error) {
     throw DataError(write_fault(file, error.what()));
   }

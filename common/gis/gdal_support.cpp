@@ -13,6 +13,10 @@
 
 #include "common/stage/stage.hpp"
 
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/lsan_interface.h>
+#endif
+
 namespace talus::gdal {
 namespace fs = std::filesystem;
 namespace {
@@ -41,6 +45,9 @@ void start() {
   static std::once_flag once;
   std::call_once(once, [] {
     use_bundled_data();
+#ifdef __SANITIZE_ADDRESS__
+    const __lsan::ScopedDisabler what_gdal_never_frees;  // its file systems, once others stand in their place
+#endif
     GDALAllRegister();
     close_the_network();
     // GDAL would keep a twentieth of all memory of cells it has read; large rasters are read here once, by windows.

@@ -124,13 +124,14 @@ void* refuse_to_open(void*, const char* name, const char*) {
 }
 
 void close_file_system(const char* prefix) {
+  static auto& kept = *new std::set<std::string>;  // GDAL keeps the pointer to the end, not the text
   VSIFilesystemPluginCallbacksStruct* calls = VSIAllocFilesystemPluginCallbacksStruct();
   calls->open = refuse_to_open;
   calls->tell = [](void*) -> vsi_l_offset { return 0; };
   calls->seek = [](void*, vsi_l_offset, int) { return -1; };
   calls->read = [](void*, void*, std::size_t, std::size_t) -> std::size_t { return 0; };
   calls->close = [](void*) { return 0; };
-  VSIInstallPluginHandler(prefix, calls);
+  VSIInstallPluginHandler(kept.insert(prefix).first->c_str(), calls);
   VSIFreeFilesystemPluginCallbacksStruct(calls);
 }
 

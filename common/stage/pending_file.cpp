@@ -31,6 +31,18 @@ int sync_to_disk(const fs::path& path, int flags) {
   return synced != 0 ? synced : closed;
 }
 
+/// Forces what was renamed, made or removed in a folder to the disk. Some file systems refuse to sync a folder, or to
+/// open one that may only be written to: then there is no more to do. All else is a fault: a power cut could undo it.
+void sync_folder(const fs::path& folder) {
+  const fs::path place = folder.empty() ? fs::path(".") : folder;
+  const int code = sync_to_disk(place, O_RDONLY | O_DIRECTORY);
+  for (const int refused : {0, EINVAL, ENOTSUP, ENOSYS, EBADF, EACCES, EPERM})
+    if (code == refused) return;
+  Fault fault = write_fault(place, reason_of(code));
+  fault.what = place.string() + ": the folder cannot be saved; after a power cut it may be as it was before";
+  throw DataError(fault);
+}
+
 /// ".NAME."
 std::string stem_of_partials(const fs::path& file) { return "." + file.filename().string() + "."; }
 
@@ -86,8 +98,7 @@ void PendingFile::commit() {
   if (::rename(partial_.c_str(), final_.c_str()) != 0) throw DataError(write_fault(final_, reason_of(errno)));
   committed_ = true;
   spare(partial_);
-  // The rename itself lives in the folder; some file systems refuse to sync folders, and then there is no more to do.
-  sync_to_disk(final_.has_parent_path() ? final_.parent_path() : fs::path("."), O_RDONLY | O_DIRECTORY);
+  sync_folder(final_.parent_path());  // where the rename itself lives
 }
 
 void make_folder(const fs::path& folder) {
@@ -99,13 +110,12 @@ void make_folder(const fs::path& folder) {
   if (error)
     throw DataError(
         {folder.string() + ": the folder cannot be made", error.message(), "Choose another one with --out DIR"});
-  sync_to_disk(above.empty() ? fs::path(".") : above, O_RDONLY | O_DIRECTORY);
+  sync_folder(above);
 }
 
 void remove_for_good(const fs::path& file) {
   std::error_code none_there;
-  if (fs::remove(file, none_there))
-    sync_to_disk(file.has_parent_path() ? file.parent_path() : fs::path("."), O_RDONLY | O_DIRECTORY);
+  if (fs::remove(file, none_there)) sync_folder(file.parent_path());
 }
 
 void write_text(const fs::path& path, const std::string& text) {

@@ -75,7 +75,7 @@ class PendingFile {
   ~PendingFile();
   const std::filesystem::path& path() const { return partial_; }  ///< write here
   const std::filesystem::path& final_path() const { return final_; }
-  void commit();  ///< throws DataError when the file cannot be synced or renamed (disk full)
+  void commit();  ///< throws DataError when it cannot be synced or renamed (disk full), or its folder not synced
 
  private:
   std::filesystem::path final_, partial_;
@@ -86,7 +86,7 @@ class PendingFile {
 /// written there does not lose the folder. Throws DataError.
 void make_folder(const std::filesystem::path& folder);
 
-/// Removes a file, and forces its absence to the disk: what it counted on may go next. No fault where there is none.
+/// Removes a file, if there is one, and forces its absence to the disk: what it counted on may go. Throws DataError.
 void remove_for_good(const std::filesystem::path& file);
 
 /// Write a text file whole, aside and renamed. Throws DataError with the path and the system's reason.

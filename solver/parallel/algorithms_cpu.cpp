@@ -11,6 +11,7 @@
 
 #include "common/stage/machine.hpp"
 #include "solver/parallel/algorithms.hpp"
+#include "solver/parallel/loop_order.hpp"
 #include "solver/parallel/pace.hpp"
 
 namespace talus {
@@ -29,6 +30,19 @@ double sum_of_products(const double* a, const double* b, int begin, int end) {
   for (int i = begin; i < end; ++i) total += a[i] * b[i];
   return total;
 }
+
+/// Adds some of the products to a sum.
+struct Products {
+  const detail::LoopOrder* order;
+  const double *a, *b;
+
+  TALUS_HANDED_OVER double operator()(const tbb::blocked_range<int>& range, double total) const {
+    order->begin_piece();
+    total += sum_of_products(a, b, range.begin(), range.end());
+    order->end_piece();
+    return total;
+  }
+};
 
 }  // namespace
 
@@ -69,12 +83,10 @@ double inner_product(const CpuDevice&, const double* a, const double* b, int cou
   if (count <= leaf) return alone();
   static const char kind = 0;
   return detail::paced(&kind, count, alone, [=] {
+    const detail::LoopOrder order;
     return tbb::parallel_deterministic_reduce(
-        tbb::blocked_range<int>(0, count, leaf), 0.0,
-        [=](const tbb::blocked_range<int>& range, double total) {
-          return total + sum_of_products(a, b, range.begin(), range.end());
-        },
-        [](double x, double y) { return x + y; }, tbb::simple_partitioner());
+        tbb::blocked_range<int>(0, count, leaf), 0.0, Products{&order, a, b}, [](double x, double y) { return x + y; },
+        tbb::simple_partitioner());
   });
 }
 

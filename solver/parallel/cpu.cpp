@@ -8,6 +8,7 @@
 #include <new>
 
 #include "solver/parallel/for_each.hpp"
+#include "solver/parallel/loop_order.hpp"
 #include "solver/parallel/pace.hpp"
 
 namespace talus {
@@ -27,6 +28,23 @@ void upload(const CpuDevice&, void* to, const void* host, std::size_t bytes) { s
 void download(const CpuDevice&, void* host, const void* from, std::size_t bytes) { std::memcpy(host, from, bytes); }
 void fill_zero(const CpuDevice&, void* memory, std::size_t bytes) { std::memset(memory, 0, bytes); }
 
+namespace {
+
+/// Some pieces of a loop.
+struct Pieces {
+  const LoopOrder* order;
+  void (*body)(const void*, int, int);
+  const void* kernel;
+
+  TALUS_HANDED_OVER void operator()(const tbb::blocked_range<int>& range) const {
+    order->begin_piece();
+    body(kernel, range.begin(), range.end());
+    order->end_piece();
+  }
+};
+
+}  // namespace
+
 void cpu_parallel(int count, int grain, void (*body)(const void*, int, int), const void* kernel) {
   if (count <= 0) return;
   if (count <= grain) {
@@ -36,8 +54,9 @@ void cpu_parallel(int count, int grain, void (*body)(const void*, int, int), con
   paced(
       reinterpret_cast<const void*>(body), count, [=] { body(kernel, 0, count); },
       [=] {
+        const LoopOrder order;
         tbb::parallel_for(tbb::blocked_range<int>(0, count, static_cast<std::size_t>(grain)),
-                          [=](const tbb::blocked_range<int>& range) { body(kernel, range.begin(), range.end()); });
+                          Pieces{&order, body, kernel});
       });
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/gis/raster_file.hpp"
 #include "common/gis/crs.hpp"
+#include "common/gis/gdal_support.hpp"
 #include "common/gis/geotiff.hpp"
 #include "common/gis/read_raster.hpp"
 
@@ -26,7 +27,7 @@ using test::random_raster;
 using test::small_raster;
 
 struct Opened : test::Workshop {
-  void SetUp() override { GDALAllRegister(); }
+  void SetUp() override { const gdal::QuietErrors starts_gdal; }
 };
 
 /// Every window of a raster must hold what the whole holds there.
@@ -109,8 +110,14 @@ TEST_F(Opened, windows_of_a_huge_raster_take_little_memory) {
   const RasterFile huge(file("huge.tif"));
   for (int row = 0; row < 20000; row += 1000) EXPECT_EQ(huge.read({0, row, 20000, 10}).at(19999, 9), 0);
   EXPECT_EQ(huge.read({12300, 9800, 100, 100}).at(45, 76), 77);
-  // The whole is 3200 MB. A window is 1.6 MB; the cache of blocks may grow to 128 MB.
-  EXPECT_LT(peak_kilobytes() - before, 200 * 1024);
+  // The whole is 3200 MB. A window is 1.6 MB; the cache of blocks may grow to 128 MB. The address sanitizer keeps as
+  // much again of what was freed.
+#ifdef __SANITIZE_ADDRESS__
+  constexpr long most = 600 * 1024;
+#else
+  constexpr long most = 200 * 1024;
+#endif
+  EXPECT_LT(peak_kilobytes() - before, most);
 }
 
 TEST_F(Opened, a_window_beyond_the_raster_is_a_bug) {
