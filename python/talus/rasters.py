@@ -19,7 +19,9 @@ def on_map(values, west, south, cell, unit, title, crs_wkt, name=None):
     dimensions = ("time", "y", "x")[-len(values.shape):]
     attributes = {"units": unit, "long_name": title, "grid_mapping": "spatial_ref", "cell_m": float(cell)}
     coordinates = {"y": y, "x": x, "spatial_ref": reference}
-    return xarray.DataArray(xarray.Variable(dimensions, values, attributes), coordinates, name=name)
+    # A Dataset leaves on disk what is read when it is looked at; the constructor of DataArray reads it.
+    whole = xarray.Dataset({"values": xarray.Variable(dimensions, values, attributes)}, coordinates)
+    return whole["values"].rename(name)
 
 
 def _axis(standard_name, title):
