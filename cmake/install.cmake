@@ -27,6 +27,10 @@ install(FILES ${CMAKE_BINARY_DIR}/installed.mk DESTINATION ${TALUS_SHARE}/pipeli
 install(DIRECTORY data_samples/ DESTINATION ${TALUS_SHARE}/data_samples COMPONENT runtime FILES_MATCHING
   PATTERN "*.tif" PATTERN "*.geojson" PATTERN "*.csv" PATTERN README.md)
 
+# For Python: PYTHONPATH=PREFIX/share/talus/python (docs/python.md).
+install(DIRECTORY python/talus python/examples DESTINATION ${TALUS_SHARE}/python COMPONENT runtime FILES_MATCHING
+  PATTERN "*.py" PATTERN __pycache__ EXCLUDE)
+
 install(DIRECTORY ${TALUS_STYLES}/ DESTINATION ${TALUS_SHARE}/styles COMPONENT runtime)
 foreach(_name IN LISTS TALUS_MANUAL_PAGES)
   install(FILES ${TALUS_MANUALS}/man/${_name}.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime)

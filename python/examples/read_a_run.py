@@ -40,6 +40,8 @@ def draw(deposit, picture):
 
     axes = deposit.where(deposit > 0.1).plot(cmap="viridis").axes
     axes.set_aspect("equal")
+    axes.ticklabel_format(style="plain", useOffset=False)
+    axes.locator_params(nbins=5)
     axes.set_title("Deposit")
     pyplot.savefig(picture, dpi=150)
     print(picture)

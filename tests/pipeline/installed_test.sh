@@ -132,7 +132,8 @@ test_styles_documents_and_licences_are_installed() {
     done
   fi
   for file in share/talus/styles/thick/deposit_thickness.qml share/talus/styles/thin/peak_speed.qml \
-    share/talus/styles/thick/terrain.qml share/doc/talus/LICENSE share/doc/talus/docs/user-guide.md; do
+    share/talus/styles/thick/terrain.qml share/talus/python/talus/__init__.py \
+    share/talus/python/examples/read_a_run.py share/doc/talus/LICENSE share/doc/talus/docs/user-guide.md; do
     [[ -s prefix/$file ]] || fail "$file was not installed"
   done
   compgen -G 'prefix/share/doc/talus*/copyright' >/dev/null || fail "no copyright file was installed"
