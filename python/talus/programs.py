@@ -49,7 +49,7 @@ def find_program(name, programs=None):
         if found is None:
             raise TalusError(f"{programs}: there is no program {name} in it. Name the folder that holds {name}")
         return os.path.abspath(found)
-    package = pathlib.Path(__file__).resolve().parent  # python/talus of a checkout, or below share/talus where installed
+    package = pathlib.Path(__file__).resolve().parent  # python/talus of a checkout, or share/talus/python/talus
     beside = [package / "../../build/bin", package / "../../../../bin"]
     found = next(filter(None, (shutil.which(name, path=str(folder)) for folder in beside)), None) or shutil.which(name)
     if found is None:

@@ -3,6 +3,10 @@
 """Runs the programs, and what they refuse."""
 import os
 import pathlib
+import signal
+import subprocess
+import sys
+import time
 import unittest
 import warnings
 
@@ -39,6 +43,21 @@ class ProgramsTest(unittest.TestCase):
             talus.run(RECIPE, HERE / "refused", set={"preprocess.after_dem": pathlib.Path("none.asc")}, on="cpu")
         self.assertEqual(caught.exception.code, 3)
         self.assertIn("none.asc", str(caught.exception))
+
+    def test_an_interrupted_call_leaves_a_checkpoint_and_no_program(self):
+        out = HERE / "interrupted"
+        asked = {"solve.end_time_s": 1e4, "solve.checkpoint_interval_s": 0.1}
+        words = f"import talus; talus.run({str(RECIPE)!r}, {str(out)!r}, set={asked}, on='cpu')"
+        with subprocess.Popen([sys.executable, "-W", "ignore", "-c", words], stderr=subprocess.PIPE, text=True) as call:
+            limit = time.monotonic() + 120
+            while not (out / "checkpoint.h5").exists() and call.poll() is None and time.monotonic() < limit:
+                time.sleep(0.02)
+            call.send_signal(signal.SIGINT)
+            _, said = call.communicate(timeout=120)
+        self.assertIn("KeyboardInterrupt", said)
+        self.assertTrue((out / "checkpoint.h5").exists())
+        self.assertFalse((out / "run.h5").exists())
+        self.assertFalse((out / ".talus.lock").exists(), "a program is still at work there")
 
     def test_programs_that_are_not_there_are_said(self):
         with self.assertRaisesRegex(talus.TalusError, "there is no program talus in it"):
