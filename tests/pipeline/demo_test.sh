@@ -32,7 +32,7 @@ test_make_demo_runs_this_pipeline() {
 
 test_make_demo_installs_nothing_for_tests() {
   local packages
-  expect_exit 0 make -n -C "$TALUS_SOURCE" demo BUILD="$TALUS_BUILD"
+  expect_exit 0 make -n -C "$TALUS_SOURCE" demo BUILD="$TALUS_BUILD" OUT="$TALUS_SCRATCH/out"
   grep -qE 'tools/install-dependencies\.sh *$' stdout || fail "make demo installs: $(grep install- stdout)"
   grep -q 'minutes on' stdout || fail "make demo does not say how long it takes"
   expect_exit 0 make -n -C "$TALUS_SOURCE" test BUILD="$TALUS_BUILD"
