@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <new>
 #include <stdexcept>
 
 #ifdef __SANITIZE_ADDRESS__
@@ -41,6 +42,12 @@ void set_font(cairo_t* cairo, const TextStyle& style) {
   cairo_select_font_face(cairo, font, CAIRO_FONT_SLANT_NORMAL,
                          style.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
   cairo_set_font_size(cairo, style.size);
+}
+
+/// Cairo draws no more after a fault, and says so only when asked.
+void require_drawn(cairo_status_t status) {
+  if (status == CAIRO_STATUS_NO_MEMORY) throw std::bad_alloc();
+  if (status != CAIRO_STATUS_SUCCESS) throw std::runtime_error(std::string("Cairo: ") + cairo_status_to_string(status));
 }
 
 }  // namespace
@@ -140,6 +147,7 @@ void Canvas::clip(const Box& box) {
 void Canvas::unclip() { cairo_restore(handles_->cairo); }
 
 std::string Canvas::pixels() const {
+  require_drawn(cairo_status(handles_->cairo));
   cairo_surface_flush(handles_->surface);
   const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(handles_->surface));
   const auto* data = reinterpret_cast<const char*>(cairo_image_surface_get_data(handles_->surface));
@@ -159,8 +167,8 @@ std::string Canvas::png() {
     static_cast<std::string*>(closure)->append(reinterpret_cast<const char*>(data), length);
     return CAIRO_STATUS_SUCCESS;
   };
-  const auto status = cairo_surface_write_to_png_stream(handles_->surface, write, &bytes);
-  if (status != CAIRO_STATUS_SUCCESS) throw std::runtime_error(std::string("Cairo: ") + cairo_status_to_string(status));
+  require_drawn(cairo_status(handles_->cairo));
+  require_drawn(cairo_surface_write_to_png_stream(handles_->surface, write, &bytes));
   return bytes;
 }
 

@@ -65,7 +65,7 @@ class Canvas {
   void clip(const Box& box);
   /// Ends the limit that clip() set.
   void unclip();
-  /// The picture as a PNG file's bytes.
+  /// The picture as a PNG file's bytes. Throws where something could not be drawn, as pixels() does.
   std::string png();
   /// The picture as bytes: blue, green, red and one that is not used, row by row from the top.
   std::string pixels() const;

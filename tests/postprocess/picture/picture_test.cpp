@@ -226,5 +226,15 @@ TEST(Picture, draws_a_bare_polygon_and_shortens_a_long_name) {
   EXPECT_GT(blue_pixels(run, survey), 2000);
 }
 
+// Cairo draws nothing more after a fault; a font that no memory was left for once emptied a map in silence.
+TEST(Canvas, what_could_not_be_drawn_is_no_picture) {
+  Canvas canvas(20, 20);
+  canvas.fill(Box{0, 0, 10, 10}, {0, 0, 0});
+  EXPECT_NO_THROW(canvas.png());
+  canvas.text("\xff", 1, 15, {});  // not UTF-8: a fault that a test can have
+  EXPECT_THROW(canvas.png(), std::runtime_error);
+  EXPECT_THROW(canvas.pixels(), std::runtime_error);
+}
+
 }  // namespace
 }  // namespace talus::postprocess
