@@ -10,6 +10,7 @@
 #include "common/run/check_values.hpp"
 #include "common/run/hdf5.hpp"
 #include "common/run/history_group.hpp"
+#include "common/run/run_facts.hpp"
 #include "common/run/run_file.hpp"
 #include "common/run/run_layout.hpp"
 #include "common/run/trusted_file.hpp"
@@ -115,10 +116,7 @@ RunSummary read_summary(const h5::File& file) {
     h5::check_values<double>(file, "/profile/" + phase, seconds, h5::not_negative);
     summary.profile.emplace_back(phase, seconds.front());
   }
-  for (const auto& name : file.children("/provenance")) {
-    const auto group = "/provenance/" + name;
-    summary.provenance.emplace_back(file.text(group, "key"), file.text(group, "value"));
-  }
+  summary.provenance = run_facts(file);
   return summary;
 }
 

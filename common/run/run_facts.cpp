@@ -7,11 +7,14 @@
 namespace talus {
 
 Facts run_facts(const std::filesystem::path& file) {
-  const h5::TrustedFile trusted = h5::open_trusted(file, {file, "Run talus-solve again"});
+  return run_facts(h5::open_trusted(file, {file, "Run talus-solve again"}).file);
+}
+
+Facts run_facts(const h5::File& file) {
   Facts facts;
-  for (const auto& name : trusted.file.children("/provenance")) {
+  for (const auto& name : file.children("/provenance")) {
     const auto group = "/provenance/" + name;
-    facts.emplace_back(trusted.file.text(group, "key"), trusted.file.text(group, "value"));
+    facts.emplace_back(file.text(group, "key"), file.text(group, "value"));
   }
   return facts;
 }

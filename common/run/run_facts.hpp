@@ -9,7 +9,14 @@
 
 namespace talus {
 
+namespace h5 {
+class File;
+}
+
 /// The provenance of a run. Throws DataError: missing, damaged.
 Facts run_facts(const std::filesystem::path& file);
+
+/// The same, of a file that is open.
+Facts run_facts(const h5::File& file);
 
 }  // namespace talus
