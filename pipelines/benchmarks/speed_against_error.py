@@ -219,15 +219,32 @@ def command(words, log):
         return code, time.monotonic() - begun
 
 
+def make_domain(arguments, home, scene):
+    """Makes the domain of a scene in the folder `home`, where there is none yet."""
+    if (home / "domain.vdb").exists():
+        return
+    write(home / "recipe.toml", recipe_of(scene))
+    words = [arguments.bin / "talus-preprocess", home / "recipe.toml", "--out", home]
+    if command(words, home / "log")[0] != 0:
+        sys.exit((home / "log").read_text(encoding="utf-8"))
+
+
+def solve(arguments, home):
+    """Solves the recipe in the folder `home`, where that was not done yet."""
+    if (home / "run.h5").exists() or (home / "failed").exists():
+        return
+    words = [arguments.bin / "talus-solve", home / "recipe.toml", "--out", home, "--on", arguments.on]
+    code, seconds = command(words, home / "log")
+    (home / "time.json").write_text(json.dumps({"process_s": seconds}), encoding="utf-8")
+    if code != 0:
+        (home / "failed").touch()
+    print(f"{home.name}: {seconds:.2f} s" + (f", exit code {code}" if code else ""), flush=True)
+
+
 def prepare(arguments, chosen):
     os.environ["TALUS_DATA"] = str(arguments.data.resolve())
     for _, scene, method in chosen:
-        home = arguments.out / "domains" / scene.place()
-        if not (home / "domain.vdb").exists():
-            write(home / "recipe.toml", recipe_of(scene))
-            words = [arguments.bin / "talus-preprocess", home / "recipe.toml", "--out", home]
-            if command(words, home / "log")[0] != 0:
-                sys.exit((home / "log").read_text(encoding="utf-8"))
+        make_domain(arguments, arguments.out / "domains" / scene.place(), scene)
         recipe = recipe_of(scene, method)
         solve = recipe["solve"] | {"domain": f"../domains/{scene.place()}/domain.vdb"}
         recipe = {"scene": recipe["scene"], "solve": solve}
@@ -236,15 +253,7 @@ def prepare(arguments, chosen):
 
 def run(arguments, chosen):
     for _, scene, method in chosen:
-        home = folder_of(arguments.out, scene, method)
-        if (home / "run.h5").exists() or (home / "failed").exists():
-            continue
-        words = [arguments.bin / "talus-solve", home / "recipe.toml", "--out", home, "--on", arguments.on]
-        code, seconds = command(words, home / "log")
-        (home / "time.json").write_text(json.dumps({"process_s": seconds}), encoding="utf-8")
-        if code != 0:
-            (home / "failed").touch()
-        print(f"{home.name}: {seconds:.2f} s" + (f", exit code {code}" if code else ""), flush=True)
+        solve(arguments, folder_of(arguments.out, scene, method))
 
 
 class Deposit:
@@ -294,6 +303,24 @@ def deposit_of(home):
     return Deposit(home) if (home / "run.h5").exists() else None
 
 
+def cost_of(home, deposit):
+    """What a run was made with, and what it took."""
+    facts, history = deposit.facts, deposit.history
+    text = lambda value: value.decode() if isinstance(value, bytes) else str(value)
+    return {
+        "commit": text(facts["version"]).split("(")[-1].rstrip(")"),
+        "machine": text(facts["on"]),
+        "points": int(facts["particles"]),
+        "steps": int(facts["steps"]),
+        "newton_iterations": int(history["newton_iterations"][-1]),
+        "linear_iterations": int(history["linear_iterations"][-1]),
+        "steps_cut": int(history["step_cuts"][-1]),
+        "loop_s": f"{float(facts['wall_time_s']):.3f}",
+        "process_s": f"{json.loads((home / 'time.json').read_text())['process_s']:.3f}",
+        "memory_bytes": f"{float(facts['memory_bytes']):.0f}",
+    }
+
+
 def row_of(arguments, name, scene, method, finest, plain, coarsest_cell):
     home = folder_of(arguments.out, scene, method)
     deposit = deposit_of(home)
@@ -303,24 +330,12 @@ def row_of(arguments, name, scene, method, finest, plain, coarsest_cell):
     }  # fmt: skip
     if deposit is None:
         return row | {"steps": "failed"}
-    facts, history = deposit.facts, deposit.history
-    text = lambda value: value.decode() if isinstance(value, bytes) else str(value)
-    over = history["step_over_cfl"]
+    over = deposit.history["step_over_cfl"]
     with open(home / "solve.used.toml", "rb") as file:
         modulus = tomllib.load(file)["solve"]["material"]["youngs_modulus_Pa"]
-    row |= {
-        "commit": text(facts["version"]).split("(")[-1].rstrip(")"),
-        "machine": text(facts["on"]),
+    row |= cost_of(home, deposit) | {
         "youngs_modulus_Pa": f"{modulus:.3g}",
-        "points": int(facts["particles"]),
-        "steps": int(facts["steps"]),
-        "newton_iterations": int(history["newton_iterations"][-1]),
-        "linear_iterations": int(history["linear_iterations"][-1]),
-        "steps_cut": int(history["step_cuts"][-1]),
         "step_over_cfl_mean": f"{over[over > 0].mean():.3g}" if (over > 0).any() else "",
-        "loop_s": f"{float(facts['wall_time_s']):.3f}",
-        "process_s": f"{json.loads((home / 'time.json').read_text())['process_s']:.3f}",
-        "memory_bytes": f"{float(facts['memory_bytes']):.0f}",
     }
     if finest is not None:
         row["elsewhere_than_finest_percent"] = f"{deposit.elsewhere(finest, coarsest_cell):.2f}"

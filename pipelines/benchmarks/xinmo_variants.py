@@ -11,7 +11,6 @@ also solved in the paper's own steps of 1e-4 s, and their cost carried on to the
 writes OUT/xinmo-variants.csv (Debian: python3-h5py). The three may be done on different machines.
 """
 import argparse
-import copy
 import csv
 import json
 import pathlib
@@ -53,28 +52,16 @@ COLUMNS = [
 
 
 def prepare(arguments, chosen):
-    home = arguments.out / "domain"
-    if not (home / "domain.vdb").exists():
-        runs.write(home / "recipe.toml", runs.recipe_of(SCENE))
-        if runs.command([arguments.bin / "talus-preprocess", home / "recipe.toml", "--out", home], home / "log")[0]:
-            sys.exit((home / "log").read_text(encoding="utf-8"))
+    runs.make_domain(arguments, arguments.out / "domain", SCENE)
     for name, variant in chosen.items():
-        recipe = copy.deepcopy(runs.recipe_of(SCENE, variant))
+        recipe = runs.recipe_of(SCENE, variant)
         recipe["solve"]["domain"] = "../domain/domain.vdb"
         runs.write(arguments.out / name / "recipe.toml", {"scene": recipe["scene"], "solve": recipe["solve"]})
 
 
 def run(arguments, chosen):
     for name in chosen:
-        home = arguments.out / name
-        if (home / "run.h5").exists() or (home / "failed").exists():
-            continue
-        words = [arguments.bin / "talus-solve", home / "recipe.toml", "--out", home, "--on", arguments.on]
-        code, seconds = runs.command(words, home / "log")
-        (home / "time.json").write_text(json.dumps({"process_s": seconds}), encoding="utf-8")
-        if code:
-            (home / "failed").touch()
-        print(f"{name}: {seconds:.2f} s" + (f", exit code {code}" if code else ""), flush=True)
+        runs.solve(arguments, arguments.out / name)
 
 
 def shares(history):
@@ -95,30 +82,17 @@ def row_of(arguments, name, variant, whole_end):
     deposit = runs.deposit_of(home)
     if deposit is None:
         return row | {"stop_reason": "failed, see its log"}
-    facts, history = deposit.facts, deposit.history
-    text = lambda value: value.decode() if isinstance(value, bytes) else str(value)
     command = [arguments.bin / "talus-postprocess", home / "recipe.toml", "--out", home]
     if runs.command(command, home / "maps.log")[0]:
         sys.exit((home / "maps.log").read_text(encoding="utf-8"))
     score = json.loads((home / "score.json").read_text(encoding="utf-8"))
-    loop = float(facts["wall_time_s"])
-    row |= {
-        "commit": text(facts["version"]).split("(")[-1].rstrip(")"),
-        "machine": text(facts["on"]),
-        "points": int(facts["particles"]),
+    row |= runs.cost_of(home, deposit) | shares(deposit.history) | {
         "time_end_s": f"{score['time_end_s']:g}",
-        "steps": int(facts["steps"]),
-        "newton_iterations": int(history["newton_iterations"][-1]),
-        "linear_iterations": int(history["linear_iterations"][-1]),
-        "steps_cut": int(history["step_cuts"][-1]),
-        "loop_s": f"{loop:.2f}",
-        "process_s": f"{json.loads((home / 'time.json').read_text())['process_s']:.2f}",
-        "memory_bytes": f"{float(facts['memory_bytes']):.0f}",
         "peak_speed_m_s": f"{score['max_peak_speed_m_s']:.1f}",
         "stop_reason": score["stop_reason"],
-    } | shares(history)
+    }
     if name == "reference-preset-papers-steps":
-        return row | {"loop_of_whole_run_s": f"{loop * whole_end / FIRST_SECONDS:.0f}"}
+        return row | {"loop_of_whole_run_s": f"{float(row['loop_s']) * whole_end / FIRST_SECONDS:.0f}"}
     plain = runs.deposit_of(arguments.out / "explicit-quarter")
     row["elsewhere_than_explicit_percent"] = f"{deposit.elsewhere(plain, SCENE.spacing):.2f}" if plain else ""
     return row | {
