@@ -32,9 +32,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
       : Base(device, scene, settings, state, needs(settings), {.columns = 0, .layers = 0}),
         controls_(with_materials(controls, scene.grid.layer_height)),
         step_(parts(), DeviceBed<double, Device>(device, settings.bed, scene.bed)),
-        length_(controls.step, controls.newton.iterations),
-        first_(state.clock.accelerated == 0),
-        midway_(state.clock.step > 0) {
+        length_(controls.step, controls.newton.iterations) {
     this->fit(0);
   }
 
@@ -48,7 +46,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     clock.outflow_volume = 0;
     clock.fastest_bits = std::max(clock.fastest_bits, clock.speed_bits);
     clock.rate_bits = clock.speed_bits = 0;
-    if (clock.step > 0 && loads_.jump_at(clock.time)) first_ = midway_ = true;
+    if (loads_.jump_at(clock.time)) clock.accelerated = 0;
     fit_grid(clock.time);
     record_points();
     BatchReport report;
@@ -59,7 +57,6 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
       report.stats = {};
       return report;
     }
-    first_ = false;
     clock.accelerated = 1;
     clock.step_size = step;
     clock.time = clock.next_event - clock.time <= step * (1 + 1e-12) ? clock.next_event : clock.time + step;
@@ -137,17 +134,18 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
   /// The method solves for the end of the next step and returns its length [s]; 0: it was given up. It throws
   /// NumericalError where no halving helps.
   double solve_step(const Clock& clock, StepStats& stats) {
+    const bool knows = clock.accelerated != 0, midway = clock.step > 0;
     double step = length_.next(remaining(clock));
     for (int cut = 0;; ++cut) {
-      // After explicit steps, light nodes are far out of balance: backward Euler asks for no acceleration to begin
-      // with.
+      // After explicit steps light nodes are far out of balance, and after the jump of a force all are: backward Euler
+      // asks for no acceleration to begin with.
       step_.begin({.start = clock.time,
                    .step = step,
-                   .accelerates = first_ && !midway_,
-                   .backward_euler = first_ && midway_,
+                   .accelerates = !knows && !midway,
+                   .backward_euler = !knows && midway,
                    .loads = loads_.upload(clock.time, clock.time + step),
                    .shaking = shaking_of(clock, step),
-                   .shaking_before = first_ ? shaking_of(clock, step) : clock.ground_acceleration()});
+                   .shaking_before = knows ? clock.ground_acceleration() : shaking_of(clock, step)});
       const NewtonReport found = step_.solve();
       stats.newton += found.iterations;
       stats.linear += found.linear_iterations;
@@ -201,8 +199,6 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
   ImplicitControls controls_;
   ImplicitStep<Real, Device, Shape> step_;
   StepLength length_;
-  bool first_;   ///< no acceleration is known that goes on: none yet, or a force has jumped
-  bool midway_;  ///< the step is not the run's first
 };
 
 /// This function makes a solver of one precision and kind of shape functions, on a device.
