@@ -17,7 +17,7 @@ stage_scene() {
 make_scene() { make -C pipelines scene BIN="$bin" OUT=out ON=cpu; }
 
 # number FILE KEY: of a JSON file with one key a line.
-number() { sed -n "s/^ *\"$2\": *\([0-9.e+-]*\),*$/\1/p" "$1" | head -n 1; }
+number() { sed -n "/^ *\"$2\": */{s///;s/,*\$//;p;q}" "$1"; }
 
 test_the_mass_that_fails_first_is_what_runs() {
   stage_scene

@@ -30,7 +30,7 @@ test_rows_are_of_one_commit_and_machine() {
 test_rows_of_two_commits_are_refused() {
   need_tool python3
   local commit
-  commit=$(column commit | head -n 1)
+  commit=$(column commit | sed -n 1p)
   sed "\$s/,$commit,/,0123abcde,/" "$table" >mixed.csv
   ! cmp -s "$table" mixed.csv || fail "the last row does not name $commit"
   expect_exit 1 python3 "$TALUS_SOURCE/tools/plot-speed-against-error.py" mixed.csv drawn.png
