@@ -15,6 +15,7 @@
 #include "tests/common/damage.hpp"
 #include "tests/common/rasters.hpp"
 #include "tests/common/scratch.hpp"
+#include "tests/places.hpp"
 
 namespace fs = std::filesystem;
 

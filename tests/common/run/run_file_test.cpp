@@ -16,6 +16,7 @@
 #include "tests/common/damage.hpp"
 #include "tests/common/scratch.hpp"
 #include "tests/common/tools.hpp"
+#include "tests/places.hpp"
 
 namespace fs = std::filesystem;
 

@@ -7,6 +7,7 @@
 #include "postprocess/maps/netcdf.hpp"
 #include "postprocess/options/options.hpp"
 #include "tests/common/rasters.hpp"
+#include "tests/places.hpp"
 #include "tests/postprocess/scene.hpp"
 
 namespace talus::postprocess {

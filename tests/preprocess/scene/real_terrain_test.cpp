@@ -9,6 +9,7 @@
 #include "common/map/sum.hpp"
 #include "preprocess/release/sliding_surface.hpp"
 #include "preprocess/scene/prepare.hpp"
+#include "tests/places.hpp"
 #include "tests/preprocess/outlines.hpp"
 #include "tests/preprocess/scene.hpp"
 

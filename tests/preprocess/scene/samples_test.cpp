@@ -10,6 +10,7 @@
 #include "data_samples/terrains.hpp"
 #include "preprocess/regions/polygon_cover.hpp"
 #include "preprocess/scene/prepare.hpp"
+#include "tests/places.hpp"
 #include "tests/preprocess/terrain.hpp"
 
 namespace talus::preprocess {

@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "common/gis/raster_file.hpp"
+#include "tests/places.hpp"
 #include "tests/preprocess/terrain.hpp"
 
 namespace talus::preprocess {

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <iostream>
 
+#include "tests/places.hpp"
 #include "tests/preprocess/scene.hpp"
 
 namespace talus::preprocess {

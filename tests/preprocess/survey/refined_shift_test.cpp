@@ -14,6 +14,7 @@
 #include "preprocess/survey/smooth_fill.hpp"
 #include "preprocess/survey/survey.hpp"
 #include "preprocess/survey/survey_json.hpp"
+#include "tests/places.hpp"
 #include "tests/preprocess/scene.hpp"
 
 namespace talus::preprocess {

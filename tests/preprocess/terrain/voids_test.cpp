@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "preprocess/terrain/hole_filler.hpp"
+#include "tests/places.hpp"
 #include "tests/preprocess/terrain.hpp"
 
 namespace talus::preprocess {

@@ -13,6 +13,7 @@
 #include "solver/options/names.hpp"
 #include "solver/options/time.hpp"
 #include "tests/common/scratch.hpp"
+#include "tests/places.hpp"
 
 namespace talus::solver {
 namespace {

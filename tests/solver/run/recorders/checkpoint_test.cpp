@@ -19,6 +19,7 @@
 #include "solver/state/contact_state.hpp"
 #include "solver/state/particle_fields.hpp"
 #include "tests/common/scratch.hpp"
+#include "tests/places.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver {
