@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/recipe/recipe.hpp"
+#include "postprocess/options/three_d.hpp"
 
 namespace talus::postprocess {
 
@@ -65,6 +66,7 @@ struct Options {
   std::filesystem::path thalweg;  // line along which run-out is measured; empty = found from the run
   AvaFrameFormat avaframe_format = AvaFrameFormat::tif;
   SurveyOptions survey;
+  ThreeDOptions three_d;
   std::vector<std::string> accept;  // what is refused as implausible, insisted on by name
 
   /// The method declares the keys with defaults, help and what they need of one another.

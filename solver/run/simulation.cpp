@@ -198,6 +198,9 @@ void Simulation::measure(const RunEnd& end, RunSummary& summary) const {
   for (const auto& [owner, bytes] : solver.memory()) summary.memory_of.emplace_back(owner, static_cast<double>(bytes));
   for (const Profile::Phase& p : device.profile().phases()) summary.profile.emplace_back(p.name, p.seconds);
   summary.density = options_.material.density;
+  for (const std::string& release : domain_.release_names)
+    summary.release_density.push_back(options_.material_of(release).density);
+  summary.layer_height = domain_.layer_height;
   const SlideVolumes volumes = slide_volumes(end, memory_.outflow_volume);
   summary.volume_released = volumes.released;
   summary.volume_entrained = volumes.entrained;
