@@ -19,7 +19,7 @@ build=(
   libopenvdb-dev libboost-iostreams-dev libblosc-dev
   libcairo2-dev fonts-dejavu-core zlib1g-dev
   # what report.html is made of, and what bundles its scripts
-  libjs-leaflet libjs-chart.js esbuild
+  libjs-leaflet libjs-chart.js libjs-three esbuild
 )
 tests=(
   libgtest-dev

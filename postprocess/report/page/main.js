@@ -8,6 +8,7 @@ import { ReportMap } from "./map.js";
 import { drawMethod } from "./method.js";
 import { Panel } from "./panel.js";
 import { Plates } from "./plates.js";
+import { Relief } from "./relief.js";
 import { drawSummary } from "./summary.js";
 import { drawSurveys } from "./surveys.js";
 import { drawInputs, drawParameters, drawScores, drawVersions, drawVolumes } from "./tables.js";
@@ -37,7 +38,7 @@ async function drawMaps(data) {
   const panel = new Panel(data, fields, map, lines);
   mapNote(data);
   new Plates(data, fields, map, lines).draw();
-  return { map, panel };
+  return { map, panel, relief: new Relief(data, fields, map, lines) };
 }
 
 /** Tells the map which vertex of the profile is looked at. */
