@@ -34,7 +34,7 @@ groups := $(if $(filter $(for_tests),$(MAKECMDGOALS))$(filter-out 0 no,$(WITH_TE
   $(if $(filter package check-install image,$(MAKECMDGOALS)),package)
 
 .PHONY: help setup setup-tests build say-demo demo install package check-install image with-tests test sanitized check \
-  check-threads check-faults check-recipes fuzz validate lint docs bundle bundle-solver clean FORCE
+  check-threads check-faults check-three-d check-recipes fuzz validate lint docs bundle bundle-solver clean FORCE
 
 help: ## this list
 	@echo "make TARGET [PRESET=default|cpu|gpu|check|check-threads] [JOBS=n]"
@@ -140,6 +140,10 @@ check-faults: with-tests ## kills, failing calls, processes in one folder, power
 	@cmake --build $(BUILD) -j $(JOBS) --target $(programs) talus-faults
 	@python3 tests/faults/faults.py --full --bin $(BUILD)/bin --shim $(BUILD)/bin/talus-faults.so \
 	  --work $(BUILD)/scratch/check-faults --table $(BUILD)/faults.md
+
+check-three-d: build ## what runs leave in 3d/, opened by ParaView, Blender and OpenVDB's Python; pictures compared
+	@tools/install-dependencies.sh three-d
+	@tests/three_d/check.sh $(BUILD)/bin $(BUILD)/scratch/check-three-d
 
 check-recipes: build ## random recipes: a result that holds or a clear refusal [RECIPES=500] [RECIPE_JOBS=2]
 	@tools/check-recipes.py --bin $(BUILD)/bin --out $(BUILD)/recipes --count $(RECIPES) --jobs $(RECIPE_JOBS)

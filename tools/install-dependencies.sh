@@ -7,6 +7,7 @@
 #   build     what building and running Talus needs; always among them
 #   tests     what `make test` needs besides: GoogleTest, a browser, readers that are not ours, ffmpeg for animations
 #   lint, docs, fuzz, package     what `make lint`, `make docs`, `make fuzz` and `make check-install` need
+#   three-d   ParaView and Blender, for `make check-three-d`
 set -euo pipefail
 
 build=(
@@ -34,6 +35,8 @@ lint=(clang-format clang-tidy)
 docs=(doxygen)
 fuzz=(clang)   # libFuzzer comes with its run-time library
 package=(dpkg-dev mmdebstrap)
+# what opens 3d/: ParaView and Blender, a display for ParaView, readers for what they are compared with
+three_d=(paraview python3-paraview blender python3-openvdb python3-h5py python3-numpy python3-gdal xvfb xauth)
 
 # The report is opened in a browser by its test: Debian's. Ubuntu's packages of these names only lead to the snap store,
 # whose browser cannot be driven; the test says so there and is skipped.
@@ -51,8 +54,9 @@ for group in "$@"; do
     docs) packages=("${docs[@]}") ;;
     fuzz) packages+=("${tests[@]}" "${fuzz[@]}") ;;
     package) packages+=("${package[@]}") ;;
+    three-d) packages+=("${three_d[@]}") ;;
     --list) list=yes ;;
-    *) fail "no such group: $group (build, tests, lint, docs, fuzz, package)" ;;
+    *) fail "no such group: $group (build, tests, lint, docs, fuzz, package, three-d)" ;;
   esac
 done
 if [[ $list == yes ]]; then

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/run/check_values.hpp"
+#include "common/run/hdf5.hpp"
 
 namespace talus {
 namespace {
@@ -33,7 +34,7 @@ std::vector<T> read_values(const h5::File& file, const std::string& name, hsize_
 }  // namespace
 
 PointFrames::PointFrames(const std::filesystem::path& run_file)
-    : file_(h5::File::open(run_file, {run_file, "Run talus-solve again"})) {
+    : file_(std::make_unique<h5::File>(h5::File::open(run_file, {run_file, "Run talus-solve again"}))) {
   if (!file_->exists(vtk + "/Steps/Values") || !file_->exists(vtk + "/PointData/velocity")) return;
   time_ = file_->read_list<double>(vtk + "/Steps/Values");
   h5::check_growing(*file_, vtk + "/Steps/Values", time_, true);
@@ -42,6 +43,8 @@ PointFrames::PointFrames(const std::filesystem::path& run_file)
   h5::check_values<std::int64_t>(*file_, vtk + "/NumberOfPoints", count_, h5::not_negative);
   h5::check_values<std::int64_t>(*file_, vtk + "/Steps/PointOffsets", first_, h5::not_negative);
 }
+
+PointFrames::~PointFrames() = default;
 
 std::size_t PointFrames::most_points() const {
   return count_.empty() ? 0 : static_cast<std::size_t>(*std::max_element(count_.begin(), count_.end()));

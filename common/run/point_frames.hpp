@@ -5,13 +5,15 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
+#include <memory>
 #include <vector>
 
-#include "common/run/hdf5.hpp"
 #include "common/run/run_file.hpp"
 
 namespace talus {
+namespace h5 {
+class File;
+}
 
 /// The frames of points in a file that read_run() has read (and so checked its seal).
 class PointFrames {
@@ -19,6 +21,7 @@ class PointFrames {
   /// Opens the file. A run without points (point_frames = false) has no frames, or frames of 0 points. Throws DataError
   /// where the file cannot be read, or its lists do not go together.
   explicit PointFrames(const std::filesystem::path& run_file);
+  ~PointFrames();
 
   /// Times of the frames [s], rising.
   const std::vector<double>& time() const { return time_; }
@@ -32,7 +35,7 @@ class PointFrames {
   PointFrame read(std::size_t frame) const;
 
  private:
-  std::optional<h5::File> file_;
+  std::unique_ptr<h5::File> file_;
   std::vector<double> time_;
   std::vector<std::int64_t> count_, first_;
 };

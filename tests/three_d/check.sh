@@ -10,8 +10,8 @@ here=$(cd "$(dirname "$0")" && pwd)
 bin=$(realpath "${1:?usage: tests/three_d/check.sh BIN WORK [RECIPE]}")
 work=$(realpath -m "${2:?usage: tests/three_d/check.sh BIN WORK [RECIPE]}")
 recipe=$(realpath "${3:-$here/../../pipelines/synthetic-valley/recipe.toml}")
-pictures=compare
-[[ $# -lt 3 ]] || pictures=draw   # of another scene there are none to compare with
+compare=yes
+[[ $# -lt 3 ]] || compare=no   # of another scene there is no picture to compare with
 sets=()
 for key in points volumes surface terrain; do sets+=(--set "postprocess.three_d.$key=true"); done
 for set in "${@:4}"; do sets+=(--set "$set"); done
@@ -27,9 +27,16 @@ grep -E '3d' "$work/log.txt" || true
 echo '== OpenVDB'
 /usr/bin/python3 "$here/check_volumes.py" "$work"
 echo '== ParaView'
-xvfb-run -a pvpython "$here/check_paraview.py" "$work" "$here" $pictures
+pvpython "$here/check_paraview.py" "$work"
+xvfb-run -a pvpython "$here/draw_paraview.py" "$work"
 echo '== Blender'
-blender -b -noaudio --python-exit-code 1 -P "$here/check_blender.py" -- "$work" "$here" $pictures |
-  grep -vE '^(Fra:|Blender |$)' || true
-[[ -f $work/blender.png ]] || { echo "Blender drew no picture"; exit 1; }
+rm -f "$work/blender.png"
+blender -b -noaudio --python-exit-code 1 -P "$here/check_blender.py" -- "$work" >"$work/blender.txt" 2>&1 ||
+  { cat "$work/blender.txt"; exit 1; }
+grep '^Blender .* flow' "$work/blender.txt"
+if [[ $compare == yes ]]; then
+  for program in paraview blender; do
+    /usr/bin/python3 "$here/same_picture.py" "$work/$program.png" "$here/$program.png"
+  done
+fi
 echo "3d/ opens in all of them; pictures: $work/paraview.png $work/blender.png"

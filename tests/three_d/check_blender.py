@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Volumes and terrain opened and drawn by Blender: blender -b -P check_blender.py -- OUT REFERENCES compare|draw."""
+"""Volumes and terrain opened and drawn by Blender: blender -b -P check_blender.py -- OUT."""
 import math
 import os
 import sys
@@ -78,16 +78,11 @@ def draw(out, ground, flow):
 
 
 def main():
-    out, references, task = sys.argv[sys.argv.index("--") + 1 :]
+    (out,) = sys.argv[sys.argv.index("--") + 1 :]
     frames = len([name for name in os.listdir(f"{out}/3d/volumes") if name.endswith(".vdb")])
     ground, flow = opened(out, frames)
     check_places(ground, flow)
     draw(out, ground, flow)
-    if task == "compare":
-        sys.path.insert(0, references)
-        from same_picture import same_picture
-
-        print(same_picture(f"{out}/blender.png", f"{references}/blender.png", largest=60, mean=6))
 
 
 main()

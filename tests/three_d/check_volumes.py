@@ -1,6 +1,9 @@
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Volumes read by OpenVDB's own Python: check_volumes.py OUT. Mass, momentum and place of each frame are the points'."""
+"""Volumes read by OpenVDB's own Python: check_volumes.py OUT.
+
+Mass, momentum and place of each frame are those of the points.
+"""
 import sys
 
 import numpy as np
@@ -10,15 +13,11 @@ from run_facts import Run, expect
 
 
 def cells(grid):
-    """Voxels (their indices) and values of a grid."""
-    if grid.activeVoxelCount() == 0:
-        return np.zeros((0, 3)), np.zeros(0)
+    """Indices of the voxels that hold something, values of the box around them, and the index of its corner."""
     low, high = grid.evalActiveVoxelBoundingBox()
-    shape = tuple(h - l + 1 for l, h in zip(low, high))
-    vector = isinstance(grid, pyopenvdb.Vec3SGrid)
-    values = np.zeros(shape + ((3,) if vector else ()), dtype=np.float32)
+    values = np.zeros([h - l + 1 for l, h in zip(low, high)], dtype=np.float32)
     grid.copyToArray(values, ijk=low)
-    return np.argwhere(np.any(values != 0, axis=-1) if vector else values > 0) + np.array(low), values, low
+    return np.argwhere(values > 0) + np.array(low), values, low
 
 
 def check_frame(run, frame, path):

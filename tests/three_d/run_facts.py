@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What run.h5 holds, for comparison; and pictures compared."""
+"""What run.h5 holds, for comparison."""
 import h5py
 import numpy as np
 
@@ -38,8 +38,11 @@ class Run:
 
 def expect(name, found, wanted, tolerance):
     """Stops where two numbers, or lists of them, differ by more than `tolerance`."""
-    error = float(np.max(np.abs(np.asarray(found, dtype=float) - np.asarray(wanted, dtype=float)))) if np.size(wanted) else 0
-    words = f"{name}: {np.asarray(found).ravel()[:3]} beside {np.asarray(wanted).ravel()[:3]}, off by {error:.3g}"
+    a, b = np.asarray(found, dtype=float), np.asarray(wanted, dtype=float)
+    if a.shape != b.shape:
+        raise SystemExit(f"FAILED {name}: of shape {a.shape} instead of {b.shape}")
+    error = float(np.abs(a - b).max()) if b.size else 0.0
+    words = f"{name}: {a.ravel()[:3]} beside {b.ravel()[:3]}, off by {error:.3g}"
     if not error <= tolerance:
         raise SystemExit(f"FAILED {words} (allowed {tolerance:.3g})")
     return words

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The section with the view in 3-D: what lies on the ground, the player, the pictures for paper. Where the browser draws
-// no WebGL, a line says so and the map above stands for it.
+// The section with the view in 3-D: what lies on the ground, the player, the pictures for paper. Where the browser
+// draws no WebGL, a line says so and the map above stands for it.
 import { h, number } from "./format.js";
 import { blending } from "./paint.js";
 import { swatches } from "./panel.js";
@@ -119,7 +119,8 @@ export class Relief {
   makePlayer() {
     const slider = document.getElementById("relief-time"),
       last = this.relief.flows.length - 1;
-    document.getElementById("relief-legend").replaceChildren(h("h3", {}, "Flow, thickness [m]"), swatches(this.relief.classes));
+    const legend = document.getElementById("relief-legend");
+    legend.replaceChildren(h("h3", {}, "Flow, thickness [m]"), swatches(this.relief.classes));
     if (last === 0) {
       document.getElementById("relief-player").remove();
       this.stop = () => {};
@@ -135,7 +136,8 @@ export class Relief {
 
   seek(frame) {
     this.frame = frame;
-    this.scene.showFrame(frame);
+    const { flows, classes } = this.relief;
+    this.scene.showFrame(frame, this.map.painter.paint(flows[frame], classes, "smooth", { most: 900 }));
     const { times } = this.relief;
     if (times.length < 2) return;
     const decimals = times.every((t) => Number.isInteger(t)) ? 0 : 1;
@@ -226,7 +228,8 @@ export class Relief {
         this.seek(frame);
         const time = this.relief.times[frame];
         const words = time === null ? "Deposit" : `Flow, thickness [m] at t = ${number(time, 1)}\u2009s`;
-        return h("figure", { class: "plate" }, h("img", { src: this.scene.picture(), alt: words }), h("figcaption", {}, words));
+        const picture = h("img", { src: this.scene.picture(), alt: words });
+        return h("figure", { class: "plate" }, picture, h("figcaption", {}, words));
       }),
     );
     this.seek(shown);

@@ -18,10 +18,6 @@ function valueAt(field, x, y) {
   return (1 - fv) * ((1 - fu) * at(i, j) + fu * at(right, j)) + fv * ((1 - fu) * at(i, up) + fu * at(right, up));
 }
 
-function rgb(hex) {
-  return [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16) / 255);
-}
-
 /** A vertex at each cell centre of the grid of the frames, at the bed: the ground without what is released. */
 export class ReliefGrid {
   constructor(fields) {
@@ -31,7 +27,6 @@ export class ReliefGrid {
     this.times = frames.length ? fields.frames.time : [null];
     this.classes = frames.length ? fields.frames.classes : deposit.classes;
     this.grid = this.flows[0].grid;
-    this.colours = this.classes.map((c) => rgb(c.colour));
     this.measureBed(fields.ground.elevation, fields.layers.find((layer) => layer.id === "release").field);
   }
 
@@ -124,20 +119,15 @@ export class ReliefGrid {
     return list;
   }
 
-  /** What a frame looks like: positions, colours and triangles of the surface of the flow. */
+  /** The surface of the flow at a frame: positions, shades (grey, three numbers a vertex) and triangles. */
   flow(frame) {
     const thickness = this.flows[frame].values,
       thinnest = this.classes[0].from ?? 0;
     const positions = this.positions(thickness),
       light = this.light(positions);
-    const colours = new Float32Array(3 * this.count);
-    for (let i = 0; i < this.count; ++i) {
-      let k = this.classes.length - 1;
-      while (k > 0 && !(thickness[i] >= this.classes[k].from)) --k;
-      const factor = 0.55 + 0.5 * light[i];
-      for (let a = 0; a < 3; ++a) colours[3 * i + a] = Math.min(1, this.colours[k][a] * factor);
-    }
-    return { positions, colours, triangles: this.triangles((i) => thickness[i] >= thinnest) };
+    const shades = new Float32Array(3 * this.count);
+    for (let i = 0; i < shades.length; ++i) shades[i] = 0.7 + 0.4 * light[Math.floor(i / 3)];
+    return { positions, shades, triangles: this.triangles((i) => thickness[i] >= thinnest) };
   }
 
   /** Volume between the bed and the surface of a frame as it is drawn [m3]; the test compares it with the run's. */

@@ -29,6 +29,14 @@ function fitted(picture) {
   return smaller;
 }
 
+/** Puts a picture on what a material is of. */
+function dress(material, picture) {
+  material.map?.dispose();
+  material.map = new CanvasTexture(fitted(picture));
+  Object.assign(material.map, { generateMipmaps: false, minFilter: LinearFilter });
+  material.needsUpdate = true;
+}
+
 export class ReliefScene {
   constructor(canvas, relief) {
     this.relief = relief;
@@ -78,10 +86,10 @@ export class ReliefScene {
   }
 
   makeFlow() {
-    this.flow = new Mesh(
-      new BufferGeometry(),
-      new MeshBasicMaterial({ vertexColors: VertexColors, side: DoubleSide }),
-    );
+    // The outline is that of the classes on the picture, as on the map.
+    this.skin = new MeshBasicMaterial({ vertexColors: VertexColors, side: DoubleSide, alphaTest: 0.5 });
+    this.flow = new Mesh(new BufferGeometry(), this.skin);
+    this.places = new BufferAttribute(this.relief.places(), 2);
     this.flow.frustumCulled = false; // its bounds change with every frame
     this.scene.add(this.flow);
   }
@@ -117,7 +125,7 @@ export class ReliefScene {
   look(angle) {
     const middle = new Vector3(0, 0, 0.45 * this.exaggeration * this.relief.relief),
       size = 0.5 * Math.hypot(this.relief.width, this.relief.height, this.exaggeration * this.relief.relief);
-    this.far = (1.02 * size) / Math.sin((0.5 * this.camera.fov * Math.PI) / 180) / Math.min(1, this.camera.aspect);
+    this.far = (0.82 * size) / Math.sin((0.5 * this.camera.fov * Math.PI) / 180) / Math.min(1, this.camera.aspect);
     const rise = (35 * Math.PI) / 180;
     this.camera.position.set(
       middle.x + this.far * Math.cos(rise) * Math.cos(angle),
@@ -156,19 +164,18 @@ export class ReliefScene {
   }
 
   drape(picture) {
-    this.ground.map?.dispose();
-    const texture = new CanvasTexture(fitted(picture));
-    Object.assign(texture, { generateMipmaps: false, minFilter: LinearFilter });
-    this.ground.map = texture;
-    this.ground.needsUpdate = true;
+    dress(this.ground, picture);
     this.draw();
   }
 
-  showFrame(frame) {
-    const { positions, colours, triangles } = this.relief.flow(frame);
+  /** The surface of the flow at a frame, with a picture of its classes on it. */
+  showFrame(frame, picture) {
+    const { positions, shades, triangles } = this.relief.flow(frame);
+    dress(this.skin, picture);
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new BufferAttribute(positions, 3));
-    geometry.setAttribute("color", new BufferAttribute(colours, 3));
+    geometry.setAttribute("color", new BufferAttribute(shades, 3));
+    geometry.setAttribute("uv", this.places);
     geometry.setIndex(new BufferAttribute(triangles, 1));
     this.flow.geometry.dispose();
     this.flow.geometry = geometry;

@@ -44,7 +44,7 @@ double volume_below(const VtkMesh& mesh) {
 }
 
 TEST(SurfaceMesh, holds_the_volume_of_the_map_of_its_time) {
-  const Run run = test::small_run();
+  const talus::Run run = test::small_run();
   for (std::size_t frame = 0; frame < 2; ++frame) {
     const VtkMesh mesh = surface_mesh(run, frame, std::nullopt);
     EXPECT_NEAR(volume_below(mesh), 24000, 24000 * 1e-4);  // the bed is held in single precision
@@ -80,7 +80,7 @@ TEST(SurfaceMesh, carries_the_mean_velocity_of_the_columns) {
 }
 
 TEST(SurfaceMesh, stands_on_ground_that_can_be_taken_along_and_measures_what_flows) {
-  Run run = test::small_run();
+  talus::Run run = test::small_run();
   run.maps.eroded_depth.assign(run.maps.grid.count(), 0.0);
   for (auto& thickness : run.frames.thickness)
     for (double& h : thickness) h += 2;  // 2 m of it everywhere

@@ -16,7 +16,7 @@ namespace talus::postprocess {
 namespace {
 
 /// Points at random over the bed of the small run, some at the edge of the domain and of the map.
-PointFrame points_over(const Run& run, unsigned seed) {
+PointFrame points_over(const talus::Run& run, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> along(0, 400), across(20, 300), above(0, 9), speed(-20, 20);
   PointFrame points;
@@ -50,7 +50,7 @@ Sums sums_of(const VolumeFile& volume) {
 }
 
 TEST(Volumes, keep_mass_and_momentum_for_any_voxel) {
-  Run run = test::small_run();
+  talus::Run run = test::small_run();
   run.summary.layer_height = 3;
   run.summary.release_density = {2000, 1500};
   const unsigned seed = 20260101;
@@ -70,7 +70,7 @@ TEST(Volumes, keep_mass_and_momentum_for_any_voxel) {
 }
 
 TEST(Volumes, lie_where_the_points_are) {
-  Run run = test::small_run();
+  talus::Run run = test::small_run();
   run.summary.layer_height = 2;
   const double bed = run.maps.terrain[run.maps.grid.index(20, 15)];
   PointFrame points;
@@ -92,7 +92,7 @@ TEST(Volumes, lie_where_the_points_are) {
 }
 
 TEST(Volumes, name_each_voxel_once) {
-  const Run run = test::small_run();
+  const talus::Run run = test::small_run();
   const VolumeFile volume = Voxels(run, 5).volume(run, points_over(run, 7));
   const std::set<std::array<int, 3>> once(volume.voxels.begin(), volume.voxels.end());
   EXPECT_EQ(once.size(), volume.voxels.size());
@@ -100,7 +100,7 @@ TEST(Volumes, name_each_voxel_once) {
 }
 
 TEST(Volumes, divide_the_cell_until_a_voxel_is_no_larger_than_a_layer) {
-  Run run = test::small_run();
+  talus::Run run = test::small_run();
   EXPECT_EQ(Voxels(run, 0).side(), 10);  // a file that does not say the height of its layers
   run.summary.layer_height = 5;
   EXPECT_EQ(Voxels(run, 0).side(), 5);
@@ -111,7 +111,7 @@ TEST(Volumes, divide_the_cell_until_a_voxel_is_no_larger_than_a_layer) {
 }
 
 TEST(Volumes, refuse_a_voxel_that_is_no_part_of_the_cell) {
-  const Run run = test::small_run();
+  const talus::Run run = test::small_run();
   EXPECT_EQ(test::fault_of<DataError>([&] { Voxels(run, 3); }),
             "[postprocess.three_d] voxel_m = 3 (it is no whole part of the cell of 10 m). "
             "Write 2.5, or another whole part of it");
