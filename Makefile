@@ -110,7 +110,7 @@ check-threads: ## tests of what runs in threads under the thread sanitizer [TEST
 	@$(MAKE) --no-print-directory sanitized PRESET=check-threads
 
 # What needs no programs from outside and ends in time under a sanitizer: of each folder what the label "quick" names,
-# and the replays. docs/reliability.md says when it last passed.
+# and the replays. docs/explanation/reliability.md says when it last passed.
 check_tests            := ^(common|preprocess|postprocess|solver|fuzz)[.]
 check_programs         := $(addprefix talus-tests-,common preprocess postprocess solver) talus-replay
 check-threads_tests    := ^(preprocess|postprocess|solver)[.]
@@ -128,7 +128,7 @@ fuzz: ## the fuzz targets, with clang, for FUZZ_SECONDS each [FUZZ_SECONDS=60] [
 	@tools/fuzz.sh '$(or $(FUZZ_SECONDS),60)' $(TARGETS)
 
 # The table names the commit of the tree that was just built, with -dirty behind it where that has changes.
-validate: with-tests ## error beside tolerance, docs/validation.md [LONG=1] [ON=cpu|gpu] [CASES="A1 B2"]
+validate: with-tests ## error beside tolerance, docs/explanation/validation.md [LONG=1] [ON=cpu|gpu] [CASES="A1 B2"]
 	@cmake --build $(BUILD) -j $(JOBS) --target $(programs) talus-validate
 	@code=0; $(BUILD)/bin/talus-validate --on $(ON) $(if $(filter-out 0 no,$(LONG)),--long) \
 	  --commit "$$(git describe --always --dirty --abbrev=9 --exclude='*' 2>/dev/null || echo unknown)" $(CASES) \

@@ -27,7 +27,7 @@ install(FILES ${CMAKE_BINARY_DIR}/installed.mk DESTINATION ${TALUS_SHARE}/pipeli
 install(DIRECTORY data_samples/ DESTINATION ${TALUS_SHARE}/data_samples COMPONENT runtime FILES_MATCHING
   PATTERN "*.tif" PATTERN "*.geojson" PATTERN "*.csv" PATTERN README.md)
 
-# For Python: PYTHONPATH=PREFIX/share/talus/python (docs/python.md).
+# For Python: PYTHONPATH=PREFIX/share/talus/python (docs/how-to/python.md).
 install(DIRECTORY python/talus python/examples DESTINATION ${TALUS_SHARE}/python COMPONENT runtime FILES_MATCHING
   PATTERN "*.py" PATTERN __pycache__ EXCLUDE)
 

@@ -27,7 +27,7 @@ tests=(
   # h5dump, pdfinfo; ffmpeg makes animations where they are asked for
   gdal-bin python3-gdal netcdf-bin cdo python3-netcdf4 udunits-bin libopenvdb-tools hdf5-tools
   python3-selenium poppler-utils ffmpeg dpkg-dev
-  # what the Python package is made of (docs/python.md)
+  # what the Python package is made of (docs/how-to/python.md)
   python3-h5py python3-numpy python3-xarray python3-rasterio
 )
 lint=(clang-format clang-tidy)

@@ -187,10 +187,10 @@ def slowest_unit(build):
 
 
 def equations(root):
-    """Numbered equations of docs/theory.md, and those that a source names where it computes them."""
+    """Numbered equations of docs/explanation/theory.md, and those that a source names where it computes them."""
     number = re.compile(r"\((T\d+[a-z]?)\)")
     stated = set()
-    for line in open(root / "docs/theory.md"):
+    for line in open(root / "docs/explanation/theory.md"):
         found = re.search(r"\((T\d+[a-z]?)\)[.,;]?\s*$", line)
         if found:
             stated.add(found.group(1))

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Writes all rows of a run of `make validate` as one table, from its validation.json, which names commit and day.
 
-usage: tools/tabulate-validation.py JSON... [MARKDOWN]        (default: docs/validation-table.md)
+usage: tools/tabulate-validation.py JSON... [MARKDOWN]        (default: docs/explanation/validation-table.md)
 Several files hold cases of their own, made at one commit; files of different commits are refused.
 """
 import json
@@ -77,7 +77,7 @@ def main():
     others = [a for a in sys.argv[1:] if not a.endswith(".json")]
     if not files or len(others) > 1 or any(not a.endswith(".md") for a in others):
         sys.exit(__doc__)
-    target = pathlib.Path(others[0]) if others else ROOT / "docs/validation-table.md"
+    target = pathlib.Path(others[0]) if others else ROOT / "docs/explanation/validation-table.md"
     sittings = read(files)
     rows = [row for s in sittings for row in s["rows"]]
     words, missed = heading(sittings, rows)

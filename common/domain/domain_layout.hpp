@@ -12,7 +12,7 @@
 namespace talus::layout {
 
 /// Raised when a reader of today would misread the file or miss something in it; the format before is read as well
-/// (docs/formats.md). 5: sealed (common/stage/checksum.hpp). 4: the same without a seal.
+/// (docs/reference/formats.md). 5: sealed (common/stage/checksum.hpp). 4: the same without a seal.
 inline constexpr int format = 5;
 inline constexpr int oldest_format = 4;
 inline constexpr auto kind = "talus-domain";

@@ -13,7 +13,7 @@ namespace talus::run_layout {
 
 inline constexpr const char* format = "talus-run";
 /// Raised when a reader of today would misread the file or miss something in it; the version before is read as well
-/// (docs/formats.md). 4: sealed (common/stage/checksum.hpp). 3: the same without a seal.
+/// (docs/reference/formats.md). 4: sealed (common/stage/checksum.hpp). 3: the same without a seal.
 inline constexpr std::int64_t format_version = 4;
 inline constexpr std::int64_t oldest_version = 3;
 

@@ -10,8 +10,8 @@
 
 namespace talus::preprocess {
 
-/// Alignment, error, variogram and volumes as JSON; keys carry their unit (docs/formats.md). `marks` are those of the
-/// preparation (identity.hpp).
+/// Alignment, error, variogram and volumes as JSON; keys carry their unit (docs/reference/formats.md). `marks` are
+/// those of the preparation (identity.hpp).
 std::string survey_json(const Survey& survey, const Budgets& budgets, const std::optional<SurveyedSlide>& slide,
                         const Facts& marks = {});
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reads the results of a run (docs/formats.md)."""
+"""Reads the results of a run (docs/reference/formats.md)."""
 import json
 import pathlib
 

@@ -9,7 +9,7 @@ from talus.rasters import read_raster
 
 
 class Survey:
-    """The folder `survey` of a run: facts and rasters (docs/formats.md, survey)."""
+    """The folder `survey` of a run: facts and rasters (docs/reference/formats.md, survey)."""
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)

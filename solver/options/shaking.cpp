@@ -9,7 +9,8 @@
 namespace talus::solver {
 
 void ShakingOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
-  v.path("file", file, "accelerogram: a table of time_s and east, north, up, or along, across, up (docs/formats.md)");
+  v.path("file", file,
+         "accelerogram: a table of time_s and east, north, up, or along, across, up (docs/reference/formats.md)");
   recipe::choice(v, "unit", unit, {{"m/s2", ShakingUnit::m_s2}, {"g", ShakingUnit::g}, {"cm/s2", ShakingUnit::cm_s2}},
                  "unit of its accelerations; g is 9.80665 m/s2");
   v.number("scale", scale, recipe::any, "factor of its accelerations");

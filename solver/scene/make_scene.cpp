@@ -15,9 +15,9 @@ namespace talus::solver {
 namespace {
 
 /// A lone point on the very ground would leave next to no mass on the node above it, and no explicit step would be
-/// short enough. At a tenth of a layer sum N'^2/N is 11, which the default cfl of 0.5 still covers (docs/theory.md,
-/// T11). Implicit steps can do with less, and statics with none; but a node with next to no mass moves as it likes in a
-/// material without tension, and hands the point next to it a spin out of all measure.
+/// short enough. At a tenth of a layer sum N'^2/N is 11, which the default cfl of 0.5 still covers
+/// (docs/explanation/theory.md, T11). Implicit steps can do with less, and statics with none; but a node with next to
+/// no mass moves as it likes in a material without tension, and hands the point next to it a spin out of all measure.
 constexpr double explicit_lowest_weighed = 0.1, newmark_lowest_weighed = 0.01;
 
 /// This function finds the nearest node and the offset from it of a position in cells.

@@ -133,7 +133,7 @@ test_styles_documents_and_licences_are_installed() {
   fi
   for file in share/talus/styles/thick/deposit_thickness.qml share/talus/styles/thin/peak_speed.qml \
     share/talus/styles/thick/terrain.qml share/talus/python/talus/__init__.py \
-    share/talus/python/examples/read_a_run.py share/doc/talus/LICENSE share/doc/talus/docs/user-guide.md; do
+    share/talus/python/examples/read_a_run.py share/doc/talus/LICENSE share/doc/talus/docs/how-to/user-guide.md; do
     [[ -s prefix/$file ]] || fail "$file was not installed"
   done
   compgen -G 'prefix/share/doc/talus*/copyright' >/dev/null || fail "no copyright file was installed"
@@ -173,7 +173,7 @@ test_packages_ask_for_the_libraries_of_the_programs() {
   if grep -qE 'talus-(tests|validate|bench)' <<<"$held"; then fail "$package holds tests"; fi
   dpkg-deb -x "$package" tree
   [[ -z $(readelf -d tree/usr/bin/talus-solve | grep -iE 'r(un)?path') ]] || fail "a path of this machine is in it"
-  dpkg-deb -c packages/talus-doc_*.deb | grep 'usr/share/doc/talus/docs/theory.md' >found ||
+  dpkg-deb -c packages/talus-doc_*.deb | grep 'usr/share/doc/talus/docs/explanation/theory.md' >found ||
     fail "talus-doc has no documents"
 }
 

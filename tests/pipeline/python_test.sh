@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The Python package on two runs of the bowl, and its examples as docs/python.md shows them.
+# The Python package on two runs of the bowl, and its examples as docs/how-to/python.md shows them.
 source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
 export PYTHONPATH=$TALUS_SOURCE/python:$TALUS_SOURCE/tests/python PYTHONDONTWRITEBYTECODE=1 TALUS_PROGRAMS=$bin
 
@@ -49,8 +49,8 @@ test_document_shows_the_examples_as_they_stand() {
     grep -v '^# SPDX-' "$example" >code
     awk -v name="examples/${example##*/}" '/^```python/ { block = ""; inside = 1; next }
       /^```/ && inside { inside = 0; if (index(heading, name)) printf "%s", block; next }
-      inside { block = block $0 "\n"; next } /^#/ { heading = $0 }' "$TALUS_SOURCE/docs/python.md" >shown
-    cmp code shown || fail "docs/python.md does not show ${example##*/} as it stands"
+      inside { block = block $0 "\n"; next } /^#/ { heading = $0 }' "$TALUS_SOURCE/docs/how-to/python.md" >shown
+    cmp code shown || fail "docs/how-to/python.md does not show ${example##*/} as it stands"
   done
 }
 

@@ -45,7 +45,8 @@ class ResultsTest(unittest.TestCase):
                     numpy.testing.assert_equal(numpy.ma.filled(theirs, numpy.nan), ours, f"{name} {row} {column}")
         self.assertEqual(maps.peak_pressure.units, "kPa")
         volume = maps.deposit_thickness.sum().item() * 100
-        self.assertAlmostEqual(volume / self.run_.facts["volume_final_m3"], 1, delta=1e-9)  # what docs/formats.md says
+        # what docs/reference/formats.md says
+        self.assertAlmostEqual(volume / self.run_.facts["volume_final_m3"], 1, delta=1e-9)
 
     def test_maps_carry_their_crs(self):
         crs = rasterio.crs.CRS.from_wkt(self.run_.maps().spatial_ref.crs_wkt)

@@ -27,7 +27,7 @@ code_of() {
 test_readme_commands_are_makefile_targets() {
   cd "$TALUS_SOURCE"
   local found=0 document word
-  for document in README.md CONTRIBUTING.md docs/user-guide.md; do
+  for document in README.md CONTRIBUTING.md docs/how-to/user-guide.md; do
     while read -r word; do
       found=$((found + 1))
       grep -qE "^$word:" Makefile || fail "$document names 'make $word', which is no target of the Makefile"
@@ -54,7 +54,8 @@ test_pipelines_named_in_documents_exist() {
 
 test_programs_named_in_readme_are_built() {
   cd "$TALUS_SOURCE"
-  local program documents=(README.md docs/user-guide.md docs/architecture.md docs/formats.md)
+  local program
+  local documents=(README.md docs/how-to/user-guide.md docs/explanation/architecture.md docs/reference/formats.md)
   for program in $(grep -ohE '\btalus-[a-z-]*[a-z]' "${documents[@]}" | sort -u); do
     [[ $program =~ ^talus-(bundle|doc|gpu|recipe|run|seal|stage|tests).*$ || -x $bin/$program ]] ||
       fail "the documents name $program, which the build does not make"

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Folders are floors: a folder includes what lies below it, and itself (docs/architecture.md). Equations of
-# docs/theory.md are named in the sources that compute them.
+# Folders are floors: a folder includes what lies below it, and itself (docs/explanation/architecture.md). Equations of
+# docs/explanation/theory.md are named in the sources that compute them.
 source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 
 # The floors of a stage, the lowest first. Folders on one line do not include one another. A folder below another one is
@@ -109,8 +109,9 @@ test_a_header_without_a_test_is_named() {
   [[ $found == solver/state/loop.hpp ]] || fail "said: $found"
 }
 
-# (T12) at the end of a line of docs/theory.md is a number; in a source it names the equation that is computed there.
-stated() { grep -oE '\(T[0-9]+[a-z]?\)$' "$TALUS_SOURCE/docs/theory.md" | tr -d '()'; }
+# (T12) at the end of a line of docs/explanation/theory.md is a number; in a source it names the equation that is
+# computed there.
+stated() { grep -oE '\(T[0-9]+[a-z]?\)$' "$TALUS_SOURCE/docs/explanation/theory.md" | tr -d '()'; }
 named() {
   cd "$TALUS_SOURCE"
   grep -rhoE --include='*.hpp' --include='*.cpp' --include='*.cu' '\(T[0-9]+[a-z]?(, T[0-9]+[a-z]?)*\)' \
@@ -121,19 +122,19 @@ test_every_equation_has_one_number() {
   local twice
   [[ $(stated | wc -l) -gt 20 ]] || fail "only $(stated | wc -l) equations were found"
   twice=$(stated | sort | uniq -d)
-  [[ -z $twice ]] || fail "docs/theory.md uses a number twice: $twice"
+  [[ -z $twice ]] || fail "docs/explanation/theory.md uses a number twice: $twice"
 }
 
 test_every_equation_is_named_where_it_is_computed() {
   local missing
   missing=$(comm -23 <(stated | sort -u) <(named))
-  [[ -z $missing ]] || fail "no source names these equations of docs/theory.md as (Tn): $(tr '\n' ' ' <<<"$missing")"
+  [[ -z $missing ]] || fail "no source names these equations of theory.md as (Tn): $(tr '\n' ' ' <<<"$missing")"
 }
 
 test_every_equation_that_a_source_names_is_stated() {
   local missing
   missing=$(comm -13 <(stated | sort -u) <(named))
-  [[ -z $missing ]] || fail "sources name equations that docs/theory.md does not state: $(tr '\n' ' ' <<<"$missing")"
+  [[ -z $missing ]] || fail "sources name equations that theory.md does not state: $(tr '\n' ' ' <<<"$missing")"
 }
 
 run_test "$@"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Keys of recipes and the members that hold them (docs/architecture.md).
+# Keys of recipes and the members that hold them (docs/explanation/architecture.md).
 source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 
 unit='_(kg_m3|m_s2|m_s|m3|m2|m|s|deg|Pa_sn|Pa|N)$'

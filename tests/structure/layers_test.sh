@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Who may include whom, and which library stands where (docs/architecture.md).
+# Who may include whom, and which library stands where (docs/explanation/architecture.md).
 source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 cd "$TALUS_SOURCE"
 

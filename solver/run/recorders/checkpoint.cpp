@@ -18,7 +18,8 @@ namespace talus::solver {
 namespace {
 
 // Raised when a reader of today would misread the file or miss something in it; the kind before is read as well
-// (docs/formats.md). 6: sealed (common/stage/checksum.hpp), with the way since maps were recorded. 5: without either.
+// (docs/reference/formats.md). 6: sealed (common/stage/checksum.hpp), with the way since maps were recorded. 5: without
+// either.
 constexpr const char* kind = "talus checkpoint 6";
 constexpr const char* kind_before = "talus checkpoint 5";
 constexpr const char* any_kind = "talus checkpoint ";

@@ -112,10 +112,10 @@ struct CheckpointHead {
 /// The head of the checkpoint in `file`; none where there is no such file, or none that this version can read.
 std::optional<CheckpointHead> look_at_checkpoint(const std::filesystem::path& file);
 
-/// The checkpoint in `file`, bit for bit what was written; one of the version before as well (docs/formats.md). The
-/// function throws DataError when the file is missing, truncated, changed since it was written, of another kind (a
-/// newer or a much older version of this program), made from another domain or other settings, or inconsistent in
-/// itself.
+/// The checkpoint in `file`, bit for bit what was written; one of the version before as well
+/// (docs/reference/formats.md). The function throws DataError when the file is missing, truncated, changed since it was
+/// written, of another kind (a newer or a much older version of this program), made from another domain or other
+/// settings, or inconsistent in itself.
 Checkpoint read_checkpoint(const std::filesystem::path& file, const std::string& fingerprint);
 
 }  // namespace talus::solver

@@ -105,8 +105,8 @@ struct FrankSource {
   }
 };
 
-// The figures are those of docs/validation.md, and the tolerances a tenth of what was measured: room for another
-// factorisation's rounding in which cells touch the ground, none for another method.
+// The figures are those of docs/explanation/validation.md, and the tolerances a tenth of what was measured: room for
+// another factorisation's rounding in which cells touch the ground, none for another method.
 TEST(real_terrain, frank_slides_surface_is_near_the_true_one_by_outline_and_volume) {
   const auto folder = data("frank_slide");
   TALUS_NEEDS(folder);

@@ -277,7 +277,7 @@ TEST(SolveOptions, every_integrator_says_what_its_steps_can_do) {
 
 /// The TOML of the user guide that gives a material.
 std::vector<std::string> materials_of_the_guide() {
-  std::ifstream guide(TALUS_SOURCE_DIR "/docs/user-guide.md");
+  std::ifstream guide(TALUS_SOURCE_DIR "/docs/how-to/user-guide.md");
   std::vector<std::string> blocks;
   std::string line, block;
   bool inside = false;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scenes that are hard on purpose (docs/validation.md, C): each ends with the invariant it names.
+// Scenes that are hard on purpose (docs/explanation/validation.md, C): each ends with the invariant it names.
 #include <cmath>
 #include <cstdio>
 #include <random>

@@ -39,7 +39,7 @@ SolveOptions rigid_on_ice(Integrator integrator) {
   return o;
 }
 
-/// Way in plan and speed along the slope of a block without friction (docs/validation.md, B1).
+/// Way in plan and speed along the slope of a block without friction (docs/explanation/validation.md, B1).
 double way(double time) { return 0.5 * gravity * std::sin(slope_angle) * std::cos(slope_angle) * time * time; }
 double speed(double time) { return gravity * std::sin(slope_angle) * time; }
 
