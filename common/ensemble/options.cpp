@@ -20,18 +20,13 @@ struct Parameters {
 
 Parameters parameters_of(Distribution distribution) {
   switch (distribution) {
-    case Distribution::uniform:
-      return {.bounds_needed = true};
+    case Distribution::uniform: return {.bounds_needed = true};
     case Distribution::normal:
-    case Distribution::lognormal:
-      return {.moments = true};
-    case Distribution::triangular:
-      return {.bounds_needed = true, .mode = true};
-    case Distribution::beta:
-      return {.bounds_needed = true, .moments = true};
+    case Distribution::lognormal: return {.moments = true};
+    case Distribution::triangular: return {.bounds_needed = true, .mode = true};
+    case Distribution::beta: return {.bounds_needed = true, .moments = true};
     case Distribution::discrete:
-    case Distribution::table:
-      return {.bounds_taken = false};
+    case Distribution::table: return {.bounds_taken = false};
   }
   return {};
 }

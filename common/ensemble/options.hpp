@@ -15,14 +15,14 @@ namespace talus {
 
 /// How the members are drawn from the distributions.
 enum class Design {
-  sobol,                ///< Sobol's sequence, scrambled by a shift of the seed (Sobol' 1967)
-  latin_hypercube,      ///< one member in each stratum of each key (McKay, Beckman and Conover 1979)
-  optimal_hypercube,    ///< the same, with the strata paired so that members fill the space
-  monte_carlo,          ///< independent draws
-  full_grid,            ///< all combinations of `levels` quantiles of each key
-  one_at_a_time,        ///< the middle, then each key at its `levels` quantiles with the others in the middle
-  sensitivity,          ///< two independent samples and their mixtures, for Sobol indices (Saltelli 2002)
-  table,                ///< as a file of comma-separated values says
+  sobol,              ///< Sobol's sequence, scrambled by a shift of the seed (Sobol' 1967)
+  latin_hypercube,    ///< one member in each stratum of each key (McKay, Beckman and Conover 1979)
+  optimal_hypercube,  ///< the same, with the strata paired so that members fill the space
+  monte_carlo,        ///< independent draws
+  full_grid,          ///< all combinations of `levels` quantiles of each key
+  one_at_a_time,      ///< the middle, then each key at its `levels` quantiles with the others in the middle
+  sensitivity,        ///< two independent samples and their mixtures, for Sobol indices (Saltelli 2002)
+  table,              ///< as a file of comma-separated values says
 };
 
 /// The distribution of a key.
@@ -75,7 +75,7 @@ struct ThresholdOptions {
 struct EnsembleOptions {
   int members = 0;  ///< 0: no ensemble
   Design design = Design::sobol;
-  int levels = 5;   ///< of full_grid and one_at_a_time
+  int levels = 5;  ///< of full_grid and one_at_a_time
   int seed = 1;
   std::filesystem::path table;  ///< of design = "table"
   double failed_share = 0.05;   ///< of the members that may fail before the ensemble does
