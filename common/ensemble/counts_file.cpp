@@ -183,7 +183,9 @@ void write_scene(h5::File& file, const EnsembleScene& scene) {
 }
 
 EnsembleScene read_scene(const h5::File& file) {
-  EnsembleScene scene{.scene = file.text("/scene", "name"), .title = file.text("/scene", "title")};
+  EnsembleScene scene;
+  scene.scene = file.text("/scene", "name");
+  scene.title = file.text("/scene", "title");
   scene.threshold = h5::checked_number(file, "/scene", "threshold_m", h5::not_negative);
   scene.grid = h5::read_grid(file, "/scene");
   const auto read = [&](const std::string& path, const h5::Allowed& allowed) {

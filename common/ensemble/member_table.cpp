@@ -30,7 +30,9 @@ std::vector<std::string> words_of(const std::string& lines) {
 }
 
 MemberColumn read_column(const h5::File& file, const std::string& path, std::int64_t count) {
-  MemberColumn column{.key = file.text(path, "key"), .words = words_of(file.text(path, "words"))};
+  MemberColumn column;
+  column.key = file.text(path, "key");
+  column.words = words_of(file.text(path, "words"));
   column.values = file.read<double>(path, {static_cast<hsize_t>(count)});
   h5::check_values<double>(file, path, column.values, h5::finite);
   if (column.words.empty()) return column;
