@@ -63,6 +63,7 @@ class Reader : public Visitor {
   void names(std::string_view key, std::vector<std::string>& value, const std::vector<std::string_view>& allowed,
              std::string_view) override {
     read_list(key, value, [&](const toml::node& node, const std::string& name, std::string& item) {
+      if (allowed.empty()) return read_plain(node, name, item, "text in quotes");
       return read_plain(node, name, item, names_text(allowed).c_str()) && is_one_of(node, name, item, allowed);
     });
   }

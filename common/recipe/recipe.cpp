@@ -93,7 +93,17 @@ Recipe::Recipe(const fs::path& file) : parsed_(std::make_unique<Parsed>()) {
   show_path_as(parsed_->file.parent_path(), file.parent_path().string(), "");
 }
 
+Recipe::Recipe(std::unique_ptr<Parsed> parsed) : parsed_(std::move(parsed)) {}
+Recipe::Recipe(Recipe&& other) noexcept = default;
 Recipe::~Recipe() = default;
+
+Recipe Recipe::with(const std::vector<std::string>& values) const {
+  auto changed = std::make_unique<Parsed>(*parsed_);
+  std::vector<Fault> faults;
+  apply_overrides(changed->root, values, faults);
+  if (!faults.empty()) throw RecipeError(std::move(faults));
+  return Recipe(std::move(changed));
+}
 
 const fs::path& Recipe::file() const { return parsed_->file; }
 

@@ -55,7 +55,7 @@ class Visitor {
   /// One of `names`; index is its place in the list.
   virtual void one_of(std::string_view key, int& index, const std::vector<std::string_view>& names,
                       std::string_view help) = 0;
-  /// A list of names out of `allowed`; only readers and writers look.
+  /// A list of names out of `allowed`, or any where that is empty; only readers and writers look.
   virtual void names(std::string_view /*key*/, std::vector<std::string>& /*value*/,
                      const std::vector<std::string_view>& /*allowed*/, std::string_view /*help*/) {}
   /// Array of tables [[..key]]: begin_list says how many items there are (reader: in the file; writer: `size`).
@@ -140,7 +140,11 @@ void find_unmet(Options& options, std::vector<Fault>& faults) {
 class Recipe {
  public:
   explicit Recipe(const std::filesystem::path& file);
+  Recipe(Recipe&& other) noexcept;
   ~Recipe();
+  /// The recipe with other values, each "key=value" as set_overrides() takes them. Throws RecipeError: what cannot be
+  /// put in.
+  Recipe with(const std::vector<std::string>& values) const;
   const std::filesystem::path& file() const;
   std::string scene_name() const;  ///< [scene] name, or the file's stem
   std::string title() const;       ///< [scene] title, or the name
@@ -152,7 +156,7 @@ class Recipe {
 
   /// Read table `stage` into options. All faults at once: unknown keys (with "did you mean"), wrong types, values out
   /// of range, each with line and column; then what find_unmet() adds. Throws RecipeError if there is any.
-  /// A top-level table other than scene, preprocess, solve and postprocess is unknown.
+  /// A top-level table other than scene, preprocess, solve, postprocess and ensemble is unknown.
   template <class Options>
   Options read(std::string_view stage) const {
     Options options;
@@ -169,6 +173,7 @@ class Recipe {
  private:
   std::unique_ptr<Visitor> make_reader(std::string_view stage, std::vector<Fault>& faults) const;
   struct Parsed;
+  explicit Recipe(std::unique_ptr<Parsed> parsed);
   std::unique_ptr<Parsed> parsed_;
 };
 

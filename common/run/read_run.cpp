@@ -8,6 +8,7 @@
 
 #include "common/error.hpp"
 #include "common/run/check_values.hpp"
+#include "common/run/grid_attributes.hpp"
 #include "common/run/hdf5.hpp"
 #include "common/run/history_group.hpp"
 #include "common/run/run_facts.hpp"
@@ -36,20 +37,6 @@ void check_format(const h5::TrustedFile& trusted, const std::filesystem::path& p
   if (version == run_layout::format_version) h5::expect_seal(trusted);
 }
 
-MapGrid read_grid(const h5::File& file) {
-  const auto columns = file.integer("/maps", "columns"), rows = file.integer("/maps", "rows");
-  constexpr auto limit = std::numeric_limits<int>::max();
-  if (columns < 1 || rows < 1 || columns > limit || rows > limit)
-    file.refuse("holds an impossible map grid", fmt::format("of {} columns and {} rows", columns, rows));
-  constexpr h5::Allowed a_cell{.low = std::numeric_limits<double>::min(), .why = "a cell has a size"};
-  return {.columns = static_cast<int>(columns),
-          .rows = static_cast<int>(rows),
-          .west = h5::checked_number(file, "/maps", "west_m", h5::finite),
-          .south = h5::checked_number(file, "/maps", "south_m", h5::finite),
-          .cell = h5::checked_number(file, "/maps", "cell_m", a_cell),
-          .crs_wkt = file.text("/maps", "crs_wkt")};
-}
-
 h5::Dims shape_of(const MapGrid& grid) { return {static_cast<hsize_t>(grid.rows), static_cast<hsize_t>(grid.columns)}; }
 
 /// One map, whose values are finite or none; of a quantity, such as a thickness, never negative.
@@ -61,7 +48,7 @@ std::vector<double> read_map(const h5::File& file, const std::string& path, cons
 
 RunMaps read_maps(const h5::File& file) {
   RunMaps maps;
-  maps.grid = read_grid(file);
+  maps.grid = h5::read_grid(file, "/maps");
   maps.threshold = h5::checked_number(file, "/maps", "threshold_m", h5::not_negative);
   for (const MapField& field : map_fields) {
     const auto path = std::string("/maps/") + field.name;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/run/run_facts.hpp"
 
+#include "common/run/grid_attributes.hpp"
 #include "common/run/trusted_file.hpp"
 
 namespace talus {
@@ -10,13 +11,6 @@ Facts run_facts(const std::filesystem::path& file) {
   return run_facts(h5::open_trusted(file, {file, "Run talus-solve again"}).file);
 }
 
-Facts run_facts(const h5::File& file) {
-  Facts facts;
-  for (const auto& name : file.children("/provenance")) {
-    const auto group = "/provenance/" + name;
-    facts.emplace_back(file.text(group, "key"), file.text(group, "value"));
-  }
-  return facts;
-}
+Facts run_facts(const h5::File& file) { return h5::read_facts(file, "/provenance"); }
 
 }  // namespace talus

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "common/run/grid_attributes.hpp"
 #include "common/run/hdf5.hpp"
 #include "common/run/history_group.hpp"
 #include "common/run/run_layout.hpp"
@@ -21,19 +22,9 @@
 namespace talus {
 namespace {
 
-void write_grid(h5::File& file, const MapGrid& grid) {
-  file.set_integer("/maps", "columns", grid.columns);
-  file.set_integer("/maps", "rows", grid.rows);
-  file.set_number("/maps", "west_m", grid.west);
-  file.set_number("/maps", "south_m", grid.south);
-  file.set_number("/maps", "cell_m", grid.cell);
-  file.set_text("/maps", "crs_wkt", grid.crs_wkt);
-  file.set_text("/maps", "row_order", "row 0 is the southernmost");
-}
-
 void write_maps(h5::File& file, const RunMaps& maps) {
   file.make_group("/maps");
-  write_grid(file, maps.grid);
+  h5::write_grid(file, "/maps", maps.grid);
   file.set_number("/maps", "threshold_m", maps.threshold);
   const h5::Dims shape{static_cast<hsize_t>(maps.grid.rows), static_cast<hsize_t>(maps.grid.columns)};
   const auto write = [&](const std::string& path, const std::vector<double>& values, const char* unit,
@@ -70,14 +61,7 @@ void write_summary(h5::File& file, const RunSummary& summary) {
   for (const auto& [phase, seconds] : summary.profile) {
     file.write<double>("/profile/" + phase, {1}, std::vector<double>{seconds});
   }
-  file.make_group("/provenance");
-  for (std::size_t i = 0; i < summary.provenance.size(); ++i) {
-    // Numbered groups: keys may repeat, and values (a whole CRS) may be longer than an attribute's name allows.
-    const auto group = fmt::format("/provenance/{:03}", i);
-    file.make_group(group);
-    file.set_text(group, "key", summary.provenance[i].first);
-    file.set_text(group, "value", summary.provenance[i].second);
-  }
+  h5::write_facts(file, "/provenance", summary.provenance);
 }
 
 }  // namespace

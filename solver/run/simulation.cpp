@@ -41,7 +41,7 @@ void Simulation::resume(const std::filesystem::path& file) {
   marks_.stop_reason = checkpoint.stop_reason;
   stepper_.begin(checkpoint.state);
   memory_ = std::move(checkpoint.memory);
-  history_.restore(memory_.history);
+  history_.restore(memory_);
   timer_.resume(memory_.wall_time);
   log_info(fmt::format("going on from {} at t = {:.3f} s, step {}", file.string(), stepper_.time(),
                        checkpoint.state.clock.step));
@@ -158,7 +158,7 @@ void Simulation::put_frame(double time) {
 
 void Simulation::save_checkpoint() {
   memory_.wall_time = timer_.seconds();
-  memory_.history = history_.rows();
+  history_.keep(memory_);
   frames_.settle();  // a checkpoint counts on its frames
   write_checkpoint(paths_.checkpoint,
                    {marks_.fingerprint, marks_.id, marks_.stop_reason, stepper_.solver().state(), memory_});

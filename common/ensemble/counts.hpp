@@ -1,0 +1,121 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// counts.h5: what talus-solve hands to talus-postprocess of an ensemble, or of a part of one.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/ensemble/names.hpp"
+#include "common/ensemble/options.hpp"
+#include "common/ensemble/tally.hpp"
+#include "common/stage/identity.hpp"
+
+namespace talus {
+
+/// The numbers of one member's run; NaN where there is none.
+struct MemberResult {
+  double run_out = nan;            ///< plan distance from the crown to the farthest reached cell [m]
+  double drop = nan;               ///< crown's height over that cell [m]
+  double reach_ratio = nan;        ///< drop over run-out, H/L [-]
+  double flow_area = nan;          ///< that was ever thicker than the threshold [m2]
+  double deposit_area = nan;       ///< that is so at the end [m2]
+  double volume_released = nan;    ///< [m3]
+  double volume_final = nan;       ///< [m3]
+  double volume_outflow = nan;     ///< [m3]
+  double largest_thickness = nan;  ///< [m]
+  double largest_deposit = nan;    ///< [m]
+  double largest_speed = nan;      ///< [m/s]
+  double largest_pressure = nan;   ///< [kPa]
+  double time_end = nan;           ///< [s]
+  double steps = nan;              ///< number of steps
+  double wall_time = nan;          ///< [s]
+};
+
+/// A number of MemberResult, wherever it goes.
+struct ResultNumber {
+  const char* name;  ///< with its unit: "run_out_m"
+  const char* unit;  ///< in UDUNITS' words
+  const char* meaning;
+  double MemberResult::*value;
+};
+
+/// All of them, in the order of tables.
+inline constexpr ResultNumber result_numbers[] = {
+    {"run_out_m", "m", "run-out: plan distance from the crown to the farthest cell reached", &MemberResult::run_out},
+    {"drop_m", "m", "height of the crown over that cell", &MemberResult::drop},
+    {"reach_ratio", "1", "drop over run-out (H/L)", &MemberResult::reach_ratio},
+    {"flow_area_m2", "m2", "area that was ever thicker than the threshold", &MemberResult::flow_area},
+    {"deposit_area_m2", "m2", "area thicker than the threshold at the end", &MemberResult::deposit_area},
+    {"volume_released_m3", "m3", "released volume", &MemberResult::volume_released},
+    {"volume_final_m3", "m3", "volume in the domain at the end", &MemberResult::volume_final},
+    {"volume_outflow_m3", "m3", "volume that left the domain", &MemberResult::volume_outflow},
+    {"largest_thickness_m", "m", "largest thickness anywhere and at any time", &MemberResult::largest_thickness},
+    {"largest_deposit_m", "m", "largest thickness of the deposit", &MemberResult::largest_deposit},
+    {"largest_speed_m_s", "m s-1", "largest speed anywhere and at any time", &MemberResult::largest_speed},
+    {"largest_pressure_kPa", "kPa", "largest pressure anywhere and at any time", &MemberResult::largest_pressure},
+    {"time_end_s", "s", "simulated time", &MemberResult::time_end},
+    {"steps", "1", "time steps", &MemberResult::steps},
+    {"wall_time_s", "s", "wall time of the steps", &MemberResult::wall_time},
+};
+
+/// What became of a member.
+enum class MemberState : std::uint8_t { waiting = 0, counted = 1, failed = 2 };
+
+/// A member that failed, and why.
+struct MemberFailure {
+  std::int64_t member = 0;
+  std::string words;
+  bool operator==(const MemberFailure&) const = default;
+};
+
+/// The scene of an ensemble, for maps and pages.
+struct EnsembleScene {
+  std::string scene, title;
+  MapGrid grid;
+  std::vector<double> terrain;            ///< bed of the base domain [m], [rows * columns]
+  std::vector<double> before;             ///< surface before the failure [m]
+  std::vector<double> release_thickness;  ///< of the base domain [m]
+  double threshold = 0;                   ///< thickness from which a cell counts as covered [m]
+};
+
+/// Counts, results and footprints of the members of a part.
+struct EnsembleCounts {
+  std::string fingerprint;   ///< of members, domain and settings: counts of other fingerprints are of another ensemble
+  std::int64_t members = 0;  ///< of the whole ensemble
+  MemberRange part;          ///< whose members the lists below are of
+  EnsembleScene scene;
+  std::array<MapTally, counted_map_count> maps;  ///< by counted_maps
+  std::vector<MemberState> states;               ///< [part.count()]
+  std::vector<MemberResult> results;             ///< likewise
+  std::vector<Footprint> flow, deposit;          ///< likewise; empty unless counted
+  std::vector<MemberFailure> failures;           ///< by member
+  Facts provenance;
+
+  /// The number of members of a state.
+  std::int64_t count(MemberState state) const;
+  /// The method counts a member's run.
+  void add(std::int64_t member, const RunMaps& maps, const MemberResult& result);
+  /// The method notes that a member failed.
+  void fail(std::int64_t member, std::string words);
+};
+
+/// Counts of a part in which nothing is counted yet.
+EnsembleCounts empty_counts(EnsembleScene scene, std::int64_t members, const MemberRange& part,
+                            const ThresholdOptions& thresholds);
+
+/// The counts of all members of parts of one ensemble; members of no part are waiting. Throws DataError: parts of
+/// different ensembles, or that share a member. `files` name them in messages.
+EnsembleCounts merged(std::vector<EnsembleCounts> parts, const std::vector<std::filesystem::path>& files);
+
+/// Writes counts, sealed and aside. Throws DataError.
+void write_counts(const std::filesystem::path& file, const EnsembleCounts& counts);
+
+/// Reads them back. Throws DataError: missing, damaged, no counts, or holding what cannot be.
+EnsembleCounts read_counts(const std::filesystem::path& file);
+
+}  // namespace talus

@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "common/ensemble/member_table.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "common/ensemble/ensemble_file.hpp"
+#include "common/recipe/values.hpp"
+#include "common/run/check_values.hpp"
+#include "common/run/grid_attributes.hpp"
+
+namespace talus {
+namespace {
+
+const EnsembleFileKind kind{"talus-members", "a table of members", "Run talus-preprocess again"};
+
+/// Words of a column as one text, a line each.
+std::string lines_of(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, "\n")); }
+
+std::vector<std::string> words_of(const std::string& lines) {
+  std::vector<std::string> words;
+  for (std::size_t begin = 0; begin < lines.size();) {
+    const auto end = std::min(lines.find('\n', begin), lines.size());
+    words.push_back(lines.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return words;
+}
+
+MemberColumn read_column(const h5::File& file, const std::string& path, std::int64_t count) {
+  MemberColumn column;
+  column.key = file.text(path, "key");
+  column.words = words_of(file.text(path, "words"));
+  column.values = file.read<double>(path, {static_cast<hsize_t>(count)});
+  h5::check_values<double>(file, path, column.values, h5::finite);
+  if (column.words.empty()) return column;
+  for (const double value : column.values)
+    if (value < 0 || value >= static_cast<double>(column.words.size()))
+      file.refuse(fmt::format("dataset {} holds {:g}", path, value), "it is the place of no word");
+  return column;
+}
+
+}  // namespace
+
+std::vector<std::string> MemberTable::values_of(std::int64_t member, const std::string& prefix) const {
+  std::vector<std::string> values;
+  for (const MemberColumn& column : columns) {
+    if (!column.key.starts_with(prefix)) continue;
+    const double value = column.values.at(static_cast<std::size_t>(member));
+    values.push_back(column.key + "=" +
+                     (column.words.empty() ? recipe::toml_number(value)
+                                           : recipe::toml_text(column.words.at(static_cast<std::size_t>(value)))));
+  }
+  return values;
+}
+
+const MemberColumn* MemberTable::find(const std::string& key) const {
+  const auto found = std::find_if(columns.begin(), columns.end(), [&](const auto& one) { return one.key == key; });
+  return found == columns.end() ? nullptr : &*found;
+}
+
+void write_member_table(const std::filesystem::path& path, const MemberTable& table) {
+  write_ensemble_file(path, kind, [&](h5::File& file) {
+    file.set_text("/", "design", table.design);
+    file.set_integer("/", "seed", table.seed);
+    file.set_integer("/", "members", table.count);
+    file.set_integer("/", "sample_size", table.sample_size);
+    file.make_group("/keys");
+    for (std::size_t n = 0; n < table.columns.size(); ++n) {
+      const auto column = fmt::format("/keys/{:03}", n);
+      file.write<double>(column, {static_cast<hsize_t>(table.count)}, table.columns[n].values);
+      file.set_text(column, "key", table.columns[n].key);
+      file.set_text(column, "words", lines_of(table.columns[n].words));
+    }
+    file.write<std::uint8_t>("/own_domain", {static_cast<hsize_t>(table.count)}, table.own_domain);
+    h5::write_facts(file, "/provenance", table.provenance);
+  });
+}
+
+MemberTable read_member_table(const std::filesystem::path& path) {
+  const h5::File file = open_ensemble_file(path, kind);
+  MemberTable table;
+  table.design = file.text("/", "design");
+  table.seed = file.integer("/", "seed");
+  table.count = file.integer("/", "members");
+  table.sample_size = file.integer("/", "sample_size");
+  if (table.count < 1) file.refuse("has no members", fmt::format("attribute members is {}", table.count));
+  for (const std::string& name : file.children("/keys"))
+    table.columns.push_back(read_column(file, "/keys/" + name, table.count));
+  table.own_domain = file.read<std::uint8_t>("/own_domain", {static_cast<hsize_t>(table.count)});
+  table.provenance = h5::read_facts(file, "/provenance");
+  return table;
+}
+
+}  // namespace talus

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// members.h5: the members of an ensemble, which talus-preprocess draws and talus-solve runs.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/stage/identity.hpp"
+
+namespace talus {
+
+/// The key by which the released thickness is scaled; the solver scales the points of a domain by it.
+inline constexpr const char* thickness_factor_key = "preprocess.thickness_factor";
+
+/// A key of the recipe and its value in each member.
+struct MemberColumn {
+  std::string key;                 ///< with its tables: "solve.base.friction_angle_deg"
+  std::vector<double> values;      ///< [members]; of words: their places in `words`
+  std::vector<std::string> words;  ///< that the key takes; empty: it is a number
+};
+
+/// The members of an ensemble.
+struct MemberTable {
+  std::string design;            ///< as the recipe names it
+  std::int64_t seed = 0;         ///< of the design
+  std::int64_t count = 0;        ///< number of members
+  std::int64_t sample_size = 0;  ///< design = "sensitivity": N of the N (d + 2) members; otherwise 0
+  std::vector<MemberColumn> columns;
+  std::vector<std::uint8_t> own_domain;  ///< [members]: 1 where it has a domain of its own
+  Facts provenance;                      ///< of what made the table
+
+  /// What a member's recipe has in the place of the base's, "key=value" each, of the keys that begin with `prefix`.
+  std::vector<std::string> values_of(std::int64_t member, const std::string& prefix) const;
+  /// The column of a key, null where it does not vary.
+  const MemberColumn* find(const std::string& key) const;
+};
+
+/// Names of facts of a table of members.
+inline constexpr const char* recipe_of_members = "recipe.ensemble";  ///< mark of the table that drew them
+inline constexpr const char* base_domain_id = "domain.id";           ///< of the domain that they differ from
+
+/// Writes the table, sealed and aside. Throws DataError.
+void write_member_table(const std::filesystem::path& file, const MemberTable& table);
+
+/// Reads it back. Throws DataError: missing, damaged, not a table of members, or holding what cannot be.
+MemberTable read_member_table(const std::filesystem::path& file);
+
+}  // namespace talus

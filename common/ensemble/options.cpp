@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "common/ensemble/options.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+
+namespace talus {
+namespace {
+
+constexpr int most_members = 1'000'000;
+
+/// The keys that a distribution takes, and whether it needs them.
+struct Parameters {
+  bool bounds_needed = false, bounds_taken = true, moments = false, mode = false;
+};
+
+Parameters parameters_of(Distribution distribution) {
+  switch (distribution) {
+    case Distribution::uniform: return {.bounds_needed = true};
+    case Distribution::normal:
+    case Distribution::lognormal: return {.moments = true};
+    case Distribution::triangular: return {.bounds_needed = true, .mode = true};
+    case Distribution::beta: return {.bounds_needed = true, .moments = true};
+    case Distribution::discrete:
+    case Distribution::table: return {.bounds_taken = false};
+  }
+  return {};
+}
+
+bool grows(const std::vector<double>& values) {
+  return std::adjacent_find(values.begin(), values.end(), [](double a, double b) { return !(a < b); }) == values.end();
+}
+
+void thresholds(recipe::Visitor& v, std::string_view key, std::vector<double>& values, std::string_view help) {
+  v.numbers(key, values, recipe::positive, help);
+  v.needs(grows(values), {fmt::format("[ensemble.thresholds] {} does not grow", key),
+                          "each threshold is counted once, from the smallest", "Write them in order"});
+}
+
+}  // namespace
+
+void VaryOptions::describe(recipe::Visitor& v) {
+  v.text("key", key, "the key that varies, with its tables: \"solve.base.friction_angle_deg\"");
+  recipe::choice(v, "distribution", distribution,
+                 {{"uniform", Distribution::uniform},
+                  {"normal", Distribution::normal},
+                  {"lognormal", Distribution::lognormal},
+                  {"triangular", Distribution::triangular},
+                  {"beta", Distribution::beta},
+                  {"discrete", Distribution::discrete},
+                  {"table", Distribution::table}},
+                 "how its values are distributed");
+  v.optional_number("low", low, recipe::any, "smallest value; of normal and lognormal: where it is cut off");
+  v.optional_number("high", high, recipe::any, "largest value; of normal and lognormal: where it is cut off");
+  v.optional_number("mean", mean, recipe::any, "normal, lognormal, beta: mean of the value itself");
+  v.optional_number("deviation", deviation, recipe::positive, "normal, lognormal, beta: standard deviation");
+  v.optional_number("mode", mode, recipe::any, "triangular: the most probable value");
+  v.numbers("values", values, recipe::any, "discrete: the numbers that it takes");
+  v.names("words", words, {}, "discrete: the words that it takes, such as the names of laws");
+  v.numbers("weights", weights, recipe::not_negative, "discrete: their probabilities, up to a factor; none: alike");
+  v.path("table", table, "table: a CSV file of values and their probability densities, which are joined by lines");
+  const std::string shown = key.empty() ? "[[ensemble.vary]]" : "[[ensemble.vary]] of " + key;
+  v.needs(!key.empty(), {"[[ensemble.vary]] without a key", "nothing would vary", "Add key = \"solve. ...\""});
+  const Parameters takes = parameters_of(distribution);
+  const auto need = [&](bool met, const std::string& what, const std::string& why, const std::string& mend) {
+    v.needs(met, {shown + ": " + what, why, mend});
+  };
+  need(!takes.bounds_needed || (low && high), "low or high is missing", "the distribution lies between them",
+       "Give both");
+  need(takes.bounds_taken || (!low && !high), "low and high have no effect", "its values are listed", "Leave them out");
+  need(!low || !high || *low < *high, "low is not below high", "no value lies between them", "Mend one of them");
+  need(!takes.moments || (mean && deviation), "mean or deviation is missing", "the distribution is given by them",
+       "Give both");
+  need(takes.moments || (!mean && !deviation), "mean and deviation have no effect",
+       "this distribution is not given by them", "Leave them out, or take distribution = \"normal\"");
+  need(distribution != Distribution::lognormal || !mean || *mean > 0, "mean is not above 0",
+       "lognormal values are positive", "Give a positive mean, or take distribution = \"normal\"");
+  need(takes.mode || !mode, "mode has no effect", "only a triangular distribution has one", "Leave it out");
+  need(!takes.mode || (mode && low && high && *mode >= *low && *mode <= *high), "mode is not between low and high",
+       "a triangle's top lies over its base", "Give one that is");
+  const bool discrete = distribution == Distribution::discrete;
+  const std::size_t choices = values.size() + words.size();
+  need(!discrete || choices > 0, "values are missing", "there is nothing to choose from", "Add values = [...]");
+  need(discrete || choices == 0, "values have no effect", "the distribution is not discrete",
+       "Leave them out, or take distribution = \"discrete\"");
+  need(weights.empty() || weights.size() == choices, "weights do not match the values",
+       fmt::format("there are {} of {}", weights.size(), choices), "Give one for each, or none");
+  need(weights.empty() || *std::max_element(weights.begin(), weights.end()) > 0, "all weights are 0",
+       "nothing could be chosen", "Give a positive one");
+  need((distribution == Distribution::table) == !table.empty(), "table and distribution do not go together",
+       "distribution = \"table\" is given by its file, and by nothing else", "Give both or neither");
+}
+
+void CorrelationOptions::describe(recipe::Visitor& v) {
+  v.names("keys", keys, {}, "the two keys, as [[ensemble.vary]] names them");
+  v.number("rank_correlation", rank_correlation, {-1, 1, true, true}, "Spearman's, of a normal copula [-]");
+}
+
+void ElevationErrorOptions::describe(recipe::Visitor& v) {
+  v.optional_number("terrain_deviation_m", terrain_deviation, recipe::positive,
+                    "standard deviation of the ground's error, under and around the slide");
+  v.optional_number("thickness_deviation_m", thickness_deviation, recipe::positive,
+                    "standard deviation of the released thickness");
+  v.optional_number("range_m", range, recipe::positive, "distance from which errors are independent (spherical)");
+  v.flag("from_survey", from_survey, "deviation and range as they are found on stable ground between the surveys");
+  const bool given = terrain_deviation || thickness_deviation;
+  const std::string name = "[ensemble.elevation_error] ";
+  v.needs(!given || range.has_value(), {name + "range_m is missing", "errors of neighbouring cells are alike",
+                                        "Give the distance from which they are independent, or from_survey = true"});
+  v.needs(!from_survey || (!given && !range),
+          {name + "numbers beside from_survey", "the survey gives them", "Leave one of them out"});
+  v.needs(given || !range, {name + "range_m has no effect", "no deviation is given", "Add one, or leave it out"});
+}
+
+void ThresholdOptions::describe(recipe::Visitor& v) {
+  thresholds(v, "thickness_m", thickness, "of the largest thickness: how many members exceed each is counted");
+  thresholds(v, "deposit_m", deposit, "of the deposit's thickness at the end");
+  thresholds(v, "speed_m_s", speed, "of the largest speed");
+  thresholds(v, "pressure_kPa", pressure, "of the largest pressure");
+  thresholds(v, "arrival_s", arrival, "times: how many members arrive before each is counted");
+}
+
+void EnsembleOptions::describe(recipe::Visitor& v) {
+  v.integer("members", members, {0, most_members}, "number of runs; 0: one run, no ensemble");
+  recipe::choice(v, "design", design,
+                 {{"sobol", Design::sobol},
+                  {"latin-hypercube", Design::latin_hypercube},
+                  {"optimal-latin-hypercube", Design::optimal_hypercube},
+                  {"monte-carlo", Design::monte_carlo},
+                  {"full-grid", Design::full_grid},
+                  {"one-at-a-time", Design::one_at_a_time},
+                  {"sensitivity", Design::sensitivity},
+                  {"table", Design::table}},
+                 "how the members are drawn; the last three and full-grid give their number themselves");
+  v.integer("levels", levels, {2, 1000}, "full-grid, one-at-a-time: quantiles of each key");
+  v.integer("seed", seed, {0, 2147483647}, "another seed draws other members");
+  v.path("table", table, "design = \"table\": a CSV file, a column for each key that varies, a row for each member");
+  v.number("failed_share", failed_share, recipe::fraction, "share of the members that may fail");
+  v.integers("keep", keep, {0, most_members}, "members, counted from 0, whose whole run is kept");
+  v.flag("keep_all", keep_all, "every member's whole run is kept");
+  recipe::table(v, "thresholds", thresholds, "what the probability maps count");
+  recipe::table(v, "elevation_error", elevation_error, "the error of the elevation models, another field each member");
+  recipe::list(v, "vary", vary, "a key that varies from member to member");
+  recipe::list(v, "correlation", correlation, "two keys that vary together");
+}
+
+void EnsembleOptions::check(std::vector<Fault>& faults) const {
+  if (!on()) return;
+  if (vary.empty() && !elevation_error.acts())
+    faults.push_back({"[ensemble] with nothing that varies", "all members would be the same run",
+                      "Add [[ensemble.vary]], or [ensemble.elevation_error]"});
+  if ((design == Design::table) == table.empty())
+    faults.push_back({"[ensemble] table and design do not go together",
+                      "design = \"table\" is given by its file, and by nothing else", "Give both or neither"});
+  std::set<std::string> keys;
+  for (const VaryOptions& one : vary)
+    if (!keys.insert(one.key).second)
+      faults.push_back({"[[ensemble.vary]] of " + one.key + " is there twice", "one value would hide the other",
+                        "Leave one of them out"});
+  for (const CorrelationOptions& pair : correlation) {
+    if (pair.keys.size() != 2 || pair.keys[0] == pair.keys[1])
+      faults.push_back({"[[ensemble.correlation]] does not name two keys", "a correlation is between two",
+                        "Write keys = [\"...\", \"...\"]"});
+    for (const std::string& key : pair.keys)
+      if (!keys.contains(key))
+        faults.push_back({"[[ensemble.correlation]] of " + key, "it does not vary", "Add it to [[ensemble.vary]]"});
+  }
+  for (const int member : keep)
+    if (member >= members)
+      faults.push_back({fmt::format("[ensemble] keep names member {}", member),
+                        fmt::format("there are {}, counted from 0", members), "Name one that is there"});
+}
+
+EnsembleOptions ensemble_of(const recipe::Recipe& recipe) { return recipe.read<EnsembleOptions>("ensemble"); }
+
+}  // namespace talus

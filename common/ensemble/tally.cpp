@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "common/ensemble/tally.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace talus {
+namespace {
+
+/// The largest number of quanta that is counted: its square, summed over a million members, is a 64-bit number.
+constexpr std::int64_t most_quanta = 3'000'000;
+
+std::int64_t quanta_of(const CountedMap& map, double value) {
+  return std::min(most_quanta, static_cast<std::int64_t>(std::llround(value / map.quantum)));
+}
+
+/// Whether a value says that something came to the cell.
+bool is_there(const CountedMap& map, double value) { return map.early ? value >= 0 : value > 0; }
+
+}  // namespace
+
+std::array<std::int64_t, histogram_bins - 1> bin_edges(const CountedMap& map) {
+  std::array<std::int64_t, histogram_bins - 1> edges{};
+  double edge = static_cast<double>(map.low);
+  for (std::size_t n = 0; n < edges.size(); ++n, edge *= map.ratio)
+    edges[n] = n == 0 ? map.low : std::max(edges[n - 1] + 1, static_cast<std::int64_t>(edge));
+  return edges;
+}
+
+void CellHistograms::add(std::size_t cell, int bin, std::uint32_t count) {
+  if (row_of_[cell] < 0) {
+    row_of_[cell] = static_cast<std::int32_t>(counts_.size() / histogram_bins);
+    counts_.resize(counts_.size() + histogram_bins, 0);
+  }
+  counts_[static_cast<std::size_t>(row_of_[cell]) * histogram_bins + static_cast<std::size_t>(bin)] += count;
+}
+
+std::span<const std::uint32_t> CellHistograms::of(std::size_t cell) const {
+  if (row_of_[cell] < 0) return {};
+  return std::span(counts_).subspan(static_cast<std::size_t>(row_of_[cell]) * histogram_bins, histogram_bins);
+}
+
+std::vector<std::int32_t> CellHistograms::cells() const {
+  std::vector<std::int32_t> cells;
+  for (std::size_t cell = 0; cell < row_of_.size(); ++cell)
+    if (row_of_[cell] >= 0) cells.push_back(static_cast<std::int32_t>(cell));
+  return cells;
+}
+
+MapTally::MapTally(std::vector<double> of_thresholds, std::size_t cells)
+    : thresholds(std::move(of_thresholds)),
+      exceeded(thresholds.size(), std::vector<std::uint32_t>(cells, 0)),
+      reached(cells, 0),
+      sum(cells, 0),
+      sum_of_squares(cells, 0),
+      histograms(cells) {}
+
+void MapTally::add(const CountedMap& map, std::span<const double> values) {
+  if (values.size() != reached.size()) throw std::logic_error("MapTally: a map of another grid");
+  const auto edges = bin_edges(map);
+  for (std::size_t cell = 0; cell < values.size(); ++cell) {
+    const double value = values[cell];
+    if (!is_there(map, value)) continue;  // NaN is not
+    const std::int64_t quanta = quanta_of(map, value);
+    ++reached[cell];
+    sum[cell] += quanta;
+    sum_of_squares[cell] += quanta * quanta;
+    const auto bin = std::upper_bound(edges.begin(), edges.end(), quanta) - edges.begin();
+    histograms.add(cell, static_cast<int>(bin));
+    for (std::size_t n = 0; n < thresholds.size(); ++n)
+      if (map.early ? value <= thresholds[n] : value >= thresholds[n]) ++exceeded[n][cell];
+  }
+}
+
+void MapTally::add(const MapTally& other) {
+  if (other.thresholds != thresholds || other.reached.size() != reached.size())
+    throw std::logic_error("MapTally: counts of another grid or of other thresholds");
+  for (std::size_t cell = 0; cell < reached.size(); ++cell) {
+    for (std::size_t n = 0; n < thresholds.size(); ++n) exceeded[n][cell] += other.exceeded[n][cell];
+    reached[cell] += other.reached[cell];
+    sum[cell] += other.sum[cell];
+    sum_of_squares[cell] += other.sum_of_squares[cell];
+    const auto counts = other.histograms.of(cell);
+    for (std::size_t bin = 0; bin < counts.size(); ++bin)
+      if (counts[bin] > 0) histograms.add(cell, static_cast<int>(bin), counts[bin]);
+  }
+}
+
+double MapTally::mean(const CountedMap& map, std::size_t cell, std::int64_t members) const {
+  const auto of = static_cast<double>(map.early ? reached[cell] : members);
+  return of > 0 ? map.quantum * static_cast<double>(sum[cell]) / of : nan;
+}
+
+double MapTally::deviation(const CountedMap& map, std::size_t cell, std::int64_t members) const {
+  const auto of = static_cast<double>(map.early ? reached[cell] : members);
+  if (!(of > 0)) return nan;
+  const double mean = static_cast<double>(sum[cell]) / of;
+  return map.quantum * std::sqrt(std::max(0.0, static_cast<double>(sum_of_squares[cell]) / of - mean * mean));
+}
+
+double MapTally::quantile(const CountedMap& map, std::size_t cell, double share, std::int64_t members) const {
+  const double absent = static_cast<double>(members) - reached[cell];
+  double wanted = share * static_cast<double>(members) - (map.early ? 0 : absent);
+  if (!(wanted > 0)) return map.early ? nan : 0;
+  if (map.early && wanted > reached[cell]) return nan;
+  const auto edges = bin_edges(map);
+  const auto counts = histograms.of(cell);
+  for (std::size_t bin = 0; bin < counts.size(); ++bin) {
+    const double count = counts[bin];
+    if (count < wanted) {
+      wanted -= count;
+      continue;
+    }
+    const double from = bin == 0 ? 0 : static_cast<double>(edges[bin - 1]);
+    const double to = bin < edges.size() ? static_cast<double>(edges[bin]) : from * map.ratio;
+    return map.quantum * (from + (to - from) * wanted / count);
+  }
+  return map.quantum * static_cast<double>(edges.back()) * map.ratio;
+}
+
+Footprint footprint_of(std::span<const double> thickness, double threshold) {
+  Footprint runs{0};
+  bool inside = false;
+  for (const double h : thickness) {
+    if ((h > threshold) != inside) {
+      inside = !inside;
+      runs.push_back(0);
+    }
+    ++runs.back();
+  }
+  return runs;
+}
+
+std::vector<std::uint8_t> cells_of(const Footprint& footprint, std::size_t cells) {
+  std::vector<std::uint8_t> inside;
+  inside.reserve(cells);
+  std::uint8_t value = 0;
+  for (const std::int32_t length : footprint) {
+    inside.insert(inside.end(), static_cast<std::size_t>(length), value);
+    value = value == 0 ? 1 : 0;
+  }
+  inside.resize(cells, 0);
+  return inside;
+}
+
+}  // namespace talus

@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What an ensemble counts instead of keeping its runs. All counts and sums are whole numbers, so that they do not
+// depend on the order of the members, and parts add up to the bits of the whole.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/map/raster.hpp"
+#include "common/run/map_fields.hpp"
+
+namespace talus {
+
+/// A map of which an ensemble counts.
+struct CountedMap {
+  const char* name;    ///< as in run.h5: "peak_thickness"
+  const char* unit;    ///< "m"
+  MapMember values;    ///< of RunMaps, in that unit
+  double quantum;      ///< values are counted in whole multiples of this [unit]
+  std::int64_t low;    ///< the upper edge of the histogram's first bin [quanta]
+  double ratio;        ///< of the edges of neighbouring bins
+  bool early = false;  ///< a threshold is passed by a value below it, as a time of arrival is
+};
+
+/// The maps that an ensemble counts, in the order of files.
+inline constexpr CountedMap counted_maps[] = {
+    {"peak_thickness", "m", &RunMaps::peak_thickness, 1e-3, 10, 1.18},
+    {"deposit_thickness", "m", &RunMaps::deposit_thickness, 1e-3, 10, 1.18},
+    {"peak_speed", "m s-1", &RunMaps::peak_speed, 1e-2, 5, 1.16},
+    {"peak_pressure", "kPa", &RunMaps::peak_pressure_kPa, 1e-2, 10, 1.2},
+    {"arrival_time", "s", &RunMaps::arrival_time, 1e-2, 10, 1.18, true},
+};
+inline constexpr std::size_t counted_map_count = std::size(counted_maps);
+
+/// Bins of a histogram: the first holds what is below the first edge, the last all beyond the last.
+inline constexpr int histogram_bins = 64;
+
+/// The edges between the bins [quanta], growing: whole numbers, the same on every machine.
+std::array<std::int64_t, histogram_bins - 1> bin_edges(const CountedMap& map);
+
+/// Histograms of the cells that any member reached.
+class CellHistograms {
+ public:
+  CellHistograms() = default;
+  explicit CellHistograms(std::size_t cells) : row_of_(cells, -1) {}
+  /// The method counts a value of a cell in a bin.
+  void add(std::size_t cell, int bin, std::uint32_t count = 1);
+  /// The counts of a cell, [histogram_bins]; empty where no member reached it.
+  std::span<const std::uint32_t> of(std::size_t cell) const;
+  /// The cells that were reached, growing.
+  std::vector<std::int32_t> cells() const;
+
+ private:
+  std::vector<std::int32_t> row_of_;   ///< [cells]; -1: none
+  std::vector<std::uint32_t> counts_;  ///< [rows * histogram_bins]
+};
+
+/// The counts of one map over the members, [rows * columns] each.
+struct MapTally {
+  std::vector<double> thresholds;                    ///< growing [unit of the map]
+  std::vector<std::vector<std::uint32_t>> exceeded;  ///< by threshold: members at or beyond it (early: at or before)
+  std::vector<std::uint32_t> reached;                ///< members that have a value there
+  std::vector<std::int64_t> sum, sum_of_squares;     ///< of those values, in quanta and their squares
+  CellHistograms histograms;
+
+  MapTally() = default;
+  MapTally(std::vector<double> of_thresholds, std::size_t cells);
+  /// The method counts one member's map [cells]; NaN, and 0 where it is no time, say that nothing came there.
+  void add(const CountedMap& map, std::span<const double> values);
+  /// The method adds the counts of other members; thresholds and grid must be the same.
+  void add(const MapTally& other);
+
+  /// The mean over `members` [unit]: those that did not reach the cell count as 0, but of a time, whose mean is over
+  /// those that did (NaN: none).
+  double mean(const CountedMap& map, std::size_t cell, std::int64_t members) const;
+  /// The standard deviation, likewise, over all members as a population [unit].
+  double deviation(const CountedMap& map, std::size_t cell, std::int64_t members) const;
+  /// The value that a share 0 < p < 1 of the members does not exceed, by the histogram: linear within its bin, which is
+  /// as wide as CountedMap::ratio says [unit]. Members that did not reach the cell are below all others (of a time:
+  /// beyond all others, then NaN).
+  double quantile(const CountedMap& map, std::size_t cell, double share, std::int64_t members) const;
+};
+
+/// Which cells a member's flow or deposit covers: lengths of runs of cells over the flat grid, the first outside, the
+/// second inside, and so on.
+using Footprint = std::vector<std::int32_t>;
+
+/// The footprint of what is thicker than `threshold` [m]; and back, 1 inside [cells].
+Footprint footprint_of(std::span<const double> thickness, double threshold);
+std::vector<std::uint8_t> cells_of(const Footprint& footprint, std::size_t cells);
+
+}  // namespace talus

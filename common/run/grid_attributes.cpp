@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "common/run/grid_attributes.hpp"
+
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "common/run/check_values.hpp"
+
+namespace talus::h5 {
+
+void write_grid(File& file, const std::string& group, const MapGrid& grid) {
+  file.set_integer(group, "columns", grid.columns);
+  file.set_integer(group, "rows", grid.rows);
+  file.set_number(group, "west_m", grid.west);
+  file.set_number(group, "south_m", grid.south);
+  file.set_number(group, "cell_m", grid.cell);
+  file.set_text(group, "crs_wkt", grid.crs_wkt);
+  file.set_text(group, "row_order", "row 0 is the southernmost");
+}
+
+MapGrid read_grid(const File& file, const std::string& group) {
+  const auto columns = file.integer(group, "columns"), rows = file.integer(group, "rows");
+  constexpr auto limit = std::numeric_limits<int>::max();
+  if (columns < 1 || rows < 1 || columns > limit || rows > limit)
+    file.refuse("holds an impossible map grid", fmt::format("of {} columns and {} rows", columns, rows));
+  constexpr Allowed a_cell{.low = std::numeric_limits<double>::min(), .why = "a cell has a size"};
+  return {.columns = static_cast<int>(columns),
+          .rows = static_cast<int>(rows),
+          .west = checked_number(file, group, "west_m", finite),
+          .south = checked_number(file, group, "south_m", finite),
+          .cell = checked_number(file, group, "cell_m", a_cell),
+          .crs_wkt = file.text(group, "crs_wkt")};
+}
+
+void write_facts(File& file, const std::string& group, const std::vector<std::pair<std::string, std::string>>& facts) {
+  file.make_group(group);
+  for (std::size_t i = 0; i < facts.size(); ++i) {
+    const auto one = fmt::format("{}/{:03}", group, i);
+    file.make_group(one);
+    file.set_text(one, "key", facts[i].first);
+    file.set_text(one, "value", facts[i].second);
+  }
+}
+
+std::vector<std::pair<std::string, std::string>> read_facts(const File& file, const std::string& group) {
+  std::vector<std::pair<std::string, std::string>> facts;
+  for (const auto& name : file.children(group)) {
+    const auto one = group + "/" + name;
+    facts.emplace_back(file.text(one, "key"), file.text(one, "value"));
+  }
+  return facts;
+}
+
+}  // namespace talus::h5
