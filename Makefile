@@ -79,7 +79,8 @@ demo: say-demo build ## the synthetic valley from its two elevation models to a 
 	  '  maps/synthetic-valley.qgs    all of it in QGIS: maps, outlines, hillshade' \
 	  '  maps/*.tif, maps/results.nc  the fields, for a GIS' \
 	  '  score.json, score.txt        these numbers and all others' \
-	  '  run.h5                       the points over time, for ParaView'
+	  '  3d/run.pvd                   ground, flow and points over time, for ParaView' \
+	  '  3d/volumes/*.vdb             density and velocity over time, for Blender'
 
 install: build ## the programs with recipes, styles, manuals and documents, to PREFIX [PREFIX=/usr/local] [DESTDIR=]
 	@cmake --install $(BUILD) --prefix '$(PREFIX)' --strip >$(BUILD)/install.log

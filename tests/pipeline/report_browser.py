@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Opens a report in Chromium and uses it as a person would: report_browser.py OUT clicks|prints|payload|accepted.
+"""Opens a report in Chromium and uses it as a person would: report_browser.py OUT clicks|prints|payload|accepted|flat.
 
 OUT holds report.html and the maps it was made from. Any fault ends with an assertion that says what was seen.
 """
@@ -10,6 +10,7 @@ import os
 import sys
 import time
 
+import relief
 from osgeo import gdal
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
@@ -20,10 +21,13 @@ from selenium.webdriver.support.ui import WebDriverWait
 gdal.UseExceptions()
 
 
-def open_browser():
+def open_browser(webgl=True):
     options = webdriver.ChromeOptions()
     options.binary_location = "/usr/bin/chromium"
-    for argument in ["--headless=new", "--disable-gpu", "--disable-dev-shm-usage", "--window-size=1300,1000"]:
+    for argument in ["--headless=new", "--disable-dev-shm-usage", "--window-size=1300,1000"]:
+        options.add_argument(argument)
+    # WebGL by the processor, or none at all.
+    for argument in ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"] if webgl else ["--disable-3d-apis"]:
         options.add_argument(argument)
     if os.geteuid() == 0:
         options.add_argument("--no-sandbox")  # Chromium's sandbox refuses root, which tests in containers are
@@ -238,6 +242,14 @@ def clicks(browser, out):
     check_scores(browser)
     check_surveys(browser)
     check_parameters(browser)
+    relief.check(browser, out)
+    check_console(browser)
+
+
+def flat(browser, out):
+    """Where the browser draws no WebGL, a line says so and the rest is whole."""
+    relief.check_without(browser)
+    check_layers(browser)
     check_console(browser)
 
 
@@ -252,7 +264,7 @@ def payload(browser, out):
         found = browser.execute_script(f"return document.querySelectorAll('{kind}').length")
         assert found == 0, f"{found} elements {kind}"
     scripts = browser.execute_script("return document.querySelectorAll('script').length")
-    assert scripts == 4, f"{scripts} scripts instead of those of the page"
+    assert scripts == 5, f"{scripts} scripts instead of those of the page"
     # What is injected later does not run either.
     browser.execute_script(
         "const s = document.createElement('script'); s.textContent = 'window.pwned = 2'; document.body.append(s);"
@@ -287,6 +299,7 @@ def accepted(browser, out):
 
 
 def prints(browser, out):
+    relief.check_printed(browser)
     pdf = browser.execute_cdp_cmd("Page.printToPDF", {"printBackground": True, "preferCSSPageSize": True})
     with open(f"{out}/report.pdf", "wb") as file:
         file.write(base64.b64decode(pdf["data"]))
@@ -295,10 +308,10 @@ def prints(browser, out):
 
 def main():
     out, task = sys.argv[1:]
-    browser = open_browser()
+    browser = open_browser(webgl=task != "flat")
     try:
         open_report(browser, out)
-        {"clicks": clicks, "prints": prints, "payload": payload, "accepted": accepted}[task](browser, out)
+        {"clicks": clicks, "prints": prints, "payload": payload, "accepted": accepted, "flat": flat}[task](browser, out)
     finally:
         browser.quit()
 

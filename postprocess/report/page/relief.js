@@ -30,10 +30,10 @@ export class Relief {
   giveUp(why) {
     this.stop?.();
     this.scene = null;
-    document.getElementById("relief-view").hidden = true;
+    document.getElementById("relief-view")?.remove();
     const note = document.getElementById("relief-note");
     note.textContent = `${why}, so that the view in three dimensions is left out. The map above shows the same flow.`;
-    note.className = "note";
+    this.box.classList.add("screen-only"); // paper has the maps
   }
 
   /** Nothing is drawn before the section comes near the screen, or goes to the printer. */

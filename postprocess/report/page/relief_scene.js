@@ -87,7 +87,7 @@ export class ReliefScene {
 
   makeFlow() {
     // The outline is that of the classes on the picture, as on the map.
-    this.skin = new MeshBasicMaterial({ vertexColors: VertexColors, side: DoubleSide, alphaTest: 0.5 });
+    this.skin = new MeshBasicMaterial({ vertexColors: VertexColors, side: DoubleSide, alphaTest: 0.9 });
     this.flow = new Mesh(new BufferGeometry(), this.skin);
     this.places = new BufferAttribute(this.relief.places(), 2);
     this.flow.frustumCulled = false; // its bounds change with every frame
@@ -125,7 +125,7 @@ export class ReliefScene {
   look(angle) {
     const middle = new Vector3(0, 0, 0.45 * this.exaggeration * this.relief.relief),
       size = 0.5 * Math.hypot(this.relief.width, this.relief.height, this.exaggeration * this.relief.relief);
-    this.far = (0.82 * size) / Math.sin((0.5 * this.camera.fov * Math.PI) / 180) / Math.min(1, this.camera.aspect);
+    this.far = (0.92 * size) / Math.sin((0.5 * this.camera.fov * Math.PI) / 180) / Math.min(1, this.camera.aspect);
     const rise = (35 * Math.PI) / 180;
     this.camera.position.set(
       middle.x + this.far * Math.cos(rise) * Math.cos(angle),
