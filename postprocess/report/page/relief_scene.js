@@ -123,20 +123,42 @@ export class ReliefScene {
 
   /** The camera where it sees all of it, from an angle (from east, anticlockwise) and 35 degrees above the horizon. */
   look(angle) {
-    const middle = new Vector3(0, 0, 0.45 * this.exaggeration * this.relief.relief),
-      size = 0.5 * Math.hypot(this.relief.width, this.relief.height, this.exaggeration * this.relief.relief);
-    this.far = (0.92 * size) / Math.sin((0.5 * this.camera.fov * Math.PI) / 180) / Math.min(1, this.camera.aspect);
-    const rise = (35 * Math.PI) / 180;
-    this.camera.position.set(
-      middle.x + this.far * Math.cos(rise) * Math.cos(angle),
-      middle.y + this.far * Math.cos(rise) * Math.sin(angle),
-      middle.z + this.far * Math.sin(rise),
+    const height = this.exaggeration * this.relief.relief,
+      middle = new Vector3(0, 0, 0.3 * height),
+      size = 0.5 * Math.hypot(this.relief.width, this.relief.height, height),
+      rise = (35 * Math.PI) / 180;
+    const arm = new Vector3(
+      Math.cos(rise) * Math.cos(angle),
+      Math.cos(rise) * Math.sin(angle),
+      Math.sin(rise),
     );
     Object.assign(this.camera, { near: 0.02 * size, far: 12 * size });
     Object.assign(this.controls, { minDistance: 0.1 * size, maxDistance: 8 * size });
     this.camera.updateProjectionMatrix();
+    for (let far = 4 * size, pass = 0; pass < 6; ++pass) {
+      this.camera.position.copy(middle).addScaledVector(arm, far);
+      this.camera.lookAt(middle);
+      this.camera.updateMatrixWorld();
+      far *= this.reach() / 0.96;
+    }
     this.controls.target.copy(middle);
     this.controls.update();
+  }
+
+  /** How far the ground reaches from the middle of the view, as a share of the way to its edge. */
+  reach() {
+    const { grid } = this.relief,
+      places = this.groundPlaces ?? (this.groundPlaces = this.relief.positions(null)),
+      step = Math.max(1, Math.floor(Math.max(grid.columns, grid.rows) / 40));
+    let most = 0;
+    for (let j = 0; j < grid.rows; j += Math.max(1, Math.min(step, grid.rows - 1 - j))) {
+      for (let i = 0; i < grid.columns; i += Math.max(1, Math.min(step, grid.columns - 1 - i))) {
+        const at = 3 * (j * grid.columns + i),
+          place = new Vector3(places[at], places[at + 1], this.exaggeration * places[at + 2]).project(this.camera);
+        most = Math.max(most, Math.abs(place.x), Math.abs(place.y));
+      }
+    }
+    return most;
   }
 
   /** Angle of the camera about the middle, from east, anticlockwise [rad]. */
