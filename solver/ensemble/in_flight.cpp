@@ -31,7 +31,8 @@ InFlight in_flight(std::int64_t members, double bytes_each, const std::vector<An
   for (const AnyDevice& device : devices) least_room = std::min(least_room, room(device, std::max(bytes_each, 1.0)));
   const double each = std::clamp(least_room, 1.0, wanted);
   const double in_all = std::min(each * static_cast<double>(devices.size()), static_cast<double>(members));
-  InFlight flight{.count = std::max(1, static_cast<int>(in_all))};
+  InFlight flight;
+  flight.count = std::max(1, static_cast<int>(in_all));
   const std::string where = on_gpus ? devices.size() > 1 ? fmt::format("{} GPUs", devices.size()) : "one GPU"
                                     : fmt::format("{} threads", thread_limit());
   flight.reason = least_room < wanted

@@ -51,7 +51,7 @@ bool leaves_stiffness(const SolveOptions& o) {
 SettledOnce settle_once(const Domain& domain, const SolveOptions& base) {
   SettledOnce settled;
   const SolveOptions stiff = settle_stiffness(domain, base);
-  if (leaves_stiffness(base)) settled.stiffness = StiffnessDemand{.modulus = stiff.material.youngs_modulus};
+  if (leaves_stiffness(base)) settled.stiffness.emplace().modulus = stiff.material.youngs_modulus;
   if (base.integrator != Integrator::automatic) return settled;
   settled.steps = choose_steps(domain, stiff);
   for (const std::string& reason : settled.steps->reasons) log_info("steps: " + reason);
