@@ -19,11 +19,11 @@ namespace talus::solver {
 
 /// What the command line says of an ensemble.
 struct EnsembleFlags {
-  On on = On::cpu;                     ///< cpu or gpu; of GPUs all that CUDA sees
-  std::optional<MemberRange> members;  ///< a part; none: all
-  bool restart = false;                ///< go on from what is finished, which must be there
-  bool resume = false;                 ///< go on from it where there is any
-  bool plan = false;                   ///< say what would run, and run nothing
+  On on = On::cpu;                          ///< cpu or gpu; of GPUs all that CUDA sees
+  std::optional<MemberRange> members = {};  ///< a part; none: all
+  bool restart = false;                     ///< go on from what is finished, which must be there
+  bool resume = false;                      ///< go on from it where there is any
+  bool plan = false;                        ///< say what would run, and run nothing
 };
 
 /// The members that "A:B" names, from 0, B not included. Throws RecipeError.

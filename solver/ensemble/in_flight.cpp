@@ -36,8 +36,8 @@ InFlight in_flight(std::int64_t members, double bytes_each, const std::vector<An
   const std::string where = on_gpus ? devices.size() > 1 ? fmt::format("{} GPUs", devices.size()) : "one GPU"
                                     : fmt::format("{} threads", thread_limit());
   flight.reason = least_room < wanted
-                      ? fmt::format("memory has room for {:.0f} of {:.0f} MB each", each, bytes_each / 1e6)
-                      : fmt::format("{}, {:.0f} MB each", where, bytes_each / 1e6);
+                      ? fmt::format("memory has room for {:.0f} of {:.1f} MB each", each, bytes_each / 1e6)
+                      : fmt::format("{}, {:.1f} MB each", where, bytes_each / 1e6);
   return flight;
 }
 
