@@ -17,10 +17,12 @@ build=(
   nlohmann-json3-dev libtomlplusplus-dev
   libgdal-dev libhdf5-dev libnetcdf-dev libcgal-dev
   libopenvdb-dev libboost-iostreams-dev libblosc-dev
+  libopenturns-dev
   libcairo2-dev fonts-dejavu-core zlib1g-dev
   # what report.html is made of, and what bundles its scripts
   libjs-leaflet libjs-chart.js esbuild
 )
+docs=(doxygen python3-sphinx python3-myst-parser furo)
 tests=(
   libgtest-dev
   # the readers that are not ours: gdalinfo, the COG validator, ncdump, cdo, what the CF checker takes, vdb_print,
@@ -29,9 +31,10 @@ tests=(
   python3-selenium poppler-utils ffmpeg dpkg-dev
   # what the Python package is made of (docs/how-to/python.md)
   python3-h5py python3-numpy python3-xarray python3-rasterio
+  # what the site of documents is made of
+  python3-sphinx python3-myst-parser furo
 )
 lint=(clang-format clang-tidy)
-docs=(doxygen)
 fuzz=(clang)   # libFuzzer comes with its run-time library
 package=(dpkg-dev mmdebstrap)
 

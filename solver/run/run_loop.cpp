@@ -31,7 +31,7 @@ void RunLoop::start() {
 }
 
 void RunLoop::resume(const SolverState& state, RunMemory memory) {
-  history_.restore(memory.history);
+  history_.restore(memory);
   stepper_.begin(state);
   memory_ = std::move(memory);
 }

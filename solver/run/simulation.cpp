@@ -94,7 +94,7 @@ void Simulation::stop() {
 void Simulation::save_checkpoint() {
   RunMemory& memory = loop_.memory();
   memory.wall_time = timer_.seconds();
-  memory.history = loop_.history().rows();
+  loop_.history().keep(memory);
   frames_.settle();  // a checkpoint counts on its frames
   write_checkpoint(paths_.checkpoint,
                    {marks_.fingerprint, marks_.id, marks_.stop_reason, loop_.stepper().solver().state(), memory});

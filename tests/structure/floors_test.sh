@@ -9,7 +9,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 # named by its path; '.' is the stage's own folder.
 floors() {
   case $1 in
-    common) printf '%s\n' . 'map recipe' stage 'domain run gis' 'qgis ensemble' ;;
+    common) printf '%s\n' . 'map recipe' stage 'domain run gis' 'ensemble qgis' ;;
     preprocess)
       printf '%s\n' 'options regions' 'terrain obstacle' 'survey release' particles laboratory scene output .
       ;;
