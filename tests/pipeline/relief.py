@@ -23,7 +23,7 @@ def differ(a, b):
 
 
 def check_volume(browser, out):
-    """The flow as it is drawn holds the volume of the map that the GeoTIFF holds, to the steps of the page's numbers."""
+    """The flow as it is drawn holds the volume of the GeoTIFF, but for what is thinner than the first class."""
     drawn = browser.execute_script("return report.relief.relief.volume(report.relief.relief.flows.length - 1)")
     deposit = gdal.Open(f"{out}/maps/deposit_thickness.tif")
     values = deposit.ReadAsArray()

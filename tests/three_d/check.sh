@@ -22,7 +22,7 @@ mkdir -p "$work"
   "$bin/talus-solve" "$recipe" --out "$work" --on cpu "${sets[@]}" >"$work/log.txt" 2>&1 ||
   { cat "$work/log.txt"; exit 1; }
 "$bin/talus-postprocess" "$recipe" --out "$work" "${sets[@]}" >"$work/log.txt" 2>&1 || { cat "$work/log.txt"; exit 1; }
-grep -E '3d' "$work/log.txt" || true
+grep -E ' MB' "$work/log.txt" || true
 
 echo '== OpenVDB'
 /usr/bin/python3 "$here/check_volumes.py" "$work"
