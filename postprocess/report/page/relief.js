@@ -186,7 +186,7 @@ export class Relief {
     const { grid } = this.relief,
       layer = this.fields.layers.find((one) => one.id === id),
       canvas = document.createElement("canvas"),
-      scale = Math.min(Math.max(Math.round(1600 / Math.max(grid.columns, grid.rows)), 1), 16);
+      scale = Math.min(Math.max(Math.round(1600 / Math.max(grid.columns, grid.rows)), 1), 80);
     canvas.width = grid.columns * scale;
     canvas.height = grid.rows * scale;
     const context = canvas.getContext("2d"),
