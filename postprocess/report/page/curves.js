@@ -166,6 +166,12 @@ function placeCharts(box, history, columns) {
   }
 }
 
+/** The front stays where it is until the end of the run. */
+function frontPoints(front) {
+  const last = front.distance[front.distance.length - 1];
+  return points([...front.time, Math.max(front.until, front.time[front.time.length - 1])], [...front.distance, last]);
+}
+
 /** Energy, speed, volume in motion, front, then what was measured at places. */
 export function drawSeries(data) {
   const { history, front, motion } = data.series,
@@ -181,7 +187,7 @@ export function drawSeries(data) {
         label: "Mean of what moves",
         data: points(motion.time, motion.mean_speed),
         colour: colours.violet,
-        dots: true,
+        dots: !motion.from_history,
         dashes: [6, 3],
       });
     lineChart(box, { id: "series-speed", title: "Speed", x: "Time [s]", y: "Speed [m/s]", height: 240, lines: speed });
@@ -196,11 +202,11 @@ export function drawSeries(data) {
       x: "Time [s]",
       y: `Volume [${prefix}m\u00b3]`,
       height: 240,
-      lines: [curve("In motion", motion.time, motion.volume, factor, { colour: colours.blue, dots: true })],
+      lines: [curve("In motion", motion.time, motion.volume, factor, { colour: colours.blue, dots: !motion.from_history })],
     });
     notes.push(
-      `In motion: material points faster than ${motion.faster_than} m/s, at the ${motion.time.length} frames the ` +
-        `run wrote.`,
+      `In motion: material points faster than ${motion.faster_than} m/s, at the ${motion.time.length} ` +
+        (motion.from_history ? "records of the history." : "frames the run wrote; its history does not have it."),
     );
   }
   if (front) {
@@ -210,9 +216,12 @@ export function drawSeries(data) {
       x: "Time [s]",
       y: "Distance [m]",
       height: 240,
-      lines: [{ label: "Front", data: points(front.time, front.distance), colour: colours.violet, dots: true }],
+      lines: [{ label: "Front", data: frontPoints(front), colour: colours.violet }],
     });
-    notes.push(`Front: farthest place along the thalweg that the flow has reached, thicker than ${front.threshold} m.`);
+    notes.push(
+      `Front: farthest place along the thalweg that the flow has reached, thicker than ${front.threshold} m, by the ` +
+        `map of arrival times.`,
+    );
   }
   placeCharts(box, history, data.series.at_places);
   if (!box.children.length) notes.push("The run holds no history.");

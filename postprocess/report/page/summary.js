@@ -55,8 +55,8 @@ const cards = [
   ["deposit_csi", "Deposit CSI"],
   ["footprint_csi", "Footprint CSI"],
   ["thickness_rmse_m", "Thickness RMSE"],
-  ["runout_difference_m", "Run-out \u2212 survey"],
-  ["deposit_volume_ratio", "Volume / survey"],
+  ["runout_difference_m", "Run-out \u2212 {noun}"],
+  ["deposit_volume_ratio", "Volume / {noun}"],
 ];
 
 /** Three figures are enough at a glance; the table of scores has them all. */
@@ -91,6 +91,6 @@ export function drawSummary(data) {
   const box = document.getElementById("key-numbers");
   for (const [key, title, words] of cards) {
     const item = items.get(key);
-    if (item) box.append(card(item, title, words));
+    if (item) box.append(card(item, title.replace("{noun}", run.survey?.noun ?? "survey"), words));
   }
 }
