@@ -74,8 +74,8 @@ def _renderer():
 
 
 def points_layer(results, crs, most, feedback):
-    """Every n-th point of every frame, so that all frames together hold at most `most`; with speed [m/s], elevation [m],
-    its id and the instant, from which the Temporal Controller shows it until the next frame. None, with a warning,
+    """Every n-th point of every frame, so that all frames together hold at most `most`; with speed [m/s], elevation
+    [m], its id and the instant, from which the Temporal Controller shows it until the next frame. None, with a warning,
     where the run kept no points."""
     points = _Points(results.run) if results.run else None
     if points is None or not points.known():

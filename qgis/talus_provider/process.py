@@ -70,7 +70,8 @@ class _Ending:
         if self.since is None:
             return
         waited = time.monotonic() - self.since
-        for step, (after, what) in enumerate([(self.patience, signal.SIGTERM), (self.patience + 10, signal.SIGKILL)], 1):
+        orders = [(self.patience, signal.SIGTERM), (self.patience + 10, signal.SIGKILL)]
+        for step, (after, what) in enumerate(orders, 1):
             if waited > after and self.told < step:
                 self.told = step
                 _ask(self.process, what)

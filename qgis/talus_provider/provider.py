@@ -35,7 +35,8 @@ class TalusProvider(QgsProcessingProvider):
     def load(self):
         ProcessingConfig.settingIcons["Talus"] = self.icon()
         ProcessingConfig.addSetting(
-            Setting("Talus", PROGRAM, "The talus command (empty: it is looked for on the path)", "", valuetype=Setting.FILE)
+            Setting("Talus", PROGRAM, "The talus command (empty: it is looked for on the path)", "",
+                    valuetype=Setting.FILE)
         )
         ProcessingConfig.readSettings()
         self.refreshAlgorithms()

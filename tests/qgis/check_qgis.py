@@ -6,7 +6,7 @@
 check_qgis.py --bin DIR --plugin ZIP --work DIR [--only NAME...]
 
 Each check is a function check_NAME(place); it ends with an exception that says what was seen. What there is to look at
-stays in the work folder: layout.png, layout-frame.png.
+stays in the work folder: layout.png.
 """
 import argparse
 import os
@@ -112,7 +112,8 @@ def main():
         except Exception:  # each is told, and the others run
             failed += 1
             print(f"FAILED: {name}\n{traceback.format_exc()}", flush=True)
-    print(f"{failed} of the checks in QGIS failed" if failed else f"all checks in QGIS passed: {place.work}", flush=True)
+    words = f"{failed} of the checks in QGIS failed" if failed else "all checks in QGIS passed"
+    print(f"{words}; to look at: {place.work}/layout.png", flush=True)
     os._exit(1 if failed else 0)  # QGIS crashes now and then while Python takes it down
 
 

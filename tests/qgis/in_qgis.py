@@ -202,7 +202,8 @@ def check_project_has_a_print_layout(place):
     words = [label.currentText() for label in items[QgsLayoutItemLabel]]
     assert "Bowl" in words and any("Talus" in w and "run" in w for w in words), words
     entries = [n.name() for n in items[QgsLayoutItemLegend][0].model().rootGroup().findLayers()]
-    assert "Deposit thickness, vertical [m]" in entries and not any(e.startswith("Thickness at") for e in entries), entries
+    assert "Deposit thickness, vertical [m]" in entries, entries
+    assert not any(name.startswith("Thickness at") for name in entries), entries
     path = place.work / "layout.png"
     settings = QgsLayoutExporter.ImageExportSettings()
     settings.dpi = 150

@@ -27,6 +27,14 @@ time.sleep(30)
 """
 
 
+DEAF = """
+import signal, sys, time
+signal.signal(signal.SIGINT, signal.SIG_IGN)
+print("x", file=sys.stderr, flush=True)
+time.sleep(60)
+"""
+
+
 class ProgressTest(unittest.TestCase):
     def test_goes_by_stage_and_time_and_never_back(self):
         progress, seen = Progress(), []
@@ -72,9 +80,8 @@ class ProcessTest(unittest.TestCase):
             self.assertLess(time.monotonic() - began, 20)
 
     def test_what_does_not_listen_is_ended(self):
-        deaf = "import signal, sys, time; signal.signal(signal.SIGINT, signal.SIG_IGN); print('x', file=sys.stderr, flush=True); time.sleep(60)"
         lines = []
-        outcome = process.run([sys.executable, "-c", deaf], lines.append, lambda: bool(lines), patience=0.3)
+        outcome = process.run([sys.executable, "-c", DEAF], lines.append, lambda: bool(lines), patience=0.3)
         self.assertEqual(outcome.code, 128 + 15)
 
     def test_asks_the_solver_for_a_line_a_second(self):

@@ -21,7 +21,9 @@ test_zip_is_the_same_twice_and_holds_what_qgis_asks_for() {
   grep -qx 'version=1.2.3' talus_provider/metadata.txt || fail "the version is not filled in"
   find . -name '*.pyc' | grep -q . && fail "compiled files are in it"
   for name in name qgisMinimumVersion description about author category hasProcessingProvider; do
-    /usr/bin/python3 -c 'import configparser, sys; c = configparser.ConfigParser(); c.read("talus_provider/metadata.txt")
+    /usr/bin/python3 -c 'import configparser, sys
+c = configparser.ConfigParser()
+c.read("talus_provider/metadata.txt")
 assert c["general"][sys.argv[1]].strip()' "$name" || fail "metadata.txt has no $name"
   done
 }

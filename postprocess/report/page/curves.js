@@ -202,7 +202,10 @@ export function drawSeries(data) {
       x: "Time [s]",
       y: `Volume [${prefix}m\u00b3]`,
       height: 240,
-      lines: [curve("In motion", motion.time, motion.volume, factor, { colour: colours.blue, dots: !motion.from_history })],
+      lines: [curve("In motion", motion.time, motion.volume, factor, {
+        colour: colours.blue,
+        dots: !motion.from_history,
+      })],
     });
     notes.push(
       `In motion: material points faster than ${motion.faster_than} m/s, at the ${motion.time.length} ` +

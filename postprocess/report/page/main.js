@@ -9,6 +9,7 @@ import { drawMethod } from "./method.js";
 import { Panel } from "./panel.js";
 import { drawPlaceList, placesOf } from "./places.js";
 import { Plates } from "./plates.js";
+import { labelCells } from "./stack.js";
 import { drawSummary } from "./summary.js";
 import { drawSurveys } from "./surveys.js";
 import { drawInputs, drawParameters, drawScores, drawVersions, drawVolumes } from "./tables.js";
@@ -62,6 +63,7 @@ async function draw() {
   drawParameters(data);
   drawMethod(data);
   drawVersions(data);
+  labelCells(document);
   drawProfile(data, thalwegPointer(data, view));
   drawSeries(data);
   if (typeof DecompressionStream === "undefined") {

@@ -23,8 +23,8 @@ function legendTitle(layer) {
 /** "Gauges", "Obstacles", or both. */
 function placeWords(places) {
   const kinds = new Set(places.map((place) => place.kind));
-  const words = [kinds.has("gauge") ? "gauges" : "", kinds.has("obstacle") ? "obstacles" : ""].filter(Boolean).join(", ");
-  return words[0].toUpperCase() + words.slice(1);
+  if (kinds.size > 1) return "Gauges, obstacles";
+  return kinds.has("gauge") ? "Gauges" : "Obstacles";
 }
 
 export class Panel {

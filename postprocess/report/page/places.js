@@ -32,7 +32,8 @@ export function placesLayer(places) {
     const shape = isPoint(place) ? L.circleMarker(rings[0][0], { ...options, radius: 5 }) : L.polygon(rings, options);
     const words = document.createElement("span");
     words.textContent = place.name; // names are not markup
-    shape.bindTooltip(words, { permanent: places.length <= 12, direction: "right", offset: [6, 0], className: "place" });
+    const permanent = places.length <= 12;
+    shape.bindTooltip(words, { permanent, direction: "right", offset: [6, 0], className: "place" });
     group.addLayer(shape);
   }
   return group;
@@ -88,7 +89,8 @@ function measuredWords(place) {
   return place.measured
     .map(({ quantity, unit, value, time }) => {
       const digits = Math.abs(value) >= 100 ? 0 : Math.abs(value) >= 1 ? 1 : 2;
-      const words = Math.abs(value) >= 1e5 ? value.toExponential(2).replace("e+", " \u00b7 10^") : number(value, digits);
+      const large = Math.abs(value) >= 1e5;
+      const words = large ? value.toExponential(2).replace("e+", " \u00b7 10^") : number(value, digits);
       return `${quantity} ${words}\u2009${unitOfPowers(unit)} at ${number(time, 1)}\u2009s`;
     })
     .join("; ");
@@ -114,9 +116,8 @@ export function drawPlaceList(data) {
   });
   const head = [h("th", {}, "Name"), h("th", {}, "Kind"), h("th", { class: "number" }, "East, north [m]"),
     h("th", { class: "number" }, "Area"), h("th", {}, "Farthest from zero over the run")];
-  document.getElementById("places").append(
-    h("div", { class: "scroll" }, h("table", { class: "data" }, h("thead", {}, h("tr", {}, head)), h("tbody", {}, rows))),
-    h("p", { class: "note" }, "Curves of what was measured stand under \u201cOver time\u201d. Of an obstacle the middle of " +
-      "its outline is given."),
-  );
+  const table = h("table", { class: "data" }, h("thead", {}, h("tr", {}, head)), h("tbody", {}, rows));
+  const note =
+    "Curves of what was measured stand under \u201cOver time\u201d. Of an obstacle the middle of its outline is given.";
+  document.getElementById("places").append(h("div", { class: "scroll" }, table), h("p", { class: "note" }, note));
 }

@@ -21,6 +21,7 @@ function valueOf(items, key) {
 export function headline(data) {
   const items = byKey(data.score),
     get = (key) => valueOf(items, key),
+    speed = get("max_peak_speed_m_s"),
     survey = data.run.survey;
   let words = `${volume(get("volume_released_m3"))} released`;
   if (get("volume_entrained_m3") > 0) words += `, ${volume(get("volume_entrained_m3"))} taken along`;
@@ -29,7 +30,7 @@ export function headline(data) {
       `; the deposit reaches ${number(get("runout_m"))} m from the crown and ${number(get("drop_m"))} m below it ` +
       `(H/L ${number(get("h_over_l"), 2)}, angle of reach ${number(get("fahrboeschung_deg"), 1)}\u00b0)`;
   }
-  words += `. Peak speed ${number(get("max_peak_speed_m_s"))} m/s; ${number(get("time_end_s"))} s simulated.`;
+  words += `. Peak speed ${number(speed, speed < 10 ? 1 : 0)} m/s; ${number(get("time_end_s"))} s simulated.`;
   const agreement = [
     ["deposit_csi", "deposit"],
     ["footprint_csi", "footprint"],
