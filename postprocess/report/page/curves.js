@@ -147,6 +147,11 @@ function lineStyle(i) {
   return { colour: order[i % order.length], dashes: dashes[Math.floor(i / order.length) % dashes.length] };
 }
 
+/** What stands along an axis: a long quantity is in the title already, where it has room. */
+function axisWords(quantity, unit) {
+  return quantity.length + unit.length <= 30 || !unit ? `${quantity} ${unit}` : unit;
+}
+
 /** A chart for every quantity that is measured at places, such as gauges and obstacles: a line for each place. */
 function placeCharts(box, history, columns) {
   const charts = new Map();
@@ -161,7 +166,7 @@ function placeCharts(box, history, columns) {
     const measured = first.quantity[0].toUpperCase() + first.quantity.slice(1);
     lineChart(box, { id: `series-${first.quantity.replace(/[^a-z]+/gi, "-")}`, x: "Time [s]", height: 240,
       title: others.length ? measured : `${measured}, ${first.place}`, // one line has no legend
-      y: unit ? `${measured} [${prefix}${unit}]` : measured, zero: Math.min(...known) < 0.5 * Math.max(...known),
+      y: axisWords(measured, unit ? `[${prefix}${unit}]` : ""), zero: Math.min(...known) < 0.5 * Math.max(...known),
       lines: all.map((column, i) => curve(column.place, history.time_s, values[i], factor, lineStyle(i))) });
   }
 }
