@@ -48,7 +48,7 @@ MapPlace read_place(const std::string& name, const std::string& text) {
     if (*at++ != ',') refuse_place(name);
     place.rings.back().push_back({x, number_at(at, name)});
     if (*at == ';') place.rings.emplace_back();
-    if (*at == ';' || *at == ' ')
+    if ((*at == ';' || *at == ' ') && at[1] != '\0')
       ++at;
     else if (*at != '\0')
       refuse_place(name);

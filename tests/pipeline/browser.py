@@ -11,7 +11,8 @@ def open_browser(size=(1300, 1000)):
     """A browser whose console is kept."""
     options = webdriver.ChromeOptions()
     options.binary_location = "/usr/bin/chromium"
-    for argument in ["--headless=new", "--disable-gpu", "--disable-dev-shm-usage", f"--window-size={size[0]},{size[1]}"]:
+    options.add_argument(f"--window-size={size[0]},{size[1]}")
+    for argument in ["--headless=new", "--disable-gpu", "--disable-dev-shm-usage"]:
         options.add_argument(argument)
     if os.geteuid() == 0:
         options.add_argument("--no-sandbox")  # Chromium's sandbox refuses root, which tests in containers are
