@@ -6,6 +6,7 @@
 # usage: tools/install-dependencies.sh [GROUP...] [--list]
 #   build     what building and running Talus needs; always among them
 #   tests     what `make test` needs besides: GoogleTest, a browser, readers that are not ours, ffmpeg for animations
+#   qgis      what `make check-qgis` needs: QGIS itself, about 1 GB
 #   lint, docs, fuzz, package     what `make lint`, `make docs`, `make fuzz` and `make check-install` need
 #   three-d   ParaView and Blender, for `make check-three-d`
 set -euo pipefail
@@ -35,6 +36,7 @@ tests=(
   # what the site of documents is made of
   python3-sphinx python3-myst-parser furo
 )
+qgis=(qgis python3-qgis qgis-providers gdal-bin)
 lint=(clang-format clang-tidy)
 fuzz=(clang)   # libFuzzer comes with its run-time library
 package=(dpkg-dev mmdebstrap)
@@ -55,11 +57,12 @@ for group in "$@"; do
     tests) packages+=("${tests[@]}") ;;
     lint) packages+=("${tests[@]}" "${lint[@]}") ;;   # it reads the tests as well
     docs) packages=("${docs[@]}") ;;
+    qgis) packages+=("${qgis[@]}") ;;
     fuzz) packages+=("${tests[@]}" "${fuzz[@]}") ;;
     package) packages+=("${package[@]}") ;;
     three-d) packages+=("${three_d[@]}") ;;
     --list) list=yes ;;
-    *) fail "no such group: $group (build, tests, lint, docs, fuzz, package, three-d)" ;;
+    *) fail "no such group: $group (build, tests, qgis, lint, docs, fuzz, package, three-d)" ;;
   esac
 done
 if [[ $list == yes ]]; then
