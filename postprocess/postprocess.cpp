@@ -11,11 +11,13 @@
 
 #include <fmt/format.h>
 
+#include "common/ensemble/options.hpp"
 #include "common/gis/crs.hpp"
 #include "common/gis/dataset_files.hpp"
 #include "common/run/run_file.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/input_file.hpp"
+#include "postprocess/ensemble/run_ensemble.hpp"
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/maps/avaframe.hpp"
 #include "postprocess/maps/geotiff.hpp"
@@ -121,8 +123,9 @@ void write_maps(StageContext& context, const Job& job) {
   const auto folder = context.out / "maps";
   make_folder(folder);
   auto& results = context.results;
-  results = write_geotiffs(folder, run, options.nodata_zero ? Outside::zero : Outside::nodata);
-  const auto for_gis = write_gis(folder, results, {run, options, survey});
+  const auto maps = write_geotiffs(folder, run, options.nodata_zero ? Outside::zero : Outside::nodata);
+  results.insert(results.end(), maps.begin(), maps.end());
+  const auto for_gis = write_gis(folder, maps, {run, options, survey});
   results.insert(results.end(), for_gis.begin(), for_gis.end());
   if (options.avaframe) {
     make_folder(folder / "avaframe");
@@ -178,6 +181,11 @@ std::vector<fs::path> texts_beside(const fs::path& folder) {
   return files;
 }
 
+/// Whether there is a single run to work on. Beside an ensemble there need not be one.
+bool has_single_run(const StageContext& context, const Options& options) {
+  return !ensemble_of(context.recipe).on() || !options.run.empty() || fs::exists(run_file(context, options));
+}
+
 }  // namespace
 
 Dependencies depends(const StageContext& context) {
@@ -191,7 +199,12 @@ Dependencies depends(const StageContext& context) {
   inputs.insert(inputs.begin(), run);
   if (options.report)
     for (const fs::path& file : texts_beside(run.parent_path())) inputs.push_back(file);
-  return {{context.out / "score.json"}, inputs};
+  if (!ensemble_of(context.recipe).on()) return {{context.out / "score.json"}, inputs};
+  Dependencies depends = ensemble_depends(context);
+  const bool single = has_single_run(context, options);
+  if (single) depends.results.push_back(context.out / "score.json");
+  depends.inputs.insert(depends.inputs.end(), inputs.begin() + (single ? 0 : 1), inputs.end());
+  return depends;
 }
 
 namespace {
@@ -212,15 +225,6 @@ Facts judge_run(const StageContext& context, const Job& job) {
   made.program = "talus-preprocess and talus-solve";
   if (!facts.empty() || fact(run.provenance, run_id).empty() || domain_named) return facts;
   return judge_maker(context.recipe, made);
-}
-
-/// Refuses a survey that talus-preprocess did not come to the end of.
-void require_whole_survey(const fs::path& out) {
-  const fs::path file = out / "survey" / "survey.json";
-  if (!fs::exists(out / "survey" / "slide_difference.tif") || fs::exists(file)) return;
-  throw DataError({file.string() + ": no such file",
-                   "talus-preprocess writes it last; without it what lies beside it may be of two preparations",
-                   "Run talus-preprocess again"});
 }
 
 /// Refuses a survey that another recipe made, or that was prepared with another domain than the run's.
@@ -249,9 +253,11 @@ void warn_of_other_title(const StageContext& context, const RunSummary& run) {
 
 }  // namespace
 
-void run(StageContext& context) {
+namespace {
+
+void run_single(StageContext& context, const Options& options) {
   Job job;
-  job.options = context.recipe.read<Options>("postprocess");
+  job.options = options;
   Acceptance acceptance("postprocess", job.options.accept);
   if (job.options.survey.from_preprocess) require_whole_survey(context.out);
   const FoundSurvey found = job.options.survey.from_preprocess ? read_found_survey(context.out) : FoundSurvey{};
@@ -285,6 +291,15 @@ void run(StageContext& context) {
                        job.survey ? "scored against " + job.survey->name : std::string("no survey to score against")));
   check_animation(job.options.animation, job.run);
   if (!context.check_only) write_results(context, job);
+}
+
+}  // namespace
+
+void run(StageContext& context) {
+  const auto options = context.recipe.read<Options>("postprocess");
+  const bool single = has_single_run(context, options);
+  if (ensemble_of(context.recipe).on()) run_ensemble(context, options, !single);
+  if (single) run_single(context, options);
 }
 
 Stage stage() {

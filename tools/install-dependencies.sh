@@ -17,6 +17,7 @@ build=(
   nlohmann-json3-dev libtomlplusplus-dev
   libgdal-dev libhdf5-dev libnetcdf-dev libcgal-dev
   libopenvdb-dev libboost-iostreams-dev libblosc-dev
+  libopenturns-dev
   libcairo2-dev fonts-dejavu-core zlib1g-dev
   # what report.html is made of, and what bundles its scripts
   libjs-leaflet libjs-chart.js esbuild
