@@ -19,6 +19,7 @@
 #include "common/stage/input_file.hpp"
 #include "postprocess/ensemble/run_ensemble.hpp"
 #include "postprocess/fields/fields.hpp"
+#include "postprocess/fields/history_table.hpp"
 #include "postprocess/maps/avaframe.hpp"
 #include "postprocess/maps/geotiff.hpp"
 #include "postprocess/maps/gis.hpp"
@@ -66,23 +67,6 @@ bool accepted_before(const RunSummary& summary, const std::string& name) {
 
 fs::path run_file(const StageContext& context, const Options& options) {
   return options.run.empty() ? context.out / "run.h5" : options.run;
-}
-
-/// Time series of the run, a row for every record, time first.
-std::string history_table(const RunHistory& history) {
-  std::vector<const HistoryColumn*> order;
-  for (const HistoryColumn& column : history.columns) order.push_back(&column);
-  std::stable_partition(order.begin(), order.end(),
-                        [](const HistoryColumn* column) { return column->name == "time_s"; });
-  std::string text;
-  for (const HistoryColumn* column : order) text += (text.empty() ? "" : ",") + column->name;
-  const std::size_t rows = order.empty() ? 0 : order.front()->values.size();
-  for (std::size_t row = 0; row < rows; ++row) {
-    text += "\n";
-    for (const HistoryColumn* column : order)
-      text += fmt::format("{}{:.9g}", column == order.front() ? "" : ",", column->values[row]);
-  }
-  return text + "\n";
 }
 
 std::optional<std::string> text_of(const fs::path& file) {
@@ -298,7 +282,7 @@ void run_single(StageContext& context, const Options& options) {
 void run(StageContext& context) {
   const auto options = context.recipe.read<Options>("postprocess");
   const bool single = has_single_run(context, options);
-  if (ensemble_of(context.recipe).on()) run_ensemble(context, options, !single);
+  if (ensemble_of(context.recipe).on()) run_ensemble(context, stage(), options, !single);
   if (single) run_single(context, options);
 }
 

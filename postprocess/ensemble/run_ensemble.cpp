@@ -2,12 +2,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "postprocess/ensemble/run_ensemble.hpp"
 
+#include <fstream>
+#include <iterator>
+
 #include <fmt/format.h>
 
-#include "common/gis/dataset_files.hpp"
+#include "common/gis/crs.hpp"
 #include "common/stage/acceptance.hpp"
 #include "common/stage/identity.hpp"
+#include "common/stage/input_file.hpp"
 #include "postprocess/ensemble/hazard.hpp"
+#include "postprocess/ensemble/page.hpp"
 #include "postprocess/ensemble/sampling_error.hpp"
 #include "postprocess/ensemble/sensitivity.hpp"
 #include "postprocess/ensemble/write_maps.hpp"
@@ -52,14 +57,40 @@ std::vector<std::pair<std::string, Sensitivity>> sensitivities(const Ensemble& e
   return found;
 }
 
-void write_results(StageContext& context, const Options& options, const Ensemble& ensemble,
+/// What this stage leaves about itself; a single run beside the ensemble says it again, with its own inputs.
+std::string used_text(const StageContext& context, const Stage& stage, const Options& options, const Ensemble& ensemble,
+                      const std::optional<Survey>& survey) {
+  std::vector<fs::path> inputs = ensemble.files;
+  if (survey) inputs.insert(inputs.end(), survey->inputs.begin(), survey->inputs.end());
+  return used_recipe(context, stage, recipe::to_used_toml(options, "postprocess"), inputs,
+                     {{"ensemble", ensemble.counts.fingerprint},
+                      {"members", members_words(ensemble)},
+                      {"CRS", crs_name(ensemble.counts.scene.grid.crs_wkt)}});
+}
+
+/// What the stages before left about themselves in the output folder, and what this one leaves.
+std::vector<StageText> texts_of_stages(const StageContext& context, const std::string& used) {
+  std::vector<StageText> texts;
+  for (const char* name : {"preprocess", "solve"}) {
+    const fs::path file = context.out / (std::string(name) + ".used.toml");
+    texts.push_back({name, std::nullopt});
+    if (!fs::exists(file)) continue;
+    require_plain(file);
+    std::ifstream stream(file, std::ios::binary);
+    texts.back().text = std::string(std::istreambuf_iterator<char>(stream), {});
+  }
+  texts.push_back({"postprocess", used});
+  return texts;
+}
+
+void write_results(StageContext& context, const Stage& stage, const Options& options, const Ensemble& ensemble,
                    const std::optional<Survey>& survey) {
   const auto write = [&](const char* name, const std::string& bytes) {
     stop_if_interrupted(std::string("writing ") + name);
     context.results.push_back(context.out / name);
     write_text(context.results.back(), bytes);
   };
-  remove_for_good(context.out / "probability.nc");  // last written: where it lies, everything is there
+  for (const char* older : {"probability.nc", "ensemble.html"}) remove_for_good(context.out / older);
   const MemberRows rows = member_rows(ensemble, options, survey);
   write("members.csv", members_csv(rows));
   const auto sensitive = sensitivities(ensemble, rows);
@@ -67,6 +98,10 @@ void write_results(StageContext& context, const Options& options, const Ensemble
   make_folder(context.out / "probability");
   for (const fs::path& file : write_probability_maps(context.out / "probability", ensemble, options))
     context.results.push_back(file);
+  const std::string used = used_text(context, stage, options, ensemble, survey);
+  write("postprocess.used.toml", used);
+  if (options.report)
+    write("ensemble.html", ensemble_html({ensemble, options, survey, rows, sensitive, texts_of_stages(context, used)}));
   stop_if_interrupted("writing probability.nc");
   context.results.push_back(context.out / "probability.nc");
   write_probability_netcdf(context.results.back(), ensemble, rows, options, context.command_line);
@@ -78,7 +113,7 @@ Dependencies ensemble_depends(const StageContext& context) {
   return {{context.out / "probability.nc"}, ensemble_files(context.out)};
 }
 
-void run_ensemble(StageContext& context, const Options& options, bool alone) {
+void run_ensemble(StageContext& context, const Stage& stage, const Options& options, bool alone) {
   Ensemble ensemble = read_ensemble(context);
   const std::optional<Survey> survey = survey_of(context, options, ensemble, alone);
   hazard_rule(ensemble, options.hazard);
@@ -88,7 +123,7 @@ void run_ensemble(StageContext& context, const Options& options, bool alone) {
       "ensemble: {}; {} x {} cells of {:g} m; design {}; the standard error of a probability of one "
       "half is {:.2g}",
       members_words(ensemble), grid.columns, grid.rows, grid.cell, ensemble.table.design, standard_error(0.5, draws)));
-  if (!context.check_only) write_results(context, options, ensemble, survey);
+  if (!context.check_only) write_results(context, stage, options, ensemble, survey);
 }
 
 }  // namespace talus::postprocess
