@@ -41,7 +41,7 @@ TEST(SamplingError, holds_what_it_says_two_times_in_three) {
       const double middle = (share * 200 + 0.5) / 201;
       inside += std::abs(p - middle) <= standard_error(share, 200) ? 1 : 0;
     }
-    EXPECT_NEAR(inside / 20000.0, 0.683, 0.03) << p;  // 200 draws are whole numbers: coverage jumps by some per cent
+    EXPECT_NEAR(inside / 20000.0, 0.683, 0.04) << p;  // one whole number more at an end is up to 0.035
   }
 }
 
