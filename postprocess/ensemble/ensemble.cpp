@@ -32,6 +32,11 @@ void judge_counts(const StageContext& context, const fs::path& file, const Ensem
     throw DataError({fmt::format("{}: counts of an ensemble of {} members", file.string(), counts.members),
                      fmt::format("{} has {}", ensemble.files.front().string(), ensemble.table.count),
                      "Run talus-solve again"});
+  const std::string of = fact(ensemble.table.provenance, base_domain_id), is = fact(counts.provenance, domain_id);
+  if (!of.empty() && !is.empty() && of != is)
+    throw DataError({fmt::format("{}: counts of members of the domain {}", file.string(), is),
+                     fmt::format("{} names the domain {}", ensemble.files.front().string(), of),
+                     "Run talus-solve again"});
   for (const auto& [table, name, program] : {std::tuple{"solve", recipe_of_run, "talus-solve"},
                                              std::tuple{"preprocess", recipe_of_domain, "talus-preprocess and solve"}})
     if (!fact(counts.provenance, name).empty())

@@ -2,12 +2,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "preprocess/options/options.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "preprocess/options/fault.hpp"
+
 namespace talus::preprocess {
 
 void Options::describe(recipe::Visitor& v) {
   ElevationOptions::describe(v, *this);
   v.names("accept", accept, {"swapped-surveys", "false-lengths", "steep-ground"},
           "what is refused because it is hardly ever right, and here is; it goes with all results");
+  v.number("thickness_factor", thickness_factor, recipe::positive,
+           "the released thickness times this; the bed and the outline stay, the surface before follows");
+  v.needs(thickness_factor == 1 || std::all_of(box.begin(), box.end(), [](const auto& b) { return !(b.bottom > 0); }),
+          fault(fmt::format("thickness_factor = {:g} with a box above the ground (bottom_m > 0)", thickness_factor),
+                "it would be lifted, not made thicker", "Give top_m and bottom_m of the boxes instead"));
   recipe::table(v, "coregistration", coregistration, "for (1): after_dem brought onto before_dem", *this);
   recipe::table(v, "difference", difference, "for (1): after_dem less before_dem, and from where on it is believed",
                 *this);

@@ -181,6 +181,27 @@ Release lowered_outside_source(const SceneRasters& scene, const std::string& nam
   return layer;
 }
 
+/// [preprocess] thickness_factor: the bed stays, the surface before follows.
+void scale_thickness(double factor, SceneRasters& scene) {
+  if (factor == 1) return;
+  for (Release& release : scene.releases) {
+    for (std::size_t c = 0; c < release.thickness.values.size(); ++c) {
+      double& thickness = release.thickness.values[c];
+      if (!(thickness > 0)) continue;
+      scene.before.values[c] += (factor - 1) * thickness;
+      thickness *= factor;
+    }
+  }
+}
+
+/// Points of boxes, which stand on the ground; [preprocess] thickness_factor stretches their lattice.
+SeedPoints points_of_boxes(const Options& options) {
+  SeedPoints points = seed_boxes(options);
+  for (auto* values : {&points.height, &points.volume})
+    for (double& value : *values) value *= options.thickness_factor;
+  return points;
+}
+
 /// Takes the erodible layers out of the bed, and puts them below everything that is released.
 void lay_erodible(const Options& options, SceneRasters& scene) {
   std::vector<Release> layers;
@@ -340,6 +361,7 @@ Prepared prepare(const Options& given, Points points) {
   SceneRasters scene = read_scene(options);
   const Acceptance acceptance = judged(given, scene);
   acceptance.warn_of_unmet();
+  scale_thickness(options.thickness_factor, scene);
   lay_erodible(options, scene);
   Prepared prepared;
   prepared.accepted = acceptance.facts();
@@ -368,7 +390,7 @@ Prepared prepare(const Options& given, Points points) {
   }
   stop_if_interrupted("preparing the domain");
   if (points == Points::seeded) {
-    domain.points = laboratory ? seed_boxes(options) : seed_points(scene.releases, seeding);
+    domain.points = laboratory ? points_of_boxes(options) : seed_points(scene.releases, seeding);
   }
   domain.erodible = static_cast<int>(options.erodible.size());
   domain.bed = read_bed(options, domain.grid);

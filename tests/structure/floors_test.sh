@@ -9,13 +9,13 @@ source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 # named by its path; '.' is the stage's own folder.
 floors() {
   case $1 in
-    common) printf '%s\n' . 'map recipe' stage 'domain run gis' 'qgis ensemble' ;;
+    common) printf '%s\n' . 'map recipe' stage 'domain run gis' 'ensemble qgis' ;;
     preprocess)
       printf '%s\n' 'options regions' 'terrain obstacle' 'survey release' particles laboratory scene output .
       ;;
     solver)
       printf '%s\n' parallel state material grid transfer boundary elements linear/krylov linear/operator \
-        linear/preconditioner linear/direct integrator 'explicit implicit' options scene run/recorders run .
+        linear/preconditioner linear/direct integrator 'explicit implicit' options scene run/recorders run ensemble .
       ;;
     postprocess) printf '%s\n' options survey fields 'score maps' picture report 'ensemble compare' . ;;
   esac

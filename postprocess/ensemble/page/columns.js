@@ -6,6 +6,7 @@ import { number, unitOfPowers } from "../../report/page/format.js";
 const titles = {
   run_out_m: "run-out",
   drop_m: "drop",
+  flow_reach_m: "reach of the flow",
   reach_ratio: "drop over run-out, H/L",
   flow_area_m2: "area of the flow",
   deposit_area_m2: "area of the deposit",

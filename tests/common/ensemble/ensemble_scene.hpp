@@ -85,6 +85,7 @@ inline MemberResult result_of(const MemberTable& table, std::int64_t member) {
   const double reach = reach_of(table, member), depth = depth_of(table, member);
   MemberResult result;
   result.run_out = 10 * (reach - 2);
+  result.flow_reach = result.run_out;
   result.drop = 6 * (reach - 2);
   result.reach_ratio = 0.6;
   result.flow_area = 800 * (reach - 2);
