@@ -14,6 +14,7 @@
 #include "common/ensemble/options.hpp"
 #include "common/gis/crs.hpp"
 #include "common/gis/dataset_files.hpp"
+#include "common/run/run_facts.hpp"
 #include "common/run/run_file.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/input_file.hpp"
@@ -165,9 +166,14 @@ std::vector<fs::path> texts_beside(const fs::path& folder) {
   return files;
 }
 
-/// Whether there is a single run to work on. Beside an ensemble there need not be one.
+/// Whether there is a single run to work on. Beside an ensemble there need not be one, and one that another recipe left
+/// in the folder is not of it.
 bool has_single_run(const StageContext& context, const Options& options) {
-  return !ensemble_of(context.recipe).on() || !options.run.empty() || fs::exists(run_file(context, options));
+  const fs::path file = run_file(context, options);
+  if (!ensemble_of(context.recipe).on() || !options.run.empty()) return true;
+  if (!fs::exists(file)) return false;
+  const std::string mark = fact(run_facts(file), recipe_of_run);
+  return mark.empty() || mark == recipe_mark(context.recipe, "solve");
 }
 
 }  // namespace
@@ -283,7 +289,10 @@ void run(StageContext& context) {
   const auto options = context.recipe.read<Options>("postprocess");
   const bool single = has_single_run(context, options);
   if (ensemble_of(context.recipe).on()) run_ensemble(context, stage(), options, !single);
-  if (single) run_single(context, options);
+  if (single)
+    run_single(context, options);
+  else if (const fs::path file = run_file(context, options); fs::exists(file))
+    log_warning(fmt::format("{}: another recipe made it than the ensemble's; it is left as it is", file.string()));
 }
 
 Stage stage() {

@@ -271,4 +271,8 @@ EnsembleCounts read_counts(const std::filesystem::path& path) {
   return counts;
 }
 
+Facts counts_facts(const std::filesystem::path& path) {
+  return h5::read_facts(open_ensemble_file(path, kind), "/provenance");
+}
+
 }  // namespace talus

@@ -21,8 +21,8 @@ std::size_t tally_of(HazardIntensity intensity) {
   return place;
 }
 
-/// The usual limits: snow avalanches' of pressure (BFF and SLF 1984), debris flows' of thickness and speed (BWW, BRP
-/// and BUWAL 1997).
+/// The usual limits: of snow avalanches' pressure (BFF and SLF 1984); of thickness and speed 1 m and 1 m/s, which part
+/// medium from strong debris flows (BWW, BRP and BUWAL 1997), and half of that.
 std::vector<double> usual_limits(HazardIntensity intensity) {
   return intensity == HazardIntensity::peak_pressure ? std::vector<double>{3, 30} : std::vector<double>{0.5, 1};
 }
