@@ -88,6 +88,8 @@ export class Sensitivity {
         backgroundColor: barColours[m],
       };
     });
+    const ends = found.indices.flatMap(({ value, low, high }) => [value, low ?? value, high ?? value]);
+    const span = { suggestedMin: Math.min(0, ...ends), suggestedMax: Math.max(0, ...ends) };
     this.chart?.destroy();
     this.chart = new Chart(document.getElementById("sensitivity"), {
       type: "bar",
@@ -96,7 +98,7 @@ export class Sensitivity {
         indexAxis: "y",
         maintainAspectRatio: false,
         scales: {
-          x: { grid: { color: "#e6e8eb" }, ticks: { maxRotation: 0 } },
+          x: { grid: { color: "#e6e8eb" }, ticks: { maxRotation: 0 }, ...span },
           y: { grid: { display: false } },
         },
         plugins: {
