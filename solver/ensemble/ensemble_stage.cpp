@@ -205,9 +205,10 @@ Facts run_ensemble(StageContext& context, const EnsembleFlags& flags, const Doma
   const auto unfinished = e.paths.unfinished(e.part);
   const OwnEnd saving("finished members are saved");
   keep_runs(context, members, e.options, e.paths, make_device(flags.on), counts);
-  const MembersRun run =
-      run_members(members, counts,
-                  {.devices = devices_for(flight.count, flags.on), .save = [&] { write_counts(unfinished, counts); }});
+  const MembersRun run = run_members(members, counts,
+                                     {.devices = devices_for(flight.count, flags.on),
+                                      .save = [&] { write_counts(unfinished, counts); },
+                                      .save_interval = e.options.save_interval});
   say_warnings(run);
   if (!run.whole) {
     write_counts(unfinished, counts);
