@@ -299,10 +299,14 @@ Stage stage() {
   Stage stage;
   stage.name = "talus-postprocess";
   stage.table = "postprocess";
-  stage.summary = "Write maps, NetCDF, picture and scores of a run (run.h5 of talus-solve)";
+  stage.summary =
+      "Write maps, NetCDF, picture and scores of a run (run.h5 of talus-solve), or of an ensemble (counts.h5)";
   stage.examples =
       "  talus-postprocess scene.toml --out out/scene    maps/ (with a QGIS project), map.png, report.html, "
       "history.csv, score.json, score.txt\n"
+      "  talus-postprocess ensemble.toml --out out/scene    probability/, probability.nc, members.csv, "
+      "sensitivity.csv, "
+      "ensemble.html\n"
       "  talus-postprocess scene.toml --out out/scene --check    read run and survey, write nothing\n"
       "  talus-postprocess --template >> scene.toml    all keys with their defaults\n";
   stage.template_toml = [] { return recipe::to_toml(Options{}, "postprocess", true); };

@@ -14,6 +14,7 @@
 #include "postprocess/ensemble/convergence.hpp"
 #include "postprocess/ensemble/hazard.hpp"
 #include "postprocess/ensemble/maps_of_ensemble.hpp"
+#include "postprocess/ensemble/medoids.hpp"
 #include "postprocess/ensemble/sampling_error.hpp"
 #include "postprocess/report/filled_page.hpp"
 #include "postprocess/report/page.hpp"
@@ -22,7 +23,10 @@
 namespace talus::postprocess {
 namespace {
 
-constexpr std::size_t failures_on_page = 50, steps_of_convergence = 160;
+constexpr std::size_t failures_on_page = 50, steps_of_convergence = 160, medoids_wanted = 4;
+
+/// Of which footprints are compared, each with each.
+constexpr std::size_t members_compared = 400;
 
 Json run_json(const EnsemblePageInput& input) {
   const Ensemble& ensemble = input.ensemble;
@@ -107,6 +111,14 @@ Json convergence_json(const MemberRows& rows) {
   return list;
 }
 
+/// Members that stand for the others.
+Json medoids_json(const Ensemble& ensemble) {
+  const Medoids found = medoids(ensemble.counts, medoids_wanted, members_compared);
+  std::int64_t of = 0;
+  for (const std::int64_t count : found.counts) of += count;
+  return {{"members", found.members}, {"counts", found.counts}, {"of", of}, {"mean_distance", found.mean_distance}};
+}
+
 }  // namespace
 
 Window ensemble_window(const EnsemblePageInput& input) {
@@ -129,6 +141,7 @@ std::string ensemble_html(const EnsemblePageInput& input) {
   data["map"] = ensemble_maps_json(input, window, coarsest);
   data["map"]["coarsest"] = coarsest;
   data["outlines"] = ensemble_outlines_json(input, window);
+  data["medoids"] = medoids_json(input.ensemble);
   data["members"] = members_json(input.rows);
   data["sensitivity"] = sensitivity_json(input);
   data["convergence"] = convergence_json(input.rows);

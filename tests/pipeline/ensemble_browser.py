@@ -166,6 +166,16 @@ def check_choosing(browser, rows):
     check_console(browser)
 
 
+def check_medoids(browser):
+    """A click on a member that stands for others chooses it."""
+    button = browser.find_element(By.CSS_SELECTOR, "#medoids button")
+    browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", button)
+    button.click()
+    member = int(button.get_attribute("data-member"))
+    assert browser.execute_script("return ensemble.selection.chosen") == member
+    assert outline_points(browser) >= 2, "its outline is not on the map"
+
+
 def check_keeping(browser):
     """Dragging along an axis keeps some of the members, on the map too."""
     canvas = browser.find_element(By.CSS_SELECTOR, "#parallel canvas")
@@ -250,6 +260,7 @@ def main():
         check_layers(browser)
         check_slider(browser, out)
         check_choosing(browser, rows)
+        check_medoids(browser)
         check_keeping(browser)
         check_sorting(browser, rows)
         check_sensitivity(browser, out)

@@ -81,6 +81,24 @@ function drawChosen(data, outlines, selection) {
   );
 }
 
+/** Buttons of the members that stand for the others. */
+function drawMedoids(data, selection) {
+  const { members, counts, of, mean_distance: distance } = data.medoids;
+  const button = (member, i) => {
+    const made = h("button", { type: "button", "data-member": member }, `${number(member)}`);
+    made.addEventListener("click", () => selection.choose(member));
+    return [made, ` (${number((100 * counts[i]) / of)} %)${i + 1 < members.length ? ", " : ". "}`];
+  };
+  if (!members.length) return;
+  document
+    .getElementById("medoids")
+    .append(
+      `Members that stand for ${of < data.run.counted ? `the first ${number(of)}` : "all"}, and for how many: `,
+      ...members.flatMap(button),
+      `Their footprints are nearest to the others (medoids; mean Jaccard distance ${number(distance, 2)}).`,
+    );
+}
+
 function notes(data, outlines) {
   const { run, map } = data,
     parts = [`Coordinates: ${run.crs} [m].`, "Shading: surface before the failure."];
@@ -100,7 +118,6 @@ function notes(data, outlines) {
     all > shown
       ? `The charts show the first ${number(shown)} of ${number(all)} members; members.csv has all.`
       : `All ${number(all)} members; those that are not counted have no point and no line.`;
-  return outlines;
 }
 
 async function draw() {
@@ -129,6 +146,7 @@ async function draw() {
   makeOverlays(lines, map, outlines, selection);
   const panel = new MapPanel(data, fields, map);
   notes(data, outlines);
+  drawMedoids(data, selection);
   const follow = () => {
     outlines.draw(selection);
     drawChosen(data, outlines, selection);
