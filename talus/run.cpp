@@ -54,7 +54,8 @@ bool lies_in(const fs::path& file, const fs::path& folder) {
 bool reads_results_of(const std::string& maker, const Dependencies& reader, const fs::path& out) {
   return std::any_of(reader.inputs.begin(), reader.inputs.end(), [&](const fs::path& input) {
     if (maker == "solve") return input == out / "run.h5" || input == EnsemblePaths{out}.counts();
-    return input == out / "domain.vdb" || input == EnsemblePaths{out}.members() || input == out / "obstacles.vdb" || lies_in(input, out / "survey");
+    return input == out / "domain.vdb" || input == EnsemblePaths{out}.members() || input == out / "obstacles.vdb" ||
+           lies_in(input, out / "survey");
   });
 }
 
@@ -63,9 +64,10 @@ void tell_of_parts(const Request& request, const recipe::Recipe& recipe) {
   if (!ensemble_of(recipe).on()) return;
   const auto counts = EnsemblePaths{request.out}.found_counts();
   if (counts.empty() || counts.front() == EnsemblePaths{request.out}.counts()) return;
-  log_info(fmt::format("solve: the counts of {} part{} of the ensemble are taken as they are; remove them to have all "
-                       "members run here",
-                       counts.size(), counts.size() == 1 ? "" : "s"));
+  log_info(
+      fmt::format("solve: the counts of {} part{} of the ensemble are taken as they are; remove them to have all "
+                  "members run here",
+                  counts.size(), counts.size() == 1 ? "" : "s"));
 }
 
 /// The stages that the scores rest on; a recipe may name a domain or a run from elsewhere, and counts of parts of an

@@ -7,8 +7,8 @@ set(_made ${CMAKE_CURRENT_BINARY_DIR}/report)
 set(_shared ${CMAKE_CURRENT_SOURCE_DIR}/report/page)
 file(GLOB _shared_scripts CONFIGURE_DEPENDS ${_shared}/*.js)
 
-# talus_page(NAME FUNCTION FOLDER HTML STYLE...): ${_made}/NAME.cpp, whose FUNCTION gives the page; FOLDER/main.js begins
-# its script, and the styles follow one another.
+# talus_page(NAME FUNCTION FOLDER HTML STYLE...): ${_made}/NAME.cpp, whose FUNCTION gives the page; FOLDER/main.js
+# begins its script, and the styles follow one another.
 function(talus_page name function folder html)
   file(GLOB _scripts CONFIGURE_DEPENDS ${folder}/*.js)
   add_custom_command(OUTPUT ${_made}/${name}.js

@@ -48,7 +48,13 @@ export class Scatter {
     this.chart?.destroy();
     const x = this.byName.get(this.x.value),
       y = this.byName.get(this.y.value);
-    const style = (colour, radius) => ({ backgroundColor: colour, borderColor: colour, pointRadius: radius, pointHitRadius: 4, data: [] });
+    const style = (colour, radius) => ({
+      backgroundColor: colour,
+      borderColor: colour,
+      pointRadius: radius,
+      pointHitRadius: 4,
+      data: [],
+    });
     this.chart = new Chart(document.getElementById("scatter"), {
       type: "scatter",
       data: {

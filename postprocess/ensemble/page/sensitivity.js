@@ -162,8 +162,8 @@ export class Convergence {
       decimals = Math.min(decimalsOf(column) + 1, 6);
     const some = error[last] === null ? "" : ` \u00b1 ${number(error[last], decimals)}`;
     document.getElementById("convergence-note").textContent =
-      `All ${number(members[last])} members: ${number(mean[last], decimals)}${some}. Members come in their order. The ` +
-      "standard error is that of independent draws: a stratified design usually settles sooner, a sensitivity " +
+      `All ${number(members[last])} members: ${number(mean[last], decimals)}${some}. Members come in their order. ` +
+      "The standard error is that of independent draws: a stratified design usually settles sooner, a sensitivity " +
       "design later.";
   }
 }

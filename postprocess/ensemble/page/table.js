@@ -85,7 +85,8 @@ export class MemberTable {
     };
     const last = Math.min(from + rowsOnPage, this.order.length);
     const words = `Rows ${number(from + 1)} to ${number(last)} of ${number(this.order.length)}`;
-    document.getElementById("pages").replaceChildren(...(pages > 1 ? [turn("Before", -1), turn("Next", 1)] : []), words);
+    const buttons = pages > 1 ? [turn("Before", -1), turn("Next", 1)] : [];
+    document.getElementById("pages").replaceChildren(...buttons, words);
   }
 
   /** Turns to the page of a member. */
