@@ -33,6 +33,8 @@ tests=(
   python3-h5py python3-numpy python3-xarray python3-rasterio
   # what the site of documents is made of
   python3-sphinx python3-myst-parser furo
+  # what tutorials draw with
+  python3-matplotlib python3-pil
 )
 lint=(clang-format clang-tidy)
 fuzz=(clang)   # libFuzzer comes with its run-time library
