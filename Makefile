@@ -33,8 +33,9 @@ for_tests := test setup-tests sanitized check check-threads check-faults check-d
 groups := $(if $(filter $(for_tests),$(MAKECMDGOALS))$(filter-out 0 no,$(WITH_TESTS)),tests) \
   $(if $(filter package check-install image,$(MAKECMDGOALS)),package)
 
-.PHONY: help setup setup-tests build say-demo demo demo-weakening install package check-install image with-tests test sanitized check \
-  check-threads check-faults check-recipes fuzz validate lint docs pictures tables events check-docs check-tutorials bundle bundle-solver clean FORCE
+.PHONY: help setup setup-tests build say-demo demo demo-weakening install package check-install image with-tests test \
+  sanitized check check-threads check-faults check-recipes fuzz validate lint docs pictures tables events check-docs \
+  check-tutorials bundle bundle-solver clean FORCE
 
 help: ## this list
 	@echo "make TARGET [PRESET=default|cpu|gpu|check|check-threads] [JOBS=n]"

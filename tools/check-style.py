@@ -19,18 +19,19 @@ import sys
 import unicodedata
 
 LONG_SENTENCE, LONG_PARAGRAPH = 25, 120
-FOR_READERS = re.compile(r"(README|docs/(index|(tutorials|how-to|reference|explanation)/[\w-]+)|pipelines/[\w-]+/README|"
-                         r"data_samples/README)\.md$")
+FOR_READERS = re.compile(r"(README|docs/(index|(tutorials|how-to|reference|explanation)/[\w-]+)|"
+                         r"pipelines/[\w-]+/README|data_samples/README)\.md$")
 DECISIONS = re.compile(r"docs/decisions/[\w-]+\.md$")
 INTERNAL = re.compile(r"\b(goals?|sprints?|sessions?|backlog|milestones?|(?:this|the|that) issue|issue text|the brief|"
                       r"(?:we|was) asked to|task list|co-worker|workers? land)\b", re.I)
 NAME = r"(?:(?:de|van|von|der|du|Mc) ?)*[A-ZÅÄÖÜÉ][\w'’-]+"
-CITED = re.compile(rf"({NAME})(?:(?:,? {NAME})*,? (?:&|and) {NAME}(?: {NAME})*| et al\.?|'s)?,? \(?((?:18|19|20)\d\d)[a-z]?\b")
+CITED = re.compile(rf"({NAME})(?:(?:,? {NAME})*,? (?:&|and) {NAME}(?: {NAME})*| et al\.?|'s)?,? "
+                   r"\(?((?:18|19|20)\d\d)[a-z]?\b")
 # Names before a year that are no authors: events, months, standards, software.
 NO_AUTHORS = set("""January February March April May June July August September October November December Slide Xinmo
-Cascade Range System GRS WGS CPU GPU In Until Since Of By On Before After Commit Version Debian Ubuntu Studio Visual CMake
-H200 Bingham Alps Event Frank Washington Table Figure Copyright Unreleased The And From Today Day Mar Apr Jun Jul Aug Sep
-Oct Nov Dec Jan Feb Fig Turtle ISO UTC Part Tonga AD IEEE""".split())
+Cascade Range System GRS WGS CPU GPU In Until Since Of By On Before After Commit Version Debian Ubuntu Studio
+Visual CMake H200 Bingham Alps Event Frank Washington Table Figure Copyright Unreleased The And From Today Day Mar Apr
+Jun Jul Aug Sep Oct Nov Dec Jan Feb Fig Turtle ISO UTC Part Tonga AD IEEE""".split())
 SOURCES = (".md", ".hpp", ".cpp", ".cu", ".py", ".toml", ".js", ".sh")
 
 
@@ -75,7 +76,8 @@ def words_of(sentence):
 
 
 def sentences_of(prose):
-    return [s for s in re.split(r"(?<=[.!?:;])\s+(?=[A-ZÄÖÜ0-9*(\"])|(?<=[.!?])\s+(?=code)", plain(prose)) if words_of(s)]
+    return [s for s in re.split(r"(?<=[.!?:;])\s+(?=[A-ZÄÖÜ0-9*(\"])|(?<=[.!?])\s+(?=code)", plain(prose))
+            if words_of(s)]
 
 
 def check_sentences(root):
@@ -94,9 +96,9 @@ def check_sentences(root):
                 lengths.append(len(words_of(sentence)))
                 longest = max(longest, (lengths[-1], sentence[:70], line))
         if len(lengths) >= 5 and statistics.median(lengths) >= LONG_SENTENCE:
-            faults.append(f"{name}: half of its {len(lengths)} sentences have {statistics.median(lengths):.0f} words or "
-                          f"more, fewer than {LONG_SENTENCE} are asked for. Divide long ones; the longest, line "
-                          f"{longest[2]}, has {longest[0]}: '{longest[1]}...'")
+            faults.append(f"{name}: half of its {len(lengths)} sentences have {statistics.median(lengths):.0f} "
+                          f"words or more, fewer than {LONG_SENTENCE} are asked for. Divide long ones; the longest, "
+                          f"line {longest[2]}, has {longest[0]}: '{longest[1]}...'")
     return faults, f"{pages} pages"
 
 
@@ -108,8 +110,8 @@ def check_words(root):
         pages += 1
         for number, line in enumerate((root / name).read_text(encoding="utf-8").splitlines(), 1):
             for word in INTERNAL.finditer(line):
-                faults.append(f"{name}:{number}: '{word.group(0)}' speaks of how the project is run. Say what holds for "
-                              "the reader: a bound, a tolerance, what was measured")
+                faults.append(f"{name}:{number}: '{word.group(0)}' speaks of how the project is run. Say what holds "
+                              "for the reader: a bound, a tolerance, what was measured")
     return faults, f"{pages} pages"
 
 
@@ -145,8 +147,8 @@ def check_citations(root):
             count += 1
             if (folded(first.removesuffix("'s")), year) not in works:
                 faults.setdefault(whole.replace("(", ""), name)
-    said = [f"{name}: '{whole}' is cited and is not in docs/reference/bibliography.md. Add an entry there: '- Author, I. "
-            "(Year). Title. *Journal* volume, pages. https://doi.org/...', the DOI only where it was looked up"
+    said = [f"{name}: '{whole}' is cited and is not in docs/reference/bibliography.md. Add an entry there: '- Author, "
+            "I. (Year). Title. *Journal* volume, pages. https://doi.org/...', the DOI only where it was looked up"
             for whole, name in sorted(faults.items())]
     return said, f"{count} citations of {len(works)} works"
 

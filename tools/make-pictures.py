@@ -20,6 +20,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FOLDER = ROOT / "docs/pictures"
@@ -27,10 +28,16 @@ LIST = FOLDER / "pictures.json"
 
 
 def content_of(path):
-    """What of a file decides a picture: of a page the code blocks and the names of pictures, else all of it."""
+    """What of a file decides a picture: of a page the commands, the files it gives and the names of pictures; of a
+    recipe the values; else all of it."""
+    if path.suffix == ".toml":
+        return json.dumps(tomllib.loads(path.read_text(encoding="utf-8")), sort_keys=True).encode()
     if path.suffix == ".md":
         text = path.read_text(encoding="utf-8")
-        return "\n".join(re.findall(r"^```\w+\n.*?^```$|<!-- picture: .*? -->", text, re.M | re.S)).encode()
+        blocks = re.findall(r"^```(\w+)\n(.*?)^```$|(<!-- picture: .*? -->)", text, re.M | re.S)
+        return "\n".join("\n".join(line for line in (body or mark).splitlines()
+                                   if kind != "console" or line.startswith(("$ ", "> ")))
+                         for kind, body, mark in blocks).encode()
     return path.read_bytes()
 
 
@@ -70,8 +77,8 @@ def check():
         if not (FOLDER / picture).exists():
             faults.append(f"docs/pictures/{picture} is missing. Make it: make pictures PICTURES={picture}")
         elif stamp_of(entry["from"]) != entry["stamp"]:
-            faults.append(f"docs/pictures/{picture} is stale: one of {', '.join(entry['from'])} has changed since it was "
-                          f"made. Make it anew and look at it: make pictures PICTURES={picture}")
+            faults.append(f"docs/pictures/{picture} is stale: one of {', '.join(entry['from'])} has changed since "
+                          f"it was made. Make it anew and look at it: make pictures PICTURES={picture}")
     if faults:
         sys.exit("\n".join(faults))
     print(f"{len(entries)} pictures are those of what they are made of")
@@ -126,7 +133,8 @@ def make_all(names, asked):
     makers = {}
     for picture in names or entries:
         if picture not in entries:
-            sys.exit(f"tools/make-pictures.py: {picture} is not in {LIST.relative_to(ROOT)}. Known: {', '.join(entries)}")
+            sys.exit(f"tools/make-pictures.py: {picture} is not in {LIST.relative_to(ROOT)}. Known: "
+                     f"{', '.join(entries)}")
         entry = entries[picture]
         if entry.get("needs") and not (asked.data and (asked.data / entry["needs"]).is_dir()):
             print(f"{picture}: left as it is, for --data holds no {entry['needs']}", file=sys.stderr)

