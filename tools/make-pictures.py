@@ -7,8 +7,8 @@ usage: tools/make-pictures.py [NAME...] --bin DIR --work DIR [--data DIR]     ma
        tools/make-pictures.py --check                                       say which are stale or of no known origin
 
 docs/pictures/pictures.json lists every picture: what makes it, the files that decide what it shows ("from"), and the
-SHA-256 of these ("stamp"). A tutorial counts by its blocks of code alone, so that its prose may change. The solver's
-sources are not among them: what a picture shows may change in its last digits without being stale (decision 0042).
+SHA-256 of these ("stamp"). A tutorial counts by its commands and files alone, so that its prose may change. Sources
+of programs are not among them: tests of the tutorials draw their pictures anew and compare (decision 0042).
 Pictures of real events need their data (--data), and are left as they are without.
 """
 import argparse

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs a tutorial as it is written, and holds what it prints to what the page says.
 
-usage: tools/run-tutorial.py PAGE.md --bin DIR --work DIR [--pictures DIR]
+usage: tools/run-tutorial.py PAGE.md --bin DIR --work DIR [--pictures DIR [--compare DIR]]
 
 PAGE.md   in its order: a block ```toml, ```json or ```python whose first line is "# file: NAME" (in JSON the line above
           the block says it: "`NAME`:") is written to that file; of a block ```console every line "$ COMMAND" is run in
@@ -11,6 +11,8 @@ PAGE.md   in its order: a block ```toml, ```json or ```python whose first line i
 --work    an empty folder; it gets the samples and scenes of the project, and build/bin
 --pictures  pictures that the page shows are made anew there: "<!-- picture: FILE -->" above a picture names the file
           of the run that it is, a PNG, or a page that Chromium draws
+--compare  the pictures have to look like those of the same names there: the colours of squares, 200 across, may
+          differ by 0.6 % in the mean, those of a web page by 2 % (it names its day)
 Numbers may differ by 3 %, or by one in their last digit: machines sum in other orders. Words may not.
 Exit code 1: a command failed, or printed something else; both are shown. Needs no network.
 """
@@ -91,7 +93,7 @@ class Shell:
                                         stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
 
     def run(self, command):
-        self.process.stdin.write(f"{command}\necho; echo {MARK} $?\n")
+        self.process.stdin.write(f"{command}\ntalus_code=$?; echo; echo {MARK} $talus_code\n")
         self.process.stdin.flush()
         lines = []
         for line in self.process.stdout:
@@ -161,12 +163,34 @@ def make_pictures(page, work, folder):
     return names
 
 
+def difference(first, second):
+    """Mean difference of two pictures' colours, of squares 200 across the first: 0 the same, 1 black for white."""
+    from PIL import Image, ImageChops, ImageStat  # pylint: disable=import-outside-toplevel
+    with Image.open(first) as one, Image.open(second) as other:
+        size = (200, round(one.height * 200 / one.width))
+        small = [image.convert("RGB").resize(size, Image.BOX) for image in (one, other)]
+    return sum(ImageStat.Stat(ImageChops.difference(*small)).mean) / 3 / 255
+
+
+def compare_pictures(page, made, stored):
+    """Ends where a stored picture is not what the run draws now."""
+    for found in PICTURE.finditer(page.read_text(encoding="utf-8")):
+        name = pathlib.Path(found.group(4)).name
+        if not (stored / name).exists():
+            sys.exit(f"{page.name}: {stored / name} is missing. Make it: make pictures PICTURES={name}")
+        share, room = difference(stored / name, made / name), 0.02 if found.group(1).endswith(".html") else 0.006
+        if share > room:
+            sys.exit(f"{page.name}: {name} is stale: it differs from what the run draws now by {100 * share:.2g} % "
+                     f"of its colours ({100 * room:g} % may be). Make it anew and look at it: make pictures PICTURES={name}")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.partition("\n\n")[0])
     parser.add_argument("page", type=pathlib.Path)
     parser.add_argument("--bin", type=pathlib.Path, required=True)
     parser.add_argument("--work", type=pathlib.Path, required=True)
     parser.add_argument("--pictures", type=pathlib.Path)
+    parser.add_argument("--compare", type=pathlib.Path)
     asked = parser.parse_args()
     work = asked.work.resolve()
     make_folder(work, asked.bin.resolve())
@@ -177,6 +201,8 @@ def main():
         sys.exit(f"{asked.page.name}: no command was found (a tutorial shows commands in blocks of ```console)")
     if asked.pictures:
         make_pictures(asked.page, work, asked.pictures)
+        if asked.compare:
+            compare_pictures(asked.page, asked.pictures, asked.compare)
     print(f"{asked.page.name}: {count} commands run as written")
 
 

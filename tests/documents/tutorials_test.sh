@@ -6,7 +6,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 
 python=/usr/bin/python3
 
-# run_tutorial NAME [PICTURE...]: the page runs as written and makes its pictures, each a PNG that is no blank sheet.
+# run_tutorial NAME [PICTURE...]: the page runs as written and draws its pictures as they are stored; none is blank.
 run_tutorial() {
   local page=$1 picture
   shift
@@ -16,7 +16,7 @@ run_tutorial() {
   fi
   need_tool chromium
   expect_exit 0 "$python" "$TALUS_SOURCE/tools/run-tutorial.py" "$TALUS_SOURCE/docs/tutorials/$page.md" --bin "$bin" \
-    --work "$TALUS_SCRATCH/work" --pictures "$TALUS_SCRATCH/pictures"
+    --work "$TALUS_SCRATCH/work" --pictures "$TALUS_SCRATCH/pictures" --compare "$TALUS_SOURCE/docs/pictures"
   for picture in "$@"; do
     [[ -f $TALUS_SOURCE/docs/pictures/$picture ]] || fail "docs/pictures/$picture is missing. Make it: make pictures"
     [[ $(stat -c %s "$TALUS_SCRATCH/pictures/$picture") -gt 10000 ]] || fail "$picture is blank"
@@ -34,7 +34,8 @@ test_every_tutorial_is_run_and_shows_a_picture() {
   for page in "$TALUS_SOURCE"/docs/tutorials/*.md; do
     page=$(basename "$page" .md)
     [[ $page != index ]] || continue
-    grep -q "run_tutorial $page " "${BASH_SOURCE[0]}" || fail "no test runs docs/tutorials/$page.md"
+    grep -q "run_tutorial $page " "$TALUS_SOURCE/tests/documents/tutorials_test.sh" ||
+      fail "no test runs docs/tutorials/$page.md"
     grep -q '<!-- picture: ' "$TALUS_SOURCE/docs/tutorials/$page.md" || fail "$page.md shows no picture of its run"
   done
 }
