@@ -12,6 +12,7 @@
 #include "common/stage/identity.hpp"
 #include "common/stage/machine.hpp"
 #include "common/stage/stage.hpp"
+#include "preprocess/obstacle/obstacles.hpp"
 #include "preprocess/output/write_survey.hpp"
 #include "preprocess/scene/prepare.hpp"
 
@@ -141,6 +142,10 @@ void run_difference(StageContext& context, const preprocess::Options& options) {
                       {options.before_dem, options.after_dem}, facts);
 }
 
+preprocess::Options read_options(const StageContext& context) {
+  return context.recipe.read<preprocess::Options>("preprocess");
+}
+
 /// OUT/obstacles.vdb; the domain carries its checksum, so that nobody takes another one for it.
 void write_obstacles(StageContext& context, preprocess::Prepared& prepared) {
   const auto bodies = context.out / "obstacles.vdb";
@@ -151,11 +156,10 @@ void write_obstacles(StageContext& context, preprocess::Prepared& prepared) {
   }
   write_level_sets(bodies, prepared.obstacles, prepared.obstacle_voxel);
   context.results.push_back(bodies);
-  prepared.domain.provenance.emplace_back(obstacles_checksum, sha256(bodies));
-}
-
-preprocess::Options read_options(const StageContext& context) {
-  return context.recipe.read<preprocess::Options>("preprocess");
+  Facts& provenance = prepared.domain.provenance;
+  provenance.emplace_back(obstacles_checksum, sha256(bodies));
+  const Facts places = preprocess::obstacle_places(read_options(context).obstacle, prepared.domain.grid.crs_wkt);
+  provenance.insert(provenance.end(), places.begin(), places.end());
 }
 
 /// domain.vdb, or the survey alone where only the difference is asked for.
