@@ -29,12 +29,17 @@ function fitted(picture) {
   return smaller;
 }
 
-/** Puts a picture on what a material is of. */
+/** Puts a picture on what a material is of. Only the first one changes the program that draws it. */
 function dress(material, picture) {
-  material.map?.dispose();
-  material.map = new CanvasTexture(fitted(picture));
-  Object.assign(material.map, { generateMipmaps: false, minFilter: LinearFilter });
-  material.needsUpdate = true;
+  const image = fitted(picture);
+  if (material.map) {
+    material.map.image = image;
+  } else {
+    material.map = new CanvasTexture(image);
+    Object.assign(material.map, { generateMipmaps: false, minFilter: LinearFilter });
+    material.needsUpdate = true;
+  }
+  material.map.needsUpdate = true;
 }
 
 export class ReliefScene {
