@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <vector>
 
 #include "postprocess/fields/classes.hpp"
@@ -16,10 +17,26 @@ namespace {
 constexpr double width = 440, height = 210, left = 62, right = 10, top = 24, bottom = 34;  // of a chart [px]
 constexpr std::size_t most_points = 600;                                                   // of a curve
 
-/// What a chart shows: the column's name in the history, and the words above it with the unit.
+/// What a chart shows: the column's name in the history, and the words above it.
 struct Chart {
-  std::string column, title;
+  std::string column, title, unit;
 };
+
+/// What an axis counts in: "GJ" and 1e9, so that its numbers stay short.
+struct Scale {
+  double factor = 1;
+  std::string unit;
+};
+
+Scale scale_of(double largest, const std::string& unit) {
+  const bool takes_prefix = unit == "J" || unit == "W" || unit.starts_with("N");
+  for (const auto& [factor, prefix, words] :
+       {std::tuple{1e9, "G", "billion "}, {1e6, "M", "million "}, {1e3, "k", "thousand "}}) {
+    if (largest >= 10 * factor && (takes_prefix || unit == "m\u00b3"))
+      return {factor, (takes_prefix ? prefix : words) + unit};
+  }
+  return {1, unit};
+}
 
 std::string safe(const std::string& text) {
   std::string words;
@@ -35,17 +52,16 @@ std::string unit_words(const std::string& unit) {
 }
 
 std::vector<Chart> charts_of(const ComparedRun& first, const ComparedRun& second) {
-  std::vector<Chart> charts{{"kinetic_J", "Kinetic energy [J]"},
-                            {"speed_max_m_s", "Largest speed of any point [m/s]"},
-                            {"moving_volume_m3", "Volume in motion [m\u00b3]"},
-                            {"moving_speed_m_s", "Mean speed of what moves [m/s]"}};
+  std::vector<Chart> charts{{"kinetic_J", "Kinetic energy", "J"},
+                            {"speed_max_m_s", "Largest speed of any point", "m/s"},
+                            {"moving_volume_m3", "Volume in motion", "m\u00b3"},
+                            {"moving_speed_m_s", "Mean speed of what moves", "m/s"}};
   for (const ComparedRun* run : {&first, &second}) {
     for (const HistoryColumn& column : run->run.history.columns) {
       const bool known =
           std::any_of(charts.begin(), charts.end(), [&](const Chart& c) { return c.column == column.name; });
       if (column.place.empty() || known) continue;
-      charts.push_back(
-          {column.name, fmt::format("{}: {} [{}]", column.place, column.quantity, unit_words(column.unit))});
+      charts.push_back({column.name, column.place + ": " + column.quantity, unit_words(column.unit)});
     }
   }
   return charts;
@@ -82,15 +98,15 @@ bool holds(const ComparedRun& run, const std::string& name) {
          column->values.size() == time->values.size();
 }
 
-std::string axes(const Span& time, const Span& value) {
+std::string axes(const Span& time, const Span& value, double factor) {
   std::string text;
   const double across = width - left - right, up = height - top - bottom;
-  const double step = axis_step(value.high - value.low);
+  const double step = factor * axis_step((value.high - value.low) / factor);
   for (double v = std::ceil(value.low / step) * step; v <= value.high + 1e-9 * step; v += step) {
     const double y = height - bottom - up * (v - value.low) / (value.high - value.low);
     text += fmt::format(
         "<path d=\"M{:.1f} {:.1f}h{:.1f}\" class=\"g\"/><text x=\"{:.1f}\" y=\"{:.1f}\" class=\"e\">{:g}</text>", left,
-        y, across, left - 5, y + 4, std::abs(v) < 1e-9 * step ? 0 : v);
+        y, across, left - 5, y + 4, std::abs(v) < 1e-9 * step ? 0 : v / factor);
   }
   const double every = axis_step(time.high - time.low);
   for (double t = time.low; t <= time.high + 1e-9 * every; t += every)
@@ -108,10 +124,11 @@ std::string chart(const Chart& asked, const ComparedRun& first, const ComparedRu
     for (const double v : run->run.history.find(asked.column)->values) value.take(v);
   }
   if (!(time.high > time.low) || !(value.high > value.low)) return "";  // nothing ever happened there
+  const Scale scale = scale_of(std::max(value.high, -value.low), asked.unit);
   std::string text =
       fmt::format("<svg viewBox=\"0 0 {:g} {:g}\" role=\"img\"><text x=\"{:g}\" y=\"14\" class=\"h\">{}</text>", width,
-                  height, left, safe(asked.title));
-  text += axes(time, value);
+                  height, left, safe(fmt::format("{} [{}]", asked.title, scale.unit)));
+  text += axes(time, value, scale.factor);
   for (const auto& [run, line] : {std::pair{&first, "a"}, {&second, "b"}})
     if (holds(*run, asked.column))
       text += fmt::format("<polyline class=\"{}\" points=\"{}\"/>", line,

@@ -98,7 +98,10 @@ std::string change(const Json& a, const Json& b) {
   if (!a.is_number() || !b.is_number()) return "";
   const double from = a.get<double>(), to = b.get<double>();
   if (from == to) return "0";
-  const std::string percent = from != 0 ? fmt::format(" ({:+.2g} %)", 100 * (to - from) / std::abs(from)) : "";
+  const double percents = from != 0 ? 100 * (to - from) / std::abs(from) : 0;  // a thousand and more say nothing
+  const std::string percent = percents == 0 || std::abs(percents) >= 1000 ? ""
+                              : std::abs(percents) >= 10                  ? fmt::format(" ({:+.0f} %)", percents)
+                                                                          : fmt::format(" ({:+.2g} %)", percents);
   return fmt::format("{:+.4g}{}", to - from, percent);
 }
 
