@@ -182,7 +182,7 @@ pictures: with-tests ## the documents' pictures, from runs and tables [PICTURES=
 tables: ## the documents' tables of figures, from the files that measuring commands have left
 	@python3 tools/make-tables.py
 
-scenes_of_events := frank-slide iseesnow-realtopo cascade2021
+scenes_of_events := cascade2021 frank-slide
 events: build ## scores of real events into the documents' tables [DATA=folder of real events]
 	@for scene in $(scenes_of_events); do \
 	  $(MAKE) --no-print-directory -C pipelines $$scene OUT="$$(realpath -ms -- '$(OUT)')" ON=$(ON) \
