@@ -126,7 +126,7 @@ check-threads: ## tests of what runs in threads under the thread sanitizer [TEST
 	@$(MAKE) --no-print-directory sanitized PRESET=check-threads
 
 # What needs no programs from outside and ends in time under a sanitizer: of each folder what the label "quick" names,
-# and the replays. docs/explanation/reliability.md says when it last passed.
+# and the replays. docs/log/reliability.md says when it last passed.
 check_tests            := ^(common|preprocess|postprocess|solver|fuzz)[.]
 check_programs         := $(addprefix talus-tests-,common preprocess postprocess solver) talus-replay
 check-threads_tests    := ^(preprocess|postprocess|solver)[.]
