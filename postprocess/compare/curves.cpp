@@ -14,7 +14,7 @@
 namespace talus::postprocess {
 namespace {
 
-constexpr double width = 440, height = 210, left = 62, right = 10, top = 24, bottom = 34;  // of a chart [px]
+constexpr double width = 440, height = 196, left = 62, right = 10, top = 10, bottom = 34;  // of a chart [px]
 constexpr std::size_t most_points = 600;                                                   // of a curve
 
 /// What a chart shows: the column's name in the history, and the words above it.
@@ -125,15 +125,14 @@ std::string chart(const Chart& asked, const ComparedRun& first, const ComparedRu
   }
   if (!(time.high > time.low) || !(value.high > value.low)) return "";  // nothing ever happened there
   const Scale scale = scale_of(std::max(value.high, -value.low), asked.unit);
-  std::string text =
-      fmt::format("<svg viewBox=\"0 0 {:g} {:g}\" role=\"img\"><text x=\"{:g}\" y=\"14\" class=\"h\">{}</text>", width,
-                  height, left, safe(fmt::format("{} [{}]", asked.title, scale.unit)));
+  std::string text = fmt::format("<figure><figcaption>{}</figcaption><svg viewBox=\"0 0 {:g} {:g}\" role=\"img\">",
+                                 safe(fmt::format("{} [{}]", asked.title, scale.unit)), width, height);
   text += axes(time, value, scale.factor);
   for (const auto& [run, line] : {std::pair{&first, "a"}, {&second, "b"}})
     if (holds(*run, asked.column))
       text += fmt::format("<polyline class=\"{}\" points=\"{}\"/>", line,
                           points_of(run->run.history, asked.column, time, value));
-  return text + "</svg>\n";
+  return text + "</svg></figure>\n";
 }
 
 }  // namespace

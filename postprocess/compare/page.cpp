@@ -30,7 +30,8 @@ th{vertical-align:bottom}th:first-child{width:40%}h1,p,figcaption{overflow-wrap:
 td.n,th.n{text-align:right;font-variant-numeric:tabular-nums}
 .charts{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,20rem),1fr));gap:.6rem 1.2rem}
 .charts svg{width:100%;height:auto}.key{width:2.5rem;height:.6rem}svg text{font-size:11px;fill:#33363c}
-svg .h{font-size:12.5px;font-weight:600}svg .m{text-anchor:middle}svg .e{text-anchor:end}
+.charts figure{margin:0}.charts figcaption{font-weight:600;margin:.4rem 0 0}
+svg .m{text-anchor:middle}svg .e{text-anchor:end}
 svg .g{stroke:#e3e5e8;fill:none}svg .a,svg .b{fill:none;stroke:#1a1c20;stroke-width:1.8}
 svg .b{stroke:#00735c;stroke-dasharray:7 4}
 @media(max-width:600px){body{padding:.8rem .7rem}table{font-size:.8rem}th,td{padding:.2rem .25rem}
@@ -210,7 +211,7 @@ std::string difference_words(const DepositDifference& d) {
   add("root mean square of the difference over either", fmt::format("{:.3g} m", d.rms));
   add("thinner by at most", fmt::format("{:.3g} m", d.smaller));
   add("thicker by at most", fmt::format("{:.3g} m", d.larger));
-  add("volume, second less first", fmt::format("{:+.4g} m\u00b3", d.volume));
+  add("volume, second less first", fmt::format("{:+.4g} m\u00b3", std::abs(d.volume) < 1e-6 ? 0 : d.volume));
   return table({"deposits", ""}, rows, true);
 }
 
