@@ -5,6 +5,7 @@
 
 #include "common/recipe/shown_paths.hpp"
 #include "common/stage/console.hpp"
+#include "common/stage/log_capture.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus {
@@ -20,6 +21,8 @@ spdlog::logger& logger() {
 }
 
 Verbosity current = Verbosity::normal;
+
+thread_local LogCapture* capture = nullptr;  // the innermost of this thread
 
 /// A message as it is shown: paths as the user wrote them, and no control characters, which names in files may hold and
 /// a terminal would obey.
@@ -43,17 +46,24 @@ void set_verbosity(Verbosity verbosity) {
 
 Verbosity verbosity() { return current; }
 
+LogCapture::LogCapture() : outer_(capture) { capture = this; }
+
+LogCapture::~LogCapture() { capture = outer_; }
+
 void log_info(const std::string& text) {
+  if (capture != nullptr) return;
   clear_progress_line();
   logger().info(shown(text));
 }
 
 void log_warning(const std::string& text) {
+  if (capture != nullptr) return capture->warnings.push_back(text);
   clear_progress_line();
   logger().warn("warning: " + shown(text));
 }
 
 void log_detail(const std::string& text) {
+  if (capture != nullptr) return;
   if (current == Verbosity::verbose) clear_progress_line();
   logger().debug(shown(text));
 }
