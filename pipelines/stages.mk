@@ -34,9 +34,9 @@ include .inputs/preprocess.d .inputs/solve.d .inputs/postprocess.d
 
 # What a stage writes beside its result; where a later stage wants one that was removed, the stage runs again.
 survey/%: domain.vdb ;
-obstacles.vdb preprocess.used.toml: domain.vdb ;
+obstacles.vdb members.h5 preprocess.used.toml: domain.vdb ;
 solve.used.toml: run.h5 ;
-wanted := $(shell sed -n 's,^\(survey/.*\|obstacles\.vdb\):$$,\1,p' .inputs/*.d)
+wanted := $(shell sed -n 's,^\(survey/.*\|obstacles\.vdb\|members\.h5\):$$,\1,p' .inputs/*.d)
 domain.vdb: $(if $(filter-out $(wildcard $(wanted)),$(wanted)),force)
 
 # Any other file that is not there.

@@ -52,7 +52,8 @@ bool lies_in(const fs::path& file, const fs::path& folder) {
 bool reads_results_of(const std::string& maker, const Dependencies& reader, const fs::path& out) {
   return std::any_of(reader.inputs.begin(), reader.inputs.end(), [&](const fs::path& input) {
     if (maker == "solve") return input == out / "run.h5";
-    return input == out / "domain.vdb" || input == out / "obstacles.vdb" || lies_in(input, out / "survey");
+    return input == out / "domain.vdb" || input == out / "obstacles.vdb" || input == out / "members.h5" ||
+           lies_in(input, out / "survey");
   });
 }
 

@@ -47,14 +47,12 @@ bool is_below(const std::string& key, const std::string& table) {
 RecipeError of_member(const RecipeError& error, std::int64_t member) {
   std::vector<Fault> faults = error.faults();
   for (Fault& fault : faults) {
-    const bool given = fault.what.starts_with(recipe::set_mark);
-    if (given) fault.what.erase(0, recipe::set_mark.size());
+    if (fault.what.starts_with(recipe::set_mark)) fault.what.erase(0, recipe::set_mark.size());
     fault.what = fmt::format("[ensemble] member {}: {}", member, fault.what);
-    if (given)
-      fault.mend += (fault.mend.empty() ? "" : ". ") +
-                    std::string(
-                        "Keep the members to what the key takes: low and high bound a distribution, "
-                        "values list whole numbers and words");
+    if (fault.why == "out of range") fault.mend += ". Bound the distribution: low and high in [[ensemble.vary]]";
+    if (fault.mend.starts_with("Give an integer")) fault.mend = "Take distribution = \"discrete\", and whole values";
+    if (fault.mend.find("--set") != std::string::npos)
+      fault.mend = "Write the key with its tables: solve.base.friction_angle_deg, solve.part[0].release";
   }
   return RecipeError(std::move(faults));
 }
