@@ -29,12 +29,12 @@ PREFIX ?= /usr/local
 asked := $(PRESET) $(CUDAARCHS)
 
 # What is installed through apt: what building and running needs, and the rest for those who test.
-for_tests := test setup-tests sanitized check check-threads check-faults validate
+for_tests := test setup-tests sanitized check check-threads check-faults check-docs validate
 groups := $(if $(filter $(for_tests),$(MAKECMDGOALS))$(filter-out 0 no,$(WITH_TESTS)),tests) \
   $(if $(filter package check-install image,$(MAKECMDGOALS)),package)
 
 .PHONY: help setup setup-tests build say-demo demo install package check-install image with-tests test sanitized check \
-  check-threads check-faults check-recipes fuzz validate lint docs bundle bundle-solver clean FORCE
+  check-threads check-faults check-recipes fuzz validate lint docs check-docs bundle bundle-solver clean FORCE
 
 help: ## this list
 	@echo "make TARGET [PRESET=default|cpu|gpu|check|check-threads] [JOBS=n]"
@@ -84,7 +84,7 @@ install: build ## the programs with recipes, styles, manuals and documents, to P
 	@cmake --install $(BUILD) --prefix '$(PREFIX)' --strip >$(BUILD)/install.log
 	@echo "Installed $$(grep -c '^-- Inst' $(BUILD)/install.log) files: $${DESTDIR:-}$(PREFIX)"
 
-package: build ## Debian packages, in build/packages/: talus (or talus-gpu, with kernels for GPUs) and talus-doc
+package: docs ## Debian packages, in build/packages/: talus (or talus-gpu, with kernels for GPUs) and talus-doc
 	@tools/make-packages.sh $(BUILD)
 
 check-install: package ## the packages in a fresh Debian 12: installed, run on the shipped example, removed
@@ -148,9 +148,15 @@ lint: ## formatting and static analysis of everything [CHANGED=n: analyse only t
 	@tools/install-dependencies.sh lint
 	@tools/lint.sh $(if $(CHANGED),--changed $(CHANGED))
 
-docs: ## the programmers' reference, in build-docs/html
+docs: build ## the site of documents, in build/site/html; the programmers' reference is part of it
 	@tools/install-dependencies.sh docs
-	@tools/make-docs.sh build-docs
+	@tools/make-docs.sh $(BUILD)/code >/dev/null
+	@/usr/bin/python3 tools/make-site.py --out $(BUILD)/site --bin $(BUILD)/bin --code $(BUILD)/code/html
+
+check-docs: with-tests ## the documents: site and search in a browser
+	@cmake --build $(BUILD) -j $(JOBS) --target $(programs)
+	@TALUS_REQUIRE_TOOLS=$(if $(filter no,$(SETUP)),,1) \
+	  ctest --test-dir $(BUILD) --output-on-failure --no-tests=error -R '^documents[.]'
 
 # Bundles go to other machines: their kernels are compiled for every supported GPU, unless CUDAARCHS says otherwise.
 $(RELEASE_BUILD)/build.ninja: CMakePresets.json | setup
@@ -169,4 +175,4 @@ bundle-solver: setup $(RELEASE_BUILD)/build.ninja ## the solver alone [WITH_TEST
 	@tools/make-bundle.sh $(RELEASE_BUILD) --solver $(if $(bundled),,--with-tests)
 
 clean: ## remove the build folder and the pipelines' results
-	rm -rf $(BUILD) $(RELEASE_BUILD) build-check build-check-threads build-fuzz build-docs build-lint pipelines/out
+	rm -rf $(BUILD) $(RELEASE_BUILD) build-check build-check-threads build-fuzz build-lint pipelines/out

@@ -66,3 +66,5 @@ install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE
   DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/talus COMPONENT docs)
 install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/talus/docs COMPONENT docs FILES_MATCHING
   PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg")
+# The site, where `make docs` has made it before; `make package` does.
+install(DIRECTORY ${CMAKE_BINARY_DIR}/site/html DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/talus COMPONENT docs OPTIONAL)

@@ -52,7 +52,8 @@ set(CPACK_DEBIAN_DOCS_PACKAGE_NAME talus-doc)
 set(CPACK_DEBIAN_DOCS_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_DOCS_PACKAGE_SECTION doc)
 set(CPACK_DEBIAN_DOCS_DESCRIPTION
-"User guide, theory, file formats, validation, benchmarks and decisions.")
+"The documents: tutorials, how-to, reference and explanation, as a site for a
+browser in /usr/share/doc/talus/html and as Markdown beside it.")
 
 # Policy asks for a copyright file under each package's own name.
 install(FILES packaging/copyright ${CMAKE_BINARY_DIR}/changelog.gz

@@ -22,6 +22,7 @@ build=(
   # what report.html is made of, and what bundles its scripts
   libjs-leaflet libjs-chart.js esbuild
 )
+docs=(doxygen python3-sphinx python3-myst-parser furo)
 tests=(
   libgtest-dev
   # the readers that are not ours: gdalinfo, the COG validator, ncdump, cdo, what the CF checker takes, vdb_print,
@@ -30,9 +31,10 @@ tests=(
   python3-selenium poppler-utils ffmpeg dpkg-dev
   # what the Python package is made of (docs/how-to/python.md)
   python3-h5py python3-numpy python3-xarray python3-rasterio
+  # what the site of documents is made of
+  python3-sphinx python3-myst-parser furo
 )
 lint=(clang-format clang-tidy)
-docs=(doxygen)
 fuzz=(clang)   # libFuzzer comes with its run-time library
 package=(dpkg-dev mmdebstrap)
 

@@ -12,7 +12,7 @@
 #include "common/gis/polygons.hpp"
 #include "common/map/bilinear.hpp"
 #include "postprocess/score/flow_path.hpp"
-#include "postprocess/score/mobility.hpp"
+#include "common/run/mobility.hpp"
 #include "postprocess/score/polyline.hpp"
 
 namespace talus::postprocess {

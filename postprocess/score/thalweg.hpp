@@ -10,7 +10,7 @@
 
 #include "common/run/run_file.hpp"
 #include "postprocess/options/options.hpp"
-#include "postprocess/score/mobility.hpp"
+#include "common/run/mobility.hpp"
 
 namespace talus::postprocess {
 

@@ -4,6 +4,8 @@
 
 #include <iterator>
 
+#include <fmt/format.h>
+
 #include "solver/options/names.hpp"
 #include "solver/options/solve.hpp"
 
@@ -13,6 +15,20 @@ void GaugeOptions::describe(recipe::Visitor& v) {
   v.text("name", name, "under which its readings are recorded");
   v.number("x_m", x, recipe::any, "map coordinate, east");
   v.number("y_m", y, recipe::any, "map coordinate, north");
+}
+
+void SectionOptions::describe(recipe::Visitor& v) {
+  v.text("name", name, "under which its numbers are recorded");
+  v.numbers("x_m", x, recipe::any, "map coordinates of the line's points, east");
+  v.numbers("y_m", y, recipe::any, "the same, north; what crosses from the left of the line to its right counts up");
+  const std::string which = fmt::format("[[solve.section]] name = \"{}\"", name);
+  v.needs(x.size() == y.size() && x.size() >= 2,
+          {fmt::format("{} has {} values of x_m and {} of y_m", which, x.size(), y.size()),
+           "a section is a line of two or more points", "Give both for every point of the line"});
+  bool repeats = false;
+  for (std::size_t i = 1; i < x.size() && i < y.size(); ++i) repeats |= x[i] == x[i - 1] && y[i] == y[i - 1];
+  v.needs(!repeats, {which + " gives a point twice, one after the other", "a piece of the line would have no length",
+                     "Leave one of them out"});
 }
 
 void OutputOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
@@ -46,6 +62,8 @@ void OutputOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
           "what is refused because it is hardly ever right, and here is; it goes with all results");
   recipe::list(v, "gauge", gauges, "points where thickness, speed and surface are recorded over time");
   need_names(v, "gauge", "its readings are recorded under its name", gauges);
+  recipe::list(v, "section", sections, "lines on the map: what crosses them is recorded over time");
+  need_names(v, "section", "its numbers are recorded under its name", sections);
 }
 
 }  // namespace talus::solver

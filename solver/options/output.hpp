@@ -26,6 +26,14 @@ struct GaugeOptions {
   void describe(recipe::Visitor& v);
 };
 
+/// The keys of [[solve.section]]: a line on the map through which the mass is counted.
+struct SectionOptions {
+  std::string name;
+  std::vector<double> x, y;  ///< map coordinates of the line's points, in order [m]
+  /// The method declares the keys with defaults, help and what they need of one another.
+  void describe(recipe::Visitor& v);
+};
+
 /// The keys of [solve] for what a run writes.
 struct OutputOptions {
   double frame_interval = 10;      ///< [s]
@@ -38,6 +46,7 @@ struct OutputOptions {
   bool deterministic = false;
   std::vector<std::string> accept;  ///< what is refused as implausible, insisted on by name
   std::vector<GaugeOptions> gauges;
+  std::vector<SectionOptions> sections;
   /// The method declares the keys with defaults, help and what they need of `all` others.
   void describe(recipe::Visitor& v, const SolveOptions& all);
 };

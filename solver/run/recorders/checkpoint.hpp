@@ -19,8 +19,9 @@ struct RunMemory {
   double peak_kinetic = 0;                                ///< [J]
   double outflow_volume = 0;                              ///< [m3]
   std::int64_t outflow_count = 0;
-  double wall_time = 0;                   ///< [s]
-  std::vector<double> initial_thickness;  ///< [m]
+  double wall_time = 0;                      ///< [s]
+  std::vector<double> initial_thickness;     ///< [m]
+  std::vector<double> section_x, section_y;  ///< where points were at the last record, by id, for sections [cells]
   RunHistory history;
 };
 
@@ -87,6 +88,8 @@ void visit_memory(AnyMemory& m, Item&& item) {
   item("outflow_count", m.outflow_count);
   item("wall_time", m.wall_time);
   item("initial_thickness", m.initial_thickness);
+  item("section_x", m.section_x);
+  item("section_y", m.section_y);
 }
 
 /// The content of checkpoint.h5.

@@ -3,7 +3,9 @@
 #include "solver/run/recorders/history.hpp"
 
 #include "solver/run/recorders/gauges.hpp"
+#include "solver/run/recorders/ground_force.hpp"
 #include "solver/run/recorders/obstacles.hpp"
+#include "solver/run/recorders/sections.hpp"
 #include "solver/run/recorders/stretch.hpp"
 
 namespace talus::solver {
@@ -86,6 +88,7 @@ std::vector<std::unique_ptr<Recorder>> make_recorders(const SolveOptions& option
   std::vector<std::unique_ptr<Recorder>> recorders;
   recorders.push_back(std::make_unique<RunRecorder>(run_columns));
   recorders.push_back(std::make_unique<PackingRecorder>());
+  if (GroundForceRecorder::measures(options)) recorders.push_back(std::make_unique<GroundForceRecorder>());
   if (options.energy_budget) recorders.push_back(std::make_unique<RunRecorder>(budget_columns));
   if (options.shaking.acts()) {
     recorders.push_back(std::make_unique<RunRecorder>(shaking_columns));
@@ -93,6 +96,7 @@ std::vector<std::unique_ptr<Recorder>> make_recorders(const SolveOptions& option
   }
   if (!options.obstacles.empty()) recorders.push_back(std::make_unique<ObstacleRecorder>(options));
   if (!options.gauges.empty()) recorders.push_back(std::make_unique<GaugeRecorder>(options, scene));
+  if (!options.sections.empty()) recorders.push_back(std::make_unique<SectionRecorder>(options, scene));
   if (StretchRecorder::watches(options)) recorders.push_back(std::make_unique<StretchRecorder>(options, scene));
   return recorders;
 }
@@ -107,7 +111,13 @@ void History::record(const Instant& now) {
   for (const auto& recorder : recorders_) recorder->record(now, rows_);
 }
 
-void History::restore(const RunHistory& rows) {
+void History::keep(RunMemory& memory) const {
+  memory.history = rows_;
+  for (const auto& recorder : recorders_) recorder->keep(memory);
+}
+
+void History::restore(const RunMemory& memory) {
+  const RunHistory& rows = memory.history;
   for (HistoryColumn& column : rows_.columns) {
     const HistoryColumn* kept = rows.find(column.name);
     if (!kept || rows.columns.size() != rows_.columns.size())
@@ -115,6 +125,7 @@ void History::restore(const RunHistory& rows) {
                        "it is of another version of this program", "Run talus-solve again without --restart"});
     column.values = kept->values;
   }
+  for (const auto& recorder : recorders_) recorder->restore(memory);
 }
 
 double History::last(const std::string& name) const {

@@ -22,8 +22,10 @@ class History {
 
   /// The method adds a row.
   void record(const Instant& now);
-  /// The method goes on from the rows of a checkpoint. It throws DataError when its columns are others.
-  void restore(const RunHistory& rows);
+  /// The method writes the rows so far down for a checkpoint, and what recorders know besides.
+  void keep(RunMemory& memory) const;
+  /// The method goes on from the memory of a checkpoint. It throws DataError when its columns are others.
+  void restore(const RunMemory& memory);
 
   /// All rows so far, column by column.
   const RunHistory& rows() const { return rows_; }

@@ -46,7 +46,11 @@ class Recorder {
   /// The method adds the recorder's columns, without values.
   virtual void add_columns(RunHistory& history) const = 0;
   /// The method appends one value to each of them.
-  virtual void record(const Instant& now, RunHistory& history) const = 0;
+  virtual void record(const Instant& now, RunHistory& history) = 0;
+  /// The method writes down for a checkpoint what the recorder knows beyond the rows so far.
+  virtual void keep(RunMemory&) const {}
+  /// The method goes on from what was written down. It throws DataError where that does not fit.
+  virtual void restore(const RunMemory&) {}
   /// The lines for the log at the end of the run.
   virtual std::vector<std::string> conclusions(const RunHistory&) const { return {}; }
   /// What went wrong on the way, for the log at the end of the run.
@@ -73,7 +77,7 @@ class TableRecorder : public Recorder {
   }
 
   /// The method appends the values of every place.
-  void record(const Instant& now, RunHistory& history) const override {
+  void record(const Instant& now, RunHistory& history) override {
     const std::vector<Sample> taken = samples(now);
     for (std::size_t i = 0; i < places_.size(); ++i) {
       for (const Column<Sample>& column : table_)

@@ -108,7 +108,7 @@ TEST(Checkpoint, visits_name_every_member_once) {
   EXPECT_EQ(names(clock_bits(Clock{})), member_count<Clock>());
   EXPECT_EQ(clock_bits(Clock{}).size(), member_count<Clock>());
   RunMemory memory;
-  memory.initial_thickness = {1};
+  memory.initial_thickness = memory.section_x = memory.section_y = {1};
   EXPECT_EQ(names(memory_bits(memory)), member_count<RunMemory>() - 1) << "the history has columns of its own";
 }
 

@@ -43,7 +43,10 @@ const std::vector<std::string> names_of_every_run = {"time_s",
                                                      "step_cuts",
                                                      "step_over_cfl",
                                                      "packing_p99",
-                                                     "packing_max"};
+                                                     "packing_max",
+                                                     "ground_force_x_N",
+                                                     "ground_force_y_N",
+                                                     "ground_force_z_N"};
 
 TEST(History, has_the_columns_that_readers_know_in_their_order) {
   SolveOptions o;
@@ -102,14 +105,16 @@ TEST(History, goes_on_from_a_checkpoint_of_the_same_columns_only) {
   const Domain d = block_on_plain();
   const Scene scene = make_scene(d, o);
   History history(o, scene);
-  RunHistory kept = history.rows();
-  for (HistoryColumn& column : kept.columns) column.values = {1, 2};
+  RunMemory kept;
+  history.keep(kept);
+  for (HistoryColumn& column : kept.history.columns) column.values = {1, 2};
   history.restore(kept);
   EXPECT_EQ(history.last("kinetic_J"), 2);
-  kept.columns.pop_back();
+  kept.history.columns.pop_back();
   EXPECT_THROW(history.restore(kept), DataError);
   o.energy_budget = true;
-  EXPECT_THROW(History(o, scene).restore(history.rows()), DataError);
+  history.keep(kept);
+  EXPECT_THROW(History(o, scene).restore(kept), DataError);
 }
 
 TEST(ObstacleRecorder, tells_the_impulse_and_the_largest_mean_force) {

@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/run/recorders/ground_force.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace talus::solver {
+namespace {
+
+struct Direction {
+  const char* force;     ///< column of this recorder
+  const char* momentum;  ///< column of the run's own
+};
+constexpr Direction directions[] = {{"ground_force_x_N", "momentum_x_kg_m_s"},
+                                    {"ground_force_y_N", "momentum_y_kg_m_s"},
+                                    {"ground_force_z_N", "momentum_z_kg_m_s"}};
+
+}  // namespace
+
+void GroundForceRecorder::add_columns(RunHistory& history) const {
+  for (const Direction& d : directions)
+    history.columns.push_back({.name = d.force, .unit = "N", .quantity = "", .place = "", .values = {}});
+}
+
+void GroundForceRecorder::record(const Instant& now, RunHistory& history) {
+  const std::vector<double>& time = history.at("time_s").values;
+  const std::vector<double>& outflow = history.at("outflow_m3").values;
+  for (const Direction& d : directions) {
+    // The rows of the run's own columns may be one ahead already: the last before `now` is counted by our own.
+    std::vector<double>& forces = history.at(d.force).values;
+    const std::vector<double>& momentum = history.at(d.momentum).values;
+    const std::size_t row = forces.size();
+    double force = 0;
+    if (row > 0 && row < momentum.size()) {
+      const double span = now.time - time[row - 1];
+      force = span > 0 ? -(momentum[row] - momentum[row - 1]) / span : 0;
+      if (outflow[row] != outflow[row - 1]) force = std::numeric_limits<double>::quiet_NaN();
+    }
+    forces.push_back(force);
+  }
+}
+
+std::vector<std::string> GroundForceRecorder::conclusions(const RunHistory& history) const {
+  const auto& time = history.at("time_s").values;
+  double most = 0, when = 0;
+  for (std::size_t row = 0; row < time.size(); ++row) {
+    const auto force = [&](int i) { return history.at(directions[i].force).values[row]; };
+    const double size = std::hypot(force(0), force(1), force(2));
+    if (!(size > most)) continue;  // NaN is not
+    most = size;
+    when = time[row];
+  }
+  if (!(most > 0)) return {};
+  return {
+      fmt::format("largest force on the ground beyond the weight at rest: {:.4g} N until t = {:.2f} s", most, when)};
+}
+
+std::vector<std::string> GroundForceRecorder::warnings(const RunHistory& history) const {
+  const auto& forces = history.at(directions[0].force).values;
+  const auto without = std::count_if(forces.begin(), forces.end(), [](double f) { return std::isnan(f); });
+  if (without == 0) return {};
+  return {
+      fmt::format("the force on the ground is not known in {} of {} records, in whose time matter left the domain. "
+                  "Take a larger domain",
+                  without, forces.size())};
+}
+
+}  // namespace talus::solver
