@@ -7,7 +7,6 @@
 
 #include "common/recipe/shown_paths.hpp"
 #include "common/stage/console.hpp"
-#include "common/stage/log_capture.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus {
@@ -24,8 +23,6 @@ spdlog::logger& logger() {
 
 Verbosity current = Verbosity::normal;
 thread_local QuietThread* quiet_here = nullptr;
-
-thread_local LogCapture* capture = nullptr;  // the innermost of this thread
 
 /// A message as it is shown: paths as the user wrote them, and no control characters, which names in files may hold and
 /// a terminal would obey.
@@ -49,40 +46,23 @@ void set_verbosity(Verbosity verbosity) {
 
 Verbosity verbosity() { return current; }
 
-<<<<<<< HEAD
-LogCapture::LogCapture() : outer_(capture) { capture = this; }
-
-LogCapture::~LogCapture() { capture = outer_; }
-
-void log_info(const std::string& text) {
-  if (capture != nullptr) return;
-=======
 QuietThread::QuietThread() : before_(std::exchange(quiet_here, this)) {}
 QuietThread::~QuietThread() { quiet_here = before_; }
 
 void log_info(const std::string& text) {
   if (quiet_here != nullptr) return;
->>>>>>> main
   clear_progress_line();
   logger().info(shown(text));
 }
 
 void log_warning(const std::string& text) {
-<<<<<<< HEAD
-  if (capture != nullptr) return capture->warnings.push_back(text);
-=======
   if (quiet_here != nullptr) return quiet_here->warnings_.push_back(text);
->>>>>>> main
   clear_progress_line();
   logger().warn("warning: " + shown(text));
 }
 
 void log_detail(const std::string& text) {
-<<<<<<< HEAD
-  if (capture != nullptr) return;
-=======
   if (quiet_here != nullptr) return;
->>>>>>> main
   if (current == Verbosity::verbose) clear_progress_line();
   logger().debug(shown(text));
 }

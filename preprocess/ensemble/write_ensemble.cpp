@@ -15,7 +15,7 @@
 #include "common/domain/domain_facts.hpp"
 #include "common/error.hpp"
 #include "common/map/sum.hpp"
-#include "common/stage/log_capture.hpp"
+#include "common/stage/console.hpp"
 #include "common/stage/machine.hpp"
 #include "preprocess/ensemble/ensemble.hpp"
 
@@ -110,7 +110,7 @@ void MemberDomains::make(std::int64_t member) {
     ++kept_;
     return;
   }
-  LogCapture log;
+  const QuietThread log;
   Prepared made = prepared(member);
   check_grid(made);
   marks.emplace_back("ensemble.base", fact(base_.marks, domain_id));
@@ -123,7 +123,7 @@ void MemberDomains::make(std::int64_t member) {
   if (!base_.obstacles.empty()) made.domain.provenance.emplace_back(obstacles_checksum, base_.obstacles);
   write_domain(file, made.domain);
   ++made_;
-  note_warnings(member, log.warnings);
+  note_warnings(member, log.warnings());
 }
 
 void MemberDomains::note_warnings(std::int64_t member, const std::vector<std::string>& warnings) {

@@ -37,14 +37,18 @@ test_members_differ_in_every_kind_of_key() {
   need_tool vdb_print
   releases
   sed -i 's/^layer_height_m.*/&\njitter = 0.2/' recipe.toml
-  cat >members.csv <<'CSV'
-# one member a row
-preprocess.thickness_factor,preprocess.release[0].volume_factor,preprocess.release[0].grow_m,preprocess.grid.jitter_seed,solve.base.friction_angle_deg,solve.shape,preprocess.release[0].direction
-1,1,0,1,15,linear,vertical
-0.5,1.5,0,2,12.5,quadratic,vertical
-2,1,10,3,15,quadratic,vertical
-1,1,-10,3,18,linear,slope-normal
+  {
+    echo '# one member a row'
+    printf 'preprocess.%s,' thickness_factor 'release[0].volume_factor' 'release[0].grow_m' grid.jitter_seed \
+      'release[0].direction'
+    cat <<'CSV'
+solve.base.friction_angle_deg,solve.shape
+1,1,0,1,vertical,15,linear
+0.5,1.5,0,2,vertical,12.5,quadratic
+2,1,10,3,vertical,15,quadratic
+1,1,-10,3,slope-normal,18,linear
 CSV
+  } >members.csv
   ensemble $'design = "table"\ntable = "members.csv"'
   expect_exit 0 preprocess --check
   expect_words 'ensemble: 4 members, design table' '4 of 4 members get a domain of their own' \

@@ -104,27 +104,64 @@ TEST(elevation_errors, depend_on_seed_and_member_alone) {
   EXPECT_NE(bed_of(1, 5), bed_of(2, 5));
 }
 
-TEST(elevation_errors, of_a_survey_are_as_it_finds_them) {
-  Scene scene;
-  Raster after = scene.after;
+/// A plane of 100 x 100 cells with a pit of 5 m, surveyed twice, each time with an error of `sigma` a cell.
+void survey_twice(Scene& scene, double sigma) {
+  scene.grid = test::grid_of(100, 100, 10);
   std::mt19937 random(3);
-  std::normal_distribution<double> noise(0, 0.3);
-  for (double& z : after.values) z += noise(random);
-  scene.rewrite_after(after);
+  std::normal_distribution<double> noise(0, sigma);
+  const auto plane = [&](double x, double y) { return 0.2 * (x - scene.grid.west) + 0.1 * (y - scene.grid.south); };
+  scene.before = scene.after = test::raster_of(scene.grid, plane);
+  for (std::size_t i = 0; i < scene.before.values.size(); ++i) {
+    const std::size_t column = i % 100, row = i / 100;
+    const bool pit = column >= 60 && column < 70 && row >= 60 && row < 70;
+    scene.before.values[i] += noise(random);
+    scene.after.values[i] += noise(random) - (pit ? 5 : 0);
+  }
+  scene.rewrite_before(scene.before);
+  scene.rewrite_after(scene.after);
   scene.options.source.threshold = 2;
-  ElevationErrorOptions o;
-  o.from_survey = true;
-  const SceneRasters base = read_scene(scene.options);
-  const double found = base.survey->errors.typical();
-  EXPECT_NEAR(found, 0.3, 0.06);
-  const ElevationErrors errors(o, scene.options, base, 1);
+  scene.options.accept.clear();
+}
+
+/// Root of the mean square of the ground's errors over 50 members.
+double deviation_of_ground(const ElevationErrors& errors, const SceneRasters& base) {
   double squares = 0, count = 0;
   for (int member = 0; member < 50; ++member) {
     SceneRasters with = base;
     errors.apply(with, member);
-    for (const double e : difference(with.bed, base.bed).values) squares += e * e, ++count;
+    for (const double e : difference(with.bed, base.bed).values) {
+      squares += e * e;
+      ++count;
+    }
   }
-  EXPECT_NEAR(std::sqrt(squares / count), 0.3 / std::sqrt(2.0), 0.05) << "one model's share of the difference's";
+  return std::sqrt(squares / count);
+}
+
+TEST(elevation_errors, of_a_survey_are_as_it_finds_them) {
+  Scene scene;
+  survey_twice(scene, 0.3);
+  ElevationErrorOptions o;
+  o.from_survey = true;
+  const SceneRasters base = read_scene(scene.options);
+  EXPECT_NEAR(base.survey->errors.typical(), 0.3 * std::sqrt(2.0), 0.03) << "of the difference";
+  const ElevationErrors errors(o, scene.options, base, 1);
+  EXPECT_NEAR(deviation_of_ground(errors, base), 0.3, 0.03) << "one model's share of it";
+}
+
+TEST(elevation_errors, that_are_given_for_a_survey_and_wider_cells_have_less) {
+  Scene scene;
+  survey_twice(scene, 0.3);
+  scene.options.difference.before_sigma = 0.2;
+  scene.options.difference.after_sigma = 0.4;
+  scene.options.coregistration.mode = Alignment::off;  // cells err independently
+  ElevationErrorOptions o;
+  o.from_survey = true;
+  const SceneRasters base = read_scene(scene.options);
+  EXPECT_NEAR(deviation_of_ground(ElevationErrors(o, scene.options, base, 1), base), 0.2, 0.003);
+  scene.options.grid.spacing = 20;
+  const SceneRasters coarse = read_scene(scene.options);
+  EXPECT_NEAR(deviation_of_ground(ElevationErrors(o, scene.options, coarse, 1), coarse), 0.1, 0.003)
+      << "the mean of four independent cells";
 }
 
 TEST(elevation_errors, that_nobody_knows_are_refused) {
