@@ -13,6 +13,7 @@
 #include "common/stage/machine.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/ensemble/ensemble.hpp"
+#include "preprocess/obstacle/obstacles.hpp"
 #include "preprocess/output/provenance.hpp"
 #include "preprocess/output/write_survey.hpp"
 #include "preprocess/scene/prepare.hpp"
@@ -86,6 +87,10 @@ void run_difference(StageContext& context, const preprocess::Options& options) {
                       {options.before_dem, options.after_dem}, facts);
 }
 
+preprocess::Options read_options(const StageContext& context) {
+  return context.recipe.read<preprocess::Options>("preprocess");
+}
+
 /// OUT/obstacles.vdb; the domain carries its checksum, so that nobody takes another one for it.
 void write_obstacles(StageContext& context, preprocess::Prepared& prepared) {
   const auto bodies = context.out / "obstacles.vdb";
@@ -96,11 +101,10 @@ void write_obstacles(StageContext& context, preprocess::Prepared& prepared) {
   }
   write_level_sets(bodies, prepared.obstacles, prepared.obstacle_voxel);
   context.results.push_back(bodies);
-  prepared.domain.provenance.emplace_back(obstacles_checksum, sha256(bodies));
-}
-
-preprocess::Options read_options(const StageContext& context) {
-  return context.recipe.read<preprocess::Options>("preprocess");
+  Facts& provenance = prepared.domain.provenance;
+  provenance.emplace_back(obstacles_checksum, sha256(bodies));
+  const Facts places = preprocess::obstacle_places(read_options(context).obstacle, prepared.domain.grid.crs_wkt);
+  provenance.insert(provenance.end(), places.begin(), places.end());
 }
 
 /// domain.vdb, or the survey alone where only the difference is asked for.
@@ -141,7 +145,7 @@ void run(StageContext& context, const PreprocessFlags& flags) {
   if (flags.difference) return run_difference(context, options);
   auto ensemble = preprocess::plan_ensemble(context.recipe, options);
   preprocess::SurveyMemory memory;
-  preprocess::EnsembleBase base{options, preprocess::read_scene(options, &memory), memory, {}, {}, ""};
+  preprocess::EnsembleBase base{options, preprocess::read_scene(options, &memory), memory, {}, {}, {}};
   auto prepared = preprocess::prepare(preprocess::resolved(options), base.scene,
                                       context.check_only ? preprocess::Points::counted : preprocess::Points::seeded);
   report(prepared);
@@ -152,11 +156,12 @@ void run(StageContext& context, const PreprocessFlags& flags) {
   const Facts marks = preprocess::marks_of(context.recipe, inputs);
   prepared.domain.provenance = preprocess::provenance_of(context, inputs, marks, facts);
   write_survey_files(context, prepared, marks);
+  const auto own = static_cast<std::ptrdiff_t>(prepared.domain.provenance.size());
   write_obstacles(context, prepared);
   if (ensemble) {
     base.inputs = inputs;
     base.marks = marks;
-    base.obstacles = fact(prepared.domain.provenance, obstacles_checksum);
+    base.obstacles.assign(prepared.domain.provenance.begin() + own, prepared.domain.provenance.end());
     preprocess::write_ensemble(context, *ensemble, base);
   } else {
     preprocess::remove_members({context.out}, nullptr);

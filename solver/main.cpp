@@ -13,6 +13,7 @@
 
 #include "common/domain/domain.hpp"
 #include "common/domain/threads.hpp"
+#include "common/run/places.hpp"
 #include "common/run/run_file.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/machine.hpp"
@@ -145,6 +146,17 @@ void log_warnings(Domain& domain, const SolveOptions& o) {
     said.emplace_back("advice." + name, words);
   }
   domain.provenance.insert(domain.provenance.end(), said.begin(), said.end());
+}
+
+/// Where the gauges of the run are, for its report; obstacles that the domain was made with and that the run leaves
+/// out are no longer among its places.
+void add_places(Domain& domain, const SolveOptions& o) {
+  std::erase_if(domain.provenance, [&](const auto& known) {
+    return is_place(known.first) && std::none_of(o.obstacles.begin(), o.obstacles.end(), [&](const auto& obstacle) {
+             return known.first == place_fact({"obstacle " + obstacle.name, {{{0, 0}}}}).first;
+           });
+  });
+  for (const GaugeOptions& g : o.gauges) domain.provenance.push_back(place_fact({"gauge " + g.name, {{{g.x, g.y}}}}));
 }
 
 /// This function refuses what is implausible in a scene, and adds what is insisted on to the facts of its results.
@@ -360,6 +372,7 @@ void solve(StageContext& context, const SolveFlags& flags) {
     log_warnings(domain, options);
     return;
   }
+  add_places(domain, options);
   log_plan(domain, options, device);
   log_warnings(domain, options);
   run_in_time(context, flags, {asked, options}, device, domain, insisted);
@@ -372,6 +385,7 @@ int main(int argc, char** argv) {
   Stage s = stage();
   s.flags = flags(given);
   s.depends = [&](const StageContext& context) { return depends(context, given); };
+  s.part = [&] { return given.members ? fmt::format("{}-{}", given.members->first, given.members->end) : ""; };
   s.run = [&](StageContext& context) {
     limit_threads_of_libraries(thread_limit());
     solve(context, given);

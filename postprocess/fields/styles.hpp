@@ -11,10 +11,11 @@
 
 namespace talus::postprocess {
 
-/// Limits of pressure classes [kPa]: 1|3|5|10, and the powers of ten above that the largest of `values` exceeds.
+/// Limits of pressure classes [kPa]: of 1|3|5|10 and 30|100|300|1000|3000|10000 those that fit the largest of `values`
+/// (fitting_limits), the first four always kept.
 std::vector<double> pressure_limits(const std::vector<double>& values);
 
-/// Limits of speed classes [m/s]: 0.5|1|5|10|25|50, and 100 where one of `values` exceeds that.
+/// Limits of speed classes [m/s]: of 0.5|1|5|10|25|50|100 those that fit the largest of `values` (fitting_limits).
 std::vector<double> speed_limits(const std::vector<double>& values);
 
 /// Limits of thickness classes for `values` [m]: as given in the recipe, or by the thickest of them.

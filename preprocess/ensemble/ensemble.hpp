@@ -41,8 +41,8 @@ struct EnsembleBase {
   Options options;     ///< as the recipe gives them
   SceneRasters scene;  ///< before anything is scaled, laid or seeded
   SurveyMemory& memory;
-  Facts inputs, marks;    ///< of the base domain
-  std::string obstacles;  ///< checksum of obstacles.vdb; empty: there are none
+  Facts inputs, marks;  ///< of the base domain
+  Facts obstacles;      ///< what the base domain says of obstacles.vdb; empty: there is none
 };
 
 /// Refuses (RecipeError) a key of [preprocess] that changes nothing of the domain: between its smallest value and its

@@ -120,7 +120,8 @@ void MemberDomains::make(std::int64_t member) {
     marks.emplace_back("ensemble." + value.substr(0, sign), value.substr(sign + 1));
   }
   made.domain.provenance = provenance_of(context_, inputs, marks, facts_of(made));
-  if (!base_.obstacles.empty()) made.domain.provenance.emplace_back(obstacles_checksum, base_.obstacles);
+  Facts& provenance = made.domain.provenance;
+  provenance.insert(provenance.end(), base_.obstacles.begin(), base_.obstacles.end());
   write_domain(file, made.domain);
   ++made_;
   note_warnings(member, log.warnings());

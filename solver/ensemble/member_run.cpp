@@ -63,6 +63,9 @@ MemberResult measured(const RunMaps& maps, double threshold) {
     if (const auto edge = farthest(maps.grid, maps.peak_thickness, threshold, *top, maps.before))
       result.flow_reach = plan_distance(*top, *edge);
   }
+  const auto start = centre_of_mass(maps.grid, maps.initial_thickness, maps.terrain),
+             end = centre_of_mass(maps.grid, maps.deposit_thickness, maps.terrain);
+  if (start && end) result.centre_travel = plan_distance(*start, *end);
   result.flow_area = area_above(maps, maps.peak_thickness, threshold);
   result.deposit_area = area_above(maps, maps.deposit_thickness, threshold);
   result.largest_thickness = largest_of(maps.peak_thickness);

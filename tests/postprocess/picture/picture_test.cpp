@@ -31,7 +31,7 @@ TEST(Classes, fall_in_lightness_by_equal_steps) {
 }
 
 TEST(Classes, follow_the_deposits_thickness_unless_they_are_given) {
-  EXPECT_EQ(class_limits({}, 80).at(1), 5);
+  EXPECT_EQ(class_limits({}, 80).at(1), 2);
   EXPECT_EQ(class_limits({}, 11.9).at(1), 0.5);
   EXPECT_EQ(class_limits({1, 3}, 80), (std::vector<double>{1, 3}));
   const std::vector<double> limits{0.1, 5, 10};
