@@ -181,7 +181,8 @@ def compare_pictures(page, made, stored):
         share, room = difference(stored / name, made / name), 0.02 if found.group(1).endswith(".html") else 0.006
         if share > room:
             sys.exit(f"{page.name}: {name} is stale: it differs from what the run draws now by {100 * share:.2g} % "
-                     f"of its colours ({100 * room:g} % may be). Make it anew and look at it: make pictures PICTURES={name}")
+                     f"of its colours ({100 * room:g} % may be). Make it anew and look at it: make pictures "
+                     f"PICTURES={name}")
 
 
 def main():
