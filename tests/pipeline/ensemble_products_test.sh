@@ -112,7 +112,7 @@ test_project_opens_in_qgis_with_all_its_layers() {
   /usr/bin/python3 -c 'import qgis.core' 2>/dev/null || need_tool python3-qgis
   made 8
   export QT_QPA_PLATFORM=offscreen XDG_RUNTIME_DIR=$PWD QGIS_CUSTOM_CONFIG_PATH=$PWD/profile
-  expect_exit 0 /usr/bin/python3 - "$PWD/out/probability" <<'PYTHON'
+  /usr/bin/python3 - "$PWD/out/probability" <<'PYTHON' || fail "QGIS does not show the project whole"
 import sys
 from qgis.core import QgsApplication, QgsMapRendererSequentialJob, QgsMapSettings, QgsProject, QgsRasterLayer
 from qgis.PyQt.QtCore import QSize
@@ -174,7 +174,7 @@ test_counts_of_parts_give_the_same_files() {
   expect_exit 0 solve --members 3:8
   expect_exit 0 postprocess
   cut -d, -f1-7 out/members.csv | cmp - <(cut -d, -f1-7 whole/members.csv) || fail "the members differ"
-  expect_exit 0 /usr/bin/python3 - <<'PYTHON'
+  /usr/bin/python3 - <<'PYTHON' || fail "the maps of the parts are not those of the whole"
 import glob
 import os
 import numpy
