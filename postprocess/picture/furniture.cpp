@@ -229,7 +229,9 @@ void draw_coordinates(Canvas& canvas, const View& view) {
     const double py = view.pixel(view.window.west, y)[1];
     canvas.line({{box.x, py}, {box.x - 10, py}}, tick);
     canvas.line({{box.x + box.width, py}, {box.x + box.width + 10, py}}, tick);
-    canvas.text(grouped(y), box.x - 20, py, style);
+    // A name that reached beyond the map's corners would lie on that of another edge or on the title.
+    const double half = 0.5 * canvas.text_width(grouped(y), style);
+    if (py - half >= box.y && py + half <= box.y + box.height) canvas.text(grouped(y), box.x - 20, py, style);
   }
 }
 

@@ -8,6 +8,7 @@
 #include "postprocess/fields/classes.hpp"
 #include "postprocess/picture/furniture.hpp"
 #include "postprocess/picture/layers.hpp"
+#include "postprocess/picture/places.hpp"
 #include "postprocess/picture/search_words.hpp"
 
 namespace talus::postprocess {
@@ -61,6 +62,7 @@ Canvas draw_map(const PictureInput& input) {
   draw_ground(canvas, view, maps, limits);
   draw_contours(canvas, view, maps, contours);
   draw_outlines(canvas, view, maps, input);
+  draw_places(canvas, view, places_in(input.run.summary.provenance));
   canvas.unclip();
   canvas.frame(view.box, {{0.1, 0.1, 0.12}, 2.5, {}, 1});
   draw_coordinates(canvas, view);
