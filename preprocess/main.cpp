@@ -8,6 +8,8 @@
 #include "common/domain/threads.hpp"
 #include "common/gis/crs.hpp"
 #include "common/gis/dataset_files.hpp"
+#include "common/gis/outlines.hpp"
+#include "common/gis/polygons.hpp"
 #include "common/map/sum.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/machine.hpp"
@@ -141,14 +143,32 @@ void run_difference(StageContext& context, const preprocess::Options& options) {
                       {options.before_dem, options.after_dem}, facts);
 }
 
+/// OUT/obstacles.gpkg: the footprints of the obstacles under their names, for maps.
+void write_footprints(const std::filesystem::path& file, const preprocess::Options& options, const std::string& crs) {
+  OutlineLayer layer{"obstacles", {}};
+  for (const preprocess::ObstacleOptions& o : options.obstacle) {
+    for (const MapPolygon& polygon : read_polygons(o.polygons, crs)) {
+      OutlineFeature feature{o.name, {polygon}, {}};
+      for (const auto& [name, value] : polygon.numbers)
+        if (name == o.attribute) feature.numbers = {{"height", value}};
+      if (o.height > 0) feature.numbers = {{"height", o.height}};
+      layer.features.push_back(feature);
+    }
+  }
+  write_outlines(file, crs, {layer});
+}
+
 /// OUT/obstacles.vdb; the domain carries its checksum, so that nobody takes another one for it.
-void write_obstacles(StageContext& context, preprocess::Prepared& prepared) {
-  const auto bodies = context.out / "obstacles.vdb";
+void write_obstacles(StageContext& context, const preprocess::Options& options, preprocess::Prepared& prepared) {
+  const auto bodies = context.out / "obstacles.vdb", footprints = context.out / "obstacles.gpkg";
   if (prepared.obstacles.empty()) {
     std::error_code none_there;
     std::filesystem::remove(bodies, none_there);
+    std::filesystem::remove(footprints, none_there);
     return;
   }
+  write_footprints(footprints, options, prepared.domain.grid.crs_wkt);
+  context.results.push_back(footprints);
   write_level_sets(bodies, prepared.obstacles, prepared.obstacle_voxel);
   context.results.push_back(bodies);
   prepared.domain.provenance.emplace_back(obstacles_checksum, sha256(bodies));
@@ -179,7 +199,7 @@ void run(StageContext& context, const PreprocessFlags& flags) {
   const Facts inputs = inputs_of(prepared.inputs), marks = marks_of(context, inputs), facts = facts_of(prepared);
   prepared.domain.provenance = provenance_of(context, inputs, marks, facts);
   write_survey_files(context, prepared, marks);
-  write_obstacles(context, prepared);
+  write_obstacles(context, options, prepared);
   const auto file = context.out / "domain.vdb";
   context.results.push_back(file);
   Facts told{{"id", fact(marks, domain_id)}};

@@ -9,8 +9,15 @@ namespace talus::postprocess {
 
 std::vector<double> class_limits(const std::vector<double>& given, double thickest) {
   if (!given.empty()) return given;
-  if (thickest < 12) return {0.1, 0.5, 1, 2, 5, 10};
-  return {0.1, 5, 10, 25, 50, 100};
+  constexpr double least = 0.1, some = 6, filled = 0.8;  // of the thickest, which the last class still holds
+  double limit = round_below(filled * (thickest > 0 ? thickest : some));
+  std::vector<double> limits;
+  for (int k = 0; k < 5; ++k) {
+    limits.insert(limits.begin(), limit);
+    limit = round_below(0.99 * limit);
+  }
+  limits.insert(limits.begin(), std::min(limit, least));
+  return limits;
 }
 
 int class_of(double value, const std::vector<double>& limits) {

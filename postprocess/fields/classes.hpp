@@ -9,7 +9,8 @@
 
 namespace talus::postprocess {
 
-/// Lower limits as given; if none are: 0.1|5|10|25|50|100 m (rock avalanches), or 0.1|0.5|1|2|5|10 m below 12 m.
+/// Lower limits as given; if none are, those that fit what is drawn: five of 1, 2, 5 times powers of ten, the largest
+/// no more than 0.8 of the thickest, and below them 0.1 m, or the next of the same numbers where that is less.
 std::vector<double> class_limits(const std::vector<double>& given, double thickest);
 
 /// Index of the class that holds the value; -1 below the first limit or for NaN.

@@ -21,9 +21,11 @@ double largest(const std::vector<double>& values) {
 }  // namespace
 
 std::vector<double> pressure_limits(const std::vector<double>& values) {
-  std::vector<double> limits{1, 3, 5, 10};
-  for (const double more : {100.0, 1000.0, 10000.0}) {
-    if (largest(values) > more) limits.push_back(more);
+  const double most = largest(values);
+  if (!(most > 100)) return {1, 3, 5, 10};
+  std::vector<double> limits{3, 30, 100};
+  for (const double more : {300.0, 1000.0, 3000.0, 10000.0, 30000.0}) {
+    if (most > more) limits.push_back(more);
   }
   return limits;
 }

@@ -11,7 +11,8 @@
 
 namespace talus::postprocess {
 
-/// Limits of pressure classes [kPa]: 1|3|5|10, and the powers of ten above that the largest of `values` exceeds.
+/// Limits of pressure classes [kPa]: 1|3|5|10 for snow; of a landslide, whose pressure exceeds 100 kPa, 3|30 (which
+/// part Swiss hazard zones of avalanches; BFF & SLF 1984), 100 and on by half powers of ten that `values` exceed.
 std::vector<double> pressure_limits(const std::vector<double>& values);
 
 /// Limits of speed classes [m/s]: 0.5|1|5|10|25|50, and 100 where one of `values` exceeds that.

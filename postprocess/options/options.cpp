@@ -122,10 +122,10 @@ void Options::describe(recipe::Visitor& v) {
   v.path("run", run, "run.h5 of talus-solve; empty: the one in the output folder");
   v.number("footprint_threshold_m", footprint_threshold, recipe::positive, "footprint: peak thickness above this");
   v.number("deposit_threshold_m", deposit_threshold, recipe::positive, "deposit: final thickness above this");
-  v.numbers(
-      "classes_m", classes, recipe::positive,
-      "lower limits of the map's thickness classes, rising; empty: 0.1 5 10 25 50 100, or 0.1 0.5 1 2 5 10 where the "
-      "deposit is thinner than 12 m");
+  v.numbers("classes_m", classes, recipe::positive,
+            "lower limits of the map's thickness classes, rising; empty: 0.1 and five of 1, 2, 5 times powers of ten "
+            "that fit "
+            "the deposit");
   need_classes(v, classes);
   v.names("accept", accept, {"change-outside-slide", "swapped-surveys"},
           "what is refused because it is hardly ever right, and here is; it goes with all results");
@@ -151,6 +151,9 @@ void Options::describe(recipe::Visitor& v) {
   recipe::table(
       v, "survey", survey,
       "what the run is scored against: thickness, or difference, or after_dem, or polygon; all empty: no scores");
+  recipe::table(v, "intensity", intensity, "classes of intensity, by a guideline or own limits");
+  recipe::table(v, "reach_cone", reach_cone, "a second opinion: what an angle of reach (Fahrboeschung) reaches");
+  recipe::table(v, "buildings", buildings, "what comes to each building");
 }
 
 }  // namespace talus::postprocess

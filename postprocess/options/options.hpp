@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/recipe/recipe.hpp"
+#include "postprocess/options/hazard.hpp"
 
 namespace talus::postprocess {
 
@@ -65,6 +66,9 @@ struct Options {
   std::filesystem::path thalweg;  // line along which run-out is measured; empty = found from the run
   AvaFrameFormat avaframe_format = AvaFrameFormat::tif;
   SurveyOptions survey;
+  IntensityOptions intensity;
+  ReachConeOptions reach_cone;
+  BuildingOptions buildings;
   std::vector<std::string> accept;  // what is refused as implausible, insisted on by name
 
   /// The method declares the keys with defaults, help and what they need of one another.

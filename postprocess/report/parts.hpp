@@ -32,6 +32,9 @@ Json profile_json(const ReportInput& input);
 /// along the thalweg, the volume in motion.
 Json series_json(const ReportInput& input);
 
+/// Buildings, and the largest of what gauges and sections saw.
+Json hazard_json(const ReportInput& input);
+
 /// The sections and entries of a score, and what was not scored.
 Json score_json(const Score& score);
 

@@ -17,7 +17,7 @@ floors() {
       printf '%s\n' parallel state material grid transfer boundary elements linear/krylov linear/operator \
         linear/preconditioner linear/direct integrator 'explicit implicit' options scene run/recorders run .
       ;;
-    postprocess) printf '%s\n' options survey fields 'score maps' picture report compare . ;;
+    postprocess) printf '%s\n' options survey fields hazard 'score maps' picture report compare . ;;
   esac
 }
 
