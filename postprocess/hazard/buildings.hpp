@@ -40,7 +40,7 @@ struct Building {
 /// cells, since the grid's functions hold the mass off by as much. The thrust on a building that the
 /// computation knew as an obstacle is the largest mean force between two records of the history, from the impulse that
 /// contact gave it. On another, through which the flow went as if it were not there, F = c p A (Hungr, Morgan &
-/// Kellerhals 1984, doi 10.1139/t84-073, with c = 1): p the largest density times speed squared of a cell, A the
+/// Kellerhals 1984, with c = 1): p the largest density times speed squared of a cell, A the
 /// thickness there, no more than the building's height where that is known, times the width that the footprint can at
 /// most turn to the flow. The largest thickness and pressure of a cell need not come together: a bound.
 std::vector<Building> buildings_of(const Run& run, const std::vector<MapPolygon>& footprints,

@@ -25,26 +25,42 @@ struct Crown {
 /// More than so many lines would take minutes, and a release of so many cells is as well known by fewer.
 constexpr std::size_t most_crowns = 1000;
 
-/// The cells of the release, of every block of `side` cells the highest; the highest of all first.
+/// Whether a neighbour of a cell of the release is none, or the map ends there.
+bool at_the_edge(const RunMaps& maps, int column, int row) {
+  for (int r = row - 1; r <= row + 1; ++r) {
+    for (int c = column - 1; c <= column + 1; ++c) {
+      if (r < 0 || c < 0 || r >= maps.grid.rows || c >= maps.grid.columns) return true;
+      if (!(maps.initial_thickness[maps.grid.index(c, r)] > 0)) return true;
+    }
+  }
+  return false;
+}
+
+/// The cells at the edge of the release, and within it of every block of `side` cells the highest; the highest of all
+/// first.
 std::vector<Crown> released_places(const RunMaps& maps, int side) {
   std::map<std::pair<int, int>, Crown> highest;
+  std::vector<Crown> all;
   for (int row = 0; row < maps.grid.rows; ++row) {
     for (int column = 0; column < maps.grid.columns; ++column) {
       const std::size_t i = maps.grid.index(column, row);
       if (!(maps.initial_thickness[i] > 0) || !std::isfinite(maps.before[i])) continue;
       const Crown here{maps.grid.x(column), maps.grid.y(row), maps.before[i]};
+      if (side > 1 && at_the_edge(maps, column, row)) {
+        all.push_back(here);
+        continue;
+      }
       const auto [place, is_new] = highest.try_emplace({column / side, row / side}, here);
       if (!is_new && here.z > place->second.z) place->second = here;
     }
   }
-  std::vector<Crown> all;
   for (const auto& [block, crown] : highest) all.push_back(crown);
   std::sort(all.begin(), all.end(), [](const Crown& a, const Crown& b) { return a.z > b.z; });
   return all;
 }
 
 /// The places of the release whose lines lie above those of all others somewhere: the highest first. Where they are
-/// too many, as on a release flatter than the angle, blocks of cells stand for theirs.
+/// too many, as on a release flatter than the angle, blocks of cells within it stand for theirs.
 std::vector<Crown> crowns_of(const RunMaps& maps, double tangent) {
   for (int side = 1;; side *= 2) {
     std::vector<Crown> kept;
@@ -52,9 +68,9 @@ std::vector<Crown> crowns_of(const RunMaps& maps, double tangent) {
       const bool below = std::any_of(kept.begin(), kept.end(),
                                      [&](const Crown& other) { return other.line_at(one.x, one.y, tangent) >= one.z; });
       if (!below) kept.push_back(one);
-      if (kept.size() > most_crowns) break;
+      if (kept.size() > most_crowns && side < maps.grid.columns) break;
     }
-    if (kept.size() <= most_crowns) return kept;
+    if (kept.size() <= most_crowns || side >= maps.grid.columns) return kept;
   }
 }
 
