@@ -34,7 +34,8 @@ groups := $(if $(filter $(for_tests),$(MAKECMDGOALS))$(filter-out 0 no,$(WITH_TE
   $(if $(filter package check-install image,$(MAKECMDGOALS)),package)
 
 .PHONY: help setup setup-tests build say-demo demo install package check-install image with-tests test sanitized check \
-  check-threads check-faults check-recipes fuzz validate lint docs check-docs bundle bundle-solver clean FORCE
+  check-threads check-faults check-qgis check-recipes fuzz validate lint docs check-docs bundle bundle-solver clean \
+  FORCE
 
 help: ## this list
 	@echo "make TARGET [PRESET=default|cpu|gpu|check|check-threads] [JOBS=n]"
@@ -140,6 +141,11 @@ check-faults: with-tests ## kills, failing calls, processes in one folder, power
 	@cmake --build $(BUILD) -j $(JOBS) --target $(programs) talus-faults
 	@python3 tests/faults/faults.py --full --bin $(BUILD)/bin --shim $(BUILD)/bin/talus-faults.so \
 	  --work $(BUILD)/scratch/check-faults --table $(BUILD)/faults.md
+
+check-qgis: build ## the plugin and the projects of results, in QGIS itself, which is installed for it (about 1 GB)
+	@tools/install-dependencies.sh qgis
+	@/usr/bin/python3 tests/qgis/check_qgis.py --bin $(BUILD)/bin --plugin $(BUILD)/qgis/talus_provider.zip \
+	  --work $(BUILD)/scratch/check-qgis $(if $(CHECKS),--only $(CHECKS))
 
 check-recipes: build ## random recipes: a result that holds or a clear refusal [RECIPES=500] [RECIPE_JOBS=2]
 	@tools/check-recipes.py --bin $(BUILD)/bin --out $(BUILD)/recipes --count $(RECIPES) --jobs $(RECIPE_JOBS)

@@ -31,6 +31,11 @@ install(DIRECTORY data_samples/ DESTINATION ${TALUS_SHARE}/data_samples COMPONEN
 install(DIRECTORY python/talus python/examples DESTINATION ${TALUS_SHARE}/python COMPONENT runtime FILES_MATCHING
   PATTERN "*.py" PATTERN __pycache__ EXCLUDE)
 
+# For QGIS: the plugin, to be installed from its zip file (docs/how-to/qgis.md).
+if(TALUS_QGIS_PLUGIN)
+  install(FILES ${TALUS_QGIS_PLUGIN} DESTINATION ${TALUS_SHARE}/qgis COMPONENT runtime)
+endif()
+
 install(DIRECTORY ${TALUS_STYLES}/ DESTINATION ${TALUS_SHARE}/styles COMPONENT runtime)
 foreach(_name IN LISTS TALUS_MANUAL_PAGES)
   install(FILES ${TALUS_MANUALS}/man/${_name}.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime)

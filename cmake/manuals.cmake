@@ -52,6 +52,20 @@ if(TALUS_WITH_MANUALS)
   add_dependencies(talus-manuals talus-manual-of-recipe)
 endif()
 
+# The plugin for QGIS as a zip file (tools/make-qgis-plugin.py; docs/how-to/qgis.md).
+set(TALUS_QGIS_PLUGIN "")
+if(Python3_FOUND)
+  set(TALUS_QGIS_PLUGIN ${CMAKE_BINARY_DIR}/qgis/talus_provider.zip)
+  set(_maker ${CMAKE_SOURCE_DIR}/tools/make-qgis-plugin.py)
+  file(GLOB_RECURSE _plugin CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/qgis/*.py ${CMAKE_SOURCE_DIR}/qgis/*.txt
+    ${CMAKE_SOURCE_DIR}/qgis/*.svg)
+  add_custom_command(OUTPUT ${TALUS_QGIS_PLUGIN}
+    COMMAND ${Python3_EXECUTABLE} ${_maker} --version ${PROJECT_VERSION} --to ${TALUS_QGIS_PLUGIN}
+    DEPENDS ${_maker} ${_plugin} ${CMAKE_SOURCE_DIR}/LICENSE VERBATIM)
+  add_custom_target(talus-qgis-plugin DEPENDS ${TALUS_QGIS_PLUGIN})
+  add_dependencies(talus-manuals talus-qgis-plugin)
+endif()
+
 set(TALUS_STYLES ${CMAKE_BINARY_DIR}/styles)
 add_custom_command(OUTPUT ${TALUS_STYLES}/thick/terrain.qml
   COMMAND talus-write-styles ${TALUS_STYLES} >${CMAKE_BINARY_DIR}/styles.txt

@@ -98,7 +98,7 @@ std::string used_text(const StageContext& context, const Job& job) {
   auto inputs = job.survey ? job.survey->inputs : std::vector<fs::path>{};
   inputs.insert(inputs.begin(), job.file);
   if (job.thalweg.given) inputs.push_back(job.options.thalweg);
-  for (const fs::path& polygons : hazard_inputs(job.options, job.file)) inputs.push_back(polygons);
+  for (const fs::path& polygons : hazard_inputs(job.options)) inputs.push_back(polygons);
   return used_recipe(context, stage(), recipe::to_used_toml(job.options, "postprocess"), inputs,
                      {{"run", fact(job.run.summary.provenance, run_id)}, {"CRS", crs_name(job.run.maps.grid.crs_wkt)}});
 }
@@ -185,7 +185,7 @@ Dependencies depends(const StageContext& context) {
   auto inputs = with_sidecars({survey.thickness, survey.difference, survey.after_dem, survey.before_dem, survey.sigma,
                                survey.peak_thickness, survey.polygon, options.thalweg});
   inputs.insert(inputs.begin(), run);
-  for (const fs::path& polygons : hazard_inputs(options, run)) inputs.push_back(polygons);
+  for (const fs::path& polygons : hazard_inputs(options)) inputs.push_back(polygons);
   if (options.report)
     for (const fs::path& file : texts_beside(run.parent_path())) inputs.push_back(file);
   return {{context.out / "score.json"}, inputs};
@@ -277,7 +277,7 @@ void run(StageContext& context) {
   facts.insert(facts.end(), acceptance.facts().begin(), acceptance.facts().end());
   facts.insert(facts.end(), insisted.begin(), insisted.end());
   job.thalweg = thalweg_of(job.run, job.options);
-  job.hazard = hazard_of(job.run, job.options, obstacles_beside(job.file));
+  job.hazard = hazard_of(job.run, job.options);
   log_info(fmt::format("{}: {} x {} cells of {:g} m, {} frames; {}", job.file.string(), job.run.maps.grid.columns,
                        job.run.maps.grid.rows, job.run.maps.grid.cell, job.run.frames.time.size(),
                        job.survey ? "scored against " + job.survey->name : std::string("no survey to score against")));

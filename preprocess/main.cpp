@@ -8,12 +8,11 @@
 #include "common/domain/threads.hpp"
 #include "common/gis/crs.hpp"
 #include "common/gis/dataset_files.hpp"
-#include "common/gis/outlines.hpp"
-#include "common/gis/polygons.hpp"
 #include "common/map/sum.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/machine.hpp"
 #include "common/stage/stage.hpp"
+#include "preprocess/obstacle/obstacles.hpp"
 #include "preprocess/output/write_survey.hpp"
 #include "preprocess/scene/prepare.hpp"
 
@@ -143,39 +142,24 @@ void run_difference(StageContext& context, const preprocess::Options& options) {
                       {options.before_dem, options.after_dem}, facts);
 }
 
-/// OUT/obstacles.gpkg: the footprints of the obstacles under their names, for maps.
-void write_footprints(const std::filesystem::path& file, const preprocess::Options& options, const std::string& crs) {
-  OutlineLayer layer{"obstacles", {}};
-  for (const preprocess::ObstacleOptions& o : options.obstacle) {
-    for (const MapPolygon& polygon : read_polygons(o.polygons, crs)) {
-      OutlineFeature feature{o.name, {polygon}, {}};
-      for (const auto& [name, value] : polygon.numbers)
-        if (name == o.attribute) feature.numbers = {{"height", value}};
-      if (o.height > 0) feature.numbers = {{"height", o.height}};
-      layer.features.push_back(feature);
-    }
-  }
-  write_outlines(file, crs, {layer});
+preprocess::Options read_options(const StageContext& context) {
+  return context.recipe.read<preprocess::Options>("preprocess");
 }
 
 /// OUT/obstacles.vdb; the domain carries its checksum, so that nobody takes another one for it.
-void write_obstacles(StageContext& context, const preprocess::Options& options, preprocess::Prepared& prepared) {
-  const auto bodies = context.out / "obstacles.vdb", footprints = context.out / "obstacles.gpkg";
+void write_obstacles(StageContext& context, preprocess::Prepared& prepared) {
+  const auto bodies = context.out / "obstacles.vdb";
   if (prepared.obstacles.empty()) {
     std::error_code none_there;
     std::filesystem::remove(bodies, none_there);
-    std::filesystem::remove(footprints, none_there);
     return;
   }
-  write_footprints(footprints, options, prepared.domain.grid.crs_wkt);
-  context.results.push_back(footprints);
   write_level_sets(bodies, prepared.obstacles, prepared.obstacle_voxel);
   context.results.push_back(bodies);
-  prepared.domain.provenance.emplace_back(obstacles_checksum, sha256(bodies));
-}
-
-preprocess::Options read_options(const StageContext& context) {
-  return context.recipe.read<preprocess::Options>("preprocess");
+  Facts& provenance = prepared.domain.provenance;
+  provenance.emplace_back(obstacles_checksum, sha256(bodies));
+  const Facts places = preprocess::obstacle_places(read_options(context).obstacle, prepared.domain.grid.crs_wkt);
+  provenance.insert(provenance.end(), places.begin(), places.end());
 }
 
 /// domain.vdb, or the survey alone where only the difference is asked for.
@@ -199,7 +183,7 @@ void run(StageContext& context, const PreprocessFlags& flags) {
   const Facts inputs = inputs_of(prepared.inputs), marks = marks_of(context, inputs), facts = facts_of(prepared);
   prepared.domain.provenance = provenance_of(context, inputs, marks, facts);
   write_survey_files(context, prepared, marks);
-  write_obstacles(context, options, prepared);
+  write_obstacles(context, prepared);
   const auto file = context.out / "domain.vdb";
   context.results.push_back(file);
   Facts told{{"id", fact(marks, domain_id)}};

@@ -13,10 +13,12 @@
 
 #include "common/domain/domain.hpp"
 #include "common/domain/threads.hpp"
+#include "common/run/places.hpp"
 #include "common/run/run_file.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/machine.hpp"
 #include "common/stage/stage.hpp"
+#include "solver/ensemble/ensemble_stage.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/parallel/bandwidth.hpp"
@@ -25,10 +27,12 @@
 #include "solver/run/plan.hpp"
 #include "solver/run/plausible.hpp"
 #include "solver/run/profile_report.hpp"
+#include "solver/run/run_inputs.hpp"
 #include "solver/run/simulation.hpp"
 #include "solver/run/stability/stability_products.hpp"
 #include "solver/run/step_choice.hpp"
 #include "solver/run/stiffness.hpp"
+#include "solver/run/trial.hpp"
 #include "solver/run/warnings.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "solver/scene/make_solver.hpp"
@@ -43,7 +47,8 @@ const char* const examples =
     "  talus-solve recipe.toml --out out/valley --on cpu   # on the processor\n"
     "  talus-solve recipe.toml --out out/valley --restart  # go on after Ctrl-C\n"
     "  talus-solve recipe.toml --out out/valley --resume   # go on where there is something to go on from\n"
-    "  talus-solve recipe.toml --out out/valley --plan     # say what is on, how many steps, how long; write nothing";
+    "  talus-solve recipe.toml --out out/valley --plan     # say what is on, how many steps, how long; write nothing\n"
+    "  talus-solve recipe.toml --out out/valley --members 0:250   # a part of an ensemble";
 
 /// The arguments of the command line beyond those that every stage takes.
 struct SolveFlags {
@@ -52,6 +57,7 @@ struct SolveFlags {
   bool resume = false;
   bool profile = false;
   bool plan = false;
+  std::optional<MemberRange> members;
 };
 
 On device_called(const std::string& word) {
@@ -72,6 +78,10 @@ std::vector<Flag> flags(SolveFlags& given) {
           {.name = "--resume",
            .help = "Go on from checkpoint.h5 in the results where it is one of this run, else begin anew",
            .set = [&](const std::string&) { given.resume = true; }},
+          {.name = "--members",
+           .help = "Of an ensemble, members A to B-1 alone, counted from 0; talus-postprocess adds parts up",
+           .value = "A:B",
+           .set = [&](const std::string& words) { given.members = member_range(words); }},
           {.name = "--profile",
            .help = "Measure where the time goes, phase by phase and kernel by kernel; say it at the end, and in "
                    "profile.csv",
@@ -138,6 +148,22 @@ void log_warnings(Domain& domain, const SolveOptions& o) {
   domain.provenance.insert(domain.provenance.end(), said.begin(), said.end());
 }
 
+/// Where the gauges of the run are, for its report; obstacles that the domain was made with and that the run leaves
+/// out are no longer among its places.
+void add_places(Domain& domain, const SolveOptions& o) {
+  std::erase_if(domain.provenance, [&](const auto& known) {
+    return is_place(known.first) && std::none_of(o.obstacles.begin(), o.obstacles.end(), [&](const auto& obstacle) {
+             return known.first == place_fact({"obstacle " + obstacle.name, {{{0, 0}}}}).first;
+           });
+  });
+  for (const SectionOptions& s : o.sections) {
+    MapPlace place{"section " + s.name, {{}}};
+    for (std::size_t i = 0; i < s.x.size(); ++i) place.rings[0].push_back({s.x[i], s.y[i]});
+    domain.provenance.push_back(place_fact(place));
+  }
+  for (const GaugeOptions& g : o.gauges) domain.provenance.push_back(place_fact({"gauge " + g.name, {{{g.x, g.y}}}}));
+}
+
 /// This function refuses what is implausible in a scene, and adds what is insisted on to the facts of its results.
 void judge(Domain& domain, const SolveOptions& o) {
   std::vector<std::string> before_the_run = o.accept;
@@ -174,63 +200,31 @@ void check_stiffness(const Domain& domain, SolveOptions o, const AnyDevice& devi
                        all > 0 ? 100 * moved / all : 0, o.material.youngs_modulus));
 }
 
-/// This function finds obstacles without a level set of their own in the output of talus-preprocess.
-void find_obstacles(SolveOptions& o, const std::filesystem::path& out) {
-  for (ObstacleOptions& obstacle : o.obstacles) {
-    if (!obstacle.level_set.empty()) continue;
-    obstacle.level_set = out / "obstacles.vdb";
-    if (obstacle.grid.empty()) obstacle.grid = obstacle.name;
-  }
-}
-
-SolveOptions read_options(const StageContext& context) {
-  SolveOptions options = with_preset(context.recipe.read<SolveOptions>("solve"));
-  find_obstacles(options, context.out);
-  return options;
-}
-
-/// The domain first, then the level sets of obstacles, then the accelerogram.
-std::vector<std::filesystem::path> inputs_of(const SolveOptions& options, const std::filesystem::path& out) {
-  std::vector<std::filesystem::path> inputs{options.domain.empty() ? out / "domain.vdb" : options.domain};
-  for (const ObstacleOptions& obstacle : options.obstacles)
-    if (std::find(inputs.begin(), inputs.end(), obstacle.level_set) == inputs.end())
-      inputs.push_back(obstacle.level_set);
-  if (options.shaking.acts()) inputs.push_back(options.shaking.file);
-  return inputs;
-}
-
 std::filesystem::path checkpoint_of(const SolveFlags& flags, const RunPaths& paths) {
   return flags.restart->empty() ? paths.checkpoint : *flags.restart;
 }
 
-Dependencies depends(const StageContext& context, const SolveFlags& flags) {
-  const RunPaths paths(context.out);
-  Dependencies depends{{paths.run}, inputs_of(read_options(context), context.out)};
-  if (flags.restart) depends.inputs.push_back(checkpoint_of(flags, paths));
-  return depends;
+/// What the command line says of an ensemble, and what it cannot say.
+EnsembleFlags ensemble_flags(const SolveFlags& flags) {
+  if (flags.profile)
+    throw RecipeError({"--profile", "members of an ensemble run at a time, and share the processor",
+                       "Profile one of them: leave --profile out, or run with --set ensemble.members=0"});
+  if (flags.restart && !flags.restart->empty())
+    throw RecipeError({"--restart " + flags.restart->string(), "an ensemble goes on from its own unfinished members",
+                       "Write --restart alone"});
+  return {.on = flags.on,
+          .members = flags.members,
+          .restart = flags.restart.has_value(),
+          .resume = flags.resume,
+          .plan = flags.plan};
 }
 
-/// This function refuses a domain that another recipe made, and level sets that were not written with it.
-Facts judge_inputs(const StageContext& context, const SolveOptions& o, const std::filesystem::path& file,
-                   const Domain& domain) {
-  Facts facts = judge_maker(context.recipe, {.file = file,
-                                             .table = "preprocess",
-                                             .mark = fact(domain.provenance, recipe_of_domain),
-                                             .program = "talus-preprocess",
-                                             .key = "domain in [solve]",
-                                             .named = !o.domain.empty()});
-  const std::string written = fact(domain.provenance, obstacles_checksum);
-  const auto bodies = context.out / "obstacles.vdb";
-  const auto reads = [&](const ObstacleOptions& obstacle) { return obstacle.level_set == bodies; };
-  if (!written.empty() && std::filesystem::exists(bodies) &&
-      std::any_of(o.obstacles.begin(), o.obstacles.end(), reads)) {
-    if (const std::string found = sha256(bodies); found != written)
-      throw DataError(
-          {bodies.string() + ": not the file that was written with " + file.string(),
-           fmt::format("its SHA-256 is {:.16}..., that of the file written with it {:.16}...", found, written),
-           "Run talus-preprocess again"});
-  }
-  return facts;
+Dependencies depends(const StageContext& context, const SolveFlags& flags) {
+  if (ensemble_of(context.recipe).on()) return depends_of_ensemble(context, ensemble_flags(flags));
+  const RunPaths paths(context.out);
+  Dependencies depends{{paths.run}, inputs_of(options_of(context.recipe, context.out), context.out)};
+  if (flags.restart) depends.inputs.push_back(checkpoint_of(flags, paths));
+  return depends;
 }
 
 /// This function goes on from a checkpoint where the flags ask for it. One of this very run that they do not ask for is
@@ -263,13 +257,6 @@ void refuse_flags_of_runs(const SolveFlags& flags) {
   throw RecipeError({flags.restart ? "--restart" : "--profile",
                      "a search for the factor of safety takes no steps in time",
                      "Leave it out; a search that was broken off begins anew"});
-}
-
-/// What goes into the results beside the facts of the domain: the mark of the recipe, the checksum of the accelerogram.
-Facts made_by(const StageContext& context, const SolveOptions& o, Facts facts) {
-  facts.emplace_back(recipe_of_run, recipe_mark(context.recipe, "solve"));
-  if (o.shaking.acts()) facts.emplace_back(shaking_checksum, sha256(o.shaking.file));
-  return facts;
 }
 
 /// What run.h5 says of a search beside its maps; `facts` are those of the outcome.
@@ -318,14 +305,6 @@ void find_stability(StageContext& context, const SolveOptions& options, const An
   write_used_recipe(context, stage(), recipe::to_used_toml(options, "solve"), inputs, used);
 }
 
-/// What identifies the work of a run: a checkpoint of other inputs or settings is not taken up.
-std::string fingerprint_of(const std::filesystem::path& domain, const SolveOptions& options) {
-  std::string fingerprint = sha256(domain) + "\n" + recipe::to_toml(options, "solve", false);
-  for (const ObstacleOptions& obstacle : options.obstacles) fingerprint += sha256(obstacle.level_set) + "\n";
-  if (options.shaking.acts()) fingerprint += sha256(options.shaking.file) + "\n";
-  return fingerprint;
-}
-
 /// The options of a run as the recipe has them, and as they are settled for its scene.
 struct RunOptions {
   SolveOptions asked, settled;
@@ -358,12 +337,32 @@ void run_in_time(StageContext& context, const SolveFlags& flags, const RunOption
                      {"stop_reason", summary.stop_reason}});
 }
 
+/// This function runs the members of the recipe's ensemble. `facts` are what is insisted on.
+void run_members_of(StageContext& context, const SolveFlags& flags, const Domain& domain, const SolveOptions& options,
+                    const AnyDevice& device, const Facts& facts) {
+  if (options.stability.factor_of_safety)
+    throw RecipeError({"[ensemble] with [solve.stability] factor_of_safety", "the search is no run in time",
+                       "Leave one of them out"});
+  EnsembleFlags ensemble = ensemble_flags(flags);
+  ensemble.on = device.is_gpu() ? On::gpu : On::cpu;
+  Facts used = run_ensemble(context, ensemble, domain, options, facts);
+  if (used.empty()) return;
+  used.emplace_back("on", device.is_gpu() ? gpu_name(device.gpu().index()) : hardware());
+  auto inputs = inputs_of(options, context.out);
+  inputs.insert(inputs.begin(), context.recipe.file());
+  write_used_recipe(context, stage(), recipe::to_used_toml(options, "solve"), inputs, used);
+}
+
 void solve(StageContext& context, const SolveFlags& flags) {
-  auto options = read_options(context);
+  auto options = options_of(context.recipe, context.out);
   const AnyDevice device = make_device(choose_device(flags.on));
   const auto domain_file = inputs_of(options, context.out).front();
   Domain domain = read_domain(domain_file);
   const Facts insisted = judge_inputs(context, options, domain_file, domain);
+  if (ensemble_of(context.recipe).on()) return run_members_of(context, flags, domain, options, device, insisted);
+  if (flags.members)
+    throw RecipeError({"--members without an ensemble", "the recipe asks for one run",
+                       "Leave it out, or add [ensemble] with members"});
   if (options.stability.factor_of_safety) {
     refuse_flags_of_runs(flags);
     context.check_only = context.check_only || flags.plan;
@@ -378,6 +377,7 @@ void solve(StageContext& context, const SolveFlags& flags) {
     log_warnings(domain, options);
     return;
   }
+  add_places(domain, options);
   log_plan(domain, options, device);
   log_warnings(domain, options);
   run_in_time(context, flags, {asked, options}, device, domain, insisted);

@@ -6,6 +6,7 @@
 # usage: tools/install-dependencies.sh [GROUP...] [--list]
 #   build     what building and running Talus needs; always among them
 #   tests     what `make test` needs besides: GoogleTest, a browser, readers that are not ours, ffmpeg for animations
+#   qgis      what `make check-qgis` needs: QGIS itself, about 1 GB
 #   lint, docs, fuzz, package     what `make lint`, `make docs`, `make fuzz` and `make check-install` need
 set -euo pipefail
 
@@ -34,6 +35,7 @@ tests=(
   # what the site of documents is made of
   python3-sphinx python3-myst-parser furo
 )
+qgis=(qgis python3-qgis qgis-providers gdal-bin)
 lint=(clang-format clang-tidy)
 fuzz=(clang)   # libFuzzer comes with its run-time library
 package=(dpkg-dev mmdebstrap)
@@ -52,10 +54,11 @@ for group in "$@"; do
     tests) packages+=("${tests[@]}") ;;
     lint) packages+=("${tests[@]}" "${lint[@]}") ;;   # it reads the tests as well
     docs) packages=("${docs[@]}") ;;
+    qgis) packages+=("${qgis[@]}") ;;
     fuzz) packages+=("${tests[@]}" "${fuzz[@]}") ;;
     package) packages+=("${package[@]}") ;;
     --list) list=yes ;;
-    *) fail "no such group: $group (build, tests, lint, docs, fuzz, package)" ;;
+    *) fail "no such group: $group (build, tests, qgis, lint, docs, fuzz, package)" ;;
   esac
 done
 if [[ $list == yes ]]; then

@@ -19,9 +19,11 @@ namespace talus {
 
 /// The numbers of one member's run; NaN where there is none.
 struct MemberResult {
-  double run_out = nan;            ///< plan distance from the crown to the farthest reached cell [m]
+  double run_out = nan;            ///< plan distance from the crown to the deposit's farthest cell [m]
   double drop = nan;               ///< crown's height over that cell [m]
   double reach_ratio = nan;        ///< drop over run-out, H/L [-]
+  double flow_reach = nan;         ///< plan distance from the crown to the farthest cell ever covered [m]
+  double centre_travel = nan;      ///< plan way of the centre of mass from the release to the deposit [m]
   double flow_area = nan;          ///< that was ever thicker than the threshold [m2]
   double deposit_area = nan;       ///< that is so at the end [m2]
   double volume_released = nan;    ///< [m3]
@@ -46,9 +48,12 @@ struct ResultNumber {
 
 /// All of them, in the order of tables.
 inline constexpr ResultNumber result_numbers[] = {
-    {"run_out_m", "m", "run-out: plan distance from the crown to the farthest cell reached", &MemberResult::run_out},
+    {"run_out_m", "m", "run-out: plan distance from the crown to the deposit's farthest cell", &MemberResult::run_out},
     {"drop_m", "m", "height of the crown over that cell", &MemberResult::drop},
     {"reach_ratio", "1", "drop over run-out (H/L)", &MemberResult::reach_ratio},
+    {"flow_reach_m", "m", "plan distance from the crown to the farthest cell ever covered", &MemberResult::flow_reach},
+    {"centre_travel_m", "m", "plan way of the centre of mass, from the release to the deposit",
+     &MemberResult::centre_travel},
     {"flow_area_m2", "m2", "area that was ever thicker than the threshold", &MemberResult::flow_area},
     {"deposit_area_m2", "m2", "area thicker than the threshold at the end", &MemberResult::deposit_area},
     {"volume_released_m3", "m3", "released volume", &MemberResult::volume_released},

@@ -16,7 +16,7 @@
 namespace talus {
 namespace {
 
-const EnsembleFileKind kind{"talus-counts", "counts of an ensemble", "Run talus-solve again"};
+const EnsembleFileKind kind{"talus counts", "counts of an ensemble", "Run talus-solve again"};
 
 template <class T>
 h5::Dims length_of(const std::vector<T>& list) {

@@ -12,7 +12,7 @@ namespace talus {
 
 /// What a file holds.
 struct EnsembleFileKind {
-  const char* format;  ///< its mark: "talus-counts"
+  const char* format;  ///< its mark: "talus counts"
   const char* words;   ///< "counts of an ensemble"
   const char* mend;    ///< what to do where it cannot be read
 };

@@ -22,8 +22,8 @@ std::filesystem::path EnsemblePaths::unfinished(const MemberRange& part) const {
   return out / fmt::format("unfinished.{}-{}.h5", part.first, part.end);
 }
 
-std::filesystem::path EnsemblePaths::run(std::int64_t member) const {
-  return folder() / fmt::format("run.{:05}.h5", member);
+std::filesystem::path EnsemblePaths::run_folder(std::int64_t member) const {
+  return folder() / fmt::format("{:05}", member);
 }
 
 std::vector<std::filesystem::path> EnsemblePaths::found_counts() const {

@@ -34,8 +34,8 @@ struct EnsemblePaths {
   std::filesystem::path counts(const MemberRange& part) const;
   /// What a computation of a part that was stopped has finished.
   std::filesystem::path unfinished(const MemberRange& part) const;
-  /// The run of a member that is kept whole.
-  std::filesystem::path run(std::int64_t member) const;
+  /// The folder of a member whose whole run is kept.
+  std::filesystem::path run_folder(std::int64_t member) const;
   /// The files of counts in the folder: counts.h5, else those of parts in the order of their members.
   std::vector<std::filesystem::path> found_counts() const;
 };

@@ -142,6 +142,8 @@ void EnsembleOptions::describe(recipe::Visitor& v) {
   v.number("failed_share", failed_share, recipe::fraction, "share of the members that may fail");
   v.integers("keep", keep, {0, most_members}, "members, counted from 0, whose whole run is kept");
   v.flag("keep_all", keep_all, "every member's whole run is kept");
+  v.number("save_interval_s", save_interval, recipe::positive,
+           "wall time after which finished members are saved, for --restart after a kill");
   recipe::table(v, "thresholds", thresholds, "what the probability maps count");
   recipe::table(v, "elevation_error", elevation_error, "the error of the elevation models, another field each member");
   recipe::list(v, "vary", vary, "a key that varies from member to member");

@@ -81,6 +81,7 @@ struct EnsembleOptions {
   double failed_share = 0.05;   ///< of the members that may fail before the ensemble does
   std::vector<int> keep;        ///< members whose whole run is kept
   bool keep_all = false;
+  double save_interval = 60;  ///< wall time after which what is finished is saved [s]
   ThresholdOptions thresholds;
   ElevationErrorOptions elevation_error;
   std::vector<VaryOptions> vary;

@@ -50,7 +50,7 @@ void add_class_renderer(XmlElement layer, const RasterStyle& style) {
   const std::string high = number(classes.size() > 1 ? classes[classes.size() - 2].upper : style.hidden_to);
   XmlElement pipe = add_pipe(layer, Between::nothing);
   XmlElement renderer = pipe.add("rasterrenderer", {{"type", "singlebandpseudocolor"},
-                                                    {"band", "1"},
+                                                    {"band", fmt::format("{}", style.band)},
                                                     {"opacity", number(style.opacity)},
                                                     {"alphaBand", "-1"},
                                                     {"nodataColor", ""},

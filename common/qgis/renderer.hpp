@@ -8,7 +8,7 @@
 
 namespace talus {
 
-/// Into the element of a layer or a style: everything on how the raster's band 1 is drawn.
+/// Into the element of a layer or a style: everything on how the raster's band is drawn.
 void add_class_renderer(XmlElement layer, const RasterStyle& style);
 /// Adds a grey hillshade lit from four sides to the element of a layer or a style.
 void add_hillshade_renderer(XmlElement layer);

@@ -25,6 +25,7 @@ struct RasterStyle {
   double hidden_from = 0;           ///< values from here ...
   double hidden_to = 0;             ///< ... to here are not drawn; nothing is hidden where both are the same
   double opacity = 1;               ///< 0 to 1
+  int band = 1;                     ///< of the raster, from 1
 };
 
 /// Polygons drawn by their outlines.

@@ -8,6 +8,9 @@
 
 namespace talus {
 
+/// What is slower creeps or rests [m/s]: `moving_volume_m3` and `moving_speed_m_s` of a history count what is faster.
+inline constexpr double moving_faster_than = 1.0;
+
 /// Volume of the points that move at each frame of the points.
 struct Motion {
   std::vector<double> time;        ///< [s]

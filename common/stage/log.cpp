@@ -3,6 +3,8 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <utility>
+
 #include "common/recipe/shown_paths.hpp"
 #include "common/stage/console.hpp"
 #include "common/stage/stage.hpp"
@@ -20,6 +22,7 @@ spdlog::logger& logger() {
 }
 
 Verbosity current = Verbosity::normal;
+thread_local QuietThread* quiet_here = nullptr;
 
 /// A message as it is shown: paths as the user wrote them, and no control characters, which names in files may hold and
 /// a terminal would obey.
@@ -43,17 +46,23 @@ void set_verbosity(Verbosity verbosity) {
 
 Verbosity verbosity() { return current; }
 
+QuietThread::QuietThread() : before_(std::exchange(quiet_here, this)) {}
+QuietThread::~QuietThread() { quiet_here = before_; }
+
 void log_info(const std::string& text) {
+  if (quiet_here != nullptr) return;
   clear_progress_line();
   logger().info(shown(text));
 }
 
 void log_warning(const std::string& text) {
+  if (quiet_here != nullptr) return quiet_here->warnings_.push_back(text);
   clear_progress_line();
   logger().warn("warning: " + shown(text));
 }
 
 void log_detail(const std::string& text) {
+  if (quiet_here != nullptr) return;
   if (current == Verbosity::verbose) clear_progress_line();
   logger().debug(shown(text));
 }

@@ -3,7 +3,9 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 #include "common/stage/console.hpp"
 #include "common/stage/stage.hpp"
@@ -16,6 +18,21 @@ bool line_on_terminal = false;  // a progress line stands on the terminal, witho
 std::size_t terminal_width() {
   winsize size{};
   return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col - 1u : 79u;
+}
+
+/// Between two lines where no terminal redraws them [s]: TALUS_PROGRESS_S, which programs set that show how far a run
+/// is, or 10.
+double between_lines() {
+  const char* const text = std::getenv("TALUS_PROGRESS_S");
+  if (text == nullptr || *text == '\0') return 10;
+  char* end = nullptr;
+  const double seconds = std::strtod(text, &end);
+  if (*end == '\0' && std::isfinite(seconds) && seconds > 0) return seconds;
+  static const bool said = [text] {
+    log_warning("TALUS_PROGRESS_S = " + std::string(text) + " is no time in seconds; progress is said every 10 s");
+    return true;
+  }();
+  return said ? 10 : 0;
 }
 
 }  // namespace
@@ -39,7 +56,7 @@ Progress::~Progress() {
 bool Progress::due() const {
   using namespace std::chrono_literals;
   const auto since = std::chrono::steady_clock::now() - last_;
-  return !quiet_ && (terminal_ ? since >= 200ms : since >= 10s);
+  return !quiet_ && (terminal_ ? since >= 200ms : since >= std::chrono::duration<double>(between_lines()));
 }
 
 void Progress::update(const std::string& text) {

@@ -23,9 +23,12 @@ constexpr const char* style = R"(
 body{font:16px/1.45 system-ui,sans-serif;color:#1b1e22;max-width:70rem;margin:0 auto;padding:1rem 1.2rem}
 h1{font-size:1.5rem;margin:.4rem 0}h2{font-size:1.15rem;margin:1.6rem 0 .4rem}
 img{width:100%;height:auto;display:block}figcaption{font-size:.9rem;margin:.4rem 0}
-.scroll{overflow-x:auto}table{border-collapse:collapse;width:100%;font-size:.92rem}
-th,td{text-align:left;padding:.25rem .6rem;border-bottom:1px solid #d8dce1;overflow-wrap:anywhere}
-td.n,th.n{text-align:right;font-variant-numeric:tabular-nums;white-space:nowrap}
+table{border-collapse:collapse;width:100%;font-size:.92rem;table-layout:fixed}
+th,td{text-align:left;vertical-align:top;padding:.25rem .6rem;border-bottom:1px solid #d8dce1;overflow-wrap:anywhere}
+th{vertical-align:bottom}th:first-child{width:40%}h1,p,figcaption{overflow-wrap:anywhere}
+td.n,th.n{text-align:right;font-variant-numeric:tabular-nums}
+@media(max-width:600px){body{padding:.8rem .7rem}table{font-size:.8rem}th,td{padding:.2rem .25rem}
+th:first-child{width:34%}}
 .k{display:inline-block;width:1.1em;height:1.1em;vertical-align:-.15em;border:1px solid #888;margin:0 .3em 0 .9em}
 @media print{body{max-width:none;font-size:11px}h2{break-after:avoid}tr{break-inside:avoid}}
 )";
@@ -101,15 +104,35 @@ std::string row(const std::vector<std::string>& cells, bool numbers) {
 }
 
 std::string table(const std::vector<std::string>& heads, const std::string& rows, bool numbers) {
-  std::string text = "<div class=\"scroll\"><table><thead><tr>";
+  std::string text = "<table><thead><tr>";
   for (std::size_t i = 0; i < heads.size(); ++i)
     text += fmt::format("<th{}>{}</th>", i > 0 && numbers ? " class=\"n\"" : "", html(heads[i]));
-  return text + "</tr></thead><tbody>\n" + rows + "</tbody></table></div>\n";
+  return text + "</tr></thead><tbody>\n" + rows + "</tbody></table>\n";
 }
 
 Json score_of(const ComparedRun& run) {
   Json score = Json::parse(run.score, nullptr, false);
   return score.is_object() ? score : Json::object();
+}
+
+using Keys = std::map<std::string, std::string>;
+
+Keys keys_of(const ComparedRun& run) {
+  Keys keys;
+  for (const std::string& text : run.used)
+    for (const recipe::UsedKey& key : recipe::read_used_recipe(text, run.name).keys)
+      keys["[" + key.table + "] " + key.key] = key.value;
+  return keys;
+}
+
+/// A heading as it fits what the runs were compared with: another model's run is no survey.
+std::string heading_for(const std::string& title, const ComparedRun& first, const ComparedRun& second) {
+  const auto of_model = [](const ComparedRun& run) {
+    const Keys keys = keys_of(run);
+    const auto kind = keys.find("[postprocess.survey] kind");
+    return kind != keys.end() && kind->second == "\"model\"";
+  };
+  return title == "Against the survey" && (of_model(first) || of_model(second)) ? "Against the reference" : title;
 }
 
 /// The numbers of both scores, each under the first heading that claims it.
@@ -130,19 +153,10 @@ std::string score_tables(const ComparedRun& first, const ComparedRun& second) {
   std::string text;
   const std::vector<std::string> heads{"", first.name, second.name, "second less first"};
   for (const auto& [title, beginnings] : sections())
-    if (!rows[title].empty()) text += fmt::format("<h2>{}</h2>\n", title) + table(heads, rows[title], true);
+    if (!rows[title].empty())
+      text += fmt::format("<h2>{}</h2>\n", heading_for(title, first, second)) + table(heads, rows[title], true);
   if (!rows[""].empty()) text += "<h2>Everything else</h2>\n" + table(heads, rows[""], true);
   return text;
-}
-
-using Keys = std::map<std::string, std::string>;
-
-Keys keys_of(const ComparedRun& run) {
-  Keys keys;
-  for (const std::string& text : run.used)
-    for (const recipe::UsedKey& key : recipe::read_used_recipe(text, run.name).keys)
-      keys["[" + key.table + "] " + key.key] = key.value;
-  return keys;
 }
 
 /// The keys of the recipes in which the two differ.

@@ -7,17 +7,25 @@
 
 namespace talus::postprocess {
 
+std::vector<double> fitting_limits(const std::vector<double>& ladder, double largest, std::size_t kept) {
+  constexpr std::size_t fewest = 4, most = 6;
+  if (!(largest > 0))
+    return {ladder.begin(), ladder.begin() + static_cast<std::ptrdiff_t>(std::min(fewest, ladder.size()))};
+  std::vector<double> limits;
+  for (const double limit : ladder)
+    if (limit < largest) limits.push_back(limit);
+  if (limits.size() > most) {
+    const auto from = limits.begin() + static_cast<std::ptrdiff_t>(kept);
+    limits.erase(from, from + static_cast<std::ptrdiff_t>(limits.size() - most));
+  }
+  while (limits.size() < fewest)
+    limits.insert(limits.begin(), round_below((1 - 1e-9) * (limits.empty() ? largest : limits.front())));
+  return limits;
+}
+
 std::vector<double> class_limits(const std::vector<double>& given, double thickest) {
   if (!given.empty()) return given;
-  constexpr double least = 0.1, some = 6, filled = 0.8;  // of the thickest, which the last class still holds
-  double limit = round_below(filled * (thickest > 0 ? thickest : some));
-  std::vector<double> limits;
-  for (int k = 0; k < 5; ++k) {
-    limits.insert(limits.begin(), limit);
-    limit = round_below(0.99 * limit);
-  }
-  limits.insert(limits.begin(), std::min(limit, least));
-  return limits;
+  return fitting_limits({0.1, 0.5, 1, 2, 5, 10, 25, 50, 100, 200, 500}, thickest, 1);
 }
 
 int class_of(double value, const std::vector<double>& limits) {

@@ -9,8 +9,12 @@
 
 namespace talus::postprocess {
 
-/// Lower limits as given; if none are, those that fit what is drawn: five of 1, 2, 5 times powers of ten, the largest
-/// no more than 0.8 of the thickest, and below them 0.1 m, or the next of the same numbers where that is less.
+/// Lower limits of classes that fit values up to `largest`: those of `ladder` (the thresholds of a field's usual maps,
+/// rising) that are exceeded, of which the lowest `kept` and the highest ones make six at most; with finer ones (1, 2,
+/// 5 times a power of ten) below where they would be fewer than four. `largest` not above 0: the first four.
+std::vector<double> fitting_limits(const std::vector<double>& ladder, double largest, std::size_t kept);
+
+/// Lower limits of thickness classes [m]: as given; if none are, of 0.1|0.5|1|2|5|10|25|50|100|200|500 those that fit.
 std::vector<double> class_limits(const std::vector<double>& given, double thickest);
 
 /// Index of the class that holds the value; -1 below the first limit or for NaN.

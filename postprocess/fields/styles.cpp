@@ -21,19 +21,11 @@ double largest(const std::vector<double>& values) {
 }  // namespace
 
 std::vector<double> pressure_limits(const std::vector<double>& values) {
-  const double most = largest(values);
-  if (!(most > 100)) return {1, 3, 5, 10};
-  std::vector<double> limits{3, 30, 100};
-  for (const double more : {300.0, 1000.0, 3000.0, 10000.0, 30000.0}) {
-    if (most > more) limits.push_back(more);
-  }
-  return limits;
+  return fitting_limits({1, 3, 5, 10, 30, 100, 300, 1000, 3000, 10000}, largest(values), 4);
 }
 
 std::vector<double> speed_limits(const std::vector<double>& values) {
-  std::vector<double> limits{0.5, 1, 5, 10, 25, 50};
-  if (largest(values) > 100) limits.push_back(100);
-  return limits;
+  return fitting_limits({0.5, 1, 5, 10, 25, 50, 100}, largest(values), 1);
 }
 
 std::vector<double> thickness_limits(const std::vector<double>& given, const std::vector<double>& values) {

@@ -11,11 +11,11 @@
 
 namespace talus::postprocess {
 
-/// Limits of pressure classes [kPa]: 1|3|5|10 for snow; of a landslide, whose pressure exceeds 100 kPa, 3|30 (which
-/// part Swiss hazard zones of avalanches; BFF & SLF 1984), 100 and on by half powers of ten that `values` exceed.
+/// Limits of pressure classes [kPa]: of 1|3|5|10 and 30|100|300|1000|3000|10000 those that fit the largest of `values`
+/// (fitting_limits), the first four always kept.
 std::vector<double> pressure_limits(const std::vector<double>& values);
 
-/// Limits of speed classes [m/s]: 0.5|1|5|10|25|50, and 100 where one of `values` exceeds that.
+/// Limits of speed classes [m/s]: of 0.5|1|5|10|25|50|100 those that fit the largest of `values` (fitting_limits).
 std::vector<double> speed_limits(const std::vector<double>& values);
 
 /// Limits of thickness classes for `values` [m]: as given in the recipe, or by the thickest of them.

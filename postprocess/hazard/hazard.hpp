@@ -23,14 +23,11 @@ struct Hazard {
   std::vector<MapPolygon> obstacles;  ///< footprints, `name` as in the recipe; they are among the buildings too
 };
 
-/// The footprints of obstacles that talus-preprocess left beside a run, whether they are there or not.
-std::filesystem::path obstacles_beside(const std::filesystem::path& run_file);
-
 /// The files that hazard_of() reads, with what lies beside them.
-std::vector<std::filesystem::path> hazard_inputs(const Options& options, const std::filesystem::path& run_file);
+std::vector<std::filesystem::path> hazard_inputs(const Options& options);
 
-/// Computes it. `obstacles` is the file of their footprints; it need not be there. Throws DataError where a file of
-/// polygons cannot be read.
-Hazard hazard_of(const Run& run, const Options& options, const std::filesystem::path& obstacles);
+/// Computes it. Obstacles are those that the run names with their places (common/run/places.hpp). Throws DataError
+/// where a file of polygons cannot be read.
+Hazard hazard_of(const Run& run, const Options& options);
 
 }  // namespace talus::postprocess

@@ -12,6 +12,7 @@
 
 #include "common/gis/geotiff.hpp"
 #include "common/map/slope.hpp"
+#include "common/run/places.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/input_file.hpp"
 #include "common/stage/stage.hpp"
@@ -95,7 +96,7 @@ std::string settings_text(const Run& run, const fs::path& run_file) {
   for (const auto& [key, value] : run.summary.provenance) {
     if (key == "command" || key == "hardware" || key == "version") continue;
     if (key == run_id || key == domain_id || key == recipe_of_domain || key == recipe_of_run ||
-        key == obstacles_checksum)
+        key == obstacles_checksum || is_place(key))
       continue;
     const auto checksum = key.starts_with("input ") ? value.find("sha256 ") : std::string::npos;
     text += key + " = " + (checksum == std::string::npos ? value : value.substr(checksum)) + "\n";

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "common/gis/crs.hpp"
 #include "common/gis/geotiff.hpp"
 #include "common/gis/outlines.hpp"
 #include "common/qgis/project.hpp"
@@ -16,6 +17,7 @@
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/fields/styles.hpp"
 #include "postprocess/fields/window.hpp"
+#include "postprocess/maps/gis_time.hpp"
 #include "postprocess/maps/hazard_maps.hpp"
 #include "postprocess/maps/outlines.hpp"
 
@@ -61,7 +63,10 @@ ProjectLayer outline(const std::string& name, const std::string& layer, const Ou
 ProjectGroup outline_group(const GisInput& input) {
   const auto& options = input.options;
   ProjectGroup group{"Outlines", {}};
-  if (input.survey) group.layers.push_back(outline("Survey: " + input.survey->name, "survey", survey_line));
+  if (input.survey)
+    group.layers.push_back(
+        outline((input.survey->kind == ReferenceKind::model ? "Reference: " : "Survey: ") + input.survey->name,
+                "survey", survey_line));
   const double deposit = options.deposit_threshold, footprint = options.footprint_threshold;
   group.layers.push_back(outline("Release", "release", release_line));
   if (!input.run.maps.critical_thickness.empty())
@@ -84,6 +89,22 @@ std::string legend_name(const std::string& map) {
   return name + " [m]";
 }
 
+/// What stands around the map on paper.
+PrintLayout print_layout(const GisInput& input) {
+  const RunSummary& s = input.run.summary;
+  const std::string crs = crs_name(input.run.maps.grid.crs_wkt);
+  PrintLayout page{.title = s.title, .subtitle = {}, .sources = {}};
+  page.subtitle = fmt::format("Landslide run-out simulation, scene {}, {:g} s simulated. {}.", s.scene, s.time_end,
+                              crs.empty() ? "Local coordinates [m]" : crs);
+  page.sources = fmt::format("Talus {}, material point method; map cell {:g} m; run {}.", s.version,
+                             input.run.maps.grid.cell, fact(s.provenance, run_id));
+  if (input.survey && input.survey->name != "survey") page.sources += " Reference: " + input.survey->name + ".";
+  if (!input.options.institution.empty()) page.sources += " Made by " + input.options.institution + ".";
+  page.sources +=
+      " Thickness is vertical. Shading: ground before the failure. One run is one scenario, not a hazard map.";
+  return page;
+}
+
 QgisProject project_of(const std::vector<fs::path>& maps, const GisInput& input) {
   const auto& [run, options, survey, hazard] = input;
   const Window window = affected_window(run.maps, options, survey);
@@ -100,7 +121,9 @@ QgisProject project_of(const std::vector<fs::path>& maps, const GisInput& input)
         {legend_name(name), map.filename().string(), shown, map_style(name, run.maps, options.classes)});
   }
   project.groups.push_back(std::move(results));
+  if (ProjectGroup flow = flow_group(run, options); !flow.layers.empty()) project.groups.push_back(std::move(flow));
   project.groups.push_back({"Ground", {{"Terrain before the failure", "terrain.tif", true, HillshadeStyle{}}}});
+  project.layout = print_layout(input);
   return project;
 }
 

@@ -20,9 +20,6 @@
 namespace talus::postprocess {
 namespace {
 
-/// CF asks for a date to count from. This one is understood by every reader.
-const std::string nominal_start = "1970-01-01 00:00:00";
-
 std::vector<double> filled(std::vector<double> values, const std::vector<char>& inside) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!inside[i] || std::isnan(values[i])) values[i] = nc_fill;
@@ -131,7 +128,7 @@ int define_time(Nc& nc, int dimension, const std::string& start) {
   const int id = nc.variable("time", NC_DOUBLE, {dimension});
   nc.text(id, "standard_name", "time");
   nc.text(id, "long_name", "time since the start of the failure");
-  nc.text(id, "units", "seconds since " + (start.empty() ? nominal_start : start));
+  nc.text(id, "units", "seconds since " + (start.empty() ? std::string(nominal_start) : start));
   nc.text(id, "calendar", "standard");
   nc.text(id, "axis", "T");
   if (start.empty()) nc.text(id, "comment", "the date is nominal: the run does not say when the failure began");

@@ -9,6 +9,10 @@
 
 namespace talus::postprocess {
 
+/// From when time counts where nobody says when the failure began, UTC: CF asks for a date, and every reader takes
+/// this one.
+inline constexpr const char* nominal_start = "1970-01-01 00:00:00";
+
 /// What a NetCDF file says of its making.
 struct NetcdfNotes {
   std::string institution;   ///< empty: "not stated"

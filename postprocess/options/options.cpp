@@ -83,6 +83,11 @@ void SurveyOptions::find_in(const std::filesystem::path& out, bool error_known) 
 
 void SurveyOptions::describe(recipe::Visitor& v) {
   v.text("name", name, "how map and table call it: a survey, or another model's name");
+  recipe::choice(v, "kind", kind, {{"survey", ReferenceKind::survey}, {"model", ReferenceKind::model}},
+                 "what it is: a survey, or the run of another model, which report and table then do not call surveyed");
+  v.needs(kind == ReferenceKind::survey || name != "survey",
+          {"[postprocess.survey] gives kind = \"model\" without a name", "maps and tables would call it a survey",
+           "Name the other model: name = \"SHALTOP, 15 degrees\""});
   v.path("thickness", thickness, "raster of the deposit's thickness [m]");
   v.path("peak_thickness", peak_thickness, "raster of the peak thickness [m]; gives the footprint");
   recipe::choice(v, "direction", direction,
@@ -104,6 +109,9 @@ void SurveyOptions::describe(recipe::Visitor& v) {
                                                       "both say what the footprint is", "Leave one of them out"});
   v.flag("nodata_is_zero", nodata_is_zero,
          "thickness and difference rasters: no data means no deposit (otherwise: not surveyed, left out)");
+  v.needs(kind == ReferenceKind::survey || (sigma.empty() && !(sigma_m > 0) && !from_preprocess),
+          {"[postprocess.survey] gives kind = \"model\" and the error of a survey",
+           "what another model computed has no error of measurement", "Leave sigma and from_preprocess out, or kind"});
   v.path("sigma", sigma, "raster of the standard error (1 sigma) of thickness or change [m]");
   v.number("sigma_m", sigma_m, recipe::not_negative, "the same error for all cells, instead of a raster; 0: not known");
   need_one_error(v, *this);
@@ -123,9 +131,9 @@ void Options::describe(recipe::Visitor& v) {
   v.number("footprint_threshold_m", footprint_threshold, recipe::positive, "footprint: peak thickness above this");
   v.number("deposit_threshold_m", deposit_threshold, recipe::positive, "deposit: final thickness above this");
   v.numbers("classes_m", classes, recipe::positive,
-            "lower limits of the map's thickness classes, rising; empty: 0.1 and five of 1, 2, 5 times powers of ten "
-            "that fit "
-            "the deposit");
+            "lower limits of the map's thickness classes, rising; empty: four to six of 0.1 0.5 1 2 5 10 25 50 100 200 "
+            "500 that "
+            "fit the thickest, and finer ones below them where it is thin");
   need_classes(v, classes);
   v.names("accept", accept, {"change-outside-slide", "swapped-surveys"},
           "what is refused because it is hardly ever right, and here is; it goes with all results");

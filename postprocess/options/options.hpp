@@ -15,12 +15,16 @@ namespace talus::postprocess {
 /// Which way the survey's rasters measure thickness.
 enum class Direction { vertical, slope_normal };
 
+/// What the simulation is compared with: what was surveyed, or the run of another model.
+enum class ReferenceKind { survey, model };
+
 /// How AvaFrame's rasters are written: every version of it reads .asc, newer ones .tif as well.
 enum class AvaFrameFormat { tif, asc };
 
 /// What the simulation is scored against. Nothing given: no score against a survey.
 struct SurveyOptions {
   std::string name = "survey";           // how the map and the table call it
+  ReferenceKind kind = ReferenceKind::survey;
   std::filesystem::path thickness;       // raster of deposit thickness, vertical [m]
   std::filesystem::path peak_thickness;  // raster of peak thickness, vertical [m]: the footprint
   std::filesystem::path before_dem;      // with after_dem: surveyed change; empty = the run's own surface before

@@ -11,8 +11,6 @@
 namespace talus::postprocess {
 namespace {
 
-constexpr double moving = 1.0;  // [m/s]; what is slower creeps or rests
-
 std::vector<double> zero_for_nan(std::vector<double> values) {
   for (double& v : values) v = std::isnan(v) ? 0 : v;
   return values;
@@ -68,6 +66,31 @@ Json profile_json(const ReportInput& input) {
   return json;
 }
 
+namespace {
+
+/// Volume in motion and its mean speed over time: from the history, which has a row for every record; of older runs,
+/// whose history has neither, from the points at the frames.
+Json motion_json(const ReportInput& input) {
+  const RunHistory& history = input.run.history;
+  const HistoryColumn *time = history.find("time_s"), *volume = history.find("moving_volume_m3"),
+                      *speed = history.find("moving_speed_m_s");
+  if (time != nullptr && volume != nullptr && speed != nullptr && time->values.size() >= 2)
+    return {{"time", time->values},
+            {"volume", rounded(volume->values)},
+            {"mean_speed", rounded(speed->values)},
+            {"from_history", true},
+            {"faster_than", moving_faster_than}};
+  const auto motion = read_motion(input.run_file, moving_faster_than);
+  if (motion.time.size() < 2) return nullptr;
+  return {{"time", motion.time},
+          {"volume", rounded(motion.volume)},
+          {"mean_speed", rounded(motion.mean_speed)},
+          {"from_history", false},
+          {"faster_than", moving_faster_than}};
+}
+
+}  // namespace
+
 Json series_json(const ReportInput& input) {
   const auto& thalweg = input.thalweg;
   const auto& history = input.run.history;
@@ -78,18 +101,15 @@ Json series_json(const ReportInput& input) {
     json["at_places"].push_back(
         {{"name", column.name}, {"unit", column.unit}, {"quantity", column.quantity}, {"place", column.place}});
   }
-  if (thalweg.line.size() >= 2 && !input.run.frames.time.empty()) {
-    const auto front = front_over_time(input.run, thalweg, input.options.footprint_threshold);
-    json["front"] = {
-        {"time", front.time}, {"distance", rounded(front.value)}, {"threshold", input.options.footprint_threshold}};
+  if (thalweg.line.size() >= 2) {
+    const auto front = front_by_arrival(input.run.maps, thalweg, thalweg.length() / 400);
+    if (front.time.size() >= 2)
+      json["front"] = {{"time", front.time},
+                       {"distance", rounded(front.value)},
+                       {"until", input.run.summary.time_end},
+                       {"threshold", input.run.maps.threshold}};
   }
-  const auto motion = read_motion(input.run_file, moving);
-  if (motion.time.size() >= 2) {
-    json["motion"] = {{"time", motion.time},
-                      {"volume", rounded(motion.volume)},
-                      {"mean_speed", rounded(motion.mean_speed)},
-                      {"faster_than", moving}};
-  }
+  json["motion"] = motion_json(input);
   return json;
 }
 

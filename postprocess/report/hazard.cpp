@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an authority asks, for the report: the table of buildings, and the largest of what sections and gauges saw.
-#include <algorithm>
+// The table of buildings of the report.
 #include <cmath>
 
 #include "postprocess/hazard/hazard.hpp"
@@ -23,29 +22,12 @@ Json building_json(const Building& b) {
           {"force_from", source_word(b.source)}};
 }
 
-/// The largest of a column of a place and when it was; of a running sum the last.
-Json place_json(const RunHistory& history, const HistoryColumn& column) {
-  const std::vector<double>& time = history.at("time_s").values;
-  std::size_t at = 0;
-  for (std::size_t row = 0; row < column.values.size(); ++row) {
-    if (std::abs(column.values[row]) > std::abs(column.values[at])) at = row;
-  }
-  return {{"place", column.place},
-          {"quantity", column.quantity},
-          {"unit", column.unit},
-          {"largest", column.values.empty() ? Json() : number_or_null(column.values[at])},
-          {"time", column.values.empty() ? Json() : Json(time[at])}};
-}
-
 }  // namespace
 
 Json hazard_json(const ReportInput& input) {
-  Json json{{"buildings", Json::array()}, {"places", Json::array()}};
+  Json json{{"buildings", Json::array()}};
   if (input.hazard != nullptr)
     for (const Building& b : input.hazard->buildings) json["buildings"].push_back(building_json(b));
-  for (const HistoryColumn& column : input.run.history.columns)
-    if (column.place.starts_with("gauge ") || column.place.starts_with("section "))
-      json["places"].push_back(place_json(input.run.history, column));
   return json;
 }
 

@@ -53,7 +53,6 @@ void add_hazard_lines(Json& json, const ReportInput& input, const Window& window
   if (!hazard.cones.empty())
     json["reach"] = outline(input.run.maps.grid, reached_cells(hazard.cones.front()), 0.5, window);
   if (!buildings.empty()) json["buildings"] = lines_json(rings(buildings), window);
-  if (!hazard.obstacles.empty()) json["obstacles"] = lines_json(rings(hazard.obstacles), window);
 }
 
 }  // namespace

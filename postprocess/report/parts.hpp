@@ -12,6 +12,10 @@ namespace talus::postprocess {
 
 using Json = nlohmann::ordered_json;
 
+/// What the page's map shows: the affected window, as wide as it is high where the map goes on that far, since screens
+/// are wide.
+Window shown_window(const ReportInput& input);
+
 /// Grids to be shown on the map, with their classes: deposit, peaks, arrival, release, survey, difference, agreement.
 /// `coarsened` is left as the largest number of cells made one along a side.
 Json layers_json(const ReportInput& input, const Window& window, int& coarsest);
@@ -32,8 +36,10 @@ Json profile_json(const ReportInput& input);
 /// along the thalweg, the volume in motion.
 Json series_json(const ReportInput& input);
 
-/// Buildings, and the largest of what gauges and sections saw.
+/// What came to each building.
 Json hazard_json(const ReportInput& input);
+/// Gauges and obstacles: name, kind, rings [m from the window's west and south] and the largest of what was measured.
+Json places_json(const ReportInput& input);
 
 /// The sections and entries of a score, and what was not scored.
 Json score_json(const Score& score);

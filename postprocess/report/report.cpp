@@ -44,20 +44,13 @@ Json run_json(const ReportInput& input) {
   json["survey"] = nullptr;
   if (const auto& survey = input.survey)
     json["survey"] = {{"name", survey->name},
+                      {"is_model", survey->kind == ReferenceKind::model},
+                      {"noun", survey->words().noun},
+                      {"adjective", survey->words().adjective},
                       {"is_change", survey->deposit_is_change},
                       {"is_polygon", !survey->polygons.empty()},
                       {"footprint_threshold", survey->footprint_threshold}};
   return json;
-}
-
-/// The affected window, as wide as it is high where the map goes on that far: screens are wide.
-Window shown_window(const ReportInput& input) {
-  const auto& grid = input.run.maps.grid;
-  auto window = affected_window(input.run.maps, input.options, input.survey);
-  const double width = std::min(std::max(window.width(), window.height()), grid.east() - grid.west);
-  window.west = std::clamp(0.5 * (window.west + window.east - width), grid.west, grid.east() - width);
-  window.east = window.west + width;
-  return window;
 }
 
 Json map_json(const ReportInput& input) {
@@ -137,6 +130,15 @@ void leave_out_folders(Json& json) {
 
 }  // namespace
 
+Window shown_window(const ReportInput& input) {
+  const auto& grid = input.run.maps.grid;
+  auto window = affected_window(input.run.maps, input.options, input.survey);
+  const double width = std::min(std::max(window.width(), window.height()), grid.east() - grid.west);
+  window.west = std::clamp(0.5 * (window.west + window.east - width), grid.west, grid.east() - width);
+  window.east = window.west + width;
+  return window;
+}
+
 std::string report_html(const ReportInput& input) {
   Json data;
   data["run"] = run_json(input);
@@ -151,6 +153,7 @@ std::string report_html(const ReportInput& input) {
   data["series"] = series_json(input);
   data["hazard"] = hazard_json(input);
   data["map"] = map_json(input);
+  data["places"] = places_json(input);
   for (const char* part : {"score", "surveys", "stages"}) leave_out_folders(data[part]);
   const std::string_view page = page_template();
   return filled(page, {{"@HASHES_OF_SCRIPTS@", hashes(page, "<script>", "</script>")},

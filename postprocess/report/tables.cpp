@@ -7,7 +7,7 @@
 #include "common/recipe/used.hpp"
 #include "postprocess/fields/release.hpp"
 #include "postprocess/report/parts.hpp"
-#include "postprocess/score/mobility.hpp"
+#include "common/run/mobility.hpp"
 
 namespace talus::postprocess {
 namespace {

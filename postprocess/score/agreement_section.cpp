@@ -19,6 +19,7 @@ namespace {
 /// One map of each side, what counts as yes on it, and how far yes reaches.
 struct Pair {
   std::string what;
+  ReferenceWords words;
   const std::vector<double>&simulated, &surveyed;
   double simulated_threshold, surveyed_threshold;
   Reach simulated_reach, surveyed_reach;
@@ -26,39 +27,42 @@ struct Pair {
 
 void overlap(const Pair& pair, double cell_area, Sheet& sheet) {
   const auto& what = pair.what;
+  const std::string noun = pair.words.noun, adjective = pair.words.adjective;
   const auto c = compare(pair.simulated, pair.simulated_threshold, pair.surveyed, pair.surveyed_threshold, cell_area);
   sheet.number(what + "_csi", what + " CSI", "", c.csi(), 3, "neither side exceeds the threshold");
   sheet.number(what + "_hss", what + " Heidke skill score", "", c.hss(), 3, "everywhere the same");
   sheet.number(what + "_auroc", what + " AUROC", "", auroc(pair.simulated, pair.surveyed, pair.surveyed_threshold), 3,
-               "the survey says the same everywhere");
+               "the " + noun + " says the same everywhere");
   sheet.number(what + "_d2pc", what + " distance to perfect classification", "", c.d2pc(), 3, "one side has no area");
-  sheet.number(what + "_foc", what + " area, simulated / surveyed (FoC)", "", c.foc(), 3,
-               "the survey exceeds the threshold nowhere");
+  sheet.number(what + "_foc", what + " area, simulated / " + adjective + " (FoC)", "", c.foc(), 3,
+               "the " + noun + " exceeds the threshold nowhere");
   sheet.number(what + "_spi", what + " synthetic performance index", "",
                c.spi(pair.simulated_reach.along / pair.surveyed_reach.along), 3,
                "one side has no run-out along the thalweg");
   sheet.number(what + "_true_positive_m2", what + " in both (TP)", "m2", c.true_positive, 0);
   sheet.number(what + "_false_positive_m2", what + " in the simulation only (FP)", "m2", c.false_positive, 0);
-  sheet.number(what + "_false_negative_m2", what + " in the survey only (FN)", "m2", c.false_negative, 0);
+  sheet.number(what + "_false_negative_m2", what + " in the " + noun + " only (FN)", "m2", c.false_negative, 0);
   sheet.number(what + "_true_negative_m2", what + " in neither (TN)", "m2", c.true_negative, 0);
 }
 
 void thickness(const Scored& scored, const OnSurveyGrid& simulated, Sheet& sheet) {
   const auto& survey = *scored.survey;
   const auto error = thickness_error(simulated.deposit, survey.deposit, scored.options.deposit_threshold);
+  const std::string adjective = survey.words().adjective;
   constexpr const char* none = "neither deposit exceeds the threshold";
   sheet.number("thickness_rmse_m", "thickness RMSE", "m", error.rmse, 2, none);
-  sheet.number("thickness_bias_m", "thickness bias (simulated - surveyed)", "m", error.bias, 2, none);
+  sheet.number("thickness_bias_m", "thickness bias (simulated - " + adjective + ")", "m", error.bias, 2, none);
   sheet.number("thickness_mae_m", "thickness mean absolute error", "m", error.mean_absolute, 2, none);
   sheet.number("thickness_median_m", "thickness median difference", "m", error.median, 2, none);
   sheet.number("thickness_nmad_m", "thickness NMAD", "m", error.nmad, 2, none);
   const double volume = volume_under(survey.deposit, survey.grid.cell);
-  sheet.number("survey_deposit_volume_m3", "surveyed deposit volume", "m3", volume, 0);
-  sheet.number("deposit_volume_ratio", "deposit volume, simulated / surveyed", "",
-               volume_under(simulated.deposit, survey.grid.cell) / volume, 3, "the survey holds no deposit");
+  sheet.number("survey_deposit_volume_m3", adjective + " deposit volume", "m3", volume, 0);
+  sheet.number("deposit_volume_ratio", "deposit volume, simulated / " + adjective, "",
+               volume_under(simulated.deposit, survey.grid.cell) / volume, 3,
+               "the " + std::string(survey.words().noun) + " holds no deposit");
   double thickest = 0;
   for (const double h : survey.deposit) thickest = h > thickest ? h : thickest;
-  sheet.number("survey_max_deposit_thickness_m", "thickest surveyed deposit", "m", thickest, 2);
+  sheet.number("survey_max_deposit_thickness_m", "thickest " + adjective + " deposit", "m", thickest, 2);
 }
 
 void centre_offset(const Scored& scored, const OnSurveyGrid& simulated, Sheet& sheet) {
@@ -70,7 +74,8 @@ void centre_offset(const Scored& scored, const OnSurveyGrid& simulated, Sheet& s
   sheet.number("centre_of_mass_offset_m", "centre-of-mass offset of the deposits", "m", plan_distance(*here, *there),
                1);
   sheet.number(
-      "centre_of_mass_offset_along_m", "the same along the thalweg, simulated - surveyed", "m",
+      "centre_of_mass_offset_along_m",
+      "the same along the thalweg, simulated - " + std::string(survey.words().adjective), "m",
       project(scored.thalweg, here->x, here->y).distance - project(scored.thalweg, there->x, there->y).distance, 1,
       scored.thalweg.origin);
 }
@@ -79,25 +84,32 @@ void residuals(const Scored& scored, const OnSurveyGrid& simulated, Sheet& sheet
   const auto& survey = *scored.survey;
   if (survey.error.sigma.empty())
     return sheet.skip({"residual_median_sigma", "residual_within_95", "residual_chi2"},
-                      "the survey's error (sigma) is not given");
+                      "the " + std::string(survey.words().noun) + "'s error (sigma) is not given");
   const double threshold = scored.options.deposit_threshold;
   std::vector<char> counts(simulated.deposit.size());
   for (std::size_t i = 0; i < counts.size(); ++i)
     counts[i] = simulated.deposit[i] > threshold || survey.deposit[i] > threshold;
   const auto r = residual_of(simulated.change, survey.measured, survey.error.sigma, counts);
-  constexpr const char* none = "no deposit where the survey has an error";
+  const std::string none = "no deposit where the " + std::string(survey.words().noun) + " has an error";
   sheet.count("residual_cells", "cells with a deposit and a sigma", static_cast<std::int64_t>(r.cells));
   sheet.number("residual_median_sigma", "median residual over sigma", "", r.median, 2, none);
   sheet.number("residual_within_95", "share of cells within 1.96 sigma", "", r.within, 3, none);
   sheet.number("residual_chi2", "reduced chi-square", "", r.chi_squared, 2, none);
 }
 
+/// The run-outs of both sides [m].
+struct Reaches {
+  double reference, simulated;
+};
+
 /// A pair of run-outs and their difference, under keys that begin as named.
-void reach_lines(const std::string& key, const std::string& label, double surveyed, double simulated, Sheet& sheet) {
-  sheet.number("survey_" + key + "_m", "surveyed " + label, "m", surveyed, 0,
-               "the survey exceeds the threshold nowhere");
-  sheet.number(key + "_difference_m", label + ", simulated - surveyed", "m", simulated - surveyed, 0,
-               std::isfinite(surveyed) ? "the simulation has no run-out" : "the survey exceeds the threshold nowhere");
+void reach_lines(const std::string& key, const std::string& label, const ReferenceWords& words, const Reaches& reach,
+                 Sheet& sheet) {
+  const std::string nowhere = "the " + std::string(words.noun) + " exceeds the threshold nowhere";
+  const std::string adjective = words.adjective;
+  sheet.number("survey_" + key + "_m", adjective + " " + label, "m", reach.reference, 0, nowhere);
+  sheet.number(key + "_difference_m", label + ", simulated - " + adjective, "m", reach.simulated - reach.reference, 0,
+               std::isfinite(reach.reference) ? "the simulation has no run-out" : nowhere);
 }
 
 /// What lies between threshold and level of detection is deposit to the simulation and nothing to the survey.
@@ -111,21 +123,22 @@ void blind_zone(const Scored& scored, Sheet& sheet) {
     blind += survey.error.detection * survey.error.sigma[i] > threshold ? 1 : 0;
   }
   if (blind > 0.01 * cells)
-    sheet.note(fmt::format(
-        "Warning: the level of detection lies above the deposit threshold of {:g} m on {:.0f} % of the surveyed "
-        "cells. Thinner deposit is simulated but cannot be surveyed there: raise deposit_threshold_m.",
-        threshold, 100 * blind / cells));
+    sheet.note(
+        fmt::format("Warning: the level of detection lies above the deposit threshold of {:g} m on {:.0f} % of the {} "
+                    "cells. Thinner deposit is simulated but cannot be seen there: raise deposit_threshold_m.",
+                    threshold, 100 * blind / cells, survey.words().adjective));
 }
 
 void left_out(const Scored& scored, const OnSurveyGrid& simulated, Sheet& sheet) {
-  sheet.number("deposit_not_surveyed_m3", "simulated deposit where nothing was surveyed", "m3",
+  sheet.number("deposit_not_surveyed_m3",
+               "simulated deposit where the " + std::string(scored.survey->words().noun) + " has no data", "m3",
                simulated.deposit_left_out, 0);
   const double share = simulated.deposit_left_out / scored.run.summary.volume_released;
   if (share > 0.01)
     sheet.note(
-        fmt::format("Warning: {:.1f} % of the simulated deposit lies where the survey has no data; it is not in the "
+        fmt::format("Warning: {:.1f} % of the simulated deposit lies where the {} has no data; it is not in the "
                     "scores. If no data means no deposit, set nodata_is_zero.",
-                    100 * share));
+                    100 * share, scored.survey->words().noun));
 }
 
 }  // namespace
@@ -137,29 +150,32 @@ void add_agreement(const Scored& scored, const OnSurveyGrid& simulated, Sheet& s
   const double area = survey.grid.cell * survey.grid.cell;
   const auto deposit_reach = reach_of(scored, maps.grid, maps.deposit_thickness, options.deposit_threshold);
   Reach surveyed_reach{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+  const std::string noun = survey.words().noun;
   sheet.section("Agreement with: " + survey.name);
   if (survey.footprint.empty()) {
     sheet.skip({"footprint_csi"},
-               "the survey gives a deposit only (peak_thickness or polygon would give its footprint)");
+               "the " + noun + " gives a deposit only (peak_thickness or polygon would give its footprint)");
   } else {
     surveyed_reach = reach_of(scored, survey.grid, survey.footprint, survey.footprint_threshold);
-    overlap({"footprint", simulated.peak, survey.footprint, options.footprint_threshold, survey.footprint_threshold,
-             reach_of(scored, maps.grid, maps.peak_thickness, options.footprint_threshold), surveyed_reach},
+    overlap({"footprint", survey.words(), simulated.peak, survey.footprint, options.footprint_threshold,
+             survey.footprint_threshold, reach_of(scored, maps.grid, maps.peak_thickness, options.footprint_threshold),
+             surveyed_reach},
             area, sheet);
   }
   if (survey.deposit.empty()) {
-    sheet.skip({"deposit_csi", "thickness_rmse_m", "thickness_bias_m"}, "the survey gives a footprint only");
+    sheet.skip({"deposit_csi", "thickness_rmse_m", "thickness_bias_m"}, "the " + noun + " gives a footprint only");
   } else {
     surveyed_reach = reach_of(scored, survey.grid, survey.deposit, options.deposit_threshold);
-    overlap({"deposit", simulated.deposit, survey.deposit, options.deposit_threshold, options.deposit_threshold,
-             deposit_reach, surveyed_reach},
+    overlap({"deposit", survey.words(), simulated.deposit, survey.deposit, options.deposit_threshold,
+             options.deposit_threshold, deposit_reach, surveyed_reach},
             area, sheet);
     thickness(scored, simulated, sheet);
     residuals(scored, simulated, sheet);
     centre_offset(scored, simulated, sheet);
   }
-  reach_lines("runout", "run-out, straight", surveyed_reach.straight, deposit_reach.straight, sheet);
-  reach_lines("thalweg_runout", "run-out along the thalweg", surveyed_reach.along, deposit_reach.along, sheet);
+  reach_lines("runout", "run-out, straight", survey.words(), {surveyed_reach.straight, deposit_reach.straight}, sheet);
+  reach_lines("thalweg_runout", "run-out along the thalweg", survey.words(),
+              {surveyed_reach.along, deposit_reach.along}, sheet);
   left_out(scored, simulated, sheet);
   blind_zone(scored, sheet);
 }

@@ -46,18 +46,23 @@ void of_maps(const Survey& survey, Sheet& sheet) {
                    ? "Footprint: peak thickness above the threshold against |after - before| above it."
                    : "Footprint: peak thickness above the threshold on both sides.");
   }
+  if (survey.kind == ReferenceKind::model)
+    sheet.note("Reference: the run of another model, " + survey.name + ". It was not surveyed.");
   sheet.note(fmt::format(
-      "Compared on the survey's grid ({} x {} cells of {:g} m), brought there by area weights, which keep volume.",
-      survey.grid.columns, survey.grid.rows, survey.grid.cell));
+      "Compared on the {}'s grid ({} x {} cells of {:g} m), brought there by area weights, which keep volume.",
+      survey.words().noun, survey.grid.columns, survey.grid.rows, survey.grid.cell));
 }
 
-void of_scores(Sheet& sheet) {
+void of_scores(const ReferenceWords& words, Sheet& sheet) {
+  const std::string noun = words.noun;
   sheet.note(
       "CSI = TP / (TP + FP + FN); HSS: agreement beyond chance; D2PC = sqrt((1 - TP/(TP + FN))^2 + (FP/(FP + TN))^2); "
       "FoC = "
-      "(TP + FP) / (TP + FN); AUROC: chance that a cell the survey says yes to has the larger simulated thickness than "
-      "one it "
-      "says no to. HSS, D2PC and AUROC depend on how much untouched ground the survey's grid holds.");
+      "(TP + FP) / (TP + FN); AUROC: chance that a cell the " +
+      noun +
+      " says yes to has the larger simulated thickness than one it says no to. HSS, D2PC and AUROC depend on how "
+      "much untouched ground the " +
+      noun + "'s grid holds.");
   sheet.note(
       "SPI (r.avaflow): mean of CSI, HSS, 1 - D2PC, sin^5(pi/2 min(FoC, 1/FoC)) and the same of the ratio of run-outs "
       "along the "
@@ -68,7 +73,8 @@ void of_error(const Scored& scored, Sheet& sheet) {
   const auto& error = scored.survey->error;
   if (error.sigma.empty()) return;
   if (error.detection > 0)
-    sheet.note(fmt::format("Level of detection: surveyed values below {:g} sigma count as none.", error.detection));
+    sheet.note(fmt::format("Level of detection: {} values below {:g} sigma count as none.",
+                           scored.survey->words().adjective, error.detection));
   sheet.note(
       "Residual over sigma: simulated - measured, before the level of detection, over the cells of the union of both "
       "deposits; "
@@ -114,7 +120,7 @@ void add_definitions(const Scored& scored, Sheet& sheet) {
   of_run(scored, sheet);
   if (scored.survey == nullptr) return;
   of_maps(*scored.survey, sheet);
-  of_scores(sheet);
+  of_scores(scored.survey->words(), sheet);
   of_error(scored, sheet);
   for (const auto& note : scored.survey->notes) sheet.note(note);
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/map/raster.hpp"
-#include "postprocess/score/mobility.hpp"
+#include "common/run/mobility.hpp"
 #include "postprocess/score/polyline.hpp"
 
 namespace talus::postprocess {

@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "postprocess/score/mobility.hpp"
+#include "common/run/mobility.hpp"
 #include "postprocess/score/sheet.hpp"
 #include "postprocess/score/thalweg.hpp"
 #include "postprocess/survey/survey.hpp"

@@ -12,7 +12,7 @@
 #include "common/gis/polygons.hpp"
 #include "common/map/bilinear.hpp"
 #include "postprocess/score/flow_path.hpp"
-#include "postprocess/score/mobility.hpp"
+#include "common/run/mobility.hpp"
 #include "postprocess/score/polyline.hpp"
 
 namespace talus::postprocess {
@@ -162,19 +162,29 @@ std::vector<double> flow_thickness(const Run& run, std::size_t frame) {
   return thickness;
 }
 
-Series front_over_time(const Run& run, const Thalweg& thalweg, double threshold) {
-  const auto& grid = run.maps.grid;
-  DistancesAlong distances(thalweg, grid);
-  Series front{run.frames.time, {}};
-  for (std::size_t frame = 0; frame < run.frames.time.size(); ++frame) {
-    const auto thickness = flow_thickness(run, frame);
-    double reach = nan;
-    for (int row = 0; row < grid.rows; ++row) {
-      for (int column = 0; column < grid.columns; ++column) {
-        if (thickness[grid.index(column, row)] > threshold) reach = std::fmax(reach, distances.at(column, row));
-      }
+Series front_by_arrival(const RunMaps& maps, const Thalweg& thalweg, double step) {
+  DistancesAlong distances(thalweg, maps.grid);
+  std::vector<std::pair<double, double>> arrivals;  // when, how far
+  for (int row = 0; row < maps.grid.rows; ++row) {
+    for (int column = 0; column < maps.grid.columns; ++column) {
+      const double time = maps.arrival_time[maps.grid.index(column, row)];
+      if (std::isfinite(time)) arrivals.emplace_back(time, distances.at(column, row));
     }
-    front.value.push_back(reach);
+  }
+  std::sort(arrivals.begin(), arrivals.end());
+  Series front;
+  std::pair<double, double> last{0, 0};
+  for (std::size_t i = 0; i < arrivals.size(); ++i) {
+    const bool advances = i == 0 || arrivals[i].second > last.second;
+    if (advances) last = arrivals[i];
+    const bool same_instant = i + 1 < arrivals.size() && arrivals[i + 1].first == arrivals[i].first;
+    if (same_instant || (!front.value.empty() && last.second < front.value.back() + step)) continue;
+    front.time.push_back(last.first);
+    front.value.push_back(last.second);
+  }
+  if (!front.value.empty() && last.second > front.value.back()) {
+    front.time.push_back(last.first);
+    front.value.push_back(last.second);
   }
   return front;
 }

@@ -10,7 +10,7 @@
 
 #include "common/run/run_file.hpp"
 #include "postprocess/options/options.hpp"
-#include "postprocess/score/mobility.hpp"
+#include "common/run/mobility.hpp"
 
 namespace talus::postprocess {
 
@@ -75,8 +75,9 @@ struct Series {
   std::vector<double> value;  ///< NaN where there is none
 };
 
-/// How far along the line the flow reaches at each frame: the largest distance of a cell thicker than `threshold` [m].
-Series front_over_time(const Run& run, const Thalweg& thalweg, double threshold);
+/// How far along the line the flow has come, from the map of arrival times, which every step of the run has filled: a
+/// row for each advance by at least `step` [m], the first and the last among them. Empty where nothing arrived.
+Series front_by_arrival(const RunMaps& maps, const Thalweg& thalweg, double step);
 
 /// Largest value across the line at each of its vertices, over the cells nearest to it and within `half_width` [m] on
 /// either side (Fischer 2013, AIMEC: maxima over cross sections); NaN where no cell lies there.

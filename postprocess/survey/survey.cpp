@@ -109,6 +109,7 @@ std::optional<Survey> read_survey(const SurveyOptions& options, const RunMaps& m
   if (!options.given()) return std::nullopt;
   Survey survey;
   survey.name = options.name;
+  survey.kind = options.kind;
   if (!options.after_dem.empty()) {
     read_surfaces(options, maps, survey);
   } else if (options.measures()) {

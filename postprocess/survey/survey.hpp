@@ -21,9 +21,17 @@ struct SurveyError {
   double detection = 0;           ///< level of detection over sigma; 0: off
 };
 
+/// What texts call a reference: "the survey", "surveyed thickness"; of another model "the reference" and "reference
+/// thickness".
+struct ReferenceWords {
+  const char* noun;
+  const char* adjective;
+};
+
 /// A survey on its own grid. Empty vectors: not given. NaN: not surveyed.
 struct Survey {
   std::string name;
+  ReferenceKind kind = ReferenceKind::survey;
   MapGrid grid;                  ///< the grid everything is compared on: the survey's, or the run's for a bare polygon
   std::vector<double> measured;  ///< thickness, or after - before, before any level of detection [m]
   SurveyError error;             ///< of `measured`
@@ -35,6 +43,11 @@ struct Survey {
   std::vector<MapPolygon> polygons;
   std::vector<std::filesystem::path> inputs;
   std::vector<std::string> notes;  ///< what a reader of the scores should know of it
+  /// What texts call it.
+  ReferenceWords words() const {
+    return kind == ReferenceKind::model ? ReferenceWords{"reference", "reference"}
+                                        : ReferenceWords{"survey", "surveyed"};
+  }
 };
 
 /// What a survey takes for deposit, and for footprint where that is a change, when it measures `value` [m].

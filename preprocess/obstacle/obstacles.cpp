@@ -12,6 +12,7 @@
 #include "common/error.hpp"
 #include "common/map/bilinear.hpp"
 #include "common/map/polygon.hpp"
+#include "common/run/places.hpp"
 #include "preprocess/regions/polygon_cover.hpp"
 
 namespace talus::preprocess {
@@ -138,6 +139,18 @@ std::vector<SolidBody> upright_obstacles(const std::vector<ObstacleOptions>& obs
   const auto shared_ground = std::make_shared<const Raster>(ground);  // the bodies outlive the caller's
   for (const ObstacleOptions& o : obstacles) bodies.push_back(upright_body(o, shared_ground, depth));
   return bodies;
+}
+
+std::vector<std::pair<std::string, std::string>> obstacle_places(const std::vector<ObstacleOptions>& obstacles,
+                                                                 const std::string& crs_wkt) {
+  std::vector<std::pair<std::string, std::string>> facts;
+  for (const ObstacleOptions& o : obstacles) {
+    MapPlace place{"obstacle " + o.name, {}};
+    for (const MapPolygon& polygon : read_valid_polygons(o.polygons, crs_wkt))
+      place.rings.push_back(polygon.rings.front());
+    facts.push_back(place_fact(place));
+  }
+  return facts;
 }
 
 double obstacle_voxel(double spacing, double layer_height) { return 0.25 * std::min(spacing, layer_height); }

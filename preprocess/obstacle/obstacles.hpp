@@ -3,6 +3,8 @@
 // Bodies in the way, from polygons on the map: walls, barriers, buildings.
 #pragma once
 
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "common/domain/level_set.hpp"
@@ -15,6 +17,10 @@ namespace talus::preprocess {
 /// Throws DataError: polygons that are not valid or have no height, or lie outside the ground.
 std::vector<SolidBody> upright_obstacles(const std::vector<ObstacleOptions>& obstacles, const Raster& ground,
                                          double depth);
+
+/// Where the obstacles stand on a map of this CRS, as facts (common/run/places.hpp). Throws DataError as above.
+std::vector<std::pair<std::string, std::string>> obstacle_places(const std::vector<ObstacleOptions>& obstacles,
+                                                                 const std::string& crs_wkt);
 
 /// Voxels that show a body as the background grid will meet it, and thin walls as well: a quarter of the smaller
 /// spacing [m].

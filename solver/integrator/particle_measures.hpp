@@ -34,7 +34,7 @@ class ParticleMeasures {
     totals_.resize(rows);
     sum_each<rows>(device_, count, sums_, measure, KeepTotals<rows>{totals_.data()});
     const std::vector<double> total = totals_.download();
-    return {total[0], total[1], total[2], total[3], {total[4], total[5], total[6]}};
+    return {total[0], total[1], total[2], total[3], {total[4], total[5], total[6]}, total[7], total[8]};
   }
 
   /// The vertical thickness, h of (T25), [rows * columns] [m]; waits for the device. The ranges of the particles are

@@ -3,6 +3,7 @@
 // Kernels that measure the points: energies, and thickness on the map.
 #pragma once
 
+#include "common/run/motion.hpp"
 #include "solver/material/material.hpp"
 #include "solver/parallel/sums.hpp"
 #include "solver/transfer/stencil.hpp"
@@ -26,10 +27,10 @@ struct MapWeights {
   }
 };
 
-/// One thread: one point. Sums of its energies (kinetic, potential, elastic), volume and momentum.
+/// One thread: one point. Sums of its energies (kinetic, potential, elastic), volume, momentum and motion.
 template <class Real, class Shape>
 struct MeasureEnergies {
-  static constexpr int rows = 7;
+  static constexpr int rows = 9;
   GridView<Real> grid;
   ParticleView<Real> points;
   Materials<Real> materials;
@@ -46,10 +47,12 @@ struct MeasureEnergies {
     const double x = (points.cell[0][p] + static_cast<double>(points.offset[0][p])) * grid.spacing;
     const double y = (points.cell[1][p] + static_cast<double>(points.offset[1][p])) * grid.spacing;
     const double z = height(p);
+    const double speed = sqrt(vx * vx + vy * vy + vz * vz);
+    const bool moves = speed > moving_faster_than;
     return {
         {0.5 * mass * (vx * vx + vy * vy + vz * vz), -mass * (gravity.x * x + gravity.y * y + gravity.z * z),
          volume * static_cast<double>(elastic_energy(materials.of(points.material, points.plastic_shear, p), state)),
-         volume, mass * vx, mass * vy, mass * vz}};
+         volume, mass * vx, mass * vy, mass * vz, moves ? volume : 0, moves ? volume * speed : 0}};
   }
 
  private:

@@ -16,11 +16,15 @@
 
 namespace talus::solver {
 
-/// The sums over the points: energies, volume and momentum.
+/// The sums over the points: energies, volume, momentum, and what of them is in motion.
 struct Energies {
   double kinetic = 0, potential = 0, elastic = 0;  ///< [J]; potential from the lowest ground
   double volume = 0;                               ///< initial volume of the points present [m3]
   Vec3<double> momentum;                           ///< [kg m/s]
+  double moving_volume = 0;                        ///< of points faster than moving_faster_than [m3]
+  double moving_flux = 0;                          ///< sum of their volume times speed [m4/s]
+  /// The mean speed of what moves, by volume; 0 where nothing does [m/s].
+  double moving_speed() const { return moving_volume > 0 ? moving_flux / moving_volume : 0; }
 };
 
 /// How densely points are packed: the volume of those in a cell about a node, over the room in it (T25b). 1: as at the

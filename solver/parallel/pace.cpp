@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "solver/parallel/alone.hpp"
+
 namespace talus::detail {
 
 namespace {
@@ -42,7 +44,7 @@ void LoopPace::note(double seconds, double items) {
 }
 
 bool is_single_threaded() {
-  return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism) == 1;
+  return Alone::here() || tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism) == 1;
 }
 
 }  // namespace talus::detail

@@ -31,7 +31,7 @@ class LoopPace {
   int trial_ = 0;               // loops of a trial that are left
 };
 
-/// True where this process may run on one thread only: then nothing goes to others.
+/// True where this process may run on one thread only, or this thread works alone: then nothing goes to others.
 bool is_single_threaded();
 
 /// Runs alone() or together(), two ways to the same bits, and returns what it returns. `kind` tells loops apart, such

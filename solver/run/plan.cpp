@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/run/plan.hpp"
 
-#include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -14,19 +11,11 @@
 #include "solver/options/solve.hpp"
 #include "solver/run/recorders/history.hpp"
 #include "solver/run/shaking_words.hpp"
-#include "solver/run/stiffness.hpp"
+#include "solver/run/trial.hpp"
 #include "solver/scene/make_scene.hpp"
-#include "solver/scene/make_solver.hpp"
 
 namespace talus::solver {
 namespace {
-
-std::string span(double seconds) {
-  if (seconds < 0.1) return "less than 0.1 s";
-  if (seconds < 100) return fmt::format("{:.2g} s", seconds);
-  if (seconds < 6000) return fmt::format("{:.0f} min", seconds / 60);
-  return fmt::format("{:.1f} h", seconds / 3600);
-}
 
 std::string flow_words(const SolveOptions& o) {
   if (o.flow_integrator() == Integrator::explicit_) return fmt::format("explicit, {:g} of the CFL step", o.cfl);
@@ -46,35 +35,7 @@ std::string integrator_words(const SolveOptions& o) {
   }
 }
 
-/// The steps and seconds of a trial.
-struct Trial {
-  double step = 0;     // length of the last one [s]
-  double seconds = 0;  // each
-  std::size_t bytes = 0;
-};
-
-Trial try_steps(const Scene& scene, const SolveOptions& o, const AnyDevice& device) {
-  const auto solver = make_solver(scene, o, device);
-  solver->set_next_event(o.end_time);
-  const auto seconds_since = [](auto begun) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-  };
-  solver->advance();  // storage, and on a GPU the first launch of every kernel
-  const auto first = solver->clock();
-  const auto begun = std::chrono::steady_clock::now();
-  Clock last = first;
-  while (seconds_since(begun) < 0.5 && last.time < o.end_time && !(last.halt == failed)) last = solver->advance().clock;
-  const double steps = static_cast<double>(last.step - first.step);
-  return {last.step_size, steps > 0 ? seconds_since(begun) / steps : 0, solver->bytes()};
-}
-
 }  // namespace
-
-double records_of(const SolveOptions& o) {
-  const double per_second =
-      1 / o.frame_interval + 1 / o.history_interval + (o.checkpoint_interval > 0 ? 1 / o.checkpoint_interval : 0);
-  return o.end_time * per_second;
-}
 
 std::vector<std::string> features(const Domain& domain, const SolveOptions& o) {
   std::vector<std::string> lines;
@@ -120,7 +81,7 @@ std::vector<std::string> plan(const Domain& domain, const SolveOptions& o, const
   if (scene.shaking.acts()) lines.push_back(fmt::format("{:<12} {}", "shaking", shaking_words(scene.shaking)));
   const History recorded(o, scene);  // refuses what cannot be recorded
   for (const std::string& note : scene.contacts.notes) lines.push_back(note);
-  const Trial trial = try_steps(scene, o, device);
+  const Trial trial = try_steps(scene, o, device, 0.5);
   const auto add = [&](const std::string& name, const std::string& words) {
     lines.push_back(fmt::format("{:<12} {}", name, words));
   };
@@ -134,28 +95,21 @@ std::vector<std::string> plan(const Domain& domain, const SolveOptions& o, const
                   scene.active.cell_count(), scene.active.block_count()));
   add("memory",
       fmt::format("{:.1f} MB now, on the {}", static_cast<double>(trial.bytes) / 1e6, device.is_gpu() ? "GPU" : "CPU"));
-  const double records = records_of(o);
-  double fewest = o.end_time / o.implicit.step + records, most = fewest;
+  const StepCount count = count_steps(domain, scene, o, trial.step);
   if (abilities_of(o.integrator).obey_cfl) {
-    const TerrainTables terrain = make_terrain_tables(scene.grid);
-    const FirstWaves waves = first_waves(o);
-    const double fast = lowest_stiffness(domain, o).speed;
-    const auto step_at = [&](double speed) {
-      return std::min(o.cfl / first_rate(scene.grid, terrain, scene.points, waves, speed), o.largest_step);
-    };
-    fewest = o.end_time / step_at(0) + records;
-    most = o.end_time / std::min(step_at(fast), trial.step > 0 ? trial.step : 1e30) + records;
-    add("step",
-        fmt::format("{:.3g} s at rest (waves of {:.0f} m/s), {:.3g} s at the {:.0f} m/s that the energy line allows",
-                    step_at(0), waves.speed, step_at(fast), fast));
+    add("step", fmt::format("{:.3g} s at rest (waves of {:.0f} m/s), {:.3g} s at the {:.0f} m/s that the energy line "
+                            "allows",
+                            count.at_rest, first_waves(o).speed, count.at_speed, count.speed));
   } else {
     add("step", fmt::format("{:.3g} s, cut where it does not converge", o.implicit.step));
   }
-  add("count", fewest < 0.99 * most ? fmt::format("{:.0f} to {:.0f} steps to {:g} s", fewest, most, o.end_time)
-                                    : fmt::format("{:.0f} steps to {:g} s", most, o.end_time));
+  add("count", count.fewest < 0.99 * count.most
+                   ? fmt::format("{:.0f} to {:.0f} steps to {:g} s", count.fewest, count.most, o.end_time)
+                   : fmt::format("{:.0f} steps to {:g} s", count.most, o.end_time));
   if (trial.seconds > 0) {
     add("time", fmt::format("{} to {} at {:.3g} ms a step, as long as no more matter is moving than at the start",
-                            span(fewest * trial.seconds), span(most * trial.seconds), 1e3 * trial.seconds));
+                            time_words(count.fewest * trial.seconds), time_words(count.most * trial.seconds),
+                            1e3 * trial.seconds));
   }
   return lines;
 }

@@ -16,9 +16,6 @@ namespace talus::solver {
 /// The features that are on, one item a line: only what the recipe names or cannot do without.
 std::vector<std::string> features(const Domain& domain, const SolveOptions& options);
 
-/// How often frames, history and checkpoints are taken: a step ends at each, so that a run has so many steps more.
-double records_of(const SolveOptions& options);
-
 /// The lines for `--plan`: the features, points, nodes, memory, step, steps and time. The time is measured on steps
 /// that are forgotten; how many there will be lies between those of a mass at rest and those of one as fast as the
 /// energy line allows. The function throws what the run would throw at its start.

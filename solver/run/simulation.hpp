@@ -3,23 +3,19 @@
 // A run from domain to run.h5: steps, events in time, the end.
 #pragma once
 
-#include <chrono>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "common/domain/domain.hpp"
+#include "common/run/run_file.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/interrupt.hpp"
 #include "common/stage/stage.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/parallel/any_device.hpp"
-#include "solver/run/products.hpp"
-#include "solver/run/recorders/checkpoint.hpp"
 #include "solver/run/recorders/frames.hpp"
-#include "solver/run/recorders/history.hpp"
-#include "solver/run/schedule.hpp"
-#include "solver/run/step_watch.hpp"
-#include "solver/run/stepper.hpp"
+#include "solver/run/run_loop.hpp"
 
 namespace talus::solver {
 
@@ -37,31 +33,14 @@ struct RunMarks {
   std::string stop_reason = {};  ///< once the steps have come to their end
 };
 
-/// The wall time of a run, that before an interruption included.
-class RunTimer {
- public:
-  /// The method starts the clock.
-  void start() { started_ = WallClock::now(); }
-  void resume(double before) { before_ = before; }  ///< before: the wall time so far [s]
-  /// The wall time so far [s].
-  double seconds() const { return before_ + std::chrono::duration<double>(WallClock::now() - started_).count(); }
-
- private:
-  using WallClock = std::chrono::steady_clock;
-  WallClock::time_point started_ = WallClock::now();
-  double before_ = 0;  ///< [s]
-};
-
-/// The loop of a run, and the recorders that it serves.
-class Simulation {
+/// A run with its files: frames, checkpoints, run.h5.
+class Simulation : private RunKeeper {
  public:
   /// The constructor places the points and prepares the recorders; no step is taken and nothing written. `on` must be
   /// cpu or gpu; `fingerprint` marks the checkpoints of this domain and these settings. It keeps a reference to
   /// `domain`, and throws RecipeError and DataError.
   Simulation(const Domain& domain, const SolveOptions& options, const AnyDevice& device, RunPaths paths,
              std::string fingerprint);
-  Simulation(const Simulation&) = delete;
-  Simulation& operator=(const Simulation&) = delete;
 
   /// The method goes on from checkpoint.h5 instead of the start. It throws DataError, and then changes nothing.
   void resume(const std::filesystem::path& checkpoint);
@@ -73,35 +52,25 @@ class Simulation {
   RunSummary run(const std::string& scene, const std::string& title, const Facts& made_by = {});
 
  private:
+  void put_frame(double time, std::int64_t number) override;
+  void pass_sort(bool checkpoint_due) override;
+  void pass_batch(const BatchReport& batch) override;
   void start();
-  std::string step_to_end();
-  void count(const BatchReport& batch);
-  void stop_or_save(const BatchReport& batch);
   void stop_if_interrupted_at_the_end();
   [[noreturn]] void stop();
-  void pass_events(double time);
-  void record(double time);
-  void put_frame(double time);
   void save_checkpoint();
-  bool calm() const;
-  double mass_error() const;
   void report_sanity(const RunSanity& sanity) const;
   RunSummary finish(RunSummary summary);
   void write_run(const RunEnd& end, const RunSummary& summary);
   void measure(const RunEnd& end, RunSummary& summary) const;
 
   const Domain& domain_;
-  SolveOptions options_;
   RunPaths paths_;
   RunMarks marks_;
-  Scene scene_;
-  Schedule schedule_;
-  Stepper stepper_;
-  History history_;
-  RunMemory memory_;
+  RunLoop loop_;
   RunTimer timer_;
-  StepWatch watch_;
-  FrameRecorder frames_;  ///< last: what it writes needs the rest
+  std::optional<Progress> progress_;  ///< while steps are taken
+  FrameRecorder frames_;              ///< last: what it writes needs the rest
 };
 
 }  // namespace talus::solver

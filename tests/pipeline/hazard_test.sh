@@ -49,7 +49,6 @@ test_everything_that_is_asked_comes_out() {
   need_tool ogrinfo
   hazard_scene
   expect_exit 0 preprocess
-  [[ -s out/obstacles.gpkg ]] || fail "no footprints of the obstacles"
   expect_exit 0 solve
   expect_words "section below: "
   expect_exit 0 postprocess

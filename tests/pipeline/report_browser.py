@@ -11,24 +11,13 @@ import sys
 import time
 
 from osgeo import gdal
-from selenium import webdriver
-from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import WebDriverWait
 
+from browser import open_browser
+
 gdal.UseExceptions()
-
-
-def open_browser():
-    options = webdriver.ChromeOptions()
-    options.binary_location = "/usr/bin/chromium"
-    for argument in ["--headless=new", "--disable-gpu", "--disable-dev-shm-usage", "--window-size=1300,1000"]:
-        options.add_argument(argument)
-    if os.geteuid() == 0:
-        options.add_argument("--no-sandbox")  # Chromium's sandbox refuses root, which tests in containers are
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    return webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
 
 
 def open_report(browser, out):
@@ -200,6 +189,22 @@ def check_scores(browser):
     assert not alone, f"a spread stands by itself: {[cell.get_attribute('data-key') for cell in alone]}"
 
 
+def check_places(browser):
+    """Both gauges are drawn and named on the map, can be switched off, and are listed with what they read."""
+    names = [e.text for e in browser.find_elements(By.CSS_SELECTOR, "#map .leaflet-tooltip.place")]
+    assert sorted(names) == ["below", "source"], f"the map names {names}"
+    box = browser.find_element(By.ID, "overlay-places")
+    box.click()
+    WebDriverWait(browser, 5).until(
+        lambda b: not b.find_elements(By.CSS_SELECTOR, "#map .leaflet-tooltip.place"), "the gauges do not go away"
+    )
+    box.click()
+    rows = [row.text for row in browser.find_elements(By.CSS_SELECTOR, "#places tbody tr")]
+    assert len(rows) == 2 and rows[0].startswith("source gauge") and "thickness 4." in rows[0], rows
+    note = browser.find_element(By.ID, "series-note").text
+    assert "records of the history" in note and "arrival times" in note, note
+
+
 def check_surveys(browser):
     """Alignment, error and volumes of the two models that the scene was made from."""
     text = browser.find_element(By.ID, "surveys").text
@@ -236,6 +241,7 @@ def clicks(browser, out):
     check_cursor(browser, out)
     check_curves(browser)
     check_scores(browser)
+    check_places(browser)
     check_surveys(browser)
     check_parameters(browser)
     check_console(browser)

@@ -37,6 +37,29 @@ test_opens_and_answers_to_clicks_in_a_browser() {
   browse clicks
 }
 
+# widths PAGE: nothing on it is too wide on a desktop, a tablet, a phone, and on paper; pictures lie in shots/.
+widths() {
+  mkdir -p shots
+  expect_exit 0 /usr/bin/python3 "$TALUS_SOURCE/tests/pipeline/page_widths.py" "$1" shots
+  expect_exit 0 pdftotext -bbox "shots/$(basename "$1" .html).pdf" words.html
+  awk -F'"' '/<page /  { width = $2 }
+    /<word /  { ++count; if ($2 < 20 || $6 > width - 20) { print "beyond the margin on paper: " $0; bad = 1 } }
+    END { exit bad || count < 100 }' words.html >beyond || fail "$1: $(head -5 beyond)"
+}
+
+test_fits_desktop_tablet_phone_and_paper() {
+  need_browser
+  made
+  widths "$PWD/out/report.html"
+  cp -r out other
+  "$bin/talus-solve" recipe.toml --out other --on cpu --set solve.base.friction_angle_deg=9 2>/dev/null >stdout ||
+    fail "no second run"
+  "$bin/talus-postprocess" recipe.toml --out other --set solve.base.friction_angle_deg=9 >stdout 2>stderr ||
+    fail "no second results"
+  expect_exit 0 "$bin/talus" compare out other
+  widths "$PWD/out/comparison.html"
+}
+
 test_prints_to_a_pdf_with_all_its_maps() {
   need_browser
   made

@@ -15,7 +15,7 @@ floors() {
       ;;
     solver)
       printf '%s\n' parallel state material grid transfer boundary elements linear/krylov linear/operator \
-        linear/preconditioner linear/direct integrator 'explicit implicit' options scene run/recorders run .
+        linear/preconditioner linear/direct integrator 'explicit implicit' options scene run/recorders run ensemble .
       ;;
     postprocess) printf '%s\n' options survey fields hazard 'score maps' picture report compare . ;;
   esac

@@ -147,6 +147,11 @@ function lineStyle(i) {
   return { colour: order[i % order.length], dashes: dashes[Math.floor(i / order.length) % dashes.length] };
 }
 
+/** What stands along an axis: a long quantity is in the title already, where it has room. */
+function axisWords(quantity, unit) {
+  return quantity.length + unit.length <= 30 || !unit ? `${quantity} ${unit}` : unit;
+}
+
 /** A chart for every quantity that is measured at places, such as gauges and obstacles: a line for each place. */
 function placeCharts(box, history, columns) {
   const charts = new Map();
@@ -161,9 +166,15 @@ function placeCharts(box, history, columns) {
     const measured = first.quantity[0].toUpperCase() + first.quantity.slice(1);
     lineChart(box, { id: `series-${first.quantity.replace(/[^a-z]+/gi, "-")}`, x: "Time [s]", height: 240,
       title: others.length ? measured : `${measured}, ${first.place}`, // one line has no legend
-      y: unit ? `${measured} [${prefix}${unit}]` : measured, zero: Math.min(...known) < 0.5 * Math.max(...known),
+      y: axisWords(measured, unit ? `[${prefix}${unit}]` : ""), zero: Math.min(...known) < 0.5 * Math.max(...known),
       lines: all.map((column, i) => curve(column.place, history.time_s, values[i], factor, lineStyle(i))) });
   }
+}
+
+/** The front stays where it is until the end of the run. */
+function frontPoints(front) {
+  const last = front.distance[front.distance.length - 1];
+  return points([...front.time, Math.max(front.until, front.time[front.time.length - 1])], [...front.distance, last]);
 }
 
 /** Energy, speed, volume in motion, front, then what was measured at places. */
@@ -181,7 +192,7 @@ export function drawSeries(data) {
         label: "Mean of what moves",
         data: points(motion.time, motion.mean_speed),
         colour: colours.violet,
-        dots: true,
+        dots: !motion.from_history,
         dashes: [6, 3],
       });
     lineChart(box, { id: "series-speed", title: "Speed", x: "Time [s]", y: "Speed [m/s]", height: 240, lines: speed });
@@ -196,11 +207,14 @@ export function drawSeries(data) {
       x: "Time [s]",
       y: `Volume [${prefix}m\u00b3]`,
       height: 240,
-      lines: [curve("In motion", motion.time, motion.volume, factor, { colour: colours.blue, dots: true })],
+      lines: [curve("In motion", motion.time, motion.volume, factor, {
+        colour: colours.blue,
+        dots: !motion.from_history,
+      })],
     });
     notes.push(
-      `In motion: material points faster than ${motion.faster_than} m/s, at the ${motion.time.length} frames the ` +
-        `run wrote.`,
+      `In motion: material points faster than ${motion.faster_than} m/s, at the ${motion.time.length} ` +
+        (motion.from_history ? "records of the history." : "frames the run wrote; its history does not have it."),
     );
   }
   if (front) {
@@ -210,9 +224,12 @@ export function drawSeries(data) {
       x: "Time [s]",
       y: "Distance [m]",
       height: 240,
-      lines: [{ label: "Front", data: points(front.time, front.distance), colour: colours.violet, dots: true }],
+      lines: [{ label: "Front", data: frontPoints(front), colour: colours.violet }],
     });
-    notes.push(`Front: farthest place along the thalweg that the flow has reached, thicker than ${front.threshold} m.`);
+    notes.push(
+      `Front: farthest place along the thalweg that the flow has reached, thicker than ${front.threshold} m, by the ` +
+        `map of arrival times.`,
+    );
   }
   placeCharts(box, history, data.series.at_places);
   if (!box.children.length) notes.push("The run holds no history.");

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an authority asks: buildings, and the largest values at gauges and sections.
-import { h, number, scaled, unitOfPowers } from "./format.js";
+// What came to each building.
+import { h, number, scaled } from "./format.js";
 
 function table(id, heads, rows) {
   const head = heads.map((words, i) => h("th", { class: i ? "number" : null }, words));
@@ -39,46 +39,28 @@ function buildingRow(b) {
   ];
 }
 
-function placeRow(p) {
-  const { factor, prefix } = /^[JNW]/.test(p.unit) ? scaled(Math.abs(p.largest)) : { factor: 1, prefix: "" };
-  return [
-    p.place,
-    p.quantity,
-    p.largest === null ? "" : `${number(p.largest / factor, 2)} ${prefix}${unitOfPowers(p.unit)}`,
-    p.time === null ? "" : number(p.time, 1),
-  ];
-}
-
-/** The section is dropped from a report that has neither buildings nor places. */
+/** The section is dropped from a report without buildings. */
 export function drawHazard(data) {
-  const { buildings, places } = data.hazard;
+  const { buildings } = data.hazard;
   const section = document.getElementById("hazard-section");
-  if (!buildings.length && !places.length) {
+  if (!buildings.length) {
     section.remove();
     document.querySelector('nav a[href="#hazard-section"]')?.remove();
     return;
   }
   const box = document.getElementById("hazard");
-  if (buildings.length) {
-    box.append(
-      h("h3", {}, "Buildings and obstacles"),
-      table(
-        "buildings-table",
-        ["Building", "Arrival [s]", "Thickness [m]", "Speed [m/s]", "Pressure [kPa]", "Width [m]", "Force", "From"],
-        buildings.map(buildingRow),
-      ),
-      h(
-        "p",
-        { class: "note" },
-        "Largest value over time of the cells at a building, in brackets the 99th percentile of these cells. Force: " +
-          "what contact counted where the building was an obstacle; else pressure times thickness times the largest " +
-          "width of the footprint (Hungr et al. 1984), a bound, for the largest values need not come together.",
-      ),
-    );
-  }
-  if (!places.length) return;
   box.append(
-    h("h3", {}, "Gauges and sections"),
-    table("places-table", ["Place", "Quantity", "Largest", "At [s]"], places.map(placeRow)),
+    table(
+      "buildings-table",
+      ["Building", "Arrival [s]", "Thickness [m]", "Speed [m/s]", "Pressure [kPa]", "Width [m]", "Force", "From"],
+      buildings.map(buildingRow),
+    ),
+    h(
+      "p",
+      { class: "note" },
+      "Largest value over time of the cells at a building, in brackets the 99th percentile of these cells. Force: " +
+        "what contact counted where the building was an obstacle; else pressure times thickness times the largest " +
+        "width of the footprint (Hungr et al. 1984), a bound, for the largest values need not come together.",
+    ),
   );
 }

@@ -11,7 +11,6 @@ const styles = {
   release: { title: "Release", colour: "#00735c", width: 2.2, casing: 4 },
   reach: { title: "Angle of reach", colour: "#8c1a8c", width: 1.8, dashes: [6, 4], casing: 3.2 },
   buildings: { title: "Buildings", colour: "#1a1a1a", width: 1.6, casing: 3 },
-  obstacles: { title: "Obstacles", colour: "#bf0d0d", width: 2.4, casing: 4 },
   thalweg: { title: "Thalweg", colour: "#8c1a73", width: 2, dashes: [7, 3, 2, 3], casing: 3.4 },
 };
 
@@ -53,7 +52,7 @@ export function mapLines(data) {
   add("survey_footprint", lines.survey_footprint ?? []);
   add("survey_deposit", lines.survey_deposit ?? []);
   add("release", lines.release);
-  for (const id of ["reach", "buildings", "obstacles"]) add(id, lines[id] ?? []);
+  for (const id of ["reach", "buildings"]) add(id, lines[id] ?? []);
   add("thalweg", [lines.thalweg]);
   return found;
 }

@@ -8,7 +8,9 @@ import { mapLines } from "./lines.js";
 import { ReportMap } from "./map.js";
 import { drawMethod } from "./method.js";
 import { Panel } from "./panel.js";
+import { drawPlaceList, placesOf } from "./places.js";
 import { Plates } from "./plates.js";
+import { labelCells } from "./stack.js";
 import { drawSummary } from "./summary.js";
 import { drawSurveys } from "./surveys.js";
 import { drawInputs, drawParameters, drawScores, drawVersions, drawVolumes } from "./tables.js";
@@ -33,11 +35,13 @@ function mapNote(data) {
 
 async function drawMaps(data) {
   const fields = await readMap(data.map),
-    lines = mapLines(data);
+    lines = mapLines(data),
+    places = placesOf(data);
   const map = new ReportMap(document.getElementById("map"), data, fields, lines);
-  const panel = new Panel(data, fields, map, lines);
+  if (places.length) map.addPlaces(places);
+  const panel = new Panel(data, fields, map, lines, places);
   mapNote(data);
-  new Plates(data, fields, map, lines).draw();
+  new Plates(data, fields, map, { lines, places }).draw();
   return { map, panel };
 }
 
@@ -52,6 +56,7 @@ async function draw() {
   const data = JSON.parse(document.getElementById("data").textContent),
     view = {};
   drawSummary(data);
+  drawPlaceList(data);
   drawScores(data);
   drawHazard(data);
   drawSurveys(data);
@@ -60,6 +65,7 @@ async function draw() {
   drawParameters(data);
   drawMethod(data);
   drawVersions(data);
+  labelCells(document);
   drawProfile(data, thalwegPointer(data, view));
   drawSeries(data);
   if (typeof DecompressionStream === "undefined") {

@@ -3,6 +3,7 @@
 // The map: Leaflet on plain metres (CRS.Simple), y = north. Leaflet's latitude is y, its longitude x.
 import { blending, paintGround, Painter } from "./paint.js";
 import { number } from "./format.js";
+import { placesLayer } from "./places.js";
 
 /** A canvas laid over a part of the map. */
 const CanvasOverlay = L.ImageOverlay.extend({
@@ -195,6 +196,10 @@ export class ReportMap {
       this.shownFrames = this.thematic;
     }
     this.painter.paint(field, this.fields.frames.classes, "smooth", { canvas: this.canvas, most: 900 });
+  }
+
+  addPlaces(places) {
+    this.overlays.set("places", placesLayer(places).addTo(this.leaflet));
   }
 
   toggle(id, on) {

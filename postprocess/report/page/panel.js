@@ -20,13 +20,20 @@ function legendTitle(layer) {
   return layer.title + (layer.unit ? ` [${unitWords(layer.unit)}]` : "");
 }
 
+/** "Gauges", "Obstacles", or both. */
+function placeWords(places) {
+  const kinds = new Set(places.map((place) => place.kind));
+  if (kinds.size > 1) return "Gauges, obstacles";
+  return kinds.has("gauge") ? "Gauges" : "Obstacles";
+}
+
 export class Panel {
-  constructor(data, fields, map, lines) {
+  constructor(data, fields, map, lines, places) {
     Object.assign(this, { data, fields, map });
     this.frame = 0;
     this.choices = this.layerChoices();
     this.makeLayers();
-    this.makeOverlays(lines);
+    this.makeOverlays(lines, places);
     this.makePlayer();
     map.onCursor((place) => this.showValues(place));
     this.choose(this.choices[0].id);
@@ -67,8 +74,13 @@ export class Panel {
     }
   }
 
-  makeOverlays(lines) {
+  makeOverlays(lines, places) {
     const box = document.getElementById("overlays");
+    if (places.length) {
+      const input = h("input", { type: "checkbox", id: "overlay-places", checked: true });
+      input.addEventListener("change", () => this.map.toggle("places", input.checked));
+      box.append(h("label", {}, input, h("i", { class: "place-sign" }), placeWords(places)));
+    }
     for (const line of [...lines].reverse()) {
       const input = h("input", { type: "checkbox", id: `overlay-${line.id}`, checked: true });
       input.addEventListener("change", () => this.map.toggle(line.id, input.checked));

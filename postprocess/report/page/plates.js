@@ -4,6 +4,7 @@
 import { blending } from "./paint.js";
 import { h, number, unitWords } from "./format.js";
 import { ticks } from "./map.js";
+import { drawPlaces } from "./places.js";
 
 const ink = "#1a1c20",
   face = '"Segoe UI", "Helvetica Neue", Arial, "Liberation Sans", "DejaVu Sans", sans-serif';
@@ -173,8 +174,8 @@ function figure(plate, title, classes, wide) {
 }
 
 export class Plates {
-  constructor(data, fields, map, lines) {
-    Object.assign(this, { data, fields, map, lines });
+  constructor(data, fields, map, { lines, places }) {
+    Object.assign(this, { data, fields, map, lines, places });
     this.box = document.getElementById("plates");
   }
 
@@ -184,6 +185,7 @@ export class Plates {
     plate.image(map.ground, this.fields.ground.shade);
     plate.image(map.painter.paint(field, classes, mode, { most: 1100 }), field);
     for (const line of lines) plate.lines(line);
+    drawPlaces(plate, this.places);
     plate.frame();
     plate.scaleBar();
     plate.northArrow();

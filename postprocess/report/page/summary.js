@@ -21,6 +21,7 @@ function valueOf(items, key) {
 export function headline(data) {
   const items = byKey(data.score),
     get = (key) => valueOf(items, key),
+    speed = get("max_peak_speed_m_s"),
     survey = data.run.survey;
   let words = `${volume(get("volume_released_m3"))} released`;
   if (get("volume_entrained_m3") > 0) words += `, ${volume(get("volume_entrained_m3"))} taken along`;
@@ -29,7 +30,7 @@ export function headline(data) {
       `; the deposit reaches ${number(get("runout_m"))} m from the crown and ${number(get("drop_m"))} m below it ` +
       `(H/L ${number(get("h_over_l"), 2)}, angle of reach ${number(get("fahrboeschung_deg"), 1)}\u00b0)`;
   }
-  words += `. Peak speed ${number(get("max_peak_speed_m_s"))} m/s; ${number(get("time_end_s"))} s simulated.`;
+  words += `. Peak speed ${number(speed, speed < 10 ? 1 : 0)} m/s; ${number(get("time_end_s"))} s simulated.`;
   const agreement = [
     ["deposit_csi", "deposit"],
     ["footprint_csi", "footprint"],
@@ -55,8 +56,8 @@ const cards = [
   ["deposit_csi", "Deposit CSI"],
   ["footprint_csi", "Footprint CSI"],
   ["thickness_rmse_m", "Thickness RMSE"],
-  ["runout_difference_m", "Run-out \u2212 survey"],
-  ["deposit_volume_ratio", "Volume / survey"],
+  ["runout_difference_m", "Run-out \u2212 {noun}"],
+  ["deposit_volume_ratio", "Volume / {noun}"],
 ];
 
 /** Three figures are enough at a glance; the table of scores has them all. */
@@ -91,6 +92,6 @@ export function drawSummary(data) {
   const box = document.getElementById("key-numbers");
   for (const [key, title, words] of cards) {
     const item = items.get(key);
-    if (item) box.append(card(item, title, words));
+    if (item) box.append(card(item, title.replace("{noun}", run.survey?.noun ?? "survey"), words));
   }
 }

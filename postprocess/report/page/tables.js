@@ -51,7 +51,7 @@ function table(head, rows) {
 }
 
 /** Whole sentences, as of what the analyst accepted, take the place of the definition too, where they can wrap. */
-function scoreRow(item) {
+function scoreRow(item, reference) {
   const { key, label, value } = item.entry,
     sentence = typeof value === "string" && value.length > 40;
   return h(
@@ -59,7 +59,7 @@ function scoreRow(item) {
     {},
     h("td", {}, label),
     h("td", { class: sentence ? "plain" : "number", colspan: sentence ? 2 : null, "data-key": key }, scoreWords(item)),
-    sentence ? null : h("td", { class: "plain" }, definition(key)),
+    sentence ? null : h("td", { class: "plain" }, definition(key, reference)),
   );
 }
 
@@ -72,7 +72,7 @@ export function drawScores(data) {
   const ordered = [...sections].sort((a, b) => b.title.startsWith("Agreement") - a.title.startsWith("Agreement"));
   for (const section of ordered) {
     rows.push(h("tr", { class: "group" }, h("td", { colspan: 3 }, section.title)));
-    for (const item of section.items) rows.push(scoreRow(item));
+    for (const item of section.items) rows.push(scoreRow(item, data.run.survey));
   }
   if (score.not_scored.length) rows.push(h("tr", { class: "group" }, h("td", { colspan: 3 }, "Not scored")));
   for (const { key, why } of score.not_scored) {

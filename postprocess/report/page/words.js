@@ -17,40 +17,44 @@ const definitions = [
   [/_d2pc$/, "Distance to perfect classification in ROC space. 0 is perfect."],
   [
     /_foc$/,
-    "Factor of conservativeness: simulated over surveyed area. Above 1 the simulation covers more than was surveyed.",
+    "Factor of conservativeness: simulated over {adjective} area. Above 1 the simulation covers more than the {noun}.",
   ],
-  [/true_positive/, "Area that both simulation and survey affect."],
+  [/true_positive/, "Area that both simulation and {noun} affect."],
   [/false_positive/, "Area that the simulation alone affects: false alarm."],
-  [/false_negative/, "Area that the survey alone affects: missed."],
+  [/false_negative/, "Area that the {noun} alone affects: missed."],
   [/true_negative/, "Area that neither affects. Grows with the map, so it says little by itself."],
-  [/rmse/, "Root mean square of simulated minus surveyed thickness where either deposit lies."],
-  [/bias/, "Mean of simulated minus surveyed thickness where either deposit lies. Above 0: too thick."],
+  [/rmse/, "Root mean square of simulated minus {adjective} thickness where either deposit lies."],
+  [/bias/, "Mean of simulated minus {adjective} thickness where either deposit lies. Above 0: too thick."],
   [/mae/, "Mean size of the difference of thickness where either deposit lies."],
   [/nmad/, "Normalised median absolute deviation: a spread that single large errors do not move."],
-  [/volume_ratio/, "Simulated over surveyed volume. 1 is equal."],
-  [/runout_difference/, "Simulated minus surveyed run-out. Above 0: the simulation goes farther."],
+  [/volume_ratio/, "Simulated over {adjective} volume. 1 is equal."],
+  [/runout_difference/, "Simulated minus {adjective} run-out. Above 0: the simulation goes farther."],
   [/centre_of_mass_offset_along/, "The same, along the thalweg. Above 0: the simulated deposit lies farther down."],
   [/centre_of_mass_offset/, "Distance in plan between the centres of mass of the two deposits."],
-  [/^survey_runout/, "Run-out of the survey, measured from the simulation's crown."],
+  [/^survey_runout/, "Run-out of the {noun}, measured from the simulation's crown."],
   [/^thalweg_runout_m$/, "Along the thalweg, from the crown to the farthest deposit."],
-  [/residual_within_95/, "Share of cells whose difference lies within the survey's own 95 % error."],
-  [/residual_median_sigma/, "Median of the difference, in standard errors of the survey. Above 0: too thick."],
+  [/residual_within_95/, "Share of cells whose difference lies within the {noun}'s own 95 % error."],
+  [/residual_median_sigma/, "Median of the difference, in standard errors of the {noun}. Above 0: too thick."],
   [
     /residual_chi2/,
-    "Mean square of the difference over the survey's error. Near 1 the survey's own error explains it.",
+    "Mean square of the difference over the {noun}'s error. Near 1 the {noun}'s own error explains it.",
   ],
-  [/thickness_median/, "Median of simulated minus surveyed thickness where either deposit lies."],
+  [/thickness_median/, "Median of simulated minus {adjective} thickness where either deposit lies."],
   [/^runout_m$/, "Straight in plan from the crown (highest cell of the release) to the farthest deposit."],
   [/^drop_m$/, "Drop of the surface before the failure from the crown to the farthest deposit."],
   [/^h_over_l$/, "Drop over run-out: the smaller, the more mobile."],
   [/fahrboeschung/, "Angle whose tangent is H/L."],
   [/travel_angle/, "Angle whose tangent is drop over travel of the centre of mass; close to the mean friction angle."],
   [/closure_error|map_error/, "What the bookkeeping of volume loses; rounding only."],
-  [/_not_surveyed/, "Simulated deposit on cells without survey data; in no score."],
+  [/_not_surveyed/, "Simulated deposit on cells where the {noun} has no data; in no score."],
 ];
 
-export function definition(key) {
-  return definitions.find(([pattern]) => pattern.test(key))?.[1] ?? "";
+/** `reference`: what the run is compared with, data.run.survey; null where it is with nothing. */
+export function definition(key, reference) {
+  const words = definitions.find(([pattern]) => pattern.test(key))?.[1] ?? "";
+  return words
+    .replaceAll("{noun}", reference?.noun ?? "survey")
+    .replaceAll("{adjective}", reference?.adjective ?? "surveyed");
 }
 
 export function steps(get) {

@@ -24,6 +24,8 @@ constexpr Column<Instant> run_columns[] = {
      [](const Instant& i) { return static_cast<double>(positive_from_bits(i.clock.speed_bits)); }},
     {"speed_max_so_far_m_s", "m s-1",
      [](const Instant& i) { return static_cast<double>(positive_from_bits(i.clock.fastest_bits)); }},
+    {"moving_volume_m3", "m3", [](const Instant& i) { return i.energies.moving_volume; }},
+    {"moving_speed_m_s", "m s-1", [](const Instant& i) { return i.energies.moving_speed(); }},
     {"momentum_x_kg_m_s", "kg m s-1", [](const Instant& i) { return i.energies.momentum.x; }},
     {"momentum_y_kg_m_s", "kg m s-1", [](const Instant& i) { return i.energies.momentum.y; }},
     {"momentum_z_kg_m_s", "kg m s-1", [](const Instant& i) { return i.energies.momentum.z; }},

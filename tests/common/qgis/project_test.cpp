@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <set>
 
 #include "common/error.hpp"
@@ -91,6 +92,67 @@ TEST_F(ProjectFile, without_crs_projects_nothing) {
   read(project);
   EXPECT_EQ(value("=qgis.projectCrs.spatialrefsys.authid"), "none");
   EXPECT_EQ(value("=qgis.properties.SpatialRefSys.ProjectionsEnabled"), "0");
+}
+
+TEST_F(ProjectFile, shows_frames_one_after_the_other) {
+  auto project = sample();
+  RasterStyle second = class_style({1, 5}, "m");
+  second.band = 2;
+  project.groups.push_back({"Flow",
+                            {{"0 s", "NETCDF:\"r.nc\":h", true, class_style({1, 5}, "m"),
+                              ProjectTime{"1903-04-29T04:10:00.000Z", "1903-04-29T04:10:00.500Z"}},
+                             {"0.5 s", "NETCDF:\"r.nc\":h", true, second,
+                              ProjectTime{"1903-04-29T04:10:00.500Z", "1903-04-29T04:10:01.000Z"}}},
+                            false});
+  read(project);
+  const auto layers = elements(at("=qgis.projectlayers"), "maplayer");
+  ASSERT_EQ(layers.size(), 6U);
+  EXPECT_STREQ(CPLGetXMLValue(layers[5], "datasource", ""), "NETCDF:\"./r.nc\":h") << "as QGIS finds the file in it";
+  EXPECT_STREQ(CPLGetXMLValue(layers[5], "pipe.rasterrenderer.band", ""), "2");
+  EXPECT_STREQ(CPLGetXMLValue(layers[5], "temporal.fixedRange.start", ""), "1903-04-29T04:10:00.500Z");
+  EXPECT_EQ(CPLGetXMLNode(layers[1], "temporal"), nullptr) << "a map of the end has no time";
+  EXPECT_EQ(value("=qgis.ProjectTimeSettings.TemporalRange.start"), "1903-04-29T04:10:00.000Z");
+  EXPECT_EQ(value("=qgis.ProjectTimeSettings.TemporalRange.end"), "1903-04-29T04:10:01.000Z");
+  const auto groups = elements(at("=qgis.layer-tree-group"), "layer-tree-group");
+  EXPECT_STREQ(CPLGetXMLValue(groups.back(), "checked", ""), "Qt::Unchecked");
+}
+
+TEST_F(ProjectFile, has_a_page_to_print_with_what_is_shown) {
+  EXPECT_EQ(at("=qgis.Layouts"), nullptr);
+  auto project = sample();
+  project.layout = PrintLayout{.title = "Slide [% env('HOME') %]", .subtitle = "s", .sources = "t"};
+  read(project);
+  std::map<std::string, const CPLXMLNode*> items;
+  for (const auto* item : elements(at("=qgis.Layouts.Layout"), "LayoutItem"))
+    items[CPLGetXMLValue(item, "id", "")] = item;
+  for (const char* name : {"Map", "Title", "Subtitle", "Sources", "Legend", "Scale bar", "North arrow"})
+    EXPECT_TRUE(items.contains(name)) << name;
+  EXPECT_STREQ(CPLGetXMLValue(items["Title"], "labelText", ""), "Slide [ % env('HOME') %]") << "no formula is run";
+  EXPECT_STREQ(CPLGetXMLValue(items["Scale bar"], "mapUuid", ""), CPLGetXMLValue(items["Map"], "uuid", "x"));
+  const double width = CPLAtof(CPLGetXMLValue(items["Map"], "Extent.xmax", "")) -
+                       CPLAtof(CPLGetXMLValue(items["Map"], "Extent.xmin", ""));
+  const double height = CPLAtof(CPLGetXMLValue(items["Map"], "Extent.ymax", "")) -
+                        CPLAtof(CPLGetXMLValue(items["Map"], "Extent.ymin", ""));
+  EXPECT_NEAR(height, 300, 70) << "the whole view is on it";
+  EXPECT_GE(width, 400);
+  EXPECT_NEAR(width / height, 205.0 / 166, 1e-9) << "what QGIS would stretch it to otherwise";
+  std::vector<std::string> listed;
+  for (const auto* layer : elements(CPLGetXMLNode(items["Legend"], "layer-tree-group"), "layer-tree-layer"))
+    listed.emplace_back(CPLGetXMLValue(layer, "name", ""));
+  EXPECT_EQ(listed, (std::vector<std::string>{"Deposit", "Thickness"})) << "neither hidden layers nor the ground";
+}
+
+TEST(PrintPage, has_a_round_scale_bar_and_names_that_stay_on_it) {
+  EXPECT_EQ(scale_bar_segment(400), 50);
+  EXPECT_EQ(scale_bar_segment(8000), 1000);
+  for (double width = 3; width < 1e6; width *= 1.3) {
+    EXPECT_LE(2 * scale_bar_segment(width), width / 4 * (1 + 1e-12));
+    EXPECT_GT(2 * scale_bar_segment(width), width / 11);
+  }
+  EXPECT_EQ(in_lines("Deposit", 10), "Deposit");
+  EXPECT_EQ(in_lines("Deposit of the slide", 10), std::string("Deposit of") + line_break + "the slide");
+  EXPECT_EQ(in_lines("abcdefghijklm no", 10), std::string("abcdefghij") + line_break + "klm no");
+  EXPECT_EQ(in_lines("", 10), "");
 }
 
 }  // namespace

@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "postprocess/fields/styles.hpp"
 #include "postprocess/maps/geotiff.hpp"
@@ -23,20 +25,38 @@ using test::small_run;
 TEST(Styles, have_the_thresholds_of_hazard_work) {
   auto run = small_run();
   run.maps.peak_pressure_kPa = test::block(run.maps.grid, 3, 35, 10, 20, 40);
-  EXPECT_EQ(pressure_limits(run.maps.peak_pressure_kPa), (std::vector<double>{1, 3, 5, 10}));
-  EXPECT_EQ(pressure_limits(small_run().maps.peak_pressure_kPa), (std::vector<double>{3, 30, 100, 300}))
-      << "880 kPa at most: a landslide";
-  EXPECT_EQ(speed_limits(run.maps.peak_speed), (std::vector<double>{0.5, 1, 5, 10, 25, 50}));
-  EXPECT_EQ(thickness_limits({}, {80}), (std::vector<double>{0.1, 2, 5, 10, 20, 50}));
+  EXPECT_EQ(pressure_limits(run.maps.peak_pressure_kPa), (std::vector<double>{1, 3, 5, 10, 30}));
+  EXPECT_EQ(pressure_limits(small_run().maps.peak_pressure_kPa), (std::vector<double>{1, 3, 5, 10, 100, 300}))
+      << "880 kPa at most";
+  EXPECT_EQ(speed_limits({60}), (std::vector<double>{0.5, 1, 5, 10, 25, 50}));
+  EXPECT_EQ(speed_limits({160}), (std::vector<double>{0.5, 5, 10, 25, 50, 100}));
+  EXPECT_EQ(thickness_limits({}, {80}), (std::vector<double>{0.1, 2, 5, 10, 25, 50}));
   EXPECT_EQ(thickness_limits({1, 3}, {80}), (std::vector<double>{1, 3}));
+}
+
+/// Whatever the range of values: no class that holds none, none that holds nearly all of a range of decades, and the
+/// limits are round.
+TEST(Styles, fit_the_range_of_values) {
+  for (int n = -60; n <= 120; ++n) {
+    const double largest = std::pow(1.1, n);
+    for (const auto& limits : {thickness_limits({}, {largest}), speed_limits({largest}), pressure_limits({largest})}) {
+      EXPECT_LT(limits.back(), largest) << "the last class is empty";
+      EXPECT_GE(limits.size(), 4U) << largest;
+      EXPECT_LE(limits.size(), 6U) << largest;
+      EXPECT_TRUE(std::is_sorted(limits.begin(), limits.end(), std::less_equal<>())) << largest;
+    }
+    EXPECT_LE(std::min(largest, 1000.0) / thickness_limits({}, {largest}).back(), 5 + 1e-9) << largest;
+  }
+  EXPECT_EQ(thickness_limits({}, {0.8}), (std::vector<double>{0.02, 0.05, 0.1, 0.5}));
+  EXPECT_EQ(thickness_limits({}, {0}), (std::vector<double>{0.1, 0.5, 1, 2})) << "a map of nothing has a legend too";
 }
 
 TEST(Styles, suit_each_map) {
   const auto run = small_run();
   EXPECT_EQ(map_style("deposit_thickness", run.maps, {1, 3}).classes.back().label, "> 3 m");
-  EXPECT_EQ(map_style("deposit_thickness_scar", run.maps, {}).classes.front().label, "0.1 \u2013 0.2 m");
+  EXPECT_EQ(map_style("deposit_thickness_scar", run.maps, {}).classes.front().label, "0.1 \u2013 0.5 m");
   EXPECT_EQ(map_style("peak_pressure", run.maps, {1, 3}).classes.back().label, "> 300 kPa");
-  EXPECT_EQ(map_style("peak_speed", run.maps, {1, 3}).classes.back().label, "> 50 m/s");
+  EXPECT_EQ(map_style("peak_speed", run.maps, {1, 3}).classes.back().label, "> 10 m/s");
   EXPECT_EQ(map_style("difference_to_survey", run.maps, {1, 3}).classes.front().label, "< \u22125 m");
   EXPECT_EQ(map_style("arrival_time", run.maps, {}).hidden_from, map_style("arrival_time", run.maps, {}).hidden_to);
 }
@@ -69,7 +89,7 @@ TEST(Outlines, stand_at_the_thresholds) {
   EXPECT_EQ(layers[0].features.at(0).name, "peak thickness > 1 m");
   ASSERT_EQ(layers[1].features.size(), 3U) << "the classes, and the threshold of the score";
   EXPECT_EQ(layers[1].features[1].numbers, (std::vector<std::pair<std::string, double>>{{"threshold_m", 2}}));
-  EXPECT_EQ(layers[2].features.size(), 4U);
+  EXPECT_EQ(layers[2].features.size(), 6U);
   EXPECT_EQ(layers[3].features.at(0).polygons.size(), 1U);
 }
 

@@ -12,10 +12,13 @@
 #include "postprocess/report/pack.hpp"
 #include "postprocess/report/page.hpp"
 #include "postprocess/report/parts.hpp"
+#include "tests/postprocess/report/report_of_run.hpp"
 #include "tests/postprocess/scene.hpp"
 
 namespace talus::postprocess {
 namespace {
+
+class Report : public ReportOfRun {};
 
 std::string from_base64(const std::string& text) {
   const std::string letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -107,46 +110,6 @@ TEST(ReportLimits, differences_have_a_round_symmetric_scale_that_single_cells_do
   EXPECT_EQ(difference_limits({-4.0, 4.0}), (std::vector<double>{1, 2.5, 5}));
   EXPECT_EQ(difference_limits({}), (std::vector<double>{0.2, 0.5, 1}));
 }
-
-class Report : public ::testing::Test {
- protected:
-  Report() {
-    run_.maps.grid.crs_wkt = test::utm32n;
-    test::write_run(file_, run_);
-    thalweg_ = thalweg_of(run_, options_);
-  }
-  ReportInput input() {
-    return {run_,     options_, survey_,     score_ = make_score(run_, options_, survey_, thalweg_),
-            thalweg_, stages_,  comparison_, file_};
-  }
-
-  /// A survey on a grid of its own, half as fine, that has 1 m less than the simulation everywhere.
-  void survey_it() {
-    Survey survey;
-    survey.name = "last <year>";
-    survey.grid = run_.maps.grid;
-    for (const double h : run_.maps.deposit_thickness) survey.deposit.push_back(std::max(0.0, h - 1));
-    for (const double h : run_.maps.peak_thickness) survey.footprint.push_back(h);
-    survey.footprint_threshold = 1;
-    survey_ = survey;
-  }
-  static Json data_of(const std::string& page) {
-    const std::string begin = "<script type=\"application/json\" id=\"data\">";
-    const auto at = page.find(begin) + begin.size();
-    return Json::parse(page.substr(at, page.find("</script>", at) - at));
-  }
-
-  test::Scratch scratch_;
-  const std::filesystem::path file_ = scratch_ / "run.h5";
-  talus::Run run_ = test::small_run();
-  Options options_;
-  std::optional<Survey> survey_;
-  std::optional<std::string> comparison_;
-  Thalweg thalweg_;
-  Score score_;
-  std::vector<StageText> stages_{{"preprocess", {}},
-                                 {"solve", "# What\n# input: a  sha256 0\n\n[solve]\ncfl = 0.4  # default: 0.5\n"}};
-};
 
 Json layer_of(const Json& data, const std::string& id) {
   for (const auto& layer : data.at("map").at("layers"))

@@ -123,24 +123,23 @@ TEST(Thalweg, measures_along_itself_and_beyond_its_ends) {
   EXPECT_DOUBLE_EQ(project(thalweg, -7, 1).distance, -7);
 }
 
-TEST(Thalweg, follows_the_front_over_time_and_leaves_out_ground_at_rest) {
+TEST(Thalweg, follows_the_front_by_the_times_of_arrival) {
   auto run = run_with_frames({3, 8, 14});
+  auto& maps = run.maps;
   const auto thalweg = line_of({{600000, 5100150}, {600400, 5100150}});
-  auto front = front_over_time(run, thalweg, 1);
-  EXPECT_EQ(front.time, (std::vector<double>{0, 5, 10}));
-  EXPECT_EQ(front.value, (std::vector<double>{65, 115, 175}));
-  // The same with 2 m of erodible ground below the foot of the slope, of which the last frame has taken half of a
-  // cell's.
-  run.maps.eroded_depth.assign(run.maps.grid.count(), 0.0);
-  for (auto& frame : run.frames.thickness) {
-    for (int column = 20; column < 40; ++column) frame[run.maps.grid.index(column, 15)] += 2;
-  }
-  run.frames.thickness.back()[run.maps.grid.index(20, 15)] = 1;
-  front = front_over_time(run, thalweg, 1);
-  EXPECT_EQ(front.value, (std::vector<double>{65, 115, 175}));
-  run.frames.thickness[0].assign(run.maps.grid.count(), 0.0);
-  run.maps.eroded_depth.clear();
-  EXPECT_TRUE(std::isnan(front_over_time(run, thalweg, 1).value[0])) << "nothing there yet";
+  maps.arrival_time.assign(maps.grid.count(), nan);
+  const auto arrive = [&](int column, double time) { maps.arrival_time[maps.grid.index(column, 15)] = time; };
+  EXPECT_TRUE(front_by_arrival(maps, thalweg, 1).time.empty()) << "nothing came anywhere";
+  for (int column = 3; column < 7; ++column) arrive(column, 0);  // released
+  arrive(7, 1.25);
+  arrive(8, 2.5);
+  arrive(2, 3);  // uphill: the front stays where it is
+  arrive(9, 9.75);
+  auto front = front_by_arrival(maps, thalweg, 1);
+  EXPECT_EQ(front.time, (std::vector<double>{0, 1.25, 2.5, 9.75}));
+  EXPECT_EQ(front.value, (std::vector<double>{65, 75, 85, 95}));
+  front = front_by_arrival(maps, thalweg, 15);
+  EXPECT_EQ(front.value, (std::vector<double>{65, 85, 95})) << "the last one is there whatever the step";
 }
 
 TEST(Thalweg, finds_the_largest_value_across_itself) {

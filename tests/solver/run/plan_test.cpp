@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "solver/options/solve.hpp"
+#include "solver/run/trial.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "postprocess/score/mobility.hpp"
+#include "common/run/mobility.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace talus::postprocess {
+namespace talus {
 
 double release_limit(const RunMaps& maps, double threshold) {
   double thickest = 0;
@@ -85,4 +85,4 @@ std::optional<Place> centre_of_mass(const MapGrid& grid, const std::vector<doubl
   return Place{sum.x / mass, sum.y / mass, sum.z / mass};
 }
 
-}  // namespace talus::postprocess
+}  // namespace talus

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "postprocess/score/mobility.hpp"
+#include "common/run/mobility.hpp"
 
 #include <gtest/gtest.h>
 
 #include "tests/postprocess/scene.hpp"
 
-namespace talus::postprocess {
+namespace talus {
 namespace {
 
 TEST(Mobility, finds_the_crown_on_the_surface_before) {
@@ -61,4 +61,4 @@ TEST(Mobility, weighs_the_centre_of_mass_by_thickness) {
 }
 
 }  // namespace
-}  // namespace talus::postprocess
+}  // namespace talus

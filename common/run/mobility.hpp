@@ -9,7 +9,7 @@
 
 #include "common/run/run_file.hpp"
 
-namespace talus::postprocess {
+namespace talus {
 
 /// A place on the ground [m].
 struct Place {
@@ -36,4 +36,4 @@ double plan_distance(const Place& a, const Place& b);
 std::optional<Place> centre_of_mass(const MapGrid& grid, const std::vector<double>& thickness,
                                     const std::vector<double>& bed);
 
-}  // namespace talus::postprocess
+}  // namespace talus

@@ -1,0 +1,228 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/ensemble/ensemble_stage.hpp"
+
+#include <charconv>
+#include <chrono>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "common/ensemble/counts.hpp"
+#include "common/ensemble/member_table.hpp"
+#include "common/stage/interrupt.hpp"
+#include "common/stage/machine.hpp"
+#include "solver/ensemble/in_flight.hpp"
+#include "solver/ensemble/keep_runs.hpp"
+#include "solver/ensemble/member_cost.hpp"
+#include "solver/ensemble/run_members.hpp"
+#include "solver/run/run_inputs.hpp"
+#include "solver/scene/make_solver.hpp"
+
+namespace talus::solver {
+namespace {
+
+constexpr std::size_t most_said = 5;  ///< failures and warnings in the log; all failures stand in the counts
+
+/// All that an ensemble is made of, once it is read.
+struct Ensemble {
+  EnsembleOptions options;
+  EnsemblePaths paths;
+  MemberTable table;
+  MemberRange part;
+  std::string fingerprint;
+  std::filesystem::path counts;  ///< the result
+};
+
+/// What identifies the counts of an ensemble: members, domain, settings and thresholds.
+std::string fingerprint_of_members(const Ensemble& e, const std::filesystem::path& domain, const SolveOptions& base) {
+  std::string text = fingerprint_of(domain, base) + recipe::to_toml(e.options.thresholds, "thresholds", false);
+  for (std::int64_t member = 0; member < e.table.count; ++member) {
+    for (const std::string& value : e.table.values_of(member, "")) text += value + "\n";
+    text += e.table.own_domain[static_cast<std::size_t>(member)] != 0 ? "own\n" : "\n";
+  }
+  text += fact(e.table.provenance, base_domain_id) + fmt::format(" {} {}", e.table.design, e.table.seed);
+  return sha256_of_text(text);
+}
+
+/// Refuses members that were drawn for another [ensemble] or domain.
+void judge_table(const StageContext& context, const Ensemble& e, const Domain& domain) {
+  judge_maker(context.recipe, {.file = e.paths.members(),
+                               .table = "ensemble",
+                               .mark = fact(e.table.provenance, recipe_of_members),
+                               .program = "talus-preprocess",
+                               .key = "",
+                               .named = false});
+  const std::string of = fact(e.table.provenance, base_domain_id), is = fact(domain.provenance, domain_id);
+  if (of != is)
+    throw DataError({e.paths.members().string() + ": its members differ from another domain",
+                     fmt::format("it names domain {}, domain.vdb is {}", of, is), "Run talus-preprocess again"});
+}
+
+Ensemble read_ensemble(const StageContext& context, const EnsembleFlags& flags, const Domain& domain,
+                       const SolveOptions& base) {
+  Ensemble e{.options = ensemble_of(context.recipe),
+             .paths = {context.out},
+             .table = {},
+             .part = {},
+             .fingerprint = {},
+             .counts = {}};
+  e.table = read_member_table(e.paths.members());
+  judge_table(context, e, domain);
+  e.part = flags.members.value_or(MemberRange{0, e.table.count});
+  if (e.part.end > e.table.count)
+    throw RecipeError({fmt::format("--members {}:{}", e.part.first, e.part.end),
+                       fmt::format("there are {} members, counted from 0", e.table.count), "Name some that are there"});
+  e.counts = flags.members ? e.paths.counts(e.part) : e.paths.counts();
+  e.fingerprint = fingerprint_of_members(e, inputs_of(base, context.out).front(), base);
+  return e;
+}
+
+EnsembleCounts fresh_counts(const StageContext& context, const Ensemble& e, const Domain& domain,
+                            const SolveOptions& base, const Facts& facts) {
+  EnsembleScene scene{.scene = context.recipe.scene_name(),
+                      .title = context.recipe.title(),
+                      .grid = domain.grid,
+                      .terrain = domain.terrain.values,
+                      .before = domain.before.values,
+                      .release_thickness = domain.release_thickness.values,
+                      .threshold = base.map_threshold};
+  EnsembleCounts counts = empty_counts(std::move(scene), e.table.count, e.part, e.options.thresholds);
+  counts.fingerprint = e.fingerprint;
+  counts.provenance = domain.provenance;
+  const Facts own = made_by(context, base, facts);
+  counts.provenance.insert(counts.provenance.end(), own.begin(), own.end());
+  counts.provenance.emplace_back("version.solve", version());
+  return counts;
+}
+
+/// What is finished of this very part, none where nothing is.
+std::optional<EnsembleCounts> finished_of(const std::filesystem::path& file, const Ensemble& e) {
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  EnsembleCounts counts = read_counts(file);
+  if (counts.fingerprint != e.fingerprint || !(counts.part == e.part)) return std::nullopt;
+  return counts;
+}
+
+/// This function takes up what an interrupted computation of this part has finished, as the flags ask for.
+void take_up(const Ensemble& e, const EnsembleFlags& flags, EnsembleCounts& counts) {
+  const auto file = e.paths.unfinished(e.part);
+  auto found = finished_of(file, e);
+  if (!found) {
+    if (flags.restart)
+      throw DataError({file.string() + (std::filesystem::exists(file) ? ": of another ensemble" : ": no such file"),
+                       "there is nothing to go on from", "Leave --restart out"});
+    return;
+  }
+  const std::int64_t done = found->part.count() - found->count(MemberState::waiting);
+  if (!flags.restart && !flags.resume)
+    throw DataError({fmt::format("{}: it holds {} finished members of this very ensemble", file.string(), done),
+                     "a run from the start would throw them away",
+                     "Go on from it with --restart, or remove it to begin anew"});
+  log_info(fmt::format("going on from {}: {} of {} members are finished", file.string(), done, found->part.count()));
+  counts = std::move(*found);
+}
+
+/// A device for each member in flight, spread over the GPUs.
+std::vector<AnyDevice> devices_for(int count, On on) {
+  std::vector<AnyDevice> devices;
+  const int gpus = on == On::gpu ? GpuDevice::count() : 1;
+  for (int k = 0; k < count; ++k) devices.push_back(make_device(on, k % gpus));
+  return devices;
+}
+
+std::vector<AnyDevice> one_of_each(On on) { return devices_for(on == On::gpu ? GpuDevice::count() : 1, on); }
+
+void say_warnings(const MembersRun& run) {
+  for (std::size_t n = 0; n < run.warnings.size() && n < most_said; ++n)
+    log_warning(fmt::format("member {}: {}", run.warnings[n].member, run.warnings[n].words));
+  if (run.warnings.size() > most_said)
+    log_warning(fmt::format("{} more warnings of members", run.warnings.size() - most_said));
+}
+
+/// This function says which members failed; it throws NumericalError where they are too many.
+void judge_failures(const EnsembleCounts& counts, double allowed_share) {
+  for (std::size_t n = 0; n < counts.failures.size() && n < most_said; ++n)
+    log_warning(fmt::format("member {} failed: {}", counts.failures[n].member, counts.failures[n].words));
+  const auto failed = static_cast<double>(counts.failures.size()), all = static_cast<double>(counts.part.count());
+  if (failed == 0) return;
+  log_warning(fmt::format("{} of {} members failed; the counts are without them", failed, all));
+  if (failed > allowed_share * all)
+    throw NumericalError(
+        {fmt::format("{:.0f} of {:.0f} members failed, the first is member {}", failed, all,
+                     counts.failures.front().member),
+         fmt::format("[ensemble] failed_share allows {:g} of them: {}", allowed_share, counts.failures.front().words),
+         "Mend what makes them fail, narrow the distributions, or raise failed_share"});
+}
+
+}  // namespace
+
+MemberRange member_range(const std::string& words) {
+  MemberRange range;
+  const char *at = words.data(), *end = words.data() + words.size();
+  const auto first = std::from_chars(at, end, range.first);
+  const bool colon = first.ec == std::errc{} && first.ptr != end && *first.ptr == ':';
+  const auto last = colon ? std::from_chars(first.ptr + 1, end, range.end) : first;
+  if (!colon || last.ec != std::errc{} || last.ptr != end || range.first < 0 || range.end <= range.first)
+    throw RecipeError({"--members " + words, "this is no range of members",
+                       "Write the first and the one after the last, counted from 0: --members 0:250"});
+  return range;
+}
+
+Dependencies depends_of_ensemble(const StageContext& context, const EnsembleFlags& flags) {
+  const EnsemblePaths paths{context.out};
+  auto inputs = inputs_of(options_of(context.recipe, context.out), context.out);
+  inputs.push_back(paths.members());
+  return {{flags.members ? paths.counts(*flags.members) : paths.counts()}, inputs};
+}
+
+Facts run_ensemble(StageContext& context, const EnsembleFlags& flags, const Domain& domain, const SolveOptions& base,
+                   const Facts& facts) {
+  const auto begun = std::chrono::steady_clock::now();
+  const Ensemble e = read_ensemble(context, flags, domain, base);
+  const Members members(context.recipe, e.table, e.paths, domain, base);
+  members.check();
+  const MemberCost cost = cost_of_member(members, e.part.first, one_of_each(flags.on).front(), flags.plan);
+  const InFlight flight = in_flight(e.part.count(), cost.bytes, one_of_each(flags.on));
+  log_info(fmt::format("{} members ({} to {}), {} at a time: {}", e.part.count(), e.part.first, e.part.end - 1,
+                       flight.count, flight.reason));
+  if (flags.plan) {
+    for (const std::string& line : lines_of(cost, e.part.count(), flight.count)) log_info(line);
+    return {};
+  }
+  if (context.check_only) return {};
+  const auto seconds = [&] {
+    return fmt::format("{:.3f}", std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count());
+  };
+  if (finished_of(e.counts, e)) {
+    log_info(fmt::format("{}: it holds this very part already", e.counts.string()));
+    context.results.push_back(e.counts);
+    return {{"wall_time_s", seconds()}, {"members", std::to_string(e.part.count())}};
+  }
+  EnsembleCounts counts = fresh_counts(context, e, domain, base, facts);
+  take_up(e, flags, counts);
+  const auto unfinished = e.paths.unfinished(e.part);
+  const OwnEnd saving("finished members are saved");
+  keep_runs(context, members, e.options, e.paths, make_device(flags.on), counts);
+  const MembersRun run = run_members(members, counts,
+                                     {.devices = devices_for(flight.count, flags.on),
+                                      .save = [&] { write_counts(unfinished, counts); },
+                                      .save_interval = e.options.save_interval});
+  say_warnings(run);
+  if (!run.whole) {
+    write_counts(unfinished, counts);
+    throw Interrupted({fmt::format("stopped with {} of {} members finished",
+                                   counts.part.count() - counts.count(MemberState::waiting), counts.part.count()),
+                       "interrupted", fmt::format("Go on with --restart; {} holds them", unfinished.string())});
+  }
+  judge_failures(counts, e.options.failed_share);
+  write_counts(e.counts, counts);
+  remove_for_good(unfinished);
+  context.results.push_back(e.counts);
+  log_info(fmt::format("{} members counted, {} failed, in {} s", counts.count(MemberState::counted),
+                       counts.failures.size(), seconds()));
+  return {{"wall_time_s", seconds()}, {"members", std::to_string(counts.count(MemberState::counted))}};
+}
+
+}  // namespace talus::solver

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How many members of an ensemble run at a time.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "solver/parallel/any_device.hpp"
+
+namespace talus::solver {
+
+/// The members that run at a time, and why they are so many.
+struct InFlight {
+  int count = 1;       ///< in all
+  std::string reason;  ///< in words
+};
+
+/// The most members that a GPU runs at a time: more gain nothing (docs/decisions/0043-ensembles.md).
+inline constexpr int most_on_a_gpu = 16;
+
+/// Of `members` that need so many bytes each: on the CPU one for every thread of this process, on GPUs most_on_a_gpu
+/// for each GPU, and never more than memory has room for. `devices` are those that members run on: the CPU, or GPUs.
+InFlight in_flight(std::int64_t members, double bytes_each, const std::vector<AnyDevice>& devices);
+
+}  // namespace talus::solver

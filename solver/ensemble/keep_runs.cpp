@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/ensemble/keep_runs.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "common/run/run_facts.hpp"
+#include "solver/run/simulation.hpp"
+
+namespace talus::solver {
+namespace {
+
+/// The fact by which a kept run knows its ensemble and member.
+constexpr const char* kept_member = "ensemble.member";
+
+bool is_kept(const EnsembleOptions& options, std::int64_t member) {
+  return options.keep_all ||
+         std::find(options.keep.begin(), options.keep.end(), static_cast<int>(member)) != options.keep.end();
+}
+
+}  // namespace
+
+void keep_runs(StageContext& context, const Members& members, const EnsembleOptions& options,
+               const EnsemblePaths& paths, const AnyDevice& device, const EnsembleCounts& counts) {
+  for (std::int64_t k = counts.part.first; k < counts.part.end; ++k) {
+    if (!is_kept(options, k)) continue;
+    const RunPaths files(paths.run_folder(k));
+    const std::string mark = fmt::format("{} {}", counts.fingerprint, k);
+    if (std::filesystem::exists(files.run) && fact(run_facts(files.run), kept_member) == mark) continue;
+    make_folder(paths.run_folder(k));
+    log_info(fmt::format("member {}: its whole run is kept", k));
+    const Member own = members.read(k);
+    try {
+      Simulation(own.domain, own.options, device, files, mark)
+          .run(context.recipe.scene_name(), fmt::format("{}, member {}", context.recipe.title(), k),
+               {{kept_member, mark}});
+      context.results.push_back(files.run);
+    } catch (const NumericalError& error) {
+      log_warning(fmt::format("member {} leaves no run: {}", k, error.what()));  // it is counted as failed below
+    }
+  }
+}
+
+}  // namespace talus::solver

@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/ensemble/members.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "common/domain/scale_release.hpp"
+#include "common/stage/console.hpp"
+#include "common/stage/stage.hpp"
+#include "solver/run/run_inputs.hpp"
+
+namespace talus::solver {
+namespace {
+
+/// Keys by which the stiffness and the steps are settled.
+constexpr const char* settling_keys[] = {"solve.material.stiffness",
+                                         "solve.material.stiffness_strain",
+                                         "solve.material.youngs_modulus_Pa",
+                                         "solve.accuracy",
+                                         "solve.integrator",
+                                         "solve.cfl",
+                                         "solve.kappa",
+                                         "solve.preset"};
+
+bool varies_settling(const MemberTable& table) {
+  return std::any_of(std::begin(settling_keys), std::end(settling_keys),
+                     [&](const char* key) { return table.find(key) != nullptr; });
+}
+
+/// Whether maps of both grids can be added up.
+bool same_grid(const MapGrid& a, const MapGrid& b) {
+  return a.columns == b.columns && a.rows == b.rows && a.west == b.west && a.south == b.south && a.cell == b.cell;
+}
+
+SolveOptions settled_by(const SettledOnce& settled, SolveOptions options) {
+  if (settled.stiffness) options = with_stiffness(std::move(options), *settled.stiffness);
+  if (settled.steps) options = with_steps(std::move(options), *settled.steps);
+  return options;
+}
+
+/// Whether the recipe leaves the stiffness to the program.
+bool leaves_stiffness(const SolveOptions& o) {
+  return o.material.stiffness == StiffnessKind::automatic || (o.accuracy && o.material.stiffness_is_free());
+}
+
+/// What is left to the program, settled by the base domain, and said.
+SettledOnce settle_once(const Domain& domain, const SolveOptions& base) {
+  SettledOnce settled;
+  const SolveOptions stiff = settle_stiffness(domain, base);
+  if (leaves_stiffness(base)) settled.stiffness.emplace().modulus = stiff.material.youngs_modulus;
+  if (base.integrator != Integrator::automatic) return settled;
+  settled.steps = choose_steps(domain, stiff);
+  for (const std::string& reason : settled.steps->reasons) log_info("steps: " + reason);
+  return settled;
+}
+
+}  // namespace
+
+Members::Members(const recipe::Recipe& recipe, const MemberTable& table, const EnsemblePaths& paths,
+                 const Domain& domain, const SolveOptions& base)
+    : recipe_(recipe),
+      table_(table),
+      paths_(paths),
+      domain_(domain),
+      settles_each_(varies_settling(table)),
+      settled_(settles_each_ ? SettledOnce{} : settle_once(domain, base)),
+      base_(settles_each_ ? settle_steps(domain, settle_stiffness(domain, base)) : settled_by(settled_, base)) {}
+
+SolveOptions Members::options_of(std::int64_t member) const {
+  try {
+    return solver::options_of(recipe_.with(table_.values_of(member, "solve.")), paths_.out);
+  } catch (const RecipeError& error) {
+    std::vector<Fault> faults = error.faults();
+    for (Fault& fault : faults) fault.what = fmt::format("member {}: {}", member, fault.what);
+    throw RecipeError(std::move(faults));
+  }
+}
+
+void Members::check() const {
+  for (std::int64_t member = 0; member < table_.count; ++member) {
+    stop_if_interrupted("checking the members");
+    options_of(member);
+  }
+}
+
+Domain Members::domain_of(std::int64_t member) const {
+  const bool own = table_.own_domain.at(static_cast<std::size_t>(member)) != 0;
+  Domain domain = own ? read_domain(paths_.domain(member)) : domain_;
+  if (own && !same_grid(domain.grid, domain_.grid))
+    throw DataError({paths_.domain(member).string() + ": its grid is not that of the base domain",
+                     "maps of several grids cannot be counted together",
+                     "Leave keys that change the grid as they are in all members, and run talus-preprocess again"});
+  if (const MemberColumn* factor = table_.find(thickness_factor_key); factor != nullptr && !own)
+    scale_release(domain, factor->values.at(static_cast<std::size_t>(member)));
+  return domain;
+}
+
+Member Members::read(std::int64_t member) const {
+  std::unique_lock<std::mutex> one(reading_);
+  Member read{domain_of(member), options_of(member)};
+  one.unlock();
+  if (!settles_each_) {
+    read.options = settled_by(settled_, std::move(read.options));
+    return read;
+  }
+  const QuietThread quiet;
+  read.options = settle_steps(read.domain, settle_stiffness(read.domain, std::move(read.options)));
+  return read;
+}
+
+}  // namespace talus::solver

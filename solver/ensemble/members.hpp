@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The members of an ensemble as the solver runs them: a domain and options each.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+
+#include "common/domain/domain.hpp"
+#include "common/ensemble/member_table.hpp"
+#include "common/ensemble/names.hpp"
+#include "common/recipe/recipe.hpp"
+#include "solver/options/solve.hpp"
+#include "solver/run/step_choice.hpp"
+#include "solver/run/stiffness.hpp"
+
+namespace talus::solver {
+
+/// What stiffness, integrator and accuracy that a recipe leaves to the program are settled at for all members.
+struct SettledOnce {
+  std::optional<StiffnessDemand> stiffness;
+  std::optional<StepChoice> steps;
+};
+
+/// The domain and options of one member.
+struct Member {
+  Domain domain;
+  SolveOptions options;
+};
+
+/// The members of an ensemble. Its methods may be called by several threads at a time.
+class Members {
+ public:
+  /// The constructor keeps references to recipe, table and base domain. `base` are the options of the recipe itself,
+  /// and what is left to the program is settled for all members by them, unless a key that bears on it varies. It
+  /// throws RecipeError where a varied key would have no effect.
+  Members(const recipe::Recipe& recipe, const MemberTable& table, const EnsemblePaths& paths, const Domain& domain,
+          const SolveOptions& base);
+
+  /// The method reads every member's options. It throws RecipeError with the first member that the recipe does not
+  /// allow.
+  void check() const;
+  /// A member; it reads files. It throws DataError: a domain of its own that is missing, or on another grid.
+  Member read(std::int64_t member) const;
+  /// The options of the base, settled as those of the members are.
+  const SolveOptions& base() const { return base_; }
+  /// Whether what is left to the program is settled for each member by itself.
+  bool settles_each() const { return settles_each_; }
+
+ private:
+  SolveOptions options_of(std::int64_t member) const;
+  Domain domain_of(std::int64_t member) const;
+
+  const recipe::Recipe& recipe_;
+  const MemberTable& table_;
+  EnsemblePaths paths_;
+  const Domain& domain_;
+  bool settles_each_;
+  SettledOnce settled_;
+  SolveOptions base_;
+  mutable std::mutex reading_;  ///< recipes and files are read by one thread at a time
+};
+
+}  // namespace talus::solver

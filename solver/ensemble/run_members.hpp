@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The members of an ensemble, several at a time, into counts.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/ensemble/counts.hpp"
+#include "solver/ensemble/members.hpp"
+#include "solver/parallel/any_device.hpp"
+
+namespace talus::solver {
+
+/// What the members warned of.
+struct MemberWarning {
+  std::int64_t member = 0;
+  std::string words;
+};
+
+/// How members are run.
+struct MembersPlan {
+  std::vector<AnyDevice> devices;   ///< one for each member in flight, with a stream of its own on a GPU
+  std::function<void()> save = {};  ///< called about every `save_interval` while no member is being counted
+  double save_interval = 60;        ///< [s]
+};
+
+/// This function runs the members of `counts` that wait, and counts them as they end. A member that ends by
+/// NumericalError or DataError of its scene is counted as failed, with its words. It returns the warnings of all
+/// members, in their order, and whether all have been run: not so where the process was interrupted.
+struct MembersRun {
+  std::vector<MemberWarning> warnings;
+  bool whole = false;
+};
+MembersRun run_members(const Members& members, EnsembleCounts& counts, const MembersPlan& plan);
+
+}  // namespace talus::solver

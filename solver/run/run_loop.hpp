@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The loop of a run: steps, events in time, the end. Files are its keeper's.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "common/domain/domain.hpp"
+#include "solver/options/solve.hpp"
+#include "solver/parallel/any_device.hpp"
+#include "solver/run/products.hpp"
+#include "solver/run/recorders/checkpoint.hpp"
+#include "solver/run/recorders/history.hpp"
+#include "solver/run/schedule.hpp"
+#include "solver/run/step_watch.hpp"
+#include "solver/run/stepper.hpp"
+
+namespace talus::solver {
+
+/// The wall time of a run, that before an interruption included.
+class RunTimer {
+ public:
+  /// The method starts the clock.
+  void start() { started_ = WallClock::now(); }
+  void resume(double before) { before_ = before; }  ///< before: the wall time so far [s]
+  /// The wall time so far [s].
+  double seconds() const { return before_ + std::chrono::duration<double>(WallClock::now() - started_).count(); }
+
+ private:
+  using WallClock = std::chrono::steady_clock;
+  WallClock::time_point started_ = WallClock::now();
+  double before_ = 0;  ///< [s]
+};
+
+/// What is done with a run as it goes on.
+class RunKeeper {
+ public:
+  virtual ~RunKeeper() = default;
+  /// A frame is due at `time` [s], the `number`th from 0.
+  virtual void put_frame(double time, std::int64_t number) = 0;
+  /// The points have just been sorted: their state may be written down, and the run stopped by an exception.
+  /// `checkpoint_due`: the recipe asks for a checkpoint here.
+  virtual void pass_sort(bool checkpoint_due) = 0;
+  /// A batch of steps has been taken.
+  virtual void pass_batch(const BatchReport& batch) = 0;
+};
+
+/// The loop of a run, and the numbers that it records. Two loops of the same domain and options take the same steps,
+/// whoever keeps them.
+class RunLoop {
+ public:
+  /// The constructor places the points and prepares the recorders; no step is taken. It keeps a reference to `domain`,
+  /// and throws RecipeError and DataError.
+  RunLoop(const Domain& domain, const SolveOptions& options, const AnyDevice& device);
+  RunLoop(const RunLoop&) = delete;
+  RunLoop& operator=(const RunLoop&) = delete;
+
+  /// The method begins at the start of the scene.
+  void start();
+  /// The method goes on from a checkpoint's state.
+  void resume(const SolverState& state, RunMemory memory);
+  /// The method steps to the end and returns why it stopped; `fresh`: from the start, whose events are passed first. It
+  /// throws NumericalError, and what the keeper throws.
+  std::string step_to_end(RunKeeper& keeper, bool fresh);
+
+  const SolveOptions& options() const { return options_; }
+  const Scene& scene() const { return scene_; }
+  const Stepper& stepper() const { return stepper_; }
+  Stepper& stepper() { return stepper_; }
+  const History& history() const { return history_; }
+  const RunMemory& memory() const { return memory_; }
+  RunMemory& memory() { return memory_; }
+  /// The time at which the run ends at the latest [s].
+  double end_time() const { return schedule_.end_time(); }
+  /// The error of the mass by the last record, over the volume of the first [-].
+  double mass_error() const;
+  /// The end of the run; it refers to this loop and to `state`.
+  RunEnd end(const SolverState& state) const;
+
+ private:
+  void count(const BatchReport& batch);
+  void pass_events(double time, RunKeeper& keeper);
+  void record(double time);
+  void put_frame(double time, RunKeeper& keeper);
+  bool calm() const;
+
+  const Domain& domain_;
+  SolveOptions options_;
+  Scene scene_;
+  Schedule schedule_;
+  Stepper stepper_;
+  History history_;
+  RunMemory memory_;
+  StepWatch watch_;
+};
+
+}  // namespace talus::solver

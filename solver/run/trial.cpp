@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/run/trial.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include <fmt/format.h>
+
+#include "solver/integrator/solver.hpp"
+#include "solver/run/stiffness.hpp"
+#include "solver/scene/make_scene.hpp"
+#include "solver/scene/make_solver.hpp"
+
+namespace talus::solver {
+
+Trial try_steps(const Scene& scene, const SolveOptions& o, const AnyDevice& device, double seconds) {
+  const auto solver = make_solver(scene, o, device);
+  solver->set_next_event(o.end_time);
+  const auto seconds_since = [](auto begun) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  };
+  solver->advance();  // storage, and on a GPU the first launch of every kernel
+  const auto first = solver->clock();
+  const auto begun = std::chrono::steady_clock::now();
+  Clock last = first;
+  while (seconds_since(begun) < seconds && last.time < o.end_time && !(last.halt == failed))
+    last = solver->advance().clock;
+  const double steps = static_cast<double>(last.step - first.step);
+  return {last.step_size, steps > 0 ? seconds_since(begun) / steps : 0, solver->bytes()};
+}
+
+StepCount count_steps(const Domain& domain, const Scene& scene, const SolveOptions& o, double trial_step) {
+  const double records = records_of(o);
+  StepCount count;
+  count.fewest = count.most = o.end_time / o.implicit.step + records;
+  if (!abilities_of(o.integrator).obey_cfl) return count;
+  const TerrainTables terrain = make_terrain_tables(scene.grid);
+  const FirstWaves waves = first_waves(o);
+  count.speed = lowest_stiffness(domain, o).speed;
+  const auto step_at = [&](double speed) {
+    return std::min(o.cfl / first_rate(scene.grid, terrain, scene.points, waves, speed), o.largest_step);
+  };
+  count.at_rest = step_at(0);
+  count.at_speed = step_at(count.speed);
+  count.fewest = o.end_time / count.at_rest + records;
+  count.most = o.end_time / std::min(count.at_speed, trial_step > 0 ? trial_step : 1e30) + records;
+  return count;
+}
+
+std::string time_words(double seconds) {
+  if (seconds < 0.1) return "less than 0.1 s";
+  if (seconds < 100) return fmt::format("{:.2g} s", seconds);
+  if (seconds < 6000) return fmt::format("{:.0f} min", seconds / 60);
+  return fmt::format("{:.1f} h", seconds / 3600);
+}
+
+double records_of(const SolveOptions& o) {
+  const double per_second =
+      1 / o.frame_interval + 1 / o.history_interval + (o.checkpoint_interval > 0 ? 1 / o.checkpoint_interval : 0);
+  return o.end_time * per_second;
+}
+
+}  // namespace talus::solver

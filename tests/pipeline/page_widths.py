@@ -1,0 +1,89 @@
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A page at the widths of a desktop, a small laptop, a tablet and a phone, and on paper: page_widths.py PAGE OUT
+
+Nothing may reach beyond the window, nor beyond what holds it. Pictures of all widths and the pages on paper are left in
+OUT, to be looked at. Any fault ends with an assertion that names the elements.
+"""
+import base64
+import pathlib
+import sys
+
+from selenium.webdriver.support.ui import WebDriverWait
+
+from browser import open_browser
+
+WIDTHS = [1440, 1024, 768, 390]
+
+# What is wider than its room, or lies beyond the window: [[what, text, by how many pixels], ...]. A box that scrolls
+# counts as too narrow for what it holds; the map cuts its tiles off by itself.
+TOO_WIDE = """
+const width = document.documentElement.clientWidth, found = [];
+const name = (e) => e.tagName.toLowerCase() + (e.id ? "#" + e.id : "") + (e.className?.baseVal === undefined &&
+  e.className ? "." + String(e.className).split(" ").join(".") : "");
+const tell = (e, by) => found.push([name(e), (e.textContent || "").trim().slice(0, 60), Math.round(by)]);
+if (document.documentElement.scrollWidth > width) tell(document.documentElement,
+  document.documentElement.scrollWidth - width);
+for (const e of document.body.querySelectorAll("*")) {
+  if (e.closest("#map") || e.closest(".inner-map") || e.closest("svg") || e.tagName === "SCRIPT") continue;
+  const box = e.getBoundingClientRect(), style = getComputedStyle(e);
+  if (!box.width || !box.height || style.visibility === "hidden") continue;
+  if (box.right > width + 1 || box.left < -1) tell(e, Math.max(box.right - width, -box.left));
+  if (style.display !== "inline" && e.clientWidth > 0 && e.scrollWidth > e.clientWidth + 1)
+    tell(e, e.scrollWidth - e.clientWidth);
+}
+return found.slice(0, 20);
+"""
+
+
+def at_width(browser, width, mobile):
+    browser.execute_cdp_cmd(
+        "Emulation.setDeviceMetricsOverride",
+        {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": mobile},
+    )
+
+
+def picture(browser, width, path):
+    """The whole page, however long."""
+    height = browser.execute_script("return document.documentElement.scrollHeight")
+    shot = browser.execute_cdp_cmd(
+        "Page.captureScreenshot",
+        {"captureBeyondViewport": True, "clip": {"x": 0, "y": 0, "width": width, "height": height, "scale": 1}},
+    )
+    path.write_bytes(base64.b64decode(shot["data"]))
+
+
+def open_folds(browser):
+    """What is folded away is looked at as well."""
+    browser.execute_script("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
+    browser.execute_script("const b = document.getElementById('all-parameters'); if (b && !b.checked) b.click();")
+
+
+def look(browser, page, out):
+    faults = []
+    for width in WIDTHS:
+        at_width(browser, width, mobile=width < 500)
+        browser.get(f"file://{page}")
+        if "report" in page.name:
+            WebDriverWait(browser, 60).until(
+                lambda b: b.execute_script("return document.documentElement.dataset.ready === 'yes'")
+            )
+        picture(browser, width, out / f"{page.stem}-{width}.png")
+        open_folds(browser)
+        faults += [f"{width} px: {what} \"{text}\" by {by} px" for what, text, by in browser.execute_script(TOO_WIDE)]
+    browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+    pdf = browser.execute_cdp_cmd("Page.printToPDF", {"printBackground": True, "preferCSSPageSize": True})
+    (out / f"{page.stem}.pdf").write_bytes(base64.b64decode(pdf["data"]))
+    assert not faults, f"{page.name} is too wide:\n" + "\n".join(faults)
+
+
+def main():
+    page, out = (pathlib.Path(word).resolve() for word in sys.argv[1:])
+    browser = open_browser()
+    try:
+        look(browser, page, out)
+    finally:
+        browser.quit()
+
+
+main()

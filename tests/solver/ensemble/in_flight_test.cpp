@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How many members run at a time, and what a member takes.
+#include "solver/ensemble/in_flight.hpp"
+
+#include "common/stage/machine.hpp"
+#include "solver/ensemble/member_cost.hpp"
+#include "solver/run/trial.hpp"
+#include "tests/solver/ensemble/ensemble_scene.hpp"
+
+namespace talus::solver::testing {
+namespace {
+
+TEST(InFlightMembers, take_the_threads_of_the_process) {
+  const std::vector<AnyDevice> cpu{make_device(On::cpu)};
+  EXPECT_EQ(in_flight(1000, 1e6, cpu).count, thread_limit());
+  EXPECT_EQ(in_flight(1, 1e6, cpu).count, 1) << "one member needs one thread";
+}
+
+TEST(InFlightMembers, are_no_more_than_memory_has_room_for) {
+  const std::vector<AnyDevice> cpu{make_device(On::cpu)};
+  const InFlight one = in_flight(1000, usable_memory(), cpu);
+  EXPECT_EQ(one.count, 1) << "one runs in any case";
+  EXPECT_NE(one.reason.find("memory has room for 1"), std::string::npos) << one.reason;
+}
+
+TEST(MemberCost, is_that_of_a_run) {
+  const SmallEnsemble ensemble;
+  const MemberCost cost = cost_of_member(ensemble.members(), 0, make_device(On::cpu), true);
+  EXPECT_GT(cost.bytes, 1e5);
+  EXPECT_GT(cost.step_seconds, 0);
+  EXPECT_LE(cost.fewest_steps, cost.most_steps);
+  EXPECT_EQ(lines_of(cost, 1000, 2).size(), 2u);
+  EXPECT_EQ(lines_of({.bytes = 1e6}, 1000, 2).size(), 1u) << "no time where none was measured";
+}
+
+}  // namespace
+}  // namespace talus::solver::testing

@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Members of an ensemble are the runs that they would be alone, whoever runs them beside them.
+#include "solver/ensemble/run_members.hpp"
+
+#include "solver/ensemble/member_run.hpp"
+#include "solver/run/simulation.hpp"
+#include "tests/solver/ensemble/ensemble_scene.hpp"
+
+namespace talus::solver::testing {
+namespace {
+
+/// Devices of a place, one for each member in flight.
+std::vector<AnyDevice> devices(On on, int count) {
+  std::vector<AnyDevice> devices;
+  for (int k = 0; k < count; ++k) devices.push_back(make_device(on));
+  return devices;
+}
+
+void expect_same(const std::vector<double>& a, const std::vector<double>& b, const char* name) {
+  ASSERT_EQ(a.size(), b.size());
+  std::size_t different = 0;
+  for (std::size_t n = 0; n < a.size(); ++n)
+    if (!(a[n] == b[n] || (std::isnan(a[n]) && std::isnan(b[n])))) ++different;
+  EXPECT_EQ(different, 0u) << name;
+}
+
+void expect_same(const EnsembleCounts& a, const EnsembleCounts& b) {
+  EXPECT_EQ(a.states, b.states);
+  for (std::size_t m = 0; m < a.maps.size(); ++m) {
+    SCOPED_TRACE(counted_maps[m].name);
+    EXPECT_EQ(a.maps[m].exceeded, b.maps[m].exceeded);
+    EXPECT_EQ(a.maps[m].reached, b.maps[m].reached);
+    EXPECT_EQ(a.maps[m].sum, b.maps[m].sum);
+    EXPECT_EQ(a.maps[m].sum_of_squares, b.maps[m].sum_of_squares);
+  }
+  EXPECT_EQ(a.flow, b.flow);
+  EXPECT_EQ(a.deposit, b.deposit);
+  for (std::size_t k = 0; k < a.results.size(); ++k) {
+    EXPECT_EQ(a.results[k].run_out, b.results[k].run_out);
+    EXPECT_EQ(a.results[k].steps, b.results[k].steps);
+  }
+}
+
+class RunMembers : public InEachPlace {};
+
+TEST_P(RunMembers, gives_each_member_the_bits_of_its_run_alone) {
+  const SmallEnsemble ensemble;
+  const Members members = ensemble.members();
+  for (std::int64_t k = 0; k < ensemble.table.count; ++k) {
+    SCOPED_TRACE(k);
+    Member own = members.read(k);
+    const auto run = run_member(own.domain, own.options, make_device(GetParam()));
+    ASSERT_TRUE(run);
+    const RunPaths files(ensemble.scratch / std::to_string(k));
+    std::filesystem::create_directories(ensemble.scratch / std::to_string(k));
+    // Alone: the recipe with the member's values, on all threads.
+    const SolveOptions options =
+        options_of(ensemble.recipe.with(ensemble.table.values_of(k, "solve.")), ensemble.scratch.folder());
+    Simulation(own.domain, options, make_device(GetParam()), files, "").run("heap", "heap");
+    const talus::Run alone = read_run(files.run);
+    for (const MapField& field : map_fields) {
+      if (field.optional) continue;
+      expect_same(run->maps.*(field.values), alone.maps.*(field.values), field.name);
+    }
+    EXPECT_EQ(run->result.steps, static_cast<double>(alone.summary.steps));
+    EXPECT_EQ(run->result.volume_final, alone.summary.volume_final);
+    EXPECT_GT(run->result.run_out, 0);
+  }
+}
+
+TEST_P(RunMembers, counts_the_same_however_many_run_at_a_time) {
+  const SmallEnsemble ensemble;
+  const Members members = ensemble.members();
+  EnsembleCounts one = ensemble.counts(), four = ensemble.counts();
+  EXPECT_TRUE(run_members(members, one, {.devices = devices(GetParam(), 1)}).whole);
+  EXPECT_TRUE(run_members(members, four, {.devices = devices(GetParam(), 4)}).whole);
+  EXPECT_EQ(one.count(MemberState::counted), 6);
+  expect_same(one, four);
+}
+
+TEST_P(RunMembers, in_parts_add_up_to_the_bits_of_the_whole) {
+  const SmallEnsemble ensemble;
+  const Members members = ensemble.members();
+  EnsembleCounts whole = ensemble.counts(), first = ensemble.counts({0, 2}), rest = ensemble.counts({2, 6});
+  run_members(members, whole, {.devices = devices(GetParam(), 2)});
+  run_members(members, rest, {.devices = devices(GetParam(), 2)});
+  run_members(members, first, {.devices = devices(GetParam(), 1)});
+  const EnsembleCounts sum = merged({rest, first}, {"rest", "first"});
+  expect_same(whole, sum);
+  EXPECT_GT(whole.maps[0].sum[whole.scene.grid.index(20, 8)], 0) << "something was counted";
+}
+
+TEST_P(RunMembers, leaves_out_and_names_a_member_that_fails) {
+  MemberTable table = small_table();
+  // So soft that its own weight would squash it: refused as implausible.
+  table.columns.push_back({"solve.material.youngs_modulus_Pa", {1e6, 1e6, 10, 1e6, 1e6, 1e6}, {}});
+  const SmallEnsemble ensemble(table);
+  EnsembleCounts counts = ensemble.counts();
+  const MembersRun run = run_members(ensemble.members(), counts, {.devices = devices(GetParam(), 2)});
+  EXPECT_TRUE(run.whole);
+  EXPECT_EQ(counts.count(MemberState::counted), 5);
+  ASSERT_EQ(counts.failures.size(), 1u);
+  EXPECT_EQ(counts.failures[0].member, 2);
+  EXPECT_NE(counts.failures[0].words.find("weight"), std::string::npos) << counts.failures[0].words;
+  EXPECT_TRUE(counts.flow[2].empty());
+}
+
+TEST(Members, name_the_member_that_the_recipe_does_not_allow) {
+  MemberTable table = small_table();
+  table.columns[0].values[3] = 95;
+  const SmallEnsemble ensemble(table);
+  const Members members = ensemble.members();
+  try {
+    members.check();
+    FAIL() << "95 degrees are allowed";
+  } catch (const RecipeError& error) {
+    EXPECT_EQ(std::string(error.what()).find("member 3: "), 0u) << error.what();
+  }
+}
+
+TEST(Members, settle_what_is_left_to_the_program_once) {
+  MemberTable table = small_table();
+  table.columns = {{"solve.base.friction_angle_deg", {8, 10, 12, 14, 16, 18}, {}}};
+  const SmallEnsemble ensemble(table, "integrator = \"auto\"\naccuracy = 0.02\n");
+  const Members members = ensemble.members();
+  EXPECT_FALSE(members.settles_each());
+  const SolveOptions first = members.read(0).options, last = members.read(5).options;
+  EXPECT_EQ(first.material.youngs_modulus, last.material.youngs_modulus);
+  EXPECT_EQ(first.flow_integrator(), last.flow_integrator());
+  EXPECT_EQ(first.cfl, last.cfl);
+  EXPECT_NE(first.base.friction_angle, last.base.friction_angle);
+}
+
+TALUS_IN_EACH_PLACE(RunMembers);
+
+}  // namespace
+}  // namespace talus::solver::testing
