@@ -23,7 +23,7 @@ function legendTitle(layer) {
 /** "Gauges", "Obstacles", or both. */
 function placeWords(places) {
   const kinds = new Set(places.map((place) => place.kind));
-  if (kinds.size > 1) return "Gauges, obstacles";
+  if (kinds.size > 1) return "Gauges, sections, obstacles";
   return kinds.has("gauge") ? "Gauges" : "Obstacles";
 }
 
