@@ -29,13 +29,13 @@ PREFIX ?= /usr/local
 asked := $(PRESET) $(CUDAARCHS)
 
 # What is installed through apt: what building and running needs, and the rest for those who test.
-for_tests := test setup-tests sanitized check check-threads check-faults check-docs validate
+for_tests := test setup-tests sanitized check check-threads check-faults check-docs check-tutorials pictures validate
 groups := $(if $(filter $(for_tests),$(MAKECMDGOALS))$(filter-out 0 no,$(WITH_TESTS)),tests) \
   $(if $(filter package check-install image,$(MAKECMDGOALS)),package)
 
-.PHONY: help setup setup-tests build say-demo demo install package check-install image with-tests test sanitized check \
-  check-threads check-faults check-qgis check-recipes fuzz validate lint docs check-docs bundle bundle-solver clean \
-  FORCE
+.PHONY: help setup setup-tests build say-demo demo demo-weakening install package check-install image with-tests test \
+  sanitized check check-threads check-faults check-qgis check-recipes fuzz validate lint docs pictures tables events \
+  check-docs check-tutorials bundle bundle-solver clean FORCE
 
 help: ## this list
 	@echo "make TARGET [PRESET=default|cpu|gpu|check|check-threads] [JOBS=n]"
@@ -65,13 +65,15 @@ say-demo:
 	@[[ -x $(BUILD)/bin/talus-solve ]] || printf '%s\n' \
 	  'First what is missing comes through apt (how much, is said before it is fetched).' \
 	  "Then the programs are compiled, about $$(( ($(BUILD_MINUTES) + $(JOBS) - 1) / $(JOBS) )) minutes on" \
-	  "$(JOBS) processors, and the valley is run, half a minute. Nothing is installed for tests." >&2
+	  "$(JOBS) processors, and the scene is run, half a minute. Nothing is installed for tests." >&2
 
 demo: say-demo build ## the synthetic valley from its two elevation models to a scored map
 	@$(MAKE) --no-print-directory -C pipelines synthetic-valley \
 	  OUT="$$(realpath -ms -- '$(OUT)')" BIN="$$(realpath -ms -- '$(BUILD)/bin')"
 	@echo
 	@tools/show-six-numbers.sh '$(OUT)/synthetic-valley/score.txt'
+	@printf '%s\n' '' 'The survey of this valley is a lobe drawn by hand: the overlap shows that the programs work' \
+	  'together, not how well they predict. For that: docs/explanation/validation.md'
 	@printf '%s\n' '' "Results in $$(realpath -ms -- '$(OUT)')/synthetic-valley:" \
 	  '  report.html                  all of it on one page, for a browser' \
 	  '  map.png                      the map as a picture' \
@@ -80,6 +82,19 @@ demo: say-demo build ## the synthetic valley from its two elevation models to a 
 	  '  maps/*.tif, maps/results.nc  the fields, for a GIS' \
 	  '  score.json, score.txt        these numbers and all others' \
 	  '  run.h5                       the points over time, for ParaView'
+
+# One slide on two beds: friction that falls with slip speed, and the friction of its start kept.
+weakening := $(OUT)/synthetic-weakening
+demo-weakening: say-demo build ## a rock slope on a bed that weakens with speed, beside one that does not
+	@for bed in weakening constant; do \
+	  extra=(); [[ $$bed == weakening ]] || extra=(--set solve.base.law=coulomb --set solve.base.friction_angle_deg=35); \
+	  $(BUILD)/bin/talus run pipelines/synthetic-weakening/recipe.toml --out '$(weakening)'/$$bed --on $(ON) \
+	    "$${extra[@]}" >/dev/null || exit; done
+	@$(BUILD)/bin/talus compare '$(weakening)/weakening' '$(weakening)/constant' >/dev/null
+	@for bed in weakening constant; do printf '\n%s\n' "Friction of the bed: $$bed"; \
+	  tools/show-six-numbers.sh '$(weakening)'/$$bed/score.txt | grep -v 'not scored'; done
+	@printf '%s\n' '' 'At rest both beds have a friction of 0.7 (35 degrees); the first falls to 0.23 at speed.' \
+	  "Both on one page: $$(realpath -ms -- '$(weakening)')/weakening/comparison.html"
 
 install: build ## the programs with recipes, styles, manuals and documents, to PREFIX [PREFIX=/usr/local] [DESTDIR=]
 	@cmake --install $(BUILD) --prefix '$(PREFIX)' --strip >$(BUILD)/install.log
@@ -159,7 +174,27 @@ docs: build ## the site of documents, in build/site/html; the programmers' refer
 	@tools/make-docs.sh $(BUILD)/code >/dev/null
 	@/usr/bin/python3 tools/make-site.py --out $(BUILD)/site --bin $(BUILD)/bin --code $(BUILD)/code/html
 
-check-docs: with-tests ## the documents: site and search in a browser
+pictures: with-tests ## the documents' pictures, from runs and tables [PICTURES="a.png"] [DATA=folder of real events]
+	@cmake --build $(BUILD) -j $(JOBS) --target $(programs)
+	@/usr/bin/python3 tools/make-pictures.py --bin $(BUILD)/bin --work $(BUILD)/pictures \
+	  $(if $(DATA),--data '$(DATA)') $(PICTURES)
+
+tables: ## the documents' tables of figures, from the files that measuring commands have left
+	@python3 tools/make-tables.py
+
+scenes_of_events := frank-slide iseesnow-realtopo cascade2021
+events: build ## scores of real events into the documents' tables [DATA=folder of real events]
+	@for scene in $(scenes_of_events); do \
+	  $(MAKE) --no-print-directory -C pipelines $$scene OUT="$$(realpath -ms -- '$(OUT)')" ON=$(ON) \
+	    BIN="$$(realpath -ms -- '$(BUILD)/bin')" $(if $(DATA),DATA='$(abspath $(DATA))') || exit; done
+	@python3 tools/make-tables.py --events $(addprefix '$(OUT)'/,$(scenes_of_events))
+
+check-tutorials: with-tests ## every tutorial, run as it is written
+	@cmake --build $(BUILD) -j $(JOBS) --target $(programs)
+	@TALUS_REQUIRE_TOOLS=$(if $(filter no,$(SETUP)),,1) \
+	  ctest --test-dir $(BUILD) --output-on-failure --no-tests=error -R '^documents[.]tutorials'
+
+check-docs: with-tests ## the documents: site and search in a browser, tutorials
 	@cmake --build $(BUILD) -j $(JOBS) --target $(programs)
 	@TALUS_REQUIRE_TOOLS=$(if $(filter no,$(SETUP)),,1) \
 	  ctest --test-dir $(BUILD) --output-on-failure --no-tests=error -R '^documents[.]'

@@ -8,7 +8,7 @@ SHELL := /bin/bash
 .SUFFIXES:
 # A result carries its name only when it is whole, and the last one of a stage is written last: make deletes none, also
 # where it is interrupted.
-.PRECIOUS: domain.vdb run.h5 score.json
+.PRECIOUS: domain.vdb run.h5 counts.h5 score.json probability.nc
 
 # Names as the shell and as make's rules take them.
 quoted  = '$(subst ','\'',$1)'
@@ -16,17 +16,23 @@ empty  :=
 escaped = $(subst $(empty) ,\ ,$(subst :,\:,$1))
 run     = $(call quoted,$(value bin)/talus-$1) $(call quoted,$(value recipe)) --out $(call quoted,$(value results))
 
+# What solve and postprocess write last: of a single run, or of an ensemble. Counts of parts of an ensemble are taken as
+# they are.
+last   = $(or $(shell sed -nE 's,^(\./)?($2)[ :].*,\2,p' .inputs/$1.d),$3)
+solved := $(call last,solve,counts\.h5|run\.h5,run.h5)
+scored := $(call last,postprocess,probability\.nc|score\.json,score.json)
+
 .PHONY: scene force
-scene: score.json
+scene: $(scored)
 	@echo "$${results##*/}: results in $$results" >&2
 
 domain.vdb: .inputs/preprocess.toml $(call escaped,$(value bin)/talus-preprocess)
 	$(call run,preprocess)
 
-run.h5: .inputs/solve.toml $(call escaped,$(value bin)/talus-solve)
+$(solved): .inputs/solve.toml $(call escaped,$(value bin)/talus-solve)
 	$(call run,solve) --on $(on) --resume
 
-score.json: .inputs/postprocess.toml $(call escaped,$(value bin)/talus-postprocess)
+$(scored): .inputs/postprocess.toml $(call escaped,$(value bin)/talus-postprocess)
 	$(call run,postprocess)
 
 # The files that each result depends on besides, as the programs print them.
@@ -34,9 +40,9 @@ include .inputs/preprocess.d .inputs/solve.d .inputs/postprocess.d
 
 # What a stage writes beside its result; where a later stage wants one that was removed, the stage runs again.
 survey/%: domain.vdb ;
-obstacles.vdb preprocess.used.toml: domain.vdb ;
-solve.used.toml: run.h5 ;
-wanted := $(shell sed -n 's,^\(survey/.*\|obstacles\.vdb\):$$,\1,p' .inputs/*.d)
+obstacles.vdb members.h5 preprocess.used.toml: domain.vdb ;
+solve.used.toml: $(solved) ;
+wanted := $(shell sed -n 's,^\(survey/.*\|obstacles\.vdb\|members\.h5\):$$,\1,p' .inputs/*.d)
 domain.vdb: $(if $(filter-out $(wildcard $(wanted)),$(wanted)),force)
 
 # Any other file that is not there.

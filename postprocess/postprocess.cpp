@@ -11,12 +11,16 @@
 
 #include <fmt/format.h>
 
+#include "common/ensemble/options.hpp"
 #include "common/gis/crs.hpp"
 #include "common/gis/dataset_files.hpp"
+#include "common/run/run_facts.hpp"
 #include "common/run/run_file.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/input_file.hpp"
+#include "postprocess/ensemble/run_ensemble.hpp"
 #include "postprocess/fields/fields.hpp"
+#include "postprocess/fields/history_table.hpp"
 #include "postprocess/hazard/hazard.hpp"
 #include "postprocess/maps/avaframe.hpp"
 #include "postprocess/maps/geotiff.hpp"
@@ -109,8 +113,9 @@ void write_maps(StageContext& context, const Job& job) {
   const auto folder = context.out / "maps";
   make_folder(folder);
   auto& results = context.results;
-  results = write_geotiffs(folder, run, options.nodata_zero ? Outside::zero : Outside::nodata);
-  const auto for_gis = write_gis(folder, results, {run, options, survey, &hazard});
+  const auto maps = write_geotiffs(folder, run, options.nodata_zero ? Outside::zero : Outside::nodata);
+  results.insert(results.end(), maps.begin(), maps.end());
+  const auto for_gis = write_gis(folder, maps, {run, options, survey, &hazard});
   results.insert(results.end(), for_gis.begin(), for_gis.end());
   const auto for_authority = write_hazard_maps(folder, run, hazard);
   results.insert(results.end(), for_authority.begin(), for_authority.end());
@@ -174,6 +179,16 @@ std::vector<fs::path> texts_beside(const fs::path& folder) {
   return files;
 }
 
+/// Whether there is a single run to work on. Beside an ensemble there need not be one, and one that another recipe left
+/// in the folder is not of it.
+bool has_single_run(const StageContext& context, const Options& options) {
+  const fs::path file = run_file(context, options);
+  if (!ensemble_of(context.recipe).on() || !options.run.empty()) return true;
+  if (!fs::exists(file)) return false;
+  const std::string mark = fact(run_facts(file), recipe_of_run);
+  return mark.empty() || mark == recipe_mark(context.recipe, "solve");
+}
+
 }  // namespace
 
 Dependencies depends(const StageContext& context) {
@@ -188,7 +203,12 @@ Dependencies depends(const StageContext& context) {
   for (const fs::path& polygons : hazard_inputs(options)) inputs.push_back(polygons);
   if (options.report)
     for (const fs::path& file : texts_beside(run.parent_path())) inputs.push_back(file);
-  return {{context.out / "score.json"}, inputs};
+  if (!ensemble_of(context.recipe).on()) return {{context.out / "score.json"}, inputs};
+  Dependencies depends = ensemble_depends(context);
+  const bool single = has_single_run(context, options);
+  if (single) depends.results.push_back(context.out / "score.json");
+  depends.inputs.insert(depends.inputs.end(), inputs.begin() + (single ? 0 : 1), inputs.end());
+  return depends;
 }
 
 namespace {
@@ -209,15 +229,6 @@ Facts judge_run(const StageContext& context, const Job& job) {
   made.program = "talus-preprocess and talus-solve";
   if (!facts.empty() || fact(run.provenance, run_id).empty() || domain_named) return facts;
   return judge_maker(context.recipe, made);
-}
-
-/// Refuses a survey that talus-preprocess did not come to the end of.
-void require_whole_survey(const fs::path& out) {
-  const fs::path file = out / "survey" / "survey.json";
-  if (!fs::exists(out / "survey" / "slide_difference.tif") || fs::exists(file)) return;
-  throw DataError({file.string() + ": no such file",
-                   "talus-preprocess writes it last; without it what lies beside it may be of two preparations",
-                   "Run talus-preprocess again"});
 }
 
 /// Refuses a survey that another recipe made, or that was prepared with another domain than the run's.
@@ -246,9 +257,11 @@ void warn_of_other_title(const StageContext& context, const RunSummary& run) {
 
 }  // namespace
 
-void run(StageContext& context) {
+namespace {
+
+void run_single(StageContext& context, const Options& options) {
   Job job;
-  job.options = context.recipe.read<Options>("postprocess");
+  job.options = options;
   Acceptance acceptance("postprocess", job.options.accept);
   if (job.options.survey.from_preprocess) require_whole_survey(context.out);
   const FoundSurvey found = job.options.survey.from_preprocess ? read_found_survey(context.out) : FoundSurvey{};
@@ -285,14 +298,30 @@ void run(StageContext& context) {
   if (!context.check_only) write_results(context, job);
 }
 
+}  // namespace
+
+void run(StageContext& context) {
+  const auto options = context.recipe.read<Options>("postprocess");
+  const bool single = has_single_run(context, options);
+  if (ensemble_of(context.recipe).on()) run_ensemble(context, stage(), options, !single);
+  if (single)
+    run_single(context, options);
+  else if (const fs::path file = run_file(context, options); fs::exists(file))
+    log_warning(fmt::format("{}: another recipe made it than the ensemble's; it is left as it is", file.string()));
+}
+
 Stage stage() {
   Stage stage;
   stage.name = "talus-postprocess";
   stage.table = "postprocess";
-  stage.summary = "Write maps, NetCDF, picture and scores of a run (run.h5 of talus-solve)";
+  stage.summary =
+      "Write maps, NetCDF, picture and scores of a run (run.h5 of talus-solve), or of an ensemble (counts.h5)";
   stage.examples =
       "  talus-postprocess scene.toml --out out/scene    maps/ (with a QGIS project), map.png, report.html, "
       "history.csv, score.json, score.txt\n"
+      "  talus-postprocess ensemble.toml --out out/scene    probability/, probability.nc, members.csv, "
+      "sensitivity.csv, "
+      "ensemble.html\n"
       "  talus-postprocess scene.toml --out out/scene --check    read run and survey, write nothing\n"
       "  talus-postprocess --template >> scene.toml    all keys with their defaults\n";
   stage.template_toml = [] { return recipe::to_toml(Options{}, "postprocess", true); };

@@ -390,6 +390,7 @@ int main(int argc, char** argv) {
   Stage s = stage();
   s.flags = flags(given);
   s.depends = [&](const StageContext& context) { return depends(context, given); };
+  s.part = [&] { return given.members ? fmt::format("{}-{}", given.members->first, given.members->end) : ""; };
   s.run = [&](StageContext& context) {
     limit_threads_of_libraries(thread_limit());
     solve(context, given);

@@ -9,6 +9,8 @@
 #include <optional>
 
 #include "common/domain/domain_facts.hpp"
+#include "common/ensemble/counts.hpp"
+#include "common/ensemble/member_table.hpp"
 #include "common/run/run_facts.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/stage.hpp"
@@ -38,13 +40,22 @@ std::string other_mark(const recipe::Recipe& recipe, const char* table, const Fa
                      own);
 }
 
+/// What domain, and members of an ensemble, say of the recipe that made them.
+std::string other_members(const Request& request, const recipe::Recipe& recipe, const fs::path& domain) {
+  const std::string other = other_mark(recipe, "preprocess", domain_facts(domain), recipe_of_domain);
+  const fs::path members = EnsemblePaths{request.out}.members();
+  if (!other.empty() || !ensemble_of(recipe).on() || !fs::exists(members)) return other;
+  const std::string why = other_mark(recipe, "ensemble", read_member_table(members).provenance, recipe_of_members);
+  return why.empty() ? "" : fmt::format("{}: {}", members.filename().string(), why);
+}
+
 /// What the result itself says of the recipe that made it.
 std::string other_recipe(const Request& request, const recipe::Recipe& recipe, const StageState& state) {
   const fs::path& result = state.depends.results.front();
   try {
-    if (state.stage == "preprocess") return other_mark(recipe, "preprocess", domain_facts(result), recipe_of_domain);
+    if (state.stage == "preprocess") return other_members(request, recipe, result);
     if (state.stage != "solve") return "";
-    const Facts facts = run_facts(result);
+    const Facts facts = ensemble_of(recipe).on() ? counts_facts(result) : run_facts(result);
     const auto& inputs = state.depends.inputs;
     const bool own_domain = std::find(inputs.begin(), inputs.end(), request.out / "domain.vdb") != inputs.end();
     const std::string domain = own_domain ? other_mark(recipe, "preprocess", facts, recipe_of_domain) : "";

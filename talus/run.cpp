@@ -11,6 +11,8 @@
 #include <cerrno>
 #include <cstdio>
 
+#include "common/ensemble/names.hpp"
+#include "common/ensemble/options.hpp"
 #include "common/recipe/overrides.hpp"
 #include "common/stage/stage.hpp"
 #include "talus/freshness.hpp"
@@ -51,17 +53,33 @@ bool lies_in(const fs::path& file, const fs::path& folder) {
 /// Whether a stage reads what the one named `maker` makes.
 bool reads_results_of(const std::string& maker, const Dependencies& reader, const fs::path& out) {
   return std::any_of(reader.inputs.begin(), reader.inputs.end(), [&](const fs::path& input) {
-    if (maker == "solve") return input == out / "run.h5";
-    return input == out / "domain.vdb" || input == out / "obstacles.vdb" || lies_in(input, out / "survey");
+    if (maker == "solve") return input == out / "run.h5" || input == EnsemblePaths{out}.counts();
+    return input == out / "domain.vdb" || input == EnsemblePaths{out}.members() || input == out / "obstacles.vdb" ||
+           lies_in(input, out / "survey");
   });
 }
 
-/// The stages that the scores rest on; a recipe may name a domain or a run from elsewhere.
+/// Says that counts of parts are taken as they are: they were computed by themselves, elsewhere perhaps.
+void tell_of_parts(const Request& request, const recipe::Recipe& recipe) {
+  if (!ensemble_of(recipe).on()) return;
+  const auto counts = EnsemblePaths{request.out}.found_counts();
+  if (counts.empty() || counts.front() == EnsemblePaths{request.out}.counts()) return;
+  log_info(
+      fmt::format("solve: the counts of {} part{} of the ensemble are taken as they are; remove them to have all "
+                  "members run here",
+                  counts.size(), counts.size() == 1 ? "" : "s"));
+}
+
+/// The stages that the scores rest on; a recipe may name a domain or a run from elsewhere, and counts of parts of an
+/// ensemble are taken as they are.
 std::vector<std::string> needed_stages(const Request& request, const recipe::Recipe& recipe) {
   const Dependencies scores = depends_of(request, "postprocess"), run = depends_of(request, "solve");
   std::vector<std::string> stages{"postprocess"};
   const bool solve = reads_results_of("solve", scores, request.out);
-  if (solve) stages.insert(stages.begin(), "solve");
+  if (solve)
+    stages.insert(stages.begin(), "solve");
+  else
+    tell_of_parts(request, recipe);
   const bool domain = (solve && reads_results_of("preprocess", run, request.out)) ||
                       reads_results_of("preprocess", scores, request.out);
   if (domain && !recipe.canonical("preprocess") && fs::exists(request.out / "domain.vdb"))

@@ -34,6 +34,8 @@ tests=(
   python3-h5py python3-numpy python3-xarray python3-rasterio
   # what the site of documents is made of
   python3-sphinx python3-myst-parser furo
+  # what tutorials draw with
+  python3-matplotlib python3-pil
 )
 qgis=(qgis python3-qgis qgis-providers gdal-bin)
 lint=(clang-format clang-tidy)

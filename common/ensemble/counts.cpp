@@ -34,6 +34,27 @@ void take(EnsembleCounts& all, EnsembleCounts&& part) {
   all.failures.insert(all.failures.end(), part.failures.begin(), part.failures.end());
 }
 
+bool same_scene(const EnsembleScene& a, const EnsembleScene& b) {
+  return a.grid.columns == b.grid.columns && a.grid.rows == b.grid.rows && a.grid.west == b.grid.west &&
+         a.grid.south == b.grid.south && a.grid.cell == b.grid.cell && a.threshold == b.threshold;
+}
+
+/// Refuses a part that cannot be added to the others.
+void require_alike(const EnsembleCounts& all, const EnsembleCounts& part, const std::filesystem::path& file,
+                   const std::filesystem::path& first) {
+  bool thresholds = true;
+  for (std::size_t m = 0; m < all.maps.size(); ++m)
+    thresholds = thresholds && all.maps[m].thresholds == part.maps[m].thresholds;
+  const char* why = part.fingerprint != all.fingerprint  ? "members, domain or settings differ"
+                    : part.members != all.members        ? "the number of members differs"
+                    : !same_scene(all.scene, part.scene) ? "grid or threshold of the footprints differ"
+                    : !thresholds                        ? "the thresholds of the maps differ"
+                                                         : nullptr;
+  if (why != nullptr)
+    throw DataError({file.string() + ": counts of another ensemble than " + first.string(), why,
+                     "Remove what does not belong here, or run it again"});
+}
+
 /// The first member that both have done, or none.
 std::int64_t shared_member(const EnsembleCounts& all, const EnsembleCounts& part) {
   for (std::int64_t k = part.part.first; k < part.part.end; ++k) {
@@ -90,9 +111,7 @@ EnsembleCounts merged(std::vector<EnsembleCounts> parts, const std::vector<std::
       for (std::size_t m = 0; m < all.maps.size(); ++m)
         all.maps[m] = MapTally(part.maps[m].thresholds, part.scene.grid.count());
     }
-    if (part.fingerprint != all.fingerprint)
-      throw DataError({files[n].string() + ": counts of another ensemble than " + files[0].string(),
-                       "members, domain or settings differ", "Remove what does not belong here, or run it again"});
+    require_alike(all, part, files[n], files[0]);
     if (const std::int64_t twice = shared_member(all, part); twice >= 0)
       throw DataError({fmt::format("{}: member {} is counted in another file as well", files[n].string(), twice),
                        "it would count twice", "Remove one of the files of counts"});

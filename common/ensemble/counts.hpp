@@ -123,4 +123,7 @@ void write_counts(const std::filesystem::path& file, const EnsembleCounts& count
 /// Reads them back. Throws DataError: missing, damaged, no counts, or holding what cannot be.
 EnsembleCounts read_counts(const std::filesystem::path& file);
 
+/// Their provenance alone. Throws DataError likewise.
+Facts counts_facts(const std::filesystem::path& file);
+
 }  // namespace talus

@@ -77,6 +77,24 @@ void read_histograms(const h5::File& file, const std::string& group, const Count
         tally.histograms.add(static_cast<std::size_t>(cells[row]), bin, static_cast<std::uint32_t>(count));
 }
 
+/// Refuses counts of a cell that contradict one another.
+void check_tally(const h5::File& file, const std::string& group, const MapTally& tally) {
+  for (std::size_t cell = 0; cell < tally.reached.size(); ++cell) {
+    std::uint64_t binned = 0;
+    for (const std::uint32_t count : tally.histograms.of(cell)) binned += count;
+    if (binned != tally.reached[cell])
+      file.refuse(fmt::format("{}: {} members reached cell {}, and its histogram holds {}", group, tally.reached[cell],
+                              cell, binned),
+                  "they are the same members");
+    for (const std::vector<std::uint32_t>& exceeded : tally.exceeded)
+      if (exceeded[cell] > tally.reached[cell])
+        file.refuse(fmt::format("{}: {} members reached cell {}, and {} pass a threshold", group, tally.reached[cell],
+                                cell, exceeded[cell]),
+                    "who passes it is there");
+  }
+}
+
+/// `members`: that are counted.
 MapTally read_map(const h5::File& file, const CountedMap& map, std::size_t cells, std::int64_t members) {
   const auto group = std::string("/maps/") + map.name;
   MapTally tally(file.read_list<double>(group + "/thresholds"), cells);
@@ -89,6 +107,7 @@ MapTally read_map(const h5::File& file, const CountedMap& map, std::size_t cells
   tally.sum_of_squares = file.read<std::int64_t>(group + "/sum_of_squares", {static_cast<hsize_t>(cells)});
   h5::check_values<std::int64_t>(file, group + "/sum_of_squares", tally.sum_of_squares, h5::not_negative);
   read_histograms(file, group, map, tally);
+  check_tally(file, group, tally);
   return tally;
 }
 
@@ -149,6 +168,24 @@ void write_members(h5::File& file, const EnsembleCounts& counts) {
   }
 }
 
+/// Refuses members whose state, failures and footprints do not belong together.
+void check_members(const h5::File& file, const EnsembleCounts& counts) {
+  std::vector<std::int64_t> failed, told;
+  for (std::size_t place = 0; place < counts.states.size(); ++place) {
+    const auto member = counts.part.first + static_cast<std::int64_t>(place);
+    if (counts.states[place] == MemberState::failed) failed.push_back(member);
+    const bool counted = counts.states[place] == MemberState::counted;
+    if (counted != !counts.flow[place].empty() || counted != !counts.deposit[place].empty())
+      file.refuse(fmt::format("member {} is{} counted, and has {} footprint", member, counted ? "" : " not",
+                              counts.flow[place].empty() ? "no" : "a"),
+                  "those that are counted have one");
+  }
+  for (const MemberFailure& failure : counts.failures) told.push_back(failure.member);
+  if (failed != told)
+    file.refuse(fmt::format("{} members failed, and {} failures are told", failed.size(), told.size()),
+                "there is one for each of these members, in order");
+}
+
 void read_members(const h5::File& file, EnsembleCounts& counts) {
   const auto count = static_cast<hsize_t>(counts.part.count());
   const auto states = file.read<std::uint8_t>("/members/state", {count});
@@ -169,6 +206,7 @@ void read_members(const h5::File& file, EnsembleCounts& counts) {
     const auto group = "/failures/" + name;
     counts.failures.push_back({file.integer(group, "member"), file.text(group, "words")});
   }
+  check_members(file, counts);
 }
 
 void write_scene(h5::File& file, const EnsembleScene& scene) {
@@ -226,11 +264,15 @@ EnsembleCounts read_counts(const std::filesystem::path& path) {
     file.refuse(fmt::format("is of members {} to {} of {}", counts.part.first, counts.part.end, counts.members),
                 "there is no such part");
   counts.scene = read_scene(file);
-  for (std::size_t m = 0; m < counts.maps.size(); ++m)
-    counts.maps[m] = read_map(file, counted_maps[m], counts.scene.grid.count(), counts.members);
   read_members(file, counts);
+  for (std::size_t m = 0; m < counts.maps.size(); ++m)
+    counts.maps[m] = read_map(file, counted_maps[m], counts.scene.grid.count(), counts.count(MemberState::counted));
   counts.provenance = h5::read_facts(file, "/provenance");
   return counts;
+}
+
+Facts counts_facts(const std::filesystem::path& path) {
+  return h5::read_facts(open_ensemble_file(path, kind), "/provenance");
 }
 
 }  // namespace talus

@@ -115,8 +115,8 @@ void write_holder(const fs::path& file, int descriptor, const std::string& progr
 
 }  // namespace
 
-OutputLock::OutputLock(const fs::path& folder, const std::string& program)
-    : file_(folder / ".talus.lock"), descriptor_(lock(file_)) {
+OutputLock::OutputLock(const fs::path& folder, const std::string& program, const std::string& part)
+    : file_(folder / (part.empty() ? ".talus.lock" : ".talus." + part + ".lock")), descriptor_(lock(file_)) {
   write_holder(file_, descriptor_, program);
   doom(file_);
 }

@@ -8,14 +8,16 @@
 
 namespace talus {
 
-/// The lock of an output folder, ".talus.lock" in it, which names its holder. The system lets go of it when the process
+/// The lock of an output folder, ".talus.lock" in it, which names its holder. Processes that do parts of a stage's work
+/// have one each, ".talus.PART.lock": their files have names of their own. The system lets go of it when the process
 /// ends, however it ends; a file that a killed process left is no lock. Reading what lies in the folder needs none.
 class OutputLock {
  public:
-  /// Takes the lock for `program`. Throws DataError: another process holds it (who, where, since when), or nothing can
-  /// be written there. Where the file system knows no locks (some network file systems) it warns and goes on: each file
-  /// is still written aside under a name of this process's own and carries the id of its run.
-  OutputLock(const std::filesystem::path& folder, const std::string& program);
+  /// Takes the lock for `program`, and for the `part` of its work where that is not empty. Throws DataError: another
+  /// process holds it (who, where, since when), or nothing can be written there. Where the file system knows no locks
+  /// (some network file systems) it warns and goes on: each file is still written aside under a name of this process's
+  /// own and carries the id of its run.
+  OutputLock(const std::filesystem::path& folder, const std::string& program, const std::string& part = {});
   OutputLock(const OutputLock&) = delete;
   OutputLock& operator=(const OutputLock&) = delete;
   ~OutputLock();

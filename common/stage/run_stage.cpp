@@ -96,7 +96,9 @@ void run(const CommandLine& line, const std::string& command, const Stage& stage
     check_output_folder(context.out);
   } else {
     make_output_folder(context.out);
-    lock.emplace(context.out, stage.name);  // shows besides that the folder takes anything, before long work begins
+    if (stage.part) context.part = stage.part();
+    lock.emplace(context.out, stage.name,
+                 context.part);  // shows besides that the folder takes anything, before long work begins
   }
   stage.run(context);
   clear_progress_line();

@@ -22,6 +22,7 @@ struct StageContext {
   std::filesystem::path out;  ///< exists and is writable unless check_only
   bool check_only = false;    ///< --check: read and test everything cheap, compute and write nothing
   std::string command_line;
+  std::string part = {};  ///< of the stage's work that this process does ("0-250"); empty: all of it
   std::vector<std::filesystem::path> results = {};  ///< printed on stdout, one a line, at the end
 };
 
@@ -45,6 +46,7 @@ struct Stage {
   std::function<std::string()> template_toml;                   ///< for --template
   std::function<std::string(const recipe::Recipe&)> used_toml;  ///< for --used: its table with the defaults filled in
   std::function<Dependencies(const StageContext&)> depends;     ///< for --depends
+  std::function<std::string()> part = {};  ///< a word for the part that the flags ask for; parts share a folder
   std::function<void(StageContext&)> run;
 };
 

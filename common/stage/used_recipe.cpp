@@ -49,7 +49,7 @@ void write_used_recipe(StageContext& context, const Stage& stage, const std::str
                        const std::vector<std::filesystem::path>& inputs,
                        const std::vector<std::pair<std::string, std::string>>& facts) {
   const auto text = used_recipe(context, stage, options_toml, inputs, facts);
-  const auto path = context.out / (stage.table + ".used.toml");
+  const auto path = context.out / (stage.table + (context.part.empty() ? "" : "." + context.part) + ".used.toml");
   write_text(path, text);
   context.results.push_back(path);
 }

@@ -73,22 +73,6 @@ int define_column(Nc& nc, int time, const HistoryColumn& column, const std::stri
 
 }  // namespace
 
-std::string history_table(const RunHistory& history) {
-  std::vector<const HistoryColumn*> order;
-  for (const HistoryColumn& column : history.columns) order.push_back(&column);
-  std::stable_partition(order.begin(), order.end(),
-                        [](const HistoryColumn* column) { return column->name == "time_s"; });
-  std::string text;
-  for (const HistoryColumn* column : order) text += (text.empty() ? "" : ",") + column->name;
-  const std::size_t rows = order.empty() ? 0 : order.front()->values.size();
-  for (std::size_t row = 0; row < rows; ++row) {
-    text += "\n";
-    for (const HistoryColumn* column : order)
-      text += fmt::format("{}{:.9g}", column == order.front() ? "" : ",", column->values[row]);
-  }
-  return text + "\n";
-}
-
 std::vector<std::pair<std::string, std::string>> place_tables(const RunHistory& history) {
   std::vector<std::pair<std::string, std::string>> tables;
   for (const std::string kind : {"gauge", "section"}) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The history of a run as files: a table of all, tables of gauges and sections, NetCDF.
+// The history of a run as files: tables of gauges and sections, NetCDF.
 #pragma once
 
 #include <string>
@@ -10,9 +10,6 @@
 #include "common/run/run_file.hpp"
 
 namespace talus::postprocess {
-
-/// Time series of the run as CSV, a row for every record, time first.
-std::string history_table(const RunHistory& history);
 
 /// For each kind of place that has columns ("gauge", "section"): a table with a row for every record and place, with
 /// time, the place's name and what was measured there, in columns whose names carry their units.

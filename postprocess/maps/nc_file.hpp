@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A NetCDF file being made. For the sources of this folder alone.
+// A NetCDF file being made.
 #pragma once
 
 #include <netcdf.h>
@@ -27,20 +27,28 @@ inline constexpr double nc_fill = -9999;
 class Nc {
  public:
   explicit Nc(std::filesystem::path shown) : shown_(std::move(shown)) {
-    check(nc_create_mem(shown_.filename().c_str(), NC_NETCDF4, 0, &id_), "it cannot be created");
+    check(nc_create_mem(shown_.filename().c_str(), NC_NETCDF4, 0, &root_), "it cannot be created");
+    id_ = root_;
   }
   Nc(const Nc&) = delete;
   Nc& operator=(const Nc&) = delete;
   ~Nc() {
-    if (id_ >= 0) nc_abort(id_);
+    if (root_ >= 0) nc_abort(root_);
   }
   /// Ends the file and returns its bytes.
   std::string close() {
     NC_memio image{};
-    check(nc_close_memio(std::exchange(id_, -1), &image), "closing it");
+    check(nc_close_memio(std::exchange(root_, -1), &image), "closing it");
     const std::unique_ptr<void, decltype(&std::free)> owner(image.memory, &std::free);
     return {static_cast<const char*>(image.memory), image.size};
   }
+
+  /// Makes a group below the file's own. What follows is defined and written there, until leave_group().
+  void enter_group(const char* name) { check(nc_def_grp(root_, name, &id_), name); }
+  /// Goes on in the group that was left.
+  void reenter_group(const char* name) { check(nc_inq_grp_ncid(root_, name, &id_), name); }
+  /// Goes back to the file's own variables.
+  void leave_group() { id_ = root_; }
 
   /// Defines a dimension and returns its id.
   int dimension(const char* name, std::size_t size) {
@@ -73,18 +81,22 @@ class Nc {
   void numbers(int variable, const char* name, const std::vector<double>& values) {
     check(nc_put_att_double(id_, variable, name, NC_DOUBLE, values.size(), values.data()), name);
   }
+  /// Sets an attribute that is a list of whole numbers.
+  void integers(int variable, const char* name, const std::vector<int>& values) {
+    check(nc_put_att_int(id_, variable, name, NC_INT, values.size(), values.data()), name);
+  }
   /// Writes all values of a variable.
   void put(int variable, const std::vector<double>& values) {
     check(nc_put_var_double(id_, variable, values.data()), "values");
   }
-  /// Writes the values of one map at one time.
+  /// Writes the values of one map, of those that follow one another in time or by another coordinate.
   void put_map(int variable, std::size_t time, std::size_t rows, std::size_t columns,
                const std::vector<double>& values) {
     const std::size_t start[] = {time, 0, 0}, count[] = {1, rows, columns};
     check(nc_put_vara_double(id_, variable, start, count, values.data()), "values");
   }
   /// Ends the header: values may follow.
-  void end_definitions() { check(nc_enddef(id_), "header"); }
+  void end_definitions() { check(nc_enddef(root_), "header"); }
 
  private:
   void check(int status, const char* doing) {
@@ -92,7 +104,8 @@ class Nc {
   }
 
   std::filesystem::path shown_;
-  int id_ = -1;
+  int root_ = -1;
+  int id_ = -1;  // the file itself, or the group that was entered
 };
 
 }  // namespace talus::postprocess

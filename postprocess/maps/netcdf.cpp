@@ -14,8 +14,8 @@
 #include "common/stage/identity.hpp"
 #include "common/stage/stage.hpp"
 #include "postprocess/fields/fields.hpp"
-#include "postprocess/maps/cf_projection.hpp"
 #include "postprocess/maps/nc_file.hpp"
+#include "postprocess/maps/nc_grid.hpp"
 
 namespace talus::postprocess {
 namespace {
@@ -25,43 +25,6 @@ std::vector<double> filled(std::vector<double> values, const std::vector<char>& 
     if (!inside[i] || std::isnan(values[i])) values[i] = nc_fill;
   }
   return values;
-}
-
-struct AxisVariables {
-  int dimension = -1, variable = -1, bounds = -1;
-};
-struct Axes {
-  AxisVariables x, y;
-};
-
-Axes define_axes(Nc& nc, const MapGrid& grid) {
-  Axes axes;
-  axes.y.dimension = nc.dimension("y", static_cast<std::size_t>(grid.rows));
-  axes.x.dimension = nc.dimension("x", static_cast<std::size_t>(grid.columns));
-  const int sides = nc.dimension("bnds", 2);
-  for (const bool is_x : {true, false}) {
-    auto& [dimension, variable, bounds] = is_x ? axes.x : axes.y;
-    variable = nc.variable(is_x ? "x" : "y", NC_DOUBLE, {dimension});
-    bounds = nc.variable(is_x ? "x_bnds" : "y_bnds", NC_DOUBLE, {dimension, sides});
-    nc.text(variable, "standard_name", is_x ? "projection_x_coordinate" : "projection_y_coordinate");
-    nc.text(variable, "long_name", is_x ? "easting of the cell centre" : "northing of the cell centre");
-    nc.text(variable, "units", "m");
-    nc.text(variable, "axis", is_x ? "X" : "Y");
-    nc.text(variable, "bounds", is_x ? "x_bnds" : "y_bnds");
-  }
-  return axes;
-}
-
-void define_crs(Nc& nc, const MapGrid& grid) {
-  const int id = nc.variable("crs", NC_INT, {});
-  const auto projection = cf_projection(grid.crs_wkt);
-  nc.text(id, "long_name", "coordinate reference system");
-  if (!projection.grid_mapping_name.empty()) nc.text(id, "grid_mapping_name", projection.grid_mapping_name);
-  for (const auto& [name, words] : projection.words) nc.text(id, name.c_str(), words);
-  for (const auto& [name, values] : projection.numbers) nc.numbers(id, name.c_str(), values);
-  nc.text(id, "crs_wkt", grid.crs_wkt);
-  nc.text(id, "spatial_ref", grid.crs_wkt);  // GDAL's name for it
-  nc.text(id, "GeoTransform", fmt::format("{} {} 0 {} 0 {}", grid.west, grid.cell, grid.north(), -grid.cell));
 }
 
 void describe_file(Nc& nc, const Run& run, const NetcdfNotes& notes) {
@@ -88,14 +51,6 @@ struct MapVariable {
   const std::vector<double>* values;
   bool zero_inside;
 };
-
-/// Letters, digits and underscores, as CF asks of names.
-std::string nc_name(const std::string& name) {
-  std::string word = file_word(name);
-  std::replace_if(
-      word.begin(), word.end(), [](char c) { return c == '-' || c == '.'; }, '_');
-  return word;
-}
 
 std::vector<MapVariable> map_variables(const RunMaps& maps) {
   std::vector<MapVariable> all;
@@ -137,7 +92,7 @@ int define_time(Nc& nc, int dimension, const std::string& start) {
 
 /// The variables of one file, defined first and filled afterwards.
 struct Layout {
-  Axes axes{};
+  NcAxes axes;
   std::vector<MapVariable> maps;
   std::vector<int> ids;
   int time = -1, thickness = -1;
@@ -160,20 +115,9 @@ Layout define(Nc& nc, const Run& run, const NetcdfNotes& notes) {
   return layout;
 }
 
-void fill_axis(Nc& nc, const AxisVariables& axis, int count, double start, double cell) {
-  std::vector<double> centres, bounds;
-  for (int i = 0; i < count; ++i) {
-    centres.push_back(start + (i + 0.5) * cell);
-    bounds.insert(bounds.end(), {start + i * cell, start + (i + 1) * cell});
-  }
-  nc.put(axis.variable, centres);
-  nc.put(axis.bounds, bounds);
-}
-
 void fill_in(Nc& nc, const Layout& layout, const Run& run) {
   const auto& grid = run.maps.grid;
-  fill_axis(nc, layout.axes.x, grid.columns, grid.west, grid.cell);
-  fill_axis(nc, layout.axes.y, grid.rows, grid.south, grid.cell);
+  fill_axes(nc, layout.axes, grid);
   const auto inside = inside_domain(run.maps);
   for (std::size_t i = 0; i < layout.maps.size(); ++i) {
     const auto& map = layout.maps[i];

@@ -126,6 +126,32 @@ void SurveyOptions::describe(recipe::Visitor& v) {
   v.integer("resample_seed", resample_seed, {0, 2147483647}, "same seed, same spread");
 }
 
+void HazardOptions::describe(recipe::Visitor& v) {
+  recipe::choice(v, "intensity", intensity,
+                 {{"peak-pressure", HazardIntensity::peak_pressure},
+                  {"peak-thickness", HazardIntensity::peak_thickness},
+                  {"peak-speed", HazardIntensity::peak_speed}},
+                 "the map by which the intensity of a hazard goes");
+  v.numbers("limits", limits, recipe::positive,
+            "lower limits of the classes of intensity, rising, in kPa, m or m/s; they must be among those of "
+            "[ensemble.thresholds]; empty: 3 30 kPa, 0.5 1 m, 0.5 1 m/s where they are");
+  v.numbers("probability", probability, recipe::fraction, "lower limits of the classes of probability, rising");
+  v.integers("matrix", matrix, {0, 9},
+             "hazard class of each intensity (from weak) and probability (from rare), row by row; 0: none");
+  const auto rises = [](const std::vector<double>& values) {
+    return std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) == values.end();
+  };
+  v.needs(rises(limits) && rises(probability) && !probability.empty(),
+          {"[postprocess.hazard] limits or probability do not rise", "classes are given by their lower limits",
+           "Sort them, each once"});
+  const std::size_t rows = limits.empty() ? 2 : limits.size();
+  v.needs(matrix.size() == rows * probability.size(),
+          {"[postprocess.hazard] matrix has " + std::to_string(matrix.size()) + " classes",
+           std::to_string(rows) + " intensities and " + std::to_string(probability.size()) + " probabilities take " +
+               std::to_string(rows * probability.size()),
+           "Give a class for each pair"});
+}
+
 void Options::describe(recipe::Visitor& v) {
   v.path("run", run, "run.h5 of talus-solve; empty: the one in the output folder");
   v.number("footprint_threshold_m", footprint_threshold, recipe::positive, "footprint: peak thickness above this");
@@ -162,6 +188,7 @@ void Options::describe(recipe::Visitor& v) {
   recipe::table(v, "intensity", intensity, "classes of intensity, by a guideline or own limits");
   recipe::table(v, "reach_cone", reach_cone, "a second opinion: what an angle of reach (Fahrboeschung) reaches");
   recipe::table(v, "buildings", buildings, "what comes to each building");
+  recipe::table(v, "hazard", hazard, "of an ensemble: classes by how probable it is to be hit how hard");
 }
 
 }  // namespace talus::postprocess

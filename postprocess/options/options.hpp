@@ -53,6 +53,20 @@ struct SurveyOptions {
   void describe(recipe::Visitor& v);
 };
 
+/// By which map the intensity of a hazard goes.
+enum class HazardIntensity { peak_pressure, peak_thickness, peak_speed };
+
+/// Classes by how probable it is that a place is hit at least so hard (of an ensemble).
+struct HazardOptions {
+  HazardIntensity intensity = HazardIntensity::peak_pressure;
+  std::vector<double> limits;                       // lower limits of its classes, rising; empty = the usual ones
+  std::vector<double> probability{0.01, 0.1, 0.5};  // lower limits of its classes, rising
+  std::vector<int> matrix{1, 1, 2, 1, 2, 3};        // class, row by row: intensity from weak, probability from rare
+
+  /// The method declares the keys with defaults, help and what they need of one another.
+  void describe(recipe::Visitor& v);
+};
+
 /// A film of the flow.
 enum class Animation { none, mp4, gif };
 
@@ -73,6 +87,7 @@ struct Options {
   IntensityOptions intensity;
   ReachConeOptions reach_cone;
   BuildingOptions buildings;
+  HazardOptions hazard;
   std::vector<std::string> accept;  // what is refused as implausible, insisted on by name
 
   /// The method declares the keys with defaults, help and what they need of one another.

@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Puts page.html together from its parts and writes it as C++: cmake -DHTML=... -DSTYLE=... -DSCRIPT=...
-# -DLEAFLET_STYLE=... -DLEAFLET=... -DCHART=... -DLICENCES=... -DOUTPUT=page.cpp -P build_page.cmake Arguments are
-# quoted throughout: scripts are full of semicolons, which CMake would take for lists.
+# -DLEAFLET_STYLE=... -DLEAFLET=... -DCHART=... -DLICENCES=... -DFUNCTION=page_template -DOUTPUT=page.cpp
+# -P build_page.cmake. FUNCTION is the one of page.hpp that gives the page. Arguments are quoted throughout: scripts are
+# full of semicolons, which CMake would take for lists.
 
 # What would be loaded from beside the page is taken out: pictures of controls that are not used, maps for debuggers.
 function(read_part file out)
@@ -26,20 +27,23 @@ foreach(part STYLE SCRIPT LEAFLET_STYLE LEAFLET CHART LICENCES)
 endforeach()
 
 get_filename_component(folder "${OUTPUT}" DIRECTORY)
-file(WRITE "${folder}/page.html" "${page}")   # for looking at; the program holds the bytes below
-file(READ "${folder}/page.html" bytes HEX)
+get_filename_component(name "${OUTPUT}" NAME_WE)
+file(WRITE "${folder}/${name}.html" "${page}")   # for looking at; the program holds the bytes below
+file(READ "${folder}/${name}.html" bytes HEX)
 string(REGEX REPLACE "(................................................................)" "\\1\n" bytes "${bytes}")
 string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${bytes}")
 file(WRITE "${OUTPUT}" "#include \"postprocess/report/page.hpp\"
 
 namespace talus::postprocess {
 namespace {
-const unsigned char bytes[] = {
+const unsigned char bytes_of_${FUNCTION}[] = {
 ${bytes}
 };
 }  // namespace
 
-std::string_view page_template() { return {reinterpret_cast<const char*>(bytes), sizeof bytes}; }
+std::string_view ${FUNCTION}() {
+  return {reinterpret_cast<const char*>(bytes_of_${FUNCTION}), sizeof bytes_of_${FUNCTION}};
+}
 
 }  // namespace talus::postprocess
 ")

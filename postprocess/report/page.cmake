@@ -1,18 +1,32 @@
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The report's page: page/*.js bundled by esbuild (which also refuses what does not parse), put into page/report.html
-# with the style and the libraries, and compiled in as bytes. Nothing is fetched; see cmake/dependencies.cmake.
-set(_page ${CMAKE_CURRENT_SOURCE_DIR}/report/page)
+# The pages of the report and of an ensemble: FOLDER/*.js bundled by esbuild (which also refuses what does not parse),
+# put into an HTML file with a style and the libraries, and compiled in as bytes. Nothing is fetched; see
+# cmake/dependencies.cmake.
 set(_made ${CMAKE_CURRENT_BINARY_DIR}/report)
-file(GLOB _scripts CONFIGURE_DEPENDS ${_page}/*.js)
-add_custom_command(OUTPUT ${_made}/page.js
-  COMMAND ${ESBUILD} ${_page}/main.js --bundle --format=iife --charset=utf8 --log-level=warning
-    --outfile=${_made}/page.js
-  DEPENDS ${_scripts} VERBATIM)
-add_custom_command(OUTPUT ${_made}/page.cpp
-  COMMAND ${CMAKE_COMMAND} -DHTML=${_page}/report.html -DSTYLE=${_page}/report.css -DSCRIPT=${_made}/page.js
-    -DLEAFLET_STYLE=${LEAFLET_STYLE} -DLEAFLET=${LEAFLET_SCRIPT} -DCHART=${CHART_SCRIPT}
-    -DLICENCES=${_page}/licences.txt -DOUTPUT=${_made}/page.cpp -P ${CMAKE_CURRENT_SOURCE_DIR}/report/build_page.cmake
-  DEPENDS ${_made}/page.js ${_page}/report.html ${_page}/report.css ${_page}/licences.txt
-    ${CMAKE_CURRENT_SOURCE_DIR}/report/build_page.cmake ${LEAFLET_STYLE} ${LEAFLET_SCRIPT} ${CHART_SCRIPT}
-  VERBATIM)
+set(_shared ${CMAKE_CURRENT_SOURCE_DIR}/report/page)
+file(GLOB _shared_scripts CONFIGURE_DEPENDS ${_shared}/*.js)
+
+# talus_page(NAME FUNCTION FOLDER HTML STYLE...): ${_made}/NAME.cpp, whose FUNCTION gives the page; FOLDER/main.js
+# begins its script, and the styles follow one another.
+function(talus_page name function folder html)
+  file(GLOB _scripts CONFIGURE_DEPENDS ${folder}/*.js)
+  add_custom_command(OUTPUT ${_made}/${name}.js
+    COMMAND ${ESBUILD} ${folder}/main.js --bundle --format=iife --charset=utf8 --log-level=warning
+      --outfile=${_made}/${name}.js
+    DEPENDS ${_scripts} ${_shared_scripts} VERBATIM)
+  add_custom_command(OUTPUT ${_made}/${name}.css
+    COMMAND ${CMAKE_COMMAND} -E cat ${ARGN} > ${_made}/${name}.css DEPENDS ${ARGN} VERBATIM)
+  add_custom_command(OUTPUT ${_made}/${name}.cpp
+    COMMAND ${CMAKE_COMMAND} -DHTML=${folder}/${html} -DSTYLE=${_made}/${name}.css -DSCRIPT=${_made}/${name}.js
+      -DLEAFLET_STYLE=${LEAFLET_STYLE} -DLEAFLET=${LEAFLET_SCRIPT} -DCHART=${CHART_SCRIPT} -DFUNCTION=${function}
+      -DLICENCES=${_shared}/licences.txt -DOUTPUT=${_made}/${name}.cpp
+      -P ${CMAKE_CURRENT_SOURCE_DIR}/report/build_page.cmake
+    DEPENDS ${_made}/${name}.js ${_made}/${name}.css ${folder}/${html} ${_shared}/licences.txt
+      ${CMAKE_CURRENT_SOURCE_DIR}/report/build_page.cmake ${LEAFLET_STYLE} ${LEAFLET_SCRIPT} ${CHART_SCRIPT}
+    VERBATIM)
+endfunction()
+
+talus_page(page page_template ${_shared} report.html ${_shared}/report.css)
+set(_ensemble ${CMAKE_CURRENT_SOURCE_DIR}/ensemble/page)
+talus_page(ensemble_page ensemble_template ${_ensemble} ensemble.html ${_shared}/report.css ${_ensemble}/ensemble.css)

@@ -11,4 +11,7 @@ namespace talus::postprocess {
 /// "@HASHES_OF_SCRIPTS@" and "@HASHES_OF_STYLES@" do.
 std::string_view page_template();
 
+/// The page of an ensemble, likewise.
+std::string_view ensemble_template();
+
 }  // namespace talus::postprocess

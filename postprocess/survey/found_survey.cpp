@@ -63,4 +63,12 @@ void judge_outside(const FoundSurvey& found, const std::filesystem::path& out, A
                      "Look at survey/survey.qgs, set these keys, and run talus-preprocess again"}});
 }
 
+void require_whole_survey(const std::filesystem::path& out) {
+  const std::filesystem::path file = out / "survey" / "survey.json";
+  if (!std::filesystem::exists(out / "survey" / "slide_difference.tif") || std::filesystem::exists(file)) return;
+  throw DataError({file.string() + ": no such file",
+                   "talus-preprocess writes it last; without it what lies beside it may be of two preparations",
+                   "Run talus-preprocess again"});
+}
+
 }  // namespace talus::postprocess

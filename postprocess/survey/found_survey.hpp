@@ -30,4 +30,7 @@ bool lacks_error(const std::filesystem::path& out);
 /// with it every score, would lack it.
 void judge_outside(const FoundSurvey& found, const std::filesystem::path& out, Acceptance& acceptance);
 
+/// Refuses (DataError) a survey that talus-preprocess did not come to the end of.
+void require_whole_survey(const std::filesystem::path& out);
+
 }  // namespace talus::postprocess

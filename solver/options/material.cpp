@@ -56,7 +56,7 @@ void MaterialOptions::describe(recipe::Visitor& v, const std::string& table) {
   choose_law<MaterialLaws>(v, "model", model, "constitutive law");
   v.number("density_kg_m3", density, recipe::positive, "bulk density of the released mass");
   v.number("youngs_modulus_Pa", youngs_modulus, recipe::positive,
-           "stiffness; sets the step size, see docs/how-to/user-guide.md");
+           "stiffness; sets the step size, see docs/how-to/steps.md");
   recipe::choice(v, "stiffness", stiffness, {{"as-given", StiffnessKind::as_given}, {"auto", StiffnessKind::automatic}},
                  "auto: the lowest modulus up to that one which leaves the flow unchanged");
   v.number("stiffness_strain", stiffness_strain, recipe::Range{0, 0.5, true, false},

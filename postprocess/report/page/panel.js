@@ -24,7 +24,7 @@ function legendTitle(layer) {
 function placeWords(places) {
   const kinds = new Set(places.map((place) => place.kind));
   if (kinds.size > 1) return "Gauges, sections, obstacles";
-  return kinds.has("gauge") ? "Gauges" : "Obstacles";
+  return { gauge: "Gauges", section: "Sections" }[[...kinds][0]] ?? "Obstacles";
 }
 
 export class Panel {

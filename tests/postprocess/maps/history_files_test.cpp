@@ -31,7 +31,6 @@ TEST(HistoryFiles, tables_of_places_have_a_row_for_every_record_and_place) {
   EXPECT_EQ(tables[0].first, "gauge");
   EXPECT_EQ(tables[0].second, "time_s,gauge,thickness_m\n0,a,0\n0,b-1,2\n0.5,a,1.5\n0.5,b-1,2.5\n");
   EXPECT_EQ(tables[1].second, "time_s,section,discharge_m3_s,passed_m3\n0,s,0,0\n0.5,s,nan,12\n");
-  EXPECT_EQ(history_table(watched().history).substr(0, 27), "time_s,gauge_a_thickness_m,");
 }
 
 TEST(HistoryFiles, netcdf_has_a_variable_for_every_column) {

@@ -275,9 +275,9 @@ TEST(SolveOptions, every_integrator_says_what_its_steps_can_do) {
   EXPECT_TRUE(abilities_of(Integrator::automatic).count_losses) << "it takes no others where losses are counted";
 }
 
-/// The TOML of the user guide that gives a material.
+/// The TOML of the page on materials that gives one.
 std::vector<std::string> materials_of_the_guide() {
-  std::ifstream guide(TALUS_SOURCE_DIR "/docs/how-to/user-guide.md");
+  std::ifstream guide(TALUS_SOURCE_DIR "/docs/how-to/bed-and-material.md");
   std::vector<std::string> blocks;
   std::string line, block;
   bool inside = false;

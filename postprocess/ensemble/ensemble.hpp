@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An ensemble as talus-preprocess and talus-solve left it: who its members are, and what was counted of them.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/ensemble/counts.hpp"
+#include "common/ensemble/member_table.hpp"
+#include "common/ensemble/options.hpp"
+#include "common/run/run_file.hpp"
+#include "common/stage/stage.hpp"
+
+namespace talus::postprocess {
+
+/// Members, and the counts of all parts that were found.
+struct Ensemble {
+  MemberTable table;
+  EnsembleCounts counts;                     ///< merged: of all members
+  std::vector<std::filesystem::path> files;  ///< members.h5, then the counts
+  Facts insisted;                            ///< what the analyst insisted on, for the metadata
+
+  /// Members whose run is in the counts.
+  std::int64_t counted() const { return counts.count(MemberState::counted); }
+  /// Members whose run failed.
+  std::int64_t failed() const { return counts.count(MemberState::failed); }
+  /// Members that no file of counts holds.
+  std::int64_t waiting() const { return counts.count(MemberState::waiting); }
+};
+
+/// Reads members.h5 and the counts in the output folder, and checks that they belong together and to the recipe.
+/// Warns of members that wait and of those that failed. Throws DataError: missing, damaged, of another recipe or of
+/// different ensembles, or with no member that was counted.
+Ensemble read_ensemble(const StageContext& context);
+
+/// The files that read_ensemble() would read in an output folder; counts.h5 where there are no counts yet.
+std::vector<std::filesystem::path> ensemble_files(const std::filesystem::path& out);
+
+/// The scene of an ensemble as maps of a run in which nothing has moved yet: grid, ground and release.
+RunMaps base_maps(const EnsembleScene& scene);
+
+/// Numbers of members as people write them: "3, 7 to 12, 40"; no more than `most` of these, then how many are left.
+std::string member_list(const std::vector<std::int64_t>& members, std::size_t most = 12);
+
+/// How many members of which kind, as one sentence: "98 of 100 members are counted, 2 failed, 0 wait".
+std::string members_words(const Ensemble& ensemble);
+
+}  // namespace talus::postprocess

@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "postprocess/ensemble/maps_of_ensemble.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "postprocess/ensemble/hazard.hpp"
+#include "postprocess/ensemble/sampling_error.hpp"
+#include "postprocess/fields/fields.hpp"
+#include "postprocess/fields/styles.hpp"
+
+namespace talus::postprocess {
+namespace {
+
+using Kind = EnsembleMapKind;
+
+/// A unit as part of a file's name: "m_s".
+std::string unit_in_name(const std::string& unit) {
+  std::string word = unit_words(unit);
+  std::replace(word.begin(), word.end(), '/', '_');
+  return word;
+}
+
+std::string name_in_file(const CountedMap& map) { return map.early ? "arrival" : map.name; }
+
+void add_thresholds(std::vector<EnsembleMap>& maps, std::size_t tally, const std::vector<double>& thresholds) {
+  const CountedMap& map = counted_maps[tally];
+  for (std::size_t n = 0; n < thresholds.size(); ++n) {
+    const double level = thresholds[n];
+    const std::string name =
+        fmt::format("{}_{}_{:g}_{}", name_in_file(map), map.early ? "before" : "above", level, unit_in_name(map.unit));
+    const std::string what = fmt::format("{} of {}", words_of(map), threshold_words(map, level));
+    maps.push_back({Kind::share, tally, n, level, name, "Probability of " + what, "1"});
+    maps.push_back(
+        {Kind::error, tally, n, level, name + "_error", "Standard error of the probability of " + what, "1"});
+    maps.push_back({Kind::to_halve, tally, n, level, name + "_members_to_halve",
+                    "Members that would halve the error of the probability of " + what, "1"});
+  }
+}
+
+void add_statistics(std::vector<EnsembleMap>& maps, std::size_t tally) {
+  const CountedMap& map = counted_maps[tally];
+  const std::string file = name_in_file(map), words = words_of(map);
+  for (const double share : quantile_shares)
+    maps.push_back({Kind::quantile, tally, 0, share, fmt::format("{}_q{:02.0f}", file, 100 * share),
+                    fmt::format("{:g} % quantile of {}", 100 * share, words), map.unit});
+  const char* over = map.early ? " over the members that arrive" : "";
+  maps.push_back({Kind::mean, tally, 0, nan, file + "_mean", fmt::format("Mean {}{}", words, over), map.unit});
+  maps.push_back({Kind::deviation, tally, 0, nan, file + "_deviation",
+                  fmt::format("Standard deviation of {}{}", words, over), map.unit});
+}
+
+double value_of(const Ensemble& ensemble, const EnsembleMap& map, std::size_t cell, std::int64_t counted,
+                double draws) {
+  const MapTally& tally = ensemble.counts.maps[map.tally];
+  const CountedMap& what = counted_maps[map.tally];
+  const auto share = [&] { return tally.exceeded[map.threshold][cell] / static_cast<double>(counted); };
+  switch (map.kind) {
+    case Kind::share: return share();
+    case Kind::error: return standard_error(share(), draws);
+    case Kind::to_halve: return std::ceil(members_to_halve(share(), draws) * static_cast<double>(counted) / draws);
+    case Kind::quantile: return tally.quantile(what, cell, map.level, counted);
+    case Kind::mean: return tally.mean(what, cell, counted);
+    case Kind::deviation: return tally.deviation(what, cell, counted);
+    case Kind::hazard: break;
+  }
+  return nan;
+}
+
+}  // namespace
+
+std::string words_of(const CountedMap& map) {
+  std::string words = map.name;
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words;
+}
+
+std::string unit_words(const std::string& unit) { return unit == "m s-1" ? "m/s" : unit == "1" ? "" : unit; }
+
+std::string threshold_words(const CountedMap& map, double threshold) {
+  return fmt::format("{:g} {} or {}", threshold, unit_words(map.unit), map.early ? "less" : "more");
+}
+
+std::vector<EnsembleMap> ensemble_maps(const Ensemble& ensemble, const HazardOptions& hazard) {
+  std::vector<EnsembleMap> maps;
+  for (std::size_t tally = 0; tally < counted_map_count; ++tally)
+    add_thresholds(maps, tally, ensemble.counts.maps[tally].thresholds);
+  for (std::size_t tally = 0; tally < counted_map_count; ++tally) add_statistics(maps, tally);
+  if (const auto rule = hazard_rule(ensemble, hazard))
+    maps.push_back({Kind::hazard, rule->tally, 0, nan, "hazard_class", "Hazard class", "1"});
+  return maps;
+}
+
+std::vector<double> values_of(const Ensemble& ensemble, const EnsembleMap& map, const HazardOptions& hazard) {
+  const EnsembleScene& scene = ensemble.counts.scene;
+  const std::vector<char> inside = inside_domain(base_maps(scene));
+  const std::int64_t counted = ensemble.counted();
+  const double draws = independent_draws(ensemble.table, counted);
+  std::vector<double> values(scene.grid.count(), nan);
+  if (map.kind == Kind::hazard) values = hazard_classes(ensemble, hazard_rule(ensemble, hazard).value());
+  const auto& reached = ensemble.counts.maps[map.tally].reached;
+  for (std::size_t cell = 0; cell < values.size(); ++cell) {
+    if (!inside[cell] && reached[cell] == 0)
+      values[cell] = nan;
+    else if (map.kind != Kind::hazard)
+      values[cell] = value_of(ensemble, map, cell, counted, draws);
+  }
+  return values;
+}
+
+std::vector<double> limits_of(const EnsembleMap& map, const std::vector<double>& values) {
+  const std::string_view unit = map.unit;
+  double most = 0;
+  for (const double v : values)
+    if (v > most) most = v;
+  switch (map.kind) {
+    case Kind::share: return {0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 0.95};
+    case Kind::error: return {0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1};
+    case Kind::to_halve: return {10, 100, 1000, 10000, 100000};
+    case Kind::hazard: return {1, 2, 3};
+    default: break;
+  }
+  if (unit == "s") return time_limits(values);
+  if (unit == "m s-1") return speed_limits(values);
+  if (unit == "kPa") return pressure_limits(values);
+  return thickness_limits({}, values);
+}
+
+RasterStyle style_of(const EnsembleMap& map, const std::vector<double>& values, const HazardOptions& hazard) {
+  const std::vector<double> limits = limits_of(map, values);
+  if (map.kind == Kind::hazard) {
+    RasterStyle style;
+    const int most = *std::max_element(hazard.matrix.begin(), hazard.matrix.end());
+    for (int k = 1; k <= std::max(most, 1); ++k)
+      style.classes.push_back({k < most ? k + 0.5 : std::numeric_limits<double>::infinity(),
+                               class_colour(static_cast<std::size_t>(k - 1), static_cast<std::size_t>(most)),
+                               fmt::format("class {}", k)});
+    style.hidden_from = -1;
+    style.hidden_to = 0.5;
+    return style;
+  }
+  const bool by_time = map.unit == "s" && map.kind == Kind::quantile;
+  if (by_time || (map.unit == "s" && map.kind == Kind::mean)) return time_style(limits, "s");
+  const bool sea = map.kind == Kind::share || map.unit == "m s-1" || map.unit == "s";
+  return class_style(limits, unit_words(map.unit), sea ? Ramp::sea : Ramp::heat);
+}
+
+}  // namespace talus::postprocess

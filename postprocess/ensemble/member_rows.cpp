@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "postprocess/ensemble/member_rows.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace talus::postprocess {
+namespace {
+
+const char* word_of(MemberState state) {
+  switch (state) {
+    case MemberState::counted: return "counted";
+    case MemberState::failed: return "failed";
+    case MemberState::waiting: break;
+  }
+  return "waiting";
+}
+
+/// A text as a field: quoted where it holds what separates fields, its line breaks made spaces.
+std::string field(std::string text) {
+  for (char& c : text)
+    if (c == '\n' || c == '\r') c = ' ';
+  if (text.find_first_of(",\"") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string cell(const RowColumn& column, std::size_t member) {
+  const double value = column.values[member];
+  if (std::isnan(value)) return "";
+  return column.words.empty() ? fmt::format("{}", value) : field(column.words.at(static_cast<std::size_t>(value)));
+}
+
+}  // namespace
+
+MemberRows member_rows(const Ensemble& ensemble, const Options& options, const std::optional<Survey>& survey) {
+  const EnsembleCounts& counts = ensemble.counts;
+  MemberRows rows{counts.states, std::vector<std::string>(counts.states.size()), {}};
+  for (const MemberFailure& failure : counts.failures)
+    rows.failures.at(static_cast<std::size_t>(failure.member)) = failure.words;
+  for (const MemberColumn& column : ensemble.table.columns)
+    rows.columns.push_back({ColumnKind::input, column.key, "", column.key, column.values, column.words});
+  for (const ResultNumber& number : result_numbers) {
+    RowColumn column{ColumnKind::result, number.name, number.unit, number.meaning, {}, {}};
+    for (std::size_t k = 0; k < counts.results.size(); ++k)
+      column.values.push_back(counts.states[k] == MemberState::counted ? counts.results[k].*(number.value) : nan);
+    rows.columns.push_back(std::move(column));
+  }
+  if (survey)
+    for (RowColumn& column : member_scores(ensemble, *survey, options.deposit_threshold))
+      rows.columns.push_back(std::move(column));
+  return rows;
+}
+
+std::string members_csv(const MemberRows& rows) {
+  std::string text = "member,state";
+  for (const RowColumn& column : rows.columns) text += "," + field(column.name);
+  text += ",failure\n";
+  for (std::size_t k = 0; k < rows.states.size(); ++k) {
+    text += fmt::format("{},{}", k, word_of(rows.states[k]));
+    for (const RowColumn& column : rows.columns) text += "," + cell(column, k);
+    text += "," + field(rows.failures[k]) + "\n";
+  }
+  return text;
+}
+
+}  // namespace talus::postprocess

@@ -1,0 +1,230 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// probability.nc: the maps of an ensemble, and the table of its members.
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include "postprocess/ensemble/facts.hpp"
+#include "postprocess/ensemble/hazard.hpp"
+#include "postprocess/ensemble/sampling_error.hpp"
+#include "postprocess/ensemble/write_maps.hpp"
+#include "postprocess/maps/nc_grid.hpp"
+
+namespace talus::postprocess {
+namespace {
+
+using Kind = EnsembleMapKind;
+
+/// A variable of the file: the maps that follow one another in it, one for each value of its first coordinate.
+struct NcStack {
+  int variable = -1;
+  std::vector<EnsembleMap> maps;
+};
+
+/// The file's variables, defined first and filled afterwards.
+struct NcPlan {
+  NcAxes axes;
+  std::vector<std::pair<int, std::vector<double>>> coordinates;
+  std::vector<NcStack> stacks;
+  std::vector<int> members;
+};
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+/// "peak_thickness" -> "probability_of_peak_thickness"; "peak_thickness_mean" and the hazard as they are.
+std::string variable_name(const EnsembleMap& map) {
+  const std::string what = counted_maps[map.tally].name;
+  switch (map.kind) {
+    case Kind::share: return "probability_of_" + what;
+    case Kind::error: return "probability_error_of_" + what;
+    case Kind::to_halve: return "members_to_halve_error_of_" + what;
+    case Kind::quantile: return what + "_quantile";
+    case Kind::mean: return what + "_mean";
+    case Kind::deviation: return what + "_deviation";
+    case Kind::hazard: break;
+  }
+  return "hazard_class";
+}
+
+bool by_threshold(const EnsembleMap& map) {
+  return map.kind == Kind::share || map.kind == Kind::error || map.kind == Kind::to_halve;
+}
+
+/// What the whole variable is, whose maps are at several thresholds or shares.
+std::string long_name(const EnsembleMap& map) {
+  const CountedMap& what = counted_maps[map.tally];
+  const std::string words = words_of(what) + (what.early ? " of the threshold or less" : " of the threshold or more");
+  switch (map.kind) {
+    case Kind::share: return "probability of " + words;
+    case Kind::error: return "standard error of the probability of " + words;
+    case Kind::to_halve: return "members that would halve the error of the probability of " + words;
+    case Kind::quantile: return "quantile of " + words_of(what);
+    default: return map.title;
+  }
+}
+
+int define_coordinate(Nc& nc, NcPlan& plan, const std::string& name, const std::string& words, const std::string& unit,
+                      const std::vector<double>& values) {
+  const int dimension = nc.dimension(name.c_str(), values.size());
+  const int id = nc.variable(name.c_str(), NC_DOUBLE, {dimension});
+  nc.text(id, "long_name", words);
+  nc.text(id, "units", unit);
+  plan.coordinates.emplace_back(id, values);
+  return dimension;
+}
+
+void describe(Nc& nc, const Ensemble& ensemble, const Options& options, const std::string& command_line) {
+  const EnsembleScene& scene = ensemble.counts.scene;
+  nc.text(NC_GLOBAL, "Conventions", "CF-1.8");
+  nc.text(NC_GLOBAL, "title", scene.title + ": probability");
+  nc.text(NC_GLOBAL, "institution", options.institution.empty() ? "not stated" : options.institution);
+  nc.text(NC_GLOBAL, "source", "Talus " + version() + ", ensemble of runs of the material point method");
+  nc.text(NC_GLOBAL, "history",
+          fmt::format("{:%Y-%m-%dT%H:%M:%SZ}: {}", fmt::gmtime(std::time(nullptr)), command_line));
+  for (const auto& [name, words] : ensemble_facts(ensemble))
+    if (name != "TITLE" && name != "SOURCE") nc.text(NC_GLOBAL, lower(name).c_str(), words);
+  nc.text(NC_GLOBAL, "comment",
+          share_words(ensemble.table.design).meaning + " " + share_words(ensemble.table.design).error +
+              " Thickness is vertical (along the plumb line), not normal to the slope. Cells outside the computed "
+              "domain hold the fill value.");
+}
+
+/// Defines the variable of a map unless it is there already, and adds the map to it.
+void define_map(Nc& nc, NcPlan& plan, const EnsembleMap& map, const MapGrid& grid, int first_dimension,
+                const std::string& comment) {
+  std::vector<int> dimensions{plan.axes.y.dimension, plan.axes.x.dimension};
+  if (first_dimension >= 0) dimensions.insert(dimensions.begin(), first_dimension);
+  const int id = nc.field(variable_name(map).c_str(), dimensions, static_cast<std::size_t>(grid.rows),
+                          static_cast<std::size_t>(grid.columns));
+  nc.text(id, "long_name", long_name(map));
+  nc.text(id, "units", map.unit);
+  if (!comment.empty()) nc.text(id, "comment", comment);
+  if (!grid.crs_wkt.empty()) nc.text(id, "grid_mapping", "crs");
+  plan.stacks.push_back({id, {map}});
+}
+
+void define_maps(Nc& nc, NcPlan& plan, const Ensemble& ensemble, const HazardOptions& hazard) {
+  const int quantiles = define_coordinate(nc, plan, "quantile", "share of the members that does not exceed the value",
+                                          "1", {std::begin(quantile_shares), std::end(quantile_shares)});
+  int threshold = -1;
+  for (const EnsembleMap& map : ensemble_maps(ensemble, hazard)) {
+    const CountedMap& what = counted_maps[map.tally];
+    const auto same = [&](const NcStack& stack) {
+      return stack.maps[0].kind == map.kind && stack.maps[0].tally == map.tally;
+    };
+    const bool several = by_threshold(map) || map.kind == Kind::quantile;
+    const auto found = std::find_if(plan.stacks.begin(), plan.stacks.end(), same);
+    if (several && found != plan.stacks.end()) {
+      found->maps.push_back(map);
+      continue;
+    }
+    if (map.kind == Kind::share)
+      threshold = define_coordinate(nc, plan, std::string(what.name) + "_threshold", "threshold of " + words_of(what),
+                                    what.unit, ensemble.counts.maps[map.tally].thresholds);
+    std::string comment;
+    for (const auto& [name, words] : map_facts(ensemble, map, hazard))
+      if (name == "ERROR_MEANING" || name == "HAZARD_MATRIX" || (name == "MEANING" && !by_threshold(map)))
+        comment += (comment.empty() ? "" : ". ") + words;
+    define_map(nc, plan, map, ensemble.counts.scene.grid,
+               by_threshold(map)            ? threshold
+               : map.kind == Kind::quantile ? quantiles
+                                            : -1,
+               comment);
+  }
+}
+
+/// Words of a column as CF's flags: blanks become underscores.
+std::string flag_meanings(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::string word : words) {
+    std::replace(word.begin(), word.end(), ' ', '_');
+    text += (text.empty() ? "" : " ") + word;
+  }
+  return text;
+}
+
+void define_members(Nc& nc, NcPlan& plan, const MemberRows& rows) {
+  nc.enter_group("members");
+  const int dimension = nc.dimension("member", rows.states.size());
+  const auto add = [&](const std::string& name, const std::string& words, const std::string& unit) {
+    const int id = nc.variable(name.c_str(), NC_DOUBLE, {dimension});
+    nc.text(id, "long_name", words);
+    if (!unit.empty()) nc.text(id, "units", unit);
+    plan.members.push_back(id);
+    return id;
+  };
+  const auto flags = [&](int id, const std::vector<std::string>& words) {
+    std::vector<double> values;
+    for (std::size_t n = 0; n < words.size(); ++n) values.push_back(static_cast<double>(n));
+    nc.numbers(id, "flag_values", values);
+    nc.text(id, "flag_meanings", flag_meanings(words));
+  };
+  add("member", "number of the member, from 0", "1");
+  flags(add("state", "what became of the member", ""), {"waiting", "counted", "failed"});
+  for (const RowColumn& column : rows.columns) {
+    const int id = add(nc_name(column.name), column.title, column.unit);
+    if (!column.words.empty()) flags(id, column.words);
+  }
+  nc.leave_group();
+}
+
+void fill_members(Nc& nc, const NcPlan& plan, const MemberRows& rows) {
+  nc.reenter_group("members");
+  std::vector<double> numbers, states;
+  for (std::size_t k = 0; k < rows.states.size(); ++k) {
+    numbers.push_back(static_cast<double>(k));
+    states.push_back(static_cast<double>(rows.states[k]));
+  }
+  nc.put(plan.members[0], numbers);
+  nc.put(plan.members[1], states);
+  for (std::size_t n = 0; n < rows.columns.size(); ++n) nc.put(plan.members[n + 2], rows.columns[n].values);
+  nc.leave_group();
+}
+
+void fill_maps(Nc& nc, const NcPlan& plan, const Ensemble& ensemble, const HazardOptions& hazard) {
+  const MapGrid& grid = ensemble.counts.scene.grid;
+  for (const NcStack& stack : plan.stacks) {
+    const bool several = by_threshold(stack.maps[0]) || stack.maps[0].kind == Kind::quantile;
+    for (std::size_t n = 0; n < stack.maps.size(); ++n) {
+      stop_if_interrupted("writing probability.nc");
+      std::vector<double> values = values_of(ensemble, stack.maps[n], hazard);
+      for (double& value : values)
+        if (std::isnan(value)) value = nc_fill;
+      if (several)
+        nc.put_map(stack.variable, n, static_cast<std::size_t>(grid.rows), static_cast<std::size_t>(grid.columns),
+                   values);
+      else
+        nc.put(stack.variable, values);
+    }
+  }
+}
+
+}  // namespace
+
+void write_probability_netcdf(const std::filesystem::path& file, const Ensemble& ensemble, const MemberRows& rows,
+                              const Options& options, const std::string& command_line) {
+  const MapGrid& grid = ensemble.counts.scene.grid;
+  Nc nc(file);
+  NcPlan plan;
+  describe(nc, ensemble, options, command_line);
+  plan.axes = define_axes(nc, grid);
+  if (!grid.crs_wkt.empty()) define_crs(nc, grid);
+  define_maps(nc, plan, ensemble, options.hazard);
+  define_members(nc, plan, rows);
+  nc.end_definitions();
+  fill_axes(nc, plan.axes, grid);
+  for (const auto& [id, values] : plan.coordinates) nc.put(id, values);
+  fill_maps(nc, plan, ensemble, options.hazard);
+  fill_members(nc, plan, rows);
+  write_text(file, nc.close());
+}
+
+}  // namespace talus::postprocess

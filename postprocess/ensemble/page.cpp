@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "postprocess/ensemble/page.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include "common/gis/crs.hpp"
+#include "postprocess/ensemble/convergence.hpp"
+#include "postprocess/ensemble/hazard.hpp"
+#include "postprocess/ensemble/maps_of_ensemble.hpp"
+#include "postprocess/ensemble/medoids.hpp"
+#include "postprocess/ensemble/sampling_error.hpp"
+#include "postprocess/report/filled_page.hpp"
+#include "postprocess/report/page.hpp"
+#include "postprocess/report/parts.hpp"
+
+namespace talus::postprocess {
+namespace {
+
+constexpr std::size_t failures_on_page = 50, steps_of_convergence = 160, medoids_wanted = 4;
+
+/// Of which footprints are compared, each with each.
+constexpr std::size_t members_compared = 400;
+
+Json run_json(const EnsemblePageInput& input) {
+  const Ensemble& ensemble = input.ensemble;
+  const EnsembleCounts& counts = ensemble.counts;
+  const ShareWords words = share_words(ensemble.table.design);
+  Json json{
+      {"title", counts.scene.title}, {"scene", counts.scene.scene}, {"version", version()}, {"run_version", version()}};
+  json["made"] = fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)));
+  json["institution"] = input.options.institution;
+  json["crs"] = crs_name(counts.scene.grid.crs_wkt);
+  json["grid"] = {
+      {"columns", counts.scene.grid.columns}, {"rows", counts.scene.grid.rows}, {"cell", counts.scene.grid.cell}};
+  json["threshold"] = counts.scene.threshold;
+  json["design"] = ensemble.table.design;
+  json["seed"] = ensemble.table.seed;
+  json["members"] = counts.members;
+  json["counted"] = ensemble.counted();
+  json["failed"] = ensemble.failed();
+  json["waiting"] = ensemble.waiting();
+  json["draws"] = independent_draws(ensemble.table, ensemble.counted());
+  json["share"] = {
+      {"meaning", words.meaning}, {"error", words.error}, {"is_probability", is_probability(ensemble.table.design)}};
+  const auto rule = hazard_rule(ensemble, input.options.hazard);
+  json["hazard"] = rule ? Json(hazard_words(*rule)) : Json();
+  json["survey"] = input.survey ? Json(input.survey->name) : Json();
+  json["failures"] = Json::array();
+  for (const MemberFailure& failure : counts.failures)
+    if (json["failures"].size() < failures_on_page) json["failures"].push_back({failure.member, failure.words});
+  return json;
+}
+
+/// Six figures are more than a chart shows.
+Json rounded_list(const std::vector<double>& values, std::size_t count) {
+  auto list = Json::array();
+  for (std::size_t k = 0; k < count; ++k)
+    list.push_back(std::isfinite(values[k]) ? Json(std::stod(fmt::format("{:.6g}", values[k]))) : Json());
+  return list;
+}
+
+Json members_json(const MemberRows& rows) {
+  const std::size_t shown = std::min(rows.states.size(), members_on_page);
+  Json json{{"all", rows.states.size()}, {"shown", shown}, {"states", Json::array()}, {"columns", Json::array()}};
+  for (std::size_t k = 0; k < shown; ++k) json["states"].push_back(static_cast<int>(rows.states[k]));
+  for (const RowColumn& column : rows.columns)
+    json["columns"].push_back({{"name", column.name},
+                               {"unit", column.unit},
+                               {"title", column.title},
+                               {"kind", column.kind == ColumnKind::input    ? "input"
+                                        : column.kind == ColumnKind::result ? "result"
+                                                                            : "score"},
+                               {"words", column.words},
+                               {"values", rounded_list(column.values, shown)}});
+  return json;
+}
+
+Json sensitivity_json(const EnsemblePageInput& input) {
+  auto list = Json::array();
+  for (const auto& [name, found] : input.sensitivity) {
+    auto indices = Json::array();
+    for (const SensitivityIndex& index : found.indices)
+      indices.push_back({{"key", index.key},
+                         {"measure", measure_name(index.measure)},
+                         {"title", measure_title(index.measure)},
+                         {"value", index.value},
+                         {"low", std::isfinite(index.low) ? Json(index.low) : Json()},
+                         {"high", std::isfinite(index.high) ? Json(index.high) : Json()}});
+    list.push_back({{"result", name}, {"members", found.members}, {"note", found.note}, {"indices", indices}});
+  }
+  return list;
+}
+
+Json convergence_json(const MemberRows& rows) {
+  auto list = Json::array();
+  for (const RowColumn& column : rows.columns) {
+    if (!has_sensitivity(column)) continue;
+    const Convergence steps = convergence(column.values, steps_of_convergence);
+    list.push_back({{"name", column.name},
+                    {"members", steps.members},
+                    {"mean", rounded_list(steps.mean, steps.mean.size())},
+                    {"error", rounded_list(steps.error, steps.error.size())}});
+  }
+  return list;
+}
+
+/// Members that stand for the others.
+Json medoids_json(const Ensemble& ensemble) {
+  const Medoids found = medoids(ensemble.counts, medoids_wanted, members_compared);
+  std::int64_t of = 0;
+  for (const std::int64_t count : found.counts) of += count;
+  return {{"members", found.members}, {"counts", found.counts}, {"of", of}, {"mean_distance", found.mean_distance}};
+}
+
+}  // namespace
+
+Window ensemble_window(const EnsemblePageInput& input) {
+  RunMaps maps = base_maps(input.ensemble.counts.scene);
+  const auto& reached = input.ensemble.counts.maps[0].reached;
+  for (std::size_t cell = 0; cell < reached.size(); ++cell)
+    maps.peak_thickness[cell] = reached[cell] > 0 ? 2 * input.options.footprint_threshold : 0;
+  Window window = affected_window(maps, input.options, input.survey);
+  const double width = std::min(std::max(window.width(), window.height()), maps.grid.east() - maps.grid.west);
+  window.west = std::clamp(0.5 * (window.west + window.east - width), maps.grid.west, maps.grid.east() - width);
+  window.east = window.west + width;
+  return window;
+}
+
+std::string ensemble_html(const EnsemblePageInput& input) {
+  const Window window = ensemble_window(input);
+  int coarsest = 1;
+  Json data;
+  data["run"] = run_json(input);
+  data["map"] = ensemble_maps_json(input, window, coarsest);
+  data["map"]["coarsest"] = coarsest;
+  data["outlines"] = ensemble_outlines_json(input, window);
+  data["medoids"] = medoids_json(input.ensemble);
+  data["members"] = members_json(input.rows);
+  data["sensitivity"] = sensitivity_json(input);
+  data["convergence"] = convergence_json(input.rows);
+  data["stages"] = stages_json(input.stages);
+  for (const char* part : {"run", "stages"}) leave_out_folders(data[part]);
+  return filled_page(ensemble_template(), input.ensemble.counts.scene.title + ": ensemble", data);
+}
+
+}  // namespace talus::postprocess

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The columns of the table of members, and their numbers in words.
+import { number, unitOfPowers } from "../../report/page/format.js";
+
+const titles = {
+  run_out_m: "run-out",
+  drop_m: "drop",
+  flow_reach_m: "reach of the flow",
+  reach_ratio: "drop over run-out, H/L",
+  flow_area_m2: "area of the flow",
+  deposit_area_m2: "area of the deposit",
+  volume_released_m3: "released volume",
+  volume_final_m3: "final volume",
+  volume_outflow_m3: "volume that left",
+  largest_thickness_m: "largest thickness",
+  largest_deposit_m: "largest deposit",
+  largest_speed_m_s: "largest speed",
+  largest_pressure_kPa: "largest pressure",
+  time_end_s: "simulated time",
+  steps: "steps",
+  wall_time_s: "wall time",
+  footprint_csi: "CSI of the footprint",
+  footprint_hit_rate: "hit rate of the footprint",
+  footprint_false_alarm_ratio: "false alarm ratio of the footprint",
+  deposit_csi: "CSI of the deposit",
+};
+
+/** "run-out [m]"; of a key its last part, which has its unit, and the table before it where that tells more. */
+export function columnTitle(column) {
+  if (column.kind === "input") return column.name.split(".").slice(-2).join(".");
+  const unit = unitOfPowers(column.unit);
+  return (titles[column.name] ?? column.name) + (unit ? ` [${unit}]` : "");
+}
+
+/** Decimals that tell the values of a column apart. */
+export function decimalsOf(column) {
+  const known = column.values.filter((value) => value !== null);
+  const span = Math.max(...known) - Math.min(...known) || Math.abs(known[0] ?? 1) || 1;
+  if (known.every(Number.isInteger)) return 0;
+  return Math.min(Math.max(0, 3 - Math.ceil(Math.log10(span))), 6);
+}
+
+/** The value of a member as people read it. */
+export function valueWords(column, member) {
+  const value = column.values[member];
+  if (value === null || value === undefined) return "\u2013";
+  return column.words.length ? column.words[value] : number(value, decimalsOf(column));
+}
+
+/** Whether a column has something to show: two different numbers at least. */
+export function varies(column) {
+  const known = column.values.filter((value) => value !== null);
+  return known.some((value) => value !== known[0]);
+}
+
+/** Fills a list of choices with columns; `chosen` is the name of the first to be shown. */
+export function fillChoices(select, columns, chosen, tell) {
+  for (const column of columns) {
+    const option = document.createElement("option");
+    option.value = column.name;
+    option.textContent = columnTitle(column);
+    option.selected = column.name === chosen;
+    select.append(option);
+  }
+  select.addEventListener("change", tell);
+}

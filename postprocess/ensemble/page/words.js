@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the page says in words: headline, key numbers, method.
+import { h, number } from "../../report/page/format.js";
+import { columnTitle, decimalsOf } from "./columns.js";
+import { standardError } from "./map_panel.js";
+
+const designs = {
+  sobol: "Sobol\u2019s sequence",
+  "latin-hypercube": "a Latin hypercube",
+  "optimal-latin-hypercube": "an optimised Latin hypercube",
+  "monte-carlo": "independent draws",
+  "full-grid": "a full grid",
+  "one-at-a-time": "one key at a time",
+  sensitivity: "a design for Sobol indices",
+  table: "a table",
+};
+
+function quantile(values, share) {
+  const sorted = values.filter((value) => value !== null).sort((a, b) => a - b);
+  return sorted.length ? sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))] : NaN;
+}
+
+function keyNumber(title, words, spread) {
+  return h("div", {}, h("dt", {}, title), h("dd", {}, words, spread ? h("span", { class: "spread" }, spread) : null));
+}
+
+const keyResults = ["run_out_m", "reach_ratio", "flow_area_m2", "deposit_area_m2", "largest_speed_m_s",
+  "volume_outflow_m3", "footprint_csi"];
+
+export function drawSummary(data) {
+  const { run, members } = data;
+  document.getElementById("title").textContent = run.title;
+  const inputs = members.columns.filter((column) => column.kind === "input").map((column) => columnTitle(column));
+  const parts = [`${number(run.counted)} of ${number(run.members)} members are counted`];
+  if (run.failed) parts.push(`${number(run.failed)} failed and are left out`);
+  if (run.waiting) parts.push(`${number(run.waiting)} have not been run`);
+  const varied = inputs.length ? ` What varies: ${inputs.join(", ")}.` : "";
+  document.getElementById("headline").textContent =
+    `${parts.join(", ")}. They were drawn by ${designs[run.design] ?? run.design}.${varied}`;
+  const by = run.institution ? `${run.institution} \u00b7 ` : "";
+  document.getElementById("byline").textContent = `${by}${run.made} \u00b7 Talus ${run.version}`;
+  const box = document.getElementById("key-numbers");
+  box.append(keyNumber("Members counted", `${number(run.counted)} of ${number(run.members)}`,
+    run.failed ? `${number(run.failed)} failed` : null));
+  box.append(keyNumber("Error of a probability", `\u00b1${number(100 * standardError(0.5, run.draws), 1)} %`,
+    "of one half, one sigma"));
+  for (const name of keyResults) {
+    const column = members.columns.find((one) => one.name === name);
+    if (!column || !column.values.some((value) => value !== null)) continue;
+    const decimals = decimalsOf(column),
+      of = (share) => number(quantile(column.values, share), decimals);
+    box.append(keyNumber(columnTitle(column), of(0.5), `90 %: ${of(0.05)} to ${of(0.95)}`));
+  }
+}
+
+function item(...words) {
+  return h("li", {}, ...words);
+}
+
+export function drawMethod(data) {
+  const { run } = data,
+    box = document.getElementById("method");
+  const list = h("ul", { class: "plain-list" });
+  list.append(
+    item(run.share.meaning),
+    item(`${run.share.error} It is half the width of Wilson\u2019s score interval at one sigma, which is not zero `
+      + "where no member came."),
+    item("Every member is a whole run of the model; nothing between the members is interpolated."),
+    item("What varies, and how, is the analyst\u2019s choice: a probability here is one of the model with these "
+      + "distributions, not of nature. What does not vary is taken as known."),
+    item("Mean and standard deviation count a member that did not reach a cell as 0 there; times are over the members "
+      + "that arrive. Quantiles come from histograms whose bins grow by 16 to 20 %, linear within a bin."),
+    item(`Outlines are of cells that were thicker than ${run.threshold} m.`),
+    item("The volume beyond a line is not among the results: the runs keep counts and footprints, not their maps."),
+  );
+  if (run.survey) list.append(item(`Scores of members are against ${run.survey}, as the report of a run has them.`));
+  if (run.hazard) list.append(item(`Hazard class: ${run.hazard}.`));
+  box.append(list);
+  if (!run.failures.length) return;
+  box.append(h("h3", {}, "Members that failed"));
+  const failures = run.failures.map(([member, words]) => item(`Member ${member}: ${words}`));
+  box.append(h("ul", { class: "plain-list note" }, failures));
+  if (run.failed > run.failures.length)
+    box.append(h("p", { class: "note" }, `The first ${run.failures.length} of ${run.failed}; members.csv has all.`));
+}

@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// GeoTIFFs, styles, outlines and the project of QGIS.
+#include "postprocess/ensemble/write_maps.hpp"
+
+#include <fmt/format.h>
+
+#include "common/gis/geotiff.hpp"
+#include "common/gis/outlines.hpp"
+#include "common/qgis/project.hpp"
+#include "postprocess/ensemble/facts.hpp"
+#include "postprocess/fields/fields.hpp"
+#include "postprocess/fields/window.hpp"
+
+namespace talus::postprocess {
+namespace fs = std::filesystem;
+namespace {
+
+using Kind = EnsembleMapKind;
+
+// As of a single run: green for what was released, ink for what was touched.
+const OutlineStyle release_line{{0.0, 0.45, 0.36}, 0.7, false};
+const OutlineStyle share_line{{0.12, 0.12, 0.14}, 0.4, false};
+constexpr double outlined_shares[] = {0.05, 0.5, 0.95};
+
+/// What is written, collected while it is.
+struct Writing {
+  const fs::path& folder;
+  const Ensemble& ensemble;
+  const Options& options;
+  std::vector<fs::path> files{};
+  ProjectGroup shares{"Probability", {}}, statistics{"Statistics", {}}, errors{"Sampling error", {}},
+      lines{"Outlines", {}};
+  OutlineLayer outlines{"probability", {}};
+};
+
+void write_raster(const fs::path& file, const MapGrid& grid, std::vector<double> values, const std::string& title,
+                  const std::string& unit, Facts facts) {
+  const std::string shown = unit_words(unit);
+  write_cog(file, {grid, std::move(values)},
+            {fmt::format("{} [{}]", title, shown.empty() ? "-" : shown), shown, std::move(facts)});
+}
+
+void add_outlines(Writing& writing, const EnsembleMap& map, const Raster& raster) {
+  for (const double share : outlined_shares)
+    writing.outlines.features.push_back({fmt::format("{}: {:g} % of members", map.name, 100 * share),
+                                         outline_above(raster, share),
+                                         {{"probability", share}, {"threshold", map.level}}});
+}
+
+void write_map(Writing& writing, const EnsembleMap& map) {
+  stop_if_interrupted("writing " + map.name);
+  const EnsembleScene& scene = writing.ensemble.counts.scene;
+  const HazardOptions& hazard = writing.options.hazard;
+  std::vector<double> values = values_of(writing.ensemble, map, hazard);
+  const RasterStyle style = style_of(map, values, hazard);
+  if (map.kind == Kind::share && !counted_maps[map.tally].early) add_outlines(writing, map, {scene.grid, values});
+  Facts facts = ensemble_facts(writing.ensemble);
+  for (auto& fact : map_facts(writing.ensemble, map, hazard)) facts.push_back(std::move(fact));
+  facts.emplace_back("NODATA_MEANING", counted_maps[map.tally].early && map.unit == "s"
+                                           ? "outside the computed domain, or too few members arrive"
+                                           : "outside the computed domain");
+  const fs::path file = writing.folder / (map.name + ".tif");
+  write_raster(file, scene.grid, std::move(values), map.title, map.unit, std::move(facts));
+  writing.files.push_back(file);
+  writing.files.push_back(write_qgis_style(file, style));
+  const bool first = writing.shares.layers.empty() && map.kind == Kind::share;
+  ProjectGroup& group = map.kind == Kind::share || map.kind == Kind::hazard     ? writing.shares
+                        : map.kind == Kind::error || map.kind == Kind::to_halve ? writing.errors
+                                                                                : writing.statistics;
+  group.layers.push_back({map.title, file.filename().string(), first, style});
+}
+
+/// The window of all that any member reached, with a margin.
+Window reached_window(const Ensemble& ensemble, const Options& options) {
+  RunMaps maps = base_maps(ensemble.counts.scene);
+  const auto& reached = ensemble.counts.maps[0].reached;
+  Options anywhere = options;
+  anywhere.footprint_threshold = 0.5;
+  for (std::size_t cell = 0; cell < reached.size(); ++cell) maps.peak_thickness[cell] = reached[cell] > 0 ? 1 : 0;
+  return affected_window(maps, anywhere, std::nullopt);
+}
+
+void write_ground(Writing& writing) {
+  const EnsembleScene& scene = writing.ensemble.counts.scene;
+  const fs::path terrain = writing.folder / "terrain.tif";
+  write_raster(terrain, scene.grid, scene.before, "elevation of the ground before the failure", "m",
+               ensemble_facts(writing.ensemble));
+  writing.files.push_back(terrain);
+  writing.files.push_back(write_qgis_hillshade_style(terrain));
+}
+
+void write_project(Writing& writing) {
+  const EnsembleScene& scene = writing.ensemble.counts.scene;
+  const fs::path outlines = writing.folder / "outlines.gpkg";
+  const OutlineLayer release{"release",
+                             {{"release", outline_above({scene.grid, scene.release_thickness}, scene.threshold), {}}}};
+  write_outlines(outlines, scene.grid.crs_wkt, {writing.outlines, release});
+  writing.lines.layers = {{"Release", "outlines.gpkg|layername=release", true, release_line},
+                          {"Probability of 5, 50 and 95 %", "outlines.gpkg|layername=probability", false, share_line}};
+  const Window window = reached_window(writing.ensemble, writing.options);
+  const QgisProject project{scene.title + " (ensemble)",
+                            scene.grid.crs_wkt,
+                            {window.west, window.south, window.east, window.north},
+                            {writing.lines,
+                             writing.shares,
+                             writing.statistics,
+                             writing.errors,
+                             {"Ground", {{"Terrain before the failure", "terrain.tif", true, HillshadeStyle{}}}}}};
+  const fs::path file = writing.folder / (file_word(scene.scene) + "-ensemble.qgs");
+  write_qgis_project(file, project);
+  writing.files.insert(writing.files.end(), {outlines, file});
+}
+
+}  // namespace
+
+std::vector<fs::path> write_probability_maps(const fs::path& folder, const Ensemble& ensemble, const Options& options) {
+  Writing writing{folder, ensemble, options};
+  for (const EnsembleMap& map : ensemble_maps(ensemble, options.hazard)) write_map(writing, map);
+  write_ground(writing);
+  write_project(writing);
+  return writing.files;
+}
+
+}  // namespace talus::postprocess

@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "common/ensemble/counts.hpp"
+
+#include <gtest/gtest.h>
+
+#include "common/error.hpp"
+#include "tests/common/damage.hpp"
+#include "tests/common/ensemble/ensemble_scene.hpp"
+
+namespace talus {
+namespace {
+
+namespace fs = std::filesystem;
+
+void expect_same(const EnsembleCounts& a, const EnsembleCounts& b) {
+  EXPECT_EQ(a.fingerprint, b.fingerprint);
+  EXPECT_EQ(a.members, b.members);
+  EXPECT_EQ(a.part, b.part);
+  EXPECT_EQ(a.states, b.states);
+  EXPECT_EQ(a.flow, b.flow);
+  EXPECT_EQ(a.deposit, b.deposit);
+  EXPECT_EQ(a.failures, b.failures);
+  for (std::size_t m = 0; m < a.maps.size(); ++m) {
+    EXPECT_EQ(a.maps[m].thresholds, b.maps[m].thresholds);
+    EXPECT_EQ(a.maps[m].exceeded, b.maps[m].exceeded) << counted_maps[m].name;
+    EXPECT_EQ(a.maps[m].reached, b.maps[m].reached) << counted_maps[m].name;
+    EXPECT_EQ(a.maps[m].sum, b.maps[m].sum) << counted_maps[m].name;
+    EXPECT_EQ(a.maps[m].sum_of_squares, b.maps[m].sum_of_squares) << counted_maps[m].name;
+    EXPECT_EQ(a.maps[m].histograms.cells(), b.maps[m].histograms.cells()) << counted_maps[m].name;
+    for (const std::int32_t cell : a.maps[m].histograms.cells()) {
+      const auto ours = a.maps[m].histograms.of(static_cast<std::size_t>(cell)),
+                 theirs = b.maps[m].histograms.of(static_cast<std::size_t>(cell));
+      ASSERT_TRUE(std::equal(ours.begin(), ours.end(), theirs.begin(), theirs.end())) << counted_maps[m].name;
+    }
+  }
+  for (std::size_t k = 0; k < a.results.size(); ++k)
+    for (const ResultNumber& number : result_numbers) {
+      const double ours = a.results[k].*(number.value), theirs = b.results[k].*(number.value);
+      EXPECT_TRUE(ours == theirs || (std::isnan(ours) && std::isnan(theirs))) << number.name << " of member " << k;
+    }
+}
+
+const std::vector<fs::path> three_files{"counts.0-9.h5", "counts.9-20.h5", "counts.20-30.h5"};
+
+TEST(EnsembleCounts, of_parts_give_the_bits_of_the_whole_in_any_order) {
+  const MemberTable table = test::ensemble_table(30);
+  const EnsembleCounts whole = test::part_of_ensemble(table, {0, 30}, 8);
+  std::vector<std::size_t> order{0, 1, 2};
+  const MemberRange ranges[] = {{0, 9}, {9, 20}, {20, 30}};
+  do {
+    std::vector<EnsembleCounts> parts;
+    for (const std::size_t n : order) parts.push_back(test::part_of_ensemble(table, ranges[n], 8));
+    expect_same(merged(std::move(parts), three_files), whole);
+  } while (std::next_permutation(order.begin(), order.end()));
+}
+
+TEST(EnsembleCounts, name_a_member_that_failed_and_leave_it_out) {
+  const MemberTable table = test::ensemble_table(10);
+  const EnsembleCounts counts = test::part_of_ensemble(table, {0, 10}, 5);
+  EXPECT_EQ(counts.count(MemberState::failed), 2);
+  EXPECT_EQ(counts.count(MemberState::counted), 8);
+  ASSERT_EQ(counts.failures.size(), 2u);
+  EXPECT_EQ(counts.failures[0].member, 4);
+  const std::size_t source = counts.scene.grid.index(3, 7);
+  EXPECT_EQ(counts.maps[0].reached[source], 8u);
+}
+
+TEST(EnsembleCounts, of_missing_parts_leave_their_members_waiting) {
+  const MemberTable table = test::ensemble_table(30);
+  std::vector<EnsembleCounts> parts;
+  parts.push_back(test::part_of_ensemble(table, {9, 20}));
+  const EnsembleCounts all = merged(std::move(parts), three_files);
+  EXPECT_EQ(all.count(MemberState::waiting), 19);
+  EXPECT_EQ(all.part, (MemberRange{0, 30}));
+}
+
+TEST(EnsembleCounts, of_another_ensemble_or_of_a_member_twice_are_refused_by_name) {
+  const MemberTable table = test::ensemble_table(30);
+  std::vector<EnsembleCounts> parts;
+  parts.push_back(test::part_of_ensemble(table, {0, 9}));
+  parts.push_back(test::part_of_ensemble(table, {8, 20}));
+  auto fault = test::fault_of<DataError>([&] { merged(parts, three_files); });
+  EXPECT_NE(fault.find("counts.9-20.h5: member 8 is counted in another file as well"), std::string::npos) << fault;
+  parts[1] = test::part_of_ensemble(table, {9, 20});
+  parts[1].fingerprint = "another";
+  fault = test::fault_of<DataError>([&] { merged(parts, three_files); });
+  EXPECT_NE(fault.find("counts.9-20.h5: counts of another ensemble than counts.0-9.h5"), std::string::npos) << fault;
+}
+
+TEST(EnsembleCounts, of_one_fingerprint_but_other_maps_are_refused) {
+  const MemberTable table = test::ensemble_table(30);
+  const auto fault_of_second = [&](const std::function<void(EnsembleCounts&)>& change) {
+    std::vector<EnsembleCounts> parts;
+    parts.push_back(test::part_of_ensemble(table, {0, 9}));
+    parts.push_back(test::part_of_ensemble(table, {9, 20}));
+    change(parts[1]);
+    return test::fault_of<DataError>([&] { merged(std::move(parts), three_files); });
+  };
+  EXPECT_NE(fault_of_second([](EnsembleCounts& part) { part.members = 40; }).find("counts.9-20.h5"), std::string::npos);
+  EXPECT_NE(fault_of_second([](EnsembleCounts& part) { part.scene.grid.west += 5; }).find("counts.9-20.h5"),
+            std::string::npos);
+  EXPECT_NE(fault_of_second([](EnsembleCounts& part) { part.maps[0].thresholds.back() = 77; }).find("counts.9-20.h5"),
+            std::string::npos);
+}
+
+TEST(CountsFile, comes_back_as_it_was_written) {
+  const test::Scratch scratch;
+  const MemberTable table = test::ensemble_table(12);
+  EnsembleCounts counts = test::part_of_ensemble(table, {3, 12}, 4);
+  counts.provenance = {{"recipe.solve", "aabb"}, {"note", "two\nlines"}};
+  write_counts(scratch / "counts.3-12.h5", counts);
+  const EnsembleCounts read = read_counts(scratch / "counts.3-12.h5");
+  expect_same(read, counts);
+  EXPECT_EQ(read.provenance, counts.provenance);
+  EXPECT_EQ(read.scene.title, counts.scene.title);
+  EXPECT_EQ(read.scene.grid.west, counts.scene.grid.west);
+  EXPECT_EQ(read.scene.release_thickness, counts.scene.release_thickness);
+}
+
+TEST(CountsFile, of_a_part_in_which_nothing_came_anywhere_comes_back) {
+  const test::Scratch scratch;
+  const EnsembleCounts counts = empty_counts(test::ensemble_scene(), 4, {0, 4}, {});
+  write_counts(scratch / "counts.h5", counts);
+  expect_same(read_counts(scratch / "counts.h5"), counts);
+}
+
+TEST(CountsFile, that_is_missing_cut_short_or_something_else_is_refused) {
+  const test::Scratch scratch;
+  const fs::path file = scratch / "counts.h5";
+  EXPECT_NE(test::fault_of<DataError>([&] { read_counts(file); }).find("counts.h5: no such file"), std::string::npos);
+  write_counts(file, test::part_of_ensemble(test::ensemble_table(3), {0, 3}));
+  const std::string bytes = test::text_of(file);
+  for (const double share : {0.1, 0.5, 0.9, 0.999}) {
+    scratch.write("counts.h5", bytes.substr(0, static_cast<std::size_t>(share * static_cast<double>(bytes.size()))));
+    EXPECT_NE(test::fault_of<DataError>([&] { read_counts(file); }), "") << "cut to " << share;
+  }
+  write_member_table(file, test::ensemble_table(3));
+  EXPECT_NE(test::fault_of<DataError>([&] { read_counts(file); }).find("is not counts of an ensemble"),
+            std::string::npos);
+}
+
+TEST(CountsFile, with_changed_bytes_is_refused_by_its_seal) {
+  const test::Scratch scratch;
+  write_counts(scratch / "counts.h5", test::part_of_ensemble(test::ensemble_table(3), {0, 3}));
+  const std::string bytes = test::text_of(scratch / "counts.h5");
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const std::string damaged = test::damaged(bytes, seed);
+    if (damaged == bytes) continue;
+    scratch.write("counts.h5", damaged);
+    EXPECT_NE(test::fault_of<DataError>([&] { read_counts(scratch / "counts.h5"); }), "") << "seed " << seed;
+  }
+}
+
+TEST(CountsFile, with_counts_that_cannot_be_is_refused) {
+  const test::Scratch scratch;
+  const auto fault_of_changed = [&](const std::function<void(EnsembleCounts&)>& change) {
+    EnsembleCounts counts = test::part_of_ensemble(test::ensemble_table(6), {0, 6}, 3);
+    change(counts);
+    write_counts(scratch / "counts.h5", counts);
+    return test::fault_of<DataError>([&] { read_counts(scratch / "counts.h5"); });
+  };
+  EXPECT_EQ(fault_of_changed([](EnsembleCounts&) {}), "");
+  EXPECT_NE(fault_of_changed([](EnsembleCounts& c) { c.maps[0].exceeded[0][200] = 7; }), "") << "more than members";
+  EXPECT_NE(fault_of_changed([](EnsembleCounts& c) { c.maps[1].reached[200] = 5; }), "") << "more than counted";
+  EXPECT_NE(fault_of_changed([](EnsembleCounts& c) { c.failures[0].member = 99; }), "") << "no such member";
+  EXPECT_NE(fault_of_changed([](EnsembleCounts& c) { c.failures.clear(); }), "") << "a failure without words";
+  EXPECT_NE(fault_of_changed([](EnsembleCounts& c) { c.flow[0].clear(); }), "") << "counted, without a footprint";
+  EXPECT_NE(fault_of_changed([](EnsembleCounts& c) { c.flow[0] = {10, 5}; }), "") << "not of this grid";
+}
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,282 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The stage with an ensemble: members.h5 and counts in, results out.
+#include <gdal_priv.h>
+#include <gtest/gtest.h>
+#include <netcdf.h>
+
+#include <memory>
+#include <sstream>
+
+#include "common/ensemble/names.hpp"
+#include "common/gis/geotiff.hpp"
+#include "common/gis/read_raster.hpp"
+#include "postprocess/ensemble/hazard.hpp"
+#include "postprocess/ensemble/sampling_error.hpp"
+#include "postprocess/postprocess.hpp"
+#include "tests/common/ensemble/ensemble_scene.hpp"
+#include "tests/postprocess/scene.hpp"
+
+namespace talus::postprocess {
+namespace {
+
+namespace fs = std::filesystem;
+
+class EnsembleProducts : public ::testing::Test {
+ protected:
+  EnsembleProducts() { fs::create_directories(out_); }
+
+  void write_members(const std::string& design = "monte-carlo") {
+    table_ = test::ensemble_table(40, design);
+    write_member_table(out_ / "members.h5", table_);
+  }
+  void write_part(const MemberRange& part, const char* name = nullptr, std::int64_t fails = 0) {
+    write_counts(name != nullptr ? out_ / name : EnsemblePaths{out_}.counts(part),
+                 test::part_of_ensemble(table_, part, fails));
+  }
+  void run_it(bool check_only = false) {
+    StageContext context{.recipe = recipe::Recipe(scratch_.write("recipe.toml", recipe_)),
+                         .out = out_,
+                         .check_only = check_only,
+                         .command_line = "test"};
+    run(context);
+    results_ = context.results;
+  }
+  std::string fault() {
+    return test::fault_of<DataError>([&] { run_it(); });
+  }
+  double share_at(const std::string& name, int column, int row) const {
+    return read_raster(out_ / "probability" / name).at(column, row);
+  }
+  /// How many of the first `members` members reach a column.
+  double share_that_reaches(int column, std::int64_t members = 40) const {
+    double count = 0;
+    for (std::int64_t k = 0; k < members; ++k) count += test::reach_of(table_, k) > column ? 1 : 0;
+    return count / static_cast<double>(members);
+  }
+
+  test::Scratch scratch_;
+  const fs::path out_ = scratch_ / "out";
+  MemberTable table_;
+  std::string recipe_ =
+      "[scene]\nname = \"slope\"\n[ensemble]\nmembers = 40\n[[ensemble.vary]]\n"
+      "key = \"solve.base.friction_angle_deg\"\nlow = 14\nhigh = 26\n";
+  std::vector<fs::path> results_;
+};
+
+TEST_F(EnsembleProducts, are_all_written_and_named) {
+  write_members();
+  write_part({0, 40}, "counts.h5");
+  run_it();
+  for (const auto* name :
+       {"probability/peak_thickness_above_0.5_m.tif", "probability/peak_thickness_above_0.5_m.qml",
+        "probability/peak_thickness_above_0.5_m_error.tif",
+        "probability/peak_thickness_above_0.5_m_members_to_halve.tif", "probability/peak_speed_above_5_m_s.tif",
+        "probability/peak_pressure_above_30_kPa.tif", "probability/arrival_before_10_s.tif",
+        "probability/peak_thickness_q05.tif", "probability/arrival_q50.tif", "probability/peak_speed_mean.tif",
+        "probability/deposit_thickness_deviation.tif", "probability/hazard_class.tif", "probability/terrain.tif",
+        "probability/outlines.gpkg", "probability/slope-ensemble.qgs", "probability.nc", "members.csv",
+        "sensitivity.csv", "postprocess.used.toml"}) {
+    EXPECT_TRUE(fs::exists(out_ / name)) << name;
+    EXPECT_NE(std::find(results_.begin(), results_.end(), out_ / name), results_.end()) << name << " is not announced";
+  }
+  EXPECT_EQ(results_.back(), out_ / "probability.nc") << "the last, by which all is known to be there";
+  EXPECT_FALSE(fs::exists(out_ / "score.json")) << "there is no single run";
+}
+
+TEST_F(EnsembleProducts, show_the_share_of_the_members_and_its_error) {
+  write_members();
+  write_part({0, 40}, "counts.h5");
+  run_it();
+  for (const int column : {3, 9, 12, 15, 23}) {
+    const double share = share_that_reaches(column);
+    EXPECT_EQ(share_at("peak_thickness_above_0.5_m.tif", column, 7), share) << "column " << column;
+    EXPECT_NEAR(share_at("peak_thickness_above_0.5_m_error.tif", column, 7), standard_error(share, 40), 1e-12);
+    EXPECT_EQ(share_at("peak_thickness_above_0.5_m_members_to_halve.tif", column, 7),
+              std::ceil(members_to_halve(share, 40)));
+  }
+  EXPECT_TRUE(std::isnan(share_at("peak_thickness_above_0.5_m.tif", 9, 0))) << "outside the domain";
+  EXPECT_EQ(share_at("peak_thickness_above_0.5_m.tif", 9, 14), 0) << "inside, but never reached";
+}
+
+TEST_F(EnsembleProducts, say_in_each_map_of_what_and_of_how_many_it_is) {
+  write_members();
+  write_part({0, 40}, "counts.h5", 10);
+  run_it();
+  const std::string file = out_ / "probability/peak_speed_above_5_m_s.tif";
+  const std::unique_ptr<GDALDataset> dataset(GDALDataset::Open(file.c_str()));
+  ASSERT_TRUE(dataset);
+  const auto tag = [&](const char* name) {
+    const char* words = dataset->GetMetadataItem(name);
+    return std::string(words == nullptr ? "" : words);
+  };
+  EXPECT_EQ(tag("THRESHOLD"), "5");
+  EXPECT_EQ(tag("THRESHOLD_UNIT"), "m/s");
+  EXPECT_EQ(tag("MEMBERS_COUNTED"), "36");
+  EXPECT_EQ(tag("MEMBERS_FAILED"), "4");
+  EXPECT_EQ(tag("DESIGN"), "monte-carlo");
+  EXPECT_NE(tag("ERROR_MEANING").find("Wilson"), std::string::npos);
+}
+
+TEST_F(EnsembleProducts, of_parts_are_those_of_the_whole) {
+  write_members();
+  write_part({0, 40}, "counts.h5");
+  run_it();
+  const std::string whole = test::text_of(out_ / "members.csv"), sensitive = test::text_of(out_ / "sensitivity.csv");
+  const Raster mean = read_raster(out_ / "probability/peak_thickness_mean.tif");
+  fs::remove(out_ / "counts.h5");
+  for (const MemberRange part : {MemberRange{0, 11}, MemberRange{11, 30}, MemberRange{30, 40}}) write_part(part);
+  run_it();
+  EXPECT_EQ(test::text_of(out_ / "members.csv"), whole);
+  EXPECT_EQ(test::text_of(out_ / "sensitivity.csv"), sensitive);
+  const Raster again = read_raster(out_ / "probability/peak_thickness_mean.tif");
+  for (std::size_t n = 0; n < mean.values.size(); ++n)
+    EXPECT_TRUE(mean.values[n] == again.values[n] || std::isnan(mean.values[n])) << n;
+}
+
+TEST_F(EnsembleProducts, have_a_row_for_each_member_also_those_that_failed_or_wait) {
+  write_members();
+  write_part({0, 30}, nullptr, 10);
+  run_it();
+  std::istringstream lines(test::text_of(out_ / "members.csv"));
+  std::vector<std::string> rows;
+  for (std::string line; std::getline(lines, line);) rows.push_back(line);
+  ASSERT_EQ(rows.size(), 41u);
+  EXPECT_TRUE(
+      rows[0].starts_with("member,state,solve.base.friction_angle_deg,preprocess.thickness_factor,"
+                          "solve.base.law,run_out_m,"))
+      << rows[0];
+  EXPECT_TRUE(rows[1].starts_with("0,counted,")) << rows[1];
+  EXPECT_NE(rows[1].find(",coulomb,"), std::string::npos) << rows[1];
+  EXPECT_TRUE(rows[10].starts_with("9,failed,")) << rows[10];
+  EXPECT_TRUE(rows[10].ends_with(",\"the step has fallen below 1e-9 s, \"\"far\"\" too short\"")) << rows[10];
+  EXPECT_TRUE(rows[40].starts_with("39,waiting,")) << rows[40];
+  EXPECT_EQ(share_at("peak_thickness_above_0.5_m.tif", 3, 7), 1) << "of the 27 that are counted";
+}
+
+TEST_F(EnsembleProducts, score_every_member_against_the_survey) {
+  write_members();
+  write_part({0, 40}, "counts.h5");
+  const EnsembleScene scene = test::ensemble_scene();
+  const RunMaps third = test::member_maps(scene, test::reach_of(table_, 3), test::depth_of(table_, 3));
+  write_geotiff(scratch_ / "survey.tif", {scene.grid, third.deposit_thickness}, {"", "m", {}});
+  write_geotiff(scratch_ / "peak.tif", {scene.grid, third.peak_thickness}, {"", "m", {}});
+  recipe_ +=
+      "[postprocess]\nfootprint_threshold_m = 0.1\ndeposit_threshold_m = 0.1\n"
+      "[postprocess.survey]\nthickness = \"survey.tif\"\npeak_thickness = \"peak.tif\"\n";
+  run_it();
+  std::istringstream lines(test::text_of(out_ / "members.csv"));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_TRUE(line.ends_with(",footprint_csi,footprint_hit_rate,footprint_false_alarm_ratio,deposit_csi,failure"));
+  for (int k = 0; std::getline(lines, line); ++k)
+    if (k == 3) {
+      EXPECT_TRUE(line.ends_with(",1,1,0,1,")) << line;
+    } else if (test::reach_of(table_, k) != test::reach_of(table_, 3)) {
+      EXPECT_FALSE(line.ends_with(",1,1,0,1,")) << line;
+    }
+}
+
+TEST_F(EnsembleProducts, are_in_one_netcdf_file_with_thresholds_as_coordinates_and_members_as_a_group) {
+  write_members();
+  write_part({0, 40}, "counts.h5");
+  run_it();
+  int file = 0, id = 0, group = 0;
+  ASSERT_EQ(nc_open((out_ / "probability.nc").c_str(), NC_NOWRITE, &file), NC_NOERR);
+  ASSERT_EQ(nc_inq_varid(file, "peak_thickness_threshold", &id), NC_NOERR);
+  double thresholds[5];
+  ASSERT_EQ(nc_get_var_double(file, id, thresholds), NC_NOERR);
+  EXPECT_EQ(thresholds[1], 0.5);
+  ASSERT_EQ(nc_inq_varid(file, "probability_of_peak_thickness", &id), NC_NOERR);
+  const std::size_t place[] = {1, 7, 12};
+  double share = 0;
+  ASSERT_EQ(nc_get_var1_double(file, id, place, &share), NC_NOERR);
+  EXPECT_EQ(share, share_that_reaches(12));
+  for (const char* name : {"probability_error_of_peak_thickness", "peak_speed_quantile", "arrival_time_mean",
+                           "hazard_class", "x_bnds", "quantile"})
+    EXPECT_EQ(nc_inq_varid(file, name, &id), NC_NOERR) << name;
+  ASSERT_EQ(nc_inq_ncid(file, "members", &group), NC_NOERR);
+  ASSERT_EQ(nc_inq_varid(group, "run_out_m", &id), NC_NOERR);
+  const std::size_t third = 3;
+  double run_out = 0;
+  ASSERT_EQ(nc_get_var1_double(group, id, &third, &run_out), NC_NOERR);
+  EXPECT_EQ(run_out, test::result_of(table_, 3).run_out);
+  nc_close(file);
+}
+
+TEST_F(EnsembleProducts, are_written_beside_those_of_a_single_run) {
+  write_members();
+  write_part({0, 40}, "counts.h5");
+  test::write_run(out_ / "run.h5", test::small_run());
+  run_it();
+  EXPECT_TRUE(fs::exists(out_ / "probability.nc"));
+  EXPECT_TRUE(fs::exists(out_ / "score.json"));
+  EXPECT_NE(std::find(results_.begin(), results_.end(), out_ / "probability.nc"), results_.end());
+}
+
+TEST_F(EnsembleProducts, are_not_written_when_only_checking) {
+  write_members();
+  write_part({0, 40}, "counts.h5");
+  run_it(true);
+  EXPECT_EQ(std::distance(fs::directory_iterator(out_), {}), 2) << "members.h5 and counts.h5";
+}
+
+TEST_F(EnsembleProducts, need_members_and_counts_that_belong_together) {
+  EXPECT_NE(fault().find("members.h5: no such file"), std::string::npos) << fault();
+  write_members();
+  EXPECT_NE(fault().find("counts.h5: no such file"), std::string::npos) << fault();
+  write_part({0, 40}, "counts.h5");
+  table_.count = 39;
+  for (MemberColumn& column : table_.columns) column.values.pop_back();
+  table_.own_domain.pop_back();
+  write_member_table(out_ / "members.h5", table_);
+  EXPECT_NE(fault().find("counts.h5: counts of an ensemble of 40 members"), std::string::npos) << fault();
+  EXPECT_FALSE(fs::exists(out_ / "probability"));
+}
+
+TEST_F(EnsembleProducts, of_members_that_another_recipe_drew_are_refused) {
+  table_ = test::ensemble_table(40);
+  table_.provenance = {{recipe_of_members, "0000000000000000"}};
+  write_member_table(out_ / "members.h5", table_);
+  write_part({0, 40}, "counts.h5");
+  EXPECT_NE(fault().find("members.h5"), std::string::npos) << fault();
+}
+
+TEST_F(EnsembleProducts, need_a_member_that_is_counted) {
+  write_members();
+  write_part({0, 40}, "counts.h5", 1);
+  EXPECT_NE(fault().find("no member is counted (40 failed and 0 wait)"), std::string::npos) << fault();
+}
+
+TEST_F(EnsembleProducts, classify_hazard_by_the_matrix_of_the_recipe) {
+  write_members();
+  write_part({0, 40}, "counts.h5");
+  recipe_ +=
+      "[postprocess.hazard]\nintensity = \"peak-thickness\"\nlimits = [0.5, 2]\nprobability = [0.1, 0.6]\n"
+      "matrix = [1, 2, 2, 3]\n";
+  run_it();
+  for (const int column : {3, 10, 14, 18}) {
+    const double weak = share_at("peak_thickness_above_0.5_m.tif", column, 7),
+                 strong = share_at("peak_thickness_above_2_m.tif", column, 7);
+    const double expected = std::max(weak >= 0.6 ? 2 : weak >= 0.1 ? 1 : 0, strong >= 0.6 ? 3 : strong >= 0.1 ? 2 : 0);
+    EXPECT_EQ(share_at("hazard_class.tif", column, 7), expected) << "column " << column;
+  }
+}
+
+TEST_F(EnsembleProducts, refuse_hazard_limits_that_were_not_counted) {
+  write_members();
+  write_part({0, 40}, "counts.h5");
+  recipe_ += "[postprocess.hazard]\nintensity = \"peak-speed\"\nlimits = [5, 7]\n";
+  EXPECT_NE(fault().find("[postprocess.hazard] limits names 7 m/s or more (the runs were counted at 1, 5, 10, 20 m/s)"),
+            std::string::npos)
+      << fault();
+}
+
+TEST(MemberList, names_ranges_and_cuts_what_is_long) {
+  EXPECT_EQ(member_list({3, 7, 8, 9, 12, 13}), "3, 7 to 9, 12, 13");
+  EXPECT_EQ(member_list({1, 3, 5, 7, 9}, 2), "1, 3 and 3 more");
+  EXPECT_EQ(member_list({}), "");
+}
+
+}  // namespace
+}  // namespace talus::postprocess

@@ -1,0 +1,202 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Writes the tables of figures into the pages that show them, from the files that the measuring commands have left.
+
+usage: tools/make-tables.py              write them
+       tools/make-tables.py --check      fail where a page does not show what the files say
+       tools/make-tables.py --events OUT...   first take the scores of real events from these folders of results
+
+docs/explanation/validation-table.md   of `make validate`: all rows of one commit
+docs/benchmarks/speed-against-error.csv, kernels-h200.csv   of `make -C pipelines/benchmarks`
+docs/benchmarks/events.csv             of the scenes of real events, by --events
+A page holds "<!-- table: NAME -->" and "<!-- end of table -->"; what stands between them is written here.
+"""
+import csv
+import datetime
+import json
+import pathlib
+import re
+import sys
+import tomllib
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PAGES = ["README.md", "docs/explanation/validation.md", "docs/explanation/benchmarks.md"]
+BLOCK = re.compile(r"(<!-- table: ([\w-]+) -->\n).*?(<!-- end of table -->)", re.S)
+ROWS = ROOT / "docs/explanation/validation-table.md"
+EVENTS = ROOT / "docs/benchmarks/events.csv"
+DAY = "2026-11-23"  # of the rows of speed-against-error.csv, which name their commit alone
+# What a case is, and what holds it; the cases in full are on the page of the validation.
+CASES = {
+    "A1": ("column under its own weight, implicit", "closed form"),
+    "A2": ("cantilever, large deflection, implicit", "elastica"),
+    "A3": ("sand column collapse, run-out and height", "Lube et al. (2005), Lajeunesse et al. (2005)"),
+    "A3b": ("sand columns of seven aspect ratios", "the same experiments; the finer grid"),
+    "A3c": ("round sand columns", "Lube et al. (2004)"),
+    "A4": ("memory of the implicit scheme", "the reference paper's tables"),
+    "B1": ("block on an incline, any direction", "Newton's law"),
+    "B2": ("block on a bed that weakens with speed", "the integrated law"),
+    "B3": ("heap on a parabola and a bend", "point with Coulomb friction"),
+    "B4": ("granular cap on a plane", "Hutter et al. (1993)"),
+    "B5": ("layer with a step (dam break)", "Mangeney et al. (2000)"),
+    "B6": ("vibration, free fall, patch test", "exact"),
+    "B7": ("block on a shaken plane", "Newmark (1965)"),
+    "C1": ("long implicit steps in a flow", "explicit steps of 0.1 CFL"),
+    "D1": ("factor of safety, homogeneous slope", "Bishop & Morgenstern (1960)"),
+    "D2": ("factor of safety with foundation", "Griffiths & Lane (1999)"),
+    "D3": ("factor of safety, weak seam", "Giam & Donald (1989)"),
+    "D4": ("factor of safety, wedge", "Hoek & Bray (1981)"),
+}
+
+
+def rows_of_validation():
+    """(case, quantity, error, tolerance, met) of every judged row that is no cost; and (commit, day, place)."""
+    text, rows, case = ROWS.read_text(encoding="utf-8"), [], ""
+    heading = re.search(r"^Commit (\w+), ([\d-]+), .*? on (.*)\.$", text, re.M)
+    for line in text.splitlines():
+        name = re.match(r"\*\*([A-D]\d[a-z]?(?:-\w+)?) ?.*\*\*$", line)
+        cells = [cell.strip() for cell in line.strip("|").split("|")]
+        if name:
+            case = name.group(1)
+        elif len(cells) == 7 and cells[5].strip("*") in ("met", "missed") and not cells[0].startswith("cost"):
+            rows.append((case, cells[0], float(cells[3]), float(cells[4]), cells[5] == "met"))
+    if not rows or not heading:
+        sys.exit(f"tools/make-tables.py: {ROWS.relative_to(ROOT)} holds no judged rows. Write it: make validate")
+    return rows, heading.groups()
+
+
+def percent(part):
+    return "0" if part == 0 else f"{100 * part:.2g} %" if part >= 1e-4 else f"{part:.0e}"
+
+
+def validated(cases):
+    rows, (commit, day, place) = rows_of_validation()
+    lines = ["| case | against | rows met | error in the middle | largest |", "| --- | --- | --- | --- | --- |"]
+    for case in cases:
+        mine = [row for row in rows if row[0] == case]
+        if not mine:
+            continue
+        errors = sorted(row[2] for row in mine)
+        met = sum(row[4] for row in mine)
+        lines.append(f"| {case}: {CASES[case][0]} | {CASES[case][1]} | {met} of {len(mine)} | "
+                     f"{percent(errors[len(errors) // 2])} | {percent(errors[-1])} |")
+    return [*lines, "", f"Commit {commit[:7]}, {day}, on {place.partition(',')[0]} and {place.rpartition('; ')[2]}, by "
+            "`make validate LONG=1`. The",
+            "error of a quantity that must lie in a band is its distance from the band."]
+
+
+def speed():
+    """Least time of each method below bounds of the error, on the Frank Slide at one modulus and on one GPU."""
+    with (ROOT / "docs/benchmarks/speed-against-error.csv").open(encoding="utf-8") as table:
+        rows = [r for r in csv.DictReader(table) if r["set"] == "Frank Slide" and r["loop_s"] and
+                r["elsewhere_than_finest_percent"] and float(r["spacing_m"]) > 10]
+    names = {"column-implicit": "implicit along columns", "explicit": "explicit", "newton": "Newton (Newmark)",
+             "reference preset": "the reference paper's scheme, as read here"}
+    bounds = [6.0, 3.0, 2.1, 1.5]
+    lines = ["| steps | " + " | ".join(f"error below {bound:g} %" for bound in bounds) + " | least error |",
+             "|" + " --- |" * (len(bounds) + 2)]
+    for method, name in names.items():
+        mine = [(float(r["elsewhere_than_finest_percent"]), float(r["loop_s"])) for r in rows if r["method"] == method]
+        times = [min((t for e, t in mine if e < bound), default=None) for bound in bounds]
+        lines.append(f"| {name} | " + " | ".join("not reached" if t is None else f"{t:.2g} s" for t in times) +
+                     f" | {min(e for e, _ in mine):.1f} % |")
+    commit = {r["commit"] for r in rows if r["commit"]}.pop()
+    return [*lines, "", "Frank Slide, 100 s, Young's modulus 1e9 Pa for all, double precision, one NVIDIA H200, commit "
+            f"{commit[:7]}, {DAY}, by", "`make -C pipelines/benchmarks speed-against-error`. Error: share of the "
+            "deposit that lies elsewhere than on the finest", "grid. All methods were run on cells of 40 m; all but "
+            "the reference paper's scheme on cells of 20 m too."]
+
+
+def kernels():
+    with (ROOT / "docs/benchmarks/kernels-h200.csv").open(encoding="utf-8") as table:
+        rows = [r for r in csv.DictReader(table) if r["method"] == "explicit"]
+    lines = ["| shape, precision | points | step [ms] | s a point and step | memory [B a point] |",
+             "| --- | --- | --- | --- | --- |"]
+    for shape in ("linear", "quadratic"):
+        for precision in ("single", "double"):
+            mine = [r for r in rows if r["shape"] == shape and r["precision"] == precision]
+            for wanted in (1e5, 1e6, 1e8):
+                near = min(mine, key=lambda r: abs(int(r["points"]) / wanted - 1), default=None)
+                if near and 0.5 < int(near["points"]) / wanted < 2:
+                    lines.append(f"| {shape}, {precision} | {int(near['points']):,} | "
+                                 f"{float(near['step_us']) / 1e3:.3g} "
+                                 f"| {float(near['seconds_per_point_and_step']):.1e} | {near['bytes_per_point']} |")
+    return [*lines, "", f"{rows[0]['place']}, explicit steps, by `make -C pipelines/benchmarks kernels`."]
+
+
+def events():
+    with EVENTS.open(encoding="utf-8") as table:
+        rows = list(csv.DictReader(table))
+    lines = ["| event | against | footprint | deposit | thickness RMSE | run-out | volume |",
+             "|" + " --- |" * 7]
+    for r in rows:
+        shown = [f"{float(r[key]):.{digits}f}{unit}" if r[key] else "-" for key, digits, unit in
+                 (("footprint_csi", 2, ""), ("deposit_csi", 2, ""), ("thickness_rmse_m", 1, " m"),
+                  ("runout_difference_m", 0, " m"), ("deposit_volume_ratio", 2, ""))]
+        link = f"ROOTpipelines/{r['scene']}/README.md"
+        lines.append(f"| [{r['title'].partition(',')[0]}]({link}) | {r['survey']} | " + " | ".join(shown) +
+                     " |")
+    return [*lines, "", f"Commit {rows[0]['version'].strip('()')[:7]}, {rows[0]['day']}, friction chosen with the "
+            "reference in hand, by `make events`.", "Footprint and "
+            "deposit: CSI, 1 is the same area. Run-out and volume of the deposit: simulated less, and over, surveyed."]
+
+
+def take_events(folders):
+    keys = ["scene", "title", "survey", "version", "day", "footprint_csi", "deposit_csi", "thickness_rmse_m",
+            "runout_difference_m", "deposit_volume_ratio"]
+    rows = []
+    for folder in map(pathlib.Path, folders):
+        score = json.loads((folder / "score.json").read_text(encoding="utf-8"))
+        used = tomllib.loads((folder / "postprocess.used.toml").read_text(encoding="utf-8"))
+        score |= {"scene": used["scene"]["name"], "survey": used["postprocess"]["survey"]["name"]}
+        version = re.search(r"\((\w+)\)", score["version"])
+        rows.append({key: score.get(key, "") for key in keys} |
+                    {"version": version.group(1) if version else score["version"], "day": day_of(folder)})
+    commits = {row["version"] for row in rows}
+    if len(commits) > 1:
+        sys.exit(f"tools/make-tables.py: the events are of different commits ({', '.join(sorted(commits))}): one table "
+                 "shows one state. Run them again: make events")
+    with EVENTS.open("w", encoding="utf-8", newline="") as table:
+        writer = csv.DictWriter(table, keys, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def day_of(folder):
+    return datetime.date.fromtimestamp((folder / "score.json").stat().st_mtime).isoformat()
+
+
+TABLES = {
+    "validated": lambda: validated(["A3", "A3b", "A3c", "B1", "B2", "B3", "B4", "B5", "B7", "C1", "D1", "D4"]),
+    "validation-cases": lambda: validated(list(CASES)),
+    "speed": speed,
+    "kernels": kernels,
+    "events": events,
+}
+
+
+def filled(path):
+    """The page's text with every table as the files have it now."""
+    root = "../" * (len(path.relative_to(ROOT).parts) - 1)
+    return BLOCK.sub(lambda m: m.group(1) + "\n".join(TABLES[m.group(2)]()).replace("ROOT", root) + "\n" + m.group(3),
+                     path.read_text(encoding="utf-8"))
+
+
+def main():
+    if sys.argv[1:2] == ["--events"]:
+        take_events(sys.argv[2:])
+    elif sys.argv[1:] not in ([], ["--check"]):
+        sys.exit(__doc__)
+    stale = [name for name in PAGES if filled(ROOT / name) != (ROOT / name).read_text(encoding="utf-8")]
+    if sys.argv[1:] == ["--check"]:
+        if stale:
+            sys.exit(f"{', '.join(stale)}: a table is not what its file of figures says. Write it: make tables")
+        print(f"{sum(len(BLOCK.findall((ROOT / name).read_text())) for name in PAGES)} tables are those of their files")
+        return
+    for name in stale:
+        (ROOT / name).write_text(filled(ROOT / name), encoding="utf-8")
+        print(ROOT / name)
+
+
+if __name__ == "__main__":
+    main()
