@@ -16,7 +16,7 @@ struct ReachCone {
   std::string name;    ///< "Corominas 1996"; "angle_deg" for the recipe's own
   double tangent = 0;  ///< H/L [-]
   /// Height of the energy line above the ground where it passes, from the release on over cells that it passes: NaN
-  /// elsewhere. sqrt(2 g head) bounds the speed there (Koerner 1980). [rows * columns] [m]
+  /// elsewhere. sqrt(2 g head) bounds the speed there (Körner 1980). [rows * columns] [m]
   std::vector<double> head;
   double area = 0;     ///< in plan, of the cells reached [m2]
   double covered = 0;  ///< share of the run's footprint that lies within [-]; NaN where there is no footprint
