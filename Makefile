@@ -126,7 +126,7 @@ check-threads: ## tests of what runs in threads under the thread sanitizer [TEST
 	@$(MAKE) --no-print-directory sanitized PRESET=check-threads
 
 # What needs no programs from outside and ends in time under a sanitizer: of each folder what the label "quick" names,
-# and the replays. docs/explanation/reliability.md says when it last passed.
+# and the replays. docs/log/reliability.md says when it last passed.
 check_tests            := ^(common|preprocess|postprocess|solver|fuzz)[.]
 check_programs         := $(addprefix talus-tests-,common preprocess postprocess solver) talus-replay
 check-threads_tests    := ^(preprocess|postprocess|solver)[.]
@@ -182,7 +182,7 @@ pictures: with-tests ## the documents' pictures, from runs and tables [PICTURES=
 tables: ## the documents' tables of figures, from the files that measuring commands have left
 	@python3 tools/make-tables.py
 
-scenes_of_events := frank-slide iseesnow-realtopo cascade2021
+scenes_of_events := cascade2021 frank-slide
 events: build ## scores of real events into the documents' tables [DATA=folder of real events]
 	@for scene in $(scenes_of_events); do \
 	  $(MAKE) --no-print-directory -C pipelines $$scene OUT="$$(realpath -ms -- '$(OUT)')" ON=$(ON) \

@@ -9,6 +9,7 @@ project_copyright = "The Talus authors, GNU General Public License 3 or later"
 version = release = os.environ.get("TALUS_VERSION", "")
 
 extensions = ["myst_parser"]
+myst_enable_extensions = ["html_image"]
 myst_heading_anchors = 4          # as GitHub names them, so that one link serves both
 source_suffix = {".md": "markdown"}
 root_doc = "docs/index"

@@ -12,7 +12,9 @@
 #include "common/stage/identity.hpp"
 #include "common/stage/machine.hpp"
 #include "common/stage/stage.hpp"
+#include "preprocess/ensemble/ensemble.hpp"
 #include "preprocess/obstacle/obstacles.hpp"
+#include "preprocess/output/provenance.hpp"
 #include "preprocess/output/write_survey.hpp"
 #include "preprocess/scene/prepare.hpp"
 
@@ -22,32 +24,6 @@ using namespace talus;
 
 constexpr double bytes_per_point =
     400;  // state of one material point in the solver, double precision, with its sorting
-
-Facts facts_of(const preprocess::Prepared& prepared) {
-  const Domain& domain = prepared.domain;
-  const MapGrid& grid = domain.grid;
-  Facts facts{{"crs", crs_name(grid.crs_wkt)},
-              {"grid", fmt::format("{} x {} cells of {:g} m, west {:.10g}, south {:.10g}", grid.columns, grid.rows,
-                                   grid.cell, grid.west, grid.south)},
-              {"layer_height_m", fmt::format("{:g}", domain.layer_height)},
-              {"material_points", std::to_string(prepared.point_count)}};
-  for (auto& fact : preprocess::as_facts(prepared.total)) facts.push_back(std::move(fact));
-  facts.insert(facts.end(), prepared.accepted.begin(), prepared.accepted.end());
-  if (!prepared.coarse.empty()) facts.emplace_back("warning.coarse_grid", prepared.coarse);
-  if (prepared.sliding_surface) {
-    facts.emplace_back(
-        "sliding_surface",
-        fmt::format(
-            "computed from the outline, curvature {:.4g} 1/m, at most {:.4g} m deep, follows the ground in {} cells",
-            prepared.sliding_surface->curvature, prepared.sliding_surface->depth, prepared.sliding_surface->touching));
-  }
-  if (prepared.by_release.size() < 2) return facts;
-  for (const auto& [name, volumes] : prepared.by_release) {
-    for (auto& [key, value] : preprocess::as_facts(volumes))
-      facts.emplace_back(fmt::format("{}.{}", name, key), std::move(value));
-  }
-  return facts;
-}
 
 void report(const preprocess::Prepared& prepared) {
   const MapGrid& grid = prepared.domain.grid;
@@ -69,38 +45,6 @@ void report(const preprocess::Prepared& prepared) {
   const double count = static_cast<double>(prepared.point_count);
   log_info(fmt::format("material points: {} (the solver needs about {:.0f} MB for them)", grouped(count),
                        std::max(1.0, count * bytes_per_point * 1e-6)));
-}
-
-/// Files with their checksums.
-Facts inputs_of(const std::vector<std::filesystem::path>& files) {
-  Facts inputs;
-  for (const auto& file : files) {
-    const std::string sum =
-        std::filesystem::is_regular_file(file) ? " sha256 " + sha256(file) : "";  // some formats are folders
-    inputs.emplace_back("input " + file.filename().string(), file.string() + sum);
-  }
-  return inputs;
-}
-
-/// Whose domain it is: the same for the same [preprocess], inputs and version, wherever they lie and whenever it runs.
-Facts marks_of(const StageContext& context, const Facts& inputs) {
-  const std::string mark = recipe_mark(context.recipe, "preprocess");
-  std::string text = version() + "\n" + mark + "\n";
-  for (const auto& [name, value] : inputs) {
-    const auto sum = value.rfind("sha256 ");
-    text += name + (sum == std::string::npos ? "" : value.substr(sum)) + "\n";
-  }
-  return {{domain_id, sha256_of_text(text).substr(0, mark_digits)}, {recipe_of_domain, mark}};
-}
-
-Facts provenance_of(const StageContext& context, const Facts& inputs, const Facts& marks, const Facts& facts) {
-  Facts provenance{{"scene", context.recipe.scene_name()},
-                   {"title", context.recipe.title()},
-                   {"version", version()},
-                   {"command", context.command_line},
-                   {"hardware", hardware()}};
-  for (const Facts* more : {&inputs, &marks, &facts}) provenance.insert(provenance.end(), more->begin(), more->end());
-  return provenance;
 }
 
 /// What the command line says beyond what every stage takes.
@@ -130,7 +74,8 @@ void run_difference(StageContext& context, const preprocess::Options& options) {
                             "there is nothing to compare", "Give both, or leave --difference out"});
   preprocess::Survey survey = preprocess::survey_of(options);
   survey.accepted.settle();
-  const Facts marks = marks_of(context, inputs_of({options.before_dem, options.after_dem}));
+  const Facts marks =
+      preprocess::marks_of(context.recipe, preprocess::checksums_of({options.before_dem, options.after_dem}));
   std::vector<std::string> lines = preprocess::as_lines(survey);
   if (!context.check_only)
     context.results = preprocess::write_survey(context.out / "survey", survey, nullptr, marks, lines);
@@ -169,26 +114,63 @@ Dependencies depends(const StageContext& context, const PreprocessFlags& flags) 
     return {{context.out / "survey/survey.json"}, with_sidecars({options.before_dem, options.after_dem})};
   Dependencies depends{{context.out / "domain.vdb"}, with_sidecars(preprocess::inputs_of(options))};
   if (!options.obstacle.empty()) depends.results.push_back(context.out / "obstacles.vdb");
+  const EnsembleOptions ensemble = ensemble_of(context.recipe);
+  if (ensemble.on()) depends.results.push_back(EnsemblePaths{context.out}.members());
+  for (const auto& file : preprocess::inputs_of(ensemble)) depends.inputs.push_back(file);
   return depends;
+}
+
+/// The base scene's error, and whether every key of the ground does something.
+void look_at_ensemble(const StageContext& context, preprocess::EnsemblePlan& plan,
+                      const preprocess::EnsembleBase& base) {
+  if (plan.options.elevation_error.acts())
+    plan.errors.emplace(plan.options.elevation_error, base.options, base.scene, plan.options.seed);
+  for (const std::string& line : preprocess::as_lines(plan)) log_info(line);
+  preprocess::refuse_idle_keys(context.recipe, plan, base);
+}
+
+/// The [preprocess] and, where there is one, the [ensemble] of a recipe, as they are used.
+std::string used_tables(const recipe::Recipe& recipe, bool marked) {
+  const auto options = recipe.read<preprocess::Options>("preprocess");
+  const EnsembleOptions ensemble = ensemble_of(recipe);
+  std::string text =
+      marked ? recipe::to_used_toml(options, "preprocess") : recipe::to_toml(options, "preprocess", false);
+  if (ensemble.on())
+    text += "\n" + (marked ? recipe::to_used_toml(ensemble, "ensemble") : recipe::to_toml(ensemble, "ensemble", false));
+  return text;
 }
 
 void run(StageContext& context, const PreprocessFlags& flags) {
   const auto options = read_options(context);
   if (flags.difference) return run_difference(context, options);
-  auto prepared =
-      preprocess::prepare(options, context.check_only ? preprocess::Points::counted : preprocess::Points::seeded);
+  auto ensemble = preprocess::plan_ensemble(context.recipe, options);
+  preprocess::SurveyMemory memory;
+  preprocess::EnsembleBase base{options, preprocess::read_scene(options, &memory), memory, {}, {}, {}};
+  auto prepared = preprocess::prepare(preprocess::resolved(options), base.scene,
+                                      context.check_only ? preprocess::Points::counted : preprocess::Points::seeded);
   report(prepared);
+  if (ensemble) look_at_ensemble(context, *ensemble, base);
   if (context.check_only) return;
   stop_if_interrupted("writing the domain");
-  const Facts inputs = inputs_of(prepared.inputs), marks = marks_of(context, inputs), facts = facts_of(prepared);
-  prepared.domain.provenance = provenance_of(context, inputs, marks, facts);
+  const Facts inputs = preprocess::checksums_of(prepared.inputs), facts = preprocess::facts_of(prepared);
+  const Facts marks = preprocess::marks_of(context.recipe, inputs);
+  prepared.domain.provenance = preprocess::provenance_of(context, inputs, marks, facts);
   write_survey_files(context, prepared, marks);
+  const auto own = static_cast<std::ptrdiff_t>(prepared.domain.provenance.size());
   write_obstacles(context, prepared);
+  if (ensemble) {
+    base.inputs = inputs;
+    base.marks = marks;
+    base.obstacles.assign(prepared.domain.provenance.begin() + own, prepared.domain.provenance.end());
+    preprocess::write_ensemble(context, *ensemble, base);
+  } else {
+    preprocess::remove_members({context.out}, nullptr);
+  }
   const auto file = context.out / "domain.vdb";
   context.results.push_back(file);
   Facts told{{"id", fact(marks, domain_id)}};
   told.insert(told.end(), facts.begin(), facts.end());
-  write_used_recipe(context, stage(), recipe::to_used_toml(options, "preprocess"), prepared.inputs, told);
+  write_used_recipe(context, stage(), used_tables(context.recipe, true), prepared.inputs, told);
   write_domain(file, prepared.domain);  // last: where it lies, everything is there
 }
 
@@ -203,10 +185,12 @@ Stage stage() {
       "  talus-preprocess recipe.toml --difference       compare the two surveys block by block, write OUT/survey and "
       "stop\n"
       "  talus-preprocess --template > recipe.toml       every key with its meaning and range";
-  stage.template_toml = [] { return recipe::to_toml(preprocess::Options{}, "preprocess", true); };
-  stage.used_toml = [](const recipe::Recipe& recipe) {
-    return recipe::to_toml(recipe.read<preprocess::Options>("preprocess"), "preprocess", false);
+  stage.template_toml = [] {
+    return recipe::to_toml(preprocess::Options{}, "preprocess", true) +
+           "\n# Many runs instead of one: members = 0 is none. All stages read this table.\n" +
+           recipe::to_toml(EnsembleOptions{}, "ensemble", true);
   };
+  stage.used_toml = [](const recipe::Recipe& recipe) { return used_tables(recipe, false); };
   return stage;
 }
 

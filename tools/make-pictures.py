@@ -91,7 +91,7 @@ def call(words, **more):
 
 
 def shrink(picture, width=1400):
-    """No wider than a page shows it: keeps the repository small."""
+    """No wider than a page shows it, to keep the repository small. Fewer colours would take those of the legend."""
     from PIL import Image  # pylint: disable=import-outside-toplevel
     with Image.open(picture) as image:
         if image.width > width:

@@ -38,7 +38,9 @@ def without_code(text):
 
 def links_of(text):
     """Relative targets in the order in which they stand."""
-    return [m.group(2) for m in LINK.finditer(without_code(text)) if not OUTSIDE.match(m.group(2))]
+    plain = without_code(text)
+    found = [m.group(2) for m in LINK.finditer(plain)] + re.findall(r'<img src="([^"]+)"', plain)
+    return [target for target in found if not OUTSIDE.match(target)]
 
 
 def stage(page, source, pages):

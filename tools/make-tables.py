@@ -71,7 +71,7 @@ def percent(part):
 
 def validated(cases):
     rows, (commit, day, place) = rows_of_validation()
-    lines = ["| case | against | rows met | error in the middle | largest |", "| --- | --- | --- | --- | --- |"]
+    lines = ["| case | against | met | median error | largest |", "| --- | --- | --- | --- | --- |"]
     for case in cases:
         mine = [row for row in rows if row[0] == case]
         if not mine:

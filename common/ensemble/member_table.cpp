@@ -3,6 +3,7 @@
 #include "common/ensemble/member_table.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -18,6 +19,18 @@ const EnsembleFileKind kind{"talus members", "a table of members", "Run talus-pr
 
 /// Words of a column as one text, a line each.
 std::string lines_of(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, "\n")); }
+
+/// A number as a key of either kind takes it: keys that count refuse a decimal point.
+std::string number_of_key(double value) {
+  constexpr double exact = 9e15;  // whole numbers below that are doubles
+  const bool whole = value == std::floor(value) && std::abs(value) < exact;
+  return whole ? fmt::format("{:.0f}", value) : recipe::toml_number(value);
+}
+
+/// A word as a key takes it: true and false are no text.
+std::string word_of_key(const std::string& word) {
+  return word == "true" || word == "false" ? word : recipe::toml_text(word);
+}
 
 std::vector<std::string> words_of(const std::string& lines) {
   std::vector<std::string> words;
@@ -49,9 +62,9 @@ std::vector<std::string> MemberTable::values_of(std::int64_t member, const std::
   for (const MemberColumn& column : columns) {
     if (!column.key.starts_with(prefix)) continue;
     const double value = column.values.at(static_cast<std::size_t>(member));
-    values.push_back(column.key + "=" +
-                     (column.words.empty() ? recipe::toml_number(value)
-                                           : recipe::toml_text(column.words.at(static_cast<std::size_t>(value)))));
+    values.push_back(
+        column.key + "=" +
+        (column.words.empty() ? number_of_key(value) : word_of_key(column.words.at(static_cast<std::size_t>(value)))));
   }
   return values;
 }

@@ -11,8 +11,6 @@
 namespace talus {
 namespace {
 
-constexpr int most_members = 1'000'000;
-
 /// The keys that a distribution takes, and whether it needs them.
 struct Parameters {
   bool bounds_needed = false, bounds_taken = true, moments = false, mode = false;
@@ -126,16 +124,18 @@ void ThresholdOptions::describe(recipe::Visitor& v) {
 
 void EnsembleOptions::describe(recipe::Visitor& v) {
   v.integer("members", members, {0, most_members}, "number of runs; 0: one run, no ensemble");
-  recipe::choice(v, "design", design,
-                 {{"sobol", Design::sobol},
-                  {"latin-hypercube", Design::latin_hypercube},
-                  {"optimal-latin-hypercube", Design::optimal_hypercube},
-                  {"monte-carlo", Design::monte_carlo},
-                  {"full-grid", Design::full_grid},
-                  {"one-at-a-time", Design::one_at_a_time},
-                  {"sensitivity", Design::sensitivity},
-                  {"table", Design::table}},
-                 "how the members are drawn; the last three and full-grid give their number themselves");
+  recipe::choice(
+      v, "design", design,
+      {{design_name(Design::sobol), Design::sobol},
+       {design_name(Design::latin_hypercube), Design::latin_hypercube},
+       {design_name(Design::optimal_hypercube), Design::optimal_hypercube},
+       {design_name(Design::monte_carlo), Design::monte_carlo},
+       {design_name(Design::full_grid), Design::full_grid},
+       {design_name(Design::one_at_a_time), Design::one_at_a_time},
+       {design_name(Design::sensitivity), Design::sensitivity},
+       {design_name(Design::table), Design::table}},
+      "how the members are drawn; full-grid, one-at-a-time and table give their number themselves, and sensitivity "
+      "takes the largest number up to members that it can");
   v.integer("levels", levels, {2, 1000}, "full-grid, one-at-a-time: quantiles of each key");
   v.integer("seed", seed, {0, 2147483647}, "another seed draws other members");
   v.path("table", table, "design = \"table\": a CSV file, a column for each key that varies, a row for each member");
@@ -152,7 +152,7 @@ void EnsembleOptions::describe(recipe::Visitor& v) {
 
 void EnsembleOptions::check(std::vector<Fault>& faults) const {
   if (!on()) return;
-  if (vary.empty() && !elevation_error.acts())
+  if (vary.empty() && !elevation_error.acts() && design != Design::table)
     faults.push_back({"[ensemble] with nothing that varies", "all members would be the same run",
                       "Add [[ensemble.vary]], or [ensemble.elevation_error]"});
   if ((design == Design::table) == table.empty())
@@ -171,10 +171,20 @@ void EnsembleOptions::check(std::vector<Fault>& faults) const {
       if (!keys.contains(key))
         faults.push_back({"[[ensemble.correlation]] of " + key, "it does not vary", "Add it to [[ensemble.vary]]"});
   }
-  for (const int member : keep)
-    if (member >= members)
-      faults.push_back({fmt::format("[ensemble] keep names member {}", member),
-                        fmt::format("there are {}, counted from 0", members), "Name one that is there"});
+}
+
+const char* design_name(Design design) {
+  switch (design) {
+    case Design::sobol: return "sobol";
+    case Design::latin_hypercube: return "latin-hypercube";
+    case Design::optimal_hypercube: return "optimal-latin-hypercube";
+    case Design::monte_carlo: return "monte-carlo";
+    case Design::full_grid: return "full-grid";
+    case Design::one_at_a_time: return "one-at-a-time";
+    case Design::sensitivity: return "sensitivity";
+    case Design::table: break;
+  }
+  return "table";
 }
 
 EnsembleOptions ensemble_of(const recipe::Recipe& recipe) { return recipe.read<EnsembleOptions>("ensemble"); }

@@ -25,6 +25,12 @@ enum class Design {
   table,              ///< as a file of comma-separated values says
 };
 
+/// The word of a recipe for a design: "latin-hypercube".
+const char* design_name(Design design);
+
+/// The largest number of members.
+inline constexpr int most_members = 1'000'000;
+
 /// The distribution of a key.
 enum class Distribution { uniform, normal, lognormal, triangular, beta, discrete, table };
 

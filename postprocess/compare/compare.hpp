@@ -35,9 +35,8 @@ struct DepositDifference {
 /// DataError where the coordinate systems differ.
 DepositDifference deposit_difference(const RunMaps& first, const RunMaps& second, double threshold);
 
-/// The map of the difference as a PNG file's bytes: both outlines over a hillshade.
-std::string difference_map(const RunMaps& first, const RunMaps& second, const DepositDifference& found,
-                           double threshold);
+/// The map of the difference as a PNG file's bytes: both outlines over a hillshade, gauges and obstacles of both.
+std::string difference_map(const Run& first, const Run& second, const DepositDifference& found, double threshold);
 
 /// The page as the bytes of an HTML file: nothing in it is loaded from elsewhere, and no script runs in it.
 std::string comparison_html(const ComparedRun& first, const ComparedRun& second, double threshold);

@@ -12,6 +12,7 @@
 #include "postprocess/compare/difference_classes.hpp"
 #include "postprocess/picture/hillshade.hpp"
 #include "postprocess/picture/layers.hpp"
+#include "postprocess/picture/places.hpp"
 
 namespace talus::postprocess {
 namespace {
@@ -88,6 +89,18 @@ void draw_outline(Canvas& canvas, const View& view, const RunMaps& maps, double 
   }
 }
 
+/// Those of the second run that the first has as well are drawn once.
+std::vector<MapPlace> places_of_both(const Run& first, const Run& second) {
+  std::vector<MapPlace> places = places_in(first.summary.provenance);
+  for (MapPlace& place : places_in(second.summary.provenance)) {
+    const bool known = std::any_of(places.begin(), places.end(), [&](const MapPlace& other) {
+      return other.words == place.words && other.rings == place.rings;
+    });
+    if (!known) places.push_back(std::move(place));
+  }
+  return places;
+}
+
 }  // namespace
 
 std::vector<double> difference_limits(const DepositDifference& found) {
@@ -130,8 +143,9 @@ DepositDifference deposit_difference(const RunMaps& first, const RunMaps& second
   return found;
 }
 
-std::string difference_map(const RunMaps& first, const RunMaps& second, const DepositDifference& found,
+std::string difference_map(const Run& first_run, const Run& second_run, const DepositDifference& found,
                            double threshold) {
+  const RunMaps &first = first_run.maps, &second = second_run.maps;
   const Window window = window_of(first, second, threshold);
   const double scale = std::min(1400 / window.width(), 1000 / window.height());
   const View view{window, {0, 0, std::round(window.width() * scale), std::round(window.height() * scale)}};
@@ -140,6 +154,7 @@ std::string difference_map(const RunMaps& first, const RunMaps& second, const De
   draw_contours(canvas, view, first, contour_levels(view, first));
   draw_outline(canvas, view, first, threshold, {{0.1, 0.1, 0.12}, 3, {}, 1});
   draw_outline(canvas, view, second, threshold, {{0.0, 0.45, 0.36}, 3, {14, 8}, 1});
+  draw_places(canvas, view, places_of_both(first_run, second_run));
   canvas.frame(view.box, {{0.1, 0.1, 0.12}, 2.5, {}, 1});
   return canvas.png();
 }

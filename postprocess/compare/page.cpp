@@ -11,6 +11,7 @@
 #include "common/recipe/shown_paths.hpp"
 #include "common/recipe/used.hpp"
 #include "postprocess/compare/compare.hpp"
+#include "postprocess/compare/curves.hpp"
 #include "postprocess/compare/difference_classes.hpp"
 #include "postprocess/report/pack.hpp"
 
@@ -27,6 +28,12 @@ table{border-collapse:collapse;width:100%;font-size:.92rem;table-layout:fixed}
 th,td{text-align:left;vertical-align:top;padding:.25rem .6rem;border-bottom:1px solid #d8dce1;overflow-wrap:anywhere}
 th{vertical-align:bottom}th:first-child{width:40%}h1,p,figcaption{overflow-wrap:anywhere}
 td.n,th.n{text-align:right;font-variant-numeric:tabular-nums}
+.charts{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,20rem),1fr));gap:.6rem 1.2rem}
+.charts svg{width:100%;height:auto}.key{width:2.5rem;height:.6rem}svg text{font-size:11px;fill:#33363c}
+.charts figure{margin:0}.charts figcaption{font-weight:600;margin:.4rem 0 0}
+svg .m{text-anchor:middle}svg .e{text-anchor:end}
+svg .g{stroke:#e3e5e8;fill:none}svg .a,svg .b{fill:none;stroke:#1a1c20;stroke-width:1.8}
+svg .b{stroke:#00735c;stroke-dasharray:7 4}
 @media(max-width:600px){body{padding:.8rem .7rem}table{font-size:.8rem}th,td{padding:.2rem .25rem}
 th:first-child{width:34%}}
 .k{display:inline-block;width:1.1em;height:1.1em;vertical-align:-.15em;border:1px solid #888;margin:0 .3em 0 .9em}
@@ -92,7 +99,10 @@ std::string change(const Json& a, const Json& b) {
   if (!a.is_number() || !b.is_number()) return "";
   const double from = a.get<double>(), to = b.get<double>();
   if (from == to) return "0";
-  const std::string percent = from != 0 ? fmt::format(" ({:+.2g} %)", 100 * (to - from) / std::abs(from)) : "";
+  const double percents = from != 0 ? 100 * (to - from) / std::abs(from) : 0;  // a thousand and more say nothing
+  const std::string percent = percents == 0 || std::abs(percents) >= 1000 ? ""
+                              : std::abs(percents) >= 10                  ? fmt::format(" ({:+.0f} %)", percents)
+                                                                          : fmt::format(" ({:+.2g} %)", percents);
   return fmt::format("{:+.4g}{}", to - from, percent);
 }
 
@@ -201,7 +211,7 @@ std::string difference_words(const DepositDifference& d) {
   add("root mean square of the difference over either", fmt::format("{:.3g} m", d.rms));
   add("thinner by at most", fmt::format("{:.3g} m", d.smaller));
   add("thicker by at most", fmt::format("{:.3g} m", d.larger));
-  add("volume, second less first", fmt::format("{:+.4g} m\u00b3", d.volume));
+  add("volume, second less first", fmt::format("{:+.4g} m\u00b3", std::abs(d.volume) < 1e-6 ? 0 : d.volume));
   return table({"deposits", ""}, rows, true);
 }
 
@@ -234,16 +244,17 @@ std::string comparison_html(const ComparedRun& first, const ComparedRun& second,
 <p>{first} ({first_name}) beside {second} ({second_name}). Made with Talus {version}.</p>
 {remarks}<figure style="margin:0"><img alt="Map of the difference of the deposits" src="data:image/png;base64,{map}">
 <figcaption>{legend}</figcaption></figure>
-{difference}{scores}<h2>Recipes: what differs</h2>
+{difference}{charts}{scores}<h2>Recipes: what differs</h2>
 {recipes}</body></html>
 )",
       fmt::arg("title", html(title)), fmt::arg("style", style), fmt::arg("first", html(first.run.summary.title)),
       fmt::arg("second", html(second.run.summary.title)), fmt::arg("first_name", html(first.name)),
       fmt::arg("second_name", html(second.name)), fmt::arg("version", html(version())),
       fmt::arg("remarks", remarks(first, second)),
-      fmt::arg("map", base64(difference_map(first.run.maps, second.run.maps, found, threshold))),
+      fmt::arg("map", base64(difference_map(first.run, second.run, found, threshold))),
       fmt::arg("legend", legend(found, first, second, threshold)), fmt::arg("difference", difference_words(found)),
-      fmt::arg("scores", score_tables(first, second)), fmt::arg("recipes", recipe_table(first, second)));
+      fmt::arg("charts", history_charts(first, second)), fmt::arg("scores", score_tables(first, second)),
+      fmt::arg("recipes", recipe_table(first, second)));
 }
 
 }  // namespace talus::postprocess

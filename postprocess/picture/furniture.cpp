@@ -112,7 +112,6 @@ class Column {
 };
 
 void draw_hazard_legend(Column& column, const Hazard& hazard) {
-  if (!hazard.obstacles.empty()) column.line(obstacle_style(), "Obstacles");
   if (hazard.buildings.size() > 0) column.line(building_style(), "Buildings");
   if (!hazard.cones.empty())
     column.line(reach_style(), fmt::format("Angle of reach, H/L = {:.2f}", hazard.cones.front().tangent));
@@ -237,7 +236,9 @@ void draw_coordinates(Canvas& canvas, const View& view) {
     const double py = view.pixel(view.window.west, y)[1];
     canvas.line({{box.x, py}, {box.x - 10, py}}, tick);
     canvas.line({{box.x + box.width, py}, {box.x + box.width + 10, py}}, tick);
-    canvas.text(grouped(y), box.x - 20, py, style);
+    // A name that reached beyond the map's corners would lie on that of another edge or on the title.
+    const double half = 0.5 * canvas.text_width(grouped(y), style);
+    if (py - half >= box.y && py + half <= box.y + box.height) canvas.text(grouped(y), box.x - 20, py, style);
   }
 }
 

@@ -8,6 +8,7 @@
 #include "postprocess/fields/classes.hpp"
 #include "postprocess/picture/furniture.hpp"
 #include "postprocess/picture/layers.hpp"
+#include "postprocess/picture/places.hpp"
 #include "postprocess/picture/search_words.hpp"
 
 namespace talus::postprocess {
@@ -62,6 +63,7 @@ Canvas draw_map(const PictureInput& input) {
   draw_contours(canvas, view, maps, contours);
   draw_outlines(canvas, view, maps, input);
   if (input.hazard != nullptr) draw_hazard(canvas, view, input.run.maps.grid, *input.hazard);
+  draw_places(canvas, view, places_in(input.run.summary.provenance));
   canvas.unclip();
   canvas.frame(view.box, {{0.1, 0.1, 0.12}, 2.5, {}, 1});
   draw_coordinates(canvas, view);

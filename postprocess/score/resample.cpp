@@ -7,11 +7,11 @@
 
 #include <fmt/format.h>
 
+#include "common/map/random_field.hpp"
 #include "common/stage/stage.hpp"
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/score/contingency.hpp"
 #include "postprocess/score/patches.hpp"
-#include "postprocess/score/random_field.hpp"
 
 namespace talus::postprocess {
 namespace {

@@ -27,6 +27,11 @@ void ReleaseOptions::describe(recipe::Visitor& v, const std::string& place, bool
   v.needs(!needed || polygons.empty() || thickness != 0 || !attribute.empty(),
           fault(place + ": polygons without thickness", "attribute is empty and thickness_m is 0",
                 "Name the attribute that holds the thickness, or give thickness_m"));
+  v.number("volume_factor", volume_factor, recipe::positive, "its thickness, and so its volume, times this");
+  v.number("grow_m", grow, recipe::any, "the polygons grown by this on all sides; negative: shrunk");
+  v.needs(!needed || grow == 0 || !polygons.empty(),
+          fault(place + ": grow_m is given without polygons", "a raster of thickness has no outline to grow",
+                "Leave it out, or give the release by polygons"));
   recipe::choice(v, "direction", direction,
                  {{"vertical", Direction::vertical}, {"slope-normal", Direction::slope_normal}},
                  "which way the thickness is measured");

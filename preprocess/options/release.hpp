@@ -21,7 +21,9 @@ struct ReleaseOptions {
   std::filesystem::path thickness_raster;
   std::filesystem::path polygons;
   std::string attribute = "thickness";
-  double thickness = 0;  ///< one thickness for all polygons [m]; 0: that of the attribute
+  double thickness = 0;      ///< one thickness for all polygons [m]; 0: that of the attribute
+  double volume_factor = 1;  ///< of its thickness, and so of its volume [-]
+  double grow = 0;           ///< of its polygons, outwards [m]
   Direction direction = Direction::vertical;
 
   /// The method declares the keys with defaults and help, and, where a thickness is `needed`, that one is given;

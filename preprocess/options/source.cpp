@@ -40,6 +40,10 @@ void SourceOptions::describe(recipe::Visitor& v, const Options& all) {
   v.needs(ignored || polygon.empty() || all.base_dem.empty(),
           fault("source.polygon is given with base_dem", "the releases say what fails there",
                 "Use polygons = ... in [[preprocess.release]]"));
+  v.number("grow_m", grow, recipe::any, "the polygon grown by this on all sides; negative: shrunk");
+  v.needs(ignored || grow == 0 || !polygon.empty(),
+          fault("source.grow_m is given without source.polygon", "there is no outline to grow",
+                "Give the polygon, or leave it out"));
   v.number("threshold_m", threshold, recipe::not_negative, "lowering beyond which a cell belongs to such a region");
   v.optional_number("seed_x_m", seed_x, recipe::any,
                     "take the region that holds this point (its easting); else the largest by volume");

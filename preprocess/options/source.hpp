@@ -32,6 +32,7 @@ struct SlidingSurfaceOptions {
 /// The keys of [preprocess.source].
 struct SourceOptions {
   std::filesystem::path polygon;
+  double grow = 0;                       ///< of the polygon, outwards [m]
   double threshold = 0.5;                ///< [m]
   std::optional<double> seed_x, seed_y;  ///< easting, northing [m]
   SlidingSurfaceOptions sliding_surface;

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "common/error.hpp"
+#include "common/gis/grow.hpp"
 #include "common/gis/polygons.hpp"
 #include "preprocess/regions/polygon_cover.hpp"
 
@@ -146,6 +147,15 @@ void check_polygons(std::vector<MapPolygon>& polygons, const std::filesystem::pa
 std::vector<MapPolygon> read_valid_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
                                             const std::string& layer) {
   std::vector<MapPolygon> polygons = read_polygons(file, crs_wkt, layer);
+  check_polygons(polygons, file);
+  return polygons;
+}
+
+std::vector<MapPolygon> read_grown_polygons(const std::filesystem::path& file, const std::string& crs_wkt, double grow,
+                                            const std::string& layer) {
+  std::vector<MapPolygon> polygons = read_valid_polygons(file, crs_wkt, layer);
+  if (grow == 0) return polygons;
+  polygons = grown(polygons, grow, file);
   check_polygons(polygons, file);
   return polygons;
 }

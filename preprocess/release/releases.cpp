@@ -63,7 +63,7 @@ double thickness_of(const MapPolygon& polygon, std::size_t number, const Release
 }
 
 Raster from_polygons(const ReleaseOptions& options, const MapGrid& grid) {
-  const std::vector<MapPolygon> polygons = read_valid_polygons(options.polygons, grid.crs_wkt);
+  const std::vector<MapPolygon> polygons = read_grown_polygons(options.polygons, grid.crs_wkt, options.grow);
   Raster thickness{grid, std::vector<double>(grid.count(), 0.0)};
   std::vector<double> covered(grid.count(), 0.0);
   bool overlap = false;
@@ -102,6 +102,7 @@ Release read_release(const ReleaseOptions& options, std::size_t item, const Rast
                   options.polygons.empty() ? from_raster(options, bed.grid) : from_polygons(options, bed.grid)};
   refuse_nothing(release.thickness, file);
   refuse_release_on_nodata(release.thickness, bed, file);
+  for (double& thickness : release.thickness.values) thickness *= options.volume_factor;
   if (options.direction == Direction::slope_normal) {
     const std::vector<double> cosine = slope_cosine(bed);
     for (std::size_t i = 0; i < cosine.size(); ++i) release.thickness.values[i] /= cosine[i];

@@ -11,7 +11,6 @@
 #include <optional>
 
 #include "common/error.hpp"
-#include "common/map/crop.hpp"
 #include "common/map/slope.hpp"
 #include "common/map/sum.hpp"
 #include "common/stage/machine.hpp"
@@ -20,152 +19,15 @@
 #include "preprocess/obstacle/obstacles.hpp"
 #include "preprocess/particles/coarseness.hpp"
 #include "preprocess/particles/seed.hpp"
-#include "preprocess/regions/polygon_cover.hpp"
-#include "preprocess/release/outline_source.hpp"
 #include "preprocess/release/releases.hpp"
-#include "preprocess/release/source.hpp"
 #include "preprocess/scene/bed_polygons.hpp"
 #include "preprocess/scene/bed_zones.hpp"
-#include "preprocess/survey/order.hpp"
 #include "preprocess/terrain/elevation.hpp"
-#include "preprocess/terrain/plausible_ground.hpp"
 #include "preprocess/terrain/surfaces.hpp"
 
 namespace talus::preprocess {
 
 namespace {
-
-constexpr int enough = 512;  // cells in the middle of a map, each way: they tell how steep it is
-
-struct SceneRasters {
-  Raster before, bed;
-  std::vector<Release> releases;
-  std::vector<double> lowering = {};                   // before less after [m]; where both are given
-  std::optional<SlidingSurface> sliding_surface = {};  // where it was computed
-  std::optional<Survey> survey = {};
-  std::optional<SurveyedSlide> slide = {};
-};
-
-/// How a model is read whose heights are in `of_model`, or in the unit that the recipe gives for all.
-ReadOptions reading(const Options& options, VerticalUnit of_model = VerticalUnit::same) {
-  return dem_reading(options.working_crs, of_model == VerticalUnit::same ? options.vertical_unit : of_model);
-}
-
-/// The unit that the recipe gives for the heights of the first elevation model.
-VerticalUnit unit_of_first(const Options& options) {
-  const bool own = !options.before_dem.empty() && options.before_vertical_unit != VerticalUnit::same;
-  return own ? options.before_vertical_unit : options.vertical_unit;
-}
-
-std::vector<Raster> align(const std::vector<const Elevation*>& dems, const Options& options,
-                          std::vector<Filled>* filled = nullptr) {
-  return align(
-      dems,
-      AlignRequest{.grid = grid_request(options), .edge_nodata = options.grid.edge_nodata, .voids = options.voids},
-      filled);
-}
-
-/// The options with working_crs = "utm" replaced by the zone that holds the centre of the first DEM.
-Options with_utm_zone(Options options) {
-  if (options.working_crs == "utm") options.working_crs = utm_zone_for(options.first_dem());
-  return options;
-}
-
-SceneRasters from_source(Raster before, Source source) {
-  SceneRasters scene{std::move(before), std::move(source.bed), {}};
-  scene.releases.push_back({"source", std::move(source.thickness)});
-  return scene;
-}
-
-SceneRasters from_before_and_after(const Options& options) {
-  Survey survey = survey_of(options);
-  std::vector<Filled> filled;
-  std::vector<Raster> surfaces;
-  SurveyedSlide slide = survey.accepted.meanwhile([&] {
-    surfaces = align({&survey.before, &survey.after}, options, &filled);
-    return slide_on(survey, surfaces[0], filled);
-  });
-  Source source = survey.accepted.meanwhile([&] {
-    return find_source(
-        {surfaces[0], surfaces[1], options.after_dem, false, survey.source, levels_of(survey, slide.sigma)},
-        options.source);
-  });
-  const Change change = change_between(survey, {surfaces[0], surfaces[1]}, options.deposit, slide);
-  judge_order(order_of(change, sure_regions(change, options.deposit), surfaces[0]),
-              {options.before_dem.string(), options.after_dem.string(), survey.applied}, survey.accepted);
-  survey.accepted.settle();
-  delineate(survey, {surfaces[0], surfaces[1], source.thickness}, options.deposit, slide);
-  std::vector<double> lowering;
-  for (std::size_t c = 0; c < surfaces[0].values.size(); ++c)
-    lowering.push_back(surfaces[0].values[c] - surfaces[1].values[c]);
-  SceneRasters scene = from_source(std::move(surfaces[0]), std::move(source));
-  scene.lowering = std::move(lowering);
-  scene.survey = std::move(survey);
-  scene.slide = std::move(slide);
-  return scene;
-}
-
-SceneRasters from_sliding_surface(const Options& options) {
-  Elevation before = read_elevation("before_dem", options.before_dem, reading(options, options.before_vertical_unit));
-  Elevation sliding = read_elevation("sliding_surface", options.sliding_surface, reading(options));
-  share_crs({&before, &sliding}, options.working_crs);
-  require_comparable_crs(sliding.crs_wkt(), sliding.file, before.crs_wkt(), before.file.string());
-  std::vector<Raster> surfaces = align({&before}, options);
-  log_resampling(sliding, surfaces[0].grid);
-  const Raster under = onto_grid(sliding, surfaces[0].grid);
-  require_data(under, sliding.file);
-  SurfacePair pair{surfaces[0], under, options.sliding_surface, true};
-  if (!options.source.polygon.empty())
-    pair.outline = read_valid_polygons(options.source.polygon, under.grid.crs_wkt, "source");
-  Source source = find_source(pair, options.source);
-  return from_source(std::move(surfaces[0]), std::move(source));
-}
-
-SceneRasters from_outline(const Options& options) {
-  Elevation before = read_elevation("before_dem", options.before_dem, reading(options, options.before_vertical_unit));
-  share_crs({&before}, options.working_crs);
-  Raster ground = align({&before}, options).front();
-  ComputedSource computed = source_by_outline(ground, options.source, reading(options));
-  SceneRasters scene = from_source(std::move(ground), std::move(computed.source));
-  scene.sliding_surface = std::move(computed.computed);
-  return scene;
-}
-
-void warn_of_overlap(const std::vector<Release>& releases) {
-  for (std::size_t a = 0; a < releases.size(); ++a) {
-    for (std::size_t b = a + 1; b < releases.size(); ++b) {
-      std::size_t shared = 0;
-      for (std::size_t i = 0; i < releases[a].thickness.values.size(); ++i) {
-        shared += releases[a].thickness.values[i] > 0 && releases[b].thickness.values[i] > 0;
-      }
-      if (shared > 0) {
-        log_warning(fmt::format("releases {} and {} share {} cells; there the second lies on the first",
-                                releases[a].name, releases[b].name, shared));
-      }
-    }
-  }
-}
-
-SceneRasters from_releases(const Options& options) {
-  Elevation base = read_elevation("base_dem", options.base_dem, reading(options));
-  share_crs({&base}, options.working_crs);
-  Raster bed = align({&base}, options).front();
-  SceneRasters scene{bed, std::move(bed), {}};
-  for (std::size_t i = 0; i < options.release.size(); ++i) {
-    Release release = read_release(options.release[i], i, scene.bed);
-    for (std::size_t c = 0; c < scene.before.values.size(); ++c) scene.before.values[c] += release.thickness.values[c];
-    scene.releases.push_back(std::move(release));
-  }
-  warn_of_overlap(scene.releases);
-  return scene;
-}
-
-SceneRasters from_laboratory(const Options& options) {
-  Raster ground = laboratory_ground(options);
-  SceneRasters scene{box_surface(options, ground), std::move(ground), {}};
-  for (std::size_t b = 0; b < options.box.size(); ++b) scene.releases.push_back(box_release(options, b));
-  return scene;
-}
 
 /// What went down where nothing fails: the layer that the slide took along.
 Release lowered_outside_source(const SceneRasters& scene, const std::string& name) {
@@ -218,17 +80,6 @@ void lay_erodible(const Options& options, SceneRasters& scene) {
                         std::make_move_iterator(layers.end()));
 }
 
-SceneRasters read_scene(const Options& options) {
-  switch (options.way()) {
-    case Way::before_and_after: return from_before_and_after(options);
-    case Way::before_and_sliding_surface: return from_sliding_surface(options);
-    case Way::before_and_outline: return from_outline(options);
-    case Way::laboratory: return from_laboratory(options);
-    case Way::base_and_releases: break;
-  }
-  return from_releases(options);
-}
-
 /// Rasters of the bed on the working grid.
 std::vector<std::pair<std::string, Raster>> read_bed(const Options& options, const MapGrid& grid) {
   const bool reproject = !options.working_crs.empty();
@@ -249,18 +100,6 @@ std::vector<std::pair<std::string, Raster>> read_bed(const Options& options, con
     rasters.emplace_back(name, std::move(raster));
   }
   return rasters;
-}
-
-/// What the recipe insists on, of what was found in the scene. Surveys were looked at when they were compared.
-Acceptance judged(const Options& options, const SceneRasters& scene) {
-  if (scene.survey) return scene.survey->accepted;
-  Acceptance acceptance("preprocess", options.accept);
-  if (options.way() == Way::laboratory) return acceptance;
-  acceptance.collect();
-  judge_lengths(scene.bed.grid, options.working_crs, acceptance);
-  judge_heights(scene.before, {options.first_dem(), unit_of_first(options)}, acceptance);
-  acceptance.settle();
-  return acceptance;
 }
 
 /// Of what is released: the releases from the `first` one on.
@@ -330,43 +169,16 @@ std::vector<std::filesystem::path> inputs_of(const Options& options) {
   return inputs;
 }
 
-Survey survey_of(const Options& given) {
-  const Options options = with_utm_zone(given);
-  Elevation before = read_elevation("before_dem", options.before_dem, reading(options, options.before_vertical_unit));
-  Elevation after = read_elevation("after_dem", options.after_dem, reading(options, options.after_vertical_unit));
-  share_crs({&before, &after}, options.working_crs);
-  Survey survey = compare_surveys(std::move(before), std::move(after), options);
-  survey.accepted = Acceptance("preprocess", options.accept);
-  survey.accepted.collect();
-  judge_lengths(survey.grid, given.working_crs, survey.accepted);
-  const MapGrid& grid = survey.grid;
-  const int columns = std::min(enough, grid.columns), rows = std::min(enough, grid.rows);
-  judge_heights(
-      onto_grid(survey.before, cut(grid, {(grid.columns - columns) / 2, (grid.rows - rows) / 2, columns, rows})),
-      {options.before_dem, unit_of_first(options)}, survey.accepted);
-  return survey;
-}
-
-namespace {
-
-void require_sound(Options options) {
-  std::vector<Fault> faults;
-  recipe::find_unmet(options, faults);
-  if (!faults.empty()) throw RecipeError(std::move(faults));
-}
-
-}  // namespace
-
 Prepared prepare(const Options& given, Points points) {
-  require_sound(given);
-  const Options options = with_utm_zone(given);
-  SceneRasters scene = read_scene(options);
-  const Acceptance acceptance = judged(given, scene);
-  acceptance.warn_of_unmet();
+  SceneRasters scene = read_scene(given);
+  return prepare(resolved(given), std::move(scene), points);
+}
+
+Prepared prepare(const Options& options, SceneRasters scene, Points points) {
   scale_thickness(options.thickness_factor, scene);
   lay_erodible(options, scene);
   Prepared prepared;
-  prepared.accepted = acceptance.facts();
+  prepared.accepted = std::move(scene.accepted);
   prepared.domain.release_thickness = total_thickness(scene, options.erodible.size());
   const Seeding seeding = seeding_of(options.grid, layer_height(options, prepared.domain.release_thickness));
   prepared.inputs = inputs_of(options);

@@ -12,9 +12,8 @@
 #include "common/domain/domain.hpp"
 #include "common/domain/level_set.hpp"
 #include "preprocess/options/options.hpp"
-#include "preprocess/release/sliding_surface.hpp"
 #include "preprocess/release/volumes.hpp"
-#include "preprocess/survey/survey.hpp"
+#include "preprocess/scene/read_scene.hpp"
 
 namespace talus::preprocess {
 
@@ -40,13 +39,13 @@ std::vector<std::filesystem::path> inputs_of(const Options& options);
 /// Whether material points are made, or only counted.
 enum class Points { seeded, counted };
 
-/// What two elevation models say of what changed, and nothing further: the first part of prepare(), for before_dem and
-/// after_dem alone.
-Survey survey_of(const Options& options);
-
 /// Reads the files, aligns them, finds or reads the release and seeds its points. Throws RecipeError and DataError.
 /// Bed: under the released mass the sliding surface (given or computed), min(before, after), or the base DEM itself
 /// (snow lies on it, so the surface before is base + thickness); elsewhere the ground as it is.
 Prepared prepare(const Options& options, Points points);
+
+/// The second part: from what was read to the domain. Expects resolved() options, those that `scene` was read with but
+/// for what acts here: thickness_factor, erodible layers, bed, layers and points of the grid, obstacles.
+Prepared prepare(const Options& options, SceneRasters scene, Points points);
 
 }  // namespace talus::preprocess

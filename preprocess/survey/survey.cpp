@@ -33,7 +33,8 @@ double normal_quantile(double confidence) {
 }
 
 void read_outlines(Survey& s, const Options& options) {
-  if (!options.source.polygon.empty()) s.source = read_valid_polygons(options.source.polygon, s.grid.crs_wkt, "source");
+  if (!options.source.polygon.empty())
+    s.source = read_grown_polygons(options.source.polygon, s.grid.crs_wkt, options.source.grow, "source");
   if (!options.deposit.polygon.empty())
     s.deposit = read_valid_polygons(options.deposit.polygon, s.grid.crs_wkt, "deposit");
 }

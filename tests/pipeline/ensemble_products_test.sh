@@ -108,6 +108,45 @@ test_maps_are_read_by_gdal_with_threshold_and_members() {
   expect_exit 0 /usr/bin/python3 "$TALUS_SOURCE/tests/postprocess/maps/check_cf.py" out/probability.nc
 }
 
+test_project_opens_in_qgis_with_all_its_layers() {
+  /usr/bin/python3 -c 'import qgis.core' 2>/dev/null || need_tool python3-qgis
+  made 8
+  export QT_QPA_PLATFORM=offscreen XDG_RUNTIME_DIR=$PWD QGIS_CUSTOM_CONFIG_PATH=$PWD/profile
+  /usr/bin/python3 - "$PWD/out/probability" <<'PYTHON' || fail "QGIS does not show the project whole"
+import sys
+from qgis.core import QgsApplication, QgsMapRendererSequentialJob, QgsMapSettings, QgsProject, QgsRasterLayer
+from qgis.PyQt.QtCore import QSize
+application = QgsApplication([], False)
+application.initQgis()
+project = QgsProject.instance()
+assert project.read(sys.argv[1] + "/valley-ensemble.qgs"), project.error()
+layers = list(project.mapLayers().values())
+assert len(layers) > 60, f"{len(layers)} layers"
+invalid = [layer.name() for layer in layers if not layer.isValid()]
+assert not invalid, invalid
+root = project.layerTreeRoot()
+shown = [node.layer() for node in root.findLayers() if node.isVisible()]
+assert any(layer.name().startswith("Probability of peak thickness") for layer in shown), shown
+probability = next(layer for layer in shown if layer.name().startswith("Probability of peak thickness"))
+settings = QgsMapSettings()
+settings.setLayers(shown)
+settings.setDestinationCrs(project.crs())
+settings.setExtent(probability.extent())
+settings.setOutputSize(QSize(700, 500))
+job = QgsMapRendererSequentialJob(settings)
+job.start()
+job.waitForFinished()
+image = job.renderedImage()
+colours = {image.pixel(x, y) for x in range(0, 700, 7) for y in range(0, 500, 5)}
+assert len(colours) > 50, f"{len(colours)} colours"
+image.save("qgis.png")
+print(len(layers), "layers", len(colours), "colours")
+import os
+sys.stdout.flush()
+os._exit(0)  # QGIS crashes while it is taken down without a window
+PYTHON
+}
+
 # Friction at the bed rules run-out in this valley, and more of it means less run-out.
 test_sensitivity_finds_the_friction_that_rules_run_out() {
   made
@@ -135,7 +174,7 @@ test_counts_of_parts_give_the_same_files() {
   expect_exit 0 solve --members 3:8
   expect_exit 0 postprocess
   cut -d, -f1-7 out/members.csv | cmp - <(cut -d, -f1-7 whole/members.csv) || fail "the members differ"
-  expect_exit 0 /usr/bin/python3 - <<'PYTHON'
+  /usr/bin/python3 - <<'PYTHON' || fail "the maps of the parts are not those of the whole"
 import glob
 import os
 import numpy

@@ -11,7 +11,7 @@ floors() {
   case $1 in
     common) printf '%s\n' . 'map recipe' stage 'domain run gis' 'ensemble qgis' ;;
     preprocess)
-      printf '%s\n' 'options regions' 'terrain obstacle' 'survey release' particles laboratory scene output .
+      printf '%s\n' 'options regions' 'terrain obstacle' 'survey release' particles laboratory scene output ensemble .
       ;;
     solver)
       printf '%s\n' parallel state material grid transfer boundary elements linear/krylov linear/operator \

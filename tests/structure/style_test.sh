@@ -26,6 +26,7 @@ test_tables_of_pages_are_those_of_their_files() {
 # The test itself: each fault is named with its place and its mend.
 test_what_is_wrong_is_named() {
   mkdir -p tree/docs/reference tree/docs/how-to
+  git -C tree init -q   # of its own: the build folder, in which it lies, is one that the checkout ignores
   printf '%s\n' '# Bibliography' '' '- Horn, B. K. P. (1981). Hill shading.' >tree/docs/reference/bibliography.md
   { printf '# Page\n\n'; printf 'word %.0s' {1..120}; printf '\n\nOur goal is (Horn 1981).\n'; } >tree/docs/how-to/a.md
   local year=1999   # not written out behind the names, which are made up

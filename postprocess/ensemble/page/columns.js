@@ -7,6 +7,7 @@ const titles = {
   run_out_m: "run-out",
   drop_m: "drop",
   flow_reach_m: "reach of the flow",
+  centre_travel_m: "travel of the centre of mass",
   reach_ratio: "drop over run-out, H/L",
   flow_area_m2: "area of the flow",
   deposit_area_m2: "area of the deposit",

@@ -133,13 +133,17 @@ export class Histogram {
     const chosen = column.values[this.selection.chosen] ?? null;
     const inside = Math.min(bins.counts.length - 1, Math.floor((chosen - bins.low) / bins.step));
     const fill = points.map((_, i) => (chosen !== null && i === inside ? colours.orange : colours.sky));
+    const end = bins.low + bins.counts.length * bins.step || 1;
     this.chart?.destroy();
     this.chart = new Chart(document.getElementById("histogram"), {
       type: "bar",
       data: { datasets: [{ data: points, backgroundColor: fill, barPercentage: 1, categoryPercentage: 0.96 }] },
       options: {
         maintainAspectRatio: false,
-        scales: { x: { ...axis(column), offset: false, grid: { offset: false } }, y: axis(null, true) },
+        scales: {
+          x: { ...axis(column), offset: false, grid: { offset: false }, min: bins.low, max: end },
+          y: axis(null, true),
+        },
         plugins: {
           legend: { display: false },
           tooltip: {

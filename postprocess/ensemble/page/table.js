@@ -24,7 +24,7 @@ export class MemberTable {
 
   head() {
     const cell = (words, by) => {
-      const button = h("button", { type: "button", "data-by": by }, words);
+      const button = h("button", { type: "button", "data-by": by }, words.replace(/([._])/g, "$1\u200b")); // may break
       button.addEventListener("click", () => this.sort(by));
       return h("th", { scope: "col", "data-by": by }, button);
     };

@@ -227,6 +227,12 @@ export function drawParameters(data) {
   window.addEventListener("afterprint", () => show(toggle.firstChild.checked));
 }
 
+/** A key with its tables, without that of its stage; [ensemble] is a table of its own. */
+function keyName({ table, key }, stage) {
+  const name = `${table}.${key}`;
+  return name.startsWith(`${stage}.`) ? name.slice(stage.length + 1) : name;
+}
+
 function parametersOf(stage) {
   const title = h("h3", {}, `talus-${stage.stage}`);
   if (stage.missing)
@@ -240,7 +246,7 @@ function parametersOf(stage) {
       h(
         "tr",
         { class: isChanged ? "changed" : marked ? "usual" : null },
-        h("td", {}, h("code", {}, `${key.table}.${key.key}`.slice(stage.stage.length + 1))),
+        h("td", {}, h("code", {}, keyName(key, stage.stage))),
         h("td", {}, h("code", { class: "path" }, key.value)),
         h("td", {}, isChanged ? h("code", {}, key.default) : null),
       ),

@@ -206,7 +206,9 @@ class Check:
         self.need(
             not {"_FillValue", "missing_value"} & set(v.ncattrs()), "5", f"{name} is a coordinate and has a fill value"
         )
-        self.need(getattr(v, "axis", "") in ("X", "Y", "Z", "T"), "4", f"{name} has no legal axis")
+        # Of what is no place and no time, such as a threshold, CF asks for no axis; it has no standard name either.
+        elsewhere = "axis" not in v.ncattrs() and "standard_name" not in v.ncattrs()
+        self.need(elsewhere or getattr(v, "axis", "") in ("X", "Y", "Z", "T"), "4", f"{name} has no legal axis")
         is_time = getattr(v, "axis", "") == "T"
         self.need(
             is_time == (" since " in getattr(v, "units", "")),
@@ -229,8 +231,9 @@ class Check:
             self.need(False, "4.4", f"the reference time of {name} is not legal: {error}")
 
     def data_variable(self, name, v):
-        axes = [self.variables[d].axis for d in v.dimensions if d in self.coordinates]
-        self.need(len(axes) == len(v.dimensions), "5", f"a dimension of {name} has no coordinate variable")
+        coordinates = [self.variables[d] for d in v.dimensions if d in self.coordinates]
+        axes = [c.axis for c in coordinates if "axis" in c.ncattrs()]
+        self.need(len(coordinates) == len(v.dimensions), "5", f"a dimension of {name} has no coordinate variable")
         self.need(len(set(axes)) == len(axes), "4", f"{name} has two coordinates for an axis")
         for other in getattr(v, "coordinates", "").split():
             self.need(other in self.variables, "5", f"{name} names the coordinate {other}, which does not exist")

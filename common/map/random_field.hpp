@@ -10,7 +10,7 @@
 
 #include "common/map/raster.hpp"
 
-namespace talus::postprocess {
+namespace talus {
 
 /// Gaussian random fields of mean 0 and variance 1 on a map, the correlation of two cells at distance d being
 /// spherical, 1 - 1.5 (d/a) + 0.5 (d/a)^3 up to the range a, 0 beyond it (Matheron 1963). By circulant embedding
@@ -22,6 +22,8 @@ class RandomField {
   RandomField(const MapGrid& grid, double range, std::uint64_t seed);
 
   std::vector<double> next();  ///< [rows * columns]
+  /// The method begins the series of a seed, as a new object would, without the spectrum being made again.
+  void start(std::uint64_t seed);
 
  private:
   using Complex = std::complex<double>;
@@ -36,4 +38,4 @@ class RandomField {
   std::normal_distribution<double> normal_;
 };
 
-}  // namespace talus::postprocess
+}  // namespace talus

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "postprocess/score/random_field.hpp"
+#include "common/map/random_field.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace talus::postprocess {
+namespace talus {
 namespace {
 
 const MapGrid field_grid{.columns = 50, .rows = 37, .west = 0, .south = 0, .cell = 10, .crs_wkt = ""};
@@ -54,6 +54,9 @@ TEST(RandomField, is_the_same_for_the_same_seed_and_never_twice_in_a_row) {
   EXPECT_NE(first, other.next());
   EXPECT_NE(first, second);
   EXPECT_NE(first, third);
+  other.start(5);
+  EXPECT_EQ(other.next(), first) << "a series that is begun again";
+  EXPECT_EQ(other.next(), second);
 }
 
 TEST(RandomField, takes_ranges_far_beyond_the_map) {
@@ -63,4 +66,4 @@ TEST(RandomField, takes_ranges_far_beyond_the_map) {
 }
 
 }  // namespace
-}  // namespace talus::postprocess
+}  // namespace talus

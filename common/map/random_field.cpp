@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "postprocess/score/random_field.hpp"
+#include "common/map/random_field.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "common/map/fourier.hpp"
 
-namespace talus::postprocess {
+namespace talus {
 namespace {
 
 double spherical(double distance, double range) {
@@ -33,6 +33,12 @@ RandomField::RandomField(const MapGrid& grid, double range, std::uint64_t seed)
   fourier_transform(plane_, wide_, high_);
   for (const auto& value : plane_)
     amplitude_.push_back(std::sqrt(std::max(0.0, value.real()) / static_cast<double>(count)));
+}
+
+void RandomField::start(std::uint64_t seed) {
+  random_.seed(seed);
+  normal_.reset();
+  second_waits_ = false;
 }
 
 void RandomField::draw() {
@@ -61,4 +67,4 @@ std::vector<double> RandomField::next() {
   return field;
 }
 
-}  // namespace talus::postprocess
+}  // namespace talus

@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "common/gis/grow.hpp"
+
+#include <fmt/format.h>
+#include <ogr_geometry.h>
+
+#include <memory>
+
+#include "common/error.hpp"
+#include "common/gis/gdal_support.hpp"
+
+namespace talus {
+namespace {
+
+constexpr int chords = 36;  // of a quarter of a circle: within 1 - cos(pi / 144), a thousandth of the radius
+
+OGRPolygon ogr_polygon(const MapPolygon& polygon) {
+  OGRPolygon shape;
+  for (const auto& ring : polygon.rings) {
+    OGRLinearRing line;
+    for (const auto& [x, y] : ring) line.addPoint(x, y);
+    line.closeRings();
+    shape.addRing(&line);
+  }
+  return shape;
+}
+
+void add_ring(MapPolygon& polygon, const OGRLinearRing* line) {
+  auto& ring = polygon.rings.emplace_back();
+  for (int i = 0; line != nullptr && i + 1 < line->getNumPoints(); ++i) ring.push_back({line->getX(i), line->getY(i)});
+  if (ring.size() < 3) polygon.rings.pop_back();
+}
+
+/// Adds the polygons that a geometry holds, with the attributes of `like`.
+void add_shapes(const OGRGeometry& shape, const MapPolygon& like, std::vector<MapPolygon>& polygons) {
+  const auto flat = wkbFlatten(shape.getGeometryType());
+  if (flat == wkbMultiPolygon || flat == wkbGeometryCollection) {
+    const auto& parts = *shape.toGeometryCollection();
+    for (int i = 0; i < parts.getNumGeometries(); ++i) add_shapes(*parts.getGeometryRef(i), like, polygons);
+  }
+  if (flat != wkbPolygon || shape.IsEmpty()) return;
+  MapPolygon polygon{{}, like.numbers, like.name};
+  const OGRPolygon& rings = *shape.toPolygon();
+  add_ring(polygon, rings.getExteriorRing());
+  if (polygon.rings.empty()) return;
+  for (int i = 0; i < rings.getNumInteriorRings(); ++i) add_ring(polygon, rings.getInteriorRing(i));
+  polygons.push_back(std::move(polygon));
+}
+
+}  // namespace
+
+std::vector<MapPolygon> grown(const std::vector<MapPolygon>& polygons, double distance,
+                              const std::filesystem::path& file) {
+  if (distance == 0) return polygons;
+  if (!OGRGeometryFactory::haveGEOS())
+    throw DataError({fmt::format("{}: cannot be grown by {:g} m", file.string(), distance), "this GDAL has no GEOS",
+                     "Draw the outline so, and leave grow_m out"});
+  std::vector<MapPolygon> result;
+  for (const MapPolygon& polygon : polygons) {
+    const gdal::QuietErrors errors;
+    const std::unique_ptr<OGRGeometry> shape(ogr_polygon(polygon).Buffer(distance, chords));
+    if (!shape)
+      throw DataError({fmt::format("{}: cannot be grown by {:g} m", file.string(), distance), errors.text(),
+                       "Mend the outline: ogr2ogr -makevalid out.gpkg " + file.string()});
+    add_shapes(*shape, polygon, result);
+  }
+  if (result.empty())
+    throw DataError({fmt::format("{}: nothing is left of it with grow_m = {:g}", file.string(), distance),
+                     "it is nowhere twice as wide as it was shrunk", "Shrink it less"});
+  return result;
+}
+
+}  // namespace talus

@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "postprocess/compare/curves.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <vector>
+
+#include "postprocess/fields/classes.hpp"
+
+namespace talus::postprocess {
+namespace {
+
+constexpr double width = 440, height = 196, left = 62, right = 10, top = 10, bottom = 34;  // of a chart [px]
+constexpr std::size_t most_points = 600;                                                   // of a curve
+
+/// What a chart shows: the column's name in the history, and the words above it.
+struct Chart {
+  std::string column, title, unit;
+};
+
+/// What an axis counts in: "GJ" and 1e9, so that its numbers stay short.
+struct Scale {
+  double factor = 1;
+  std::string unit;
+};
+
+Scale scale_of(double largest, const std::string& unit) {
+  const bool takes_prefix = unit == "J" || unit == "W" || unit.starts_with("N");
+  for (const auto& [factor, prefix, words] :
+       {std::tuple{1e9, "G", "billion "}, {1e6, "M", "million "}, {1e3, "k", "thousand "}}) {
+    if (largest >= 10 * factor && (takes_prefix || unit == "m\u00b3"))
+      return {factor, (takes_prefix ? prefix : words) + unit};
+  }
+  return {1, unit};
+}
+
+std::string safe(const std::string& text) {
+  std::string words;
+  for (const char c : text) words += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
+  return words;
+}
+
+/// "m s-1" -> "m/s"
+std::string unit_words(const std::string& unit) {
+  if (unit == "m s-1") return "m/s";
+  if (unit == "m3") return "m\u00b3";
+  return unit;
+}
+
+std::vector<Chart> charts_of(const ComparedRun& first, const ComparedRun& second) {
+  std::vector<Chart> charts{{"kinetic_J", "Kinetic energy", "J"},
+                            {"speed_max_m_s", "Largest speed of any point", "m/s"},
+                            {"moving_volume_m3", "Volume in motion", "m\u00b3"},
+                            {"moving_speed_m_s", "Mean speed of what moves", "m/s"}};
+  for (const ComparedRun* run : {&first, &second}) {
+    for (const HistoryColumn& column : run->run.history.columns) {
+      const bool known =
+          std::any_of(charts.begin(), charts.end(), [&](const Chart& c) { return c.column == column.name; });
+      if (column.place.empty() || known) continue;
+      charts.push_back({column.name, column.place + ": " + column.quantity, unit_words(column.unit)});
+    }
+  }
+  return charts;
+}
+
+/// The span of an axis.
+struct Span {
+  double low = 0, high = 0;
+  void take(double value) {
+    if (!std::isfinite(value)) return;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+};
+
+/// A column over time as the points of a polyline; every n-th of very many records, and the last.
+std::string points_of(const RunHistory& history, const std::string& name, const Span& time, const Span& value) {
+  const HistoryColumn *times = history.find("time_s"), *column = history.find(name);
+  std::string points;
+  const std::size_t stride = column->values.size() / most_points + 1;
+  for (std::size_t i = 0; i < column->values.size(); ++i) {
+    if ((i % stride != 0 && i + 1 != column->values.size()) || !std::isfinite(column->values[i])) continue;
+    const double x = left + (width - left - right) * (times->values[i] - time.low) / (time.high - time.low);
+    const double y =
+        height - bottom - (height - top - bottom) * (column->values[i] - value.low) / (value.high - value.low);
+    points += fmt::format("{:.1f},{:.1f} ", x, y);
+  }
+  return points;
+}
+
+bool holds(const ComparedRun& run, const std::string& name) {
+  const HistoryColumn *time = run.run.history.find("time_s"), *column = run.run.history.find(name);
+  return time != nullptr && column != nullptr && time->values.size() > 1 &&
+         column->values.size() == time->values.size();
+}
+
+std::string axes(const Span& time, const Span& value, double factor) {
+  std::string text;
+  const double across = width - left - right, up = height - top - bottom;
+  const double step = factor * axis_step((value.high - value.low) / factor);
+  for (double v = std::ceil(value.low / step) * step; v <= value.high + 1e-9 * step; v += step) {
+    const double y = height - bottom - up * (v - value.low) / (value.high - value.low);
+    text += fmt::format(
+        "<path d=\"M{:.1f} {:.1f}h{:.1f}\" class=\"g\"/><text x=\"{:.1f}\" y=\"{:.1f}\" class=\"e\">{:g}</text>", left,
+        y, across, left - 5, y + 4, std::abs(v) < 1e-9 * step ? 0 : v / factor);
+  }
+  const double every = axis_step(time.high - time.low);
+  for (double t = time.low; t <= time.high + 1e-9 * every; t += every)
+    text += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" class=\"m\">{:g}</text>",
+                        left + across * (t - time.low) / (time.high - time.low), height - bottom + 14, t);
+  return text +
+         fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" class=\"m\">time [s]</text>", left + across / 2, height - 4);
+}
+
+std::string chart(const Chart& asked, const ComparedRun& first, const ComparedRun& second) {
+  Span time, value;
+  for (const ComparedRun* run : {&first, &second}) {
+    if (!holds(*run, asked.column)) continue;
+    for (const double t : run->run.history.find("time_s")->values) time.take(t);
+    for (const double v : run->run.history.find(asked.column)->values) value.take(v);
+  }
+  if (!(time.high > time.low) || !(value.high > value.low)) return "";  // nothing ever happened there
+  const Scale scale = scale_of(std::max(value.high, -value.low), asked.unit);
+  std::string text = fmt::format("<figure><figcaption>{}</figcaption><svg viewBox=\"0 0 {:g} {:g}\" role=\"img\">",
+                                 safe(fmt::format("{} [{}]", asked.title, scale.unit)), width, height);
+  text += axes(time, value, scale.factor);
+  for (const auto& [run, line] : {std::pair{&first, "a"}, {&second, "b"}})
+    if (holds(*run, asked.column))
+      text += fmt::format("<polyline class=\"{}\" points=\"{}\"/>", line,
+                          points_of(run->run.history, asked.column, time, value));
+  return text + "</svg></figure>\n";
+}
+
+}  // namespace
+
+double axis_step(double range) { return round_below(range / 4); }
+
+std::string history_charts(const ComparedRun& first, const ComparedRun& second) {
+  std::string charts;
+  for (const Chart& asked : charts_of(first, second)) charts += chart(asked, first, second);
+  if (charts.empty()) return "";
+  return fmt::format(
+      "<h2>Over time</h2>\n<p class=\"keys\"><svg viewBox=\"0 0 40 10\" class=\"key\"><path class=\"a\" "
+      "d=\"M0 5h40\"/></svg> {} <svg viewBox=\"0 0 40 10\" class=\"key\"><path class=\"b\" d=\"M0 "
+      "5h40\"/></svg> {}</p>\n<div class=\"charts\">{}</div>\n",
+      safe(first.name), safe(second.name), charts);
+}
+
+}  // namespace talus::postprocess

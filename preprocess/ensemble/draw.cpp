@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "preprocess/ensemble/draw.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "common/error.hpp"
+#include "common/map/sum.hpp"
+#include "preprocess/ensemble/copula.hpp"
+#include "preprocess/ensemble/design.hpp"
+#include "preprocess/ensemble/listed_members.hpp"
+#include "preprocess/ensemble/marginal.hpp"
+
+namespace talus::preprocess {
+namespace {
+
+[[noreturn]] void refuse_drawing(const std::string& what, const std::string& why, const std::string& mend) {
+  throw RecipeError(Fault{"[ensemble] " + what, why, mend});
+}
+
+/// What a design that is no random sample leaves no room for.
+void check_design(const EnsembleOptions& o) {
+  const std::string design = "design = \"" + std::string(design_name(o.design)) + "\"";
+  const bool levels = o.design == Design::full_grid || o.design == Design::one_at_a_time;
+  if (!o.correlation.empty() && (levels || o.design == Design::sensitivity || o.design == Design::table))
+    refuse_drawing(design + " with [[ensemble.correlation]]",
+                   o.design == Design::sensitivity ? "shares of the variance are told apart for independent keys only"
+                   : levels                        ? "it combines levels without regard to what goes together"
+                                                   : "the table gives the values",
+                   "Leave the correlations out, or take design = \"sobol\"");
+  if (o.elevation_error.acts() && (o.design == Design::one_at_a_time || o.design == Design::sensitivity))
+    refuse_drawing(design + " with [ensemble.elevation_error]",
+                   "another ground in each member hides what a key does, and has no key whose share could be told",
+                   "Leave the error out, or take design = \"sobol\"");
+  if (o.design == Design::table && !o.vary.empty())
+    refuse_drawing(design + " with [[ensemble.vary]]", "the table says what varies", "Leave one of them out");
+  if (o.vary.empty() && (levels || o.design == Design::sensitivity))
+    refuse_drawing(design + " without [[ensemble.vary]]", "there is no key to take levels of", "Add one");
+}
+
+/// Members times keys of places among levels become values.
+void take_levels(MemberTable& table, const std::vector<std::vector<double>>& levels,
+                 const std::vector<std::vector<std::size_t>>& members) {
+  table.count = static_cast<std::int64_t>(members.size());
+  for (std::size_t d = 0; d < levels.size(); ++d)
+    for (const auto& member : members) table.columns[d].values.push_back(levels[d].at(member[d]));
+}
+
+void draw_grid(MemberTable& table, const std::vector<Marginal>& marginals, int count) {
+  std::vector<std::vector<double>> levels;
+  std::vector<std::size_t> counts;
+  for (const Marginal& marginal : marginals) {
+    levels.push_back(marginal.levels(count));
+    counts.push_back(levels.back().size());
+  }
+  take_levels(table, levels, combinations(counts, most_members));
+}
+
+/// The middle of all keys, then each key at its other levels.
+void draw_one_at_a_time(MemberTable& table, const std::vector<Marginal>& marginals, int count) {
+  std::vector<std::vector<double>> levels;
+  for (const Marginal& marginal : marginals) {
+    const double middle = marginal.quantile(0.5);
+    std::vector<double> of_key = marginal.levels(count);
+    const auto is_middle = [&](double value) { return std::abs(value - middle) <= 1e-12 * std::abs(middle); };
+    std::erase_if(of_key, is_middle);
+    of_key.insert(of_key.begin(), middle);
+    levels.push_back(std::move(of_key));
+  }
+  std::vector<std::vector<std::size_t>> members{std::vector<std::size_t>(levels.size(), 0)};
+  for (std::size_t d = 0; d < levels.size(); ++d) {
+    for (std::size_t level = 1; level < levels[d].size(); ++level) {
+      members.push_back(members.front());
+      members.back()[d] = level;
+    }
+  }
+  take_levels(table, levels, members);
+}
+
+void draw_sample(MemberTable& table, const EnsembleOptions& o, const std::vector<Marginal>& marginals) {
+  const Copula copula(o.vary, o.correlation);
+  UnitDesign design = unit_design(o.design, o.members, marginals.size(), o.seed);
+  table.count = static_cast<std::int64_t>(design.shares.size());
+  table.sample_size = design.sample_size;
+  for (std::vector<double>& shares : design.shares) {
+    copula.bind(shares);
+    for (std::size_t d = 0; d < marginals.size(); ++d)
+      table.columns[d].values.push_back(marginals[d].quantile(shares[d]));
+  }
+}
+
+std::string range_of(const MemberColumn& column) {
+  if (!column.words.empty()) {
+    std::string text;
+    for (std::size_t w = 0; w < column.words.size(); ++w)
+      text += fmt::format("{}{} in {}", w == 0 ? "" : ", ", column.words[w],
+                          std::count(column.values.begin(), column.values.end(), static_cast<double>(w)));
+    return text + " members";
+  }
+  const auto [least, largest] = std::minmax_element(column.values.begin(), column.values.end());
+  Sum sum;
+  for (const double value : column.values) sum.add(value);
+  return fmt::format("{:.6g} to {:.6g}, mean {:.6g}", *least, *largest,
+                     sum.value() / static_cast<double>(column.values.size()));
+}
+
+}  // namespace
+
+MemberTable draw_members(const EnsembleOptions& o) {
+  check_design(o);
+  MemberTable table;
+  table.design = design_name(o.design);
+  table.seed = o.seed;
+  if (o.design == Design::table) {
+    take_listed(table, o.table);
+  } else {
+    std::vector<Marginal> marginals;
+    for (const VaryOptions& one : o.vary) {
+      marginals.emplace_back(one);
+      table.columns.push_back({one.key, {}, marginals.back().words()});
+    }
+    if (o.design == Design::full_grid)
+      draw_grid(table, marginals, o.levels);
+    else if (o.design == Design::one_at_a_time)
+      draw_one_at_a_time(table, marginals, o.levels);
+    else
+      draw_sample(table, o, marginals);
+  }
+  table.own_domain.assign(static_cast<std::size_t>(table.count), 0);
+  for (const int member : o.keep)
+    if (member >= table.count)
+      refuse_drawing(fmt::format("keep names member {}", member),
+                     fmt::format("there are {}, counted from 0", table.count), "Name one that is there");
+  return table;
+}
+
+std::vector<std::string> as_lines(const MemberTable& table, const EnsembleOptions& options) {
+  std::string first = fmt::format("ensemble: {} members, design {}", table.count, table.design);
+  if (table.sample_size > 0)
+    first +=
+        fmt::format(": {} (d + 2) of {} keys, of at most {}", table.sample_size, table.columns.size(), options.members);
+  else if (table.count != options.members)
+    first += fmt::format(", which gives their number itself (members = {} in the recipe)", options.members);
+  std::vector<std::string> lines{std::move(first)};
+  for (const MemberColumn& column : table.columns) lines.push_back("  " + column.key + ": " + range_of(column));
+  return lines;
+}
+
+}  // namespace talus::preprocess

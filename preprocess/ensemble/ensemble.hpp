@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The ensemble of a recipe: its members are drawn and checked before the base domain is made, and written after it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/ensemble/names.hpp"
+#include "preprocess/ensemble/check_members.hpp"
+#include "preprocess/ensemble/draw.hpp"
+#include "preprocess/ensemble/elevation_errors.hpp"
+#include "preprocess/output/provenance.hpp"
+
+namespace talus::preprocess {
+
+/// What [ensemble] asks for.
+struct EnsemblePlan {
+  EnsembleOptions options;
+  MemberTable table;
+  std::vector<std::optional<Options>> ground;  ///< [members]: of those that have ground of their own
+  std::optional<ElevationErrors> errors = {};  ///< once the base scene is read
+
+  /// How many members get a domain of their own.
+  std::int64_t own_domains() const;
+};
+
+/// Draws the members and checks their recipes; none where the recipe asks for no ensemble. Throws RecipeError and
+/// DataError.
+std::optional<EnsemblePlan> plan_ensemble(const recipe::Recipe& recipe, const Options& base);
+
+/// The files beside the recipe that [ensemble] names.
+std::vector<std::filesystem::path> inputs_of(const EnsembleOptions& options);
+
+/// What people read of a plan.
+std::vector<std::string> as_lines(const EnsemblePlan& plan);
+
+/// What members differ from.
+struct EnsembleBase {
+  Options options;     ///< as the recipe gives them
+  SceneRasters scene;  ///< before anything is scaled, laid or seeded
+  SurveyMemory& memory;
+  Facts inputs, marks;  ///< of the base domain
+  Facts obstacles;      ///< what the base domain says of obstacles.vdb; empty: there is none
+};
+
+/// Refuses (RecipeError) a key of [preprocess] that changes nothing of the domain: between its smallest value and its
+/// largest, with the others as the recipe has them.
+void refuse_idle_keys(const recipe::Recipe& recipe, const EnsemblePlan& plan, const EnsembleBase& base);
+
+/// Writes members' domains, in parallel, then members.h5. Domains that are there and say that they were made of the
+/// same are left as they are. What an ensemble before left is removed. Throws as prepare() does, naming the member;
+/// DataError where a member lies on another grid than the base.
+void write_ensemble(StageContext& context, EnsemblePlan& plan, const EnsembleBase& base);
+
+/// Removes members.h5 and members' domains but those that `plan` has.
+void remove_members(const EnsemblePaths& paths, const EnsemblePlan* plan);
+
+}  // namespace talus::preprocess

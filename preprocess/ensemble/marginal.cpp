@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "preprocess/ensemble/marginal.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <openturns/BetaMuSigma.hxx>
+#include <openturns/LogNormal.hxx>
+#include <openturns/LogNormalMuSigma.hxx>
+#include <openturns/Mixture.hxx>
+#include <openturns/Normal.hxx>
+#include <openturns/Triangular.hxx>
+#include <openturns/TruncatedDistribution.hxx>
+#include <openturns/Uniform.hxx>
+#include <openturns/UserDefined.hxx>
+#include <utility>
+
+#include "common/error.hpp"
+#include "preprocess/ensemble/csv.hpp"
+
+namespace talus::preprocess {
+
+struct Marginal::Law {
+  OT::Distribution distribution;
+};
+
+namespace {
+
+constexpr double least_share = 1e-6;  // of a distribution that must be left between low and high
+
+[[noreturn]] void refuse_vary(const VaryOptions& o, const std::string& what, const std::string& why,
+                              const std::string& mend) {
+  throw RecipeError(Fault{"[[ensemble.vary]] of " + o.key + ": " + what, why, mend});
+}
+
+/// What is left of a distribution between low and high, where they are given.
+OT::Distribution cut_off(const OT::Distribution& whole, const VaryOptions& o) {
+  if (!o.low && !o.high) return whole;
+  const double below = o.low ? whole.computeCDF(*o.low) : 0.0, beyond = o.high ? 1 - whole.computeCDF(*o.high) : 0.0;
+  const double left = 1 - below - beyond;
+  if (!(left >= least_share))
+    refuse_vary(o, fmt::format("low and high leave {:.2g} of the distribution", std::max(0.0, left)),
+                fmt::format("its mean is {:g}, its deviation {:g}", *o.mean, *o.deviation),
+                "Give bounds around the mean, or a larger deviation");
+  using Cut = OT::TruncatedDistribution;
+  if (o.low && o.high) return Cut(whole, *o.low, *o.high);
+  return o.low ? Cut(whole, *o.low, Cut::LOWER) : Cut(whole, *o.high, Cut::UPPER);
+}
+
+/// Beta on [low, high] by mean and deviation, which must leave its two shapes positive.
+OT::Distribution beta_of(const VaryOptions& o) {
+  const double low = *o.low, high = *o.high, mean = *o.mean, most = (mean - low) * (high - mean);
+  if (!(mean > low && mean < high))
+    refuse_vary(o, fmt::format("mean = {:g} is not between low and high", mean), "the distribution lies there",
+                "Mend one of them");
+  if (!(*o.deviation * *o.deviation < most))
+    refuse_vary(o, fmt::format("deviation = {:g} is too large", *o.deviation),
+                fmt::format("with this mean no distribution between {:g} and {:g} has one of {:g} or more", low, high,
+                            std::sqrt(most)),
+                "Give a smaller one, or wider bounds");
+  return OT::BetaMuSigma(mean, *o.deviation, low, high).getDistribution();
+}
+
+/// A density that is linear between the rows of a table: a mixture of triangles, one over each row.
+OT::Distribution tabulated(const VaryOptions& o) {
+  const std::vector<DensityRow> rows = read_density(o.table);
+  OT::Mixture::DistributionCollection triangles;
+  OT::Point shares;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double from = rows[i == 0 ? 0 : i - 1].value, to = rows[std::min(i + 1, rows.size() - 1)].value;
+    if (!(rows[i].density > 0)) continue;
+    triangles.add(OT::Triangular(from, rows[i].value, to));
+    shares.add(rows[i].density * (to - from) / 2);
+  }
+  return OT::Mixture(triangles, shares);
+}
+
+/// Places 0, 1, ... with the weights of what stands there.
+OT::Distribution places(const std::vector<double>& weights) {
+  OT::Sample support(static_cast<OT::UnsignedInteger>(weights.size()), 1);
+  OT::Point shares(static_cast<OT::UnsignedInteger>(weights.size()));
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    support(i, 0) = static_cast<double>(i);
+    shares[i] = weights[i] / sum;
+  }
+  return OT::UserDefined(support, shares);
+}
+
+/// What a discrete key chooses from, numbers in growing order, without what has no weight.
+struct Choices {
+  std::vector<double> values;
+  std::vector<std::string> words;
+  std::vector<double> weights;
+};
+
+Choices choices_of(const VaryOptions& o) {
+  if (!o.values.empty() && !o.words.empty())
+    refuse_vary(o, "values and words are both given", "a key is a number or a word", "Leave one of them out");
+  const std::size_t count = o.values.size() + o.words.size();
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (o.words.empty())
+    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return o.values[a] < o.values[b]; });
+  Choices choices;
+  for (const std::size_t i : order) {
+    if (!o.weights.empty() && !(o.weights[i] > 0)) continue;
+    choices.weights.push_back(o.weights.empty() ? 1.0 : o.weights[i]);
+    choices.values.push_back(o.words.empty() ? o.values[i] : static_cast<double>(choices.words.size()));
+    if (!o.words.empty()) choices.words.push_back(o.words[i]);
+  }
+  const bool twice = o.words.empty()
+                         ? std::adjacent_find(choices.values.begin(), choices.values.end()) != choices.values.end()
+                         : std::any_of(o.words.begin(), o.words.end(), [&](const std::string& word) {
+                             return std::count(o.words.begin(), o.words.end(), word) > 1;
+                           });
+  if (twice) refuse_vary(o, "a value is there twice", "each has one weight", "Leave one out, and give it the weight");
+  return choices;
+}
+
+OT::Distribution continuous(const VaryOptions& o) {
+  switch (o.distribution) {
+    case Distribution::normal: return cut_off(OT::Normal(*o.mean, *o.deviation), o);
+    case Distribution::lognormal: return cut_off(OT::LogNormalMuSigma(*o.mean, *o.deviation, 0).getDistribution(), o);
+    case Distribution::triangular: return OT::Triangular(*o.low, *o.mode, *o.high);
+    case Distribution::beta: return beta_of(o);
+    case Distribution::table: return tabulated(o);
+    case Distribution::uniform:
+    case Distribution::discrete: break;
+  }
+  return OT::Uniform(*o.low, *o.high);
+}
+
+}  // namespace
+
+Marginal::Marginal(const VaryOptions& options) {
+  if (options.distribution == Distribution::discrete) {
+    Choices choices = choices_of(options);
+    law_ = std::make_shared<Law>(Law{places(choices.weights)});
+    values_ = std::move(choices.values);
+    words_ = std::move(choices.words);
+    return;
+  }
+  law_ = std::make_shared<Law>(Law{continuous(options)});
+}
+
+double Marginal::quantile(double p) const {
+  const double value = law_->distribution.computeQuantile(p)[0];
+  return values_.empty() ? value : values_.at(static_cast<std::size_t>(value + 0.5));
+}
+
+double Marginal::mean() const {
+  if (values_.empty()) return law_->distribution.getMean()[0];
+  double sum = 0;
+  for (std::size_t i = 0; i < values_.size(); ++i)
+    sum += values_[i] * law_->distribution.computePDF(static_cast<double>(i));
+  return sum;
+}
+
+double Marginal::deviation() const {
+  if (values_.empty()) return law_->distribution.getStandardDeviation()[0];
+  const double middle = mean();
+  double sum = 0;
+  for (std::size_t i = 0; i < values_.size(); ++i)
+    sum += (values_[i] - middle) * (values_[i] - middle) * law_->distribution.computePDF(static_cast<double>(i));
+  return std::sqrt(sum);
+}
+
+std::vector<double> Marginal::levels(int count) const {
+  if (!values_.empty()) return values_;
+  std::vector<double> levels;
+  for (int k = 0; k < count; ++k) levels.push_back(quantile((k + 0.5) / count));
+  return levels;
+}
+
+}  // namespace talus::preprocess

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The distribution of one key that varies, by OpenTURNS, whose headers stay in marginal.cpp.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/ensemble/options.hpp"
+
+namespace talus::preprocess {
+
+/// A distribution as [[ensemble.vary]] describes it. Of words, the values are their places in words().
+class Marginal {
+ public:
+  /// Throws RecipeError where no such distribution exists: nothing is left between low and high, a deviation that does
+  /// not go with the mean; and DataError as read_density() does.
+  explicit Marginal(const VaryOptions& options);
+
+  /// The value that a share 0 < p < 1 lies below.
+  double quantile(double p) const;
+  double mean() const;       ///< of what is left where it is cut off
+  double deviation() const;  ///< likewise
+  /// What full-grid and one-at-a-time take: the quantiles (k + 1/2) / count, of a discrete one all its values.
+  std::vector<double> levels(int count) const;
+  /// The words that it chooses from; empty: numbers.
+  const std::vector<std::string>& words() const { return words_; }
+
+ private:
+  struct Law;
+  std::shared_ptr<const Law> law_;
+  std::vector<double> values_;  // of a discrete one, growing
+  std::vector<std::string> words_;
+};
+
+}  // namespace talus::preprocess

@@ -1,0 +1,230 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <regex>
+#include <set>
+#include <thread>
+
+#include "common/domain/domain_facts.hpp"
+#include "common/error.hpp"
+#include "common/map/sum.hpp"
+#include "common/stage/console.hpp"
+#include "common/stage/machine.hpp"
+#include "preprocess/ensemble/ensemble.hpp"
+
+namespace talus::preprocess {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int most_threads = 16;  // as many files are written aside at once at most
+
+/// The members' domains while they are made: shared by threads.
+class MemberDomains {
+ public:
+  MemberDomains(const StageContext& context, const EnsemblePlan& plan, const EnsembleBase& base)
+      : context_(context), plan_(plan), base_(base), paths_{context.out} {
+    for (std::int64_t k = 0; k < plan.table.count; ++k)
+      if (plan.table.own_domain[static_cast<std::size_t>(k)]) todo_.push_back(k);
+  }
+
+  void make_all();
+
+ private:
+  void work();
+  void make(std::int64_t member);
+  bool is_there(const fs::path& file, const Facts& marks) const;
+  /// What tells a member's domain from the base's: its values, and its field.
+  std::string difference_of(std::int64_t member) const;
+  Prepared prepared(std::int64_t member) const;
+  void check_grid(const Prepared& made) const;
+  void note_warnings(std::int64_t member, const std::vector<std::string>& warnings);
+  void say_end(double seconds) const;
+
+  const StageContext& context_;
+  const EnsemblePlan& plan_;
+  const EnsembleBase& base_;
+  EnsemblePaths paths_;
+  std::vector<std::int64_t> todo_;
+  std::atomic<std::size_t> next_{0};
+  std::atomic<std::int64_t> made_{0}, kept_{0};
+  std::atomic<bool> stop_{false};
+  mutable std::mutex mutex_;
+  std::exception_ptr fault_;
+  std::map<std::string, std::pair<std::int64_t, std::int64_t>> warnings_;  // text without numbers: first member, count
+  std::map<std::string, std::string> first_words_;
+  Progress progress_;
+};
+
+std::string MemberDomains::difference_of(std::int64_t member) const {
+  std::string text = fmt::format("{}", fmt::join(ground_of(plan_.table, member), "\n"));
+  if (plan_.errors)
+    text += fmt::format("\n{}\nseed {}, member {}", recipe::to_toml(plan_.options.elevation_error, "error", false),
+                        plan_.table.seed, member);
+  return text;
+}
+
+bool MemberDomains::is_there(const fs::path& file, const Facts& marks) const {
+  try {
+    return fs::exists(file) && fact(domain_facts(file), domain_id) == fact(marks, domain_id);
+  } catch (const DataError&) {  // damaged: made again
+    return false;
+  }
+}
+
+Prepared MemberDomains::prepared(std::int64_t member) const {
+  const auto& own = plan_.ground[static_cast<std::size_t>(member)];
+  const Options& options = own ? *own : base_.options;
+  SceneRasters scene = own ? read_scene(options, &base_.memory) : base_.scene;
+  if (plan_.errors) plan_.errors->apply(scene, member);
+  Options made_with = resolved(options);
+  if (plan_.table.find(thickness_factor_key) != nullptr) made_with.thickness_factor = 1;
+  return prepare(made_with, std::move(scene), Points::seeded);
+}
+
+void MemberDomains::check_grid(const Prepared& made) const {
+  const MapGrid &own = made.domain.grid, &base = base_.scene.bed.grid;
+  const auto words = [](const MapGrid& g) {
+    return fmt::format("{} x {} cells of {:g} m from {:.10g}, {:.10g}", g.columns, g.rows, g.cell, g.west, g.south);
+  };
+  if (words(own) == words(base) && own.crs_wkt == base.crs_wkt) return;
+  throw DataError(Fault{fmt::format("it lies on another grid: {} (the base: {})", words(own), words(base)),
+                        "members are counted in the cells of one map",
+                        "Name the part to compute, so that all have it: west_m, south_m, east_m, north_m in "
+                        "[preprocess.grid]"});
+}
+
+void MemberDomains::make(std::int64_t member) {
+  const auto& own = plan_.ground[static_cast<std::size_t>(member)];
+  const Facts inputs = own ? checksums_of(inputs_of(*own)) : base_.inputs;
+  Facts marks = marks_of(context_.recipe, inputs, difference_of(member));
+  const fs::path file = paths_.domain(member);
+  if (is_there(file, marks)) {
+    ++kept_;
+    return;
+  }
+  const QuietThread log;
+  Prepared made = prepared(member);
+  check_grid(made);
+  marks.emplace_back("ensemble.base", fact(base_.marks, domain_id));
+  marks.emplace_back("ensemble.member", std::to_string(member));
+  for (const std::string& value : ground_of(plan_.table, member)) {
+    const auto sign = value.find('=');
+    marks.emplace_back("ensemble." + value.substr(0, sign), value.substr(sign + 1));
+  }
+  made.domain.provenance = provenance_of(context_, inputs, marks, facts_of(made));
+  Facts& provenance = made.domain.provenance;
+  provenance.insert(provenance.end(), base_.obstacles.begin(), base_.obstacles.end());
+  write_domain(file, made.domain);
+  ++made_;
+  note_warnings(member, log.warnings());
+}
+
+void MemberDomains::note_warnings(std::int64_t member, const std::vector<std::string>& warnings) {
+  static const std::regex number("[0-9][0-9.,e+-]*");
+  const std::lock_guard lock(mutex_);
+  for (const std::string& warning : warnings) {
+    const std::string kind = std::regex_replace(warning, number, "#");
+    auto [found, is_new] = warnings_.try_emplace(kind, member, 0);
+    ++found->second.second;
+    if (is_new) first_words_[kind] = warning;
+  }
+}
+
+/// The faults of a member, told with its number.
+template <class Kind>
+Kind with_member(const Kind& error, std::int64_t member) {
+  std::vector<Fault> faults = error.faults();
+  for (Fault& fault : faults) fault.what = fmt::format("[ensemble] member {}: {}", member, fault.what);
+  return Kind(std::move(faults));
+}
+
+void MemberDomains::work() {
+  for (;;) {
+    const std::size_t place = next_++;
+    if (place >= todo_.size() || stop_) return;
+    const std::int64_t member = todo_[place];
+    std::exception_ptr fault;
+    try {
+      stop_if_interrupted(fmt::format("making the domain of member {}; those that are finished are kept", member));
+      make(member);
+    } catch (const RecipeError& error) {
+      fault = std::make_exception_ptr(with_member(error, member));
+    } catch (const DataError& error) {
+      fault = std::make_exception_ptr(with_member(error, member));
+    } catch (...) {
+      fault = std::current_exception();
+    }
+    const std::lock_guard lock(mutex_);
+    if (fault) {
+      stop_ = true;
+      if (!fault_) fault_ = fault;
+    } else if (progress_.due()) {
+      progress_.update(fmt::format("domains of members {}/{}", made_ + kept_, todo_.size()));
+    }
+  }
+}
+
+void MemberDomains::say_end(double seconds) const {
+  for (const auto& [kind, members] : warnings_)
+    log_warning(fmt::format("member {}{}: {}", members.first,
+                            members.second > 1 ? fmt::format(" and {} others likewise", members.second - 1) : "",
+                            first_words_.at(kind)));
+  double bytes = 0;
+  for (const std::int64_t k : todo_) bytes += static_cast<double>(fs::file_size(paths_.domain(k)));
+  log_info(fmt::format("domains of members: {} made in {:.3g} s, {} were there; {:.1f} MB in {}", made_.load(), seconds,
+                       kept_.load(), bytes * 1e-6, paths_.folder().string()));
+}
+
+void MemberDomains::make_all() {
+  if (todo_.empty()) return;
+  make_folder(paths_.folder());
+  const auto began = std::chrono::steady_clock::now();
+  {
+    std::vector<std::jthread> threads;
+    const auto count =
+        std::min<std::size_t>(todo_.size(), static_cast<std::size_t>(std::clamp(thread_limit(), 1, most_threads)));
+    for (std::size_t t = 0; t < count; ++t) threads.emplace_back([this] { work(); });
+  }
+  if (fault_) std::rethrow_exception(fault_);
+  say_end(std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
+}
+
+}  // namespace
+
+void remove_members(const EnsemblePaths& paths, const EnsemblePlan* plan) {
+  remove_for_good(paths.members());
+  static const std::regex of_a_member(R"(domain\.([0-9]{5,7})\.vdb)");
+  std::vector<fs::path> gone;
+  std::error_code unreadable;
+  for (const auto& entry : fs::directory_iterator(paths.folder(), unreadable)) {
+    std::smatch match;
+    const std::string name = entry.path().filename().string();
+    if (!std::regex_match(name, match, of_a_member)) continue;
+    const std::size_t member = std::stoul(match[1]);
+    const bool wanted = plan != nullptr && member < plan->table.own_domain.size() && plan->table.own_domain[member];
+    if (!wanted) gone.push_back(entry.path());
+  }
+  for (const fs::path& file : gone) remove_for_good(file);
+}
+
+void write_ensemble(StageContext& context, EnsemblePlan& plan, const EnsembleBase& base) {
+  const EnsemblePaths paths{context.out};
+  remove_members(paths, &plan);
+  MemberDomains(context, plan, base).make_all();
+  plan.table.provenance = {{"version", version()},
+                           {"command", context.command_line},
+                           {recipe_of_members, recipe_mark(context.recipe, "ensemble")},
+                           {base_domain_id, fact(base.marks, domain_id)}};
+  write_member_table(paths.members(), plan.table);
+  context.results.push_back(paths.members());
+}
+
+}  // namespace talus::preprocess

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "preprocess/output/provenance.hpp"
+
+#include <fmt/format.h>
+
+#include "common/gis/crs.hpp"
+
+namespace talus::preprocess {
+
+Facts facts_of(const Prepared& prepared) {
+  const Domain& domain = prepared.domain;
+  const MapGrid& grid = domain.grid;
+  Facts facts{{"crs", crs_name(grid.crs_wkt)},
+              {"grid", fmt::format("{} x {} cells of {:g} m, west {:.10g}, south {:.10g}", grid.columns, grid.rows,
+                                   grid.cell, grid.west, grid.south)},
+              {"layer_height_m", fmt::format("{:g}", domain.layer_height)},
+              {"material_points", std::to_string(prepared.point_count)}};
+  for (auto& fact : as_facts(prepared.total)) facts.push_back(std::move(fact));
+  facts.insert(facts.end(), prepared.accepted.begin(), prepared.accepted.end());
+  if (!prepared.coarse.empty()) facts.emplace_back("warning.coarse_grid", prepared.coarse);
+  if (prepared.sliding_surface) {
+    facts.emplace_back(
+        "sliding_surface",
+        fmt::format(
+            "computed from the outline, curvature {:.4g} 1/m, at most {:.4g} m deep, follows the ground in {} cells",
+            prepared.sliding_surface->curvature, prepared.sliding_surface->depth, prepared.sliding_surface->touching));
+  }
+  if (prepared.by_release.size() < 2) return facts;
+  for (const auto& [name, volumes] : prepared.by_release) {
+    for (auto& [key, value] : as_facts(volumes)) facts.emplace_back(fmt::format("{}.{}", name, key), std::move(value));
+  }
+  return facts;
+}
+
+Facts checksums_of(const std::vector<std::filesystem::path>& files) {
+  Facts inputs;
+  for (const auto& file : files) {
+    const std::string sum =
+        std::filesystem::is_regular_file(file) ? " sha256 " + sha256(file) : "";  // some formats are folders
+    inputs.emplace_back("input " + file.filename().string(), file.string() + sum);
+  }
+  return inputs;
+}
+
+Facts marks_of(const recipe::Recipe& recipe, const Facts& inputs, const std::string& more) {
+  const std::string mark = recipe_mark(recipe, "preprocess");
+  std::string text = version() + "\n" + mark + "\n";
+  for (const auto& [name, value] : inputs) {
+    const auto sum = value.rfind("sha256 ");
+    text += name + (sum == std::string::npos ? "" : value.substr(sum)) + "\n";
+  }
+  if (!more.empty()) text += more + "\n";
+  return {{domain_id, sha256_of_text(text).substr(0, mark_digits)}, {recipe_of_domain, mark}};
+}
+
+Facts provenance_of(const StageContext& context, const Facts& inputs, const Facts& marks, const Facts& facts) {
+  Facts provenance{{"scene", context.recipe.scene_name()},
+                   {"title", context.recipe.title()},
+                   {"version", version()},
+                   {"command", context.command_line},
+                   {"hardware", hardware()}};
+  for (const Facts* more : {&inputs, &marks, &facts}) provenance.insert(provenance.end(), more->begin(), more->end());
+  return provenance;
+}
+
+}  // namespace talus::preprocess
