@@ -8,7 +8,11 @@
 #include <vector>
 
 #include "common/recipe/recipe.hpp"
+<<<<<<< HEAD
 #include "postprocess/options/three_d.hpp"
+=======
+#include "postprocess/options/hazard.hpp"
+>>>>>>> main
 
 namespace talus::postprocess {
 
@@ -84,7 +88,13 @@ struct Options {
   std::filesystem::path thalweg;  // line along which run-out is measured; empty = found from the run
   AvaFrameFormat avaframe_format = AvaFrameFormat::tif;
   SurveyOptions survey;
+<<<<<<< HEAD
   ThreeDOptions three_d;
+=======
+  IntensityOptions intensity;
+  ReachConeOptions reach_cone;
+  BuildingOptions buildings;
+>>>>>>> main
   HazardOptions hazard;
   std::vector<std::string> accept;  // what is refused as implausible, insisted on by name
 
