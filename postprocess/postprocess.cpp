@@ -151,13 +151,9 @@ void write_results(StageContext& context, const Job& job) {
     context.results.push_back(context.out / name);
     write_text(context.results.back(), bytes);
   };
-<<<<<<< HEAD
   for (const fs::path& made : write_three_d(context.out / "3d", options.three_d, run, PointFrames(file)))
     context.results.push_back(made);
-  const PictureInput picture{run, options, survey, score, {}};
-=======
   const PictureInput picture{run, options, survey, score, {}, &hazard};
->>>>>>> main
   write("map.png", map_picture(picture));
   if (options.animation != Animation::none)
     context.results.push_back(write_animation(context.out, picture, options.animation));

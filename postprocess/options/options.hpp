@@ -8,11 +8,8 @@
 #include <vector>
 
 #include "common/recipe/recipe.hpp"
-<<<<<<< HEAD
-#include "postprocess/options/three_d.hpp"
-=======
 #include "postprocess/options/hazard.hpp"
->>>>>>> main
+#include "postprocess/options/three_d.hpp"
 
 namespace talus::postprocess {
 
@@ -27,7 +24,7 @@ enum class AvaFrameFormat { tif, asc };
 
 /// What the simulation is scored against. Nothing given: no score against a survey.
 struct SurveyOptions {
-  std::string name = "survey";           // how the map and the table call it
+  std::string name = "survey";  // how the map and the table call it
   ReferenceKind kind = ReferenceKind::survey;
   std::filesystem::path thickness;       // raster of deposit thickness, vertical [m]
   std::filesystem::path peak_thickness;  // raster of peak thickness, vertical [m]: the footprint
@@ -88,13 +85,10 @@ struct Options {
   std::filesystem::path thalweg;  // line along which run-out is measured; empty = found from the run
   AvaFrameFormat avaframe_format = AvaFrameFormat::tif;
   SurveyOptions survey;
-<<<<<<< HEAD
-  ThreeDOptions three_d;
-=======
   IntensityOptions intensity;
   ReachConeOptions reach_cone;
   BuildingOptions buildings;
->>>>>>> main
+  ThreeDOptions three_d;
   HazardOptions hazard;
   std::vector<std::string> accept;  // what is refused as implausible, insisted on by name
 
