@@ -7,8 +7,9 @@
 
 namespace talus::postprocess {
 
-std::vector<double> fitting_limits(const std::vector<double>& ladder, double largest, std::size_t kept) {
-  constexpr std::size_t fewest = 4, most = 6;
+std::vector<double> fitting_limits(const std::vector<double>& ladder, double largest, std::size_t kept,
+                                   std::size_t most) {
+  constexpr std::size_t fewest = 4;
   if (!(largest > 0))
     return {ladder.begin(), ladder.begin() + static_cast<std::ptrdiff_t>(std::min(fewest, ladder.size()))};
   std::vector<double> limits;

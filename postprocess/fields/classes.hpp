@@ -10,9 +10,10 @@
 namespace talus::postprocess {
 
 /// Lower limits of classes that fit values up to `largest`: those of `ladder` (the thresholds of a field's usual maps,
-/// rising) that are exceeded, of which the lowest `kept` and the highest ones make six at most; with finer ones (1, 2,
-/// 5 times a power of ten) below where they would be fewer than four. `largest` not above 0: the first four.
-std::vector<double> fitting_limits(const std::vector<double>& ladder, double largest, std::size_t kept);
+/// rising) that are exceeded, of which the lowest `kept` and the highest ones make `most` at most; with finer ones (1,
+/// 2, 5 times a power of ten) below where they would be fewer than four. `largest` not above 0: the first four.
+std::vector<double> fitting_limits(const std::vector<double>& ladder, double largest, std::size_t kept,
+                                   std::size_t most = 6);
 
 /// Lower limits of thickness classes [m]: as given; if none are, of 0.1|0.5|1|2|5|10|25|50|100|200|500 those that fit.
 std::vector<double> class_limits(const std::vector<double>& given, double thickest);

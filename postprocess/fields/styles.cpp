@@ -21,7 +21,7 @@ double largest(const std::vector<double>& values) {
 }  // namespace
 
 std::vector<double> pressure_limits(const std::vector<double>& values) {
-  return fitting_limits({1, 3, 5, 10, 30, 100, 300, 1000, 3000, 10000}, largest(values), 4);
+  return fitting_limits({1, 3, 5, 10, 100, 1000, 10000}, largest(values), 4, 7);
 }
 
 std::vector<double> speed_limits(const std::vector<double>& values) {

@@ -11,7 +11,7 @@
 
 namespace talus::postprocess {
 
-/// Limits of pressure classes [kPa]: of 1|3|5|10 and 30|100|300|1000|3000|10000 those that fit the largest of `values`
+/// Limits of pressure classes [kPa]: of 1|3|5|10 and the powers of ten above those that fit the largest of `values`
 /// (fitting_limits), the first four always kept.
 std::vector<double> pressure_limits(const std::vector<double>& values);
 

@@ -93,8 +93,8 @@ PrintLayout print_layout(const GisInput& input) {
   const RunSummary& s = input.run.summary;
   const std::string crs = crs_name(input.run.maps.grid.crs_wkt);
   PrintLayout page{.title = s.title, .subtitle = {}, .sources = {}};
-  page.subtitle = fmt::format("Landslide run-out simulation, scene {}, {:g} s simulated. {}.", s.scene, s.time_end,
-                              crs.empty() ? "Local coordinates [m]" : crs);
+  page.subtitle = fmt::format("Landslide run-out simulation, scene {}, {:g} s simulated; {}", s.scene, s.time_end,
+                              crs.empty() ? "local coordinates [m]" : crs);
   page.sources = fmt::format("Talus {}, material point method; map cell {:g} m; run {}.", s.version,
                              input.run.maps.grid.cell, fact(s.provenance, run_id));
   if (input.survey && input.survey->name != "survey") page.sources += " Reference: " + input.survey->name + ".";

@@ -129,8 +129,8 @@ std::string ElevationErrors::words() const {
     text += fmt::format("{} released thickness {:.3g} m", terrain_.empty() ? "" : ",", middle_of(thickness_));
   if (terrain_.size() > 1) text += " (medians; more on steep ground where the survey says so)";
   for (const Part& part : parts_)
-    text += part.range > 0 ? fmt::format(", {:.0f} % of the variance alike over {:.0f} m", 100 * part.share, part.range)
-                           : fmt::format(", {:.0f} % of it independent", 100 * part.share);
+    text += fmt::format(", {:.0f} % of its variance ", 100 * part.share) +
+            (part.range > 0 ? fmt::format("alike over {:.0f} m", part.range) : std::string("independent"));
   return text;
 }
 

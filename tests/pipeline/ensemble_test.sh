@@ -41,7 +41,7 @@ TOML
 
 # same_counts A B...: the counts of A are those of the other files together.
 same_counts() {
-  python3 - "$@" <<'PYTHON' || fail "the counts of $1 are not those of ${*:2}"
+  /usr/bin/python3 - "$@" <<'PYTHON' || fail "the counts of $1 are not those of ${*:2}"
 import sys
 import h5py
 import numpy as np
@@ -79,7 +79,7 @@ test_a_member_is_the_run_alone() {
   local -a set=(--set ensemble.members=0)
   local value
   while IFS= read -r value; do set+=(--set "$value"); done < <(
-    python3 - <<'PYTHON'
+    /usr/bin/python3 - <<'PYTHON'
 import h5py
 
 for key in h5py.File("out/members.h5")["keys"].values():
@@ -93,7 +93,7 @@ PYTHON
   cp out/domain.vdb alone
   expect_exit 0 "$bin/talus-solve" recipe.toml --out alone --on cpu "${set[@]}"
   expect_exit 0 h5diff alone/run.h5 out/members/00003/run.h5 /maps
-  expect_exit 0 python3 - <<'PYTHON'
+  expect_exit 0 /usr/bin/python3 - <<'PYTHON'
 import h5py
 import numpy as np
 

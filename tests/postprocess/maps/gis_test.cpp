@@ -25,8 +25,8 @@ using test::small_run;
 TEST(Styles, have_the_thresholds_of_hazard_work) {
   auto run = small_run();
   run.maps.peak_pressure_kPa = test::block(run.maps.grid, 3, 35, 10, 20, 40);
-  EXPECT_EQ(pressure_limits(run.maps.peak_pressure_kPa), (std::vector<double>{1, 3, 5, 10, 30}));
-  EXPECT_EQ(pressure_limits(small_run().maps.peak_pressure_kPa), (std::vector<double>{1, 3, 5, 10, 100, 300}))
+  EXPECT_EQ(pressure_limits(run.maps.peak_pressure_kPa), (std::vector<double>{1, 3, 5, 10}));
+  EXPECT_EQ(pressure_limits(small_run().maps.peak_pressure_kPa), (std::vector<double>{1, 3, 5, 10, 100}))
       << "880 kPa at most";
   EXPECT_EQ(speed_limits({60}), (std::vector<double>{0.5, 1, 5, 10, 25, 50}));
   EXPECT_EQ(speed_limits({160}), (std::vector<double>{0.5, 5, 10, 25, 50, 100}));
@@ -42,7 +42,7 @@ TEST(Styles, fit_the_range_of_values) {
     for (const auto& limits : {thickness_limits({}, {largest}), speed_limits({largest}), pressure_limits({largest})}) {
       EXPECT_LT(limits.back(), largest) << "the last class is empty";
       EXPECT_GE(limits.size(), 4U) << largest;
-      EXPECT_LE(limits.size(), 6U) << largest;
+      EXPECT_LE(limits.size(), 7U) << largest;
       EXPECT_TRUE(std::is_sorted(limits.begin(), limits.end(), std::less_equal<>())) << largest;
     }
     EXPECT_LE(std::min(largest, 1000.0) / thickness_limits({}, {largest}).back(), 5 + 1e-9) << largest;
@@ -55,7 +55,7 @@ TEST(Styles, suit_each_map) {
   const auto run = small_run();
   EXPECT_EQ(map_style("deposit_thickness", run.maps, {1, 3}).classes.back().label, "> 3 m");
   EXPECT_EQ(map_style("deposit_thickness_scar", run.maps, {}).classes.front().label, "0.1 \u2013 0.5 m");
-  EXPECT_EQ(map_style("peak_pressure", run.maps, {1, 3}).classes.back().label, "> 300 kPa");
+  EXPECT_EQ(map_style("peak_pressure", run.maps, {1, 3}).classes.back().label, "> 100 kPa");
   EXPECT_EQ(map_style("peak_speed", run.maps, {1, 3}).classes.back().label, "> 10 m/s");
   EXPECT_EQ(map_style("difference_to_survey", run.maps, {1, 3}).classes.front().label, "< \u22125 m");
   EXPECT_EQ(map_style("arrival_time", run.maps, {}).hidden_from, map_style("arrival_time", run.maps, {}).hidden_to);
@@ -89,7 +89,7 @@ TEST(Outlines, stand_at_the_thresholds) {
   EXPECT_EQ(layers[0].features.at(0).name, "peak thickness > 1 m");
   ASSERT_EQ(layers[1].features.size(), 3U) << "the classes, and the threshold of the score";
   EXPECT_EQ(layers[1].features[1].numbers, (std::vector<std::pair<std::string, double>>{{"threshold_m", 2}}));
-  EXPECT_EQ(layers[2].features.size(), 6U);
+  EXPECT_EQ(layers[2].features.size(), 5U);
   EXPECT_EQ(layers[3].features.at(0).polygons.size(), 1U);
 }
 
