@@ -21,9 +21,12 @@
 #include "postprocess/ensemble/run_ensemble.hpp"
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/fields/history_table.hpp"
+#include "postprocess/hazard/hazard.hpp"
 #include "postprocess/maps/avaframe.hpp"
 #include "postprocess/maps/geotiff.hpp"
 #include "postprocess/maps/gis.hpp"
+#include "postprocess/maps/hazard_maps.hpp"
+#include "postprocess/maps/history_files.hpp"
 #include "postprocess/maps/netcdf.hpp"
 #include "postprocess/options/options.hpp"
 #include "postprocess/picture/animation.hpp"
@@ -45,6 +48,7 @@ struct Job {
   Options options;
   std::optional<Survey> survey;
   Thalweg thalweg;
+  Hazard hazard;
 };
 
 /// The map must hold the volume of the points: 1e-9 of it where the run was in double precision. A hundredth off is no
@@ -98,20 +102,23 @@ std::string used_text(const StageContext& context, const Job& job) {
   auto inputs = job.survey ? job.survey->inputs : std::vector<fs::path>{};
   inputs.insert(inputs.begin(), job.file);
   if (job.thalweg.given) inputs.push_back(job.options.thalweg);
+  for (const fs::path& polygons : hazard_inputs(job.options)) inputs.push_back(polygons);
   return used_recipe(context, stage(), recipe::to_used_toml(job.options, "postprocess"), inputs,
                      {{"run", fact(job.run.summary.provenance, run_id)}, {"CRS", crs_name(job.run.maps.grid.crs_wkt)}});
 }
 
 /// Everything under maps/.
 void write_maps(StageContext& context, const Job& job) {
-  const auto& [file, run, options, survey, thalweg] = job;
+  const auto& [file, run, options, survey, thalweg, hazard] = job;
   const auto folder = context.out / "maps";
   make_folder(folder);
   auto& results = context.results;
   const auto maps = write_geotiffs(folder, run, options.nodata_zero ? Outside::zero : Outside::nodata);
   results.insert(results.end(), maps.begin(), maps.end());
-  const auto for_gis = write_gis(folder, maps, {run, options, survey});
+  const auto for_gis = write_gis(folder, maps, {run, options, survey, &hazard});
   results.insert(results.end(), for_gis.begin(), for_gis.end());
+  const auto for_authority = write_hazard_maps(folder, run, hazard);
+  results.insert(results.end(), for_authority.begin(), for_authority.end());
   if (options.avaframe) {
     make_folder(folder / "avaframe");
     const auto aliases = write_avaframe(folder / "avaframe", run, settings_text(run, file), options.avaframe_format);
@@ -123,15 +130,17 @@ void write_maps(StageContext& context, const Job& job) {
 
 /// So that new maps never lie beside the scores or the report of an older run.
 void remove_older(const fs::path& out) {
-  for (const auto* name : {"score.json", "score.txt", "report.html", "animation.mp4", "animation.gif"}) {
+  for (const auto* name : {"score.json", "score.txt", "report.html", "animation.mp4", "animation.gif", "gauges.csv",
+                           "sections.csv", "buildings.csv", "maps/intensity.tif", "maps/intensity.qml",
+                           "maps/reach_cone.tif", "maps/reach_cone.qml", "maps/reach.gpkg", "maps/buildings.gpkg"}) {
     std::error_code none_there;
     fs::remove(out / name, none_there);
   }
 }
 
 void write_results(StageContext& context, const Job& job) {
-  const auto& [file, run, options, survey, thalweg] = job;
-  const auto score = make_score(run, options, survey, thalweg);
+  const auto& [file, run, options, survey, thalweg, hazard] = job;
+  const auto score = make_score(run, options, survey, thalweg, &hazard);
   const auto table = to_table(score);
   remove_older(context.out);
   write_maps(context, job);
@@ -140,18 +149,22 @@ void write_results(StageContext& context, const Job& job) {
     context.results.push_back(context.out / name);
     write_text(context.results.back(), bytes);
   };
-  const PictureInput picture{run, options, survey, score, {}};
+  const PictureInput picture{run, options, survey, score, {}, &hazard};
   write("map.png", map_picture(picture));
   if (options.animation != Animation::none)
     context.results.push_back(write_animation(context.out, picture, options.animation));
   write("history.csv", history_table(run.history));
+  write("history.nc", history_netcdf(run, options.start_time));
+  for (const auto& [kind, rows] : place_tables(run.history)) write((kind + "s.csv").c_str(), rows);
+  if (!hazard.buildings.empty()) write("buildings.csv", buildings_table(hazard.buildings));
   const auto used = used_text(context, job);
   write("postprocess.used.toml", used);
   if (options.report) {
     auto stages = texts_of_stages(file.parent_path(), run.summary);
     stages.push_back({"postprocess", used});
     const auto comparison = text_of(file.parent_path() / "survey" / "survey.json");
-    write("report.html", report_html({run, options, survey, score, thalweg, std::move(stages), comparison, file}));
+    write("report.html",
+          report_html({run, options, survey, score, thalweg, std::move(stages), comparison, file, &hazard}));
   }
   write("score.txt", table);
   write("score.json", to_json(score));  // last: where it lies, everything is there
@@ -187,6 +200,7 @@ Dependencies depends(const StageContext& context) {
   auto inputs = with_sidecars({survey.thickness, survey.difference, survey.after_dem, survey.before_dem, survey.sigma,
                                survey.peak_thickness, survey.polygon, options.thalweg});
   inputs.insert(inputs.begin(), run);
+  for (const fs::path& polygons : hazard_inputs(options)) inputs.push_back(polygons);
   if (options.report)
     for (const fs::path& file : texts_beside(run.parent_path())) inputs.push_back(file);
   if (!ensemble_of(context.recipe).on()) return {{context.out / "score.json"}, inputs};
@@ -276,6 +290,7 @@ void run_single(StageContext& context, const Options& options) {
   facts.insert(facts.end(), acceptance.facts().begin(), acceptance.facts().end());
   facts.insert(facts.end(), insisted.begin(), insisted.end());
   job.thalweg = thalweg_of(job.run, job.options);
+  job.hazard = hazard_of(job.run, job.options);
   log_info(fmt::format("{}: {} x {} cells of {:g} m, {} frames; {}", job.file.string(), job.run.maps.grid.columns,
                        job.run.maps.grid.rows, job.run.maps.grid.cell, job.run.frames.time.size(),
                        job.survey ? "scored against " + job.survey->name : std::string("no survey to score against")));

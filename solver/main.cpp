@@ -156,6 +156,11 @@ void add_places(Domain& domain, const SolveOptions& o) {
              return known.first == place_fact({"obstacle " + obstacle.name, {{{0, 0}}}}).first;
            });
   });
+  for (const SectionOptions& s : o.sections) {
+    MapPlace place{"section " + s.name, {{}}};
+    for (std::size_t i = 0; i < s.x.size(); ++i) place.rings[0].push_back({s.x[i], s.y[i]});
+    domain.provenance.push_back(place_fact(place));
+  }
   for (const GaugeOptions& g : o.gauges) domain.provenance.push_back(place_fact({"gauge " + g.name, {{{g.x, g.y}}}}));
 }
 

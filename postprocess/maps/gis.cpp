@@ -18,6 +18,7 @@
 #include "postprocess/fields/styles.hpp"
 #include "postprocess/fields/window.hpp"
 #include "postprocess/maps/gis_time.hpp"
+#include "postprocess/maps/hazard_maps.hpp"
 #include "postprocess/maps/outlines.hpp"
 
 namespace talus::postprocess {
@@ -105,11 +106,13 @@ PrintLayout print_layout(const GisInput& input) {
 }
 
 QgisProject project_of(const std::vector<fs::path>& maps, const GisInput& input) {
-  const auto& [run, options, survey] = input;
+  const auto& [run, options, survey, hazard] = input;
   const Window window = affected_window(run.maps, options, survey);
   QgisProject project{
       run.summary.title, run.maps.grid.crs_wkt, {window.west, window.south, window.east, window.north}, {}};
   project.groups.push_back(outline_group(input));
+  if (hazard != nullptr)
+    for (ProjectGroup& group : hazard_groups(*hazard)) project.groups.push_back(std::move(group));
   ProjectGroup results{"Maps", {}};
   for (const auto& map : maps) {
     const std::string name = map.stem().string();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/run/run_file.hpp"
+#include "postprocess/hazard/hazard.hpp"
 #include "postprocess/options/options.hpp"
 #include "postprocess/survey/survey.hpp"
 
@@ -18,6 +19,7 @@ struct GisInput {
   const Run& run;
   const Options& options;
   const std::optional<Survey>& survey;
+  const Hazard* hazard = nullptr;  ///< its layers are part of the project
 };
 
 /// Beside `maps`, the GeoTIFFs in `folder`: NAME.qml for each of them, terrain.tif (ground before the failure) with its

@@ -185,6 +185,9 @@ void Options::describe(recipe::Visitor& v) {
   recipe::table(
       v, "survey", survey,
       "what the run is scored against: thickness, or difference, or after_dem, or polygon; all empty: no scores");
+  recipe::table(v, "intensity", intensity, "classes of intensity, by a guideline or own limits");
+  recipe::table(v, "reach_cone", reach_cone, "a second opinion: what an angle of reach (Fahrboeschung) reaches");
+  recipe::table(v, "buildings", buildings, "what comes to each building");
   recipe::table(v, "hazard", hazard, "of an ensemble: classes by how probable it is to be hit how hard");
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/recipe/recipe.hpp"
+#include "postprocess/options/hazard.hpp"
 
 namespace talus::postprocess {
 
@@ -83,6 +84,9 @@ struct Options {
   std::filesystem::path thalweg;  // line along which run-out is measured; empty = found from the run
   AvaFrameFormat avaframe_format = AvaFrameFormat::tif;
   SurveyOptions survey;
+  IntensityOptions intensity;
+  ReachConeOptions reach_cone;
+  BuildingOptions buildings;
   HazardOptions hazard;
   std::vector<std::string> accept;  // what is refused as implausible, insisted on by name
 

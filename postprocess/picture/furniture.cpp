@@ -111,6 +111,12 @@ class Column {
   double y_;
 };
 
+void draw_hazard_legend(Column& column, const Hazard& hazard) {
+  if (hazard.buildings.size() > 0) column.line(building_style(), "Buildings");
+  if (!hazard.cones.empty())
+    column.line(reach_style(), fmt::format("Angle of reach, H/L = {:.2f}", hazard.cones.front().tangent));
+}
+
 void draw_legend(Column& column, const PictureInput& input, const std::vector<double>& limits, double interval) {
   const bool search = shows_search(input);
   column.heading(search          ? "What fails first, vertical [m]"
@@ -132,6 +138,7 @@ void draw_legend(Column& column, const PictureInput& input, const std::vector<do
   }
   if (!search) column.line(footprint_style(), fmt::format("Simulated: peak > {:g} m", options.footprint_threshold));
   column.line(release_style(), search ? "Ground that was looked at" : "Release");
+  if (input.hazard != nullptr) draw_hazard_legend(column, *input.hazard);
   if (interval > 0) column.line({{{}, 0, {}, 1}, contour_pen(true)}, fmt::format("Contours every {:g} m", interval));
 }
 

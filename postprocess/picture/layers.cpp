@@ -124,6 +124,8 @@ LineStyle survey_style() { return {{white, 7, {}, 0.9}, {{0.0, 0.30, 0.70}, 4, {
 LineStyle survey_footprint_style() { return {{white, 3.6, {}, 0.6}, {{0.0, 0.30, 0.70}, 1.8, {5, 4}, 1}}; }
 LineStyle footprint_style() { return {{white, 3.6, {}, 0.6}, {{0.12, 0.12, 0.14}, 1.7, {}, 1}}; }
 LineStyle release_style() { return {{white, 6, {}, 0.85}, {{0.0, 0.45, 0.36}, 3.2, {}, 1}}; }
+LineStyle building_style() { return {{white, 4.4, {}, 0.8}, {{0.10, 0.10, 0.10}, 2.2, {}, 1}}; }
+LineStyle reach_style() { return {{white, 4.4, {}, 0.7}, {{0.55, 0.10, 0.55}, 2.4, {10, 6}, 1}}; }
 Pen contour_pen(bool is_index) { return {{0.33, 0.36, 0.40}, is_index ? 1.5 : 0.9, {}, is_index ? 0.55 : 0.38}; }
 
 void draw_ground(Canvas& canvas, const View& view, const RunMaps& maps, const std::vector<double>& limits) {
@@ -161,6 +163,12 @@ void draw_contours(Canvas& canvas, const View& view, const RunMaps& maps, const 
         std::max_element(lines.begin(), lines.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
     label_contour(canvas, view, *longest, level);
   }
+}
+
+void draw_hazard(Canvas& canvas, const View& view, const MapGrid& grid, const Hazard& hazard) {
+  if (!hazard.cones.empty())
+    draw(canvas, view, isolines(grid, reached_cells(hazard.cones.front()), 0.5, AtEdge::close), reach_style());
+  for (const Building& building : hazard.buildings) draw(canvas, view, rings(building.parts), building_style());
 }
 
 void draw_outlines(Canvas& canvas, const View& view, const RunMaps& maps, const PictureInput& input) {

@@ -29,6 +29,10 @@ LineStyle survey_footprint_style();
 LineStyle footprint_style();
 /// The line around what was released.
 LineStyle release_style();
+/// The line around buildings.
+LineStyle building_style();
+/// The line around what an angle of reach reaches.
+LineStyle reach_style();
 /// The pen of contours; every fifth, an index contour, is heavier.
 Pen contour_pen(bool is_index);
 
@@ -47,6 +51,9 @@ ContourLevels contour_levels(const View& view, const RunMaps& maps);
 
 /// Contours at these levels, every fifth heavier and labelled.
 void draw_contours(Canvas& canvas, const View& view, const RunMaps& maps, const ContourLevels& levels);
+
+/// Outlines of the angle of reach and of buildings; obstacles are drawn among the places.
+void draw_hazard(Canvas& canvas, const View& view, const MapGrid& grid, const Hazard& hazard);
 
 /// Outlines: release, footprint, and the survey's deposit and footprint, or whichever of the two it has.
 void draw_outlines(Canvas& canvas, const View& view, const RunMaps& maps, const PictureInput& input);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/run/run_file.hpp"
+#include "postprocess/hazard/hazard.hpp"
 #include "postprocess/options/options.hpp"
 #include "postprocess/picture/canvas.hpp"
 #include "postprocess/score/score.hpp"
@@ -27,6 +28,7 @@ struct PictureInput {
   const std::optional<Survey>& survey;
   const Score& score;
   std::optional<Instant> instant{};  ///< show the flow then, and not the deposit
+  const Hazard* hazard = nullptr;    ///< its outlines are drawn as well
 };
 
 /// The map as it is drawn, on 200 dpi.

@@ -9,6 +9,7 @@
 
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/fields/styles.hpp"
+#include "postprocess/hazard/hazard.hpp"
 #include "postprocess/picture/hillshade.hpp"
 #include "postprocess/report/limits.hpp"
 #include "postprocess/report/pack.hpp"
@@ -97,6 +98,7 @@ class Layers {
 
   Json build() {
     simulated();
+    if (input_.hazard != nullptr) of_hazard(*input_.hazard);
     if (input_.survey) surveyed(*input_.survey);
     return std::move(list_);
   }
@@ -112,7 +114,7 @@ class Layers {
                      {"unit", layer.unit},
                      {"decimals", layer.decimals},
                      {"about", layer.about},
-                     {"codes", layer.id == "agreement"},
+                     {"codes", layer.id == "agreement" || layer.id == "intensity"},
                      {"classes", layer.classes},
                      {"grid", grid_json(raster.grid)},
                      {"data", packed(raster.values)}});
@@ -124,6 +126,7 @@ class Layers {
 
   void simulated();
   void of_run(const MapField& field);
+  void of_hazard(const Hazard& hazard);
   void surveyed(const Survey& survey);
   void difference(const Survey& survey, const OnSurveyGrid& simulated);
   void agreement(const Survey& survey, const OnSurveyGrid& simulated);
@@ -149,6 +152,32 @@ void Layers::simulated() {
   for (const MapField& field : map_fields) {
     if (field.optional) of_run(field);
   }
+}
+
+void Layers::of_hazard(const Hazard& hazard) {
+  if (const auto& map = hazard.intensity) {
+    auto list = Json::array();
+    for (const IntensityClass& one : map->classes)
+      list.push_back(class_json(one.code - 0.5, one.code + 0.5, one.colour, one.name + ": " + one.words));
+    add({"intensity",
+         "Intensity, " + map->guideline,
+         "",
+         std::move(list),
+         {maps_.grid, map->codes},
+         MergedCells::largest,
+         0,
+         "Classes by " + map->source + "."});
+  }
+  if (hazard.cones.empty()) return;
+  const ReachCone& cone = hazard.cones.front();
+  add({"reach",
+       "Height of the energy line",
+       "m",
+       classes(thickness_limits({}, cone.head), Ramp::sea),
+       {maps_.grid, cone.head},
+       MergedCells::largest,
+       1,
+       fmt::format("Above the ground, of a line that falls by H/L = {:.2f} from the release.", cone.tangent)});
 }
 
 void Layers::of_run(const MapField& field) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/map/isolines.hpp"
+#include "postprocess/hazard/hazard.hpp"
 #include "postprocess/picture/layers.hpp"
 #include "postprocess/report/parts.hpp"
 
@@ -43,6 +44,17 @@ Json contours(const RunMaps& maps, const Window& window) {
   return json;
 }
 
+/// The line around what an angle of reach reaches, footprints of buildings and obstacles.
+void add_hazard_lines(Json& json, const ReportInput& input, const Window& window) {
+  const Hazard& hazard = *input.hazard;
+  std::vector<MapPolygon> buildings;
+  for (const Building& building : hazard.buildings)
+    buildings.insert(buildings.end(), building.parts.begin(), building.parts.end());
+  if (!hazard.cones.empty())
+    json["reach"] = outline(input.run.maps.grid, reached_cells(hazard.cones.front()), 0.5, window);
+  if (!buildings.empty()) json["buildings"] = lines_json(rings(buildings), window);
+}
+
 }  // namespace
 
 Json lines_json(const ReportInput& input, const Window& window) {
@@ -60,6 +72,7 @@ Json lines_json(const ReportInput& input, const Window& window) {
     else if (!survey.footprint.empty())
       json["survey_footprint"] = outline(survey.grid, survey.footprint, survey.footprint_threshold, window);
   }
+  if (input.hazard != nullptr) add_hazard_lines(json, input, window);
   json["thalweg"] = line_json(input.thalweg.line, window);
   json["contours"] = contours(maps, window);
   return json;

@@ -36,6 +36,8 @@ Json profile_json(const ReportInput& input);
 /// along the thalweg, the volume in motion.
 Json series_json(const ReportInput& input);
 
+/// What came to each building.
+Json hazard_json(const ReportInput& input);
 /// Gauges and obstacles: name, kind, rings [m from the window's west and south] and the largest of what was measured.
 Json places_json(const ReportInput& input);
 

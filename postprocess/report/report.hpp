@@ -32,6 +32,7 @@ struct ReportInput {
   std::vector<StageText> stages;
   std::optional<std::string> comparison;  ///< survey.json of talus-preprocess; empty: no two models were compared
   std::filesystem::path run_file;         ///< for what is read of the points: how much is in motion
+  const Hazard* hazard = nullptr;
 };
 
 /// The page as the bytes of an HTML file: nothing in it is loaded from elsewhere. Throws DataError when a *.used.toml

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the run itself says: volumes, cost, sanity, extent.
 #include <algorithm>
+#include <iterator>
 
+#include "common/map/statistics.hpp"
 #include "common/stage/identity.hpp"
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/fields/release.hpp"
@@ -17,6 +19,13 @@ double largest(const std::vector<double>& values) {
     if (v > top) top = v;
   }
   return top;
+}
+
+/// The values above 0, of the cells where there is something.
+std::vector<double> positive(const std::vector<double>& values) {
+  std::vector<double> found;
+  std::copy_if(values.begin(), values.end(), std::back_inserter(found), [](double v) { return v > 0; });
+  return found;
 }
 
 double area_above(const std::vector<double>& values, double threshold, double cell) {
@@ -46,6 +55,8 @@ void volumes(const Scored& scored, Sheet& sheet) {
   sheet.number("volume_map_error", "(map - end) / released", "", (on_map - s.volume_final) / s.volume_released, 12,
                "nothing was released");
   sheet.number("max_release_thickness_m", "thickest release", "m", release.thickest, 2);
+  sheet.number("p99_release_thickness_m", "thickest release, 99 % of its cells below", "m",
+               quantile(positive(run.maps.initial_thickness), 0.99), 2, "nothing was released");
   sheet.number("max_release_thickness_slope_normal_m", "thickest release, normal to the slope", "m",
                release.thickest_normal, 2);
 }
@@ -85,10 +96,16 @@ void extent(const Scored& scored, Sheet& sheet) {
                area_above(maps.peak_thickness, options.footprint_threshold, maps.grid.cell), 0);
   sheet.number("deposit_area_m2", "deposit area", "m2",
                area_above(maps.deposit_thickness, options.deposit_threshold, maps.grid.cell), 0);
-  sheet.number("max_deposit_thickness_m", "thickest deposit", "m", largest(maps.deposit_thickness), 2);
-  sheet.number("max_peak_thickness_m", "largest peak thickness", "m", largest(maps.peak_thickness), 2);
-  sheet.number("max_peak_speed_m_s", "largest peak speed", "m/s", largest(maps.peak_speed), 1);
-  sheet.number("max_peak_pressure_kpa", "largest peak pressure", "kPa", largest(maps.peak_pressure_kPa), 1);
+  const auto extreme = [&](const std::string& key, const std::string& label, const char* unit,
+                           const std::vector<double>& values, int decimals) {
+    sheet.number("max_" + key, label, unit, largest(values), decimals);
+    sheet.number("p99_" + key, label + ", 99 % of its cells below", unit, quantile(positive(values), 0.99), decimals,
+                 "there is none");
+  };
+  extreme("deposit_thickness_m", "thickest deposit", "m", maps.deposit_thickness, 2);
+  extreme("peak_thickness_m", "largest peak thickness", "m", maps.peak_thickness, 2);
+  extreme("peak_speed_m_s", "largest peak speed", "m/s", maps.peak_speed, 1);
+  extreme("peak_pressure_kpa", "largest peak pressure", "kPa", maps.peak_pressure_kPa, 1);
 }
 
 }  // namespace

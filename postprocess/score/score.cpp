@@ -28,12 +28,14 @@ void add_accepted(const Run& run, Sheet& sheet) {
 
 }  // namespace
 
-Score make_score(const Run& run, const Options& options, const std::optional<Survey>& survey, const Thalweg& thalweg) {
+Score make_score(const Run& run, const Options& options, const std::optional<Survey>& survey, const Thalweg& thalweg,
+                 const Hazard* hazard) {
   Scored scored{run, options, survey ? &*survey : nullptr, thalweg, crown(run.maps, options.deposit_threshold), 0};
   if (scored.crown) scored.crown_along = project(thalweg, scored.crown->x, scored.crown->y).distance;
   Sheet sheet(run.summary.title);
   add_run(scored, sheet);
   add_mobility(scored, sheet);
+  if (hazard != nullptr) add_hazard(*hazard, sheet);
   if (survey) {
     const auto simulated = bring_to_survey_grid(run.maps, *survey);
     add_agreement(scored, simulated, sheet);

@@ -30,6 +30,8 @@
 
 namespace talus::postprocess {
 
+struct Hazard;
+
 /// One number or word of a score.
 struct ScoreEntry {
   std::string key;    ///< as in score.json, with unit
@@ -56,8 +58,9 @@ struct Score {
   std::optional<double> number(const std::string& key) const;
 };
 
-/// Scores a run, against the survey where there is one.
-Score make_score(const Run& run, const Options& options, const std::optional<Survey>& survey, const Thalweg& thalweg);
+/// Scores a run, against the survey where there is one, with what an authority asks where that was computed.
+Score make_score(const Run& run, const Options& options, const std::optional<Survey>& survey, const Thalweg& thalweg,
+                 const Hazard* hazard = nullptr);
 
 /// Scores a run along thalweg_of(run, options).
 Score make_score(const Run& run, const Options& options, const std::optional<Survey>& survey);

@@ -32,6 +32,7 @@ Reach reach_of(const Scored& scored, const MapGrid& grid, const std::vector<doub
 
 void add_run(const Scored& scored, Sheet& sheet);       ///< volumes, computation, extent
 void add_mobility(const Scored& scored, Sheet& sheet);  ///< run-out, drop, angles, travel
+void add_hazard(const Hazard& hazard, Sheet& sheet);    ///< intensity, angle of reach, buildings
 /// Overlap, thickness and run-out against the survey, and what that means in units of the survey's error.
 void add_agreement(const Scored& scored, const OnSurveyGrid& simulated, Sheet& sheet);
 /// Adds how far the scores vary within the error of the survey.

@@ -49,6 +49,8 @@ bool BedZone::holds_for(double volume, const std::optional<double>& return_perio
 void BedRasters::describe(recipe::Visitor& v) {
   for (auto& [name, file] : files)
     v.path(name, file, "raster that takes the place of [solve.base] " + name + "; no data: that number");
+  v.path("polygons", polygons,
+         "vector file whose polygons have such numbers as attributes of the same names; laid over the rasters");
   v.optional_number("return_period_years", return_period_years, recipe::positive,
                     "return period whose rows of [[preprocess.bed.zone]] hold");
   recipe::list(v, "zone", zones,

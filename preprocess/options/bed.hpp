@@ -34,9 +34,10 @@ struct BedZone {
 };
 
 /// The keys of [preprocess.bed]: rasters under the names of the numbers in [solve.base] that they take the place of,
-/// and zones that are laid over them.
+/// polygons with the same numbers as attributes, and zones; each is laid over those before.
 struct BedRasters {
   std::vector<std::pair<std::string, std::filesystem::path>> files;
+  std::filesystem::path polygons;  ///< with the numbers as attributes
   std::optional<double> return_period_years;
   std::vector<BedZone> zones;
 

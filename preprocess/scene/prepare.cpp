@@ -20,6 +20,7 @@
 #include "preprocess/particles/coarseness.hpp"
 #include "preprocess/particles/seed.hpp"
 #include "preprocess/release/releases.hpp"
+#include "preprocess/scene/bed_polygons.hpp"
 #include "preprocess/scene/bed_zones.hpp"
 #include "preprocess/terrain/elevation.hpp"
 #include "preprocess/terrain/surfaces.hpp"
@@ -162,6 +163,7 @@ std::vector<std::filesystem::path> inputs_of(const Options& options) {
     add(release.polygons);
   }
   for (const auto& [name, file] : options.bed.files) add(file);
+  add(options.bed.polygons);
   for (const BedZone& zone : options.bed.zones) add(zone.polygons);
   for (const ObstacleOptions& obstacle : options.obstacle) add(obstacle.polygons);
   return inputs;
@@ -206,6 +208,7 @@ Prepared prepare(const Options& options, SceneRasters scene, Points points) {
   }
   domain.erodible = static_cast<int>(options.erodible.size());
   domain.bed = read_bed(options, domain.grid);
+  if (!options.bed.polygons.empty()) lay_bed_polygons(options.bed.polygons, scene.bed, domain.bed);
   lay_bed_zones(options.bed, scene.bed, prepared.total.volume, domain.bed);
   prepared.obstacles = upright_obstacles(options.obstacle, scene.bed, 2 * domain.layer_height);
   prepared.obstacle_voxel = obstacle_voxel(domain.grid.cell, domain.layer_height);

@@ -17,7 +17,9 @@ floors() {
       printf '%s\n' parallel state material grid transfer boundary elements linear/krylov linear/operator \
         linear/preconditioner linear/direct integrator 'explicit implicit' options scene run/recorders run ensemble .
       ;;
-    postprocess) printf '%s\n' options survey fields 'score maps' picture report 'ensemble compare' . ;;
+    postprocess)
+      printf '%s\n' options survey fields hazard 'score maps' picture report 'ensemble compare' .
+      ;;
   esac
 }
 

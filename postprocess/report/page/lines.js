@@ -9,6 +9,8 @@ const styles = {
   survey_footprint: { title: "footprint", colour: "#004db3", width: 1.3, dashes: [4, 3], casing: 2.6 },
   survey_deposit: { title: "deposit", colour: "#004db3", width: 2.4, dashes: [9, 5], casing: 4.4 },
   release: { title: "Release", colour: "#00735c", width: 2.2, casing: 4 },
+  reach: { title: "Angle of reach", colour: "#8c1a8c", width: 1.8, dashes: [6, 4], casing: 3.2 },
+  buildings: { title: "Buildings", colour: "#1a1a1a", width: 1.6, casing: 3 },
   thalweg: { title: "Thalweg", colour: "#8c1a73", width: 2, dashes: [7, 3, 2, 3], casing: 3.4 },
 };
 
@@ -50,6 +52,7 @@ export function mapLines(data) {
   add("survey_footprint", lines.survey_footprint ?? []);
   add("survey_deposit", lines.survey_deposit ?? []);
   add("release", lines.release);
+  for (const id of ["reach", "buildings"]) add(id, lines[id] ?? []);
   add("thalweg", [lines.thalweg]);
   return found;
 }

@@ -3,6 +3,7 @@
 // The report: reads its data and fills the page.
 import { readMap } from "./decode.js";
 import { drawProfile, drawSeries } from "./curves.js";
+import { drawHazard } from "./hazard.js";
 import { mapLines } from "./lines.js";
 import { ReportMap } from "./map.js";
 import { drawMethod } from "./method.js";
@@ -57,6 +58,7 @@ async function draw() {
   drawSummary(data);
   drawPlaceList(data);
   drawScores(data);
+  drawHazard(data);
   drawSurveys(data);
   drawVolumes(data);
   drawInputs(data);

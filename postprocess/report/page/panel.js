@@ -23,8 +23,8 @@ function legendTitle(layer) {
 /** "Gauges", "Obstacles", or both. */
 function placeWords(places) {
   const kinds = new Set(places.map((place) => place.kind));
-  if (kinds.size > 1) return "Gauges, obstacles";
-  return kinds.has("gauge") ? "Gauges" : "Obstacles";
+  if (kinds.size > 1) return "Gauges, sections, obstacles";
+  return { gauge: "Gauges", section: "Sections" }[[...kinds][0]] ?? "Obstacles";
 }
 
 export class Panel {

@@ -23,13 +23,22 @@ function isPoint(place) {
   return place.rings.length === 1 && place.rings[0].length === 1;
 }
 
+/** A section is a line, which is neither closed nor filled. */
+function isLine(place) {
+  return place.kind === "section";
+}
+
 /** A layer of the map that holds all of them, each with its name. */
 export function placesLayer(places) {
   const group = L.layerGroup();
   for (const place of places) {
     const rings = place.rings.map((ring) => ring.map(([x, y]) => [y, x]));
     const options = { color: ink, weight: 1.6, fillColor: fill, fillOpacity: 0.9 };
-    const shape = isPoint(place) ? L.circleMarker(rings[0][0], { ...options, radius: 5 }) : L.polygon(rings, options);
+    const shape = isPoint(place)
+      ? L.circleMarker(rings[0][0], { ...options, radius: 5 })
+      : isLine(place)
+        ? L.polyline(rings, { color: ink, weight: 3 })
+        : L.polygon(rings, options);
     const words = document.createElement("span");
     words.textContent = place.name; // names are not markup
     const permanent = places.length <= 12;
@@ -50,8 +59,11 @@ export function drawPlaces(plate, places) {
         context.beginPath();
         if (isPoint(place)) context.arc(...plate.pixel(...ring[0]), 5 * plate.stroke, 0, 2 * Math.PI);
         else ring.forEach(([x, y], i) => context[i ? "lineTo" : "moveTo"](...plate.pixel(x, y)));
-        context.closePath();
-        context.fill();
+        if (isLine(place)) context.lineWidth = 3 * plate.stroke;
+        else {
+          context.closePath();
+          context.fill();
+        }
         context.stroke();
       }
       if (places.length > 12) continue;
@@ -80,7 +92,7 @@ function middle(place) {
 }
 
 function sizeWords(place) {
-  if (isPoint(place)) return "";
+  if (isPoint(place) || isLine(place)) return "";
   return area(place.rings.reduce((sum, ring) => sum + Math.abs(twiceArea(ring)) / 2, 0));
 }
 

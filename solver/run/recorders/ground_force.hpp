@@ -9,7 +9,7 @@
 namespace talus::solver {
 
 /// The recorder of the force that the slide puts on the ground beyond its weight at rest: -dP/dt, the change of the
-/// momentum P of the whole mass turned round (Kanamori & Given 1982; Ekstroem & Stark 2013,
+/// momentum P of the whole mass turned round (Kanamori & Given 1982; Ekström & Stark 2013,
 /// doi 10.1126/science.1232887) [N]. Each row holds the mean since the row before; the first is 0. Bed, walls and
 /// obstacles are the ground together. A row in whose time matter left the domain holds NaN: the momentum that left with
 /// it is not known.
