@@ -94,7 +94,7 @@ Domain Members::domain_of(std::int64_t member) const {
     throw DataError({paths_.domain(member).string() + ": its grid is not that of the base domain",
                      "maps of several grids cannot be counted together",
                      "Leave keys that change the grid as they are in all members, and run talus-preprocess again"});
-  if (const MemberColumn* factor = table_.find(thickness_factor_key); factor != nullptr && !own)
+  if (const MemberColumn* factor = table_.find(thickness_factor_key); factor != nullptr)
     scale_release(domain, factor->values.at(static_cast<std::size_t>(member)));
   return domain;
 }

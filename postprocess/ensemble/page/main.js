@@ -110,7 +110,7 @@ function notes(data, outlines) {
   const held = data.outlines.members.length;
   if (held < run.counted)
     parts.push(`The page holds the outlines of the first ${number(held)} of ${number(run.counted)} counted members.`);
-  if (held > mostDrawn) parts.push(`${mostDrawn} of them are drawn at a time.`);
+  if (held > mostDrawn) parts.push(`${mostDrawn} outlines are drawn at a time.`);
   parts.push("Click the map, then turn the wheel to zoom.");
   document.getElementById("map-note").textContent = parts.join(" ");
   const { all, shown } = data.members;

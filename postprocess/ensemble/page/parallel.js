@@ -85,8 +85,9 @@ export class Parallel {
     this.context.clearRect(0, 0, wide, height);
     const kept = this.selection.kept(),
       opacity = Math.min(0.6, Math.max(0.06, 25 / Math.max(kept.length, 1)));
+    const pale = Math.min(0.1, 12 / this.members.states.length);
     this.members.states.forEach((state, member) => {
-      if (state === 1 && !this.selection.keeps(member)) this.stroke(member, "rgba(138,143,152,0.10)", 1);
+      if (state === 1 && !this.selection.keeps(member)) this.stroke(member, `rgba(138,143,152,${pale})`, 1);
     });
     for (const member of kept) this.stroke(member, `rgba(0,114,178,${opacity})`, 1);
     if (this.selection.chosen !== null) this.stroke(this.selection.chosen, colours.orange, 2.5);

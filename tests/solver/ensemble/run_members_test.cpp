@@ -3,6 +3,8 @@
 // Members of an ensemble are the runs that they would be alone, whoever runs them beside them.
 #include "solver/ensemble/run_members.hpp"
 
+#include <numeric>
+
 #include "solver/ensemble/member_run.hpp"
 #include "solver/run/simulation.hpp"
 #include "tests/solver/ensemble/ensemble_scene.hpp"
@@ -104,6 +106,28 @@ TEST_P(RunMembers, leaves_out_and_names_a_member_that_fails) {
   EXPECT_EQ(counts.failures[0].member, 2);
   EXPECT_NE(counts.failures[0].words.find("weight"), std::string::npos) << counts.failures[0].words;
   EXPECT_TRUE(counts.flow[2].empty());
+}
+
+TEST(Members, scale_the_release_of_domains_of_their_own_too) {
+  MemberTable table = small_table();
+  table.own_domain[1] = 1;  // its factor is 0.8
+  const SmallEnsemble ensemble(table);
+  std::filesystem::create_directories(ensemble.paths.folder());
+  Domain own = small_heap();
+  for (double& z : own.terrain.values) z += 3;
+  for (double& z : own.before.values) z += 3;
+  write_domain(ensemble.paths.domain(1), own);
+  const Members members = ensemble.members();
+  const auto volume = [](const Domain& d) {
+    return std::accumulate(d.points.volume.begin(), d.points.volume.end(), 0.0);
+  };
+  EXPECT_NEAR(volume(members.read(1).domain), 0.8 * volume(own), 1e-9 * volume(own));
+  EXPECT_NEAR(volume(members.read(2).domain), 1.25 * volume(ensemble.domain), 1e-9 * volume(own));
+  EXPECT_EQ(members.read(1).domain.terrain.values, own.terrain.values);
+  own.grid.west += 1;
+  own.terrain.grid = own.before.grid = own.release_thickness.grid = own.grid;
+  write_domain(ensemble.paths.domain(1), own);
+  EXPECT_THROW(members.read(1), DataError) << "maps of another grid cannot be added up";
 }
 
 TEST(Members, name_the_member_that_the_recipe_does_not_allow) {
