@@ -34,8 +34,8 @@ groups := $(if $(filter $(for_tests),$(MAKECMDGOALS))$(filter-out 0 no,$(WITH_TE
   $(if $(filter package check-install image,$(MAKECMDGOALS)),package)
 
 .PHONY: help setup setup-tests build say-demo demo demo-weakening install package check-install image with-tests test \
-  sanitized check check-threads check-faults check-qgis check-recipes fuzz validate lint docs pictures tables events \
-  check-docs check-tutorials bundle bundle-solver clean FORCE
+  sanitized check check-threads check-faults check-qgis check-three-d check-recipes fuzz validate lint docs pictures \
+  tables events check-docs check-tutorials bundle bundle-solver clean FORCE
 
 help: ## this list
 	@echo "make TARGET [PRESET=default|cpu|gpu|check|check-threads] [JOBS=n]"
@@ -81,7 +81,8 @@ demo: say-demo build ## the synthetic valley from its two elevation models to a 
 	  '  maps/synthetic-valley.qgs    all of it in QGIS: maps, outlines, hillshade' \
 	  '  maps/*.tif, maps/results.nc  the fields, for a GIS' \
 	  '  score.json, score.txt        these numbers and all others' \
-	  '  run.h5                       the points over time, for ParaView'
+	  '  3d/run.pvd                   ground, flow and points over time, for ParaView' \
+	  '  3d/volumes/*.vdb             density and velocity over time, for Blender'
 
 # One slide on two beds: friction that falls with slip speed, and the friction of its start kept.
 weakening := $(OUT)/synthetic-weakening
@@ -156,6 +157,10 @@ check-faults: with-tests ## kills, failing calls, processes in one folder, power
 	@cmake --build $(BUILD) -j $(JOBS) --target $(programs) talus-faults
 	@python3 tests/faults/faults.py --full --bin $(BUILD)/bin --shim $(BUILD)/bin/talus-faults.so \
 	  --work $(BUILD)/scratch/check-faults --table $(BUILD)/faults.md
+
+check-three-d: build ## what runs leave in 3d/, opened by ParaView, Blender and OpenVDB's Python; pictures compared
+	@tools/install-dependencies.sh three-d
+	@tests/three_d/check.sh $(BUILD)/bin $(BUILD)/scratch/check-three-d
 
 check-qgis: build ## the plugin and the projects of results, in QGIS itself, which is installed for it (about 1 GB)
 	@tools/install-dependencies.sh qgis

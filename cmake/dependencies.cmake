@@ -96,6 +96,12 @@ find_file(CHART_SCRIPT NAMES chart.min.js chart.umd.js PATHS /usr/share/javascri
 if(NOT CHART_SCRIPT)
   talus_missing(Chart.js libjs-chart.js)
 endif()
+find_file(THREE_SCRIPT three/build/three.module.js PATHS /usr/share/javascript NO_DEFAULT_PATH)
+find_file(THREE_CONTROLS three/examples/jsm/controls/OrbitControls.js PATHS /usr/share/javascript NO_DEFAULT_PATH)
+if(NOT THREE_SCRIPT OR NOT THREE_CONTROLS)
+  talus_missing(three.js libjs-three)
+endif()
+cmake_path(SET THREE_FOLDER NORMALIZE ${THREE_SCRIPT}/../../..)   # that its modules are named from
 if(BUILD_TESTING)
   find_package(GTest CONFIG QUIET)
   if(NOT GTest_FOUND)

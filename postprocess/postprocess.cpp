@@ -35,6 +35,7 @@
 #include "postprocess/score/score.hpp"
 #include "postprocess/survey/found_survey.hpp"
 #include "postprocess/survey/order.hpp"
+#include "postprocess/three_d/three_d.hpp"
 
 namespace talus::postprocess {
 namespace {
@@ -136,6 +137,7 @@ void remove_older(const fs::path& out) {
     std::error_code none_there;
     fs::remove(out / name, none_there);
   }
+  remove_three_d(out / "3d");
 }
 
 void write_results(StageContext& context, const Job& job) {
@@ -149,6 +151,8 @@ void write_results(StageContext& context, const Job& job) {
     context.results.push_back(context.out / name);
     write_text(context.results.back(), bytes);
   };
+  for (const fs::path& made : write_three_d(context.out / "3d", options.three_d, run, PointFrames(file)))
+    context.results.push_back(made);
   const PictureInput picture{run, options, survey, score, {}, &hazard};
   write("map.png", map_picture(picture));
   if (options.animation != Animation::none)
@@ -295,6 +299,7 @@ void run_single(StageContext& context, const Options& options) {
                        job.run.maps.grid.rows, job.run.maps.grid.cell, job.run.frames.time.size(),
                        job.survey ? "scored against " + job.survey->name : std::string("no survey to score against")));
   check_animation(job.options.animation, job.run);
+  check_three_d(job.options.three_d, job.run, PointFrames(job.file));
   if (!context.check_only) write_results(context, job);
 }
 

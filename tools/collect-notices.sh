@@ -14,7 +14,7 @@ mkdir -p "$folder"
 
 # Headers and scripts that become part of the programs; one that this machine lacks was not compiled in.
 compiled_in=(libeigen3-dev libcgal-dev libcli11-dev nlohmann-json3-dev libtomlplusplus-dev libspdlog-dev libfmt-dev
-  libtbb-dev libopenvdb-dev libimath-dev libopenturns-dev libjs-leaflet libjs-chart.js)
+  libtbb-dev libopenvdb-dev libimath-dev libopenturns-dev libjs-leaflet libjs-chart.js libjs-three)
 
 if ! command -v dpkg-query >/dev/null; then
   [[ $# -eq 0 ]] || fail "dpkg was not found, which knows whose files these are. Bundles are made on Debian or Ubuntu"

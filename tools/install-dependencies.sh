@@ -8,6 +8,7 @@
 #   tests     what `make test` needs besides: GoogleTest, a browser, readers that are not ours, ffmpeg for animations
 #   qgis      what `make check-qgis` needs: QGIS itself, about 1 GB
 #   lint, docs, fuzz, package     what `make lint`, `make docs`, `make fuzz` and `make check-install` need
+#   three-d   ParaView and Blender, for `make check-three-d`
 set -euo pipefail
 
 build=(
@@ -21,7 +22,7 @@ build=(
   libopenturns-dev
   libcairo2-dev fonts-dejavu-core zlib1g-dev
   # what report.html is made of, and what bundles its scripts
-  libjs-leaflet libjs-chart.js esbuild
+  libjs-leaflet libjs-chart.js libjs-three esbuild
 )
 docs=(doxygen python3-sphinx python3-myst-parser furo)
 tests=(
@@ -41,6 +42,8 @@ qgis=(qgis python3-qgis qgis-providers gdal-bin)
 lint=(clang-format clang-tidy)
 fuzz=(clang)   # libFuzzer comes with its run-time library
 package=(dpkg-dev mmdebstrap)
+# what opens 3d/: ParaView and Blender, a display for ParaView, readers for what they are compared with
+three_d=(paraview python3-paraview blender python3-openvdb python3-h5py python3-numpy python3-gdal xvfb xauth)
 
 # The report is opened in a browser by its test: Debian's. Ubuntu's packages of these names only lead to the snap store,
 # whose browser cannot be driven; the test says so there and is skipped.
@@ -59,8 +62,9 @@ for group in "$@"; do
     qgis) packages+=("${qgis[@]}") ;;
     fuzz) packages+=("${tests[@]}" "${fuzz[@]}") ;;
     package) packages+=("${package[@]}") ;;
+    three-d) packages+=("${three_d[@]}") ;;
     --list) list=yes ;;
-    *) fail "no such group: $group (build, tests, qgis, lint, docs, fuzz, package)" ;;
+    *) fail "no such group: $group (build, tests, qgis, lint, docs, fuzz, package, three-d)" ;;
   esac
 done
 if [[ $list == yes ]]; then

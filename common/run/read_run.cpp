@@ -80,6 +80,15 @@ RunFrames read_frames(const h5::File& file, const MapGrid& grid) {
   return frames;
 }
 
+/// What files of earlier versions lack: the height of layers, and the densities by release.
+void read_grid_and_releases(const h5::File& file, RunSummary& summary) {
+  if (file.has_attribute("/", run_layout::layer_height))
+    summary.layer_height = h5::checked_number(file, "/", run_layout::layer_height, h5::not_negative);
+  if (!file.exists(run_layout::release_density)) return;
+  summary.release_density = file.read_list<double>(run_layout::release_density);
+  h5::check_values<double>(file, run_layout::release_density, summary.release_density, h5::not_negative);
+}
+
 RunSummary read_summary(const h5::File& file) {
   RunSummary summary;
   for (const auto& item : run_layout::summary_texts) summary.*(item.value) = file.text("/", item.name);
@@ -98,6 +107,7 @@ RunSummary read_summary(const h5::File& file) {
   }
   constexpr const char* words = run_layout::sanity_words;
   if (file.has_attribute("/", words)) summary.sanity.words = file.text("/", words);
+  read_grid_and_releases(file, summary);
   for (const auto& phase : file.children("/profile")) {
     const auto seconds = file.read<double>("/profile/" + phase, {1});
     h5::check_values<double>(file, "/profile/" + phase, seconds, h5::not_negative);

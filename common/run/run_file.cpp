@@ -54,6 +54,9 @@ void write_summary(h5::File& file, const RunSummary& summary) {
   for (const auto& item : run_layout::summary_numbers) file.set_number("/", item.name, summary.*(item.value));
   for (const SanityNumber& number : sanity_numbers) file.set_number("/", number.name, summary.sanity.*(number.value));
   file.set_text("/", run_layout::sanity_words, summary.sanity.words);
+  file.set_number("/", run_layout::layer_height, summary.layer_height);
+  if (!summary.release_density.empty())
+    file.write<double>(run_layout::release_density, {summary.release_density.size()}, summary.release_density);
   file.make_group("/profile");
   for (const auto& [phase, seconds] : summary.profile) {
     file.write<double>("/profile/" + phase, {1}, std::vector<double>{seconds});

@@ -50,6 +50,8 @@ struct RunSummary {
   double wall_time = 0;                                   // step loop [s]
   double memory = 0;                                      // points, grid and linear solver, at the end [bytes]
   double density = 0;                                     // [kg/m3]
+  std::vector<double> release_density;                    // of each release [kg/m3]; empty in older files
+  double layer_height = 0;                                // of the background grid [m]; 0 in older files
   double volume_released = 0;                             // [m3]
   double volume_entrained = 0;                            // eroded from the ground on the way [m3]
   double volume_final = 0;                                // [m3]

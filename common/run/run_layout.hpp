@@ -47,4 +47,8 @@ inline constexpr SummaryItem<double> summary_numbers[] = {
     {"volume_outflow_m3", &RunSummary::volume_outflow},
 };
 
+/// The attribute for RunSummary::layer_height and the list for release_density; files of earlier versions lack them.
+inline constexpr const char* layer_height = "layer_height_m";
+inline constexpr const char* release_density = "/release_density_kg_m3";
+
 }  // namespace talus::run_layout

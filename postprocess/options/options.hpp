@@ -9,6 +9,7 @@
 
 #include "common/recipe/recipe.hpp"
 #include "postprocess/options/hazard.hpp"
+#include "postprocess/options/three_d.hpp"
 
 namespace talus::postprocess {
 
@@ -23,7 +24,7 @@ enum class AvaFrameFormat { tif, asc };
 
 /// What the simulation is scored against. Nothing given: no score against a survey.
 struct SurveyOptions {
-  std::string name = "survey";           // how the map and the table call it
+  std::string name = "survey";  // how the map and the table call it
   ReferenceKind kind = ReferenceKind::survey;
   std::filesystem::path thickness;       // raster of deposit thickness, vertical [m]
   std::filesystem::path peak_thickness;  // raster of peak thickness, vertical [m]: the footprint
@@ -87,6 +88,7 @@ struct Options {
   IntensityOptions intensity;
   ReachConeOptions reach_cone;
   BuildingOptions buildings;
+  ThreeDOptions three_d;
   HazardOptions hazard;
   std::vector<std::string> accept;  // what is refused as implausible, insisted on by name
 

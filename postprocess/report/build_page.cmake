@@ -1,9 +1,10 @@
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Puts page.html together from its parts and writes it as C++: cmake -DHTML=... -DSTYLE=... -DSCRIPT=...
-# -DLEAFLET_STYLE=... -DLEAFLET=... -DCHART=... -DLICENCES=... -DFUNCTION=page_template -DOUTPUT=page.cpp
-# -P build_page.cmake. FUNCTION is the one of page.hpp that gives the page. Arguments are quoted throughout: scripts are
-# full of semicolons, which CMake would take for lists.
+# -DLEAFLET_STYLE=... -DLEAFLET=... -DCHART=... [-DTHREE=...] -DLICENCES=... -DFUNCTION=page_template
+# -DOUTPUT=page.cpp -P build_page.cmake. FUNCTION is the one of page.hpp that gives the page, which has no place for a
+# part that is not given. Arguments are quoted throughout: scripts are full of semicolons, which CMake would take for
+# lists.
 
 # What would be loaded from beside the page is taken out: pictures of controls that are not used, maps for debuggers.
 function(read_part file out)
@@ -17,12 +18,18 @@ function(read_part file out)
 endfunction()
 
 file(READ "${HTML}" page)
-foreach(part STYLE SCRIPT LEAFLET_STYLE LEAFLET CHART LICENCES)
-  read_part("${${part}}" text)
+foreach(part STYLE SCRIPT LEAFLET_STYLE LEAFLET CHART THREE LICENCES)
   string(FIND "${page}" "@${part}@" place)
+  if(NOT DEFINED ${part})
+    if(NOT place EQUAL -1)
+      message(FATAL_ERROR "${HTML} has a @${part}@, but -D${part}=... is not given")
+    endif()
+    continue()
+  endif()
   if(place EQUAL -1)
     message(FATAL_ERROR "${HTML} has no @${part}@")
   endif()
+  read_part("${${part}}" text)
   string(REPLACE "@${part}@" "${text}" page "${page}")
 endforeach()
 

@@ -60,6 +60,7 @@ Json map_json(const ReportInput& input) {
   json["frames"] = frames_json(input, window, coarsest);
   json["lines"] = lines_json(input, window);
   json["coarsest"] = coarsest;
+  json["relief"] = input.options.three_d.report;
   return json;
 }
 

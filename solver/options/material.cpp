@@ -84,6 +84,12 @@ bool MassOptions::any_material(const std::function<bool(const MaterialOptions&)>
          std::any_of(parts.begin(), parts.end(), [&](const PartOptions& part) { return is(part.material); });
 }
 
+const MaterialOptions& MassOptions::material_of(const std::string& release) const {
+  const auto part =
+      std::find_if(parts.begin(), parts.end(), [&](const PartOptions& p) { return p.release == release; });
+  return part == parts.end() ? material : part->material;
+}
+
 void MassOptions::describe(recipe::Visitor& v) {
   recipe::list(v, "part", parts, "a release of another material than [solve.material]");
   v.needs(parts.size() < most_materials, {fmt::format("[[solve.part]] is given {} times", parts.size()),

@@ -72,6 +72,8 @@ struct MassOptions {
   std::vector<PartOptions> parts;
   MaterialOptions material;
 
+  /// The material of a release, by its name.
+  const MaterialOptions& material_of(const std::string& release) const;
   /// Whether all materials are such.
   bool every_material(const std::function<bool(const MaterialOptions&)>& is) const {
     return !any_material([&](const MaterialOptions& m) { return !is(m); });

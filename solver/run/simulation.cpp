@@ -123,6 +123,9 @@ void Simulation::measure(const RunEnd& end, RunSummary& summary) const {
   for (const auto& [owner, bytes] : solver.memory()) summary.memory_of.emplace_back(owner, static_cast<double>(bytes));
   for (const Profile::Phase& p : device.profile().phases()) summary.profile.emplace_back(p.name, p.seconds);
   summary.density = loop_.options().material.density;
+  for (const std::string& release : end.domain.release_names)
+    summary.release_density.push_back(loop_.options().material_of(release).density);
+  summary.layer_height = end.domain.layer_height;
   const SlideVolumes volumes = slide_volumes(end, loop_.memory().outflow_volume);
   summary.volume_released = volumes.released;
   summary.volume_entrained = volumes.entrained;

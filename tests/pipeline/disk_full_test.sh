@@ -33,7 +33,10 @@ whole() {
     *.h5) expect_exit 0 h5dump "$1" ;;
     *.vdb) expect_exit 0 "$bin/talus-solve" recipe.toml --out "$(dirname "$1")" --check ;;
     *.gpkg) expect_exit 0 ogrinfo -al "$1" ;;
-    *.qml | *.qgs) expect_exit 0 python3 -c 'import sys, xml.etree.ElementTree as tree; tree.parse(sys.argv[1])' "$1" ;;
+    *.vtp) [[ $(tail -n 1 "$1") == '</VTKFile>' ]] || fail "$1 is cut short" ;;
+    *.qml | *.qgs | *.pvd)
+      expect_exit 0 python3 -c 'import sys, xml.etree.ElementTree as tree; tree.parse(sys.argv[1])' "$1"
+      ;;
     *.json) expect_exit 0 python3 -m json.tool "$1" ;;
     *.toml | *.txt | *.csv) [[ $(tail -c 1 "$1" | wc -l) -eq 1 ]] || fail "$1 ends within a line" ;;
     *) fail "$1 was left behind" ;;

@@ -8,6 +8,7 @@ OUT, to be looked at. Any fault ends with an assertion that names the elements.
 import base64
 import pathlib
 import sys
+import time
 
 from selenium.webdriver.support.ui import WebDriverWait
 
@@ -59,6 +60,14 @@ def open_folds(browser):
     browser.execute_script("const b = document.getElementById('all-parameters'); if (b && !b.checked) b.click();")
 
 
+def too_wide(browser, seconds=30):
+    """What stays too wide once curves and the view in 3-D have followed the window, which takes them a moment."""
+    end = time.monotonic() + seconds
+    while (found := browser.execute_script(TOO_WIDE)) and time.monotonic() < end:
+        time.sleep(0.5)
+    return found
+
+
 def look(browser, page, out):
     faults = []
     for width in WIDTHS:
@@ -70,7 +79,7 @@ def look(browser, page, out):
             )
         picture(browser, width, out / f"{page.stem}-{width}.png")
         open_folds(browser)
-        faults += [f"{width} px: {what} \"{text}\" by {by} px" for what, text, by in browser.execute_script(TOO_WIDE)]
+        faults += [f"{width} px: {what} \"{text}\" by {by} px" for what, text, by in too_wide(browser)]
     browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
     pdf = browser.execute_cdp_cmd("Page.printToPDF", {"printBackground": True, "preferCSSPageSize": True})
     (out / f"{page.stem}.pdf").write_bytes(base64.b64decode(pdf["data"]))

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Opens a report in Chromium and uses it as a person would: report_browser.py OUT clicks|prints|payload|accepted.
+"""Opens a report in Chromium and uses it as a person would: report_browser.py OUT clicks|prints|payload|accepted|flat.
 
 OUT holds report.html and the maps it was made from. Any fault ends with an assertion that says what was seen.
 """
@@ -10,6 +10,7 @@ import os
 import sys
 import time
 
+import relief
 from osgeo import gdal
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
@@ -244,6 +245,14 @@ def clicks(browser, out):
     check_places(browser)
     check_surveys(browser)
     check_parameters(browser)
+    relief.check(browser, out)
+    check_console(browser)
+
+
+def flat(browser, out):
+    """Where the browser draws no WebGL, a line says so and the rest is whole."""
+    relief.check_without(browser)
+    check_layers(browser)
     check_console(browser)
 
 
@@ -258,7 +267,7 @@ def payload(browser, out):
         found = browser.execute_script(f"return document.querySelectorAll('{kind}').length")
         assert found == 0, f"{found} elements {kind}"
     scripts = browser.execute_script("return document.querySelectorAll('script').length")
-    assert scripts == 4, f"{scripts} scripts instead of those of the page"
+    assert scripts == 5, f"{scripts} scripts instead of those of the page"
     # What is injected later does not run either.
     browser.execute_script(
         "const s = document.createElement('script'); s.textContent = 'window.pwned = 2'; document.body.append(s);"
@@ -293,6 +302,7 @@ def accepted(browser, out):
 
 
 def prints(browser, out):
+    relief.check_printed(browser)
     pdf = browser.execute_cdp_cmd("Page.printToPDF", {"printBackground": True, "preferCSSPageSize": True})
     with open(f"{out}/report.pdf", "wb") as file:
         file.write(base64.b64decode(pdf["data"]))
@@ -301,10 +311,10 @@ def prints(browser, out):
 
 def main():
     out, task = sys.argv[1:]
-    browser = open_browser()
+    browser = open_browser(webgl=task != "flat")
     try:
         open_report(browser, out)
-        {"clicks": clicks, "prints": prints, "payload": payload, "accepted": accepted}[task](browser, out)
+        {"clicks": clicks, "prints": prints, "payload": payload, "accepted": accepted, "flat": flat}[task](browser, out)
     finally:
         browser.quit()
 

@@ -37,6 +37,19 @@ test_opens_and_answers_to_clicks_in_a_browser() {
   browse clicks
 }
 
+test_stands_without_its_view_in_3d_where_there_is_no_webgl() {
+  need_browser
+  made
+  browse flat
+}
+
+test_leaves_its_view_in_3d_out_on_request() {
+  made
+  sed -i 's/^\[postprocess.survey\]/[postprocess.three_d]\nreport = false\n\n&/' recipe.toml
+  expect_exit 0 postprocess
+  grep -q '"relief":false' out/report.html || fail "the page is to draw the view all the same"
+}
+
 # widths PAGE: nothing on it is too wide on a desktop, a tablet, a phone, and on paper; pictures lie in shots/.
 widths() {
   mkdir -p shots
@@ -71,7 +84,7 @@ test_prints_to_a_pdf_with_all_its_maps() {
   grep -q '^Page size: .*A4' stdout || fail "the pages are not A4"
   expect_exit 0 pdftotext out/report.pdf -
   local words
-  for words in 'Bowl' 'Peak speed' 'Arrival time' 'Deposit CSI' 'SHA-256' 'How to cite'; do
+  for words in 'Bowl' 'In three dimensions' 'Peak speed' 'Arrival time' 'Deposit CSI' 'SHA-256' 'How to cite'; do
     grep -qF "$words" stdout || fail "the printed report does not say: $words"
   done
 }

@@ -10,6 +10,7 @@ import { drawMethod } from "./method.js";
 import { Panel } from "./panel.js";
 import { drawPlaceList, placesOf } from "./places.js";
 import { Plates } from "./plates.js";
+import { Relief } from "./relief.js";
 import { labelCells } from "./stack.js";
 import { drawSummary } from "./summary.js";
 import { drawSurveys } from "./surveys.js";
@@ -42,7 +43,7 @@ async function drawMaps(data) {
   const panel = new Panel(data, fields, map, lines, places);
   mapNote(data);
   new Plates(data, fields, map, { lines, places }).draw();
-  return { map, panel };
+  return { map, panel, relief: new Relief(data, fields, map, lines) };
 }
 
 /** Tells the map which vertex of the profile is looked at. */

@@ -13,6 +13,7 @@
 
 #include "common/error.hpp"
 #include "common/run/motion.hpp"
+#include "common/run/point_frames.hpp"
 #include "tests/common/damage.hpp"
 #include "tests/common/scratch.hpp"
 #include "tests/common/tools.hpp"
@@ -71,6 +72,8 @@ RunSummary some_summary() {
   summary.bed = "Coulomb friction with an angle of 20\u00b0";
   summary.particles = 1'234'567'890'123;
   summary.volume_released = 1.0 / 3.0;
+  summary.layer_height = 2.5;
+  summary.release_density = {2000, 1800};
   summary.provenance = {{"input", "before.tif sha256 12"}, {"input", "after.tif sha256 34"}, {"note", ""}};
   return summary;
 }
@@ -130,7 +133,26 @@ TEST_F(RunFile, brings_back_maps_frames_history_and_summary) {
   EXPECT_EQ(run.summary.bed, "Coulomb friction with an angle of 20\u00b0");
   EXPECT_EQ(run.summary.particles, 1'234'567'890'123);
   EXPECT_EQ(run.summary.volume_released, 1.0 / 3.0);
+  EXPECT_EQ(run.summary.layer_height, 2.5);
+  EXPECT_EQ(run.summary.release_density, (std::vector<double>{2000, 1800}));
   EXPECT_EQ(run.summary.provenance, some_summary().provenance);
+}
+
+TEST_F(RunFile, gives_its_points_back_frame_by_frame) {
+  write_some_run(file_);
+  const PointFrames frames(file_);
+  EXPECT_EQ(frames.time(), (std::vector<double>{0, 1.5}));
+  EXPECT_EQ(frames.points(0), 5U);
+  EXPECT_EQ(frames.most_points(), 5U);
+  EXPECT_EQ(frames.all_points(), 9U);
+  const PointFrame points = frames.read(1), expected = some_points(1.5, 4);
+  EXPECT_EQ(points.time, 1.5);
+  EXPECT_EQ(points.position, expected.position);
+  EXPECT_EQ(points.velocity, expected.velocity);
+  EXPECT_EQ(points.volume, expected.volume);
+  EXPECT_EQ(points.pressure, expected.pressure);
+  EXPECT_EQ(points.id, expected.id);
+  EXPECT_EQ(points.release, expected.release);
 }
 
 TEST_F(RunFile, is_not_there_until_it_is_finished) {
@@ -146,6 +168,8 @@ TEST_F(RunFile, reads_a_run_without_frames_or_points) {
   RunWriter(file_).finish(some_maps(), {}, {});
   const auto run = read_run(file_);
   EXPECT_TRUE(run.frames.time.empty());
+  EXPECT_EQ(PointFrames(file_).most_points(), 0U);
+  EXPECT_EQ(run.summary.layer_height, 0);
   EXPECT_TRUE(run.history.columns.empty());
 }
 

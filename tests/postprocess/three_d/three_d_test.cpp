@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The folder 3d/ as a whole: what is written, what is refused, what is removed.
+#include "postprocess/three_d/three_d.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "common/error.hpp"
+#include "tests/postprocess/scene.hpp"
+
+namespace talus::postprocess {
+namespace {
+
+class ThreeD : public ::testing::Test {
+ protected:
+  ThreeD() { test::write_run(scratch_ / "run.h5", run_); }
+
+  std::vector<std::string> written(const ThreeDOptions& options) {
+    std::vector<std::string> names;
+    for (const auto& file : write_three_d(folder_, options, run_, PointFrames(scratch_ / "run.h5")))
+      names.push_back(std::filesystem::relative(file, folder_).string());
+    return names;
+  }
+
+  test::Scratch scratch_;
+  talus::Run run_ = test::small_run();
+  const std::filesystem::path folder_ = scratch_ / "3d";
+};
+
+const ThreeDOptions all_of_it{.points = true, .volumes = true};
+
+TEST_F(ThreeD, writes_what_is_asked_for_and_names_what_to_open) {
+  EXPECT_EQ(written(all_of_it), (std::vector<std::string>{"terrain.vtp", "surface.pvd", "points.pvd",
+                                                          "volumes/flow.0000.vdb", "volumes/terrain.ply", "run.pvd"}));
+  EXPECT_EQ(test::names_in(folder_ / "surface"), (std::vector<std::string>{"surface.0000.vtp", "surface.0001.vtp"}));
+  EXPECT_EQ(test::names_in(folder_ / "points"), (std::vector<std::string>{"points.0000.vtp"}));
+  const std::string all = test::text_of(folder_ / "run.pvd");
+  EXPECT_NE(all.find("timestep=\"20\" part=\"0\" file=\"terrain.vtp\""), std::string::npos);
+  EXPECT_NE(all.find("timestep=\"20\" part=\"1\" file=\"surface/surface.0001.vtp\""), std::string::npos);
+}
+
+TEST_F(ThreeD, writes_the_ground_and_the_surface_unless_told_otherwise) {
+  EXPECT_EQ(written({}), (std::vector<std::string>{"terrain.vtp", "surface.pvd", "run.pvd"}));
+  EXPECT_TRUE(written({.surface = false, .terrain = false}).empty());
+}
+
+TEST_F(ThreeD, removes_what_an_earlier_run_left_and_nothing_else) {
+  written(all_of_it);
+  std::ofstream(folder_ / "mine.pvsm") << "a state of ParaView";
+  std::ofstream(folder_ / "volumes" / "scene.blend") << "a scene of Blender";
+  remove_three_d(folder_);
+  EXPECT_EQ(test::names_in(folder_), (std::vector<std::string>{"mine.pvsm", "volumes"}));
+  EXPECT_EQ(test::names_in(folder_ / "volumes"), (std::vector<std::string>{"scene.blend"}));
+  remove_three_d(scratch_ / "none");
+}
+
+TEST_F(ThreeD, says_its_size_beforehand_within_a_factor_of_four) {
+  // The scene is tiny, so that heads of files count.
+  talus::Run run = run_;
+  for (int i = 0; i < 40; ++i) {
+    run.frames.time.push_back(21 + i);
+    run.frames.thickness.push_back(run.maps.deposit_thickness);
+  }
+  const PointFrames points(scratch_ / "run.h5");
+  const ThreeDSize size = size_of_three_d({}, run, points);
+  write_three_d(folder_, {}, run, points);
+  double bytes = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_))
+    if (entry.is_regular_file()) bytes += static_cast<double>(entry.file_size());
+  EXPECT_LT(bytes / 1e6, 4 * size.all());
+  EXPECT_GT(bytes / 1e6, size.all() / 4);
+}
+
+TEST_F(ThreeD, more_than_is_allowed_is_refused_with_its_parts) {
+  ThreeDOptions options = all_of_it;
+  options.largest = 0.01;
+  const std::string fault =
+      test::fault_of<DataError>([&] { check_three_d(options, run_, PointFrames(scratch_ / "run.h5")); });
+  EXPECT_NE(fault.find("3d/ will take about"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("largest_MB = 0.01"), std::string::npos) << fault;
+}
+
+TEST_F(ThreeD, points_and_volumes_need_frames_of_points) {
+  RunWriter writer(scratch_ / "none.h5");
+  writer.finish(run_.maps, {}, run_.summary);
+  const PointFrames none(scratch_ / "none.h5");
+  EXPECT_NE(test::fault_of<DataError>([&] { check_three_d({.volumes = true}, run_, none); }).find("point_frames"),
+            std::string::npos);
+  check_three_d({}, run_, none);
+}
+
+TEST_F(ThreeD, a_voxel_that_is_no_part_of_a_cell_is_refused_before_anything_is_written) {
+  ThreeDOptions options = all_of_it;
+  options.voxel = 3;
+  EXPECT_THROW(check_three_d(options, run_, PointFrames(scratch_ / "run.h5")), DataError);
+}
+
+}  // namespace
+}  // namespace talus::postprocess
