@@ -16,7 +16,7 @@
 namespace talus {
 namespace {
 
-const EnsembleFileKind kind{"talus counts", "counts of an ensemble", "Run talus-solve again"};
+const EnsembleFileKind counts_kind{"talus counts", "counts of an ensemble", "Run talus-solve again"};
 
 template <class T>
 h5::Dims length_of(const std::vector<T>& list) {
@@ -240,7 +240,7 @@ EnsembleScene read_scene(const h5::File& file) {
 }  // namespace
 
 void write_counts(const std::filesystem::path& path, const EnsembleCounts& counts) {
-  write_ensemble_file(path, kind, [&](h5::File& file) {
+  write_ensemble_file(path, counts_kind, [&](h5::File& file) {
     file.set_text("/", "fingerprint", counts.fingerprint);
     file.set_integer("/", "members", counts.members);
     file.set_integer("/", "first", counts.part.first);
@@ -254,7 +254,7 @@ void write_counts(const std::filesystem::path& path, const EnsembleCounts& count
 }
 
 EnsembleCounts read_counts(const std::filesystem::path& path) {
-  const h5::File file = open_ensemble_file(path, kind);
+  const h5::File file = open_ensemble_file(path, counts_kind);
   EnsembleCounts counts;
   counts.fingerprint = file.text("/", "fingerprint");
   counts.members = file.integer("/", "members");
@@ -272,7 +272,7 @@ EnsembleCounts read_counts(const std::filesystem::path& path) {
 }
 
 Facts counts_facts(const std::filesystem::path& path) {
-  return h5::read_facts(open_ensemble_file(path, kind), "/provenance");
+  return h5::read_facts(open_ensemble_file(path, counts_kind), "/provenance");
 }
 
 }  // namespace talus

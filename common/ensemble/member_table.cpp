@@ -15,7 +15,7 @@
 namespace talus {
 namespace {
 
-const EnsembleFileKind kind{"talus members", "a table of members", "Run talus-preprocess again"};
+const EnsembleFileKind members_kind{"talus members", "a table of members", "Run talus-preprocess again"};
 
 /// Words of a column as one text, a line each.
 std::string lines_of(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, "\n")); }
@@ -75,7 +75,7 @@ const MemberColumn* MemberTable::find(const std::string& key) const {
 }
 
 void write_member_table(const std::filesystem::path& path, const MemberTable& table) {
-  write_ensemble_file(path, kind, [&](h5::File& file) {
+  write_ensemble_file(path, members_kind, [&](h5::File& file) {
     file.set_text("/", "design", table.design);
     file.set_integer("/", "seed", table.seed);
     file.set_integer("/", "members", table.count);
@@ -93,7 +93,7 @@ void write_member_table(const std::filesystem::path& path, const MemberTable& ta
 }
 
 MemberTable read_member_table(const std::filesystem::path& path) {
-  const h5::File file = open_ensemble_file(path, kind);
+  const h5::File file = open_ensemble_file(path, members_kind);
   MemberTable table;
   table.design = file.text("/", "design");
   table.seed = file.integer("/", "seed");

@@ -34,7 +34,9 @@ void add_spread(const Scored& scored, const OnSurveyGrid& simulated, Sheet& shee
   const auto& survey = *scored.survey;
   const int draws = scored.options.survey.resamples;
   if (survey.error.sigma.empty() || draws == 0)
-    return sheet.skip({"deposit_csi_sd"}, draws == 0 ? "resamples = 0" : "its error (sigma) is not given");
+    return sheet.skip(
+        {"deposit_csi_sd"},
+        draws == 0 ? "resamples = 0" : fmt::format("the {}'s error (sigma) is not given", survey.words().noun));
   const auto all = resample(scored, simulated);
   sheet.section("Spread from the survey's error");
   sheet.count("resamples", "surveys drawn", draws);

@@ -100,7 +100,7 @@ test_nothing_is_written_outside_the_output_folder() {
 
 test_styles_and_projects_are_well_formed_and_say_the_names_as_text() {
   hostile_scene
-  expect_exit 0 /usr/bin/python3 - "$title" <<'PYTHON'
+  /usr/bin/python3 - "$title" <<'PYTHON' || fail "styles or projects are not as they should be"
 import pathlib, sys, xml.etree.ElementTree as tree
 files = [f for f in pathlib.Path("out").rglob("*") if f.suffix in (".qgs", ".qml")]
 assert len(files) > 5, files
