@@ -12,10 +12,9 @@ def open_browser(size=(1300, 1000), webgl=True):
     options = webdriver.ChromeOptions()
     options.binary_location = "/usr/bin/chromium"
     options.add_argument(f"--window-size={size[0]},{size[1]}")
-    for argument in ["--headless=new", "--disable-dev-shm-usage"]:
+    for argument in ["--headless=new", "--disable-gpu", "--disable-dev-shm-usage"]:
         options.add_argument(argument)
-    for argument in ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"] if webgl else ["--disable-3d-apis"]:
-        options.add_argument(argument)
+    options.add_argument("--enable-unsafe-swiftshader" if webgl else "--disable-3d-apis")
     if os.geteuid() == 0:
         options.add_argument("--no-sandbox")  # Chromium's sandbox refuses root, which tests in containers are
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
