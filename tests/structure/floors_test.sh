@@ -18,11 +18,7 @@ floors() {
         linear/preconditioner linear/direct integrator 'explicit implicit' options scene run/recorders run ensemble .
       ;;
     postprocess)
-<<<<<<< HEAD
-      printf '%s\n' options survey fields 'score maps' 'picture three_d' report 'ensemble compare' .
-=======
-      printf '%s\n' options survey fields hazard 'score maps' picture report 'ensemble compare' .
->>>>>>> main
+      printf '%s\n' options survey fields hazard 'score maps' 'picture three_d' report 'ensemble compare' .
       ;;
   esac
 }

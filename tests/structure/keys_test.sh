@@ -4,11 +4,7 @@
 # Keys of recipes and the members that hold them (docs/explanation/architecture.md).
 source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 
-<<<<<<< HEAD
-unit='_(kg_m3|m_s2|m_s|m3|m2|m|s|deg|Pa_sn|Pa|N|MB)$'
-=======
-unit='_(kg_m3|m2_s|m_s2|m_s|m3|m2|m|s|deg|Pa_sn|kPa|Pa|N)$'
->>>>>>> main
+unit='_(kg_m3|m2_s|m_s2|m_s|m3|m2|m|s|deg|Pa_sn|kPa|Pa|N|MB)$'
 
 # described FILE: "line kind key member" of every key that the file describes with a member.
 described() {
