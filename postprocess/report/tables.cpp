@@ -5,9 +5,9 @@
 
 #include "common/map/slope.hpp"
 #include "common/recipe/used.hpp"
+#include "common/run/mobility.hpp"
 #include "postprocess/fields/release.hpp"
 #include "postprocess/report/parts.hpp"
-#include "common/run/mobility.hpp"
 
 namespace talus::postprocess {
 namespace {

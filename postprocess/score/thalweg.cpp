@@ -11,8 +11,8 @@
 #include "common/error.hpp"
 #include "common/gis/polygons.hpp"
 #include "common/map/bilinear.hpp"
-#include "postprocess/score/flow_path.hpp"
 #include "common/run/mobility.hpp"
+#include "postprocess/score/flow_path.hpp"
 #include "postprocess/score/polyline.hpp"
 
 namespace talus::postprocess {

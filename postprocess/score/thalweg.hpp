@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "common/run/mobility.hpp"
 #include "common/run/run_file.hpp"
 #include "postprocess/options/options.hpp"
-#include "common/run/mobility.hpp"
 
 namespace talus::postprocess {
 

@@ -100,15 +100,15 @@ Raster& raster_named(std::vector<std::pair<std::string, Raster>>& bed, std::stri
 }
 
 /// A polygon's value of a number, with the part of every cell that it covers.
-struct Patch {
+struct PolygonNumbers {
   double value;
   const std::vector<double>* share;
 };
 
-void lay_number(std::string_view number, const std::vector<Patch>& patches, Raster& raster) {
+void lay_number(std::string_view number, const std::vector<PolygonNumbers>& patches, Raster& raster) {
   for (std::size_t i = 0; i < raster.values.size(); ++i) {
     double covered = 0, sum = 0;
-    for (const Patch& patch : patches) {
+    for (const PolygonNumbers& patch : patches) {
       covered += (*patch.share)[i];
       sum += (*patch.share)[i] * to_mean(number, patch.value);
     }
@@ -141,7 +141,7 @@ void lay_bed_polygons(const std::filesystem::path& file, const Raster& ground,
   for (const MapPolygon& polygon : polygons) shares.push_back(coverage_within(ground.grid, polygon));
   refuse_overlap(file, ground.grid, shares);
   for (const std::string_view number : bed_numbers) {
-    std::vector<Patch> patches;
+    std::vector<PolygonNumbers> patches;
     double area = 0;
     for (std::size_t p = 0; p < polygons.size(); ++p) {
       for (const auto& [attribute, value] : polygons[p].numbers) {
