@@ -33,7 +33,7 @@ std::filesystem::path write_table(const test::Scratch& scratch, const std::strin
   return file;
 }
 
-double value_at(const Bed& bed, const std::string& name, int column, int row) {
+double number_at(const Bed& bed, const std::string& name, int column, int row) {
   for (const auto& [other, raster] : bed) {
     if (other == name) return raster.at(column, row);
   }
@@ -51,13 +51,13 @@ TEST(BedPolygons, give_the_numbers_that_their_attributes_are_called_after) {
   Bed bed;
   lay_bed_polygons(file, ground, bed);
   ASSERT_EQ(bed.size(), 3U) << "owner is no number of the bed";
-  EXPECT_NEAR(value_at(bed, "friction_angle_deg", 2, 5), 28, 1e-12);
-  EXPECT_NEAR(value_at(bed, "friction_angle_deg", 8, 5), 20, 1e-12);
-  EXPECT_NEAR(tangent(value_at(bed, "friction_angle_deg", 5, 5)), 0.5 * (tangent(28) + tangent(20)), 1e-12);
-  EXPECT_TRUE(std::isnan(value_at(bed, "friction_angle_deg", 12, 5))) << "the recipe's number";
-  EXPECT_NEAR(value_at(bed, "turbulence_m_s2", 2, 5), 400, 1e-9);
-  EXPECT_TRUE(std::isnan(value_at(bed, "turbulence_m_s2", 8, 5))) << "left empty";
-  EXPECT_NEAR(value_at(bed, "cohesion_Pa", 8, 5), 150, 1e-12);
+  EXPECT_NEAR(number_at(bed, "friction_angle_deg", 2, 5), 28, 1e-12);
+  EXPECT_NEAR(number_at(bed, "friction_angle_deg", 8, 5), 20, 1e-12);
+  EXPECT_NEAR(tangent(number_at(bed, "friction_angle_deg", 5, 5)), 0.5 * (tangent(28) + tangent(20)), 1e-12);
+  EXPECT_TRUE(std::isnan(number_at(bed, "friction_angle_deg", 12, 5))) << "the recipe's number";
+  EXPECT_NEAR(number_at(bed, "turbulence_m_s2", 2, 5), 400, 1e-9);
+  EXPECT_TRUE(std::isnan(number_at(bed, "turbulence_m_s2", 8, 5))) << "left empty";
+  EXPECT_NEAR(number_at(bed, "cohesion_Pa", 8, 5), 150, 1e-12);
 }
 
 TEST(BedPolygons, lie_over_rasters_by_the_part_that_they_cover) {
@@ -66,8 +66,8 @@ TEST(BedPolygons, lie_over_rasters_by_the_part_that_they_cover) {
   const auto file = write_table(scratch, "turbulence_m_s2,WKT\n400," + cells(ground.grid, 0, 0, 4.25, 10) + "\n");
   Bed bed{{"turbulence_m_s2", test::raster_of(ground.grid, [](double, double) { return 2000; })}};
   lay_bed_polygons(file, ground, bed);
-  EXPECT_NEAR(1 / value_at(bed, "turbulence_m_s2", 4, 5), 0.25 / 400 + 0.75 / 2000, 1e-12) << "the drag is the mean";
-  EXPECT_NEAR(value_at(bed, "turbulence_m_s2", 6, 5), 2000, 1e-9);
+  EXPECT_NEAR(1 / number_at(bed, "turbulence_m_s2", 4, 5), 0.25 / 400 + 0.75 / 2000, 1e-12) << "the drag is the mean";
+  EXPECT_NEAR(number_at(bed, "turbulence_m_s2", 6, 5), 2000, 1e-9);
 }
 
 TEST(BedPolygons, are_found_by_what_a_shapefile_leaves_of_a_name) {

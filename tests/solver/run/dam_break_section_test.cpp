@@ -11,7 +11,7 @@
 namespace talus::solver::testing {
 namespace {
 
-constexpr double depth = 1, gravity = 9.81, density = 1000;
+constexpr double dam_depth = 1, gravity = 9.81, dam_density = 1000;
 
 /// Mean of discharge over width [m2/s] and of momentum flux over width [N/m] at the dam, from 2 to 5 s.
 struct AtTheDam {
@@ -19,16 +19,16 @@ struct AtTheDam {
 };
 
 AtTheDam break_dam(On on, int layers) {
-  const double layer = depth / layers, cell = 2 * layer, reservoir = 20, west = 20, east = 34;
+  const double layer = dam_depth / layers, cell = 2 * layer, reservoir = 20, west = 20, east = 34;
   Domain d = ground(static_cast<int>((west + east) / cell), 9, cell, layer, [](double, double) { return 0.0; });
   d.grid.west = -west - 0.5 * cell;
   d.grid.south = -3.5 * cell;  // nodes at the walls
   for (Raster* r : {&d.terrain, &d.before, &d.release_thickness}) r->grid = d.grid;
-  fill(d, {-reservoir + 4 * cell, 0, 0, cell, 0, depth});
+  fill(d, {-reservoir + 4 * cell, 0, 0, cell, 0, dam_depth});
   SolveOptions o;
   o.integrator = Integrator::explicit_;
   o.material.model = MaterialModel::herschel_bulkley;
-  o.material.density = density;
+  o.material.density = dam_density;
   o.material.youngs_modulus = 1e6;
   o.material.poisson_ratio = 0.45;
   o.material.yield_stress = 0;
@@ -61,13 +61,13 @@ class DamBreak : public InEachPlace {};
 /// flux 2.8 and 1.6 % less, for the depth at the dam is 2.3 and 1.2 % more: shallow water knows no vertical
 /// acceleration, and points that carry their momentum through a grid lose some of it.
 TEST_P(DamBreak, discharges_at_the_dam_what_Ritter_says) {
-  const double discharge = 8.0 / 27 * depth * std::sqrt(gravity * depth);
-  const double momentum = 16.0 / 81 * density * gravity * depth * depth;
+  const double discharge = 8.0 / 27 * dam_depth * std::sqrt(gravity * dam_depth);
+  const double momentum = 16.0 / 81 * dam_density * gravity * dam_depth * dam_depth;
   double coarse = 1;
   for (const auto& [layers, tolerance] : {std::pair{4, 0.04}, std::pair{8, 0.025}}) {
     const AtTheDam found = break_dam(GetParam(), layers);
     std::printf("  dam break, %d layers: %.4f m2/s (%.4f), %.0f N/m (%.0f), depth %.3f m (%.3f)\n", layers,
-                found.discharge, discharge, found.momentum, momentum, found.depth, 4.0 / 9 * depth);
+                found.discharge, discharge, found.momentum, momentum, found.depth, 4.0 / 9 * dam_depth);
     EXPECT_NEAR(found.discharge, discharge, 0.01 * discharge) << layers;
     EXPECT_NEAR(found.momentum, momentum, tolerance * momentum) << layers;
     const double error = std::abs(found.momentum / momentum - 1);

@@ -13,7 +13,7 @@
 namespace talus::solver::testing {
 namespace {
 
-constexpr double slope_angle = 30 * std::numbers::pi / 180, block_volume = 8 * 8 * 2;
+constexpr double incline_angle = 30 * std::numbers::pi / 180, block_volume = 8 * 8 * 2;
 
 SolveOptions block_without_friction() {
   SolveOptions o;
@@ -26,7 +26,7 @@ SolveOptions block_without_friction() {
 
 /// A block of 8 x 8 x 2 m that slides down towards the east, from 10 to 18 m.
 Domain block_on_a_slope() {
-  Domain d = ground(64, 24, 1.0, 1.0, [](double x, double) { return 100 - std::tan(slope_angle) * x; });
+  Domain d = ground(64, 24, 1.0, 1.0, [](double x, double) { return 100 - std::tan(incline_angle) * x; });
   fill(d, {10, 18, 8, 16, 0, 2});
   return d;
 }
