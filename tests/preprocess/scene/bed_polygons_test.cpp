@@ -28,7 +28,7 @@ std::string cells(const MapGrid& grid, double west, double south, double east, d
 }
 
 std::filesystem::path write_table(const test::Scratch& scratch, const std::string& text) {
-  const auto file = scratch / "zones.csv";
+  auto file = scratch / "zones.csv";
   std::ofstream(file) << text;
   return file;
 }
