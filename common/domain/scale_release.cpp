@@ -49,6 +49,7 @@ void scale_release(Domain& domain, double factor) {
     const double foot = ground.empty() ? 0.0 : ground[cell_under(domain.grid, points.x[p], points.y[p])];
     points.height[p] = foot + factor * (points.height[p] - foot);
   }
+  domain.active.reset();  // points may stand in other layers now
 }
 
 }  // namespace talus

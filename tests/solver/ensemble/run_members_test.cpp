@@ -5,6 +5,7 @@
 
 #include <numeric>
 
+#include "common/domain/scale_release.hpp"
 #include "solver/ensemble/member_run.hpp"
 #include "solver/run/simulation.hpp"
 #include "tests/solver/ensemble/ensemble_scene.hpp"
@@ -124,6 +125,12 @@ TEST(Members, scale_the_release_of_domains_of_their_own_too) {
   EXPECT_NEAR(volume(members.read(1).domain), 0.8 * volume(own), 1e-9 * volume(own));
   EXPECT_NEAR(volume(members.read(2).domain), 1.25 * volume(ensemble.domain), 1e-9 * volume(own));
   EXPECT_EQ(members.read(1).domain.terrain.values, own.terrain.values);
+  const auto thick = [&] {
+    Domain scaled = read_domain(ensemble.paths.domain(1));  // its mask names the cells around its own points
+    scale_release(scaled, 5);
+    return make_scene(scaled, ensemble.base).points.size();
+  };
+  EXPECT_EQ(thick(), own.points.size()) << "points above the layers that they were seeded in";
   own.grid.west += 1;
   own.terrain.grid = own.before.grid = own.release_thickness.grid = own.grid;
   write_domain(ensemble.paths.domain(1), own);
