@@ -22,7 +22,8 @@ function quantile(values, share) {
 }
 
 function keyNumber(title, words, spread) {
-  return h("div", {}, h("dt", {}, title), h("dd", {}, words, spread ? h("span", { class: "spread" }, spread) : null));
+  const below = spread ? h("span", { class: "spread" }, ...[spread].flat()) : null;
+  return h("div", {}, h("dt", {}, title), h("dd", {}, words, below));
 }
 
 const keyResults = ["run_out_m", "reach_ratio", "flow_area_m2", "deposit_area_m2", "largest_speed_m_s",
@@ -50,7 +51,8 @@ export function drawSummary(data) {
     if (!column || !column.values.some((value) => value !== null)) continue;
     const decimals = decimalsOf(column),
       of = (share) => number(quantile(column.values, share), decimals);
-    box.append(keyNumber(columnTitle(column), of(0.5), `90 %: ${of(0.05)} to ${of(0.95)}`));
+    const whole = (text) => h("span", {}, text);
+    box.append(keyNumber(columnTitle(column), of(0.5), ["90 %: ", whole(of(0.05)), " to ", whole(of(0.95))]));
   }
 }
 
