@@ -17,6 +17,9 @@ struct MapPolygon {
   std::string name;                                     ///< attribute "name", if any
 };
 
+/// The distance of a place from the edge of a polygon [m], negative inside.
+double signed_distance(const MapPolygon& polygon, double x, double y);
+
 /// A line of points (x, y) [m], at least two, none repeated.
 using MapLine = std::vector<std::array<double, 2>>;
 

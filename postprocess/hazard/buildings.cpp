@@ -11,26 +11,11 @@
 
 #include <fmt/format.h>
 
+#include "common/map/polygon.hpp"
 #include "common/map/statistics.hpp"
 
 namespace talus::postprocess {
 namespace {
-
-/// The distance of a place from a polygon [m]; 0 inside.
-double distance_to(const MapPolygon& polygon, double x, double y) {
-  double nearest = 1e300;
-  bool inside = false;
-  for (const auto& ring : polygon.rings) {
-    for (std::size_t n = 0; n < ring.size(); ++n) {
-      const auto &a = ring[n], &b = ring[(n + 1) % ring.size()];
-      const double ex = b[0] - a[0], ey = b[1] - a[1], px = x - a[0], py = y - a[1];
-      const double along = std::clamp((px * ex + py * ey) / std::max(ex * ex + ey * ey, 1e-300), 0.0, 1.0);
-      nearest = std::min(nearest, std::hypot(px - along * ex, py - along * ey));
-      if ((a[1] > y) != (b[1] > y) && px < ex * py / ey) inside = !inside;
-    }
-  }
-  return inside ? 0 : nearest;
-}
 
 /// The largest distance between two corners of the outer rings [m].
 double widest(const std::vector<MapPolygon>& parts) {
@@ -63,7 +48,7 @@ std::vector<std::size_t> cells_at(const MapPolygon& polygon, const MapGrid& grid
             last_column = std::min(cell_of(east - grid.west, grid.columns) + wide, grid.columns - 1);
   for (int row = std::max(cell_of(south - grid.south, grid.rows) - wide, 0); row <= last_row; ++row) {
     for (int column = std::max(cell_of(west - grid.west, grid.columns) - wide, 0); column <= last_column; ++column) {
-      if (distance_to(polygon, grid.x(column), grid.y(row)) <= reach) cells.push_back(grid.index(column, row));
+      if (signed_distance(polygon, grid.x(column), grid.y(row)) <= reach) cells.push_back(grid.index(column, row));
     }
   }
   return cells;

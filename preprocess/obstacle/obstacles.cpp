@@ -34,22 +34,6 @@ double height_of(const MapPolygon& polygon, std::size_t number, const ObstacleOp
       "the obstacle's height is not known", "Name the attribute in the recipe (attribute = ...), or give height_m"});
 }
 
-/// Distance to the polygon's edge [m], negative inside.
-double signed_distance(const MapPolygon& polygon, double x, double y) {
-  double nearest = 1e300;
-  bool inside = false;
-  for (const auto& ring : polygon.rings) {
-    for (std::size_t n = 0; n < ring.size(); ++n) {
-      const auto &a = ring[n], &b = ring[(n + 1) % ring.size()];
-      const double ex = b[0] - a[0], ey = b[1] - a[1], px = x - a[0], py = y - a[1];
-      const double along = std::clamp((px * ex + py * ey) / std::max(ex * ex + ey * ey, 1e-300), 0.0, 1.0);
-      nearest = std::min(nearest, std::hypot(px - along * ex, py - along * ey));
-      if ((a[1] > y) != (b[1] > y) && px < ex * py / ey) inside = !inside;
-    }
-  }
-  return inside ? -nearest : nearest;
-}
-
 /// An upright body over polygons, from `depth` below the ground to their heights above it. It looks up ground and
 /// edges once for each column of voxels that is asked for, so one object serves one thread at a time.
 class UprightBody {
