@@ -181,10 +181,19 @@ Facts run_ensemble(StageContext& context, const EnsembleFlags& flags, const Doma
                    const Facts& facts) {
   const auto begun = std::chrono::steady_clock::now();
   const Ensemble e = read_ensemble(context, flags, domain, base);
+  const auto seconds = [&] {
+    return fmt::format("{:.3f}", std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count());
+  };
+  if (!flags.plan && !context.check_only && finished_of(e.counts, e)) {
+    log_info(fmt::format("{}: it holds this very part already", e.counts.string()));
+    context.results.push_back(e.counts);
+    return {{"wall_time_s", seconds()}, {"members", std::to_string(e.part.count())}};
+  }
   const Members members(context.recipe, e.table, e.paths, domain, base);
   members.check();
-  const MemberCost cost = cost_of_member(members, e.part.first, one_of_each(flags.on).front(), flags.plan);
-  const InFlight flight = in_flight(e.part.count(), cost.bytes, one_of_each(flags.on));
+  const std::vector<AnyDevice> each = one_of_each(flags.on);
+  const MemberCost cost = cost_of_member(domain, members.base(), each.front(), flags.plan);
+  const InFlight flight = in_flight(e.part.count(), cost.bytes, each);
   log_info(fmt::format("{} members ({} to {}), {} at a time: {}", e.part.count(), e.part.first, e.part.end - 1,
                        flight.count, flight.reason));
   if (flags.plan) {
@@ -192,14 +201,6 @@ Facts run_ensemble(StageContext& context, const EnsembleFlags& flags, const Doma
     return {};
   }
   if (context.check_only) return {};
-  const auto seconds = [&] {
-    return fmt::format("{:.3f}", std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count());
-  };
-  if (finished_of(e.counts, e)) {
-    log_info(fmt::format("{}: it holds this very part already", e.counts.string()));
-    context.results.push_back(e.counts);
-    return {{"wall_time_s", seconds()}, {"members", std::to_string(e.part.count())}};
-  }
   EnsembleCounts counts = fresh_counts(context, e, domain, base, facts);
   take_up(e, flags, counts);
   const auto unfinished = e.paths.unfinished(e.part);

@@ -16,13 +16,12 @@ constexpr double trial_seconds = 0.5;
 
 }  // namespace
 
-MemberCost cost_of_member(const Members& members, std::int64_t member, const AnyDevice& device, bool timed) {
+MemberCost cost_of_member(const Domain& domain, const SolveOptions& base, const AnyDevice& device, bool timed) {
   const QuietThread quiet;
   const Alone alone;
-  const Member own = members.read(member);
-  const Scene scene = make_scene(own.domain, own.options);
-  const Trial trial = try_steps(scene, own.options, device, timed ? trial_seconds : 0);
-  const StepCount count = count_steps(own.domain, scene, own.options, trial.step);
+  const Scene scene = make_scene(domain, base);
+  const Trial trial = try_steps(scene, base, device, timed ? trial_seconds : 0);
+  const StepCount count = count_steps(domain, scene, base, trial.step);
   return {.bytes = static_cast<double>(trial.bytes),
           .step_seconds = trial.seconds,
           .fewest_steps = count.fewest,

@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "solver/ensemble/members.hpp"
+#include "common/domain/domain.hpp"
+#include "solver/options/solve.hpp"
 #include "solver/parallel/any_device.hpp"
 
 namespace talus::solver {
@@ -20,8 +21,8 @@ struct MemberCost {
   double most_steps = 0;    ///< at the speed that the energy line allows
 };
 
-/// This function tries a member; `timed`: half a second of its steps.
-MemberCost cost_of_member(const Members& members, std::int64_t member, const AnyDevice& device, bool timed);
+/// This function tries the base of an ensemble, which its members are like; `timed`: half a second of its steps.
+MemberCost cost_of_member(const Domain& domain, const SolveOptions& base, const AnyDevice& device, bool timed);
 
 /// The lines of --plan: memory and time of `count` members, `in_flight` at a time.
 std::vector<std::string> lines_of(const MemberCost& cost, std::int64_t count, int in_flight);

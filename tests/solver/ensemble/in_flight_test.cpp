@@ -26,7 +26,7 @@ TEST(InFlightMembers, are_no_more_than_memory_has_room_for) {
 
 TEST(MemberCost, is_that_of_a_run) {
   const SmallEnsemble ensemble;
-  const MemberCost cost = cost_of_member(ensemble.members(), 0, make_device(On::cpu), true);
+  const MemberCost cost = cost_of_member(ensemble.domain, ensemble.base, make_device(On::cpu), true);
   EXPECT_GT(cost.bytes, 1e5);
   EXPECT_GT(cost.step_seconds, 0);
   EXPECT_LE(cost.fewest_steps, cost.most_steps);
