@@ -141,6 +141,14 @@ void say_warnings(const MembersRun& run) {
     log_warning(fmt::format("{} more warnings of members", run.warnings.size() - most_said));
 }
 
+/// This function saves what is finished, and throws Interrupted.
+[[noreturn]] void stop(const EnsembleCounts& counts, const std::filesystem::path& unfinished) {
+  write_counts(unfinished, counts);
+  throw Interrupted({fmt::format("stopped with {} of {} members finished",
+                                 counts.part.count() - counts.count(MemberState::waiting), counts.part.count()),
+                     "interrupted", fmt::format("Go on with --restart; {} holds them", unfinished.string())});
+}
+
 /// This function says which members failed; it throws NumericalError where they are too many.
 void judge_failures(const EnsembleCounts& counts, double allowed_share) {
   for (std::size_t n = 0; n < counts.failures.size() && n < most_said; ++n)
@@ -211,12 +219,7 @@ Facts run_ensemble(StageContext& context, const EnsembleFlags& flags, const Doma
                                       .save = [&] { write_counts(unfinished, counts); },
                                       .save_interval = e.options.save_interval});
   say_warnings(run);
-  if (!run.whole) {
-    write_counts(unfinished, counts);
-    throw Interrupted({fmt::format("stopped with {} of {} members finished",
-                                   counts.part.count() - counts.count(MemberState::waiting), counts.part.count()),
-                       "interrupted", fmt::format("Go on with --restart; {} holds them", unfinished.string())});
-  }
+  if (!run.whole) stop(counts, unfinished);
   judge_failures(counts, e.options.failed_share);
   write_counts(e.counts, counts);
   remove_for_good(unfinished);
