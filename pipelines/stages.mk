@@ -8,7 +8,7 @@ SHELL := /bin/bash
 .SUFFIXES:
 # A result carries its name only when it is whole, and the last one of a stage is written last: make deletes none, also
 # where it is interrupted.
-.PRECIOUS: domain.vdb run.h5 counts.h5 score.json probability.nc
+.PRECIOUS: domain.vdb run.h5 counts.h5 score.json probability.nc slides.nc
 
 # Names as the shell and as make's rules take them.
 quoted  = '$(subst ','\'',$1)'
@@ -20,7 +20,7 @@ run     = $(call quoted,$(value bin)/talus-$1) $(call quoted,$(value recipe)) --
 # they are.
 last   = $(or $(shell sed -nE 's,^(\./)?($2)[ :].*,\2,p' .inputs/$1.d),$3)
 solved := $(call last,solve,counts\.h5|run\.h5,run.h5)
-scored := $(call last,postprocess,probability\.nc|score\.json,score.json)
+scored := $(call last,postprocess,probability\.nc|slides\.nc|score\.json,score.json)
 
 .PHONY: scene force
 scene: $(scored)

@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include "common/ensemble/options.hpp"
+#include "common/ensemble/slide_options.hpp"
 #include "common/gis/crs.hpp"
 #include "common/gis/dataset_files.hpp"
 #include "common/run/run_facts.hpp"
@@ -33,6 +33,7 @@
 #include "postprocess/picture/map_picture.hpp"
 #include "postprocess/report/report.hpp"
 #include "postprocess/score/score.hpp"
+#include "postprocess/slides/run_slides.hpp"
 #include "postprocess/survey/found_survey.hpp"
 #include "postprocess/survey/order.hpp"
 #include "postprocess/three_d/three_d.hpp"
@@ -196,6 +197,7 @@ bool has_single_run(const StageContext& context, const Options& options) {
 }  // namespace
 
 Dependencies depends(const StageContext& context) {
+  if (slides_of(context.recipe).on()) return slides_depends(context);
   auto options = context.recipe.read<Options>("postprocess");
   options.survey.name_files(context.out);
   const fs::path run = run_file(context, options);
@@ -307,6 +309,7 @@ void run_single(StageContext& context, const Options& options) {
 
 void run(StageContext& context) {
   const auto options = context.recipe.read<Options>("postprocess");
+  if (slides_of(context.recipe).on()) return run_slides(context, stage(), options);
   const bool single = has_single_run(context, options);
   if (ensemble_of(context.recipe).on()) run_ensemble(context, stage(), options, !single);
   if (single)
@@ -320,13 +323,14 @@ Stage stage() {
   stage.name = "talus-postprocess";
   stage.table = "postprocess";
   stage.summary =
-      "Write maps, NetCDF, picture and scores of a run (run.h5 of talus-solve), or of an ensemble (counts.h5)";
+      "Write maps, NetCDF, picture and scores of a run (run.h5 of talus-solve), of an ensemble, or of many slides (counts.h5)";
   stage.examples =
       "  talus-postprocess scene.toml --out out/scene    maps/ (with a QGIS project), map.png, report.html, "
       "history.csv, score.json, score.txt\n"
       "  talus-postprocess ensemble.toml --out out/scene    probability/, probability.nc, members.csv, "
       "sensitivity.csv, "
       "ensemble.html\n"
+      "  talus-postprocess slides.toml --out out/scene    slides/, slides.csv, slides.nc, slides.html\n"
       "  talus-postprocess scene.toml --out out/scene --check    read run and survey, write nothing\n"
       "  talus-postprocess --template >> scene.toml    all keys with their defaults\n";
   stage.template_toml = [] { return recipe::to_toml(Options{}, "postprocess", true); };

@@ -17,6 +17,7 @@
 #include "preprocess/output/provenance.hpp"
 #include "preprocess/output/write_survey.hpp"
 #include "preprocess/scene/prepare.hpp"
+#include "preprocess/slides/slides.hpp"
 
 namespace {
 
@@ -109,6 +110,9 @@ void write_obstacles(StageContext& context, preprocess::Prepared& prepared) {
 
 /// domain.vdb, or the survey alone where only the difference is asked for.
 Dependencies depends(const StageContext& context, const PreprocessFlags& flags) {
+  if (slides_of(context.recipe).on())
+    return {{context.out / "domain.vdb", EnsemblePaths{context.out}.members()},
+            with_sidecars(preprocess::inputs_of_slides(context.recipe))};
   const auto options = read_options(context);
   if (flags.difference)
     return {{context.out / "survey/survey.json"}, with_sidecars({options.before_dem, options.after_dem})};
@@ -131,16 +135,30 @@ void look_at_ensemble(const StageContext& context, preprocess::EnsemblePlan& pla
 
 /// The [preprocess] and, where there is one, the [ensemble] of a recipe, as they are used.
 std::string used_tables(const recipe::Recipe& recipe, bool marked) {
-  const auto options = recipe.read<preprocess::Options>("preprocess");
+  const SlideOptions slides = slides_of(recipe);
+  const auto options =
+      slides.on() ? preprocess::shared_options(recipe, slides) : recipe.read<preprocess::Options>("preprocess");
   const EnsembleOptions ensemble = ensemble_of(recipe);
   std::string text =
       marked ? recipe::to_used_toml(options, "preprocess") : recipe::to_toml(options, "preprocess", false);
+  if (slides.on())
+    return text + "\n" + (marked ? recipe::to_used_toml(slides, "slides") : recipe::to_toml(slides, "slides", false));
   if (ensemble.on())
     text += "\n" + (marked ? recipe::to_used_toml(ensemble, "ensemble") : recipe::to_toml(ensemble, "ensemble", false));
   return text;
 }
 
+/// Many slides over one model, each with a domain of its own.
+void run_slides(StageContext& context) {
+  ensemble_of(context.recipe);  // refuses [ensemble] besides
+  const preprocess::SlidesMade made = preprocess::make_slides(context);
+  if (context.check_only) return;
+  write_used_recipe(context, stage(), used_tables(context.recipe, true), made.inputs, made.facts);
+  preprocess::copy_largest(context, made);
+}
+
 void run(StageContext& context, const PreprocessFlags& flags) {
+  if (slides_of(context.recipe).on()) return run_slides(context);
   const auto options = read_options(context);
   if (flags.difference) return run_difference(context, options);
   auto ensemble = preprocess::plan_ensemble(context.recipe, options);
@@ -188,7 +206,9 @@ Stage stage() {
   stage.template_toml = [] {
     return recipe::to_toml(preprocess::Options{}, "preprocess", true) +
            "\n# Many runs instead of one: members = 0 is none. All stages read this table.\n" +
-           recipe::to_toml(EnsembleOptions{}, "ensemble", true);
+           recipe::to_toml(EnsembleOptions{}, "ensemble", true) +
+           "\n# Many slides over one elevation model: outlines empty is none. All stages read this table.\n" +
+           recipe::to_toml(SlideOptions{}, "slides", true);
   };
   stage.used_toml = [](const recipe::Recipe& recipe) { return used_tables(recipe, false); };
   return stage;

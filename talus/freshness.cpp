@@ -11,6 +11,7 @@
 #include "common/domain/domain_facts.hpp"
 #include "common/ensemble/counts.hpp"
 #include "common/ensemble/member_table.hpp"
+#include "common/ensemble/slide_options.hpp"
 #include "common/run/run_facts.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/stage.hpp"
@@ -45,7 +46,7 @@ std::string other_members(const Request& request, const recipe::Recipe& recipe, 
   const std::string other = other_mark(recipe, "preprocess", domain_facts(domain), recipe_of_domain);
   const fs::path members = EnsemblePaths{request.out}.members();
   if (!other.empty() || !ensemble_of(recipe).on() || !fs::exists(members)) return other;
-  const std::string why = other_mark(recipe, "ensemble", read_member_table(members).provenance, recipe_of_members);
+  const std::string why = other_mark(recipe, members_table(recipe), read_member_table(members).provenance, recipe_of_members);
   return why.empty() ? "" : fmt::format("{}: {}", members.filename().string(), why);
 }
 

@@ -3,11 +3,14 @@
 #include "common/ensemble/counts.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "common/error.hpp"
+#include "common/map/crop.hpp"
 
 namespace talus {
 namespace {
@@ -20,23 +23,53 @@ const std::vector<double>& thresholds_of(const CountedMap& map, const ThresholdO
   return name == "peak_pressure" ? o.pressure : o.arrival;
 }
 
+constexpr std::vector<Footprint> EnsembleCounts::*footprints_of_members[] = {
+    &EnsembleCounts::release, &EnsembleCounts::flow, &EnsembleCounts::deposit};
+
 /// This function moves the members of `part` into `all`, whose range holds theirs.
 void take(EnsembleCounts& all, EnsembleCounts&& part) {
-  for (std::size_t m = 0; m < all.maps.size(); ++m) all.maps[m].add(part.maps[m]);
+  std::vector<std::size_t> places(part.cells.count());
+  for (std::size_t place = 0; place < places.size(); place += KeptCells::of_block) {
+    const std::size_t first = all.cells.keep_block(part.cells.blocks()[place / KeptCells::of_block]);
+    for (std::size_t n = 0; n < KeptCells::of_block; ++n) places[place + n] = first + n;
+  }
+  for (std::size_t m = 0; m < all.maps.size(); ++m) {
+    all.maps[m].grow(all.cells.count());
+    all.maps[m].add(counted_maps[m], part.maps[m], places);
+  }
   for (std::int64_t k = part.part.first; k < part.part.end; ++k) {
     const auto from = static_cast<std::size_t>(k - part.part.first), to = static_cast<std::size_t>(k - all.part.first);
     if (part.states[from] == MemberState::waiting) continue;
     all.states[to] = part.states[from];
     all.results[to] = part.results[from];
-    all.flow[to] = std::move(part.flow[from]);
-    all.deposit[to] = std::move(part.deposit[from]);
+    all.windows[to] = part.windows[from];
+    for (auto footprints : footprints_of_members)
+      (all.*footprints)[to] = std::move((part.*footprints)[from]);
   }
   all.failures.insert(all.failures.end(), part.failures.begin(), part.failures.end());
 }
 
 bool same_scene(const EnsembleScene& a, const EnsembleScene& b) {
   return a.grid.columns == b.grid.columns && a.grid.rows == b.grid.rows && a.grid.west == b.grid.west &&
-         a.grid.south == b.grid.south && a.grid.cell == b.grid.cell && a.threshold == b.threshold;
+         a.grid.south == b.grid.south && a.grid.cell == b.grid.cell && a.threshold == b.threshold && a.tallied == b.tallied;
+}
+
+/// A cell to which something of a run came: among those of its maps, and its place among those that are kept.
+struct CameTo {
+  std::size_t of_run = 0, place = 0;
+};
+
+std::vector<CameTo> keep_what_came(const RunMaps& run, const CellWindow& window, KeptCells& cells) {
+  std::vector<CameTo> found;
+  for (int row = 0; row < window.rows; ++row)
+    for (int column = 0; column < window.columns; ++column) {
+      const std::size_t cell = run.grid.index(column, row);
+      const bool came = std::any_of(std::begin(counted_maps), std::end(counted_maps), [&](const CountedMap& map) {
+        return is_there(map, (run.*(map.values))[cell]);
+      });
+      if (came) found.push_back({cell, cells.keep(window.column + column, window.row + row)});
+    }
+  return found;
 }
 
 /// Refuses a part that cannot be added to the others.
@@ -68,11 +101,29 @@ std::int64_t shared_member(const EnsembleCounts& all, const EnsembleCounts& part
 
 std::int64_t EnsembleCounts::count(MemberState state) const { return std::count(states.begin(), states.end(), state); }
 
+std::vector<std::int64_t> EnsembleCounts::at_edge() const {
+  std::vector<std::int64_t> found;
+  for (std::size_t k = 0; k < states.size(); ++k)
+    if (states[k] == MemberState::counted && is_at_edge(results[k]))
+      found.push_back(part.first + static_cast<std::int64_t>(k));
+  return found;
+}
+
 void EnsembleCounts::add(std::int64_t member, const RunMaps& run, const MemberResult& result) {
   const auto place = static_cast<std::size_t>(member - part.first);
-  for (std::size_t m = 0; m < maps.size(); ++m) maps[m].add(counted_maps[m], run.*(counted_maps[m].values));
+  const auto window = window_on(scene.grid, run.grid);
+  if (!window) throw std::logic_error("EnsembleCounts: a member's grid is no window of the scene's");
+  const std::vector<CameTo> cells_reached = keep_what_came(run, *window, cells);
+  for (std::size_t m = 0; m < maps.size(); ++m) {
+    const std::vector<double>& values = run.*(counted_maps[m].values);
+    const BinEdges edges = bin_edges(counted_maps[m]);
+    maps[m].grow(cells.count());
+    for (const CameTo& cell : cells_reached) maps[m].add(counted_maps[m], edges, cell.place, values[cell.of_run]);
+  }
   states.at(place) = MemberState::counted;
   results[place] = result;
+  windows[place] = *window;
+  release[place] = footprint_of(run.initial_thickness, 0);
   flow[place] = footprint_of(run.peak_thickness, scene.threshold);
   deposit[place] = footprint_of(run.deposit_thickness, scene.threshold);
 }
@@ -84,19 +135,31 @@ void EnsembleCounts::fail(std::int64_t member, std::string words) {
   failures.insert(after, {member, std::move(words)});
 }
 
+bool is_at_edge(const MemberResult& result) { return result.edge_cells > 0 || result.volume_outflow > 0; }
+
+std::optional<CellWindow> window_on(const MapGrid& all, const MapGrid& part) {
+  if (!same_lattice(all, part)) return std::nullopt;
+  const CellWindow window{static_cast<int>(std::lround((part.west - all.west) / all.cell)),
+                          static_cast<int>(std::lround((part.south - all.south) / all.cell)), part.columns, part.rows};
+  const bool inside = window.column >= 0 && window.row >= 0 && window.column + window.columns <= all.columns &&
+                      window.row + window.rows <= all.rows;
+  return inside ? std::optional(window) : std::nullopt;
+}
+
 EnsembleCounts empty_counts(EnsembleScene scene, std::int64_t members, const MemberRange& part,
                             const ThresholdOptions& thresholds) {
   EnsembleCounts counts;
   counts.members = members;
   counts.part = part;
   for (std::size_t m = 0; m < counts.maps.size(); ++m)
-    counts.maps[m] = MapTally(thresholds_of(counted_maps[m], thresholds), scene.grid.count());
+    counts.maps[m] = MapTally(thresholds_of(counted_maps[m], thresholds), 0, scene.tallied);
+  counts.cells = KeptCells(scene.grid);
   counts.scene = std::move(scene);
   const auto count = static_cast<std::size_t>(part.count());
   counts.states.assign(count, MemberState::waiting);
   counts.results.resize(count);
-  counts.flow.resize(count);
-  counts.deposit.resize(count);
+  counts.windows.resize(count);
+  for (auto footprints : footprints_of_members) (counts.*footprints).resize(count);
   return counts;
 }
 
@@ -109,7 +172,7 @@ EnsembleCounts merged(std::vector<EnsembleCounts> parts, const std::vector<std::
       all.fingerprint = part.fingerprint;
       all.provenance = part.provenance;
       for (std::size_t m = 0; m < all.maps.size(); ++m)
-        all.maps[m] = MapTally(part.maps[m].thresholds, part.scene.grid.count());
+        all.maps[m] = MapTally(part.maps[m].thresholds, 0, part.scene.tallied);
     }
     require_alike(all, part, files[n], files[0]);
     if (const std::int64_t twice = shared_member(all, part); twice >= 0)

@@ -6,10 +6,12 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "common/ensemble/kept_cells.hpp"
 #include "common/ensemble/names.hpp"
 #include "common/ensemble/options.hpp"
 #include "common/ensemble/tally.hpp"
@@ -36,6 +38,7 @@ struct MemberResult {
   double time_end = nan;           ///< [s]
   double steps = nan;              ///< number of steps
   double wall_time = nan;          ///< [s]
+  double edge_cells = nan;         ///< number of cells at the edge of its grid to which something came
 };
 
 /// A number of MemberResult, wherever it goes.
@@ -66,6 +69,7 @@ inline constexpr ResultNumber result_numbers[] = {
     {"time_end_s", "s", "simulated time", &MemberResult::time_end},
     {"steps", "1", "time steps", &MemberResult::steps},
     {"wall_time_s", "s", "wall time of the steps", &MemberResult::wall_time},
+    {"edge_cells", "1", "cells at the edge of the member's grid to which something came", &MemberResult::edge_cells},
 };
 
 /// What became of a member.
@@ -81,11 +85,13 @@ struct MemberFailure {
 /// The scene of an ensemble, for maps and pages.
 struct EnsembleScene {
   std::string scene, title;
-  MapGrid grid;
-  std::vector<double> terrain;            ///< bed of the base domain [m], [rows * columns]
-  std::vector<double> before;             ///< surface before the failure [m]
-  std::vector<double> release_thickness;  ///< of the base domain [m]
+  MapGrid grid;                           ///< the members' own, or one that holds the windows of all
+  std::vector<double> terrain;            ///< bed of the base domain [m], [rows * columns]; empty where members have
+                                          ///< windows of their own
+  std::vector<double> before;             ///< surface before the failure [m], likewise
+  std::vector<double> release_thickness;  ///< of the base domain [m], likewise
   double threshold = 0;                   ///< thickness from which a cell counts as covered [m]
+  Tallied tallied = Tallied::distribution;
 };
 
 /// Counts, results and footprints of the members of a part.
@@ -94,20 +100,30 @@ struct EnsembleCounts {
   std::int64_t members = 0;  ///< of the whole ensemble
   MemberRange part;          ///< whose members the lists below are of
   EnsembleScene scene;
-  std::array<MapTally, counted_map_count> maps;  ///< by counted_maps
+  KeptCells cells;                               ///< in which members came anywhere
+  std::array<MapTally, counted_map_count> maps;  ///< by counted_maps, [places of the cells]
   std::vector<MemberState> states;               ///< [part.count()]
   std::vector<MemberResult> results;             ///< likewise
-  std::vector<Footprint> flow, deposit;          ///< likewise; empty unless counted
+  std::vector<CellWindow> windows;               ///< likewise: the member's grid among the scene's; empty unless counted
+  std::vector<Footprint> release, flow, deposit; ///< likewise, over the cells of the window; empty unless counted
   std::vector<MemberFailure> failures;           ///< by member
   Facts provenance;
 
   /// The number of members of a state.
   std::int64_t count(MemberState state) const;
-  /// The method counts a member's run.
+  /// Numbers of counted members that came to the edge of their grid, or left it.
+  std::vector<std::int64_t> at_edge() const;
+  /// The method counts a member's run. Throws std::logic_error where its grid is no window of the scene's.
   void add(std::int64_t member, const RunMaps& maps, const MemberResult& result);
   /// The method notes that a member failed.
   void fail(std::int64_t member, std::string words);
 };
+
+/// Whether a member came to the edge of its grid: what lies beyond is not known.
+bool is_at_edge(const MemberResult& result);
+
+/// The window of a grid among the cells of a larger one; none where its cells are not among them.
+std::optional<CellWindow> window_on(const MapGrid& all, const MapGrid& part);
 
 /// Counts of a part in which nothing is counted yet.
 EnsembleCounts empty_counts(EnsembleScene scene, std::int64_t members, const MemberRange& part,

@@ -13,7 +13,7 @@
 namespace talus {
 namespace {
 
-constexpr std::int64_t layout_version = 1;
+constexpr std::int64_t layout_version = 2;
 
 }  // namespace
 

@@ -55,6 +55,60 @@ MemberColumn read_column(const h5::File& file, const std::string& path, std::int
   return column;
 }
 
+/// A list of texts without line breaks as a dataset of bytes: attributes hold 64 kB at most.
+void write_texts(h5::File& file, const std::string& path, const std::vector<std::string>& texts) {
+  const std::string all = lines_of(texts);
+  const std::vector<std::uint8_t> bytes(all.begin(), all.end());
+  file.write<std::uint8_t>(path, {bytes.size()}, bytes);
+}
+
+std::vector<std::string> read_texts(const h5::File& file, const std::string& path) {
+  const auto bytes = file.read_list<std::uint8_t>(path);
+  return words_of({bytes.begin(), bytes.end()});
+}
+
+void write_slides(h5::File& file, const SlideTable& slides) {
+  file.make_group("/slides");
+  write_texts(file, "/slides/names", slides.names);
+  write_texts(file, "/slides/domains", slides.domains);
+  h5::write_grid(file, "/slides", slides.lattice);
+  std::vector<std::int32_t> windows;
+  for (const CellWindow& w : slides.windows) windows.insert(windows.end(), {w.column, w.row, w.columns, w.rows});
+  file.write<std::int32_t>("/slides/windows", {slides.windows.size(), 4}, windows);
+  file.make_group("/slides/ground");
+  h5::write_grid(file, "/slides/ground", slides.ground.grid);
+  file.write<double>("/slides/ground/elevation", {slides.ground.values.size()}, slides.ground.values);
+}
+
+/// Refuses a window that is not on the lattice.
+void check_window(const h5::File& file, const SlideTable& slides, const CellWindow& w) {
+  const MapGrid& grid = slides.lattice;
+  if (w.column >= 0 && w.row >= 0 && w.columns > 0 && w.rows > 0 && w.columns <= grid.columns - w.column &&
+      w.rows <= grid.rows - w.row)
+    return;
+  file.refuse(fmt::format("dataset /slides/windows holds {} x {} cells from {}, {}", w.columns, w.rows, w.column, w.row),
+              fmt::format("the lattice has {} x {}", grid.columns, grid.rows));
+}
+
+SlideTable read_slides(const h5::File& file, std::int64_t count) {
+  SlideTable slides;
+  slides.names = read_texts(file, "/slides/names");
+  slides.domains = read_texts(file, "/slides/domains");
+  if (slides.names.size() != static_cast<std::size_t>(count) || slides.domains.size() != slides.names.size())
+    file.refuse(fmt::format("names {} slides", slides.names.size()), fmt::format("there are {}", count));
+  slides.lattice = h5::read_grid(file, "/slides");
+  const auto windows = file.read<std::int32_t>("/slides/windows", {static_cast<hsize_t>(count), 4});
+  for (std::size_t at = 0; at < windows.size(); at += 4) {
+    slides.windows.push_back({windows[at], windows[at + 1], windows[at + 2], windows[at + 3]});
+    check_window(file, slides, slides.windows.back());
+  }
+  slides.ground.grid = h5::read_grid(file, "/slides/ground");
+  slides.ground.values =
+      file.read<double>("/slides/ground/elevation", {static_cast<hsize_t>(slides.ground.grid.count())});
+  h5::check_values<double>(file, "/slides/ground/elevation", slides.ground.values, h5::finite_or_none);
+  return slides;
+}
+
 }  // namespace
 
 std::vector<std::string> MemberTable::values_of(std::int64_t member, const std::string& prefix) const {
@@ -67,6 +121,11 @@ std::vector<std::string> MemberTable::values_of(std::int64_t member, const std::
         (column.words.empty() ? number_of_key(value) : word_of_key(column.words.at(static_cast<std::size_t>(value)))));
   }
   return values;
+}
+
+std::string MemberTable::name_of(std::int64_t member) const {
+  if (slides) return slides->names.at(static_cast<std::size_t>(member));
+  return fmt::format("member {}", member);
 }
 
 const MemberColumn* MemberTable::find(const std::string& key) const {
@@ -88,6 +147,7 @@ void write_member_table(const std::filesystem::path& path, const MemberTable& ta
       file.set_text(column, "words", lines_of(table.columns[n].words));
     }
     file.write<std::uint8_t>("/own_domain", {static_cast<hsize_t>(table.count)}, table.own_domain);
+    if (table.slides) write_slides(file, *table.slides);
     h5::write_facts(file, "/provenance", table.provenance);
   });
 }
@@ -103,6 +163,7 @@ MemberTable read_member_table(const std::filesystem::path& path) {
   for (const std::string& name : file.children("/keys"))
     table.columns.push_back(read_column(file, "/keys/" + name, table.count));
   table.own_domain = file.read<std::uint8_t>("/own_domain", {static_cast<hsize_t>(table.count)});
+  if (file.exists("/slides")) table.slides = read_slides(file, table.count);
   table.provenance = h5::read_facts(file, "/provenance");
   return table;
 }

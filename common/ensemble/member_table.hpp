@@ -5,10 +5,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "common/map/raster.hpp"
 #include "common/stage/identity.hpp"
 
 namespace talus {
@@ -23,6 +25,15 @@ struct MemberColumn {
   std::vector<std::string> words;  ///< that the key takes; empty: it is a number
 };
 
+/// What members that are slides of their own over one elevation model have besides.
+struct SlideTable {
+  std::vector<std::string> names;    ///< [members]
+  MapGrid lattice;                   ///< holds the windows of all; never a raster as a whole
+  std::vector<CellWindow> windows;   ///< [members]: the cells of its domain among those of the lattice
+  std::vector<std::string> domains;  ///< [members]: domain.id of its domain
+  Raster ground;                     ///< the model over all windows, coarse, for pages: elevation [m]
+};
+
 /// The members of an ensemble.
 struct MemberTable {
   std::string design;            ///< as the recipe names it
@@ -31,10 +42,13 @@ struct MemberTable {
   std::int64_t sample_size = 0;  ///< design = "sensitivity": N of the N (d + 2) members; otherwise 0
   std::vector<MemberColumn> columns;
   std::vector<std::uint8_t> own_domain;  ///< [members]: 1 where it has a domain of its own
-  Facts provenance;                      ///< of what made the table
+  std::optional<SlideTable> slides = {};
+  Facts provenance = {};  ///< of what made the table
 
   /// What a member's recipe has in the place of the base's, "key=value" each, of the keys that begin with `prefix`.
   std::vector<std::string> values_of(std::int64_t member, const std::string& prefix) const;
+  /// What a member is called: the slide's name, else "member 12".
+  std::string name_of(std::int64_t member) const;
   /// The column of a key, null where it does not vary.
   const MemberColumn* find(const std::string& key) const;
 };

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "common/ensemble/slide_options.hpp"
+
 namespace talus {
 namespace {
 
@@ -182,11 +184,36 @@ const char* design_name(Design design) {
     case Design::full_grid: return "full-grid";
     case Design::one_at_a_time: return "one-at-a-time";
     case Design::sensitivity: return "sensitivity";
+    case Design::slides: return "slides";
     case Design::table: break;
   }
   return "table";
 }
 
-EnsembleOptions ensemble_of(const recipe::Recipe& recipe) { return recipe.read<EnsembleOptions>("ensemble"); }
+namespace {
+
+EnsembleOptions as_members(const SlideOptions& slides) {
+  EnsembleOptions o;
+  o.members = 1;  // how many there are the outlines say
+  o.design = Design::slides;
+  o.failed_share = slides.failed_share;
+  o.keep = slides.keep;
+  o.keep_all = slides.keep_all;
+  o.save_interval = slides.save_interval;
+  o.thresholds = slides.thresholds;
+  return o;
+}
+
+}  // namespace
+
+EnsembleOptions ensemble_of(const recipe::Recipe& recipe) {
+  auto ensemble = recipe.read<EnsembleOptions>("ensemble");
+  const SlideOptions slides = slides_of(recipe);
+  if (!slides.on()) return ensemble;
+  if (ensemble.on())
+    throw RecipeError({"[slides] beside [ensemble]", "either each slide is a member, or each draw of one slide",
+                       "Leave one of them out, or set ensemble.members = 0"});
+  return as_members(slides);
+}
 
 }  // namespace talus

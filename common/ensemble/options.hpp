@@ -23,6 +23,7 @@ enum class Design {
   one_at_a_time,      ///< the middle, then each key at its `levels` quantiles with the others in the middle
   sensitivity,        ///< two independent samples and their mixtures, for Sobol indices (Saltelli 2002)
   table,              ///< as a file of comma-separated values says
+  slides,             ///< the slides of [slides], each a member: no sample of anything
 };
 
 /// The word of a recipe for a design: "latin-hypercube".
@@ -100,7 +101,8 @@ struct EnsembleOptions {
   bool on() const { return members > 0; }
 };
 
-/// The [ensemble] of a recipe; members = 0 where it has none. Throws RecipeError.
+/// The [ensemble] of a recipe; members = 0 where it has none. Of a recipe with [slides], what that table says of the
+/// same, with design = Design::slides. Throws RecipeError: both are given.
 EnsembleOptions ensemble_of(const recipe::Recipe& recipe);
 
 }  // namespace talus

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 namespace talus {
@@ -16,13 +17,18 @@ std::int64_t quanta_of(const CountedMap& map, double value) {
   return std::min(most_quanta, static_cast<std::int64_t>(std::llround(value / map.quantum)));
 }
 
-/// Whether a value says that something came to the cell.
-bool is_there(const CountedMap& map, double value) { return map.early ? value >= 0 : value > 0; }
+/// The larger of two numbers of quanta, of a time the smaller; -1 is none.
+std::int32_t further(const CountedMap& map, std::int32_t a, std::int32_t b) {
+  if (a < 0 || b < 0) return std::max(a, b);
+  return map.early ? std::min(a, b) : std::max(a, b);
+}
 
 }  // namespace
 
-std::array<std::int64_t, histogram_bins - 1> bin_edges(const CountedMap& map) {
-  std::array<std::int64_t, histogram_bins - 1> edges{};
+bool is_there(const CountedMap& map, double value) { return map.early ? value >= 0 : value > 0; }
+
+BinEdges bin_edges(const CountedMap& map) {
+  BinEdges edges{};
   double edge = static_cast<double>(map.low);
   for (std::size_t n = 0; n < edges.size(); ++n, edge *= map.ratio)
     edges[n] = n == 0 ? map.low : std::max(edges[n - 1] + 1, static_cast<std::int64_t>(edge));
@@ -49,43 +55,69 @@ std::vector<std::int32_t> CellHistograms::cells() const {
   return cells;
 }
 
-MapTally::MapTally(std::vector<double> of_thresholds, std::size_t cells)
-    : thresholds(std::move(of_thresholds)),
-      exceeded(thresholds.size(), std::vector<std::uint32_t>(cells, 0)),
-      reached(cells, 0),
-      sum(cells, 0),
-      sum_of_squares(cells, 0),
-      histograms(cells) {}
+MapTally::MapTally(std::vector<double> of_thresholds, std::size_t cells, Tallied what)
+    : thresholds(std::move(of_thresholds)), tallied(what), exceeded(thresholds.size()) {
+  grow(cells);
+}
+
+void MapTally::grow(std::size_t cells) {
+  for (std::vector<std::uint32_t>& counts : exceeded) counts.resize(cells, 0);
+  reached.resize(cells, 0);
+  extreme.resize(cells, -1);
+  if (tallied == Tallied::largest) return;
+  sum.resize(cells, 0);
+  sum_of_squares.resize(cells, 0);
+  histograms.grow(cells);
+}
+
+void MapTally::add(const CountedMap& map, const BinEdges& edges, std::size_t cell, double value) {
+  if (!is_there(map, value)) return;  // NaN is not
+  const std::int64_t quanta = quanta_of(map, value);
+  ++reached[cell];
+  extreme[cell] = further(map, extreme[cell], static_cast<std::int32_t>(quanta));
+  for (std::size_t n = 0; n < thresholds.size(); ++n)
+    if (map.early ? value <= thresholds[n] : value >= thresholds[n]) ++exceeded[n][cell];
+  if (tallied == Tallied::largest) return;
+  sum[cell] += quanta;
+  sum_of_squares[cell] += quanta * quanta;
+  histograms.add(cell, static_cast<int>(std::upper_bound(edges.begin(), edges.end(), quanta) - edges.begin()));
+}
 
 void MapTally::add(const CountedMap& map, std::span<const double> values) {
   if (values.size() != reached.size()) throw std::logic_error("MapTally: a map of another grid");
-  const auto edges = bin_edges(map);
-  for (std::size_t cell = 0; cell < values.size(); ++cell) {
-    const double value = values[cell];
-    if (!is_there(map, value)) continue;  // NaN is not
-    const std::int64_t quanta = quanta_of(map, value);
-    ++reached[cell];
-    sum[cell] += quanta;
-    sum_of_squares[cell] += quanta * quanta;
-    const auto bin = std::upper_bound(edges.begin(), edges.end(), quanta) - edges.begin();
-    histograms.add(cell, static_cast<int>(bin));
-    for (std::size_t n = 0; n < thresholds.size(); ++n)
-      if (map.early ? value <= thresholds[n] : value >= thresholds[n]) ++exceeded[n][cell];
-  }
+  const BinEdges edges = bin_edges(map);
+  for (std::size_t cell = 0; cell < values.size(); ++cell) add(map, edges, cell, values[cell]);
 }
 
-void MapTally::add(const MapTally& other) {
-  if (other.thresholds != thresholds || other.reached.size() != reached.size())
+void MapTally::add(const CountedMap& map, const MapTally& other, std::span<const std::size_t> places) {
+  if (other.thresholds != thresholds || other.tallied != tallied || places.size() != other.reached.size())
     throw std::logic_error("MapTally: counts of another grid or of other thresholds");
-  for (std::size_t cell = 0; cell < reached.size(); ++cell) {
-    for (std::size_t n = 0; n < thresholds.size(); ++n) exceeded[n][cell] += other.exceeded[n][cell];
-    reached[cell] += other.reached[cell];
-    sum[cell] += other.sum[cell];
-    sum_of_squares[cell] += other.sum_of_squares[cell];
-    const auto counts = other.histograms.of(cell);
+  for (std::size_t from = 0; from < places.size(); ++from) {
+    if (other.reached[from] == 0) continue;
+    const std::size_t cell = places[from];
+    for (std::size_t n = 0; n < thresholds.size(); ++n) exceeded[n][cell] += other.exceeded[n][from];
+    reached[cell] += other.reached[from];
+    extreme[cell] = further(map, extreme[cell], other.extreme[from]);
+    if (tallied == Tallied::largest) continue;
+    sum[cell] += other.sum[from];
+    sum_of_squares[cell] += other.sum_of_squares[from];
+    const auto counts = other.histograms.of(from);
     for (std::size_t bin = 0; bin < counts.size(); ++bin)
       if (counts[bin] > 0) histograms.add(cell, static_cast<int>(bin), counts[bin]);
   }
+}
+
+void MapTally::add(const CountedMap& map, const MapTally& other) {
+  if (other.reached.size() != reached.size())
+    throw std::logic_error("MapTally: counts of another grid or of other thresholds");
+  std::vector<std::size_t> same(reached.size());
+  std::iota(same.begin(), same.end(), std::size_t{0});
+  add(map, other, same);
+}
+
+double MapTally::largest(const CountedMap& map, std::size_t cell) const {
+  if (extreme[cell] < 0) return map.early ? nan : 0;
+  return map.quantum * extreme[cell];
 }
 
 double MapTally::mean(const CountedMap& map, std::size_t cell, std::int64_t members) const {

@@ -36,17 +36,24 @@ inline constexpr CountedMap counted_maps[] = {
 };
 inline constexpr std::size_t counted_map_count = std::size(counted_maps);
 
+/// Whether a value says that something came to its cell; NaN does not.
+bool is_there(const CountedMap& map, double value);
+
 /// Bins of a histogram: the first holds what is below the first edge, the last all beyond the last.
 inline constexpr int histogram_bins = 64;
 
 /// The edges between the bins [quanta], growing: whole numbers, the same on every machine.
-std::array<std::int64_t, histogram_bins - 1> bin_edges(const CountedMap& map);
+using BinEdges = std::array<std::int64_t, histogram_bins - 1>;
+/// Those of a map.
+BinEdges bin_edges(const CountedMap& map);
 
 /// Histograms of the cells that any member reached.
 class CellHistograms {
  public:
   CellHistograms() = default;
   explicit CellHistograms(std::size_t cells) : row_of_(cells, -1) {}
+  /// The method makes room for more cells.
+  void grow(std::size_t cells) { row_of_.resize(cells, -1); }
   /// The method counts a value of a cell in a bin.
   void add(std::size_t cell, int bin, std::uint32_t count = 1);
   /// The counts of a cell, [histogram_bins]; empty where no member reached it.
@@ -59,21 +66,39 @@ class CellHistograms {
   std::vector<std::uint32_t> counts_;  ///< [rows * histogram_bins]
 };
 
-/// The counts of one map over the members, [rows * columns] each.
+/// What is counted of each map.
+enum class Tallied {
+  distribution,  ///< sums and histograms too: members are draws of one thing, and have a mean and quantiles
+  largest,       ///< what passes thresholds, and the largest: members are different things
+};
+
+/// The counts of one map over the members, by cell.
 struct MapTally {
   std::vector<double> thresholds;                    ///< growing [unit of the map]
+  Tallied tallied = Tallied::distribution;           ///< largest: sums and histograms are empty
   std::vector<std::vector<std::uint32_t>> exceeded;  ///< by threshold: members at or beyond it (early: at or before)
   std::vector<std::uint32_t> reached;                ///< members that have a value there
+  std::vector<std::int32_t> extreme;                 ///< largest of those values (early: smallest), in quanta; -1: none
   std::vector<std::int64_t> sum, sum_of_squares;     ///< of those values, in quanta and their squares
   CellHistograms histograms;
 
   MapTally() = default;
-  MapTally(std::vector<double> of_thresholds, std::size_t cells);
-  /// The method counts one member's map [cells]; NaN, and 0 where it is no time, say that nothing came there.
+  MapTally(std::vector<double> of_thresholds, std::size_t cells, Tallied what = Tallied::distribution);
+  /// The method makes room for more cells, to which no member came yet.
+  void grow(std::size_t cells);
+  /// The method counts one member's value in a cell, `edges` those of the map; NaN, and 0 where it is no time, say that
+  /// nothing came there.
+  void add(const CountedMap& map, const BinEdges& edges, std::size_t cell, double value);
+  /// The method counts one member's map [cells].
   void add(const CountedMap& map, std::span<const double> values);
-  /// The method adds the counts of other members; thresholds and grid must be the same.
-  void add(const MapTally& other);
+  /// The method adds the counts of other members; thresholds and what is counted must be the same. `places`: where the
+  /// other's cells stand here.
+  void add(const CountedMap& map, const MapTally& other, std::span<const std::size_t> places);
+  /// The method adds the counts of other members in the same cells.
+  void add(const CountedMap& map, const MapTally& other);
 
+  /// The largest value of any member (of a time the smallest) [unit]; 0 (of a time NaN) where none came.
+  double largest(const CountedMap& map, std::size_t cell) const;
   /// The mean over `members` [unit]: those that did not reach the cell count as 0, but of a time, whose mean is over
   /// those that did (NaN: none).
   double mean(const CountedMap& map, std::size_t cell, std::int64_t members) const;

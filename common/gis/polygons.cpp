@@ -54,24 +54,47 @@ std::vector<Ring> rings_of(const OGRPolygon& polygon, const fs::path& file) {
   return rings;
 }
 
-/// Attributes of a feature; text that is a number as a whole counts as one.
+/// Text that is a number as a whole counts as one.
+bool is_numeric(const OGRFeature& feature, int field) {
+  const OGRFieldType type = feature.GetFieldDefnRef(field)->GetType();
+  return type == OFTInteger || type == OFTInteger64 || type == OFTReal ||
+         (type == OFTString && CPLGetValueType(feature.GetFieldAsString(field)) != CPL_VALUE_STRING);
+}
+
+/// Attributes of a feature.
 MapPolygon attributes_of(const OGRFeature& feature) {
   MapPolygon polygon;
   for (int i = 0; i < feature.GetFieldCount(); ++i) {
     if (!feature.IsFieldSetAndNotNull(i)) continue;
     const OGRFieldDefn& field = *feature.GetFieldDefnRef(i);
     if (EQUAL(field.GetNameRef(), "name")) polygon.name = feature.GetFieldAsString(i);
-    const bool numeric =
-        field.GetType() == OFTInteger || field.GetType() == OFTInteger64 || field.GetType() == OFTReal ||
-        (field.GetType() == OFTString && CPLGetValueType(feature.GetFieldAsString(i)) != CPL_VALUE_STRING);
-    if (numeric) polygon.numbers.emplace_back(field.GetNameRef(), feature.GetFieldAsDouble(i));
+    if (is_numeric(feature, i)) polygon.numbers.emplace_back(field.GetNameRef(), feature.GetFieldAsDouble(i));
   }
   return polygon;
+}
+
+void carry(const fs::path& file, OGRCoordinateTransformation* transform, OGRGeometry& shape,
+           const gdal::QuietErrors& errors) {
+  if (transform == nullptr || shape.transform(transform) == OGRERR_NONE) return;
+  const char* what = wkbFlatten(shape.getGeometryType()) == wkbPolygon ? "a polygon" : "a shape";
+  throw DataError(
+      {fmt::format("{}: {} cannot be brought to the working CRS", file.string(), what), errors.text(),
+       "Its coordinates do not fit its CRS. Name the true one: ogr2ogr -a_srs EPSG:<code> out.gpkg " + file.string()});
 }
 
 struct Reading {
   const fs::path& file;
   std::vector<MapPolygon> polygons{};
+
+  /// The polygons of a feature, in other coordinates; the name of its shape, empty where it has none.
+  std::string add(const OGRFeature& feature, OGRCoordinateTransformation* transform, const gdal::QuietErrors& errors) {
+    const OGRGeometry* geometry = feature.GetGeometryRef();
+    if (geometry == nullptr) return "";
+    const std::unique_ptr<OGRGeometry> shape(geometry->getLinearGeometry());  // arcs become short chords
+    carry(file, transform, *shape, errors);
+    add(feature, *shape);
+    return shape->getGeometryName();
+  }
 
   void add(const OGRFeature& feature, const OGRGeometry& shape) {
     const auto flat = wkbFlatten(shape.getGeometryType());
@@ -85,15 +108,6 @@ struct Reading {
     if (!polygon.rings.empty()) polygons.push_back(std::move(polygon));
   }
 };
-
-void carry(const fs::path& file, OGRCoordinateTransformation* transform, OGRGeometry& shape,
-           const gdal::QuietErrors& errors) {
-  if (transform == nullptr || shape.transform(transform) == OGRERR_NONE) return;
-  const char* what = wkbFlatten(shape.getGeometryType()) == wkbPolygon ? "a polygon" : "a shape";
-  throw DataError(
-      {fmt::format("{}: {} cannot be brought to the working CRS", file.string(), what), errors.text(),
-       "Its coordinates do not fit its CRS. Name the true one: ogr2ogr -a_srs EPSG:<code> out.gpkg " + file.string()});
-}
 
 void add_lines(const OGRGeometry& shape, const fs::path& file, std::vector<MapLine>& lines) {
   const auto flat = wkbFlatten(shape.getGeometryType());
@@ -121,33 +135,83 @@ gdal::Transformation transformation_of(const OGRLayer& layer, const std::string&
   return gdal::transformation(from, gdal::spatial_reference(crs_wkt));
 }
 
+/// Only those features whose attributes meet a condition are read from now on.
+void choose(OGRLayer& layer, const fs::path& file, const std::string& where, const gdal::QuietErrors& errors) {
+  if (where.empty()) return;
+  if (layer.SetAttributeFilter(where.c_str()) == OGRERR_NONE && !errors.failed()) return;
+  throw DataError({fmt::format("{}: the condition {} cannot be understood", file.string(), where), errors.text(),
+                   "Write it with the names of attributes: id = 12, or state = 'active'; ogrinfo -so lists them"});
+}
+
+std::string in_words(const LayerChoice& choice) {
+  return choice.where.empty() ? "" : fmt::format(" whose attributes meet {}", choice.where);
+}
+
+void require_whole(const fs::path& file, const gdal::QuietErrors& errors) {
+  if (errors.failed())
+    throw DataError(
+        {file.string() + ": cannot be read to its end", errors.text(), "Look at it: ogrinfo -al " + file.string()});
+}
+
+std::vector<FeatureValue> values_of(const OGRFeature& feature) {
+  std::vector<FeatureValue> values;
+  for (int i = 0; i < feature.GetFieldCount(); ++i) {
+    FeatureValue value{.name = feature.GetFieldDefnRef(i)->GetNameRef(), .number = {}, .text = {}};
+    value.is_null = !feature.IsFieldSetAndNotNull(i);
+    if (!value.is_null) value.text = feature.GetFieldAsString(i);
+    if (!value.is_null && is_numeric(feature, i)) value.number = feature.GetFieldAsDouble(i);
+    values.push_back(std::move(value));
+  }
+  return values;
+}
+
 }  // namespace
 
-std::vector<MapPolygon> read_polygons(const fs::path& file, const std::string& crs_wkt, const std::string& named) {
+std::vector<MapPolygon> read_polygons(const fs::path& file, const std::string& crs_wkt, const LayerChoice& choice) {
   const gdal::QuietErrors errors;
   const gdal::Dataset dataset = open(file);
-  OGRLayer* found = named.empty() ? nullptr : dataset->GetLayerByName(named.c_str());
+  OGRLayer* found = choice.layer.empty() ? nullptr : dataset->GetLayerByName(choice.layer.c_str());
   OGRLayer& layer = found == nullptr ? *dataset->GetLayer(0) : *found;
+  choose(layer, file, choice.where, errors);
   const gdal::Transformation transform = transformation_of(layer, crs_wkt);
   Reading reading{file};
   std::string other;
   for (const auto& feature : layer) {
-    const OGRGeometry* geometry = feature->GetGeometryRef();
-    if (geometry == nullptr) continue;
-    const std::unique_ptr<OGRGeometry> shape(geometry->getLinearGeometry());  // arcs become short chords
     const std::size_t before = reading.polygons.size();
-    carry(file, transform.get(), *shape, errors);
-    reading.add(*feature, *shape);
-    if (reading.polygons.size() == before) other = shape->getGeometryName();
+    const std::string shape = reading.add(*feature, transform.get(), errors);
+    if (reading.polygons.size() == before && !shape.empty()) other = shape;
   }
-  if (errors.failed())
-    throw DataError(
-        {file.string() + ": cannot be read to its end", errors.text(), "Look at it: ogrinfo -al " + file.string()});
+  require_whole(file, errors);
   if (reading.polygons.empty())
-    throw DataError({file.string() + ": no polygon in its first layer",
+    throw DataError({file.string() + ": no polygon in its first layer" + in_words(choice),
                      other.empty() ? "the layer is empty" : "it holds " + other,
                      "Draw the outline as a polygon, or put that layer first"});
   return reading.polygons;
+}
+
+std::vector<PolygonFeature> read_polygon_features(const fs::path& file, const std::string& crs_wkt,
+                                                  const LayerChoice& choice) {
+  const gdal::QuietErrors errors;
+  const gdal::Dataset dataset = open(file);
+  OGRLayer* named = choice.layer.empty() ? dataset->GetLayer(0) : dataset->GetLayerByName(choice.layer.c_str());
+  if (named == nullptr)
+    throw DataError({fmt::format("{}: no layer \"{}\" in it", file.string(), choice.layer), "",
+                     "Name one that is there: ogrinfo " + file.string()});
+  choose(*named, file, choice.where, errors);
+  const gdal::Transformation transform = transformation_of(*named, crs_wkt);
+  const std::string id = named->GetFIDColumn();
+  std::vector<PolygonFeature> features;
+  for (const auto& feature : *named) {
+    Reading reading{file};
+    reading.add(*feature, transform.get(), errors);
+    features.push_back({.where = fmt::format("{} = {}", id.empty() ? "FID" : '"' + id + '"', feature->GetFID()),
+                        .place = fmt::format("{}, feature {}", file.string(), feature->GetFID()),
+                        .number = feature->GetFID(),
+                        .polygons = std::move(reading.polygons),
+                        .values = values_of(*feature)});
+  }
+  require_whole(file, errors);
+  return features;
 }
 
 std::vector<MapLine> read_lines(const fs::path& file, const std::string& crs_wkt) {

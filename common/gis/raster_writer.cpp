@@ -18,7 +18,7 @@ namespace {
 
 constexpr int large = 2048;  // cells from which a map is looked at through overviews
 
-CPLStringList creation_options() {
+CPLStringList creation_options(RasterWriter::Tiles tiles) {
   CPLStringList options;
   for (const auto& [name, value] : {std::pair{"TILED", "YES"},
                                     {"BLOCKXSIZE", "256"},
@@ -28,6 +28,7 @@ CPLStringList creation_options() {
                                     {"ZLEVEL", "1"},
                                     {"BIGTIFF", "IF_SAFER"}})
     options.SetNameValue(name, value);
+  if (tiles == RasterWriter::Tiles::sparse) options.SetNameValue("SPARSE_OK", "TRUE");
   options.SetNameValue("NUM_THREADS", std::to_string(thread_limit()).c_str());
   return options;
 }
@@ -38,17 +39,19 @@ struct RasterWriter::Open {
   PendingFile pending;
   MapGrid grid;
   gdal::Dataset dataset;
+  Tiles tiles = Tiles::all;
 
   [[noreturn]] void fail(const gdal::QuietErrors& errors) const {
     throw DataError(write_fault(pending.final_path(), errors.text()));
   }
 };
 
-RasterWriter::RasterWriter(const std::filesystem::path& file, const MapGrid& grid, const RasterTags& tags)
-    : open_(new Open{PendingFile(file), grid, nullptr}) {
+RasterWriter::RasterWriter(const std::filesystem::path& file, const MapGrid& grid, const RasterTags& tags,
+                           Tiles tiles)
+    : open_(new Open{PendingFile(file), grid, nullptr, tiles}) {
   const gdal::QuietErrors errors;
   auto* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
-  const CPLStringList options = creation_options();
+  const CPLStringList options = creation_options(tiles);
   open_->dataset.reset(driver->Create(open_->pending.path().c_str(), grid.columns, grid.rows, 1, GDT_Float32,
                                       const_cast<char**>(options.List())));
   if (!open_->dataset) open_->fail(errors);
@@ -91,7 +94,7 @@ void RasterWriter::write(const Raster& part) {
 
 void RasterWriter::finish() {
   const gdal::QuietErrors errors;
-  if (std::max(open_->grid.columns, open_->grid.rows) >= large) {
+  if (open_->tiles == Tiles::all && std::max(open_->grid.columns, open_->grid.rows) >= large) {
     std::vector<int> factors;
     for (int f = 2; std::max(open_->grid.columns, open_->grid.rows) / f >= 256; f *= 2) factors.push_back(f);
     if (open_->dataset->BuildOverviews("AVERAGE", static_cast<int>(factors.size()), factors.data(), 0, nullptr,

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "common/ensemble/names.hpp"
+#include "common/ensemble/slide_options.hpp"
 #include "common/stage/identity.hpp"
 
 namespace talus::postprocess {
@@ -44,6 +45,14 @@ void judge_counts(const StageContext& context, const fs::path& file, const Ensem
                   {.file = file, .table = table, .mark = fact(counts.provenance, name), .program = program, .key = ""});
 }
 
+void tell_of_edges(const Ensemble& ensemble) {
+  const std::vector<std::int64_t> members = ensemble.counts.at_edge();
+  if (members.empty()) return;
+  log_warning(fmt::format("{} came to the edge of their domain: {}; what lies beyond is missing from maps and numbers",
+                          members.size() == 1 ? "one member" : fmt::format("{} members", members.size()),
+                          ensemble.table.slides ? names_of(ensemble.table, members) : member_list(members)));
+}
+
 void tell_of_members(const Ensemble& ensemble) {
   const EnsembleCounts& counts = ensemble.counts;
   std::vector<std::int64_t> waiting;
@@ -56,12 +65,13 @@ void tell_of_members(const Ensemble& ensemble) {
                     waiting.size(), counts.members, member_list(waiting)));
   std::vector<std::int64_t> failed;
   for (const MemberFailure& failure : counts.failures) {
-    if (failed.size() < failures_told) log_warning(fmt::format("member {} failed: {}", failure.member, failure.words));
+    if (failed.size() < failures_told) log_warning(fmt::format("{} failed: {}", ensemble.table.name_of(failure.member), failure.words));
     failed.push_back(failure.member);
   }
   if (!failed.empty())
     log_warning(fmt::format("{} of {} members failed ({}) and are left out of all counts; members.csv has the reasons",
                             failed.size(), counts.members, member_list(failed)));
+  tell_of_edges(ensemble);
 }
 
 }  // namespace
@@ -79,7 +89,7 @@ Ensemble read_ensemble(const StageContext& context) {
   ensemble.files = ensemble_files(context.out);
   ensemble.table = read_member_table(ensemble.files.front());
   ensemble.insisted = judge_maker(context.recipe, {.file = ensemble.files.front(),
-                                                   .table = "ensemble",
+                                                   .table = members_table(context.recipe),
                                                    .mark = fact(ensemble.table.provenance, recipe_of_members),
                                                    .program = "talus-preprocess",
                                                    .key = ""});
@@ -121,6 +131,13 @@ std::string member_list(const std::vector<std::int64_t>& members, std::size_t mo
     }
   }
   return text;
+}
+
+std::string names_of(const MemberTable& table, const std::vector<std::int64_t>& members, std::size_t most) {
+  std::string text;
+  for (std::size_t n = 0; n < members.size() && n < most; ++n)
+    text += (n > 0 ? ", " : "") + table.name_of(members[n]);
+  return members.size() > most ? text + fmt::format(" and {} more", members.size() - most) : text;
 }
 
 std::string members_words(const Ensemble& ensemble) {

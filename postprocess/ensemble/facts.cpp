@@ -62,6 +62,8 @@ Facts map_facts(const Ensemble& ensemble, const EnsembleMap& map, const HazardOp
       facts.emplace_back("RESOLUTION", fmt::format("by bins whose edges grow by a factor of {}", what.ratio));
       [[fallthrough]];
     case Kind::mean:
+    case Kind::count:
+    case Kind::largest:
     case Kind::deviation: facts.emplace_back("MEANING", statistic_words(ensemble, map)); break;
     case Kind::hazard:
       facts.emplace_back("HAZARD_MATRIX", hazard_words(hazard_rule(ensemble, hazard).value()));

@@ -24,7 +24,7 @@ struct HazardRule {
 /// DataError where the recipe names limits that were not counted.
 std::optional<HazardRule> hazard_rule(const Ensemble& ensemble, const HazardOptions& options);
 
-/// The largest class that an intensity and its probability give, a number for each cell; 0 where none does.
+/// The largest class that an intensity and its probability give, by place of the counts; 0 where none does.
 std::vector<double> hazard_classes(const Ensemble& ensemble, const HazardRule& rule);
 
 /// The matrix as one sentence for metadata: "peak pressure of 3 kPa or more: 1 from 0.01, 1 from 0.1, 2 from 0.5; ...".

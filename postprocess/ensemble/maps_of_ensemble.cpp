@@ -54,9 +54,15 @@ void add_statistics(std::vector<EnsembleMap>& maps, std::size_t tally) {
                   fmt::format("Standard deviation of {}{}", words, over), map.unit});
 }
 
-double value_of(const Ensemble& ensemble, const EnsembleMap& map, std::size_t cell, std::int64_t counted,
-                double draws) {
-  const MapTally& tally = ensemble.counts.maps[map.tally];
+/// How many members there are in counts.
+struct Sample {
+  std::int64_t counted = 0;
+  double draws = 0;
+};
+
+double value_of(const MapTally& tally, const EnsembleMap& map, std::size_t cell, const Sample& sample) {
+  const std::int64_t counted = sample.counted;
+  const double draws = sample.draws;
   const CountedMap& what = counted_maps[map.tally];
   const auto share = [&] { return tally.exceeded[map.threshold][cell] / static_cast<double>(counted); };
   switch (map.kind) {
@@ -66,6 +72,8 @@ double value_of(const Ensemble& ensemble, const EnsembleMap& map, std::size_t ce
     case Kind::quantile: return tally.quantile(what, cell, map.level, counted);
     case Kind::mean: return tally.mean(what, cell, counted);
     case Kind::deviation: return tally.deviation(what, cell, counted);
+    case Kind::count: return tally.exceeded[map.threshold][cell];
+    case Kind::largest: return tally.largest(what, cell);
     case Kind::hazard: break;
   }
   return nan;
@@ -95,20 +103,25 @@ std::vector<EnsembleMap> ensemble_maps(const Ensemble& ensemble, const HazardOpt
   return maps;
 }
 
+KeptValues kept_values(const Ensemble& ensemble, const EnsembleMap& map, const HazardOptions& hazard) {
+  if (map.kind == Kind::hazard) return {hazard_classes(ensemble, hazard_rule(ensemble, hazard).value()), 0};
+  const MapTally& tally = ensemble.counts.maps[map.tally];
+  const Sample sample{ensemble.counted(), independent_draws(ensemble.table, ensemble.counted())};
+  KeptValues kept;
+  kept.elsewhere = value_of(MapTally(tally.thresholds, 1, tally.tallied), map, 0, sample);
+  for (std::size_t place = 0; place < tally.reached.size(); ++place)
+    kept.values.push_back(tally.reached[place] > 0 ? value_of(tally, map, place, sample) : kept.elsewhere);
+  return kept;
+}
+
 std::vector<double> values_of(const Ensemble& ensemble, const EnsembleMap& map, const HazardOptions& hazard) {
-  const EnsembleScene& scene = ensemble.counts.scene;
-  const std::vector<char> inside = inside_domain(base_maps(scene));
-  const std::int64_t counted = ensemble.counted();
-  const double draws = independent_draws(ensemble.table, counted);
-  std::vector<double> values(scene.grid.count(), nan);
-  if (map.kind == Kind::hazard) values = hazard_classes(ensemble, hazard_rule(ensemble, hazard).value());
-  const auto& reached = ensemble.counts.maps[map.tally].reached;
-  for (std::size_t cell = 0; cell < values.size(); ++cell) {
-    if (!inside[cell] && reached[cell] == 0)
-      values[cell] = nan;
-    else if (map.kind != Kind::hazard)
-      values[cell] = value_of(ensemble, map, cell, counted, draws);
-  }
+  const EnsembleCounts& counts = ensemble.counts;
+  const std::vector<char> inside = inside_domain(base_maps(counts.scene));
+  const std::vector<std::uint32_t> reached = counts.cells.spread(counts.maps[map.tally].reached, 0u);
+  const KeptValues kept = kept_values(ensemble, map, hazard);
+  std::vector<double> values = counts.cells.spread(kept.values, kept.elsewhere);
+  for (std::size_t cell = 0; cell < values.size(); ++cell)
+    if (!inside[cell] && reached[cell] == 0) values[cell] = nan;
   return values;
 }
 
@@ -121,6 +134,7 @@ std::vector<double> limits_of(const EnsembleMap& map, const std::vector<double>&
     case Kind::share: return {0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 0.95};
     case Kind::error: return {0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1};
     case Kind::to_halve: return {10, 100, 1000, 10000, 100000};
+    case Kind::count: return {1, 2, 3, 5, 10, 20, 50};
     case Kind::hazard: return {1, 2, 3};
     default: break;
   }
@@ -143,9 +157,9 @@ RasterStyle style_of(const EnsembleMap& map, const std::vector<double>& values, 
     style.hidden_to = 0.5;
     return style;
   }
-  const bool by_time = map.unit == "s" && map.kind == Kind::quantile;
-  if (by_time || (map.unit == "s" && map.kind == Kind::mean)) return time_style(limits, "s");
-  const bool sea = map.kind == Kind::share || map.unit == "m s-1" || map.unit == "s";
+  const bool by_time = map.unit == "s" && map.kind != Kind::deviation;
+  if (by_time) return time_style(limits, "s");
+  const bool sea = map.kind == Kind::share || map.kind == Kind::count || map.unit == "m s-1" || map.unit == "s";
   return class_style(limits, unit_words(map.unit), sea ? Ramp::sea : Ramp::heat);
 }
 

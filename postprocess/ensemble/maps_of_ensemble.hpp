@@ -21,6 +21,8 @@ enum class EnsembleMapKind {
   mean,       ///< over the members
   deviation,  ///< likewise
   hazard,     ///< class by probability and intensity
+  count,      ///< number of members that pass a threshold
+  largest,    ///< largest value of any member; of a time the smallest
 };
 
 /// One of them; its values are made when they are asked for.
@@ -48,6 +50,13 @@ std::string threshold_words(const CountedMap& map, double threshold);
 
 /// All maps of an ensemble, by quantity. A hazard map is among them where its limits are counted.
 std::vector<EnsembleMap> ensemble_maps(const Ensemble& ensemble, const HazardOptions& hazard);
+
+/// The values of a map where counts are kept, by place, and its value everywhere else.
+struct KeptValues {
+  std::vector<double> values;
+  double elsewhere = nan;
+};
+KeptValues kept_values(const Ensemble& ensemble, const EnsembleMap& map, const HazardOptions& hazard);
 
 /// The values of a map [rows * columns]; NaN outside the domain, and of a time where too few members arrive.
 std::vector<double> values_of(const Ensemble& ensemble, const EnsembleMap& map, const HazardOptions& hazard);

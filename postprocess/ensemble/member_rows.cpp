@@ -41,6 +41,12 @@ MemberRows member_rows(const Ensemble& ensemble, const Options& options, const s
   MemberRows rows{counts.states, std::vector<std::string>(counts.states.size()), {}};
   for (const MemberFailure& failure : counts.failures)
     rows.failures.at(static_cast<std::size_t>(failure.member)) = failure.words;
+  if (ensemble.table.slides) {
+    const auto& names = ensemble.table.slides->names;
+    RowColumn column{ColumnKind::input, "name", "", "name of the slide", {}, names};
+    for (std::size_t k = 0; k < names.size(); ++k) column.values.push_back(static_cast<double>(k));
+    rows.columns.push_back(std::move(column));
+  }
   for (const MemberColumn& column : ensemble.table.columns)
     rows.columns.push_back({ColumnKind::input, column.key, "", column.key, column.values, column.words});
   for (const ResultNumber& number : result_numbers) {
@@ -55,8 +61,8 @@ MemberRows member_rows(const Ensemble& ensemble, const Options& options, const s
   return rows;
 }
 
-std::string members_csv(const MemberRows& rows) {
-  std::string text = "member,state";
+std::string members_csv(const MemberRows& rows, const char* called) {
+  std::string text = std::string(called) + ",state";
   for (const RowColumn& column : rows.columns) text += "," + field(column.name);
   text += ",failure\n";
   for (std::size_t k = 0; k < rows.states.size(); ++k) {

@@ -36,8 +36,9 @@ struct MemberRows {
 /// Inputs, results, and scores against the survey where there is one.
 MemberRows member_rows(const Ensemble& ensemble, const Options& options, const std::optional<Survey>& survey);
 
-/// The table as comma-separated values (RFC 4180): member, state, the columns, failure. Numbers as they round-trip.
-std::string members_csv(const MemberRows& rows);
+/// The table as comma-separated values (RFC 4180): number, state, the columns, failure. Numbers as they round-trip.
+/// `called`: what the numbers are of.
+std::string members_csv(const MemberRows& rows, const char* called = "member");
 
 /// Of each member: CSI, hit rate and false alarm ratio of its flow's footprint, and CSI of its deposit's, as
 /// postprocess/score/contingency.hpp has them, on the survey's grid. A cell of that grid is covered where the

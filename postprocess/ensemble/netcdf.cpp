@@ -10,6 +10,7 @@
 
 #include "postprocess/ensemble/facts.hpp"
 #include "postprocess/ensemble/hazard.hpp"
+#include "postprocess/ensemble/netcdf_members.hpp"
 #include "postprocess/ensemble/sampling_error.hpp"
 #include "postprocess/ensemble/write_maps.hpp"
 #include "postprocess/maps/nc_grid.hpp"
@@ -33,12 +34,6 @@ struct NcPlan {
   std::vector<int> members;
 };
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 /// "peak_thickness" -> "probability_of_peak_thickness"; "peak_thickness_mean" and the hazard as they are.
 std::string variable_name(const EnsembleMap& map) {
   const std::string what = counted_maps[map.tally].name;
@@ -49,6 +44,8 @@ std::string variable_name(const EnsembleMap& map) {
     case Kind::quantile: return what + "_quantile";
     case Kind::mean: return what + "_mean";
     case Kind::deviation: return what + "_deviation";
+    case Kind::count: return "members_of_" + what;
+    case Kind::largest: return "largest_" + what;
     case Kind::hazard: break;
   }
   return "hazard_class";
@@ -90,7 +87,7 @@ void describe(Nc& nc, const Ensemble& ensemble, const Options& options, const st
   nc.text(NC_GLOBAL, "history",
           fmt::format("{:%Y-%m-%dT%H:%M:%SZ}: {}", fmt::gmtime(std::time(nullptr)), command_line));
   for (const auto& [name, words] : ensemble_facts(ensemble))
-    if (name != "TITLE" && name != "SOURCE") nc.text(NC_GLOBAL, lower(name).c_str(), words);
+    if (name != "TITLE" && name != "SOURCE") nc.text(NC_GLOBAL, nc_lower(name).c_str(), words);
   nc.text(NC_GLOBAL, "comment",
           share_words(ensemble.table.design).meaning + " " + share_words(ensemble.table.design).error +
               " Thickness is vertical (along the plumb line), not normal to the slope. Cells outside the computed "
@@ -141,54 +138,6 @@ void define_maps(Nc& nc, NcPlan& plan, const Ensemble& ensemble, const HazardOpt
   }
 }
 
-/// Words of a column as CF's flags: blanks become underscores.
-std::string flag_meanings(const std::vector<std::string>& words) {
-  std::string text;
-  for (std::string word : words) {
-    std::replace(word.begin(), word.end(), ' ', '_');
-    text += (text.empty() ? "" : " ") + word;
-  }
-  return text;
-}
-
-void define_members(Nc& nc, NcPlan& plan, const MemberRows& rows) {
-  nc.enter_group("members");
-  const int dimension = nc.dimension("member", rows.states.size());
-  const auto add = [&](const std::string& name, const std::string& words, const std::string& unit) {
-    const int id = nc.variable(name.c_str(), NC_DOUBLE, {dimension});
-    nc.text(id, "long_name", words);
-    if (!unit.empty()) nc.text(id, "units", unit);
-    plan.members.push_back(id);
-    return id;
-  };
-  const auto flags = [&](int id, const std::vector<std::string>& words) {
-    std::vector<double> values;
-    for (std::size_t n = 0; n < words.size(); ++n) values.push_back(static_cast<double>(n));
-    nc.numbers(id, "flag_values", values);
-    nc.text(id, "flag_meanings", flag_meanings(words));
-  };
-  add("member", "number of the member, from 0", "1");
-  flags(add("state", "what became of the member", ""), {"waiting", "counted", "failed"});
-  for (const RowColumn& column : rows.columns) {
-    const int id = add(nc_name(column.name), column.title, column.unit);
-    if (!column.words.empty()) flags(id, column.words);
-  }
-  nc.leave_group();
-}
-
-void fill_members(Nc& nc, const NcPlan& plan, const MemberRows& rows) {
-  nc.reenter_group("members");
-  std::vector<double> numbers, states;
-  for (std::size_t k = 0; k < rows.states.size(); ++k) {
-    numbers.push_back(static_cast<double>(k));
-    states.push_back(static_cast<double>(rows.states[k]));
-  }
-  nc.put(plan.members[0], numbers);
-  nc.put(plan.members[1], states);
-  for (std::size_t n = 0; n < rows.columns.size(); ++n) nc.put(plan.members[n + 2], rows.columns[n].values);
-  nc.leave_group();
-}
-
 void fill_maps(Nc& nc, const NcPlan& plan, const Ensemble& ensemble, const HazardOptions& hazard) {
   const MapGrid& grid = ensemble.counts.scene.grid;
   for (const NcStack& stack : plan.stacks) {
@@ -218,12 +167,12 @@ void write_probability_netcdf(const std::filesystem::path& file, const Ensemble&
   plan.axes = define_axes(nc, grid);
   if (!grid.crs_wkt.empty()) define_crs(nc, grid);
   define_maps(nc, plan, ensemble, options.hazard);
-  define_members(nc, plan, rows);
+  plan.members = define_members(nc, rows, "members", "member");
   nc.end_definitions();
   fill_axes(nc, plan.axes, grid);
   for (const auto& [id, values] : plan.coordinates) nc.put(id, values);
   fill_maps(nc, plan, ensemble, options.hazard);
-  fill_members(nc, plan, rows);
+  fill_members(nc, plan.members, rows, "members");
   write_text(file, nc.close());
 }
 

@@ -52,9 +52,12 @@ Json run_json(const EnsemblePageInput& input) {
   const auto rule = hazard_rule(ensemble, input.options.hazard);
   json["hazard"] = rule ? Json(hazard_words(*rule)) : Json();
   json["survey"] = input.survey ? Json(input.survey->name) : Json();
+  json["slides"] = ensemble.table.slides.has_value();
+  const std::vector<std::int64_t> at_edge = counts.at_edge();
+  json["at_edge"] = at_edge.empty() ? Json() : Json(names_of(ensemble.table, at_edge));
   json["failures"] = Json::array();
   for (const MemberFailure& failure : counts.failures)
-    if (json["failures"].size() < failures_on_page) json["failures"].push_back({failure.member, failure.words});
+    if (json["failures"].size() < failures_on_page) json["failures"].push_back({ensemble.table.name_of(failure.member), failure.words});
   return json;
 }
 
@@ -123,7 +126,8 @@ Json medoids_json(const Ensemble& ensemble) {
 
 Window ensemble_window(const EnsemblePageInput& input) {
   RunMaps maps = base_maps(input.ensemble.counts.scene);
-  const auto& reached = input.ensemble.counts.maps[0].reached;
+  const EnsembleCounts& counts = input.ensemble.counts;
+  const std::vector<std::uint32_t> reached = counts.cells.spread(counts.maps[0].reached, 0u);
   for (std::size_t cell = 0; cell < reached.size(); ++cell)
     maps.peak_thickness[cell] = reached[cell] > 0 ? 2 * input.options.footprint_threshold : 0;
   Window window = affected_window(maps, input.options, input.survey);
@@ -136,18 +140,26 @@ Window ensemble_window(const EnsemblePageInput& input) {
 std::string ensemble_html(const EnsemblePageInput& input) {
   const Window window = ensemble_window(input);
   int coarsest = 1;
+  PageParts parts{ensemble_maps_json(input, window, coarsest), ensemble_outlines_json(input, window),
+                  medoids_json(input.ensemble)};
+  parts.map["coarsest"] = coarsest;
+  return ensemble_html(input, std::move(parts));
+}
+
+std::string ensemble_html(const EnsemblePageInput& input, PageParts parts) {
   Json data;
   data["run"] = run_json(input);
-  data["map"] = ensemble_maps_json(input, window, coarsest);
-  data["map"]["coarsest"] = coarsest;
-  data["outlines"] = ensemble_outlines_json(input, window);
-  data["medoids"] = medoids_json(input.ensemble);
+  data["map"] = std::move(parts.map);
+  data["outlines"] = std::move(parts.outlines);
+  data["medoids"] = std::move(parts.medoids);
   data["members"] = members_json(input.rows);
   data["sensitivity"] = sensitivity_json(input);
-  data["convergence"] = convergence_json(input.rows);
+  data["convergence"] = input.ensemble.table.slides ? Json::array() : convergence_json(input.rows);
   data["stages"] = stages_json(input.stages);
   for (const char* part : {"run", "stages"}) leave_out_folders(data[part]);
-  return filled_page(ensemble_template(), input.ensemble.counts.scene.title + ": ensemble", data);
+  return filled_page(ensemble_template(),
+                     input.ensemble.counts.scene.title + (input.ensemble.table.slides ? ": slides" : ": ensemble"),
+                     data);
 }
 
 }  // namespace talus::postprocess

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "postprocess/ensemble/ensemble.hpp"
+#include "postprocess/ensemble/maps_of_ensemble.hpp"
 #include "postprocess/ensemble/member_rows.hpp"
 #include "postprocess/ensemble/sensitivity.hpp"
 #include "postprocess/fields/window.hpp"
@@ -35,11 +36,20 @@ inline constexpr std::size_t outline_numbers = 600'000;  ///< coordinates of all
 inline constexpr std::size_t cells_on_page = 4'000'000;  ///< of all maps together
 inline constexpr std::size_t cells_of_one_map = 300'000;
 
+using Json = nlohmann::ordered_json;
+
+/// What the page has of maps and outlines, and members that stand for others.
+struct PageParts {
+  Json map, outlines, medoids;
+};
+
 /// The page as the bytes of an HTML file: nothing in it is loaded from elsewhere. Throws DataError where a *.used.toml
 /// cannot be read.
 std::string ensemble_html(const EnsemblePageInput& input);
+std::string ensemble_html(const EnsemblePageInput& input, PageParts parts);
 
-using Json = nlohmann::ordered_json;
+/// How a map is drawn: its classes as QGIS has them.
+Json classes_json(const EnsembleMap& map, const std::vector<double>& values, const HazardOptions& hazard);
 
 /// The part of the map that is shown: all that any member reached, released or surveyed.
 Window ensemble_window(const EnsemblePageInput& input);

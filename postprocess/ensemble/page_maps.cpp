@@ -14,21 +14,6 @@ namespace {
 
 using Kind = EnsembleMapKind;
 
-/// The classes of a map: as QGIS has them.
-Json classes_json(const EnsembleMap& map, const std::vector<double>& values, const HazardOptions& hazard) {
-  const RasterStyle style = style_of(map, values, hazard);
-  auto list = Json::array();
-  double from = style.hidden_to > style.hidden_from ? style.hidden_to : -1e300;
-  for (const StyleClass& one : style.classes) {
-    list.push_back({{"from", from},
-                    {"to", std::isfinite(one.upper) ? Json(one.upper) : Json()},
-                    {"colour", hex(one.colour)},
-                    {"label", one.label}});
-    from = one.upper;
-  }
-  return list;
-}
-
 /// Maps cut to the window and made as coarse as the page needs.
 class PageMaps {
  public:
@@ -83,6 +68,20 @@ Json ground(const PageMaps& page, const EnsembleScene& scene) {
 }
 
 }  // namespace
+
+Json classes_json(const EnsembleMap& map, const std::vector<double>& values, const HazardOptions& hazard) {
+  const RasterStyle style = style_of(map, values, hazard);
+  auto list = Json::array();
+  double from = style.hidden_to > style.hidden_from ? style.hidden_to : -1e300;
+  for (const StyleClass& one : style.classes) {
+    list.push_back({{"from", from},
+                    {"to", std::isfinite(one.upper) ? Json(one.upper) : Json()},
+                    {"colour", hex(one.colour)},
+                    {"label", one.label}});
+    from = one.upper;
+  }
+  return list;
+}
 
 Json ensemble_maps_json(const EnsemblePageInput& input, const Window& window, int& coarsest) {
   const std::vector<EnsembleMap> all = ensemble_maps(input.ensemble, input.options.hazard);

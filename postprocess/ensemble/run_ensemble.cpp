@@ -68,21 +68,6 @@ std::string used_text(const StageContext& context, const Stage& stage, const Opt
                       {"CRS", crs_name(ensemble.counts.scene.grid.crs_wkt)}});
 }
 
-/// What the stages before left about themselves in the output folder, and what this one leaves.
-std::vector<StageText> texts_of_stages(const StageContext& context, const std::string& used) {
-  std::vector<StageText> texts;
-  for (const char* name : {"preprocess", "solve"}) {
-    const fs::path file = context.out / (std::string(name) + ".used.toml");
-    texts.push_back({name, std::nullopt});
-    if (!fs::exists(file)) continue;
-    require_plain(file);
-    std::ifstream stream(file, std::ios::binary);
-    texts.back().text = std::string(std::istreambuf_iterator<char>(stream), {});
-  }
-  texts.push_back({"postprocess", used});
-  return texts;
-}
-
 void write_results(StageContext& context, const Stage& stage, const Options& options, const Ensemble& ensemble,
                    const std::optional<Survey>& survey) {
   const auto write = [&](const char* name, const std::string& bytes) {
@@ -108,6 +93,20 @@ void write_results(StageContext& context, const Stage& stage, const Options& opt
 }
 
 }  // namespace
+
+std::vector<StageText> texts_of_stages(const StageContext& context, const std::string& used) {
+  std::vector<StageText> texts;
+  for (const char* name : {"preprocess", "solve"}) {
+    const fs::path file = context.out / (std::string(name) + ".used.toml");
+    texts.push_back({name, std::nullopt});
+    if (!fs::exists(file)) continue;
+    require_plain(file);
+    std::ifstream stream(file, std::ios::binary);
+    texts.back().text = std::string(std::istreambuf_iterator<char>(stream), {});
+  }
+  texts.push_back({"postprocess", used});
+  return texts;
+}
 
 Dependencies ensemble_depends(const StageContext& context) {
   return {{context.out / "probability.nc"}, ensemble_files(context.out)};

@@ -3,8 +3,12 @@
 // The results of an ensemble.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "common/stage/stage.hpp"
 #include "postprocess/options/options.hpp"
+#include "postprocess/report/report.hpp"
 
 namespace talus::postprocess {
 
@@ -15,5 +19,8 @@ void run_ensemble(StageContext& context, const Stage& stage, const Options& opti
 
 /// What run_ensemble() reads, and its last result.
 Dependencies ensemble_depends(const StageContext& context);
+
+/// What the stages before left about themselves in the output folder, and what this one leaves.
+std::vector<StageText> texts_of_stages(const StageContext& context, const std::string& used);
 
 }  // namespace talus::postprocess

@@ -22,7 +22,7 @@ double independent_draws(const MemberTable& table, std::int64_t counted) {
 }
 
 bool is_probability(const std::string& design) {
-  return design != "one-at-a-time" && design != "table" && design != "full-grid";
+  return design != "slides" && design != "one-at-a-time" && design != "table" && design != "full-grid";
 }
 
 ShareWords share_words(const std::string& design) {
@@ -33,6 +33,9 @@ ShareWords share_words(const std::string& design) {
   if (design == "full-grid")
     return {"Share of the counted members, which are all combinations of equally probable values of each key.",
             "The error that as many independent draws would have; a grid's own error depends on its levels."};
+  if (design == "slides")
+    return {"Share of the counted slides. They are different slides and not draws of one: this is no probability.",
+            "Slides are no sample, so their share has no sampling error."};
   if (design == "table")
     return {"Share of the counted members, which a table lists: a probability only where its rows were drawn from one.",
             "The error that as many independent draws would have."};

@@ -74,7 +74,7 @@ void write_map(Writing& writing, const EnsembleMap& map) {
 /// The window of all that any member reached, with a margin.
 Window reached_window(const Ensemble& ensemble, const Options& options) {
   RunMaps maps = base_maps(ensemble.counts.scene);
-  const auto& reached = ensemble.counts.maps[0].reached;
+  const std::vector<std::uint32_t> reached = ensemble.counts.cells.spread(ensemble.counts.maps[0].reached, 0u);
   Options anywhere = options;
   anywhere.footprint_threshold = 0.5;
   for (std::size_t cell = 0; cell < reached.size(); ++cell) maps.peak_thickness[cell] = reached[cell] > 0 ? 1 : 0;

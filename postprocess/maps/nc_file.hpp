@@ -85,6 +85,12 @@ class Nc {
   void integers(int variable, const char* name, const std::vector<int>& values) {
     check(nc_put_att_int(id_, variable, name, NC_INT, values.size(), values.data()), name);
   }
+  /// Writes all values of a variable of texts.
+  void put_texts(int variable, const std::vector<std::string>& texts) {
+    std::vector<const char*> begins;
+    for (const std::string& text : texts) begins.push_back(text.c_str());
+    check(nc_put_var_string(id_, variable, begins.data()), "texts");
+  }
   /// Writes all values of a variable.
   void put(int variable, const std::vector<double>& values) {
     check(nc_put_var_double(id_, variable, values.data()), "values");

@@ -21,6 +21,7 @@ struct EnsemblePlan {
   MemberTable table;
   std::vector<std::optional<Options>> ground;  ///< [members]: of those that have ground of their own
   std::optional<ElevationErrors> errors = {};  ///< once the base scene is read
+  std::vector<std::vector<std::string>> own_values = {};  ///< [members]: "key=value" of [preprocess], of slides
 
   /// How many members get a domain of their own.
   std::int64_t own_domains() const;
@@ -53,6 +54,10 @@ void refuse_idle_keys(const recipe::Recipe& recipe, const EnsemblePlan& plan, co
 /// same are left as they are. What an ensemble before left is removed. Throws as prepare() does, naming the member;
 /// DataError where a member lies on another grid than the base.
 void write_ensemble(StageContext& context, EnsemblePlan& plan, const EnsembleBase& base);
+
+/// The same of slides, each on its window of the lattice. All domains that cannot be made are told. Returns the slide
+/// with the most material points.
+std::int64_t write_slides(StageContext& context, EnsemblePlan& plan, const EnsembleBase& base);
 
 /// Removes members.h5 and members' domains but those that `plan` has.
 void remove_members(const EnsemblePaths& paths, const EnsemblePlan* plan);

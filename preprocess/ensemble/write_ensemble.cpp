@@ -14,6 +14,7 @@
 
 #include "common/domain/domain_facts.hpp"
 #include "common/error.hpp"
+#include "common/map/crop.hpp"
 #include "common/map/sum.hpp"
 #include "common/stage/console.hpp"
 #include "common/stage/machine.hpp"
@@ -33,9 +34,14 @@ class MemberDomains {
       : context_(context), plan_(plan), base_(base), paths_{context.out} {
     for (std::int64_t k = 0; k < plan.table.count; ++k)
       if (plan.table.own_domain[static_cast<std::size_t>(k)]) todo_.push_back(k);
+    points_.assign(static_cast<std::size_t>(plan.table.count), -1);
   }
 
   void make_all();
+  /// What a member's domain says of itself, whose `domain.id` follows from all that it is made of.
+  Facts marks_of_member(std::int64_t member) const;
+  /// The number of material points in the domains, by member; of those that were there it is read.
+  std::vector<std::int64_t> points() const;
 
  private:
   void work();
@@ -44,9 +50,19 @@ class MemberDomains {
   /// What tells a member's domain from the base's: its values, and its field.
   std::string difference_of(std::int64_t member) const;
   Prepared prepared(std::int64_t member) const;
-  void check_grid(const Prepared& made) const;
+  void check_grid(std::int64_t member, const Prepared& made) const;
   void note_warnings(std::int64_t member, const std::vector<std::string>& warnings);
+  void note_faults(std::vector<Fault> faults);
   void say_end(double seconds) const;
+
+  /// The values of [preprocess] by which a member differs.
+  std::vector<std::string> values_of(std::int64_t member) const {
+    return plan_.table.slides ? plan_.own_values[static_cast<std::size_t>(member)] : ground_of(plan_.table, member);
+  }
+  Facts inputs_of_member(std::int64_t member) const {
+    const auto& own = plan_.ground[static_cast<std::size_t>(member)];
+    return own && !plan_.table.slides ? checksums_of(inputs_of(*own)) : base_.inputs;
+  }
 
   const StageContext& context_;
   const EnsemblePlan& plan_;
@@ -58,13 +74,15 @@ class MemberDomains {
   std::atomic<bool> stop_{false};
   mutable std::mutex mutex_;
   std::exception_ptr fault_;
+  std::vector<Fault> faults_;  // of slides, of which all are told
+  std::vector<std::int64_t> points_;
   std::map<std::string, std::pair<std::int64_t, std::int64_t>> warnings_;  // text without numbers: first member, count
   std::map<std::string, std::string> first_words_;
   Progress progress_;
 };
 
 std::string MemberDomains::difference_of(std::int64_t member) const {
-  std::string text = fmt::format("{}", fmt::join(ground_of(plan_.table, member), "\n"));
+  std::string text = fmt::format("{}", fmt::join(values_of(member), "\n"));
   if (plan_.errors)
     text += fmt::format("\n{}\nseed {}, member {}", recipe::to_toml(plan_.options.elevation_error, "error", false),
                         plan_.table.seed, member);
@@ -89,21 +107,31 @@ Prepared MemberDomains::prepared(std::int64_t member) const {
   return prepare(made_with, std::move(scene), Points::seeded);
 }
 
-void MemberDomains::check_grid(const Prepared& made) const {
-  const MapGrid &own = made.domain.grid, &base = base_.scene.bed.grid;
+void MemberDomains::check_grid(std::int64_t member, const Prepared& made) const {
+  const MapGrid& own = made.domain.grid;
+  const MapGrid base = plan_.table.slides ? cut(plan_.table.slides->lattice,
+                                                plan_.table.slides->windows[static_cast<std::size_t>(member)])
+                                          : base_.scene.bed.grid;
   const auto words = [](const MapGrid& g) {
     return fmt::format("{} x {} cells of {:g} m from {:.10g}, {:.10g}", g.columns, g.rows, g.cell, g.west, g.south);
   };
   if (words(own) == words(base) && own.crs_wkt == base.crs_wkt) return;
+  if (plan_.table.slides)
+    throw DataError(Fault{fmt::format("its grid is {}, and its window {}", words(own), words(base)),
+                          "the model has no data along the window's edge, or lies slanting in the working CRS",
+                          "Fill the model, or bring it to the working CRS beforehand (gdalwarp)"});
   throw DataError(Fault{fmt::format("it lies on another grid: {} (the base: {})", words(own), words(base)),
                         "members are counted in the cells of one map",
                         "Name the part to compute, so that all have it: west_m, south_m, east_m, north_m in "
                         "[preprocess.grid]"});
 }
 
+Facts MemberDomains::marks_of_member(std::int64_t member) const {
+  return marks_of(context_.recipe, inputs_of_member(member), difference_of(member));
+}
+
 void MemberDomains::make(std::int64_t member) {
-  const auto& own = plan_.ground[static_cast<std::size_t>(member)];
-  const Facts inputs = own ? checksums_of(inputs_of(*own)) : base_.inputs;
+  const Facts inputs = inputs_of_member(member);
   Facts marks = marks_of(context_.recipe, inputs, difference_of(member));
   const fs::path file = paths_.domain(member);
   if (is_there(file, marks)) {
@@ -112,10 +140,14 @@ void MemberDomains::make(std::int64_t member) {
   }
   const QuietThread log;
   Prepared made = prepared(member);
-  check_grid(made);
-  marks.emplace_back("ensemble.base", fact(base_.marks, domain_id));
+  check_grid(member, made);
+  points_[static_cast<std::size_t>(member)] = static_cast<std::int64_t>(made.point_count);
+  if (plan_.table.slides)
+    marks.emplace_back("slide", plan_.table.name_of(member));
+  else
+    marks.emplace_back("ensemble.base", fact(base_.marks, domain_id));
   marks.emplace_back("ensemble.member", std::to_string(member));
-  for (const std::string& value : ground_of(plan_.table, member)) {
+  for (const std::string& value : values_of(member)) {
     const auto sign = value.find('=');
     marks.emplace_back("ensemble." + value.substr(0, sign), value.substr(sign + 1));
   }
@@ -138,12 +170,27 @@ void MemberDomains::note_warnings(std::int64_t member, const std::vector<std::st
   }
 }
 
-/// The faults of a member, told with its number.
+/// The faults of a member, told with its number or name.
 template <class Kind>
-Kind with_member(const Kind& error, std::int64_t member) {
+std::vector<Fault> with_member(const Kind& error, const MemberTable& table, std::int64_t member) {
   std::vector<Fault> faults = error.faults();
-  for (Fault& fault : faults) fault.what = fmt::format("[ensemble] member {}: {}", member, fault.what);
-  return Kind(std::move(faults));
+  for (Fault& fault : faults)
+    fault.what = fmt::format("[{}] {}: {}", table.slides ? "slides" : "ensemble", table.name_of(member), fault.what);
+  return faults;
+}
+
+std::vector<std::int64_t> MemberDomains::points() const {
+  std::vector<std::int64_t> all = points_;
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if (all[k] < 0) all[k] = std::stoll(fact(domain_facts(paths_.domain(static_cast<std::int64_t>(k))), "material_points"));
+  return all;
+}
+
+void MemberDomains::note_faults(std::vector<Fault> faults) {
+  constexpr std::size_t most = 20;
+  const std::lock_guard lock(mutex_);
+  for (Fault& fault : faults)
+    if (faults_.size() < most) faults_.push_back(std::move(fault));
 }
 
 void MemberDomains::work() {
@@ -156,9 +203,13 @@ void MemberDomains::work() {
       stop_if_interrupted(fmt::format("making the domain of member {}; those that are finished are kept", member));
       make(member);
     } catch (const RecipeError& error) {
-      fault = std::make_exception_ptr(with_member(error, member));
+      fault = std::make_exception_ptr(RecipeError(with_member(error, plan_.table, member)));
     } catch (const DataError& error) {
-      fault = std::make_exception_ptr(with_member(error, member));
+      if (plan_.table.slides) {
+        note_faults(with_member(error, plan_.table, member));
+        continue;
+      }
+      fault = std::make_exception_ptr(DataError(with_member(error, plan_.table, member)));
     } catch (...) {
       fault = std::current_exception();
     }
@@ -174,7 +225,7 @@ void MemberDomains::work() {
 
 void MemberDomains::say_end(double seconds) const {
   for (const auto& [kind, members] : warnings_)
-    log_warning(fmt::format("member {}{}: {}", members.first,
+    log_warning(fmt::format("{}{}: {}", plan_.table.name_of(members.first),
                             members.second > 1 ? fmt::format(" and {} others likewise", members.second - 1) : "",
                             first_words_.at(kind)));
   double bytes = 0;
@@ -194,6 +245,7 @@ void MemberDomains::make_all() {
     for (std::size_t t = 0; t < count; ++t) threads.emplace_back([this] { work(); });
   }
   if (fault_) std::rethrow_exception(fault_);
+  if (!faults_.empty()) throw DataError(std::move(faults_));
   say_end(std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
 }
 
@@ -225,6 +277,29 @@ void write_ensemble(StageContext& context, EnsemblePlan& plan, const EnsembleBas
                            {base_domain_id, fact(base.marks, domain_id)}};
   write_member_table(paths.members(), plan.table);
   context.results.push_back(paths.members());
+}
+
+std::int64_t write_slides(StageContext& context, EnsemblePlan& plan, const EnsembleBase& base) {
+  const EnsemblePaths paths{context.out};
+  remove_members(paths, &plan);
+  MemberDomains domains(context, plan, base);
+  domains.make_all();
+  for (std::int64_t k = 0; k < plan.table.count; ++k)
+    plan.table.slides->domains.push_back(fact(domains.marks_of_member(k), domain_id));
+  const std::vector<std::int64_t> points = domains.points();
+  const auto largest = std::max_element(points.begin(), points.end());
+  Sum all;
+  for (const std::int64_t count : points) all.add(static_cast<double>(count));
+  log_info(fmt::format("material points: {} in all, {} in {}, the most of a slide", grouped(all.value()),
+                       grouped(static_cast<double>(*largest)), plan.table.name_of(largest - points.begin())));
+  plan.table.provenance = {
+      {"version", version()},
+      {"command", context.command_line},
+      {recipe_of_members, recipe_mark(context.recipe, "slides")},
+      {base_domain_id, plan.table.slides->domains[static_cast<std::size_t>(largest - points.begin())]}};
+  write_member_table(paths.members(), plan.table);
+  context.results.push_back(paths.members());
+  return largest - points.begin();
 }
 
 }  // namespace talus::preprocess

@@ -19,6 +19,11 @@ void ReleaseOptions::describe(recipe::Visitor& v, const std::string& place, bool
           fault(place + (polygons.empty() ? ": neither thickness_raster nor polygons is given"
                                           : ": thickness_raster and polygons are both given"),
                 "a release is one or the other", "Give one; several releases are several [[preprocess.release]]"));
+  v.text("layer", layer, "layer of polygons; empty, or none of that name = the first");
+  v.text("where", where, "which of the polygons, by their attributes: \"id = 12\"; empty = all");
+  v.needs(!needed || where.empty() || !polygons.empty(),
+          fault(place + ": where is given without polygons", "a raster of thickness has no attributes",
+                "Leave it out, or give the release by polygons"));
   v.text("attribute", attribute, "the polygons' attribute that holds the thickness [m]");
   v.number("thickness_m", thickness, recipe::not_negative, "one thickness for all polygons; 0 = that of the attribute");
   v.needs(!needed || thickness_raster.empty() || !(thickness > 0),

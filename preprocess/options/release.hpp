@@ -20,6 +20,8 @@ struct ReleaseOptions {
   std::string name;
   std::filesystem::path thickness_raster;
   std::filesystem::path polygons;
+  std::string layer;  ///< of `polygons`; empty: the first
+  std::string where;  ///< which of them, by attributes; empty: all
   std::string attribute = "thickness";
   double thickness = 0;      ///< one thickness for all polygons [m]; 0: that of the attribute
   double volume_factor = 1;  ///< of its thickness, and so of its volume [-]

@@ -40,6 +40,11 @@ void SourceOptions::describe(recipe::Visitor& v, const Options& all) {
   v.needs(ignored || polygon.empty() || all.base_dem.empty(),
           fault("source.polygon is given with base_dem", "the releases say what fails there",
                 "Use polygons = ... in [[preprocess.release]]"));
+  v.text("layer", layer, "layer of that file; empty, or none of that name = the first");
+  v.text("where", where, "which of its polygons, by their attributes: \"id = 12\"; empty = all");
+  v.needs(ignored || where.empty() || !polygon.empty(),
+          fault("source.where is given without source.polygon", "there is no outline to choose from",
+                "Give the polygon, or leave it out"));
   v.number("grow_m", grow, recipe::any, "the polygon grown by this on all sides; negative: shrunk");
   v.needs(ignored || grow == 0 || !polygon.empty(),
           fault("source.grow_m is given without source.polygon", "there is no outline to grow",

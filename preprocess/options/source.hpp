@@ -5,7 +5,9 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
+#include "common/gis/polygons.hpp"
 #include "common/recipe/recipe.hpp"
 
 namespace talus::preprocess {
@@ -32,11 +34,15 @@ struct SlidingSurfaceOptions {
 /// The keys of [preprocess.source].
 struct SourceOptions {
   std::filesystem::path polygon;
+  std::string layer = "source";  ///< of `polygon`; empty, or none of that name: the first
+  std::string where;             ///< which of its polygons, by attributes; empty: all
   double grow = 0;                       ///< of the polygon, outwards [m]
   double threshold = 0.5;                ///< [m]
   std::optional<double> seed_x, seed_y;  ///< easting, northing [m]
   SlidingSurfaceOptions sliding_surface;
 
+  /// Which polygons of the file are the outline.
+  LayerChoice choice() const { return {layer, where}; }
   /// The method declares the keys with defaults, help and what they need of `all` others.
   void describe(recipe::Visitor& v, const Options& all);
 };

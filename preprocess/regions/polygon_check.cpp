@@ -145,15 +145,15 @@ void check_polygons(std::vector<MapPolygon>& polygons, const std::filesystem::pa
 }
 
 std::vector<MapPolygon> read_valid_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
-                                            const std::string& layer) {
-  std::vector<MapPolygon> polygons = read_polygons(file, crs_wkt, layer);
+                                            const LayerChoice& choice) {
+  std::vector<MapPolygon> polygons = read_polygons(file, crs_wkt, choice);
   check_polygons(polygons, file);
   return polygons;
 }
 
 std::vector<MapPolygon> read_grown_polygons(const std::filesystem::path& file, const std::string& crs_wkt, double grow,
-                                            const std::string& layer) {
-  std::vector<MapPolygon> polygons = read_valid_polygons(file, crs_wkt, layer);
+                                            const LayerChoice& choice) {
+  std::vector<MapPolygon> polygons = read_valid_polygons(file, crs_wkt, choice);
   if (grow == 0) return polygons;
   polygons = grown(polygons, grow, file);
   check_polygons(polygons, file);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/gis/polygons.hpp"
 #include "common/map/polygon.hpp"
 #include "common/map/raster.hpp"
 
@@ -19,11 +20,11 @@ void check_polygons(std::vector<MapPolygon>& polygons, const std::filesystem::pa
 
 /// read_polygons() that pass check_polygons().
 std::vector<MapPolygon> read_valid_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
-                                            const std::string& layer = "");
+                                            const LayerChoice& choice = {});
 
 /// Those, grown by a distance [m] (common/gis/grow.hpp); 0 leaves them as they are.
 std::vector<MapPolygon> read_grown_polygons(const std::filesystem::path& file, const std::string& crs_wkt, double grow,
-                                            const std::string& layer = "");
+                                            const LayerChoice& choice = {});
 
 /// Area without the holes [m2]; rings turned as check_polygons() does.
 double area_of(const MapPolygon& polygon);

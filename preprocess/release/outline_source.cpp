@@ -21,8 +21,9 @@ namespace {
 
 constexpr std::size_t most_points = 1000;  // each takes a vector over the cells and a solve
 
-Outline read_outline(const Raster& before, const std::filesystem::path& file, double grow) {
-  Outline outline = outline_of(before.grid, read_grown_polygons(file, before.grid.crs_wkt, grow, "source"), file);
+Outline read_outline(const Raster& before, const SourceOptions& options) {
+  const std::filesystem::path& file = options.polygon;
+  Outline outline = outline_of(before.grid, read_grown_polygons(file, before.grid.crs_wkt, options.grow, options.choice()), file);
   std::vector<char> empty(outline.part.size());
   for (std::size_t c = 0; c < empty.size(); ++c) empty[c] = outline.part[c] > 0 && std::isnan(before.values[c]);
   refuse_cells(before.grid, empty,
@@ -127,7 +128,7 @@ SlidingSurface compute(const Raster& before, const Outline& outline, const Slidi
 double volume_by_area(double area) { return 0.074 * std::pow(area, 1.450); }
 
 ComputedSource source_by_outline(const Raster& before, const SourceOptions& options, const ReadOptions& points) {
-  const Outline outline = read_outline(before, options.polygon, options.grow);
+  const Outline outline = read_outline(before, options);
   ComputedSource result{{}, compute(before, outline, options.sliding_surface, points)};
   report(result.computed, outline);
   result.source = {thickness_above(result.computed.surface, before, outline), before};

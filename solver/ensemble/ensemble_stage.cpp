@@ -11,6 +11,7 @@
 
 #include "common/ensemble/counts.hpp"
 #include "common/ensemble/member_table.hpp"
+#include "common/ensemble/slide_options.hpp"
 #include "common/stage/interrupt.hpp"
 #include "common/stage/machine.hpp"
 #include "solver/ensemble/in_flight.hpp"
@@ -33,6 +34,7 @@ struct Ensemble {
   MemberRange part;
   std::string fingerprint;
   std::filesystem::path counts;  ///< the result
+  bool edge_fails = false;
 };
 
 /// What identifies the counts of an ensemble: members, domain, settings and thresholds.
@@ -42,6 +44,9 @@ std::string fingerprint_of_members(const Ensemble& e, const std::filesystem::pat
     for (const std::string& value : e.table.values_of(member, "")) text += value + "\n";
     text += e.table.own_domain[static_cast<std::size_t>(member)] != 0 ? "own\n" : "\n";
   }
+  if (e.edge_fails) text += "who comes to an edge fails\n";
+  if (e.table.slides)
+    for (const std::string& id : e.table.slides->domains) text += id + "\n";
   text += fact(e.table.provenance, base_domain_id) + fmt::format(" {} {}", e.table.design, e.table.seed);
   return sha256_of_text(text);
 }
@@ -49,7 +54,7 @@ std::string fingerprint_of_members(const Ensemble& e, const std::filesystem::pat
 /// Refuses members that were drawn for another [ensemble] or domain.
 void judge_table(const StageContext& context, const Ensemble& e, const Domain& domain) {
   judge_maker(context.recipe, {.file = e.paths.members(),
-                               .table = "ensemble",
+                               .table = members_table(context.recipe),
                                .mark = fact(e.table.provenance, recipe_of_members),
                                .program = "talus-preprocess",
                                .key = "",
@@ -67,7 +72,8 @@ Ensemble read_ensemble(const StageContext& context, const EnsembleFlags& flags, 
              .table = {},
              .part = {},
              .fingerprint = {},
-             .counts = {}};
+             .counts = {},
+             .edge_fails = slides_of(context.recipe).at_edge == AtEdge::fail};
   e.table = read_member_table(e.paths.members());
   judge_table(context, e, domain);
   e.part = flags.members.value_or(MemberRange{0, e.table.count});
@@ -88,6 +94,15 @@ EnsembleCounts fresh_counts(const StageContext& context, const Ensemble& e, cons
                       .before = domain.before.values,
                       .release_thickness = domain.release_thickness.values,
                       .threshold = base.map_threshold};
+  if (e.table.slides)
+    scene = {.scene = scene.scene,
+             .title = scene.title,
+             .grid = e.table.slides->lattice,
+             .terrain = {},
+             .before = {},
+             .release_thickness = {},
+             .threshold = scene.threshold,
+             .tallied = Tallied::largest};
   EnsembleCounts counts = empty_counts(std::move(scene), e.table.count, e.part, e.options.thresholds);
   counts.fingerprint = e.fingerprint;
   counts.provenance = domain.provenance;
@@ -164,6 +179,21 @@ void judge_failures(const EnsembleCounts& counts, double allowed_share) {
          "Mend what makes them fail, narrow the distributions, or raise failed_share"});
 }
 
+/// This function names the members that came to the edge of their domain.
+void say_edges(const EnsembleCounts& counts, const MemberTable& table) {
+  const std::vector<std::int64_t> members = counts.at_edge();
+  if (members.empty()) return;
+  std::string names;
+  for (std::size_t n = 0; n < members.size() && n < most_said; ++n)
+    names += fmt::format("{}{}", n > 0 ? ", " : "", table.name_of(members[n]));
+  if (members.size() > most_said) names += fmt::format(" and {} more", members.size() - most_said);
+  log_warning(fmt::format("{} of {} members came to the edge of their domain ({}): what lies beyond is missing from "
+                          "maps and numbers. {}",
+                          members.size(), counts.part.count(), names,
+                          table.slides ? "Give a larger margin_m in [slides], or a smaller reach_angle_deg"
+                                       : "Take a larger part of the elevation model"));
+}
+
 }  // namespace
 
 MemberRange member_range(const std::string& words) {
@@ -217,10 +247,12 @@ Facts run_ensemble(StageContext& context, const EnsembleFlags& flags, const Doma
   const MembersRun run = run_members(members, counts,
                                      {.devices = devices_for(flight.count, flags.on),
                                       .save = [&] { write_counts(unfinished, counts); },
-                                      .save_interval = e.options.save_interval});
+                                      .save_interval = e.options.save_interval,
+                                      .edge_fails = e.edge_fails});
   say_warnings(run);
   if (!run.whole) stop(counts, unfinished);
   judge_failures(counts, e.options.failed_share);
+  say_edges(counts, e.table);
   write_counts(e.counts, counts);
   remove_for_good(unfinished);
   context.results.push_back(e.counts);

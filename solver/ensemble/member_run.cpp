@@ -50,6 +50,18 @@ double area_above(const RunMaps& maps, const std::vector<double>& thickness, dou
   return static_cast<double>(covered) * maps.grid.cell * maps.grid.cell;
 }
 
+/// The outermost cells to which anything came.
+std::int64_t cells_at_edge(const RunMaps& maps) {
+  const MapGrid& grid = maps.grid;
+  std::int64_t count = 0;
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) {
+      const bool edge = row == 0 || column == 0 || row == grid.rows - 1 || column == grid.columns - 1;
+      if (edge && maps.peak_thickness[grid.index(column, row)] > 0) ++count;
+    }
+  return count;
+}
+
 }  // namespace
 
 MemberResult measured(const RunMaps& maps, double threshold) {
@@ -68,6 +80,7 @@ MemberResult measured(const RunMaps& maps, double threshold) {
   if (start && end) result.centre_travel = plan_distance(*start, *end);
   result.flow_area = area_above(maps, maps.peak_thickness, threshold);
   result.deposit_area = area_above(maps, maps.deposit_thickness, threshold);
+  result.edge_cells = static_cast<double>(cells_at_edge(maps));
   result.largest_thickness = largest_of(maps.peak_thickness);
   result.largest_deposit = largest_of(maps.deposit_thickness);
   result.largest_speed = largest_of(maps.peak_speed);

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "common/domain/scale_release.hpp"
+#include "common/ensemble/counts.hpp"
 #include "common/stage/console.hpp"
 #include "common/stage/stage.hpp"
 #include "solver/run/run_inputs.hpp"
@@ -27,13 +28,19 @@ constexpr const char* settling_keys[] = {"solve.material.stiffness",
                                          "solve.preset"};
 
 bool varies_settling(const MemberTable& table) {
-  return std::any_of(std::begin(settling_keys), std::end(settling_keys),
+  return table.slides || std::any_of(std::begin(settling_keys), std::end(settling_keys),
                      [&](const char* key) { return table.find(key) != nullptr; });
 }
 
-/// Whether maps of both grids can be added up.
-bool same_grid(const MapGrid& a, const MapGrid& b) {
-  return a.columns == b.columns && a.rows == b.rows && a.west == b.west && a.south == b.south && a.cell == b.cell;
+/// Whether a member's maps can be counted: on the grid of the base domain, of a slide on its window of the lattice.
+bool is_countable(const MapGrid& own, const MemberTable& table, std::int64_t member, const MapGrid& base) {
+  if (!table.slides)
+    return own.columns == base.columns && own.rows == base.rows && own.west == base.west && own.south == base.south &&
+           own.cell == base.cell;
+  const auto found = window_on(table.slides->lattice, own);
+  const CellWindow& w = table.slides->windows[static_cast<std::size_t>(member)];
+  return found && found->column == w.column && found->row == w.row && found->columns == w.columns &&
+         found->rows == w.rows;
 }
 
 SolveOptions settled_by(const SettledOnce& settled, SolveOptions options) {
@@ -90,8 +97,10 @@ void Members::check() const {
 Domain Members::domain_of(std::int64_t member) const {
   const bool own = table_.own_domain.at(static_cast<std::size_t>(member)) != 0;
   Domain domain = own ? read_domain(paths_.domain(member)) : domain_;
-  if (own && !same_grid(domain.grid, domain_.grid))
-    throw DataError({paths_.domain(member).string() + ": its grid is not that of the base domain",
+  if (own && !is_countable(domain.grid, table_, member, domain_.grid))
+    throw DataError({paths_.domain(member).string() +
+                         (table_.slides ? ": its grid is not the window that members.h5 has for it"
+                                        : ": its grid is not that of the base domain"),
                      "maps of several grids cannot be counted together",
                      "Leave keys that change the grid as they are in all members, and run talus-preprocess again"});
   if (const MemberColumn* factor = table_.find(thickness_factor_key); factor != nullptr)

@@ -33,12 +33,20 @@ struct Outcome {
   std::vector<std::string> warnings;
 };
 
-Outcome outcome_of(const Members& members, std::int64_t member, const AnyDevice& device) {
+constexpr const char* at_the_edge =
+    "it came to the edge of its domain, and what lies beyond is not known ([slides] at_edge = \"fail\"). Give a larger "
+    "margin_m, or a smaller reach_angle_deg";
+
+Outcome outcome_of(const Members& members, std::int64_t member, const AnyDevice& device, bool edge_fails) {
   const QuietThread quiet;
   Outcome outcome;
   try {
     const Member own = members.read(member);
     outcome.run = run_member(own.domain, own.options, device);
+    if (edge_fails && outcome.run && is_at_edge(outcome.run->result)) {
+      outcome.run.reset();
+      outcome.failure = at_the_edge;
+    }
   } catch (const NumericalError& error) {
     outcome.failure = error.what();
   } catch (const DataError& error) {
@@ -127,7 +135,7 @@ MembersRun run_members(const Members& members, EnsembleCounts& counts, const Mem
   const auto work = [&](const AnyDevice& device) {
     const Alone alone;
     try {
-      while (const auto member = queue.next()) queue.count(*member, outcome_of(members, *member, device));
+      while (const auto member = queue.next()) queue.count(*member, outcome_of(members, *member, device, plan.edge_fails));
     } catch (...) {
       queue.note_failure(std::current_exception());
     }

@@ -25,6 +25,7 @@ struct MembersPlan {
   std::vector<AnyDevice> devices;   ///< one for each member in flight, with a stream of its own on a GPU
   std::function<void()> save = {};  ///< called about every `save_interval` while no member is being counted
   double save_interval = 60;        ///< [s]
+  bool edge_fails = false;          ///< a member that comes to the edge of its grid counts as failed
 };
 
 /// This function runs the members of `counts` that wait, and counts them as they end. A member that ends by

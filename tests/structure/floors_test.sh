@@ -11,14 +11,14 @@ floors() {
   case $1 in
     common) printf '%s\n' . 'map recipe' stage 'domain run gis' 'ensemble qgis' ;;
     preprocess)
-      printf '%s\n' 'options regions' 'terrain obstacle' 'survey release' particles laboratory scene output ensemble .
+      printf '%s\n' 'options regions' 'terrain obstacle' 'survey release' particles laboratory scene output ensemble slides .
       ;;
     solver)
       printf '%s\n' parallel state material grid transfer boundary elements linear/krylov linear/operator \
         linear/preconditioner linear/direct integrator 'explicit implicit' options scene run/recorders run ensemble .
       ;;
     postprocess)
-      printf '%s\n' options survey fields hazard 'score maps' 'picture three_d' report 'ensemble compare' .
+      printf '%s\n' options survey fields hazard 'score maps' 'picture three_d' report 'ensemble compare' slides .
       ;;
   esac
 }

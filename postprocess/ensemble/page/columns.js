@@ -21,6 +21,7 @@ const titles = {
   time_end_s: "simulated time",
   steps: "steps",
   wall_time_s: "wall time",
+  edge_cells: "cells at the edge of its domain",
   footprint_csi: "CSI of the footprint",
   footprint_hit_rate: "hit rate of the footprint",
   footprint_false_alarm_ratio: "false alarm ratio of the footprint",
@@ -29,6 +30,7 @@ const titles = {
 
 /** "run-out [m]"; of a key its last part, which has its unit, and the table before it where that tells more. */
 export function columnTitle(column) {
+  if (column.kind === "input" && column.name.startsWith("slides.")) return column.name.slice("slides.".length);
   if (column.kind === "input") return column.name.split(".").slice(-2).join(".");
   const unit = unitOfPowers(column.unit);
   return (titles[column.name] ?? column.name) + (unit ? ` [${unit}]` : "");

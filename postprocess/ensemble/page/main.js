@@ -5,6 +5,7 @@ import { h, number } from "../../report/page/format.js";
 import { sample } from "../../report/page/lines.js";
 import { ReportMap } from "../../report/page/map.js";
 import { drawParameters, drawVersions } from "../../report/page/tables.js";
+import { called, callSlides, nameOf } from "./called.js";
 import { columnTitle, valueWords } from "./columns.js";
 import { MapPanel, readMaps } from "./map_panel.js";
 import { mostDrawn, Outlines, styles } from "./outlines.js";
@@ -32,13 +33,13 @@ function fixedLines(data) {
   const found = [];
   for (const [id, title] of [
     ["survey", data.run.survey],
-    ["release", "Release of the base recipe"],
+    ["release", data.run.slides ? "Released" : "Release of the base recipe"],
   ])
     if (data.outlines[id].length) found.push({ id, title, style: styles[id], lines: data.outlines[id].map(points) });
   return found;
 }
 
-function makeOverlays(lines, map, outlines, selection) {
+function makeOverlays(data, lines, map, outlines, selection) {
   const box = document.getElementById("overlays");
   const add = (id, title, style, toggle) => {
     const input = h("input", { type: "checkbox", id: `overlay-${id}`, checked: true });
@@ -49,9 +50,9 @@ function makeOverlays(lines, map, outlines, selection) {
     outlines.shown[name] = on;
     outlines.draw(selection);
   };
-  add("spaghetti", "Flow of the members kept", { ...styles.spaghetti, opacity: 1 }, part("spaghetti"));
-  box.append(h("label", { class: "note" }, sample(styles.flow), "Flow of the chosen member"));
-  add("deposit", "Deposit of the chosen member", styles.deposit, part("deposit"));
+  add("spaghetti", `Flow of the ${called(data).many} kept`, { ...styles.spaghetti, opacity: 1 }, part("spaghetti"));
+  box.append(h("label", { class: "note" }, sample(styles.flow), `Flow of the chosen ${called(data).one}`));
+  add("deposit", `Deposit of the chosen ${called(data).one}`, styles.deposit, part("deposit"));
   for (const line of [...lines].reverse()) add(line.id, line.title, line.style, (on) => map.toggle(line.id, on));
 }
 
@@ -60,7 +61,8 @@ function drawChosen(data, outlines, selection) {
     { chosen } = selection;
   if (chosen === null) {
     box.replaceChildren(
-      h("p", { class: "note" }, "Choose a member in a chart or in the table: its outline is drawn here."),
+      h("p", { class: "note" },
+        `Choose a ${called(data).one} in a chart or in the table: its outline is drawn here.`),
     );
     return;
   }
@@ -73,9 +75,9 @@ function drawChosen(data, outlines, selection) {
       ? "It was not counted and has no outline."
       : outlines.has(chosen)
         ? null
-        : "Its outline is not on this page, which holds those of the first members; members.csv has its row.";
+        : `Its outline is not on this page, which holds the first ones; ${called(data).table} has its row.`;
   box.replaceChildren(
-    h("h3", {}, `Member ${number(chosen)}`),
+    h("h3", {}, nameOf(data, chosen)),
     missing ? h("p", { class: "note" }, missing) : "",
     h("dl", {}, rows),
   );
@@ -105,31 +107,31 @@ function notes(data, outlines) {
   if (map.coarsest > 1)
     parts.push(
       `Maps coarsened for this page, ${map.coarsest} \u00d7 ${map.coarsest} cells in one, of which the largest value ` +
-        "is kept; the GeoTIFFs in probability/ are whole.",
+        `is kept; the GeoTIFFs in ${data.run.slides ? "slides" : "probability"}/ are whole.`,
     );
   const held = data.outlines.members.length;
   if (held < run.counted)
-    parts.push(`The page holds the outlines of the first ${number(held)} of ${number(run.counted)} counted members.`);
+    parts.push(`The page holds the outlines of the first ${number(held)} of ${number(run.counted)} counted ${called(data).many}.`);
   if (held > mostDrawn) parts.push(`${mostDrawn} outlines are drawn at a time.`);
   parts.push("Click the map, then turn the wheel to zoom.");
   document.getElementById("map-note").textContent = parts.join(" ");
   const { all, shown } = data.members;
   document.getElementById("members-note").textContent =
     all > shown
-      ? `The charts show the first ${number(shown)} of ${number(all)} members; members.csv has all.`
-      : `All ${number(all)} members; those that are not counted have no point and no line.`;
+      ? `The charts show the first ${number(shown)} of ${number(all)} ${called(data).many}; ${called(data).table} has all.`
+      : `All ${number(all)} ${called(data).many}; those that are not counted have no point and no line.`;
 }
 
 async function draw() {
   const data = JSON.parse(document.getElementById("data").textContent);
+  if (data.run.slides) callSlides();
   drawSummary(data);
   drawMethod(data);
   drawParameters(data);
   drawVersions(data);
   const selection = new Selection(data.members);
   const charts = {
-    sensitivity: new Sensitivity(data),
-    convergence: new Convergence(data),
+    ...(data.run.slides ? {} : { sensitivity: new Sensitivity(data), convergence: new Convergence(data) }),
     table: new MemberTable(data, selection),
     scatter: new Scatter(data, selection),
     histogram: new Histogram(data, selection),
@@ -143,7 +145,7 @@ async function draw() {
     lines = fixedLines(data);
   const map = new ReportMap(document.getElementById("map"), data, fields, lines);
   const outlines = new Outlines(data.outlines, map.leaflet);
-  makeOverlays(lines, map, outlines, selection);
+  makeOverlays(data, lines, map, outlines, selection);
   const panel = new MapPanel(data, fields, map);
   notes(data, outlines);
   drawMedoids(data, selection);

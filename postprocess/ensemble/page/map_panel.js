@@ -175,8 +175,11 @@ export class MapPanel {
         error: `${run.share.error} In points of a per cent, for ${number(this.draws)} draws.`,
         needed: "Counted members that it would take for half the standard error, by the same design.",
         hazard: `The largest class of: ${run.hazard}.`,
-        none: "Hillshade of the surface before the failure.",
-      }[this.layer] ?? "Over all counted members; where one did not come, it counts as 0 (times: as never).";
+        none: run.slides ? "Hillshade of the model, within the slides' domains." : "Hillshade of the surface before the failure.",
+      }[this.layer] ??
+      (run.slides
+        ? `Of ${number(run.counted)} counted slides; nothing is drawn where none came.`
+        : "Over all counted members; where one did not come, it counts as 0 (times: as never).");
     document
       .getElementById("legend")
       .replaceChildren(
@@ -197,9 +200,15 @@ export class MapPanel {
       rows.push([share.title, Number.isNaN(value) ? "\u2013" : `${number(100 * value, 1)} \u00b1 ${error} %`]);
     }
     for (const map of this.quantity.statistics)
-      rows.push([map.title, `${number(map.field.at(place.x, place.y), 2)} ${map.unit}`]);
+      rows.push([map.title, this.valueAt(map, place)]);
     if (this.fields.hazard) rows.push(["Hazard class", number(this.fields.hazard.field.at(place.x, place.y))]);
     return rows;
+  }
+
+  valueAt(map, place) {
+    const value = map.field.at(place.x, place.y);
+    if (Number.isNaN(value) && this.data.run.slides) return "\u2013";
+    return `${number(value, map.unit ? 2 : 0)} ${map.unit}`;
   }
 
   showValues(place) {

@@ -16,7 +16,7 @@ export class Parallel {
   constructor(data, selection) {
     Object.assign(this, { selection, members: data.members });
     const { columns } = data.members;
-    const shown = columns.filter((column) => varies(column));
+    const shown = columns.filter((column) => varies(column) && column.name !== "name");
     const inputs = shown.filter((column) => column.kind === "input"),
       key = shown.filter((column) => results.includes(column.name));
     this.axes = [...inputs.slice(0, mostAxes - Math.min(key.length, 4)), ...key].slice(0, mostAxes).map((column) => {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The table of members: sorted by any column, a page of rows at a time.
 import { h, number } from "../../report/page/format.js";
+import { called } from "./called.js";
 import { columnTitle, valueWords } from "./columns.js";
 
 const rowsOnPage = 100,
@@ -18,7 +19,7 @@ export class MemberTable {
     this.rows();
     const { all, shown } = this.members;
     document.getElementById("table-note").textContent =
-      (all > shown ? `The first ${number(shown)} of ${number(all)} members; members.csv has all. ` : "") +
+      (all > shown ? `The first ${number(shown)} of ${number(all)}; ${called(data).table} has all. ` : "") +
       "Click a heading to sort by it, a row for its outline on the map.";
   }
 
@@ -28,7 +29,7 @@ export class MemberTable {
       button.addEventListener("click", () => this.sort(by));
       return h("th", { scope: "col", "data-by": by }, button);
     };
-    const cells = [cell("member", "member"), cell("state", "state")];
+    const cells = [cell(called(this.data).one, "member"), cell("state", "state")];
     this.members.columns.forEach((column, i) => cells.push(cell(columnTitle(column), String(i))));
     this.body = h("tbody");
     document.getElementById("table").append(h("table", {}, h("thead", {}, h("tr", {}, cells)), this.body));

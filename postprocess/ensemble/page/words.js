@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the page says in words: headline, key numbers, method.
 import { h, number } from "../../report/page/format.js";
+import { called } from "./called.js";
 import { columnTitle, decimalsOf } from "./columns.js";
 import { standardError } from "./map_panel.js";
 
@@ -33,18 +34,23 @@ export function drawSummary(data) {
   const { run, members } = data;
   document.getElementById("title").textContent = run.title;
   const inputs = members.columns.filter((column) => column.kind === "input").map((column) => columnTitle(column));
-  const parts = [`${number(run.counted)} of ${number(run.members)} members are counted`];
+  const { many } = called(data);
+  const parts = [`${number(run.counted)} of ${number(run.members)} ${many} are counted`];
   if (run.failed) parts.push(`${number(run.failed)} failed and are left out`);
   if (run.waiting) parts.push(`${number(run.waiting)} have not been run`);
+  if (run.slides) inputs.splice(0, 1); // the name
   const varied = inputs.length ? ` What varies: ${inputs.join(", ")}.` : "";
   document.getElementById("headline").textContent =
-    `${parts.join(", ")}. They were drawn by ${designs[run.design] ?? run.design}.${varied}`;
+    run.slides
+      ? `${parts.join(", ")}, each in a domain of its own over one elevation model.${varied}`
+      : `${parts.join(", ")}. They were drawn by ${designs[run.design] ?? run.design}.${varied}`;
+  if (run.at_edge) document.getElementById("headline").append(h("strong", {}, ` At the edge of its domain: ${run.at_edge}.`));
   const by = run.institution ? `${run.institution} \u00b7 ` : "";
   document.getElementById("byline").textContent = `${by}${run.made} \u00b7 Talus ${run.version}`;
   const box = document.getElementById("key-numbers");
-  box.append(keyNumber("Members counted", `${number(run.counted)} of ${number(run.members)}`,
+  box.append(keyNumber(run.slides ? "Slides counted" : "Members counted", `${number(run.counted)} of ${number(run.members)}`,
     run.failed ? `${number(run.failed)} failed` : null));
-  box.append(keyNumber("Error of a probability", `\u00b1${number(100 * standardError(0.5, run.draws), 1)} %`,
+  if (!run.slides) box.append(keyNumber("Error of a probability", `\u00b1${number(100 * standardError(0.5, run.draws), 1)} %`,
     "of one half, one sigma"));
   for (const name of keyResults) {
     const column = members.columns.find((one) => one.name === name);
@@ -60,11 +66,23 @@ function item(...words) {
   return h("li", {}, ...words);
 }
 
+function slideMethod(run) {
+  return [
+    item("Each slide is a whole run of the model, by itself, in the part of the elevation model around it. Slides do "
+      + "not meet: where two come to a place, each comes alone."),
+    item("A map of largest values has, in each cell, the largest of any slide; a number of slides counts those that "
+      + "pass the threshold. They are no probability: nothing says how likely a slide is."),
+    item("A slide that came to the edge of its domain is named: what lies beyond is missing from maps and numbers."),
+    item(`Outlines are of cells that were thicker than ${run.threshold} m.`),
+  ];
+}
+
 export function drawMethod(data) {
   const { run } = data,
     box = document.getElementById("method");
   const list = h("ul", { class: "plain-list" });
-  list.append(
+  if (run.slides) list.append(...slideMethod(run));
+  else list.append(
     item(run.share.meaning),
     item(`${run.share.error} It is half the width of Wilson\u2019s score interval at one sigma, which is not zero `
       + "where no member came."),
@@ -80,9 +98,9 @@ export function drawMethod(data) {
   if (run.hazard) list.append(item(`Hazard class: ${run.hazard}.`));
   box.append(list);
   if (!run.failures.length) return;
-  box.append(h("h3", {}, "Members that failed"));
-  const failures = run.failures.map(([member, words]) => item(`Member ${member}: ${words}`));
+  box.append(h("h3", {}, `${run.slides ? "Slides" : "Members"} that failed`));
+  const failures = run.failures.map(([name, words]) => item(`${name}: ${words}`));
   box.append(h("ul", { class: "plain-list note" }, failures));
   if (run.failed > run.failures.length)
-    box.append(h("p", { class: "note" }, `The first ${run.failures.length} of ${run.failed}; members.csv has all.`));
+    box.append(h("p", { class: "note" }, `The first ${run.failures.length} of ${run.failed}; ${called(data).table} has all.`));
 }

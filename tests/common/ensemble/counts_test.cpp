@@ -7,6 +7,7 @@
 #include "common/error.hpp"
 #include "tests/common/damage.hpp"
 #include "tests/common/ensemble/ensemble_scene.hpp"
+#include "tests/common/ensemble/same_maps.hpp"
 
 namespace talus {
 namespace {
@@ -20,20 +21,9 @@ void expect_same(const EnsembleCounts& a, const EnsembleCounts& b) {
   EXPECT_EQ(a.states, b.states);
   EXPECT_EQ(a.flow, b.flow);
   EXPECT_EQ(a.deposit, b.deposit);
+  EXPECT_EQ(a.release, b.release);
   EXPECT_EQ(a.failures, b.failures);
-  for (std::size_t m = 0; m < a.maps.size(); ++m) {
-    EXPECT_EQ(a.maps[m].thresholds, b.maps[m].thresholds);
-    EXPECT_EQ(a.maps[m].exceeded, b.maps[m].exceeded) << counted_maps[m].name;
-    EXPECT_EQ(a.maps[m].reached, b.maps[m].reached) << counted_maps[m].name;
-    EXPECT_EQ(a.maps[m].sum, b.maps[m].sum) << counted_maps[m].name;
-    EXPECT_EQ(a.maps[m].sum_of_squares, b.maps[m].sum_of_squares) << counted_maps[m].name;
-    EXPECT_EQ(a.maps[m].histograms.cells(), b.maps[m].histograms.cells()) << counted_maps[m].name;
-    for (const std::int32_t cell : a.maps[m].histograms.cells()) {
-      const auto ours = a.maps[m].histograms.of(static_cast<std::size_t>(cell)),
-                 theirs = b.maps[m].histograms.of(static_cast<std::size_t>(cell));
-      ASSERT_TRUE(std::equal(ours.begin(), ours.end(), theirs.begin(), theirs.end())) << counted_maps[m].name;
-    }
-  }
+  test::expect_same_maps(a, b);
   for (std::size_t k = 0; k < a.results.size(); ++k)
     for (const ResultNumber& number : result_numbers) {
       const double ours = a.results[k].*(number.value), theirs = b.results[k].*(number.value);
@@ -62,8 +52,7 @@ TEST(EnsembleCounts, name_a_member_that_failed_and_leave_it_out) {
   EXPECT_EQ(counts.count(MemberState::counted), 8);
   ASSERT_EQ(counts.failures.size(), 2u);
   EXPECT_EQ(counts.failures[0].member, 4);
-  const std::size_t source = counts.scene.grid.index(3, 7);
-  EXPECT_EQ(counts.maps[0].reached[source], 8u);
+  EXPECT_EQ(counts.maps[0].reached[counts.cells.find(3, 7)], 8u);
 }
 
 TEST(EnsembleCounts, of_missing_parts_leave_their_members_waiting) {

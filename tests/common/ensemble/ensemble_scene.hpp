@@ -39,6 +39,7 @@ inline RunMaps member_maps(const EnsembleScene& scene, int reach, double depth) 
        {&RunMaps::peak_thickness, &RunMaps::deposit_thickness, &RunMaps::peak_speed, &RunMaps::peak_pressure_kPa})
     (maps.*field).assign(cells, 0.0);
   maps.arrival_time.assign(cells, nan);
+  maps.initial_thickness = scene.release_thickness;
   for (int row = 4; row < 12; ++row)
     for (int column = 2; column < reach; ++column) {
       const std::size_t cell = scene.grid.index(column, row);

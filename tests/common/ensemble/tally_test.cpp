@@ -103,8 +103,9 @@ TEST(MapTally, gives_the_same_bits_in_any_order_and_in_any_parts) {
     std::shuffle(shuffled.begin(), shuffled.end(), random);
     const auto cut = static_cast<std::ptrdiff_t>(random() % 300);
     MapTally first = tally_of(thickness, {shuffled.begin(), shuffled.begin() + cut}, {0.5, 2});
-    first.add(tally_of(thickness, {shuffled.begin() + cut, shuffled.end()}, {0.5, 2}));
+    first.add(thickness, tally_of(thickness, {shuffled.begin() + cut, shuffled.end()}, {0.5, 2}));
     EXPECT_EQ(first.exceeded, whole.exceeded);
+    EXPECT_EQ(first.extreme, whole.extreme);
     EXPECT_EQ(first.sum, whole.sum);
     EXPECT_EQ(first.sum_of_squares, whole.sum_of_squares);
     const auto ours = first.histograms.of(0), theirs = whole.histograms.of(0);
@@ -115,7 +116,7 @@ TEST(MapTally, gives_the_same_bits_in_any_order_and_in_any_parts) {
 TEST(MapTally, does_not_overflow_with_a_million_members_of_the_largest_value) {
   MapTally tally({1}, 1), million({1}, 1);
   for (int k = 0; k < 1000; ++k) tally.add(thickness, std::vector<double>{1e9});
-  for (int k = 0; k < 1000; ++k) million.add(tally);
+  for (int k = 0; k < 1000; ++k) million.add(thickness, tally);
   EXPECT_EQ(million.reached[0], 1'000'000u);
   EXPECT_NEAR(million.mean(thickness, 0, 1'000'000), 3000, 1e-9) << "the largest that is counted";
   EXPECT_NEAR(million.deviation(thickness, 0, 1'000'000), 0, 1e-3);
@@ -123,9 +124,29 @@ TEST(MapTally, does_not_overflow_with_a_million_members_of_the_largest_value) {
 
 TEST(MapTally, refuses_counts_of_another_grid_or_of_other_thresholds) {
   MapTally tally({1}, 2);
-  EXPECT_THROW(tally.add(MapTally({1}, 3)), std::logic_error);
-  EXPECT_THROW(tally.add(MapTally({2}, 2)), std::logic_error);
+  EXPECT_THROW(tally.add(thickness, MapTally({1}, 3)), std::logic_error);
+  EXPECT_THROW(tally.add(thickness, MapTally({2}, 2)), std::logic_error);
   EXPECT_THROW(tally.add(thickness, std::vector<double>{1}), std::logic_error);
+}
+
+TEST(MapTally, keeps_the_largest_value_and_of_a_time_the_smallest) {
+  const auto tally = tally_of(thickness, {0.4, 3.0004, 0, nan, 2}, {});
+  EXPECT_NEAR(tally.largest(thickness, 0), 3.0004, 0.5e-3) << "to half a quantum";
+  EXPECT_NEAR(tally_of(arrival, {nan, 12, 7.5, 60}, {}).largest(arrival, 0), 7.5, 0.5e-2);
+  EXPECT_EQ(tally_of(thickness, {0, nan}, {}).largest(thickness, 0), 0) << "nobody came";
+  EXPECT_TRUE(std::isnan(tally_of(arrival, {nan}, {}).largest(arrival, 0)));
+}
+
+TEST(MapTally, of_different_things_keeps_no_distribution_and_the_same_counts) {
+  const auto values = draws(200, 5, 0.3);
+  const MapTally whole = tally_of(thickness, values, {0.5, 2});
+  MapTally bare({0.5, 2}, 1, Tallied::largest);
+  for (const double value : values) bare.add(thickness, std::vector<double>{value});
+  EXPECT_EQ(bare.exceeded, whole.exceeded);
+  EXPECT_EQ(bare.reached, whole.reached);
+  EXPECT_EQ(bare.extreme, whole.extreme);
+  EXPECT_TRUE(bare.sum.empty());
+  EXPECT_THROW(bare.add(thickness, whole), std::logic_error) << "they cannot be added up";
 }
 
 TEST(BinEdges, grow_for_every_map_and_reach_what_flows_do) {

@@ -8,6 +8,7 @@
 #include "common/domain/scale_release.hpp"
 #include "solver/ensemble/member_run.hpp"
 #include "solver/run/simulation.hpp"
+#include "tests/common/ensemble/same_maps.hpp"
 #include "tests/solver/ensemble/ensemble_scene.hpp"
 
 namespace talus::solver::testing {
@@ -30,13 +31,7 @@ void expect_same(const std::vector<double>& a, const std::vector<double>& b, con
 
 void expect_same(const EnsembleCounts& a, const EnsembleCounts& b) {
   EXPECT_EQ(a.states, b.states);
-  for (std::size_t m = 0; m < a.maps.size(); ++m) {
-    SCOPED_TRACE(counted_maps[m].name);
-    EXPECT_EQ(a.maps[m].exceeded, b.maps[m].exceeded);
-    EXPECT_EQ(a.maps[m].reached, b.maps[m].reached);
-    EXPECT_EQ(a.maps[m].sum, b.maps[m].sum);
-    EXPECT_EQ(a.maps[m].sum_of_squares, b.maps[m].sum_of_squares);
-  }
+  test::expect_same_maps(a, b);
   EXPECT_EQ(a.flow, b.flow);
   EXPECT_EQ(a.deposit, b.deposit);
   for (std::size_t k = 0; k < a.results.size(); ++k) {
@@ -91,7 +86,7 @@ TEST_P(RunMembers, in_parts_add_up_to_the_bits_of_the_whole) {
   run_members(members, first, {.devices = devices(GetParam(), 1)});
   const EnsembleCounts sum = merged({rest, first}, {"rest", "first"});
   expect_same(whole, sum);
-  EXPECT_GT(whole.maps[0].sum[whole.scene.grid.index(20, 8)], 0) << "something was counted";
+  EXPECT_GT(whole.maps[0].sum.at(whole.cells.find(20, 8)), 0) << "something was counted";
 }
 
 TEST_P(RunMembers, leaves_out_and_names_a_member_that_fails) {

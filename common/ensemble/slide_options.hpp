@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The options of a recipe's [slides] table: many slides over one elevation model. All three stages read them:
+// talus-preprocess cuts a domain for each, talus-solve runs and counts them, talus-postprocess makes maps and a table.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/ensemble/options.hpp"
+#include "common/recipe/recipe.hpp"
+
+namespace talus {
+
+/// A key of the recipe that takes the value of an attribute of each slide's polygon.
+struct SlideKeyOptions {
+  std::string key;  ///< with all its tables: "solve.base.friction_angle_deg"
+  std::string attribute;
+  void describe(recipe::Visitor& v);
+};
+
+/// A slide that the recipe itself lists.
+struct ScenarioOptions {
+  std::string name;
+  std::filesystem::path outline;  ///< its polygons; empty: those of `outlines` that meet `where`
+  std::string layer, where;
+  double thickness = 0, depth = 0, volume = 0;  ///< [m], [m], [m3]; 0: not given
+  std::vector<std::string> set;                 ///< "key=value" of the recipe
+  void describe(recipe::Visitor& v);
+};
+
+/// What becomes of a slide that comes to the edge of its window.
+enum class AtEdge { flag, fail };
+
+/// The keys of [slides].
+struct SlideOptions {
+  std::filesystem::path outlines;  ///< a layer of polygons, a slide each; or those that `scenario` lists
+  std::string layer;               ///< of that file; empty: the first
+  std::string where;               ///< which polygons of it; empty: all
+  std::string name_from;           ///< attributes; empty: not given
+  std::string thickness_from, depth_from, volume_from;
+  std::optional<double> margin;  ///< around the outline [m]
+  double reach_angle = 11;       ///< of the window where no margin is given [degrees]
+  AtEdge at_edge = AtEdge::flag;
+  double failed_share = 0.05;
+  std::vector<int> keep;
+  bool keep_all = false;
+  double save_interval = 60;  ///< [s]
+  ThresholdOptions thresholds{.thickness = {0.1, 0.5, 1}, .deposit = {}, .speed = {}, .pressure = {3, 30}, .arrival{}};
+  std::vector<SlideKeyOptions> vary;
+  std::vector<ScenarioOptions> scenario;
+  void describe(recipe::Visitor& v);
+  /// The method adds the faults of keys that contradict one another.
+  void check(std::vector<Fault>& faults) const;
+
+  /// Whether the recipe asks for many slides.
+  bool on() const { return !outlines.empty() || !scenario.empty(); }
+};
+
+/// The [slides] of a recipe; not on where it has none. Throws RecipeError.
+SlideOptions slides_of(const recipe::Recipe& recipe);
+
+/// The name of the table by which a recipe has members: "slides" or "ensemble".
+const char* members_table(const recipe::Recipe& recipe);
+
+}  // namespace talus

@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "common/error.hpp"
+#include "preprocess/slides/slides.hpp"
+
+namespace talus::preprocess {
+namespace {
+
+/// A layer of polygons, read once.
+class Layers {
+ public:
+  explicit Layers(const std::string& crs_wkt) : crs_wkt_(crs_wkt) {}
+  const std::vector<PolygonFeature>& read(const std::filesystem::path& file, const LayerChoice& choice) {
+    const auto key = std::tuple(file.string(), choice.layer, choice.where);
+    const auto [found, is_new] = read_.try_emplace(key);
+    if (is_new) found->second = read_polygon_features(file, crs_wkt_, choice);
+    return found->second;
+  }
+
+ private:
+  const std::string& crs_wkt_;
+  std::map<std::tuple<std::string, std::string, std::string>, std::vector<PolygonFeature>> read_;
+};
+
+/// The attribute of a feature; the fault is noted where it is missing or NULL.
+const FeatureValue* attribute_of(const PolygonFeature& feature, const std::string& name, std::vector<Fault>& faults) {
+  std::vector<std::string> names;
+  for (const FeatureValue& value : feature.values) {
+    names.push_back(value.name);
+    if (value.name != name) continue;
+    if (!value.is_null) return &value;
+    faults.push_back({fmt::format("{}: attribute {} is NULL", feature.place, name), "the slide needs a value",
+                      "Give one, or leave the polygon out with where = \"...\" in [slides]"});
+    return nullptr;
+  }
+  faults.push_back({fmt::format("{}: no attribute {}", feature.place, name),
+                    names.empty() ? "it has none" : fmt::format("it has {}", fmt::join(names, ", ")),
+                    "Mend the name in [slides], or add the attribute"});
+  return nullptr;
+}
+
+/// The positive number that an attribute holds; 0 with a fault noted where it holds none.
+double amount_of(const PolygonFeature& feature, const std::string& name, std::vector<Fault>& faults) {
+  if (name.empty()) return 0;
+  const FeatureValue* value = attribute_of(feature, name, faults);
+  if (value == nullptr) return 0;
+  if (value->number && std::isfinite(*value->number) && *value->number > 0) return *value->number;
+  faults.push_back({fmt::format("{}: {} = {}", feature.place, name, value->text), "it must be a number above 0",
+                    "Mend the attribute"});
+  return 0;
+}
+
+Slide from_feature(const PolygonFeature& feature, const SlideOptions& options, std::vector<Fault>& faults) {
+  Slide slide;
+  slide.place = feature.place;
+  slide.file = options.outlines;
+  slide.choice = {options.layer, feature.where};
+  slide.outline = feature.polygons;
+  slide.name = fmt::format("slide-{}", feature.number);
+  if (!options.name_from.empty())
+    if (const FeatureValue* name = attribute_of(feature, options.name_from, faults)) slide.name = name->text;
+  slide.thickness = amount_of(feature, options.thickness_from, faults);
+  slide.depth = amount_of(feature, options.depth_from, faults);
+  slide.volume = amount_of(feature, options.volume_from, faults);
+  for (const SlideKeyOptions& one : options.vary)
+    if (const FeatureValue* value = attribute_of(feature, one.attribute, faults))
+      slide.set.emplace_back(one.key, value->text);
+  if (feature.polygons.empty())
+    faults.push_back({feature.place + ": no polygon", "a slide is released within its outline",
+                      "Draw it, or leave the feature out with where = \"...\" in [slides]"});
+  return slide;
+}
+
+/// "key = value" of a recipe, without the blanks and quotes around.
+std::pair<std::string, std::string> parted(const std::string& text) {
+  const auto bare = [](std::string word) {
+    const auto first = word.find_first_not_of(" \t\"'"), last = word.find_last_not_of(" \t\"'");
+    return first == std::string::npos ? std::string() : word.substr(first, last - first + 1);
+  };
+  const auto sign = text.find('=');
+  if (sign == std::string::npos) return {bare(text), ""};
+  return {bare(text.substr(0, sign)), bare(text.substr(sign + 1))};
+}
+
+Slide from_scenario(const ScenarioOptions& scenario, const SlideOptions& options, Layers& layers,
+                    std::vector<Fault>& faults) {
+  Slide slide;
+  slide.name = scenario.name;
+  slide.place = "[[slides.scenario]] " + scenario.name;
+  const bool own = !scenario.outline.empty();
+  slide.file = own ? scenario.outline : options.outlines;
+  slide.choice = {own || !scenario.layer.empty() ? scenario.layer : options.layer, scenario.where};
+  for (const PolygonFeature& feature : layers.read(slide.file, slide.choice))
+    slide.outline.insert(slide.outline.end(), feature.polygons.begin(), feature.polygons.end());
+  if (slide.outline.empty())
+    faults.push_back({slide.place + ": no polygon", "its layer holds none that meets its condition",
+                      "Mend outline, layer or where; look at it: ogrinfo -al " + slide.file.string()});
+  slide.thickness = scenario.thickness;
+  slide.depth = scenario.depth;
+  slide.volume = scenario.volume;
+  for (const std::string& text : scenario.set) {
+    slide.set.push_back(parted(text));
+    if (slide.set.back().second.empty())
+      faults.push_back({fmt::format("{}: set holds \"{}\"", slide.place, text), "it is no key with a value",
+                        "Write \"solve.base.friction_angle_deg=18\""});
+  }
+  return slide;
+}
+
+/// Each slide must say how much is released, in a way that the model can take.
+void check_amount(const Slide& slide, ModelIs model, std::vector<Fault>& faults) {
+  const bool onto = model == ModelIs::base;
+  if (onto && slide.depth > 0)
+    faults.push_back({slide.place + ": a depth, with base_dem", "what is released lies on base_dem, and has a thickness",
+                      "Give a thickness or a volume, or the model as before_dem"});
+  if (!onto && slide.thickness > 0)
+    faults.push_back({slide.place + ": a thickness, with before_dem",
+                      "what fails there lies above a curved sliding surface, and has a largest depth",
+                      "Give a depth or a volume, or the model as base_dem"});
+  if (onto && !(slide.thickness > 0) && !(slide.volume > 0) && faults.empty())
+    faults.push_back({slide.place + ": neither thickness nor volume", "nothing says how much is released",
+                      "Give thickness_from or volume_from in [slides], thickness_m or volume_m3 in [[slides.scenario]]"});
+}
+
+void check_names(const std::vector<Slide>& slides, std::vector<Fault>& faults) {
+  std::map<std::string, std::string> places;
+  for (const Slide& slide : slides) {
+    if (slide.name.empty() || slide.name.find_first_of("\n\r") != std::string::npos)
+      faults.push_back({slide.place + ": its name is empty, or more than a line", "results are told apart by name",
+                        "Mend the attribute"});
+    const auto [other, is_new] = places.emplace(slide.name, slide.place);
+    if (!is_new)
+      faults.push_back({fmt::format("{}: name \"{}\" is taken by {}", slide.place, slide.name, other->second),
+                        "results are told apart by name", "Name one of them otherwise"});
+  }
+}
+
+/// All slides set the same keys, each once.
+void check_set(const std::vector<Slide>& slides, std::vector<Fault>& faults) {
+  const auto keys_of = [&](const Slide& slide) {
+    std::set<std::string> keys;
+    for (const auto& [key, value] : slide.set)
+      if (!keys.insert(key).second)
+        faults.push_back({fmt::format("{}: {} is set twice", slide.place, key), "one value would hide the other",
+                          "Leave one of them out"});
+    return keys;
+  };
+  if (!faults.empty()) return;
+  const std::set<std::string> first = keys_of(slides.front());
+  for (const Slide& slide : slides) {
+    const std::set<std::string> own = keys_of(slide);
+    if (own == first) continue;
+    faults.push_back({fmt::format("{}: it sets {}, and {} sets {}", slide.place, own.empty() ? "no key" : fmt::format("{}", fmt::join(own, ", ")),
+                                  slides.front().place, first.empty() ? "no key" : fmt::format("{}", fmt::join(first, ", "))),
+                      "the table of slides has a value of each key in every row", "Set the same keys for all"});
+  }
+}
+
+}  // namespace
+
+std::vector<Slide> list_slides(const SlideOptions& options, ModelIs model, const std::string& crs_wkt) {
+  constexpr std::size_t most_faults = 20;
+  std::vector<Slide> slides;
+  std::vector<Fault> faults;
+  Layers layers(crs_wkt);
+  if (options.scenario.empty()) {
+    const auto& features = layers.read(options.outlines, {options.layer, options.where});
+    if (features.empty())
+      throw DataError({options.outlines.string() + ": no feature" +
+                           (options.where.empty() ? "" : fmt::format(" whose attributes meet {}", options.where)),
+                       "each polygon of the layer is a slide", "Mend layer or where in [slides]"});
+    for (const PolygonFeature& feature : features) slides.push_back(from_feature(feature, options, faults));
+  }
+  for (const ScenarioOptions& scenario : options.scenario)
+    slides.push_back(from_scenario(scenario, options, layers, faults));
+  for (const Slide& slide : slides) check_amount(slide, model, faults);
+  check_names(slides, faults);
+  check_set(slides, faults);
+  if (faults.empty()) return slides;
+  const std::size_t all = faults.size();
+  if (all > most_faults) {
+    faults.resize(most_faults);
+    faults.back().mend += fmt::format(" ({} more faults)", all - most_faults);
+  }
+  throw DataError(std::move(faults));
+}
+
+}  // namespace talus::preprocess

@@ -1,0 +1,231 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which part of a large elevation model a slide gets.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "common/error.hpp"
+#include "common/map/crop.hpp"
+#include "common/stage/machine.hpp"
+#include "preprocess/slides/slides.hpp"
+#include "preprocess/terrain/elevation.hpp"
+#include "preprocess/terrain/working_grid.hpp"
+
+namespace talus::preprocess {
+namespace {
+
+constexpr int rim = 3;                 // cells around what a slide can reach: the flow spreads over that many
+constexpr int least_reach = 64;        // cells: how far a line of reach is followed at first
+constexpr int ground_side = 1000;      // cells of the coarse ground along a side
+constexpr double degrees = M_PI / 180;
+
+/// The model of the recipe; each thread opens it for itself.
+Elevation open_model(const Options& shared) {
+  const bool onto = shared.before_dem.empty();
+  const VerticalUnit own = onto ? VerticalUnit::same : shared.before_vertical_unit;
+  return read_elevation(onto ? "base_dem" : "before_dem", shared.first_dem(),
+                        dem_reading(shared.working_crs, own == VerticalUnit::same ? shared.vertical_unit : own));
+}
+
+/// The cells that a rectangle touches.
+struct CellBox {
+  int west = 0, south = 0, east = 0, north = 0;  // the last ones not included
+
+  CellBox grown(int by, const MapGrid& within) const {
+    return {std::max(west - by, 0), std::max(south - by, 0), std::min(east + by, within.columns),
+            std::min(north + by, within.rows)};
+  }
+  CellWindow window() const { return {west, south, east - west, north - south}; }
+};
+
+/// The cells of an outline's rectangle; they may lie beyond the grid.
+CellBox box_of(const std::vector<MapPolygon>& outline, const MapGrid& grid) {
+  double west = INFINITY, south = INFINITY, east = -INFINITY, north = -INFINITY;
+  for (const MapPolygon& polygon : outline)
+    for (const auto& [x, y] : polygon.rings.front()) {
+      west = std::min(west, x);
+      east = std::max(east, x);
+      south = std::min(south, y);
+      north = std::max(north, y);
+    }
+  const auto cell = [&](double from) { return std::clamp(std::floor(from / grid.cell), -1e9, 1e9); };
+  return {static_cast<int>(cell(west - grid.west)), static_cast<int>(cell(south - grid.south)),
+          static_cast<int>(cell(east - grid.west)) + 1, static_cast<int>(cell(north - grid.south)) + 1};
+}
+
+bool is_inside(const CellBox& box, const MapGrid& grid) {
+  return box.west >= 0 && box.south >= 0 && box.east <= grid.columns && box.north <= grid.rows;
+}
+
+/// The ground within a box, and what of it lies below a line of reach from the outline's rectangle.
+class ReachOnGround {
+ public:
+  ReachOnGround(const Elevation& model, const MapGrid& grid, const CellBox& start, double tangent)
+      : model_(model), grid_(grid), start_(start), tangent_(tangent) {}
+
+  /// The box of all cells that hang together with the outline's and lie below the line; it is followed further and
+  /// further, until it ends within the part of the model that was read, or at the model's edge.
+  CellBox find() {
+    for (int reach = std::max({least_reach, start_.east - start_.west, start_.north - start_.south});; reach *= 2) {
+      const CellBox part = start_.grown(reach, grid_);
+      const CellBox found = spread(part);
+      const bool ends = (found.west > part.west || part.west == 0) && (found.south > part.south || part.south == 0) &&
+                        (found.east < part.east || part.east == grid_.columns) &&
+                        (found.north < part.north || part.north == grid_.rows);
+      if (ends) return found;
+    }
+  }
+
+ private:
+  CellBox spread(const CellBox& part) const;
+
+  const Elevation& model_;
+  const MapGrid& grid_;
+  CellBox start_;
+  double tangent_;
+};
+
+CellBox ReachOnGround::spread(const CellBox& part) const {
+  const Raster ground = onto_grid(model_, cut(grid_, part.window()));
+  const auto height = [&](int column, int row) { return ground.at(column - part.west, row - part.south); };
+  std::vector<char> seen(ground.values.size(), 0);
+  std::deque<std::array<int, 2>> front;
+  double top = -INFINITY;
+  for (int row = start_.south; row < start_.north; ++row)
+    for (int column = start_.west; column < start_.east; ++column) {
+      top = std::fmax(top, height(column, row));
+      seen[ground.grid.index(column - part.west, row - part.south)] = 1;
+      front.push_back({column, row});
+    }
+  const auto is_below = [&](int column, int row) {
+    const double x = std::max({start_.west - column, column - start_.east + 1, 0}),
+                 y = std::max({start_.south - row, row - start_.north + 1, 0});
+    return height(column, row) < top - tangent_ * grid_.cell * std::hypot(x, y);  // false for nodata
+  };
+  CellBox found = start_;
+  while (!front.empty()) {
+    const auto [column, row] = front.front();
+    front.pop_front();
+    found = {std::min(found.west, column), std::min(found.south, row), std::max(found.east, column + 1),
+             std::max(found.north, row + 1)};
+    for (const auto& [across, up] : {std::array{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
+      const int c = column + across, r = row + up;
+      if (c < part.west || r < part.south || c >= part.east || r >= part.north) continue;
+      char& known = seen[ground.grid.index(c - part.west, r - part.south)];
+      if (known || !is_below(c, r)) continue;
+      known = 1;
+      front.push_back({c, r});
+    }
+  }
+  return found;
+}
+
+/// Work on all slides, each thread with the model opened for itself.
+void for_all(std::size_t count, const Options& shared, const std::function<void(const Elevation&, std::size_t)>& work) {
+  std::atomic<std::size_t> next{0};
+  std::mutex mutex;
+  std::exception_ptr fault;
+  const auto run = [&] {
+    try {
+      const Elevation model = open_model(shared);
+      for (std::size_t k = next++; k < count; k = next++) {
+        stop_if_interrupted("cutting the parts of the model");
+        work(model, k);
+      }
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      if (!fault) fault = std::current_exception();
+      next = count;
+    }
+  };
+  {
+    std::vector<std::jthread> threads;
+    const auto wanted = std::min(count, static_cast<std::size_t>(std::clamp(thread_limit(), 1, 16)));
+    for (std::size_t t = 0; t < wanted; ++t) threads.emplace_back(run);
+  }
+  if (fault) std::rethrow_exception(fault);
+}
+
+void require_inside(const std::vector<Slide>& slides, const std::vector<CellBox>& boxes, const MapGrid& grid,
+                    const std::filesystem::path& model) {
+  std::vector<Fault> faults;
+  for (std::size_t k = 0; k < slides.size(); ++k) {
+    if (is_inside(boxes[k], grid)) continue;
+    const CellBox& b = boxes[k];
+    faults.push_back({fmt::format("{} ({}): its outline reaches beyond {}", slides[k].place, slides[k].name,
+                                  model.string()),
+                      fmt::format("it covers x {:.0f}..{:.0f}, y {:.0f}..{:.0f}, the model x {:.0f}..{:.0f}, y "
+                                  "{:.0f}..{:.0f}",
+                                  grid.west + b.west * grid.cell, grid.west + b.east * grid.cell,
+                                  grid.south + b.south * grid.cell, grid.south + b.north * grid.cell, grid.west,
+                                  grid.east(), grid.south, grid.north()),
+                      "Leave it out with where = \"...\" in [slides], or give a model that holds it"});
+  }
+  if (!faults.empty()) throw DataError(std::move(faults));
+}
+
+/// The lattice that holds all windows, these counted on it, and its coarse ground without values yet.
+SlideWindows on_one_lattice(const std::vector<CellBox>& boxes, const MapGrid& grid) {
+  CellBox all = boxes.front();
+  for (const CellBox& b : boxes)
+    all = {std::min(all.west, b.west), std::min(all.south, b.south), std::max(all.east, b.east),
+           std::max(all.north, b.north)};
+  SlideWindows windows{cut(grid, all.window()), {}, {}};
+  for (const CellBox& b : boxes)
+    windows.windows.push_back({b.west - all.west, b.south - all.south, b.east - b.west, b.north - b.south});
+  const MapGrid& lattice = windows.lattice;
+  const int factor = (std::max(lattice.columns, lattice.rows) + ground_side - 1) / ground_side;
+  MapGrid& coarse = windows.ground.grid = lattice;
+  coarse.cell = lattice.cell * factor;
+  coarse.columns = (lattice.columns + factor - 1) / factor;
+  coarse.rows = (lattice.rows + factor - 1) / factor;
+  windows.ground.values.assign(coarse.count(), nan);
+  return windows;
+}
+
+/// The ground of one window into the coarse ground: the cell that holds the centre of the coarse one.
+void sample_ground(const Elevation& model, const MapGrid& lattice, const CellWindow& window, Raster& ground,
+                   std::mutex& mutex) {
+  const Raster fine = onto_grid(model, cut(lattice, window));
+  const int factor = static_cast<int>(std::lround(ground.grid.cell / lattice.cell));
+  const std::lock_guard lock(mutex);
+  for (int row = window.row / factor; row <= (window.row + window.rows - 1) / factor; ++row)
+    for (int column = window.column / factor; column <= (window.column + window.columns - 1) / factor; ++column) {
+      const int c = column * factor + factor / 2 - window.column, r = row * factor + factor / 2 - window.row;
+      if (c >= 0 && r >= 0 && c < window.columns && r < window.rows) ground.at(column, row) = fine.at(c, r);
+    }
+}
+
+}  // namespace
+
+SlideWindows windows_of(const std::vector<Slide>& slides, const SlideOptions& options, const Options& shared) {
+  const Elevation model = open_model(shared);
+  const MapGrid grid = working_grid({&model}, grid_request(shared));
+  std::vector<CellBox> boxes;
+  for (const Slide& slide : slides) boxes.push_back(box_of(slide.outline, grid));
+  require_inside(slides, boxes, grid, shared.first_dem());
+  if (options.margin) {
+    const int margin = std::max(1, static_cast<int>(std::min(1e9, std::ceil(*options.margin / grid.cell))));
+    for (CellBox& box : boxes) box = box.grown(margin, grid);
+  } else {
+    const double tangent = std::tan(options.reach_angle * degrees);
+    for_all(slides.size(), shared, [&](const Elevation& own, std::size_t k) {
+      boxes[k] = ReachOnGround(own, grid, boxes[k], tangent).find().grown(rim, grid);
+    });
+  }
+  SlideWindows windows = on_one_lattice(boxes, grid);
+  std::mutex mutex;
+  for_all(slides.size(), shared, [&](const Elevation& own, std::size_t k) {
+    sample_ground(own, windows.lattice, windows.windows[k], windows.ground, mutex);
+  });
+  return windows;
+}
+
+}  // namespace talus::preprocess

@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Many slides over one elevation model: what [slides] of a recipe lists, the part of the model that each gets, and
+// their domains.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/ensemble/member_table.hpp"
+#include "common/ensemble/slide_options.hpp"
+#include "common/gis/polygons.hpp"
+#include "common/stage/stage.hpp"
+#include "preprocess/ensemble/ensemble.hpp"
+#include "preprocess/options/options.hpp"
+
+namespace talus::preprocess {
+
+/// What the elevation model of [preprocess] is: base_dem, onto which a slide is laid, or before_dem, out of which it is
+/// cut under its outline.
+enum class ModelIs { base, before };
+
+/// Which of them the recipe means. Throws RecipeError: neither or both are given, or what fails is given besides.
+ModelIs model_of(const recipe::Recipe& recipe);
+
+/// The options of [preprocess] that all slides share; what fails stands for that of any slide. Reads no layer. Throws
+/// RecipeError.
+Options shared_options(const recipe::Recipe& recipe, const SlideOptions& slides);
+
+/// One slide, as the recipe and the attributes of its polygons give it.
+struct Slide {
+  std::string name;
+  std::string place;  ///< where it is given, for messages
+  std::filesystem::path file;
+  LayerChoice choice;                                    ///< its polygons in the file
+  std::vector<MapPolygon> outline;                       ///< these, in the CRS of the model
+  double thickness = 0, depth = 0, volume = 0;           ///< [m], [m], [m3]; 0: not given
+  std::vector<std::pair<std::string, std::string>> set;  ///< keys of the recipe and their values
+};
+
+/// The slides that a recipe lists, in the order of layer and list; every layer is read once. Throws DataError and
+/// RecipeError with all that is wrong: no polygons, attributes that are missing or NULL, names twice, keys that are not
+/// set for all.
+std::vector<Slide> list_slides(const SlideOptions& options, ModelIs model, const std::string& crs_wkt);
+
+/// The parts of the model that slides get.
+struct SlideWindows {
+  MapGrid lattice;                  ///< holds all of them
+  std::vector<CellWindow> windows;  ///< [slides], among the cells of the lattice
+  Raster ground;                    ///< the model within them, at the centres of coarser cells [m]; NaN elsewhere
+};
+
+/// The windows of all slides, in parallel; only the cells within are read. Throws DataError with all outlines that lie
+/// beyond the model.
+SlideWindows windows_of(const std::vector<Slide>& slides, const SlideOptions& options, const Options& shared);
+
+/// The members that slides are.
+EnsemblePlan plan_of(const recipe::Recipe& recipe, const std::vector<Slide>& slides, const SlideWindows& windows,
+                     ModelIs model);
+
+/// What was made of the slides of a recipe.
+struct SlidesMade {
+  std::vector<std::filesystem::path> inputs;  ///< files that were read
+  Facts facts;                                ///< for the used recipe
+  std::filesystem::path largest;              ///< the domain with the most points; empty: nothing was written
+};
+
+/// talus-preprocess for [slides]: members.h5 and a domain for each slide. With context.check_only it lists and tests,
+/// and writes nothing.
+SlidesMade make_slides(StageContext& context);
+
+/// domain.vdb: a copy of the domain with the most points, by which talus-solve plans. Where it lies, all is there.
+void copy_largest(StageContext& context, const SlidesMade& made);
+
+/// The files that a recipe with [slides] reads.
+std::vector<std::filesystem::path> inputs_of_slides(const recipe::Recipe& recipe);
+
+}  // namespace talus::preprocess
