@@ -41,6 +41,23 @@ struct RasterWriter::Open {
   gdal::Dataset dataset;
   Tiles tiles = Tiles::all;
 
+  std::vector<int> factors() const {
+    std::vector<int> factors;
+    if (std::max(grid.columns, grid.rows) < large) return factors;
+    for (int f = 2; std::max(grid.columns, grid.rows) / f >= 256; f *= 2) factors.push_back(f);
+    return factors;
+  }
+  /// Empty overviews of a sparse file.
+  void make_room(const gdal::QuietErrors& errors) {
+    std::vector<int> all = factors();
+    if (all.empty()) return;
+    const CPLConfigOptionSetter sparse("SPARSE_OK_OVERVIEW", "YES", false);
+    if (dataset->BuildOverviews("NONE", static_cast<int>(all.size()), all.data(), 0, nullptr, nullptr, nullptr) !=
+        CE_None)
+      fail(errors);
+  }
+  void write(GDALRasterBand& band, const MapGrid& whole, const Raster& part) const;
+
   [[noreturn]] void fail(const gdal::QuietErrors& errors) const {
     throw DataError(write_fault(pending.final_path(), errors.text()));
   }
@@ -67,6 +84,7 @@ RasterWriter::RasterWriter(const std::filesystem::path& file, const MapGrid& gri
   band->SetUnitType(tags.unit.c_str());
   open_->dataset->SetMetadataItem(GDALMD_AREA_OR_POINT, GDALMD_AOP_AREA);
   for (const auto& [name, value] : tags.metadata) set_item(name, value);
+  if (tiles == Tiles::sparse) open_->make_room(errors);
 }
 
 RasterWriter::~RasterWriter() = default;
@@ -75,11 +93,11 @@ void RasterWriter::set_item(const std::string& name, const std::string& value) {
   open_->dataset->SetMetadataItem(name.c_str(), value.c_str());
 }
 
-void RasterWriter::write(const Raster& part) {
+void RasterWriter::Open::write(GDALRasterBand& band, const MapGrid& whole, const Raster& part) const {
   const gdal::QuietErrors errors;
   const MapGrid& g = part.grid;
-  const int column = static_cast<int>(std::lround((g.west - open_->grid.west) / g.cell));
-  const int line = static_cast<int>(std::lround((open_->grid.north() - g.north()) / g.cell));
+  const int column = static_cast<int>(std::lround((g.west - whole.west) / g.cell));
+  const int line = static_cast<int>(std::lround((whole.north() - g.north()) / g.cell));
   std::vector<float> values(g.count());
   for (int row = 0; row < g.rows; ++row) {
     for (int c = 0; c < g.columns; ++c) {
@@ -87,16 +105,32 @@ void RasterWriter::write(const Raster& part) {
       values[g.index(c, g.rows - 1 - row)] = std::isnan(value) ? nodata : static_cast<float>(value);
     }
   }
-  if (open_->dataset->GetRasterBand(1)->RasterIO(GF_Write, column, line, g.columns, g.rows, values.data(), g.columns,
-                                                 g.rows, GDT_Float32, 0, 0, nullptr) != CE_None)
-    open_->fail(errors);
+  if (band.RasterIO(GF_Write, column, line, g.columns, g.rows, values.data(), g.columns, g.rows, GDT_Float32, 0, 0,
+                    nullptr) != CE_None)
+    fail(errors);
+}
+
+void RasterWriter::write(const Raster& part) { open_->write(*open_->dataset->GetRasterBand(1), open_->grid, part); }
+
+int RasterWriter::overviews() const { return open_->dataset->GetRasterBand(1)->GetOverviewCount(); }
+
+MapGrid RasterWriter::overview_grid(int overview) const {
+  const int factor = 2 << overview;
+  MapGrid grid = open_->grid;
+  grid.cell *= factor;
+  grid.columns = (open_->grid.columns + factor - 1) / factor;
+  grid.rows = (open_->grid.rows + factor - 1) / factor;
+  grid.south = open_->grid.north() - grid.rows * grid.cell;
+  return grid;
+}
+
+void RasterWriter::write_overview(int overview, const Raster& part) {
+  open_->write(*open_->dataset->GetRasterBand(1)->GetOverview(overview), overview_grid(overview), part);
 }
 
 void RasterWriter::finish() {
   const gdal::QuietErrors errors;
-  if (open_->tiles == Tiles::all && std::max(open_->grid.columns, open_->grid.rows) >= large) {
-    std::vector<int> factors;
-    for (int f = 2; std::max(open_->grid.columns, open_->grid.rows) / f >= 256; f *= 2) factors.push_back(f);
+  if (std::vector<int> factors = open_->factors(); open_->tiles == Tiles::all && !factors.empty()) {
     if (open_->dataset->BuildOverviews("AVERAGE", static_cast<int>(factors.size()), factors.data(), 0, nullptr,
                                        gdal::go_on_unless_interrupted, nullptr) != CE_None) {
       stop_if_interrupted("writing " + open_->pending.final_path().string());

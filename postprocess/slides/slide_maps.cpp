@@ -99,18 +99,29 @@ Raster coarse_map(const Ensemble& ensemble, const EnsembleMap& map, const std::v
   return coarse;
 }
 
-void each_block(const Ensemble& ensemble, const std::vector<double>& values,
-                const std::function<void(const Raster&)>& take) {
+SparseValues halved(const SparseValues& fine, const MapGrid& grid, bool smallest) {
+  SparseValues coarse{grid, KeptCells(grid), {}};
+  for (std::size_t place = 0; place < fine.values.size(); ++place) {
+    if (std::isnan(fine.values[place])) continue;
+    const auto [column, row] = fine.cells.cell(place);
+    const std::size_t to = coarse.cells.keep(column / 2, grid.rows - 1 - (fine.grid.rows - 1 - row) / 2);
+    coarse.values.resize(coarse.cells.count(), nan);
+    double& value = coarse.values[to];
+    value = smallest ? std::fmin(value, fine.values[place]) : std::fmax(value, fine.values[place]);
+  }
+  return coarse;
+}
+
+void each_block(const SparseValues& sparse, const std::function<void(const Raster&)>& take) {
   constexpr int side = KeptCells::side;
-  const KeptCells& cells = ensemble.counts.cells;
-  const MapGrid& grid = ensemble.counts.scene.grid;
-  for (std::size_t first = 0; first < values.size(); first += KeptCells::of_block) {
-    const auto [column, row] = cells.cell(first);
+  const MapGrid& grid = sparse.grid;
+  for (std::size_t first = 0; first < sparse.values.size(); first += KeptCells::of_block) {
+    const auto [column, row] = sparse.cells.cell(first);
     const CellWindow window{column, row, std::min(side, grid.columns - column), std::min(side, grid.rows - row)};
     Raster block{cut(grid, window), {}};
     for (int r = 0; r < window.rows; ++r)
       for (int c = 0; c < window.columns; ++c)
-        block.values.push_back(values[first + static_cast<std::size_t>(r * side + c)]);
+        block.values.push_back(sparse.values[first + static_cast<std::size_t>(r * side + c)]);
     take(block);
   }
 }

@@ -29,8 +29,17 @@ Window reached_part(const Ensemble& ensemble);
 Raster coarse_map(const Ensemble& ensemble, const EnsembleMap& map, const std::vector<double>& values,
                   const CellWindow& part, int factor);
 
-/// Every kept block of cells with its values, cut off at the lattice's edge.
-void each_block(const Ensemble& ensemble, const std::vector<double>& values,
-                const std::function<void(const Raster&)>& take);
+/// Values in some cells of a grid.
+struct SparseValues {
+  MapGrid grid;
+  KeptCells cells;
+  std::vector<double> values;  ///< by place; NaN: none
+};
+
+/// A map on cells twice as wide, counted from the north-west corner: the largest of four, of a time the smallest.
+SparseValues halved(const SparseValues& values, const MapGrid& grid, bool smallest);
+
+/// Every kept block of cells with its values, cut off at the grid's edge.
+void each_block(const SparseValues& values, const std::function<void(const Raster&)>& take);
 
 }  // namespace talus::postprocess

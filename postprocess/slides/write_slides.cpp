@@ -45,7 +45,12 @@ void write_slide_map(SlideFiles& out, const EnsembleMap& map) {
   RasterWriter writer(file, ensemble.counts.scene.grid,
                       {fmt::format("{} [{}]", map.title, shown.empty() ? "-" : shown), shown, std::move(facts)},
                       RasterWriter::Tiles::sparse);
-  each_block(ensemble, values, [&](const Raster& block) { writer.write(block); });
+  SparseValues sparse{ensemble.counts.scene.grid, ensemble.counts.cells, values};
+  each_block(sparse, [&](const Raster& block) { writer.write(block); });
+  for (int overview = 0; overview < writer.overviews(); ++overview) {
+    sparse = halved(sparse, writer.overview_grid(overview), map.kind == Kind::largest && counted_maps[map.tally].early);
+    each_block(sparse, [&](const Raster& block) { writer.write_overview(overview, block); });
+  }
   writer.finish();
   out.files.push_back(file);
   out.files.push_back(write_qgis_style(file, style));

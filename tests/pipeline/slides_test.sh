@@ -189,6 +189,57 @@ test_what_cannot_be_is_refused_with_its_place() {
   expect_words '[slides] beside [ensemble]'
 }
 
+# 20,000 x 20,000 cells as numbers would be 3.2 GB; two slides lie in opposite corners of it.
+test_a_model_that_is_larger_than_memory_is_read_by_parts() {
+  slides 'margin_m = 200.0'
+  /usr/bin/python3 - <<'PYTHON' || fail "no large model"
+import json
+import numpy as np
+from osgeo import gdal
+gdal.UseExceptions()
+n = 20000
+d = gdal.GetDriverByName("GTiff").Create("model.tif", n, n, 1, gdal.GDT_Float32, ["TILED=YES", "SPARSE_OK=TRUE"])
+d.SetGeoTransform([500000, 10, 0, 5000000 + 10 * n, 0, -10])
+features = []
+for name, column, line in (("north west", 300, 300), ("south east", 19600, 19600)):
+    heights = 800 - 4.0 * np.arange(200)[None, :] + np.zeros((200, 1))
+    d.GetRasterBand(1).WriteArray(heights.astype(np.float32), column - 100, line - 100)
+    x, y = 500000 + 10 * column, 5000000 + 10 * (n - line)
+    ring = [[x + dx, y + dy] for dx, dy in ((0, 0), (50, 0), (50, 50), (0, 50), (0, 0))]
+    features.append({"type": "Feature", "properties": {"name": name, "depth": 3, "phi": 15},
+                     "geometry": {"type": "Polygon", "coordinates": [ring]}})
+d = None
+json.dump({"type": "FeatureCollection", "features": features}, open("areas.geojson", "w"))
+PYTHON
+  sed -i 's/model.asc/model.tif/' recipe.toml
+  /usr/bin/python3 - "$bin" <<'PYTHON' || fail "a stage fails, or takes too much memory"
+import resource, subprocess, sys
+for stage in (["preprocess"], ["solve", "--on", "cpu"], ["postprocess"]):
+    command = [f"{sys.argv[1]}/talus-{stage[0]}", "recipe.toml", "--out", "out"] + stage[1:]
+    if subprocess.run(command).returncode: sys.exit(f"{stage[0]} fails")
+    largest = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1000
+    if largest > 1200: sys.exit(f"{stage[0]} takes {largest:.0f} MB")  # a map of the model as numbers is 3200
+    print(f"{stage[0]}: {largest:.0f} MB", file=sys.stderr)
+PYTHON
+  /usr/bin/python3 - <<'PYTHON' || fail "maps of the large model"
+import os, sys
+import numpy as np
+from osgeo import gdal
+gdal.UseExceptions()
+d = gdal.Open("out/slides/largest_peak_thickness.tif")
+band = d.GetRasterBand(1)
+if min(d.RasterXSize, d.RasterYSize) < 19000: sys.exit("it does not hold both slides")
+if os.path.getsize("out/slides/largest_peak_thickness.tif") > 3e6: sys.exit("empty tiles are written")
+coarse = band.GetOverview(band.GetOverviewCount() - 1)
+fine = max(band.ReadAsArray(0, 0, 400, 400).max(), 0)
+if not fine > 1: sys.exit("the first slide is not there")
+if not band.GetOverviewCount() >= 4: sys.exit("no overviews")
+values = coarse.ReadAsArray()
+quarter = values[:values.shape[0] // 4, :values.shape[1] // 4]
+if quarter.max() != fine: sys.exit(f"an overview has {quarter.max()}, the map {fine}")
+PYTHON
+}
+
 test_check_says_what_will_be_and_writes_nothing() {
   slides
   expect_exit 0 preprocess --check
