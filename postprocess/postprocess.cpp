@@ -323,7 +323,8 @@ Stage stage() {
   stage.name = "talus-postprocess";
   stage.table = "postprocess";
   stage.summary =
-      "Write maps, NetCDF, picture and scores of a run (run.h5 of talus-solve), of an ensemble, or of many slides (counts.h5)";
+      "Write maps, NetCDF, picture and scores of a run (run.h5 of talus-solve), of an ensemble, or of many slides "
+      "(counts.h5)";
   stage.examples =
       "  talus-postprocess scene.toml --out out/scene    maps/ (with a QGIS project), map.png, report.html, "
       "history.csv, score.json, score.txt\n"

@@ -46,7 +46,8 @@ std::string other_members(const Request& request, const recipe::Recipe& recipe, 
   const std::string other = other_mark(recipe, "preprocess", domain_facts(domain), recipe_of_domain);
   const fs::path members = EnsemblePaths{request.out}.members();
   if (!other.empty() || !ensemble_of(recipe).on() || !fs::exists(members)) return other;
-  const std::string why = other_mark(recipe, members_table(recipe), read_member_table(members).provenance, recipe_of_members);
+  const std::string why =
+      other_mark(recipe, members_table(recipe), read_member_table(members).provenance, recipe_of_members);
   return why.empty() ? "" : fmt::format("{}: {}", members.filename().string(), why);
 }
 

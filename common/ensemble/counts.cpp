@@ -43,15 +43,15 @@ void take(EnsembleCounts& all, EnsembleCounts&& part) {
     all.states[to] = part.states[from];
     all.results[to] = part.results[from];
     all.windows[to] = part.windows[from];
-    for (auto footprints : footprints_of_members)
-      (all.*footprints)[to] = std::move((part.*footprints)[from]);
+    for (auto footprints : footprints_of_members) (all.*footprints)[to] = std::move((part.*footprints)[from]);
   }
   all.failures.insert(all.failures.end(), part.failures.begin(), part.failures.end());
 }
 
 bool same_scene(const EnsembleScene& a, const EnsembleScene& b) {
   return a.grid.columns == b.grid.columns && a.grid.rows == b.grid.rows && a.grid.west == b.grid.west &&
-         a.grid.south == b.grid.south && a.grid.cell == b.grid.cell && a.threshold == b.threshold && a.tallied == b.tallied;
+         a.grid.south == b.grid.south && a.grid.cell == b.grid.cell && a.threshold == b.threshold &&
+         a.tallied == b.tallied;
 }
 
 /// A cell to which something of a run came: among those of its maps, and its place among those that are kept.
@@ -64,9 +64,8 @@ std::vector<CameTo> keep_what_came(const RunMaps& run, const CellWindow& window,
   for (int row = 0; row < window.rows; ++row)
     for (int column = 0; column < window.columns; ++column) {
       const std::size_t cell = run.grid.index(column, row);
-      const bool came = std::any_of(std::begin(counted_maps), std::end(counted_maps), [&](const CountedMap& map) {
-        return is_there(map, (run.*(map.values))[cell]);
-      });
+      const bool came = std::any_of(std::begin(counted_maps), std::end(counted_maps),
+                                    [&](const CountedMap& map) { return is_there(map, (run.*(map.values))[cell]); });
       if (came) found.push_back({cell, cells.keep(window.column + column, window.row + row)});
     }
   return found;

@@ -104,9 +104,9 @@ struct EnsembleCounts {
   std::array<MapTally, counted_map_count> maps;  ///< by counted_maps, [places of the cells]
   std::vector<MemberState> states;               ///< [part.count()]
   std::vector<MemberResult> results;             ///< likewise
-  std::vector<CellWindow> windows;               ///< likewise: the member's grid among the scene's; empty unless counted
-  std::vector<Footprint> release, flow, deposit; ///< likewise, over the cells of the window; empty unless counted
-  std::vector<MemberFailure> failures;           ///< by member
+  std::vector<CellWindow> windows;  ///< likewise: the member's grid among the scene's; empty unless counted
+  std::vector<Footprint> release, flow, deposit;  ///< likewise, over the cells of the window; empty unless counted
+  std::vector<MemberFailure> failures;            ///< by member
   Facts provenance;
 
   /// The number of members of a state.

@@ -214,8 +214,7 @@ EnsembleCounts read_counts(const std::filesystem::path& path) {
   read_members(file, counts);
   counts.cells = read_cells(file, counts.scene.grid);
   const TallyShape shape{counts.cells.count(), counts.scene.tallied, counts.count(MemberState::counted)};
-  for (std::size_t m = 0; m < counts.maps.size(); ++m)
-    counts.maps[m] = read_tally(file, counted_maps[m], shape);
+  for (std::size_t m = 0; m < counts.maps.size(); ++m) counts.maps[m] = read_tally(file, counted_maps[m], shape);
   counts.provenance = h5::read_facts(file, "/provenance");
   return counts;
 }

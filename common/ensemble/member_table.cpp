@@ -86,8 +86,9 @@ void check_window(const h5::File& file, const SlideTable& slides, const CellWind
   if (w.column >= 0 && w.row >= 0 && w.columns > 0 && w.rows > 0 && w.columns <= grid.columns - w.column &&
       w.rows <= grid.rows - w.row)
     return;
-  file.refuse(fmt::format("dataset /slides/windows holds {} x {} cells from {}, {}", w.columns, w.rows, w.column, w.row),
-              fmt::format("the lattice has {} x {}", grid.columns, grid.rows));
+  file.refuse(
+      fmt::format("dataset /slides/windows holds {} x {} cells from {}, {}", w.columns, w.rows, w.column, w.row),
+      fmt::format("the lattice has {} x {}", grid.columns, grid.rows));
 }
 
 SlideTable read_slides(const h5::File& file, std::int64_t count) {

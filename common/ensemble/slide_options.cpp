@@ -38,18 +38,21 @@ void ScenarioOptions::describe(recipe::Visitor& v) {
 }
 
 void SlideOptions::describe(recipe::Visitor& v) {
-  v.path("outlines", outlines, "vector file of polygons over the model of [preprocess]: each a slide, or those that scenarios list");
+  v.path("outlines", outlines,
+         "vector file of polygons over the model of [preprocess]: each a slide, or those that scenarios list");
   v.text("layer", layer, "layer of that file; empty = the first");
   v.text("where", where, "which polygons of it are slides, by attributes: \"active = 1\"; empty = all");
   v.text("name_from", name_from, "attribute that holds their names; empty = slide-1, slide-2 and so on by feature id");
   v.text("thickness_from", thickness_from, "attribute that holds the released thickness [m] (with base_dem)");
-  v.text("depth_from", depth_from, "attribute that holds the largest depth of the sliding surface [m] (with before_dem)");
+  v.text("depth_from", depth_from,
+         "attribute that holds the largest depth of the sliding surface [m] (with before_dem)");
   v.text("volume_from", volume_from, "attribute that holds the released volume [m3]");
   v.optional_number("margin_m", margin, recipe::not_negative,
                     "the domain of a slide is the rectangle around its outline, and this on all sides");
-  v.number("reach_angle_deg", reach_angle, steep,
-           "without margin_m: the domain holds all ground that lies below a line from the slide's highest point at this "
-           "angle");
+  v.number(
+      "reach_angle_deg", reach_angle, steep,
+      "without margin_m: the domain holds all ground that lies below a line from the slide's highest point at this "
+      "angle");
   recipe::choice(v, "at_edge", at_edge, {{"flag", AtEdge::flag}, {"fail", AtEdge::fail}},
                  "a slide that comes to the edge of its domain is counted and named, or counts as failed");
   v.number("failed_share", failed_share, recipe::fraction, "share of the slides that may fail");
@@ -67,8 +70,7 @@ void SlideOptions::check(std::vector<Fault>& faults) const {
   if (!thickness_from.empty() + !depth_from.empty() + !volume_from.empty() > 1)
     faults.push_back({"[slides]: more than one of thickness_from, depth_from and volume_from",
                       "each says by itself how much is released", "Leave the others out"});
-  const bool by_attributes =
-      !(name_from + thickness_from + depth_from + volume_from + where).empty() || !vary.empty();
+  const bool by_attributes = !(name_from + thickness_from + depth_from + volume_from + where).empty() || !vary.empty();
   if (!scenario.empty() && by_attributes)
     faults.push_back({"[slides]: attributes beside [[slides.scenario]]",
                       "a recipe that lists slides gives their names and values itself",
@@ -90,8 +92,6 @@ void SlideOptions::check(std::vector<Fault>& faults) const {
 
 SlideOptions slides_of(const recipe::Recipe& recipe) { return recipe.read<SlideOptions>("slides"); }
 
-const char* members_table(const recipe::Recipe& recipe) {
-  return recipe.canonical("slides") ? "slides" : "ensemble";
-}
+const char* members_table(const recipe::Recipe& recipe) { return recipe.canonical("slides") ? "slides" : "ensemble"; }
 
 }  // namespace talus

@@ -84,8 +84,8 @@ void check_tally(const h5::File& file, const std::string& group, const MapTally&
                     "they are the same members");
     }
     if ((tally.reached[cell] > 0) != (tally.extreme[cell] >= 0))
-      file.refuse(fmt::format("{}: {} members reached cell {}, and its largest value is {}", group,
-                              tally.reached[cell], cell, tally.extreme[cell]),
+      file.refuse(fmt::format("{}: {} members reached cell {}, and its largest value is {}", group, tally.reached[cell],
+                              cell, tally.extreme[cell]),
                   "a cell that was reached has one, and no other");
     for (const std::vector<std::uint32_t>& exceeded : tally.exceeded)
       if (exceeded[cell] > tally.reached[cell])

@@ -63,8 +63,7 @@ struct RasterWriter::Open {
   }
 };
 
-RasterWriter::RasterWriter(const std::filesystem::path& file, const MapGrid& grid, const RasterTags& tags,
-                           Tiles tiles)
+RasterWriter::RasterWriter(const std::filesystem::path& file, const MapGrid& grid, const RasterTags& tags, Tiles tiles)
     : open_(new Open{PendingFile(file), grid, nullptr, tiles}) {
   const gdal::QuietErrors errors;
   auto* driver = GetGDALDriverManager()->GetDriverByName("GTiff");

@@ -10,12 +10,13 @@
 namespace talus {
 
 /// A GeoTIFF written block by block, for rasters larger than memory: tiled, 32-bit floats, deflate, nodata -9999, with
-/// overviews from 2048 cells on. A sparse one holds only the tiles that are written, and its overviews are written by the
-/// caller. Written aside and renamed by finish(). Every failure (disk full) is a DataError.
+/// overviews from 2048 cells on. A sparse one holds only the tiles that are written, and its overviews are written by
+/// the caller. Written aside and renamed by finish(). Every failure (disk full) is a DataError.
 class RasterWriter {
  public:
   enum class Tiles { all, sparse };
-  RasterWriter(const std::filesystem::path& file, const MapGrid& grid, const RasterTags& tags, Tiles tiles = Tiles::all);
+  RasterWriter(const std::filesystem::path& file, const MapGrid& grid, const RasterTags& tags,
+               Tiles tiles = Tiles::all);
   ~RasterWriter();
   /// A part of the grid: its cells are the grid's.
   void write(const Raster& part);

@@ -65,7 +65,8 @@ void tell_of_members(const Ensemble& ensemble) {
                     waiting.size(), counts.members, member_list(waiting)));
   std::vector<std::int64_t> failed;
   for (const MemberFailure& failure : counts.failures) {
-    if (failed.size() < failures_told) log_warning(fmt::format("{} failed: {}", ensemble.table.name_of(failure.member), failure.words));
+    if (failed.size() < failures_told)
+      log_warning(fmt::format("{} failed: {}", ensemble.table.name_of(failure.member), failure.words));
     failed.push_back(failure.member);
   }
   if (!failed.empty())
@@ -135,8 +136,7 @@ std::string member_list(const std::vector<std::int64_t>& members, std::size_t mo
 
 std::string names_of(const MemberTable& table, const std::vector<std::int64_t>& members, std::size_t most) {
   std::string text;
-  for (std::size_t n = 0; n < members.size() && n < most; ++n)
-    text += (n > 0 ? ", " : "") + table.name_of(members[n]);
+  for (std::size_t n = 0; n < members.size() && n < most; ++n) text += (n > 0 ? ", " : "") + table.name_of(members[n]);
   return members.size() > most ? text + fmt::format(" and {} more", members.size() - most) : text;
 }
 

@@ -134,7 +134,7 @@ std::vector<double> limits_of(const EnsembleMap& map, const std::vector<double>&
     case Kind::share: return {0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 0.95};
     case Kind::error: return {0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1};
     case Kind::to_halve: return {10, 100, 1000, 10000, 100000};
-    case Kind::count: return {1, 2, 3, 5, 10, 20, 50};
+    case Kind::count: return {0.5, 1.5, 2.5, 5.5, 10.5, 20.5, 50.5};  // between whole numbers
     case Kind::hazard: return {1, 2, 3};
     default: break;
   }
@@ -159,7 +159,13 @@ RasterStyle style_of(const EnsembleMap& map, const std::vector<double>& values, 
   }
   const bool by_time = map.unit == "s" && map.kind != Kind::deviation;
   if (by_time) return time_style(limits, "s");
-  const bool sea = map.kind == Kind::share || map.kind == Kind::count || map.unit == "m s-1" || map.unit == "s";
+  if (map.kind == Kind::count) {
+    RasterStyle style = class_style(limits, "", Ramp::sea);
+    const char* const words[] = {"1", "2", "3 \u2013 5", "6 \u2013 10", "11 \u2013 20", "21 \u2013 50", "> 50"};
+    for (std::size_t n = 0; n < style.classes.size(); ++n) style.classes[n].label = words[n];
+    return style;
+  }
+  const bool sea = map.kind == Kind::share || map.unit == "m s-1" || map.unit == "s";
   return class_style(limits, unit_words(map.unit), sea ? Ramp::sea : Ramp::heat);
 }
 

@@ -57,7 +57,8 @@ Json run_json(const EnsemblePageInput& input) {
   json["at_edge"] = at_edge.empty() ? Json() : Json(names_of(ensemble.table, at_edge));
   json["failures"] = Json::array();
   for (const MemberFailure& failure : counts.failures)
-    if (json["failures"].size() < failures_on_page) json["failures"].push_back({ensemble.table.name_of(failure.member), failure.words});
+    if (json["failures"].size() < failures_on_page)
+      json["failures"].push_back({ensemble.table.name_of(failure.member), failure.words});
   return json;
 }
 

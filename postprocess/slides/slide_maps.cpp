@@ -28,7 +28,8 @@ void add_counts(std::vector<EnsembleMap>& maps, const Ensemble& ensemble, std::s
   for (std::size_t n = 0; n < thresholds.size(); ++n) {
     std::string unit = unit_words(map.unit);
     std::replace(unit.begin(), unit.end(), '/', '_');
-    const std::string name = fmt::format("{}_{}_{:g}_{}", map.name, map.early ? "before" : "above", thresholds[n], unit);
+    const std::string name =
+        fmt::format("{}_{}_{:g}_{}", map.name, map.early ? "before" : "above", thresholds[n], unit);
     const std::string words = fmt::format("{} of {}", words_of(map), threshold_words(map, thresholds[n]));
     maps.push_back({Kind::count, tally, n, thresholds[n], "number_" + name, "Number of slides with " + words, "1"});
     maps.push_back({Kind::share, tally, n, thresholds[n], "share_" + name, "Share of slides with " + words, "1"});

@@ -40,9 +40,10 @@ Json maps_json(const EnsemblePageInput& input, const CellWindow& part) {
   const Window window = reached_part(ensemble);
   std::vector<EnsembleMap> all = slide_maps(ensemble);
   std::erase_if(all, [](const EnsembleMap& map) { return map.kind == Kind::share; });  // the numbers say as much
-  const int factor = factor_for(cut(ensemble.counts.scene.grid, part),
-                                std::min(cells_of_one_map, cells_on_page / (all.size() + 2)));
-  Json json{{"window", {{"west", window.west}, {"south", window.south}, {"east", window.east}, {"north", window.north}}}};
+  const int factor =
+      factor_for(cut(ensemble.counts.scene.grid, part), std::min(cells_of_one_map, cells_on_page / (all.size() + 2)));
+  Json json{
+      {"window", {{"west", window.west}, {"south", window.south}, {"east", window.east}, {"north", window.north}}}};
   const Raster ground = cut(ensemble.table.slides->ground, window);
   json["ground"] = {{"grid", grid_json(ground.grid)},
                     {"elevation", packed(ground.values)},
@@ -88,9 +89,9 @@ Json outlines_json(const EnsemblePageInput& input, const CellWindow& part) {
   const EnsembleCounts& counts = input.ensemble.counts;
   const MapGrid& lattice = counts.scene.grid;
   const MapGrid shown = cut(lattice, part);
-  Json json{{"west", shown.west},         {"south", shown.south},  {"half_cell", 0.5 * shown.cell},
-            {"members", Json::array()},   {"flow", Json::array()}, {"deposit", Json::array()},
-            {"release", Json::array()},   {"survey", Json::array()}};
+  Json json{{"west", shown.west},       {"south", shown.south},   {"half_cell", 0.5 * shown.cell},
+            {"members", Json::array()}, {"flow", Json::array()},  {"deposit", Json::array()},
+            {"release", Json::array()}, {"survey", Json::array()}};
   std::size_t numbers = 0;
   const std::size_t most = std::min(counts.states.size(), members_on_page);
   for (std::size_t k = 0; k < most && numbers < outline_numbers; ++k) {

@@ -81,8 +81,8 @@ OutlineLayer layer_of(const std::string& name, const Ensemble& ensemble, const s
     stop_if_interrupted("writing slides.gpkg");
     const MapGrid grid = cut(counts.scene.grid, counts.windows[k]);
     const std::vector<std::uint8_t> cells = cells_of(footprints[k], grid.count());
-    layer.features.push_back({ensemble.table.slides->names[k],
-                              outline_above({grid, {cells.begin(), cells.end()}}, 0.5), numbers_of(rows, k)});
+    layer.features.push_back({ensemble.table.slides->names[k], outline_above({grid, {cells.begin(), cells.end()}}, 0.5),
+                              numbers_of(rows, k)});
   }
   return layer;
 }
@@ -112,7 +112,10 @@ std::vector<fs::path> write_slide_files(const fs::path& folder, const Ensemble& 
   write_qgis_project(project, {counts.scene.title + " (slides)",
                                counts.scene.grid.crs_wkt,
                                {part.west, part.south, part.east, part.north},
-                               {lines, out.largest, out.counts, out.shares,
+                               {lines,
+                                out.largest,
+                                out.counts,
+                                out.shares,
                                 {"Ground", {{"Ground (coarse)", "ground.tif", true, HillshadeStyle{}}}}}});
   out.files.insert(out.files.end(), {outlines, project});
   return out.files;

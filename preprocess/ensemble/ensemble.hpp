@@ -19,8 +19,8 @@ namespace talus::preprocess {
 struct EnsemblePlan {
   EnsembleOptions options;
   MemberTable table;
-  std::vector<std::optional<Options>> ground;  ///< [members]: of those that have ground of their own
-  std::optional<ElevationErrors> errors = {};  ///< once the base scene is read
+  std::vector<std::optional<Options>> ground;             ///< [members]: of those that have ground of their own
+  std::optional<ElevationErrors> errors = {};             ///< once the base scene is read
   std::vector<std::vector<std::string>> own_values = {};  ///< [members]: "key=value" of [preprocess], of slides
 
   /// How many members get a domain of their own.

@@ -182,7 +182,8 @@ std::vector<Fault> with_member(const Kind& error, const MemberTable& table, std:
 std::vector<std::int64_t> MemberDomains::points() const {
   std::vector<std::int64_t> all = points_;
   for (std::size_t k = 0; k < all.size(); ++k)
-    if (all[k] < 0) all[k] = std::stoll(fact(domain_facts(paths_.domain(static_cast<std::int64_t>(k))), "material_points"));
+    if (all[k] < 0)
+      all[k] = std::stoll(fact(domain_facts(paths_.domain(static_cast<std::int64_t>(k))), "material_points"));
   return all;
 }
 

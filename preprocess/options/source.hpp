@@ -34,8 +34,8 @@ struct SlidingSurfaceOptions {
 /// The keys of [preprocess.source].
 struct SourceOptions {
   std::filesystem::path polygon;
-  std::string layer = "source";  ///< of `polygon`; empty, or none of that name: the first
-  std::string where;             ///< which of its polygons, by attributes; empty: all
+  std::string layer = "source";          ///< of `polygon`; empty, or none of that name: the first
+  std::string where;                     ///< which of its polygons, by attributes; empty: all
   double grow = 0;                       ///< of the polygon, outwards [m]
   double threshold = 0.5;                ///< [m]
   std::optional<double> seed_x, seed_y;  ///< easting, northing [m]

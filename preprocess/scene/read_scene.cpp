@@ -63,7 +63,8 @@ SceneRasters from_before_and_after(const Options& options, SurveyMemory* memory)
   auto [survey, surfaces, of_slide] = memory != nullptr ? memory->surveyed(options) : surveyed(options);
   SurveyedSlide& slide = *of_slide;
   if (!survey.source.empty())
-    survey.source = read_grown_polygons(options.source.polygon, survey.grid.crs_wkt, options.source.grow, options.source.choice());
+    survey.source =
+        read_grown_polygons(options.source.polygon, survey.grid.crs_wkt, options.source.grow, options.source.choice());
   Source source = survey.accepted.meanwhile([&, &of_survey = survey, &both = surfaces] {
     return find_source(
         {both[0], both[1], options.after_dem, false, of_survey.source, levels_of(of_survey, slide.sigma)},
@@ -95,7 +96,8 @@ SceneRasters from_sliding_surface(const Options& options) {
   require_data(under, sliding.file);
   SurfacePair pair{surfaces[0], under, options.sliding_surface, true};
   if (!options.source.polygon.empty())
-    pair.outline = read_grown_polygons(options.source.polygon, under.grid.crs_wkt, options.source.grow, options.source.choice());
+    pair.outline =
+        read_grown_polygons(options.source.polygon, under.grid.crs_wkt, options.source.grow, options.source.choice());
   Source source = find_source(pair, options.source);
   return from_source(std::move(surfaces[0]), std::move(source));
 }

@@ -120,15 +120,17 @@ Slide from_scenario(const ScenarioOptions& scenario, const SlideOptions& options
 void check_amount(const Slide& slide, ModelIs model, std::vector<Fault>& faults) {
   const bool onto = model == ModelIs::base;
   if (onto && slide.depth > 0)
-    faults.push_back({slide.place + ": a depth, with base_dem", "what is released lies on base_dem, and has a thickness",
+    faults.push_back({slide.place + ": a depth, with base_dem",
+                      "what is released lies on base_dem, and has a thickness",
                       "Give a thickness or a volume, or the model as before_dem"});
   if (!onto && slide.thickness > 0)
     faults.push_back({slide.place + ": a thickness, with before_dem",
                       "what fails there lies above a curved sliding surface, and has a largest depth",
                       "Give a depth or a volume, or the model as base_dem"});
   if (onto && !(slide.thickness > 0) && !(slide.volume > 0) && faults.empty())
-    faults.push_back({slide.place + ": neither thickness nor volume", "nothing says how much is released",
-                      "Give thickness_from or volume_from in [slides], thickness_m or volume_m3 in [[slides.scenario]]"});
+    faults.push_back(
+        {slide.place + ": neither thickness nor volume", "nothing says how much is released",
+         "Give thickness_from or volume_from in [slides], thickness_m or volume_m3 in [[slides.scenario]]"});
 }
 
 void check_names(const std::vector<Slide>& slides, std::vector<Fault>& faults) {
@@ -159,9 +161,11 @@ void check_set(const std::vector<Slide>& slides, std::vector<Fault>& faults) {
   for (const Slide& slide : slides) {
     const std::set<std::string> own = keys_of(slide);
     if (own == first) continue;
-    faults.push_back({fmt::format("{}: it sets {}, and {} sets {}", slide.place, own.empty() ? "no key" : fmt::format("{}", fmt::join(own, ", ")),
-                                  slides.front().place, first.empty() ? "no key" : fmt::format("{}", fmt::join(first, ", "))),
-                      "the table of slides has a value of each key in every row", "Set the same keys for all"});
+    faults.push_back(
+        {fmt::format("{}: it sets {}, and {} sets {}", slide.place,
+                     own.empty() ? "no key" : fmt::format("{}", fmt::join(own, ", ")), slides.front().place,
+                     first.empty() ? "no key" : fmt::format("{}", fmt::join(first, ", "))),
+         "the table of slides has a value of each key in every row", "Set the same keys for all"});
   }
 }
 

@@ -18,12 +18,8 @@ namespace talus::preprocess {
 namespace {
 
 /// What a slide sets itself, so that its attributes cannot.
-constexpr const char* of_slides[] = {"preprocess.release",
-                                     "preprocess.source",
-                                     "preprocess.base_dem",
-                                     "preprocess.before_dem",
-                                     "preprocess.after_dem",
-                                     "preprocess.sliding_surface",
+constexpr const char* of_slides[] = {"preprocess.release",         "preprocess.source",    "preprocess.base_dem",
+                                     "preprocess.before_dem",      "preprocess.after_dem", "preprocess.sliding_surface",
                                      "preprocess.thickness_factor"};
 
 bool gives(const recipe::Recipe& recipe, const std::string& key) {
@@ -33,8 +29,8 @@ bool gives(const recipe::Recipe& recipe, const std::string& key) {
 /// The one [[preprocess.release]] of a slide.
 std::string release_of(const std::filesystem::path& file, const LayerChoice& choice, double thickness) {
   return fmt::format("preprocess.release=[{{polygons={},layer={},where={},thickness_m={}}}]",
-                     recipe::toml_text(file.string()), recipe::toml_text(choice.layer),
-                     recipe::toml_text(choice.where), recipe::toml_number(thickness));
+                     recipe::toml_text(file.string()), recipe::toml_text(choice.layer), recipe::toml_text(choice.where),
+                     recipe::toml_number(thickness));
 }
 
 std::vector<std::string> source_of(const std::filesystem::path& file, const LayerChoice& choice) {
@@ -66,8 +62,8 @@ std::vector<std::string> values_of(const Slide& slide, ModelIs model, const MapG
     if (slide.volume > 0)
       values.push_back("preprocess.source.sliding_surface.volume_m3=" + recipe::toml_number(slide.volume));
   }
-  for (const auto& [side, at] : {std::pair{"west", window.west}, {"south", window.south}, {"east", window.east()},
-                                 {"north", window.north()}})
+  for (const auto& [side, at] :
+       {std::pair{"west", window.west}, {"south", window.south}, {"east", window.east()}, {"north", window.north()}})
     values.push_back(fmt::format("preprocess.grid.{}_m={}", side, recipe::toml_number(at)));
   return values;
 }
@@ -88,8 +84,8 @@ MemberColumn column_of(const std::vector<Slide>& slides, std::size_t place) {
   MemberColumn column{slides.front().set[place].first, {}, {}};
   std::vector<std::string> texts;
   for (const Slide& slide : slides) {
-    const auto found = std::find_if(slide.set.begin(), slide.set.end(),
-                                    [&](const auto& one) { return one.first == column.key; });
+    const auto found =
+        std::find_if(slide.set.begin(), slide.set.end(), [&](const auto& one) { return one.first == column.key; });
     texts.push_back(found->second);
   }
   const bool numbers =
@@ -136,11 +132,11 @@ ModelIs model_of(const recipe::Recipe& recipe) {
                                  : "[slides]: neither base_dem nor before_dem is given in [preprocess]",
                             "all slides lie on one elevation model",
                             "Give base_dem (a mass is laid onto it) or before_dem (it is cut out of it)"});
-  for (const char* key : {"release", "polygon", "after_dem", "laboratory", "box", "west_m", "south_m", "east_m", "north_m"})
+  for (const char* key :
+       {"release", "polygon", "after_dem", "laboratory", "box", "west_m", "south_m", "east_m", "north_m"})
     if (gives(recipe, key))
       throw RecipeError(Fault{fmt::format("[preprocess]: {} beside [slides]", key),
-                              "[slides] says what fails, and which part of the model each slide gets",
-                              "Leave it out"});
+                              "[slides] says what fails, and which part of the model each slide gets", "Leave it out"});
   return base ? ModelIs::base : ModelIs::before;
 }
 

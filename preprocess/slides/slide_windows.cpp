@@ -21,9 +21,9 @@
 namespace talus::preprocess {
 namespace {
 
-constexpr int rim = 3;                 // cells around what a slide can reach: the flow spreads over that many
-constexpr int least_reach = 64;        // cells: how far a line of reach is followed at first
-constexpr int ground_side = 1000;      // cells of the coarse ground along a side
+constexpr int rim = 3;             // cells around what a slide can reach: the flow spreads over that many
+constexpr int least_reach = 64;    // cells: how far a line of reach is followed at first
+constexpr int ground_side = 1000;  // cells of the coarse ground along a side
 constexpr double degrees = M_PI / 180;
 
 /// The model of the recipe; each thread opens it for itself.
@@ -159,14 +159,13 @@ void require_inside(const std::vector<Slide>& slides, const std::vector<CellBox>
   for (std::size_t k = 0; k < slides.size(); ++k) {
     if (is_inside(boxes[k], grid)) continue;
     const CellBox& b = boxes[k];
-    faults.push_back({fmt::format("{} ({}): its outline reaches beyond {}", slides[k].place, slides[k].name,
-                                  model.string()),
-                      fmt::format("it covers x {:.0f}..{:.0f}, y {:.0f}..{:.0f}, the model x {:.0f}..{:.0f}, y "
-                                  "{:.0f}..{:.0f}",
-                                  grid.west + b.west * grid.cell, grid.west + b.east * grid.cell,
-                                  grid.south + b.south * grid.cell, grid.south + b.north * grid.cell, grid.west,
-                                  grid.east(), grid.south, grid.north()),
-                      "Leave it out with where = \"...\" in [slides], or give a model that holds it"});
+    faults.push_back(
+        {fmt::format("{} ({}): its outline reaches beyond {}", slides[k].place, slides[k].name, model.string()),
+         fmt::format("it covers x {:.0f}..{:.0f}, y {:.0f}..{:.0f}, the model x {:.0f}..{:.0f}, y "
+                     "{:.0f}..{:.0f}",
+                     grid.west + b.west * grid.cell, grid.west + b.east * grid.cell, grid.south + b.south * grid.cell,
+                     grid.south + b.north * grid.cell, grid.west, grid.east(), grid.south, grid.north()),
+         "Leave it out with where = \"...\" in [slides], or give a model that holds it"});
   }
   if (!faults.empty()) throw DataError(std::move(faults));
 }

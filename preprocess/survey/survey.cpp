@@ -34,7 +34,8 @@ double normal_quantile(double confidence) {
 
 void read_outlines(Survey& s, const Options& options) {
   if (!options.source.polygon.empty())
-    s.source = read_grown_polygons(options.source.polygon, s.grid.crs_wkt, options.source.grow, options.source.choice());
+    s.source =
+        read_grown_polygons(options.source.polygon, s.grid.crs_wkt, options.source.grow, options.source.choice());
   if (!options.deposit.polygon.empty())
     s.deposit = read_valid_polygons(options.deposit.polygon, s.grid.crs_wkt, {"deposit"});
 }

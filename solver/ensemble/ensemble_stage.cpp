@@ -149,9 +149,9 @@ std::vector<AnyDevice> devices_for(int count, On on) {
 
 std::vector<AnyDevice> one_of_each(On on) { return devices_for(on == On::gpu ? GpuDevice::count() : 1, on); }
 
-void say_warnings(const MembersRun& run) {
+void say_warnings(const MembersRun& run, const MemberTable& table) {
   for (std::size_t n = 0; n < run.warnings.size() && n < most_said; ++n)
-    log_warning(fmt::format("member {}: {}", run.warnings[n].member, run.warnings[n].words));
+    log_warning(fmt::format("{}: {}", table.name_of(run.warnings[n].member), run.warnings[n].words));
   if (run.warnings.size() > most_said)
     log_warning(fmt::format("{} more warnings of members", run.warnings.size() - most_said));
 }
@@ -165,18 +165,18 @@ void say_warnings(const MembersRun& run) {
 }
 
 /// This function says which members failed; it throws NumericalError where they are too many.
-void judge_failures(const EnsembleCounts& counts, double allowed_share) {
+void judge_failures(const EnsembleCounts& counts, double allowed_share, const MemberTable& table) {
   for (std::size_t n = 0; n < counts.failures.size() && n < most_said; ++n)
-    log_warning(fmt::format("member {} failed: {}", counts.failures[n].member, counts.failures[n].words));
+    log_warning(fmt::format("{} failed: {}", table.name_of(counts.failures[n].member), counts.failures[n].words));
   const auto failed = static_cast<double>(counts.failures.size()), all = static_cast<double>(counts.part.count());
   if (failed == 0) return;
   log_warning(fmt::format("{} of {} members failed; the counts are without them", failed, all));
   if (failed > allowed_share * all)
-    throw NumericalError(
-        {fmt::format("{:.0f} of {:.0f} members failed, the first is member {}", failed, all,
-                     counts.failures.front().member),
-         fmt::format("[ensemble] failed_share allows {:g} of them: {}", allowed_share, counts.failures.front().words),
-         "Mend what makes them fail, narrow the distributions, or raise failed_share"});
+    throw NumericalError({fmt::format("{:.0f} of {:.0f} members failed, the first is {}", failed, all,
+                                      table.name_of(counts.failures.front().member)),
+                          fmt::format("[{}] failed_share allows {:g} of them: {}", table.slides ? "slides" : "ensemble",
+                                      allowed_share, counts.failures.front().words),
+                          "Mend what makes them fail, narrow the distributions, or raise failed_share"});
 }
 
 /// This function names the members that came to the edge of their domain.
@@ -187,11 +187,12 @@ void say_edges(const EnsembleCounts& counts, const MemberTable& table) {
   for (std::size_t n = 0; n < members.size() && n < most_said; ++n)
     names += fmt::format("{}{}", n > 0 ? ", " : "", table.name_of(members[n]));
   if (members.size() > most_said) names += fmt::format(" and {} more", members.size() - most_said);
-  log_warning(fmt::format("{} of {} members came to the edge of their domain ({}): what lies beyond is missing from "
-                          "maps and numbers. {}",
-                          members.size(), counts.part.count(), names,
-                          table.slides ? "Give a larger margin_m in [slides], or a smaller reach_angle_deg"
-                                       : "Take a larger part of the elevation model"));
+  log_warning(
+      fmt::format("{} of {} members came to the edge of their domain ({}): what lies beyond is missing from "
+                  "maps and numbers. {}",
+                  members.size(), counts.part.count(), names,
+                  table.slides ? "Give a larger margin_m in [slides], or a smaller reach_angle_deg"
+                               : "Take a larger part of the elevation model"));
 }
 
 }  // namespace
@@ -249,9 +250,9 @@ Facts run_ensemble(StageContext& context, const EnsembleFlags& flags, const Doma
                                       .save = [&] { write_counts(unfinished, counts); },
                                       .save_interval = e.options.save_interval,
                                       .edge_fails = e.edge_fails});
-  say_warnings(run);
+  say_warnings(run, e.table);
   if (!run.whole) stop(counts, unfinished);
-  judge_failures(counts, e.options.failed_share);
+  judge_failures(counts, e.options.failed_share, e.table);
   say_edges(counts, e.table);
   write_counts(e.counts, counts);
   remove_for_good(unfinished);

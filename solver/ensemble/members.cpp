@@ -29,7 +29,7 @@ constexpr const char* settling_keys[] = {"solve.material.stiffness",
 
 bool varies_settling(const MemberTable& table) {
   return table.slides || std::any_of(std::begin(settling_keys), std::end(settling_keys),
-                     [&](const char* key) { return table.find(key) != nullptr; });
+                                     [&](const char* key) { return table.find(key) != nullptr; });
 }
 
 /// Whether a member's maps can be counted: on the grid of the base domain, of a slide on its window of the lattice.
@@ -98,11 +98,11 @@ Domain Members::domain_of(std::int64_t member) const {
   const bool own = table_.own_domain.at(static_cast<std::size_t>(member)) != 0;
   Domain domain = own ? read_domain(paths_.domain(member)) : domain_;
   if (own && !is_countable(domain.grid, table_, member, domain_.grid))
-    throw DataError({paths_.domain(member).string() +
-                         (table_.slides ? ": its grid is not the window that members.h5 has for it"
-                                        : ": its grid is not that of the base domain"),
-                     "maps of several grids cannot be counted together",
-                     "Leave keys that change the grid as they are in all members, and run talus-preprocess again"});
+    throw DataError(
+        {paths_.domain(member).string() + (table_.slides ? ": its grid is not the window that members.h5 has for it"
+                                                         : ": its grid is not that of the base domain"),
+         "maps of several grids cannot be counted together",
+         "Leave keys that change the grid as they are in all members, and run talus-preprocess again"});
   if (const MemberColumn* factor = table_.find(thickness_factor_key); factor != nullptr)
     scale_release(domain, factor->values.at(static_cast<std::size_t>(member)));
   return domain;

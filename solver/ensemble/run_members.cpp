@@ -135,7 +135,8 @@ MembersRun run_members(const Members& members, EnsembleCounts& counts, const Mem
   const auto work = [&](const AnyDevice& device) {
     const Alone alone;
     try {
-      while (const auto member = queue.next()) queue.count(*member, outcome_of(members, *member, device, plan.edge_fails));
+      while (const auto member = queue.next())
+        queue.count(*member, outcome_of(members, *member, device, plan.edge_fails));
     } catch (...) {
       queue.note_failure(std::current_exception());
     }

@@ -9,7 +9,7 @@ function axis(column, zero) {
   return {
     type: "linear",
     beginAtZero: zero ?? false,
-    title: { display: true, text: column ? columnTitle(column) : "members" },
+    title: { display: true, text: column ? columnTitle(column) : "number" },
     grid: { color: "#e6e8eb" },
     ticks: {
       maxRotation: 0,
@@ -26,7 +26,7 @@ export class Scatter {
     Object.assign(this, { selection, members: data.members });
     const columns = this.members.columns.filter(varies);
     this.byName = new Map(columns.map((column) => [column.name, column]));
-    const input = columns.find((column) => column.kind === "input") ?? columns[0];
+    const input = columns.find((column) => column.kind === "input" && column.name !== "name") ?? columns[0];
     const result = columns.find((column) => column.kind !== "input") ?? columns[0];
     this.x = document.getElementById("scatter-x");
     this.y = document.getElementById("scatter-y");

@@ -8,9 +8,9 @@
 #include <set>
 
 #include "common/map/crop.hpp"
-#include "tests/common/scratch.hpp"
 #include "tests/common/ensemble/ensemble_scene.hpp"
 #include "tests/common/ensemble/same_maps.hpp"
+#include "tests/common/scratch.hpp"
 
 namespace talus {
 namespace {
@@ -75,7 +75,7 @@ TEST(EnsembleCounts, of_windows_are_those_of_the_whole_grid) {
   EnsembleCounts by_window = empty_counts(large, 8, {0, 8}, thresholds), whole = by_window;
   for (std::int64_t k = 0; k < 8; ++k) {
     RunMaps maps = test::member_maps(small, test::reach_of(table, k), test::depth_of(table, k));
-    const int shift = static_cast<int>(5 * k);
+    const int shift = static_cast<int>(2 * k);
     maps.grid = cut(small.grid, {shift, -shift, small.grid.columns, small.grid.rows});
     by_window.add(k, maps, test::result_of(table, k));
     EXPECT_EQ(by_window.windows[static_cast<std::size_t>(k)].column, 30 + shift);

@@ -3,6 +3,7 @@
 // What [slides] lists, and which part of the model each slide gets.
 #include "preprocess/slides/slides.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +13,7 @@
 #include "common/gis/geotiff.hpp"
 #include "common/map/crop.hpp"
 #include "preprocess/scene/prepare.hpp"
-#include "tests/common/rasters.hpp"
+#include "preprocess/terrain/geo_input.hpp"
 #include "tests/common/scratch.hpp"
 
 namespace talus::preprocess {
@@ -23,13 +24,13 @@ namespace fs = std::filesystem;
 /// A model of 120 x 80 cells of 10 m whose heights follow a profile across x, and outlines on it.
 struct ManySlides {
   test::Scratch scratch;
-  MapGrid grid{.columns = 120, .rows = 80, .west = 500000, .south = 5100000, .cell = 10, .crs_wkt = test::epsg(32632)};
+  MapGrid grid{
+      .columns = 120, .rows = 80, .west = 500000, .south = 5100000, .cell = 10, .crs_wkt = metric_crs("EPSG:32632")};
 
   explicit ManySlides(const std::function<double(double)>& profile = [](double x) { return 900 - 0.5 * x; }) {
     Raster model{grid, {}};
     for (int row = 0; row < grid.rows; ++row)
-      for (int column = 0; column < grid.columns; ++column)
-        model.values.push_back(profile(grid.x(column) - grid.west));
+      for (int column = 0; column < grid.columns; ++column) model.values.push_back(profile(grid.x(column) - grid.west));
     write_geotiff(scratch / "model.tif", model, {});
   }
 
@@ -38,12 +39,14 @@ struct ManySlides {
     std::string ring;
     for (const auto& [dx, dy] : {std::pair{0, 0}, {40, 0}, {40, 40}, {0, 40}, {0, 0}})
       ring += fmt::format("{}[{},{}]", ring.empty() ? "" : ",", 500000 + x + dx, 5100000 + y + dy);
-    return fmt::format(R"({{"type":"Feature","properties":{{{}}},"geometry":{{"type":"Polygon","coordinates":[[{}]]}}}})",
-                       properties, ring);
+    return fmt::format(
+        R"({{"type":"Feature","properties":{{{}}},"geometry":{{"type":"Polygon","coordinates":[[{}]]}}}})", properties,
+        ring);
   }
   void outlines(const std::vector<std::string>& features) const {
     std::string text =
-        R"({"type":"FeatureCollection","crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::32632"}},"features":[)";
+        R"({"type":"FeatureCollection","crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::32632"}},)"
+        R"("features":[)";
     for (std::size_t n = 0; n < features.size(); ++n) text += (n > 0 ? "," : "") + features[n];
     scratch.write("areas.geojson", text + "]}");
   }
@@ -54,7 +57,7 @@ struct ManySlides {
     const SlideOptions options = slides_of(recipe);
     const ModelIs model = model_of(recipe);
     const Options shared = shared_options(recipe, options);
-    const auto slides = list_slides(options, model, test::epsg(32632));
+    const auto slides = list_slides(options, model, metric_crs("EPSG:32632"));
     return plan_of(recipe, slides, windows_of(slides, options, shared), model);
   }
   static std::string fault(const recipe::Recipe& recipe) {
@@ -129,8 +132,8 @@ TEST(Slides, are_cut_out_of_the_model_by_depth_where_it_is_the_surface_before) {
   EXPECT_NEAR(deepest, 4, 1e-6);
 }
 
-/// Down at 30 degrees from x = 300 m to 500 m, then level: the line of 11 degrees meets the level 2 tan 30 / tan 11 from
-/// the outline's edge at x = 300 m, less the height that the outline itself takes.
+/// Down at 30 degrees from x = 300 m to 500 m, then level: the line of 11 degrees meets the level 2 tan 30 / tan 11
+/// from the outline's edge at x = 300 m, less the height that the outline itself takes.
 TEST(Slides, get_all_ground_below_the_line_of_reach_where_no_margin_is_given) {
   const double slope = std::tan(M_PI / 6);
   const ManySlides many([&](double x) { return 1000 - slope * std::clamp(x - 300, 0.0, 200.0); });
@@ -178,12 +181,12 @@ TEST(Slides, without_a_polygon_are_refused) {
 TEST(Slides, take_no_keys_that_are_theirs_and_no_value_twice) {
   const ManySlides many;
   many.outlines({ManySlides::feature(300, 200, R"("name":"a","depth":2)")});
-  const std::string own = ManySlides::fault(
-      many.recipe(std::string(by_depth) + "[[slides.set]]\nkey = \"preprocess.release[0].thickness_m\"\n"
-                                          "attribute = \"depth\"\n"));
+  const std::string own = ManySlides::fault(many.recipe(std::string(by_depth) +
+                                                        "[[slides.set]]\nkey = \"preprocess.release[0].thickness_m\"\n"
+                                                        "attribute = \"depth\"\n"));
   EXPECT_NE(own.find("cannot be set by an attribute"), std::string::npos) << own;
-  const std::string grid = ManySlides::fault(
-      many.recipe(std::string(by_depth) + "[[slides.set]]\nkey = \"preprocess.grid.spacing_m\"\nattribute = \"depth\"\n"));
+  const std::string grid = ManySlides::fault(many.recipe(
+      std::string(by_depth) + "[[slides.set]]\nkey = \"preprocess.grid.spacing_m\"\nattribute = \"depth\"\n"));
   EXPECT_NE(grid.find("preprocess.grid.spacing_m cannot vary"), std::string::npos) << grid;
   const std::string besides =
       ManySlides::fault(many.recipe(by_depth, "base_dem = \"model.tif\"\ngrid.west_m = 500000.0"));
