@@ -32,7 +32,8 @@ void need_one_way(recipe::Visitor& v, const Options& o) {
   refuse(before && releases, "before_dem and [[preprocess.release]] are both given", two_ways);
   refuse(base && (after || sliding), "base_dem goes with releases only, but after_dem or sliding_surface is given",
          two_ways);
-  refuse(base && !releases, "base_dem is given without a release", "nothing would move");
+  refuse(base && !releases && !o.no_release, "base_dem is given without a release",
+         "nothing would move, unless it enters by [[solve.inflow]] and no_release = true says so");
 }
 
 /// This function declares what the heights of one model are in, where it differs from the others.

@@ -79,6 +79,8 @@ class RunLoop {
   RunEnd end(const SolverState& state) const;
 
  private:
+  void let_in(double time);
+  bool left_empty() const;
   void count(const BatchReport& batch);
   void pass_events(double time, RunKeeper& keeper);
   void record(double time);
