@@ -2,14 +2,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/integrator/inflow.hpp"
 
-#include <iterator>
+#include <cstddef>
 
 namespace talus::solver {
 namespace {
 
 /// The sum of a member over the first pulses.
-double sum_of(const std::vector<InflowPulse>& pulses, std::int64_t passed, double InflowPulse::*member) {
-  double sum = 0;
+template <class Value>
+Value sum_of(const std::vector<InflowPulse>& pulses, std::int64_t passed, Value InflowPulse::*member) {
+  Value sum{};
   for (std::int64_t n = 0; n < passed; ++n) sum += pulses[static_cast<std::size_t>(n)].*member;
   return sum;
 }
@@ -18,6 +19,7 @@ double sum_of(const std::vector<InflowPulse>& pulses, std::int64_t passed, doubl
 
 double Inflow::volume(std::int64_t passed) const { return sum_of(pulses, passed, &InflowPulse::volume); }
 double Inflow::energy(std::int64_t passed) const { return sum_of(pulses, passed, &InflowPulse::energy); }
+Vec3<double> Inflow::momentum(std::int64_t passed) const { return sum_of(pulses, passed, &InflowPulse::momentum); }
 
 ParticleState Inflow::points_of(const InflowPulse& pulse) const {
   ParticleState some;

@@ -18,6 +18,7 @@ struct InflowPulse {
   std::size_t first = 0, count = 0;  ///< its points in Inflow::points
   double volume = 0;                 ///< [m3]; the discharge over the time since the pulse before
   double energy = 0;                 ///< kinetic, and potential from the lowest ground [J]
+  Vec3<double> momentum{};           ///< [kg m/s]
 };
 
 /// What an inflow does at most, for plan and log.
@@ -51,6 +52,8 @@ struct Inflow {
   double volume(std::int64_t passed) const;
   /// The energy that they brought [J].
   double energy(std::int64_t passed) const;
+  /// The momentum that they brought [kg m/s].
+  Vec3<double> momentum(std::int64_t passed) const;
   /// A copy of the points of one pulse.
   ParticleState points_of(const InflowPulse& pulse) const;
 };

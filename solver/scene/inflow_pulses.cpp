@@ -71,7 +71,7 @@ void InflowSeeder::add(const PulseTimes& times, const std::string& place, Inflow
     add_strip({line_.middles[s], thickness[s], volume, flow.speed * duration, flow.speed}, place, inflow);
   }
   pulse.count = inflow.points.size() - pulse.first;
-  for (std::size_t p = pulse.first; p < inflow.points.size(); ++p) pulse.energy += energy_of(inflow.points, p);
+  for (std::size_t p = pulse.first; p < inflow.points.size(); ++p) sum_up(inflow.points, p, pulse);
   inflow.pulses.push_back(pulse);
 }
 
@@ -123,15 +123,17 @@ void InflowSeeder::add_point(const Strip& strip, double way, double height, Infl
   inflow.line_y.push_back(strip.middle[1]);
 }
 
-/// The kinetic energy of a point, and its potential energy from the lowest ground, as energies() sum them up [J].
-double InflowSeeder::energy_of(const ParticleState& s, std::size_t p) const {
+/// The method adds a point to the sums of its pulse: momentum, and energy as energies() sum it up.
+void InflowSeeder::sum_up(const ParticleState& s, std::size_t p, InflowPulse& pulse) const {
   const GridShape& shape = terrain_.shape;
   const double xi = s.cell[0][p] + s.offset[0][p], eta = s.cell[1][p] + s.offset[1][p];
   double z = (s.cell[2][p] + s.offset[2][p]) * shape.layer_height;
   if (shape.mapping == Mapping::terrain_following) z += terrain_at(shape, terrain_.terrain, xi, eta);
   const Vec3<double> v{s.velocity[0][p], s.velocity[1][p], s.velocity[2][p]}, &g = matter_.gravity;
   const double fall = g.x * xi * shape.spacing + g.y * eta * shape.spacing + g.z * z;
-  return s.volume[p] * matter_.density * (0.5 * dot(v, v) - fall);
+  const double mass = s.volume[p] * matter_.density;
+  pulse.energy += mass * (0.5 * dot(v, v) - fall);
+  pulse.momentum += v * mass;
 }
 
 }  // namespace talus::solver

@@ -49,7 +49,7 @@ class InflowSeeder {
   struct Strip;
   void add_strip(const Strip& strip, const std::string& place, Inflow& inflow) const;
   void add_point(const Strip& strip, double way, double height, Inflow& inflow) const;
-  double energy_of(const ParticleState& points, std::size_t p) const;
+  void sum_up(const ParticleState& points, std::size_t p, InflowPulse& pulse) const;
 
   const InflowLine& line_;
   const InflowSection& section_;

@@ -74,11 +74,15 @@ class RunRecorder : public TableRecorder<Instant> {
 /// What the inflows have brought by a record.
 struct InflowReading {
   double volume = 0, energy = 0;  // [m3], [J]
+  Vec3<double> momentum;          // [kg m/s]
 };
 
 constexpr Column<InflowReading> inflow_columns[] = {
     {"inflow_m3", "m3", [](const InflowReading& r) { return r.volume; }},
     {"inflow_energy_J", "J", [](const InflowReading& r) { return r.energy; }},
+    {"inflow_momentum_x_kg_m_s", "kg m s-1", [](const InflowReading& r) { return r.momentum.x; }},
+    {"inflow_momentum_y_kg_m_s", "kg m s-1", [](const InflowReading& r) { return r.momentum.y; }},
+    {"inflow_momentum_z_kg_m_s", "kg m s-1", [](const InflowReading& r) { return r.momentum.z; }},
 };
 
 /// The recorder of what has entered over time. It keeps a reference to the inflow.
@@ -88,7 +92,8 @@ class InflowRecorder : public TableRecorder<InflowReading> {
 
  protected:
   std::vector<InflowReading> samples(const Instant& now) const override {
-    return {{inflow_.volume(now.counted.pulses), inflow_.energy(now.counted.pulses)}};
+    const std::int64_t passed = now.counted.pulses;
+    return {{inflow_.volume(passed), inflow_.energy(passed), inflow_.momentum(passed)}};
   }
 
  private:

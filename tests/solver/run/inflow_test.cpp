@@ -149,6 +149,7 @@ TEST_P(InflowRun, brings_the_momentum_that_was_stated) {
   EXPECT_NEAR(column(loop, "momentum_x_kg_m_s").back() / (mass * 5 * cosine), 1, 1e-9);
   EXPECT_NEAR(column(loop, "momentum_z_kg_m_s").back() / (mass * 5 * cosine * -0.3), 1, 1e-9);
   EXPECT_NEAR(column(loop, "kinetic_J").back() / (0.5 * mass * 25), 1, 1e-9);
+  for (const double force : column(loop, "ground_force_x_N")) EXPECT_NEAR(force, 0, 1e-9 * mass * 5);
   const double potential_and_kinetic = column(loop, "potential_J").back() + column(loop, "kinetic_J").back();
   EXPECT_NEAR(column(loop, "inflow_energy_J").back() / potential_and_kinetic, 1, 1e-9);
 }
