@@ -75,7 +75,7 @@ EnergyLine energy_line_of(const Domain& domain, const SolveOptions& options) {
   const double g = std::hypot(options.gravity[0], options.gravity[1], options.gravity[2]);
   for (const InflowTop& top : inflow_tops(domain, options)) {
     const double head = g > 0 ? top.z + top.speed * top.speed / (2 * g) : top.z;
-    if (head > line.z) line = {.friction = line.friction, .x = top.x, .y = top.y, .z = head};
+    if (head > line.z) line = {.x = top.x, .y = top.y, .z = head, .friction = line.friction};
   }
   return line;
 }

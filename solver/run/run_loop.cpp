@@ -51,7 +51,6 @@ std::string RunLoop::step_to_end(RunKeeper& keeper, bool fresh) {
   if (fresh) pass_events(0.0, keeper);
   std::string reason = "end of the simulated time";
   while (stepper_.time() < schedule_.end_time()) {
-    let_in(stepper_.time());  // a checkpoint lies between an event and what enters at it
     const BatchReport batch = stepper_.advance(schedule_.next_event(stepper_.time(), memory_));
     count(batch);
     if (batch.sorted) {
@@ -77,7 +76,7 @@ std::string RunLoop::step_to_end(RunKeeper& keeper, bool fresh) {
   return reason;
 }
 
-/// The method lets in what the inflows have brought by `time`.
+/// The method lets in what the inflows have brought by `time`, that of an event: those who left have been dropped.
 void RunLoop::let_in(double time) {
   while (schedule_.pulse_due(time, memory_)) {
     const InflowPulse& pulse = scene_.inflow.pulses[static_cast<std::size_t>(memory_.pulses)];

@@ -26,7 +26,7 @@ struct InflowGround {
   double gravity = 9.81;       ///< [m/s2]
 };
 
-/// The section of an inflow, which fills like a channel: level across, over as much of the line as that takes.
+/// The section of an inflow (T45), which fills like a channel: level across, over as much of the line as that takes.
 class InflowSection {
  public:
   /// The constructor takes the ground, and which of speed, depth and Froude number is given.

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The points that enter a scene over time, from the recipe's inflows (T43).
+// The points that enter a scene over time, from the recipe's inflows (T44).
 #pragma once
 
 #include <vector>
