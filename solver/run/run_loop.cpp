@@ -53,14 +53,11 @@ std::string RunLoop::step_to_end(RunKeeper& keeper, bool fresh) {
   while (stepper_.time() < schedule_.end_time()) {
     const BatchReport batch = stepper_.advance(schedule_.next_event(stepper_.time(), memory_));
     count(batch);
-    if (batch.sorted) {
-      const bool due = schedule_.checkpoint_due(stepper_.time(), memory_);
-      if (due) ++memory_.checkpoints;
-      keeper.pass_sort(due);
-    }
+    if (batch.sorted) pass_sort(keeper);
     if (batch.clock.halt == at_event) {
-      let_in(stepper_.time());
+      const bool entered = let_in(stepper_.time());
       pass_events(stepper_.time(), keeper);
+      if (entered) pass_sort(keeper);  // where pulses come often, nothing else asks for a sort
     }
     keeper.pass_batch(batch);
     if (calm()) {
@@ -76,13 +73,22 @@ std::string RunLoop::step_to_end(RunKeeper& keeper, bool fresh) {
   return reason;
 }
 
-/// The method lets in what the inflows have brought by `time`, that of an event: those who left have been dropped.
-void RunLoop::let_in(double time) {
+/// The method lets in what the inflows have brought by `time` and returns whether that is anything. The time is that of
+/// an event: those who left have been dropped.
+bool RunLoop::let_in(double time) {
+  const std::int64_t before = memory_.pulses;
   while (schedule_.pulse_due(time, memory_)) {
     const InflowPulse& pulse = scene_.inflow.pulses[static_cast<std::size_t>(memory_.pulses)];
     stepper_.add(scene_.inflow.points_of(pulse));
     ++memory_.pulses;
   }
+  return memory_.pulses > before;
+}
+
+void RunLoop::pass_sort(RunKeeper& keeper) {
+  const bool due = schedule_.checkpoint_due(stepper_.time(), memory_);
+  if (due) ++memory_.checkpoints;
+  keeper.pass_sort(due);
 }
 
 bool RunLoop::left_empty() const {

@@ -79,7 +79,8 @@ class RunLoop {
   RunEnd end(const SolverState& state) const;
 
  private:
-  void let_in(double time);
+  bool let_in(double time);
+  void pass_sort(RunKeeper& keeper);
   bool left_empty() const;
   void count(const BatchReport& batch);
   void pass_events(double time, RunKeeper& keeper);

@@ -138,7 +138,7 @@ TEST_P(InflowRun, brings_the_momentum_that_was_stated) {
   Flume flume;
   flume.let_in({0, 4}, {16, 16}, 5);
   flume.options.gravity = {0, 0, 0};
-  flume.options.base.law = FrictionLaw::frictionless;
+  flume.options.base.law = FrictionLaw::none;
   flume.options.integrator = Integrator::explicit_;
   flume.options.end_time = 4;
   RunLoop loop(flume.domain, flume.options, make_device(GetParam()));

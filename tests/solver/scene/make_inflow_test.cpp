@@ -153,7 +153,11 @@ TEST(MakeInflow, refuses_what_cannot_be_with_numbers) {
   EXPECT_NE(fault([](InflowOptions& i) { i.discharges.assign(6, 0.0); }).find("all discharges are 0"),
             std::string::npos);
   EXPECT_NE(fault([](InflowOptions& i) { i.azimuth = 10; }).find("at 10 deg to the line"), std::string::npos);
-  EXPECT_NE(fault([](InflowOptions& i) { i.x = {117, 117}; }).find("outside the known ground"), std::string::npos);
+  EXPECT_NE(fault([](InflowOptions& i) { i.x = {118.5, 118.5}; }).find("outside the known ground"), std::string::npos);
+  EXPECT_NE(fault([](InflowOptions& i) {
+              i.x = {117.9, 117.9};
+            }).find("below its line the known ground ends"),
+            std::string::npos);
   Domain level = ground(30, 30, 2.0, 0.5, [](double, double) { return 7.0; });
   EXPECT_NE(fault_of<Error>([&] { make_scene(level, with_inflow()); }).find("azimuth_deg"), std::string::npos);
 }
