@@ -277,10 +277,10 @@ TEST(prepare, leaves_the_ground_bare_where_nothing_is_released) {
   scene.as_release();
   scene.options.release.clear();
   scene.options.no_release = true;
-  EXPECT_NE(faults_of(scene.options).find("no_release = true without grid.layer_height_m"), std::string::npos);
+  EXPECT_NE(test::faults_of(scene.options).find("no_release = true without grid.layer_height_m"), std::string::npos);
   scene.options.grid.layer_height = 2;
-  EXPECT_EQ(faults_of(scene.options), "");
-  expect_read_as_written(scene.options);
+  EXPECT_EQ(test::faults_of(scene.options), "");
+  test::expect_read_as_written(scene.options);
   const Domain domain = scene.prepare().domain;
   EXPECT_EQ(domain.points.size(), 0u);
   EXPECT_TRUE(domain.release_names.empty());
@@ -296,7 +296,7 @@ TEST(prepare, refuses_no_release_beside_one) {
   Scene scene;
   scene.options.no_release = true;
   scene.options.grid.layer_height = 2;
-  EXPECT_NE(faults_of(scene.options).find("no_release = true beside before_dem"), std::string::npos);
+  EXPECT_NE(test::faults_of(scene.options).find("no_release = true beside before_dem"), std::string::npos);
 }
 
 TEST(prepare, refuses_more_points_than_can_be_numbered) {
