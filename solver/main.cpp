@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "common/budget/budget.hpp"
 #include "common/domain/domain.hpp"
 #include "common/domain/threads.hpp"
 #include "common/run/places.hpp"
@@ -18,6 +19,7 @@
 #include "common/stage/identity.hpp"
 #include "common/stage/machine.hpp"
 #include "common/stage/stage.hpp"
+#include "solver/budget/budget_stage.hpp"
 #include "solver/ensemble/ensemble_stage.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/options/solve.hpp"
@@ -48,7 +50,9 @@ const char* const examples =
     "  talus-solve recipe.toml --out out/valley --restart  # go on after Ctrl-C\n"
     "  talus-solve recipe.toml --out out/valley --resume   # go on where there is something to go on from\n"
     "  talus-solve recipe.toml --out out/valley --plan     # say what is on, how many steps, how long; write nothing\n"
-    "  talus-solve recipe.toml --out out/valley --members 0:250   # a part of an ensemble";
+    "  talus-solve recipe.toml --out out/valley --members 0:250   # a part of an ensemble\n"
+    "  talus-solve recipe.toml --out out/valley --budget   # and runs that differ in one thing each: how sure is it?\n"
+    "  talus-solve recipe.toml --out out/valley --budget --plan   # what they take";
 
 /// The arguments of the command line beyond those that every stage takes.
 struct SolveFlags {
@@ -57,6 +61,7 @@ struct SolveFlags {
   bool resume = false;
   bool profile = false;
   bool plan = false;
+  bool budget = false;
   std::optional<MemberRange> members;
 };
 
@@ -82,6 +87,9 @@ std::vector<Flag> flags(SolveFlags& given) {
            .help = "Of an ensemble, members A to B-1 alone, counted from 0; talus-postprocess adds parts up",
            .value = "A:B",
            .set = [&](const std::string& words) { given.members = member_range(words); }},
+          {.name = "--budget",
+           .help = "Make the runs of the error budget too ([budget]): how far each doubt moves the deposit",
+           .set = [&](const std::string&) { given.budget = true; }},
           {.name = "--profile",
            .help = "Measure where the time goes, phase by phase and kernel by kernel; say it at the end, and in "
                    "profile.csv",
@@ -92,15 +100,24 @@ std::vector<Flag> flags(SolveFlags& given) {
            .set = [&](const std::string&) { given.plan = true; }}};
 }
 
+/// The [solve] and, where it is made, the [budget] of a recipe, as they are used.
+std::string used_tables(const recipe::Recipe& recipe, bool budget_asked) {
+  const BudgetOptions budget = budget_of(recipe, budget_asked);
+  std::string text = recipe::to_toml(recipe.read<SolveOptions>("solve"), "solve", false);
+  if (budget.make) text += "\n" + recipe::to_toml(budget, "budget", false);
+  return text;
+}
+
 Stage stage() {
   Stage s;
   s.name = "talus-solve";
   s.table = "solve";
   s.summary = "Simulate the slide in three dimensions with the material point method: domain.vdb -> run.h5.";
   s.examples = examples;
-  s.template_toml = [] { return recipe::to_toml(SolveOptions{}, "solve", true); };
-  s.used_toml = [](const recipe::Recipe& recipe) {
-    return recipe::to_toml(recipe.read<SolveOptions>("solve"), "solve", false);
+  s.template_toml = [] {
+    return recipe::to_toml(SolveOptions{}, "solve", true) +
+           "\n# Runs that differ in one thing each, and say how sure the run is (--budget). All stages read this table.\n" +
+           recipe::to_toml(BudgetOptions{}, "budget", true);
   };
   return s;
 }
@@ -224,6 +241,8 @@ Dependencies depends(const StageContext& context, const SolveFlags& flags) {
   const RunPaths paths(context.out);
   Dependencies depends{{paths.run}, inputs_of(options_of(context.recipe, context.out), context.out)};
   if (flags.restart) depends.inputs.push_back(checkpoint_of(flags, paths));
+  if (const BudgetOptions budget = budget_of(context.recipe, flags.budget); budget.make)
+    add_depends_of_budget(context, budget, depends);
   return depends;
 }
 
@@ -353,8 +372,37 @@ void run_members_of(StageContext& context, const SolveFlags& flags, const Domain
   write_used_recipe(context, stage(), recipe::to_used_toml(options, "solve"), inputs, used);
 }
 
+/// This function refuses a budget of what is no single run in time.
+void refuse_budget(const StageContext& context, const SolveFlags& flags, const SolveOptions& options) {
+  const auto refuse = [](const std::string& what, const std::string& why) {
+    throw RecipeError({"an error budget with " + what, why, "Leave one of them out"});
+  };
+  if (ensemble_of(context.recipe).on()) refuse("[ensemble]", "members of an ensemble say by themselves how far runs go");
+  if (options.stability.factor_of_safety) refuse("factor_of_safety", "it varies runs in time, and the search is none");
+  if (flags.profile) refuse("--profile", "its runs share the processor");
+}
+
+/// This function makes the run, unless run.h5 is of this recipe, domain and version already, and then the runs of its
+/// budget.
+void run_with_budget(StageContext& context, const SolveFlags& flags, const RunOptions& run, const BudgetBase& base,
+                     const AnyDevice& device, const Domain& domain, const Facts& facts) {
+  const BudgetOptions budget = budget_of(context.recipe, flags.budget);
+  BudgetFlags how{.on = device.is_gpu() ? On::gpu : On::cpu, .restart = flags.restart.has_value(), .resume = flags.resume};
+  if (context.check_only || !is_run_of(context, domain, RunPaths(context.out).run)) {
+    run_in_time(context, flags, run, device, domain, facts);
+    how.restart = false;  // the run itself went on, its budget begins
+    if (context.check_only) return;
+  } else {
+    log_info(fmt::format("{}: it is this run already", RunPaths(context.out).run.string()));
+    context.results.push_back(RunPaths(context.out).run);
+  }
+  run_budget(context, how, domain, base, budget, facts);
+}
+
 void solve(StageContext& context, const SolveFlags& flags) {
   auto options = options_of(context.recipe, context.out);
+  const bool budgets = budget_of(context.recipe, flags.budget).make;
+  if (budgets) refuse_budget(context, flags, options);
   const AnyDevice device = make_device(choose_device(flags.on));
   const auto domain_file = inputs_of(options, context.out).front();
   Domain domain = read_domain(domain_file);
@@ -370,16 +418,22 @@ void solve(StageContext& context, const SolveFlags& flags) {
     return;
   }
   const SolveOptions asked = settle_stiffness(domain, options);
-  options = settle_steps(domain, asked);
+  const BudgetBase base{options, settle_steps(domain, asked)};
+  options = base.settled;
   judge(domain, options);
   if (flags.plan) {
     for (const std::string& text : plan(domain, options, device)) log_info(text);
+    const BudgetOptions budget = budget_of(context.recipe, flags.budget);
+    if (budgets)
+      for (const std::string& text : plan_of_budget(context, device.is_gpu() ? On::gpu : On::cpu, domain, base, budget))
+        log_info(text);
     log_warnings(domain, options);
     return;
   }
   add_places(domain, options);
   log_plan(domain, options, device);
   log_warnings(domain, options);
+  if (budgets) return run_with_budget(context, flags, {asked, options}, base, device, domain, insisted);
   run_in_time(context, flags, {asked, options}, device, domain, insisted);
 }
 
@@ -390,6 +444,7 @@ int main(int argc, char** argv) {
   Stage s = stage();
   s.flags = flags(given);
   s.depends = [&](const StageContext& context) { return depends(context, given); };
+  s.used_toml = [&](const recipe::Recipe& recipe) { return used_tables(recipe, given.budget); };
   s.part = [&] { return given.members ? fmt::format("{}-{}", given.members->first, given.members->end) : ""; };
   s.run = [&](StageContext& context) {
     limit_threads_of_libraries(thread_limit());
