@@ -120,6 +120,10 @@ void write_maps(StageContext& context, const Job& job) {
   results.insert(results.end(), maps.begin(), maps.end());
   const auto for_gis = write_gis(folder, maps, {run, options, survey, &hazard});
   results.insert(results.end(), for_gis.begin(), for_gis.end());
+  if (budget) {
+    const auto spread = write_spread_maps(folder, run, *budget);
+    results.insert(results.end(), spread.begin(), spread.end());
+  }
   const auto for_authority = write_hazard_maps(folder, run, hazard);
   results.insert(results.end(), for_authority.begin(), for_authority.end());
   if (options.avaframe) {
@@ -128,13 +132,20 @@ void write_maps(StageContext& context, const Job& job) {
     results.insert(results.end(), aliases.begin(), aliases.end());
   }
   results.push_back(folder / "results.nc");
-  write_netcdf(results.back(), run, {options.institution, context.command_line, options.start_time});
+  NetcdfNotes notes{options.institution, context.command_line, options.start_time, {}};
+  if (budget)
+    for (const SpreadMap& map : spread_maps(*budget))
+      notes.more.push_back({map.name, map.long_name, "m", "area: mean", &map.raster->values});
+  write_netcdf(results.back(), run, notes);
 }
 
 /// So that new maps never lie beside the scores or the report of an older run.
 void remove_older(const fs::path& out) {
   for (const auto* name : {"score.json", "score.txt", "report.html", "animation.mp4", "animation.gif", "gauges.csv",
-                           "sections.csv", "buildings.csv", "budget.csv", "budget.json", "maps/intensity.tif", "maps/intensity.qml",
+                           "sections.csv", "buildings.csv", "budget.csv", "budget.json", "maps/deposit_spread.tif", "maps/deposit_spread.qml",
+                           "maps/deposit_spread_numerical.tif", "maps/deposit_spread_numerical.qml",
+                           "maps/deposit_spread_physical.tif", "maps/deposit_spread_physical.qml",
+                           "maps/intensity.tif", "maps/intensity.qml",
                            "maps/reach_cone.tif", "maps/reach_cone.qml", "maps/reach.gpkg", "maps/buildings.gpkg"}) {
     std::error_code none_there;
     fs::remove(out / name, none_there);

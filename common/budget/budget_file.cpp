@@ -82,7 +82,7 @@ std::string survey_draw_name(int draw) { return fmt::format("survey-{}", draw); 
 
 std::size_t Budget::count(BudgetState state) const {
   return static_cast<std::size_t>(
-      std::count_if(runs.begin(), runs.end(), [&](const BudgetRun& run) { return run.state == state; }));
+      std::count_if(runs.begin(), runs.end(), [&](const BudgetRun& one) { return one.state == state; }));
 }
 
 void write_budget(const std::filesystem::path& path, const Budget& budget) {

@@ -12,8 +12,8 @@
 #include "common/run/mobility.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/stage.hpp"
-#include "postprocess/compare/compare.hpp"
 #include "postprocess/fields/fields.hpp"
+#include "postprocess/score/deposit_difference.hpp"
 #include "postprocess/survey/survey_grid.hpp"
 
 namespace talus::postprocess {
@@ -128,7 +128,10 @@ class BudgetComparison {
     RunMaps other;
     other.grid = line.run.deposit.grid;
     other.deposit_thickness = line.run.deposit.values;
-    const DepositDifference difference = deposit_difference(maps, other, options_.deposit_threshold);
+    // In the coarser cells of the two: what only the finer ones can show is no doubt about the flow.
+    const bool coarser = other.grid.cell > grid_.cell;
+    const DepositDifference difference =
+        deposit_difference(coarser ? other : maps, coarser ? maps : other, options_.deposit_threshold);
     const std::vector<double> deposit = thickness_on(grid_, line.run.deposit),
                               peak = thickness_on(grid_, line.run.peak_thickness);
     line.elsewhere = difference.moved;

@@ -44,7 +44,8 @@ struct BudgetScore {
 struct BudgetLine {
   BudgetRun run;                ///< without its maps
   const BudgetRow* row;         ///< the doubt that it asks about
-  double elsewhere = nan;       ///< share of the run's deposit that lies elsewhere in the other, volumes set equal [-]
+  double elsewhere = nan;       ///< share of the deposit that lies elsewhere in the other run, in the coarser cells of
+                                ///< the two, volumes set equal [-]
   double overlap = nan;         ///< of the footprints: area of both over area of either [-]
   double largest_change = nan;  ///< of the thickness of the deposit, in any cell [m]
   BudgetNumbers numbers = {};
@@ -77,6 +78,21 @@ std::string budget_csv(const BudgetTable& table);
 
 /// The table as JSON.
 std::string budget_json_text(const BudgetTable& table, const Run& run);
+
+/// A map of spread, wherever it goes.
+struct SpreadMap {
+  const char* name;  ///< of file and NetCDF variable: "deposit_spread"
+  const char* long_name;
+  const Raster* raster;  ///< in the table
+};
+
+/// The maps of spread that a table has.
+std::vector<SpreadMap> spread_maps(const BudgetTable& table);
+
+/// Writes the maps of spread, "deposit_spread.tif" and those of the two kinds, each with a style for QGIS beside it. It
+/// returns the files. Throws DataError.
+std::vector<std::filesystem::path> write_spread_maps(const std::filesystem::path& folder, const Run& run,
+                                                     const BudgetTable& table);
 
 /// The table for people, aligned.
 std::string budget_words(const BudgetTable& table);
