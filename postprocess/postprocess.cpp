@@ -141,12 +141,28 @@ void write_maps(StageContext& context, const Job& job) {
 
 /// So that new maps never lie beside the scores or the report of an older run.
 void remove_older(const fs::path& out) {
-  for (const auto* name : {"score.json", "score.txt", "report.html", "animation.mp4", "animation.gif", "gauges.csv",
-                           "sections.csv", "buildings.csv", "budget.csv", "budget.json", "maps/deposit_spread.tif", "maps/deposit_spread.qml",
-                           "maps/deposit_spread_numerical.tif", "maps/deposit_spread_numerical.qml",
-                           "maps/deposit_spread_physical.tif", "maps/deposit_spread_physical.qml",
-                           "maps/intensity.tif", "maps/intensity.qml",
-                           "maps/reach_cone.tif", "maps/reach_cone.qml", "maps/reach.gpkg", "maps/buildings.gpkg"}) {
+  for (const auto* name : {"score.json",
+                           "score.txt",
+                           "report.html",
+                           "animation.mp4",
+                           "animation.gif",
+                           "gauges.csv",
+                           "sections.csv",
+                           "buildings.csv",
+                           "budget.csv",
+                           "budget.json",
+                           "maps/deposit_spread.tif",
+                           "maps/deposit_spread.qml",
+                           "maps/deposit_spread_numerical.tif",
+                           "maps/deposit_spread_numerical.qml",
+                           "maps/deposit_spread_physical.tif",
+                           "maps/deposit_spread_physical.qml",
+                           "maps/intensity.tif",
+                           "maps/intensity.qml",
+                           "maps/reach_cone.tif",
+                           "maps/reach_cone.qml",
+                           "maps/reach.gpkg",
+                           "maps/buildings.gpkg"}) {
     std::error_code none_there;
     fs::remove(out / name, none_there);
   }
@@ -184,9 +200,8 @@ void write_results(StageContext& context, const Job& job) {
     auto stages = texts_of_stages(file.parent_path(), run.summary);
     stages.push_back({"postprocess", used});
     const auto comparison = text_of(file.parent_path() / "survey" / "survey.json");
-    write("report.html",
-          report_html({run, options, survey, score, thalweg, std::move(stages), comparison, file, &hazard,
-                       budget ? &*budget : nullptr}));
+    write("report.html", report_html({run, options, survey, score, thalweg, std::move(stages), comparison, file,
+                                      &hazard, budget ? &*budget : nullptr}));
   }
   write("score.txt", table);
   write("score.json", to_json(score));  // last: where it lies, everything is there

@@ -98,7 +98,8 @@ Stage stage() {
   s.examples = examples;
   s.template_toml = [] {
     return recipe::to_toml(SolveOptions{}, "solve", true) +
-           "\n# Runs that differ in one thing each, and say how sure the run is (--budget). All stages read this table.\n" +
+           "\n# Runs that differ in one thing each, and say how sure the run is (--budget). All stages read this "
+           "table.\n" +
            recipe::to_toml(BudgetOptions{}, "budget", true);
   };
   return s;

@@ -58,8 +58,9 @@ void declare_scene(CLI::App& app, Asked& asked) {
   app.add_option("--threads", asked.request.threads, "Threads to take at most")
       ->type_name("N")
       ->check(CLI::Range(1, 4096).description(""));
-  app.add_flag_callback("--budget", [&asked] { asked.request.set.emplace_back("budget.make=true"); },
-                        "Make the error budget too: how far each doubt moves the deposit");
+  app.add_flag_callback(
+      "--budget", [&asked] { asked.request.set.emplace_back("budget.make=true"); },
+      "Make the error budget too: how far each doubt moves the deposit");
   app.add_flag("--network", asked.request.network, "Let inputs name places on a network");
 }
 

@@ -48,9 +48,9 @@ struct BudgetRun {
   std::vector<std::string> values;  ///< keys by which the same run is made by hand: "solve.cfl=0.25"
   std::string domain = {};          ///< name of a domain of its own; empty: that of the run
   BudgetState state = BudgetState::waiting;
-  std::string reason = {};                     ///< why it failed or was left out
-  MemberResult result = {};                    ///< of a run that is done
-  Raster deposit = {}, peak_thickness = {};    ///< likewise [m]
+  std::string reason = {};                   ///< why it failed or was left out
+  MemberResult result = {};                  ///< of a run that is done
+  Raster deposit = {}, peak_thickness = {};  ///< likewise [m]
 };
 
 /// The runs of a budget beside the run itself.

@@ -51,7 +51,8 @@ void write_run_of(h5::File& file, const std::string& group, const BudgetRun& run
 BudgetState state_called(const h5::File& file, const std::string& group) {
   const std::string name = file.text(group, "state");
   const auto* found = std::find(std::begin(state_names), std::end(state_names), name);
-  if (found == std::end(state_names)) file.refuse(fmt::format("attribute {} state is \"{}\"", group, name), "there is no such state");
+  if (found == std::end(state_names))
+    file.refuse(fmt::format("attribute {} state is \"{}\"", group, name), "there is no such state");
   return static_cast<BudgetState>(found - std::begin(state_names));
 }
 

@@ -19,8 +19,8 @@ std::vector<std::string_view> names_of_rows() {
 }  // namespace
 
 const BudgetRow* find_budget_row(std::string_view name) {
-  const auto* found =
-      std::find_if(std::begin(budget_rows), std::end(budget_rows), [&](const BudgetRow& row) { return row.name == name; });
+  const auto* found = std::find_if(std::begin(budget_rows), std::end(budget_rows),
+                                   [&](const BudgetRow& row) { return row.name == name; });
   return found == std::end(budget_rows) ? nullptr : found;
 }
 

@@ -43,17 +43,17 @@ const BudgetRow* find_budget_row(std::string_view name);
 
 /// The keys of [budget].
 struct BudgetOptions {
-  bool make = false;                          ///< without --budget too
-  std::vector<std::string> leave_out;         ///< names of rows
-  double cell_factor = 2;                     ///< sides of the other cells over those of the run
-  double step_factor = 0.5;                   ///< length of the other steps over that of the run's
-  double modulus_factor = 2;                  ///< Young's modulus over that of the run
-  double friction_doubt = 0.1;                ///< of a coefficient of friction, as a share of it
-  std::optional<double> friction_doubt_deg;   ///< the same as an angle; takes its place [deg]
-  double drag_doubt = 0.3;                    ///< of the drag, as a share of it
-  int survey_draws = 2;                       ///< runs with an error of the survey each
-  int seed = 1;                               ///< of those errors
-  ElevationErrorOptions elevation_error;      ///< nothing given: as the survey says, where it does
+  bool make = false;                         ///< without --budget too
+  std::vector<std::string> leave_out;        ///< names of rows
+  double cell_factor = 2;                    ///< sides of the other cells over those of the run
+  double step_factor = 0.5;                  ///< length of the other steps over that of the run's
+  double modulus_factor = 2;                 ///< Young's modulus over that of the run
+  double friction_doubt = 0.1;               ///< of a coefficient of friction, as a share of it
+  std::optional<double> friction_doubt_deg;  ///< the same as an angle; takes its place [deg]
+  double drag_doubt = 0.3;                   ///< of the drag, as a share of it
+  int survey_draws = 2;                      ///< runs with an error of the survey each
+  int seed = 1;                              ///< of those errors
+  ElevationErrorOptions elevation_error;     ///< nothing given: as the survey says, where it does
   void describe(recipe::Visitor& v);
   /// The method adds the faults of names that no row has.
   void check(std::vector<Fault>& faults) const;

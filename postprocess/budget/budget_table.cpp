@@ -91,13 +91,14 @@ class BudgetComparison {
  private:
   std::vector<BudgetScore> own_scores() const {
     std::vector<BudgetScore> scores;
-    const Score score = make_score(scored_run(reference_.run.maps.deposit_thickness, reference_.run.maps.peak_thickness),
-                                   options_, reference_.survey, reference_.thalweg);
+    const Score score =
+        make_score(scored_run(reference_.run.maps.deposit_thickness, reference_.run.maps.peak_thickness), options_,
+                   reference_.survey, reference_.thalweg);
     for (const ScoreSection& section : score.sections)
       for (const ScoreEntry& entry : section.entries) {
         const auto* value = std::get_if<double>(&entry.value);
-        const bool is_shown = std::find(std::begin(shown_scores), std::end(shown_scores), entry.key) !=
-                              std::end(shown_scores);
+        const bool is_shown =
+            std::find(std::begin(shown_scores), std::end(shown_scores), entry.key) != std::end(shown_scores);
         if (is_shown && value != nullptr)
           scores.push_back({entry.key, entry.label, entry.unit, entry.decimals, *value});
       }
@@ -193,9 +194,10 @@ std::optional<BudgetTable> budget_table(const std::filesystem::path& file, const
   Budget budget = read_budget(file);
   const std::string own = fact(reference.run.summary.provenance, run_id);
   if (budget.run != own) {
-    log_warning(fmt::format("{}: it is the budget of another run than {}; it is left out. talus-solve --budget makes "
-                            "one of this run",
-                            file.string(), own));
+    log_warning(
+        fmt::format("{}: it is the budget of another run than {}; it is left out. talus-solve --budget makes "
+                    "one of this run",
+                    file.string(), own));
     return std::nullopt;
   }
   return BudgetComparison(reference).table(std::move(budget));

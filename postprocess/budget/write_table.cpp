@@ -81,8 +81,8 @@ std::string budget_csv(const BudgetTable& table) {
                         state_word(line.run.state), text_field(line.run.words));
     for (const auto& [name, value] : named_numbers(table, line))
       text += std::isfinite(value) ? fmt::format(",{:.9g}", value) : ",";
-    text += "," + text_field(fmt::format("{}", fmt::join(line.run.values, " "))) + "," + text_field(line.run.reason) +
-            "\n";
+    text +=
+        "," + text_field(fmt::format("{}", fmt::join(line.run.values, " "))) + "," + text_field(line.run.reason) + "\n";
   }
   return text;
 }

@@ -37,8 +37,10 @@ Json budget_line_json(const BudgetLine& line) {
 Json budget_json(const ReportInput& input) {
   if (input.budget == nullptr) return nullptr;
   const BudgetTable& table = *input.budget;
-  Json json{{"run_out", finite_or_null(table.own.run_out)}, {"speed", finite_or_null(table.own.largest_speed)},
-            {"volume", finite_or_null(table.own.volume)},   {"steps", finite_or_null(table.own.steps)},
+  Json json{{"run_out", finite_or_null(table.own.run_out)},
+            {"speed", finite_or_null(table.own.largest_speed)},
+            {"volume", finite_or_null(table.own.volume)},
+            {"steps", finite_or_null(table.own.steps)},
             {"seconds", finite_or_null(table.own.wall_time)}};
   json["scores"] = Json::array();
   for (const BudgetScore& score : table.scores)

@@ -164,10 +164,12 @@ void Layers::of_budget(const BudgetTable& budget) {
   };
   spread("spread", "Spread of the deposit, all doubts", budget.spread,
          "Largest less smallest thickness of the deposit over this run and those of the error budget.");
-  spread("spread_physical", "Spread, doubts about the slide", budget.spread_physical,
-         "Largest less smallest thickness of the deposit over this run and those with another friction, law or survey.");
-  spread("spread_numerical", "Spread, doubts about the computation", budget.spread_numerical,
-         "Largest less smallest thickness of the deposit over this run and those with other cells, steps or stiffness.");
+  spread(
+      "spread_physical", "Spread, doubts about the slide", budget.spread_physical,
+      "Largest less smallest thickness of the deposit over this run and those with another friction, law or survey.");
+  spread(
+      "spread_numerical", "Spread, doubts about the computation", budget.spread_numerical,
+      "Largest less smallest thickness of the deposit over this run and those with other cells, steps or stiffness.");
 }
 
 void Layers::of_hazard(const Hazard& hazard) {

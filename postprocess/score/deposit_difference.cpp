@@ -42,7 +42,8 @@ DepositDifference deposit_difference(const RunMaps& first, const RunMaps& second
   const double area = first.grid.cell * first.grid.cell, scale = theirs.value() > 0 ? ours.value() / theirs.value() : 0;
   Sum moved;
   for (std::size_t i = 0; i < first.grid.count(); ++i)
-    moved.add(0.5 * std::abs(thickness_or_none(first.deposit_thickness[i]) - scale * thickness_or_none(other.values[i])));
+    moved.add(0.5 *
+              std::abs(thickness_or_none(first.deposit_thickness[i]) - scale * thickness_or_none(other.values[i])));
   found.volume = (theirs.value() - ours.value()) * area;
   found.moved = ours.value() > 0 ? moved.value() / ours.value() : 0;
   found.overlap = either > 0 ? static_cast<double>(both) / static_cast<double>(either) : 1;

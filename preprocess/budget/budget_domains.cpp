@@ -99,8 +99,7 @@ void BudgetDomains::make(const Wanted& wanted, const Make& prepared) {
 }
 
 void BudgetDomains::cells() {
-  const double spacing = options_.cell_factor * domain_.grid.cell,
-               layers = options_.cell_factor * domain_.layer_height;
+  const double spacing = options_.cell_factor * domain_.grid.cell, layers = options_.cell_factor * domain_.layer_height;
   const std::vector<std::string> values{fmt::format("preprocess.grid.spacing_m={}", spacing),
                                         fmt::format("preprocess.grid.layer_height_m={}", layers)};
   make({"cells", fmt::format("{}", fmt::join(values, " ")), values}, [&] {

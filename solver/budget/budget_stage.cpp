@@ -196,8 +196,8 @@ void make_runs(const StageContext& context, const BudgetFlags& flags, const Budg
   const BudgetPaths paths{context.out};
   const std::size_t waiting = budget.count(BudgetState::waiting);
   const InFlight flight = budget_flight(scene, options, flags.on, waiting);
-  log_info(fmt::format("budget: {} runs beside the run itself, {} at a time: {}", waiting, flight.count,
-                       flight.reason));
+  log_info(
+      fmt::format("budget: {} runs beside the run itself, {} at a time: {}", waiting, flight.count, flight.reason));
   const OwnEnd saving("finished runs of the budget are saved");
   const auto save = [&] { write_budget(paths.unfinished(), budget); };
   if (run_variations(scene.variations, budget, {scene.domain, paths, budget_devices(flight.count, flags.on), save}))

@@ -14,9 +14,9 @@ namespace talus::solver {
 
 /// How the runs of a budget are made.
 struct BudgetPlan {
-  const Domain& domain;            ///< of the run itself
-  BudgetPaths paths;               ///< of the domains beside it
-  std::vector<AnyDevice> devices;  ///< one for each run at a time, with a stream of its own on a GPU
+  const Domain& domain;             ///< of the run itself
+  BudgetPaths paths;                ///< of the domains beside it
+  std::vector<AnyDevice> devices;   ///< one for each run at a time, with a stream of its own on a GPU
   std::function<void()> save = {};  ///< called as a run has ended, while no other is being noted
 };
 

@@ -24,15 +24,14 @@ using BedChange = std::function<double(std::string_view key, double value)>;
 
 /// A run of a budget, ready to be made.
 struct Variation {
-  BudgetRun run;               ///< left out where the recipe does not allow it
-  SolveOptions options;        ///< settled as those of the run itself are
-  BedChange change_bed = {};   ///< of the rasters of the bed; none: they stay
+  BudgetRun run;              ///< left out where the recipe does not allow it
+  SolveOptions options;       ///< settled as those of the run itself are
+  BedChange change_bed = {};  ///< of the rasters of the bed; none: they stay
 };
 
 /// The runs that apply to a scene, in the order of budget_rows. `domain` is that of the run itself. What the recipe
 /// leaves to the program is settled once, as for the run itself, so that a run differs in one thing.
-std::vector<Variation> variations_of(const Domain& domain, const BudgetBase& base,
-                                     const BudgetOptions& budget);
+std::vector<Variation> variations_of(const Domain& domain, const BudgetBase& base, const BudgetOptions& budget);
 
 /// A domain with the numbers of its bed changed, as a variation says.
 Domain with_bed(Domain domain, const BedChange& change);

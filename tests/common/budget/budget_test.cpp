@@ -61,7 +61,10 @@ Budget small_budget() {
   BudgetRun left_out{.name = "survey-1", .row = "survey", .words = "another error", .values = {}, .domain = "survey-1"};
   left_out.state = BudgetState::left_out;
   left_out.reason = "no survey";
-  return {.fingerprint = "f", .run = "r", .options = "[budget]\n", .runs = {done, failed, left_out},
+  return {.fingerprint = "f",
+          .run = "r",
+          .options = "[budget]\n",
+          .runs = {done, failed, left_out},
           .provenance = {{"domain.id", "d"}}};
 }
 
