@@ -32,6 +32,18 @@ bool is_among(std::string_view key, const std::string_view (&names)[count]) {
 /// "key=value", the value such that it is read back to the bit.
 std::string set_to(const std::string& key, double value) { return fmt::format("{}={}", key, value); }
 
+/// The values of a run from the nth on: ": friction_angle_deg = 19.98, turbulence_m_s2 = 500".
+std::string changed_words(const Variation& one, std::size_t first) {
+  std::string text;
+  for (std::size_t n = first; n < one.run.values.size(); ++n) {
+    const std::string& value = one.run.values[n];
+    const std::size_t sign = value.find('='), dot = value.rfind('.', sign);
+    text += fmt::format("{} {} = {:.4g}", text.empty() ? ":" : ",", value.substr(dot + 1, sign - dot - 1),
+                        std::stod(value.substr(sign + 1)));
+  }
+  return text + (one.change_bed ? ", and the maps of the bed by as much" : "");
+}
+
 /// Friction that is wrong by its doubt, one way.
 class OtherFriction {
  public:
@@ -61,7 +73,11 @@ class OtherFriction {
 class Variations {
  public:
   Variations(const Domain& domain, const BudgetBase& base, const BudgetOptions& budget)
-      : domain_(domain), base_(base.settled), budget_(budget), settled_(settled_values(base)), known_faults_(faults_of(base.settled)) {}
+      : domain_(domain),
+        base_(base.settled),
+        budget_(budget),
+        settled_(settled_values(base)),
+        known_faults_(faults_of(base.settled)) {}
 
   std::vector<Variation> all() {
     step();
@@ -234,7 +250,7 @@ void Variations::friction(bool more) {
     return is_among(key, friction_coefficients) ? other.coefficient(value) : value;
   });
   if (!budget_.has("friction") || one.run.values.size() == before) return;
-  const std::string words = "friction at the bed " + other.words() + ": " + one.options.base.words();
+  const std::string words = other.words() + changed_words(one, before);
   add(std::move(one), words);
 }
 
@@ -243,9 +259,8 @@ void Variations::drag(bool more) {
   Variation one = fresh("drag", more ? "drag-more" : "drag-less");
   const double factor = 1 + (more ? 1 : -1) * budget_.drag_doubt;
   change_bed(one, [factor](std::string_view key, double value) { return key == turbulence ? value / factor : value; });
-  const std::string words = fmt::format("drag at the bed {:g} % {}: {}", 100 * budget_.drag_doubt,
-                                        more ? "more" : "less", one.options.base.words());
-  add(std::move(one), words);
+  const std::string words = fmt::format("{:g} % {}", 100 * budget_.drag_doubt, more ? "more" : "less");
+  add(std::move(one), words + changed_words(one, settled_.size()));
 }
 
 void Variations::weakening() {
@@ -284,7 +299,7 @@ void Variations::strength(bool more) {
   for (std::size_t n = 0; n < one.options.parts.size(); ++n)
     change(one.options.parts[n].material, fmt::format("solve.part[{}].material", n));
   if (one.run.values.size() == before) return;
-  const std::string words = "friction inside " + other.words() + ": " + one.options.material.words();
+  const std::string words = other.words() + changed_words(one, before);
   add(std::move(one), words);
 }
 

@@ -14,6 +14,9 @@ function percent(share) {
   return `${number(100 * share, share < 0.1 ? 1 : 0)}\u2009%`;
 }
 
+/** Scores that have a column here, and its heading; budget.csv has the others too. */
+const shownScores = { footprint_csi: "Footprint CSI", deposit_csi: "Deposit CSI", thickness_rmse_m: "RMSE [m]" };
+
 /** A bar as long as the share is of the largest, behind its number. */
 function shareCell(line, largest) {
   const width = largest > 0 ? (100 * line.elsewhere) / largest : 0;
@@ -21,19 +24,30 @@ function shareCell(line, largest) {
   return h("td", { class: "budget-share" }, h("span", { class: "budget-track" }, bar), h("b", {}, percent(line.elsewhere)));
 }
 
+/** The scores that have a column, with their place among all. */
+function scoresOf(budget) {
+  return budget.scores.map((score, place) => ({ score, place })).filter(({ score }) => score.key in shownScores);
+}
+
 function lineRow(line, budget, largest) {
   const cell = (words) => h("td", { class: "number" }, words);
   const runOut = line.run_out - budget.run_out;
-  const what = h("td", {}, line.title, h("div", { class: "note" }, line.words));
+  const kind = line.kind === "physical" ? "slide" : "computation";
+  const what = h(
+    "td",
+    {},
+    line.title.charAt(0).toUpperCase() + line.title.slice(1),
+    h("span", { class: `budget-kind ${line.kind}` }, kind),
+    h("div", { class: "note" }, line.words),
+  );
   if (!line.done) {
     const why = `${line.failed ? "Failed" : "Left out"}: ${line.reason}`;
-    return h("tr", {}, what, h("td", {}, line.kind), h("td", { class: "plain", colspan: 5 + budget.scores.length }, why));
+    return h("tr", {}, what, h("td", { class: "plain", colspan: 5 + scoresOf(budget).length }, why));
   }
   return h(
     "tr",
     { "data-run": line.name },
     what,
-    h("td", {}, line.kind),
     shareCell(line, largest),
     cell(
       budget.run_out === null || line.run_out === null
@@ -42,8 +56,10 @@ function lineRow(line, budget, largest) {
     ),
     cell(line.overlap === null ? "\u2013" : number(line.overlap, 3)),
     cell(`${signed(line.speed - budget.speed, 1)}\u2009m/s`),
-    ...line.scores.map((score, i) => cell(score === null ? "\u2013" : number(score, budget.scores[i].decimals))),
-    cell(`${number(line.steps)} in ${quantity(line.seconds, "s", line.seconds < 10 ? 1 : 0)}`),
+    ...scoresOf(budget).map(({ score, place }) =>
+      cell(line.scores[place] === null ? "\u2013" : number(line.scores[place], score.decimals)),
+    ),
+    cell(quantity(line.seconds, "s", line.seconds < 10 ? 1 : 0)),
   );
 }
 
@@ -54,12 +70,11 @@ function ownRow(budget) {
     { class: "changed" },
     h("td", {}, "This run"),
     h("td", {}, ""),
-    h("td", {}, ""),
     cell(budget.run_out === null ? "\u2013" : quantity(budget.run_out, "m")),
     cell(""),
     cell(quantity(budget.speed, "m/s", 1)),
-    ...budget.scores.map((score) => cell(number(score.own, score.decimals))),
-    cell(`${number(budget.steps)} in ${quantity(budget.seconds, "s", budget.seconds < 10 ? 1 : 0)}`),
+    ...scoresOf(budget).map(({ score }) => cell(number(score.own, score.decimals))),
+    cell(quantity(budget.seconds, "s", budget.seconds < 10 ? 1 : 0)),
   );
 }
 
@@ -73,14 +88,13 @@ function budgetTable(budget) {
   const largest = Math.max(0, ...budget.lines.filter((line) => line.done).map((line) => line.elsewhere));
   const heads = [
     "Run-out",
-    "Footprint overlap",
-    "Largest speed",
-    ...budget.scores.map((score) => score.label),
-    "Steps, time",
+    "Overlap",
+    "Speed",
+    ...scoresOf(budget).map(({ score }) => shownScores[score.key]),
+    "Time",
   ];
   const head = [
     h("th", {}, "Doubt"),
-    h("th", {}, "Kind"),
     h("th", {}, "Deposit elsewhere"),
     ...heads.map((words) => h("th", { class: "number" }, words)),
   ];
@@ -115,8 +129,9 @@ export function drawBudget(data) {
       "p",
       { class: "note prose" },
       "Each line is a run that differs from this one in one thing. Deposit elsewhere: share of the volume of this " +
-        "run\u2019s deposit that lies in other cells in the other run, volumes set equal. Run-out and speed: other " +
-        "run less this one. Overlap: footprint of both over footprint of either. Doubts of several lines need not " +
+        "run\u2019s deposit that lies in other cells in the other run, volumes set equal; doubts are about the slide " +
+        "(brown) or about the computation (blue). Run-out and largest speed: other run less this one. Overlap: " +
+        "footprint of both over footprint of either. Time: wall time, runs beside one another. Doubts of several lines need not " +
         "add up, and what no line asks about is not in this table. The layers \u201cSpread\u201d of the map show " +
         "where the deposit differs.",
     ),
