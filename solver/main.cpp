@@ -40,6 +40,7 @@ struct SolveFlags {
   On on = On::automatic;
   RunFlags run;
   std::optional<MemberRange> members;
+  int at_a_time = 0;  // 0: as the program decides
 };
 
 On device_called(const std::string& word) {
@@ -64,6 +65,10 @@ std::vector<Flag> flags(SolveFlags& given) {
            .help = "Of an ensemble, members A to B-1 alone, counted from 0; talus-postprocess adds parts up",
            .value = "A:B",
            .set = [&](const std::string& words) { given.members = member_range(words); }},
+          {.name = "--at-a-time",
+           .help = "Of an ensemble, members that run at a time (default: one a thread; of a GPU what it gains from)",
+           .value = "N",
+           .set = [&](const std::string& words) { given.at_a_time = members_at_a_time(words); }},
           {.name = "--profile",
            .help = "Measure where the time goes, phase by phase and kernel by kernel; say it at the end, and in "
                    "profile.csv",
@@ -99,6 +104,7 @@ EnsembleFlags ensemble_flags(const SolveFlags& flags) {
           .members = flags.members,
           .restart = flags.run.restart.has_value(),
           .resume = flags.run.resume,
+          .at_a_time = flags.at_a_time,
           .plan = flags.run.plan};
 }
 
@@ -139,9 +145,9 @@ Facts solved(StageContext& context, const SolveFlags& flags, SolveOptions& optio
   Domain domain = read_domain(domain_file);
   const Facts insisted = judge_inputs(context, options, domain_file, domain);
   if (ensemble_of(context.recipe).on()) return run_members_of(context, flags, domain, options, device, insisted);
-  if (flags.members)
-    throw RecipeError({"--members without an ensemble", "the recipe asks for one run",
-                       "Leave it out, or add [ensemble] with members"});
+  if (flags.members || flags.at_a_time > 0)
+    throw RecipeError({flags.members ? "--members without an ensemble" : "--at-a-time without an ensemble",
+                       "the recipe asks for one run", "Leave it out, or add [ensemble] with members"});
   if (!options.stability.factor_of_safety) {
     options = settle_stiffness(domain, options);
     return run_in_time(context, flags.run, options, device, domain, insisted);
