@@ -45,6 +45,7 @@ struct SolveFlags {
   RunFlags run;
   bool budget = false;
   std::optional<MemberRange> members;
+  int at_a_time = 0;  // 0: as the program decides
 };
 
 On device_called(const std::string& word) {
@@ -72,6 +73,10 @@ std::vector<Flag> flags(SolveFlags& given) {
           {.name = "--budget",
            .help = "Make the runs of the error budget too ([budget]): how far each doubt moves the deposit",
            .set = [&](const std::string&) { given.budget = true; }},
+          {.name = "--at-a-time",
+           .help = "Of an ensemble or a budget, runs at a time (default: one a thread; of a GPU what it gains from)",
+           .value = "N",
+           .set = [&](const std::string& words) { given.at_a_time = members_at_a_time(words); }},
           {.name = "--profile",
            .help = "Measure where the time goes, phase by phase and kernel by kernel; say it at the end, and in "
                    "profile.csv",
@@ -117,6 +122,7 @@ EnsembleFlags ensemble_flags(const SolveFlags& flags) {
           .members = flags.members,
           .restart = flags.run.restart.has_value(),
           .resume = flags.run.resume,
+          .at_a_time = flags.at_a_time,
           .plan = flags.run.plan};
 }
 
@@ -159,9 +165,9 @@ Facts solved(StageContext& context, const SolveFlags& flags, SolveOptions& optio
   Domain domain = read_domain(domain_file);
   const Facts insisted = judge_inputs(context, options, domain_file, domain);
   if (ensemble_of(context.recipe).on()) return run_members_of(context, flags, domain, options, device, insisted);
-  if (flags.members)
-    throw RecipeError({"--members without an ensemble", "the recipe asks for one run",
-                       "Leave it out, or add [ensemble] with members"});
+  if (flags.members || flags.at_a_time > 0)
+    throw RecipeError({flags.members ? "--members without an ensemble" : "--at-a-time without an ensemble",
+                       "the recipe asks for one run", "Leave it out, or add [ensemble] with members"});
   if (!options.stability.factor_of_safety) {
     options = settle_stiffness(domain, options);
     return run_in_time(context, flags.run, options, device, domain, insisted);
@@ -187,8 +193,11 @@ void solve_with_budget(StageContext& context, const SolveFlags& flags, const Bud
   refuse_budget(context, options_of(context.recipe, context.out), flags.run);
   const bool reads_only = context.check_only || flags.run.plan;
   const bool is_there = !reads_only && is_this_run(context);
-  if (!is_there) solve_itself(context, flags);
-  BudgetFlags how{.on = choose_device(flags.on), .plan = flags.run.plan, .resume = flags.run.resume};
+  SolveFlags of_itself = flags;
+  of_itself.at_a_time = 0;
+  if (!is_there) solve_itself(context, of_itself);
+  BudgetFlags how{
+      .on = choose_device(flags.on), .at_a_time = flags.at_a_time, .plan = flags.run.plan, .resume = flags.run.resume};
   how.restart = is_there && flags.run.restart;  // a run that went on itself has no budget to go on from
   run_budget(context, how, budget);
 }

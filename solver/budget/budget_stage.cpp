@@ -145,11 +145,13 @@ std::vector<AnyDevice> budget_devices(int count, On on) {
 }
 
 /// How many of the runs are made at a time: by the memory of the largest.
-InFlight budget_flight(const BudgetScene& scene, const BudgetOptions& options, On on, std::size_t runs) {
-  const std::vector<AnyDevice> each = budget_devices(on == On::gpu ? GpuDevice::count() : 1, on);
+InFlight budget_flight(const BudgetScene& scene, const BudgetOptions& options, const BudgetFlags& flags,
+                       std::size_t runs) {
+  const std::vector<AnyDevice> each = budget_devices(flags.on == On::gpu ? GpuDevice::count() : 1, flags.on);
   const MemberCost cost = cost_of_member(scene.domain, scene.base.settled, each.front(), false);
   const double finer = std::max(1.0, std::pow(options.cell_factor, -3.0));
-  return in_flight(static_cast<std::int64_t>(std::max<std::size_t>(runs, 1)), finer * cost.bytes, each);
+  return in_flight(static_cast<std::int64_t>(std::max<std::size_t>(runs, 1)), flags.at_a_time, finer * cost.bytes,
+                   each);
 }
 
 /// This function says what failed and what is left out; it throws where nothing is left to compare.
@@ -165,8 +167,9 @@ void judge_budget(const Budget& budget) {
 }
 
 /// This function says the price: the runs, what each takes, what is left out and why.
-void say_price(const StageContext& context, const BudgetScene& scene, const BudgetOptions& options, On on) {
-  const AnyDevice device = make_device(on);
+void say_price(const StageContext& context, const BudgetScene& scene, const BudgetOptions& options,
+               const BudgetFlags& flags) {
+  const AnyDevice device = make_device(flags.on);
   std::vector<std::string> lines;
   double least = 0, most = 0;
   std::size_t runs = 0;
@@ -184,7 +187,7 @@ void say_price(const StageContext& context, const BudgetScene& scene, const Budg
     most += all;
     ++runs;
   }
-  const InFlight flight = budget_flight(scene, options, on, runs);
+  const InFlight flight = budget_flight(scene, options, flags, runs);
   log_info(fmt::format("{:<12} {} runs beside the run itself, {} at a time ({}): {} to {} in all", "budget", runs,
                        flight.count, flight.reason, time_words(least / flight.count), time_words(most / flight.count)));
   for (const std::string& line : lines) log_info(line);
@@ -195,7 +198,7 @@ void make_runs(const StageContext& context, const BudgetFlags& flags, const Budg
                const BudgetOptions& options, Budget& budget) {
   const BudgetPaths paths{context.out};
   const std::size_t waiting = budget.count(BudgetState::waiting);
-  const InFlight flight = budget_flight(scene, options, flags.on, waiting);
+  const InFlight flight = budget_flight(scene, options, flags, waiting);
   log_info(
       fmt::format("budget: {} runs beside the run itself, {} at a time: {}", waiting, flight.count, flight.reason));
   const OwnEnd saving("finished runs of the budget are saved");
@@ -250,7 +253,7 @@ void run_budget(StageContext& context, const BudgetFlags& flags, const BudgetOpt
   const auto begun = std::chrono::steady_clock::now();
   const BudgetPaths paths{context.out};
   const BudgetScene scene = read_budget_scene(context, options);
-  if (flags.plan) return say_price(context, scene, options, flags.on);
+  if (flags.plan) return say_price(context, scene, options, flags);
   if (context.check_only) return;
   Budget budget = fresh_budget(context, scene, options);
   context.results.push_back(paths.budget());

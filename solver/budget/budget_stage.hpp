@@ -15,6 +15,7 @@ namespace talus::solver {
 /// What the command line says of a budget.
 struct BudgetFlags {
   On on = On::cpu;       ///< cpu or gpu; of GPUs all that CUDA sees
+  int at_a_time = 0;     ///< runs at a time; 0: as many as suit
   bool plan = false;     ///< say what would run, and run nothing
   bool restart = false;  ///< go on from what is finished, which must be there
   bool resume = false;   ///< go on from it where there is any

@@ -87,7 +87,7 @@ class Variations {
     cells();
     for (const bool more : {false, true}) friction(more);
     for (const bool more : {false, true}) drag(more);
-    weakening();
+    for (const bool fast : {false, true}) weakening(fast);
     for (const bool more : {false, true}) strength(more);
     survey();
     return std::move(list_);
@@ -111,7 +111,7 @@ class Variations {
   void cells();
   void friction(bool more);
   void drag(bool more);
-  void weakening();
+  void weakening(bool fast);
   void strength(bool more);
   void survey();
 
@@ -263,17 +263,20 @@ void Variations::drag(bool more) {
   add(std::move(one), words + changed_words(one, settled_.size()));
 }
 
-void Variations::weakening() {
+/// The law without its weakening: with the friction at rest, or of fast slip, at any speed.
+void Variations::weakening(bool fast) {
   if (!budget_.has("weakening") || base_.base.law != FrictionLaw::velocity_weakening) return;
-  Variation one = fresh("weakening", "weakening");
-  one.options.base.steady_coefficient = base_.base.peak_coefficient;
-  one.run.values.push_back(set_to("solve.base.steady_coefficient", base_.base.peak_coefficient));
+  Variation one = fresh("weakening", fast ? "weakening-fast" : "weakening-rest");
+  const double mu = fast ? base_.base.steady_coefficient : base_.base.peak_coefficient;
+  one.options.base.steady_coefficient = one.options.base.peak_coefficient = mu;
+  one.run.values.push_back(fast ? set_to("solve.base.peak_coefficient", mu)
+                                : set_to("solve.base.steady_coefficient", mu));
   for (const auto& [name, raster] : domain_.bed)
     if (name == "peak_coefficient" || name == "steady_coefficient") {
       one.run.state = BudgetState::left_out;
       one.run.reason = "the friction of the bed is a map, and this row is made of one number";
     }
-  add(std::move(one), fmt::format("the friction at rest, {:g}, kept at any speed", base_.base.peak_coefficient));
+  add(std::move(one), fmt::format("the friction {}, {:g}, at any speed", fast ? "of fast slip" : "at rest", mu));
 }
 
 void Variations::strength(bool more) {

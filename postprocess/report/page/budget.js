@@ -21,7 +21,8 @@ const shownScores = { footprint_csi: "Footprint CSI", deposit_csi: "Deposit CSI"
 function shareCell(line, largest) {
   const width = largest > 0 ? (100 * line.elsewhere) / largest : 0;
   const bar = h("span", { class: `budget-bar ${line.kind}`, style: `width: ${width.toFixed(1)}%` });
-  return h("td", { class: "budget-share" }, h("span", { class: "budget-track" }, bar), h("b", {}, percent(line.elsewhere)));
+  const track = h("span", { class: "budget-track" }, bar);
+  return h("td", { class: "budget-share" }, track, h("b", {}, percent(line.elsewhere)));
 }
 
 /** The scores that have a column, with their place among all. */
@@ -131,9 +132,9 @@ export function drawBudget(data) {
       "Each line is a run that differs from this one in one thing. Deposit elsewhere: share of the volume of this " +
         "run\u2019s deposit that lies in other cells in the other run, volumes set equal; doubts are about the slide " +
         "(brown) or about the computation (blue). Run-out and largest speed: other run less this one. Overlap: " +
-        "footprint of both over footprint of either. Time: wall time, runs beside one another. Doubts of several lines need not " +
-        "add up, and what no line asks about is not in this table. The layers \u201cSpread\u201d of the map show " +
-        "where the deposit differs.",
+        "footprint of both over footprint of either. Time: wall time, runs beside one another. Doubts of several " +
+        "lines need not add up, and what no line asks about is not in this table. The layers \u201cSpread\u201d of " +
+        "the map show where the deposit differs.",
     ),
   );
 }

@@ -197,7 +197,7 @@ TEST(BudgetVariations, are_those_of_the_law_of_the_bed) {
   EXPECT_EQ(names_of("law = \"voellmy\"\n"),
             "step modulus integrator friction-less friction-more drag-less drag-more ");
   EXPECT_EQ(names_of("law = \"velocity-weakening\"\n"),
-            "step modulus integrator friction-less friction-more weakening ");
+            "step modulus integrator friction-less friction-more weakening-rest weakening-fast ");
   EXPECT_EQ(names_of("law = \"stick\"\n"), "step modulus integrator ");
 }
 
