@@ -34,7 +34,9 @@ struct StageOfBudget {
 
 TEST(BudgetStage, refuses_what_is_no_single_run_in_time) {
   EXPECT_EQ(StageOfBudget(heap_recipe()).refused(), "");
-  EXPECT_EQ(StageOfBudget(heap_recipe()).refused({.profile = true}).find("an error budget with --profile"), 0u);
+  RunFlags profile;
+  profile.profile = true;
+  EXPECT_EQ(StageOfBudget(heap_recipe()).refused(profile).find("an error budget with --profile"), 0u);
   const std::string many = "[ensemble]\nmembers = 4\n[[ensemble.vary]]\nkey = \"solve.cfl\"\nlow = 0.1\nhigh = 0.2\n";
   EXPECT_EQ(StageOfBudget(heap_recipe() + many).refused().find("an error budget with [ensemble]"), 0u);
 }
