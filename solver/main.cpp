@@ -7,11 +7,13 @@
 
 #include <fmt/format.h>
 
+#include "common/budget/budget.hpp"
 #include "common/domain/domain.hpp"
 #include "common/domain/threads.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/machine.hpp"
 #include "common/stage/stage.hpp"
+#include "solver/budget/budget_stage.hpp"
 #include "solver/ensemble/ensemble_stage.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/parallel/on.hpp"
@@ -33,13 +35,17 @@ const char* const examples =
     "  talus-solve recipe.toml --out out/valley --restart  # go on after Ctrl-C\n"
     "  talus-solve recipe.toml --out out/valley --resume   # go on where there is something to go on from\n"
     "  talus-solve recipe.toml --out out/valley --plan     # say what is on, how many steps, how long; write nothing\n"
-    "  talus-solve recipe.toml --out out/valley --members 0:250   # a part of an ensemble";
+    "  talus-solve recipe.toml --out out/valley --members 0:250   # a part of an ensemble\n"
+    "  talus-solve recipe.toml --out out/valley --budget   # and runs that differ in one thing each: how sure is it?\n"
+    "  talus-solve recipe.toml --out out/valley --budget --plan   # what they take";
 
 /// The arguments of the command line beyond those that every stage takes.
 struct SolveFlags {
   On on = On::automatic;
   RunFlags run;
+  bool budget = false;
   std::optional<MemberRange> members;
+  int at_a_time = 0;  // 0: as the program decides
 };
 
 On device_called(const std::string& word) {
@@ -64,6 +70,13 @@ std::vector<Flag> flags(SolveFlags& given) {
            .help = "Of an ensemble, members A to B-1 alone, counted from 0; talus-postprocess adds parts up",
            .value = "A:B",
            .set = [&](const std::string& words) { given.members = member_range(words); }},
+          {.name = "--budget",
+           .help = "Make the runs of the error budget too ([budget]): how far each doubt moves the deposit",
+           .set = [&](const std::string&) { given.budget = true; }},
+          {.name = "--at-a-time",
+           .help = "Of an ensemble or a budget, runs at a time (default: one a thread; of a GPU what it gains from)",
+           .value = "N",
+           .set = [&](const std::string& words) { given.at_a_time = members_at_a_time(words); }},
           {.name = "--profile",
            .help = "Measure where the time goes, phase by phase and kernel by kernel; say it at the end, and in "
                    "profile.csv",
@@ -74,15 +87,25 @@ std::vector<Flag> flags(SolveFlags& given) {
            .set = [&](const std::string&) { given.run.plan = true; }}};
 }
 
+/// The [solve] and, where it is made, the [budget] of a recipe, as they are used.
+std::string used_tables(const recipe::Recipe& recipe, bool budget_asked) {
+  const BudgetOptions budget = budget_of(recipe, budget_asked);
+  std::string text = recipe::to_toml(recipe.read<SolveOptions>("solve"), "solve", false);
+  if (budget.make) text += "\n" + recipe::to_toml(budget, "budget", false);
+  return text;
+}
+
 Stage stage() {
   Stage s;
   s.name = "talus-solve";
   s.table = "solve";
   s.summary = "Simulate the slide in three dimensions with the material point method: domain.vdb -> run.h5.";
   s.examples = examples;
-  s.template_toml = [] { return recipe::to_toml(SolveOptions{}, "solve", true); };
-  s.used_toml = [](const recipe::Recipe& recipe) {
-    return recipe::to_toml(recipe.read<SolveOptions>("solve"), "solve", false);
+  s.template_toml = [] {
+    return recipe::to_toml(SolveOptions{}, "solve", true) +
+           "\n# Runs that differ in one thing each, and say how sure the run is (--budget). All stages read this "
+           "table.\n" +
+           recipe::to_toml(BudgetOptions{}, "budget", true);
   };
   return s;
 }
@@ -99,6 +122,7 @@ EnsembleFlags ensemble_flags(const SolveFlags& flags) {
           .members = flags.members,
           .restart = flags.run.restart.has_value(),
           .resume = flags.run.resume,
+          .at_a_time = flags.at_a_time,
           .plan = flags.run.plan};
 }
 
@@ -106,6 +130,8 @@ Dependencies depends(const StageContext& context, const SolveFlags& flags) {
   if (ensemble_of(context.recipe).on()) return depends_of_ensemble(context, ensemble_flags(flags));
   Dependencies depends{{RunPaths(context.out).run}, inputs_of(options_of(context.recipe, context.out), context.out)};
   if (const auto checkpoint = checkpoint_of(flags.run, context.out)) depends.inputs.push_back(*checkpoint);
+  if (const BudgetOptions budget = budget_of(context.recipe, flags.budget); budget.make)
+    add_depends_of_budget(context, budget, depends);
   return depends;
 }
 
@@ -139,9 +165,9 @@ Facts solved(StageContext& context, const SolveFlags& flags, SolveOptions& optio
   Domain domain = read_domain(domain_file);
   const Facts insisted = judge_inputs(context, options, domain_file, domain);
   if (ensemble_of(context.recipe).on()) return run_members_of(context, flags, domain, options, device, insisted);
-  if (flags.members)
-    throw RecipeError({"--members without an ensemble", "the recipe asks for one run",
-                       "Leave it out, or add [ensemble] with members"});
+  if (flags.members || flags.at_a_time > 0)
+    throw RecipeError({flags.members ? "--members without an ensemble" : "--at-a-time without an ensemble",
+                       "the recipe asks for one run", "Leave it out, or add [ensemble] with members"});
   if (!options.stability.factor_of_safety) {
     options = settle_stiffness(domain, options);
     return run_in_time(context, flags.run, options, device, domain, insisted);
@@ -151,13 +177,34 @@ Facts solved(StageContext& context, const SolveFlags& flags, SolveOptions& optio
   return find_stability(context, options, device, domain, insisted);
 }
 
-void solve(StageContext& context, const SolveFlags& flags) {
+/// This function does what the recipe asks for but a budget, and notes what was used.
+void solve_itself(StageContext& context, const SolveFlags& flags) {
   SolveOptions options = options_of(context.recipe, context.out);
   const Facts used = solved(context, flags, options);
   if (used.empty()) return;
   auto inputs = inputs_of(options, context.out);
   inputs.insert(inputs.begin(), context.recipe.file());
   write_used_recipe(context, stage(), recipe::to_used_toml(options, "solve"), inputs, used);
+}
+
+/// This function makes the run, unless run.h5 is of this recipe, domain and version already, and then the runs of its
+/// budget.
+void solve_with_budget(StageContext& context, const SolveFlags& flags, const BudgetOptions& budget) {
+  refuse_budget(context, options_of(context.recipe, context.out), flags.run);
+  const bool reads_only = context.check_only || flags.run.plan;
+  const bool is_there = !reads_only && is_this_run(context);
+  SolveFlags of_itself = flags;
+  of_itself.at_a_time = 0;
+  if (!is_there) solve_itself(context, of_itself);
+  BudgetFlags how{
+      .on = choose_device(flags.on), .at_a_time = flags.at_a_time, .plan = flags.run.plan, .resume = flags.run.resume};
+  how.restart = is_there && flags.run.restart;  // a run that went on itself has no budget to go on from
+  run_budget(context, how, budget);
+}
+
+void solve(StageContext& context, const SolveFlags& flags) {
+  const BudgetOptions budget = budget_of(context.recipe, flags.budget);
+  budget.make ? solve_with_budget(context, flags, budget) : solve_itself(context, flags);
 }
 
 }  // namespace
@@ -167,6 +214,7 @@ int main(int argc, char** argv) {
   Stage s = stage();
   s.flags = flags(given);
   s.depends = [&](const StageContext& context) { return depends(context, given); };
+  s.used_toml = [&](const recipe::Recipe& recipe) { return used_tables(recipe, given.budget); };
   s.part = [&] { return given.members ? fmt::format("{}-{}", given.members->first, given.members->end) : ""; };
   s.run = [&](StageContext& context) {
     limit_threads_of_libraries(thread_limit());
