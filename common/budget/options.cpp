@@ -3,7 +3,9 @@
 #include "common/budget/options.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <iterator>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -12,7 +14,8 @@ namespace {
 
 std::vector<std::string_view> names_of_rows() {
   std::vector<std::string_view> names;
-  for (const BudgetRow& row : budget_rows) names.emplace_back(row.name);
+  for (const BudgetRow& row : budget_rows)
+    if (!std::string_view(row.name).starts_with("own")) names.emplace_back(row.name);
   return names;
 }
 
@@ -22,6 +25,20 @@ const BudgetRow* find_budget_row(std::string_view name) {
   const auto* found = std::find_if(std::begin(budget_rows), std::end(budget_rows),
                                    [&](const BudgetRow& row) { return row.name == name; });
   return found == std::end(budget_rows) ? nullptr : found;
+}
+
+void OwnChange::describe(recipe::Visitor& v) {
+  v.text("name", name, "what the table calls the run: letters, digits and dashes");
+  const bool fits = !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '_';
+  });
+  v.needs(fits, {fmt::format("[[budget.run]] name = \"{}\"", name), "it stands in tables and files",
+                 "Use letters, digits, '-' and '_'"});
+  recipe::choice(v, "kind", kind, {{"physical", BudgetKind::physical}, {"numerical", BudgetKind::numerical}},
+                 "whether the doubt is about the slide or about the computation");
+  v.names("set", set, {}, "what is other, as for --set: [\"solve.base.friction_angle_deg=20\"]");
+  v.needs(!set.empty(), {fmt::format("[[budget.run]] \"{}\" sets nothing", name), "the run would be the same",
+                         "Add set = [\"solve. ...=...\"]"});
 }
 
 void BudgetOptions::describe(recipe::Visitor& v) {
@@ -49,11 +66,18 @@ void BudgetOptions::describe(recipe::Visitor& v) {
   recipe::table(v, "elevation_error", elevation_error,
                 "row survey: the error of the elevation models; nothing: as they show it on stable ground",
                 "budget.elevation_error");
+  recipe::list(v, "run", changes, "a run of your own, with other values of [solve]");
 }
 
 void BudgetOptions::check(std::vector<Fault>& faults) const {
-  if (std::all_of(std::begin(budget_rows), std::end(budget_rows), [&](const BudgetRow& row) { return !has(row.name); }))
+  const std::vector<std::string_view> rows = names_of_rows();
+  if (changes.empty() && std::none_of(rows.begin(), rows.end(), [&](std::string_view row) { return has(row); }))
     faults.push_back({"[budget] leave_out names all rows", "nothing would be left to run", "Leave one of them in"});
+  std::set<std::string> names;
+  for (const OwnChange& change : changes)
+    if (!names.insert(change.name).second)
+      faults.push_back({fmt::format("[[budget.run]] \"{}\" is there twice", change.name),
+                        "the table could not tell the runs apart", "Give one of them another name"});
 }
 
 bool BudgetOptions::has(std::string_view row) const {

@@ -36,10 +36,20 @@ inline constexpr BudgetRow budget_rows[] = {
     {"weakening", BudgetKind::physical, "law of the bed"},
     {"strength", BudgetKind::physical, "friction inside"},
     {"survey", BudgetKind::physical, "error of the survey"},
+    {"own", BudgetKind::physical, "change of the recipe's own"},
+    {"own-numerical", BudgetKind::numerical, "change of the recipe's own"},
 };
 
 /// The row of a name; null where there is none.
 const BudgetRow* find_budget_row(std::string_view name);
+
+/// A run that the recipe itself names.
+struct OwnChange {
+  std::string name;
+  BudgetKind kind = BudgetKind::physical;
+  std::vector<std::string> set;  ///< "solve.base.law=voellmy"
+  void describe(recipe::Visitor& v);
+};
 
 /// The keys of [budget].
 struct BudgetOptions {
@@ -54,8 +64,9 @@ struct BudgetOptions {
   int survey_draws = 2;                      ///< runs with an error of the survey each
   int seed = 1;                              ///< of those errors
   ElevationErrorOptions elevation_error;     ///< nothing given: as the survey says, where it does
+  std::vector<OwnChange> changes;            ///< [[budget.run]]
   void describe(recipe::Visitor& v);
-  /// The method adds the faults of names that no row has.
+  /// The method adds the faults of a budget without runs, and of runs that share a name.
   void check(std::vector<Fault>& faults) const;
 
   /// Whether a row is made.

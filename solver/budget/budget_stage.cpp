@@ -17,6 +17,7 @@
 #include "common/run/trusted_file.hpp"
 #include "common/stage/console.hpp"
 #include "common/stage/interrupt.hpp"
+#include "solver/budget/own_changes.hpp"
 #include "solver/budget/run_variations.hpp"
 #include "solver/ensemble/in_flight.hpp"
 #include "solver/ensemble/member_cost.hpp"
@@ -79,6 +80,8 @@ BudgetScene read_budget_scene(const StageContext& context, const BudgetOptions& 
   scene.insisted = judge_inputs(context, scene.base.asked, file, scene.domain);
   scene.base.settled = settle_steps(scene.domain, settle_stiffness(scene.domain, scene.base.asked));
   scene.variations = variations_of(scene.domain, scene.base, options);
+  for (Variation& one : own_changes(context.recipe, context.out, scene.base, options))
+    scene.variations.push_back(std::move(one));
   for (Variation& one : scene.variations)
     if (one.run.state == BudgetState::waiting) find_domain(one, {context.out}, scene.domain);
   return scene;

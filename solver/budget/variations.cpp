@@ -94,7 +94,6 @@ class Variations {
   }
 
  private:
-  static std::vector<std::string> settled_values(const BudgetBase& base);
   /// What a recipe with such options would be refused for.
   static std::vector<std::string> faults_of(SolveOptions options);
   /// The variation of a row, as the run itself is until something is changed.
@@ -122,26 +121,6 @@ class Variations {
   std::vector<std::string> known_faults_;  ///< of the run itself: what the program settles need not be what recipes say
   std::vector<Variation> list_;
 };
-
-/// What the program settled, as keys that say so.
-std::vector<std::string> Variations::settled_values(const BudgetBase& base) {
-  const auto& [asked, settled] = base;
-  std::vector<std::string> values;
-  if (asked.material.youngs_modulus != settled.material.youngs_modulus ||
-      asked.material.stiffness == StiffnessKind::automatic) {
-    values.emplace_back("solve.material.stiffness=as-given");
-    values.push_back(set_to("solve.material.youngs_modulus_Pa", settled.material.youngs_modulus));
-    for (std::size_t n = 0; n < settled.parts.size(); ++n)
-      values.push_back(set_to(fmt::format("solve.part[{}].material.youngs_modulus_Pa", n),
-                              settled.parts[n].material.youngs_modulus));
-  }
-  if (asked.integrator == Integrator::automatic && settled.integrator != Integrator::automatic) {
-    values.push_back(std::string("solve.integrator=") +
-                     (settled.integrator == Integrator::explicit_ ? "explicit" : "column-implicit"));
-    values.push_back(set_to("solve.cfl", settled.cfl));
-  }
-  return values;
-}
 
 void Variations::add(Variation&& one, std::string words) {
   one.run.words = std::move(words);
@@ -316,6 +295,25 @@ void Variations::survey() {
 }
 
 }  // namespace
+
+std::vector<std::string> settled_values(const BudgetBase& base) {
+  const auto& [asked, settled] = base;
+  std::vector<std::string> values;
+  if (asked.material.youngs_modulus != settled.material.youngs_modulus ||
+      asked.material.stiffness == StiffnessKind::automatic) {
+    values.emplace_back("solve.material.stiffness=as-given");
+    values.push_back(set_to("solve.material.youngs_modulus_Pa", settled.material.youngs_modulus));
+    for (std::size_t n = 0; n < settled.parts.size(); ++n)
+      values.push_back(set_to(fmt::format("solve.part[{}].material.youngs_modulus_Pa", n),
+                              settled.parts[n].material.youngs_modulus));
+  }
+  if (asked.integrator == Integrator::automatic && settled.integrator != Integrator::automatic) {
+    values.push_back(std::string("solve.integrator=") +
+                     (settled.integrator == Integrator::explicit_ ? "explicit" : "column-implicit"));
+    values.push_back(set_to("solve.cfl", settled.cfl));
+  }
+  return values;
+}
 
 std::vector<Variation> variations_of(const Domain& domain, const BudgetBase& base, const BudgetOptions& budget) {
   return Variations(domain, base, budget).all();

@@ -29,6 +29,9 @@ struct Variation {
   BedChange change_bed = {};  ///< of the rasters of the bed; none: they stay
 };
 
+/// What the program settled for the run itself, as keys that say so: "solve.cfl=0.8".
+std::vector<std::string> settled_values(const BudgetBase& base);
+
 /// The runs that apply to a scene, in the order of budget_rows. `domain` is that of the run itself. What the recipe
 /// leaves to the program is settled once, as for the run itself, so that a run differs in one thing.
 std::vector<Variation> variations_of(const Domain& domain, const BudgetBase& base, const BudgetOptions& budget);

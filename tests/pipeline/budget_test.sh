@@ -140,6 +140,30 @@ test_an_interrupted_budget_goes_on() {
   expect_words "out/budget.h5: it holds this very budget already"
 }
 
+test_an_interrupted_run_goes_on_to_its_budget() {
+  budget 'leave_out = ["cells", "survey", "strength", "friction", "transfer"]'
+  sed -i 's/^end_time_s.*/end_time_s = 20.0\ncheckpoint_interval_s = 1.0/' recipe.toml
+  expect_exit 0 preprocess --budget
+  interrupt INT out/checkpoint.h5 "$bin/talus-solve" recipe.toml --out out --on cpu --budget
+  [[ ! -e out/run.h5 && ! -e out/budget.h5 ]] || fail "an interrupted run looks finished"
+  expect_exit 0 solve --budget --restart
+  [[ -s out/run.h5 && -s out/budget.h5 && -s out/solve.used.toml ]] || fail "run or budget is missing"
+  expect_exit 3 solve --budget --set budget.step_factor=0.25 --restart
+  expect_words "out/budget.unfinished.h5: no such file"
+}
+
+test_a_run_of_the_recipes_own_stands_in_the_table() {
+  budget 'leave_out = ["cells", "survey", "strength", "friction", "transfer", "step"]' '[[budget.run]]' \
+    'name = "steep"' 'set = ["solve.base.friction_angle_deg=25"]'
+  expect_exit 0 preprocess
+  expect_exit 0 solve --budget
+  expect_exit 0 postprocess
+  grep -q "^steep,own,physical,done,solve.base.friction_angle_deg=25," out/budget.csv || fail "it is not in the table"
+  sed -i 's/friction_angle_deg=25/friction_angel_deg=25/' recipe.toml
+  expect_exit 2 solve --budget
+  expect_words '[[budget.run]] "steep": ' "friction_angle_deg"
+}
+
 test_the_price_is_said_before() {
   budget
   expect_exit 0 preprocess --budget

@@ -43,8 +43,15 @@ TEST(BudgetOptions, refuse_what_no_row_is_and_what_changes_nothing) {
   expect_refused("[budget]\n[budget.elevation_error]\nterrain_deviation_m = 1.0\n",
                  "[budget.elevation_error] range_m is missing");
   std::string all;
-  for (const BudgetRow& row : budget_rows) all += std::string("\"") + row.name + "\", ";
+  for (const BudgetRow& row : budget_rows)
+    if (row.name != std::string("own") && row.name != std::string("own-numerical"))
+      all += std::string("\"") + row.name + "\", ";
   expect_refused("[budget]\nleave_out = [" + all + "]\n", "names all rows");
+  const std::string own = "[[budget.run]]\nname = \"law\"\nset = [\"solve.base.law=voellmy\"]\n";
+  EXPECT_EQ(options_in("[budget]\nleave_out = [" + all + "]\n" + own).changes.size(), 1u) << "a run of its own is left";
+  expect_refused(own + own, "[[budget.run]] \"law\" is there twice");
+  expect_refused("[[budget.run]]\nname = \"a/b\"\nset = [\"solve.cfl=0.1\"]\n", "letters, digits");
+  expect_refused("[[budget.run]]\nname = \"nothing\"\n", "sets nothing");
 }
 
 Budget small_budget() {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "solver/budget/own_changes.hpp"
 #include "solver/budget/run_variations.hpp"
 #include "solver/ensemble/member_run.hpp"
 #include "solver/run/simulation.hpp"
@@ -32,6 +33,7 @@ struct BudgetScene {
   std::vector<Variation> variations() const {
     std::vector<Variation> found = variations_of(domain, base, options);
     std::erase_if(found, [](const Variation& one) { return !one.run.domain.empty(); });
+    for (Variation& one : own_changes(recipe, scratch.folder(), base, options)) found.push_back(std::move(one));
     return found;
   }
 
@@ -159,6 +161,44 @@ TEST_P(BudgetRuns, move_a_block_as_far_as_the_doubt_of_its_friction_does) {
 }
 
 TALUS_IN_EACH_PLACE(BudgetRuns);
+
+/// A recipe of the heap with a run of its own; `more` are lines of [solve].
+std::string with_own_run(const std::string& set, const std::string& more = "") {
+  return heap_recipe(more) + "[budget]\nleave_out = [\"strength\", \"transfer\", \"integrator\"]\n" +
+         "[[budget.run]]\nname = \"voellmy\"\nset = [" + set + "]\n";
+}
+
+TEST_P(BudgetRuns, of_the_recipes_own_are_the_runs_with_what_they_set) {
+  const std::string law = "'solve.base.law=\"voellmy\"', \"solve.base.turbulence_m_s2=400\"";
+  const BudgetScene scene(with_own_run(law), small_heap());
+  const Variation own = scene.variations().back();
+  EXPECT_EQ(own.run.row, "own");
+  EXPECT_EQ(own.options.base.law, FrictionLaw::voellmy);
+  expect_runs_by_hand(scene, GetParam());
+}
+
+TEST(BudgetOwnRuns, are_settled_as_the_run_itself_is) {
+  const BudgetScene scene(
+      with_own_run("\"solve.base.friction_angle_deg=5\"", "integrator = \"auto\"\naccuracy = 0.02\n"), small_heap());
+  const SolveOptions own = scene.variations().back().options, &base = scene.base.settled;
+  EXPECT_EQ(own.base.friction_angle, 5);
+  EXPECT_EQ(own.integrator, base.integrator);
+  EXPECT_EQ(own.cfl, base.cfl);
+  EXPECT_EQ(own.material.youngs_modulus, base.material.youngs_modulus);
+}
+
+TEST(BudgetOwnRuns, that_set_what_cannot_be_are_refused_by_name) {
+  for (const char* set :
+       {"\"solve.base.colour=5\"", "\"preprocess.grid.spacing_m=5\"", "\"solve.base.friction_angle_deg=95\""}) {
+    const BudgetScene scene(with_own_run(set), small_heap());
+    try {
+      scene.variations();
+      FAIL() << set;
+    } catch (const RecipeError& error) {
+      EXPECT_EQ(std::string(error.what()).find("[[budget.run]] \"voellmy\""), 0u) << error.what();
+    }
+  }
+}
 
 TEST(BudgetVariations, take_a_doubt_in_degrees_in_place_of_a_share) {
   const BudgetScene scene(heap_recipe() + "[budget]\nfriction_doubt_deg = 2.0\n", small_heap());
