@@ -18,6 +18,7 @@
 #include "common/run/run_file.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/input_file.hpp"
+#include "postprocess/budget/budget_table.hpp"
 #include "postprocess/ensemble/run_ensemble.hpp"
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/fields/history_table.hpp"
@@ -51,6 +52,7 @@ struct Job {
   std::optional<Survey> survey;
   Thalweg thalweg;
   Hazard hazard;
+  std::optional<BudgetTable> budget = {};
 };
 
 /// The map must hold the volume of the points: 1e-9 of it where the run was in double precision. A hundredth off is no
@@ -111,7 +113,7 @@ std::string used_text(const StageContext& context, const Job& job) {
 
 /// Everything under maps/.
 void write_maps(StageContext& context, const Job& job) {
-  const auto& [file, run, options, survey, thalweg, hazard] = job;
+  const auto& [file, run, options, survey, thalweg, hazard, budget] = job;
   const auto folder = context.out / "maps";
   make_folder(folder);
   auto& results = context.results;
@@ -119,6 +121,10 @@ void write_maps(StageContext& context, const Job& job) {
   results.insert(results.end(), maps.begin(), maps.end());
   const auto for_gis = write_gis(folder, maps, {run, options, survey, &hazard});
   results.insert(results.end(), for_gis.begin(), for_gis.end());
+  if (budget) {
+    const auto spread = write_spread_maps(folder, run, *budget);
+    results.insert(results.end(), spread.begin(), spread.end());
+  }
   const auto for_authority = write_hazard_maps(folder, run, hazard);
   results.insert(results.end(), for_authority.begin(), for_authority.end());
   if (options.avaframe) {
@@ -127,14 +133,37 @@ void write_maps(StageContext& context, const Job& job) {
     results.insert(results.end(), aliases.begin(), aliases.end());
   }
   results.push_back(folder / "results.nc");
-  write_netcdf(results.back(), run, {options.institution, context.command_line, options.start_time});
+  NetcdfNotes notes{options.institution, context.command_line, options.start_time, {}};
+  if (budget)
+    for (const SpreadMap& map : spread_maps(*budget))
+      notes.more.push_back({map.name, map.long_name, "m", "area: mean", &map.raster->values});
+  write_netcdf(results.back(), run, notes);
 }
 
 /// So that new maps never lie beside the scores or the report of an older run.
 void remove_older(const fs::path& out) {
-  for (const auto* name : {"score.json", "score.txt", "report.html", "animation.mp4", "animation.gif", "gauges.csv",
-                           "sections.csv", "buildings.csv", "maps/intensity.tif", "maps/intensity.qml",
-                           "maps/reach_cone.tif", "maps/reach_cone.qml", "maps/reach.gpkg", "maps/buildings.gpkg"}) {
+  for (const auto* name : {"score.json",
+                           "score.txt",
+                           "report.html",
+                           "animation.mp4",
+                           "animation.gif",
+                           "gauges.csv",
+                           "sections.csv",
+                           "buildings.csv",
+                           "budget.csv",
+                           "budget.json",
+                           "maps/deposit_spread.tif",
+                           "maps/deposit_spread.qml",
+                           "maps/deposit_spread_numerical.tif",
+                           "maps/deposit_spread_numerical.qml",
+                           "maps/deposit_spread_physical.tif",
+                           "maps/deposit_spread_physical.qml",
+                           "maps/intensity.tif",
+                           "maps/intensity.qml",
+                           "maps/reach_cone.tif",
+                           "maps/reach_cone.qml",
+                           "maps/reach.gpkg",
+                           "maps/buildings.gpkg"}) {
     std::error_code none_there;
     fs::remove(out / name, none_there);
   }
@@ -142,7 +171,7 @@ void remove_older(const fs::path& out) {
 }
 
 void write_results(StageContext& context, const Job& job) {
-  const auto& [file, run, options, survey, thalweg, hazard] = job;
+  const auto& [file, run, options, survey, thalweg, hazard, budget] = job;
   const auto score = make_score(run, options, survey, thalweg, &hazard);
   const auto table = to_table(score);
   remove_older(context.out);
@@ -162,19 +191,27 @@ void write_results(StageContext& context, const Job& job) {
   write("history.nc", history_netcdf(run, options.start_time));
   for (const auto& [kind, rows] : place_tables(run.history)) write((kind + "s.csv").c_str(), rows);
   if (!hazard.buildings.empty()) write("buildings.csv", buildings_table(hazard.buildings));
+  if (budget) {
+    write("budget.csv", budget_csv(*budget));
+    write("budget.json", budget_json_text(*budget, run));
+  }
   const auto used = used_text(context, job);
   write("postprocess.used.toml", used);
   if (options.report) {
     auto stages = texts_of_stages(file.parent_path(), run.summary);
     stages.push_back({"postprocess", used});
     const auto comparison = text_of(file.parent_path() / "survey" / "survey.json");
-    write("report.html",
-          report_html({run, options, survey, score, thalweg, std::move(stages), comparison, file, &hazard}));
+    write("report.html", report_html({run, options, survey, score, thalweg, std::move(stages), comparison, file,
+                                      &hazard, budget ? &*budget : nullptr}));
   }
   write("score.txt", table);
   write("score.json", to_json(score));  // last: where it lies, everything is there
   log_info("\n" + table);
+  if (budget) log_info("\n" + budget_words(*budget));
 }
+
+/// The budget of a run, which lies beside it.
+fs::path budget_file(const fs::path& run) { return BudgetPaths{run.parent_path()}.budget(); }
 
 /// What the report shows of the stages before and of the survey, where it lies beside the run.
 std::vector<fs::path> texts_beside(const fs::path& folder) {
@@ -207,6 +244,7 @@ Dependencies depends(const StageContext& context) {
                                survey.peak_thickness, survey.polygon, options.thalweg});
   inputs.insert(inputs.begin(), run);
   for (const fs::path& polygons : hazard_inputs(options)) inputs.push_back(polygons);
+  if (fs::exists(budget_file(run))) inputs.push_back(budget_file(run));
   if (options.report)
     for (const fs::path& file : texts_beside(run.parent_path())) inputs.push_back(file);
   if (!ensemble_of(context.recipe).on()) return {{context.out / "score.json"}, inputs};
@@ -297,6 +335,7 @@ void run_single(StageContext& context, const Options& options) {
   facts.insert(facts.end(), insisted.begin(), insisted.end());
   job.thalweg = thalweg_of(job.run, job.options);
   job.hazard = hazard_of(job.run, job.options);
+  job.budget = budget_table(budget_file(job.file), {job.run, job.options, job.survey, job.thalweg});
   log_info(fmt::format("{}: {} x {} cells of {:g} m, {} frames; {}", job.file.string(), job.run.maps.grid.columns,
                        job.run.maps.grid.rows, job.run.maps.grid.cell, job.run.frames.time.size(),
                        job.survey ? "scored against " + job.survey->name : std::string("no survey to score against")));

@@ -12,6 +12,7 @@
 #include "common/stage/identity.hpp"
 #include "common/stage/machine.hpp"
 #include "common/stage/stage.hpp"
+#include "preprocess/budget/budget_domains.hpp"
 #include "preprocess/ensemble/ensemble.hpp"
 #include "preprocess/obstacle/obstacles.hpp"
 #include "preprocess/output/provenance.hpp"
@@ -42,6 +43,10 @@ void report(const preprocess::Prepared& prepared) {
     (prepared.slide->outside_is_large || prepared.slide->outside_is_doubtful ? log_warning : log_info)(
         preprocess::outside_words(*prepared.slide));
   const std::string whole = prepared.by_release.size() == 1 ? prepared.by_release.front().first : "all releases";
+  if (prepared.by_release.empty()) {
+    log_info("nothing is released: all that moves enters over time, by [[solve.inflow]]");
+    return;
+  }
   for (const std::string& line : preprocess::as_lines(whole, prepared.total)) log_info(line);
   const double count = static_cast<double>(prepared.point_count);
   log_info(fmt::format("material points: {} (the solver needs about {:.0f} MB for them)", grouped(count),
@@ -51,6 +56,7 @@ void report(const preprocess::Prepared& prepared) {
 /// What the command line says beyond what every stage takes.
 struct PreprocessFlags {
   bool difference = false;  // compare the surveys and stop
+  bool budget = false;      // make the domains of the error budget too
 };
 
 Stage stage();
@@ -121,6 +127,7 @@ Dependencies depends(const StageContext& context, const PreprocessFlags& flags) 
   const EnsembleOptions ensemble = ensemble_of(context.recipe);
   if (ensemble.on()) depends.results.push_back(EnsemblePaths{context.out}.members());
   for (const auto& file : preprocess::inputs_of(ensemble)) depends.inputs.push_back(file);
+  if (budget_of(context.recipe, flags.budget).make) depends.results.push_back(BudgetPaths{context.out}.domains());
   return depends;
 }
 
@@ -133,8 +140,8 @@ void look_at_ensemble(const StageContext& context, preprocess::EnsemblePlan& pla
   preprocess::refuse_idle_keys(context.recipe, plan, base);
 }
 
-/// The [preprocess] and, where there is one, the [ensemble] of a recipe, as they are used.
-std::string used_tables(const recipe::Recipe& recipe, bool marked) {
+/// The [preprocess] and, where there are any, the [ensemble] and the [budget] of a recipe, as they are used.
+std::string used_tables(const recipe::Recipe& recipe, bool marked, bool budget_asked) {
   const SlideOptions slides = slides_of(recipe);
   const auto options =
       slides.on() ? preprocess::shared_options(recipe, slides) : recipe.read<preprocess::Options>("preprocess");
@@ -145,23 +152,31 @@ std::string used_tables(const recipe::Recipe& recipe, bool marked) {
     return text + "\n" + (marked ? recipe::to_used_toml(slides, "slides") : recipe::to_toml(slides, "slides", false));
   if (ensemble.on())
     text += "\n" + (marked ? recipe::to_used_toml(ensemble, "ensemble") : recipe::to_toml(ensemble, "ensemble", false));
+  if (const BudgetOptions budget = budget_of(recipe, budget_asked); budget.make)
+    text += "\n" + (marked ? recipe::to_used_toml(budget, "budget") : recipe::to_toml(budget, "budget", false));
   return text;
 }
 
 /// Many slides over one model, each with a domain of its own.
-void run_slides(StageContext& context) {
+void run_slides(StageContext& context, const PreprocessFlags& flags) {
   ensemble_of(context.recipe);  // refuses [ensemble] besides
+  if (budget_of(context.recipe, flags.budget).make)
+    throw RecipeError({"an error budget with [slides]", "it is of one slide", "Leave one of them out"});
   const preprocess::SlidesMade made = preprocess::make_slides(context);
   if (context.check_only) return;
-  write_used_recipe(context, stage(), used_tables(context.recipe, true), made.inputs, made.facts);
+  write_used_recipe(context, stage(), used_tables(context.recipe, true, false), made.inputs, made.facts);
   preprocess::copy_largest(context, made);
 }
 
 void run(StageContext& context, const PreprocessFlags& flags) {
-  if (slides_of(context.recipe).on()) return run_slides(context);
+  if (slides_of(context.recipe).on()) return run_slides(context, flags);
   const auto options = read_options(context);
   if (flags.difference) return run_difference(context, options);
   auto ensemble = preprocess::plan_ensemble(context.recipe, options);
+  const BudgetOptions budget = budget_of(context.recipe, flags.budget);
+  if (ensemble && budget.make)
+    throw RecipeError({"an error budget with [ensemble]", "members of an ensemble say by themselves how far runs go",
+                       "Leave one of them out"});
   preprocess::SurveyMemory memory;
   preprocess::EnsembleBase base{options, preprocess::read_scene(options, &memory), memory, {}, {}, {}};
   auto prepared = preprocess::prepare(preprocess::resolved(options), base.scene,
@@ -176,10 +191,14 @@ void run(StageContext& context, const PreprocessFlags& flags) {
   write_survey_files(context, prepared, marks);
   const auto own = static_cast<std::ptrdiff_t>(prepared.domain.provenance.size());
   write_obstacles(context, prepared);
+  base.inputs = inputs;
+  base.marks = marks;
+  base.obstacles.assign(prepared.domain.provenance.begin() + own, prepared.domain.provenance.end());
+  if (budget.make)
+    preprocess::write_budget_domains(context, budget, base, prepared.domain);
+  else
+    preprocess::remove_budget_domains({context.out});
   if (ensemble) {
-    base.inputs = inputs;
-    base.marks = marks;
-    base.obstacles.assign(prepared.domain.provenance.begin() + own, prepared.domain.provenance.end());
     preprocess::write_ensemble(context, *ensemble, base);
   } else {
     preprocess::remove_members({context.out}, nullptr);
@@ -188,7 +207,7 @@ void run(StageContext& context, const PreprocessFlags& flags) {
   context.results.push_back(file);
   Facts told{{"id", fact(marks, domain_id)}};
   told.insert(told.end(), facts.begin(), facts.end());
-  write_used_recipe(context, stage(), used_tables(context.recipe, true), prepared.inputs, told);
+  write_used_recipe(context, stage(), used_tables(context.recipe, true, flags.budget), prepared.inputs, told);
   write_domain(file, prepared.domain);  // last: where it lies, everything is there
 }
 
@@ -210,7 +229,6 @@ Stage stage() {
            "\n# Many slides over one elevation model: outlines empty is none. All stages read this table.\n" +
            recipe::to_toml(SlideOptions{}, "slides", true);
   };
-  stage.used_toml = [](const recipe::Recipe& recipe) { return used_tables(recipe, false); };
   return stage;
 }
 
@@ -222,7 +240,11 @@ int main(int argc, char** argv) {
   program.flags = {
       {.name = "--difference",
        .help = "Compare before_dem and after_dem, write what changed with its error (OUT/survey), and stop",
-       .set = [&](const std::string&) { given.difference = true; }}};
+       .set = [&](const std::string&) { given.difference = true; }},
+      {.name = "--budget",
+       .help = "Make the domains of the error budget too ([budget]): other cells, other errors of the survey",
+       .set = [&](const std::string&) { given.budget = true; }}};
+  program.used_toml = [&](const recipe::Recipe& recipe) { return used_tables(recipe, false, given.budget); };
   program.depends = [&](const StageContext& context) { return depends(context, given); };
   program.run = [&](StageContext& context) {
     limit_threads_of_libraries(thread_limit());

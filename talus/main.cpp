@@ -27,6 +27,7 @@ constexpr const char* footer =
     "Examples:\n"
     "  talus run my-slide/recipe.toml                     every stage whose results are not up to date\n"
     "  talus run recipe.toml --set solve.end_time_s=60    with another value than the recipe's\n"
+    "  talus run recipe.toml --budget                     and how sure the run is, doubt by doubt\n"
     "  talus new before.tif after.tif                     a first recipe: spacing, layers and end time from the "
     "release\n"
     "  talus check recipe.toml                            every fault of all stages, nothing is written\n"
@@ -57,6 +58,9 @@ void declare_scene(CLI::App& app, Asked& asked) {
   app.add_option("--threads", asked.request.threads, "Threads to take at most")
       ->type_name("N")
       ->check(CLI::Range(1, 4096).description(""));
+  app.add_flag_callback(
+      "--budget", [&asked] { asked.request.set.emplace_back("budget.make=true"); },
+      "Make the error budget too: how far each doubt moves the deposit");
   app.add_flag("--network", asked.request.network, "Let inputs name places on a network");
 }
 

@@ -128,6 +128,25 @@ def make_peaks(asked, picture):
           *(other.replace("=", f"={data}/") for other in others)])
 
 
+def make_budget(scene, asked, picture):
+    """The table of an error budget in the report of a scene."""
+    sys.path.insert(0, str(ROOT / "tests/pipeline"))
+    from browser import open_browser  # pylint: disable=import-outside-toplevel
+    from selenium.webdriver.common.by import By  # pylint: disable=import-outside-toplevel
+    from selenium.webdriver.support.ui import WebDriverWait  # pylint: disable=import-outside-toplevel
+    out = asked.work / f"{scene}-budget"
+    call([asked.bin / "talus", "run", ROOT / f"pipelines/{scene}/recipe.toml", "--out", out, "--budget", "-q"],
+         stdout=subprocess.DEVNULL)
+    browser = open_browser((1250, 1000))
+    try:
+        browser.get((out / "report.html").resolve().as_uri())
+        WebDriverWait(browser, 60).until(
+            lambda b: b.execute_script("return document.documentElement.dataset.ready === 'yes'"))
+        browser.find_element(By.ID, "budget-section").screenshot(str(FOLDER / picture))
+    finally:
+        browser.quit()
+
+
 def make_all(names, asked):
     entries = read_list()
     makers = {}
@@ -146,6 +165,8 @@ def make_all(names, asked):
             make_tutorial(name, asked, pictures)
         elif kind == "scene":
             make_scene(name, asked, pictures)
+        elif kind == "budget":
+            make_budget(name, asked, pictures[0])
         elif kind == "peaks":
             make_peaks(asked, pictures[0])
         else:

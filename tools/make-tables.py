@@ -41,6 +41,7 @@ CASES = {
     "B5": ("layer with a step (dam break)", "Mangeney et al. (2000)"),
     "B6": ("vibration, free fall, patch test", "exact"),
     "B7": ("block on a shaken plane", "Newmark (1965)"),
+    "B8": ("blocks of unknown friction, an ensemble", "the closed form's distribution"),
     "C1": ("long implicit steps in a flow", "explicit steps of 0.1 CFL"),
     "D1": ("factor of safety, homogeneous slope", "Bishop & Morgenstern (1960)"),
     "D2": ("factor of safety with foundation", "Griffiths & Lane (1999)"),

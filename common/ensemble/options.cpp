@@ -100,7 +100,7 @@ void CorrelationOptions::describe(recipe::Visitor& v) {
   v.number("rank_correlation", rank_correlation, {-1, 1, true, true}, "Spearman's, of a normal copula [-]");
 }
 
-void ElevationErrorOptions::describe(recipe::Visitor& v) {
+void ElevationErrorOptions::describe(recipe::Visitor& v, const char* table) {
   v.optional_number("terrain_deviation_m", terrain_deviation, recipe::positive,
                     "standard deviation of the ground's error, under and around the slide");
   v.optional_number("thickness_deviation_m", thickness_deviation, recipe::positive,
@@ -108,7 +108,7 @@ void ElevationErrorOptions::describe(recipe::Visitor& v) {
   v.optional_number("range_m", range, recipe::positive, "distance from which errors are independent (spherical)");
   v.flag("from_survey", from_survey, "deviation and range as they are found on stable ground between the surveys");
   const bool given = terrain_deviation || thickness_deviation;
-  const std::string name = "[ensemble.elevation_error] ";
+  const std::string name = fmt::format("[{}] ", table);
   v.needs(!given || range.has_value(), {name + "range_m is missing", "errors of neighbouring cells are alike",
                                         "Give the distance from which they are independent, or from_survey = true"});
   v.needs(!from_survey || (!given && !range),

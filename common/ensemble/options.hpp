@@ -62,7 +62,7 @@ struct ElevationErrorOptions {
   std::optional<double> thickness_deviation;  ///< of the released thickness [m]
   std::optional<double> range;                ///< of the spherical correlation [m]
   bool from_survey = false;                   ///< deviation and range as talus-preprocess finds on stable ground
-  void describe(recipe::Visitor& v);
+  void describe(recipe::Visitor& v, const char* table = "ensemble.elevation_error");
 
   /// Whether the ground or the release differs from member to member by it.
   bool acts() const { return from_survey || terrain_deviation || thickness_deviation; }

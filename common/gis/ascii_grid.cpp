@@ -14,6 +14,7 @@
 
 #include "common/error.hpp"
 #include "common/gis/ascii_header.hpp"
+#include "common/gis/escaped_xml.hpp"
 
 namespace talus::gdal {
 namespace fs = std::filesystem;
@@ -144,12 +145,10 @@ std::string rewritten(const fs::path& file, const AsciiHeader& header) {
 std::string sparse(const std::string& head, std::size_t head_size, const fs::path& file, std::size_t from,
                    std::size_t size) {
   const auto region = [](const std::string& name, std::size_t to, std::size_t at, std::size_t length) {
-    std::string escaped;
-    for (const char c : name) escaped += c == '&' ? "&amp;" : (c == '<' ? "&lt;" : std::string(1, c));
     return fmt::format(
         "<SubfileRegion><Filename relative=\"0\">{}</Filename><DestinationOffset>{}</DestinationOffset>"
         "<SourceOffset>{}</SourceOffset><RegionLength>{}</RegionLength></SubfileRegion>",
-        escaped, to, at, length);
+        escaped_xml(name), to, at, length);
   };
   return fmt::format("<VSISparseFile><Length>{}</Length>{}{}</VSISparseFile>", head_size + size,
                      head_size > 0 ? region(head, 0, 0, head_size) : "",

@@ -9,6 +9,7 @@
 
 #include "common/run/run_file.hpp"
 #include "common/stage/stage.hpp"
+#include "postprocess/score/deposit_difference.hpp"
 
 namespace talus::postprocess {
 
@@ -19,21 +20,6 @@ struct ComparedRun {
   std::string score;              ///< the text of score.json
   std::vector<std::string> used;  ///< the texts of *.used.toml
 };
-
-/// How far two deposits differ, on the first one's grid.
-struct DepositDifference {
-  Raster difference;   ///< second less first, vertical [m]; NaN where both are outside
-  double larger = 0;   ///< largest gain [m]
-  double smaller = 0;  ///< largest loss, as a positive number [m]
-  double volume = 0;   ///< of the second less that of the first [m3]
-  double moved = 0;    ///< share of the first deposit that lies elsewhere in the second, volumes set equal [-]
-  double overlap = 0;  ///< area of both over area of either, where thicker than the threshold [-]
-  double rms = 0;      ///< over that area [m]
-};
-
-/// Compares the deposits; the second is brought to the first one's grid by area weights, which keep its volume. Throws
-/// DataError where the coordinate systems differ.
-DepositDifference deposit_difference(const RunMaps& first, const RunMaps& second, double threshold);
 
 /// The map of the difference as a PNG file's bytes: both outlines over a hillshade, gauges and obstacles of both.
 std::string difference_map(const Run& first, const Run& second, const DepositDifference& found, double threshold);

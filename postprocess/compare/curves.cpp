@@ -9,6 +9,7 @@
 #include <tuple>
 #include <vector>
 
+#include "common/gis/escaped_xml.hpp"
 #include "postprocess/fields/classes.hpp"
 
 namespace talus::postprocess {
@@ -36,12 +37,6 @@ Scale scale_of(double largest, const std::string& unit) {
       return {factor, (takes_prefix ? prefix : words) + unit};
   }
   return {1, unit};
-}
-
-std::string safe(const std::string& text) {
-  std::string words;
-  for (const char c : text) words += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
-  return words;
 }
 
 /// "m s-1" -> "m/s"
@@ -126,7 +121,7 @@ std::string chart(const Chart& asked, const ComparedRun& first, const ComparedRu
   if (!(time.high > time.low) || !(value.high > value.low)) return "";  // nothing ever happened there
   const Scale scale = scale_of(std::max(value.high, -value.low), asked.unit);
   std::string text = fmt::format("<figure><figcaption>{}</figcaption><svg viewBox=\"0 0 {:g} {:g}\" role=\"img\">",
-                                 safe(fmt::format("{} [{}]", asked.title, scale.unit)), width, height);
+                                 escaped_xml(fmt::format("{} [{}]", asked.title, scale.unit)), width, height);
   text += axes(time, value, scale.factor);
   for (const auto& [run, line] : {std::pair{&first, "a"}, {&second, "b"}})
     if (holds(*run, asked.column))
@@ -147,7 +142,7 @@ std::string history_charts(const ComparedRun& first, const ComparedRun& second) 
       "<h2>Over time</h2>\n<p class=\"keys\"><svg viewBox=\"0 0 40 10\" class=\"key\"><path class=\"a\" "
       "d=\"M0 5h40\"/></svg> {} <svg viewBox=\"0 0 40 10\" class=\"key\"><path class=\"b\" d=\"M0 "
       "5h40\"/></svg> {}</p>\n<div class=\"charts\">{}</div>\n",
-      safe(first.name), safe(second.name), charts);
+      escaped_xml(first.name), escaped_xml(second.name), charts);
 }
 
 }  // namespace talus::postprocess

@@ -1,13 +1,11 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The difference of two deposits, in numbers and as a map.
+// The difference of two deposits as a map.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 
-#include "common/gis/resampling.hpp"
 #include "common/map/isolines.hpp"
-#include "common/map/sum.hpp"
 #include "postprocess/compare/compare.hpp"
 #include "postprocess/compare/difference_classes.hpp"
 #include "postprocess/picture/hillshade.hpp"
@@ -16,13 +14,6 @@
 
 namespace talus::postprocess {
 namespace {
-
-double thickness(double value) { return std::isfinite(value) ? value : 0; }
-
-bool same_cells(const MapGrid& a, const MapGrid& b) {
-  return a.columns == b.columns && a.rows == b.rows && a.west == b.west && a.south == b.south && a.cell == b.cell &&
-         a.crs_wkt == b.crs_wkt;
-}
 
 /// What is shown: wherever one of the two flows came, with a margin.
 Window window_of(const RunMaps& first, const RunMaps& second, double threshold) {
@@ -111,36 +102,6 @@ std::vector<double> difference_limits(const DepositDifference& found) {
   for (const double factor : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0})
     if (least * factor < most) limits.push_back(least * factor);
   return limits;
-}
-
-DepositDifference deposit_difference(const RunMaps& first, const RunMaps& second, double threshold) {
-  const Raster theirs_as_is{second.grid, second.deposit_thickness};
-  const Raster other =
-      same_cells(first.grid, second.grid) ? theirs_as_is : resample_thickness(theirs_as_is, first.grid);
-  DepositDifference found{.difference = {first.grid, std::vector<double>(first.grid.count(), nan)}};
-  Sum ours, theirs, squares;
-  std::size_t both = 0, either = 0;
-  for (std::size_t i = 0; i < first.grid.count(); ++i) {
-    const double a = thickness(first.deposit_thickness[i]), b = thickness(other.values[i]);
-    ours.add(a);
-    theirs.add(b);
-    if (a > 0 || b > 0) found.difference.values[i] = b - a;
-    found.larger = std::max(found.larger, b - a);
-    found.smaller = std::max(found.smaller, a - b);
-    both += a > threshold && b > threshold;
-    if (!(a > threshold) && !(b > threshold)) continue;
-    ++either;
-    squares.add((b - a) * (b - a));
-  }
-  const double area = first.grid.cell * first.grid.cell, scale = theirs.value() > 0 ? ours.value() / theirs.value() : 0;
-  Sum moved;
-  for (std::size_t i = 0; i < first.grid.count(); ++i)
-    moved.add(0.5 * std::abs(thickness(first.deposit_thickness[i]) - scale * thickness(other.values[i])));
-  found.volume = (theirs.value() - ours.value()) * area;
-  found.moved = ours.value() > 0 ? moved.value() / ours.value() : 0;
-  found.overlap = either > 0 ? static_cast<double>(both) / static_cast<double>(either) : 1;
-  found.rms = either > 0 ? std::sqrt(squares.value() / static_cast<double>(either)) : 0;
-  return found;
 }
 
 std::string difference_map(const Run& first_run, const Run& second_run, const DepositDifference& found,

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "common/gis/escaped_xml.hpp"
 #include "common/recipe/shown_paths.hpp"
 #include "common/recipe/used.hpp"
 #include "postprocess/compare/compare.hpp"
@@ -39,21 +40,6 @@ th:first-child{width:34%}}
 .k{display:inline-block;width:1.1em;height:1.1em;vertical-align:-.15em;border:1px solid #888;margin:0 .3em 0 .9em}
 @media print{body{max-width:none;font-size:11px}h2{break-after:avoid}tr{break-inside:avoid}}
 )";
-
-std::string html(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    if (c == '&')
-      safe += "&amp;";
-    else if (c == '<')
-      safe += "&lt;";
-    else if (c == '"')
-      safe += "&quot;";
-    else
-      safe += c;
-  }
-  return safe;
-}
 
 /// "wall_time_s" -> "wall time [s]"
 std::string label_of(const std::string& key) {
@@ -109,14 +95,14 @@ std::string change(const Json& a, const Json& b) {
 std::string row(const std::vector<std::string>& cells, bool numbers) {
   std::string text = "<tr>";
   for (std::size_t i = 0; i < cells.size(); ++i)
-    text += fmt::format("<td{}>{}</td>", i > 0 && numbers ? " class=\"n\"" : "", html(cells[i]));
+    text += fmt::format("<td{}>{}</td>", i > 0 && numbers ? " class=\"n\"" : "", escaped_xml(cells[i]));
   return text + "</tr>\n";
 }
 
 std::string table(const std::vector<std::string>& heads, const std::string& rows, bool numbers) {
   std::string text = "<table><thead><tr>";
   for (std::size_t i = 0; i < heads.size(); ++i)
-    text += fmt::format("<th{}>{}</th>", i > 0 && numbers ? " class=\"n\"" : "", html(heads[i]));
+    text += fmt::format("<th{}>{}</th>", i > 0 && numbers ? " class=\"n\"" : "", escaped_xml(heads[i]));
   return text + "</tr></thead><tbody>\n" + rows + "</tbody></table>\n";
 }
 
@@ -192,7 +178,7 @@ std::string legend(const DepositDifference& found, const ComparedRun& first, con
   const auto limits = difference_limits(found);
   std::string text = fmt::format(
       "Deposit of {} less that of {}, vertical, in metres. Outlines at {:g} m: solid {}, dashed green {}.<br>",
-      html(second.name), html(first.name), threshold, html(first.name), html(second.name));
+      escaped_xml(second.name), escaped_xml(first.name), threshold, escaped_xml(first.name), escaped_xml(second.name));
   if (limits.empty()) return text + "The deposits are the same.";
   for (const bool gain : {false, true}) {
     text += gain ? "<br>thicker:" : "thinner:";
@@ -247,9 +233,10 @@ std::string comparison_html(const ComparedRun& first, const ComparedRun& second,
 {difference}{charts}{scores}<h2>Recipes: what differs</h2>
 {recipes}</body></html>
 )",
-      fmt::arg("title", html(title)), fmt::arg("style", style), fmt::arg("first", html(first.run.summary.title)),
-      fmt::arg("second", html(second.run.summary.title)), fmt::arg("first_name", html(first.name)),
-      fmt::arg("second_name", html(second.name)), fmt::arg("version", html(version())),
+      fmt::arg("title", escaped_xml(title)), fmt::arg("style", style),
+      fmt::arg("first", escaped_xml(first.run.summary.title)),
+      fmt::arg("second", escaped_xml(second.run.summary.title)), fmt::arg("first_name", escaped_xml(first.name)),
+      fmt::arg("second_name", escaped_xml(second.name)), fmt::arg("version", escaped_xml(version())),
       fmt::arg("remarks", remarks(first, second)),
       fmt::arg("map", base64(difference_map(first.run, second.run, found, threshold))),
       fmt::arg("legend", legend(found, first, second, threshold)), fmt::arg("difference", difference_words(found)),

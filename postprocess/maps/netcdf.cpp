@@ -107,6 +107,8 @@ Layout define(Nc& nc, const Run& run, const NetcdfNotes& notes) {
   const int y = layout.axes.y.dimension, x = layout.axes.x.dimension;
   if (!grid.crs_wkt.empty()) define_crs(nc, grid);
   layout.maps = map_variables(run.maps);
+  for (const auto& [name, long_name, units, cell_methods, values] : notes.more)
+    layout.maps.push_back({name, long_name, units, cell_methods, values, true});
   for (const auto& map : layout.maps) layout.ids.push_back(define_map(nc, map, {y, x}, grid));
   if (!has_frames) return layout;
   layout.time = define_time(nc, time, notes.start);

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "common/gis/escaped_xml.hpp"
 #include "common/recipe/shown_paths.hpp"
 #include "common/stage/stage.hpp"
 #include "postprocess/report/pack.hpp"
@@ -23,19 +24,6 @@ std::string for_script(const Json& json) {
   std::string safe;
   safe.reserve(text.size());
   for (const char c : text) c == '<' ? safe.append("\\u003c") : safe.append(1, c);
-  return safe;
-}
-
-std::string for_html(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    if (c == '&')
-      safe += "&amp;";
-    else if (c == '<')
-      safe += "&lt;";
-    else
-      safe += c;
-  }
   return safe;
 }
 
@@ -83,7 +71,7 @@ void leave_out_folders(nlohmann::ordered_json& json) {
 std::string filled_page(std::string_view page, const std::string& title, const Json& data) {
   return filled(page, {{"@HASHES_OF_SCRIPTS@", hashes(page, "<script>", "</script>")},
                        {"@HASHES_OF_STYLES@", hashes(page, "<style>", "</style>")},
-                       {"@TITLE@", for_html(title)},
+                       {"@TITLE@", escaped_xml(title)},
                        {"@DATA@", for_script(data)}});
 }
 

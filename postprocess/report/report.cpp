@@ -87,10 +87,11 @@ std::string report_html(const ReportInput& input) {
   data["stages"] = stages_json(input.stages);
   data["profile"] = profile_json(input);
   data["series"] = series_json(input);
+  data["budget"] = budget_json(input);
   data["hazard"] = hazard_json(input);
   data["map"] = map_json(input);
   data["places"] = places_json(input);
-  for (const char* part : {"score", "surveys", "stages"}) leave_out_folders(data[part]);
+  for (const char* part : {"score", "surveys", "stages", "budget"}) leave_out_folders(data[part]);
   return filled_page(page_template(), input.run.summary.title, data);
 }
 

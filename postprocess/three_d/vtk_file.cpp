@@ -16,6 +16,7 @@
 
 #include <fmt/format.h>
 
+#include "common/gis/escaped_xml.hpp"
 #include "common/stage/stage.hpp"
 #include "common/stage/write_fault.hpp"
 
@@ -44,23 +45,6 @@ constexpr const char* vtk_type<std::int64_t>() {
   return "Int64";
 }
 
-std::string for_xml(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    if (c == '&')
-      safe += "&amp;";
-    else if (c == '<')
-      safe += "&lt;";
-    else if (c == '"')
-      safe += "&quot;";
-    else if (static_cast<unsigned char>(c) >= 0x20)
-      safe += c;
-    else
-      safe += ' ';
-  }
-  return safe;
-}
-
 /// The file's two halves as they grow: the XML that names arrays by their place, and the packed bytes.
 class VtkText {
  public:
@@ -69,7 +53,7 @@ class VtkText {
   template <class T>
   void array(const std::string& name, const std::vector<T>& values, int components = 1) {
     line(fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" offset=\"{}\"/>",
-                     vtk_type<T>(), for_xml(name), components, data_.size()));
+                     vtk_type<T>(), escaped_xml(name), components, data_.size()));
     append(std::span(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)));
   }
 
@@ -78,7 +62,7 @@ class VtkText {
     std::string numbers;
     for (const char c : text) numbers += fmt::format("{} ", static_cast<unsigned>(static_cast<unsigned char>(c)));
     line(fmt::format("<Array type=\"String\" Name=\"{}\" NumberOfTuples=\"1\" format=\"ascii\">{}0</Array>",
-                     for_xml(name), numbers));
+                     escaped_xml(name), numbers));
   }
 
   void write(const std::filesystem::path& path) const {
@@ -192,8 +176,8 @@ void write_vtp(const std::filesystem::path& file, const VtkMesh& mesh) {
 void write_pvd(const std::filesystem::path& file, const std::vector<VtkPart>& parts) {
   std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
   for (const VtkPart& part : parts)
-    text +=
-        fmt::format("<DataSet timestep=\"{}\" part=\"{}\" file=\"{}\"/>\n", part.time, part.part, for_xml(part.file));
+    text += fmt::format("<DataSet timestep=\"{}\" part=\"{}\" file=\"{}\"/>\n", part.time, part.part,
+                        escaped_xml(part.file));
   write_text(file, text + "</Collection>\n</VTKFile>\n");
 }
 

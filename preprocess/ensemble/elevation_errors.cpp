@@ -14,8 +14,9 @@
 namespace talus::preprocess {
 namespace {
 
-[[noreturn]] void refuse_errors(const std::string& what, const std::string& why, const std::string& mend) {
-  throw RecipeError(Fault{"[ensemble.elevation_error] " + what, why, mend});
+[[noreturn]] void refuse_errors(const char* table, const std::string& what, const std::string& why,
+                                const std::string& mend) {
+  throw RecipeError(Fault{fmt::format("[{}] {}", table, what), why, mend});
 }
 
 /// A seed for each member and part: numbers of the generator SplitMix64 (Steele, Lea and Flood 2014).
@@ -50,27 +51,28 @@ double middle_of(std::vector<double> deviations) {
 }  // namespace
 
 ElevationErrors::ElevationErrors(const ElevationErrorOptions& options, const Options& of_base, const SceneRasters& base,
-                                 int seed)
+                                 int seed, const char* table)
     : seed_(static_cast<std::uint64_t>(seed)) {
   if (options.from_survey) {
-    take_survey(of_base, base);
+    take_survey(of_base, base, table);
     return;
   }
   if (options.thickness_deviation && of_base.way() == Way::laboratory)
-    refuse_errors("thickness_deviation_m with a laboratory", "its boxes are not read from maps",
+    refuse_errors(table, "thickness_deviation_m with a laboratory", "its boxes are not read from maps",
                   "Leave it out, or vary the boxes");
   if (options.terrain_deviation) terrain_ = {*options.terrain_deviation};
   if (options.thickness_deviation) thickness_ = {*options.thickness_deviation};
   add_part(base.bed.grid, 1, *options.range);
 }
 
-void ElevationErrors::take_survey(const Options& of_base, const SceneRasters& base) {
+void ElevationErrors::take_survey(const Options& of_base, const SceneRasters& base, const char* table) {
   if (!base.survey)
-    refuse_errors("from_survey = true without two surveys", "the recipe gives no before_dem and after_dem to compare",
+    refuse_errors(table, "from_survey = true without two surveys",
+                  "the recipe gives no before_dem and after_dem to compare",
                   "Give the numbers: terrain_deviation_m, thickness_deviation_m and range_m");
   const ErrorModel& errors = base.survey->errors;
   if (!errors.is_known())
-    refuse_errors("from_survey = true, but the error of the survey is not known",
+    refuse_errors(table, "from_survey = true, but the error of the survey is not known",
                   "there is too little stable ground, or both models are the same there",
                   "Give before_sigma_m and after_sigma_m in [preprocess.difference], or the numbers here: "
                   "terrain_deviation_m, thickness_deviation_m and range_m");

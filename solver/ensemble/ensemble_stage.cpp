@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/ensemble/ensemble_stage.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <utility>
@@ -24,6 +25,7 @@
 namespace talus::solver {
 namespace {
 
+constexpr int most_at_a_time = 1000;  ///< each has a thread of its own
 constexpr std::size_t most_said = 5;  ///< failures and warnings in the log; all failures stand in the counts
 
 /// All that an ensemble is made of, once it is read.
@@ -149,11 +151,21 @@ std::vector<AnyDevice> devices_for(int count, On on) {
 
 std::vector<AnyDevice> one_of_each(On on) { return devices_for(on == On::gpu ? GpuDevice::count() : 1, on); }
 
+/// This function says what was warned of, each warning once with the members that it is of.
 void say_warnings(const MembersRun& run, const MemberTable& table) {
-  for (std::size_t n = 0; n < run.warnings.size() && n < most_said; ++n)
-    log_warning(fmt::format("{}: {}", table.name_of(run.warnings[n].member), run.warnings[n].words));
-  if (run.warnings.size() > most_said)
-    log_warning(fmt::format("{} more warnings of members", run.warnings.size() - most_said));
+  std::vector<std::pair<std::string, std::vector<std::int64_t>>> said;
+  for (const MemberWarning& warning : run.warnings) {
+    auto same = std::find_if(said.begin(), said.end(), [&](const auto& one) { return one.first == warning.words; });
+    if (same == said.end()) same = said.insert(said.end(), {warning.words, {}});
+    same->second.push_back(warning.member);
+  }
+  for (std::size_t n = 0; n < said.size() && n < most_said; ++n) {
+    const auto& [words, members] = said[n];
+    log_warning(members.size() == 1
+                    ? fmt::format("{}: {}", table.name_of(members.front()), words)
+                    : fmt::format("{} and {} others: {}", table.name_of(members.front()), members.size() - 1, words));
+  }
+  if (said.size() > most_said) log_warning(fmt::format("{} more warnings of members", said.size() - most_said));
 }
 
 /// This function saves what is finished, and throws Interrupted.
@@ -209,6 +221,16 @@ MemberRange member_range(const std::string& words) {
   return range;
 }
 
+int members_at_a_time(const std::string& words) {
+  int count = 0;
+  const char* const end = words.data() + words.size();
+  const auto read = std::from_chars(words.data(), end, count);
+  if (read.ec != std::errc{} || read.ptr != end || count < 1 || count > most_at_a_time)
+    throw RecipeError({"--at-a-time " + words, "this is no number of members",
+                       fmt::format("Write one from 1 to {}", most_at_a_time)});
+  return count;
+}
+
 Dependencies depends_of_ensemble(const StageContext& context, const EnsembleFlags& flags) {
   const EnsemblePaths paths{context.out};
   auto inputs = inputs_of(options_of(context.recipe, context.out), context.out);
@@ -232,7 +254,7 @@ Facts run_ensemble(StageContext& context, const EnsembleFlags& flags, const Doma
   members.check();
   const std::vector<AnyDevice> each = one_of_each(flags.on);
   const MemberCost cost = cost_of_member(domain, members.base(), each.front(), flags.plan);
-  const InFlight flight = in_flight(e.part.count(), cost.bytes, each);
+  const InFlight flight = in_flight(e.part.count(), flags.at_a_time, cost.bytes, each);
   log_info(fmt::format("{} members ({} to {}), {} at a time: {}", e.part.count(), e.part.first, e.part.end - 1,
                        flight.count, flight.reason));
   if (flags.plan) {

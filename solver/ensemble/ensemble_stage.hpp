@@ -23,11 +23,15 @@ struct EnsembleFlags {
   std::optional<MemberRange> members = {};  ///< a part; none: all
   bool restart = false;                     ///< go on from what is finished, which must be there
   bool resume = false;                      ///< go on from it where there is any
+  int at_a_time = 0;                        ///< members that run at a time; 0: as the program decides
   bool plan = false;                        ///< say what would run, and run nothing
 };
 
 /// The members that "A:B" names, from 0, B not included. Throws RecipeError.
 MemberRange member_range(const std::string& words);
+
+/// The number of members at a time that --at-a-time asks for. Throws RecipeError.
+int members_at_a_time(const std::string& words);
 
 /// What the ensemble reads and writes.
 Dependencies depends_of_ensemble(const StageContext& context, const EnsembleFlags& flags);

@@ -24,17 +24,20 @@ double room(const AnyDevice& device, double bytes_each) {
 
 }  // namespace
 
-InFlight in_flight(std::int64_t members, double bytes_each, const std::vector<AnyDevice>& devices) {
+InFlight in_flight(std::int64_t members, int asked, double bytes_each, const std::vector<AnyDevice>& devices) {
   const bool on_gpus = devices.front().is_gpu();
-  const double wanted = on_gpus ? most_on_a_gpu : thread_limit();
+  const auto places = static_cast<double>(devices.size());
+  const double wanted = asked > 0 ? std::ceil(asked / places) : on_gpus ? most_on_a_gpu : thread_limit();
   double least_room = std::numeric_limits<double>::infinity();
   for (const AnyDevice& device : devices) least_room = std::min(least_room, room(device, std::max(bytes_each, 1.0)));
   const double each = std::clamp(least_room, 1.0, wanted);
-  const double in_all = std::min(each * static_cast<double>(devices.size()), static_cast<double>(members));
+  const double most = static_cast<double>(asked > 0 ? std::min<std::int64_t>(asked, members) : members);
+  const double in_all = std::min(each * places, most);
   InFlight flight;
   flight.count = std::max(1, static_cast<int>(in_all));
-  const std::string where = on_gpus ? devices.size() > 1 ? fmt::format("{} GPUs", devices.size()) : "one GPU"
-                                    : fmt::format("{} threads", thread_limit());
+  const std::string where = asked > 0 ? "as asked for"
+                            : on_gpus ? devices.size() > 1 ? fmt::format("{} GPUs", devices.size()) : "one GPU"
+                                      : fmt::format("{} threads", thread_limit());
   flight.reason = least_room < wanted
                       ? fmt::format("memory has room for {:.0f} of {:.1f} MB each", each, bytes_each / 1e6)
                       : fmt::format("{}, {:.1f} MB each", where, bytes_each / 1e6);

@@ -22,7 +22,8 @@ struct InFlight {
 inline constexpr int most_on_a_gpu = 16;
 
 /// Of `members` that need so many bytes each: on the CPU one for every thread of this process, on GPUs most_on_a_gpu
-/// for each GPU, and never more than memory has room for. `devices` are those that members run on: the CPU, or GPUs.
-InFlight in_flight(std::int64_t members, double bytes_each, const std::vector<AnyDevice>& devices);
+/// for each GPU, or as many as are `asked` for where that is not 0; never more than memory has room for. `devices` are
+/// those that members run on: the CPU, or GPUs.
+InFlight in_flight(std::int64_t members, int asked, double bytes_each, const std::vector<AnyDevice>& devices);
 
 }  // namespace talus::solver

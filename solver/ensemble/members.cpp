@@ -109,9 +109,11 @@ Domain Members::domain_of(std::int64_t member) const {
 }
 
 Member Members::read(std::int64_t member) const {
-  std::unique_lock<std::mutex> one(reading_);
-  Member read{domain_of(member), options_of(member)};
-  one.unlock();
+  Member read{domain_of(member), {}};
+  {
+    const std::lock_guard<std::mutex> one(reading_);
+    read.options = options_of(member);
+  }
   if (!settles_each_) {
     read.options = settled_by(settled_, std::move(read.options));
     return read;

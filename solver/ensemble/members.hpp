@@ -60,7 +60,7 @@ class Members {
   bool settles_each_;
   SettledOnce settled_;
   SolveOptions base_;
-  mutable std::mutex reading_;  ///< recipes and files are read by one thread at a time
+  mutable std::mutex reading_;  ///< recipes are read by one thread at a time
 };
 
 }  // namespace talus::solver

@@ -1,7 +1,10 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // GPU devices: streams, memory, events, recordings. Without a CUDA compiler this file states that there is no GPU.
+#include <cstdint>
+#include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -17,6 +20,15 @@ namespace {
 
 __global__ void probe() {}
 
+/// This function lets the GPU's memory pool keep what is freed for the next allocation of this process, whichever
+/// stream asks: cudaMalloc and cudaFree wait for all streams.
+void keep_memory(int gpu) {
+  cudaMemPool_t pool = nullptr;
+  check_cuda(cudaDeviceGetDefaultMemPool(&pool, gpu), "memory pool");
+  std::uint64_t all = std::numeric_limits<std::uint64_t>::max();
+  check_cuda(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &all), "memory pool");
+}
+
 }  // namespace
 
 void check_cuda(cudaError_t code, const char* what) {
@@ -31,6 +43,7 @@ void check_cuda(cudaError_t code, const char* what) {
 GpuState::GpuState(int gpu) : index(gpu) {
   check_cuda(cudaSetDevice(index), "cudaSetDevice");
   check_cuda(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "stream");
+  keep_memory(index);
   cudaFuncAttributes attributes;  // code made for older devices does not wait
   starts_early = cudaFuncGetAttributes(&attributes, probe) == cudaSuccess && attributes.binaryVersion >= 90 &&
                  attributes.ptxVersion >= 90;
@@ -65,6 +78,9 @@ void GpuState::wait(const char* what) {
 GpuDevice GpuDevice::make(int index) { return GpuDevice(std::make_shared<GpuState>(index)); }
 
 int GpuDevice::count() {
+  // Streams share this many queues, 8 unless told. The first call of CUDA reads it.
+  static const int told = setenv("CUDA_DEVICE_MAX_CONNECTIONS", "32", 0);
+  static_cast<void>(told);
   int count = 0;
   if (cudaGetDeviceCount(&count) == cudaSuccess) return count;
   (void)cudaGetLastError();
@@ -97,15 +113,17 @@ void synchronise(const GpuDevice& device) { device.state().wait("kernel"); }
 namespace detail {
 
 void* allocate(const GpuDevice& device, std::size_t bytes) {
-  device.state().select();
+  GpuState& state = device.state();
+  if (state.recording) throw std::logic_error("memory that a recording allocates would end with the recording");
+  state.select();
   void* memory = nullptr;
-  check_cuda(cudaMalloc(&memory, bytes), "cudaMalloc");
+  check_cuda(cudaMallocAsync(&memory, bytes, state.stream), "cudaMallocAsync");
   return memory;
 }
 
 void free(const GpuDevice& device, void* memory) noexcept {
   (void)cudaSetDevice(device.index());
-  (void)cudaFree(memory);
+  (void)cudaFreeAsync(memory, device.state().stream);
 }
 
 void upload(const GpuDevice& device, void* to, const void* host, std::size_t bytes) {

@@ -9,16 +9,18 @@ source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 # named by its path; '.' is the stage's own folder.
 floors() {
   case $1 in
-    common) printf '%s\n' . 'map recipe' stage 'domain run gis' 'ensemble qgis' ;;
+    common) printf '%s\n' . 'map recipe' stage 'domain run gis' 'ensemble qgis' budget ;;
     preprocess)
-      printf '%s\n' 'options regions' 'terrain obstacle' 'survey release' particles laboratory scene output ensemble slides .
+      printf '%s\n' 'options regions' 'terrain obstacle' 'survey release' particles laboratory scene output ensemble \
+        budget slides .
       ;;
     solver)
       printf '%s\n' parallel state material grid transfer boundary elements linear/krylov linear/operator \
-        linear/preconditioner linear/direct integrator 'explicit implicit' options scene run/recorders run ensemble .
+        linear/preconditioner linear/direct integrator 'explicit implicit' options scene run/recorders run ensemble \
+        budget .
       ;;
     postprocess)
-      printf '%s\n' options survey fields hazard 'score maps' 'picture three_d' report 'ensemble compare' slides .
+      printf '%s\n' options survey fields hazard 'score maps' budget 'picture three_d' report 'ensemble compare' slides .
       ;;
   esac
 }

@@ -9,6 +9,7 @@
 
 #include <cctype>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -80,16 +81,15 @@ double Outcome::last_of(const std::string& name) const {
   return column.empty() ? unknown : column.back();
 }
 
-Outcome Bench::run(const std::string& variant, const Overrides& overrides, bool profile) {
-  const fs::path out = request_.out / name_ / folder_of(variant);
+fs::path Bench::folder(const std::string& variant) const { return request_.out / name_ / folder_of(variant); }
+
+std::string Bench::run_stages(const std::string& variant, const Overrides& overrides, bool profile) const {
+  const fs::path out = folder(variant), recipe = out / "recipe.toml";
   fs::remove_all(out);
   fs::create_directories(out);
-  const fs::path recipe = out / "recipe.toml";
   write_text(recipe, recipe_with(request_.recipes / name_.substr(0, name_.find('-')) / "recipe.toml", overrides));
   fmt::print(stderr, "{:4} {:44} ", name_, variant);
   std::fflush(stderr);
-  Outcome outcome;
-  outcome.variant = variant;
   for (const char* stage : {"talus-preprocess", "talus-solve"}) {
     const fs::path log = out / (std::string(stage) + ".log");
     std::vector<std::string> words{(request_.programs / stage).string(), recipe.string(), "--out", out.string(), "-q"};
@@ -99,15 +99,37 @@ Outcome Bench::run(const std::string& variant, const Overrides& overrides, bool 
     const int code = call(words, log);
     if (interrupted()) throw Interrupted({"stopped", "interrupted", "Run it again"});
     if (code == 0) continue;
-    outcome.fault = fmt::format("exit code {}: {}", code, last_line(log));
-    fmt::print(stderr, "{}\n", outcome.fault);
-    return outcome;
+    std::string fault = fmt::format("exit code {}: {}", code, last_line(log));
+    fmt::print(stderr, "{}\n", fault);
+    return fault;
   }
-  outcome.run = read_run(out / "run.h5");
-  outcome.frames = read_points(out / "run.h5");
+  return {};
+}
+
+Outcome Bench::run(const std::string& variant, const Overrides& overrides, bool profile) {
+  Outcome outcome;
+  outcome.variant = variant;
+  outcome.fault = run_stages(variant, overrides, profile);
+  if (!outcome.ok()) return outcome;
+  outcome.run = read_run(folder(variant) / "run.h5");
+  outcome.frames = read_points(folder(variant) / "run.h5");
   fmt::print(stderr, "{:8.1f} s\n", outcome.run.summary.wall_time);
   judge_cost(outcome);
   return outcome;
+}
+
+MembersOutcome Bench::run_members(const std::string& variant, const Overrides& overrides) {
+  const auto begun = std::chrono::steady_clock::now();
+  MembersOutcome o;
+  o.outcome.variant = variant;
+  o.outcome.fault = run_stages(variant, overrides, false);
+  if (!o.outcome.ok()) return o;
+  const EnsemblePaths paths{folder(variant)};
+  o.table = read_member_table(paths.members());
+  o.counts = read_counts(paths.counts());
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  fmt::print(stderr, "{:8.1f} s\n", seconds);
+  return o;
 }
 
 Row Bench::row_of(const Outcome& outcome, const std::string& quantity) const {

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "common/ensemble/counts.hpp"
+#include "common/ensemble/member_table.hpp"
 #include "common/run/run_file.hpp"
 #include "tests/validation/costs.hpp"
 #include "tests/validation/points.hpp"
@@ -40,6 +42,13 @@ struct Outcome {
   double last_of(const std::string& name) const;  ///< its last value, NaN where there is none
 };
 
+/// An ensemble that was run: what it was asked for, and what came of it. `outcome` has no run and no frames.
+struct MembersOutcome {
+  Outcome outcome;
+  MemberTable table;
+  EnsembleCounts counts;
+};
+
 /// One line of the table.
 struct Row {
   std::string name, quantity;  // "A1 quasi-static, pcg", "top displacement"
@@ -68,6 +77,8 @@ class Bench {
   /// Run the case's recipe with these overrides; results lie in OUT/CASE/VARIANT. Says on stderr what it does. With
   /// `profile` the run measures its phases (RunSummary::profile). Rows judge its cost where the book knows the run.
   Outcome run(const std::string& variant, const Overrides& overrides, bool profile = false);
+  /// The same with a recipe of an ensemble.
+  MembersOutcome run_members(const std::string& variant, const Overrides& overrides);
 
   /// A row whose error is |computed / reference - 1|, or |computed| where the reference is 0. A run without a result is
   /// a failed row without numbers.
@@ -94,6 +105,9 @@ class Bench {
   void picture(const std::string& name, const std::string& png) const;
 
  private:
+  std::filesystem::path folder(const std::string& variant) const;
+  /// Runs the stages, and returns what went wrong.
+  std::string run_stages(const std::string& variant, const Overrides& overrides, bool profile) const;
   Row row_of(const Outcome& outcome, const std::string& quantity) const;
   void judge(Row row);
   void judge_cost(const Outcome& outcome);

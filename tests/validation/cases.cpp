@@ -25,6 +25,7 @@ const std::vector<Case>& cases() {
       {"B5", "dam break on a slope", true, dam_break, true},
       {"B6", "vibrating bar, free fall, patch test", true, elastic_motion},
       {"B7", "block on shaking ground", true, shaken_block},
+      {"B8", "blocks of unknown friction, an ensemble", true, blocks_of_unknown_friction, true},
       {"C1", "sand column in long steps", true, large_steps, true},
       {"D1", "factor of safety of a homogeneous slope", true, homogeneous_slope, true},
       {"D2", "the same on a foundation layer", true, slope_on_foundation},

@@ -41,29 +41,30 @@ struct Case {
 
 const std::vector<Case>& cases();
 
-void self_weight_column(Bench&);    // A1
-void large_compaction(Bench&);      // A1b
-void cantilever(Bench&);            // A2
-void cantilever_loads(Bench&);      // A2-loads
-void cantilever_studies(Bench&);    // A2-studies
-void sand_column(Bench&);           // A3
-void sand_column_paper(Bench&);     // A3-paper
-void sand_column_studies(Bench&);   // A3-studies
-void sand_column_friction(Bench&);  // A3-friction
-void sand_column_aspects(Bench&);   // A3b
-void round_sand_columns(Bench&);    // A3c
-void step_cost(Bench&);             // A4
-void block_on_incline(Bench&);      // B1
-void velocity_weakening(Bench&);    // B2
-void energy_line(Bench&);           // B3
-void parabolic_cap(Bench&);         // B4
-void dam_break(Bench&);             // B5
-void elastic_motion(Bench&);        // B6
-void shaken_block(Bench&);          // B7
-void large_steps(Bench&);           // C1
-void homogeneous_slope(Bench&);     // D1
-void slope_on_foundation(Bench&);   // D2
-void slope_on_seam(Bench&);         // D3
-void rock_wedge(Bench&);            // D4
+void self_weight_column(Bench&);          // A1
+void large_compaction(Bench&);            // A1b
+void cantilever(Bench&);                  // A2
+void cantilever_loads(Bench&);            // A2-loads
+void cantilever_studies(Bench&);          // A2-studies
+void sand_column(Bench&);                 // A3
+void sand_column_paper(Bench&);           // A3-paper
+void sand_column_studies(Bench&);         // A3-studies
+void sand_column_friction(Bench&);        // A3-friction
+void sand_column_aspects(Bench&);         // A3b
+void round_sand_columns(Bench&);          // A3c
+void step_cost(Bench&);                   // A4
+void block_on_incline(Bench&);            // B1
+void velocity_weakening(Bench&);          // B2
+void energy_line(Bench&);                 // B3
+void parabolic_cap(Bench&);               // B4
+void dam_break(Bench&);                   // B5
+void elastic_motion(Bench&);              // B6
+void shaken_block(Bench&);                // B7
+void blocks_of_unknown_friction(Bench&);  // B8
+void large_steps(Bench&);                 // C1
+void homogeneous_slope(Bench&);           // D1
+void slope_on_foundation(Bench&);         // D2
+void slope_on_seam(Bench&);               // D3
+void rock_wedge(Bench&);                  // D4
 
 }  // namespace talus::validation

@@ -13,13 +13,20 @@ namespace {
 
 TEST(InFlightMembers, take_the_threads_of_the_process) {
   const std::vector<AnyDevice> cpu{make_device(On::cpu)};
-  EXPECT_EQ(in_flight(1000, 1e6, cpu).count, thread_limit());
-  EXPECT_EQ(in_flight(1, 1e6, cpu).count, 1) << "one member needs one thread";
+  EXPECT_EQ(in_flight(1000, 0, 1e6, cpu).count, thread_limit());
+  EXPECT_EQ(in_flight(1, 0, 1e6, cpu).count, 1) << "one member needs one thread";
+}
+
+TEST(InFlightMembers, are_as_many_as_asked_for) {
+  const std::vector<AnyDevice> cpu{make_device(On::cpu)};
+  EXPECT_EQ(in_flight(1000, 7, 1e6, cpu).count, 7);
+  EXPECT_EQ(in_flight(5, 7, 1e6, cpu).count, 5) << "there are no more members";
+  EXPECT_EQ(in_flight(1000, 7, usable_memory(), cpu).count, 1) << "memory has no room for more";
 }
 
 TEST(InFlightMembers, are_no_more_than_memory_has_room_for) {
   const std::vector<AnyDevice> cpu{make_device(On::cpu)};
-  const InFlight one = in_flight(1000, usable_memory(), cpu);
+  const InFlight one = in_flight(1000, 0, usable_memory(), cpu);
   EXPECT_EQ(one.count, 1) << "one runs in any case";
   EXPECT_NE(one.reason.find("memory has room for 1"), std::string::npos) << one.reason;
 }

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "common/budget/options.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <iterator>
+#include <set>
+
+#include <fmt/format.h>
+
+namespace talus {
+namespace {
+
+std::vector<std::string_view> names_of_rows() {
+  std::vector<std::string_view> names;
+  for (const BudgetRow& row : budget_rows)
+    if (!std::string_view(row.name).starts_with("own")) names.emplace_back(row.name);
+  return names;
+}
+
+}  // namespace
+
+const BudgetRow* find_budget_row(std::string_view name) {
+  const auto* found = std::find_if(std::begin(budget_rows), std::end(budget_rows),
+                                   [&](const BudgetRow& row) { return row.name == name; });
+  return found == std::end(budget_rows) ? nullptr : found;
+}
+
+void OwnChange::describe(recipe::Visitor& v) {
+  v.text("name", name, "what the table calls the run: letters, digits and dashes");
+  const bool fits = !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '_';
+  });
+  v.needs(fits, {fmt::format("[[budget.run]] name = \"{}\"", name), "it stands in tables and files",
+                 "Use letters, digits, '-' and '_'"});
+  recipe::choice(v, "kind", kind, {{"physical", BudgetKind::physical}, {"numerical", BudgetKind::numerical}},
+                 "whether the doubt is about the slide or about the computation");
+  v.names("set", set, {}, "what is other, as for --set: [\"solve.base.friction_angle_deg=20\"]");
+  v.needs(!set.empty(), {fmt::format("[[budget.run]] \"{}\" sets nothing", name), "the run would be the same",
+                         "Add set = [\"solve. ...=...\"]"});
+}
+
+void BudgetOptions::describe(recipe::Visitor& v) {
+  v.flag("make", make, "the runs of the error budget are made whenever the recipe runs, as by --budget");
+  v.names("leave_out", leave_out, names_of_rows(), "rows that are not made");
+  const auto differs = [&](double factor, const char* key) {
+    v.needs(factor != 1, {fmt::format("[budget] {} = 1", key), "the other run would be the same",
+                          "Give another factor, or leave the row out with leave_out"});
+  };
+  v.number("cell_factor", cell_factor, recipe::Range{0.1, 10}, "row cells: sides of the other cells over the run's");
+  differs(cell_factor, "cell_factor");
+  v.number("step_factor", step_factor, recipe::Range{0.01, 1, false, true},
+           "row step: length of the other steps over the run's");
+  v.number("modulus_factor", modulus_factor, recipe::Range{0.01, 100},
+           "row modulus: Young's modulus of the other run over the run's");
+  differs(modulus_factor, "modulus_factor");
+  v.number("friction_doubt", friction_doubt, recipe::Range{0, 1, true, true},
+           "rows friction and strength: share by which a coefficient of friction may be wrong, either way");
+  v.optional_number("friction_doubt_deg", friction_doubt_deg, recipe::Range{0, 45, true, true},
+                    "the same as an angle, in the place of friction_doubt");
+  v.number("drag_doubt", drag_doubt, recipe::Range{0, 1, true, true},
+           "row drag: share by which the drag of the bed may be wrong, either way");
+  v.integer("survey_draws", survey_draws, {1, 100}, "row survey: runs, each with another error of the survey");
+  v.integer("seed", seed, {0, 2147483647}, "row survey: another seed draws other errors");
+  recipe::table(v, "elevation_error", elevation_error,
+                "row survey: the error of the elevation models; nothing: as they show it on stable ground",
+                "budget.elevation_error");
+  recipe::list(v, "run", changes, "a run of your own, with other values of [solve]");
+}
+
+void BudgetOptions::check(std::vector<Fault>& faults) const {
+  const std::vector<std::string_view> rows = names_of_rows();
+  if (changes.empty() && std::none_of(rows.begin(), rows.end(), [&](std::string_view row) { return has(row); }))
+    faults.push_back({"[budget] leave_out names all rows", "nothing would be left to run", "Leave one of them in"});
+  std::set<std::string> names;
+  for (const OwnChange& change : changes)
+    if (!names.insert(change.name).second)
+      faults.push_back({fmt::format("[[budget.run]] \"{}\" is there twice", change.name),
+                        "the table could not tell the runs apart", "Give one of them another name"});
+}
+
+bool BudgetOptions::has(std::string_view row) const {
+  return std::find(leave_out.begin(), leave_out.end(), row) == leave_out.end();
+}
+
+BudgetOptions budget_of(const recipe::Recipe& recipe, bool asked) {
+  auto options = recipe.read<BudgetOptions>("budget");
+  options.make = options.make || asked;
+  return options;
+}
+
+}  // namespace talus

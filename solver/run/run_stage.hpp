@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// talus-solve for a run in time: domain.vdb -> run.h5.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "common/domain/domain.hpp"
+#include "common/stage/identity.hpp"
+#include "common/stage/stage.hpp"
+#include "solver/options/solve.hpp"
+#include "solver/parallel/any_device.hpp"
+
+namespace talus::solver {
+
+/// What the command line says of a run.
+struct RunFlags {
+  std::optional<std::filesystem::path> restart = {};  ///< go on from this checkpoint; an empty path: OUT/checkpoint.h5
+  bool resume = false;                                ///< go on where there is something to go on from
+  bool profile = false;                               ///< measure where the time goes
+  bool plan = false;                                  ///< say what would run, and run nothing
+};
+
+/// The checkpoint that the flags go on from; none where they begin.
+std::optional<std::filesystem::path> checkpoint_of(const RunFlags& flags, const std::filesystem::path& out);
+
+/// This function runs the slide and writes its results. The stiffness in `options` is settled. `facts` are what is
+/// insisted on; what is warned of is added to the facts of the domain. It adds to the context's results and returns the
+/// facts for the used recipe, none where nothing ran. It throws RecipeError where the scene is implausible,
+/// NumericalError, Interrupted with a checkpoint left behind, and DataError.
+Facts run_in_time(StageContext& context, const RunFlags& flags, const SolveOptions& options, const AnyDevice& device,
+                  Domain& domain, const Facts& facts);
+
+}  // namespace talus::solver

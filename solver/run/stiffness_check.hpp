@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How far a run depends on the stiffness that it was given.
+#pragma once
+
+#include <filesystem>
+
+#include "common/domain/domain.hpp"
+#include "common/stage/stage.hpp"
+#include "solver/options/solve.hpp"
+#include "solver/parallel/any_device.hpp"
+
+namespace talus::solver {
+
+/// This function makes the run of `first` (its run.h5) once more, twice as stiff, in the folder stiffness-check of the
+/// results, and says what share of the deposit's volume lies elsewhere.
+void check_stiffness(const Domain& domain, SolveOptions o, const AnyDevice& device, const StageContext& context,
+                     const std::filesystem::path& first);
+
+}  // namespace talus::solver
