@@ -118,7 +118,8 @@ function notes(data, outlines) {
   const { all, shown } = data.members;
   document.getElementById("members-note").textContent =
     all > shown
-      ? `The charts show the first ${number(shown)} of ${number(all)} ${called(data).many}; ${called(data).table} has all.`
+      ? `The charts show the first ${number(shown)} of ${number(all)} ${called(data).many}; ${called(data).table} has ` +
+        "all."
       : `All ${number(all)} ${called(data).many}; those that are not counted have no point and no line.`;
 }
 
