@@ -111,15 +111,18 @@ function notes(data, outlines) {
     );
   const held = data.outlines.members.length;
   if (held < run.counted)
-    parts.push(`The page holds the outlines of the first ${number(held)} of ${number(run.counted)} counted ${called(data).many}.`);
+    parts.push(
+      `The page holds the outlines of the first ${number(held)} of ${number(run.counted)} counted ` +
+        `${called(data).many}.`,
+    );
   if (held > mostDrawn) parts.push(`${mostDrawn} outlines are drawn at a time.`);
   parts.push("Click the map, then turn the wheel to zoom.");
   document.getElementById("map-note").textContent = parts.join(" ");
   const { all, shown } = data.members;
   document.getElementById("members-note").textContent =
     all > shown
-      ? `The charts show the first ${number(shown)} of ${number(all)} ${called(data).many}; ${called(data).table} has ` +
-        "all."
+      ? `The charts show the first ${number(shown)} of ${number(all)} ${called(data).many}; ` +
+        `${called(data).table} has all.`
       : `All ${number(all)} ${called(data).many}; those that are not counted have no point and no line.`;
 }
 

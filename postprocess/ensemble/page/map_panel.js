@@ -175,7 +175,9 @@ export class MapPanel {
         error: `${run.share.error} In points of a per cent, for ${number(this.draws)} draws.`,
         needed: "Counted members that it would take for half the standard error, by the same design.",
         hazard: `The largest class of: ${run.hazard}.`,
-        none: run.slides ? "Hillshade of the model, within the slides' domains." : "Hillshade of the surface before the failure.",
+        none: run.slides
+          ? "Hillshade of the model, within the slides' domains."
+          : "Hillshade of the surface before the failure.",
       }[this.layer] ??
       (run.slides
         ? `Of ${number(run.counted)} counted slides; nothing is drawn where none came.`

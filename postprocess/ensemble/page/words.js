@@ -44,13 +44,16 @@ export function drawSummary(data) {
     run.slides
       ? `${parts.join(", ")}, each in a domain of its own over one elevation model.${varied}`
       : `${parts.join(", ")}. They were drawn by ${designs[run.design] ?? run.design}.${varied}`;
-  if (run.at_edge) document.getElementById("headline").append(h("strong", {}, ` At the edge of its domain: ${run.at_edge}.`));
+  const edge = run.at_edge ? h("strong", {}, ` At the edge of its domain: ${run.at_edge}.`) : "";
+  document.getElementById("headline").append(edge);
   const by = run.institution ? `${run.institution} \u00b7 ` : "";
   document.getElementById("byline").textContent = `${by}${run.made} \u00b7 Talus ${run.version}`;
   const box = document.getElementById("key-numbers");
-  box.append(keyNumber(run.slides ? "Slides counted" : "Members counted", `${number(run.counted)} of ${number(run.members)}`,
+  const counted = `${number(run.counted)} of ${number(run.members)}`;
+  box.append(keyNumber(run.slides ? "Slides counted" : "Members counted", counted,
     run.failed ? `${number(run.failed)} failed` : null));
-  if (!run.slides) box.append(keyNumber("Error of a probability", `\u00b1${number(100 * standardError(0.5, run.draws), 1)} %`,
+  const error = `\u00b1${number(100 * standardError(0.5, run.draws), 1)} %`;
+  if (!run.slides) box.append(keyNumber("Error of a probability", error,
     "of one half, one sigma"));
   for (const name of keyResults) {
     const column = members.columns.find((one) => one.name === name);
@@ -102,5 +105,6 @@ export function drawMethod(data) {
   const failures = run.failures.map(([name, words]) => item(`${name}: ${words}`));
   box.append(h("ul", { class: "plain-list note" }, failures));
   if (run.failed > run.failures.length)
-    box.append(h("p", { class: "note" }, `The first ${run.failures.length} of ${run.failed}; ${called(data).table} has all.`));
+    box.append(h("p", { class: "note" }, 
+      `The first ${run.failures.length} of ${run.failed}; ${called(data).table} has all.`));
 }
