@@ -16,10 +16,10 @@ namespace talus::solver {
 
 /// What the command line says of a run.
 struct RunFlags {
-  std::optional<std::filesystem::path> restart;  ///< go on from this checkpoint; an empty path: OUT/checkpoint.h5
-  bool resume = false;                           ///< go on where there is something to go on from
-  bool profile = false;                          ///< measure where the time goes
-  bool plan = false;                             ///< say what would run, and run nothing
+  std::optional<std::filesystem::path> restart = {};  ///< go on from this checkpoint; an empty path: OUT/checkpoint.h5
+  bool resume = false;                                ///< go on where there is something to go on from
+  bool profile = false;                               ///< measure where the time goes
+  bool plan = false;                                  ///< say what would run, and run nothing
 };
 
 /// The checkpoint that the flags go on from; none where they begin.

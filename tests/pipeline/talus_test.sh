@@ -228,7 +228,7 @@ test_compare_puts_two_runs_on_one_page() {
   local page=a/comparison.html word
   for word in 'data:image/png;base64,iVBOR' '<h2>Volumes</h2>' '<h2>Run-out and extent</h2>' \
     '<h2>Against the survey</h2>' '<h2>Cost</h2>' 'fahrboeschung' '[solve.base] friction_angle_deg' \
-    'The grids differ (20 x 20 cells of 10 m and 40 x 40 of 5 m)' 'A &lt;b> title'; do
+    'The grids differ (20 x 20 cells of 10 m and 40 x 40 of 5 m)' 'A &lt;b&gt; title'; do
     grep -qF -- "$word" $page || fail "the page does not show: $word"
   done
   ! grep -qE "<script|https?://|$TALUS_SCRATCH" $page || fail "the page runs scripts, loads something or names folders"

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From domain.vdb to run.h5: what a run leaves, what it goes on from, and the check of its stiffness.
+#include "solver/run/run_stage.hpp"
+
+#include "common/run/run_file.hpp"
+#include "solver/run/stiffness_check.hpp"
+#include "tests/solver/ensemble/ensemble_scene.hpp"
+
+namespace talus::solver::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder with the domain of a heap, as talus-preprocess leaves it.
+class RunStage : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    recipe_file_ = scratch_.write("recipe.toml", heap_recipe());
+    domain_ = small_heap();
+    domain_.provenance = {{domain_id, "0123"}};
+    write_domain(out() / "domain.vdb", domain_);
+  }
+
+  fs::path out() const { return scratch_.folder(); }
+  StageContext context() const { return {recipe::Recipe(recipe_file_), out(), false, "test", {}}; }
+  SolveOptions options() const { return options_of(recipe::Recipe(recipe_file_), out()); }
+  Facts run(StageContext& context, const RunFlags& flags, const SolveOptions& options) {
+    return run_in_time(context, flags, options, make_device(On::cpu), domain_, {});
+  }
+
+  test::Scratch scratch_;
+  fs::path recipe_file_;
+  Domain domain_;
+};
+
+TEST_F(RunStage, writes_the_run_and_says_what_it_was) {
+  StageContext context = this->context();
+  const Facts used = run(context, {}, options());
+  EXPECT_EQ(context.results, std::vector<fs::path>{out() / "run.h5"});
+  EXPECT_EQ(fact(used, "id"), fact(read_run(out() / "run.h5").summary.provenance, run_id));
+  EXPECT_GT(std::stol(fact(used, "steps")), 0);
+}
+
+TEST_F(RunStage, writes_nothing_where_it_is_only_asked_for_a_plan_or_a_check) {
+  StageContext context = this->context();
+  EXPECT_TRUE(run(context, {.plan = true}, options()).empty());
+  context.check_only = true;
+  EXPECT_TRUE(run(context, {}, options()).empty());
+  EXPECT_TRUE(context.results.empty());
+  EXPECT_FALSE(fs::exists(out() / "run.h5"));
+}
+
+TEST_F(RunStage, goes_on_from_the_checkpoint_that_is_named) {
+  EXPECT_FALSE(checkpoint_of({}, out()));
+  EXPECT_FALSE(checkpoint_of({.resume = true}, out())) << "that one is taken where it is there";
+  EXPECT_EQ(checkpoint_of({.restart = fs::path()}, out()), out() / "checkpoint.h5");
+  EXPECT_EQ(checkpoint_of({.restart = fs::path("other.h5")}, out()), fs::path("other.h5"));
+  StageContext context = this->context();
+  EXPECT_THROW(run(context, {.restart = fs::path()}, options()), DataError) << "there is none";
+}
+
+TEST_F(RunStage, runs_once_more_and_twice_as_stiff_to_check_the_stiffness) {
+  StageContext context = this->context();
+  run(context, {}, options());
+  ASSERT_FALSE(fs::exists(out() / "stiffness-check"));
+  check_stiffness(domain_, options(), make_device(On::cpu), context, out() / "run.h5");
+  const talus::Run soft = read_run(out() / "run.h5"), stiff = read_run(out() / "stiffness-check" / "run.h5");
+  // Steps follow the speed of waves: the root of two, less what the speed of the heap takes.
+  EXPECT_GT(static_cast<double>(stiff.summary.steps), 1.2 * static_cast<double>(soft.summary.steps));
+  EXPECT_LT(static_cast<double>(stiff.summary.steps), 1.5 * static_cast<double>(soft.summary.steps));
+}
+
+}  // namespace
+}  // namespace talus::solver::testing
