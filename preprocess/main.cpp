@@ -42,6 +42,10 @@ void report(const preprocess::Prepared& prepared) {
     (prepared.slide->outside_is_large || prepared.slide->outside_is_doubtful ? log_warning : log_info)(
         preprocess::outside_words(*prepared.slide));
   const std::string whole = prepared.by_release.size() == 1 ? prepared.by_release.front().first : "all releases";
+  if (prepared.by_release.empty()) {
+    log_info("nothing is released: all that moves enters over time, by [[solve.inflow]]");
+    return;
+  }
   for (const std::string& line : preprocess::as_lines(whole, prepared.total)) log_info(line);
   const double count = static_cast<double>(prepared.point_count);
   log_info(fmt::format("material points: {} (the solver needs about {:.0f} MB for them)", grouped(count),

@@ -20,7 +20,8 @@ void need_one_way(recipe::Visitor& v, const Options& o) {
             fault(what, why,
                   "Give exactly one of: before_dem and after_dem; before_dem and sliding_surface; before_dem and "
                   "source.polygon; base_dem and [[preprocess.release]]; [preprocess.laboratory] and "
-                  "[[preprocess.box]]"));
+                  "[[preprocess.box]]; either of the last two alone with no_release = true where all that moves "
+                  "enters by [[solve.inflow]]"));
     found = found || wrong;
   };
   const char* const two_ways = "they belong to different ways";
@@ -32,7 +33,7 @@ void need_one_way(recipe::Visitor& v, const Options& o) {
   refuse(before && releases, "before_dem and [[preprocess.release]] are both given", two_ways);
   refuse(base && (after || sliding), "base_dem goes with releases only, but after_dem or sliding_surface is given",
          two_ways);
-  refuse(base && !releases, "base_dem is given without a release", "nothing would move");
+  refuse(base && !releases && !o.no_release, "base_dem is given without a release", "nothing would move");
 }
 
 /// This function declares what the heights of one model are in, where it differs from the others.

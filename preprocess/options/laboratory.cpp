@@ -55,8 +55,9 @@ void LaboratoryOptions::describe(recipe::Visitor& v, const Options& all) {
   v.needs(ignored || all.grid.spacing > 0,
           fault("grid.spacing_m is not given", "a laboratory has no elevation model to take it from",
                 "Give the width of a cell in metres"));
-  v.needs(ignored || !all.box.empty(),
-          fault("a laboratory without [[preprocess.box]]", "nothing would move", "Give at least one box of material"));
+  v.needs(ignored || !all.box.empty() || all.no_release,
+          fault("a laboratory without [[preprocess.box]]", "nothing would move",
+                "Give at least one box of material, or no_release = true with [[solve.inflow]]"));
   v.number("west_m", west, recipe::any, "western edge");
   v.number("south_m", south, recipe::any, "southern edge");
   v.number("ground_m", ground, recipe::any, "elevation of the ground at the south-western corner");

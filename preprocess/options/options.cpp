@@ -14,6 +14,14 @@ void Options::describe(recipe::Visitor& v) {
   ElevationOptions::describe(v, *this);
   v.names("accept", accept, {"swapped-surveys", "false-lengths", "steep-ground"},
           "what is refused because it is hardly ever right, and here is; it goes with all results");
+  v.flag("no_release", no_release,
+         "base_dem or a laboratory without releases: all that moves enters by [[solve.inflow]]");
+  v.needs(!no_release || (before_dem.empty() && release.empty() && box.empty()),
+          fault("no_release = true beside before_dem, [[preprocess.release]] or [[preprocess.box]]",
+                "they say what is released", "Leave one of them out; an inflow may enter beside a release"));
+  v.needs(!no_release || grid.layer_height > 0,
+          fault("no_release = true without grid.layer_height_m", "there is no release whose thickness it could follow",
+                "Give a half of the depth that the flow will have"));
   v.number("thickness_factor", thickness_factor, recipe::positive,
            "the released thickness times this; the bed and the outline stay, the surface before follows");
   v.needs(thickness_factor == 1 || std::all_of(box.begin(), box.end(), [](const auto& b) { return !(b.bottom > 0); }),

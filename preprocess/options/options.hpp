@@ -25,6 +25,7 @@ enum class Way { before_and_after, before_and_sliding_surface, before_and_outlin
 /// The keys of [preprocess] itself, then its tables.
 struct Options : ElevationOptions {
   std::vector<std::string> accept;  ///< what is refused as implausible, insisted on by name
+  bool no_release = false;          ///< all that moves enters over time ([[solve.inflow]])
   double thickness_factor = 1;      ///< of the released thickness [-]
   CoregistrationOptions coregistration;
   DifferenceOptions difference;

@@ -135,6 +135,17 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     return report;
   }
 
+  /// The method adds points; see Solver::add().
+  void add(const ParticleState& points, double rate) override {
+    points_.append(points);
+    Clock clock = read_clock();
+    sort(0);
+    clock.steps_since_sort = 0;
+    if (Device::is_gpu) clock.steps_between_sorts = steps_between_sorts_on_gpu<Shape>(points_.count());
+    this->note_rate(clock, rate);
+    clock_.upload({clock});
+  }
+
   /// The memory by its users; see Solver::memory().
   MemoryShares memory() const override {
     MemoryShares shares = Base::memory();

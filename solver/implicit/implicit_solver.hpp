@@ -68,6 +68,15 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     return report;
   }
 
+  /// The method adds points; see Solver::add(). Every step sorts before it begins.
+  void add(const ParticleState& points, double rate) override {
+    points_.append(points);
+    this->fit(0);
+    Clock clock = read_clock();
+    this->note_rate(clock, rate);
+    clock_.upload({clock});
+  }
+
   /// The memory by its users; see Solver::memory().
   MemoryShares memory() const override {
     MemoryShares shares = Base::memory();

@@ -14,6 +14,7 @@
 #include "solver/integrator/solver.hpp"
 #include "solver/integrator/surroundings.hpp"
 #include "solver/parallel/algorithms.hpp"
+#include "solver/parallel/atomics.hpp"
 
 namespace talus::solver {
 
@@ -123,6 +124,11 @@ class PointSolver : public Solver {
     const GridShape& shape = grid_.shape();
     return Shape::edge_share * static_cast<double>(materials_.list[0].density) * shape.spacing * shape.spacing *
            shape.layer_height;
+  }
+  /// The method takes account of points that have come with this `rate` [1/s].
+  static void note_rate(Clock& clock, double rate) {
+    atomic_max_positive(&clock.rate_bits, static_cast<float>(rate));
+    clock.halt = clock.request = running;
   }
   Clock read_clock() const { return clock_.download().front(); }
 

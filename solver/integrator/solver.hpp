@@ -71,6 +71,9 @@ class Solver {
   virtual BatchReport advance() = 0;
   /// The method sets the time not to step over [s].
   virtual void set_next_event(double time) = 0;
+  /// The method adds points; at the start or at an event, where those who left the domain have been dropped. `rate`:
+  /// at which waves and speed cross the cells of those points [1/s], which bounds the next step (T11).
+  virtual void add(const ParticleState& points, double rate) = 0;
   /// The clock of the end of the last step.
   virtual Clock clock() const = 0;
   /// All that a checkpoint keeps.

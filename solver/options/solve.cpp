@@ -89,6 +89,7 @@ void SolveOptions::describe(recipe::Visitor& v) {
   recipe::list(v, "obstacle", obstacles, "bodies in the way: walls, barriers, buildings");
   need_names(v, "obstacle", "its forces are recorded under its name", obstacles);
   recipe::list(v, "load", loads, "forces on parts of the mass");
+  describe_inflows(v, inflows, *this);
   recipe::table(v, "shaking", shaking, "the ground shakes: an accelerogram as body force", *this);
   MassOptions::describe(v);
   recipe::table(v, "base", base, "the bed under it");

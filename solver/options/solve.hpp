@@ -8,6 +8,7 @@
 
 #include "solver/options/bed.hpp"
 #include "solver/options/implicit.hpp"
+#include "solver/options/inflow.hpp"
 #include "solver/options/loads.hpp"
 #include "solver/options/material.hpp"
 #include "solver/options/obstacles.hpp"
@@ -27,6 +28,7 @@ struct SolveOptions : TimeOptions, SchemeOptions, GravityOptions, OutputOptions,
   std::vector<WallOptions> walls;
   std::vector<ObstacleOptions> obstacles;
   std::vector<LoadOptions> loads;
+  std::vector<InflowOptions> inflows;
   ShakingOptions shaking;
   BaseOptions base;
 

@@ -12,6 +12,7 @@
 #include "solver/boundary/base_friction.hpp"
 #include "solver/run/energy_line.hpp"
 #include "solver/run/stiffness.hpp"
+#include "solver/scene/make_inflow.hpp"
 
 namespace talus::solver {
 namespace {
@@ -20,8 +21,9 @@ constexpr double to_degrees = 180 / std::numbers::pi;
 constexpr double fewest_points = 4;  // in a cell: with two along each of two axes a flow still has no gaps
 constexpr double longer_steps = 3;   // what a lower stiffness must bring to be spoken of
 
-double released_volume(const Domain& domain) {
+double released_volume(const Domain& domain, const SolveOptions& o) {
   double volume = 0;
+  for (const InflowSummary& inflow : inflow_summaries(domain, o)) volume += inflow.volume;
   for (std::size_t n = 0; n < domain.points.size(); ++n)
     if (domain.points.release[n] >= domain.erodible) volume += domain.points.volume[n];
   return volume;
@@ -58,7 +60,7 @@ double coulomb_coefficient(const Domain& domain, const SolveOptions& o) {
 }
 
 void advise_on_friction(const Domain& domain, const SolveOptions& o, Advice& lines) {
-  const double coefficient = coulomb_coefficient(domain, o), volume = released_volume(domain);
+  const double coefficient = coulomb_coefficient(domain, o), volume = released_volume(domain, o);
   const ReachBounds usual = usual_reach(volume);
   if (!(coefficient > 0) || !(usual.high > 0)) return;
   if (coefficient >= usual.low && coefficient <= usual.high) return;

@@ -8,6 +8,7 @@
 #include "common/map/statistics.hpp"
 #include "solver/boundary/base_friction.hpp"
 #include "solver/options/solve.hpp"
+#include "solver/scene/make_inflow.hpp"
 
 namespace talus::solver {
 namespace {
@@ -70,6 +71,11 @@ EnergyLine energy_line_of(const Domain& domain, const SolveOptions& options) {
       line.y = domain.grid.y(row);
       line.z = ground + thickness;
     }
+  }
+  const double g = std::hypot(options.gravity[0], options.gravity[1], options.gravity[2]);
+  for (const InflowTop& top : inflow_tops(domain, options)) {
+    const double head = g > 0 ? top.z + top.speed * top.speed / (2 * g) : top.z;
+    if (head > line.z) line = {.x = top.x, .y = top.y, .z = head, .friction = line.friction};
   }
   return line;
 }

@@ -9,6 +9,7 @@
 #include "solver/integrator/scene.hpp"
 #include "solver/integrator/solver.hpp"
 #include "solver/options/solve.hpp"
+#include "solver/run/inflow_words.hpp"
 #include "solver/run/recorders/history.hpp"
 #include "solver/run/shaking_words.hpp"
 #include "solver/run/trial.hpp"
@@ -79,6 +80,8 @@ std::vector<std::string> plan(const Domain& domain, const SolveOptions& o, const
   std::vector<std::string> lines = features(domain, o);
   const Scene scene = make_scene(domain, o);
   if (scene.shaking.acts()) lines.push_back(fmt::format("{:<12} {}", "shaking", shaking_words(scene.shaking)));
+  for (const InflowSummary& inflow : scene.inflow.summaries)
+    lines.push_back(fmt::format("{:<12} {}", "inflow", inflow_words(inflow)));
   const History recorded(o, scene);  // refuses what cannot be recorded
   for (const std::string& note : scene.contacts.notes) lines.push_back(note);
   const Trial trial = try_steps(scene, o, device, 0.5);
@@ -87,7 +90,9 @@ std::vector<std::string> plan(const Domain& domain, const SolveOptions& o, const
   };
   const double volume = std::accumulate(scene.points.volume.begin(), scene.points.volume.end(), 0.0);
   const double cell = scene.grid.spacing * scene.grid.spacing * scene.grid.layer_height;
-  add("points", fmt::format("{}, {:.6g} m3", scene.points.size(), volume));
+  add("points", scene.inflow.any() ? fmt::format("{}, {:.6g} m3; {} more enter", scene.points.size(), volume,
+                                                 scene.inflow.points.size())
+                                   : fmt::format("{}, {:.6g} m3", scene.points.size(), volume));
   add("cells",
       fmt::format("{} x {} columns of {:g} m, layers of {:g} m; the mass fills about {:.0f}, the grid around it at the "
                   "start has {} in {} blocks of columns",

@@ -26,8 +26,9 @@ void separate_releases(const RunEnd& run, RunMaps& maps) {
   const auto map_of = [&](const ParticleState& s, const std::function<bool(std::size_t)>& counts) {
     return thickness_of(run.scene, run.options, s, counts);
   };
-  for (std::size_t r = 0; r < domain.release_names.size(); ++r) {
-    maps.deposit_of.emplace_back(domain.release_names[r], map_of(end, [&](std::size_t p) {
+  const std::vector<std::string>& names = run.scene.release_names;
+  for (std::size_t r = 0; r < names.size(); ++r) {
+    maps.deposit_of.emplace_back(names[r], map_of(end, [&](std::size_t p) {
                                    return end.release[p] == static_cast<int>(r) && belongs_to_slide(run, p);
                                  }));
   }
@@ -57,8 +58,9 @@ bool belongs_to_slide(const RunEnd& end, std::size_t p) {
 SlideVolumes slide_volumes(const RunEnd& end, double outflow) {
   const ParticleState &s = end.state.points, &start = end.scene.points;
   SlideVolumes volumes;
+  volumes.released = end.scene.inflow.volume(end.pulses);
   if (end.domain.erodible == 0) {
-    volumes.released = total_volume(start);
+    volumes.released += total_volume(start);
     volumes.final = total_volume(s);
     return volumes;
   }
@@ -85,7 +87,7 @@ RunMaps final_maps(const RunEnd& end, std::vector<double> thickness) {
           (maps.*(map.result)).push_back(value < 0 ? std::numeric_limits<double>::quiet_NaN() : value / map.unit);
       },
       end.state.maps);
-  if (end.domain.release_names.size() > 1) separate_releases(end, maps);
+  if (end.scene.release_names.size() > 1) separate_releases(end, maps);
   maps.threshold = end.options.map_threshold;
   return maps;
 }

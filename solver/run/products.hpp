@@ -19,6 +19,7 @@ struct RunEnd {
   const Scene& scene;
   const SolverState& state;
   const std::vector<double>& initial_thickness;  ///< of all points [m]
+  std::int64_t pulses = 0;                       ///< of the inflows that have entered
 };
 
 /// The volumes of the slide [m3].

@@ -27,6 +27,8 @@ std::vector<std::filesystem::path> inputs_of(const SolveOptions& options, const 
   for (const ObstacleOptions& obstacle : options.obstacles)
     if (std::find(inputs.begin(), inputs.end(), obstacle.level_set) == inputs.end())
       inputs.push_back(obstacle.level_set);
+  for (const InflowOptions& inflow : options.inflows)
+    if (!inflow.file.empty()) inputs.push_back(inflow.file);
   if (options.shaking.acts()) inputs.push_back(options.shaking.file);
   return inputs;
 }
@@ -34,12 +36,17 @@ std::vector<std::filesystem::path> inputs_of(const SolveOptions& options, const 
 std::string fingerprint_of(const std::filesystem::path& domain, const SolveOptions& options) {
   std::string fingerprint = sha256(domain) + "\n" + recipe::to_toml(options, "solve", false);
   for (const ObstacleOptions& obstacle : options.obstacles) fingerprint += sha256(obstacle.level_set) + "\n";
+  for (const InflowOptions& inflow : options.inflows)
+    if (!inflow.file.empty()) fingerprint += sha256(inflow.file) + "\n";
   if (options.shaking.acts()) fingerprint += sha256(options.shaking.file) + "\n";
   return fingerprint;
 }
 
 Facts made_by(const StageContext& context, const SolveOptions& o, Facts facts) {
   facts.emplace_back(recipe_of_run, recipe_mark(context.recipe, "solve"));
+  for (std::size_t n = 0; n < o.inflows.size(); ++n)
+    if (!o.inflows[n].file.empty())
+      facts.emplace_back("hydrograph." + inflow_name(o.inflows[n], n) + ".sha256", sha256(o.inflows[n].file));
   if (o.shaking.acts()) facts.emplace_back(shaking_checksum, sha256(o.shaking.file));
   return facts;
 }

@@ -14,17 +14,28 @@
 
 namespace talus::solver {
 
+namespace {
+
+std::vector<double> times_of(const Inflow& inflow) {
+  std::vector<double> times;
+  for (const InflowPulse& pulse : inflow.pulses) times.push_back(pulse.time);
+  return times;
+}
+
+}  // namespace
+
 RunLoop::RunLoop(const Domain& domain, const SolveOptions& options, const AnyDevice& device)
     : domain_(domain),
       options_(with_preset(options)),
       scene_(make_scene(domain, options_)),
-      schedule_(options_),
+      schedule_(options_, times_of(scene_.inflow)),
       stepper_(scene_, options_, device),
       history_(options_, scene_),
       watch_(scene_, options_) {}
 
 void RunLoop::start() {
-  if (options_.gravity_loading_steps > 0) load_by_gravity(scene_, options_, stepper_.device());
+  if (options_.gravity_loading_steps > 0 && scene_.points.size() > 0)
+    load_by_gravity(scene_, options_, stepper_.device());
   stepper_.begin(first_state(scene_, make_settings(options_, scene_.grid).common));
   for (const std::string& note : scene_.contacts.notes) log_info(note);
   memory_.initial_thickness = stepper_.solver().thickness();
@@ -42,24 +53,46 @@ std::string RunLoop::step_to_end(RunKeeper& keeper, bool fresh) {
   while (stepper_.time() < schedule_.end_time()) {
     const BatchReport batch = stepper_.advance(schedule_.next_event(stepper_.time(), memory_));
     count(batch);
-    if (batch.sorted) {
-      const bool due = schedule_.checkpoint_due(stepper_.time(), memory_);
-      if (due) ++memory_.checkpoints;
-      keeper.pass_sort(due);
+    if (batch.sorted) pass_sort(keeper);
+    if (batch.clock.halt == at_event) {
+      const bool entered = let_in(stepper_.time());
+      pass_events(stepper_.time(), keeper);
+      if (entered) pass_sort(keeper);  // where pulses come often, nothing else asks for a sort
     }
-    if (batch.clock.halt == at_event) pass_events(stepper_.time(), keeper);
     keeper.pass_batch(batch);
     if (calm()) {
       reason = fmt::format("kinetic energy below {:g} of its peak", options_.stop_kinetic_fraction);
       break;
     }
-    if (stepper_.solver().particle_count() == 0) {
+    if (left_empty()) {
       reason = "all material left the domain";
       break;
     }
   }
   if (schedule_.ends_between_frames(stepper_.time(), memory_)) put_frame(stepper_.time(), keeper);
   return reason;
+}
+
+/// The method lets in what the inflows have brought by `time` and returns whether that is anything. The time is that of
+/// an event: those who left have been dropped.
+bool RunLoop::let_in(double time) {
+  const std::int64_t before = memory_.pulses;
+  while (schedule_.pulse_due(time, memory_)) {
+    const InflowPulse& pulse = scene_.inflow.pulses[static_cast<std::size_t>(memory_.pulses)];
+    stepper_.add(scene_.inflow.points_of(pulse));
+    ++memory_.pulses;
+  }
+  return memory_.pulses > before;
+}
+
+void RunLoop::pass_sort(RunKeeper& keeper) {
+  const bool due = schedule_.checkpoint_due(stepper_.time(), memory_);
+  if (due) ++memory_.checkpoints;
+  keeper.pass_sort(due);
+}
+
+bool RunLoop::left_empty() const {
+  return stepper_.solver().particle_count() == 0 && !schedule_.expects_pulses(memory_);
 }
 
 void RunLoop::count(const BatchReport& batch) {
@@ -103,12 +136,15 @@ void RunLoop::put_frame(double time, RunKeeper& keeper) {
 
 bool RunLoop::calm() const {
   return options_.stop_kinetic_fraction > 0 && stepper_.time() >= scene_.shaking.end() &&
+         !schedule_.expects_pulses(memory_) &&
          history_.last("kinetic_J") < options_.stop_kinetic_fraction * memory_.peak_kinetic;
 }
 
 double RunLoop::mass_error() const {
   const std::vector<double>& volumes = history_.rows().at("volume_m3").values;
-  return volumes.empty() ? 0 : (volumes.back() + history_.last("outflow_m3")) / volumes.front() - 1;
+  if (volumes.empty()) return 0;
+  const double entered = volumes.front() + history_.last("inflow_m3");
+  return entered > 0 ? (volumes.back() + history_.last("outflow_m3")) / entered - 1 : 0;
 }
 
 RunEnd RunLoop::end(const SolverState& state) const {
@@ -116,7 +152,8 @@ RunEnd RunLoop::end(const SolverState& state) const {
           .options = options_,
           .scene = scene_,
           .state = state,
-          .initial_thickness = memory_.initial_thickness};
+          .initial_thickness = memory_.initial_thickness,
+          .pulses = memory_.pulses};
 }
 
 }  // namespace talus::solver

@@ -79,6 +79,9 @@ class RunLoop {
   RunEnd end(const SolverState& state) const;
 
  private:
+  bool let_in(double time);
+  void pass_sort(RunKeeper& keeper);
+  bool left_empty() const;
   void count(const BatchReport& batch);
   void pass_events(double time, RunKeeper& keeper);
   void record(double time);

@@ -13,6 +13,7 @@
 #include "common/stage/acceptance.hpp"
 #include "solver/parallel/bandwidth.hpp"
 #include "solver/run/advice.hpp"
+#include "solver/run/inflow_words.hpp"
 #include "solver/run/plan.hpp"
 #include "solver/run/plausible.hpp"
 #include "solver/run/profile_report.hpp"
@@ -47,6 +48,7 @@ void log_plan(const Domain& domain, const SolveOptions& o, const AnyDevice& devi
   log_info(fmt::format("{} material points, {:.0f} m3; grid {} x {} columns of {:g} m, layers of {:g} m",
                        scene.points.size(), volume, scene.grid.columns, scene.grid.rows, scene.grid.spacing,
                        scene.grid.layer_height));
+  for (const InflowSummary& inflow : scene.inflow.summaries) log_info("inflow " + inflow_words(inflow));
   const auto whole = [](double number) {
     return fmt::format(fmt::runtime(number < 1e9 ? "{:.0f}" : "{:.3g}"), number);
   };
@@ -83,6 +85,10 @@ void add_places(Domain& domain, const SolveOptions& o) {
     MapPlace place{"section " + s.name, {{}}};
     for (std::size_t i = 0; i < s.x.size(); ++i) place.rings[0].push_back({s.x[i], s.y[i]});
     domain.provenance.push_back(place_fact(place));
+  }
+  for (std::size_t n = 0; n < o.inflows.size(); ++n) {
+    const InflowOptions& i = o.inflows[n];
+    domain.provenance.push_back(place_fact({"inflow " + inflow_name(i, n), {{{i.x[0], i.y[0]}, {i.x[1], i.y[1]}}}}));
   }
   for (const GaugeOptions& g : o.gauges) domain.provenance.push_back(place_fact({"gauge " + g.name, {{{g.x, g.y}}}}));
 }

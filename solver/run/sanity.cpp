@@ -33,20 +33,23 @@ double energy_gain(const RunHistory& history) {
   const auto& potential = history.at("potential_J").values;
   const auto& elastic = history.at("elastic_J").values;
   if (kinetic.empty()) return RunSanity::unknown;
-  double least = 1e300, rise = 0, stored = 0, deepest = potential.front();
+  const HistoryColumn* const inflow = history.find("inflow_energy_J");
+  // Of what enters, the energy that it had then counts as none: what it falls from there on is turned over.
+  const auto height = [&](std::size_t n) { return potential[n] - (inflow ? inflow->values[n] : 0); };
+  double least = 1e300, rise = 0, stored = 0, deepest = height(0);
   for (std::size_t n = 0; n < kinetic.size(); ++n) {
-    const double held = kinetic[n] + elastic[n], sum = held + potential[n];
+    const double held = kinetic[n] + elastic[n], sum = held + height(n);
     least = std::min(least, sum);
     rise = std::max(rise, sum - least);
     stored = std::max(stored, held);
-    deepest = std::min(deepest, potential[n]);
+    deepest = std::min(deepest, height(n));
   }
-  const double turned = stored + potential.front() - deepest;
+  const double turned = stored + height(0) - deepest;
   return turned > 0 ? rise / turned : 0;
 }
 
-/// The speed of a fall without loss [m/s], from the point that stands highest against gravity at the start to the
-/// lowest ground that the mass has reached.
+/// The speed of a fall without loss [m/s], from the point that stands highest against gravity at the start, or when it
+/// enters, to the lowest ground that the mass has reached.
 double speed_of_fall(const RunEnd& end) {
   const SolveOptions& o = end.options;
   const auto height = [&](double x, double y, double z) {
@@ -56,6 +59,12 @@ double speed_of_fall(const RunEnd& end) {
   const TerrainTables terrain = make_terrain_tables(end.scene.grid);
   for (const auto& [x, y, z] : positions(end.scene.map, end.scene.grid, terrain, end.scene.points))
     top = std::max(top, height(x, y, z));
+  const ParticleState& entering = end.scene.inflow.points;
+  double start = std::hypot(o.initial_velocity[0], o.initial_velocity[1], o.initial_velocity[2]);
+  for (const auto& [x, y, z] : positions(end.scene.map, end.scene.grid, terrain, entering))
+    top = std::max(top, height(x, y, z));
+  for (std::size_t p = 0; p < entering.size(); ++p)
+    start = std::max(start, std::hypot(entering.velocity[0][p], entering.velocity[1][p], entering.velocity[2][p]));
   const MapGrid& map = end.scene.map;
   for (int row = 0; row < map.rows; ++row) {
     for (int column = 0; column < map.columns; ++column) {
@@ -64,7 +73,6 @@ double speed_of_fall(const RunEnd& end) {
         low = std::min(low, height(map.x(column), map.y(row), ground));
     }
   }
-  const double start = std::hypot(o.initial_velocity[0], o.initial_velocity[1], o.initial_velocity[2]);
   return std::sqrt(start * start + 2 * std::max(0.0, top - low));
 }
 
@@ -74,10 +82,11 @@ RunSanity sanity_of(const RunEnd& end, const RunHistory& history, double outflow
   const auto total = [](const std::vector<double>& volumes) {
     return std::accumulate(volumes.begin(), volumes.end(), 0.0);
   };
-  const double released = total(end.scene.points.volume), kept = total(end.state.points.volume);
+  const double released = total(end.scene.points.volume) + end.scene.inflow.volume(end.pulses),
+               kept = total(end.state.points.volume);
   RunSanity sanity;
-  sanity.volume_error = (kept + outflow) / released - 1;
-  sanity.volume_left = outflow / released;
+  sanity.volume_error = released > 0 ? (kept + outflow) / released - 1 : 0;
+  sanity.volume_left = released > 0 ? outflow / released : 0;
   sanity.packing_p99 = largest(history, "packing_p99");
   sanity.packing_max = largest(history, "packing_max");
   sanity.speed_max = largest(history, "speed_max_so_far_m_s");

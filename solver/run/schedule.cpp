@@ -15,11 +15,12 @@ double at_count(std::int64_t count, double interval) { return static_cast<double
 
 }  // namespace
 
-Schedule::Schedule(const SolveOptions& options)
+Schedule::Schedule(const SolveOptions& options, std::vector<double> pulses)
     : frame_interval_(options.frame_interval),
       record_interval_(options.history_interval),
       checkpoint_interval_(options.checkpoint_interval),
-      end_time_(options.end_time) {
+      end_time_(options.end_time),
+      pulses_(std::move(pulses)) {
   for (const WallOptions& wall : options.walls) changes_.insert(changes_.end(), {wall.from, wall.to});
   for (const LoadOptions& load : options.loads) changes_.insert(changes_.end(), {load.from, load.to});
   if (options.shaking.acts()) changes_.push_back(options.shaking.start);
@@ -31,6 +32,7 @@ double Schedule::next_event(double time, const RunMemory& passed) const {
   for (const double change : changes_) {
     if (change > just_after(time)) next = std::min(next, change);
   }
+  if (expects_pulses(passed)) next = std::min(next, pulses_[static_cast<std::size_t>(passed.pulses)]);
   return next;
 }
 
@@ -40,6 +42,10 @@ bool Schedule::record_due(double time, const RunMemory& passed) const {
 
 bool Schedule::frame_due(double time, const RunMemory& passed) const {
   return just_after(time) >= at_count(passed.frames, frame_interval_);
+}
+
+bool Schedule::pulse_due(double time, const RunMemory& passed) const {
+  return expects_pulses(passed) && just_after(time) >= pulses_[static_cast<std::size_t>(passed.pulses)];
 }
 
 bool Schedule::checkpoint_due(double time, const RunMemory& passed) const {

@@ -114,7 +114,8 @@ void Simulation::measure(const RunEnd& end, RunSummary& summary) const {
   summary.bed = loop_.options().base.sentence();
   summary.precision = loop_.options().precision == Precision::double_ ? "double" : "single";
   summary.version = version();
-  summary.particles = static_cast<std::int64_t>(loop_.scene().points.size());
+  summary.particles =
+      static_cast<std::int64_t>(loop_.scene().points.size() + loop_.scene().inflow.points_in(loop_.memory().pulses));
   summary.particles_outflow = loop_.memory().outflow_count;
   summary.steps = end.state.clock.step;
   summary.time_end = loop_.stepper().time();
@@ -123,7 +124,7 @@ void Simulation::measure(const RunEnd& end, RunSummary& summary) const {
   for (const auto& [owner, bytes] : solver.memory()) summary.memory_of.emplace_back(owner, static_cast<double>(bytes));
   for (const Profile::Phase& p : device.profile().phases()) summary.profile.emplace_back(p.name, p.seconds);
   summary.density = loop_.options().material.density;
-  for (const std::string& release : end.domain.release_names)
+  for (const std::string& release : end.scene.release_names)
     summary.release_density.push_back(loop_.options().material_of(release).density);
   summary.layer_height = end.domain.layer_height;
   const SlideVolumes volumes = slide_volumes(end, loop_.memory().outflow_volume);

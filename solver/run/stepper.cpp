@@ -3,11 +3,13 @@
 #include "solver/run/stepper.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "solver/options/hindrances.hpp"
+#include "solver/scene/make_scene.hpp"
 #include "solver/scene/make_solver.hpp"
 
 namespace talus::solver {
@@ -55,6 +57,15 @@ void Stepper::hand_over() {
                   "J, {:.1g} J, {:.1g} kg m/s",
                   before.kinetic, before.elastic, length(before.momentum), after.kinetic - before.kinetic,
                   after.elastic - before.elastic, length(change)));
+}
+
+void Stepper::add(const ParticleState& points) {
+  double square = 0;
+  for (std::size_t p = 0; p < points.size(); ++p)
+    square =
+        std::max(square, points.velocity[0][p] * points.velocity[0][p] + points.velocity[1][p] * points.velocity[1][p] +
+                             points.velocity[2][p] * points.velocity[2][p]);
+  solver_->add(points, first_rate(scene_.grid, solver_->ground(), points, first_waves(options_), std::sqrt(square)));
 }
 
 BatchReport Stepper::advance(double next_event) {

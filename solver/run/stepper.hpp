@@ -30,6 +30,9 @@ class Stepper {
   /// NumericalError when no integrator can go on.
   BatchReport advance(double next_event);
 
+  /// The method lets points enter the scene, between batches.
+  void add(const ParticleState& points);
+
   /// The solver that takes the steps; it must have begun.
   Solver& solver() { return *solver_; }
   /// The solver that takes the steps, to read from.

@@ -17,6 +17,10 @@ namespace talus::solver {
 Trial try_steps(const Scene& scene, const SolveOptions& o, const AnyDevice& device, double seconds) {
   const auto solver = make_solver(scene, o, device);
   solver->set_next_event(o.end_time);
+  if (scene.points.size() == 0 && scene.inflow.any()) {  // steps of nothing say nothing
+    const ParticleState first = scene.inflow.points_of(scene.inflow.pulses.front());
+    solver->add(first, first_rate(scene.grid, solver->ground(), first, first_waves(o), 0));
+  }
   const auto seconds_since = [](auto begun) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   };

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "solver/boundary/base_friction.hpp"
+#include "solver/run/inflow_words.hpp"
 #include "solver/run/shaking_words.hpp"
 #include "solver/scene/read_shaking.hpp"
 
@@ -134,6 +135,7 @@ std::vector<std::string> warnings(const Domain& domain, const SolveOptions& opti
   warn_of(options.material, "[solve.material]", bed, depth, lines);
   for (const PartOptions& part : options.parts)
     warn_of(part.material, fmt::format("[[solve.part]] \"{}\"", part.release), bed, depth, lines);
+  for (const std::string& line : inflow_warnings(domain, options)) lines.push_back(line);
   for (const std::string& line : shaking_warnings(read_shaking(options.shaking), options)) lines.push_back(line);
   return lines;
 }

@@ -3,9 +3,12 @@
 #include "solver/scene/make_scene.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/options/solve.hpp"
+#include "solver/scene/make_inflow.hpp"
+#include "solver/scene/place_in_cells.hpp"
 #include "solver/scene/read_shaking.hpp"
 #include "solver/scene/settings.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -19,13 +22,6 @@ namespace {
 /// (docs/explanation/theory.md, T11). Implicit steps can do with less, and statics with none; but a node with next to
 /// no mass moves as it likes in a material without tension, and hands the point next to it a spin out of all measure.
 constexpr double explicit_lowest_weighed = 0.1, newmark_lowest_weighed = 0.01;
-
-/// This function finds the nearest node and the offset from it of a position in cells.
-void place(double position, int& cell, double& offset) {
-  const double nearest = std::floor(position + 0.5);
-  cell = static_cast<int>(nearest);
-  offset = position - nearest;
-}
 
 /// This function marks the points that start inside a load's box.
 void attach_loads(const Domain& domain, const SolveOptions& options, Scene& scene, std::vector<Fault>& faults) {
@@ -48,19 +44,32 @@ void attach_loads(const Domain& domain, const SolveOptions& options, Scene& scen
 }
 
 /// This function gives the points of each part its material.
-void attach_materials(const Domain& domain, const SolveOptions& options, Scene& scene, std::vector<Fault>& faults) {
+void attach_materials(const SolveOptions& options, Scene& scene, std::vector<Fault>& faults) {
   for (std::size_t part = 0; part < options.parts.size(); ++part) {
     const std::string& name = options.parts[part].release;
     bool found = false;
     for (std::size_t p = 0; p < scene.points.size(); ++p) {
-      if (domain.release_names[static_cast<std::size_t>(scene.points.release[p])] != name) continue;
+      if (scene.release_names[static_cast<std::size_t>(scene.points.release[p])] != name) continue;
       scene.points.material[p] = static_cast<int>(part) + 1;
       found = true;
     }
+    for (const InflowSummary& inflow : scene.inflow.summaries) found = found || inflow.name == name;
     if (found) continue;
     faults.push_back({fmt::format("[[solve.part]] release = \"{}\": no material point is of that release", name),
-                      fmt::format("domain.vdb has {}", fmt::join(domain.release_names, ", ")),
+                      fmt::format("the scene has {}", fmt::join(scene.release_names, ", ")),
                       "Name one of those, or leave the part out"});
+  }
+}
+
+/// This function refuses an inflow of the name of a release: results are told apart by name.
+void check_release_names(const Scene& scene, std::vector<Fault>& faults) {
+  const auto& names = scene.release_names;
+  for (std::size_t n = names.size() - scene.inflow.summaries.size(); n < names.size(); ++n) {
+    if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(n), names[n]) ==
+        names.begin() + static_cast<std::ptrdiff_t>(n))
+      continue;
+    faults.push_back({fmt::format("[[solve.inflow]] name = \"{}\": a release has that name", names[n]),
+                      "results are told apart by name", "Name the inflow otherwise"});
   }
 }
 
@@ -92,23 +101,6 @@ void check_bed(const Domain& domain, const SolveOptions& options, std::vector<Fa
   }
 }
 
-/// The shape of the background grid as the domain and the recipe give it.
-GridShape grid_shape(const Domain& domain, const SolveOptions& options) {
-  GridShape shape;
-  shape.columns = domain.grid.columns;
-  shape.rows = domain.grid.rows;
-  shape.spacing = domain.grid.cell;
-  shape.layer_height = domain.layer_height;
-  shape.mapping = options.mapping;
-  shape.ground = options.ground_contact;
-  shape.quadratic = options.shape == ShapeKind::quadratic;
-  // With "auto" the same for both integrators: what has next to no weight contributes next to nothing to a change.
-  const StepAbilities steps = abilities_of(options.integrator);
-  shape.lowest_weighed = steps.obey_cfl ? explicit_lowest_weighed : steps.carry_inertia ? newmark_lowest_weighed : 0;
-  shape.terrain = domain.terrain.values;
-  return shape;
-}
-
 /// This function throws DataError unless a point lies over known ground, and in an active cell of the grid that was
 /// made for it.
 void check_place(const Domain& domain, const TerrainTables& terrain, const ActiveCells& active, std::size_t p) {
@@ -138,11 +130,11 @@ ParticleState place_points(const Domain& domain, const SolveOptions& options, co
     check_place(domain, terrain, active, p);
     const double xi = (domain.points.x[p] - domain.grid.west) / shape.spacing - 0.5;
     const double eta = (domain.points.y[p] - domain.grid.south) / shape.spacing - 0.5;
-    place(xi, s.cell[0][p], s.offset[0][p]);
-    place(eta, s.cell[1][p], s.offset[1][p]);
+    place_in_cells(xi, s.cell[0][p], s.offset[0][p]);
+    place_in_cells(eta, s.cell[1][p], s.offset[1][p]);
     double height = domain.points.height[p];
     if (shape.mapping == Mapping::cartesian) height += terrain_at(shape, terrain, xi, eta);
-    place(height / shape.layer_height, s.cell[2][p], s.offset[2][p]);
+    place_in_cells(height / shape.layer_height, s.cell[2][p], s.offset[2][p]);
     for (int a = 0; a < 3; ++a) s.velocity[a][p] = options.initial_velocity[static_cast<std::size_t>(a)];
     s.volume[p] = domain.points.volume[p];
     const double wide = domain.points.extent_x[p], deep = domain.points.extent_y[p];
@@ -157,6 +149,22 @@ ParticleState place_points(const Domain& domain, const SolveOptions& options, co
 
 }  // namespace
 
+GridShape grid_shape(const Domain& domain, const SolveOptions& options) {
+  GridShape shape;
+  shape.columns = domain.grid.columns;
+  shape.rows = domain.grid.rows;
+  shape.spacing = domain.grid.cell;
+  shape.layer_height = domain.layer_height;
+  shape.mapping = options.mapping;
+  shape.ground = options.ground_contact;
+  shape.quadratic = options.shape == ShapeKind::quadratic;
+  // With "auto" the same for both integrators: what has next to no weight contributes next to nothing to a change.
+  const StepAbilities steps = abilities_of(options.integrator);
+  shape.lowest_weighed = steps.obey_cfl ? explicit_lowest_weighed : steps.carry_inertia ? newmark_lowest_weighed : 0;
+  shape.terrain = domain.terrain.values;
+  return shape;
+}
+
 Scene make_scene(const Domain& domain, const SolveOptions& options) {
   static_assert(ActiveCells::side == block_side, "domain.vdb and the solver's grid have blocks of the same columns");
   Scene scene;
@@ -165,9 +173,16 @@ Scene make_scene(const Domain& domain, const SolveOptions& options) {
   const TerrainTables terrain = make_terrain_tables(scene.grid);
   scene.active = domain.active ? *domain.active : active_cells(domain.grid, domain.layer_height, domain.points);
   scene.points = place_points(domain, options, scene.grid, terrain, scene.active);
+  scene.inflow = make_inflow(domain, options, scene.grid, terrain);
+  scene.release_names = domain.release_names;
+  for (const InflowSummary& inflow : scene.inflow.summaries) scene.release_names.push_back(inflow.name);
   std::vector<Fault> faults;
+  if (scene.points.size() == 0 && options.inflows.empty())
+    faults.push_back({"domain.vdb holds no material point, and the recipe no [[solve.inflow]]", "nothing would move",
+                      "Give an inflow, or a release and leave no_release out of [preprocess]"});
+  check_release_names(scene, faults);
   attach_loads(domain, options, scene, faults);
-  attach_materials(domain, options, scene, faults);
+  attach_materials(options, scene, faults);
   check_bed(domain, options, faults);
   if (!faults.empty()) throw RecipeError(std::move(faults));
   scene.bed = make_bed(domain, options);

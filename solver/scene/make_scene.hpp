@@ -16,6 +16,9 @@ namespace talus::solver {
 /// ground, or outside the active cells that the domain's file names.
 Scene make_scene(const Domain& domain, const SolveOptions& options);
 
+/// The shape of the background grid as the domain and the recipe give it.
+GridShape grid_shape(const Domain& domain, const SolveOptions& options);
+
 /// The positions of points in map coordinates [m].
 std::vector<std::array<double, 3>> positions(const MapGrid& map, const GridShape& shape, const TerrainTables& terrain,
                                              const ParticleState& points);

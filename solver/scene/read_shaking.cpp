@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -17,6 +16,7 @@
 
 #include "common/error.hpp"
 #include "common/stage/input_file.hpp"
+#include "solver/scene/table_words.hpp"
 
 namespace talus::solver {
 namespace {
@@ -29,21 +29,6 @@ constexpr double standard_gravity = 9.80665;  // [m/s2]
 /// The columns that a file may have.
 enum Name { time_s, east, north, up, along, across, names };
 constexpr std::array<std::string_view, names> words{"time_s", "east", "north", "up", "along", "across"};
-
-/// The line without its comment, cut at separators and stripped of quotes.
-std::vector<std::string> words_of(const std::string& line) {
-  std::vector<std::string> result;
-  std::string word;
-  for (const char c : line.substr(0, line.find('#')) + ' ') {
-    if (c == ',' || c == ';' || c == '\t' || c == ' ' || c == '\r') {
-      if (!word.empty()) result.push_back(std::move(word));
-      word.clear();
-    } else if (c != '"') {
-      word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    }
-  }
-  return result;
-}
 
 /// A table of numbers under the names of its columns, read line by line.
 class AccelerogramReader {
@@ -138,13 +123,9 @@ class AccelerogramReader {
   }
 
   double number(const std::string& word) const {
-    const char* begin = word.data() + (word.starts_with('+') ? 1 : 0);
-    const char* const behind = word.data() + word.size();
-    double value = 0;
-    const auto [end, error] = std::from_chars(begin, behind, value);
-    if (error != std::errc() || end != behind || !std::isfinite(value))
-      refuse_line(fmt::format("\"{:.60}\"", word), "it is no finite number", "Mend the line");
-    return value;
+    const std::optional<double> value = number_in(word);
+    if (!value) refuse_line(fmt::format("\"{:.60}\"", word), "it is no finite number", "Mend the line");
+    return *value;
   }
 
   /// The components of a row along x, y and z [m/s2].

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/state/particles.hpp"
 
+#include <algorithm>
 #include <type_traits>
 
 namespace talus {
@@ -48,6 +49,28 @@ void upload_list(Buffer<Number, Device>& to, const std::vector<Value>& from) {
   }
 }
 
+template <class T>
+struct CopyOver {
+  const T* from;
+  T* to;
+  TALUS_HD void operator()(int p) const { to[p] = from[p]; }
+};
+
+/// This function adds a list behind what an array holds. Where that has no room, it takes some for as many elements
+/// again, so that what grows bit by bit is copied seldom.
+template <class Number, class Device, class Value>
+void append_list(Buffer<Number, Device>& to, const std::vector<Value>& list) {
+  const std::size_t before = to.size(), all = before + list.size();
+  if (all * sizeof(Number) > to.bytes()) {
+    Buffer<Number, Device> larger(to.device(), std::max(all, 2 * before));
+    for_each(to.device(), static_cast<int>(before), CopyOver<Number>{to.data(), larger.data()});
+    to.swap(larger);
+  }
+  to.resize(all);
+  const std::vector<Number> values(list.begin(), list.end());
+  detail::upload(to.device(), to.data() + before, values.data(), values.size() * sizeof(Number));
+}
+
 /// This function downloads an array into a list in the numbers of the host.
 template <class Number, class Device, class Value>
 void download_list(const Buffer<Number, Device>& from, std::vector<Value>& to) {
@@ -87,6 +110,21 @@ void Particles<Real, Device>::upload(const ParticleState& state) {
     }
   };
   visit_particle_fields(upload_one, arrays_, state);
+}
+
+template <class Real, class Device>
+void Particles<Real, Device>::append(const ParticleState& more) {
+  const auto before = static_cast<std::size_t>(count_), all = before + more.size();
+  const auto append_one = [&](const ParticleField& field, int, auto& array, const auto& list) {
+    if (!holds(field)) return;
+    if (field.kept == Kept::within_step) {
+      array.resize(all);
+    } else {
+      append_list(array, list);
+    }
+  };
+  visit_particle_fields(append_one, arrays_, more);
+  count_ = static_cast<int>(all);
 }
 
 template <class Real, class Device>

@@ -115,6 +115,8 @@ class Particles {
 
   /// The method takes the lists of the fields that are needed; those kept within a step alone get memory.
   void upload(const ParticleState& state);
+  /// The method adds points behind those that are there.
+  void append(const ParticleState& more);
   /// The fields that are kept at least so long, in double; those that are not needed have their initial value.
   ParticleState download(Kept least = Kept::in_checkpoint) const;
   /// The points as kernels see them, until the next upload() or reorder().

@@ -71,6 +71,32 @@ test_bent_gully_runs() { hard_sample_runs bent-gully 8 25; }
 test_cliff_bench_runs() { hard_sample_runs cliff-bench 5 10; }
 test_thinning_slide_runs() { hard_sample_runs thinning-slide 10 45; }
 
+# What enters by the hydrograph of the recipe is what the run holds and the section below its line has counted.
+test_gully_inflow_runs() {
+  cp -r "$TALUS_SOURCE/pipelines/gully-inflow" "$TALUS_SCRATCH/scene"
+  sed -i -e "s,../../data_samples,$TALUS_SOURCE/data_samples,; s/^end_time_s.*/end_time_s = 40/" scene/recipe.toml
+  expect_exit 0 "$bin/talus-preprocess" scene/recipe.toml --out out
+  expect_words 'nothing is released: all that moves enters over time'
+  expect_exit 0 "$bin/talus-solve" scene/recipe.toml --out out --on cpu
+  expect_words 'the run ends at 40 s, before 1103 m3 of its hydrograph have entered'
+  expect_exit 0 "$bin/talus-postprocess" scene/recipe.toml --out out
+  /usr/bin/python3 -B - out <<'PYTHON' || fail "what entered is not what is there"
+import csv, sys
+with open(f"{sys.argv[1]}/history.csv") as file:
+    rows = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+last = rows[-1]
+# The integral of hydrograph.csv until 40 s.
+entered = 300 + 1470 + 400 + 300 + 8 * 110 - 0.5 * 8 * 8 * 85 / 23
+# The file has nine digits.
+print(entered, last["inflow_m3"], last["volume_m3"], last["section_below-the-line_passed_m3"])
+assert rows[0]["volume_m3"] == 0
+assert abs(last["inflow_m3"] / entered - 1) < 1e-8
+assert abs(last["volume_m3"] + last["outflow_m3"] - last["inflow_m3"]) < 2e-8 * entered
+# Between line and section, 10 m apart, is what enters in two to three seconds.
+assert 0 <= last["inflow_m3"] - last["section_below-the-line_passed_m3"] < 250
+PYTHON
+}
+
 test_terrains_without_axes_of_their_own_cannot_be_turned() {
   expect_exit 2 "$bin/talus-make-terrain" valley --turn 30 --out "$TALUS_SCRATCH/terrain"
   expect_words 'cannot be mirrored or turned' 'rough-slope'

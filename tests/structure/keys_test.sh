@@ -4,7 +4,7 @@
 # Keys of recipes and the members that hold them (docs/explanation/architecture.md).
 source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 
-unit='_(kg_m3|m2_s|m_s2|m_s|m3|m2|m|s|deg|Pa_sn|kPa|Pa|N|MB)$'
+unit='_(kg_m3|m3_s|m2_s|m_s2|m_s|m3|m2|m|s|deg|Pa_sn|kPa|Pa|N|MB)$'
 
 # described FILE: "line kind key member" of every key that the file describes with a member.
 described() {

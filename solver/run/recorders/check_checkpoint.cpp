@@ -3,6 +3,7 @@
 #include "solver/run/recorders/check_checkpoint.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <vector>
 
 #include <fmt/format.h>
@@ -47,9 +48,9 @@ double largest(const std::vector<int>& values) {
   return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
 }
 
-void check_points(const Fits& fits, const ParticleState& points, const Scene& scene) {
+void check_points(const Fits& fits, const ParticleState& points, std::int64_t pulses, const Scene& scene) {
   constexpr double most_layers = 1 << 20, tiny = std::numeric_limits<double>::min();
-  const std::size_t seeded = scene.points.size();
+  const std::size_t seeded = scene.points.size() + scene.inflow.points_in(pulses);
   if (points.size() > seeded)
     fits.refuse(fmt::format("it holds {} points, of which the scene has {}", points.size(), seeded));
   fits.within("cell_0", points.cell[0], 0, scene.grid.columns - 1);
@@ -59,16 +60,21 @@ void check_points(const Fits& fits, const ParticleState& points, const Scene& sc
   fits.within("volume", points.volume, tiny, 1e30);
   fits.within("id", points.id, 0, static_cast<double>(seeded) - 1);
   fits.all_different("id", points.id, seeded);
-  fits.within("release", points.release, 0, largest(scene.points.release));
+  fits.within("release", points.release, 0, static_cast<double>(scene.release_names.size()) - 1);
   fits.within("load", points.load, -1, static_cast<double>(scene.load_volumes.size()) - 1);
-  fits.within("material", points.material, 0, largest(scene.points.material));
+  fits.within("material", points.material, 0,
+              std::max(largest(scene.points.material), largest(scene.inflow.points.material)));
 }
 
 }  // namespace
 
 void check_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint, const Scene& scene) {
   const Fits fits(file);
-  check_points(fits, checkpoint.state.points, scene);
+  const std::int64_t pulses = checkpoint.memory.pulses;
+  if (pulses < 0 || pulses > std::ssize(scene.inflow.pulses))
+    fits.refuse(fmt::format("{} pulses of inflows have entered, of which the scene has {}", pulses,
+                            scene.inflow.pulses.size()));
+  check_points(fits, checkpoint.state.points, pulses, scene);
   const std::size_t cells = scene.map.count();
   for_each_running_map([&](const RunningMap& map, const auto& values) { fits.length(map.name, values.size(), cells); },
                        checkpoint.state.maps);

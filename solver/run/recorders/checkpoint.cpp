@@ -177,6 +177,8 @@ void write_checkpoint(const std::filesystem::path& path, const Checkpoint& check
   file.set_text("/", "id", checkpoint.id);
   file.set_text("/", "stop_reason", checkpoint.stop_reason);
   visit(checkpoint, [&](const char* group) { return ItemWriter(file, group); });
+  visit_added_memory(checkpoint.memory,
+                     [&](const char* name, std::int64_t value) { file.set_integer("/memory", name, value); });
   write_history(file, checkpoint.memory.history);
   file.close();
   seal_file(pending.path(), path);
@@ -209,6 +211,7 @@ Checkpoint read_checkpoint(const std::filesystem::path& path, const std::string&
   if (file.has_attribute("/", "id")) c.id = file.text("/", "id");
   if (file.has_attribute("/", "stop_reason")) c.stop_reason = file.text("/", "stop_reason");
   visit(c, [&](const char* group) { return ItemReader(file, group, before); });
+  visit_added_memory(c.memory, ItemReader(file, "/memory", true));
   if (before) fill_new_fields(c.state.points);
   c.memory.history = read_history(file);
   check_lengths(file, c);

@@ -19,6 +19,7 @@ struct RunMemory {
   double peak_kinetic = 0;                                ///< [J]
   double outflow_volume = 0;                              ///< [m3]
   std::int64_t outflow_count = 0;
+  std::int64_t pulses = 0;                   ///< of the inflows that have entered
   double wall_time = 0;                      ///< [s]
   std::vector<double> initial_thickness;     ///< [m]
   std::vector<double> section_x, section_y;  ///< where points were at the last record, by id, for sections [cells]
@@ -90,6 +91,13 @@ void visit_memory(AnyMemory& m, Item&& item) {
   item("initial_thickness", m.initial_thickness);
   item("section_x", m.section_x);
   item("section_y", m.section_y);
+}
+
+/// This function calls item(name, value) for what a run's memory has that checkpoints of the same kind may lack: those
+/// of runs without it.
+template <class AnyMemory, class Item>
+void visit_added_memory(AnyMemory& m, Item&& item) {
+  item("pulses", m.pulses);
 }
 
 /// The content of checkpoint.h5.

@@ -14,10 +14,11 @@ namespace {
 struct Direction {
   const char* force;     ///< column of this recorder
   const char* momentum;  ///< column of the run's own
+  const char* entered;   ///< column of the momentum that inflows brought, where there are any
 };
-constexpr Direction directions[] = {{"ground_force_x_N", "momentum_x_kg_m_s"},
-                                    {"ground_force_y_N", "momentum_y_kg_m_s"},
-                                    {"ground_force_z_N", "momentum_z_kg_m_s"}};
+constexpr Direction directions[] = {{"ground_force_x_N", "momentum_x_kg_m_s", "inflow_momentum_x_kg_m_s"},
+                                    {"ground_force_y_N", "momentum_y_kg_m_s", "inflow_momentum_y_kg_m_s"},
+                                    {"ground_force_z_N", "momentum_z_kg_m_s", "inflow_momentum_z_kg_m_s"}};
 
 }  // namespace
 
@@ -37,7 +38,9 @@ void GroundForceRecorder::record(const Instant& now, RunHistory& history) {
     double force = 0;
     if (row > 0 && row < momentum.size()) {
       const double span = now.time - time[row - 1];
-      force = span > 0 ? -(momentum[row] - momentum[row - 1]) / span : 0;
+      const HistoryColumn* const in = history.find(d.entered);  // what enters was given its momentum elsewhere
+      const double entered = in ? in->values[row] - in->values[row - 1] : 0;
+      force = span > 0 ? -(momentum[row] - momentum[row - 1] - entered) / span : 0;
       if (outflow[row] != outflow[row - 1]) force = std::numeric_limits<double>::quiet_NaN();
     }
     forces.push_back(force);

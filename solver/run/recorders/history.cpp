@@ -71,6 +71,35 @@ class RunRecorder : public TableRecorder<Instant> {
   std::vector<Instant> samples(const Instant& now) const override { return {now}; }
 };
 
+/// What the inflows have brought by a record.
+struct InflowReading {
+  double volume = 0, energy = 0;  // [m3], [J]
+  Vec3<double> momentum;          // [kg m/s]
+};
+
+constexpr Column<InflowReading> inflow_columns[] = {
+    {"inflow_m3", "m3", [](const InflowReading& r) { return r.volume; }},
+    {"inflow_energy_J", "J", [](const InflowReading& r) { return r.energy; }},
+    {"inflow_momentum_x_kg_m_s", "kg m s-1", [](const InflowReading& r) { return r.momentum.x; }},
+    {"inflow_momentum_y_kg_m_s", "kg m s-1", [](const InflowReading& r) { return r.momentum.y; }},
+    {"inflow_momentum_z_kg_m_s", "kg m s-1", [](const InflowReading& r) { return r.momentum.z; }},
+};
+
+/// The recorder of what has entered over time. It keeps a reference to the inflow.
+class InflowRecorder : public TableRecorder<InflowReading> {
+ public:
+  explicit InflowRecorder(const Inflow& inflow) : TableRecorder(inflow_columns, {Place{}}), inflow_(inflow) {}
+
+ protected:
+  std::vector<InflowReading> samples(const Instant& now) const override {
+    const std::int64_t passed = now.counted.pulses;
+    return {{inflow_.volume(passed), inflow_.energy(passed), inflow_.momentum(passed)}};
+  }
+
+ private:
+  const Inflow& inflow_;
+};
+
 constexpr Column<Packing> packing_columns[] = {
     {"packing_p99", "1", [](const Packing& p) { return p.p99; }},
     {"packing_max", "1", [](const Packing& p) { return p.largest; }},
@@ -90,6 +119,7 @@ std::vector<std::unique_ptr<Recorder>> make_recorders(const SolveOptions& option
   std::vector<std::unique_ptr<Recorder>> recorders;
   recorders.push_back(std::make_unique<RunRecorder>(run_columns));
   recorders.push_back(std::make_unique<PackingRecorder>());
+  if (!scene.inflow.summaries.empty()) recorders.push_back(std::make_unique<InflowRecorder>(scene.inflow));
   if (GroundForceRecorder::measures(options)) recorders.push_back(std::make_unique<GroundForceRecorder>());
   if (options.energy_budget) recorders.push_back(std::make_unique<RunRecorder>(budget_columns));
   if (options.shaking.acts()) {

@@ -16,8 +16,8 @@ namespace talus::solver {
 /// The history of a run: its columns and the recorders that fill them.
 class History {
  public:
-  /// The constructor makes the recorders that the recipe asks for. It throws RecipeError where one of them cannot
-  /// measure what it is asked to.
+  /// The constructor makes the recorders that the recipe asks for, which may keep references to the scene. It throws
+  /// RecipeError where one of them cannot measure what it is asked to.
   History(const SolveOptions& options, const Scene& scene);
 
   /// The method adds a row.

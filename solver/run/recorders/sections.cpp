@@ -108,7 +108,10 @@ SectionRecorder::SectionRecorder(const SolveOptions& options, const Scene& scene
       map_(scene.map),
       densities_{options.material.density},
       volumes_(scene.points.volume.begin(), scene.points.volume.end()),
-      readings_(options.sections.size()) {
+      readings_(options.sections.size()),
+      inflow_(scene.inflow),
+      seeded_(scene.points.size()) {
+  volumes_.insert(volumes_.end(), inflow_.points.volume.begin(), inflow_.points.volume.end());
   check_lines(options.sections, map_);
   for (const PartOptions& part : options.parts) densities_.push_back(part.material.density);
   for (const SectionOptions& s : options.sections) lines_.push_back(line_of(s, map_));
@@ -146,7 +149,8 @@ void SectionRecorder::record(const Instant& now, RunHistory& history) {
   const double fastest = static_cast<double>(positive_from_bits(now.clock.fastest_bits));
   const ParticleState points = now.solver.shown();
   const std::vector<double> thickness = now.solver.thickness();
-  const Moment moment{points, since, fastest * since / map_.cell};
+  const std::size_t entered = inflow_.points_in(now.counted.pulses);
+  const Moment moment{points, since, fastest * since / map_.cell, seeded_ + entered};
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     SectionReading& reading = readings_[i];
     const auto before = [&](const char* column) {
@@ -159,6 +163,7 @@ void SectionRecorder::record(const Instant& now, RunHistory& history) {
     measure_speed(lines_[i], points, reading);
   }
   follow(moment);
+  expect_inflow(entered);
   TableRecorder::record(now, history);
 }
 
@@ -178,6 +183,14 @@ void SectionRecorder::follow(const Moment& moment) {
     const MapPlace place = place_of(moment.points, p);
     x_[id] = place[0];
     y_[id] = place[1];
+  }
+}
+
+/// The method takes the line for the place of what is to enter after the first `entered` points.
+void SectionRecorder::expect_inflow(std::size_t entered) {
+  for (std::size_t p = entered; p < inflow_.points.size(); ++p) {
+    x_[seeded_ + p] = inflow_.line_x[p];
+    y_[seeded_ + p] = inflow_.line_y[p];
   }
 }
 
@@ -205,7 +218,7 @@ void SectionRecorder::count_unseen(const Line& line, const Moment& moment, Secti
   std::vector<bool> here(volumes_.size());
   for (std::size_t p = 0; p < moment.points.size(); ++p)
     here[static_cast<std::size_t>(moment.points.id[p])] = moment.points.cell[0][p] >= 0;
-  for (std::size_t id = 0; id < volumes_.size(); ++id) {
+  for (std::size_t id = 0; id < moment.known; ++id) {
     if (here[id] || x_[id] <= gone) continue;
     if (distance_to(line.places, {x_[id], y_[id]}) <= moment.reach) reading.unseen += volumes_[id];
   }

@@ -29,13 +29,15 @@ struct SectionReading {
 /// `copies` of the line, spread evenly over the width of a cell, and counts for each with its share, as the maps
 /// spread it over the columns; rows of points would make the discharge jump otherwise. For a line that parts the
 /// domain the volume that passed is so the change of the volume to its right, mean over the copies, to rounding; it is
-/// that of the line itself once nothing is within half a cell of it. Without sections there is no such recorder; with
+/// that of the line itself once nothing is within half a cell of it. What
+/// enters by an inflow comes from its line. Without sections there is no such recorder; with
 /// them a record takes the points from the device.
 class SectionRecorder : public TableRecorder<SectionReading> {
  public:
   static constexpr int copies = 16;  ///< of a line, across the width of a cell
 
-  /// The constructor throws RecipeError that names every section beyond the domain.
+  /// The constructor keeps a reference to the scene's inflow. It throws RecipeError that names every section beyond the
+  /// domain.
   SectionRecorder(const SolveOptions& options, const Scene& scene);
 
   /// The method counts what crossed, and appends the numbers of every section.
@@ -63,11 +65,13 @@ class SectionRecorder : public TableRecorder<SectionReading> {
   /// The points of the run at a record.
   struct Moment {
     const ParticleState& points;
-    double since = 0;  ///< time since the record before; 0: there was none [s]
-    double reach = 0;  ///< the furthest that a point went in that time [cells]
+    double since = 0;       ///< time since the record before; 0: there was none [s]
+    double reach = 0;       ///< the furthest that a point went in that time [cells]
+    std::size_t known = 0;  ///< points that have been in the domain by now, by id
   };
   static Line line_of(const SectionOptions& options, const MapGrid& map);
   void follow(const Moment& moment);
+  void expect_inflow(std::size_t entered);
   void count(const Line& line, const Moment& moment, SectionReading& reading) const;
   void measure_surface(const Line& line, const std::vector<double>& thickness, SectionReading& reading) const;
   void measure_speed(const Line& line, const ParticleState& points, SectionReading& reading) const;
@@ -79,6 +83,8 @@ class SectionRecorder : public TableRecorder<SectionReading> {
   std::vector<double> volumes_;    ///< of the points, by id [m3]
   std::vector<Line> lines_;
   std::vector<SectionReading> readings_;
+  const Inflow& inflow_;
+  std::size_t seeded_;         ///< points at the start
   std::vector<double> x_, y_;  ///< places of the points at the last record, by id [cells]; x < -1: gone
 };
 

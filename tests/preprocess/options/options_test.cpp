@@ -18,7 +18,8 @@ Options before_and_after() {
 
 const std::string one_way =
     " Give exactly one of: before_dem and after_dem; before_dem and sliding_surface; before_dem and source.polygon; "
-    "base_dem and [[preprocess.release]]; [preprocess.laboratory] and [[preprocess.box]]\n";
+    "base_dem and [[preprocess.release]]; [preprocess.laboratory] and [[preprocess.box]]; either of the last two alone "
+    "with no_release = true where all that moves enters by [[solve.inflow]]\n";
 
 TEST(options, know_their_ways) {
   Options options = before_and_after();

@@ -272,6 +272,33 @@ TEST(prepare, writes_a_domain_that_reads_back) {
   EXPECT_NEAR(sum / expected, 1, 1e-14);
 }
 
+TEST(prepare, leaves_the_ground_bare_where_nothing_is_released) {
+  Scene scene;
+  scene.as_release();
+  scene.options.release.clear();
+  scene.options.no_release = true;
+  EXPECT_NE(test::faults_of(scene.options).find("no_release = true without grid.layer_height_m"), std::string::npos);
+  scene.options.grid.layer_height = 2;
+  EXPECT_EQ(test::faults_of(scene.options), "");
+  test::expect_read_as_written(scene.options);
+  const Domain domain = scene.prepare().domain;
+  EXPECT_EQ(domain.points.size(), 0u);
+  EXPECT_TRUE(domain.release_names.empty());
+  EXPECT_EQ(domain.terrain.values, domain.before.values);
+  write_domain(scene.scratch / "domain.vdb", domain);
+  const Domain back = read_domain(scene.scratch / "domain.vdb");
+  EXPECT_EQ(back.points.size(), 0u);
+  EXPECT_EQ(back.terrain.values, domain.terrain.values);
+  EXPECT_EQ(back.layer_height, 2);
+}
+
+TEST(prepare, refuses_no_release_beside_one) {
+  Scene scene;
+  scene.options.no_release = true;
+  scene.options.grid.layer_height = 2;
+  EXPECT_NE(test::faults_of(scene.options).find("no_release = true beside before_dem"), std::string::npos);
+}
+
 TEST(prepare, refuses_more_points_than_can_be_numbered) {
   Scene scene;
   scene.options.grid.layer_height = 1e-6;

@@ -47,20 +47,20 @@ void expect_same(const EnsembleCounts& a, const EnsembleCounts& b) {
 
 class RunMembers : public InEachPlace {};
 
-TEST_P(RunMembers, gives_each_member_the_bits_of_its_run_alone) {
-  const SmallEnsemble ensemble;
+/// Each member's maps and numbers are those of the recipe with its values, run alone.
+void expect_members_as_alone(const SmallEnsemble& ensemble, On on) {
   const Members members = ensemble.members();
   for (std::int64_t k = 0; k < ensemble.table.count; ++k) {
     SCOPED_TRACE(k);
     Member own = members.read(k);
-    const auto run = run_member(own.domain, own.options, make_device(GetParam()));
+    const auto run = run_member(own.domain, own.options, make_device(on));
     ASSERT_TRUE(run);
     const RunPaths files(ensemble.scratch / std::to_string(k));
     std::filesystem::create_directories(ensemble.scratch / std::to_string(k));
     // Alone: the recipe with the member's values, on all threads.
     const SolveOptions options =
         options_of(ensemble.recipe.with(ensemble.table.values_of(k, "solve.")), ensemble.scratch.folder());
-    Simulation(own.domain, options, make_device(GetParam()), files, "").run("heap", "heap");
+    Simulation(own.domain, options, make_device(on), files, "").run("heap", "heap");
     const talus::Run alone = read_run(files.run);
     for (const MapField& field : map_fields) {
       if (field.optional) continue;
@@ -69,6 +69,30 @@ TEST_P(RunMembers, gives_each_member_the_bits_of_its_run_alone) {
     EXPECT_EQ(run->result.steps, static_cast<double>(alone.summary.steps));
     EXPECT_EQ(run->result.volume_final, alone.summary.volume_final);
     EXPECT_GT(run->result.run_out, 0);
+  }
+}
+
+TEST_P(RunMembers, gives_each_member_the_bits_of_its_run_alone) {
+  expect_members_as_alone(SmallEnsemble(), GetParam());
+}
+
+TEST_P(RunMembers, lets_in_what_each_member_alone_would_let_in) {
+  MemberTable table;
+  table.design = "table";
+  table.count = 3;
+  table.columns = {{"solve.inflow[0].scale", {0.5, 1, 2}, {}}, {"solve.inflow[0].speed_m_s", {3, 4, 4}, {}}};
+  table.own_domain.assign(3, 0);
+  const SmallEnsemble ensemble(table,
+                               "[[solve.inflow]]\nx_m = [28.0, 28.0]\ny_m = [5.0, 11.0]\ntimes_s = [0.0, 0.5, 1.5]\n"
+                               "discharges_m3_s = [0.0, 12.0, 0.0]\nspeed_m_s = 4.0\n");
+  expect_members_as_alone(ensemble, GetParam());
+  const Members members = ensemble.members();
+  const double heap = 64;
+  for (std::int64_t k = 0; k < 3; ++k) {
+    Member own = members.read(k);
+    const auto run = run_member(own.domain, own.options, make_device(GetParam()));
+    ASSERT_TRUE(run);
+    EXPECT_NEAR(run->result.volume_released, heap + 9 * table.columns[0].values[static_cast<std::size_t>(k)], 1e-9);
   }
 }
 

@@ -20,6 +20,7 @@ class StandingStill final : public PointSolver<double, CpuDevice, Quadratic> {
     fit(0);
   }
   BatchReport advance() override { return {}; }
+  void add(const ParticleState&, double) override {}
   using PointSolver::full_base, PointSolver::layer_mass, PointSolver::set_walls;
   const double* columns() {
     measure_columns();

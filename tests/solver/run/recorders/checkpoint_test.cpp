@@ -94,6 +94,7 @@ Checkpoint sample() {
   FillItems fill;
   visit_clock(c.state.clock, fill);
   visit_memory(c.memory, fill);
+  visit_added_memory(c.memory, fill);
   c.memory.history.columns = {{.name = "time_s", .unit = "s", .quantity = "", .place = "", .values = {0, 0.1}},
                               {.name = "a_later_column", .unit = "m", .quantity = "q", .place = "p", .values = {7, 8}}};
   return c;
@@ -109,7 +110,10 @@ TEST(Checkpoint, visits_name_every_member_once) {
   EXPECT_EQ(clock_bits(Clock{}).size(), member_count<Clock>());
   RunMemory memory;
   memory.initial_thickness = memory.section_x = memory.section_y = {1};
-  EXPECT_EQ(names(memory_bits(memory)), member_count<RunMemory>() - 1) << "the history has columns of its own";
+  CollectBits added;
+  visit_added_memory(memory, added);
+  EXPECT_EQ(names(memory_bits(memory)) + names(added.bits), member_count<RunMemory>() - 1)
+      << "the history has columns of its own";
 }
 
 TEST(Checkpoint, every_scalar_comes_back_bit_for_bit) {
@@ -122,6 +126,7 @@ TEST(Checkpoint, every_scalar_comes_back_bit_for_bit) {
   EXPECT_EQ(back.stop_reason, c.stop_reason);
   EXPECT_EQ(clock_bits(back.state.clock), clock_bits(c.state.clock));
   EXPECT_EQ(memory_bits(back.memory), memory_bits(c.memory));
+  EXPECT_EQ(back.memory.pulses, c.memory.pulses);
   ASSERT_EQ(back.memory.history.columns.size(), 2u);
   for (std::size_t column = 0; column < 2; ++column) {
     EXPECT_EQ(back.memory.history.columns[column].name, c.memory.history.columns[column].name);

@@ -1,0 +1,265 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs that material enters over time: nothing is lost, a flow down a plane takes the depth and speed of the closed
+// form, and a restart in the middle goes on to the same bits.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "solver/run/run_loop.hpp"
+#include "solver/run/sanity.hpp"
+#include "solver/scene/hydrograph.hpp"
+#include "tests/solver/scenes.hpp"
+
+namespace talus::solver::testing {
+namespace {
+
+/// A straight channel between smooth walls 4 m apart, which falls towards the east.
+struct Flume {
+  static constexpr double cell = 2, width = 4, density = 2000;
+  double fall;
+  Domain domain;
+  SolveOptions options;
+
+  explicit Flume(double slope = 0.3, int columns = 60, double layer = 0.5) : fall(slope) {
+    domain = ground(columns, 7, cell, layer, [this](double x, double) { return 200 - fall * x; });
+    domain.grid.west = domain.grid.south = -cell / 2;  // nodes at the walls
+    for (Raster* map : {&domain.terrain, &domain.before, &domain.release_thickness}) map->grid = domain.grid;
+    for (int j = 0; j < domain.grid.rows; ++j)
+      for (int i = 0; i < columns; ++i)
+        domain.terrain.at(i, j) = domain.before.at(i, j) = 200 - fall * domain.grid.x(i);
+    domain.release_names.clear();
+    options.material.density = density;
+    options.material.youngs_modulus = 2e6;
+    options.integrator = Integrator::column_implicit;
+    options.walls = {{Axis::y, 4, Side::above, WallKind::roller}, {Axis::y, 8, Side::below, WallKind::roller}};
+    options.base.law = FrictionLaw::voellmy;
+    options.base.friction_angle = 8;
+    options.base.turbulence = 200;
+    options.history_interval = 1;
+    options.frame_interval = 1000;
+    options.end_time = 10;
+  }
+
+  void let_in(std::vector<double> times, std::vector<double> discharges, double speed) {
+    InflowOptions inflow;
+    inflow.x = {8, 8};
+    inflow.y = {4, 8};
+    inflow.times = std::move(times);
+    inflow.discharges = std::move(discharges);
+    inflow.speed = speed;
+    options.inflows = {inflow};
+  }
+};
+
+/// Keeps nothing; takes down the state at the first sort after a time.
+struct Watcher : RunKeeper {
+  RunLoop& loop;
+  double from;
+  std::optional<SolverState> state = {};
+  RunMemory memory = {};
+
+  explicit Watcher(RunLoop& watched, double after = 1e300) : loop(watched), from(after) {}
+  void put_frame(double, std::int64_t) override {}
+  void pass_batch(const BatchReport&) override {}
+  void pass_sort(bool) override {
+    if (state || loop.stepper().time() < from) return;
+    memory = loop.memory();
+    loop.history().keep(memory);
+    state = loop.stepper().solver().state();
+  }
+};
+
+const std::vector<double>& column(const RunLoop& loop, const char* name) {
+  return loop.history().rows().at(name).values;
+}
+
+class InflowRun : public InEachPlace {};
+
+TEST_P(InflowRun, keeps_the_volume_of_the_hydrograph_in_every_shape_precision_and_integrator) {
+  struct Way {
+    Integrator integrator;
+    ShapeKind shape;
+    Precision precision;
+  };
+  for (const Way& way : {Way{Integrator::column_implicit, ShapeKind::quadratic, Precision::double_},
+                         Way{Integrator::explicit_, ShapeKind::linear, Precision::double_},
+                         Way{Integrator::explicit_, ShapeKind::gimp, Precision::double_},
+                         Way{Integrator::automatic, ShapeKind::quadratic, Precision::double_},
+                         Way{Integrator::newmark, ShapeKind::quadratic, Precision::double_},
+                         Way{Integrator::column_implicit, ShapeKind::quadratic, Precision::single_}}) {
+    SCOPED_TRACE(::testing::Message() << "integrator " << static_cast<int>(way.integrator) << ", shape "
+                                      << name_of(way.shape) << ", precision " << static_cast<int>(way.precision));
+    Flume flume(0.3, 30);
+    flume.let_in({0.5, 2, 3, 4, 5, 6}, {0, 20, 8, 0, 0, 10}, 4);
+    SolveOptions& o = flume.options;
+    o.integrator = way.integrator;
+    o.shape = way.shape;
+    o.precision = way.precision;
+    o.end_time = 9;
+    o.base.law = FrictionLaw::coulomb;
+    o.implicit.step = 0.05;
+    const Hydrograph hydrograph(o.inflows[0].times, o.inflows[0].discharges);
+    RunLoop loop(flume.domain, o, make_device(GetParam()));
+    loop.start();
+    Watcher watcher(loop);
+    EXPECT_EQ(loop.step_to_end(watcher, true), "end of the simulated time");
+    const double all = hydrograph.volume_until(1e9);
+    // A point's volume is rounded once in single precision, by 6e-8 at most.
+    const double rounding = way.precision == Precision::single_ ? 1e-7 : 1e-12;
+    const auto &time = column(loop, "time_s"), &inside = column(loop, "volume_m3"), &out = column(loop, "outflow_m3"),
+               &in = column(loop, "inflow_m3");
+    double largest = 0;
+    for (const InflowPulse& pulse : loop.scene().inflow.pulses) largest = std::max(largest, pulse.volume);
+    for (std::size_t n = 0; n < time.size(); ++n) {
+      EXPECT_NEAR(inside[n] + out[n], in[n], rounding * all);
+      EXPECT_LE(in[n], hydrograph.volume_until(time[n]) * (1 + 1e-9));
+      EXPECT_GE(in[n], hydrograph.volume_until(time[n]) - largest) << "less than a pulse is on its way";
+    }
+    EXPECT_NEAR(in.back(), all, 1e-9 * all);
+    EXPECT_GT(out.back(), 0) << "the scene is to lose some";
+    EXPECT_NEAR(loop.mass_error(), 0, rounding);
+    const SolverState state = loop.stepper().solver().state();
+    const RunEnd end = loop.end(state);
+    EXPECT_NEAR(slide_volumes(end, out.back()).released, all, 1e-9 * all);
+    const RunSanity sanity = sanity_of(end, loop.history().rows(), out.back());
+    EXPECT_LT(sanity.energy_gain, 0.01);
+    EXPECT_LT(sanity.speed_max, sanity.speed_bound);
+    const RunMaps maps = final_maps(end, loop.stepper().solver().thickness());
+    EXPECT_EQ(*std::max_element(maps.initial_thickness.begin(), maps.initial_thickness.end()), 0);
+  }
+}
+
+TEST_P(InflowRun, brings_the_momentum_that_was_stated) {
+  // No gravity, no friction: what has entered goes on as it came.
+  Flume flume;
+  flume.let_in({0, 4}, {16, 16}, 5);
+  flume.options.gravity = {0, 0, 0};
+  flume.options.base.law = FrictionLaw::none;
+  flume.options.integrator = Integrator::explicit_;
+  flume.options.end_time = 4;
+  RunLoop loop(flume.domain, flume.options, make_device(GetParam()));
+  loop.start();
+  Watcher watcher(loop);
+  loop.step_to_end(watcher, true);
+  const double mass = 64 * Flume::density, cosine = 1 / std::sqrt(1 + 0.09);
+  EXPECT_NEAR(column(loop, "momentum_x_kg_m_s").back() / (mass * 5 * cosine), 1, 1e-9);
+  EXPECT_NEAR(column(loop, "momentum_z_kg_m_s").back() / (mass * 5 * cosine * -0.3), 1, 1e-9);
+  EXPECT_NEAR(column(loop, "kinetic_J").back() / (0.5 * mass * 25), 1, 1e-9);
+  for (const double force : column(loop, "ground_force_x_N")) EXPECT_NEAR(force, 0, 1e-9 * mass * 5);
+  const double potential_and_kinetic = column(loop, "potential_J").back() + column(loop, "kinetic_J").back();
+  EXPECT_NEAR(column(loop, "inflow_energy_J").back() / potential_and_kinetic, 1, 1e-9);
+}
+
+/// The flow of a discharge down a plane under Voellmy's law: rho g h sin = mu rho g h cos + rho g v^2 / xi.
+struct SteadyFlow {
+  double thickness, speed;  ///< vertical [m], along the ground [m/s]
+};
+
+SteadyFlow steady_flow(const Flume& flume, double discharge) {
+  const double cosine = 1 / std::sqrt(1 + flume.fall * flume.fall), sine = flume.fall * cosine;
+  const double mu = std::tan(flume.options.base.friction_angle * std::acos(-1.0) / 180);
+  const double drive = flume.options.base.turbulence * (sine - mu * cosine), q = discharge / Flume::width;
+  const double normal = std::cbrt(q * q / drive);
+  return {normal / cosine, q / normal};
+}
+
+TEST_P(InflowRun, takes_the_depth_and_speed_of_the_closed_form) {
+  constexpr double discharge = 24;
+  // Entering slower, as fast as and faster than the flow that follows.
+  for (const double share : {0.6, 1.0, 1.5}) {
+    Flume flume(0.3, 70);
+    const SteadyFlow steady = steady_flow(flume, discharge);
+    flume.let_in({0, 100}, {discharge, discharge}, share * steady.speed);
+    SolveOptions& o = flume.options;
+    o.end_time = 30;
+    o.sections = {{"near", {14.3, 14.3}, {0, 12}}, {"far", {90.7, 90.7}, {0, 12}}};
+    o.gauges = {{"far", 90, 6}};
+    RunLoop loop(flume.domain, o, make_device(GetParam()));
+    loop.start();
+    Watcher watcher(loop);
+    loop.step_to_end(watcher, true);
+    const auto mean_of_last = [&](const char* name) {
+      const auto& values = column(loop, name);
+      return std::accumulate(values.end() - 8, values.end(), 0.0) / 8;
+    };
+    const double near = mean_of_last("section_near_discharge_m3_s"), far = mean_of_last("section_far_discharge_m3_s"),
+                 depth = mean_of_last("section_far_area_m2") / Flume::width,
+                 speed = mean_of_last("section_far_speed_m_s");
+    std::printf(
+        "entering at %.2f m/s: discharge %.4f and %.4f of %g m3/s, depth %.4f of %.4f m, speed %.4f of %.4f m/s\n",
+        share * steady.speed, near, far, discharge, depth, steady.thickness, speed, steady.speed);
+    EXPECT_NEAR(near / discharge, 1, 0.02);
+    EXPECT_NEAR(far / discharge, 1, 0.02);
+    EXPECT_NEAR(depth / steady.thickness, 1, 0.05);
+    EXPECT_NEAR(speed / steady.speed, 1, 0.05);
+  }
+}
+
+void expect_same_run(const RunLoop& a, const RunLoop& b) {
+  const SolverState one = a.stepper().solver().state(), other = b.stepper().solver().state();
+  ASSERT_EQ(one.points.id, other.points.id);
+  visit_particle_fields([](const ParticleField& field, int component, const auto& list,
+                           const auto& same) { EXPECT_EQ(list, same) << field.name_of(component); },
+                        one.points, other.points);
+  EXPECT_EQ(one.maps.peak_speed, other.maps.peak_speed);
+  EXPECT_EQ(one.maps.peak_thickness, other.maps.peak_thickness);
+  for (const HistoryColumn& rows : a.history().rows().columns)
+    EXPECT_EQ(rows.values, b.history().rows().at(rows.name).values) << rows.name;
+}
+
+TEST_P(InflowRun, goes_on_from_the_middle_of_the_hydrograph_bit_for_bit) {
+  for (const Precision precision : {Precision::double_, Precision::single_}) {
+    Flume flume(0.3, 40);
+    flume.let_in({0, 3, 8}, {6, 24, 0}, 5);
+    SolveOptions& o = flume.options;
+    o.precision = precision;
+    o.deterministic = true;
+    o.end_time = 9;
+    o.sections = {{"near", {14.3, 14.3}, {0, 12}}};
+    RunLoop unbroken(flume.domain, o, make_device(GetParam()));
+    unbroken.start();
+    Watcher watcher(unbroken, 4.0);
+    unbroken.step_to_end(watcher, true);
+    ASSERT_TRUE(watcher.state);
+    ASSERT_GT(watcher.memory.pulses, 0);
+    ASSERT_LT(watcher.memory.pulses, std::ssize(unbroken.scene().inflow.pulses));
+    RunLoop resumed(flume.domain, o, make_device(GetParam()));
+    resumed.resume(*watcher.state, watcher.memory);
+    Watcher nothing(resumed);
+    resumed.step_to_end(nothing, false);
+    expect_same_run(unbroken, resumed);
+  }
+}
+
+TEST_P(InflowRun, enters_beside_a_release_with_a_material_of_its_own) {
+  Flume flume;
+  flume.domain.release_names = {"slide"};
+  fill(flume.domain, {40, 50, 4, 8, 0, 1});
+  flume.let_in({0, 4}, {16, 16}, 5);
+  flume.options.end_time = 5;
+  PartOptions part;
+  part.release = "inflow-1";
+  part.material = flume.options.material;
+  part.material.density = 1500;
+  flume.options.parts = {part};
+  RunLoop loop(flume.domain, flume.options, make_device(GetParam()));
+  loop.start();
+  Watcher watcher(loop);
+  loop.step_to_end(watcher, true);
+  EXPECT_NEAR(column(loop, "volume_m3").front(), 40, 1e-9);
+  EXPECT_NEAR(column(loop, "volume_m3").back() + column(loop, "outflow_m3").back(), 104, 1e-9);
+  EXPECT_NEAR(loop.mass_error(), 0, 1e-12);
+  const SolverState state = loop.stepper().solver().state();
+  const RunMaps maps = final_maps(loop.end(state), loop.stepper().solver().thickness());
+  ASSERT_EQ(maps.deposit_of.size(), 2u);
+  EXPECT_EQ(maps.deposit_of[1].first, "inflow-1");
+}
+
+TALUS_IN_EACH_PLACE(InflowRun);
+
+}  // namespace
+}  // namespace talus::solver::testing
