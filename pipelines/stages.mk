@@ -8,7 +8,7 @@ SHELL := /bin/bash
 .SUFFIXES:
 # A result carries its name only when it is whole, and the last one of a stage is written last: make deletes none, also
 # where it is interrupted.
-.PRECIOUS: domain.vdb run.h5 counts.h5 score.json probability.nc
+.PRECIOUS: domain.vdb run.h5 budget.h5 counts.h5 score.json probability.nc
 
 # Names as the shell and as make's rules take them.
 quoted  = '$(subst ','\'',$1)'
@@ -16,10 +16,10 @@ empty  :=
 escaped = $(subst $(empty) ,\ ,$(subst :,\:,$1))
 run     = $(call quoted,$(value bin)/talus-$1) $(call quoted,$(value recipe)) --out $(call quoted,$(value results))
 
-# What solve and postprocess write last: of a single run, or of an ensemble. Counts of parts of an ensemble are taken as
-# they are.
+# What solve and postprocess write last: of a single run, of its error budget, or of an ensemble. Counts of parts of an
+# ensemble are taken as they are.
 last   = $(or $(shell sed -nE 's,^(\./)?($2)[ :].*,\2,p' .inputs/$1.d),$3)
-solved := $(call last,solve,counts\.h5|run\.h5,run.h5)
+solved := $(call last,solve,budget\.h5|counts\.h5|run\.h5,run.h5)
 scored := $(call last,postprocess,probability\.nc|score\.json,score.json)
 
 .PHONY: scene force
@@ -39,7 +39,10 @@ $(scored): .inputs/postprocess.toml $(call escaped,$(value bin)/talus-postproces
 include .inputs/preprocess.d .inputs/solve.d .inputs/postprocess.d
 
 # What a stage writes beside its result; where a later stage wants one that was removed, the stage runs again.
-survey/%: domain.vdb ;
+survey/% budget/%: domain.vdb ;
+ifeq ($(solved),budget.h5)
+run.h5: budget.h5 ;
+endif
 obstacles.vdb members.h5 preprocess.used.toml: domain.vdb ;
 solve.used.toml: $(solved) ;
 wanted := $(shell sed -n 's,^\(survey/.*\|obstacles\.vdb\|members\.h5\):$$,\1,p' .inputs/*.d)

@@ -32,6 +32,9 @@ std::optional<std::string> text_of(const fs::path& file) {
 /// A note without its first line, the arguments: where a stage ran does not make its results stale.
 std::string table_of(const std::string& note) { return note.substr(std::min(note.find('\n'), note.size() - 1) + 1); }
 
+/// A noted table without the [budget] behind it: a run that had one is no other run without it.
+std::string without_budget(const std::string& table) { return table.substr(0, table.find("\n[budget]")); }
+
 /// Why the checksum of a table in a result is not the recipe's; empty where it is, and where nobody can tell.
 std::string other_mark(const recipe::Recipe& recipe, const char* table, const Facts& facts, const char* name) {
   const std::string own = recipe_mark(recipe, table), found = fact(facts, name);
@@ -69,7 +72,8 @@ std::string other_recipe(const Request& request, const recipe::Recipe& recipe, c
 std::string changed_recipe(const Request& request, const recipe::Recipe& recipe, const StageState& state) {
   const std::string name = state.depends.results.front().filename().string();
   const auto noted = text_of(note_of(request, state));
-  if (noted && table_of(*noted) != state.own_table) return fmt::format("[{}] or [scene] has changed", state.stage);
+  if (noted && table_of(*noted) != state.own_table && without_budget(table_of(*noted)) != state.own_table)
+    return fmt::format("[{}] or [scene] has changed", state.stage);
   if (!noted && state.stage == "postprocess") return fmt::format("nobody noted what {} was made with", name);
   const std::string other = other_recipe(request, recipe, state);
   return other.empty() ? "" : fmt::format("{}: {}", name, other);

@@ -35,7 +35,7 @@ struct ReportInput {
   std::optional<std::string> comparison;  ///< survey.json of talus-preprocess; empty: no two models were compared
   std::filesystem::path run_file;         ///< for what is read of the points: how much is in motion
   const Hazard* hazard = nullptr;
-  const BudgetTable* budget = nullptr;    ///< null: none was made
+  const BudgetTable* budget = nullptr;  ///< null: none was made
 };
 
 /// The page as the bytes of an HTML file: nothing in it is loaded from elsewhere. Throws DataError when a *.used.toml

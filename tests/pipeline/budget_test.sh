@@ -186,11 +186,15 @@ test_what_a_budget_cannot_be_of_is_refused() {
 
 test_one_command_makes_all_of_it() {
   budget
+  expect_exit 0 "$bin/talus" run recipe.toml --out out --on cpu
+  [[ ! -e out/budget.h5 ]] || fail "nobody asked for a budget"
   expect_exit 0 "$bin/talus" run recipe.toml --out out --on cpu --budget
   expect_stdout_paths
   [[ -s out/budget.csv && -s out/report.html ]] || fail "the budget is not shown"
   expect_exit 0 "$bin/talus" run recipe.toml --out out --on cpu --budget
   expect_words "solve: budget.h5 is up to date" "postprocess: score.json is up to date"
+  expect_exit 0 "$bin/talus" run recipe.toml --out out --on cpu
+  expect_words "preprocess: domain.vdb is up to date" "solve: run.h5 is up to date"
   sed -i 's/^survey_draws.*/survey_draws = 1\nfriction_doubt = 0.2/' recipe.toml
   expect_exit 0 "$bin/talus" run recipe.toml --out out --on cpu --budget
   expect_words "out/run.h5: it is this run already" "budget: "

@@ -37,9 +37,13 @@ function lineRow(line, budget, largest) {
   const what = h(
     "td",
     {},
-    line.title.charAt(0).toUpperCase() + line.title.slice(1),
-    h("span", { class: `budget-kind ${line.kind}` }, kind),
-    h("div", { class: "note" }, line.words),
+    h(
+      "div", // one box, which narrow screens set beside the heading
+      {},
+      line.title.charAt(0).toUpperCase() + line.title.slice(1),
+      h("span", { class: `budget-kind ${line.kind}` }, kind),
+      h("div", { class: "note" }, line.words),
+    ),
   );
   if (!line.done) {
     const why = `${line.failed ? "Failed" : "Left out"}: ${line.reason}`;

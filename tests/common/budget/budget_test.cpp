@@ -116,5 +116,14 @@ TEST(BudgetFile, refuses_a_file_that_was_cut_short) {
   EXPECT_THROW(read_budget(scratch / "budget.h5"), DataError);
 }
 
+TEST(BudgetFile, without_its_seal_and_damaged_is_refused_or_read) {
+  const test::Scratch scratch;
+  write_budget(scratch / "budget.h5", small_budget());
+  EXPECT_THROW(read_budget(scratch.write("unsealed.h5", test::without_seal(scratch / "budget.h5"))), DataError);
+  const std::string bytes = test::text_of(scratch / "budget.h5");
+  const int refused = test::refused_of(50, bytes, [](const std::filesystem::path& file) { read_budget(file); });
+  EXPECT_EQ(refused, 50) << "the seal tells";
+}
+
 }  // namespace
 }  // namespace talus
