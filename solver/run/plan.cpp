@@ -112,9 +112,11 @@ std::vector<std::string> plan(const Domain& domain, const SolveOptions& o, const
                    ? fmt::format("{:.0f} to {:.0f} steps to {:g} s", count.fewest, count.most, o.end_time)
                    : fmt::format("{:.0f} steps to {:g} s", count.most, o.end_time));
   if (trial.seconds > 0) {
-    add("time", fmt::format("{} to {} at {:.3g} ms a step, as long as no more matter is moving than at the start",
-                            time_words(count.fewest * trial.seconds), time_words(count.most * trial.seconds),
-                            1e3 * trial.seconds));
+    const bool fills = scene.points.size() == 0;  // the trial had the first pulse of an inflow
+    add("time", fmt::format("{}{} to {} at {:.3g} ms a step, as long as no more matter is moving than {}",
+                            fills ? "more than " : "", time_words(count.fewest * trial.seconds),
+                            time_words(count.most * trial.seconds), 1e3 * trial.seconds,
+                            fills ? "the first pulse of the inflow" : "at the start"));
   }
   return lines;
 }

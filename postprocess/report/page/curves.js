@@ -113,11 +113,13 @@ function curve(label, time, values, factor, more) {
 
 function energyChart(box, history) {
   const t = history.time_s,
-    released = history.potential_J.map((e) => history.potential_J[0] - e);
+    entered = history.inflow_energy_J, // of an inflow, with the kinetic energy that it came with
+    released = history.potential_J.map((e, i) => history.potential_J[0] - e + (entered ? entered[i] : 0));
+  const since = entered ? "it entered" : "the start";
   const { factor, prefix } = unitOf(history.kinetic_J, released);
   const lines = [
     curve("Kinetic", t, history.kinetic_J, factor, { colour: colours.orange }),
-    curve("Potential, given up since the start", t, released, factor, { colour: colours.grey, dashes: [6, 3] }),
+    curve(`Potential, given up since ${since}`, t, released, factor, { colour: colours.grey, dashes: [6, 3] }),
   ];
   if (history.bed_loss_J) lines.push(curve("Lost to the bed", t, history.bed_loss_J, factor, { colour: colours.blue }));
   if (history.plastic_loss_J)

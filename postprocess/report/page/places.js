@@ -23,9 +23,9 @@ function isPoint(place) {
   return place.rings.length === 1 && place.rings[0].length === 1;
 }
 
-/** A section is a line, which is neither closed nor filled. */
+/** Sections and inflows are lines, which are neither closed nor filled. */
 function isLine(place) {
-  return place.kind === "section";
+  return place.kind === "section" || place.kind === "inflow";
 }
 
 /** A layer of the map that holds all of them, each with its name. */
