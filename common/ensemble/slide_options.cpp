@@ -92,6 +92,6 @@ void SlideOptions::check(std::vector<Fault>& faults) const {
 
 SlideOptions slides_of(const recipe::Recipe& recipe) { return recipe.read<SlideOptions>("slides"); }
 
-const char* members_table(const recipe::Recipe& recipe) { return recipe.canonical("slides") ? "slides" : "ensemble"; }
+const char* members_table(const recipe::Recipe& recipe) { return slides_of(recipe).on() ? "slides" : "ensemble"; }
 
 }  // namespace talus
