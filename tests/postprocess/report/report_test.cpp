@@ -177,7 +177,7 @@ TEST_F(Report, a_title_cannot_end_the_script_that_holds_the_data) {
   run_.summary.title = "</script><b>Slope & \"co\"";
   const auto page = report_html(input());
   EXPECT_EQ(page.find("</script><b>"), std::string::npos);
-  EXPECT_NE(page.find("<title>&lt;/script>&lt;b>Slope &amp; \"co\"</title>"), std::string::npos);
+  EXPECT_NE(page.find("<title>&lt;/script&gt;&lt;b&gt;Slope &amp; &quot;co&quot;</title>"), std::string::npos);
   const auto data = data_of(page);
   EXPECT_EQ(data.at("run").at("title"), run_.summary.title);
   EXPECT_EQ(data.at("run").at("material"), "an elastic material");
