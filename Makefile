@@ -135,7 +135,8 @@ check-threads_programs := $(addprefix talus-tests-,preprocess postprocess solver
 
 sanitized: with-tests
 	@cmake --build $(BUILD) -j $(JOBS) --target $($(PRESET)_programs)
-	@ASAN_OPTIONS=abort_on_error=0 UBSAN_OPTIONS=print_stacktrace=1 \
+	@ASAN_OPTIONS=abort_on_error=0 LSAN_OPTIONS="suppressions=$(CURDIR)/tests/lsan-suppressions.txt print_suppressions=0" \
+	  UBSAN_OPTIONS=print_stacktrace=1 \
 	  TSAN_OPTIONS="suppressions=$(CURDIR)/tests/tsan-suppressions.txt second_deadlock_stack=1 report_mutex_bugs=0" \
 	  ctest --test-dir $(BUILD) --output-on-failure --no-tests=error -j $(TEST_JOBS) $(if $(SLOW),,-L 'quick|fuzz') \
 	  -R '$(or $(TESTS),$($(PRESET)_tests))'

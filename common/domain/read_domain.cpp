@@ -16,11 +16,6 @@
 #include "common/stage/input_file.hpp"
 #include "common/stage/write_fault.hpp"
 
-#ifdef __SANITIZE_ADDRESS__
-// OpenVDB drops the tree at hand when its stream ends within it; the leak sanitizer is told so here.
-extern "C" const char* __lsan_default_suppressions() { return "leak:readTopology\nleak:PagedInputStream\n"; }
-#endif
-
 namespace talus {
 namespace fs = std::filesystem;
 namespace {

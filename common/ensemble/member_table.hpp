@@ -54,8 +54,9 @@ struct MemberTable {
 };
 
 /// Names of facts of a table of members.
-inline constexpr const char* recipe_of_members = "recipe.ensemble";  ///< mark of the table that drew them
-inline constexpr const char* base_domain_id = "domain.id";           ///< of the domain that they differ from
+inline constexpr const char* recipe_of_members = "recipe.ensemble";           ///< mark of the table that drew them
+inline constexpr const char* elevation_error_of_members = "elevation_error";  ///< in words, where there is one
+inline constexpr const char* base_domain_id = "domain.id";                    ///< of the domain that they differ from
 
 /// Writes the table, sealed and aside. Throws DataError.
 void write_member_table(const std::filesystem::path& file, const MemberTable& table);

@@ -23,6 +23,13 @@
 namespace talus::postprocess {
 namespace {
 
+/// The members at the edge of their domain: their names where they are few, else how many they are.
+std::string names_at_edge(const Ensemble& ensemble, const std::vector<std::int64_t>& members) {
+  constexpr std::size_t few = 12;
+  if (members.size() <= few) return names_of(ensemble.table, members);
+  return fmt::format("{} of {} {}", members.size(), ensemble.counted(), ensemble.table.slides ? "slides" : "members");
+}
+
 constexpr std::size_t failures_on_page = 50, steps_of_convergence = 160, medoids_wanted = 4;
 
 /// Of which footprints are compared, each with each.
@@ -54,7 +61,8 @@ Json run_json(const EnsemblePageInput& input) {
   json["survey"] = input.survey ? Json(input.survey->name) : Json();
   json["slides"] = ensemble.table.slides.has_value();
   const std::vector<std::int64_t> at_edge = counts.at_edge();
-  json["at_edge"] = at_edge.empty() ? Json() : Json(names_of(ensemble.table, at_edge));
+  json["at_edge"] = at_edge.empty() ? Json() : Json(names_at_edge(ensemble, at_edge));
+  json["elevation_error"] = fact(ensemble.table.provenance, elevation_error_of_members);
   json["failures"] = Json::array();
   for (const MemberFailure& failure : counts.failures)
     if (json["failures"].size() < failures_on_page)

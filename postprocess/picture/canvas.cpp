@@ -9,12 +9,6 @@
 #include <new>
 #include <stdexcept>
 
-#ifdef __SANITIZE_ADDRESS__
-/// fontconfig, behind Cairo, keeps its fonts until the process ends: no leak of ours.
-extern "C" const char* __lsan_default_suppressions();
-extern "C" const char* __lsan_default_suppressions() { return "leak:libfontconfig\n"; }
-#endif
-
 namespace talus::postprocess {
 namespace {
 

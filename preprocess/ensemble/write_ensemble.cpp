@@ -259,6 +259,7 @@ void write_ensemble(StageContext& context, EnsemblePlan& plan, const EnsembleBas
                            {"command", context.command_line},
                            {recipe_of_members, recipe_mark(context.recipe, "ensemble")},
                            {base_domain_id, fact(base.marks, domain_id)}};
+  if (plan.errors) plan.table.provenance.emplace_back(elevation_error_of_members, plan.errors->words());
   write_member_table(paths.members(), plan.table);
   context.results.push_back(paths.members());
 }

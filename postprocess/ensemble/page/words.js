@@ -39,12 +39,13 @@ export function drawSummary(data) {
   if (run.failed) parts.push(`${number(run.failed)} failed and are left out`);
   if (run.waiting) parts.push(`${number(run.waiting)} have not been run`);
   if (run.slides) inputs.splice(0, 1); // the name
+  if (run.elevation_error) inputs.push(run.elevation_error);
   const varied = inputs.length ? ` What varies: ${inputs.join(", ")}.` : "";
   document.getElementById("headline").textContent =
     run.slides
       ? `${parts.join(", ")}, each in a domain of its own over one elevation model.${varied}`
       : `${parts.join(", ")}. They were drawn by ${designs[run.design] ?? run.design}.${varied}`;
-  const edge = run.at_edge ? h("strong", {}, ` At the edge of its domain: ${run.at_edge}.`) : "";
+  const edge = run.at_edge ? h("strong", {}, ` At the edge of the domain: ${run.at_edge}.`) : "";
   document.getElementById("headline").append(edge);
   const by = run.institution ? `${run.institution} \u00b7 ` : "";
   document.getElementById("byline").textContent = `${by}${run.made} \u00b7 Talus ${run.version}`;

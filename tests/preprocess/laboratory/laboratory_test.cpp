@@ -233,7 +233,7 @@ TEST(laboratory, refuses_half_a_laboratory) {
   o.box.clear();
   EXPECT_EQ(faults_of(o),
             "[preprocess]: a laboratory without [[preprocess.box]] (nothing would move). Give at least one box of "
-            "material\n");
+            "material, or no_release = true with [[solve.inflow]]\n");
 }
 
 TEST(laboratory, reads_what_it_writes) {
