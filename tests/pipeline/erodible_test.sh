@@ -40,7 +40,7 @@ test_release_that_is_not_there() {
   expect_exit 0 preprocess
   expect_exit 2 solve
   expect_error 'talus-solve: [[solve.part]] release = "grund": no material point is of that release ' \
-    '(domain.vdb has ground, source). Name one of those, or leave the part out'
+    '(the scene has ground, source). Name one of those, or leave the part out'
   expect_no_file out domain.vdb preprocess.used.toml survey
 }
 
