@@ -53,7 +53,7 @@ void SlideOptions::describe(recipe::Visitor& v) {
       "reach_angle_deg", reach_angle, steep,
       "without margin_m: the domain holds all ground that lies below a line from the slide's highest point at this "
       "angle");
-  recipe::choice(v, "at_edge", at_edge, {{"flag", AtEdge::flag}, {"fail", AtEdge::fail}},
+  recipe::choice(v, "at_edge", at_edge, {{"flag", SlideAtEdge::flag}, {"fail", SlideAtEdge::fail}},
                  "a slide that comes to the edge of its domain is counted and named, or counts as failed");
   v.number("failed_share", failed_share, recipe::fraction, "share of the slides that may fail");
   v.integers("keep", keep, {0, most_members}, "slides, counted from 0, whose whole run is kept");

@@ -32,7 +32,7 @@ struct ScenarioOptions {
 };
 
 /// What becomes of a slide that comes to the edge of its window.
-enum class AtEdge { flag, fail };
+enum class SlideAtEdge { flag, fail };
 
 /// The keys of [slides].
 struct SlideOptions {
@@ -43,7 +43,7 @@ struct SlideOptions {
   std::string thickness_from, depth_from, volume_from;
   std::optional<double> margin;  ///< around the outline [m]
   double reach_angle = 11;       ///< of the window where no margin is given [degrees]
-  AtEdge at_edge = AtEdge::flag;
+  SlideAtEdge at_edge = SlideAtEdge::flag;
   double failed_share = 0.05;
   std::vector<int> keep;
   bool keep_all = false;

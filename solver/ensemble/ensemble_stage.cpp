@@ -75,7 +75,7 @@ Ensemble read_ensemble(const StageContext& context, const EnsembleFlags& flags, 
              .part = {},
              .fingerprint = {},
              .counts = {},
-             .edge_fails = slides_of(context.recipe).at_edge == AtEdge::fail};
+             .edge_fails = slides_of(context.recipe).at_edge == SlideAtEdge::fail};
   e.table = read_member_table(e.paths.members());
   judge_table(context, e, domain);
   e.part = flags.members.value_or(MemberRange{0, e.table.count});
