@@ -129,6 +129,12 @@ std::string MemberTable::name_of(std::int64_t member) const {
   return fmt::format("member {}", member);
 }
 
+std::string MemberTable::names_of(const std::vector<std::int64_t>& members, std::size_t most) const {
+  std::string text;
+  for (std::size_t n = 0; n < members.size() && n < most; ++n) text += (n > 0 ? ", " : "") + name_of(members[n]);
+  return members.size() > most ? text + fmt::format(" and {} more", members.size() - most) : text;
+}
+
 const MemberColumn* MemberTable::find(const std::string& key) const {
   const auto found = std::find_if(columns.begin(), columns.end(), [&](const auto& one) { return one.key == key; });
   return found == columns.end() ? nullptr : &*found;

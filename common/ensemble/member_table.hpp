@@ -49,6 +49,8 @@ struct MemberTable {
   std::vector<std::string> values_of(std::int64_t member, const std::string& prefix) const;
   /// What a member is called: the slide's name, else "member 12".
   std::string name_of(std::int64_t member) const;
+  /// What members are called, those beyond `most` by their number: "north, south and 3 more".
+  std::string names_of(const std::vector<std::int64_t>& members, std::size_t most) const;
   /// The column of a key, null where it does not vary.
   const MemberColumn* find(const std::string& key) const;
 };

@@ -9,6 +9,7 @@
 
 #include "common/stage/identity.hpp"
 #include "postprocess/budget/budget_table.hpp"
+#include "postprocess/fields/csv_field.hpp"
 
 namespace talus::postprocess {
 namespace {
@@ -23,16 +24,6 @@ const char* state_word(BudgetState state) {
     case BudgetState::waiting: break;
   }
   return "waiting";
-}
-
-/// A text as a field: quoted where it holds what separates fields, its line breaks made spaces.
-std::string text_field(std::string text) {
-  for (char& c : text)
-    if (c == '\n' || c == '\r') c = ' ';
-  if (text.find_first_of(",\"") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
 }
 
 /// The numbers of a line by their names, in the order of the columns.
@@ -78,11 +69,11 @@ std::string budget_csv(const BudgetTable& table) {
   text += ",values,reason\n";
   for (const BudgetLine& line : table.lines) {
     text += fmt::format("{},{},{},{},{}", line.run.name, line.run.row, kind_name(line.row->kind),
-                        state_word(line.run.state), text_field(line.run.words));
+                        state_word(line.run.state), csv_field(line.run.words));
     for (const auto& [name, value] : named_numbers(table, line))
       text += std::isfinite(value) ? fmt::format(",{:.9g}", value) : ",";
     text +=
-        "," + text_field(fmt::format("{}", fmt::join(line.run.values, " "))) + "," + text_field(line.run.reason) + "\n";
+        "," + csv_field(fmt::format("{}", fmt::join(line.run.values, " "))) + "," + csv_field(line.run.reason) + "\n";
   }
   return text;
 }

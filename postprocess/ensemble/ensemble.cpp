@@ -50,7 +50,7 @@ void tell_of_edges(const Ensemble& ensemble) {
   if (members.empty()) return;
   log_warning(fmt::format("{} came to the edge of their domain: {}; what lies beyond is missing from maps and numbers",
                           members.size() == 1 ? "one member" : fmt::format("{} members", members.size()),
-                          ensemble.table.slides ? names_of(ensemble.table, members) : member_list(members)));
+                          ensemble.table.slides ? ensemble.table.names_of(members, 12) : member_list(members)));
 }
 
 void tell_of_members(const Ensemble& ensemble) {
@@ -132,12 +132,6 @@ std::string member_list(const std::vector<std::int64_t>& members, std::size_t mo
     }
   }
   return text;
-}
-
-std::string names_of(const MemberTable& table, const std::vector<std::int64_t>& members, std::size_t most) {
-  std::string text;
-  for (std::size_t n = 0; n < members.size() && n < most; ++n) text += (n > 0 ? ", " : "") + table.name_of(members[n]);
-  return members.size() > most ? text + fmt::format(" and {} more", members.size() - most) : text;
 }
 
 std::string members_words(const Ensemble& ensemble) {

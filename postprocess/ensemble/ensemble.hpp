@@ -46,9 +46,6 @@ RunMaps base_maps(const EnsembleScene& scene);
 /// Numbers of members as people write them: "3, 7 to 12, 40"; no more than `most` of these, then how many are left.
 std::string member_list(const std::vector<std::int64_t>& members, std::size_t most = 12);
 
-/// What members are called: "north, south and 3 more".
-std::string names_of(const MemberTable& table, const std::vector<std::int64_t>& members, std::size_t most = 12);
-
 /// How many members of which kind, as one sentence: "98 of 100 members are counted, 2 failed, 0 wait".
 std::string members_words(const Ensemble& ensemble);
 

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "postprocess/fields/csv_field.hpp"
+
 namespace talus::postprocess {
 namespace {
 
@@ -18,20 +20,10 @@ const char* word_of(MemberState state) {
   return "waiting";
 }
 
-/// A text as a field: quoted where it holds what separates fields, its line breaks made spaces.
-std::string field(std::string text) {
-  for (char& c : text)
-    if (c == '\n' || c == '\r') c = ' ';
-  if (text.find_first_of(",\"") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
-
 std::string cell(const RowColumn& column, std::size_t member) {
   const double value = column.values[member];
   if (std::isnan(value)) return "";
-  return column.words.empty() ? fmt::format("{}", value) : field(column.words.at(static_cast<std::size_t>(value)));
+  return column.words.empty() ? fmt::format("{}", value) : csv_field(column.words.at(static_cast<std::size_t>(value)));
 }
 
 }  // namespace
@@ -63,12 +55,12 @@ MemberRows member_rows(const Ensemble& ensemble, const Options& options, const s
 
 std::string members_csv(const MemberRows& rows, const char* called) {
   std::string text = std::string(called) + ",state";
-  for (const RowColumn& column : rows.columns) text += "," + field(column.name);
+  for (const RowColumn& column : rows.columns) text += "," + csv_field(column.name);
   text += ",failure\n";
   for (std::size_t k = 0; k < rows.states.size(); ++k) {
     text += fmt::format("{},{}", k, word_of(rows.states[k]));
     for (const RowColumn& column : rows.columns) text += "," + cell(column, k);
-    text += "," + field(rows.failures[k]) + "\n";
+    text += "," + csv_field(rows.failures[k]) + "\n";
   }
   return text;
 }

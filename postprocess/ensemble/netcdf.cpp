@@ -3,9 +3,7 @@
 // probability.nc: the maps of an ensemble, and the table of its members.
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include "postprocess/ensemble/facts.hpp"
@@ -79,15 +77,8 @@ int define_coordinate(Nc& nc, NcPlan& plan, const std::string& name, const std::
 }
 
 void describe(Nc& nc, const Ensemble& ensemble, const Options& options, const std::string& command_line) {
-  const EnsembleScene& scene = ensemble.counts.scene;
-  nc.text(NC_GLOBAL, "Conventions", "CF-1.8");
-  nc.text(NC_GLOBAL, "title", scene.title + ": probability");
-  nc.text(NC_GLOBAL, "institution", options.institution.empty() ? "not stated" : options.institution);
-  nc.text(NC_GLOBAL, "source", "Talus " + version() + ", ensemble of runs of the material point method");
-  nc.text(NC_GLOBAL, "history",
-          fmt::format("{:%Y-%m-%dT%H:%M:%SZ}: {}", fmt::gmtime(std::time(nullptr)), command_line));
-  for (const auto& [name, words] : ensemble_facts(ensemble))
-    if (name != "TITLE" && name != "SOURCE") nc.text(NC_GLOBAL, nc_lower(name).c_str(), words);
+  describe_members_file(nc, ensemble, "probability", "ensemble of runs of the material point method", options,
+                        command_line);
   nc.text(NC_GLOBAL, "comment",
           share_words(ensemble.table.design).meaning + " " + share_words(ensemble.table.design).error +
               " Thickness is vertical (along the plumb line), not normal to the slope. Cells outside the computed "

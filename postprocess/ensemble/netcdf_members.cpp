@@ -4,7 +4,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <ctime>
 
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include "postprocess/ensemble/facts.hpp"
 #include "postprocess/maps/nc_grid.hpp"
 
 namespace talus::postprocess {
@@ -74,6 +79,18 @@ std::string nc_lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return text;
+}
+
+void describe_members_file(Nc& nc, const Ensemble& ensemble, const std::string& title, const std::string& source,
+                           const Options& options, const std::string& command_line) {
+  nc.text(NC_GLOBAL, "Conventions", "CF-1.8");
+  nc.text(NC_GLOBAL, "title", ensemble.counts.scene.title + ": " + title);
+  nc.text(NC_GLOBAL, "institution", options.institution.empty() ? "not stated" : options.institution);
+  nc.text(NC_GLOBAL, "source", "Talus " + version() + ", " + source);
+  nc.text(NC_GLOBAL, "history",
+          fmt::format("{:%Y-%m-%dT%H:%M:%SZ}: {}", fmt::gmtime(std::time(nullptr)), command_line));
+  for (const auto& [name, words] : ensemble_facts(ensemble))
+    if (name != "TITLE" && name != "SOURCE") nc.text(NC_GLOBAL, nc_lower(name).c_str(), words);
 }
 
 }  // namespace talus::postprocess

@@ -8,6 +8,7 @@
 
 #include "postprocess/ensemble/member_rows.hpp"
 #include "postprocess/maps/nc_file.hpp"
+#include "postprocess/options/options.hpp"
 
 namespace talus::postprocess {
 
@@ -20,5 +21,9 @@ void fill_members(Nc& nc, const std::vector<int>& variables, const MemberRows& r
 
 /// A name in lower case, as attributes are.
 std::string nc_lower(std::string text);
+
+/// Defines the attributes of a file about all members: `title` is behind the scene's, `source` behind the version.
+void describe_members_file(Nc& nc, const Ensemble& ensemble, const std::string& title, const std::string& source,
+                           const Options& options, const std::string& command_line);
 
 }  // namespace talus::postprocess

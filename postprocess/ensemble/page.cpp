@@ -26,7 +26,7 @@ namespace {
 /// The members at the edge of their domain: their names where they are few, else how many they are.
 std::string names_at_edge(const Ensemble& ensemble, const std::vector<std::int64_t>& members) {
   constexpr std::size_t few = 12;
-  if (members.size() <= few) return names_of(ensemble.table, members);
+  if (members.size() <= few) return ensemble.table.names_of(members, few);
   return fmt::format("{} of {} {}", members.size(), ensemble.counted(), ensemble.table.slides ? "slides" : "members");
 }
 

@@ -140,17 +140,10 @@ void take_up_budget(const fs::path& file, const BudgetFlags& flags, Budget& budg
   budget = std::move(*found);
 }
 
-std::vector<AnyDevice> budget_devices(int count, On on) {
-  std::vector<AnyDevice> devices;
-  const int gpus = on == On::gpu ? GpuDevice::count() : 1;
-  for (int k = 0; k < count; ++k) devices.push_back(make_device(on, k % gpus));
-  return devices;
-}
-
 /// How many of the runs are made at a time: by the memory of the largest.
 InFlight budget_flight(const BudgetScene& scene, const BudgetOptions& options, const BudgetFlags& flags,
                        std::size_t runs) {
-  const std::vector<AnyDevice> each = budget_devices(flags.on == On::gpu ? GpuDevice::count() : 1, flags.on);
+  const std::vector<AnyDevice> each = one_of_each(flags.on);
   const MemberCost cost = cost_of_member(scene.domain, scene.base.settled, each.front(), false);
   const double finer = std::max(1.0, std::pow(options.cell_factor, -3.0));
   return in_flight(static_cast<std::int64_t>(std::max<std::size_t>(runs, 1)), flags.at_a_time, finer * cost.bytes,
@@ -206,7 +199,7 @@ void make_runs(const StageContext& context, const BudgetFlags& flags, const Budg
       fmt::format("budget: {} runs beside the run itself, {} at a time: {}", waiting, flight.count, flight.reason));
   const OwnEnd saving("finished runs of the budget are saved");
   const auto save = [&] { write_budget(paths.unfinished(), budget); };
-  if (run_variations(scene.variations, budget, {scene.domain, paths, budget_devices(flight.count, flags.on), save}))
+  if (run_variations(scene.variations, budget, {scene.domain, paths, devices_for(flight.count, flags.on), save}))
     return;
   save();
   throw Interrupted({fmt::format("stopped with {} of {} runs of the budget finished",

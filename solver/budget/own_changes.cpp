@@ -20,9 +20,7 @@ namespace {
 /// The options with what they leave to the program settled as it was for the run itself.
 SolveOptions settled_as(const BudgetBase& base, SolveOptions options) {
   const SolveOptions& asked = base.asked;
-  const bool free = options.material.stiffness == StiffnessKind::automatic ||
-                    (options.accuracy && options.material.stiffness_is_free());
-  if (free && base.settled.material.youngs_modulus != asked.material.youngs_modulus) {
+  if (leaves_stiffness(options) && base.settled.material.youngs_modulus != asked.material.youngs_modulus) {
     StiffnessDemand demand;
     demand.modulus = base.settled.material.youngs_modulus;
     options = with_stiffness(std::move(options), demand);

@@ -38,7 +38,7 @@ class BudgetQueue {
     BudgetRun run = budget_.runs[place];
     const QuietThread quiet;
     try {
-      const Domain domain = read(variations_[place]);
+      const Domain domain = domain_of(variations_[place], plan_.domain, plan_.paths);
       if (auto made = run_member(domain, variations_[place].options, device)) take(run, std::move(*made));
     } catch (const NumericalError& error) {
       run.state = BudgetState::failed;
@@ -65,11 +65,6 @@ class BudgetQueue {
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
-  Domain read(const Variation& variation) {
-    const std::lock_guard<std::mutex> one(reading_);
-    return domain_of(variation, plan_.domain, plan_.paths);
-  }
-
   static void take(BudgetRun& run, MemberRun&& made) {
     run.state = BudgetState::done;
     run.result = made.result;
@@ -89,7 +84,7 @@ class BudgetQueue {
   const std::vector<Variation>& variations_;
   Budget& budget_;
   const BudgetPlan& plan_;
-  std::mutex mutex_, reading_;
+  std::mutex mutex_;
   std::size_t next_ = 0;
   std::exception_ptr failure_;
   std::vector<std::string> warnings_;

@@ -141,16 +141,6 @@ void take_up(const Ensemble& e, const EnsembleFlags& flags, EnsembleCounts& coun
   counts = std::move(*found);
 }
 
-/// A device for each member in flight, spread over the GPUs.
-std::vector<AnyDevice> devices_for(int count, On on) {
-  std::vector<AnyDevice> devices;
-  const int gpus = on == On::gpu ? GpuDevice::count() : 1;
-  for (int k = 0; k < count; ++k) devices.push_back(make_device(on, k % gpus));
-  return devices;
-}
-
-std::vector<AnyDevice> one_of_each(On on) { return devices_for(on == On::gpu ? GpuDevice::count() : 1, on); }
-
 /// This function says what was warned of, each warning once with the members that it is of.
 void say_warnings(const MembersRun& run, const MemberTable& table) {
   std::vector<std::pair<std::string, std::vector<std::int64_t>>> said;
@@ -195,14 +185,10 @@ void judge_failures(const EnsembleCounts& counts, double allowed_share, const Me
 void say_edges(const EnsembleCounts& counts, const MemberTable& table) {
   const std::vector<std::int64_t> members = counts.at_edge();
   if (members.empty()) return;
-  std::string names;
-  for (std::size_t n = 0; n < members.size() && n < most_said; ++n)
-    names += fmt::format("{}{}", n > 0 ? ", " : "", table.name_of(members[n]));
-  if (members.size() > most_said) names += fmt::format(" and {} more", members.size() - most_said);
   log_warning(
       fmt::format("{} of {} members came to the edge of their domain ({}): what lies beyond is missing from "
                   "maps and numbers. {}",
-                  members.size(), counts.part.count(), names,
+                  members.size(), counts.part.count(), table.names_of(members, most_said),
                   table.slides ? "Give a larger margin_m in [slides], or a smaller reach_angle_deg"
                                : "Take a larger part of the elevation model"));
 }

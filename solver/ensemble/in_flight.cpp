@@ -10,6 +10,7 @@
 
 #include "common/stage/machine.hpp"
 #include "solver/parallel/algorithms.hpp"
+#include "solver/scene/make_solver.hpp"
 
 namespace talus::solver {
 namespace {
@@ -43,5 +44,14 @@ InFlight in_flight(std::int64_t members, int asked, double bytes_each, const std
                       : fmt::format("{}, {:.1f} MB each", where, bytes_each / 1e6);
   return flight;
 }
+
+std::vector<AnyDevice> devices_for(int count, On on) {
+  std::vector<AnyDevice> devices;
+  const int gpus = on == On::gpu ? GpuDevice::count() : 1;
+  for (int k = 0; k < count; ++k) devices.push_back(make_device(on, k % gpus));
+  return devices;
+}
+
+std::vector<AnyDevice> one_of_each(On on) { return devices_for(on == On::gpu ? GpuDevice::count() : 1, on); }
 
 }  // namespace talus::solver

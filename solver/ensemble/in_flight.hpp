@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "solver/parallel/any_device.hpp"
+#include "solver/parallel/on.hpp"
 
 namespace talus::solver {
 
@@ -25,5 +26,10 @@ inline constexpr int most_on_a_gpu = 16;
 /// for each GPU, or as many as are `asked` for where that is not 0; never more than memory has room for. `devices` are
 /// those that members run on: the CPU, or GPUs.
 InFlight in_flight(std::int64_t members, int asked, double bytes_each, const std::vector<AnyDevice>& devices);
+
+/// A device for each of so many members at a time, spread over the GPUs that CUDA sees. `on` is cpu or gpu.
+std::vector<AnyDevice> devices_for(int count, On on);
+/// The CPU, or each GPU once: what in_flight() takes.
+std::vector<AnyDevice> one_of_each(On on);
 
 }  // namespace talus::solver

@@ -49,11 +49,6 @@ SolveOptions settled_by(const SettledOnce& settled, SolveOptions options) {
   return options;
 }
 
-/// Whether the recipe leaves the stiffness to the program.
-bool leaves_stiffness(const SolveOptions& o) {
-  return o.material.stiffness == StiffnessKind::automatic || (o.accuracy && o.material.stiffness_is_free());
-}
-
 /// What is left to the program, settled by the base domain, and said.
 SettledOnce settle_once(const Domain& domain, const SolveOptions& base) {
   SettledOnce settled;

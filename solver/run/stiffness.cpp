@@ -45,6 +45,11 @@ SolveOptions with_stiffness(SolveOptions o, const StiffnessDemand& demand) {
   return o;
 }
 
+bool leaves_stiffness(const SolveOptions& options) {
+  const MaterialOptions& material = options.material;
+  return material.stiffness == StiffnessKind::automatic || (options.accuracy && material.stiffness_is_free());
+}
+
 SolveOptions settle_stiffness(const Domain& domain, SolveOptions o) {
   if (o.accuracy && o.material.stiffness_is_free()) {
     o.material.stiffness = StiffnessKind::automatic;

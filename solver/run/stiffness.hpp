@@ -29,6 +29,9 @@ double strain_for(double accuracy);
 /// The options with `stiffness = "auto"` carried out.
 SolveOptions with_stiffness(SolveOptions options, const StiffnessDemand& demand);
 
+/// Whether a recipe leaves the stiffness to the program, by its own word or by `accuracy`.
+bool leaves_stiffness(const SolveOptions& options);
+
 /// The function carries out `stiffness = "auto"`, and what `accuracy` says of it, and logs the modulus.
 SolveOptions settle_stiffness(const Domain& domain, SolveOptions options);
 
