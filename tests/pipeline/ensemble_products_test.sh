@@ -108,42 +108,26 @@ test_maps_are_read_by_gdal_with_threshold_and_members() {
   expect_exit 0 /usr/bin/python3 "$TALUS_SOURCE/tests/postprocess/maps/check_cf.py" out/probability.nc
 }
 
-test_project_opens_in_qgis_with_all_its_layers() {
-  /usr/bin/python3 -c 'import qgis.core' 2>/dev/null || need_tool python3-qgis
+# Opened in QGIS itself by make check-qgis.
+test_project_names_layers_that_gdal_opens() {
+  /usr/bin/python3 -c 'import osgeo' 2>/dev/null || need_tool python3-gdal
   made 8
-  export QT_QPA_PLATFORM=offscreen XDG_RUNTIME_DIR=$PWD QGIS_CUSTOM_CONFIG_PATH=$PWD/profile
-  /usr/bin/python3 - "$PWD/out/probability" <<'PYTHON' || fail "QGIS does not show the project whole"
+  /usr/bin/python3 - "$PWD/out/probability" <<'PYTHON' || fail "the project names layers that are not there"
+import pathlib
 import sys
-from qgis.core import QgsApplication, QgsMapRendererSequentialJob, QgsMapSettings, QgsProject, QgsRasterLayer
-from qgis.PyQt.QtCore import QSize
-application = QgsApplication([], False)
-application.initQgis()
-project = QgsProject.instance()
-assert project.read(sys.argv[1] + "/valley-ensemble.qgs"), project.error()
-layers = list(project.mapLayers().values())
+from osgeo import gdal
+from xml.etree import ElementTree
+gdal.UseExceptions()
+folder = pathlib.Path(sys.argv[1])
+layers = ElementTree.parse(folder / "valley-ensemble.qgs").findall("projectlayers/maplayer")
 assert len(layers) > 60, f"{len(layers)} layers"
-invalid = [layer.name() for layer in layers if not layer.isValid()]
-assert not invalid, invalid
-root = project.layerTreeRoot()
-shown = [node.layer() for node in root.findLayers() if node.isVisible()]
-assert any(layer.name().startswith("Probability of peak thickness") for layer in shown), shown
-probability = next(layer for layer in shown if layer.name().startswith("Probability of peak thickness"))
-settings = QgsMapSettings()
-settings.setLayers(shown)
-settings.setDestinationCrs(project.crs())
-settings.setExtent(probability.extent())
-settings.setOutputSize(QSize(700, 500))
-job = QgsMapRendererSequentialJob(settings)
-job.start()
-job.waitForFinished()
-image = job.renderedImage()
-colours = {image.pixel(x, y) for x in range(0, 700, 7) for y in range(0, 500, 5)}
-assert len(colours) > 50, f"{len(colours)} colours"
-image.save("qgis.png")
-print(len(layers), "layers", len(colours), "colours")
-import os
-sys.stdout.flush()
-os._exit(0)  # QGIS crashes while it is taken down without a window
+for layer in layers:
+    source, _, rest = layer.find("datasource").text.partition("|")
+    opened = gdal.OpenEx(str(folder / source))
+    if rest:
+        assert opened.GetLayerByName(rest.removeprefix("layername=")).GetFeatureCount() > 0, rest
+    else:
+        assert opened.RasterCount > 0, source
 PYTHON
 }
 

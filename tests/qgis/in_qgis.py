@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Checks inside a QgsApplication: cancelling, loading, time, the print layout."""
 import os
+import subprocess
 import sys
 
 sys.path.append("/usr/share/qgis/python/plugins")  # where `processing` lies
@@ -216,6 +217,29 @@ def check_project_has_a_print_layout(place):
     assert len(colours) > 100, f"the page has {len(colours)} colours"
 
 
+def check_project_of_an_ensemble_opens_whole(place):
+    recipe = place.scene / "ensemble.toml"
+    recipe.write_text((place.scene / "recipe.toml").read_text() + """
+[ensemble]
+members = 8
+
+[[ensemble.vary]]
+key = "solve.base.friction_angle_deg"
+low = 14.0
+high = 30.0
+""")
+    out = place.work / "ensemble"
+    subprocess.run([place.bin / "talus", "run", recipe, "--on", "cpu", "--out", out], check=True, capture_output=True)
+    project = opened(out / "probability" / "bowl-ensemble.qgs")
+    layers = project.mapLayers().values()
+    assert len(layers) > 30, f"{len(layers)} layers"
+    shown = [node.layer() for node in project.layerTreeRoot().findLayers() if node.isVisible()]
+    chosen = [layer for layer in shown if layer.name().startswith("Probability of peak thickness")]
+    assert len(chosen) == 1, [layer.name() for layer in shown]
+    seen, covered = drawn(shown, chosen[0].extent()), drawn(chosen, chosen[0].extent())
+    assert 10 < covered < seen, f"the probability covers {covered} and all that is shown {seen} of 10,000 pixels"
+
+
 def inside(items, layout):
     """Nothing reaches over the edge of the paper, and the legend does not lie on the scale bar."""
     from qgis.PyQt.QtCore import QRectF
@@ -239,4 +263,5 @@ in_qgis_checks = [
     check_compares_two_runs,
     check_project_has_a_time,
     check_project_has_a_print_layout,
+    check_project_of_an_ensemble_opens_whole,
 ]
