@@ -36,6 +36,18 @@ int steps_between_sorts_on_gpu(int points) {
   return Shape::width > 2 && points >= points_that_keep_a_gpu_busy ? busy_gpu_steps_between_sorts
                                                                    : gpu_steps_between_sorts;
 }
+/// The steps between sorts on a CPU: in places of memory that lie apart, steps become slower.
+inline constexpr int cpu_steps_between_sorts = 32;
+/// Points times steps between sorts on a CPU: two cores take a second for them. The state can be saved at a sort alone,
+/// and a signal waits for that.
+inline constexpr int cpu_work_between_sorts = 4'000'000;
+/// The fewest steps between sorts on a CPU: a sort takes as long as 0.4 steps.
+inline constexpr int fewest_cpu_steps_between_sorts = 8;
+/// The steps between sorts on a CPU for a number of points.
+inline int steps_between_sorts_on_cpu(int points) {
+  return std::clamp(cpu_work_between_sorts / std::max(points, 1), fewest_cpu_steps_between_sorts,
+                    cpu_steps_between_sorts);
+}
 /// The way that points may go before they are sorted: a sort takes as long as a dozen steps of a small scene, and more
 /// empty columns are stored at the rim for it. Layers are fewer, for steps by columns go through them one by one.
 template <class Device>
@@ -90,7 +102,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
         columns_(device, surroundings_.bed(), settings, static_cast<double>(materials_.list[0].density), scene.grid) {
     Clock clock = read_clock();
     clock.accelerated = 0;
-    if (Device::is_gpu) clock.steps_between_sorts = steps_between_sorts_on_gpu<Shape>(points_.count());
+    clock.steps_between_sorts = steps_between_sorts();
     clock_.upload({clock});
     sort(0);
   }
@@ -126,6 +138,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
       clock.outflow_volume = 0;
       clock.outflow_count = 0;
       clock.steps_since_sort = 0;
+      clock.steps_between_sorts = steps_between_sorts();  // as a run would have it that goes on from here
       clock.halt = clock.request = running;
       report.sorted = true;
     }
@@ -141,7 +154,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     Clock clock = read_clock();
     sort(0);
     clock.steps_since_sort = 0;
-    if (Device::is_gpu) clock.steps_between_sorts = steps_between_sorts_on_gpu<Shape>(points_.count());
+    clock.steps_between_sorts = steps_between_sorts();
     this->note_rate(clock, rate);
     clock_.upload({clock});
   }
@@ -159,6 +172,12 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     ParticleNeeds n = settings.needs;
     n.remapped_velocity = settings.transfer.remaps_velocity;
     return n;
+  }
+
+  /// The steps until the next sort, for the points there are.
+  int steps_between_sorts() const {
+    if constexpr (Device::is_gpu) return steps_between_sorts_on_gpu<Shape>(points_.count());
+    return steps_between_sorts_on_cpu(points_.count());
   }
 
   /// The step in four verbs: clear, scatter, update, gather. MUSL maps the points' new momentum back before the stress.

@@ -40,5 +40,13 @@ TEST(SortsOnAGpu, are_frequent_only_for_many_points_with_wide_stencils) {
   EXPECT_EQ(steps_between_sorts_on_gpu<Linear>(1000), steps_between_sorts_on_gpu<Linear>(1000000));
 }
 
+// A signal waits for a sort: 33 steps of a million points take eight seconds on two cores.
+TEST(SortsOnACpu, are_frequent_where_steps_take_long) {
+  EXPECT_EQ(steps_between_sorts_on_cpu(0), 32);
+  EXPECT_EQ(steps_between_sorts_on_cpu(120'000), 32);
+  EXPECT_EQ(steps_between_sorts_on_cpu(400'000), 10);
+  EXPECT_EQ(steps_between_sorts_on_cpu(50'000'000), 8);
+}
+
 }  // namespace
 }  // namespace talus::solver::testing
