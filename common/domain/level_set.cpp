@@ -122,12 +122,27 @@ void add_triangle(BodySurface& surface, const std::array<double, 3>& largest, co
   surface.facets.push_back({{centre[0], centre[1], centre[2]}, {area[0], area[1], area[2]}});
 }
 
-/// How many pieces a body of this extent may have at least, from its bounding box: a broken transform makes it endless.
-bool too_many(const BodySurface& surface, const std::array<double, 3>& largest) {
-  double longest = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis)
+/// Whether a surface of this area [m2] has more pieces than may be: a broken transform makes it endless. No piece is
+/// larger than half the square over the diagonal of the largest extents.
+bool too_many(const BodySurface& surface, const std::array<double, 3>& largest, double area) {
+  double longest = 0, diagonal = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
     longest = std::max(longest, (surface.high[axis] - surface.low[axis]) / largest[axis]);
-  return !(longest < static_cast<double>(most_facets));
+    diagonal += largest[axis] * largest[axis];
+  }
+  return !(std::max(longest, 2 * area / diagonal) < static_cast<double>(most_facets));
+}
+
+double area_of(const std::vector<Vector>& places, const std::vector<openvdb::Vec3I>& triangles,
+               const std::vector<openvdb::Vec4I>& quads) {
+  double twice = 0;
+  const auto add = [&](const Vector& a, const Vector& b, const Vector& c) { twice += (b - a).cross(c - a).length(); };
+  for (const auto& t : triangles) add(places[t[0]], places[t[1]], places[t[2]]);
+  for (const auto& q : quads) {
+    add(places[q[0]], places[q[1]], places[q[2]]);
+    add(places[q[0]], places[q[2]], places[q[3]]);
+  }
+  return twice / 2;
 }
 
 [[noreturn]] void refuse_fine(const Wanted& wanted, const std::string& name, const BodySurface& surface) {
@@ -151,21 +166,24 @@ BodySurface read_here(const Wanted& wanted) {
   const openvdb::math::Transform::Ptr place = grid->transform().copy();
   grid->setTransform(openvdb::math::Transform::createLinearTransform(1.0));
   openvdb::tools::volumeToMesh(*grid, corners, triangles, quads, 0.0);
-  const auto at = [&](openvdb::Index32 n) { return place->indexToWorld(Vector(corners[n])); };
+  std::vector<Vector> places;
+  places.reserve(corners.size());
   BodySurface surface;
-  for (std::size_t n = 0; n < corners.size(); ++n) {
-    const Vector p = at(static_cast<openvdb::Index32>(n));
+  for (const openvdb::Vec3s& corner : corners) {
+    const Vector p = place->indexToWorld(Vector(corner));
     for (std::size_t axis = 0; axis < 3; ++axis) {
       surface.low[axis] = std::min(surface.low[axis], p[static_cast<int>(axis)]);
       surface.high[axis] = std::max(surface.high[axis], p[static_cast<int>(axis)]);
     }
+    places.push_back(p);
   }
-  if (!corners.empty() && too_many(surface, largest)) refuse_fine(wanted, grid->getName(), surface);
+  if (!places.empty() && too_many(surface, largest, area_of(places, triangles, quads)))
+    refuse_fine(wanted, grid->getName(), surface);
   try {  // OpenVDB's faces run clockwise seen from outside.
-    for (const auto& t : triangles) add_triangle(surface, largest, at(t[0]), at(t[2]), at(t[1]));
+    for (const auto& t : triangles) add_triangle(surface, largest, places[t[0]], places[t[2]], places[t[1]]);
     for (const auto& q : quads) {
-      add_triangle(surface, largest, at(q[0]), at(q[2]), at(q[1]));
-      add_triangle(surface, largest, at(q[0]), at(q[3]), at(q[2]));
+      add_triangle(surface, largest, places[q[0]], places[q[2]], places[q[1]]);
+      add_triangle(surface, largest, places[q[0]], places[q[3]], places[q[2]]);
     }
   } catch (const std::length_error&) {
     refuse_fine(wanted, grid->getName(), surface);

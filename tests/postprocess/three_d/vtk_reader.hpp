@@ -44,7 +44,7 @@ class VtkReader {
     }
     const std::string bytes = inflated(data_ + std::stoul(found[1]));
     std::vector<T> list(bytes.size() / sizeof(T));
-    std::memcpy(list.data(), bytes.data(), bytes.size());
+    if (!list.empty()) std::memcpy(list.data(), bytes.data(), bytes.size());
     return list;
   }
 
