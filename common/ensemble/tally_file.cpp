@@ -145,7 +145,7 @@ std::vector<std::size_t> write_cells(h5::File& file, const KeptCells& cells) {
 }
 
 KeptCells read_cells(const h5::File& file, const MapGrid& grid) {
-  constexpr double most = 1e12;  // cells of a grid: the list of its blocks is 16 GB
+  constexpr double most = 1e11;  // cells of a grid: the list of its blocks is 1.6 GB
   if (static_cast<double>(grid.columns) * grid.rows > most)
     file.refuse(fmt::format("has a map of {} x {} cells", grid.columns, grid.rows), "no model is so large");
   KeptCells cells(grid);

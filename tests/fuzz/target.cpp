@@ -7,6 +7,8 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "common/stage/checksum.hpp"
+
 namespace talus::fuzz {
 namespace fs = std::filesystem;
 
@@ -26,6 +28,8 @@ InputFile::~InputFile() {
   std::error_code ignored;
   fs::remove(path_, ignored);
 }
+
+void InputFile::seal() const { seal_file(path_, path_); }
 
 void expect_result_or_error(const std::function<void()>& read) {
   try {

@@ -35,6 +35,8 @@ class InputFile {
   InputFile& operator=(const InputFile&) = delete;
   ~InputFile();
   const std::filesystem::path& path() const { return path_; }
+  /// Adds a seal (common/stage/checksum.hpp), as anybody can who changes a file on purpose.
+  void seal() const;
 
  private:
   std::filesystem::path path_;
