@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // talus-solve: domain.vdb -> run.h5.
+#include <filesystem>
+#include <fstream>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +12,8 @@
 #include "common/budget/budget.hpp"
 #include "common/domain/domain.hpp"
 #include "common/domain/threads.hpp"
+#include "common/run/run_facts.hpp"
+#include "common/run/run_file.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/machine.hpp"
 #include "common/stage/stage.hpp"
@@ -17,6 +21,7 @@
 #include "solver/ensemble/ensemble_stage.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/parallel/on.hpp"
+#include "solver/run/recorders/frame_store.hpp"
 #include "solver/run/run_inputs.hpp"
 #include "solver/run/run_stage.hpp"
 #include "solver/run/simulation.hpp"
@@ -177,14 +182,33 @@ Facts solved(StageContext& context, const SolveFlags& flags, SolveOptions& optio
   return find_stability(context, options, device, domain, insisted);
 }
 
+/// This function notes what was used.
+void write_used(StageContext& context, const SolveOptions& options, const Facts& used) {
+  auto inputs = inputs_of(options, context.out);
+  inputs.insert(inputs.begin(), context.recipe.file());
+  write_used_recipe(context, stage(), recipe::to_used_toml(options, "solve"), inputs, used);
+}
+
 /// This function does what the recipe asks for but a budget, and notes what was used.
 void solve_itself(StageContext& context, const SolveFlags& flags) {
   SolveOptions options = options_of(context.recipe, context.out);
   const Facts used = solved(context, flags, options);
-  if (used.empty()) return;
-  auto inputs = inputs_of(options, context.out);
-  inputs.insert(inputs.begin(), context.recipe.file());
-  write_used_recipe(context, stage(), recipe::to_used_toml(options, "solve"), inputs, used);
+  if (!used.empty()) write_used(context, options, used);
+}
+
+/// This function does what is left to do for the run that is there, if the stage was killed before it had: what the run
+/// went on from is removed, and what was used is noted.
+void complete_run(StageContext& context) {
+  const RunPaths paths(context.out);
+  std::ifstream noted(context.out / "solve.used.toml");
+  const std::string mark = "# id: " + fact(run_facts(paths.run), run_id);
+  for (std::string line; std::getline(noted, line);)
+    if (line == mark) return;
+  remove_for_good(paths.checkpoint);
+  FrameStore(paths.frames).clear();
+  const SolveOptions options = options_of(context.recipe, context.out);
+  write_used(context, settle_stiffness(read_domain(inputs_of(options, context.out).front()), options),
+             facts_of(read_run(paths.run).summary));
 }
 
 /// This function makes the run, unless run.h5 is of this recipe, domain and version already, and then the runs of its
@@ -195,7 +219,11 @@ void solve_with_budget(StageContext& context, const SolveFlags& flags, const Bud
   const bool is_there = !reads_only && is_this_run(context);
   SolveFlags of_itself = flags;
   of_itself.at_a_time = 0;
-  if (!is_there) solve_itself(context, of_itself);
+  if (is_there) {
+    complete_run(context);
+  } else {
+    solve_itself(context, of_itself);
+  }
   BudgetFlags how{
       .on = choose_device(flags.on), .at_a_time = flags.at_a_time, .plan = flags.run.plan, .resume = flags.run.resume};
   how.restart = is_there && flags.run.restart;  // a run that went on itself has no budget to go on from

@@ -162,6 +162,10 @@ Facts run_in_time(StageContext& context, const RunFlags& flags, const SolveOptio
   if (flags.profile) report_profile(summary, device, context.out);
   if (settled.material.stiffness_check) check_stiffness(domain, settled, device, context, paths.run);
   context.results.push_back(paths.run);
+  return facts_of(summary);
+}
+
+Facts facts_of(const RunSummary& summary) {
   return {{"id", fact(summary.provenance, run_id)},
           {"on", summary.on},
           {"wall_time_s", fmt::format("{:.3f}", summary.wall_time)},

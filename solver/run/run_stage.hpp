@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "common/domain/domain.hpp"
+#include "common/run/run_file.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/stage.hpp"
 #include "solver/options/solve.hpp"
@@ -31,5 +32,8 @@ std::optional<std::filesystem::path> checkpoint_of(const RunFlags& flags, const 
 /// NumericalError, Interrupted with a checkpoint left behind, and DataError.
 Facts run_in_time(StageContext& context, const RunFlags& flags, const SolveOptions& options, const AnyDevice& device,
                   Domain& domain, const Facts& facts);
+
+/// What the used recipe says of a run that is whole.
+Facts facts_of(const RunSummary& summary);
 
 }  // namespace talus::solver

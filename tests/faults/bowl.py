@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The scene of the fault tests, and what its files say: a digest of every file that does not change with time, ids and
 places, so that two runs of one recipe agree."""
+import csv
 import hashlib
 import json
 import os
@@ -35,6 +36,38 @@ name = "wall"
 """
 EVENTS = "frame_interval_s = 0.25\ncheckpoint_interval_s = 0.4"
 
+# What follows the scene's recipe in the scenes that compute more than one run.
+MORE_RUNS = {
+    "ensemble": """
+[ensemble]
+members = 3
+keep = [1]
+
+[[ensemble.vary]]
+key = "solve.base.friction_angle_deg"
+low = 14.0
+high = 30.0
+
+[[ensemble.vary]]
+key = "preprocess.thickness_factor"
+low = 0.9
+high = 1.1
+""",
+    "budget": """
+[budget]
+make = true
+leave_out = ["transfer", "integrator", "strength", "survey"]
+""",
+    "slides": """
+[slides]
+outlines = "areas.geojson"
+name_from = "name"
+thickness_from = "depth"
+margin_m = 60.0
+""",
+}
+SCENES = ("run", *MORE_RUNS)
+
 WALL = """{"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {}, "geometry":
 {"type": "Polygon", "coordinates":
 [[[500120, 5000070], [500140, 5000070], [500140, 5000130], [500120, 5000130], [500120, 5000070]]]}}]}
@@ -49,18 +82,40 @@ def with_key(recipe, key, line):
     return changed
 
 
-def make_scene(folder, layer=2.0, end=1.0):
-    """The scene of tests/pipeline/scene.sh in `folder`, with a wall in it: elevation models and recipe.toml. A block of
-    4 x 4 cells, 4 m thick, fails in a bowl; `layer` [m], `end` [s]."""
+def areas():
+    """Three squares in the bowl, as GeoJSON with a name and a depth each."""
+    features = []
+    for number, (west, south) in enumerate([(500040, 5000120), (500100, 5000060), (500140, 5000140)]):
+        ring = [[west + x, south + y] for x, y in ((0, 0), (30, 0), (30, 30), (0, 30), (0, 0))]
+        features.append({"type": "Feature", "properties": {"name": f"area {number}", "depth": 3.0 + number},
+                         "geometry": {"type": "Polygon", "coordinates": [ring]}})
+    return json.dumps({"type": "FeatureCollection", "features": features})
+
+
+def make_scene(folder, layer=2.0, end=1.0, scene="run"):
+    """The scene of tests/pipeline/scene.sh in `folder`: elevation models and recipe.toml. A block of 4 x 4 cells, 4 m
+    thick, fails in a bowl; `layer` [m], `end` [s]. The single run has a wall in it; the other scenes are an ensemble, an
+    error budget, and three slides over the model."""
     folder.mkdir(parents=True, exist_ok=True)
     script = pathlib.Path(__file__).resolve().parent.parent / "pipeline" / "scene.sh"
     asked_for = {name: str(folder.resolve()) for name in ("TALUS_SOURCE", "TALUS_BUILD", "TALUS_SCRATCH")}
     subprocess.run(["bash", "-c", 'source "$0" && scene', script], cwd=folder, env=os.environ | asked_for, check=True)
-    (folder / "wall.geojson").write_text(WALL)
     recipe = (folder / "recipe.toml").read_text()
     recipe = with_key(recipe, "layer_height_m", f"layer_height_m = {layer}")
-    recipe = with_key(recipe, "end_time_s", f"end_time_s = {end}\n{EVENTS}")
-    (folder / "recipe.toml").write_text(recipe + OBSTACLE)
+    recipe = with_key(recipe, "end_time_s", f"end_time_s = {end}\n{EVENTS if scene == 'run' else ''}")
+    if scene == "run":
+        (folder / "wall.geojson").write_text(WALL)
+        recipe += OBSTACLE
+    else:
+        recipe += MORE_RUNS[scene]
+    if scene == "slides":
+        (folder / "areas.geojson").write_text(areas())
+        recipe = re.sub(r'(?m)^after_dem = .*\n', "", recipe, count=1).replace("before_dem", "base_dem", 1)
+        recipe = re.sub(r"(?ms)^\[postprocess\.survey\]\n.*?(?=^\[)", "", recipe)
+    (folder / "recipe.toml").write_text(recipe)
+
+
+GOES_ON = re.compile(r"(^|/)(checkpoint|unfinished|budget\.unfinished)[^/]*\.h5$")
 
 
 def is_final(name):
@@ -72,12 +127,18 @@ def of_hdf5(file):
     # Ids, times, versions and the history of commands stand in attributes and in two groups.
     if h5py is not None:
         said = []
+
+        def look(name, item):
+            if isinstance(item, h5py.Dataset) and not name.startswith("profile") and "wall_time" not in name:
+                values = item[()]
+                data = repr(values.tolist()).encode() if values.dtype.hasobject else values.tobytes()
+                said.append((name, hashlib.sha256(data).hexdigest()))
         with h5py.File(file, "r") as root:
-            root.visititems(lambda name, item: said.append((name, hashlib.sha256(item[()].tobytes()).hexdigest()))
-                            if isinstance(item, h5py.Dataset) and not name.startswith("profile") else None)
+            root.visititems(look)
         return repr(sorted(said))
     text = subprocess.run(["h5dump", "-m", "%.17g", file], capture_output=True, text=True, check=True).stdout
     text = re.sub(r'(?s)GROUP "(profile|provenance)" \{.*?\n   \}\n', "", text)
+    text = re.sub(r'(?ms)^( *)DATASET "[^"]*wall_time[^"]*" \{.*?^\1\}\n', "", text)
     text = re.sub(r'(?s)ATTRIBUTE "[^"]*" \{.*?\n\s*\}\n\s*\}\n', "", text)
     return text.replace(str(file), "")
 
@@ -89,9 +150,10 @@ def of_raster(file):
         return repr([(raster.GetGeoTransform(), band.DataType, hashlib.sha256(band.ReadRaster()).hexdigest())
                      for band in bands])
     text = subprocess.run(["gdalinfo", "-checksum", file], capture_output=True, text=True, check=True).stdout
-    if "Checksum=" not in text or "ERROR" in text:
+    if "Checksum=" not in text or re.search(r"(?m)^ERROR \d", text):
         raise ValueError("no checksum")
-    return "".join(line for line in text.splitlines(True) if not re.search(r"_ID=|Files:|SOURCE=|ACCEPTED", line))
+    volatile = re.compile(r"_ID=|FINGERPRINT=|Files:|SOURCE=|ACCEPTED")
+    return "".join(line for line in text.splitlines(True) if not volatile.search(line))
 
 
 def of_geopackage(file):
@@ -99,7 +161,11 @@ def of_geopackage(file):
     if base.execute("pragma integrity_check").fetchone() != ("ok",):
         raise ValueError("broken data base")
     tables = [row[0] for row in base.execute("select table_name from gpkg_contents order by 1")]
-    return repr([(table, sorted(map(repr, base.execute(f'select * from "{table}"')))) for table in tables])
+    def rows(table):
+        found = base.execute(f'select * from "{table}"')
+        kept = [place for place, column in enumerate(found.description) if "wall_time" not in column[0]]
+        return sorted(repr([row[place] for place in kept]) for row in found)
+    return repr([(table, rows(table)) for table in tables])
 
 
 def of_openvdb(file):
@@ -111,9 +177,13 @@ def of_openvdb(file):
 
 
 def of_json(file):
-    values = json.loads(file.read_text())
     volatile = re.compile("wall|run_id|version|memory|per_second|hardware|^on$")
-    return json.dumps({key: value for key, value in values.items() if not volatile.search(key)})
+
+    def lasting(value):
+        if isinstance(value, dict):
+            return {key: lasting(below) for key, below in value.items() if not volatile.search(key)}
+        return [lasting(below) for below in value] if isinstance(value, list) else value
+    return json.dumps(lasting(json.loads(file.read_text())))
 
 
 def of_text(file):
@@ -124,6 +194,16 @@ def of_text(file):
     return "".join(line for line in text.splitlines(True) if not volatile.search(line))
 
 
+def of_table(file):
+    """A table without its columns of wall time."""
+    text = file.read_text()
+    if not text.endswith("\n"):
+        raise ValueError("ends within a line")
+    rows = list(csv.reader(line for line in text.splitlines() if not line.startswith("#")))
+    kept = [place for place, name in enumerate(rows[0]) if "wall" not in name] if rows else []
+    return repr([[row[place] for place in kept if place < len(row)] for row in rows])
+
+
 def of_page(file):
     if not file.read_text().rstrip().endswith("</html>"):
         raise ValueError("ends within the page")
@@ -131,7 +211,7 @@ def of_page(file):
 
 
 READERS = {".h5": of_hdf5, ".nc": of_hdf5, ".tif": of_raster, ".gpkg": of_geopackage, ".vdb": of_openvdb,
-           ".json": of_json, ".html": of_page, ".toml": of_text, ".txt": of_text, ".csv": of_text}
+           ".json": of_json, ".html": of_page, ".toml": of_text, ".txt": of_text, ".csv": of_table}
 
 
 def digest(file):
@@ -145,11 +225,11 @@ def digest(file):
 
 
 def digests(out, names=None):
-    """name -> digest, of everything in an output folder that carries a final name, but a checkpoint."""
+    """name -> digest, of everything in an output folder that carries a final name, but what a run goes on from."""
     found = {}
     for file in sorted(out.rglob("*")):
         name = str(file.relative_to(out))
-        if file.is_file() and is_final(name) and name != "checkpoint.h5" and (names is None or name in names):
+        if file.is_file() and is_final(name) and not GOES_ON.search(name) and (names is None or name in names):
             found[name] = digest(file)
     return found
 

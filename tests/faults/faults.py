@@ -6,7 +6,7 @@ folder, the power goes. After each: every file that carries a name is whole and 
 and the next run ends with the results of a run that nothing disturbed.
 
     tests/faults/faults.py --bin build/bin --shim build/bin/talus-faults.so --work DIR [--full] [--only TABLE]
-      [--stage STAGE] [--table FILE]
+      [--stage STAGE] [--scene SCENE] [--table FILE]
 
 Without --full a few places of each kind, in seconds; with it every rename and sync, and the tables that
 docs/log/reliability.md shows. Needs gdalinfo, h5dump and an x86-64 Linux; exit code 77 where there is none
@@ -23,7 +23,7 @@ import sys
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from bowl import STAGES, digests, fresh_copy, hidden, make_scene  # noqa: E402
+from bowl import SCENES, STAGES, digests, fresh_copy, hidden, make_scene  # noqa: E402
 from power_cut import faults_of  # noqa: E402
 
 LONGEST = 600  # seconds that a stage may take on a busy machine; on an idle one it takes one
@@ -36,16 +36,16 @@ class Bench:
     """Folders of the scene before each stage (with the results of an older recipe in them), and what is right."""
 
     def __init__(self, arguments):
-        self.bin, self.shim, self.full = arguments.bin, arguments.shim, arguments.full
+        self.bin, self.shim, self.full, self.scene = arguments.bin, arguments.shim, arguments.full, arguments.scene
         self.stages = arguments.stage or STAGES  # what is disturbed; beside it, and before it, all of them run
         self.work = arguments.work
         self.rows, self.wrong = [], []
         shutil.rmtree(self.work, ignore_errors=True)
         self.place = self.work / "place"  # every trial runs here, so that no path differs
-        make_scene(self.place, layer=4.0, end=0.5)
+        make_scene(self.place, layer=4.0, end=0.5, scene=self.scene)
         for stage in STAGES:
             self.must(stage)
-        make_scene(self.place)
+        make_scene(self.place, scene=self.scene)
         self.base, self.old, self.right = {}, digests(self.place / "out"), {}
         for stage in STAGES:
             self.base[stage] = self.work / f"before-{stage}"
@@ -127,9 +127,10 @@ class Bench:
     @staticmethod
     def is_of(stage, name):
         if stage == "preprocess":
-            return name.startswith("survey/") or name in ("domain.vdb", "obstacles.vdb", "preprocess.used.toml")
+            names = ("domain.vdb", "obstacles.vdb", "preprocess.used.toml", "members.h5")
+            return name.startswith(("survey/", "budget/")) or name.endswith("domain.vdb") or name in names
         if stage == "solve":
-            return name in ("run.h5", "solve.used.toml")
+            return name.endswith("run.h5") or name in ("solve.used.toml", "counts.h5", "budget.h5")
         return not Bench.is_of("preprocess", name) and not Bench.is_of("solve", name)
 
     def places(self, total, few, many):
@@ -310,6 +311,7 @@ def main():
     options.add_argument("--full", action="store_true")
     options.add_argument("--only", choices=TABLES, action="append")
     options.add_argument("--stage", choices=STAGES, action="append", help="disturb this one alone")
+    options.add_argument("--scene", choices=SCENES, default="run", help="what is computed")
     options.add_argument("--table", type=pathlib.Path, help="write the counts there, as Markdown")
     arguments = options.parse_args()
     for tool in ("gdalinfo", "h5dump"):
