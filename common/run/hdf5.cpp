@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/run/hdf5.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <numeric>
@@ -88,6 +91,19 @@ void prepare_library() {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
+/// After a file that HDF5 could not close. H5dont_atexit() does not hold back the C++ library of HDF5, which GDAL
+/// brings: where it is unloaded it ends HDF5, which crashes over that file. So the process ends before libraries are
+/// unloaded, with the exit code it has.
+void end_before_libraries() {
+  static const int once = ::on_exit(
+      [](int code, void*) {
+        std::fflush(nullptr);
+        ::_exit(code);
+      },
+      nullptr);
+  static_cast<void>(once);
+}
+
 std::size_t product(const Dims& dims) {
   return std::accumulate(dims.begin(), dims.end(), std::size_t{1}, std::multiplies<>());
 }
@@ -122,12 +138,14 @@ File::File(File&& other) noexcept
       plain_(other.plain_) {}
 
 File::~File() {
-  if (id_ >= 0) H5Fclose(id_);
+  if (id_ >= 0 && H5Fclose(id_) < 0) end_before_libraries();
 }
 
 void File::close() {
   if (H5Fflush(id_, H5F_SCOPE_LOCAL) < 0) fail("the end of the file");
-  if (H5Fclose(std::exchange(id_, hid_t{-1})) < 0) fail("closing it");
+  if (H5Fclose(std::exchange(id_, hid_t{-1})) >= 0) return;
+  end_before_libraries();
+  fail("closing it");
 }
 
 void File::fail(const std::string& problem) const {

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The table of an error budget as comma-separated values, as JSON and as words.
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -93,16 +94,19 @@ std::string budget_json_text(const BudgetTable& table, const Run& run) {
 }
 
 std::string budget_words(const BudgetTable& table) {
-  std::string text = fmt::format("{:<40} {:<10} {:>12} {:>12}\n", "error budget", "kind", "elsewhere", "run-out");
+  const auto name_of = [](const BudgetLine& line) { return fmt::format("{} ({})", line.row->title, line.run.name); };
+  std::size_t width = 0;
+  for (const BudgetLine& line : table.lines) width = std::max(width, name_of(line).size());
+  std::string text =
+      fmt::format("{:<{}}  {:<9} {:>12} {:>12}\n", "error budget", width, "kind", "elsewhere", "run-out");
   for (const BudgetLine& line : table.lines) {
-    const std::string name = fmt::format("{} ({})", line.row->title, line.run.name);
+    const std::string start = fmt::format("{:<{}}  {:<9}", name_of(line), width, kind_name(line.row->kind));
     if (line.run.state != BudgetState::done) {
-      text += fmt::format("{:<40} {:<10} {}: {}\n", name, kind_name(line.row->kind), state_word(line.run.state),
-                          line.run.reason);
+      text += fmt::format("{} {}: {}\n", start, state_word(line.run.state), line.run.reason);
       continue;
     }
-    text += fmt::format("{:<40} {:<10} {:>10.2f} % {:>+10.0f} m\n", name, kind_name(line.row->kind),
-                        100 * line.elsewhere, line.numbers.run_out - table.own.run_out);
+    text += fmt::format("{} {:>10.2f} % {:>+10.0f} m\n", start, 100 * line.elsewhere,
+                        line.numbers.run_out - table.own.run_out);
   }
   return text;
 }
