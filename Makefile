@@ -154,10 +154,11 @@ validate: with-tests ## error beside tolerance, docs/explanation/validation.md [
 	[[ $$code -gt 1 ]] || tools/tabulate-validation.py $(BUILD)/validation.json $(BUILD)/validation-table.md; \
 	exit $$code
 
-check-faults: with-tests ## kills, failing calls, processes in one folder, power cuts: all tables
+check-faults: with-tests ## kills, failing calls, processes in one folder, power cuts: all tables [SCENES="run slides"]
 	@cmake --build $(BUILD) -j $(JOBS) --target $(programs) talus-faults
-	@python3 tests/faults/faults.py --full --bin $(BUILD)/bin --shim $(BUILD)/bin/talus-faults.so \
-	  --work $(BUILD)/scratch/check-faults --table $(BUILD)/faults.md
+	@for scene in $(or $(SCENES),run ensemble budget slides); do \
+	  python3 tests/faults/faults.py --full --scene $$scene --bin $(BUILD)/bin --shim $(BUILD)/bin/talus-faults.so \
+	    --work $(BUILD)/scratch/check-faults --table $(BUILD)/faults-$$scene.md || exit 1; done
 
 check-three-d: build ## what runs leave in 3d/, opened by ParaView, Blender and OpenVDB's Python; pictures compared
 	@tools/install-dependencies.sh three-d

@@ -13,7 +13,14 @@
 
 #include "common/stage/stage.hpp"
 
-#ifdef __SANITIZE_ADDRESS__
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)  // clang's word
+#define TALUS_LEAKS_ARE_LOOKED_FOR
+#endif
+#elif defined(__SANITIZE_ADDRESS__)  // GCC's
+#define TALUS_LEAKS_ARE_LOOKED_FOR
+#endif
+#ifdef TALUS_LEAKS_ARE_LOOKED_FOR
 #include <sanitizer/lsan_interface.h>
 #endif
 
@@ -45,7 +52,7 @@ void start() {
   static std::once_flag once;
   std::call_once(once, [] {
     use_bundled_data();
-#ifdef __SANITIZE_ADDRESS__
+#ifdef TALUS_LEAKS_ARE_LOOKED_FOR
     const __lsan::ScopedDisabler what_gdal_never_frees;  // its file systems, once others stand in their place
 #endif
     GDALAllRegister();

@@ -170,8 +170,10 @@ void close_the_network() {
   CPLHTTPSetFetchCallback(refuse_to_fetch, nullptr);
   OSRSetPROJEnableNetwork(0);
   for (const char* name : remote_drivers) {
-    if (GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(name))
+    if (GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(name)) {
       GetGDALDriverManager()->DeregisterDriver(driver);
+      GDALDestroyDriver(driver);
+    }
   }
 }
 

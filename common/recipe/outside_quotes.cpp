@@ -51,13 +51,70 @@ TextPlace place_of(const std::string& text, std::size_t at) {
   return place;
 }
 
+bool is_of_a_bare_key(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+}
+
+/// What ends a value that stands in no quotes, as toml++ looks for it where the value is none.
+bool ends_a_bare_value(char c) { return std::string_view(" \t\r\n,]}#").find(c) != std::string_view::npos; }
+
+/// A walk over a text, which knows where a value is due: a quote begins a string only where a key or a value may begin.
+/// Behind the letters of another value it is one of them.
+class Walk {
+ public:
+  explicit Walk(const std::string& text) : text_(text) {}
+
+  /// The place behind the token at `at`, which is ASCII.
+  std::size_t after(std::size_t at) {
+    const char c = text_[at];
+    if (c == '"' || c == '\'') return after_quote(at);
+    if (c == '#') return after_token(text_, at);
+    if (c == ' ' || c == '\t' || c == '\r') return at + 1;
+    if (c == '\n' || c == '=' || c == ',' || c == '[' || c == ']' || c == '{' || c == '}') {
+      pass(c);
+      return at + 1;
+    }
+    if (!value_is_due_) return at + 1;
+    value_is_due_ = false;
+    while (at < text_.size() && !ends_a_bare_value(text_[at]) && !is_beyond_ascii(text_[at])) ++at;
+    return at;
+  }
+
+ private:
+  std::size_t after_quote(std::size_t at) {
+    if (!value_is_due_ && at > 0 && is_of_a_bare_key(text_[at - 1])) return at + 1;
+    value_is_due_ = false;
+    return after_token(text_, at);
+  }
+
+  void pass(char c) {
+    if (c == '=') value_is_due_ = true;
+    if (c == ',') value_is_due_ = !open_.empty() && open_.back() == '[';
+    if (c == '\n' && open_.empty()) value_is_due_ = false;
+    if (c == '[' && value_is_due_) open_.push_back(c);  // else the head of a table
+    if (c == '{') {
+      open_.push_back(c);
+      value_is_due_ = false;
+    }
+    if (c == ']' || c == '}') {
+      if (!open_.empty()) open_.pop_back();
+      value_is_due_ = false;
+    }
+  }
+
+  const std::string& text_;
+  std::string open_;           ///< brackets
+  bool value_is_due_ = false;  ///< behind '=', and in arrays
+};
+
 }  // namespace
 
 std::optional<TextPlace> foreign_letter_outside_quotes(const std::string& text) {
+  Walk walk(text);
   std::size_t at = text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;
   while (at < text.size()) {
     if (is_beyond_ascii(text[at])) return place_of(text, at);
-    at = after_token(text, at);
+    at = walk.after(at);
   }
   return {};
 }

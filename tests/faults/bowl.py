@@ -94,8 +94,8 @@ def areas():
 
 def make_scene(folder, layer=2.0, end=1.0, scene="run"):
     """The scene of tests/pipeline/scene.sh in `folder`: elevation models and recipe.toml. A block of 4 x 4 cells, 4 m
-    thick, fails in a bowl; `layer` [m], `end` [s]. The single run has a wall in it; the other scenes are an ensemble, an
-    error budget, and three slides over the model."""
+    thick, fails in a bowl; `layer` [m], `end` [s]. The single run has a wall in it; the other scenes are an ensemble,
+    an error budget, and three slides over the model."""
     folder.mkdir(parents=True, exist_ok=True)
     script = pathlib.Path(__file__).resolve().parent.parent / "pipeline" / "scene.sh"
     asked_for = {name: str(folder.resolve()) for name in ("TALUS_SOURCE", "TALUS_BUILD", "TALUS_SCRATCH")}

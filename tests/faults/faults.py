@@ -154,7 +154,8 @@ class Bench:
             fresh_copy(self.base[stage], self.place)
             code, said = self.run(stage, **wishes(number))
             counts["trials"] += 1
-            name = {0: "ended well", 3: "refused", 4: "failed", 130: "interrupted", -9: "killed"}.get(code, f"exit {code}")
+            ends = {0: "ended well", 3: "refused", 4: "failed", 130: "interrupted", -9: "killed"}
+            name = ends.get(code, f"exit {code}")
             counts[name] = counts.get(name, 0) + 1
             if code not in allowed:
                 self.complain(trial, f"exit code {code}: {said.strip()[-300:]}")

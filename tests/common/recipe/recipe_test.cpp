@@ -201,6 +201,15 @@ TEST(OutsideQuotes, are_found_where_strings_and_comments_end) {
   EXPECT_EQ(place("\xEF\xBB\xBFkey = 1"), "none") << "a byte order mark";
   EXPECT_EQ(place("a = \"ä\nö"), "2:1") << "a line ends a string that is not closed";
   EXPECT_EQ(place("a = \"\"\nb = \"\" é"), "2:8");
+  EXPECT_EQ(place("a = [\"ä\", 'ö', [\"ü\"]] # é\nb = {c = \"ä\", \"ö\" = 1, d.\"ü\" = 2}\n"), "none");
+  EXPECT_EQ(place("[a.\"ä\"]\n[[b.'ö']]\nc=[1,\n\"ä\"]\nd={e=\"ö\"}\n\"ü\".f=\"é\"\n"), "none");
+  // A quote within another value begins no string: toml++ reads on to the end of that value.
+  EXPECT_EQ(place("a = 0\"hö\""), "1:8");
+  EXPECT_EQ(place("a = 0[\"ö\"]"), "1:8");
+  EXPECT_EQ(place("a = [1, 2=\"ö\"]"), "1:12");
+  EXPECT_EQ(place("a = {b = 3{\"ö\"}"), "1:13");
+  EXPECT_EQ(place("a\"ö\" = 1"), "1:3");
+  EXPECT_EQ(place("a = $\"b\"\nc = \"ö\""), "none") << "the line after";
 }
 
 TEST_F(RecipeFile, says_that_a_file_is_missing) {
