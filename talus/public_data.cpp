@@ -3,7 +3,6 @@
 #include "talus/public_data.hpp"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +16,7 @@
 #include "common/gis/read_raster.hpp"
 #include "common/map/sum.hpp"
 #include "common/recipe/suggest.hpp"
+#include "common/recipe/toml.hpp"
 #include "common/stage/stage.hpp"
 #include "talus/child.hpp"
 #include "talus/temporary_folder.hpp"

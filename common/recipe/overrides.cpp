@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <optional>
 
-#include "common/recipe/outside_quotes.hpp"
 #include "common/recipe/parsed.hpp"
 #include "common/recipe/values.hpp"
 
@@ -68,7 +67,6 @@ std::string text_of(const Steps& steps, std::size_t count) {
 /// The value as the one key of a table, from a text of TOML; none where the text is none.
 std::optional<toml::table> parsed(const std::string& line, const std::string& shown, std::string& why) {
   if (line.find_first_of("\n\r") != std::string::npos) why = "it has more than one line";
-  if (foreign_letter_outside_quotes(line)) why = "a letter beyond ASCII stands outside of quotes";
   if (!why.empty()) return std::nullopt;
   try {
     return toml::parse(line, shown);

@@ -3,11 +3,10 @@
 // A recipe file as toml++ holds it, and the reader's stand on it. Only the recipe's own .cpp files see this header.
 #pragma once
 
-#include <toml++/toml.h>
-
 #include <filesystem>
 
 #include "common/recipe/recipe.hpp"
+#include "common/recipe/toml.hpp"
 
 namespace talus::recipe {
 

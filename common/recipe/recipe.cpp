@@ -11,7 +11,6 @@
 #include <iterator>
 #include <system_error>
 
-#include "common/recipe/outside_quotes.hpp"
 #include "common/recipe/overrides.hpp"
 #include "common/recipe/parsed.hpp"
 #include "common/recipe/shown_paths.hpp"
@@ -43,11 +42,6 @@ std::string read_whole(const fs::path& file) {
 
 toml::table parse(const fs::path& file) {
   const std::string text = read_whole(file);
-  if (const auto letter = foreign_letter_outside_quotes(text)) {
-    throw RecipeError(Fault{fmt::format("{}:{}:{}: this is not TOML", file.string(), letter->line, letter->column),
-                            "a letter beyond ASCII stands outside of quotes and comments",
-                            "Mend the line, or put quotes around the text"});
-  }
   try {
     return toml::parse(text, file.string());
   } catch (const toml::parse_error& error) {

@@ -2,14 +2,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/recipe/used.hpp"
 
-#include <toml++/toml.h>
-
 #include <algorithm>
 
 #include <fmt/format.h>
 
 #include "common/error.hpp"
-#include "common/recipe/outside_quotes.hpp"
+#include "common/recipe/toml.hpp"
 
 namespace talus::recipe {
 namespace {
@@ -98,10 +96,6 @@ class UsedReader {
 }  // namespace
 
 UsedRecipe read_used_recipe(const std::string& text, const std::string& shown) {
-  if (const auto letter = foreign_letter_outside_quotes(text)) {
-    throw DataError({fmt::format("{}:{}: not TOML", shown, letter->line),
-                     "a letter beyond ASCII stands outside of quotes and comments", "Run its stage again"});
-  }
   try {
     const toml::table root = toml::parse(text, shown);
     return UsedReader(text).read(root);

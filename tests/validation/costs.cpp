@@ -3,10 +3,11 @@
 #include "tests/validation/costs.hpp"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <cmath>
 #include <stdexcept>
+
+#include "common/recipe/toml.hpp"
 
 namespace talus::validation {
 

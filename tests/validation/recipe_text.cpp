@@ -3,12 +3,13 @@
 #include "tests/validation/recipe_text.hpp"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <regex>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
+
+#include "common/recipe/toml.hpp"
 
 namespace talus::validation {
 namespace {

@@ -6,7 +6,6 @@
 
 #include <cstdlib>
 
-#include "common/recipe/outside_quotes.hpp"
 #include "common/recipe/suggest.hpp"
 #include "tests/common/sample_options.hpp"
 #include "tests/common/scratch.hpp"
@@ -180,36 +179,18 @@ TEST_F(RecipeFile, says_where_a_file_is_not_toml) {
   EXPECT_EQ(faults("[solve]\nsteps = 3\nsteps = 4\n").find("r.toml:3:"), 0u);
 }
 
+// toml++ alone leaves the paths its authors thought of here, which the sanitizer for undefined behaviour sees.
 TEST_F(RecipeFile, refuses_letters_beyond_ascii_outside_of_quotes) {
-  const std::string found = faults("[solve]\n# für\nsteps = 3 ö\n");
-  EXPECT_EQ(found,
-            "r.toml:3:11: this is not TOML (a letter beyond ASCII stands outside of quotes and comments). Mend the "
-            "line, or put quotes around the text");
-  EXPECT_EQ(faults("[solve]\nstéps = 3").find("r.toml:2:3: this is not TOML"), 0u);
+  EXPECT_EQ(faults("[solve]\n# für\nsteps = 3 ö\n"),
+            "r.toml:3:11: this is not TOML (Error while parsing key-value pair: expected a comment or whitespace, saw "
+            "'ö'). Mend the line; the format is described on https://toml.io");
+  for (const char* line : {"stéps = 3", "steps = 0\"hö\"", "steps = ö", "steps = 0[\"ö\"]", "steps = \"\"\"\\ö\"\"\""})
+    EXPECT_EQ(faults(std::string("[solve]\n") + line + "\n").find("r.toml:2:"), 0u) << line;
 }
 
-TEST(OutsideQuotes, are_found_where_strings_and_comments_end) {
-  const auto place = [](const std::string& text) {
-    const auto found = recipe::foreign_letter_outside_quotes(text);
-    return found ? std::to_string(found->line) + ":" + std::to_string(found->column) : "none";
-  };
-  EXPECT_EQ(place("a = \"ä\" # ö\nb = 'ü'\n"), "none");
-  EXPECT_EQ(place("a = \"\\\"ä\"\n"), "none") << "an escaped quote ends no string";
-  EXPECT_EQ(place("a = '\\'ä"), "1:8") << "nothing is escaped between single quotes";
-  EXPECT_EQ(place("a = \"\"\"\nä \"ö\n\"\"\"\"\"\nü"), "4:1");
-  EXPECT_EQ(place("a = '''ä'''é"), "1:12");
-  EXPECT_EQ(place("\xEF\xBB\xBFkey = 1"), "none") << "a byte order mark";
-  EXPECT_EQ(place("a = \"ä\nö"), "2:1") << "a line ends a string that is not closed";
-  EXPECT_EQ(place("a = \"\"\nb = \"\" é"), "2:8");
-  EXPECT_EQ(place("a = [\"ä\", 'ö', [\"ü\"]] # é\nb = {c = \"ä\", \"ö\" = 1, d.\"ü\" = 2}\n"), "none");
-  EXPECT_EQ(place("[a.\"ä\"]\n[[b.'ö']]\nc=[1,\n\"ä\"]\nd={e=\"ö\"}\n\"ü\".f=\"é\"\n"), "none");
-  // A quote within another value begins no string: toml++ reads on to the end of that value.
-  EXPECT_EQ(place("a = 0\"hö\""), "1:8");
-  EXPECT_EQ(place("a = 0[\"ö\"]"), "1:8");
-  EXPECT_EQ(place("a = [1, 2=\"ö\"]"), "1:12");
-  EXPECT_EQ(place("a = {b = 3{\"ö\"}"), "1:13");
-  EXPECT_EQ(place("a\"ö\" = 1"), "1:3");
-  EXPECT_EQ(place("a = $\"b\"\nc = \"ö\""), "none") << "the line after";
+TEST_F(RecipeFile, takes_letters_beyond_ascii_where_a_text_goes_on) {
+  const auto file = scratch.write("r.toml", "[scene]\nname = \"a\"\ntitle = \"\"\"Rutsch \\\n  über dem Dorf\"\"\"\n");
+  EXPECT_EQ(Recipe(file).title(), "Rutsch über dem Dorf");
 }
 
 TEST_F(RecipeFile, says_that_a_file_is_missing) {
