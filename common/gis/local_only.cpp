@@ -135,6 +135,7 @@ void close_file_system(const char* prefix) {
   VSIFreeFilesystemPluginCallbacksStruct(calls);
 }
 
+// NOLINTNEXTLINE(readability-function-size): GDAL calls it with so many
 CPLHTTPResult* refuse_to_fetch(const char* address, CSLConstList, GDALProgressFunc, void*, CPLHTTPFetchWriteFunc, void*,
                                void*) {
   auto* result = static_cast<CPLHTTPResult*>(CPLCalloc(1, sizeof(CPLHTTPResult)));
