@@ -37,6 +37,8 @@ class BudgetDomains {
   void surveys();
   template <class Make>
   void make(const Wanted& wanted, const Make& prepared);
+  template <class Make>
+  std::optional<Prepared> tried(const std::string& name, const Make& prepared);
   void write(const Wanted& wanted, Prepared&& made, Facts marks);
   bool is_there(const std::string& name, const Facts& marks) const;
   void leave_out(const std::string& name, const std::string& why);
@@ -79,23 +81,31 @@ template <class Make>
 void BudgetDomains::make(const Wanted& wanted, const Make& prepared) {
   stop_if_interrupted(fmt::format("making the domain \"{}\" of the budget", wanted.name));
   const Facts marks = marks_of(context_.recipe, base_.inputs, "budget " + wanted.difference);
-  try {
-    if (!is_there(wanted.name, marks)) {
-      std::vector<std::string> warnings;
-      {
-        const QuietThread quiet;
-        write(wanted, prepared(), marks);
-        warnings = quiet.warnings();
-      }
-      for (const std::string& warning : warnings) log_warning(fmt::format("budget, {}: {}", wanted.name, warning));
-    }
-    told_ += wanted.name + ": made\n";
-    context_.results.push_back(paths_.domain(wanted.name));
-  } catch (const RecipeError& error) {
-    leave_out(wanted.name, error.what());
-  } catch (const DataError& error) {
-    leave_out(wanted.name, error.what());
+  if (!is_there(wanted.name, marks)) {
+    auto made = tried(wanted.name, prepared);
+    if (!made) return;
+    write(wanted, std::move(*made), marks);  // a fault of the disk ends the stage
   }
+  told_ += wanted.name + ": made\n";
+  context_.results.push_back(paths_.domain(wanted.name));
+}
+
+/// The domain, none where this scene does not allow for it: then it is left out with the reason.
+template <class Make>
+std::optional<Prepared> BudgetDomains::tried(const std::string& name, const Make& prepared) {
+  std::optional<Prepared> made;
+  std::vector<std::string> warnings;
+  try {
+    const QuietThread quiet;
+    made.emplace(prepared());
+    warnings = quiet.warnings();
+  } catch (const RecipeError& error) {
+    leave_out(name, error.what());
+  } catch (const DataError& error) {
+    leave_out(name, error.what());
+  }
+  for (const std::string& warning : warnings) log_warning(fmt::format("budget, {}: {}", name, warning));
+  return made;
 }
 
 void BudgetDomains::cells() {
