@@ -66,7 +66,11 @@ if(TALUS_WITH_CUDA)
   set(CMAKE_CUDA_STANDARD 20)
   set(CMAKE_CUDA_STANDARD_REQUIRED ON)
   set(CMAKE_CUDA_EXTENSIONS OFF)
+  # Where 3.25 is the least version, the module of CMake 3.25 sets a property of nvToolsExt, which CUDA 13 has no more.
+  set(_least ${CMAKE_MINIMUM_REQUIRED_VERSION})
+  set(CMAKE_MINIMUM_REQUIRED_VERSION 3.24)
   find_package(CUDAToolkit REQUIRED)
+  set(CMAKE_MINIMUM_REQUIRED_VERSION ${_least})
 endif()
 
 # talus_kernels(TARGET FILE...): add kernel files to a library.
