@@ -26,7 +26,7 @@ class Place:
 
     def __init__(self, asked):
         self.bin, self.work = asked.bin.resolve(), asked.work.resolve()
-        self.scene = self.work / "scene"
+        self.scene, self.tests = self.work / "scene", HERE.parent
         shutil.rmtree(self.work, ignore_errors=True)
         (self.work / "run").mkdir(parents=True, mode=0o700)
         with zipfile.ZipFile(asked.plugin) as archive:

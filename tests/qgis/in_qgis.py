@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Checks inside a QgsApplication: cancelling, loading, time, the print layout."""
 import os
+import shutil
 import subprocess
 import sys
 
@@ -240,6 +241,30 @@ high = 30.0
     assert 10 < covered < seen, f"the probability covers {covered} and all that is shown {seen} of 10,000 pixels"
 
 
+def check_hostile_names_are_text(place):
+    """The scene of tests/pipeline/payload_test.sh: its project and its layers' expressions run nothing."""
+    folder = place.work / "hostile"
+    folder.mkdir()
+    build = place.bin.parent
+    script = 'source "$0" && hostile_scene'
+    subprocess.run(["bash", "-c", script, place.tests / "pipeline" / "hostile_scene.sh"], cwd=folder, check=True,
+                   capture_output=True, env=os.environ | {"TALUS_SOURCE": str(place.tests.parent),
+                                                          "TALUS_BUILD": str(build), "TALUS_SCRATCH": str(folder)})
+    maps = folder / "<b>&'maps"  # GDAL names no layer of a NetCDF file below a folder with a double quote
+    shutil.copytree(folder / "in <b>&'\"x" / "out" / "maps", maps)
+    project = opened(maps / "..-hostile.qgs")
+    assert "<script>window.pwned=1</script>" in project.title(), project.title()
+    layers = list(project.mapLayers().values())
+    names = [layer.name() for layer in layers]
+    assert any(name.startswith("Survey: <img src=x onerror=") for name in names), names
+    extent = next(layer.extent() for layer in layers if layer.name().startswith("Deposit thickness"))
+    assert drawn([node.layer() for node in project.layerTreeRoot().findLayers() if node.isVisible()], extent) > 10
+    words = [item.currentText() for item in project.layoutManager().printLayouts()[0].items()
+             if isinstance(item, QgsLayoutItemLabel)]
+    assert any("[ % 7*7 %]" in text for text in words), f"QGIS computes what stands in [% %]: {words}"
+    assert not list(place.work.rglob("pwned")), "a shell ran"
+
+
 def inside(items, layout):
     """Nothing reaches over the edge of the paper, and the legend does not lie on the scale bar."""
     from qgis.PyQt.QtCore import QRectF
@@ -264,4 +289,5 @@ in_qgis_checks = [
     check_project_has_a_time,
     check_project_has_a_print_layout,
     check_project_of_an_ensemble_opens_whole,
+    check_hostile_names_are_text,
 ]
