@@ -21,7 +21,6 @@
 #include "solver/ensemble/ensemble_stage.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/parallel/on.hpp"
-#include "solver/run/recorders/frame_store.hpp"
 #include "solver/run/run_inputs.hpp"
 #include "solver/run/run_stage.hpp"
 #include "solver/run/simulation.hpp"
@@ -204,8 +203,7 @@ void complete_run(StageContext& context) {
   const std::string mark = "# id: " + fact(run_facts(paths.run), run_id);
   for (std::string line; std::getline(noted, line);)
     if (line == mark) return;
-  remove_for_good(paths.checkpoint);
-  FrameStore(paths.frames).clear();
+  remove_leftovers(paths);
   const SolveOptions options = options_of(context.recipe, context.out);
   write_used(context, settle_stiffness(read_domain(inputs_of(options, context.out).front()), options),
              facts_of(read_run(paths.run).summary));

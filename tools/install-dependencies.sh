@@ -30,7 +30,7 @@ tests=(
   # the readers that are not ours: gdalinfo, the COG validator, ncdump, cdo, what the CF checker takes, vdb_print,
   # h5dump, pdfinfo; ffmpeg makes animations where they are asked for
   gdal-bin python3-gdal netcdf-bin cdo python3-netcdf4 udunits-bin libopenvdb-tools hdf5-tools
-  python3-selenium poppler-utils ffmpeg dpkg-dev
+  python3-selenium poppler-utils ffmpeg dpkg-dev file
   # what the Python package is made of (docs/how-to/python.md)
   python3-h5py python3-numpy python3-xarray python3-rasterio
   # what the site of documents is made of

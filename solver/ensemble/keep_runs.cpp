@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "common/run/run_facts.hpp"
+#include "solver/run/run_stage.hpp"
 #include "solver/run/simulation.hpp"
 
 namespace talus::solver {
@@ -28,14 +29,18 @@ void keep_runs(StageContext& context, const Members& members, const EnsembleOpti
     if (!is_kept(options, k)) continue;
     const RunPaths files(paths.run_folder(k));
     const std::string mark = fmt::format("{} {}", counts.fingerprint, k);
-    if (std::filesystem::exists(files.run) && fact(run_facts(files.run), kept_member) == mark) continue;
+    if (std::filesystem::exists(files.run) && fact(run_facts(files.run), kept_member) == mark) {
+      remove_leftovers(files);
+      continue;
+    }
     make_folder(paths.run_folder(k));
     log_info(fmt::format("member {}: its whole run is kept", k));
     const Member own = members.read(k);
     try {
-      Simulation(own.domain, own.options, device, files, mark)
-          .run(context.recipe.scene_name(), fmt::format("{}, member {}", context.recipe.title(), k),
-               {{kept_member, mark}});
+      Simulation simulation(own.domain, own.options, device, files, mark);
+      take_up(simulation, {.resume = true}, files, mark);
+      simulation.run(context.recipe.scene_name(), fmt::format("{}, member {}", context.recipe.title(), k),
+                     {{kept_member, mark}});
       context.results.push_back(files.run);
     } catch (const NumericalError& error) {
       log_warning(fmt::format("member {} leaves no run: {}", k, error.what()));  // it is counted as failed below

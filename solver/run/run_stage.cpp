@@ -106,8 +106,8 @@ void judge(Domain& domain, const SolveOptions& o) {
   domain.provenance.insert(domain.provenance.end(), facts.begin(), facts.end());
 }
 
-/// This function goes on from a checkpoint where the flags ask for it. One of this very run that they do not ask for is
-/// refused: hours of work would go without a word.
+}  // namespace
+
 void take_up(Simulation& simulation, const RunFlags& flags, const RunPaths& paths, const std::string& fingerprint) {
   if (flags.restart) return simulation.resume(flags.restart->empty() ? paths.checkpoint : *flags.restart);
   if (!std::filesystem::exists(paths.checkpoint)) return;
@@ -129,8 +129,6 @@ void take_up(Simulation& simulation, const RunFlags& flags, const RunPaths& path
     log_warning(fmt::format("{} The run begins anew", error.what()));
   }
 }
-
-}  // namespace
 
 std::optional<std::filesystem::path> checkpoint_of(const RunFlags& flags, const std::filesystem::path& out) {
   if (!flags.restart) return std::nullopt;

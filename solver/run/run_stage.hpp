@@ -12,6 +12,7 @@
 #include "common/stage/stage.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/parallel/any_device.hpp"
+#include "solver/run/simulation.hpp"
 
 namespace talus::solver {
 
@@ -32,6 +33,10 @@ std::optional<std::filesystem::path> checkpoint_of(const RunFlags& flags, const 
 /// NumericalError, Interrupted with a checkpoint left behind, and DataError.
 Facts run_in_time(StageContext& context, const RunFlags& flags, const SolveOptions& options, const AnyDevice& device,
                   Domain& domain, const Facts& facts);
+
+/// This function goes on from a checkpoint where the flags ask for it. One of this very run that they do not ask for is
+/// refused: hours of work would go without a word.
+void take_up(Simulation& simulation, const RunFlags& flags, const RunPaths& paths, const std::string& fingerprint);
 
 /// What the used recipe says of a run that is whole.
 Facts facts_of(const RunSummary& summary);

@@ -11,9 +11,15 @@
 #include "solver/run/products.hpp"
 #include "solver/run/progress.hpp"
 #include "solver/run/recorders/check_checkpoint.hpp"
+#include "solver/run/recorders/frame_store.hpp"
 #include "solver/run/sanity.hpp"
 
 namespace talus::solver {
+
+void remove_leftovers(const RunPaths& paths) {
+  remove_for_good(paths.checkpoint);
+  FrameStore(paths.frames).clear();
+}
 
 Simulation::Simulation(const Domain& domain, const SolveOptions& options, const AnyDevice& device, RunPaths paths,
                        std::string fingerprint)

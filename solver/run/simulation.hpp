@@ -26,6 +26,10 @@ struct RunPaths {
       : run(out / "run.h5"), checkpoint(out / "checkpoint.h5"), frames(out / ".frames"), vdb_frames(out / "frames") {}
 };
 
+/// This function removes what the run that is whole went on from, its checkpoint and its frames, if the process was
+/// killed before it had done so.
+void remove_leftovers(const RunPaths& paths);
+
 /// What a run's files say of where they belong.
 struct RunMarks {
   std::string fingerprint;       ///< of domain and settings

@@ -107,7 +107,7 @@ class Bench:
             if said not in (self.old.get(name), self.right.get(name)):
                 self.complain(trial, f"{name} is neither the old file nor the new one ({said})")
         if not killed:
-            left = [name for name in hidden(self.place / "out") if not name.startswith(".frames/")]
+            left = [name for name in hidden(self.place / "out") if "/.frames/" not in f"/{name}"]
             if left:
                 self.complain(trial, f"left behind: {left}")
 

@@ -4,6 +4,7 @@
 import datetime
 import os
 import pathlib
+import signal
 import stat
 import sys
 import tempfile
@@ -14,6 +15,8 @@ from talus_provider import process
 from talus_provider.locate import find_talus
 from talus_provider.progress import Progress
 from talus_provider.results import Results, start_of, stride_for
+
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell starts background work with it ignored
 
 ASK_AND_SAVE = """
 import os, signal, sys, time
