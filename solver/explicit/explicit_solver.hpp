@@ -86,7 +86,7 @@ template <class Real, class Device, class Shape>
 class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   using Base = PointSolver<Real, Device, Shape>;
   using Base::clock_, Base::device_, Base::dilatant_, Base::grid_, Base::loads_, Base::maps_, Base::materials_,
-      Base::measures_, Base::motion_, Base::points_, Base::read_clock, Base::settings_, Base::shaking_,
+      Base::measures_, Base::motion_, Base::points_, Base::settings_, Base::shaking_,
       Base::surroundings_;
 
  public:
@@ -100,36 +100,36 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
         forces_apart_(musl_ || settings.damping > 0 || keeps_ || settings.energy_budget || solves_columns_),
         softer_(softer(scene, settings)),
         columns_(device, surroundings_.bed(), settings, static_cast<double>(materials_.list[0].density), scene.grid) {
-    Clock clock = read_clock();
+    Clock clock = clock_.read();
     clock.accelerated = 0;
     clock.steps_between_sorts = steps_between_sorts();
-    clock_.upload({clock});
+    clock_.write(clock);
     sort(0);
   }
 
   /// The method makes a batch of steps on the device; see Solver::advance().
   BatchReport advance() override {
-    Clock clock = read_clock();
+    Clock clock = clock_.read();
     clock.halt = clock.request = running;
-    const int left = clock.steps_between_sorts - clock.steps_since_sort;
-    clock_.upload({clock});
+    clock_.write(clock);
     walls_ = this->template set_walls<Real>(clock.time);
     loads_now_ = loads_.upload(clock.time, clock.time);
     if (!settings_.walls.empty()) recording_.forget();  // they come, go and move
-    // One more than the steps left: the last one's begin halts the clock at the sort. As many as lay between the last
-    // two sorts or lead to the next event, and then a few at a time: what is started after the clock has halted does
-    // nothing but take its time.
-    const double to_event =
-        clock.step_size > 0 ? std::ceil((clock.next_event - clock.time) / clock.step_size) + 1 : most_batch_steps;
-    const int ahead = std::clamp(static_cast<int>(std::min<double>(expected_ - clock.steps_since_sort, to_event)), 2,
-                                 most_batch_steps);
-    recording_.repeat(std::min(left + 1, ahead), [&] { step(); });
+    clock_.hand_over();
+    recording_.repeat(steps_ahead(clock), [&] { step(); });
     BatchReport report;
-    clock = read_clock();
-    // What the last step of the batch asked for, no further one has answered.
-    const int halt = clock.halt == running ? clock.request : clock.halt;
-    if (halt == at_event) this->record_motion();
-    if (halt == wants_sort) expected_ = clock.steps_since_sort + 1;
+    clock = clock_.read();
+    const bool by_host = clock.halt == running;  // no further step has looked whether something is due
+    clock.halt_where_due();
+    const int halt = clock.halt;
+    if (halt == at_event) {
+      if (by_host) {
+        this->measure_columns();
+        this->sum_motion(nullptr);
+      }
+      this->record_motion();
+    }
+    if (halt == wants_sort) expected_ = clock.steps_since_sort;
     // A sort comes before an event of the same time (Clock::begin_step), and the event's records see who has left.
     if (halt == wants_sort || (halt == at_event && clock.outflow_count > 0)) {
       report.outflow_volume = clock.outflow_volume;
@@ -142,7 +142,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
       clock.halt = clock.request = running;
       report.sorted = true;
     }
-    clock_.upload({clock});
+    clock_.write(clock);
     report.clock = clock;
     report.clock.halt = halt;
     return report;
@@ -151,12 +151,12 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   /// The method adds points; see Solver::add().
   void add(const ParticleState& points, double rate) override {
     points_.append(points);
-    Clock clock = read_clock();
+    Clock clock = clock_.read();
     sort(0);
     clock.steps_since_sort = 0;
     clock.steps_between_sorts = steps_between_sorts();
     this->note_rate(clock, rate);
-    clock_.upload({clock});
+    clock_.write(clock);
   }
 
   /// The memory by its users; see Solver::memory().
@@ -172,6 +172,16 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     ParticleNeeds n = settings.needs;
     n.remapped_velocity = settings.transfer.remaps_velocity;
     return n;
+  }
+
+  /// The steps to start at once: as many as lead to the next event at their length now, or lay between the last two
+  /// sorts, and then a few at a time. What is started after the clock has halted does nothing but take its time.
+  int steps_ahead(const Clock& clock) const {
+    constexpr int few = 2;
+    const int to_sort = std::min(std::max(expected_ - clock.steps_since_sort, few),
+                                 clock.steps_between_sorts - clock.steps_since_sort);
+    const double to_event = std::ceil((clock.next_event - clock.time) / clock.full_step());
+    return std::clamp(static_cast<int>(std::min<double>(to_sort, to_event)), 1, most_batch_steps);
   }
 
   /// The steps until the next sort, for the points there are.

@@ -24,7 +24,7 @@ template <class Real, class Device, class Shape>
 class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
   using Base = PointSolver<Real, Device, Shape>;
   using Base::clock_, Base::device_, Base::dilatant_, Base::grid_, Base::loads_, Base::maps_, Base::materials_,
-      Base::measures_, Base::points_, Base::read_clock, Base::settings_, Base::shaking_, Base::surroundings_;
+      Base::measures_, Base::points_, Base::settings_, Base::shaking_, Base::surroundings_;
 
  public:
   ImplicitSolver(const Device& device, const Scene& scene, const IntegratorSettings& settings,
@@ -40,7 +40,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
   /// NumericalError where the smallest step does not converge. Where the controls give up, the state stays that of the
   /// step's start, and the report counts no iteration.
   BatchReport advance() override {
-    Clock clock = read_clock();
+    Clock clock = clock_.read();
     clock.halt = clock.request = running;
     clock.outflow_count = 0;
     clock.outflow_volume = 0;
@@ -62,7 +62,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     clock.time = clock.next_event - clock.time <= step * (1 + 1e-12) ? clock.next_event : clock.time + step;
     if (shaking_.host().acts()) clock.shake(shaking_.host().view().velocity_at(clock.time));
     ++clock.step;
-    clock_.upload({clock});
+    clock_.write(clock);
     accept(clock, step);
     close(report, step);
     return report;
@@ -72,9 +72,9 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
   void add(const ParticleState& points, double rate) override {
     points_.append(points);
     this->fit(0);
-    Clock clock = read_clock();
+    Clock clock = clock_.read();
     this->note_rate(clock, rate);
-    clock_.upload({clock});
+    clock_.write(clock);
   }
 
   /// The memory by its users; see Solver::memory().
@@ -174,6 +174,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
 
   void accept(const Clock& clock, double step) {
     const ProfilePhase<Device> phase(device_, "grid to points");
+    clock_.hand_over();
     step_.accept(clock_.data(), clock.share_kept(step));
     this->measure_columns();
     step_.record_maps(maps_.view(), clock.time, this->column_density());
@@ -189,7 +190,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
 
   /// The method reports what the step ended with, and drops particles that left the domain.
   void close(BatchReport& report, double step) {
-    Clock clock = read_clock();
+    Clock clock = clock_.read();
     report.outflow_count = clock.outflow_count;
     report.outflow_volume = clock.outflow_volume;
     clock.fastest_bits = std::max(clock.fastest_bits, clock.speed_bits);
@@ -202,7 +203,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     report.sorted = true;
     report.clock = clock;
     clock.halt = clock.request = running;
-    clock_.upload({clock});
+    clock_.write(clock);
   }
 
   ImplicitControls controls_;

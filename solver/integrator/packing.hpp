@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "solver/integrator/solver.hpp"
@@ -77,8 +78,14 @@ struct BinPacking {
   TALUS_HD static int nearest(int a, int b) { return a < b ? a : b; }
 };
 
+/// What is summed over the cells: side by side, so that it is cleared and read at once.
+struct PackingSums {
+  CellParts bins[packing_bins];
+  std::uint32_t most;  ///< largest, as float bits
+};
+
 /// The packing by its bins [parts of a cell] and the largest of all.
-inline Packing packing_of(const std::vector<CellParts>& bins, double largest) {
+inline Packing packing_of(std::span<const CellParts> bins, double largest) {
   CellParts total = 0, denser = 0;
   for (const CellParts held : bins) total += held;
   std::size_t bin = bins.size();
@@ -91,28 +98,30 @@ inline Packing packing_of(const std::vector<CellParts>& bins, double largest) {
 template <class Real, class Device>
 class PackingMeasure {
  public:
-  explicit PackingMeasure(const Device& device) : device_(device), parts_(device), bins_(device), most_(device) {}
+  explicit PackingMeasure(const Device& device) : device_(device), parts_(device), sums_(device) {}
 
   /// The packing of points in a grid that was sorted for them; waits for the device.
   template <class Grid>
   Packing of(const ParticleView<Real>& points, Grid& grid) {
     parts_.resize(static_cast<std::size_t>(grid.nodes()));
     parts_.fill_zero();
-    bins_.upload(std::vector<CellParts>(packing_bins, 0));
-    most_.upload({0});
+    sums_.resize(1);
+    sums_.fill_zero();
+    PackingSums* const sums = sums_.data();
     for_each_grouped(device_, points.count, grid.groups(), ScatterParts<Real>{grid.view(), points, parts_.data()});
     for_each(device_, grid.active_blocks() * block_columns,
-             BinPacking<Real>{grid.view(), grid.active_list(), parts_.data(), bins_.data(), most_.data()});
-    return packing_of(bins_.download(), static_cast<double>(positive_from_bits(most_.download().front())));
+             BinPacking<Real>{grid.view(), grid.active_list(), parts_.data(), sums->bins, &sums->most});
+    const std::vector<PackingSums> total = sums_.download();
+    return packing_of(total.front().bins, static_cast<double>(positive_from_bits(total.front().most)));
   }
 
   /// The memory taken [bytes].
-  std::size_t bytes() const { return parts_.bytes() + bins_.bytes() + most_.bytes(); }
+  std::size_t bytes() const { return parts_.bytes() + sums_.bytes(); }
 
  private:
   Device device_;
-  Buffer<CellParts, Device> parts_, bins_;
-  Buffer<std::uint32_t, Device> most_;
+  Buffer<CellParts, Device> parts_;
+  Buffer<PackingSums, Device> sums_;
 };
 
 }  // namespace talus::solver

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "solver/grid/sparse_grid.hpp"
+#include "solver/integrator/device_clock.hpp"
 #include "solver/integrator/device_loads.hpp"
 #include "solver/integrator/device_maps.hpp"
 #include "solver/integrator/motion_maps.hpp"
@@ -31,16 +32,13 @@ class PointSolver : public Solver {
         points_(device, needs),
         grid_(device, scene.grid, drift, settings.deterministic, Shape::width == 2),
         surroundings_(device, scene, settings, state.contacts, grid_.ground().datum),
-        clock_(device),
+        clock_(device, clock_of(state, settings)),
         loads_(device, settings.loads, scene.load_volumes),
         shaking_(device, scene.shaking),
         maps_(device, state.maps, settings.map_threshold),
         measures_(device, scene.grid),
         motion_(device) {
     points_.upload(state.points);
-    Clock clock = state.clock;
-    clock.transfer_time = settings.transfer.time;
-    clock_.upload({clock});
   }
 
   ~PointSolver() override { drop_sort_space(device_); }
@@ -49,18 +47,18 @@ class PointSolver : public Solver {
 
   /// The method sets the time not to step over [s]; see Solver for this and the next members.
   void set_next_event(double time) override {
-    Clock clock = read_clock();
+    Clock clock = clock_.read();
     clock.next_event = time;
-    clock_.upload({clock});
+    clock_.write(clock);
   }
 
   /// The clock of the end of the last step; waits for the device.
-  Clock clock() const override { return read_clock(); }
+  Clock clock() const override { return clock_.read(); }
 
   /// All that a checkpoint keeps; waits for the device.
   SolverState state() const override {
     return {.points = points_.download(),
-            .clock = read_clock(),
+            .clock = clock_.read(),
             .maps = maps_.download(),
             .contacts = surroundings_.contact().state()};
   }
@@ -130,7 +128,13 @@ class PointSolver : public Solver {
     atomic_max_positive(&clock.rate_bits, static_cast<float>(rate));
     clock.halt = clock.request = running;
   }
-  Clock read_clock() const { return clock_.download().front(); }
+
+  /// The clock that a run goes on with from a state.
+  static Clock clock_of(const SolverState& state, const IntegratorSettings& settings) {
+    Clock clock = state.clock;
+    clock.transfer_time = settings.transfer.time;
+    return clock;
+  }
 
   /// The walls that are there at a time, as kernels see them; the grid meets them as edges from now on.
   template <class Number>
@@ -147,7 +151,7 @@ class PointSolver : public Solver {
   Particles<Real, Device> points_;
   SparseGrid<Real, Device> grid_;
   Surroundings<Real, Device, Shape> surroundings_;
-  Buffer<Clock, Device> clock_;
+  DeviceClock<Device> clock_;
   DeviceLoads<Device> loads_;
   DeviceShaking<Device> shaking_;
   DeviceMaps<Device> maps_;

@@ -65,7 +65,7 @@ struct GpuScratch {
 /// stays where it is. What goes in takes the next free bytes; all are free again once the host has waited for the
 /// stream.
 struct LockedMemory {
-  static constexpr std::size_t few = 4096, size = 16 * few;  ///< [bytes]; the first few are for what comes out
+  static constexpr std::size_t few = 16384, size = 16 * few;  ///< [bytes]; the first few are for what comes out
   char* memory = nullptr;                                    ///< null where none was to be had
   std::size_t used = few;
 };

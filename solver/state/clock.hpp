@@ -67,9 +67,8 @@ struct Clock {
   /// time, not on the number of steps.
   TALUS_HD double share_kept(double length) const { return transfer_time > 0 ? exp(-length / transfer_time) : 0; }
 
-  /// The method opens the next step: it settles its size (T11), or halts. One thread.
-  TALUS_HD void begin_step() {
-    records_motion = 0;
+  /// The method halts where something is due before the next step. One thread, or the host after the last step.
+  TALUS_HD void halt_where_due() {
     if (halt != running) return;
     if (speed_bits > fastest_bits) fastest_bits = speed_bits;
     if (request == failed) {
@@ -80,18 +79,27 @@ struct Clock {
       halt = at_event;
       record_motion();
     }
+  }
+
+  /// The longest step that the points allow (T11) [s].
+  TALUS_HD double full_step() const {
+    const double rate = positive_from_bits(rate_bits), longest = rate > 0 ? courant / rate : largest_step;
+    return longest > largest_step ? largest_step : longest;
+  }
+
+  /// The method opens the next step: it settles its size (T11), or halts. One thread.
+  TALUS_HD void begin_step() {
+    records_motion = 0;
+    halt_where_due();
     if (halt != running) return;
     if (way_unrecorded >= way_between_records || steps_unrecorded >= steps_between_records) record_motion();
-    const double rate = positive_from_bits(rate_bits);
-    double full_step = rate > 0 ? courant / rate : largest_step;
-    if (full_step > largest_step) full_step = largest_step;
-    const double remaining = next_event - time;
-    if (full_step >= remaining) {
+    const double longest = full_step(), remaining = next_event - time;
+    if (longest >= remaining) {
       step_size = remaining;
       time = next_event;
     } else {
       // Two even steps rather than a full one and a sliver.
-      step_size = remaining < 2 * full_step ? 0.5 * remaining : full_step;
+      step_size = remaining < 2 * longest ? 0.5 * remaining : longest;
       time += step_size;
     }
     kept = share_kept(step_size);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The clock as kernels keep it: when maps of speed are recorded, and the fastest point so far.
+// The clock as kernels keep it: when it halts, when maps of speed are recorded, and the fastest point so far.
 #include "solver/state/clock.hpp"
 
 #include <gtest/gtest.h>
@@ -63,6 +63,39 @@ TEST(ClockRecords, wait_for_a_sort) {
   clock.halt = clock.request = running;
   clock.begin_step();
   EXPECT_EQ(clock.records_motion, 1);
+}
+
+TEST(Clock, halts_by_itself_where_the_next_step_would_halt) {
+  const auto same = [](Clock clock) {
+    Clock stepped = clock;
+    clock.halt_where_due();
+    stepped.begin_step();
+    EXPECT_EQ(clock.halt, stepped.halt);
+    EXPECT_EQ(clock.fastest_bits, stepped.fastest_bits);
+    return clock.halt;
+  };
+  Clock clock = stepping(0.01);
+  EXPECT_EQ(same(clock), running);
+  atomic_max_positive(&clock.speed_bits, 4.0F);
+  EXPECT_EQ(same(clock), running);
+  clock.next_event = clock.time;
+  EXPECT_EQ(same(clock), at_event);
+  clock.steps_since_sort = clock.steps_between_sorts;
+  EXPECT_EQ(same(clock), wants_sort) << "before an event of the same time";
+  clock.request = failed;
+  EXPECT_EQ(same(clock), failed);
+}
+
+TEST(Clock, foretells_the_length_of_the_next_step) {
+  Clock clock = stepping(0.01);
+  clock.rate_bits = 0;
+  clock.largest_step = 0.02;
+  EXPECT_EQ(clock.full_step(), 0.02) << "no point asks for a shorter one";
+  atomic_max_positive(&clock.rate_bits, 4.0F);
+  EXPECT_DOUBLE_EQ(clock.full_step(), 0.0025);
+  const double foretold = clock.full_step();
+  clock.begin_step();
+  EXPECT_EQ(clock.step_size, foretold);
 }
 
 TEST(Clock, knows_the_fastest_point_of_all_steps) {
