@@ -35,7 +35,7 @@ groups := $(if $(filter $(for_tests),$(MAKECMDGOALS))$(filter-out 0 no,$(WITH_TE
 
 .PHONY: help setup setup-tests build say-demo demo demo-weakening install package check-install image with-tests test \
   sanitized check check-threads check-faults check-qgis check-three-d check-recipes fuzz validate lint docs pictures \
-  tables events check-docs check-tutorials bundle bundle-solver clean FORCE
+  tables scores check-docs check-tutorials bundle bundle-solver clean FORCE
 
 help: ## this list
 	@echo "make TARGET [PRESET=default|cpu|gpu|check|check-threads] [JOBS=n]"
@@ -189,12 +189,14 @@ pictures: with-tests ## the documents' pictures, from runs and tables [PICTURES=
 tables: ## the documents' tables of figures, from the files that measuring commands have left
 	@python3 tools/make-tables.py
 
-scenes_of_events := cascade2021 frank-slide
-events: build ## scores of real events into the documents' tables [DATA=folder of real events]
-	@for scene in $(scenes_of_events); do \
+# All scenes that end in a score; those of real events need their data, and the rest of Xinmo's are nobody's to give.
+scenes_without_score := xinmo frank-ensemble synthetic-ensemble synthetic-slides
+scores: build ## scores of all scenes into the documents' tables [DATA=folder of real events] [ON=gpu]
+	@scenes=($$($(MAKE) --no-print-directory -C pipelines list | grep -vxFf <(printf '%s\n' $(scenes_without_score)))); \
+	for scene in "$${scenes[@]}"; do \
 	  $(MAKE) --no-print-directory -C pipelines $$scene OUT="$$(realpath -ms -- '$(OUT)')" ON=$(ON) \
-	    BIN="$$(realpath -ms -- '$(BUILD)/bin')" $(if $(DATA),DATA='$(abspath $(DATA))') || exit; done
-	@python3 tools/make-tables.py --events $(addprefix '$(OUT)'/,$(scenes_of_events))
+	    BIN="$$(realpath -ms -- '$(BUILD)/bin')" $(if $(DATA),DATA='$(abspath $(DATA))') || exit; done; \
+	python3 tools/make-tables.py --scores "$${scenes[@]/#/$(OUT)/}"
 
 check-tutorials: with-tests ## every tutorial, run as it is written
 	@cmake --build $(BUILD) -j $(JOBS) --target $(programs)

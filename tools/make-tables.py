@@ -5,11 +5,11 @@
 
 usage: tools/make-tables.py              write them
        tools/make-tables.py --check      fail where a page does not show what the files say
-       tools/make-tables.py --events OUT...   first take the scores of real events from these folders of results
+       tools/make-tables.py --scores OUT...   first take the scores of scenes from these folders of results
 
 docs/explanation/validation-table.md   of `make validate`: all rows of one commit
 docs/benchmarks/speed-against-error.csv, kernels-h200.csv   of `make -C pipelines/benchmarks`
-docs/benchmarks/events.csv             of the scenes of real events, by --events
+docs/benchmarks/scores.csv             of the scenes of pipelines/, by --scores
 A page holds "<!-- table: NAME -->" and "<!-- end of table -->"; what stands between them is written here.
 """
 import csv
@@ -24,7 +24,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGES = ["README.md", "docs/explanation/validation.md", "docs/explanation/benchmarks.md"]
 BLOCK = re.compile(r"(<!-- table: ([\w-]+) -->\n).*?(<!-- end of table -->)", re.S)
 ROWS = ROOT / "docs/explanation/validation-table.md"
-EVENTS = ROOT / "docs/benchmarks/events.csv"
+SCORES = ROOT / "docs/benchmarks/scores.csv"
+REAL_EVENTS = ("cascade2021", "frank-slide")
 DAY = "2026-11-23"  # of the rows of speed-against-error.csv, which name their commit alone
 # What a case is, and what holds it; the cases in full are on the page of the validation.
 CASES = {
@@ -125,39 +126,65 @@ def kernels():
     return [*lines, "", f"{rows[0]['place']}, explicit steps, by `make -C pipelines/benchmarks kernels`."]
 
 
+def scores():
+    with SCORES.open(encoding="utf-8") as table:
+        return list(csv.DictReader(table))
+
+
+def number(text, digits, unit=""):
+    return f"{float(text):,.{digits}f}{unit}" if text else "-"
+
+
+def made(rows, words):
+    return f"Commit {rows[0]['version'][:7]}, {rows[0]['day']}, {words}"
+
+
 def events():
-    with EVENTS.open(encoding="utf-8") as table:
-        rows = list(csv.DictReader(table))
+    rows = [row for row in scores() if row["scene"] in REAL_EVENTS]
     lines = ["| event | against | footprint | deposit | thickness RMSE | run-out | volume |",
              "|" + " --- |" * 7]
     for r in rows:
-        shown = [f"{float(r[key]):.{digits}f}{unit}" if r[key] else "-" for key, digits, unit in
-                 (("footprint_csi", 2, ""), ("deposit_csi", 2, ""), ("thickness_rmse_m", 1, " m"),
-                  ("runout_difference_m", 0, " m"), ("deposit_volume_ratio", 2, ""))]
-        link = f"ROOTpipelines/{r['scene']}/README.md"
-        lines.append(f"| [{r['title'].partition(',')[0]}]({link}) | {r['survey']} | " + " | ".join(shown) +
-                     " |")
-    return [*lines, "", f"Commit {rows[0]['version'].strip('()')[:7]}, {rows[0]['day']}, friction chosen with the "
-            "reference in hand, by `make events`.", "Footprint and "
+        event = f"[{r['title'].partition(',')[0]}](ROOTpipelines/{r['scene']}/README.md)"
+        lines.append(f"| {event} | {r['survey']} | {number(r['footprint_csi'], 2)} | {number(r['deposit_csi'], 2)} | "
+                     f"{number(r['thickness_rmse_m'], 1, ' m')} | {number(r['runout_difference_m'], 0, ' m')} | "
+                     f"{number(r['deposit_volume_ratio'], 2)} |")
+    return [*lines, "", made(rows, "friction chosen with the reference in hand, by `make scores`."), "Footprint and "
             "deposit: CSI, 1 is the same area. Run-out and volume of the deposit: simulated less, and over, surveyed."]
 
 
-def take_events(folders):
-    keys = ["scene", "title", "survey", "version", "day", "footprint_csi", "deposit_csi", "thickness_rmse_m",
-            "runout_difference_m", "deposit_volume_ratio"]
+def scenes():
+    rows = scores()
+    lines = ["| scene | points | steps | released [m3] | run-out | fastest | footprint | deposit | packing | sane |",
+             "|" + " --- |" * 10]
+    for r in rows:
+        lines.append(f"| `{r['scene']}` | {number(r['particles'], 0)} | {number(r['steps'], 0)} | "
+                     f"{number(r['volume_released_m3'], 0)} | {number(r['runout_m'], 0, ' m')} | "
+                     f"{number(r['max_peak_speed_m_s'], 1, ' m/s')} | {number(r['footprint_csi'], 2)} | "
+                     f"{number(r['deposit_csi'], 2)} | {number(r['sanity_packing_p99'], 1)} | "
+                     f"{'yes' if r['sanity'] == 'sane' else 'warned of'} |")
+    return [*lines, "", made(rows, f"on one {rows[0]['on']}, by `make scores`. Footprint and deposit: CSI against the"),
+            "scene's survey or other model, where it has one. Packing: 99 % of the volume is packed no denser. Sane: "
+            "as the", "last line of a run says."]
+
+
+def take_scores(folders):
+    keys = ["scene", "title", "survey", "version", "day", "on", "particles", "steps", "volume_released_m3", "runout_m",
+            "max_peak_speed_m_s", "footprint_csi", "deposit_csi", "thickness_rmse_m", "runout_difference_m",
+            "deposit_volume_ratio", "sanity_packing_p99", "sanity"]
     rows = []
     for folder in map(pathlib.Path, folders):
         score = json.loads((folder / "score.json").read_text(encoding="utf-8"))
         used = tomllib.loads((folder / "postprocess.used.toml").read_text(encoding="utf-8"))
-        score |= {"scene": used["scene"]["name"], "survey": used["postprocess"]["survey"]["name"]}
+        score |= {"scene": folder.name, "survey": used["postprocess"].get("survey", {}).get("name", "")}
         version = re.search(r"\((\w+)\)", score["version"])
         rows.append({key: score.get(key, "") for key in keys} |
                     {"version": version.group(1) if version else score["version"], "day": day_of(folder)})
-    commits = {row["version"] for row in rows}
-    if len(commits) > 1:
-        sys.exit(f"tools/make-tables.py: the events are of different commits ({', '.join(sorted(commits))}): one table "
-                 "shows one state. Run them again: make events")
-    with EVENTS.open("w", encoding="utf-8", newline="") as table:
+    for what in ("version", "on"):
+        if len({row[what] for row in rows}) > 1:
+            sys.exit(f"tools/make-tables.py: the scenes are of different commits or machines "
+                     f"({', '.join(sorted({row[what] for row in rows}))}): one table shows one state. Run them again: "
+                     "make scores")
+    with SCORES.open("w", encoding="utf-8", newline="") as table:
         writer = csv.DictWriter(table, keys, lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
@@ -173,6 +200,7 @@ TABLES = {
     "speed": speed,
     "kernels": kernels,
     "events": events,
+    "scenes": scenes,
 }
 
 
@@ -184,8 +212,8 @@ def filled(path):
 
 
 def main():
-    if sys.argv[1:2] == ["--events"]:
-        take_events(sys.argv[2:])
+    if sys.argv[1:2] == ["--scores"]:
+        take_scores(sys.argv[2:])
     elif sys.argv[1:] not in ([], ["--check"]):
         sys.exit(__doc__)
     stale = [name for name in PAGES if filled(ROOT / name) != (ROOT / name).read_text(encoding="utf-8")]
