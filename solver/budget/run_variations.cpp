@@ -37,16 +37,11 @@ class BudgetQueue {
   void make(std::size_t place, const AnyDevice& device) {
     BudgetRun run = budget_.runs[place];
     const QuietThread quiet;
-    try {
+    run.reason = failure_of([&] {
       const Domain domain = domain_of(variations_[place], plan_.domain, plan_.paths);
       if (auto made = run_member(domain, variations_[place].options, device)) take(run, std::move(*made));
-    } catch (const NumericalError& error) {
-      run.state = BudgetState::failed;
-      run.reason = error.what();
-    } catch (const DataError& error) {
-      run.state = BudgetState::failed;
-      run.reason = error.what();
-    }
+    });
+    if (!run.reason.empty()) run.state = BudgetState::failed;
     if (run.state != BudgetState::waiting) put(place, std::move(run), quiet.warnings());
   }
 

@@ -3,12 +3,15 @@
 #include "solver/ensemble/keep_runs.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "common/run/run_facts.hpp"
+#include "solver/ensemble/member_run.hpp"
 #include "solver/run/run_stage.hpp"
 #include "solver/run/simulation.hpp"
+#include "solver/scene/make_scene.hpp"
 
 namespace talus::solver {
 namespace {
@@ -33,18 +36,28 @@ void keep_runs(StageContext& context, const Members& members, const EnsembleOpti
       remove_leftovers(files);
       continue;
     }
-    make_folder(paths.run_folder(k));
     log_info(fmt::format("member {}: its whole run is kept", k));
-    const Member own = members.read(k);
-    try {
-      Simulation simulation(own.domain, own.options, device, files, mark);
-      take_up(simulation, {.resume = true}, files, mark);
-      simulation.run(context.recipe.scene_name(), fmt::format("{}, member {}", context.recipe.title(), k),
-                     {{kept_member, mark}});
-      context.results.push_back(files.run);
-    } catch (const NumericalError& error) {
-      log_warning(fmt::format("member {} leaves no run: {}", k, error.what()));  // it is counted as failed below
+    std::optional<Member> own;
+    std::optional<Simulation> simulation;
+    std::string failure = failure_of([&] {
+      own = members.read(k);
+      const SolveOptions used = with_preset(own->options);
+      judge_member(own->domain, make_scene(own->domain, used), used);
+      simulation.emplace(own->domain, own->options, device, files, mark);
+    });
+    if (failure.empty()) {
+      make_folder(paths.run_folder(k));
+      take_up(*simulation, {.resume = true}, files, mark);
+      try {
+        simulation->run(context.recipe.scene_name(), fmt::format("{}, member {}", context.recipe.title(), k),
+                        {{kept_member, mark}});
+        context.results.push_back(files.run);
+      } catch (const NumericalError& error) {  // all else that goes wrong here is the disk's
+        failure = error.what();
+      }
     }
+    // It is counted as failed when its turn comes.
+    if (!failure.empty()) log_warning(fmt::format("member {} leaves no run: {}", k, failure));
   }
 }
 

@@ -29,16 +29,6 @@ class MemberKeeper : public RunKeeper {
   }
 };
 
-/// What is implausible about a member's scene ends it, unless its recipe insists.
-void judge_member(const Domain& domain, const RunLoop& loop) {
-  std::vector<std::string> names = loop.options().accept;
-  std::erase(names, torn_body);
-  Acceptance acceptance("solve", names);
-  acceptance.collect();
-  judge_scene(plausibility_of(domain, loop.scene(), loop.options()), loop.options(), acceptance);
-  acceptance.settle();
-}
-
 double largest_of(const std::vector<double>& values) {
   double largest = 0;
   for (const double value : values) largest = std::fmax(largest, value);
@@ -63,6 +53,15 @@ std::int64_t cells_at_edge(const RunMaps& maps) {
 }
 
 }  // namespace
+
+void judge_member(const Domain& domain, const Scene& scene, const SolveOptions& options) {
+  std::vector<std::string> names = options.accept;
+  std::erase(names, torn_body);
+  Acceptance acceptance("solve", names);
+  acceptance.collect();
+  judge_scene(plausibility_of(domain, scene, options), options, acceptance);
+  acceptance.settle();
+}
 
 MemberResult measured(const RunMaps& maps, double threshold) {
   MemberResult result;
@@ -91,7 +90,7 @@ MemberResult measured(const RunMaps& maps, double threshold) {
 std::optional<MemberRun> run_member(const Domain& domain, const SolveOptions& options, const AnyDevice& device) {
   RunTimer timer;
   RunLoop loop(domain, options, device);
-  judge_member(domain, loop);
+  judge_member(domain, loop.scene(), loop.options());
   loop.start();
   MemberKeeper keeper;
   try {

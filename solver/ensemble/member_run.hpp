@@ -4,9 +4,12 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "common/domain/domain.hpp"
 #include "common/ensemble/counts.hpp"
+#include "common/error.hpp"
+#include "solver/integrator/scene.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/parallel/any_device.hpp"
 
@@ -18,9 +21,28 @@ struct MemberRun {
   MemberResult result;
 };
 
+/// This function does body() for one of many runs and returns what that run failed by, in words: the computation, its
+/// files or its scene. Empty: it did not fail.
+template <class Body>
+std::string failure_of(const Body& body) {
+  try {
+    body();
+  } catch (const NumericalError& error) {
+    return error.what();
+  } catch (const DataError& error) {
+    return error.what();
+  } catch (const RecipeError& error) {  // the recipe does not suit this run's scene
+    return error.what();
+  }
+  return {};
+}
+
+/// This function throws DataError where a member's scene is implausible and its recipe does not insist on it.
+void judge_member(const Domain& domain, const Scene& scene, const SolveOptions& options);
+
 /// This function runs a member to its end. Its maps have the bits of run.h5 of the same domain and options run by
 /// itself, on the CPU and where the options ask for deterministic sums. None: the process was interrupted. It throws
-/// NumericalError, and DataError where the scene is refused.
+/// NumericalError, and DataError and RecipeError where the scene is refused.
 std::optional<MemberRun> run_member(const Domain& domain, const SolveOptions& options, const AnyDevice& device);
 
 /// The numbers of a member by its maps: run-out, areas, largest values. `threshold`: thickness from which a cell counts

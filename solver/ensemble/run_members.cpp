@@ -40,17 +40,13 @@ constexpr const char* at_the_edge =
 Outcome outcome_of(const Members& members, std::int64_t member, const AnyDevice& device, bool edge_fails) {
   const QuietThread quiet;
   Outcome outcome;
-  try {
+  outcome.failure = failure_of([&] {
     const Member own = members.read(member);
     outcome.run = run_member(own.domain, own.options, device);
-    if (edge_fails && outcome.run && is_at_edge(outcome.run->result)) {
-      outcome.run.reset();
-      outcome.failure = at_the_edge;
-    }
-  } catch (const NumericalError& error) {
-    outcome.failure = error.what();
-  } catch (const DataError& error) {
-    outcome.failure = error.what();
+  });
+  if (edge_fails && outcome.run && is_at_edge(outcome.run->result)) {
+    outcome.run.reset();
+    outcome.failure = at_the_edge;
   }
   outcome.warnings = quiet.warnings();
   return outcome;

@@ -28,8 +28,8 @@ struct MembersPlan {
   bool edge_fails = false;          ///< a member that comes to the edge of its grid counts as failed
 };
 
-/// This function runs the members of `counts` that wait, and counts them as they end. A member that ends by
-/// NumericalError or DataError of its scene is counted as failed, with its words. It returns the warnings of all
+/// This function runs the members of `counts` that wait, and counts them as they end. A member that fails
+/// (failure_of) is counted as failed, with its words. It returns the warnings of all
 /// members, in their order, and whether all have been run: not so where the process was interrupted.
 struct MembersRun {
   std::vector<MemberWarning> warnings;

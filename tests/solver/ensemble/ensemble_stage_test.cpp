@@ -106,6 +106,23 @@ TEST_F(EnsembleStage, keeps_whole_runs_of_the_members_asked_for) {
   EXPECT_FALSE(fs::exists(EnsemblePaths{out()}.run_folder(0)));
 }
 
+TEST_F(EnsembleStage, keeps_no_run_of_a_member_that_is_refused) {
+  scratch_.write("recipe.toml", recipe_text("keep = [1, 2, 3]\nfailed_share = 0.5\n"));
+  MemberTable table = small_table();
+  table.columns.push_back(
+      {"solve.material.youngs_modulus_Pa", {1e6, 10, 1e6, 1e6, 1e6, 1e6}, {}});  // its weight squashes it
+  table.own_domain[2] = 1;                                                       // which is missing
+  table.provenance = {{recipe_of_members, recipe_mark(recipe::Recipe(recipe_file_), "ensemble")},
+                      {base_domain_id, "0123"}};
+  write_member_table(EnsemblePaths{out()}.members(), table);
+  run({});
+  for (const int refused : {1, 2}) EXPECT_FALSE(fs::exists(EnsemblePaths{out()}.run_folder(refused) / "run.h5"));
+  EXPECT_TRUE(fs::exists(EnsemblePaths{out()}.run_folder(3) / "run.h5"));
+  const EnsembleCounts counts = read_counts(out() / "counts.h5");
+  EXPECT_EQ(counts.count(MemberState::counted), 4);
+  EXPECT_EQ(counts.failures.size(), 2u);
+}
+
 TEST_F(EnsembleStage, refuses_members_of_another_table_or_domain) {
   scratch_.write("recipe.toml", recipe_text("seed = 7\n"));
   EXPECT_THROW(run({}), DataError);

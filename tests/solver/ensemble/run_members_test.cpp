@@ -128,6 +128,19 @@ TEST_P(RunMembers, leaves_out_and_names_a_member_that_fails) {
   EXPECT_TRUE(counts.flow[2].empty());
 }
 
+TEST_P(RunMembers, leaves_out_a_member_whose_scene_the_recipe_does_not_suit) {
+  // Half as thick, the third has no point in the load's box.
+  MemberTable table = small_table();
+  table.columns.back().values = {1, 1, 0.5, 1, 1, 1};
+  const SmallEnsemble ensemble(table, "[[solve.load]]\nbox_m = [18, 26, 4, 12, 0.6, 1]\nforce_N = [10, 0, 0]\n");
+  EnsembleCounts counts = ensemble.counts();
+  run_members(ensemble.members(), counts, {.devices = devices(GetParam(), 2)});
+  EXPECT_EQ(counts.count(MemberState::counted), 5);
+  ASSERT_EQ(counts.failures.size(), 1u);
+  EXPECT_EQ(counts.failures[0].member, 2);
+  EXPECT_NE(counts.failures[0].words.find("[[solve.load]] number 1"), std::string::npos) << counts.failures[0].words;
+}
+
 TEST(Members, scale_the_release_of_domains_of_their_own_too) {
   MemberTable table = small_table();
   table.own_domain[1] = 1;  // its factor is 0.8
