@@ -86,8 +86,7 @@ template <class Real, class Device, class Shape>
 class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   using Base = PointSolver<Real, Device, Shape>;
   using Base::clock_, Base::device_, Base::dilatant_, Base::grid_, Base::loads_, Base::maps_, Base::materials_,
-      Base::measures_, Base::motion_, Base::points_, Base::settings_, Base::shaking_,
-      Base::surroundings_;
+      Base::measures_, Base::motion_, Base::points_, Base::settings_, Base::shaking_, Base::surroundings_;
 
  public:
   ExplicitSolverOf(const Device& device, const Scene& scene, const IntegratorSettings& settings,
@@ -178,8 +177,8 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   /// sorts, and then a few at a time. What is started after the clock has halted does nothing but take its time.
   int steps_ahead(const Clock& clock) const {
     constexpr int few = 2;
-    const int to_sort = std::min(std::max(expected_ - clock.steps_since_sort, few),
-                                 clock.steps_between_sorts - clock.steps_since_sort);
+    const int to_sort =
+        std::min(std::max(expected_ - clock.steps_since_sort, few), clock.steps_between_sorts - clock.steps_since_sort);
     const double to_event = std::ceil((clock.next_event - clock.time) / clock.full_step());
     return std::clamp(static_cast<int>(std::min<double>(to_sort, to_event)), 1, most_batch_steps);
   }

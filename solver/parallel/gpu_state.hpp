@@ -66,7 +66,7 @@ struct GpuScratch {
 /// stream.
 struct LockedMemory {
   static constexpr std::size_t few = 16384, size = 16 * few;  ///< [bytes]; the first few are for what comes out
-  char* memory = nullptr;                                    ///< null where none was to be had
+  char* memory = nullptr;                                     ///< null where none was to be had
   std::size_t used = few;
 };
 
