@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/ensemble/failures.hpp"
 #include "common/ensemble/kept_cells.hpp"
 #include "common/ensemble/names.hpp"
 #include "common/ensemble/options.hpp"
@@ -74,13 +75,6 @@ inline constexpr ResultNumber result_numbers[] = {
 
 /// What became of a member.
 enum class MemberState : std::uint8_t { waiting = 0, counted = 1, failed = 2 };
-
-/// A member that failed, and why.
-struct MemberFailure {
-  std::int64_t member = 0;
-  std::string words;
-  bool operator==(const MemberFailure&) const = default;
-};
 
 /// The scene of an ensemble, for maps and pages.
 struct EnsembleScene {

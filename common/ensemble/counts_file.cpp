@@ -99,13 +99,7 @@ void write_members(h5::File& file, const EnsembleCounts& counts) {
   write_footprints(file, "/members/release", counts.release);
   write_footprints(file, "/members/flow", counts.flow);
   write_footprints(file, "/members/deposit", counts.deposit);
-  file.make_group("/failures");
-  for (std::size_t n = 0; n < counts.failures.size(); ++n) {
-    const auto group = fmt::format("/failures/{:06}", n);
-    file.make_group(group);
-    file.set_integer(group, "member", counts.failures[n].member);
-    file.set_text(group, "words", counts.failures[n].words);
-  }
+  write_failures(file, counts.failures);
 }
 
 /// Refuses members whose state, failures and footprints do not belong together.
@@ -144,10 +138,7 @@ void read_members(const h5::File& file, EnsembleCounts& counts) {
   counts.release = read_footprints(file, "/members/release", counts.windows);
   counts.flow = read_footprints(file, "/members/flow", counts.windows);
   counts.deposit = read_footprints(file, "/members/deposit", counts.windows);
-  for (const std::string& name : file.children("/failures")) {
-    const auto group = "/failures/" + name;
-    counts.failures.push_back({file.integer(group, "member"), file.text(group, "words")});
-  }
+  counts.failures = read_failures(file);
   check_members(file, counts);
 }
 

@@ -51,8 +51,8 @@ struct EnsembleBase {
 void refuse_idle_keys(const recipe::Recipe& recipe, const EnsemblePlan& plan, const EnsembleBase& base);
 
 /// Writes members' domains, in parallel, then members.h5. Domains that are there and say that they were made of the
-/// same are left as they are. What an ensemble before left is removed. Throws as prepare() does, naming the member;
-/// DataError where a member lies on another grid than the base.
+/// same are left as they are. What an ensemble before left is removed. A member whose domain cannot be made is named
+/// in members.h5 and left out. Throws DataError: beyond failed_share of them; a member on another grid than the base.
 void write_ensemble(StageContext& context, EnsemblePlan& plan, const EnsembleBase& base);
 
 /// The same of slides, each on its window of the lattice. All domains that cannot be made are told. Returns the slide

@@ -37,6 +37,8 @@ class MemberDomains {
   }
 
   void make_all();
+  /// The members whose domain cannot be made, in order.
+  std::vector<MemberFailure> failures() const;
   /// What a member's domain says of itself, whose `domain.id` follows from all that it is made of.
   Facts marks_of_member(std::int64_t member) const;
   /// The number of material points in the domains, by member; of those that were there it is read.
@@ -49,9 +51,15 @@ class MemberDomains {
   /// What tells a member's domain from the base's: its values, and its field.
   std::string difference_of(std::int64_t member) const;
   Prepared prepared(std::int64_t member) const;
+  std::optional<Prepared> prepared_or_failed(std::int64_t member);
   void check_grid(std::int64_t member, const Prepared& made) const;
   void note_warnings(std::int64_t member, const std::vector<std::string>& warnings);
   void note_faults(std::vector<Fault> faults);
+  void note_failure(std::int64_t member, std::string words);
+  void say_failures() const;
+  bool too_many_failed() const {
+    return static_cast<double>(failures_.size()) > plan_.options.failed_share * static_cast<double>(plan_.table.count);
+  }
   void say_end(double seconds) const;
 
   /// The values of [preprocess] by which a member differs.
@@ -73,7 +81,8 @@ class MemberDomains {
   std::atomic<bool> stop_{false};
   mutable std::mutex mutex_;
   std::exception_ptr fault_;
-  std::vector<Fault> faults_;  // of slides, of which all are told
+  std::vector<Fault> faults_;                     // of slides, of which all are told
+  std::map<std::int64_t, std::string> failures_;  // of an ensemble, whose other members are made
   std::vector<std::int64_t> points_;
   std::map<std::string, std::pair<std::int64_t, std::int64_t>> warnings_;  // text without numbers: first member, count
   std::map<std::string, std::string> first_words_;
@@ -104,6 +113,20 @@ Prepared MemberDomains::prepared(std::int64_t member) const {
   Options made_with = resolved(options);
   if (plan_.table.find(thickness_factor_key) != nullptr) made_with.thickness_factor = 1;
   return prepare(made_with, std::move(scene), Points::seeded);
+}
+
+/// None where what is drawn makes no domain: the member is left out. Slides are named by the analyst: theirs must be
+/// made.
+std::optional<Prepared> MemberDomains::prepared_or_failed(std::int64_t member) {
+  if (plan_.table.slides) return prepared(member);
+  try {
+    return prepared(member);
+  } catch (const DataError& error) {
+    note_failure(member, error.what());
+  } catch (const RecipeError& error) {
+    note_failure(member, error.what());
+  }
+  return std::nullopt;
 }
 
 void MemberDomains::check_grid(std::int64_t member, const Prepared& made) const {
@@ -138,9 +161,13 @@ void MemberDomains::make(std::int64_t member) {
     return;
   }
   const QuietThread log;
-  Prepared made = prepared(member);
-  check_grid(member, made);
-  points_[static_cast<std::size_t>(member)] = static_cast<std::int64_t>(made.point_count);
+  std::optional<Prepared> made = prepared_or_failed(member);
+  if (!made) {
+    remove_for_good(file);  // of an ensemble before
+    return;
+  }
+  check_grid(member, *made);
+  points_[static_cast<std::size_t>(member)] = static_cast<std::int64_t>(made->point_count);
   if (plan_.table.slides)
     marks.emplace_back("slide", plan_.table.name_of(member));
   else
@@ -150,10 +177,10 @@ void MemberDomains::make(std::int64_t member) {
     const auto sign = value.find('=');
     marks.emplace_back("ensemble." + value.substr(0, sign), value.substr(sign + 1));
   }
-  made.domain.provenance = provenance_of(context_, inputs, marks, facts_of(made));
-  Facts& provenance = made.domain.provenance;
+  Facts& provenance = made->domain.provenance;
+  provenance = provenance_of(context_, inputs, marks, facts_of(*made));
   provenance.insert(provenance.end(), base_.obstacles.begin(), base_.obstacles.end());
-  write_domain(file, made.domain);
+  write_domain(file, made->domain);
   ++made_;
   note_warnings(member, log.warnings());
 }
@@ -193,6 +220,34 @@ void MemberDomains::note_faults(std::vector<Fault> faults) {
     if (faults_.size() < most) faults_.push_back(std::move(fault));
 }
 
+void MemberDomains::note_failure(std::int64_t member, std::string words) {
+  const std::lock_guard lock(mutex_);
+  failures_.emplace(member, std::move(words));
+  if (too_many_failed()) stop_ = true;
+}
+
+std::vector<MemberFailure> MemberDomains::failures() const {
+  std::vector<MemberFailure> all;
+  for (const auto& [member, words] : failures_) all.push_back({member, words});
+  return all;
+}
+
+void MemberDomains::say_failures() const {
+  constexpr std::size_t most = 5;
+  std::size_t said = 0;
+  for (const auto& [member, words] : failures_)
+    if (++said <= most) log_warning(fmt::format("{} is left out: {}", plan_.table.name_of(member), words));
+  if (said == 0) return;
+  log_warning(
+      fmt::format("{} of {} members have no domain: talus-solve counts them as failed", said, plan_.table.count));
+  if (too_many_failed())
+    throw DataError(
+        Fault{fmt::format("[ensemble]: {} members have no domain, the first is {}", said, failures_.begin()->first),
+              fmt::format("failed_share allows {:g} of {}: {}", plan_.options.failed_share, plan_.table.count,
+                          failures_.begin()->second),
+              "Mend what makes them fail, narrow the distributions, or raise failed_share"});
+}
+
 void MemberDomains::work() {
   for (;;) {
     const std::size_t place = next_++;
@@ -229,7 +284,8 @@ void MemberDomains::say_end(double seconds) const {
                             members.second > 1 ? fmt::format(" and {} others likewise", members.second - 1) : "",
                             first_words_.at(kind)));
   double bytes = 0;
-  for (const std::int64_t k : todo_) bytes += static_cast<double>(fs::file_size(paths_.domain(k)));
+  for (const std::int64_t k : todo_)
+    if (!failures_.contains(k)) bytes += static_cast<double>(fs::file_size(paths_.domain(k)));
   log_info(fmt::format("domains of members: {} made in {:.3g} s, {} were there; {:.1f} MB in {}", made_.load(), seconds,
                        kept_.load(), bytes * 1e-6, paths_.folder().string()));
 }
@@ -246,6 +302,7 @@ void MemberDomains::make_all() {
   }
   if (fault_) std::rethrow_exception(fault_);
   if (!faults_.empty()) throw DataError(std::move(faults_));
+  say_failures();
   say_end(std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
 }
 
@@ -254,7 +311,9 @@ void MemberDomains::make_all() {
 void write_ensemble(StageContext& context, EnsemblePlan& plan, const EnsembleBase& base) {
   const EnsemblePaths paths{context.out};
   remove_members(paths, &plan);
-  MemberDomains(context, plan, base).make_all();
+  MemberDomains domains(context, plan, base);
+  domains.make_all();
+  plan.table.failures = domains.failures();
   plan.table.provenance = {{"version", version()},
                            {"command", context.command_line},
                            {recipe_of_members, recipe_mark(context.recipe, "ensemble")},

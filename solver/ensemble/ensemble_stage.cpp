@@ -46,6 +46,7 @@ std::string fingerprint_of_members(const Ensemble& e, const std::filesystem::pat
     for (const std::string& value : e.table.values_of(member, "")) text += value + "\n";
     text += e.table.own_domain[static_cast<std::size_t>(member)] != 0 ? "own\n" : "\n";
   }
+  for (const MemberFailure& failure : e.table.failures) text += fmt::format("{} has no domain\n", failure.member);
   if (e.edge_fails) text += "who comes to an edge fails\n";
   if (e.table.slides)
     for (const std::string& id : e.table.slides->domains) text += id + "\n";

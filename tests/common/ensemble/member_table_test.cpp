@@ -1,26 +1,50 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "common/ensemble/names.hpp"
+#include "common/ensemble/member_table.hpp"
 
 #include <gtest/gtest.h>
 
+#include "common/ensemble/failures.hpp"
 #include "tests/common/damage.hpp"
 #include "tests/common/ensemble/ensemble_scene.hpp"
 
 namespace talus {
 namespace {
 
-TEST(EnsemblePaths, find_the_counts_of_all_members_before_those_of_parts) {
+TEST(MemberTable, comes_back_as_it_was_written) {
   const test::Scratch scratch;
-  const EnsemblePaths paths{scratch.folder()};
-  EXPECT_TRUE(paths.found_counts().empty());
-  for (const char* name : {"counts.100-200.h5", "counts.20-100.h5", "counts.0-20.h5", "counts.x-3.h5", "counts.5.h5"})
-    scratch.write(name, "");
-  const std::vector<std::filesystem::path> parts{scratch / "counts.0-20.h5", scratch / "counts.20-100.h5",
-                                                 scratch / "counts.100-200.h5"};
-  EXPECT_EQ(paths.found_counts(), parts) << "by their members, not by their letters";
-  scratch.write("counts.h5", "");
-  EXPECT_EQ(paths.found_counts(), std::vector<std::filesystem::path>{scratch / "counts.h5"});
+  MemberTable table = test::ensemble_table(6);
+  table.own_domain = {0, 1, 1, 0, 1, 0};
+  table.failures = {{1, "the source is empty: threshold_m = 90"}, {4, "two\nlines"}};
+  table.provenance = {{recipe_of_members, "aabb"}};
+  write_member_table(scratch / "members.h5", table);
+  const MemberTable read = read_member_table(scratch / "members.h5");
+  EXPECT_EQ(read.design, table.design);
+  EXPECT_EQ(read.count, 6);
+  ASSERT_EQ(read.columns.size(), table.columns.size());
+  for (std::int64_t k = 0; k < 6; ++k) EXPECT_EQ(read.values_of(k, ""), table.values_of(k, ""));
+  EXPECT_EQ(read.own_domain, table.own_domain);
+  EXPECT_EQ(read.failures, table.failures);
+  EXPECT_EQ(read.provenance, table.provenance);
+}
+
+TEST(MemberTable, tells_why_a_member_has_no_domain) {
+  MemberTable table = test::ensemble_table(6);
+  table.failures = {{4, "the source is empty"}};
+  EXPECT_EQ(table.failure_of(3), nullptr);
+  ASSERT_NE(table.failure_of(4), nullptr);
+  EXPECT_EQ(table.failure_of(4)->words, "the source is empty");
+}
+
+TEST(MemberTable, with_a_failure_of_no_member_is_refused) {
+  const test::Scratch scratch;
+  MemberTable table = test::ensemble_table(6);
+  for (const std::int64_t member : {std::int64_t{-1}, std::int64_t{6}}) {
+    table.failures = {{member, "the source is empty"}};
+    write_member_table(scratch / "members.h5", table);
+    const std::string fault = test::fault_of<DataError>([&] { read_member_table(scratch / "members.h5"); });
+    EXPECT_NE(fault.find("group /failures names member " + std::to_string(member)), std::string::npos) << fault;
+  }
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Members' domains as they lie in their files.
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
 
 #include "common/domain/domain.hpp"
 #include "preprocess/ensemble/ensemble.hpp"
@@ -79,13 +81,37 @@ TEST(write_ensemble, a_member_is_what_its_recipe_makes) {
   }
 }
 
-TEST(write_ensemble, a_member_that_cannot_be_made_is_named) {
-  Written w(
-      "[ensemble]\nmembers = 4\n[[ensemble.vary]]\nkey = \"preprocess.source.threshold_m\"\nlow = 1.0\nhigh = 90.0\n");
+/// Members of which those that draw a threshold beyond the thickness have an empty source.
+std::string some_empty(const std::string& failed_share) {
+  return "[ensemble]\nmembers = 4\n" + failed_share +
+         "[[ensemble.vary]]\nkey = \"preprocess.source.threshold_m\"\nlow = 1.0\nhigh = 90.0\n";
+}
+
+TEST(write_ensemble, members_without_a_domain_beyond_the_allowed_share_end_it) {
+  Written w(some_empty(""));
   const std::string fault = test::fault_of<DataError>([&] { w.write(); });
-  EXPECT_NE(fault.find("[ensemble] member "), std::string::npos) << fault;
+  EXPECT_NE(fault.find("members have no domain, the first is "), std::string::npos) << fault;
   EXPECT_NE(fault.find("the source is empty"), std::string::npos) << fault;
   EXPECT_FALSE(std::filesystem::exists(EnsemblePaths{w.context.out}.members()));
+}
+
+TEST(write_ensemble, a_member_without_a_domain_is_left_out_and_named) {
+  Written w(some_empty("failed_share = 0.9\n"));
+  const EnsemblePaths paths{w.context.out};
+  std::filesystem::create_directories(paths.folder());
+  for (std::int64_t k = 0; k < 4; ++k) std::ofstream(paths.domain(k)) << "of an ensemble before";
+  w.write();
+  const MemberTable table = read_member_table(paths.members());
+  const std::vector<double>& thresholds = table.columns[0].values;
+  const double thickest = std::ranges::max(w.scene.bowl.values);
+  for (std::int64_t k = 0; k < 4; ++k) {
+    const bool empty = thresholds[static_cast<std::size_t>(k)] > thickest;
+    EXPECT_EQ(table.failure_of(k) != nullptr, empty) << "member " << k;
+    EXPECT_EQ(std::filesystem::exists(paths.domain(k)), !empty) << "member " << k;
+  }
+  ASSERT_FALSE(table.failures.empty());
+  EXPECT_LT(table.failures.size(), 4u);
+  EXPECT_NE(table.failures[0].words.find("the source is empty"), std::string::npos) << table.failures[0].words;
 }
 
 TEST(write_ensemble, keys_without_effect_are_refused) {

@@ -141,6 +141,17 @@ TEST_P(RunMembers, leaves_out_a_member_whose_scene_the_recipe_does_not_suit) {
   EXPECT_NE(counts.failures[0].words.find("[[solve.load]] number 1"), std::string::npos) << counts.failures[0].words;
 }
 
+TEST_P(RunMembers, leaves_out_a_member_whose_domain_could_not_be_made) {
+  MemberTable table = small_table();
+  table.own_domain[4] = 1;
+  table.failures = {{4, "the source is empty"}};
+  const SmallEnsemble ensemble(table);
+  EnsembleCounts counts = ensemble.counts();
+  run_members(ensemble.members(), counts, {.devices = devices(GetParam(), 2)});
+  EXPECT_EQ(counts.count(MemberState::counted), 5);
+  EXPECT_EQ(counts.failures, (std::vector<MemberFailure>{{4, "the source is empty"}}));
+}
+
 TEST(Members, scale_the_release_of_domains_of_their_own_too) {
   MemberTable table = small_table();
   table.own_domain[1] = 1;  // its factor is 0.8
