@@ -1,10 +1,9 @@
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Puts page.html together from its parts and writes it as C++: cmake -DHTML=... -DSTYLE=... -DSCRIPT=...
-# -DLEAFLET_STYLE=... -DLEAFLET=... -DCHART=... [-DTHREE=...] -DLICENCES=... -DFUNCTION=page_template
-# -DOUTPUT=page.cpp -P build_page.cmake. FUNCTION is the one of page.hpp that gives the page, which has no place for a
-# part that is not given. Arguments are quoted throughout: scripts are full of semicolons, which CMake would take for
-# lists.
+# Puts a page together and writes it as C++: cmake -DFRAME=page.html -DBODY=report.html -DKIND=report -DSTYLE=...
+# -DSCRIPT=... -DLEAFLET_STYLE=... -DLEAFLET=... -DCHART=... [-DTHREE=...] -DLICENCES=... -DFUNCTION=page_template
+# -DOUTPUT=page.cpp -P build_page.cmake. FUNCTION is the one of page.hpp that gives the page. Arguments are quoted
+# throughout: scripts are full of semicolons, which CMake would take for lists.
 
 # What would be loaded from beside the page is taken out: pictures of controls that are not used, maps for debuggers.
 function(read_part file out)
@@ -17,17 +16,22 @@ function(read_part file out)
   set(${out} "${text}" PARENT_SCOPE)
 endfunction()
 
-file(READ "${HTML}" page)
-foreach(part STYLE SCRIPT LEAFLET_STYLE LEAFLET CHART THREE LICENCES)
+file(READ "${FRAME}" page)
+set(at "@")   # CMake would put a variable in the place of @KIND@ in a text
+if(NOT DEFINED THREE)
+  string(REPLACE "<script>${at}THREE${at}</script>\n" "" page "${page}")
+endif()
+string(REPLACE "${at}KIND${at}" "${KIND}" page "${page}")
+foreach(part BODY STYLE SCRIPT LEAFLET_STYLE LEAFLET CHART THREE LICENCES)
   string(FIND "${page}" "@${part}@" place)
   if(NOT DEFINED ${part})
     if(NOT place EQUAL -1)
-      message(FATAL_ERROR "${HTML} has a @${part}@, but -D${part}=... is not given")
+      message(FATAL_ERROR "${FRAME} has a @${part}@, but -D${part}=... is not given")
     endif()
     continue()
   endif()
   if(place EQUAL -1)
-    message(FATAL_ERROR "${HTML} has no @${part}@")
+    message(FATAL_ERROR "${FRAME} has no @${part}@")
   endif()
   read_part("${${part}}" text)
   string(REPLACE "@${part}@" "${text}" page "${page}")

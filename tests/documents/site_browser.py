@@ -5,13 +5,15 @@
 Any fault ends with an assertion that says what was seen.
 """
 import os
+import pathlib
 import sys
 
-from selenium import webdriver
-from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "pipeline"))
+from browser import open_browser  # noqa: E402
 
 # What is typed, and the page that has to be among what is found.
 SEARCHES = {
@@ -20,17 +22,6 @@ SEARCHES = {
     "checkpoint": "docs/reference/formats.html",
     "strength reduction": "docs/explanation/theory.html",
 }
-
-
-def open_browser():
-    options = webdriver.ChromeOptions()
-    options.binary_location = "/usr/bin/chromium"
-    for argument in ["--headless=new", "--disable-gpu", "--disable-dev-shm-usage", "--window-size=1300,1000"]:
-        options.add_argument(argument)
-    if os.geteuid() == 0:
-        options.add_argument("--no-sandbox")  # Chromium's sandbox refuses root, which tests in containers are
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    return webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
 
 
 def found_by(browser, html, words):

@@ -1,10 +1,14 @@
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Debian's Chromium without a window, as the tests of pages drive it."""
+import base64
 import os
+import re
 
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common.by import By
+from selenium.webdriver.support.ui import WebDriverWait
 
 
 def open_browser(size=(1300, 1000), webgl=True):
@@ -21,3 +25,54 @@ def open_browser(size=(1300, 1000), webgl=True):
     browser = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
     browser.set_script_timeout(120)  # WebGL by a processor that others use too
     return browser
+
+
+def open_page(browser, page):
+    """A page of ours, once it has drawn itself; it shows no trouble."""
+    browser.get(f"file://{page}")
+    WebDriverWait(browser, 60).until(
+        lambda b: b.execute_script("return document.documentElement.dataset.ready === 'yes'")
+        or b.find_element(By.ID, "trouble").is_displayed()
+    )
+    check_trouble(browser)
+    left = re.findall(r"@[A-Z_]+@", browser.find_element(By.TAG_NAME, "body").text)
+    assert not left, f"the page has nothing in the place of {left}"
+
+
+def check_trouble(browser):
+    trouble = browser.find_element(By.ID, "trouble")
+    assert not trouble.is_displayed(), trouble.text
+
+
+def check_console(browser):
+    """The browser complains of nothing, nothing came from outside, and the page shows no trouble."""
+    # "rendering" warns of reading pictures back, which the tests do and the pages do not.
+    faults = [
+        line
+        for line in browser.get_log("browser")
+        if line["level"] in ("SEVERE", "WARNING") and line["source"] != "rendering"
+    ]
+    assert not faults, f"the console says: {faults}"
+    asked = browser.execute_script("return performance.getEntriesByType('resource').map((e) => e.name)")
+    outside = [name for name in asked if not name.startswith(("data:", "blob:"))]
+    assert not outside, f"the page asked for {outside}"
+    check_trouble(browser)
+
+
+def at_width(browser, width, height=900):
+    """The window of a screen, or below 500 pixels of a telephone."""
+    browser.execute_cdp_cmd(
+        "Emulation.setDeviceMetricsOverride",
+        {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 500},
+    )
+
+
+def save_picture(browser, width, path):
+    """The whole page, however long, as a PNG."""
+    height = browser.execute_script("return document.documentElement.scrollHeight")
+    shot = browser.execute_cdp_cmd(
+        "Page.captureScreenshot",
+        {"captureBeyondViewport": True, "clip": {"x": 0, "y": 0, "width": width, "height": height, "scale": 1}},
+    )
+    with open(path, "wb") as file:
+        file.write(base64.b64decode(shot["data"]))

@@ -5,52 +5,17 @@
 OUT holds ensemble.html, members.csv, sensitivity.csv and probability/. Any fault ends with an assertion that says what
 was seen. Pictures of the page at three widths are left in OUT.
 """
-import base64
 import csv
-import os
 import sys
 
 from osgeo import gdal
-from selenium import webdriver
-from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import Select, WebDriverWait
 
+from browser import at_width, check_console, open_browser, open_page, save_picture
+
 gdal.UseExceptions()
-
-
-def open_browser():
-    options = webdriver.ChromeOptions()
-    options.binary_location = "/usr/bin/chromium"
-    for argument in ["--headless=new", "--disable-gpu", "--disable-dev-shm-usage", "--window-size=1440,1000"]:
-        options.add_argument(argument)
-    if os.geteuid() == 0:
-        options.add_argument("--no-sandbox")  # Chromium's sandbox refuses root, which tests in containers are
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    return webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
-
-
-def open_page(browser, out):
-    browser.get(f"file://{out}/ensemble.html")
-    WebDriverWait(browser, 30).until(
-        lambda b: b.execute_script("return document.documentElement.dataset.ready === 'yes'")
-        or b.find_element(By.ID, "trouble").is_displayed()
-    )
-    trouble = browser.find_element(By.ID, "trouble")
-    assert not trouble.is_displayed(), trouble.text
-
-
-def check_console(browser):
-    faults = [
-        line
-        for line in browser.get_log("browser")
-        if line["level"] in ("SEVERE", "WARNING") and line["source"] != "rendering"
-    ]
-    assert not faults, f"the console says: {faults}"
-    asked = browser.execute_script("return performance.getEntriesByType('resource').map((e) => e.name)")
-    outside = [name for name in asked if not name.startswith(("data:", "blob:"))]
-    assert not outside, f"the page asked for {outside}"
 
 
 def painted(browser):
@@ -231,11 +196,8 @@ def check_convergence(browser, rows):
 def check_widths(browser, out):
     """Nothing is wider than the window, at the widths of a screen, a tablet and a telephone."""
     for width in (1440, 768, 390):
-        browser.execute_cdp_cmd(
-            "Emulation.setDeviceMetricsOverride",
-            {"width": width, "height": 1000, "deviceScaleFactor": 1, "mobile": width < 700},
-        )
-        open_page(browser, out)
+        at_width(browser, width, 1000)
+        open_page(browser, f"{out}/ensemble.html")
         wide = browser.execute_script("return document.documentElement.scrollWidth")
         assert wide <= width, f"the page is {wide} wide in a window of {width}"
         wider = browser.execute_script(
@@ -243,11 +205,7 @@ def check_widths(browser, out):
             "e.getBoundingClientRect().right > innerWidth + 1).map((e) => e.tagName + '#' + e.id + '.' + e.className)"
         )
         assert not wider, f"at {width}: {wider[:5]} reach beyond the window"
-        height = browser.execute_script("return document.documentElement.scrollHeight")
-        clip = {"x": 0, "y": 0, "width": width, "height": height, "scale": 1}
-        shot = browser.execute_cdp_cmd("Page.captureScreenshot", {"clip": clip, "captureBeyondViewport": True})
-        with open(f"{out}/ensemble-{width}.png", "wb") as file:
-            file.write(base64.b64decode(shot["data"]))
+        save_picture(browser, width, f"{out}/ensemble-{width}.png")
     browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 
@@ -255,9 +213,9 @@ def main():
     (out,) = sys.argv[1:]
     with open(f"{out}/members.csv", encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
-    browser = open_browser()
+    browser = open_browser((1440, 1000))
     try:
-        open_page(browser, out)
+        open_page(browser, f"{out}/ensemble.html")
         check_layers(browser)
         check_slider(browser, out)
         check_choosing(browser, rows)

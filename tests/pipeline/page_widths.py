@@ -10,9 +10,7 @@ import pathlib
 import sys
 import time
 
-from selenium.webdriver.support.ui import WebDriverWait
-
-from browser import open_browser
+from browser import at_width, open_browser, open_page, save_picture
 
 WIDTHS = [1440, 1024, 768, 390]
 
@@ -37,23 +35,6 @@ return found.slice(0, 20);
 """
 
 
-def at_width(browser, width, mobile):
-    browser.execute_cdp_cmd(
-        "Emulation.setDeviceMetricsOverride",
-        {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": mobile},
-    )
-
-
-def picture(browser, width, path):
-    """The whole page, however long."""
-    height = browser.execute_script("return document.documentElement.scrollHeight")
-    shot = browser.execute_cdp_cmd(
-        "Page.captureScreenshot",
-        {"captureBeyondViewport": True, "clip": {"x": 0, "y": 0, "width": width, "height": height, "scale": 1}},
-    )
-    path.write_bytes(base64.b64decode(shot["data"]))
-
-
 def open_folds(browser):
     """What is folded away is looked at as well."""
     browser.execute_script("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
@@ -71,13 +52,12 @@ def too_wide(browser, seconds=30):
 def look(browser, page, out):
     faults = []
     for width in WIDTHS:
-        at_width(browser, width, mobile=width < 500)
-        browser.get(f"file://{page}")
+        at_width(browser, width)
         if "report" in page.name:
-            WebDriverWait(browser, 60).until(
-                lambda b: b.execute_script("return document.documentElement.dataset.ready === 'yes'")
-            )
-        picture(browser, width, out / f"{page.stem}-{width}.png")
+            open_page(browser, page)
+        else:
+            browser.get(f"file://{page}")
+        save_picture(browser, width, out / f"{page.stem}-{width}.png")
         open_folds(browser)
         faults += [f"{width} px: {what} \"{text}\" by {by} px" for what, text, by in too_wide(browser)]
     browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})

@@ -16,30 +16,9 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import WebDriverWait
 
-from browser import open_browser
+from browser import check_console, open_browser, open_page
 
 gdal.UseExceptions()
-
-
-def open_report(browser, out):
-    browser.get(f"file://{out}/report.html")
-    WebDriverWait(browser, 30).until(
-        lambda b: b.execute_script("return document.documentElement.dataset.ready === 'yes'")
-    )
-
-
-def check_console(browser):
-    # "rendering" warns of reading pictures back, which this test does and the page does not.
-    faults = [
-        line
-        for line in browser.get_log("browser")
-        if line["level"] in ("SEVERE", "WARNING") and line["source"] != "rendering"
-    ]
-    assert not faults, f"the console says: {faults}"
-    asked = browser.execute_script("return performance.getEntriesByType('resource').map((e) => e.name)")
-    outside = [name for name in asked if not name.startswith(("data:", "blob:"))]
-    assert not outside, f"the page asked for {outside}"
-    assert not browser.find_element(By.ID, "trouble").is_displayed(), browser.find_element(By.ID, "trouble").text
 
 
 def colours_of_map(browser):
@@ -313,7 +292,7 @@ def main():
     out, task = sys.argv[1:]
     browser = open_browser(webgl=task != "flat")
     try:
-        open_report(browser, out)
+        open_page(browser, f"{out}/report.html")
         {"clicks": clicks, "prints": prints, "payload": payload, "accepted": accepted, "flat": flat}[task](browser, out)
     finally:
         browser.quit()
