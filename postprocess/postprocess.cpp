@@ -119,7 +119,9 @@ void write_maps(StageContext& context, const Job& job) {
   auto& results = context.results;
   const auto maps = write_geotiffs(folder, run, options.nodata_zero ? Outside::zero : Outside::nodata);
   results.insert(results.end(), maps.begin(), maps.end());
-  const auto for_gis = write_gis(folder, maps, {run, options, survey, &hazard});
+  std::vector<ProjectGroup> groups;
+  if (budget && !spread_maps(*budget).empty()) groups.push_back(spread_group(*budget));
+  const auto for_gis = write_gis(folder, maps, {run, options, survey, &hazard, groups});
   results.insert(results.end(), for_gis.begin(), for_gis.end());
   if (budget) {
     const auto spread = write_spread_maps(folder, run, *budget);

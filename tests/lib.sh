@@ -30,6 +30,17 @@ need_tool() {
   skip "$1 is not installed (make setup installs it)"
 }
 
+# need_browser: pages are opened by Debian's Chromium and its driver; Ubuntu's packages of these names only lead to the
+# snap store.
+need_browser() {
+  local id
+  id=$(. /etc/os-release && echo "$ID")
+  [[ $id == debian ]] || skip "the page is not opened in a browser: only Debian packages one that tests can drive"
+  need_tool chromium
+  need_tool chromedriver
+  /usr/bin/python3 -c 'import selenium, osgeo' 2>/dev/null || need_tool python3-selenium
+}
+
 # expect_exit CODE COMMAND...: runs it, keeps both streams, and fails unless it ends with CODE.
 expect_exit() {
   local expected=$1 code=0

@@ -124,6 +124,14 @@ void ThresholdOptions::describe(recipe::Visitor& v) {
   thresholds(v, "arrival_s", arrival, "times: how many members arrive before each is counted");
 }
 
+void MemberRunOptions::describe_runs(recipe::Visitor& v, const std::string& member) {
+  v.number("failed_share", failed_share, recipe::fraction, "share of the " + member + "s that may fail");
+  v.integers("keep", keep, {0, most_members}, member + "s, counted from 0, whose whole run is kept");
+  v.flag("keep_all", keep_all, "every " + member + "'s whole run is kept");
+  v.number("save_interval_s", save_interval, recipe::positive,
+           "wall time after which finished " + member + "s are saved, for --restart after a kill");
+}
+
 void EnsembleOptions::describe(recipe::Visitor& v) {
   v.integer("members", members, {0, most_members}, "number of runs; 0: one run, no ensemble");
   recipe::choice(
@@ -141,11 +149,7 @@ void EnsembleOptions::describe(recipe::Visitor& v) {
   v.integer("levels", levels, {2, 1000}, "full-grid, one-at-a-time: quantiles of each key");
   v.integer("seed", seed, {0, 2147483647}, "another seed draws other members");
   v.path("table", table, "design = \"table\": a CSV file, a column for each key that varies, a row for each member");
-  v.number("failed_share", failed_share, recipe::fraction, "share of the members that may fail");
-  v.integers("keep", keep, {0, most_members}, "members, counted from 0, whose whole run is kept");
-  v.flag("keep_all", keep_all, "every member's whole run is kept");
-  v.number("save_interval_s", save_interval, recipe::positive,
-           "wall time after which finished members are saved, for --restart after a kill");
+  describe_runs(v, "member");
   recipe::table(v, "thresholds", thresholds, "what the probability maps count");
   recipe::table(v, "elevation_error", elevation_error, "the error of the elevation models, another field each member");
   recipe::list(v, "vary", vary, "a key that varies from member to member");
@@ -196,10 +200,7 @@ EnsembleOptions as_members(const SlideOptions& slides) {
   EnsembleOptions o;
   o.members = 1;  // how many there are the outlines say
   o.design = Design::slides;
-  o.failed_share = slides.failed_share;
-  o.keep = slides.keep;
-  o.keep_all = slides.keep_all;
-  o.save_interval = slides.save_interval;
+  static_cast<MemberRunOptions&>(o) = slides;
   o.thresholds = slides.thresholds;
   return o;
 }

@@ -78,17 +78,23 @@ struct ThresholdOptions {
   void describe(recipe::Visitor& v);
 };
 
+/// What [ensemble] and [slides] alike say of the runs of their members.
+struct MemberRunOptions {
+  double failed_share = 0.05;  ///< of the members that may fail before the ensemble does
+  std::vector<int> keep;       ///< members whose whole run is kept
+  bool keep_all = false;
+  double save_interval = 60;  ///< wall time after which what is finished is saved [s]
+  /// `member`: what the recipe calls one: "member", "slide".
+  void describe_runs(recipe::Visitor& v, const std::string& member);
+};
+
 /// The keys of [ensemble].
-struct EnsembleOptions {
+struct EnsembleOptions : MemberRunOptions {
   int members = 0;  ///< 0: no ensemble
   Design design = Design::sobol;
   int levels = 5;  ///< of full_grid and one_at_a_time
   int seed = 1;
   std::filesystem::path table;  ///< of design = "table"
-  double failed_share = 0.05;   ///< of the members that may fail before the ensemble does
-  std::vector<int> keep;        ///< members whose whole run is kept
-  bool keep_all = false;
-  double save_interval = 60;  ///< wall time after which what is finished is saved [s]
   ThresholdOptions thresholds;
   ElevationErrorOptions elevation_error;
   std::vector<VaryOptions> vary;

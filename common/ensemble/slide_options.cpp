@@ -55,11 +55,7 @@ void SlideOptions::describe(recipe::Visitor& v) {
       "angle");
   recipe::choice(v, "at_edge", at_edge, {{"flag", SlideAtEdge::flag}, {"fail", SlideAtEdge::fail}},
                  "a slide that comes to the edge of its domain is counted and named, or counts as failed");
-  v.number("failed_share", failed_share, recipe::fraction, "share of the slides that may fail");
-  v.integers("keep", keep, {0, most_members}, "slides, counted from 0, whose whole run is kept");
-  v.flag("keep_all", keep_all, "every slide's whole run is kept");
-  v.number("save_interval_s", save_interval, recipe::positive,
-           "wall time after which finished slides are saved, for --restart after a kill");
+  describe_runs(v, "slide");
   recipe::table(v, "thresholds", thresholds, "what the maps count");
   recipe::list(v, "set", vary, "a key of the recipe that takes the value of an attribute");
   recipe::list(v, "scenario", scenario, "a slide that is listed here");

@@ -35,7 +35,7 @@ struct ScenarioOptions {
 enum class SlideAtEdge { flag, fail };
 
 /// The keys of [slides].
-struct SlideOptions {
+struct SlideOptions : MemberRunOptions {
   std::filesystem::path outlines;  ///< a layer of polygons, a slide each; or those that `scenario` lists
   std::string layer;               ///< of that file; empty: the first
   std::string where;               ///< which polygons of it; empty: all
@@ -44,10 +44,6 @@ struct SlideOptions {
   std::optional<double> margin;  ///< around the outline [m]
   double reach_angle = 11;       ///< of the window where no margin is given [degrees]
   SlideAtEdge at_edge = SlideAtEdge::flag;
-  double failed_share = 0.05;
-  std::vector<int> keep;
-  bool keep_all = false;
-  double save_interval = 60;  ///< [s]
   ThresholdOptions thresholds{.thickness = {0.1, 0.5, 1}, .deposit = {}, .speed = {}, .pressure = {3, 30}, .arrival{}};
   std::vector<SlideKeyOptions> vary;
   std::vector<ScenarioOptions> scenario;

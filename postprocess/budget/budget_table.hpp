@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/budget/budget.hpp"
+#include "common/qgis/project.hpp"
 #include "common/run/run_file.hpp"
 #include "postprocess/score/score.hpp"
 
@@ -93,6 +94,9 @@ std::vector<SpreadMap> spread_maps(const BudgetTable& table);
 /// returns the files. Throws DataError.
 std::vector<std::filesystem::path> write_spread_maps(const std::filesystem::path& folder, const Run& run,
                                                      const BudgetTable& table);
+
+/// These maps as layers of the project of QGIS beside them.
+ProjectGroup spread_group(const BudgetTable& table);
 
 /// The table for people, aligned.
 std::string budget_words(const BudgetTable& table);

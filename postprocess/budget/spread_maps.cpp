@@ -21,6 +21,22 @@ std::vector<SpreadMap> spread_maps(const BudgetTable& table) {
   return maps;
 }
 
+namespace {
+
+RasterStyle style_of(const Raster& spread) { return class_style(thickness_limits({}, spread.values), "m", Ramp::sea); }
+
+}  // namespace
+
+ProjectGroup spread_group(const BudgetTable& table) {
+  ProjectGroup group{"How sure", {}};
+  for (const auto& [name, long_name, raster] : spread_maps(table)) {
+    std::string legend = std::string(long_name) + " [m]";
+    legend.front() = 'S';
+    group.layers.push_back({legend, std::string(name) + ".tif", false, style_of(*raster)});
+  }
+  return group;
+}
+
 std::vector<std::filesystem::path> write_spread_maps(const std::filesystem::path& folder, const Run& run,
                                                      const BudgetTable& table) {
   std::vector<std::filesystem::path> files;
@@ -36,7 +52,7 @@ std::vector<std::filesystem::path> write_spread_maps(const std::filesystem::path
         {"SOURCE", "Talus " + run.summary.version}};
     files.push_back(folder / (std::string(name) + ".tif"));
     write_cog(files.back(), *raster, tags);
-    files.push_back(write_qgis_style(files.back(), class_style(thickness_limits({}, raster->values), "m", Ramp::sea)));
+    files.push_back(write_qgis_style(files.back(), style_of(*raster)));
   }
   return files;
 }

@@ -106,7 +106,7 @@ PrintLayout print_layout(const GisInput& input) {
 }
 
 QgisProject project_of(const std::vector<fs::path>& maps, const GisInput& input) {
-  const auto& [run, options, survey, hazard] = input;
+  const auto& [run, options, survey, hazard, more] = input;
   const Window window = affected_window(run.maps, options, survey);
   QgisProject project{
       run.summary.title, run.maps.grid.crs_wkt, {window.west, window.south, window.east, window.north}, {}};
@@ -121,6 +121,7 @@ QgisProject project_of(const std::vector<fs::path>& maps, const GisInput& input)
         {legend_name(name), map.filename().string(), shown, map_style(name, run.maps, options.classes)});
   }
   project.groups.push_back(std::move(results));
+  project.groups.insert(project.groups.end(), more.begin(), more.end());
   if (ProjectGroup flow = flow_group(run, options); !flow.layers.empty()) project.groups.push_back(std::move(flow));
   project.groups.push_back({"Ground", {{"Terrain before the failure", "terrain.tif", true, HillshadeStyle{}}}});
   project.layout = print_layout(input);

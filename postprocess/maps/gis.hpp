@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/qgis/project.hpp"
 #include "common/run/run_file.hpp"
 #include "postprocess/hazard/hazard.hpp"
 #include "postprocess/options/options.hpp"
@@ -19,7 +20,8 @@ struct GisInput {
   const Run& run;
   const Options& options;
   const std::optional<Survey>& survey;
-  const Hazard* hazard = nullptr;  ///< its layers are part of the project
+  const Hazard* hazard = nullptr;       ///< its layers are part of the project
+  std::vector<ProjectGroup> more = {};  ///< further layers of the project, in `folder`
 };
 
 /// Beside `maps`, the GeoTIFFs in `folder`: NAME.qml for each of them, terrain.tif (ground before the failure) with its

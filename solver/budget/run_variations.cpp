@@ -3,11 +3,8 @@
 #include "solver/budget/run_variations.hpp"
 
 #include <cstddef>
-#include <exception>
 #include <mutex>
-#include <optional>
 #include <string>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,24 +12,24 @@
 #include "common/stage/console.hpp"
 #include "common/stage/stage.hpp"
 #include "solver/ensemble/member_run.hpp"
-#include "solver/parallel/alone.hpp"
+#include "solver/ensemble/side_by_side.hpp"
 
 namespace talus::solver {
 namespace {
 
-/// The work that the threads share: which run is next, what came of those that have ended.
-class BudgetQueue {
- public:
-  BudgetQueue(const std::vector<Variation>& variations, Budget& budget, const BudgetPlan& plan)
-      : variations_(variations), budget_(budget), plan_(plan) {}
+/// The runs that wait, in order.
+std::vector<std::size_t> waiting_in(const Budget& budget) {
+  std::vector<std::size_t> waiting;
+  for (std::size_t place = 0; place < budget.runs.size(); ++place)
+    if (budget.runs[place].state == BudgetState::waiting) waiting.push_back(place);
+  return waiting;
+}
 
-  /// The next run that waits; none where all are taken, the process is interrupted, or a thread has failed.
-  std::optional<std::size_t> next() {
-    const std::lock_guard<std::mutex> one(mutex_);
-    while (next_ < variations_.size() && budget_.runs[next_].state != BudgetState::waiting) ++next_;
-    if (interrupted() || failure_ || next_ == variations_.size()) return std::nullopt;
-    return next_++;
-  }
+/// What the threads share: what came of the runs that have ended, and what they warned of.
+class Noting {
+ public:
+  Noting(const std::vector<Variation>& variations, Budget& budget, const BudgetPlan& plan)
+      : variations_(variations), budget_(budget), plan_(plan) {}
 
   void make(std::size_t place, const AnyDevice& device) {
     BudgetRun run = budget_.runs[place];
@@ -43,17 +40,6 @@ class BudgetQueue {
     });
     if (!run.reason.empty()) run.state = BudgetState::failed;
     if (run.state != BudgetState::waiting) put(place, std::move(run), quiet.warnings());
-  }
-
-  void note_failure(std::exception_ptr failure) {
-    const std::lock_guard<std::mutex> one(mutex_);
-    if (!failure_) failure_ = std::move(failure);
-  }
-
-  /// Whether no run waits any more, once the threads have ended. Throws what a thread threw.
-  bool whole() const {
-    if (failure_) std::rethrow_exception(failure_);
-    return budget_.count(BudgetState::waiting) == 0;
   }
 
   /// What the runs warned of.
@@ -80,8 +66,6 @@ class BudgetQueue {
   Budget& budget_;
   const BudgetPlan& plan_;
   std::mutex mutex_;
-  std::size_t next_ = 0;
-  std::exception_ptr failure_;
   std::vector<std::string> warnings_;
   Progress progress_;
 };
@@ -94,21 +78,12 @@ Domain domain_of(const Variation& variation, const Domain& base, const BudgetPat
 }
 
 bool run_variations(const std::vector<Variation>& variations, Budget& budget, const BudgetPlan& plan) {
-  BudgetQueue queue(variations, budget, plan);
-  const auto work = [&](const AnyDevice& device) {
-    const Alone alone;
-    try {
-      while (const auto place = queue.next()) queue.make(*place, device);
-    } catch (...) {
-      queue.note_failure(std::current_exception());
-    }
-  };
-  std::vector<std::thread> threads;
-  for (const AnyDevice& device : plan.devices) threads.emplace_back(work, std::cref(device));
-  for (std::thread& thread : threads) thread.join();
-  const bool whole = queue.whole();
-  for (const std::string& words : queue.warnings()) log_warning(words);
-  return whole;
+  const std::vector<std::size_t> waiting = waiting_in(budget);
+  Noting noting(variations, budget, plan);
+  side_by_side(waiting.size(), plan.devices,
+               [&](std::size_t place, const AnyDevice& device) { noting.make(waiting[place], device); });
+  for (const std::string& words : noting.warnings()) log_warning(words);
+  return budget.count(BudgetState::waiting) == 0;
 }
 
 }  // namespace talus::solver

@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <exception>
 #include <mutex>
 #include <optional>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,7 +13,7 @@
 #include "common/stage/console.hpp"
 #include "common/stage/stage.hpp"
 #include "solver/ensemble/member_run.hpp"
-#include "solver/parallel/alone.hpp"
+#include "solver/ensemble/side_by_side.hpp"
 
 namespace talus::solver {
 namespace {
@@ -52,20 +50,19 @@ Outcome outcome_of(const Members& members, std::int64_t member, const AnyDevice&
   return outcome;
 }
 
-/// The work that the threads share: which member is next, the counts, what is said.
-class Queue {
- public:
-  Queue(EnsembleCounts& counts, const MembersPlan& plan) : counts_(counts), plan_(plan) {
-    for (std::int64_t k = counts.part.first; k < counts.part.end; ++k)
-      if (counts.states[static_cast<std::size_t>(k - counts.part.first)] == MemberState::waiting) waiting_.push_back(k);
-  }
+/// The members that wait, in order.
+std::vector<std::int64_t> waiting_in(const EnsembleCounts& counts) {
+  std::vector<std::int64_t> waiting;
+  for (std::int64_t k = counts.part.first; k < counts.part.end; ++k)
+    if (counts.states[static_cast<std::size_t>(k - counts.part.first)] == MemberState::waiting) waiting.push_back(k);
+  return waiting;
+}
 
-  /// The next member; none where all are taken, the process is interrupted, or a thread has failed.
-  std::optional<std::int64_t> next() {
-    const std::lock_guard<std::mutex> one(mutex_);
-    if (interrupted() || failure_ || taken_ == waiting_.size()) return std::nullopt;
-    return waiting_[taken_++];
-  }
+/// What the threads share: the counts, and what is said.
+class Tallying {
+ public:
+  Tallying(EnsembleCounts& counts, std::size_t members, const MembersPlan& plan)
+      : counts_(counts), members_(members), plan_(plan) {}
 
   void count(std::int64_t member, Outcome&& outcome) {
     const std::lock_guard<std::mutex> one(mutex_);
@@ -82,15 +79,9 @@ class Queue {
     save();
   }
 
-  void note_failure(std::exception_ptr failure) {
-    const std::lock_guard<std::mutex> one(mutex_);
-    if (!failure_) failure_ = std::move(failure);
-  }
-
-  /// What the threads came to, once all have ended. Throws what a thread threw.
+  /// What the threads came to, once all have ended.
   MembersRun result() {
-    if (failure_) std::rethrow_exception(failure_);
-    run_.whole = done_ == waiting_.size();
+    run_.whole = done_ == members_;
     std::stable_sort(run_.warnings.begin(), run_.warnings.end(),
                      [](const MemberWarning& a, const MemberWarning& b) { return a.member < b.member; });
     return std::move(run_);
@@ -100,26 +91,24 @@ class Queue {
   void say() {
     if (!progress_.due()) return;
     const double wall = seconds_since(begun_),
-                 left = wall / static_cast<double>(done_) * static_cast<double>(waiting_.size() - done_);
+                 left = wall / static_cast<double>(done_) * static_cast<double>(members_ - done_);
     const std::int64_t failed = counts_.count(MemberState::failed);
-    progress_.update(fmt::format("member {}/{}  {:.2g} s each  eta {:.0f} s{}", done_, waiting_.size(),
+    progress_.update(fmt::format("member {}/{}  {:.2g} s each  eta {:.0f} s{}", done_, members_,
                                  wall / static_cast<double>(done_), left,
                                  failed > 0 ? fmt::format("  {} failed", failed) : ""));
   }
 
   void save() {
-    if (!plan_.save || seconds_since(saved_) < plan_.save_interval || done_ == waiting_.size()) return;
+    if (!plan_.save || seconds_since(saved_) < plan_.save_interval || done_ == members_) return;
     plan_.save();
     saved_ = WallClock::now();
   }
 
   EnsembleCounts& counts_;
+  std::size_t members_, done_ = 0;
   const MembersPlan& plan_;
   std::mutex mutex_;
-  std::vector<std::int64_t> waiting_;
-  std::size_t taken_ = 0, done_ = 0;
   MembersRun run_;
-  std::exception_ptr failure_;
   Progress progress_;
   WallClock::time_point begun_ = WallClock::now(), saved_ = begun_;
 };
@@ -127,20 +116,12 @@ class Queue {
 }  // namespace
 
 MembersRun run_members(const Members& members, EnsembleCounts& counts, const MembersPlan& plan) {
-  Queue queue(counts, plan);
-  const auto work = [&](const AnyDevice& device) {
-    const Alone alone;
-    try {
-      while (const auto member = queue.next())
-        queue.count(*member, outcome_of(members, *member, device, plan.edge_fails));
-    } catch (...) {
-      queue.note_failure(std::current_exception());
-    }
-  };
-  std::vector<std::thread> threads;
-  for (const AnyDevice& device : plan.devices) threads.emplace_back(work, std::cref(device));
-  for (std::thread& thread : threads) thread.join();
-  return queue.result();
+  const std::vector<std::int64_t> waiting = waiting_in(counts);
+  Tallying tallying(counts, waiting.size(), plan);
+  side_by_side(waiting.size(), plan.devices, [&](std::size_t place, const AnyDevice& device) {
+    tallying.count(waiting[place], outcome_of(members, waiting[place], device, plan.edge_fails));
+  });
+  return tallying.result();
 }
 
 }  // namespace talus::solver

@@ -31,8 +31,7 @@ test_site_holds_keys_and_options_and_its_search_works_from_files() {
   done
   grep -q 'youngs_modulus_Pa' "$html/docs/reference/keys-solve.html" || fail "a key of [solve.material] is missing"
   grep -q -- '--restart' "$html/docs/reference/talus-solve.html" || fail "an option of talus-solve is missing"
-  need_tool chromium
-  need_tool chromedriver
+  need_browser
   "$python" "$TALUS_SOURCE/tests/documents/site_browser.py" "$html" || fail "the browser test failed"
 }
 

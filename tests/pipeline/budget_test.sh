@@ -91,6 +91,8 @@ page = open("out/report.html").read()
 assert "How sure this run is" in page and '"spread_physical"' in page
 PYTHON
   expect_exit 0 gdalinfo out/maps/deposit_spread.tif
+  grep -q 'name="Spread of the deposit thickness over all doubts \[m\]"' out/maps/*.qgs ||
+    fail "the project of QGIS lacks the map of spread"
   expect_exit 0 ncdump -h out/maps/results.nc
   grep -q "deposit_spread_numerical" stdout || fail "results.nc lacks the spread"
 }

@@ -1,11 +1,13 @@
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Opens the page of an ensemble in Chromium and uses it as a person would: ensemble_browser.py OUT.
+"""Opens the page of an ensemble or of many slides in Chromium and uses it as a person would: ensemble_browser.py PAGE.
 
-OUT holds ensemble.html, members.csv, sensitivity.csv and probability/. Any fault ends with an assertion that says what
-was seen. Pictures of the page at three widths are left in OUT.
+Beside PAGE (ensemble.html or slides.html) lie members.csv, sensitivity.csv and probability/, or slides.csv. Any fault
+ends with an assertion that says what was seen. Pictures of the page at three widths are left beside it.
 """
 import csv
+import pathlib
+import re
 import sys
 
 from osgeo import gdal
@@ -193,11 +195,23 @@ def check_convergence(browser, rows):
     assert abs(last["y"] - sum(known) / len(known)) < 1e-4 * abs(last["y"]), last
 
 
-def check_widths(browser, out):
+def check_slides(browser):
+    """Layers of slides have no threshold to choose, and nothing of a probability is said of them."""
+    for quantity in [b.get_attribute("value") for b in browser.find_elements(By.CSS_SELECTOR, "#quantities input")]:
+        choose(browser, "quantities", quantity)
+        for name in [b.get_attribute("value") for b in browser.find_elements(By.CSS_SELECTOR, "#layers input")]:
+            choose(browser, "layers", name)
+            slider = browser.find_element(By.ID, "threshold")
+            assert not slider.is_displayed(), f"{quantity}, {name}: a slider of nothing"
+    text = browser.find_element(By.ID, "method").text
+    assert "They are no probability" in text and "Hazard class" not in text, text
+
+
+def check_widths(browser, page):
     """Nothing is wider than the window, at the widths of a screen, a tablet and a telephone."""
     for width in (1440, 768, 390):
         at_width(browser, width, 1000)
-        open_page(browser, f"{out}/ensemble.html")
+        open_page(browser, page)
         wide = browser.execute_script("return document.documentElement.scrollWidth")
         assert wide <= width, f"the page is {wide} wide in a window of {width}"
         wider = browser.execute_script(
@@ -205,27 +219,42 @@ def check_widths(browser, out):
             "e.getBoundingClientRect().right > innerWidth + 1).map((e) => e.tagName + '#' + e.id + '.' + e.className)"
         )
         assert not wider, f"at {width}: {wider[:5]} reach beyond the window"
-        save_picture(browser, width, f"{out}/ensemble-{width}.png")
+        save_picture(browser, width, page.with_name(f"{page.stem}-{width}.png"))
     browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 
-def main():
-    (out,) = sys.argv[1:]
-    with open(f"{out}/members.csv", encoding="utf-8", newline="") as file:
+def check_numbers(browser):
+    """Numbers are as long as people read them: no more than five decimals in a row of the table or a key number."""
+    for box in ("key-numbers", "table"):
+        text = browser.find_element(By.ID, box).text
+        assert not re.search(r"\.[0-9]{5}|NaN|undefined", text), f"{box}: {text}"
+
+
+def check_ensemble(browser, out):
+    with open(out / "members.csv", encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
+    check_layers(browser)
+    check_slider(browser, out)
+    check_choosing(browser, rows)
+    check_medoids(browser)
+    check_keeping(browser)
+    check_sorting(browser, rows)
+    check_sensitivity(browser, out)
+    check_convergence(browser, rows)
+
+
+def main():
+    page = pathlib.Path(sys.argv[1]).resolve()
     browser = open_browser((1440, 1000))
     try:
-        open_page(browser, f"{out}/ensemble.html")
-        check_layers(browser)
-        check_slider(browser, out)
-        check_choosing(browser, rows)
-        check_medoids(browser)
-        check_keeping(browser)
-        check_sorting(browser, rows)
-        check_sensitivity(browser, out)
-        check_convergence(browser, rows)
+        open_page(browser, page)
+        check_numbers(browser)
+        if page.stem == "slides":
+            check_slides(browser)
+        else:
+            check_ensemble(browser, page.parent)
         check_console(browser)
-        check_widths(browser, out)
+        check_widths(browser, page)
     finally:
         browser.quit()
 

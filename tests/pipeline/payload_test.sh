@@ -6,12 +6,7 @@
 source "$(dirname "${BASH_SOURCE[0]}")/hostile_scene.sh"
 
 test_nothing_of_them_runs_on_the_page() {
-  if [[ $(. /etc/os-release && echo "$ID") != debian ]]; then
-    skip "the page is not opened in a browser: only Debian packages one that tests can drive"
-  fi
-  need_tool chromium
-  need_tool chromedriver
-  /usr/bin/python3 -c 'import selenium, osgeo' 2>/dev/null || need_tool python3-selenium
+  need_browser
   hostile_scene
   mkdir -p "$TALUS_SCRATCH/page"
   cp out/report.html "$TALUS_SCRATCH/page/"

@@ -4,19 +4,6 @@
 # report.html in a real browser: what it shows, what happens when it is clicked, and what comes out of its printer.
 source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
 
-# Debian has Chromium and its driver; Ubuntu's packages of these names only lead to the snap store.
-need_browser() {
-  local id
-  id=$(. /etc/os-release && echo "$ID")
-  if [[ $id != debian ]]; then
-    skip "the report is not opened in a browser: only Debian packages one that tests can drive"
-  fi
-  need_tool chromium
-  need_tool chromedriver
-  need_tool pdfinfo
-  /usr/bin/python3 -c 'import selenium, osgeo' 2>/dev/null || need_tool python3-selenium
-}
-
 # made: the small scene with its three stages run; the report is out/report.html.
 made() {
   scene
@@ -75,6 +62,7 @@ test_fits_desktop_tablet_phone_and_paper() {
 
 test_prints_to_a_pdf_with_all_its_maps() {
   need_browser
+  need_tool pdfinfo
   made
   browse prints
   expect_exit 0 pdfinfo out/report.pdf

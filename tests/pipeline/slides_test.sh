@@ -137,6 +137,15 @@ PYTHON
   [[ -s out/slides.html && -s out/slides/ridge-slides.qgs ]] || fail "no page or no project: $(ls out out/slides)"
 }
 
+test_page_of_slides_opens_in_a_browser() {
+  need_browser
+  slides 'margin_m = 180.0'
+  expect_exit 0 preprocess
+  expect_exit 0 solve
+  expect_exit 0 postprocess
+  expect_exit 0 /usr/bin/python3 "$TALUS_SOURCE/tests/pipeline/ensemble_browser.py" out/slides.html
+}
+
 test_parts_of_slides_add_up_to_the_whole() {
   slides 'margin_m = 180.0'
   expect_exit 0 preprocess
@@ -161,6 +170,22 @@ a, b = (gdal.Open(name).ReadAsArray() for name in sys.argv[1:])
 sys.exit(not np.array_equal(a, b))
 PYTHON
   done
+}
+
+test_killed_slides_go_on() {
+  slides 'margin_m = 180.0' 'save_interval_s = 0.001'
+  expect_exit 0 preprocess
+  expect_exit 0 solve
+  mv out/counts.h5 whole.h5
+  interrupt KILL 'out/unfinished.0-4.h5' "$bin/talus-solve" recipe.toml --out out --on cpu --threads 1
+  [[ ! -e out/counts.h5 ]] || fail "slides that were killed look finished"
+  expect_exit 3 solve
+  expect_words 'finished members of this very ensemble'
+  expect_exit 0 solve --restart
+  expect_words 'going on from out/unfinished.0-4.h5'
+  [[ ! -e out/unfinished.0-4.h5 ]] || fail "finished slides lie about"
+  expect_exit 0 h5diff whole.h5 out/counts.h5 /maps
+  expect_exit 0 h5diff whole.h5 out/counts.h5 /members
 }
 
 test_a_slide_at_the_edge_of_its_domain_is_named_or_fails() {

@@ -36,19 +36,38 @@ export function columnTitle(column) {
   return (titles[column.name] ?? column.name) + (unit ? ` [${unit}]` : "");
 }
 
-/** Decimals that tell the values of a column apart. */
-export function decimalsOf(column) {
-  const known = column.values.filter((value) => value !== null);
-  const span = Math.max(...known) - Math.min(...known) || Math.abs(known[0] ?? 1) || 1;
+const mostDecimals = 6;
+
+/** Decimals that tell the values of a column apart: three figures of their span, four of the largest at most. */
+function decimalsOf(known) {
   if (known.every(Number.isInteger)) return 0;
-  return Math.min(Math.max(0, 3 - Math.ceil(Math.log10(span))), 6);
+  const span = Math.max(...known) - Math.min(...known) || Math.abs(known[0]);
+  const largest = Math.max(...known.map(Math.abs));
+  const wanted = Math.min(3 - Math.ceil(Math.log10(span)), 4 - Math.ceil(Math.log10(largest)));
+  return Math.min(Math.max(0, wanted), mostDecimals);
+}
+
+/** A number among the values of a column as people read it, with `more` decimals than those. */
+export function columnNumber(column, value, more = 0) {
+  const known = column.values.filter((one) => one !== null);
+  const largest = Math.max(0, ...known.map(Math.abs));
+  if (largest > 0 && largest < 1e-3 && Number.isFinite(value)) return value.toExponential(2).replaceAll("-", "\u2212");
+  return number(value, known.length ? Math.min(decimalsOf(known) + more, mostDecimals) : 0);
+}
+
+/** What stands at a tick of an axis: as many decimals as the steps between ticks have. */
+export function tickNumber(value, ticks) {
+  const step = ticks.length > 1 ? Math.abs(ticks[1].value - ticks[0].value) : Math.abs(value);
+  let decimals = 0;
+  while (decimals < mostDecimals && Math.abs(step - Number(step.toFixed(decimals))) > 1e-6 * step) ++decimals;
+  return step < 10 ** -mostDecimals && value !== 0 ? value.toExponential(1) : number(value, decimals);
 }
 
 /** The value of a member as people read it. */
 export function valueWords(column, member) {
   const value = column.values[member];
   if (value === null || value === undefined) return "\u2013";
-  return column.words.length ? column.words[value] : number(value, decimalsOf(column));
+  return column.words.length ? column.words[value] : columnNumber(column, value);
 }
 
 /** Whether a column has something to show: two different numbers at least. */

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Parallel coordinates (Inselberg 1985): an axis for each column, a line for each member.
 import { colours } from "../../report/page/charts.js";
-import { number } from "../../report/page/format.js";
-import { columnTitle, decimalsOf, varies } from "./columns.js";
+import { columnNumber, columnTitle, varies } from "./columns.js";
 
 const mostAxes = 11, // inputs first, then results
   results = ["run_out_m", "flow_area_m2", "deposit_area_m2", "largest_speed_m_s", "volume_outflow_m3", "footprint_csi"];
@@ -95,8 +94,7 @@ export class Parallel {
   }
 
   drawAxis(axis, x) {
-    const { context } = this,
-      decimals = decimalsOf(axis.column);
+    const { context } = this;
     context.strokeStyle = colours.ink;
     context.lineWidth = 1.2;
     context.beginPath();
@@ -112,7 +110,7 @@ export class Parallel {
     Object.assign(context, { fillStyle: colours.ink, font: "11px sans-serif", textAlign: "center" });
     const ends = axis.column.words.length
       ? [axis.column.words[axis.low], axis.column.words[axis.high]]
-      : [number(axis.low, decimals), number(axis.high, decimals)];
+      : [columnNumber(axis.column, axis.low), columnNumber(axis.column, axis.high)];
     context.fillText(ends[0], x, height - 8);
     context.fillText(ends[1], x, top - 6);
     this.words(columnTitle(axis.column), x);

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scatter of two columns, and the histogram of one.
 import { colours } from "../../report/page/charts.js";
-import { number } from "../../report/page/format.js";
-import { columnTitle, decimalsOf, fillChoices, valueWords, varies } from "./columns.js";
+import { columnNumber, columnTitle, fillChoices, tickNumber, valueWords, varies } from "./columns.js";
 
 function axis(column, zero) {
   return {
@@ -15,8 +14,8 @@ function axis(column, zero) {
       maxRotation: 0,
       autoSkipPadding: 14,
       includeBounds: false,
-      callback: (value) =>
-        column?.words.length ? (column.words[value] ?? "") : number(value, column ? decimalsOf(column) : 0),
+      callback: (value, _, ticks) =>
+        column?.words.length ? (column.words[value] ?? "") : tickNumber(value, ticks),
     },
   };
 }
@@ -149,9 +148,8 @@ export class Histogram {
           tooltip: {
             callbacks: {
               title: ([item]) => {
-                const low = bins.low + item.dataIndex * bins.step,
-                  decimals = decimalsOf(column);
-                return `${number(low, decimals)} to ${number(low + bins.step, decimals)}`;
+                const low = bins.low + item.dataIndex * bins.step;
+                return `${columnNumber(column, low, 1)} to ${columnNumber(column, low + bins.step, 1)}`;
               },
               label: (item) => `${item.raw.y} members`,
             },

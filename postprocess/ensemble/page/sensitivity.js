@@ -3,7 +3,7 @@
 // Sensitivity of a result as bars, with their confidence as lines; and how results settle with the members.
 import { colours, lineChart, points } from "../../report/page/charts.js";
 import { number } from "../../report/page/format.js";
-import { columnTitle, decimalsOf, fillChoices } from "./columns.js";
+import { columnNumber, columnTitle, fillChoices } from "./columns.js";
 
 /** Lines from low to high over each bar. */
 const whiskers = {
@@ -158,11 +158,11 @@ export class Convergence {
         },
       ],
     });
-    const last = mean.length - 1,
-      decimals = Math.min(decimalsOf(column) + 1, 6);
-    const some = error[last] === null ? "" : ` \u00b1 ${number(error[last], decimals)}`;
+    const last = mean.length - 1;
+    const some = error[last] === null ? "" : ` \u00b1 ${columnNumber(column, error[last], 1)}`;
     document.getElementById("convergence-note").textContent =
-      `All ${number(members[last])} members: ${number(mean[last], decimals)}${some}. Members come in their order. ` +
+      `All ${number(members[last])} members: ${columnNumber(column, mean[last], 1)}${some}. ` +
+      "Members come in their order. " +
       "The standard error is that of independent draws: a stratified design usually settles sooner, a sensitivity " +
       "design later.";
   }

@@ -3,7 +3,7 @@
 // What the page says in words: headline, key numbers, method.
 import { h, number } from "../../report/page/format.js";
 import { called } from "./called.js";
-import { columnTitle, decimalsOf } from "./columns.js";
+import { columnNumber, columnTitle } from "./columns.js";
 import { standardError } from "./map_panel.js";
 
 const designs = {
@@ -59,9 +59,8 @@ export function drawSummary(data) {
   for (const name of keyResults) {
     const column = members.columns.find((one) => one.name === name);
     if (!column || !column.values.some((value) => value !== null)) continue;
-    const decimals = decimalsOf(column),
-      of = (share) => number(quantile(column.values, share), decimals);
-    const whole = (text) => h("span", {}, text);
+    const of = (share) => columnNumber(column, quantile(column.values, share)),
+      whole = (text) => h("span", {}, text);
     box.append(keyNumber(columnTitle(column), of(0.5), ["90 %: ", whole(of(0.05)), " to ", whole(of(0.95))]));
   }
 }

@@ -201,11 +201,6 @@ export function drawInputs(data) {
   );
 }
 
-/** True where the stage marks what was changed: written by a version that does. */
-function marksChanges(stage) {
-  return stage.keys.some((key) => key.default !== null);
-}
-
 export function drawParameters(data) {
   const box = document.getElementById("parameters");
   const note = h("p", { class: "note" }, "Highlighted: changed from the default, which stands in the last column.");
@@ -218,8 +213,8 @@ export function drawParameters(data) {
   box.append(note, toggle);
   for (const stage of data.stages) box.append(...parametersOf(stage));
   const show = (all) =>
-    box.querySelectorAll("tr.usual").forEach((row) => {
-      row.hidden = !all;
+    box.querySelectorAll(".usual").forEach((part) => {
+      part.hidden = !all;
     });
   toggle.firstChild.addEventListener("change", (event) => show(event.target.checked));
   show(false);
@@ -237,30 +232,27 @@ function parametersOf(stage) {
   const title = h("h3", {}, `talus-${stage.stage}`);
   if (stage.missing)
     return [title, h("p", { class: "missing" }, `${stage.stage}.used.toml was not found beside the run.`)];
-  const marked = marksChanges(stage),
-    rows = [];
+  const rows = [];
   const changed = stage.keys.filter((key) => key.default !== null).length;
   for (const key of stage.keys) {
     const isChanged = key.default !== null;
     rows.push(
       h(
         "tr",
-        { class: isChanged ? "changed" : marked ? "usual" : null },
+        { class: isChanged ? "changed" : "usual" },
         h("td", {}, h("code", {}, keyName(key, stage.stage))),
         h("td", {}, h("code", { class: "path" }, key.value)),
         h("td", {}, isChanged ? h("code", {}, key.default) : null),
       ),
     );
   }
-  const words = marked
-    ? `${changed} of ${stage.keys.length} changed from their default.`
-    : `${stage.keys.length} parameters; none is marked as changed.`;
+  const words = `${changed || "None"} of ${stage.keys.length} changed from ${changed > 1 ? "their" : "its"} default.`;
   return [
     title,
     h("p", { class: "note" }, words),
     h(
       "div",
-      { class: "stage-parameters" },
+      { class: changed ? "stage-parameters" : "stage-parameters usual" },
       table([h("th", {}, "Parameter"), h("th", {}, "Value used"), h("th", {}, "Default")], rows),
     ),
   ];
