@@ -22,11 +22,11 @@ std::vector<MapField> product_fields(const RunMaps& maps) {
   return products;
 }
 
-const MapField& map_field(const std::string& name) {
+const MapField& map_field(std::string_view name) {
   for (const MapField& field : map_fields) {
     if (name == field.name) return field;
   }
-  throw std::logic_error("there is no map " + name);
+  throw std::logic_error("there is no map " + std::string(name));
 }
 
 std::vector<char> inside_domain(const RunMaps& maps) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/run/run_file.hpp"
@@ -15,7 +16,7 @@ namespace talus::postprocess {
 std::vector<MapField> product_fields(const RunMaps& maps);
 
 /// A map by its name in the table map_fields. Throws std::logic_error for a name that is not in it.
-const MapField& map_field(const std::string& name);
+const MapField& map_field(std::string_view name);
 
 /// True where the run has ground, or mass in spite of it: there zero is a value; elsewhere it is nodata.
 std::vector<char> inside_domain(const RunMaps& maps);

@@ -57,7 +57,7 @@ std::vector<double> map_limits(const MapField& field, const RunMaps& maps, const
 RasterStyle map_style(const std::string& name, const RunMaps& maps, const std::vector<double>& given_classes) {
   if (name.starts_with("difference")) return difference_style(thickness_limits({}, maps.deposit_thickness), "m");
   const bool of_a_release = name.starts_with("deposit_thickness");
-  const MapField& field = map_field(of_a_release ? "deposit_thickness" : name);
+  const MapField& field = map_field(of_a_release ? std::string_view("deposit_thickness") : name);
   const std::vector<double> limits = map_limits(field, maps, given_classes);
   switch (field.product.classes) {
     case MapClasses::pressure: return class_style(limits, "kPa");
