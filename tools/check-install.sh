@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs the packages in a fresh root of Debian (made by mmdebstrap, from this machine's mirror), runs the shipped
+# Installs the packages in a fresh root of the distribution on which they were made (by mmdebstrap), runs the shipped
 # example to its report, removes them, and looks for what was left. Nothing stays on this machine.
-# usage: tools/check-install.sh PACKAGES [SUITE [MIRROR]]     (PACKAGES: a folder with *.deb; SUITE: bookworm)
+# usage: tools/check-install.sh PACKAGES [SUITE [MIRROR]]   (PACKAGES: a folder with *.deb; SUITE: this machine's)
 set -euo pipefail
 usage='usage: tools/check-install.sh PACKAGES [SUITE [MIRROR]]'
 packages=${1:?$usage}
-suite=${2:-bookworm}
+suite=${2:-$(. /etc/os-release && echo "$VERSION_CODENAME")}
 mirror=(${3:+"$3"})
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -20,7 +20,12 @@ uploads=()
 for package in "$packages"/*.deb; do
   uploads+=("--customize-hook=upload '$(realpath "$package")' '/tmp/$(basename "$package")'")
 done
-mmdebstrap --variant=minbase --format=null --quiet --logfile="$packages/../check-install.log" \
+# Ubuntu's smallest system has no apt, and libraries of Talus come from its universe.
+of_distribution=()
+if [[ $(. /etc/os-release && echo "$ID") == ubuntu ]]; then
+  of_distribution=(--include=apt --components=main,universe)
+fi
+mmdebstrap --variant=minbase "${of_distribution[@]}" --format=null --quiet --logfile="$packages/../check-install.log" \
   "${uploads[@]}" \
   --customize-hook="upload 'packaging/check-install-inside.sh' /tmp/check.sh" \
   --customize-hook='chroot "$1" bash /tmp/check.sh >&3' \

@@ -14,6 +14,7 @@ function axis(column, zero) {
       maxRotation: 0,
       autoSkipPadding: 14,
       includeBounds: false,
+      precision: column ? undefined : 0, // members are counted
       callback: (value, _, ticks) =>
         column?.words.length ? (column.words[value] ?? "") : tickNumber(value, ticks),
     },
