@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A thin layer over the HDF5 C API: every call is checked, every failure is a DataError that names the file and the
 // system's reason. Objects are named by their path in the file ("/maps/terrain"), so no handle leaves this header.
+// Groups are written and read in hdf5.cpp, attributes and datasets in files of their own.
 #pragma once
 
 #include <cstdint>
