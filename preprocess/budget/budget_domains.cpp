@@ -102,6 +102,7 @@ std::optional<Prepared> BudgetDomains::tried(const std::string& name, const Make
   } catch (const RecipeError& error) {
     leave_out(name, error.what());
   } catch (const DataError& error) {
+    require_unchanged(base_.inputs);
     leave_out(name, error.what());
   }
   for (const std::string& warning : warnings) log_warning(fmt::format("budget, {}: {}", name, warning));

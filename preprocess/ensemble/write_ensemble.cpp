@@ -51,7 +51,7 @@ class MemberDomains {
   /// What tells a member's domain from the base's: its values, and its field.
   std::string difference_of(std::int64_t member) const;
   Prepared prepared(std::int64_t member) const;
-  std::optional<Prepared> prepared_or_failed(std::int64_t member);
+  std::optional<Prepared> prepared_or_failed(std::int64_t member, const Facts& inputs);
   void check_grid(std::int64_t member, const Prepared& made) const;
   void note_warnings(std::int64_t member, const std::vector<std::string>& warnings);
   void note_faults(std::vector<Fault> faults);
@@ -117,11 +117,12 @@ Prepared MemberDomains::prepared(std::int64_t member) const {
 
 /// None where what is drawn makes no domain: the member is left out. Slides are named by the analyst: theirs must be
 /// made.
-std::optional<Prepared> MemberDomains::prepared_or_failed(std::int64_t member) {
+std::optional<Prepared> MemberDomains::prepared_or_failed(std::int64_t member, const Facts& inputs) {
   if (plan_.table.slides) return prepared(member);
   try {
     return prepared(member);
   } catch (const DataError& error) {
+    require_unchanged(inputs);
     note_failure(member, error.what());
   } catch (const RecipeError& error) {
     note_failure(member, error.what());
@@ -161,7 +162,7 @@ void MemberDomains::make(std::int64_t member) {
     return;
   }
   const QuietThread log;
-  std::optional<Prepared> made = prepared_or_failed(member);
+  std::optional<Prepared> made = prepared_or_failed(member, inputs);
   if (!made) {
     remove_for_good(file);  // of an ensemble before
     return;

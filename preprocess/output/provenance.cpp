@@ -33,14 +33,31 @@ Facts facts_of(const Prepared& prepared) {
   return facts;
 }
 
+namespace {
+
+constexpr std::string_view checksum_mark = " sha256 ";
+
+}  // namespace
+
 Facts checksums_of(const std::vector<std::filesystem::path>& files) {
   Facts inputs;
   for (const auto& file : files) {
-    const std::string sum =
-        std::filesystem::is_regular_file(file) ? " sha256 " + sha256(file) : "";  // some formats are folders
+    std::string sum;
+    if (std::filesystem::is_regular_file(file)) sum = std::string(checksum_mark) + sha256(file);  // some are folders
     inputs.emplace_back("input " + file.filename().string(), file.string() + sum);
   }
   return inputs;
+}
+
+void require_unchanged(const Facts& inputs) {
+  for (const auto& [name, value] : inputs) {
+    const auto end = value.rfind(checksum_mark);
+    if (end == std::string::npos) continue;
+    const std::string file = value.substr(0, end);
+    if (sha256(file) != value.substr(end + checksum_mark.size()))
+      throw DataError(Fault{file + ": it is not what it was when this stage began", "something writes to it",
+                            "Run talus-preprocess again once it stays as it is"});
+  }
 }
 
 Facts marks_of(const recipe::Recipe& recipe, const Facts& inputs, const std::string& more) {

@@ -19,6 +19,10 @@ Facts facts_of(const Prepared& prepared);
 /// Files with their checksums.
 Facts checksums_of(const std::vector<std::filesystem::path>& files);
 
+/// Refuses (DataError) files that can no longer be read, or are not what `inputs`, of checksums_of(), says of them: a
+/// scene that cannot be made while its files are at fault is not itself at fault.
+void require_unchanged(const Facts& inputs);
+
 /// Whose domain it is: the same for the same [preprocess], inputs and version, wherever they lie and whenever it runs.
 /// `more` tells domains of one recipe apart.
 Facts marks_of(const recipe::Recipe& recipe, const Facts& inputs, const std::string& more = "");
