@@ -104,7 +104,7 @@ install: build ## the programs with recipes, styles, manuals and documents, to P
 package: docs ## Debian packages, in build/packages/: talus (or talus-gpu, with kernels for GPUs) and talus-doc
 	@tools/make-packages.sh $(BUILD)
 
-check-install: package ## the packages in a fresh root of this distribution: installed, run on the shipped example, removed
+check-install: package ## the packages in a fresh root of this distribution: installed, run on the example, removed
 	@tools/check-install.sh $(BUILD)/packages
 
 image: package ## an image of the packages, by buildah, podman or docker [IMAGE=talus] [BASE=debian:12]
