@@ -8,10 +8,12 @@ cd /tmp
 
 fail() { echo "FAILED: $*" >&2; exit 1; }
 
-# Every file of the system; what apt, dpkg and others keep in caches and logs does not count.
+# Every file of the system; what apt, dpkg and others keep in caches and logs does not count, nor does the folder to
+# which Ubuntu's libraries divert /lib while they are installed.
 files() {
   find / -xdev \( -path /proc -o -path /sys -o -path /dev -o -path /run -o -path /tmp -o -path /var/log \
-    -o -path /var/cache -o -path /var/lib/dpkg -o -path /var/lib/apt \) -prune -o -print | sort
+    -o -path /var/cache -o -path /var/lib/dpkg -o -path /var/lib/apt -o -path '/*.usr-is-merged' \) -prune \
+    -o -print | sort
 }
 
 files >before.txt

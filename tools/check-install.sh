@@ -23,7 +23,9 @@ done
 # Ubuntu's smallest system has no apt, and libraries of Talus come from its universe.
 of_distribution=()
 if [[ $(. /etc/os-release && echo "$ID") == ubuntu ]]; then
-  of_distribution=(--include=apt --components=main,universe)
+  of_distribution=(--include=apt)
+  archive=${3:-http://archive.ubuntu.com/ubuntu}
+  mirror=("deb $archive $suite main universe" "deb $archive $suite-updates main universe")
 fi
 mmdebstrap --variant=minbase "${of_distribution[@]}" --format=null --quiet --logfile="$packages/../check-install.log" \
   "${uploads[@]}" \

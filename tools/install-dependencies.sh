@@ -41,7 +41,7 @@ tests=(
 qgis=(qgis python3-qgis qgis-providers gdal-bin)
 lint=(clang-format clang-tidy)
 fuzz=(clang)   # libFuzzer comes with its run-time library
-package=(dpkg-dev mmdebstrap)
+package=(dpkg-dev file mmdebstrap)   # CPack asks file which programs there are
 # what opens 3d/: ParaView and Blender, a display for ParaView, readers for what they are compared with
 three_d=(paraview python3-paraview blender python3-openvdb python3-h5py python3-numpy python3-gdal xvfb xauth)
 
