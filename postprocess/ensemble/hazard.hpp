@@ -20,8 +20,8 @@ struct HazardRule {
   std::vector<int> matrix;              ///< class by intensity (from weak) and probability (from rare), row by row
 };
 
-/// The rule of the recipe; empty where it names no limits and the usual ones are not among the counted. Throws
-/// DataError where the recipe names limits that were not counted.
+/// The rule of the recipe; empty where it names no limits and the usual ones are not among the counted, and of slides,
+/// whose shares are no probabilities. Throws DataError where the recipe names limits that were not counted.
 std::optional<HazardRule> hazard_rule(const Ensemble& ensemble, const HazardOptions& options);
 
 /// The largest class that an intensity and its probability give, by place of the counts; 0 where none does.

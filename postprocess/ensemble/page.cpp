@@ -56,11 +56,10 @@ Json run_json(const EnsemblePageInput& input) {
   json["draws"] = independent_draws(ensemble.table, ensemble.counted());
   json["share"] = {
       {"meaning", words.meaning}, {"error", words.error}, {"is_probability", is_probability(ensemble.table.design)}};
-  const bool slides = ensemble.table.slides.has_value();
-  const auto rule = slides ? std::nullopt : hazard_rule(ensemble, input.options.hazard);  // theirs is no probability
+  const auto rule = hazard_rule(ensemble, input.options.hazard);
   json["hazard"] = rule ? Json(hazard_words(*rule)) : Json();
   json["survey"] = input.survey ? Json(input.survey->name) : Json();
-  json["slides"] = slides;
+  json["slides"] = ensemble.table.slides.has_value();
   const std::vector<std::int64_t> at_edge = counts.at_edge();
   json["at_edge"] = at_edge.empty() ? Json() : Json(names_at_edge(ensemble, at_edge));
   json["elevation_error"] = fact(ensemble.table.provenance, elevation_error_of_members);

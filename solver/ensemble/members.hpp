@@ -42,8 +42,8 @@ class Members {
   /// The method reads every member's options. It throws RecipeError with the first member that the recipe does not
   /// allow.
   void check() const;
-  /// A member; it reads files. It throws DataError: a domain of its own that could not be made, is
-  /// missing, or is on another grid.
+  /// A member; it reads files. It throws DataError: a domain of its own that could not be made, is missing, or is on
+  /// another grid.
   Member read(std::int64_t member) const;
   /// The options of the base, settled as those of the members are.
   const SolveOptions& base() const { return base_; }
