@@ -8,25 +8,13 @@
 #include <cmath>
 
 #include "common/gis/gdal_support.hpp"
-#include "common/gis/local_only.hpp"
+#include "common/gis/vector_layer.hpp"
 
 namespace talus {
 namespace fs = std::filesystem;
 namespace {
 
 using Ring = std::vector<std::array<double, 2>>;
-
-gdal::Dataset open(const fs::path& file) {
-  gdal::require_local(file);
-  const gdal::QuietErrors errors;
-  gdal::Dataset dataset(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
-  if (dataset && dataset->GetLayerCount() > 0) return dataset;
-  const bool plain = file.is_absolute() && !file.string().starts_with("/vsi");
-  if (!dataset && plain && !fs::exists(file))
-    throw DataError({file.string() + ": no such file", "", "Check the path in the recipe"});
-  throw DataError({file.string() + ": not a vector file that can be read", dataset ? "no layer in it" : errors.text(),
-                   "Look at it: ogrinfo " + file.string()});
-}
 
 Ring ring_of(const OGRLinearRing& line, const fs::path& file) {
   Ring ring;
@@ -54,13 +42,6 @@ std::vector<Ring> rings_of(const OGRPolygon& polygon, const fs::path& file) {
   return rings;
 }
 
-/// Text that is a number as a whole counts as one.
-bool is_numeric(const OGRFeature& feature, int field) {
-  const OGRFieldType type = feature.GetFieldDefnRef(field)->GetType();
-  return type == OFTInteger || type == OFTInteger64 || type == OFTReal ||
-         (type == OFTString && CPLGetValueType(feature.GetFieldAsString(field)) != CPL_VALUE_STRING);
-}
-
 /// Attributes of a feature.
 MapPolygon attributes_of(const OGRFeature& feature) {
   MapPolygon polygon;
@@ -68,18 +49,9 @@ MapPolygon attributes_of(const OGRFeature& feature) {
     if (!feature.IsFieldSetAndNotNull(i)) continue;
     const OGRFieldDefn& field = *feature.GetFieldDefnRef(i);
     if (EQUAL(field.GetNameRef(), "name")) polygon.name = feature.GetFieldAsString(i);
-    if (is_numeric(feature, i)) polygon.numbers.emplace_back(field.GetNameRef(), feature.GetFieldAsDouble(i));
+    if (gdal::is_numeric(feature, i)) polygon.numbers.emplace_back(field.GetNameRef(), feature.GetFieldAsDouble(i));
   }
   return polygon;
-}
-
-void carry(const fs::path& file, OGRCoordinateTransformation* transform, OGRGeometry& shape,
-           const gdal::QuietErrors& errors) {
-  if (transform == nullptr || shape.transform(transform) == OGRERR_NONE) return;
-  const char* what = wkbFlatten(shape.getGeometryType()) == wkbPolygon ? "a polygon" : "a shape";
-  throw DataError(
-      {fmt::format("{}: {} cannot be brought to the working CRS", file.string(), what), errors.text(),
-       "Its coordinates do not fit its CRS. Name the true one: ogr2ogr -a_srs EPSG:<code> out.gpkg " + file.string()});
 }
 
 struct Reading {
@@ -91,7 +63,7 @@ struct Reading {
     const OGRGeometry* geometry = feature.GetGeometryRef();
     if (geometry == nullptr) return "";
     const std::unique_ptr<OGRGeometry> shape(geometry->getLinearGeometry());  // arcs become short chords
-    carry(file, transform, *shape, errors);
+    gdal::carry(file, transform, *shape, errors);
     add(feature, *shape);
     return shape->getGeometryName();
   }
@@ -127,53 +99,15 @@ void add_lines(const OGRGeometry& shape, const fs::path& file, std::vector<MapLi
   if (points.size() > 1) lines.push_back(std::move(points));
 }
 
-gdal::Transformation transformation_of(const OGRLayer& layer, const std::string& crs_wkt) {
-  const OGRSpatialReference* own = const_cast<OGRLayer&>(layer).GetSpatialRef();
-  if (crs_wkt.empty() || own == nullptr || own->IsEmpty() || own->IsLocal() != 0) return nullptr;
-  OGRSpatialReference from(*own);
-  from.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  return gdal::transformation(from, gdal::spatial_reference(crs_wkt));
-}
-
-/// Only those features whose attributes meet a condition are read from now on.
-void choose(OGRLayer& layer, const fs::path& file, const std::string& where, const gdal::QuietErrors& errors) {
-  if (where.empty()) return;
-  if (layer.SetAttributeFilter(where.c_str()) == OGRERR_NONE && !errors.failed()) return;
-  throw DataError({fmt::format("{}: the condition {} cannot be understood", file.string(), where), errors.text(),
-                   "Write it with the names of attributes: id = 12, or state = 'active'; ogrinfo -so lists them"});
-}
-
-std::string in_words(const LayerChoice& choice) {
-  return choice.where.empty() ? "" : fmt::format(" whose attributes meet {}", choice.where);
-}
-
-void require_whole(const fs::path& file, const gdal::QuietErrors& errors) {
-  if (errors.failed())
-    throw DataError(
-        {file.string() + ": cannot be read to its end", errors.text(), "Look at it: ogrinfo -al " + file.string()});
-}
-
-std::vector<FeatureValue> values_of(const OGRFeature& feature) {
-  std::vector<FeatureValue> values;
-  for (int i = 0; i < feature.GetFieldCount(); ++i) {
-    FeatureValue value{.name = feature.GetFieldDefnRef(i)->GetNameRef(), .number = {}, .text = {}};
-    value.is_null = !feature.IsFieldSetAndNotNull(i);
-    if (!value.is_null) value.text = feature.GetFieldAsString(i);
-    if (!value.is_null && is_numeric(feature, i)) value.number = feature.GetFieldAsDouble(i);
-    values.push_back(std::move(value));
-  }
-  return values;
-}
-
 }  // namespace
 
 std::vector<MapPolygon> read_polygons(const fs::path& file, const std::string& crs_wkt, const LayerChoice& choice) {
   const gdal::QuietErrors errors;
-  const gdal::Dataset dataset = open(file);
+  const gdal::Dataset dataset = gdal::open_vector(file);
   OGRLayer* found = choice.layer.empty() ? nullptr : dataset->GetLayerByName(choice.layer.c_str());
   OGRLayer& layer = found == nullptr ? *dataset->GetLayer(0) : *found;
-  choose(layer, file, choice.where, errors);
-  const gdal::Transformation transform = transformation_of(layer, crs_wkt);
+  gdal::choose_features(layer, file, choice.where, errors);
+  const gdal::Transformation transform = gdal::transformation_to(layer, crs_wkt);
   Reading reading{file};
   std::string other;
   for (const auto& feature : layer) {
@@ -181,9 +115,9 @@ std::vector<MapPolygon> read_polygons(const fs::path& file, const std::string& c
     const std::string shape = reading.add(*feature, transform.get(), errors);
     if (reading.polygons.size() == before && !shape.empty()) other = shape;
   }
-  require_whole(file, errors);
+  gdal::require_whole(file, errors);
   if (reading.polygons.empty())
-    throw DataError({file.string() + ": no polygon in its first layer" + in_words(choice),
+    throw DataError({file.string() + ": no polygon in its first layer" + gdal::condition_words(choice),
                      other.empty() ? "the layer is empty" : "it holds " + other,
                      "Draw the outline as a polygon, or put that layer first"});
   return reading.polygons;
@@ -192,33 +126,30 @@ std::vector<MapPolygon> read_polygons(const fs::path& file, const std::string& c
 std::vector<PolygonFeature> read_polygon_features(const fs::path& file, const std::string& crs_wkt,
                                                   const LayerChoice& choice) {
   const gdal::QuietErrors errors;
-  const gdal::Dataset dataset = open(file);
-  OGRLayer* named = choice.layer.empty() ? dataset->GetLayer(0) : dataset->GetLayerByName(choice.layer.c_str());
-  if (named == nullptr)
-    throw DataError({fmt::format("{}: no layer \"{}\" in it", file.string(), choice.layer), "",
-                     "Name one that is there: ogrinfo " + file.string()});
-  choose(*named, file, choice.where, errors);
-  const gdal::Transformation transform = transformation_of(*named, crs_wkt);
-  const std::string id = named->GetFIDColumn();
+  const gdal::Dataset dataset = gdal::open_vector(file);
+  OGRLayer& named = gdal::layer_named(*dataset, file, choice.layer);
+  gdal::choose_features(named, file, choice.where, errors);
+  const gdal::Transformation transform = gdal::transformation_to(named, crs_wkt);
+  const std::string id = named.GetFIDColumn();
   std::vector<PolygonFeature> features;
-  for (const auto& feature : *named) {
+  for (const auto& feature : named) {
     Reading reading{file};
     reading.add(*feature, transform.get(), errors);
     features.push_back({.where = fmt::format("{} = {}", id.empty() ? "FID" : '"' + id + '"', feature->GetFID()),
                         .place = fmt::format("{}, feature {}", file.string(), feature->GetFID()),
                         .number = feature->GetFID(),
                         .polygons = std::move(reading.polygons),
-                        .values = values_of(*feature)});
+                        .values = gdal::values_of(*feature)});
   }
-  require_whole(file, errors);
+  gdal::require_whole(file, errors);
   return features;
 }
 
 std::vector<MapLine> read_lines(const fs::path& file, const std::string& crs_wkt) {
   const gdal::QuietErrors errors;
-  const gdal::Dataset dataset = open(file);
+  const gdal::Dataset dataset = gdal::open_vector(file);
   OGRLayer& layer = *dataset->GetLayer(0);
-  const gdal::Transformation transform = transformation_of(layer, crs_wkt);
+  const gdal::Transformation transform = gdal::transformation_to(layer, crs_wkt);
   std::vector<MapLine> lines;
   std::string other;
   for (const auto& feature : layer) {
@@ -226,13 +157,11 @@ std::vector<MapLine> read_lines(const fs::path& file, const std::string& crs_wkt
     if (geometry == nullptr) continue;
     const std::unique_ptr<OGRGeometry> shape(geometry->getLinearGeometry());  // arcs become short chords
     const std::size_t before = lines.size();
-    carry(file, transform.get(), *shape, errors);
+    gdal::carry(file, transform.get(), *shape, errors);
     add_lines(*shape, file, lines);
     if (lines.size() == before) other = shape->getGeometryName();
   }
-  if (errors.failed())
-    throw DataError(
-        {file.string() + ": cannot be read to its end", errors.text(), "Look at it: ogrinfo -al " + file.string()});
+  gdal::require_whole(file, errors);
   if (lines.empty())
     throw DataError({file.string() + ": no line in its first layer",
                      other.empty() ? "the layer is empty" : "it holds " + other,
