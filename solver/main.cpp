@@ -21,6 +21,7 @@
 #include "solver/ensemble/ensemble_stage.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/parallel/on.hpp"
+#include "solver/run/named_places.hpp"
 #include "solver/run/run_inputs.hpp"
 #include "solver/run/run_stage.hpp"
 #include "solver/run/simulation.hpp"
@@ -168,6 +169,8 @@ Facts solved(StageContext& context, const SolveFlags& flags, SolveOptions& optio
   const auto domain_file = inputs_of(options, context.out).front();
   Domain domain = read_domain(domain_file);
   const Facts insisted = judge_inputs(context, options, domain_file, domain);
+  for (const std::string& text : idle_places(options, domain.places)) log_info(text);
+  options = with_places(std::move(options), domain.places);
   if (ensemble_of(context.recipe).on()) return run_members_of(context, flags, domain, options, device, insisted);
   if (flags.members || flags.at_a_time > 0)
     throw RecipeError({flags.members ? "--members without an ensemble" : "--at-a-time without an ensemble",
@@ -205,7 +208,8 @@ void complete_run(StageContext& context) {
     if (line == mark) return;
   remove_leftovers(paths);
   const SolveOptions options = options_of(context.recipe, context.out);
-  write_used(context, settle_stiffness(read_domain(inputs_of(options, context.out).front()), options),
+  const Domain domain = read_domain(inputs_of(options, context.out).front());
+  write_used(context, settle_stiffness(domain, with_places(options, domain.places)),
              facts_of(read_run(paths.run).summary));
 }
 

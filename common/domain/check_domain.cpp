@@ -65,6 +65,20 @@ void check_points(const fs::path& file, const Domain& domain) {
   }
 }
 
+void check_places(const fs::path& file, const Domain& domain) {
+  const MapGrid& map = domain.grid;
+  for (const DomainPlace& one : domain.places) {
+    if (!is_plain_name(one.place) || !is_plain_name(one.name))
+      refuse_domain(
+          file, fmt::format("\"{}\" of the place \"{}\" is no name of letters, digits, - and _", one.name, one.place));
+    for (const auto& [x, y] : one.points) {
+      if (x >= map.west && x <= map.east() && y >= map.south && y <= map.north()) continue;
+      refuse_domain(file, fmt::format("\"{}\" of the place \"{}\" goes to ({:g}, {:g}), beyond the map", one.name,
+                                      one.place, x, y));
+    }
+  }
+}
+
 }  // namespace
 
 void check_domain_grid(const fs::path& file, const MapGrid& grid, double layer_height) {
@@ -90,6 +104,7 @@ void check_domain(const fs::path& file, const Domain& domain) {
   if (domain.erodible < 0 || static_cast<std::size_t>(domain.erodible) > domain.release_names.size())
     refuse_domain(file, fmt::format("{} of its {} releases are ground", domain.erodible, domain.release_names.size()));
   check_points(file, domain);
+  check_places(file, domain);
 }
 
 }  // namespace talus

@@ -18,7 +18,8 @@ void check_domain_grid(const std::filesystem::path& file, const MapGrid& grid, d
 
 /// This function throws DataError that names the first number that cannot be: elevations beyond 100 km, thickness below
 /// zero, numbers of the bed that [solve.base] does not know or that are not finite, points outside the map, without
-/// volume or of a release that is not there. The grid has been checked before.
+/// volume or of a release that is not there, places outside the map or without a name. The grid has been checked
+/// before.
 void check_domain(const std::filesystem::path& file, const Domain& domain);
 
 }  // namespace talus

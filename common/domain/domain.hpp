@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/domain/active_cells.hpp"
+#include "common/domain/domain_place.hpp"
 #include "common/map/raster.hpp"
 
 namespace talus {
@@ -39,6 +40,7 @@ struct Domain {
   std::vector<std::string> release_names;
   int erodible = 0;  // of these, the first so many lie in the ground until something takes them along
   SeedPoints points;
+  std::vector<DomainPlace> places;    // lines and points that [solve] asks for by name
   std::optional<ActiveCells> active;  // the mask of the file it was read from; none where it was made in memory
   std::vector<std::pair<std::string, std::string>> provenance;  // version, command, inputs and checksums
 };
@@ -46,8 +48,8 @@ struct Domain {
 /// Write `file` (aside, renamed): PointDataGrid "points" (attributes volume, height, extent_x, extent_y, release),
 /// DoubleGrids "terrain", "before", "release_thickness", and "bed.NAME" for rasters of the bed, one voxel thick,
 /// MaskGrid "inside" of the map cells inside the domain, one voxel thick too, MaskGrid "active" of the cells of the
-/// background grid around the points (active_cells.hpp); grid, CRS, units and provenance as metadata. Throws DataError
-/// (disk full, not writable).
+/// background grid around the points (active_cells.hpp); grid, CRS, units, places and provenance as metadata. Throws
+/// DataError (disk full, not writable).
 void write_domain(const std::filesystem::path& file, const Domain& domain);
 
 /// Read it back; files of the format before as well (docs/reference/formats.md). Coordinates keep 1e-6 of a cell,

@@ -23,9 +23,13 @@ inline constexpr auto before = "before";
 inline constexpr auto release_thickness = "release_thickness";
 inline constexpr auto inside = "inside";
 inline constexpr auto active = "active";
-inline constexpr auto mask_h = "h_m";       ///< of the background grid, in the metadata of "active"
-inline constexpr auto mask_h_z = "h_z_m";   ///< likewise
-inline constexpr auto bed_prefix = "bed.";  ///< and the name of a number of [solve.base]
+inline constexpr auto mask_h = "h_m";                 ///< of the background grid, in the metadata of "active"
+inline constexpr auto mask_h_z = "h_z_m";             ///< likewise
+inline constexpr auto places = "places";              ///< how many; files of earlier versions have no such entry
+inline constexpr auto place_of = "place_of";          ///< numbered: the [[preprocess.place]] it is of
+inline constexpr auto place_name = "place_name";      ///< likewise
+inline constexpr auto place_points = "place_points";  ///< likewise, as text_of_points()
+inline constexpr auto bed_prefix = "bed.";            ///< and the name of a number of [solve.base]
 
 inline constexpr auto volume = "volume";
 inline constexpr auto height = "height";

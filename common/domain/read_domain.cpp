@@ -84,6 +84,7 @@ class Facts {
     return static_cast<int>(value);
   }
   std::string text(const std::string& name) const { return get<std::string>(name); }
+  bool has(const std::string& name) const { return static_cast<bool>(meta_[name]); }
 
  private:
   const fs::path& file_;
@@ -198,6 +199,22 @@ SeedPoints seed_points(const fs::path& file, const Contents& contents, const Map
   return points;
 }
 
+/// Lines and points under names; files of earlier versions have none.
+std::vector<DomainPlace> named_places(const fs::path& file, const Facts& facts) {
+  std::vector<DomainPlace> places;
+  const std::size_t count = facts.has(layout::places) ? facts.count(layout::places) : 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    DomainPlace one{
+        facts.text(layout::numbered(layout::place_of, i)), facts.text(layout::numbered(layout::place_name, i)), {}};
+    const std::string entry = layout::numbered(layout::place_points, i);
+    const auto points = points_in(facts.text(entry));
+    if (!points) refuse(file, "not a whole domain", "the entry \"" + entry + "\" holds no points");
+    one.points = *points;
+    places.push_back(std::move(one));
+  }
+  return places;
+}
+
 Domain assemble(const fs::path& file, const Contents& contents) {
   const Facts facts(file, *contents.meta);
   Domain domain;
@@ -217,6 +234,7 @@ Domain assemble(const fs::path& file, const Contents& contents) {
   for (std::size_t i = 0; i < facts.count("releases"); ++i)
     domain.release_names.push_back(facts.text(layout::numbered("release_name", i)));
   domain.erodible = facts.number("erodible");
+  domain.places = named_places(file, facts);
   for (std::size_t i = 0; i < facts.count("facts"); ++i)
     domain.provenance.emplace_back(facts.text(layout::numbered("fact_name", i)),
                                    facts.text(layout::numbered("fact_value", i)));

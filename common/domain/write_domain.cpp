@@ -120,6 +120,12 @@ openvdb::MetaMap metadata_of(const Domain& domain) {
   count("erodible", static_cast<std::size_t>(domain.erodible));
   for (std::size_t i = 0; i < domain.release_names.size(); ++i)
     text(layout::numbered("release_name", i), domain.release_names[i]);
+  if (!domain.places.empty()) count(layout::places, domain.places.size());
+  for (std::size_t i = 0; i < domain.places.size(); ++i) {
+    text(layout::numbered(layout::place_of, i), domain.places[i].place);
+    text(layout::numbered(layout::place_name, i), domain.places[i].name);
+    text(layout::numbered(layout::place_points, i), text_of_points(domain.places[i].points));
+  }
   count("facts", domain.provenance.size());
   for (std::size_t i = 0; i < domain.provenance.size(); ++i) {
     text(layout::numbered("fact_name", i), domain.provenance[i].first);
@@ -135,7 +141,7 @@ void verify(const fs::path& partial, const fs::path& file, const Domain& domain,
   try {
     const Domain back = read_domain(partial);
     same = back.points.size() == domain.points.size() && back.points.volume == domain.points.volume &&
-           back.active == active;
+           back.active == active && back.places == domain.places;
   } catch (const DataError& error) {
     reason += ": " + error.faults().front().why;
   }

@@ -39,6 +39,7 @@ void Options::describe(recipe::Visitor& v) {
   recipe::table(v, "laboratory", laboratory, "(4) a plane instead of elevation models, with [[preprocess.box]]", *this);
   recipe::list(v, "box", box, "a block of material on or above that plane; may be repeated");
   describe_obstacles(v, obstacle);
+  describe_places(v, place);
   recipe::table(v, "bed", bed, "friction of the bed from place to place");
 }
 

@@ -12,6 +12,7 @@
 #include "preprocess/options/grid.hpp"
 #include "preprocess/options/laboratory.hpp"
 #include "preprocess/options/obstacles.hpp"
+#include "preprocess/options/places.hpp"
 #include "preprocess/options/release.hpp"
 #include "preprocess/options/source.hpp"
 #include "preprocess/options/survey.hpp"
@@ -39,6 +40,7 @@ struct Options : ElevationOptions {
   std::vector<BoxOptions> box;
   BedRasters bed;
   std::vector<ObstacleOptions> obstacle;
+  std::vector<PlaceOptions> place;
 
   /// Whether the keys of a laboratory are given, all or some; what else is given is not looked at then.
   bool in_laboratory() const { return laboratory.given() || !box.empty(); }

@@ -22,6 +22,7 @@
 #include "preprocess/release/releases.hpp"
 #include "preprocess/scene/bed_polygons.hpp"
 #include "preprocess/scene/bed_zones.hpp"
+#include "preprocess/scene/places.hpp"
 #include "preprocess/terrain/elevation.hpp"
 #include "preprocess/terrain/surfaces.hpp"
 
@@ -166,6 +167,8 @@ std::vector<std::filesystem::path> inputs_of(const Options& options) {
   add(options.bed.polygons);
   for (const BedZone& zone : options.bed.zones) add(zone.polygons);
   for (const ObstacleOptions& obstacle : options.obstacle) add(obstacle.polygons);
+  for (const PlaceOptions& place : options.place)  // layers of one file, as a rule
+    if (std::find(inputs.begin(), inputs.end(), place.file) == inputs.end()) add(place.file);
   return inputs;
 }
 
@@ -215,6 +218,7 @@ Prepared prepare(const Options& options, SceneRasters scene, Points points) {
   for (const ObstacleOptions& o : options.obstacle) {
     if (o.voxel > 0) prepared.obstacle_voxel = std::min(prepared.obstacle_voxel, o.voxel);
   }
+  domain.places = read_places(options.place, scene.bed);
   domain.terrain = std::move(scene.bed);
   domain.before = std::move(scene.before);
   prepared.sliding_surface = std::move(scene.sliding_surface);

@@ -45,7 +45,7 @@ enum class Points { seeded, counted };
 Prepared prepare(const Options& options, Points points);
 
 /// The second part: from what was read to the domain. Expects resolved() options, those that `scene` was read with but
-/// for what acts here: thickness_factor, erodible layers, bed, layers and points of the grid, obstacles.
+/// for what acts here: thickness_factor, erodible layers, bed, layers and points of the grid, obstacles, places.
 Prepared prepare(const Options& options, SceneRasters scene, Points points);
 
 }  // namespace talus::preprocess

@@ -185,6 +185,7 @@ std::string SurveyMemory::mark_of(Options options) {
   options.thickness_factor = 1;
   options.erodible.clear();
   options.obstacle.clear();
+  options.place.clear();
   options.bed = {};
   options.grid.layer_height = fresh.layer_height;
   options.grid.points_per_cell = fresh.points_per_cell;

@@ -133,7 +133,7 @@ ModelIs model_of(const recipe::Recipe& recipe) {
                             "all slides lie on one elevation model",
                             "Give base_dem (a mass is laid onto it) or before_dem (it is cut out of it)"});
   for (const char* key :
-       {"release", "polygon", "after_dem", "laboratory", "box", "west_m", "south_m", "east_m", "north_m"})
+       {"release", "polygon", "after_dem", "laboratory", "box", "place", "west_m", "south_m", "east_m", "north_m"})
     if (gives(recipe, key))
       throw RecipeError(Fault{fmt::format("[preprocess]: {} beside [slides]", key),
                               "[slides] says what fails, and which part of the model each slide gets", "Leave it out"});

@@ -21,6 +21,7 @@
 #include "solver/budget/run_variations.hpp"
 #include "solver/ensemble/in_flight.hpp"
 #include "solver/ensemble/member_cost.hpp"
+#include "solver/run/named_places.hpp"
 #include "solver/run/run_inputs.hpp"
 #include "solver/run/simulation.hpp"
 #include "solver/run/step_choice.hpp"
@@ -78,6 +79,8 @@ BudgetScene read_budget_scene(const StageContext& context, const BudgetOptions& 
   scene.domain = read_domain(file);
   const QuietThread quiet;  // the run itself has said all of it
   scene.insisted = judge_inputs(context, scene.base.asked, file, scene.domain);
+  scene.base.places = scene.domain.places;
+  scene.base.asked = with_places(std::move(scene.base.asked), scene.base.places);
   scene.base.settled = settle_steps(scene.domain, settle_stiffness(scene.domain, scene.base.asked));
   scene.variations = variations_of(scene.domain, scene.base, options);
   for (Variation& one : own_changes(context.recipe, context.out, scene.base, options))

@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "common/recipe/overrides.hpp"
+#include "solver/run/named_places.hpp"
 #include "solver/run/run_inputs.hpp"
 #include "solver/run/step_choice.hpp"
 #include "solver/run/stiffness.hpp"
@@ -54,7 +55,7 @@ Variation own_change(const recipe::Recipe& recipe, const std::filesystem::path& 
       throw RecipeError({fmt::format("[[budget.run]] \"{}\" sets {}", change.name, value),
                          "the runs of a budget differ in [solve]", "Write it so: solve.base.friction_angle_deg=20"});
   try {
-    one.options = settled_as(base, options_of(recipe.with(change.set), out));
+    one.options = settled_as(base, with_places(options_of(recipe.with(change.set), out), base.places));
   } catch (const RecipeError& error) {
     throw of_change(change.name, error);
   }

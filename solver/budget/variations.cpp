@@ -297,7 +297,7 @@ void Variations::survey() {
 }  // namespace
 
 std::vector<std::string> settled_values(const BudgetBase& base) {
-  const auto& [asked, settled] = base;
+  const SolveOptions &asked = base.asked, &settled = base.settled;
   std::vector<std::string> values;
   if (asked.material.youngs_modulus != settled.material.youngs_modulus ||
       asked.material.stiffness == StiffnessKind::automatic) {

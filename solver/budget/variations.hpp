@@ -17,6 +17,7 @@ namespace talus::solver {
 /// The options of the run itself, as the recipe has them and as they are settled for its scene.
 struct BudgetBase {
   SolveOptions asked, settled;
+  std::vector<DomainPlace> places = {};  ///< of its domain
 };
 
 /// Another number of the bed: of a key of [solve.base] and its value, in the recipe or in a cell of a raster.

@@ -12,6 +12,7 @@
 #include "common/ensemble/counts.hpp"
 #include "common/stage/console.hpp"
 #include "common/stage/stage.hpp"
+#include "solver/run/named_places.hpp"
 #include "solver/run/run_inputs.hpp"
 
 namespace talus::solver {
@@ -108,7 +109,7 @@ Member Members::read(std::int64_t member) const {
   Member read{domain_of(member), {}};
   {
     const std::lock_guard<std::mutex> one(reading_);
-    read.options = options_of(member);
+    read.options = with_places(options_of(member), read.domain.places);
   }
   if (!settles_each_) {
     read.options = settled_by(settled_, std::move(read.options));

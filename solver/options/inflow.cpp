@@ -16,9 +16,15 @@ namespace {
 void describe_line(recipe::Visitor& v, InflowOptions& o, const std::string& place) {
   v.numbers("x_m", o.x, recipe::any, "map coordinates of the two ends of the line that material enters through, east");
   v.numbers("y_m", o.y, recipe::any, "the same, north");
-  v.needs(o.x.size() == 2 && o.y.size() == 2,
+  v.text("place", o.place,
+         "instead of both: [[preprocess.place]] of this name; its line called name, or the only one that it has");
+  v.needs(!o.place.empty() || (o.x.size() == 2 && o.y.size() == 2),
           {fmt::format("{} has {} values of x_m and {} of y_m", place, o.x.size(), o.y.size()),
-           "it enters through a straight line between two points", "Give two of each"});
+           "it enters through a straight line between two points",
+           "Give two of each, or place = \"...\" for a line of a vector file"});
+  v.needs(o.place.empty() || (o.x.empty() && o.y.empty()),
+          {fmt::format("{} has place = \"{}\" beside x_m or y_m", place, o.place), "either says where it enters",
+           "Leave one of them out"});
   v.needs(o.x.size() != 2 || o.y.size() != 2 || o.x[0] != o.x[1] || o.y[0] != o.y[1],
           {place + ": both ends of the line are one point", "a line of no length lets nothing through",
            "Move one of them: x_m = [west, east], y_m = [south, north]"});
@@ -93,8 +99,11 @@ void describe_inflows(recipe::Visitor& v, std::vector<InflowOptions>& inflows, c
                [&](InflowOptions& inflow, std::size_t item) {
                  inflow.describe(v, fmt::format("[[solve.inflow]] number {}", item + 1), all);
                });
-  std::vector<std::string> names;
-  for (std::size_t n = 0; n < inflows.size(); ++n) names.push_back(inflow_name(inflows[n], n));
+  std::vector<std::optional<std::string>> names;
+  for (std::size_t n = 0; n < inflows.size(); ++n) {
+    const bool named = !inflows[n].name.empty() || inflows[n].place.empty();
+    names.push_back(named ? std::optional(inflow_name(inflows[n], n)) : std::nullopt);
+  }
   need_names(v, "inflow", "its material is recorded under its name", names);
 }
 

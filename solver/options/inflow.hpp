@@ -19,6 +19,7 @@ struct SolveOptions;
 struct InflowOptions {
   std::string name;                            ///< empty: inflow-1, inflow-2, ... (inflow_name())
   std::vector<double> x, y;                    ///< map coordinates of the line's two ends [m]
+  std::string place;                           ///< of the domain, whose line it is; empty: x and y
   std::filesystem::path file;                  ///< hydrograph; empty: times and discharges
   std::vector<double> times, discharges;       ///< [s], [m3/s]
   double scale = 1;                            ///< of the discharges [-]

@@ -3,6 +3,7 @@
 // Names of the things that have columns of the history.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,15 +12,20 @@
 namespace talus::solver {
 
 /// This function declares that every item of [[solve.TABLE]] has a name of its own that is fit for the names of
-/// columns. `why` says what the names are for.
+/// columns. `why` says what the names are for. An item without one takes the names that a place of the domain has.
 void need_names(recipe::Visitor& v, const std::string& table, const std::string& why,
-                const std::vector<std::string>& names);
+                const std::vector<std::optional<std::string>>& names);
 /// This function declares the same of items with a member `name`.
 template <class Item>
 void need_names(recipe::Visitor& v, const std::string& table, const std::string& why, const std::vector<Item>& items) {
-  std::vector<std::string> names;
+  std::vector<std::optional<std::string>> names;
   names.reserve(items.size());
-  for (const Item& item : items) names.push_back(item.name);
+  for (const Item& item : items) {
+    names.push_back(item.name);
+    if constexpr (requires { item.place; }) {
+      if (item.name.empty() && !item.place.empty()) names.back().reset();
+    }
+  }
   need_names(v, table, why, names);
 }
 

@@ -21,8 +21,9 @@ inline constexpr const char* acceptable[] = {"weight-strain", "slow-waves",     
 /// The keys of [[solve.gauge]]: a point of the map at which the mass is watched.
 struct GaugeOptions {
   std::string name;
-  double x = 0, y = 0;  ///< map coordinates [m]
-  /// The method declares the keys with defaults and help.
+  double x = 0, y = 0;     ///< map coordinates [m]
+  std::string place = {};  ///< of the domain, whose points they are (solver/run/named_places.hpp); empty: x and y
+  /// The method declares the keys with defaults, help and what they need of one another.
   void describe(recipe::Visitor& v);
 };
 
@@ -30,6 +31,7 @@ struct GaugeOptions {
 struct SectionOptions {
   std::string name;
   std::vector<double> x, y;  ///< map coordinates of the line's points, in order [m]
+  std::string place = {};    ///< of the domain, whose lines they are; empty: x and y
   /// The method declares the keys with defaults, help and what they need of one another.
   void describe(recipe::Visitor& v);
 };

@@ -77,6 +77,17 @@ TEST(DomainFile, round_trip_keeps_everything) {
   }
 }
 
+TEST(DomainFile, places_come_back_to_the_last_bit_and_may_be_absent) {
+  const Scratch scratch;
+  Domain domain = sample(5);
+  write_domain(scratch / "none.vdb", domain);
+  EXPECT_TRUE(read_domain(scratch / "none.vdb").places.empty());
+  domain.places = {{"sections", "road", {{512400.1, 5432200.0 / 3 * 3}, {512500, 5432300}}},
+                   {"gauges", "bridge", {{512400 + 1 / 3.0, 5432200}}}};
+  write_domain(scratch / "domain.vdb", domain);
+  EXPECT_EQ(read_domain(scratch / "domain.vdb").places, domain.places);
+}
+
 TEST(DomainFile, a_domain_without_points_can_be_written) {
   const Scratch scratch;
   write_domain(scratch / "domain.vdb", sample(0));
@@ -223,7 +234,25 @@ TEST(DomainFile, numbers_that_cannot_be_are_refused_with_their_place) {
   EXPECT_NE(fault_with([](Domain& d) { d.points.height[7] = std::nan(""); }), "");
   EXPECT_NE(fault_with([](Domain& d) { d.points.extent_x[7] = -1; }).find("of point 7 is -1"), std::string::npos);
   EXPECT_NE(fault_with([](Domain& d) { d.erodible = 3; }).find("3 of its 2 releases"), std::string::npos);
+  EXPECT_NE(fault_with([](Domain& d) {
+              d.places = {{"set", "a b", {{d.grid.west, d.grid.south}}}};
+            }).find("\"a b\" of the place \"set\" is no name"),
+            std::string::npos);
+  EXPECT_NE(fault_with([](Domain& d) {
+              d.places = {{"set", "a", {{d.grid.west, d.grid.south - 1}}}};
+            }).find("\"a\" of the place \"set\" goes to"),
+            std::string::npos);
   EXPECT_NE(fault_with([](Domain& d) { d.bed = {{"colour", d.terrain}}; }).find("bed.colour"), std::string::npos);
+}
+
+TEST(DomainFile, places_without_points_are_refused) {
+  EXPECT_EQ(fault_after([](const auto&, auto& header, auto&) {
+              header.insertMeta("places", openvdb::Int64Metadata(1));
+              header.insertMeta("place_of.0", openvdb::StringMetadata("set"));
+              header.insertMeta("place_name.0", openvdb::StringMetadata("a"));
+              header.insertMeta("place_points.0", openvdb::StringMetadata("1,2 3"));
+            }),
+            ": not a whole domain (the entry \"place_points.0\" holds no points). Make it with talus-preprocess");
 }
 
 TEST(DomainFile, masks_of_other_grids_are_refused) {

@@ -191,6 +191,9 @@ TEST(Slides, take_no_keys_that_are_theirs_and_no_value_twice) {
   const std::string besides =
       ManySlides::fault(many.recipe(by_depth, "base_dem = \"model.tif\"\ngrid.west_m = 500000.0"));
   EXPECT_NE(besides.find("west_m beside [slides]"), std::string::npos) << besides;
+  const std::string places = ManySlides::fault(
+      many.recipe(by_depth, "base_dem = \"model.tif\"\nplace = [{name = \"set\", file = \"lines.gpkg\"}]"));
+  EXPECT_NE(places.find("place beside [slides]"), std::string::npos) << places;
 }
 
 TEST(Slides, that_are_listed_choose_their_outline_and_set_values) {
