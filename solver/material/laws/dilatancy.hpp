@@ -131,8 +131,9 @@ class DilatantReturn {
     return end;
   }
 
-  /// The method takes the step to the inertial number and the friction of `f`, under the pressure p.
-  TALUS_HD void at(const FrictionAt<Real>& f, Real p) {
+  /// The method takes the step to the inertial number and the friction of `f`, under the pressure p. It is no part of
+  /// the kernels of other laws, whose registers it would double.
+  TALUS_RARE void at(const FrictionAt<Real>& f, Real p) {
     const Real e = numbers_.equilibrium(f.inertial_number);
     const Real e_slope = numbers_.equilibrium_slope(f.inertial_number) * f.number_slope;
     const Real speed = trial_.reach * Real(sqrt(p)), flow = f.inertial_number * speed;

@@ -160,43 +160,56 @@ struct MuOfI : FlowingLaw<MuOfI> {
     return b > Real(0) ? Real(2) * c / (b + root) : (root - b) / (Real(2) * a);
   }
 
-  /// The end of the trial of grains whose volume follows the shear (T27c). The first guess of the inertial number is
-  /// that of the volume at the start: (T27) with a little more of everything.
+  /// The friction of (T27) at an inertial number.
   template <class Real>
-  TALUS_HD static FlowEnd<Real> dilatant_flow(const Elasticity<Real>& m, const Numbers<Real>& n, Real shear, Real free,
-                                              Real plastic, Real seconds) {
+  TALUS_HD static FrictionAt<Real> inertial(const Numbers<Real>& n, Real i) {
+    const InertialFriction<Real> mu(n.slow, n.fast, n.rise, n.half, i);
+    return {i, mu.value, Real(1), mu.slope};
+  }
+  /// The inertial number of the creep (T27b) at a friction.
+  template <class Real>
+  TALUS_HD static FrictionAt<Real> creeping(const Numbers<Real>& n, Real mu) {
+    const Real i = n.creep_scale * Real(exp(-Real(creep_constant) / (mu * mu)));
+    return {i, mu, Real(2 * creep_constant) * i / (mu * mu * mu), Real(1)};
+  }
+  /// The numbers of grains that stay as they are packed at the start of the step: (T27) with a little more of
+  /// everything, for tan(psi) = `more` + K slope I there. `share` is what the cone has of that.
+  template <class Real>
+  TALUS_HD static Numbers<Real> as_packed(const Numbers<Real>& n, Real more, Real share) {
+    Numbers<Real> now = n;
+    const Real rise = n.volume.rate * n.volume.slope;
+    now.slow = share * (n.slow + more);
+    now.fast = share * (n.fast + more + rise * n.half);
+    now.rise = share * (n.rise + rise);
+    return now;
+  }
+
+  /// The end of the trial of grains whose volume follows the shear (T27c).
+  template <class Real>
+  TALUS_RARE static FlowEnd<Real> dilatant_flow(const Elasticity<Real>& m, const Numbers<Real>& n, Real shear,
+                                                Real free, Real plastic, Real seconds) {
     const Real fraction = n.volume.first * Real(exp(-plastic)), reach = seconds / n.grain;
     DilatantReturn<Real> step(m, n.volume, {shear, free, fraction, reach});
     const bool creeps = n.creep_below > Real(0);
     const Real more = step.angle_at_rest(), still = creeps ? more : n.slow + more;
     const Real rest = DilatingCone<Real>(still, more).slope;
     if (shear <= rest * free || !(shear > Real(0))) return {shear};
-    const auto inertial = [&](Real i) {
-      const InertialFriction<Real> mu(n.slow, n.fast, n.rise, n.half, i);
-      return FrictionAt<Real>{i, mu.value, Real(1), mu.slope};
-    };
-    const auto creeping = [&](Real mu) {
-      const Real i = n.creep_scale * Real(exp(-Real(creep_constant) / (mu * mu)));
-      return FrictionAt<Real>{i, mu, Real(2 * creep_constant) * i / (mu * mu * mu), Real(1)};
-    };
-    const Real share = creeps || !(still > Real(0)) ? Real(1) : rest / still, rise = n.volume.rate * n.volume.slope;
-    Numbers<Real> now = n;
-    now.slow = share * (n.slow + more);
-    now.fast = share * (n.fast + more + rise * n.half);
-    now.rise = share * (n.rise + rise);
-    const FrictionAt<Real> joint = inertial(n.creep_below);
+    const Numbers<Real> now = as_packed(n, more, creeps || !(still > Real(0)) ? Real(1) : rest / still);
     Real i = 0;
     const auto flow_under = [&](Real p) {
       if (creeps) {
+        const FrictionAt<Real> joint = inertial(n, n.creep_below);
         step.at(joint, p);
         if (!(step.balance() > Real(0))) {
-          balance_at(step, creeping, p, Real(0), joint.friction, Real(0.9) * joint.friction);
+          const auto curve = [&](Real mu) { return creeping(n, mu); };
+          balance_at(step, curve, p, Real(0), joint.friction, Real(0.9) * joint.friction);
           return;
         }
       }
       if (!(i > n.creep_below)) i = balance(now, shear, p, m.shear_modulus * Real(sqrt(p)) * reach);
       if (!(i > n.creep_below)) i = Real(2) * n.creep_below + Real(1e-6);
-      i = balance_at(step, inertial, p, n.creep_below, Real(unbounded), i);
+      const auto curve = [&](Real number) { return inertial(n, number); };
+      i = balance_at(step, curve, p, n.creep_below, Real(unbounded), i);
     };
     return dilatant_end(step, rest > Real(0) ? shear / rest : Real(unbounded), flow_under);
   }
