@@ -4,11 +4,11 @@
 // Pailha & Pouliquen 2009): grains that are packed more densely than steady shear would have them dilate and are
 // stronger meanwhile, looser ones contract and are weaker.
 //
-//   tan(psi) = K (phi - phi_eq(I)),   dphi/dshear = -phi tan(psi),   friction = mu(I) + tan(psi),
+//   tan(psi) = K_3 (phi - phi_eq(I)),   dphi/dshear = -phi tan(psi),   friction = mu(I) + tan(psi),
 //
 // in plane shear. The volume fraction phi is no state of its own: it is the one at the start times
-// exp(-plastic_log_volume), which is the volume of the closed grains. What a point opens beyond that carries no
-// pressure and changes phi as little as it does Drucker-Prager's sand.
+// exp(-plastic_log_volume), which is the volume of the closed grains. What a point opens beyond that is a gap between
+// them: it carries no pressure, leaves phi alone, and has to close first, as in Drucker-Prager's sand.
 #pragma once
 
 #include <cmath>
@@ -26,8 +26,8 @@ template <class Real>
 struct DilatancyNumbers {
   Real first = 0;    ///< volume fraction before any shear [-]; 0: shear keeps the volume
   Real at_rest = 0;  ///< the one that slow shear leads to [-]
-  Real slope = 0;    ///< what a unit of the inertial number takes from that [-]
-  Real rate = 0;     ///< K, tan(psi) over what phi is too much [-]
+  Real slope = 0;    ///< K_2, what a unit of the inertial number takes from that [-]
+  Real rate = 0;     ///< K_3, tan(psi) over what phi is too much [-]
 
   /// The volume fraction that steady shear leads to at an inertial number [-].
   TALUS_HD Real equilibrium(Real i) const { return at_rest - slope * fmin(i, Real(loosest_inertial_number)); }
@@ -35,8 +35,8 @@ struct DilatancyNumbers {
   TALUS_HD Real equilibrium_slope(Real i) const { return i < Real(loosest_inertial_number) ? -slope : Real(0); }
 };
 
-/// The end of plane shear by `shear` towards one equilibrium fraction e, from `fraction`: the logistic solution of
-/// (T27c), which does not pass e however large the shear is, with its derivatives by shear and by e.
+/// The end of plane shear by `shear` towards one equilibrium fraction e, from `fraction`: the logistic solution (T27e)
+/// of (T27c), which does not pass e however large the shear is, with its derivatives by shear and by e.
 template <class Real>
 struct ShearedGrains {
   Real dilation, dilation_by_e;  ///< ln of the volume over that at the start; by shear it is `angle`

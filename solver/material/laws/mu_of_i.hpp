@@ -55,7 +55,7 @@ struct MuOfI : FlowingLaw<MuOfI> {
     double volume_fraction = 0;            ///< of the mass at the start [-]; 0: shear keeps the volume
     double volume_fraction_at_rest = 0.6;  ///< that slow shear leads to [-]
     double volume_fraction_slope = 0.2;    ///< what a unit of I takes from that (Forterre & Pouliquen 2008) [-]
-    double dilatancy_rate = 4;             ///< K of (T27c) (Pailha & Pouliquen 2009: 4.09) [-]
+    double dilatancy_rate = 4;             ///< K_3 of (T27c) (Pailha & Pouliquen 2009: about 4) [-]
 
     /// The friction coefficient of slow flow, mu_s [-].
     double internal_friction() const { return std::tan(static_friction_angle * std::numbers::pi / 180); }
@@ -173,7 +173,7 @@ struct MuOfI : FlowingLaw<MuOfI> {
     return {i, mu, Real(2 * creep_constant) * i / (mu * mu * mu), Real(1)};
   }
   /// The numbers of grains that stay as they are packed at the start of the step: (T27) with a little more of
-  /// everything, for tan(psi) = `more` + K slope I there. `share` is what the cone has of that.
+  /// everything, for tan(psi) = `more` + K_3 K_2 I there. `share` is what the cone has of that.
   template <class Real>
   TALUS_HD static Numbers<Real> as_packed(const Numbers<Real>& n, Real more, Real share) {
     Numbers<Real> now = n;
@@ -286,11 +286,11 @@ inline void MuOfI::Options::describe(recipe::Visitor& v, const LawTable& table) 
   v.number("volume_fraction", volume_fraction, Range{0, 0.75},
            "mu-of-i: share of the space that the grains fill at the start; 0: shear does not change the volume");
   v.number("volume_fraction_at_rest", volume_fraction_at_rest, Range{0.3, 0.75},
-           "mu-of-i: volume fraction that slow shear leads to, denser grains dilate and looser ones contract");
+           "mu-of-i: volume fraction that slow shear leads to; denser grains dilate, looser ones contract");
   v.number("volume_fraction_slope", volume_fraction_slope, Range{0, 0.25},
-           "mu-of-i: what a unit of the inertial number takes from that, as far as a unit");
+           "mu-of-i: what the inertial number takes from that per unit, up to 0.5 of it");
   v.number("dilatancy_rate", dilatancy_rate, Range{0, 100, true, false},
-           "mu-of-i: K, tangent of the dilatancy angle over the excess of the volume fraction");
+           "mu-of-i: K_3, tangent of the dilatancy angle over the excess of the volume fraction");
   v.needs(
       internal_friction() + first_dilatancy() > 0,
       {table.name + " volume_fraction = " + shortest(volume_fraction) + " leaves the grains no friction at the start",

@@ -207,6 +207,68 @@ TEST_P(FlowOnIncline, of_mu_of_i_starts_and_stops_at_the_static_angle) {
   }
 }
 
+/// Dense grains hold until the slope's tangent is mu_s + K (phi - phi_s), loose ones give way below mu_s: those of 0.62
+/// at 24.8 degrees, those of 0.59 at 18.9, between which lies the angle of this slope and that of steady flow, 20.9.
+TEST_P(FlowOnIncline, of_dense_grains_starts_at_a_steeper_angle) {
+  const auto way = [&](double angle, double fraction) {
+    HeldSlab slab(angle, MaterialModel::mu_of_i, 1500);
+    slab.options.material.grain_diameter = 0.15;
+    slab.options.material.volume_fraction = fraction;
+    const double gone = way_of_middle(slab, 0, GetParam());
+    std::printf("  grains that fill %.2f on %g deg: %.4f m in 1 s\n", fraction, angle, gone);
+    return gone;
+  };
+  EXPECT_LT(std::abs(way(22.5, 0.62)), 0.005);
+  const double steady = way(22.5, 0.60), loose = way(22.5, 0.59);
+  EXPECT_GT(steady, 0.1);
+  EXPECT_GT(loose, steady);
+  // Above its angle the dense slab starts too, and behind the loose one.
+  const double dense = way(26, 0.62);
+  EXPECT_GT(dense, 0.1);
+  EXPECT_GT(way(26, 0.59), 1.1 * dense);
+  EXPECT_LT(std::abs(way(20, 0.60)), 0.005);
+}
+
+/// A slab that flows grows by what its grains dilate: the height of its surface is the integral of phi_0 / phi over the
+/// thickness, and phi tends to phi_eq(I) of mu(I) = tan(slope).
+TEST_P(FlowOnIncline, of_grains_rises_as_they_dilate) {
+  for (const double fraction : {0.62, 0.56}) {
+    HeldSlab slab(26, MaterialModel::mu_of_i, 1500);
+    MaterialOptions& m = slab.options.material;
+    m.grain_diameter = 0.3;
+    m.volume_fraction = fraction;
+    const Scene scene = slab.scene();
+    const auto solver = make_solver(scene, slab.options, GetParam());
+    const auto first = solver->state().points;
+    run_to(*solver, 4.5);
+    const auto points = solver->state().points;
+    const auto x = positions(scene.map, scene.grid, solver->ground(), points);
+    const double middle = centre(*solver, scene).x, layer = HeldSlab::upright / slab.layers;
+    // By rows of points, of which there are two a layer.
+    std::vector<double> start(points.size());
+    for (std::size_t p = 0; p < first.size(); ++p)
+      start[static_cast<std::size_t>(first.id[p])] = (first.cell[2][p] + first.offset[2][p]) * layer;
+    std::vector<double> volume(2 * slab.layers), count(2 * slab.layers), height(2 * slab.layers);
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      if (std::abs(x[p][0] - middle) > 4) continue;
+      const auto row = static_cast<std::size_t>(start[static_cast<std::size_t>(points.id[p])] / (0.5 * layer));
+      volume[row] += std::exp(points.plastic_log_volume[p]);
+      height[row] += (points.cell[2][p] + points.offset[2][p]) * layer;
+      ++count[row];
+    }
+    double grown = 0;  // the integral up to the middle of the topmost row
+    for (std::size_t row = 0; row < volume.size(); ++row) {
+      const double share = row + 1 == volume.size() ? 0.25 : 0.5;
+      grown += share * layer * volume[row] / count[row];
+    }
+    const double top = height.back() / count.back(), still = HeldSlab::upright - 0.25 * layer;
+    const double at_base = fraction / (volume[1] / count[1]);
+    std::printf("  from %.2f to %.4f at the base: top row at %.4f m, of %.4f m by its volume, %.4f m at first\n",
+                fraction, at_base, top, grown, still);
+    EXPECT_NEAR(top - still, grown - still, 0.01);
+  }
+}
+
 TALUS_IN_EACH_PLACE(FlowOnIncline);
 
 }  // namespace
