@@ -195,6 +195,9 @@ struct MuOfI : FlowingLaw<MuOfI> {
     const Real rest = DilatingCone<Real>(still, more).slope;
     if (shear <= rest * free || !(shear > Real(0))) return {shear};
     const Numbers<Real> now = as_packed(n, more, creeps || !(still > Real(0)) ? Real(1) : rest / still);
+    const auto by_number = [&](Real number) { return inertial(n, number); };
+    const auto guess = [&](Real p) { return balance(now, shear, p, m.shear_modulus * Real(sqrt(p)) * reach); };
+    if (!creeps && free > Real(0) && meets_both(step, by_number, Real(0), guess(free), free)) return step.end();
     Real i = 0;
     const auto flow_under = [&](Real p) {
       if (creeps) {
@@ -206,10 +209,9 @@ struct MuOfI : FlowingLaw<MuOfI> {
           return;
         }
       }
-      if (!(i > n.creep_below)) i = balance(now, shear, p, m.shear_modulus * Real(sqrt(p)) * reach);
+      if (!(i > n.creep_below)) i = guess(p);
       if (!(i > n.creep_below)) i = Real(2) * n.creep_below + Real(1e-6);
-      const auto curve = [&](Real number) { return inertial(n, number); };
-      i = balance_at(step, curve, p, n.creep_below, Real(unbounded), i);
+      i = balance_at(step, by_number, p, n.creep_below, Real(unbounded), i);
     };
     return dilatant_end(step, rest > Real(0) ? shear / rest : Real(unbounded), flow_under);
   }
