@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <functional>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "solver/integrator/scene.hpp"
 #include "solver/options/solve.hpp"
@@ -230,42 +232,52 @@ TEST_P(FlowOnIncline, of_dense_grains_starts_at_a_steeper_angle) {
 }
 
 /// A slab that flows grows by what its grains dilate: the height of its surface is the integral of phi_0 / phi over the
-/// thickness, and phi tends to phi_eq(I) of mu(I) = tan(slope).
+/// thickness, and phi tends to phi_eq(I) of mu(I) = tan(slope), I = 0.179.
 TEST_P(FlowOnIncline, of_grains_rises_as_they_dilate) {
-  for (const double fraction : {0.62, 0.56}) {
+  for (const auto& [fraction, precision] : {std::pair{0.62, Precision::double_}, std::pair{0.56, Precision::single_}}) {
     HeldSlab slab(26, MaterialModel::mu_of_i, 1500);
-    MaterialOptions& m = slab.options.material;
-    m.grain_diameter = 0.3;
-    m.volume_fraction = fraction;
+    slab.options.precision = precision;
+    slab.options.material.grain_diameter = 0.3;
+    slab.options.material.volume_fraction = fraction;
     const Scene scene = slab.scene();
     const auto solver = make_solver(scene, slab.options, GetParam());
-    const auto first = solver->state().points;
-    run_to(*solver, 4.5);
-    const auto points = solver->state().points;
-    const auto x = positions(scene.map, scene.grid, solver->ground(), points);
-    const double middle = centre(*solver, scene).x, layer = HeldSlab::upright / slab.layers;
-    // By rows of points, of which there are two a layer.
-    std::vector<double> start(points.size());
+    const double layer = HeldSlab::upright / slab.layers, row_height = 0.5 * layer;  // two rows of points a layer
+    const auto height_of = [&](const ParticleState& s, std::size_t p) {
+      return (s.cell[2][p] + s.offset[2][p]) * layer;
+    };
+    const ParticleState first = solver->state().points;
+    std::vector<std::size_t> row_of(first.size());
     for (std::size_t p = 0; p < first.size(); ++p)
-      start[static_cast<std::size_t>(first.id[p])] = (first.cell[2][p] + first.offset[2][p]) * layer;
-    std::vector<double> volume(2 * slab.layers), count(2 * slab.layers), height(2 * slab.layers);
+      row_of[static_cast<std::size_t>(first.id[p])] = static_cast<std::size_t>(height_of(first, p) / row_height);
+    run_to(*solver, 4.5);
+    const ParticleState points = solver->state().points;
+    const auto x = positions(scene.map, scene.grid, solver->ground(), points);
+    const double middle = centre(*solver, scene).x;
+    const auto rows = static_cast<std::size_t>(2 * slab.layers);
+    std::vector<double> volume(rows), count(rows), height(rows);
     for (std::size_t p = 0; p < points.size(); ++p) {
       if (std::abs(x[p][0] - middle) > 4) continue;
-      const auto row = static_cast<std::size_t>(start[static_cast<std::size_t>(points.id[p])] / (0.5 * layer));
+      const std::size_t row = row_of[static_cast<std::size_t>(points.id[p])];
       volume[row] += std::exp(points.plastic_log_volume[p]);
-      height[row] += (points.cell[2][p] + points.offset[2][p]) * layer;
+      height[row] += height_of(points, p);
       ++count[row];
     }
-    double grown = 0;  // the integral up to the middle of the topmost row
-    for (std::size_t row = 0; row < volume.size(); ++row) {
-      const double share = row + 1 == volume.size() ? 0.25 : 0.5;
-      grown += share * layer * volume[row] / count[row];
+    double grown = 0;  // up to the middle of the topmost row
+    for (std::size_t row = 0; row < rows; ++row)
+      grown += (row + 1 == rows ? 0.5 : 1) * row_height * volume[row] / count[row];
+    const double top = height.back() / count.back(), before = HeldSlab::upright - 0.5 * row_height;
+    const double at_base = fraction * count[1] / volume[1];
+    std::printf("  grains from %.2f to %.4f at the base: top row %+.1f mm, %+.1f mm by its volume\n", fraction, at_base,
+                1e3 * (top - before), 1e3 * (grown - before));
+    // A fortieth of a layer: rows are no longer level, and the weight strains the slab by 2 mm at first.
+    EXPECT_NEAR(top, grown, 0.003);
+    // phi_eq is 0.564. The dense slab starts late and is on its way there.
+    if (fraction < 0.6) {
+      EXPECT_NEAR(at_base, 0.6 - 0.2 * 0.179, 0.001);
+    } else {
+      EXPECT_GT(top - before, 0.04);
+      EXPECT_LT(at_base, 0.59);
     }
-    const double top = height.back() / count.back(), still = HeldSlab::upright - 0.25 * layer;
-    const double at_base = fraction / (volume[1] / count[1]);
-    std::printf("  from %.2f to %.4f at the base: top row at %.4f m, of %.4f m by its volume, %.4f m at first\n",
-                fraction, at_base, top, grown, still);
-    EXPECT_NEAR(top - still, grown - still, 0.01);
   }
 }
 

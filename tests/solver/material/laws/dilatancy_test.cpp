@@ -188,7 +188,7 @@ TEST(Dilatancy, returns_to_friction_volume_and_pressure_of_one_inertial_number) 
             ASSERT_GE(pressure, -1e-12 * p) << first << ", " << p << ", " << seconds << ", " << times;
             ASSERT_GE(end.left, 0);
             ASSERT_LE(end.left, shear);
-            if (end.left == shear) continue;  // rests
+            if (end.left == shear) continue;                                         // rests
             EXPECT_LE(end.left, steepest_cone * pressure * (1 + 1e-9) + 1e-12 * p);  // p is met to 1e-10
             // Loose grains in a long step whose volume is held lose all of their pressure but for rounding.
             if (pressure < 1e-3 * p) continue;
