@@ -81,16 +81,8 @@ std::vector<AskedCone> cones_of(const MaterialOptions& material) {
   }
   if (material.model != MaterialModel::mu_of_i) return {};
   const auto& law = material.options_of<MuOfI>();
-  std::vector<AskedCone> cones = {
-      {"static_friction_angle_deg", law.static_friction_angle, law.internal_friction()},
-      {"limiting_friction_angle_deg", law.limiting_friction_angle, law.limiting_friction()}};
-  if (const double more = law.first_dilatancy(); more > 0) {
-    const double angle = std::atan(law.internal_friction() + more), dilatancy = std::atan(more);
-    const AskedCone dense{"volume_fraction", law.volume_fraction,
-                          fit_cone(Cone::simple_shear, angle, 0, dilatancy).slope};
-    if (dense.slope > cones.back().slope) cones.push_back(dense);
-  }
-  return cones;
+  return {{"static_friction_angle_deg", law.static_friction_angle, law.internal_friction()},
+          {"limiting_friction_angle_deg", law.limiting_friction_angle, law.limiting_friction()}};
 }
 
 /// The share of the pressure p [Pa] that a material holds in slow simple shear [-].

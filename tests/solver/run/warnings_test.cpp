@@ -144,14 +144,6 @@ TEST(Warnings, look_at_the_packing_of_mu_of_i) {
     o.material.density = density;
     EXPECT_TRUE(says(warnings(two_metres_of_mass(), o), "have 1519, and 1899 with water")) << density;
   }
-  // tan(20.9 deg) and 4 times 0.15 of dilatancy: 0.982 in simple shear, under a cone of 0.982 1.217 / 1.786.
-  o.material.volume_fraction = 0.75;
-  o.material.density = 1850;
-  EXPECT_TRUE(warnings(two_metres_of_mass(), o).empty());
-  o.material.static_friction_angle = 32;
-  o.material.limiting_friction_angle = 34;
-  o.material.dilatancy_rate = 12;
-  EXPECT_TRUE(says(warnings(two_metres_of_mass(), o), "volume_fraction = 0.75 asks for the cone"));
 }
 
 TEST(Warnings, are_silent_of_mud_whose_strength_is_no_friction) {
