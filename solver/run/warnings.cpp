@@ -96,7 +96,18 @@ double held_share(const MaterialOptions& material, double pressure) {
 /// What the grains of a material do not bear out; `table` is its table of the recipe.
 void warn_of_grains(const MaterialOptions& material, const std::string& table, std::vector<std::string>& lines) {
   if (material.model != MaterialModel::mu_of_i) return;
-  const double grains = material.options_of<MuOfI>().grain_density;
+  const auto& law = material.options_of<MuOfI>();
+  const double grains = law.grain_density;
+  if (law.dilates()) {
+    constexpr double water = 1000, close = 0.02;
+    const double dry = law.volume_fraction * grains, full = dry + (1 - law.volume_fraction) * water;
+    if (material.density >= (1 - close) * dry && material.density <= (1 + close) * full) return;
+    lines.push_back(fmt::format(
+        "{} density_kg_m3 = {:g} does not go with grain_density_kg_m3 = {:g} and volume_fraction = {:g}. Grains so "
+        "packed have {:g}, and {:g} with water between them",
+        table, material.density, grains, law.volume_fraction, dry, full));
+    return;
+  }
   if (material.density <= grains) return;
   lines.push_back(fmt::format(
       "{} density_kg_m3 = {:g} is that of the mass, pores included, and above grain_density_kg_m3 = {:g}. Dry grains "

@@ -6,12 +6,14 @@
 //   sqrt(J2) = mu(I) p,   mu(I) = (mu_s I_0 + mu_2 I + mu_inf I^2) / (I_0 + I),   I = |rate| d / sqrt(p / rho_s),
 //
 // |rate| = sqrt(2 D : D) of the plastic flow, d and rho_s diameter and density of the grains. In plane shear sqrt(J2)
-// is the shear stress, so that mu_s and mu_2 are tangents of angles of simple shear.
+// is the shear stress, so that mu_s and mu_2 are tangents of angles of simple shear. With a volume fraction given,
+// shear dilates what is dense and contracts what is loose (dilatancy.hpp).
 #pragma once
 
 #include <cmath>
 #include <numbers>
 
+#include "solver/material/laws/dilatancy.hpp"
 #include "solver/material/laws/drucker_prager.hpp"
 #include "solver/material/laws/flowing.hpp"
 
@@ -50,6 +52,10 @@ struct MuOfI : FlowingLaw<MuOfI> {
     double grain_density = 2450;             ///< [kg/m3]
     double fast_friction_rise = 0.05;        ///< mu_inf, slope of mu at high I [-]
     SlowFlow slow_flow = SlowFlow::yield;
+    double volume_fraction = 0;            ///< of the mass at the start [-]; 0: shear keeps the volume
+    double volume_fraction_at_rest = 0.6;  ///< that slow shear leads to [-]
+    double volume_fraction_slope = 0.2;    ///< what a unit of I takes from that (Forterre & Pouliquen 2008) [-]
+    double dilatancy_rate = 4;             ///< K_3 of (T27c) (Pailha & Pouliquen 2009: about 4) [-]
 
     /// The friction coefficient of slow flow, mu_s [-].
     double internal_friction() const { return std::tan(static_friction_angle * std::numbers::pi / 180); }
@@ -59,7 +65,12 @@ struct MuOfI : FlowingLaw<MuOfI> {
     /// where they are nowhere, as the friction rises too little.
     double first_well_posed() const;
     bool softens() const { return false; }  ///< strength does not fall as the material shears
-    bool dilates() const { return false; }  ///< shear does not change the volume
+    /// Whether shear changes the volume of the material.
+    bool dilates() const { return volume_fraction > 0; }
+    /// What the volume fraction at the start adds to the friction of slow flow, tan(psi) [-].
+    double first_dilatancy() const {
+      return dilates() ? dilatancy_rate * (volume_fraction - volume_fraction_at_rest) : 0;
+    }
     /// The method declares the keys with defaults, help and what they need of one another.
     void describe(recipe::Visitor& v, const LawTable& table);
   };
@@ -67,13 +78,19 @@ struct MuOfI : FlowingLaw<MuOfI> {
   static std::string words(const Options& o, const std::string& elasticity) {
     return "mu(I) flow, " + elasticity + ", friction " + six_digits(o.static_friction_angle) + " to " +
            six_digits(o.limiting_friction_angle) + " deg, grains of " + six_digits(o.grain_diameter) + " m" +
-           (o.slow_flow == SlowFlow::creep ? ", creeps below" : "");
+           (o.slow_flow == SlowFlow::creep ? ", creeps below" : "") +
+           (o.dilates() ? ", volume fraction " + six_digits(o.volume_fraction) + ", " +
+                              six_digits(o.volume_fraction_at_rest) + " in slow shear"
+                        : "");
   }
   /// The law in a sentence of the report, "It is ...".
   static std::string sentence(const Options& o) {
     return "a granular material (mu(I) rheology) whose friction angle grows with the rate of shear from " +
            six_digits(o.static_friction_angle) + "\u00b0 to " + six_digits(o.limiting_friction_angle) +
-           "\u00b0, with grains of " + six_digits(1000 * o.grain_diameter) + " mm";
+           "\u00b0, with grains of " + six_digits(1000 * o.grain_diameter) + " mm" +
+           (o.dilates() ? ", which fill " + six_digits(o.volume_fraction) + " of the space at the start and " +
+                              six_digits(o.volume_fraction_at_rest) + " after slow shear"
+                        : "");
   }
 
   /// The numbers of the law as kernels see them.
@@ -84,6 +101,7 @@ struct MuOfI : FlowingLaw<MuOfI> {
     Real grain = 0;                     ///< d sqrt(rho_s) [sqrt(kg / m)]
     Real creep_below = 0;               ///< inertial number [-]; 0: it rests
     Real creep_scale = 0;               ///< A of the creep [-]
+    DilatancyNumbers<Real> volume;      ///< what shear does to it
   };
   /// The numbers of the options.
   template <class Real>
@@ -94,6 +112,10 @@ struct MuOfI : FlowingLaw<MuOfI> {
     n.rise = static_cast<Real>(o.fast_friction_rise);
     n.half = static_cast<Real>(o.inertial_number);
     n.grain = static_cast<Real>(o.grain_diameter * std::sqrt(o.grain_density));
+    if (o.dilates()) {
+      n.volume = {static_cast<Real>(o.volume_fraction), static_cast<Real>(o.volume_fraction_at_rest),
+                  static_cast<Real>(o.volume_fraction_slope), static_cast<Real>(o.dilatancy_rate)};
+    }
     if (o.slow_flow == SlowFlow::yield) return n;
     const double below = o.first_well_posed();
     const InertialFriction<double> there(o.internal_friction(), o.limiting_friction(), o.fast_friction_rise,
@@ -103,8 +125,17 @@ struct MuOfI : FlowingLaw<MuOfI> {
     return n;
   }
 
-  /// The end of a trial with sqrt(J2) `shear` at the pressure p [Pa] in a step of `seconds`. G gamma = give I, so that
-  /// the friction of (T27) makes the equation quadratic in I.
+  /// The end of a trial with sqrt(J2) `shear` [Pa] under the pressure `free`, below 0 where it has opened, in a step of
+  /// `seconds`, of a point with this plastic volume change.
+  template <class Real>
+  TALUS_HD static FlowEnd<Real> end(const Elasticity<Real>& m, const Numbers<Real>& n, Real shear, Real free,
+                                    Real plastic, Real seconds) {
+    if (n.volume.first > Real(0)) return dilatant_flow(m, n, shear, free, plastic, seconds);
+    return flow(m, n, shear, free > Real(0) ? free : Real(0), seconds);
+  }
+
+  /// The end of a trial with sqrt(J2) `shear` at the pressure p [Pa] in a step of `seconds`, at constant volume.
+  /// G gamma = give I, so that the friction of (T27) makes the equation quadratic in I.
   template <class Real>
   TALUS_HD static FlowEnd<Real> flow(const Elasticity<Real>& m, const Numbers<Real>& n, Real shear, Real p,
                                      Real seconds) {
@@ -114,15 +145,77 @@ struct MuOfI : FlowingLaw<MuOfI> {
     const Real give = m.shear_modulus * sqrt(p) * seconds / n.grain;
     const InertialFriction<Real> limit(n.slow, n.fast, n.rise, n.half, n.creep_below);
     if (creeps && shear < limit.value * p + give * n.creep_below) return creep(n, shear, p, give, limit.value);
-    const Real a = give + p * n.rise, b = give * n.half + p * n.fast - shear, c = (shear - p * n.slow) * n.half;
-    const Real root = sqrt(b * b + Real(4) * a * c);
-    const Real i = b > Real(0) ? Real(2) * c / (b + root) : (root - b) / (Real(2) * a);
+    const Real i = balance(n, shear, p, give);
     const InertialFriction<Real> mu(n.slow, n.fast, n.rise, n.half, i);
     if (mu.value > Real(steepest_cone)) return {Real(steepest_cone) * p, Real(0), Real(steepest_cone)};
     return end_at(mu, i, p, give / (p * mu.slope));
   }
 
  private:
+  /// The inertial number at which shear - p mu(I) - give I is zero.
+  template <class Real>
+  TALUS_HD static Real balance(const Numbers<Real>& n, Real shear, Real p, Real give) {
+    const Real a = give + p * n.rise, b = give * n.half + p * n.fast - shear, c = (shear - p * n.slow) * n.half;
+    const Real root = sqrt(b * b + Real(4) * a * c);
+    return b > Real(0) ? Real(2) * c / (b + root) : (root - b) / (Real(2) * a);
+  }
+
+  /// The friction of (T27) at an inertial number.
+  template <class Real>
+  TALUS_HD static FrictionAt<Real> inertial(const Numbers<Real>& n, Real i) {
+    const InertialFriction<Real> mu(n.slow, n.fast, n.rise, n.half, i);
+    return {i, mu.value, Real(1), mu.slope};
+  }
+  /// The inertial number of the creep (T27b) at a friction.
+  template <class Real>
+  TALUS_HD static FrictionAt<Real> creeping(const Numbers<Real>& n, Real mu) {
+    const Real i = n.creep_scale * Real(exp(-Real(creep_constant) / (mu * mu)));
+    return {i, mu, Real(2 * creep_constant) * i / (mu * mu * mu), Real(1)};
+  }
+  /// The numbers of grains that stay as they are packed at the start of the step: (T27) with a little more of
+  /// everything, for tan(psi) = `more` + K_3 K_2 I there. `share` is what the cone has of that.
+  template <class Real>
+  TALUS_HD static Numbers<Real> as_packed(const Numbers<Real>& n, Real more, Real share) {
+    Numbers<Real> now = n;
+    const Real rise = n.volume.rate * n.volume.slope;
+    now.slow = share * (n.slow + more);
+    now.fast = share * (n.fast + more + rise * n.half);
+    now.rise = share * (n.rise + rise);
+    return now;
+  }
+
+  /// The end of the trial of grains whose volume follows the shear (T27c).
+  template <class Real>
+  TALUS_RARE static FlowEnd<Real> dilatant_flow(const Elasticity<Real>& m, const Numbers<Real>& n, Real shear,
+                                                Real free, Real plastic, Real seconds) {
+    const Real fraction = n.volume.first * Real(exp(-plastic)), reach = seconds / n.grain;
+    DilatantReturn<Real> step(m, n.volume, {shear, free, fraction, reach});
+    const bool creeps = n.creep_below > Real(0);
+    const Real more = step.angle_at_rest(), still = creeps ? more : n.slow + more;
+    const Real rest = DilatingCone<Real>(still, more).slope;
+    if (shear <= rest * free || !(shear > Real(0))) return {shear};
+    const Numbers<Real> now = as_packed(n, more, creeps || !(still > Real(0)) ? Real(1) : rest / still);
+    const auto by_number = [&](Real number) { return inertial(n, number); };
+    const auto guess = [&](Real p) { return balance(now, shear, p, m.shear_modulus * Real(sqrt(p)) * reach); };
+    if (!creeps && free > Real(0) && meets_both(step, by_number, Real(0), guess(free), free)) return step.end();
+    Real i = 0;
+    const auto flow_under = [&](Real p) {
+      if (creeps) {
+        const FrictionAt<Real> joint = inertial(n, n.creep_below);
+        step.at(joint, p);
+        if (!(step.balance() > Real(0))) {
+          const auto curve = [&](Real mu) { return creeping(n, mu); };
+          balance_at(step, curve, p, Real(0), joint.friction, Real(0.9) * joint.friction);
+          return;
+        }
+      }
+      if (!(i > n.creep_below)) i = guess(p);
+      if (!(i > n.creep_below)) i = Real(2) * n.creep_below + Real(1e-6);
+      i = balance_at(step, by_number, p, n.creep_below, Real(unbounded), i);
+    };
+    return dilatant_end(step, rest > Real(0) ? shear / rest : Real(unbounded), flow_under);
+  }
+
   /// The end at the friction mu; `softness` is what the elastic shear falls by over what friction grows by [-].
   template <class Real>
   TALUS_HD static FlowEnd<Real> end_at(const InertialFriction<Real>& mu, Real i, Real p, Real softness) {
@@ -192,6 +285,19 @@ inline void MuOfI::Options::describe(recipe::Visitor& v, const LawTable& table) 
                shortest(static_friction_angle) + " to " + shortest(limiting_friction_angle) + " deg",
            "friction that rises so little is well posed at no rate, and creep has nowhere to begin",
            "Raise limiting_friction_angle_deg, or take slow_flow = \"yield\""});
+  v.number("volume_fraction", volume_fraction, Range{0, 0.75},
+           "mu-of-i: share of the space that the grains fill at the start; 0: shear does not change the volume");
+  v.number("volume_fraction_at_rest", volume_fraction_at_rest, Range{0.3, 0.75},
+           "mu-of-i: volume fraction that slow shear leads to; denser grains dilate, looser ones contract");
+  v.number("volume_fraction_slope", volume_fraction_slope, Range{0, 0.25},
+           "mu-of-i: what the inertial number takes from that per unit, up to 0.5 of it");
+  v.number("dilatancy_rate", dilatancy_rate, Range{0, 100, true, false},
+           "mu-of-i: K_3, tangent of the dilatancy angle over the excess of the volume fraction");
+  v.needs(
+      internal_friction() + first_dilatancy() > 0,
+      {table.name + " volume_fraction = " + shortest(volume_fraction) + " leaves the grains no friction at the start",
+       "tan of static_friction_angle_deg and dilatancy_rate times what volume_fraction_at_rest is above it cancel",
+       "Raise volume_fraction, or lower dilatancy_rate"});
 }
 
 }  // namespace talus

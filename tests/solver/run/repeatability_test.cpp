@@ -39,11 +39,20 @@ TEST(Repeatability, gives_the_same_bits_on_every_cpu_run) {
   EXPECT_EQ(a.log_volume, b.log_volume);
 }
 
+/// Dense grains under mu(I), which dilate as they slide.
+SolveOptions dense_grains() {
+  SolveOptions o;
+  o.material.model = MaterialModel::mu_of_i;
+  o.material.grain_diameter = 0.05;
+  o.material.volume_fraction = 0.63;
+  return o;
+}
+
 TEST(Repeatability, resumes_to_the_same_bits) {
   const Domain d = block_on_a_plane();
-  for (const auto precision : {Precision::double_, Precision::single_}) {
-    SolveOptions o;
-    o.precision = precision;
+  SolveOptions single;
+  single.precision = Precision::single_;
+  for (const SolveOptions& o : {SolveOptions{}, single, dense_grains()}) {
     const Scene scene = make_scene(d, o);
     const auto unbroken = make_solver(scene, o, On::cpu);
     unbroken->set_next_event(1.0);
@@ -59,8 +68,29 @@ TEST(Repeatability, resumes_to_the_same_bits) {
     EXPECT_EQ(a.velocity[2], b.velocity[2]);
     EXPECT_EQ(a.offset[0], b.offset[0]);
     EXPECT_EQ(a.elastic[5], b.elastic[5]);
+    EXPECT_EQ(a.plastic_log_volume, b.plastic_log_volume);
     EXPECT_EQ(unbroken->state().maps.peak_speed, resumed->state().maps.peak_speed);
   }
+}
+
+TEST(Places, agree_on_grains_that_dilate) {
+  if (!gpu_available()) {
+    if (std::getenv("TALUS_REQUIRE_GPU") != nullptr) FAIL() << "TALUS_REQUIRE_GPU is set, but no GPU can be used";
+    GTEST_SKIP() << "no GPU on this machine";
+  }
+  const SolveOptions o = dense_grains();
+  const Scene scene = make_scene(block_on_a_plane(), o);
+  const auto volume = [&](On on) {
+    const auto solver = make_solver(scene, o, on);
+    run_to(*solver, 0.2);
+    double sum = 0;
+    for (const double log_volume : solver->state().points.plastic_log_volume) sum += std::exp(log_volume) - 1;
+    return sum;
+  };
+  const double dilated = volume(On::cpu);
+  EXPECT_GT(dilated, 0);
+  // Returns end within 1e-9 of one another where rounding differs.
+  EXPECT_NEAR(volume(On::gpu) / dilated, 1, 1e-6);
 }
 
 TEST(Places, agree_on_a_slide) {

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <functional>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "solver/integrator/scene.hpp"
 #include "solver/options/solve.hpp"
@@ -203,6 +205,78 @@ TEST_P(FlowOnIncline, of_mu_of_i_starts_and_stops_at_the_static_angle) {
       } else {
         EXPECT_GT(way, 0.05);
       }
+    }
+  }
+}
+
+/// Dense grains hold until the slope's tangent is mu_s + K (phi - phi_s), loose ones give way below mu_s: those of 0.62
+/// at 24.8 degrees, those of 0.59 at 18.9, between which lies the angle of this slope and that of steady flow, 20.9.
+TEST_P(FlowOnIncline, of_dense_grains_starts_at_a_steeper_angle) {
+  const auto way = [&](double angle, double fraction) {
+    HeldSlab slab(angle, MaterialModel::mu_of_i, 1500);
+    slab.options.material.grain_diameter = 0.15;
+    slab.options.material.volume_fraction = fraction;
+    const double gone = way_of_middle(slab, 0, GetParam());
+    std::printf("  grains that fill %.2f on %g deg: %.4f m in 1 s\n", fraction, angle, gone);
+    return gone;
+  };
+  EXPECT_LT(std::abs(way(22.5, 0.62)), 0.005);
+  const double steady = way(22.5, 0.60), loose = way(22.5, 0.59);
+  EXPECT_GT(steady, 0.1);
+  EXPECT_GT(loose, steady);
+  // Above its angle the dense slab starts too, and behind the loose one.
+  const double dense = way(26, 0.62);
+  EXPECT_GT(dense, 0.1);
+  EXPECT_GT(way(26, 0.59), 1.1 * dense);
+  EXPECT_LT(std::abs(way(20, 0.60)), 0.005);
+}
+
+/// A slab that flows grows by what its grains dilate: the height of its surface is the integral of phi_0 / phi over the
+/// thickness, and phi tends to phi_eq(I) of mu(I) = tan(slope), I = 0.179.
+TEST_P(FlowOnIncline, of_grains_rises_as_they_dilate) {
+  for (const auto& [fraction, precision] : {std::pair{0.62, Precision::double_}, std::pair{0.56, Precision::single_}}) {
+    HeldSlab slab(26, MaterialModel::mu_of_i, 1500);
+    slab.options.precision = precision;
+    slab.options.material.grain_diameter = 0.3;
+    slab.options.material.volume_fraction = fraction;
+    const Scene scene = slab.scene();
+    const auto solver = make_solver(scene, slab.options, GetParam());
+    const double layer = HeldSlab::upright / slab.layers, row_height = 0.5 * layer;  // two rows of points a layer
+    const auto height_of = [&](const ParticleState& s, std::size_t p) {
+      return (s.cell[2][p] + s.offset[2][p]) * layer;
+    };
+    const ParticleState first = solver->state().points;
+    std::vector<std::size_t> row_of(first.size());
+    for (std::size_t p = 0; p < first.size(); ++p)
+      row_of[static_cast<std::size_t>(first.id[p])] = static_cast<std::size_t>(height_of(first, p) / row_height);
+    run_to(*solver, 4.5);
+    const ParticleState points = solver->state().points;
+    const auto x = positions(scene.map, scene.grid, solver->ground(), points);
+    const double middle = centre(*solver, scene).x;
+    const auto rows = static_cast<std::size_t>(2 * slab.layers);
+    std::vector<double> volume(rows), count(rows), height(rows);
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      if (std::abs(x[p][0] - middle) > 4) continue;
+      const std::size_t row = row_of[static_cast<std::size_t>(points.id[p])];
+      volume[row] += std::exp(points.plastic_log_volume[p]);
+      height[row] += height_of(points, p);
+      ++count[row];
+    }
+    double grown = 0;  // up to the middle of the topmost row
+    for (std::size_t row = 0; row < rows; ++row)
+      grown += (row + 1 == rows ? 0.5 : 1) * row_height * volume[row] / count[row];
+    const double top = height.back() / count.back(), before = HeldSlab::upright - 0.5 * row_height;
+    const double at_base = fraction * count[1] / volume[1];
+    std::printf("  grains from %.2f to %.4f at the base: top row %+.1f mm, %+.1f mm by its volume\n", fraction, at_base,
+                1e3 * (top - before), 1e3 * (grown - before));
+    // A fortieth of a layer: rows are no longer level, and the weight strains the slab by 2 mm at first.
+    EXPECT_NEAR(top, grown, 0.003);
+    // phi_eq is 0.564. The dense slab starts late and is on its way there.
+    if (fraction < 0.6) {
+      EXPECT_NEAR(at_base, 0.6 - 0.2 * 0.179, 0.001);
+    } else {
+      EXPECT_GT(top - before, 0.04);
+      EXPECT_LT(at_base, 0.59);
     }
   }
 }

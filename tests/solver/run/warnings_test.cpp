@@ -132,6 +132,20 @@ TEST(Warnings, look_at_the_angles_and_grains_of_mu_of_i) {
   EXPECT_TRUE(says(warnings(two_metres_of_mass(), o), "grain_density_kg_m3 = 2450"));
 }
 
+TEST(Warnings, look_at_the_packing_of_mu_of_i) {
+  SolveOptions o = mass_on_bed(30, 20);
+  o.material.model = MaterialModel::mu_of_i;
+  o.material.density = 1500;
+  o.material.volume_fraction = 0.62;  // of 2,450 kg/m3
+  EXPECT_TRUE(warnings(two_metres_of_mass(), o).empty());
+  o.material.density = 1800;  // partly full of water
+  EXPECT_TRUE(warnings(two_metres_of_mass(), o).empty());
+  for (const double density : {1400.0, 2000.0}) {
+    o.material.density = density;
+    EXPECT_TRUE(says(warnings(two_metres_of_mass(), o), "have 1519, and 1899 with water")) << density;
+  }
+}
+
 TEST(Warnings, are_silent_of_mud_whose_strength_is_no_friction) {
   SolveOptions o = mass_on_bed(17, 25);
   o.material.model = MaterialModel::herschel_bulkley;

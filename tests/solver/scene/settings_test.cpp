@@ -117,6 +117,22 @@ TEST(Settings, scheme_materials_and_loads_need_fields_of_the_particles) {
   EXPECT_TRUE(all.plastic_volume && all.boxes && all.loads && all.several_materials && all.softening);
 }
 
+TEST(Settings, points_keep_plastic_volume_where_the_chosen_law_dilates) {
+  const auto keeps = [](const SolveOptions& o) { return make_settings(o, grid).common.needs.plastic_volume; };
+  SolveOptions o;
+  o.material.volume_fraction = 0.62;
+  EXPECT_FALSE(keeps(o)) << "it is a key of another law";
+  o.material.model = MaterialModel::mu_of_i;
+  EXPECT_TRUE(keeps(o));
+  o.material.volume_fraction = 0;
+  o.material.dilatancy_angle = 5;
+  EXPECT_FALSE(keeps(o));
+  o.parts.emplace_back();
+  o.parts[0].material.model = MaterialModel::mu_of_i;
+  o.parts[0].material.volume_fraction = 0.58;
+  EXPECT_TRUE(keeps(o)) << "a part of the mass does";
+}
+
 TEST(Settings, the_precisions_of_a_material_are_those_of_its_options) {
   SolveOptions o;
   o.material.cohesion = 1234;
