@@ -69,7 +69,8 @@ struct FlowingLaw {
   TALUS_HD static void settle(const Elasticity<Real>& m, const Numbers& n, const Increment<Real>& step,
                               MaterialState<Real>& s) {
     s.elastic = deviator(s.elastic);
-    const Real shear = Real(2) * m.shear_modulus * sqrt(Real(0.5) * norm_squared(s.elastic));  // sqrt(J2) of the trial
+    const Real shear =
+        Real(Real(2) * m.shear_modulus * sqrt(Real(0.5) * norm_squared(s.elastic)));  // sqrt(J2) of the trial
     const FlowEnd<Real> end = Law::flow(m, n, shear, pressure(m, s.log_volume), step.duration);
     if (end.left < shear) s.elastic = s.elastic * (end.left / shear);
   }
@@ -81,7 +82,7 @@ struct FlowingLaw {
     const Real* e = trial.strain;
     const Real mean = (e[0] + e[1] + e[2]) / Real(3), twice = Real(2) * m.shear_modulus;
     const Real s[3] = {e[0] - mean, e[1] - mean, e[2] - mean};
-    const Real square = s[0] * s[0] + s[1] * s[1] + s[2] * s[2], size = sqrt(Real(0.5) * square);
+    const Real square = s[0] * s[0] + s[1] * s[1] + s[2] * s[2], size = Real(sqrt(Real(0.5) * square));
     const Real shear = twice * size, p = pressure(m, trial.log_volume);
     const FlowEnd<Real> end = Law::flow(m, n, shear, p, trial.duration);
     const Real ratio = shear > Real(0) ? end.left / shear : Real(1);
