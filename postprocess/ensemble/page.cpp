@@ -67,6 +67,9 @@ Json run_json(const EnsemblePageInput& input) {
   json["elevation_error"] = fact(ensemble.table.provenance, elevation_error_of_members);
   json["accepted"] = Json::array();
   for (const auto& [name, why] : accepted_in(insisted_on(ensemble))) json["accepted"].push_back({name, why});
+  json["warnings"] = Json::array();
+  for (const auto& [name, why] : counts.provenance)
+    if (name.starts_with("warning.")) json["warnings"].push_back(why);
   json["failures"] = Json::array();
   for (const MemberFailure& failure : counts.failures)
     if (json["failures"].size() < failures_on_page)

@@ -99,6 +99,7 @@ export function drawMethod(data) {
   );
   if (run.survey) list.append(item(`Scores of members are against ${run.survey}, as the report of a run has them.`));
   if (run.hazard) list.append(item(`Hazard class: ${run.hazard}.`));
+  for (const words of run.warnings) list.append(item(h("strong", {}, "Warning: "), `${words}.`));
   for (const [name, why] of run.accepted)
     list.append(item(h("strong", {}, `Insisted on, "${name}": `), why));
   box.append(list);

@@ -265,10 +265,12 @@ TEST_F(EnsembleProducts, classify_hazard_by_the_matrix_of_the_recipe) {
   }
 }
 
-TEST_F(EnsembleProducts, say_what_was_insisted_on_in_maps_and_on_the_page) {
+TEST_F(EnsembleProducts, say_what_was_insisted_on_in_maps_and_with_warnings_on_the_page) {
   write_members();
   EnsembleCounts counts = test::part_of_ensemble(table_, {0, 40});
-  counts.provenance = {{"accepted.false-lengths", "a metre is 1.3 m"}, {"accepted.weight-strain", "strains by 0.6"}};
+  counts.provenance = {{"accepted.false-lengths", "a metre is 1.3 m"},
+                       {"accepted.weight-strain", "strains by 0.6"},
+                       {"warning.coarse_grid", "the grid is coarse"}};
   write_counts(out_ / "counts.h5", counts);
   run_it();
   const std::unique_ptr<GDALDataset> map(
@@ -278,6 +280,7 @@ TEST_F(EnsembleProducts, say_what_was_insisted_on_in_maps_and_on_the_page) {
   std::ifstream page(out_ / "ensemble.html");
   const std::string text(std::istreambuf_iterator<char>(page), {});
   EXPECT_NE(text.find("\"weight-strain\",\"strains by 0.6\""), std::string::npos);
+  EXPECT_NE(text.find("\"warnings\":[\"the grid is coarse\"]"), std::string::npos);
 }
 
 TEST_F(EnsembleProducts, are_not_scored_against_surveys_that_seem_swapped) {
