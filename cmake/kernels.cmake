@@ -86,8 +86,12 @@ function(talus_kernels target)
   if(TALUS_WITH_CUDA)
     target_compile_definitions(${target} PUBLIC TALUS_WITH_CUDA=1)
     # Host-only calls in device code are mere warnings by default, hence -Werror all-warnings.
-    # -Xcompiler ",": g++'s own optimiser must see the host half of a kernel as it would see a .cpp.
+    # -Xcompiler ",": g++'s own optimiser must see the host half of a kernel as it would see a .cpp. nvcc makes errors
+    # of g++'s warnings as well, so that conversions are looked for where warnings are errors anyway.
     set(_of_nvcc --expt-relaxed-constexpr --extended-lambda -Werror all-warnings -Xcompiler=-Wall,-Wextra)
+    if(TALUS_WERROR)
+      list(APPEND _of_nvcc -Xcompiler=-Wconversion,-Wsign-conversion)
+    endif()
     target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CUDA>:${_of_nvcc}>)
     target_link_libraries(${target} PUBLIC CUDA::cudart_static)
   endif()

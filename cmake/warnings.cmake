@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-# One interface target carries the warnings of all our own code; third-party headers are SYSTEM.
+# One interface target carries the warnings of all our own code; third-party headers are SYSTEM. With them all of it is
+# clean of conversions that may change a value or a sign; kernels that nvcc compiles too (cmake/kernels.cmake).
 add_library(talus_warnings INTERFACE)
-set(_warnings -Wall -Wextra -Wnon-virtual-dtor -Woverloaded-virtual)
+set(_warnings -Wall -Wextra -Wnon-virtual-dtor -Woverloaded-virtual -Wconversion -Wsign-conversion)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   list(APPEND _warnings -Wno-restrict)   # GCC 12 sees overlaps in every "literal" + std::string (GCC PR 105651)
 elseif(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
@@ -17,10 +18,6 @@ if(TALUS_WERROR)
   list(APPEND _warnings -Werror)
 endif()
 target_compile_options(talus_warnings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:${_warnings}>)
-# What has no kernels is also clean of conversions that may change a value or a sign.
-add_library(talus_strict_warnings INTERFACE)
-target_link_libraries(talus_strict_warnings INTERFACE talus_warnings)
-target_compile_options(talus_strict_warnings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wconversion;-Wsign-conversion>)
 # Sanitizers. An undefined operation ends the test rather than being told of. FORTIFY and sanitizers do not go together.
 if(TALUS_FUZZ)
   if(NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")

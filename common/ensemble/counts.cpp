@@ -11,6 +11,8 @@
 
 #include "common/error.hpp"
 #include "common/map/crop.hpp"
+#include "common/stage/acceptance.hpp"
+#include "common/stage/identity.hpp"
 
 namespace talus {
 namespace {
@@ -96,6 +98,14 @@ std::int64_t shared_member(const EnsembleCounts& all, const EnsembleCounts& part
   return -1;
 }
 
+/// What members of other parts were insisted on.
+void add_accepted(Facts& all, const Facts& part) {
+  for (const auto& [name, words] : accepted_in(part)) {
+    const std::string key = accepted_fact(name);
+    if (fact(all, key).empty()) all.emplace_back(key, words);
+  }
+}
+
 }  // namespace
 
 std::int64_t EnsembleCounts::count(MemberState state) const { return std::count(states.begin(), states.end(), state); }
@@ -177,6 +187,7 @@ EnsembleCounts merged(std::vector<EnsembleCounts> parts, const std::vector<std::
     if (const std::int64_t twice = shared_member(all, part); twice >= 0)
       throw DataError({fmt::format("{}: member {} is counted in another file as well", files[n].string(), twice),
                        "it would count twice", "Remove one of the files of counts"});
+    add_accepted(all.provenance, part.provenance);
     take(all, std::move(part));
   }
   std::sort(all.failures.begin(), all.failures.end(),

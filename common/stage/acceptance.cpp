@@ -47,6 +47,14 @@ void Acceptance::warn_of_unmet() const {
   }
 }
 
+std::string accepted_fact(const std::string& name) { return prefix + name; }
+
+std::string accepted_line(const std::vector<std::pair<std::string, std::string>>& facts) {
+  std::string text;
+  for (const auto& [name, words] : accepted_in(facts)) text += (text.empty() ? "" : "; ") + name + ": " + words;
+  return text;
+}
+
 std::vector<std::pair<std::string, std::string>> accepted_in(
     const std::vector<std::pair<std::string, std::string>>& facts) {
   std::vector<std::pair<std::string, std::string>> accepted;

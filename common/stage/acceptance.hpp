@@ -54,6 +54,10 @@ class Acceptance {
   std::vector<Fault> refused_;
 };
 
+/// The fact of what was insisted on by this name.
+std::string accepted_fact(const std::string& name);
+/// What was insisted on as one line, for the metadata of maps; "" for nothing.
+std::string accepted_line(const std::vector<std::pair<std::string, std::string>>& facts);
 /// Of facts kept with a result, those of what was insisted on: name, and the words of the refusal.
 std::vector<std::pair<std::string, std::string>> accepted_in(
     const std::vector<std::pair<std::string, std::string>>& facts);

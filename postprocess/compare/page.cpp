@@ -14,6 +14,7 @@
 #include "postprocess/compare/compare.hpp"
 #include "postprocess/compare/curves.hpp"
 #include "postprocess/compare/difference_classes.hpp"
+#include "postprocess/report/filled_page.hpp"
 #include "postprocess/report/pack.hpp"
 
 namespace talus::postprocess {
@@ -31,7 +32,7 @@ th{vertical-align:bottom}th:first-child{width:40%}h1,p,figcaption{overflow-wrap:
 td.n,th.n{text-align:right;font-variant-numeric:tabular-nums}
 .charts{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,20rem),1fr));gap:.6rem 1.2rem}
 .charts svg{width:100%;height:auto}.key{width:2.5rem;height:.6rem}svg text{font-size:11px;fill:#33363c}
-.charts figure{margin:0}.charts figcaption{font-weight:600;margin:.4rem 0 0}
+figure{margin:0}.charts figcaption{font-weight:600;margin:.4rem 0 0}
 svg .m{text-anchor:middle}svg .e{text-anchor:end}
 svg .g{stroke:#e3e5e8;fill:none}svg .a,svg .b{fill:none;stroke:#1a1c20;stroke-width:1.8}
 svg .b{stroke:#00735c;stroke-dasharray:7 4}
@@ -183,7 +184,7 @@ std::string legend(const DepositDifference& found, const ComparedRun& first, con
   for (const bool gain : {false, true}) {
     text += gain ? "<br>thicker:" : "thinner:";
     for (std::size_t i = 0; i < limits.size(); ++i)
-      text += fmt::format("<span class=\"k\" style=\"background:{}\"></span>{}",
+      text += fmt::format("<svg class=\"k\"><rect width=\"100%\" height=\"100%\" fill=\"{}\"/></svg>{}",
                           hex(difference_colour(gain, i, limits.size())), class_label(i, limits));
   }
   return text;
@@ -224,16 +225,16 @@ std::string comparison_html(const ComparedRun& first, const ComparedRun& second,
       R"(<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>{title}</title>
 <meta name="viewport" content="width=device-width, initial-scale=1">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; img-src data:; style-src 'unsafe-inline'">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; img-src data:; style-src {policy}">
 <style>{style}</style></head><body>
 <h1>{title}</h1>
 <p>{first} ({first_name}) beside {second} ({second_name}). Made with Talus {version}.</p>
-{remarks}<figure style="margin:0"><img alt="Map of the difference of the deposits" src="data:image/png;base64,{map}">
+{remarks}<figure><img alt="Map of the difference of the deposits" src="data:image/png;base64,{map}">
 <figcaption>{legend}</figcaption></figure>
 {difference}{charts}{scores}<h2>Recipes: what differs</h2>
 {recipes}</body></html>
 )",
-      fmt::arg("title", escaped_xml(title)), fmt::arg("style", style),
+      fmt::arg("title", escaped_xml(title)), fmt::arg("style", style), fmt::arg("policy", policy_source(style)),
       fmt::arg("first", escaped_xml(first.run.summary.title)),
       fmt::arg("second", escaped_xml(second.run.summary.title)), fmt::arg("first_name", escaped_xml(first.name)),
       fmt::arg("second_name", escaped_xml(second.name)), fmt::arg("version", escaped_xml(version())),

@@ -22,7 +22,7 @@ struct Ensemble {
   MemberTable table;
   EnsembleCounts counts;                     ///< merged: of all members
   std::vector<std::filesystem::path> files;  ///< members.h5, then the counts
-  Facts insisted;                            ///< what the analyst insisted on, for the metadata
+  Facts insisted;                            ///< what the analyst insisted on in this stage
 
   /// Members whose run is in the counts.
   std::int64_t counted() const { return counts.count(MemberState::counted); }

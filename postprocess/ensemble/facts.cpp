@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "common/stage/acceptance.hpp"
 #include "postprocess/ensemble/hazard.hpp"
 #include "postprocess/ensemble/sampling_error.hpp"
 
@@ -23,6 +24,14 @@ std::string statistic_words(const Ensemble& ensemble, const EnsembleMap& map) {
 
 }  // namespace
 
+Facts insisted_on(const Ensemble& ensemble) {
+  Facts facts = ensemble.counts.provenance;
+  for (const auto& one : ensemble.insisted)
+    if (fact(facts, one.first).empty()) facts.push_back(one);
+  std::erase_if(facts, [](const auto& one) { return accepted_in({one}).empty(); });
+  return facts;
+}
+
 Facts ensemble_facts(const Ensemble& ensemble) {
   const EnsembleCounts& counts = ensemble.counts;
   Facts facts{{"TITLE", counts.scene.title},
@@ -37,7 +46,8 @@ Facts ensemble_facts(const Ensemble& ensemble) {
               {"THICKNESS_CONVENTION", "vertical thickness, measured along the plumb line (not normal to the slope)"},
               {"ENSEMBLE_FINGERPRINT", counts.fingerprint},
               {"SOURCE", "Talus " + version()}};
-  for (const auto& [name, words] : ensemble.insisted) facts.emplace_back("ACCEPTED", words);
+  if (const std::string line = accepted_line(insisted_on(ensemble)); !line.empty())
+    facts.emplace_back("ACCEPTED", line);
   return facts;
 }
 

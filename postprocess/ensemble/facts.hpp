@@ -8,6 +8,9 @@
 
 namespace talus::postprocess {
 
+/// What the analyst insisted on, in the stages before and in this one.
+Facts insisted_on(const Ensemble& ensemble);
+
 /// Title, scene, design, seed and numbers of members: name (in capitals) and words.
 Facts ensemble_facts(const Ensemble& ensemble);
 

@@ -11,7 +11,9 @@
 #include <fmt/format.h>
 
 #include "common/gis/crs.hpp"
+#include "common/stage/acceptance.hpp"
 #include "postprocess/ensemble/convergence.hpp"
+#include "postprocess/ensemble/facts.hpp"
 #include "postprocess/ensemble/hazard.hpp"
 #include "postprocess/ensemble/maps_of_ensemble.hpp"
 #include "postprocess/ensemble/medoids.hpp"
@@ -63,6 +65,11 @@ Json run_json(const EnsemblePageInput& input) {
   const std::vector<std::int64_t> at_edge = counts.at_edge();
   json["at_edge"] = at_edge.empty() ? Json() : Json(names_at_edge(ensemble, at_edge));
   json["elevation_error"] = fact(ensemble.table.provenance, elevation_error_of_members);
+  json["accepted"] = Json::array();
+  for (const auto& [name, why] : accepted_in(insisted_on(ensemble))) json["accepted"].push_back({name, why});
+  json["warnings"] = Json::array();
+  for (const auto& [name, why] : counts.provenance)
+    if (name.starts_with("warning.")) json["warnings"].push_back(why);
   json["failures"] = Json::array();
   for (const MemberFailure& failure : counts.failures)
     if (json["failures"].size() < failures_on_page)

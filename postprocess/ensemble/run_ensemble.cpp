@@ -17,6 +17,7 @@
 #include "postprocess/ensemble/sensitivity.hpp"
 #include "postprocess/ensemble/write_maps.hpp"
 #include "postprocess/survey/found_survey.hpp"
+#include "postprocess/survey/order.hpp"
 
 namespace talus::postprocess {
 namespace fs = std::filesystem;
@@ -41,9 +42,19 @@ std::optional<Survey> survey_of(const StageContext& context, Options options, En
     judge_survey(found, context.out, ensemble);
   }
   options.survey.find_in(context.out, found.error_known);
+  acceptance.collect();
   if (alone) judge_outside(found, context.out, acceptance);
+  const RunMaps maps = base_maps(ensemble.counts.scene);
+  std::optional<Survey> survey =
+      acceptance.meanwhile([&] { return read_survey(options.survey, maps, options.footprint_threshold); });
+  if (alone) {
+    if (survey && fact(ensemble.counts.provenance, accepted_fact("swapped-surveys")).empty())
+      judge_order(*survey, maps, acceptance);
+    acceptance.settle();
+    acceptance.warn_of_unmet();
+  }
   for (const auto& accepted : acceptance.facts()) ensemble.insisted.push_back(accepted);
-  return read_survey(options.survey, base_maps(ensemble.counts.scene), options.footprint_threshold);
+  return survey;
 }
 
 /// Sensitivity of every result worth it.

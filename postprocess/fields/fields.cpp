@@ -77,12 +77,7 @@ std::string file_word(const std::string& name) {
   return word;
 }
 
-std::string accepted_words(const RunSummary& summary) {
-  std::string text;
-  for (const auto& [name, words] : accepted_in(summary.provenance))
-    text += (text.empty() ? "" : "; ") + name + ": " + words;
-  return text;
-}
+std::string accepted_words(const RunSummary& summary) { return accepted_line(summary.provenance); }
 
 double volume_under(const std::vector<double>& thickness, double cell) {
   long double sum = 0;

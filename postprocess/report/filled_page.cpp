@@ -42,8 +42,7 @@ std::string hashes(std::string_view page, std::string_view open, std::string_vie
   for (std::size_t at = page.find(open); at != std::string_view::npos; at = page.find(open, at)) {
     at += open.size();
     const std::size_t end = page.find(close, at);
-    const auto digest = from_hex(sha256_of_text(std::string(page.substr(at, end - at))));
-    words += fmt::format("{}'sha256-{}'", words.empty() ? "" : " ", base64(digest));
+    words += (words.empty() ? "" : " ") + policy_source(page.substr(at, end - at));
   }
   return words;
 }
@@ -61,6 +60,10 @@ std::string filled(std::string_view page, const std::vector<std::pair<std::strin
 }
 
 }  // namespace
+
+std::string policy_source(std::string_view inline_text) {
+  return fmt::format("'sha256-{}'", base64(from_hex(sha256_of_text(std::string(inline_text)))));
+}
 
 void leave_out_folders(nlohmann::ordered_json& json) {
   if (json.is_string()) json = without_absolute_paths(json.get<std::string>());

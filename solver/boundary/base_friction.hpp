@@ -99,7 +99,7 @@ struct BaseFriction {
 template <class Real>
 TALUS_HD Real bed_area(Real mass, Real full, Real spacing, Real sx, Real sy) {
   const Real filled = mass < full ? mass / full : Real(1);
-  return filled * spacing * spacing * sqrt(Real(1) + sx * sx + sy * sy);
+  return Real(filled * spacing * spacing * sqrt(Real(1) + sx * sx + sy * sy));
 }
 
 /// The velocity (T12) of a node after contact with a surface of this normal and friction coefficient [m/s]. A node
@@ -127,7 +127,7 @@ struct BedStep {
 /// The normal out of ground of slopes (sx, sy).
 template <class Real>
 TALUS_HD Vec3<Real> normal_of(Real sx, Real sy) {
-  const Real scale = Real(1) / sqrt(Real(1) + sx * sx + sy * sy);
+  const Real scale = Real(Real(1) / sqrt(Real(1) + sx * sx + sy * sy));
   return {-sx * scale, -sy * scale, scale};
 }
 

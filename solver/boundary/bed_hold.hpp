@@ -53,7 +53,7 @@ struct HeldColumns {
     if (!lying) return true;
     const int column = grid.column(i, j);
     const Real sx = grid.slope_x[column], sy = grid.slope_y[column];
-    const Real area = grid.spacing * grid.spacing * sqrt(Real(1) + sx * sx + sy * sy);
+    const Real area = Real(grid.spacing * grid.spacing * sqrt(Real(1) + sx * sx + sy * sy));
     return mass_for_depth(grid, lying, i, j) < load * area;
   }
 };

@@ -28,7 +28,7 @@ inline constexpr float off_bed = 1e30F;
 /// The speed at which a node of this velocity would leave ground of slopes (sx, sy) [m/s].
 template <class Number>
 TALUS_HD Number rise_from(const Vec3<Number>& v, Number sx, Number sy) {
-  return (v.z - v.x * sx - v.y * sy) / sqrt(Number(1) + sx * sx + sy * sy);
+  return Number((v.z - v.x * sx - v.y * sy) / sqrt(Number(1) + sx * sx + sy * sy));
 }
 
 /// Whether a column `depth` [m] deep lies on its bed, or is thrown up by less than half of that: a mass that hops so
@@ -168,7 +168,7 @@ template <class Real, class Number>
 TALUS_HD ColumnBed<Number> bed_under(const GridView<Real>& grid, const Number* mass, int i, int j, Rim rim = Rim::any) {
   const int column = grid.column(i, j);
   const Number sx = grid.slope_x[column], sy = grid.slope_y[column], h = grid.spacing;
-  const Number steep = sqrt(Number(1) + sx * sx + sy * sy);
+  const Number steep = Number(sqrt(Number(1) + sx * sx + sy * sy));
   return {normal_of(sx, sy), cover(grid, mass, i, j, rim) * h * h * steep};
 }
 

@@ -29,7 +29,7 @@ template <class Real>
 TALUS_HD Real turn_of_ground(const GridView<Real>& grid, int i, int j, const Vec3<Real>& v, Real dt) {
   const int column = grid.column(i, j);
   const Real sx = grid.slope_x[column], sy = grid.slope_y[column];
-  return climb_ahead(grid, i, j, v, dt) / sqrt(Real(1) + sx * sx + sy * sy);
+  return Real(climb_ahead(grid, i, j, v, dt) / sqrt(Real(1) + sx * sx + sy * sy));
 }
 
 }  // namespace talus

@@ -19,6 +19,7 @@ struct SumElements {
   static constexpr int w = Shape::width, nodes = w * w * w;
   static constexpr int column_tiles = nodes / columns, row_tiles = nodes / rows;
   static constexpr int tiles = column_tiles * row_tiles;  ///< threads per element
+  static constexpr std::size_t pairs = columns * rows;    ///< of a tile
 
   PointTangents<Real> from;
   ElementView elements;
@@ -27,7 +28,7 @@ struct SumElements {
   TALUS_HD void operator()(int index) const {
     const int e = index / tiles, first_column = index / row_tiles % column_tiles * columns,
               first_row = index % row_tiles * rows;
-    Real sum[columns * rows][9] = {};
+    Real sum[pairs][9] = {};
     for (int s = elements.starts[e]; s < elements.starts[e + 1]; ++s)
       add_point(elements.order[s], first_column, first_row, sum);
     if (from.means.on()) add_means(e, first_column, first_row, sum);
@@ -38,7 +39,7 @@ struct SumElements {
   }
 
  private:
-  TALUS_HD void add_springs(int e, int first_column, int first_row, Real (&sum)[columns * rows][9]) const {
+  TALUS_HD void add_springs(int e, int first_column, int first_row, Real (&sum)[pairs][9]) const {
     const int* mine = elements.nodes + static_cast<std::size_t>(e) * nodes;
     for (int n = 0; n < nodes; ++n) {
       const FillerSpring s = from.springs.template at<w>(mine, n);
@@ -54,7 +55,7 @@ struct SumElements {
   }
 
   /// Adds kappa V b b^T, the part of B-bar (T17b).
-  TALUS_HD void add_means(int e, int first_column, int first_row, Real (&sum)[columns * rows][9]) const {
+  TALUS_HD void add_means(int e, int first_column, int first_row, Real (&sum)[pairs][9]) const {
     const Vec3<Real>* b = from.means.gradient + static_cast<std::size_t>(e) * nodes;
     for (int q = 0; q < columns; ++q) {
       const Vec3<Real> column = b[first_column + q] * from.means.stiffness[e];
@@ -73,11 +74,11 @@ struct SumElements {
     return g.gradient(local / w % w, local / (w * w), local % w);
   }
 
-  TALUS_HD void add_point(int p, int first_column, int first_row, Real (&sum)[columns * rows][9]) const {
+  TALUS_HD void add_point(int p, int first_column, int first_row, Real (&sum)[pairs][9]) const {
     const PointGradients<Real, Shape> g(from.grid, from.points, p);
     const std::conditional_t<(columns > 3), WholeTangent<Real>, PointTangent<Real>> tangent(from.tangents.get(p));
     const Real volume = from.points.volume[p];
-    Vec3<Real> row_gradient[rows];
+    Vec3<Real> row_gradient[static_cast<std::size_t>(rows)];
     for (int r = 0; r < rows; ++r) row_gradient[r] = gradient(g, first_row + r) * volume;
     for (int q = 0; q < columns; ++q) {
       const Vec3<Real> at_column = gradient(g, first_column + q);

@@ -35,7 +35,7 @@ struct MeasureMeans {
   TALUS_HD void operator()(int e) const {
     constexpr int w = Shape::width, nodes = w * w * w;
     Real volume = 0, dilation = 0;
-    Vec3<Real> b[nodes] = {};
+    Vec3<Real> b[static_cast<std::size_t>(nodes)] = {};
     for (int s = elements.starts[e]; s < elements.starts[e + 1]; ++s) {
       const int p = elements.order[s];
       const PointGradients<Real, Shape> g(grid, points, p);

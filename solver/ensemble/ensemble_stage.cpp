@@ -20,6 +20,7 @@
 #include "solver/ensemble/member_cost.hpp"
 #include "solver/ensemble/run_members.hpp"
 #include "solver/run/run_inputs.hpp"
+#include "solver/run/warnings.hpp"
 #include "solver/scene/make_solver.hpp"
 
 namespace talus::solver {
@@ -237,6 +238,7 @@ Facts run_ensemble(StageContext& context, const EnsembleFlags& flags, const Doma
     context.results.push_back(e.counts);
     return {{"wall_time_s", seconds()}, {"members", std::to_string(e.part.count())}};
   }
+  say_warnings_of_domain(domain);
   const Members members(context.recipe, e.table, e.paths, domain, base);
   members.check();
   const std::vector<AnyDevice> each = one_of_each(flags.on);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -39,18 +40,19 @@ void keep_runs(StageContext& context, const Members& members, const EnsembleOpti
     log_info(fmt::format("member {}: its whole run is kept", k));
     std::optional<Member> own;
     std::optional<Simulation> simulation;
+    Facts facts{{kept_member, mark}};
     std::string failure = failure_of([&] {
       own = members.read(k);
       const SolveOptions used = with_preset(own->options);
-      judge_member(own->domain, make_scene(own->domain, used), used);
+      for (auto& accepted : judge_member(own->domain, make_scene(own->domain, used), used))
+        facts.push_back(std::move(accepted));
       simulation.emplace(own->domain, own->options, device, files, mark);
     });
     if (failure.empty()) {
       make_folder(paths.run_folder(k));
       take_up(*simulation, {.resume = true}, files, mark);
       try {
-        simulation->run(context.recipe.scene_name(), fmt::format("{}, member {}", context.recipe.title(), k),
-                        {{kept_member, mark}});
+        simulation->run(context.recipe.scene_name(), fmt::format("{}, member {}", context.recipe.title(), k), facts);
         context.results.push_back(files.run);
       } catch (const NumericalError& error) {  // all else that goes wrong here is the disk's
         failure = error.what();

@@ -10,6 +10,7 @@
 #include "common/stage/acceptance.hpp"
 #include "common/stage/stage.hpp"
 #include "solver/run/plausible.hpp"
+#include "solver/run/recorders/stretch.hpp"
 #include "solver/run/run_loop.hpp"
 #include "solver/run/sanity.hpp"
 
@@ -54,13 +55,14 @@ std::int64_t cells_at_edge(const RunMaps& maps) {
 
 }  // namespace
 
-void judge_member(const Domain& domain, const Scene& scene, const SolveOptions& options) {
+Facts judge_member(const Domain& domain, const Scene& scene, const SolveOptions& options) {
   std::vector<std::string> names = options.accept;
   std::erase(names, torn_body);
   Acceptance acceptance("solve", names);
   acceptance.collect();
   judge_scene(plausibility_of(domain, scene, options), options, acceptance);
   acceptance.settle();
+  return acceptance.facts();
 }
 
 MemberResult measured(const RunMaps& maps, double threshold) {
@@ -90,7 +92,7 @@ MemberResult measured(const RunMaps& maps, double threshold) {
 std::optional<MemberRun> run_member(const Domain& domain, const SolveOptions& options, const AnyDevice& device) {
   RunTimer timer;
   RunLoop loop(domain, options, device);
-  judge_member(domain, loop.scene(), loop.options());
+  Facts accepted = judge_member(domain, loop.scene(), loop.options());
   loop.start();
   MemberKeeper keeper;
   try {
@@ -102,8 +104,10 @@ std::optional<MemberRun> run_member(const Domain& domain, const SolveOptions& op
   const RunEnd end = loop.end(state);
   const double outflow = loop.memory().outflow_volume;
   for (const std::string& line : loop.history().warnings()) log_warning(line);
+  for (auto& fact : torn_body_accepted(loop.options(), loop.history().rows())) accepted.push_back(std::move(fact));
   for (const std::string& fault : insane(sanity_of(end, loop.history().rows(), outflow))) log_warning(fault);
   MemberRun run;
+  run.accepted = std::move(accepted);
   run.maps = final_maps(end, loop.stepper().solver().thickness());
   run.result = measured(run.maps, options.map_threshold);
   const SlideVolumes volumes = slide_volumes(end, outflow);

@@ -9,6 +9,7 @@
 #include "common/domain/domain.hpp"
 #include "common/ensemble/counts.hpp"
 #include "common/error.hpp"
+#include "common/stage/identity.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/parallel/any_device.hpp"
@@ -19,6 +20,7 @@ namespace talus::solver {
 struct MemberRun {
   RunMaps maps;
   MemberResult result;
+  Facts accepted = {};  ///< what the recipe insists on and this run met
 };
 
 /// This function does body() for one of many runs and returns what that run failed by, in words: the computation, its
@@ -37,8 +39,9 @@ std::string failure_of(const Body& body) {
   return {};
 }
 
-/// This function throws DataError where a member's scene is implausible and its recipe does not insist on it.
-void judge_member(const Domain& domain, const Scene& scene, const SolveOptions& options);
+/// This function throws DataError where a member's scene is implausible and its recipe does not insist on it. It
+/// returns what was insisted on.
+Facts judge_member(const Domain& domain, const Scene& scene, const SolveOptions& options);
 
 /// This function runs a member to its end. Its maps have the bits of run.h5 of the same domain and options run by
 /// itself, on the CPU and where the options ask for deterministic sums. None: the process was interrupted. It throws

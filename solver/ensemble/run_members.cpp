@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -68,6 +69,7 @@ class Tallying {
     const std::lock_guard<std::mutex> one(mutex_);
     for (std::string& words : outcome.warnings) run_.warnings.push_back({member, std::move(words)});
     if (outcome.run) {
+      keep_accepted(member, outcome.run->accepted);
       counts_.add(member, outcome.run->maps, outcome.run->result);
     } else if (!outcome.failure.empty()) {
       counts_.fail(member, std::move(outcome.failure));
@@ -88,6 +90,20 @@ class Tallying {
   }
 
  private:
+  /// What members were insisted on stands in the counts, in the words of the first of them, whichever ended first.
+  void keep_accepted(std::int64_t member, const Facts& accepted) {
+    Facts& known = counts_.provenance;
+    for (const auto& [name, words] : accepted) {
+      const auto [first, is_new] = accepted_by_.try_emplace(name, member);
+      if (!is_new && first->second < member) continue;
+      first->second = member;
+      auto at =
+          std::find_if(known.begin(), known.end(), [&, &key = name](const auto& one) { return one.first == key; });
+      if (at == known.end()) at = known.insert(known.end(), {name, ""});
+      at->second = fmt::format("in member {}, and maybe in others: {}", member, words);
+    }
+  }
+
   void say() {
     if (!progress_.due()) return;
     const double wall = seconds_since(begun_),
@@ -105,6 +121,7 @@ class Tallying {
   }
 
   EnsembleCounts& counts_;
+  std::map<std::string, std::int64_t> accepted_by_;  ///< the first member of those that ended
   std::size_t members_, done_ = 0;
   const MembersPlan& plan_;
   std::mutex mutex_;

@@ -15,7 +15,7 @@ template <class Real>
 TALUS_HD Vec3<Real> damped(const Vec3<Real>& force, const Vec3<Real>& velocity, Real share) {
   const auto left = [&](Real pull, Real v) -> Real {
     if (v == Real(0)) return pull;
-    return pull - share * (v > Real(0) ? fabs(pull) : -fabs(pull));
+    return Real(pull - share * (v > Real(0) ? fabs(pull) : -fabs(pull)));
   };
   return {left(force.x, velocity.x), left(force.y, velocity.y), left(force.z, velocity.z)};
 }
@@ -26,7 +26,7 @@ TALUS_HD Vec3<Real> taken_by_damping(const Vec3<Real>& left, const Vec3<Real>& v
   const auto taken = [&](Real pull, Real v) -> Real {
     if (v == Real(0)) return Real(0);
     const Real against = v > Real(0) ? share : -share;
-    return against * fabs(pull) / (Real(1) - (pull > Real(0) ? against : -against));
+    return Real(against * fabs(pull) / (Real(1) - (pull > Real(0) ? against : -against)));
   };
   return {taken(left.x, velocity.x), taken(left.y, velocity.y), taken(left.z, velocity.z)};
 }

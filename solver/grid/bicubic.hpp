@@ -81,7 +81,7 @@ TALUS_HD void keep_above_ground(const GridView<Real>& grid, const ParticleView<R
   const GroundPoint<Real> ground =
       bicubic_ground(NodeTerrain<Real>{grid.terrain, grid.columns, grid.rows, grid.spacing}, i, j, points.offset[0][p],
                      points.offset[1][p]);
-  const Real to = ground.height / grid.layer_height, nearest = floor(to + Real(0.5));
+  const Real to = ground.height / grid.layer_height, nearest = Real(floor(to + Real(0.5)));
   if (Real(points.cell[2][p]) - nearest + points.offset[2][p] >= to - nearest) return;
   points.cell[2][p] = static_cast<int>(nearest);
   points.offset[2][p] = to - nearest;

@@ -151,7 +151,7 @@ struct AcceptStep {
     }
     // Waves and speed over the cell, the bracket of (T11).
     const Real steep = Real(1) + g.s.slope_x * g.s.slope_x + g.s.slope_y * g.s.slope_y;
-    const Real waves = wave_speed * sqrt(Real(2) * g.across * g.across + steep * g.up * g.up);
+    const Real waves = Real(wave_speed * sqrt(Real(2) * g.across * g.across + steep * g.up * g.up));
     atomic_max_positive(&clock->rate_bits, static_cast<float>(waves + speed * (g.across + g.across + g.up)));
     atomic_max_positive(&clock->speed_bits, static_cast<float>(speed));
   }

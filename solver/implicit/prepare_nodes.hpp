@@ -132,7 +132,7 @@ struct PrepareNodes {
       const ColumnBed<double> under = bed_under(grid, columns.mass, at.i, at.j, Rim::wall);
       const LyingMatter<double> matter{.mass = columns.mass[column]};
       held.traction[n] =
-          base.yield(base.at(column), column_slip(matter, under, {nullptr, scheme.step, gravity})) * under.area;
+          base.yield(base.at(column), column_slip(matter, under, {nullptr, scheme.step, {gravity}})) * under.area;
     }
     return true;
   }

@@ -94,7 +94,7 @@ TALUS_HD void make_definite(PointTangent<Real>& t) {
     Real& back = t.pairs[3 * q + 1];
     forth = forth > Real(0) ? forth : Real(0);
     back = back > Real(0) ? back : Real(0);
-    const Real bound = sqrt(forth * back);
+    const Real bound = Real(sqrt(forth * back));
     Real& cross = t.pairs[3 * q + 2];
     cross = cross > bound ? bound : cross < -bound ? -bound : cross;
   }

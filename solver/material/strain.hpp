@@ -40,7 +40,7 @@ TALUS_RARE Sym3<Real> large_hencky_strain(const Sym3<Real> deviation) {
   Real values[3];
   Mat3<Real> directions;
   eigen_symmetric(deviation, values, directions);
-  for (Real& value : values) value = Real(0.5) * log1p(value);
+  for (Real& value : values) value = Real(Real(0.5) * log1p(value));
   return compose(values, directions);
 }
 
@@ -95,7 +95,7 @@ TALUS_HD Sym3<Real> advance_strain(const Sym3<Real>& strain, const Mat3<Real>& g
 template <class Real>
 TALUS_HD Real log_volume_change(const Mat3<Real>& g) {
   const Real minors = g.a.x * g.b.y - g.b.x * g.a.y + g.a.x * g.c.z - g.c.x * g.a.z + g.b.y * g.c.z - g.c.y * g.b.z;
-  return log1p(g.a.x + g.b.y + g.c.z + minors + determinant(g));
+  return Real(log1p(g.a.x + g.b.y + g.c.z + minors + determinant(g)));
 }
 
 }  // namespace talus

@@ -37,7 +37,8 @@ struct PrincipalState {
       trial.heads = ahead.heads;
       if (ahead.heads) look_ahead(step.gradient, ahead.ahead(), trial.ahead);
     }
-    for (int a = 0; a < 3; ++a) trial.strain[a] = Real(0.5) * log1p(stretch[a]) + (step.volume - step.own) / Real(3);
+    for (int a = 0; a < 3; ++a)
+      trial.strain[a] = Real(Real(0.5) * log1p(stretch[a]) + (step.volume - step.own) / Real(3));
     trial.log_volume = start.log_volume + step.volume;
     trial.plastic_log_volume = start.plastic_log_volume;
     trial.duration = step.duration;

@@ -32,7 +32,7 @@ TALUS_HD Real dot(const Vec3<Real>& a, const Vec3<Real>& b) {
 /// The length |a|.
 template <class Real>
 TALUS_HD Real length(const Vec3<Real>& a) {
-  return sqrt(dot(a, a));
+  return Real(sqrt(dot(a, a)));
 }
 
 /// A vector of four numbers loaded and stored at once: a node's mass and momentum.
@@ -143,12 +143,12 @@ template <class Real>
 TALUS_HD Vec3<Real> outlying_eigenvector(const Sym3<Real>& s) {
   const Real mean = trace(s) / Real(3);
   const Sym3<Real> off = s.plus_identity(-mean);
-  const Real size = sqrt(norm_squared(off) / Real(6));
+  const Real size = Real(sqrt(norm_squared(off) / Real(6)));
   if (!(size > fabs(mean) * Real(sizeof(Real) == 8 ? 1e-14 : 1e-6))) return {};
   const Sym3<Real> b = off * (Real(1) / size);  // eigenvalues 2 cos of angles a third of a turn apart
   const Real half = Real(0.5) * determinant(Mat3<Real>{{b.xx, b.xy, b.xz}, {b.xy, b.yy, b.yz}, {b.xz, b.yz, b.zz}});
   const Real r = half > Real(1) ? Real(1) : half < Real(-1) ? Real(-1) : half;
-  const Real value = r >= Real(0) ? Real(2) * cos(acos(r) / Real(3)) : Real(-2) * cos(acos(-r) / Real(3));
+  const Real value = Real(r >= Real(0) ? Real(2) * cos(acos(r) / Real(3)) : Real(-2) * cos(acos(-r) / Real(3)));
   const Vec3<Real> rows[3] = {{b.xx - value, b.xy, b.xz}, {b.xy, b.yy - value, b.yz}, {b.xz, b.yz, b.zz - value}};
   Vec3<Real> best{};
   Real most = 0;
@@ -160,7 +160,7 @@ TALUS_HD Vec3<Real> outlying_eigenvector(const Sym3<Real>& s) {
       best = c;
     }
   }
-  return most > Real(0) ? best * (Real(1) / sqrt(most)) : Vec3<Real>{};
+  return most > Real(0) ? best * Real(Real(1) / sqrt(most)) : Vec3<Real>{};
 }
 
 /// This function finds the eigenvalues of s, and its eigenvectors as the columns of `vectors`, by cyclic Jacobi
@@ -191,8 +191,8 @@ TALUS_HD void eigen_symmetric(const Sym3<Real>& s, Real values[3], Mat3<Real>& v
       for (int q = p + 1; q < 3; ++q) {
         if (m[p][q] == Real(0)) continue;
         const Real theta = (m[q][q] - m[p][p]) / (Real(2) * m[p][q]);
-        const Real t = (theta >= 0 ? Real(1) : Real(-1)) / (fabs(theta) + sqrt(theta * theta + Real(1)));
-        const Real c = Real(1) / sqrt(t * t + Real(1));
+        const Real t = Real((theta >= 0 ? Real(1) : Real(-1)) / (fabs(theta) + sqrt(theta * theta + Real(1))));
+        const Real c = Real(Real(1) / sqrt(t * t + Real(1)));
         const Real sn = t * c;
         for (auto& row : m) {
           const Real kp = row[p], kq = row[q];

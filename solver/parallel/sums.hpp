@@ -13,7 +13,7 @@ namespace talus {
 /// The terms that one index adds to K sums.
 template <int K>
 struct Terms {
-  double value[K] = {};
+  double value[static_cast<std::size_t>(K)] = {};
 };
 
 /// A finish that leaves the totals where they can be read.
@@ -69,7 +69,7 @@ void sum_each(const CpuDevice& device, int count, SumSpace<CpuDevice>& space, co
         const Job& j = *static_cast<const Job*>(data);
         const Body local = *j.body;
         for (int chunk = begin; chunk < end; ++chunk) {
-          double sums[K] = {};
+          double sums[static_cast<std::size_t>(K)] = {};
           for (int i = chunk * grain; i < std::min((chunk + 1) * grain, j.count); ++i) {
             const Terms<K> terms = local(i);
             for (int k = 0; k < K; ++k) sums[k] += terms.value[k];
@@ -78,7 +78,7 @@ void sum_each(const CpuDevice& device, int count, SumSpace<CpuDevice>& space, co
         }
       },
       &job);
-  double total[K] = {};
+  double total[static_cast<std::size_t>(K)] = {};
   for (int chunk = 0; chunk < chunks; ++chunk) {
     for (int k = 0; k < K; ++k) total[k] += job.partial[K * chunk + k];
   }
@@ -90,7 +90,7 @@ namespace detail {
 
 /// Sum over the threads of a block, in thread 0.
 template <int K>
-__device__ void sum_block(double (&sums)[K]) {
+__device__ void sum_block(double (&sums)[static_cast<std::size_t>(K)]) {
   __shared__ double warps[K][32];
   const unsigned lane = threadIdx.x % 32, warp = threadIdx.x / 32, count = blockDim.x / 32;
   for (int k = 0; k < K; ++k) {

@@ -122,8 +122,9 @@ template <int each, class Kernel>
 struct TileMemory {
   using Source = typename Kernel::Source;
   using Sizes = TileSizes<each, Kernel>;
-  alignas(16) unsigned char sources[tile_warps * each * Sizes::source_bytes];
-  int bases[tile_warps * each][Sizes::columns];  ///< where layer 0 of every column of a source is stored
+  static constexpr std::size_t held = tile_warps * each, columns = Sizes::columns;
+  alignas(16) unsigned char sources[held * Sizes::source_bytes];
+  int bases[held][columns];  ///< where layer 0 of every column of a source is stored
   typename Kernel::Number values[Sizes::together ? Sizes::passed_on * Sizes::parts : 1];
   int nodes[Sizes::together ? Sizes::passed_on : 1];
 

@@ -56,11 +56,10 @@ void log_plan(const Domain& domain, const SolveOptions& o, const AnyDevice& devi
                        whole(o.end_time / step + records_of(o)), device.is_gpu() ? "GPU" : "CPU"));
 }
 
-/// What talus-preprocess warned of stands in the domain, so that it is said where the run is planned, too. What is
-/// said here goes into the results: the facts "warning.solve.N" and "advice.NAME".
+/// This function says what the scene is warned of. What is said here of the run goes into its results: the facts
+/// "warning.solve.N" and "advice.NAME".
 void log_warnings(Domain& domain, const SolveOptions& o) {
-  for (const auto& [name, words] : domain.provenance)
-    if (name.starts_with("warning.")) log_warning(words);
+  say_warnings_of_domain(domain);
   Facts said;
   for (const std::string& text : warnings(domain, o)) {
     log_warning(text);

@@ -12,6 +12,7 @@
 #include "solver/run/progress.hpp"
 #include "solver/run/recorders/check_checkpoint.hpp"
 #include "solver/run/recorders/frame_store.hpp"
+#include "solver/run/recorders/stretch.hpp"
 #include "solver/run/sanity.hpp"
 
 namespace talus::solver {
@@ -146,6 +147,8 @@ RunSummary Simulation::finish(RunSummary summary) {
   loop_.memory().wall_time = timer_.seconds();
   const RunEnd end = loop_.end(state);
   measure(end, summary);
+  for (auto& fact : torn_body_accepted(loop_.options(), loop_.history().rows()))
+    summary.provenance.push_back(std::move(fact));
   write_run(end, summary);
   for (const std::string& line : loop_.history().conclusions()) log_info(line);
   for (const std::string& line : loop_.history().warnings()) log_warning(line);

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "common/stage/stage.hpp"
 #include "solver/boundary/base_friction.hpp"
 #include "solver/run/inflow_words.hpp"
 #include "solver/run/shaking_words.hpp"
@@ -149,6 +150,11 @@ std::vector<std::string> warnings(const Domain& domain, const SolveOptions& opti
   for (const std::string& line : inflow_warnings(domain, options)) lines.push_back(line);
   for (const std::string& line : shaking_warnings(read_shaking(options.shaking), options)) lines.push_back(line);
   return lines;
+}
+
+void say_warnings_of_domain(const Domain& domain) {
+  for (const auto& [name, words] : domain.provenance)
+    if (name.starts_with("warning.")) log_warning(words);
 }
 
 }  // namespace talus::solver

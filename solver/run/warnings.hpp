@@ -15,4 +15,8 @@ namespace talus::solver {
 /// friction angle whose cone would carry tension, and grains that are lighter than the mass they make.
 std::vector<std::string> warnings(const Domain& domain, const SolveOptions& options);
 
+/// This function says what talus-preprocess warned of, which stands in the domain: also where a run is only planned or
+/// checked, a search or an ensemble is made.
+void say_warnings_of_domain(const Domain& domain);
+
 }  // namespace talus::solver

@@ -105,7 +105,7 @@ constexpr int components_kept(bool whole) {
 }
 
 /// One T for a field of one component, else an array of them.
-template <class T, int components>
+template <class T, std::size_t components>
 using FieldOf = std::conditional_t<components == 1, T, T[components]>;
 
 /// Declares a member for every field, in a class that has types Ints and Reals.

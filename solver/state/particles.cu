@@ -17,7 +17,7 @@ struct Gather {
 };
 
 /// The arrays of one kind that go into another order together.
-template <class T, int most>
+template <class T, std::size_t most>
 struct GatherAll {
   const int* order = nullptr;
   int count = 0;  // of arrays
@@ -30,11 +30,11 @@ struct GatherAll {
 };
 
 /// The one of two gatherings that takes arrays of these numbers.
-template <class Real, int most_reals, int most_ints>
+template <class Real, std::size_t most_reals, std::size_t most_ints>
 GatherAll<Real, most_reals>& gather_of(const Real*, GatherAll<Real, most_reals>& reals, GatherAll<int, most_ints>&) {
   return reals;
 }
-template <class Real, int most_reals, int most_ints>
+template <class Real, std::size_t most_reals, std::size_t most_ints>
 GatherAll<int, most_ints>& gather_of(const int*, GatherAll<Real, most_reals>&, GatherAll<int, most_ints>& ints) {
   return ints;
 }

@@ -80,7 +80,7 @@ struct ParticleView {
   template <class Move>
   TALUS_HD static void shift(int& cell, Real& offset, Move move, int first, int last) {
     const Move to = static_cast<Move>(offset) + move;
-    const Move whole = floor(to + Move(0.5));
+    const Move whole = Move(floor(to + Move(0.5)));
     offset = static_cast<Real>(to);
     if (!(fabs(whole) < Move(1000000))) return;  // lost: the step's settle() reports the point
     offset = static_cast<Real>(to - whole);

@@ -38,7 +38,7 @@ struct GridToParticle {
   double bytes(int count) const {
     const int moved = part == Gather::deformation ? 0 : 3 + (affine ? 9 : 0),
               deformed = part == Gather::motion ? 0 : 2 * (dilatant ? 8 : 7);
-    return count * (2 * points.place_bytes + (moved + deformed) * sizeof(Real) + sizeof(*home)) +
+    return count * (2 * points.place_bytes + (moved + deformed) * static_cast<double>(sizeof(Real)) + sizeof(*home)) +
            grid.nodes * static_cast<double>((changes ? 2 : 1) * sizeof(*nodes));
   }
 
@@ -200,8 +200,8 @@ struct GridToParticle {
     }
     const Real steep = Real(1) + s.slope_x * s.slope_x + s.slope_y * s.slope_y;
     const Real hx = Real(1) / grid.spacing, hz = Real(1) / grid.layer_height;
-    const Real waves = wave_speed * sqrt(Real(2) * hx * hx + (bound_by_layers ? steep * hz * hz : Real(0)));
-    const Real flow = fabs(v.x) * hx + fabs(v.y) * hx + fabs(sums.climb) * hz;
+    const Real waves = Real(wave_speed * sqrt(Real(2) * hx * hx + (bound_by_layers ? steep * hz * hz : Real(0))));
+    const Real flow = Real(fabs(v.x) * hx + fabs(v.y) * hx + fabs(sums.climb) * hz);
     atomic_max_positive(&clock->rate_bits, static_cast<float>(waves + flow));
     atomic_max_positive(&clock->speed_bits, static_cast<float>(speed));
     if (strayed(home[p], i, j, k)) request_sort();

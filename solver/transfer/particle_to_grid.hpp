@@ -50,8 +50,9 @@ struct ParticleToGrid {
   /// A point as its nodes see it: the part of its stencil that they need. It is as small as can be, for it decides how
   /// many a GPU holds at once.
   struct Source {
+    static constexpr std::size_t wide = Shape::width;
     int i, j, k;
-    Real wx[width], wy[width], wz[width], gx[width], gy[width], gz[width];
+    Real wx[wide], wy[wide], wz[wide], gx[wide], gy[wide], gz[wide];
     Real mass;
     Vec3<Real> corner;    ///< velocity at the first node
     Mat3<Real> turn{};    ///< its change per node
@@ -152,7 +153,7 @@ struct ParticleToGrid {
   TALUS_HD bool counts(int p) const { return clock->halt == running && points.cell[0][p] >= 0; }
 
   /// The nodes of column q receive mass (T3), momentum (T4) and force (T5).
-  TALUS_HD void add(const Source& s, int q, Sums (&sums)[deep]) const {
+  TALUS_HD void add(const Source& s, int q, Sums (&sums)[static_cast<std::size_t>(deep)]) const {
     const int a = q % width, b = q / width;
     const Real weight = s.wx[a] * s.wy[b], carried = weight * s.mass;
     Vec3<Real> velocity = s.corner, sideways{}, upwards{};

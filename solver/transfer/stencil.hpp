@@ -13,9 +13,10 @@ namespace talus {
 template <class Real, class Shape>
 struct Stencil {
   static constexpr int width = Shape::width;
+  static constexpr std::size_t wide = Shape::width;
   int i, j, k;                                          ///< first node; k may be -1, with no weight
-  Real wx[width], wy[width], wz[width];                 ///< weights
-  Real gx[width], gy[width], gz[width];                 ///< their slopes, per cell
+  Real wx[wide], wy[wide], wz[wide];                    ///< weights
+  Real gx[wide], gy[wide], gz[wide];                    ///< their slopes, per cell
   Real near_x, near_y, near_z;                          ///< first node minus point, in cells
   bool edge_x = false, edge_y = false, edge_z = false;  ///< hats beside the ground or a wall
   Real slope_x = 0, slope_y = 0;                        ///< of the terrain at the point

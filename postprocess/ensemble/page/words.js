@@ -99,6 +99,9 @@ export function drawMethod(data) {
   );
   if (run.survey) list.append(item(`Scores of members are against ${run.survey}, as the report of a run has them.`));
   if (run.hazard) list.append(item(`Hazard class: ${run.hazard}.`));
+  for (const words of run.warnings) list.append(item(h("strong", {}, "Warning: "), `${words}.`));
+  for (const [name, why] of run.accepted)
+    list.append(item(h("strong", {}, `Insisted on, "${name}": `), why));
   box.append(list);
   if (!run.failures.length) return;
   box.append(h("h3", {}, `${run.slides ? "Slides" : "Members"} that failed`));

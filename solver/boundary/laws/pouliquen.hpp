@@ -114,13 +114,13 @@ struct Pouliquen : BasalLaw {
   template <class Real>
   TALUS_HD static Real coefficient(const LawNumbers<Real>& n, const Slip<Real>& slip) {
     const Real* c = n.everywhere;
-    const Real depth = slip.load / c[density], wave = sqrt(slip.normal_stress / c[density]);
+    const Real depth = slip.load / c[density], wave = Real(sqrt(slip.normal_stress / c[density]));
     const Real froude = slip.speed > Real(0) ? slip.speed / wave : Real(0);  // infinite without weight
     const Real at_least = froude > c[slowest] ? froude : c[slowest];
     const Real flowing = n[deep] + n[spread] / (Real(1) + depth * c[slope] / (n[length] * (at_least + c[offset])));
     if (!(froude < c[slowest])) return flowing;
     const Real start = n[resting] + n[spread] / (Real(1) + depth / n[length]);
-    return start + (flowing - start) * pow(froude / c[slowest], c[power]);
+    return Real(start + (flowing - start) * pow(froude / c[slowest], c[power]));
   }
 };
 

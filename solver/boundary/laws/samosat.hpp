@@ -85,7 +85,7 @@ struct Samosat : BasalLaw {
   TALUS_HD static Real drag(const LawNumbers<Real>& n, const Slip<Real>& slip) {
     const Real over_rough = slip.load / (n.everywhere[density] * n[rough]);
     const Real profile =
-        n.everywhere[offset] + (over_rough > Real(1) ? log(over_rough) * n.everywhere[inverse_karman] : Real(0));
+        Real(n.everywhere[offset] + (over_rough > Real(1) ? log(over_rough) * n.everywhere[inverse_karman] : Real(0)));
     return n.everywhere[density] * slip.speed * slip.speed / (profile * profile);
   }
   /// Whether there is such a traction.

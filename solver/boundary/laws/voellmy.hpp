@@ -86,7 +86,7 @@ struct Voellmy : BasalLaw {
   template <class Real>
   TALUS_HD static Real yield(const LawNumbers<Real>& n, const Slip<Real>& slip) {
     if (!(n[cohesion] > Real(0)) || !(n[mu] < Real(1))) return Real(0);
-    return (Real(1) - n[mu]) * n[cohesion] * (Real(1) - exp(-slip.normal_stress / n[cohesion]));
+    return Real((Real(1) - n[mu]) * n[cohesion] * (Real(1) - exp(-slip.normal_stress / n[cohesion])));
   }
   /// Whether there is such a traction.
   template <class Real>

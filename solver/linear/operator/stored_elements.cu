@@ -17,7 +17,7 @@ struct ApplyElement {
   TALUS_HD void operator()(int e) const {
     constexpr int nodes = ElementMatrices<Real, Device, Shape>::nodes;
     const int* mine = elements.nodes + static_cast<std::size_t>(e) * nodes;
-    double local[3 * nodes];
+    double local[static_cast<std::size_t>(3 * nodes)];
     for (int n = 0; n < nodes; ++n) {
       const Vec3<double> v = x[mine[n]];
       local[3 * n] = v.x;

@@ -91,7 +91,7 @@ TALUS_HD void solve_column(const ColumnNodes<Real>& node, const ColumnFactors& f
                            Vec3<double>* z) {
   constexpr int ahead = 4;
   Vec3<double> near[2], v[ahead];  // `near`: of the layers just passed
-  Mat3<double> l[ahead][reach];
+  Mat3<double> l[ahead][static_cast<std::size_t>(reach)];
   const auto take = [&](int c, const Vec3<double>& right) {
     v[c] = right;
     for (int d = 0; d < reach; ++d) v[c] = v[c] - l[c][d] * near[d];

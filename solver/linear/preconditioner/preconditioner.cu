@@ -33,7 +33,7 @@ struct ScatterBlocks : PointScatter<Real, Shape> {
   };
   struct Sums {
     Sym3<double> own;
-    Mat3<double> above[reach];
+    Mat3<double> above[static_cast<std::size_t>(reach)];
   };
 
   TALUS_HD void operator()(int p) const { scatter_point(*this, p); }
@@ -42,7 +42,7 @@ struct ScatterBlocks : PointScatter<Real, Shape> {
     for (int c = 0; c < Base::deep; ++c) add(g, Base::along_x(q), Base::along_y(q), c, sums[c]);
   }
   TALUS_HD void add_to_node(int at, const Sums& sums) const {
-    double values[parts];
+    double values[static_cast<std::size_t>(parts)];
     store(sums, values);
     for (int q = 0; q < parts; ++q) {
       if (has(q) && values[q] != 0) talus::scatter_add(part(at, q), values[q]);

@@ -46,7 +46,7 @@ struct Corotated : ElasticLaw<Corotated> {
     const Real twice = Real(2) * m.shear_modulus, lame = m.lame();
     Real stretch[3], excess[3], volume = 0;
     for (int a = 0; a < 3; ++a) {
-      excess[a] = expm1(e[a]);
+      excess[a] = Real(expm1(e[a]));
       stretch[a] = Real(1) + excess[a];
       volume += excess[a];
     }

@@ -30,7 +30,7 @@ struct DilatancyNumbers {
   Real rate = 0;     ///< K_3, tan(psi) over what phi is too much [-]
 
   /// The volume fraction that steady shear leads to at an inertial number [-].
-  TALUS_HD Real equilibrium(Real i) const { return at_rest - slope * fmin(i, Real(loosest_inertial_number)); }
+  TALUS_HD Real equilibrium(Real i) const { return at_rest - slope * Real(fmin(i, Real(loosest_inertial_number))); }
   /// The derivative of equilibrium() by the inertial number [-].
   TALUS_HD Real equilibrium_slope(Real i) const { return i < Real(loosest_inertial_number) ? -slope : Real(0); }
 };
@@ -44,9 +44,9 @@ struct ShearedGrains {
   Real angle_by_shear, angle_by_e;
 
   TALUS_HD ShearedGrains(Real fraction, Real e, Real rate, Real shear) {
-    const Real way = rate * e * shear, left = exp(-way), gone = -expm1(-way), over = (fraction - e) / e;
+    const Real way = rate * e * shear, left = Real(exp(-way)), gone = Real(-expm1(-way)), over = (fraction - e) / e;
     const Real shrinks = Real(1) / (Real(1) + over * gone), now = fraction * shrinks;
-    dilation = log1p(over * gone);
+    dilation = Real(log1p(over * gone));
     dilation_by_e = (over * rate * shear * left - fraction * gone / (e * e)) * shrinks;
     angle = rate * e * over * left * shrinks;
     angle_by_shear = -rate * now * angle;
@@ -63,7 +63,7 @@ struct DilatingCone {
 
   TALUS_HD DilatingCone(Real friction, Real angle) {
     constexpr Real four_thirds = Real(4.0 / 3);
-    length = sqrt(Real(1) + four_thirds * angle * angle);
+    length = Real(sqrt(Real(1) + four_thirds * angle * angle));
     length_by_angle = four_thirds * angle / length;
     const Real share = Real(1) + four_thirds * friction * angle;
     if (!(friction > Real(0))) {
@@ -114,7 +114,7 @@ class DilatantReturn {
   TALUS_HD Real angle_at_rest() const { return numbers_.rate * (trial_.fraction - numbers_.at_rest); }
   /// The pressure that grains at rest would have at most, whose flow has lasted [Pa].
   TALUS_HD Real highest_pressure() const {
-    const Real most = log(trial_.fraction / numbers_.equilibrium(Real(loosest_inertial_number)));
+    const Real most = Real(log(trial_.fraction / numbers_.equilibrium(Real(loosest_inertial_number))));
     return trial_.pressure + (most > Real(0) ? bulk_ * most : Real(0));
   }
   /// The pressure that would be left without any strength [Pa]; below 0 the point stays open.
@@ -205,7 +205,7 @@ inline constexpr double unbounded = 1e30;
 /// or come no closer. `high` may be `unbounded`.
 template <class Real>
 struct BracketedNewton {
-  static constexpr Real rounding = sizeof(Real) == 8 ? 4e-16 : 2e-7;
+  static constexpr Real rounding = Real(sizeof(Real) == 8 ? 4e-16 : 2e-7);
   Real low, high, z;
   Real before = high;
   bool last = false;  ///< z is the zero once it has been looked at
@@ -213,7 +213,7 @@ struct BracketedNewton {
   /// The method takes a step from z, where the function has this value, positive on the side of `low`, and slope. It
   /// returns whether z is to be looked at.
   TALUS_HD bool step(Real value, Real slope, Real scale) {
-    constexpr Real close = sizeof(Real) == 8 ? 1e-9 : 1e-4;
+    constexpr Real close = Real(sizeof(Real) == 8 ? 1e-9 : 1e-4);
     if (last || fabs(value) <= rounding * scale) return false;
     (value > Real(0) ? low : high) = z;
     const bool bounded = high < Real(unbounded);
@@ -221,7 +221,7 @@ struct BracketedNewton {
     if (!bounded && !(change > Real(0) && change < Real(15) * z)) change = Real(15) * z;
     const bool newton = z + change > low && z + change < high && !(bounded && fabs(change) > Real(0.6) * before);
     if (!newton) change = (low > Real(0) ? Real(sqrt(low * high)) : Real(0.5) * high) - z;
-    before = fabs(change);
+    before = Real(fabs(change));
     z += change;
     last = before <= (newton ? close : rounding) * z;  // the next of Newton's would be as much smaller again
     return true;
@@ -244,7 +244,7 @@ TALUS_HD Real balance_at(DilatantReturn<Real>& step, const Curve& curve, Real p,
 /// Newton's steps for both at once did so without leaving `low` and 0: mostly, and in half of the time.
 template <class Real, class Curve>
 TALUS_HD bool meets_both(DilatantReturn<Real>& step, const Curve& curve, Real low, Real z, Real p) {
-  constexpr Real close = sizeof(Real) == 8 ? 1e-10 : 1e-4;
+  constexpr Real close = Real(sizeof(Real) == 8 ? 1e-10 : 1e-4);
   for (int pass = 0; pass < 10; ++pass) {
     step.at(curve(z), p);
     Real dz, dp;
@@ -264,13 +264,13 @@ TALUS_HD FlowEnd<Real> dilatant_end(DilatantReturn<Real>& step, Real rest, const
   const Real trial = step.trial().pressure, free = step.free_pressure();
   if (!(free > Real(0))) return step.open_end();
   // Loose grains whose volume is held lose their pressure within a long step, all of it but for rounding.
-  const Real most = fmin(step.highest_pressure(), rest),
-             none = Real(sizeof(Real) == 8 ? 1e-10 : 1e-5) * fmax(trial, free);
+  const Real most = Real(fmin(step.highest_pressure(), rest)),
+             none = Real(sizeof(Real) == 8 ? 1e-10 : 1e-5) * Real(fmax(trial, free));
   BracketedNewton<Real> p{none, Real(1.0001) * Real(fmax(most, trial)), trial > Real(0) ? trial : Real(0.5) * free};
   if (!(p.z < p.high)) p.z = Real(0.5) * p.high;
   for (int pass = 0; pass < 60; ++pass) {
     flow(p.z);
-    if (!p.step(-step.excess(), -step.excess_slope(), fabs(trial) + p.z)) break;
+    if (!p.step(-step.excess(), -step.excess_slope(), Real(fabs(trial)) + p.z)) break;
     if (p.z < Real(2) * none) return step.open_end();
   }
   return step.end();

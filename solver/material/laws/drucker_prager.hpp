@@ -95,7 +95,7 @@ struct CutPressure {
   Real value, slope;
   TALUS_HD CutPressure(const ConeNumbers<Real>& cone, Real y) {
     if (cone.apex > Real(0)) {
-      const Real root = sqrt(y * y + cone.apex * cone.apex);
+      const Real root = Real(sqrt(y * y + cone.apex * cone.apex));
       // The difference of two large numbers where the point has opened far.
       value = y > Real(0) ? Real(0.5) * (y + root) : Real(0.5) * cone.apex * cone.apex / (root - y);
       slope = value / root;
@@ -127,7 +127,7 @@ struct ConeReturn {
     Real excess = shear - cone.friction * pressure - cone.shear_cohesion;
     // Rounding of stresses that are kept as strains (2e-12 of them measured), and of the volume that the pressure comes
     // from (an open point's is far larger than its strain).
-    constexpr Real share = sizeof(Real) == 8 ? 1e-9 : 1e-4, strain = sizeof(Real) == 8 ? 4e-16 : 2e-7;
+    constexpr Real share = Real(sizeof(Real) == 8 ? 1e-9 : 1e-4), strain = Real(sizeof(Real) == 8 ? 4e-16 : 2e-7);
     on_cone = fabs(excess) <= share * shear + strain * m.shear_modulus;
     if (excess <= Real(0)) return;
     yields = true;
@@ -228,11 +228,12 @@ struct DruckerPrager {
   TALUS_HD static void settle(const Elasticity<Real>& m, const Numbers<Real>& cone, const Increment<Real>&,
                               MaterialState<Real>& s) {
     s.elastic = deviator(s.elastic);
-    const Real shear = Real(2) * m.shear_modulus * sqrt(Real(0.5) * norm_squared(s.elastic));  // sqrt(J2) of the trial
+    const Real shear =
+        Real(Real(2) * m.shear_modulus * sqrt(Real(0.5) * norm_squared(s.elastic)));  // sqrt(J2) of the trial
     const ConeReturn<Real> end(m, cone, shear, free_pressure(m, cone, s.log_volume, s.plastic_log_volume));
     if (!end.yields) return;
     const Real kept = end.left / shear;
-    s.plastic_shear = sqrt(Real(2.0 / 3) * norm_squared(s.elastic)) * (Real(1) - kept);
+    s.plastic_shear = Real(sqrt(Real(2.0 / 3) * norm_squared(s.elastic)) * (Real(1) - kept));
     s.elastic = s.elastic * kept;
     s.plastic_log_volume += end.dilation;
   }
@@ -272,7 +273,7 @@ TALUS_HD void DruckerPrager::respond(const Elasticity<Real>& m, const Numbers<Re
   const Real twice = Real(2) * m.shear_modulus;
   const Real mean = (e[0] + e[1] + e[2]) / Real(3);
   const Real s[3] = {e[0] - mean, e[1] - mean, e[2] - mean};
-  const Real size = sqrt(Real(0.5) * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2]));
+  const Real size = Real(sqrt(Real(0.5) * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2])));
   const Real shear = twice * size;
   const ConeReturn<Real> end(m, cone, shear, free_pressure(m, cone, trial.log_volume, trial.plastic_log_volume));
   const Real left = end.left, pressure = end.pressure, raise = end.raise;

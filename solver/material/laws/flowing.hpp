@@ -86,7 +86,8 @@ struct FlowingLaw {
   TALUS_HD static void settle(const Elasticity<Real>& m, const Numbers& n, const Increment<Real>& step,
                               MaterialState<Real>& s) {
     s.elastic = deviator(s.elastic);
-    const Real shear = Real(2) * m.shear_modulus * sqrt(Real(0.5) * norm_squared(s.elastic));  // sqrt(J2) of the trial
+    const Real shear =
+        Real(Real(2) * m.shear_modulus * sqrt(Real(0.5) * norm_squared(s.elastic)));  // sqrt(J2) of the trial
     const FlowEnd<Real> end = Law::end(m, n, shear, free_pressure(m, s.log_volume, s.plastic_log_volume),
                                        s.plastic_log_volume, step.duration);
     if (end.left < shear) s.elastic = s.elastic * (end.left / shear);
@@ -100,7 +101,7 @@ struct FlowingLaw {
     const Real* e = trial.strain;
     const Real mean = (e[0] + e[1] + e[2]) / Real(3), twice = Real(2) * m.shear_modulus;
     const Real s[3] = {e[0] - mean, e[1] - mean, e[2] - mean};
-    const Real square = s[0] * s[0] + s[1] * s[1] + s[2] * s[2], size = sqrt(Real(0.5) * square);
+    const Real square = s[0] * s[0] + s[1] * s[1] + s[2] * s[2], size = Real(sqrt(Real(0.5) * square));
     const Real shear = twice * size, free = free_pressure(m, trial.log_volume, trial.plastic_log_volume);
     const FlowEnd<Real> end = Law::end(m, n, shear, free, trial.plastic_log_volume, trial.duration);
     const Real dilated = free + m.bulk_modulus * end.dilation, p = dilated > Real(0) ? dilated : Real(0);

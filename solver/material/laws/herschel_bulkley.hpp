@@ -80,8 +80,8 @@ struct HerschelBulkley : FlowingLaw<HerschelBulkley> {
     // the other alone would be E.
     const bool thins = n.exponent <= Real(1);
     const Real stiff = m.shear_modulus * seconds, power = thins ? Real(1) / n.exponent : n.exponent;
-    const Real bound = thins ? n.consistency * pow(excess / stiff, n.exponent) / excess
-                             : stiff * pow(excess / n.consistency, Real(1) / n.exponent) / excess;
+    const Real bound = Real(thins ? n.consistency * pow(excess / stiff, n.exponent) / excess
+                                  : stiff * pow(excess / n.consistency, Real(1) / n.exponent) / excess);
     const Real y =
         bound < Real(1) ? bound * balance(bound, Real(1), power) : balance(Real(1), Real(pow(bound, -power)), power);
     // d(y E) / dE of x + c x^power = E, x = y E.
@@ -96,7 +96,7 @@ struct HerschelBulkley : FlowingLaw<HerschelBulkley> {
   TALUS_HD static Real balance(Real a, Real b, Real power) {
     Real z = 1;
     for (int pass = 0; pass < 20; ++pass) {
-      const Real curved = b * pow(z, power);
+      const Real curved = Real(b * pow(z, power));
       const Real step = (Real(1) - a * z - curved) / (a + power * curved / z);
       z += step;
       if (!(fabs(step) > Real(sizeof(Real) == 8 ? 1e-14 : 1e-6))) break;

@@ -24,15 +24,15 @@ struct LinearElastic : ElasticLaw<LinearElastic> {
   /// The Kirchhoff stress: J times the Cauchy stress [Pa].
   template <class Real>
   TALUS_HD static Sym3<Real> stress(const Elasticity<Real>&, const Numbers<Real>&, const MaterialState<Real>& s) {
-    return s.elastic * exp(s.log_volume);
+    return s.elastic * Real(exp(s.log_volume));
   }
 
   /// The elastic energy J (|dev(sigma)|^2 / (4 G) + (tr(sigma) / 3)^2 / (2 K)) per initial volume [J/m3].
   template <class Real>
   TALUS_HD static Real energy(const Elasticity<Real>& m, const Numbers<Real>&, const MaterialState<Real>& s) {
     const Real mean = trace(s.elastic) / Real(3);
-    return exp(s.log_volume) *
-           (norm_squared(deviator(s.elastic)) / (Real(4) * m.shear_modulus) + mean * mean / (Real(2) * m.bulk_modulus));
+    return Real(exp(s.log_volume) * (norm_squared(deviator(s.elastic)) / (Real(4) * m.shear_modulus) +
+                                     mean * mean / (Real(2) * m.bulk_modulus)));
   }
 
   /// This function adds to the stress by Hooke's law on the strain increment, and turns it with the spin.
@@ -57,7 +57,7 @@ struct LinearElastic : ElasticLaw<LinearElastic> {
   TALUS_HD static Mat3<Real> nominal_stress(const Elasticity<Real>& m, const Numbers<Real>&,
                                             const MaterialState<Real>& start, const Mat3<Real>& g,
                                             PointTangent<Real>* tangent) {
-    const Real volume = exp(start.log_volume);
+    const Real volume = Real(exp(start.log_volume));
     const Real lame = m.lame();
     const Sym3<Real> strain = small_strain(g);
     const Sym3<Real> s =

@@ -142,7 +142,7 @@ struct MuOfI : FlowingLaw<MuOfI> {
     if (!(p > Real(0))) return {Real(0), Real(0)};
     const bool creeps = n.creep_below > Real(0);
     if (!creeps && shear <= n.slow * p) return {shear};
-    const Real give = m.shear_modulus * sqrt(p) * seconds / n.grain;
+    const Real give = Real(m.shear_modulus * sqrt(p) * seconds / n.grain);
     const InertialFriction<Real> limit(n.slow, n.fast, n.rise, n.half, n.creep_below);
     if (creeps && shear < limit.value * p + give * n.creep_below) return creep(n, shear, p, give, limit.value);
     const Real i = balance(n, shear, p, give);
@@ -156,7 +156,7 @@ struct MuOfI : FlowingLaw<MuOfI> {
   template <class Real>
   TALUS_HD static Real balance(const Numbers<Real>& n, Real shear, Real p, Real give) {
     const Real a = give + p * n.rise, b = give * n.half + p * n.fast - shear, c = (shear - p * n.slow) * n.half;
-    const Real root = sqrt(b * b + Real(4) * a * c);
+    const Real root = Real(sqrt(b * b + Real(4) * a * c));
     return b > Real(0) ? Real(2) * c / (b + root) : (root - b) / (Real(2) * a);
   }
 
@@ -228,10 +228,10 @@ struct MuOfI : FlowingLaw<MuOfI> {
   template <class Real>
   TALUS_HD static FlowEnd<Real> creep(const Numbers<Real>& n, Real shear, Real p, Real give, Real most) {
     const Real alpha = Real(creep_constant);
-    Real mu = fmin(most, shear / p), i = 0, di = 0;
+    Real mu = Real(fmin(most, shear / p)), i = 0, di = 0;
     if (!(mu > Real(0))) return {shear};
     for (int pass = 0; pass < 40; ++pass) {
-      i = n.creep_scale * exp(-alpha / (mu * mu));
+      i = Real(n.creep_scale * exp(-alpha / (mu * mu)));
       di = Real(2) * alpha * i / (mu * mu * mu);
       const Real step = (shear - p * mu - give * i) / (p + give * di);
       mu += step;

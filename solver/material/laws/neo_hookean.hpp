@@ -40,8 +40,9 @@ struct NeoHookean : ElasticLaw<NeoHookean> {
   template <class Real>
   TALUS_HD static Real stiffening(const Elasticity<Real>& m, const Numbers<Real>&, const MaterialState<Real>& s) {
     const Real lame = m.lame(), rest = Real(2) * m.shear_modulus + lame;
-    const Real more = m.shear_modulus * sqrt(norm_squared(stretch_deviation(s.elastic))) - lame * trace(s.elastic);
-    return Real(1) + fmax(more, Real(0)) / rest;
+    const Real more =
+        Real(m.shear_modulus * sqrt(norm_squared(stretch_deviation(s.elastic))) - lame * trace(s.elastic));
+    return Real(Real(1) + fmax(more, Real(0)) / rest);
   }
 
   /// The principal stresses of a trial, and D_ab = lambda + 2 G exp(2 epsilon_a) delta_ab of (T17).
@@ -51,7 +52,7 @@ struct NeoHookean : ElasticLaw<NeoHookean> {
     const Real* e = trial.strain;
     const Real lame = m.lame(), volume = e[0] + e[1] + e[2];
     for (int a = 0; a < 3; ++a) {
-      const Real square = expm1(Real(2) * e[a]);  // of the stretch, less one
+      const Real square = Real(expm1(Real(2) * e[a]));  // of the stretch, less one
       out.tau[a] = m.shear_modulus * square + lame * volume;
       for (int b = 0; b < 3; ++b)
         out.d[3 * a + b] = lame + (a == b ? Real(2) * m.shear_modulus * (Real(1) + square) : Real(0));

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "common/stage/acceptance.hpp"
 #include "solver/parallel/math.hpp"
 
 namespace talus::solver {
@@ -21,6 +22,18 @@ constexpr Column<Overstretched> stretch_columns[] = {
 
 /// The least stretch that counts as parting, where points lie a cell apart from the start.
 constexpr double least_parting = 1.2;
+
+bool insists(const SolveOptions& o) { return std::find(o.accept.begin(), o.accept.end(), torn_body) != o.accept.end(); }
+
+constexpr const char* why_torn =
+    "the grid hardly ties them together there, and the body may part where no strength says so";
+
+std::string torn_words(double points, double stretch) {
+  return fmt::format(
+      "{:.0f} points of an elastic body were stretched by a factor of up to {:.3g}, to more than {:g} of a cell from "
+      "the next",
+      points, stretch, StretchRecorder::widest_spacing);
+}
 
 double largest_principal(const Sym3<double>& strain) {
   double values[3];
@@ -48,8 +61,7 @@ StretchRecorder::StretchRecorder(const SolveOptions& options, const Scene& scene
     : TableRecorder(stretch_columns, {Place{}}),
       limits_{limits_of(options.material)},
       cell_volume_(scene.grid.spacing * scene.grid.spacing * scene.grid.layer_height),
-      bears_gaps_(options.shape == ShapeKind::gimp ||
-                  std::find(options.accept.begin(), options.accept.end(), torn_body) != options.accept.end()) {
+      bears_gaps_(options.shape == ShapeKind::gimp || insists(options)) {
   for (const PartOptions& part : options.parts) limits_.push_back(limits_of(part.material));
 }
 
@@ -82,10 +94,7 @@ std::vector<Overstretched> StretchRecorder::samples(const Instant& now) const {
 
 void StretchRecorder::refuse_torn(const Overstretched& found, double time) const {
   throw NumericalError(
-      {fmt::format("t = {:.6g} s: {:.0f} points of an elastic body were stretched by a factor of up to {:.3g}, to more "
-                   "than {:g} of a cell from the next",
-                   time, found.apart, found.largest, widest_spacing),
-       "the grid hardly ties them together there, and the body may part where no strength says so",
+      {fmt::format("t = {:.6g} s: {}", time, torn_words(found.apart, found.largest)), why_torn,
        fmt::format(
            "Take more points_per_cell, or shape = \"gimp\", whose boxes stretch with the points; or insist with "
            "[solve] accept = [\"{}\"]",
@@ -110,6 +119,16 @@ std::vector<std::string> StretchRecorder::warnings(const RunHistory& history) co
                     "a fall",
                     apart, largest, widest_spacing));
   return lines;
+}
+
+Facts torn_body_accepted(const SolveOptions& options, const RunHistory& history) {
+  if (!insists(options)) return {};
+  Acceptance acceptance("solve", {torn_body});
+  const double apart = history.find("points_apart") ? most(history, "points_apart") : 0;
+  if (apart > 0 && options.shape != ShapeKind::gimp)
+    acceptance.judge({torn_body, {torn_words(apart, most(history, "largest_stretch")), why_torn, ""}});
+  acceptance.warn_of_unmet();
+  return acceptance.facts();
 }
 
 }  // namespace talus::solver

@@ -3,6 +3,7 @@
 // Recorder of points that are stretched beyond what their law bears: no tearing in silence.
 #pragma once
 
+#include "common/stage/identity.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/run/recorders/recorder.hpp"
 
@@ -50,5 +51,9 @@ class StretchRecorder : public TableRecorder<Overstretched> {
   double cell_volume_;          ///< [m3]
   bool bears_gaps_;             ///< points apart are said at the end, and do not end the run
 };
+
+/// What is kept with the results of a run that went on though its body may have parted, since the recipe insists on it;
+/// nothing where none did, which is warned of.
+Facts torn_body_accepted(const SolveOptions& options, const RunHistory& history);
 
 }  // namespace talus::solver

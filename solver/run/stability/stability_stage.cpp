@@ -11,6 +11,7 @@
 #include "solver/run/run_inputs.hpp"
 #include "solver/run/simulation.hpp"
 #include "solver/run/stability/stability_products.hpp"
+#include "solver/run/warnings.hpp"
 
 namespace talus::solver {
 namespace {
@@ -40,6 +41,7 @@ Facts find_stability(StageContext& context, const SolveOptions& options, const A
       fmt::format("factor of safety: {} material points; tan(friction) and cohesion are divided until no "
                   "equilibrium is left",
                   search.scene().points.size()));
+  say_warnings_of_domain(domain);
   if (context.check_only) return {};
   const auto begun = std::chrono::steady_clock::now();
   const Stability found = search.run();

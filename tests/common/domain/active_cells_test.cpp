@@ -85,7 +85,7 @@ TEST(ActiveCells, every_point_and_all_cells_beside_it_are_active) {
     std::size_t counted = 0;
     for (int row = 0; row < map.rows; ++row)
       for (int column = 0; column < map.columns; ++column)
-        for (int layer = 0; layer < 20; ++layer) counted += cells.holds({column, row, layer}) ? 1 : 0;
+        for (int layer = 0; layer < 20; ++layer) counted += cells.holds({column, row, layer}) ? 1u : 0u;
     EXPECT_EQ(cells.cell_count(), counted) << "seed " << seed;
     for (std::size_t p = 0; p < points.size(); ++p) {
       const auto [column, row, layer] = nearest_cell(map, layer_height, points, p);

@@ -124,7 +124,7 @@ TEST(DomainFile, every_truncation_is_noticed) {
             "again, or copy it again")
         << length << " of " << whole.size() << " bytes";
   }
-  for (const std::size_t lost : {1, 64, 128}) {  // the contents are whole
+  for (const std::size_t lost : {1u, 64u, 128u}) {  // the contents are whole
     const auto cut = scratch.write("cut.vdb", whole.substr(0, whole.size() - lost));
     EXPECT_EQ(fault_of<DataError>([&] { read_domain(cut); }),
               cut.string() +

@@ -20,7 +20,7 @@ namespace {
 TEST(Machine, as_many_threads_as_the_affinity_mask_has_processors) {
   cpu_set_t before;
   ASSERT_EQ(sched_getaffinity(0, sizeof before, &before), 0);
-  int first = 0;
+  std::size_t first = 0;
   while (!CPU_ISSET(first, &before)) ++first;
   cpu_set_t one;
   CPU_ZERO(&one);

@@ -68,7 +68,7 @@ TEST(Sha256, bytes_may_come_in_any_parts) {
   Sha256 whole;
   whole.add(bytes);
   const std::string digest = whole.digest();
-  for (const std::size_t part : {1, 3, 63, 64, 65, 127, 128, 200}) {
+  for (const std::size_t part : {1u, 3u, 63u, 64u, 65u, 127u, 128u, 200u}) {
     Sha256 sum;
     for (std::size_t first = 0; first < bytes.size(); first += part)
       sum.add(std::span(bytes).subspan(first, std::min(part, bytes.size() - first)));

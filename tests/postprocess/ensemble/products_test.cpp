@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <netcdf.h>
 
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <sstream>
 
@@ -261,6 +263,49 @@ TEST_F(EnsembleProducts, classify_hazard_by_the_matrix_of_the_recipe) {
     const double expected = std::max(weak >= 0.6 ? 2 : weak >= 0.1 ? 1 : 0, strong >= 0.6 ? 3 : strong >= 0.1 ? 2 : 0);
     EXPECT_EQ(share_at("hazard_class.tif", column, 7), expected) << "column " << column;
   }
+}
+
+TEST_F(EnsembleProducts, say_what_was_insisted_on_in_maps_and_with_warnings_on_the_page) {
+  write_members();
+  EnsembleCounts counts = test::part_of_ensemble(table_, {0, 40});
+  counts.provenance = {{"accepted.false-lengths", "a metre is 1.3 m"},
+                       {"accepted.weight-strain", "strains by 0.6"},
+                       {"warning.coarse_grid", "the grid is coarse"}};
+  write_counts(out_ / "counts.h5", counts);
+  run_it();
+  const std::unique_ptr<GDALDataset> map(
+      GDALDataset::Open((out_ / "probability" / "peak_thickness_q05.tif").string().c_str()));
+  ASSERT_TRUE(map);
+  EXPECT_STREQ(map->GetMetadataItem("ACCEPTED"), "false-lengths: a metre is 1.3 m; weight-strain: strains by 0.6");
+  std::ifstream page(out_ / "ensemble.html");
+  const std::string text(std::istreambuf_iterator<char>(page), {});
+  EXPECT_NE(text.find("\"weight-strain\",\"strains by 0.6\""), std::string::npos);
+  EXPECT_NE(text.find("\"warnings\":[\"the grid is coarse\"]"), std::string::npos);
+}
+
+TEST_F(EnsembleProducts, are_not_scored_against_surveys_that_seem_swapped) {
+  write_members();
+  write_part({0, 40}, "counts.h5");
+  const EnsembleScene scene = test::ensemble_scene();
+  Raster change{scene.grid, std::vector<double>(scene.grid.count(), 0.0)};
+  for (int row = 5; row < 11; ++row) {
+    for (int column = 2; column < 5; ++column) change.at(column, row) = 3;     // above
+    for (int column = 14; column < 17; ++column) change.at(column, row) = -3;  // below
+  }
+  write_geotiff(scratch_.folder() / "change.tif", change, {"", "m", {}});
+  recipe_ += "[postprocess]\n%[postprocess.survey]\ndifference = \"change.tif\"\n";
+  const std::size_t at = recipe_.find('%');
+  const std::string insisting = recipe_;
+  recipe_.erase(at, 1);
+  EXPECT_NE(fault().find("what rose lies"), std::string::npos) << fault();
+  EXPECT_NE(fault().find("accept = [\"swapped-surveys\"]"), std::string::npos) << fault();
+  recipe_ = insisting;
+  recipe_.replace(at, 1, "accept = [\"swapped-surveys\"]\n");
+  run_it();
+  const std::unique_ptr<GDALDataset> map(
+      GDALDataset::Open((out_ / "probability" / "peak_thickness_q05.tif").string().c_str()));
+  ASSERT_TRUE(map);
+  EXPECT_NE(std::string(map->GetMetadataItem("ACCEPTED")).find("swapped-surveys"), std::string::npos);
 }
 
 TEST_F(EnsembleProducts, refuse_hazard_limits_that_were_not_counted) {

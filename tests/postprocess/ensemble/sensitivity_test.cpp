@@ -22,7 +22,8 @@ MemberTable sobol_design(std::size_t size, std::size_t keys) {
   double phi = 2;
   for (int n = 0; n < 50; ++n) phi = std::pow(1 + phi, 1.0 / (2 * static_cast<double>(keys) + 1));
   const auto draw = [&](std::size_t k, std::size_t column) {
-    const double u = std::fmod(0.5 + static_cast<double>(k + 1) * std::pow(1 / phi, column + 1.0), 1.0);
+    const double power = static_cast<double>(column + 1);
+    const double u = std::fmod(0.5 + static_cast<double>(k + 1) * std::pow(1 / phi, power), 1.0);
     return std::numbers::pi * (2 * u - 1);
   };
   MemberTable table;

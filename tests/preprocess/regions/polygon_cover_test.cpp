@@ -31,7 +31,7 @@ Ring star(double x, double y, double radius, int corners, std::mt19937& random) 
 /// Reference: each ring cut to one cell (Sutherland and Hodgman 1974), whose signed area needs no care for bridges.
 double ring_area_in_cell(Ring ring, double west, double south, double cell) {
   const double bounds[] = {west, west + cell, south, south + cell};
-  for (int side = 0; side < 4; ++side) {
+  for (std::size_t side = 0; side < 4; ++side) {
     const std::size_t axis = side / 2;
     const double bound = bounds[side], sign = side % 2 == 0 ? 1 : -1;
     Ring kept;

@@ -130,7 +130,7 @@ TEST(CountLanding, counts_what_bed_and_weight_took_of_the_motion_across_the_bed)
                                                        .active = c.grid.active.data(),
                                                        .nodes = {c.nodes.data(), nullptr},
                                                        .pressed = c.pressed.data(),
-                                                       .step = {&c.clock, 0, {0, 0, -10}}});
+                                                       .step = {&c.clock, 0, {{0, 0, -10}}}});
     const double taken = impulse - 200 * 10 * 0.8 * 0.1;  // beyond the weight of what lies on the bed
     const double was = 1 + taken / 200;                   // towards the bed, before
     EXPECT_NEAR(c.clock.landing_loss, 0.5 * 200 * (was * was - 1), 1e-10) << impulse;

@@ -62,7 +62,7 @@ struct Sheet {
                                                  .nodes = {nodes.data(), changes.data()},
                                                  .friction = friction,
                                                  .columns = {mass.data(), rise.data()},
-                                                 .step = {&clock, 0, {0, 0, -9.81}},
+                                                 .step = {&clock, 0, {{0, 0, -9.81}}},
                                                  .with_yield = with_yield,
                                                  .density = {2000, volumes.empty() ? nullptr : volumes.data()}});
   }
@@ -167,7 +167,7 @@ TEST(MeasureCoefficients, gives_columns_the_friction_of_their_depth_and_mean_spe
                                                             .friction = law,
                                                             .mass = s.mass.data(),
                                                             .coefficient = coefficient.data(),
-                                                            .step = {&s.clock, 0, {0, 0, -9.81}}});
+                                                            .step = {&s.clock, 0, {{0, 0, -9.81}}}});
   const double load = 200 / area, speed = length(Vec3<double>{4, 1, 4 * 0.3 - 1 * 0.2});
   const Slip<double> slip{speed, load * 9.81 * 4 / area, 0.1, load};
   EXPECT_NEAR(coefficient[Sheet::column(3, 3)], law.coefficient(law.uniform, slip), 1e-14);

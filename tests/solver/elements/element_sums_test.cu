@@ -13,7 +13,8 @@ template <int nodes>
 struct Keep {
   double* blocks;
   void put(int e, int a, int b, const double* block) const {
-    std::copy(block, block + 9, blocks + ((static_cast<std::size_t>(e) * nodes + a) * nodes + b) * 9);
+    const int of_element = (a * nodes + b) * 9, each = nodes * nodes * 9;
+    std::copy(block, block + 9, blocks + static_cast<std::size_t>(e) * each + of_element);
   }
 };
 

@@ -4,6 +4,7 @@
 #include "solver/ensemble/ensemble_stage.hpp"
 
 #include "common/run/run_file.hpp"
+#include "common/stage/console.hpp"
 #include "solver/ensemble/keep_runs.hpp"
 #include "solver/run/run_loop.hpp"
 #include "tests/common/ensemble/same_maps.hpp"
@@ -65,6 +66,14 @@ TEST_F(EnsembleStage, writes_parts_that_add_up_to_the_whole) {
   EXPECT_EQ(sum.fingerprint, whole.fingerprint);
   EXPECT_EQ(sum.count(MemberState::waiting), 0);
   test::expect_same_maps(sum, whole);
+}
+
+TEST_F(EnsembleStage, says_what_the_domain_was_warned_of_where_it_is_planned) {
+  domain_.provenance.emplace_back("warning.coarse_grid", "the grid is coarse");
+  write_domain(out() / "domain.vdb", domain_);
+  const QuietThread quiet;
+  run({.plan = true});
+  EXPECT_EQ(quiet.warnings(), std::vector<std::string>{"the grid is coarse"});
 }
 
 TEST_F(EnsembleStage, does_not_compute_a_finished_part_again) {

@@ -128,6 +128,18 @@ TEST_P(RunMembers, leaves_out_and_names_a_member_that_fails) {
   EXPECT_TRUE(counts.flow[2].empty());
 }
 
+/// Which of them ends first is a matter of chance.
+TEST_P(RunMembers, say_what_the_recipe_insists_on_in_the_words_of_the_first_that_met_it) {
+  MemberTable table = small_table();
+  table.columns.push_back({"solve.material.youngs_modulus_Pa", {1e6, 1e6, 2e4, 1e6, 1e4, 1e6}, {}});
+  const SmallEnsemble ensemble(table, "accept = [\"weight-strain\", \"slow-waves\"]\n");
+  EnsembleCounts counts = ensemble.counts();
+  run_members(ensemble.members(), counts, {.devices = devices(GetParam(), 3)});
+  const std::string words = fact(counts.provenance, "accepted.weight-strain");
+  EXPECT_NE(words.find("in member 2"), std::string::npos) << words;
+  EXPECT_NE(words.find("under its own weight"), std::string::npos) << words;
+}
+
 TEST_P(RunMembers, leaves_out_a_member_whose_scene_the_recipe_does_not_suit) {
   // Half as thick, the third has no point in the load's box.
   MemberTable table = small_table();

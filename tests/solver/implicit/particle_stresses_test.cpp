@@ -35,7 +35,10 @@ TEST(ParticleStresses, are_none_where_the_body_moves_as_a_whole) {
 TEST(ParticleStresses, balance_one_another_under_any_strain) {
   PartsBench bench(options_of(Integrator::newmark));
   std::vector<Vec3<double>> u(static_cast<std::size_t>(bench.grid.nodes()));
-  for (std::size_t n = 0; n < u.size(); ++n) u[n] = {0.01 * std::sin(1.0 * n), 0.01 * std::cos(2.0 * n), 0};
+  for (std::size_t n = 0; n < u.size(); ++n) {
+    const double angle = static_cast<double>(n);
+    u[n] = {0.01 * std::sin(angle), 0.01 * std::cos(2 * angle), 0};
+  }
   Vec3<double> sum{};
   double size = 0;
   for (const Vec3<double>& f : forces(bench, u)) {

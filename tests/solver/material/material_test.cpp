@@ -329,7 +329,7 @@ TEST(DruckerPrager, keeps_small_stress_in_single_precision) {
     const auto to_float = [](const Vec3<double>& v) {
       return Vec3<float>{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
     };
-    advance_material(coarse, Mat3<float>{to_float(c.a), to_float(c.b), to_float(c.c)}, 0.01, b);
+    advance_material(coarse, Mat3<float>{to_float(c.a), to_float(c.b), to_float(c.c)}, 0.01f, b);
   }
   const auto tau = kirchhoff_stress(exact, a);
   const auto single = kirchhoff_stress(coarse, b);

@@ -55,7 +55,7 @@ MaterialState<Real> flowed(const Material<Real>& m, Gradients& random) {
     s.log_volume = Real(-4e-3);
     for (int n = 0; n < 3; ++n) {
       s.plastic_shear = 0;
-      advance_material(m, random.draw<Real>(1e-3), 0.01, s);
+      advance_material(m, random.draw<Real>(1e-3), Real(0.01), s);
     }
     if (s.plastic_shear > Real(0) && s.log_volume - s.plastic_log_volume < Real(-1e-3)) return s;
   }
@@ -66,7 +66,7 @@ template <class Real>
 PointTangent<Real> tangent_ahead(const Material<Real>& m, const MaterialState<Real>& s, const Mat3<Real>& way) {
   const auto ahead = [&] { return way; };
   PointTangent<Real> t;
-  nominal_stress(m, s, HeadedGradient<Real, decltype(ahead)>{{}, true, ahead}, 0.01, &t);
+  nominal_stress(m, s, HeadedGradient<Real, decltype(ahead)>{{}, true, ahead}, Real(0.01), &t);
   return t;
 }
 

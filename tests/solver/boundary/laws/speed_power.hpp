@@ -46,7 +46,7 @@ struct SpeedPower : BasalLaw {
 
   template <class Real>
   TALUS_HD static Real coefficient(const LawNumbers<Real>& n, const Slip<Real>& slip) {
-    return n[at_reference] * pow(slip.speed / n[reference_speed], n[exponent]);
+    return Real(n[at_reference] * pow(slip.speed / n[reference_speed], n[exponent]));
   }
 };
 

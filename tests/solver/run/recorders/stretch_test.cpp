@@ -76,6 +76,22 @@ TEST(StretchRecorder, ends_a_run_whose_body_may_have_parted_unless_that_is_accep
   EXPECT_TRUE(said_of(MaterialModel::neo_hookean, 1.25, nullptr, {}).empty());
 }
 
+TEST(StretchRecorder, leaves_what_was_insisted_on_with_the_results) {
+  SolveOptions o;
+  RunHistory rows;
+  said_of(MaterialModel::neo_hookean, 1.35, &rows);
+  EXPECT_TRUE(torn_body_accepted(o, rows).empty());
+  o.accept = {torn_body};
+  const Facts facts = torn_body_accepted(o, rows);
+  ASSERT_EQ(facts.size(), 1u);
+  EXPECT_EQ(facts[0].first, "accepted.torn-body");
+  for (const char* part : {"8 points", "factor of up to 1.35", "0.65 of a cell"})
+    EXPECT_NE(facts[0].second.find(part), std::string::npos) << part << "\n" << facts[0].second;
+  said_of(MaterialModel::neo_hookean, 1.25, &rows);
+  EXPECT_TRUE(torn_body_accepted(o, rows).empty()) << "nothing was torn";
+  EXPECT_TRUE(torn_body_accepted(o, RunHistory{}).empty()) << "no elastic body";
+}
+
 TEST(StretchRecorder, is_silent_of_what_flows) {
   RunHistory rows;
   EXPECT_TRUE(said_of(MaterialModel::drucker_prager, 3, &rows).empty());

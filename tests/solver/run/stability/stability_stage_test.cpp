@@ -4,6 +4,7 @@
 #include "solver/run/stability/stability_stage.hpp"
 
 #include "common/run/run_file.hpp"
+#include "common/stage/console.hpp"
 #include "tests/common/scratch.hpp"
 #include "tests/solver/scenes.hpp"
 
@@ -33,6 +34,14 @@ class StabilityStage : public ::testing::Test {
   SolveOptions options_;
   StageContext context_;
 };
+
+TEST_F(StabilityStage, says_what_the_domain_was_warned_of_where_it_is_checked) {
+  domain_.provenance.emplace_back("warning.coarse_grid", "the grid is coarse");
+  context_.check_only = true;
+  const QuietThread quiet;
+  found();
+  EXPECT_EQ(quiet.warnings(), std::vector<std::string>{"the grid is coarse"});
+}
 
 TEST_F(StabilityStage, writes_the_factor_and_the_ground_at_rest) {
   const Facts used = found();
