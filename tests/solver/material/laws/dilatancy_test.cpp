@@ -10,7 +10,8 @@
 namespace talus::testing {
 namespace {
 
-constexpr double pressed = 1e3;  // [Pa]; the elastic strain under it, 1e-4, is what the closed forms leave out
+constexpr double dilating_pressure =
+    1e3;  // [Pa]; the elastic strain under it, 1e-4, is what the closed forms leave out
 
 /// Grains of which a tenth more or less than at rest fills the space; with `slope` 0 the equilibrium is that of rest.
 MuOfI::Options packed(double fraction, double slope = 0) {
@@ -39,12 +40,12 @@ Material<Real> grains(const MuOfI::Options& o) {
 template <class Real>
 MaterialState<Real> at_rest(const Material<Real>& m) {
   MaterialState<Real> s;
-  s.log_volume = -Real(pressed) / m.bulk_modulus;
+  s.log_volume = -Real(dilating_pressure) / m.bulk_modulus;
   return s;
 }
 
 /// The rate of plane shear at which grains under the pressure have this inertial number [1/s].
-double rate_of(double i) { return i / MuOfI::Options{}.grain_diameter * std::sqrt(pressed / 2450); }
+double rate_of(double i) { return i / MuOfI::Options{}.grain_diameter * std::sqrt(dilating_pressure / 2450); }
 
 /// The volume fraction that is logistic in the shear (T27c): dphi/dshear = -K phi (phi - e).
 double logistic(double first, double e, double k, double shear) {
@@ -52,12 +53,12 @@ double logistic(double first, double e, double k, double shear) {
 }
 
 /// mu_s, mu_2, I_0 and mu_inf as Barker & Gray (2017) have them, and their creep.
-double closed_form(const MuOfI::Options& o, double i) {
+double dilatant_form(const MuOfI::Options& o, double i) {
   return (o.internal_friction() * o.inertial_number + o.limiting_friction() * i + o.fast_friction_rise * i * i) /
          (o.inertial_number + i);
 }
 double creep(const MuOfI::Options& o, double i) {
-  const double joint = o.first_well_posed(), mu = closed_form(o, joint);
+  const double joint = o.first_well_posed(), mu = dilatant_form(o, joint);
   return std::sqrt(1.9 / (std::log(joint / i) + 1.9 / (mu * mu)));
 }
 
@@ -78,8 +79,8 @@ void shear_under_load(const Material<Real>& m, double shear, double seconds, Mat
     g.c.z = static_cast<Real>(rise);
     s = start;
     advance_material(m, g, static_cast<Real>(seconds), s);
-    const double excess = -static_cast<double>(kirchhoff_stress(m, s).zz) - pressed;
-    if (std::abs(excess) < (sizeof(Real) == 8 ? 1e-9 : 1e-3) * pressed) break;
+    const double excess = -static_cast<double>(kirchhoff_stress(m, s).zz) - dilating_pressure;
+    if (std::abs(excess) < (sizeof(Real) == 8 ? 1e-9 : 1e-3) * dilating_pressure) break;
     (excess > 0 ? low : high) = rise;
     rise += 0.7 * excess / stiff;
     if (n > 20 || rise <= low || rise >= high) rise = 0.5 * (low + high);
@@ -161,8 +162,8 @@ TEST(Dilatancy, at_the_volume_of_steady_shear_is_the_law_without_it) {
   const auto m = grains(packed(0.6, 0.0)), plain = grains(MuOfI::Options{});
   for (const double shear : {300.0, 400.0, 600.0, 1e4}) {
     for (const double seconds : {1e-6, 1e-3, 1.0}) {
-      const auto with = MuOfI::end<double>(m, m.numbers_of<MuOfI>(), shear, pressed, 0.0, seconds);
-      const auto without = MuOfI::flow<double>(plain, plain.numbers_of<MuOfI>(), shear, pressed, seconds);
+      const auto with = MuOfI::end<double>(m, m.numbers_of<MuOfI>(), shear, dilating_pressure, 0.0, seconds);
+      const auto without = MuOfI::flow<double>(plain, plain.numbers_of<MuOfI>(), shear, dilating_pressure, seconds);
       // Both solve one equation, of which rounding is 2e-16 of the trial's stress.
       EXPECT_NEAR(with.left, without.left, 1e-13 * shear);
       EXPECT_EQ(with.dilation, 0);
@@ -204,7 +205,7 @@ TEST(Dilatancy, returns_to_friction_volume_and_pressure_of_one_inertial_number) 
             EXPECT_NEAR(phi, logistic(first, e, 4, strain / length), 1e-3 * blur + 1e-9)
                 << first << ", " << p << ", " << seconds << ", " << times;
             // The friction of Jop, Forterre & Pouliquen and the angle, on the plane of shear (T15d).
-            const double mu = slow == SlowFlow::yield || i > o.first_well_posed() ? closed_form(o, i) : creep(o, i);
+            const double mu = slow == SlowFlow::yield || i > o.first_well_posed() ? dilatant_form(o, i) : creep(o, i);
             const double m_plane = mu + angle, bend = std::sqrt(1 + 4.0 / 3 * angle * angle);
             const double cone = std::min(m_plane * bend / (1 + 4.0 / 3 * m_plane * angle), steepest_cone);
             EXPECT_NEAR(end.left / pressure, std::max(cone, 0.0), blur) << first << ", " << p << ", " << i;
@@ -245,8 +246,8 @@ TEST(Dilatancy, of_an_open_point_is_none) {
   // What has dilated by one percent carries its load at a volume at which unsheared grains were open, and opens beyond.
   MaterialState<double> s;
   s.plastic_log_volume = 0.01;
-  s.log_volume = 0.01 - pressed / m.bulk_modulus;
-  EXPECT_NEAR(-trace(kirchhoff_stress(m, s)) / 3, pressed, 1e-6);
+  s.log_volume = 0.01 - dilating_pressure / m.bulk_modulus;
+  EXPECT_NEAR(-trace(kirchhoff_stress(m, s)) / 3, dilating_pressure, 1e-6);
   s.log_volume = 0.02;
   EXPECT_EQ(norm_squared(kirchhoff_stress(m, s)), 0);
   EXPECT_EQ(elastic_energy(m, s), 0);
@@ -301,7 +302,7 @@ TEST(Dilatancy, makes_no_energy) {
       const double work = tau.xz * 1e-3 + tau.zz * (s.log_volume - before.log_volume);
       // (T27d): what dilatancy adds to the friction it spends on lifting; mu(I) p per shear is left.
       if (n > 10) {
-        EXPECT_NEAR((work - elastic_energy(m, s) + elastic_energy(m, before)) / (pressed * 1e-3), 0.4, 0.03);
+        EXPECT_NEAR((work - elastic_energy(m, s) + elastic_energy(m, before)) / (dilating_pressure * 1e-3), 0.4, 0.03);
       }
     }
   }
