@@ -119,6 +119,7 @@ void declare_data(CLI::App& app, DataRequest& data, Asked& asked) {
       ->add_option("--from", data.from,
                    "Folder that holds its sources, or its files (default: the sources are fetched)")
       ->type_name("DIR");
+  command->add_flag("--exact", data.exact, "Refuse files whose SHA-256 is another one, or not known");
   command->add_option("--table", data.table, "A table of examples of one's own (TOML)")->type_name("FILE");
   command->callback([&] { asked.command = [&] { return make_data(data); }; });
 }
@@ -138,7 +139,7 @@ int guarded(int argc, char** argv) {
   declare_new(app, scene, asked);
   Pair pair;
   declare_compare(app, pair, asked);
-  DataRequest data{.name = {}, .out = "data", .from = {}, .table = {}};
+  DataRequest data{.name = {}, .out = "data", .from = {}, .exact = false, .table = {}};
   declare_data(app, data, asked);
   try {
     app.parse(argc, argv);

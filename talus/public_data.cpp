@@ -32,15 +32,21 @@ constexpr double alike = 1e-6;
 struct DataFile {
   std::string name;
   std::vector<std::string> sum;  ///< names of its sources
+  std::string copy;              ///< the source that it is, byte by byte, instead of a sum
+  std::string sha256;            ///< of the file as it was made once; empty: not known
   double cells = 0, smallest = 0, largest = 0, mean = 0;
 };
 
 struct Source {
-  std::string name, sha256;
+  std::string name;
+  std::string folder;  ///< below that of the example; empty: in it
+  std::string sha256;  ///< empty: not known
+  std::string place() const { return folder.empty() ? name : folder + "/" + name; }
 };
 
 struct Example {
-  std::map<std::string, std::string> words;  ///< title, folder, licence, repository, commit, url, crs, note, pipeline
+  std::map<std::string, std::string>
+      words;  ///< title, folder, licence, repository, commit, url, crs, checksums, note...
   std::vector<Source> sources;
   std::vector<DataFile> files;
   std::string word(const char* name) const {
@@ -57,19 +63,24 @@ Example example_of(const toml::table& table) {
   if (const toml::array* sources = table["sources"].as_array())
     for (const toml::node& item : *sources)
       if (const toml::table* source = item.as_table())
-        example.sources.push_back(
-            {(*source)["name"].value_or(std::string()), (*source)["sha256"].value_or(std::string())});
+        example.sources.push_back({(*source)["name"].value_or(std::string()),
+                                   (*source)["folder"].value_or(std::string()),
+                                   (*source)["sha256"].value_or(std::string())});
   if (const toml::array* files = table["file"].as_array()) {
     for (const toml::node& item : *files) {
       const toml::table* file = item.as_table();
       if (file == nullptr) continue;
-      DataFile made{(*file)["name"].value_or(std::string()), {}};
+      DataFile made{(*file)["name"].value_or(std::string()), {}, {}, {}};
+      made.copy = (*file)["copy"].value_or(std::string());
+      made.sha256 = (*file)["sha256"].value_or(std::string());
       made.cells = (*file)["cells"].value_or(0.0);
       made.smallest = (*file)["smallest"].value_or(0.0);
       made.largest = (*file)["largest"].value_or(0.0);
       made.mean = (*file)["mean"].value_or(0.0);
       if (const toml::array* sum = (*file)["sum"].as_array())
         for (const toml::node& name : *sum) made.sum.push_back(name.value_or(std::string()));
+      for (Source& source : example.sources)
+        if (source.name == made.copy && source.sha256.empty()) source.sha256 = made.sha256;
       example.files.push_back(std::move(made));
     }
   }
@@ -98,19 +109,22 @@ Examples read_examples(const fs::path& file) {
 }
 
 std::string how_made(const DataFile& file) {
-  std::string text = file.name + " = ";
+  std::string text = file.name + " = " + file.copy;
   for (std::size_t i = 0; i < file.sum.size(); ++i) text += (i == 0 ? "" : " + ") + file.sum[i];
   return text;
 }
 
+std::string checksum_words(const std::string& sha256) { return "  sha256 " + (sha256.empty() ? "not known" : sha256); }
+
 /// What is said of an example, in the list and in SOURCE.md.
 std::string description(const std::string& name, const Example& example) {
   std::string text = fmt::format("{}: {}\n", name, example.word("title"));
-  for (const char* key : {"licence", "repository", "commit", "url", "crs", "note"})
+  for (const char* key : {"licence", "repository", "commit", "url", "crs", "checksums", "note"})
     if (!example.word(key).empty()) text += fmt::format("  {}: {}\n", key, example.word(key));
   for (const Source& source : example.sources)
-    text += fmt::format("  source: {}{}\n", source.name, source.sha256.empty() ? "" : "  sha256 " + source.sha256);
-  for (const DataFile& file : example.files) text += fmt::format("  made: {}\n", how_made(file));
+    text += fmt::format("  source: {}{}\n", source.place(), checksum_words(source.sha256));
+  for (const DataFile& file : example.files)
+    text += fmt::format("  made: {}{}\n", how_made(file), checksum_words(file.sha256));
   return text;
 }
 
@@ -137,6 +151,28 @@ std::string difference_from(const Raster& raster, const DataFile& wanted) {
       smallest, largest, mean, wanted.cells, wanted.smallest, wanted.largest, wanted.mean);
 }
 
+/// Refuses, where the user insists on checksums, what none is known of.
+void expect_checksum(const std::string& name, const std::string& sha256, bool exact) {
+  if (exact && sha256.empty())
+    throw DataError(Fault{name + ": no SHA-256 of it is known", "--exact was asked for",
+                          "Leave --exact out: what is made is compared with what it must hold all the same"});
+}
+
+/// Whether a file is that of the table to the byte. Another one that holds the same values, as another version of GDAL
+/// writes it, is warned of, or refused where the user insists.
+void check_bytes(const fs::path& path, const DataFile& file, bool exact) {
+  expect_checksum(file.name, file.sha256, exact);
+  const std::string found = sha256(path);
+  if (file.sha256.empty() || found == file.sha256) return;
+  const std::string what = path.string() + ": other bytes than the file of the example",
+                    which = fmt::format("its SHA-256 is {}, wanted is {}", found, file.sha256);
+  if (!file.copy.empty()) throw DataError(Fault{what, which, "Fetch it again"});
+  if (exact)
+    throw DataError(Fault{what, which + "; --exact was asked for",
+                          "Leave --exact out: number of cells, extremes and mean are those of the example"});
+  log_warning(fmt::format("{} ({}); number of cells, extremes and mean are the same. --exact refuses it", what, which));
+}
+
 void fetch(const std::string& url, const fs::path& file) {
   const char* const curl = "/usr/bin/curl";
   if (!fs::exists(curl))
@@ -152,15 +188,18 @@ void fetch(const std::string& url, const fs::path& file) {
 }
 
 /// The sources of an example in a folder, checked.
-void get_sources(const Example& example, const fs::path& from, const fs::path& into) {
+void get_sources(const Example& example, const fs::path& from, const fs::path& into, bool exact) {
   for (const Source& source : example.sources) {
-    const std::string url = fmt::format("{}/{}", example.word("url"), source.name);
+    expect_checksum(source.name, source.sha256, exact);
+    const std::string url = fmt::format("{}/{}", example.word("url"), source.place());
     const fs::path file = into / source.name;
     if (from.empty()) {
       log_info("fetching " + url);
       fetch(url, file);
     } else if (fs::exists(from / source.name)) {
       fs::copy_file(from / source.name, file);
+    } else if (fs::exists(from / source.place())) {
+      fs::copy_file(from / source.place(), file);
     } else {
       throw DataError(Fault{(from / source.name).string() + ": no such file",
                             "neither the sources nor all files made of them are in that folder",
@@ -194,13 +233,15 @@ Raster sum_of(const DataFile& file, const Example& example, const fs::path& sour
 }
 
 /// Takes the files of an example as they lie in a folder, where all are there. False: not all are.
-bool take_made(const Example& example, const fs::path& from, const fs::path& out) {
+bool take_made(const Example& example, const fs::path& from, const fs::path& out, bool exact) {
   const auto is_there = [&](const DataFile& file) { return fs::exists(from / file.name); };
   if (from.empty() || !std::all_of(example.files.begin(), example.files.end(), is_there)) return false;
   for (const DataFile& file : example.files) {
-    if (const std::string other = difference_from(read_raster(from / file.name), file); !other.empty())
-      throw DataError(Fault{(from / file.name).string() + ": not that file of the example", other,
-                            "Give another folder, or leave --from out to fetch the sources"});
+    if (file.copy.empty())
+      if (const std::string other = difference_from(read_raster(from / file.name), file); !other.empty())
+        throw DataError(Fault{(from / file.name).string() + ": not that file of the example", other,
+                              "Give another folder, or leave --from out to fetch the sources"});
+    check_bytes(from / file.name, file, exact);
     if (!fs::equivalent(from, out))
       fs::copy_file(from / file.name, out / file.name, fs::copy_options::overwrite_existing);
   }
@@ -209,6 +250,11 @@ bool take_made(const Example& example, const fs::path& from, const fs::path& out
 
 void make_files(const Example& example, const fs::path& sources, const fs::path& out) {
   for (const DataFile& file : example.files) {
+    if (!file.copy.empty()) {
+      fs::copy_file(sources / file.copy, out / file.name, fs::copy_options::overwrite_existing);
+      check_bytes(out / file.name, file, false);
+      continue;
+    }
     const Raster raster = sum_of(file, example, sources);
     if (const std::string other = difference_from(raster, file); !other.empty())
       throw DataError(Fault{file.name + ": what was made of its sources is not that file of the example", other,
@@ -236,12 +282,15 @@ int make_data(const DataRequest& request) {
   const Example& example = chosen(examples, request.name);
   const fs::path out = request.out / example.word("folder");
   make_folder(out);
-  if (!take_made(example, request.from, out)) {
+  if (!take_made(example, request.from, out, request.exact)) {
     const TemporaryFolder sources("talus-data");
-    get_sources(example, request.from, sources.path());
+    get_sources(example, request.from, sources.path(), request.exact);
     make_files(example, sources.path(), out);
   }
-  write_text(out / "SOURCE.md", "# " + description(request.name, example));
+  std::string here;
+  for (const DataFile& file : example.files)
+    here += fmt::format("  here: {}  sha256 {}\n", file.name, sha256(out / file.name));
+  write_text(out / "SOURCE.md", "# " + description(request.name, example) + here);
   for (const DataFile& file : example.files) fmt::print("{}\n", (out / file.name).string());
   if (!example.word("pipeline").empty())
     log_info(fmt::format("Now: TALUS_DATA={} talus run .../pipelines/{}/recipe.toml",

@@ -290,6 +290,58 @@ test_data_makes_a_made_up_example_from_its_sources() {
   fi
 }
 
+# What is known of a file to the byte is told, and --exact insists on it; the same values in other bytes will do else.
+test_data_compares_checksums_and_insists_on_them_when_asked() {
+  made_up_table
+  expect_exit 0 "$bin/talus" data made-up --table table.toml --out data --from sources
+  local before=data/made_up/before_dem.tif after=data/made_up/after_dem.tif
+  grep -qF "here: after_dem.tif  sha256 $(sha256sum $after | cut -d' ' -f1)" data/made_up/SOURCE.md ||
+    fail "SOURCE.md does not say the checksum of what was made"
+  grep -qF 'source: two.asc  sha256 not known' data/made_up/SOURCE.md || fail "SOURCE.md hides what is not known"
+  expect_exit 3 "$bin/talus" data made-up --table table.toml --out exact --from data/made_up --exact
+  expect_words 'before_dem.tif: no SHA-256 of it is known (--exact was asked for)'
+  expect_exit 3 "$bin/talus" data made-up --table table.toml --out exact --from sources --exact
+  expect_words 'two.asc: no SHA-256 of it is known'
+  local name digest
+  for name in before_dem.tif after_dem.tif; do
+    digest=$(sha256sum data/made_up/$name | cut -d' ' -f1)
+    sed -i "s/\"$name\",/& sha256 = \"$digest\",/" table.toml
+  done
+  expect_exit 0 "$bin/talus" data made-up --table table.toml --out exact --from data/made_up --exact
+  ! grep -q warning stderr || fail "the same bytes are warned of: $(cat stderr)"
+  gdal_translate -q -co COMPRESS=NONE $before other.tif
+  mv other.tif $before
+  expect_exit 0 "$bin/talus" data made-up --table table.toml --out other --from data/made_up
+  expect_words 'before_dem.tif: other bytes than the file of the example (its SHA-256 is '
+  expect_words 'number of cells, extremes and mean are the same. --exact refuses it'
+  expect_exit 3 "$bin/talus" data made-up --table table.toml --out exact --from data/made_up --exact
+  expect_words 'before_dem.tif: other bytes than the file of the example (its SHA-256 is '
+  expect_words 'Leave --exact out'
+}
+
+# What is no raster comes along as it is, from a folder below those of the sources too.
+test_data_copies_what_is_no_raster_and_refuses_other_bytes_of_it() {
+  made_up_table
+  mkdir sources/outlines
+  echo 'an outline' >sources/outlines/release.shp
+  local digest
+  digest=$(sha256sum sources/outlines/release.shp | cut -d' ' -f1)
+  sed -i 's/{ name = "two.asc" }/&, { name = "release.shp", folder = "outlines" }/' table.toml
+  sed -i "s/^file = \[/&\n  { name = \"release.shp\", copy = \"release.shp\", sha256 = \"$digest\" },/" table.toml
+  expect_exit 0 "$bin/talus" data made-up --table table.toml --out data --from sources
+  cmp sources/outlines/release.shp data/made_up/release.shp || fail "the copy is another file"
+  if command -v curl >/dev/null; then
+    expect_exit 0 "$bin/talus" data made-up --table table.toml --out fetched
+    cmp sources/outlines/release.shp fetched/made_up/release.shp || fail "what was fetched is another file"
+  fi
+  echo 'another outline' >sources/outlines/release.shp
+  expect_exit 3 "$bin/talus" data made-up --table table.toml --out data --from sources
+  expect_words 'release.shp: other bytes than the example was made of'
+  echo 'another outline' >data/made_up/release.shp
+  expect_exit 3 "$bin/talus" data made-up --table table.toml --out again --from data/made_up
+  expect_words 'release.shp: other bytes than the file of the example'
+}
+
 test_data_refuses_other_sources_and_other_files() {
   made_up_table
   echo >>sources/one.asc
@@ -308,12 +360,17 @@ test_data_refuses_other_sources_and_other_files() {
 # The examples of this program, as somebody has them here.
 test_data_knows_the_public_examples() {
   expect_exit 0 "$bin/talus" data
-  [[ $(grep -c '^  licence: ' stdout) -ge 2 && $(grep -cE '^  commit: [0-9a-f]{40}$' stdout) -ge 2 ]] ||
+  [[ $(grep -c '^  licence: ' stdout) == 4 && $(grep -cE '^  commit: [0-9a-f]{40}$' stdout) == 4 ]] ||
     fail "an example has no licence or no commit"
+  ! grep -E '^  made: .*sha256 not known' stdout || fail "no checksum is known of what is made"
   local data=$TALUS_SOURCE/../shared/data
   [[ -d $data ]] || skip "$data is not there: the public examples are not looked at"
-  expect_exit 0 "$bin/talus" data cascade2021 --from "$data/cascade2021" --out data
-  expect_exit 0 "$bin/talus" data frank-slide --from "$data/frank_slide" --out data
+  local name
+  for name in cascade2021:cascade2021 frank-slide:frank_slide iseesnow:iseesnow_coulomb \
+    iseesnow-realtopo:iseesnow_realtopo; do
+    expect_exit 0 "$bin/talus" data "${name%:*}" --from "$data/${name#*:}" --out data --exact
+    [[ -f $TALUS_SOURCE/pipelines/${name%:*}/recipe.toml ]] || fail "${name%:*} has no recipe"
+  done
   expect_exit 3 "$bin/talus" data frank-slide --from "$data/cascade2021" --out data
 }
 
