@@ -123,7 +123,9 @@ def kernels():
                     lines.append(f"| {shape}, {precision} | {int(near['points']):,} | "
                                  f"{float(near['step_us']) / 1e3:.3g} "
                                  f"| {float(near['seconds_per_point_and_step']):.1e} | {near['bytes_per_point']} |")
-    return [*lines, "", f"{rows[0]['place']}, explicit steps, by `make -C pipelines/benchmarks kernels`."]
+    commits, days = sorted({r["commit"][:7] for r in rows}), sorted({r["date"] for r in rows})
+    return [*lines, "", f"{rows[0]['place']}, explicit steps, commit {', '.join(commits)}, {', '.join(days)}, by "
+            "`make -C pipelines/benchmarks kernels`."]
 
 
 def scores():

@@ -22,12 +22,6 @@ SOURCE = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs/benchm
 PICTURE = pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else ROOT / "docs/pictures/kernels-time.png"
 COLOURS = {"linear": "#0072b2", "quadratic": "#d55e00"}  # Okabe & Ito 2008: told apart by all eyes
 LINES = {"single": "-", "double": "--"}
-GOALS = {
-    ("linear", "single"): 1e-10,
-    ("quadratic", "single"): 2e-10,
-    ("linear", "double"): 2e-10,
-    ("quadratic", "double"): 4e-10,
-}
 
 lines = collections.defaultdict(list)
 with open(SOURCE, newline="") as file:
@@ -50,13 +44,6 @@ for (method, shape, precision), values in sorted(lines.items()):
     )
     time.plot(x, seconds, **look)
     memory.plot(x, gigabytes, **look)
-for (shape, precision), goal in GOALS.items():
-    time.plot(
-        [1e6, 1e8], [goal, goal], color=COLOURS[shape], linestyle=":" if precision == "single" else "-.", linewidth=0.9
-    )
-time.annotate(
-    "goals, explicit, from 1e6 points\n(dots: single, dash-dots: double)", (1.1e6, 8.5e-11), fontsize=8, va="top"
-)
 time.set_ylim(4e-11, 2e-7)
 memory.axhline(139 * 1.073741824, color="black", linewidth=0.8)
 memory.annotate("memory of an H200", (1.2e4, 160), fontsize=8)

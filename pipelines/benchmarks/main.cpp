@@ -1,12 +1,14 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // talus-bench: what steps cost, and time against error. Checks what it times; writes CSV and pictures.
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <exception>
 #include <filesystem>
 #include <map>
@@ -52,11 +54,19 @@ Words parse(int argc, char** argv) {
   return w;
 }
 
+/// The commit of this program, "1a2b3c4"; empty where it was built without one.
+std::string commit() {
+  const std::string words = version();
+  const auto open = words.find('('), close = words.find(')');
+  return open < close && close != std::string::npos ? words.substr(open + 1, close - open - 1) : "";
+}
+
 std::string csv_of(const std::vector<KernelRun>& runs, double copy) {
   std::string text =
       "method,shape,precision,place,points,steps,step_us,seconds_per_point_and_step,bytes_per_point,cg_iterations_per_"
       "step,seconds_per_point_and_cg_iteration,momentum_error,phases_us,kernels_us_and_share_of_copy,memory_bytes_per_"
-      "point\n";
+      "point,commit,date\n";
+  const std::string made = fmt::format("{},{:%Y-%m-%d}", commit(), fmt::gmtime(std::time(nullptr)));
   const auto join = [](const auto& list, auto&& word) {
     std::string all;
     for (const auto& item : list) all += (all.empty() ? "" : "; ") + word(item);
@@ -70,7 +80,7 @@ std::string csv_of(const std::vector<KernelRun>& runs, double copy) {
         r.kernels.begin(),
         r.kernels.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(r.kernels.size(), 12)));
     text += fmt::format(
-        "{},{},{},{},{:.0f},{},{:.3f},{:.4g},{:.1f},{:.1f},{},{:.2g},\"{}\",\"{}\",\"{}\"\n", r.method, r.shape,
+        "{},{},{},{},{:.0f},{},{:.3f},{:.4g},{:.1f},{:.1f},{},{:.2g},\"{}\",\"{}\",\"{}\",{}\n", r.method, r.shape,
         r.precision, r.place, r.points, r.steps, 1e6 * r.step_seconds, r.eta(), r.bytes / r.points, iterations,
         iterations > 0 ? fmt::format("{:.3g}", cg / iterations / r.points) : "", r.check,
         join(r.phases, [](const auto& p) { return fmt::format("{}: {:.2f}", p.first, 1e6 * p.second); }),
@@ -79,7 +89,7 @@ std::string csv_of(const std::vector<KernelRun>& runs, double copy) {
                return fmt::format("{}: {:.2f}", k.name, 1e6 * k.seconds) +
                       (k.bytes > 0 ? fmt::format(" {:.0f} %", 100 * k.bytes / k.seconds / copy) : "");
              }),
-        join(r.memory, [&](const auto& m) { return fmt::format("{}: {:.0f}", m.first, m.second / r.points); }));
+        join(r.memory, [&](const auto& m) { return fmt::format("{}: {:.0f}", m.first, m.second / r.points); }), made);
   }
   return text;
 }

@@ -121,7 +121,7 @@ PICTURE = {
     ],
 }
 # What the steps cost, and what they move, on one grid each.
-GOALS = [
+STEPS = [
     Scene("frank", FRANK, 20, 10, 1e7, FRAMELESS),
     Scene("frank", FRANK, 20, 20, 8.1e9, FRAMELESS),
     Scene("stiff-slide", FRANK, 40, 5, 8.1e9, {"solve": {"point_frames": False, "end_time_s": 40.0}}),
@@ -148,11 +148,11 @@ def runs(long):
                 yield name, scene, newton(steps)
             for steps in (0.5, 1, 2, 5, 10) if coarsest else (1,) if long else ():
                 yield name, scene, reference(steps)
-    for scene in GOALS:
+    for scene in STEPS:
         for method in (explicit(0.25), explicit(0.25, " again"), explicit(0.1), explicit(0.5), explicit(0.8)):
-            yield "goals", scene, method
+            yield "cost of steps", scene, method
         for method in (columns(0.5), columns(0.8), columns(1.0), automatic(0.01)):
-            yield "goals", scene, method
+            yield "cost of steps", scene, method
 
 
 def merged(base, changes):

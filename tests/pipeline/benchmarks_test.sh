@@ -11,6 +11,10 @@ test_kernels_are_checked_and_timed() {
   awk -F, 'NR > 1 && !($7 > 0 && $8 > 0 && $9 > 100) { exit 1 }' out/kernels.csv ||
     fail "a time or a size is missing: $(<out/kernels.csv)"
   grep -q 'points to grid: ' out/kernels.csv || fail "no phases"
+  # Which program was timed, and when: the last two columns.
+  [[ $(head -n 1 out/kernels.csv) == *,commit,date ]] || fail "no commit and date: $(head -n 1 out/kernels.csv)"
+  [[ $(grep -cE ",(unknown|[0-9a-f]{7,}),$(date -u +%Y)-[0-9]{2}-[0-9]{2}\$" out/kernels.csv) -eq 6 ]] ||
+    fail "rows without commit or date: $(tail -n 1 out/kernels.csv)"
 }
 
 test_sets_are_listed() {

@@ -27,6 +27,27 @@ test_rows_are_of_one_commit_and_machine() {
   [[ $(column steps | wc -l) -gt 50 ]] || fail "only $(column steps | wc -l) rows have a result"
 }
 
+test_sets_are_called_by_what_they_show() {
+  need_tool python3
+  local sets
+  sets=$(column set | sort -u | paste -sd,)
+  [[ $sets == 'Frank Slide,cost of steps,sand column' ]] || fail "other sets than those of the program: $sets"
+  # The program's own words for them.
+  local name
+  for name in 'Frank Slide' 'cost of steps' 'sand column'; do
+    grep -qF "\"$name\"" "$TALUS_SOURCE/pipelines/benchmarks/speed_against_error.py" || fail "it knows no set $name"
+  done
+}
+
+test_kernels_say_of_which_commit_and_day_they_are() {
+  local kernels=$TALUS_SOURCE/docs/benchmarks/kernels-h200.csv page=$TALUS_SOURCE/docs/explanation/benchmarks.md
+  local of
+  of=$(sed -nE '2,$s/.*,([0-9a-f]{7,}),(20[0-9]{2}-[0-9]{2}-[0-9]{2})$/commit \1, \2/p' "$kernels" | sort | uniq -c)
+  [[ $(wc -l <<<"$of") -eq 1 && $of =~ ^\ *$(($(wc -l <"$kernels") - 1))\  ]] || fail "not every row says it: $of"
+  grep -qF "NVIDIA H200, explicit steps, commit" "$page" && grep -qF "${of##*[0-9] }" "$page" ||
+    fail "benchmarks.md does not say: $of"
+}
+
 test_rows_of_two_commits_are_refused() {
   need_tool python3
   local commit
