@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -51,29 +52,64 @@ void advise_on_stiffness(const Domain& domain, const SolveOptions& o, Advice& li
                                o.material.youngs_modulus, shorter, demand.modulus));
 }
 
-/// The coefficient of a bed of one angle [-]; 0 where the law is another, or the angle changes from place to place.
-double coulomb_coefficient(const Domain& domain, const SolveOptions& o) {
-  const auto by_place = [](const auto& raster) { return raster.first == "friction_angle_deg"; };
-  if (o.base.law != FrictionLaw::coulomb || std::any_of(domain.bed.begin(), domain.bed.end(), by_place)) return 0;
+/// Between which the bed's friction over normal stress lies, however fast a flow slips that stays below the energy line
+/// and however thick it is [-]; both 0 where nothing is said of it.
+struct FrictionRange {
+  double least = 0, most = 0;
+  bool alone = true;  ///< nothing else holds the flow back at its bed: no drag, yield or cohesion
+
+  /// Whether it is further from what is usual than landslides scatter. What holds besides friction makes up for little
+  /// friction, and nothing for too much of it.
+  bool is_unusual(const ReachBounds& usual) const {
+    return least > 0 && (least > usual.high || (alone && most < usual.low));
+  }
+  std::string words() const {
+    const auto number = [](double mu) { return fmt::format("{:.2f} ({:.1f} deg)", mu, std::atan(mu) * to_degrees); };
+    return most - least < 1e-9 ? number(least) : number(least) + " to " + number(most);
+  }
+};
+
+FrictionRange friction_range(const Domain& domain, const SolveOptions& o) {
+  const auto is_cohesion = [](const auto& raster) { return raster.first == "cohesion_Pa"; };
+  if (!std::all_of(domain.bed.begin(), domain.bed.end(), is_cohesion)) return {};  // the analyst's own knowledge
   const auto friction = make_base_friction<double>(o);
-  return friction.coefficient(friction.uniform, {.speed = 0, .normal_stress = 1e5, .duration = 0, .load = 1e4});
+  if (friction.holds()) return {};
+  const double g = std::hypot(o.gravity[0], o.gravity[1], o.gravity[2]);
+  const double fastest = std::sqrt(2 * g * energy_line_of(domain, o).largest_head(domain.terrain));
+  FrictionRange range{.least = std::numeric_limits<double>::infinity(),
+                      .alone = !friction.has_traction() && domain.bed.empty()};
+  // From next to nothing to a depth of half a kilometre, at rest and at speeds that halve: grains are held least by the
+  // slowest steady flow, other laws at one end or the other.
+  for (int halved = 0; halved <= 10; ++halved) {
+    const double speed = halved == 10 ? 0 : std::ldexp(fastest, -halved);
+    for (const double load : {1e-3, 1e6}) {
+      const double mu = friction.coefficient(friction.uniform,
+                                             {.speed = speed, .normal_stress = g * load, .duration = 0, .load = load});
+      range.least = std::min(range.least, mu);
+      range.most = std::max(range.most, mu);
+    }
+  }
+  return range;
 }
 
 void advise_on_friction(const Domain& domain, const SolveOptions& o, Advice& lines) {
-  const double coefficient = coulomb_coefficient(domain, o), volume = released_volume(domain, o);
+  const double volume = released_volume(domain, o);
   const ReachBounds usual = usual_reach(volume);
-  if (!(coefficient > 0) || !(usual.high > 0)) return;
-  if (coefficient >= usual.low && coefficient <= usual.high) return;
+  if (!(usual.high > 0)) return;
+  const FrictionRange range = friction_range(domain, o);
+  if (!range.is_unusual(usual)) return;
   std::string sources;
   for (const ReachRegression& one : reach_regressions())
     if (volume >= one.from_volume)
       sources += fmt::format("{}{:.2f} ({}, {})", sources.empty() ? "" : ", ", one.tangent(volume), one.source, one.of);
+  const bool coulomb = o.base.law == FrictionLaw::coulomb;
   lines.emplace_back(
       "friction",
-      fmt::format("the bed's friction of {:.2f} ({:.1f} deg) is far from the height over length of fall that is usual "
-                  "for {:.3g} m3: {}; beyond half and twice of it there is hardly any. Look at [solve.base] "
-                  "friction_angle_deg again: {:.0f} to {:.0f} deg",
-                  coefficient, std::atan(coefficient) * to_degrees, volume, sources, std::atan(usual.low) * to_degrees,
+      fmt::format("the bed's friction of {}{} is far from the height over length of fall that is usual for {:.3g} m3: "
+                  "{}; beyond half and twice of it there is hardly any. Look at [solve.base] {}again: {:.0f} to {:.0f} "
+                  "deg",
+                  range.words(), coulomb ? "" : fmt::format(" (law {})", o.base.law_name()), volume, sources,
+                  coulomb ? "friction_angle_deg " : "", std::atan(usual.low) * to_degrees,
                   std::atan(usual.high) * to_degrees));
 }
 

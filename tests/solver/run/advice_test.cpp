@@ -79,6 +79,76 @@ TEST(Advice, names_a_friction_far_from_usual_for_the_volume_with_its_sources) {
   EXPECT_EQ(said(advice(by_place, o), "friction"), "") << "a raster of angles is the analyst's own knowledge";
 }
 
+/// Bounds as above: 0.17 and 0.68. A law is unusual where it is beyond them at every speed and depth that the slide can
+/// have; what drags or holds by cohesion besides makes up for little friction.
+TEST(Advice, judges_the_friction_of_every_law_that_rubs) {
+  const auto words = [](const SolveOptions& o) { return said(advice(slide_above_a_plain(), o), "friction"); };
+  SolveOptions o = sensible();
+  o.base.law = FrictionLaw::voellmy;
+  o.base.friction_angle = 36;
+  EXPECT_NE(words(o).find("friction of 0.73 (36.0 deg) (law voellmy)"), std::string::npos) << words(o);
+  o.base.friction_angle = 8;
+  EXPECT_EQ(words(o), "") << "turbulence holds it besides";
+
+  o = sensible();
+  o.base.friction_angle = 8;
+  o.base.cohesion = 2000;
+  EXPECT_EQ(words(o), "") << "cohesion holds it besides";
+
+  o = sensible();
+  o.base.law = FrictionLaw::velocity_weakening;
+  o.base.peak_coefficient = 0.8;
+  o.base.steady_coefficient = 0.1;
+  o.base.characteristic_speed = 4;
+  EXPECT_EQ(words(o), "") << "from 0.8 at rest to 0.2 at the speed that the energy line allows";
+  o.base.peak_coefficient = 0.14;
+  EXPECT_NE(words(o).find(" to 0.14 (8.0 deg) (law velocity-weakening)"), std::string::npos) << words(o);
+  o.base.peak_coefficient = 1.2;
+  o.base.steady_coefficient = 0.9;
+  EXPECT_NE(words(o).find(" to 1.20 (50.2 deg)"), std::string::npos) << words(o);
+  o.base.steady_coefficient = 0.6;
+  o.base.characteristic_speed = 1e4;
+  EXPECT_NE(words(o), "") << "no slide is fast enough to feel its 0.6";
+
+  o = sensible();
+  o.base.law = FrictionLaw::pouliquen;
+  EXPECT_EQ(words(o), "");
+  o.base.stop_angle = 36;
+  o.base.start_angle = 37;
+  o.base.steepest_angle = 40;
+  EXPECT_NE(words(o).find("friction of 0.73 (36.0 deg) to "), std::string::npos) << words(o);
+  o.base.stop_angle = 4;
+  o.base.start_angle = 4.5;
+  o.base.steepest_angle = 7;
+  EXPECT_NE(words(o), "") << "not even the thinnest layer is held by 9.7 degrees";
+
+  o = sensible();
+  o.base.law = FrictionLaw::samosat;
+  o.base.friction_coefficient = 0.05;
+  EXPECT_EQ(words(o), "") << "its drag holds it besides";
+  o.base.friction_coefficient = 0.8;
+  EXPECT_NE(words(o).find("friction of 0.80 (38.7 deg) to 1.60 (58.0 deg) (law samosat)"), std::string::npos)
+      << words(o);
+  for (const FrictionLaw law : {FrictionLaw::none, FrictionLaw::stick}) {
+    o.base.law = law;
+    EXPECT_EQ(words(o), "") << "nothing rubs";
+  }
+}
+
+TEST(Advice, leaves_friction_from_any_raster_to_the_analyst) {
+  SolveOptions o = sensible();
+  o.base.law = FrictionLaw::voellmy;
+  o.base.friction_angle = 36;
+  Domain by_place = slide_above_a_plain();
+  by_place.bed.emplace_back("turbulence_m_s2", by_place.terrain);
+  EXPECT_EQ(said(advice(by_place, o), "friction"), "");
+  by_place.bed.front().first = "cohesion_Pa";
+  EXPECT_NE(said(advice(by_place, o), "friction"), "") << "cohesion changes nothing about too much friction";
+  o.base.law = FrictionLaw::coulomb;
+  o.base.friction_angle = 8;
+  EXPECT_EQ(said(advice(by_place, o), "friction"), "") << "and holds what has little";
+}
+
 TEST(Advice, names_too_few_points_in_a_cell) {
   EXPECT_NE(said(advice(slide_above_a_plain(1), sensible()), "points").find("a cell holds 1 material points"),
             std::string::npos);
