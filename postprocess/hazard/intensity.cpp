@@ -20,6 +20,7 @@ struct Limits {
 
 Limits limits_of(const IntensityOptions& o) {
   const char* federal = "BWW, BRP & BUWAL (1997), hazards of floods in land-use planning";
+  const char* observed = "Kang & Kim (2014), damage of buildings by debris flows";
   switch (o.guideline) {
     case Guideline::swiss_debris_flow:
       return {
@@ -34,6 +35,16 @@ Limits limits_of(const IntensityOptions& o) {
               "BFF & SLF (1984), avalanche hazard in land-use planning",
               {"weak", "medium", "strong"},
               {.pressure = {3, 30}, .rule = Rule::any}};
+    case Guideline::debris_flow_concrete:
+      return {"debris-flow-concrete",
+              observed,
+              {"slight damage", "moderate damage", "extensive damage"},
+              {.pressure = {35, 100}, .rule = Rule::any}};
+    case Guideline::debris_flow_other:
+      return {"debris-flow-other",
+              observed,
+              {"slight damage", "extensive damage", "complete destruction"},
+              {.pressure = {15, 30}, .rule = Rule::any}};
     case Guideline::none:
     case Guideline::own: break;
   }

@@ -36,6 +36,11 @@ struct IntensityMap {
 /// - swiss-debris-flow (BWW, BRP & BUWAL 1997): strong where h >= 1 m and v >= 1 m/s, else medium; there is no weak.
 /// - swiss-flood (BWW, BRP & BUWAL 1997): strong where h >= 2 m or h v >= 2 m2/s, medium from 0.5, else weak.
 /// - swiss-avalanche (BFF & SLF 1984): strong where p >= 30 kPa, medium from 3 kPa, else weak.
+/// - debris-flow-concrete (Kang & Kim 2014): what reinforced concrete suffers: extensive damage where p >= 100 kPa,
+///   moderate from 35 kPa, else slight.
+/// - debris-flow-other (Kang & Kim 2014): what other buildings suffer: complete destruction where p >= 30 kPa,
+/// extensive
+///   damage from 15 kPa, else slight.
 /// - own: class k where any, or all, of the quantities given reach their k-th limit; none below the first.
 IntensityMap intensity_of(const RunMaps& maps, const IntensityOptions& options);
 

@@ -16,6 +16,8 @@ void IntensityOptions::describe(recipe::Visitor& v) {
                   {"swiss-debris-flow", Guideline::swiss_debris_flow},
                   {"swiss-flood", Guideline::swiss_flood},
                   {"swiss-avalanche", Guideline::swiss_avalanche},
+                  {"debris-flow-concrete", Guideline::debris_flow_concrete},
+                  {"debris-flow-other", Guideline::debris_flow_other},
                   {"own", Guideline::own}},
                  "whose limits make the classes of maps/intensity.tif; own: those below; none: no such map");
   v.numbers("thickness_m", thickness, recipe::positive, "own: peak thickness from which class 1, 2, ... begins");

@@ -13,7 +13,15 @@
 namespace talus::postprocess {
 
 /// By whose limits intensity is told apart (postprocess/hazard/intensity.hpp).
-enum class Guideline { none, swiss_debris_flow, swiss_flood, swiss_avalanche, own };
+enum class Guideline {
+  none,
+  swiss_debris_flow,
+  swiss_flood,
+  swiss_avalanche,
+  debris_flow_concrete,
+  debris_flow_other,
+  own
+};
 
 /// Whether one of the quantities is enough for a class, or all are needed.
 enum class Rule { any, all };

@@ -64,6 +64,17 @@ TEST(Intensity, of_avalanches_is_by_pressure) {
             (std::vector<int>{1, 2, 2, 3}));
 }
 
+TEST(Intensity, of_debris_flows_on_buildings_is_the_damage_seen_at_that_pressure) {
+  const RunMaps maps = cases({{1, 1, 14.9}, {1, 1, 15}, {1, 1, 30}, {1, 1, 35}, {1, 1, 100}});
+  const IntensityMap concrete = intensity_of(maps, {.guideline = Guideline::debris_flow_concrete}),
+                     other = intensity_of(maps, {.guideline = Guideline::debris_flow_other});
+  EXPECT_EQ(codes(concrete, maps, 5), (std::vector<int>{1, 1, 1, 2, 3}));
+  EXPECT_EQ(codes(other, maps, 5), (std::vector<int>{1, 2, 3, 3, 3}));
+  EXPECT_EQ(concrete.classes[2].name, "extensive damage");
+  EXPECT_EQ(other.classes[2].words, "pressure \u2265 30 kPa");
+  EXPECT_NE(other.source.find("Kang & Kim (2014)"), std::string::npos) << other.source;
+}
+
 TEST(Intensity, by_own_limits_takes_any_or_all) {
   const RunMaps maps = cases({{1, 1, 1}, {5, 1, 1}, {5, 10, 1}, {5, 30, 1}, {20, 30, 1}});
   IntensityOptions own{.guideline = Guideline::own, .thickness = {2, 10}, .speed = {5, 20}};
