@@ -69,8 +69,10 @@ BudgetRun read_run_of(const h5::File& file, const std::string& group) {
   std::istringstream lines(file.text(group, "values"));
   for (std::string line; std::getline(lines, line);) run.values.push_back(line);
   if (run.state != BudgetState::done) return run;
-  for (const ResultNumber& number : result_numbers)
+  for (const ResultNumber& number : result_numbers) {
+    if (number.added && !file.has_attribute(group, number.name)) continue;
     run.result.*(number.value) = h5::checked_number(file, group, number.name, h5::finite_or_none);
+  }
   const MapGrid grid = h5::read_grid(file, group);
   run.deposit = read_map_of(file, group + "/deposit_thickness", grid);
   run.peak_thickness = read_map_of(file, group + "/peak_thickness", grid);

@@ -33,9 +33,13 @@ struct MemberResult {
   double volume_final = nan;       ///< [m3]
   double volume_outflow = nan;     ///< [m3]
   double largest_thickness = nan;  ///< [m]
+  double p99_thickness = nan;      ///< 99 % of the cells of that map that are above 0 are below [m]
   double largest_deposit = nan;    ///< [m]
+  double p99_deposit = nan;        ///< 99 % of the cells of that map that are above 0 are below [m]
   double largest_speed = nan;      ///< [m/s]
+  double p99_speed = nan;          ///< 99 % of the cells of that map that are above 0 are below [m/s]
   double largest_pressure = nan;   ///< [kPa]
+  double p99_pressure = nan;       ///< 99 % of the cells of that map that are above 0 are below [kPa]
   double time_end = nan;           ///< [s]
   double steps = nan;              ///< number of steps
   double wall_time = nan;          ///< [s]
@@ -48,6 +52,7 @@ struct ResultNumber {
   const char* unit;  ///< in UDUNITS' words
   const char* meaning;
   double MemberResult::*value;
+  bool added = false;  ///< files of earlier versions lack it; it is NaN then
 };
 
 /// All of them, in the order of tables.
@@ -64,9 +69,16 @@ inline constexpr ResultNumber result_numbers[] = {
     {"volume_final_m3", "m3", "volume in the domain at the end", &MemberResult::volume_final},
     {"volume_outflow_m3", "m3", "volume that left the domain", &MemberResult::volume_outflow},
     {"largest_thickness_m", "m", "largest thickness anywhere and at any time", &MemberResult::largest_thickness},
+    {"p99_thickness_m", "m", "99 % of the cells with a largest thickness above 0 are below",
+     &MemberResult::p99_thickness, true},
     {"largest_deposit_m", "m", "largest thickness of the deposit", &MemberResult::largest_deposit},
+    {"p99_deposit_m", "m", "99 % of the cells with a deposit are below", &MemberResult::p99_deposit, true},
     {"largest_speed_m_s", "m s-1", "largest speed anywhere and at any time", &MemberResult::largest_speed},
+    {"p99_speed_m_s", "m s-1", "99 % of the cells with a largest speed above 0 are below", &MemberResult::p99_speed,
+     true},
     {"largest_pressure_kPa", "kPa", "largest pressure anywhere and at any time", &MemberResult::largest_pressure},
+    {"p99_pressure_kPa", "kPa", "99 % of the cells with a largest pressure above 0 are below",
+     &MemberResult::p99_pressure, true},
     {"time_end_s", "s", "simulated time", &MemberResult::time_end},
     {"steps", "1", "time steps", &MemberResult::steps},
     {"wall_time_s", "s", "wall time of the steps", &MemberResult::wall_time},

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace talus {
 
@@ -19,6 +20,12 @@ double quantile(std::vector<double> values, double q) {
   if (below + 1 == static_cast<std::ptrdiff_t>(values.size())) return low;
   const double high = *std::min_element(values.begin() + below + 1, values.end());
   return low + (place - static_cast<double>(below)) * (high - low);
+}
+
+double p99_of_positive(const std::vector<double>& values) {
+  std::vector<double> positive;
+  std::copy_if(values.begin(), values.end(), std::back_inserter(positive), [](double v) { return v > 0; });
+  return quantile(std::move(positive), 0.99);
 }
 
 double median(const std::vector<double>& values) { return quantile(values, 0.5); }

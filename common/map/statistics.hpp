@@ -13,6 +13,10 @@ namespace talus {
 /// 1996, type 7). NaN where there is none.
 double quantile(std::vector<double> values, double q);
 
+/// The value below which 99 % of the values above 0 lie, as quantile() has it: what a map holds where there is
+/// anything, without its few largest cells. NaN where there is none.
+double p99_of_positive(const std::vector<double>& values);
+
 /// The middle value: quantile() at 0.5. NaN where there is none.
 double median(const std::vector<double>& values);
 

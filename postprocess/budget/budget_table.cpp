@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "common/gis/resampling.hpp"
+#include "common/map/statistics.hpp"
 #include "common/run/mobility.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/stage.hpp"
@@ -43,6 +44,7 @@ BudgetNumbers numbers_of(const Run& run) {
   for (const double v : run.maps.peak_speed) speed = std::fmax(speed, v);
   return {.run_out = run_out_of(run.maps),
           .largest_speed = speed,
+          .p99_speed = p99_of_positive(run.maps.peak_speed),
           .volume = volume_under(run.maps.deposit_thickness, run.maps.grid.cell),
           .steps = static_cast<double>(run.summary.steps),
           .wall_time = run.summary.wall_time};
@@ -137,9 +139,11 @@ class BudgetComparison {
                               peak = thickness_on(grid_, line.run.peak_thickness);
     line.elsewhere = difference.moved;
     line.largest_change = std::max(difference.larger, difference.smaller);
+    line.p99_change = difference.p99;
     line.overlap = overlap_of(maps.peak_thickness, peak, options_.footprint_threshold);
     line.numbers = {.run_out = line.run.result.run_out,
                     .largest_speed = line.run.result.largest_speed,
+                    .p99_speed = line.run.result.p99_speed,
                     .volume = volume_under(deposit, grid_.cell),
                     .steps = line.run.result.steps,
                     .wall_time = line.run.result.wall_time};

@@ -27,6 +27,7 @@ struct BudgetReference {
 struct BudgetNumbers {
   double run_out = nan;        ///< plan distance from the crown to the deposit's farthest cell [m]
   double largest_speed = nan;  ///< [m/s]
+  double p99_speed = nan;      ///< 99 % of the cells that anything came to are slower [m/s]
   double volume = nan;         ///< of the deposit [m3]
   double steps = nan;          ///< number of steps
   double wall_time = nan;      ///< [s]
@@ -49,6 +50,7 @@ struct BudgetLine {
                                 ///< the two, volumes set equal [-]
   double overlap = nan;         ///< of the footprints: area of both over area of either [-]
   double largest_change = nan;  ///< of the thickness of the deposit, in any cell [m]
+  double p99_change = nan;      ///< 99 % of the cells of either deposit change by less [m]
   BudgetNumbers numbers = {};
   std::vector<double> scores = {};  ///< by BudgetTable::scores
 };

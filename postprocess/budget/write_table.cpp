@@ -33,13 +33,16 @@ std::vector<std::pair<std::string, double>> named_numbers(const BudgetTable& tab
   std::vector<std::pair<std::string, double>> numbers{
       {"deposit_elsewhere_percent", 100 * line.elsewhere},
       {"largest_thickness_change_m", line.largest_change},
+      {"p99_thickness_change_m", line.p99_change},
       {"run_out_m", n.run_out},
       {"run_out_change_m", n.run_out - own.run_out},
       {"run_out_change_percent", 100 * (n.run_out / own.run_out - 1)},
       {"footprint_overlap", line.overlap},
       {"deposit_volume_change_percent", 100 * (n.volume / own.volume - 1)},
       {"largest_speed_m_s", n.largest_speed},
-      {"largest_speed_change_m_s", n.largest_speed - own.largest_speed}};
+      {"largest_speed_change_m_s", n.largest_speed - own.largest_speed},
+      {"p99_speed_m_s", n.p99_speed},
+      {"p99_speed_change_m_s", n.p99_speed - own.p99_speed}};
   for (std::size_t s = 0; s < table.scores.size(); ++s)
     numbers.emplace_back(table.scores[s].key, s < line.scores.size() ? line.scores[s] : nan);
   numbers.emplace_back("steps", n.steps);
@@ -83,6 +86,7 @@ std::string budget_json_text(const BudgetTable& table, const Run& run) {
   OrderedJson json{{"scene", run.summary.scene}, {"run_id", fact(run.summary.provenance, run_id)}};
   OrderedJson own{{"run_out_m", number_or_none(table.own.run_out)},
                   {"largest_speed_m_s", number_or_none(table.own.largest_speed)},
+                  {"p99_speed_m_s", number_or_none(table.own.p99_speed)},
                   {"deposit_volume_m3", number_or_none(table.own.volume)},
                   {"steps", number_or_none(table.own.steps)},
                   {"wall_time_s", number_or_none(table.own.wall_time)}};

@@ -198,6 +198,7 @@ std::string difference_words(const DepositDifference& d) {
   add("root mean square of the difference over either", fmt::format("{:.3g} m", d.rms));
   add("thinner by at most", fmt::format("{:.3g} m", d.smaller));
   add("thicker by at most", fmt::format("{:.3g} m", d.larger));
+  add("99 % of the cells of either differ by less than", fmt::format("{:.3g} m", d.p99));
   add("volume, second less first", fmt::format("{:+.4g} m\u00b3", std::abs(d.volume) < 1e-6 ? 0 : d.volume));
   return table({"deposits", ""}, rows, true);
 }

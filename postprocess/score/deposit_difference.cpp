@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/gis/resampling.hpp"
+#include "common/map/statistics.hpp"
 #include "common/map/sum.hpp"
 
 namespace talus::postprocess {
@@ -26,6 +28,7 @@ DepositDifference deposit_difference(const RunMaps& first, const RunMaps& second
       same_cells(first.grid, second.grid) ? theirs_as_is : resample_thickness(theirs_as_is, first.grid);
   DepositDifference found{.difference = {first.grid, std::vector<double>(first.grid.count(), nan)}};
   Sum ours, theirs, squares;
+  std::vector<double> changes;
   std::size_t both = 0, either = 0;
   for (std::size_t i = 0; i < first.grid.count(); ++i) {
     const double a = thickness_or_none(first.deposit_thickness[i]), b = thickness_or_none(other.values[i]);
@@ -38,6 +41,7 @@ DepositDifference deposit_difference(const RunMaps& first, const RunMaps& second
     if (!(a > threshold) && !(b > threshold)) continue;
     ++either;
     squares.add((b - a) * (b - a));
+    changes.push_back(std::abs(b - a));
   }
   const double area = first.grid.cell * first.grid.cell, scale = theirs.value() > 0 ? ours.value() / theirs.value() : 0;
   Sum moved;
@@ -47,6 +51,7 @@ DepositDifference deposit_difference(const RunMaps& first, const RunMaps& second
   found.volume = (theirs.value() - ours.value()) * area;
   found.moved = ours.value() > 0 ? moved.value() / ours.value() : 0;
   found.overlap = either > 0 ? static_cast<double>(both) / static_cast<double>(either) : 1;
+  found.p99 = either > 0 ? quantile(std::move(changes), 0.99) : 0;
   found.rms = either > 0 ? std::sqrt(squares.value() / static_cast<double>(either)) : 0;
   return found;
 }

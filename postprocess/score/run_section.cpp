@@ -21,13 +21,6 @@ double largest(const std::vector<double>& values) {
   return top;
 }
 
-/// The values above 0, of the cells where there is something.
-std::vector<double> positive(const std::vector<double>& values) {
-  std::vector<double> found;
-  std::copy_if(values.begin(), values.end(), std::back_inserter(found), [](double v) { return v > 0; });
-  return found;
-}
-
 double area_above(const std::vector<double>& values, double threshold, double cell) {
   return static_cast<double>(std::count_if(values.begin(), values.end(), [&](double v) { return v > threshold; })) *
          cell * cell;
@@ -56,7 +49,7 @@ void volumes(const Scored& scored, Sheet& sheet) {
                "nothing was released");
   sheet.number("max_release_thickness_m", "thickest release", "m", release.thickest, 2);
   sheet.number("p99_release_thickness_m", "thickest release, 99 % of its cells below", "m",
-               quantile(positive(run.maps.initial_thickness), 0.99), 2, "nothing was released");
+               p99_of_positive(run.maps.initial_thickness), 2, "nothing was released");
   sheet.number("max_release_thickness_slope_normal_m", "thickest release, normal to the slope", "m",
                release.thickest_normal, 2);
 }
@@ -99,7 +92,7 @@ void extent(const Scored& scored, Sheet& sheet) {
   const auto extreme = [&](const std::string& key, const std::string& label, const char* unit,
                            const std::vector<double>& values, int decimals) {
     sheet.number("max_" + key, label, unit, largest(values), decimals);
-    sheet.number("p99_" + key, label + ", 99 % of its cells below", unit, quantile(positive(values), 0.99), decimals,
+    sheet.number("p99_" + key, label + ", 99 % of its cells below", unit, p99_of_positive(values), decimals,
                  "there is none");
   };
   extreme("deposit_thickness_m", "thickest deposit", "m", maps.deposit_thickness, 2);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "common/map/statistics.hpp"
 #include "common/run/mobility.hpp"
 #include "common/stage/acceptance.hpp"
 #include "common/stage/stage.hpp"
@@ -83,9 +84,13 @@ MemberResult measured(const RunMaps& maps, double threshold) {
   result.deposit_area = area_above(maps, maps.deposit_thickness, threshold);
   result.edge_cells = static_cast<double>(cells_at_edge(maps));
   result.largest_thickness = largest_of(maps.peak_thickness);
+  result.p99_thickness = p99_of_positive(maps.peak_thickness);
   result.largest_deposit = largest_of(maps.deposit_thickness);
+  result.p99_deposit = p99_of_positive(maps.deposit_thickness);
   result.largest_speed = largest_of(maps.peak_speed);
+  result.p99_speed = p99_of_positive(maps.peak_speed);
   result.largest_pressure = largest_of(maps.peak_pressure_kPa);
+  result.p99_pressure = p99_of_positive(maps.peak_pressure_kPa);
   return result;
 }
 

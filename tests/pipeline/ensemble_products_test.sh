@@ -93,7 +93,9 @@ test_maps_are_read_by_gdal_with_threshold_and_members() {
     grep -qF "$words" stdout || fail "gdalinfo does not say $words"
   done
   awk -F, 'NR == 1 { for (c = 1; c <= NF; ++c) at[$c] = c; next }
-    { if (!($at["run_out_m"] > 0 && $at["footprint_csi"] > 0 && $at["footprint_csi"] < 1)) exit 1; n += 1 }
+    { if (!($at["run_out_m"] > 0 && $at["footprint_csi"] > 0 && $at["footprint_csi"] < 1)) exit 1
+      if (!($at["p99_speed_m_s"] > 0 && $at["p99_speed_m_s"] <= $at["largest_speed_m_s"])) exit 1
+      n += 1 }
     END { exit n != 24 }' out/members.csv || fail "members.csv: $(head -3 out/members.csv)"
   expect_exit 0 /usr/bin/python3 "$TALUS_SOURCE/tests/postprocess/maps/check_cf.py" out/probability.nc
 }

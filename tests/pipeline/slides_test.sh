@@ -122,6 +122,8 @@ if [row["name"] for row in found] != ["north", "south", "east", "next"]: sys.exi
 if [float(row["slides.thickness_m"]) for row in found] != [3, 2, 4, 3]: sys.exit("inputs of the table")
 for row in found:
     if row["state"] != "counted" or not float(row["largest_speed_m_s"]) > 0: sys.exit(f"row {row}")
+    for what in ("thickness_m", "deposit_m", "speed_m_s", "pressure_kPa"):
+        if not 0 < float(row[f"p99_{what}"]) <= float(row[f"largest_{what}"]): sys.exit(f"{what} of row {row}")
 PYTHON
   /usr/bin/python3 - <<'PYTHON' || fail "slides.nc is not slides.csv"
 import csv, sys

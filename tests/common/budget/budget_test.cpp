@@ -7,6 +7,7 @@
 
 #include "tests/common/damage.hpp"
 #include "tests/common/scratch.hpp"
+#include "tests/places.hpp"
 
 namespace talus {
 namespace {
@@ -61,6 +62,7 @@ Budget small_budget() {
   BudgetRun done{.name = "step", .row = "step", .words = "steps half as long", .values = {"solve.cfl=0.25", "a=b"}};
   done.state = BudgetState::done;
   done.result.run_out = 12.5;
+  done.result.p99_speed = 7.5;
   done.deposit = done.peak_thickness = map;
   BudgetRun failed{.name = "modulus", .row = "modulus", .words = "stiff", .values = {}};
   failed.state = BudgetState::failed;
@@ -86,6 +88,7 @@ TEST(BudgetFile, gives_back_what_was_written) {
   ASSERT_EQ(read.runs.size(), 3u);
   EXPECT_EQ(read.runs[0].values, budget.runs[0].values);
   EXPECT_EQ(read.runs[0].result.run_out, 12.5);
+  EXPECT_EQ(read.runs[0].result.p99_speed, 7.5);
   EXPECT_TRUE(std::isnan(read.runs[0].result.drop));
   EXPECT_EQ(read.runs[0].deposit.grid.columns, 4);
   EXPECT_EQ(read.runs[0].deposit.values[0], 0.5);
@@ -94,6 +97,14 @@ TEST(BudgetFile, gives_back_what_was_written) {
   EXPECT_EQ(read.runs[2].domain, "survey-1");
   EXPECT_EQ(read.count(BudgetState::done), 1u);
   EXPECT_EQ(read.count(BudgetState::left_out), 1u);
+}
+
+/// Written by the program before these numbers were there.
+TEST(BudgetFile, without_99th_percentiles_is_read_and_knows_none) {
+  const Budget old = read_budget(std::filesystem::path(TALUS_SOURCE_DIR) / "tests/golden/budget-2-without-p99.h5");
+  ASSERT_EQ(old.runs.size(), 1u);
+  EXPECT_EQ(old.runs[0].result.largest_speed, 7);
+  EXPECT_TRUE(std::isnan(old.runs[0].result.p99_speed));
 }
 
 TEST(BudgetFile, refuses_rows_that_no_budget_has_and_thickness_below_zero) {

@@ -8,6 +8,7 @@
 #include "tests/common/damage.hpp"
 #include "tests/common/ensemble/ensemble_scene.hpp"
 #include "tests/common/ensemble/same_maps.hpp"
+#include "tests/places.hpp"
 
 namespace talus {
 namespace {
@@ -105,6 +106,21 @@ TEST(CountsFile, comes_back_as_it_was_written) {
   EXPECT_EQ(read.scene.title, counts.scene.title);
   EXPECT_EQ(read.scene.grid.west, counts.scene.grid.west);
   EXPECT_EQ(read.scene.release_thickness, counts.scene.release_thickness);
+}
+
+/// Written by the program before these numbers were there.
+TEST(CountsFile, without_99th_percentiles_is_read_and_knows_none) {
+  const EnsembleCounts old = read_counts(fs::path(TALUS_SOURCE_DIR) / "tests/golden/counts-2-without-p99.h5");
+  ASSERT_EQ(old.results.size(), 6u);
+  EXPECT_EQ(old.count(MemberState::counted), 5);
+  EXPECT_GT(old.results[0].largest_speed, 0);
+  EXPECT_TRUE(std::isnan(old.results[0].p99_thickness));
+  EXPECT_TRUE(std::isnan(old.results[0].p99_deposit));
+  EXPECT_TRUE(std::isnan(old.results[0].p99_speed));
+  EXPECT_TRUE(std::isnan(old.results[0].p99_pressure));
+  const test::Scratch scratch;  // counting may go on with them
+  write_counts(scratch / "counts.h5", old);
+  expect_same(read_counts(scratch / "counts.h5"), old);
 }
 
 TEST(CountsFile, of_a_part_in_which_nothing_came_anywhere_comes_back) {

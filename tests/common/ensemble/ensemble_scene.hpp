@@ -95,9 +95,13 @@ inline MemberResult result_of(const MemberTable& table, std::int64_t member) {
   result.volume_final = result.volume_released;
   result.volume_outflow = 0;
   result.largest_thickness = depth * 1.3;
+  result.p99_thickness = 0.9 * result.largest_thickness;
   result.largest_deposit = depth * 0.7;
+  result.p99_deposit = 0.9 * result.largest_deposit;
   result.largest_speed = 4 * depth;
+  result.p99_speed = 0.9 * result.largest_speed;
   result.largest_pressure = 2 * std::pow(4 * depth, 2);
+  result.p99_pressure = 0.9 * result.largest_pressure;
   result.time_end = 60;
   result.steps = 400 + static_cast<double>(member);
   result.wall_time = 0.2;

@@ -17,6 +17,14 @@ TEST(Statistics, takes_quantiles_between_the_sorted_values) {
   EXPECT_TRUE(std::isnan(quantile({}, 0.5)));
 }
 
+TEST(Statistics, takes_the_99th_percentile_of_what_is_above_0) {
+  std::vector<double> map(1000, 0.0);
+  map[3] = std::nan("");
+  for (int n = 1; n <= 101; ++n) map[static_cast<std::size_t>(5 * n)] = n;
+  EXPECT_DOUBLE_EQ(p99_of_positive(map), 100) << "cells without anything do not count";
+  EXPECT_TRUE(std::isnan(p99_of_positive({0, 0, std::nan("")})));
+}
+
 TEST(Statistics, nmad_does_not_see_an_outlier) {
   EXPECT_DOUBLE_EQ(nmad({1, 2, 3, 4, 1000}), 1.4826) << "median 3, distances 2 1 0 1 997";
   EXPECT_TRUE(std::isnan(nmad({})));

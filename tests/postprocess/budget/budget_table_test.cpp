@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "common/map/statistics.hpp"
 #include "common/stage/identity.hpp"
 #include "tests/postprocess/report/report_of_run.hpp"
 
@@ -33,6 +34,7 @@ class BudgetOfRun : public ReportOfRun {
       }
     run.result.run_out = 100;
     run.result.largest_speed = 10;
+    run.result.p99_speed = 8;
     budget_.runs.push_back(run);
     return budget_.runs.back();
   }
@@ -84,6 +86,23 @@ TEST_F(BudgetOfRun, is_that_of_its_runs_the_largest_first) {
   const Json json = Json::parse(budget_json_text(*found, run_));
   EXPECT_NEAR(json["rows"][0]["deposit_elsewhere_percent"].get<double>(), 100 * three, 1e-9);
   EXPECT_TRUE(json["rows"][3]["run_out_m"].is_null());
+}
+
+TEST_F(BudgetOfRun, has_the_99th_percentile_beside_every_largest_value) {
+  add("cells", "cells", 3);
+  const auto found = table();
+  ASSERT_TRUE(found);
+  const std::string csv = budget_csv(*found), head = csv.substr(0, csv.find('\n'));
+  for (const char* two : {"largest_thickness_change_m,p99_thickness_change_m",
+                          "largest_speed_m_s,largest_speed_change_m_s,p99_speed_m_s,p99_speed_change_m_s"})
+    EXPECT_NE(head.find(two), std::string::npos) << head;
+  const Json json = Json::parse(budget_json_text(*found, run_));
+  const double own = p99_of_positive(run_.maps.peak_speed);
+  EXPECT_EQ(json["own"]["p99_speed_m_s"].get<double>(), own);
+  EXPECT_EQ(json["rows"][0]["p99_speed_m_s"].get<double>(), 8);
+  EXPECT_EQ(json["rows"][0]["p99_speed_change_m_s"].get<double>(), 8 - own);
+  EXPECT_GT(found->lines[0].p99_change, 0);
+  EXPECT_LE(found->lines[0].p99_change, found->lines[0].largest_change);
 }
 
 TEST_F(BudgetOfRun, spreads_over_all_rows_and_over_those_of_a_kind) {

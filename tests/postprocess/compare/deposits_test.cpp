@@ -35,10 +35,25 @@ TEST(CompareDeposits, shifted_by_a_cell_are_measured) {
   EXPECT_DOUBLE_EQ(found.overlap, 9.0 / 11);
   EXPECT_DOUBLE_EQ(found.larger, 2);
   EXPECT_DOUBLE_EQ(found.smaller, 2);
+  EXPECT_DOUBLE_EQ(found.p99, 2) << "two of eleven cells";
   EXPECT_DOUBLE_EQ(found.volume, 0);
   EXPECT_DOUBLE_EQ(found.rms, std::sqrt(8.0 / 11));
   EXPECT_EQ(found.difference.at(0, 1), -2);
   EXPECT_TRUE(std::isnan(found.difference.at(0, 0)));
+}
+
+/// Where 200 cells hold a deposit, the 99th percentile lies between the second and the third largest change.
+TEST(CompareDeposits, have_a_99th_percentile_that_does_not_see_a_single_cell) {
+  RunMaps first;
+  first.grid = {.columns = 20, .rows = 11, .west = 0, .south = 0, .cell = 10, .crs_wkt = ""};
+  first.deposit_thickness.assign(first.grid.count(), 0);
+  for (int cell = 0; cell < 200; ++cell) first.deposit_thickness[static_cast<std::size_t>(cell)] = 2;
+  RunMaps second = first;
+  second.deposit_thickness[50] = 9;
+  EXPECT_DOUBLE_EQ(deposit_difference(first, second, 0.5).larger, 7);
+  EXPECT_DOUBLE_EQ(deposit_difference(first, second, 0.5).p99, 0);
+  second.deposit_thickness[60] = second.deposit_thickness[70] = 1;
+  EXPECT_NEAR(deposit_difference(first, second, 0.5).p99, 1, 1e-12) << "of either sign";
 }
 
 /// The same body on cells half as wide keeps its volume, and on the wide cells all of its shape.

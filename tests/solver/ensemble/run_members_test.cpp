@@ -3,6 +3,7 @@
 // Members of an ensemble are the runs that they would be alone, whoever runs them beside them.
 #include "solver/ensemble/run_members.hpp"
 
+#include <algorithm>
 #include <numeric>
 
 #include "common/domain/scale_release.hpp"
@@ -69,6 +70,30 @@ void expect_members_as_alone(const SmallEnsemble& ensemble, On on) {
 
 TEST_P(RunMembers, gives_each_member_the_bits_of_its_run_alone) {
   expect_members_as_alone(SmallEnsemble(), GetParam());
+}
+
+/// The value that the share `q` of the cells above 0 do not exceed, by sorting them.
+double share_of_positive(std::vector<double> values, double q) {
+  std::erase_if(values, [](double v) { return !(v > 0); });
+  std::sort(values.begin(), values.end());
+  const double place = q * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  const double next = values[std::min(below + 1, values.size() - 1)];
+  return values[below] + (place - static_cast<double>(below)) * (next - values[below]);
+}
+
+TEST_P(RunMembers, gives_the_99th_percentile_beside_every_largest_value) {
+  const SmallEnsemble ensemble;
+  Member own = ensemble.members().read(0);
+  const auto run = run_member(own.domain, own.options, make_device(GetParam()));
+  ASSERT_TRUE(run);
+  const MemberResult& r = run->result;
+  EXPECT_DOUBLE_EQ(r.p99_thickness, share_of_positive(run->maps.peak_thickness, 0.99));
+  EXPECT_DOUBLE_EQ(r.p99_deposit, share_of_positive(run->maps.deposit_thickness, 0.99));
+  EXPECT_DOUBLE_EQ(r.p99_speed, share_of_positive(run->maps.peak_speed, 0.99));
+  EXPECT_DOUBLE_EQ(r.p99_pressure, share_of_positive(run->maps.peak_pressure_kPa, 0.99));
+  EXPECT_GT(r.p99_speed, 0);
+  EXPECT_LT(r.p99_speed, r.largest_speed);
 }
 
 TEST_P(RunMembers, lets_in_what_each_member_alone_would_let_in) {
