@@ -16,6 +16,16 @@
 #include "solver/run/sanity.hpp"
 
 namespace talus::solver {
+namespace {
+
+/// What a run is warned of at its end goes into its results, as what it was warned of before does.
+void add_warnings_of_end(const std::vector<std::string>& lines, Facts& provenance) {
+  std::size_t number = 0;
+  for (const auto& [name, words] : provenance) number += name.starts_with("warning.solve.") ? 1 : 0;
+  for (const std::string& line : lines) provenance.emplace_back(fmt::format("warning.solve.{}", number++), line);
+}
+
+}  // namespace
 
 void remove_leftovers(const RunPaths& paths) {
   remove_for_good(paths.checkpoint);
@@ -149,9 +159,11 @@ RunSummary Simulation::finish(RunSummary summary) {
   measure(end, summary);
   for (auto& fact : torn_body_accepted(loop_.options(), loop_.history().rows()))
     summary.provenance.push_back(std::move(fact));
+  const std::vector<std::string> warnings = loop_.history().warnings();
+  add_warnings_of_end(warnings, summary.provenance);
   write_run(end, summary);
   for (const std::string& line : loop_.history().conclusions()) log_info(line);
-  for (const std::string& line : loop_.history().warnings()) log_warning(line);
+  for (const std::string& line : warnings) log_warning(line);
   report_sanity(summary.sanity);
   log_detail(fmt::format("files: {:.1f} s after the last step", timer_.seconds() - loop_.memory().wall_time));
   remove_for_good(paths_.checkpoint);  // the run is whole: nothing is left to go on with

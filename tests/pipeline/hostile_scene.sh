@@ -14,7 +14,8 @@ file="b'\"<img src=x onerror=window.pwned=1>%s;\$(touch pwned).asc"
 # quoted TEXT: a TOML basic string.
 quoted() { printf '"%s"' "$(sed 's/\\/\\\\/g; s/"/\\"/g' <<<"$1")"; }
 
-hostile_scene() {
+# hostile_recipe: recipe.toml and its files, in a folder of such a name, which becomes the current one.
+hostile_recipe() {
   scene
   mkdir -p "in <b>&'\"x"
   cd "in <b>&'\"x"
@@ -56,7 +57,67 @@ institution = $(quoted "$image $shell")
 name = $(quoted "$image\" '\\u2028")
 thickness = $(quoted "$image.asc")
 TOML
+}
+
+# hostile_stages: the three of them.
+hostile_stages() {
   expect_exit 0 preprocess
   expect_exit 0 solve
   expect_exit 0 postprocess
+}
+
+hostile_scene() {
+  hostile_recipe
+  hostile_stages
+}
+
+# hostile_ensemble: the same recipe, with six members that differ in a law, given by its name, and in a friction.
+hostile_ensemble() {
+  hostile_recipe
+  cat >>recipe.toml <<'TOML'
+
+[ensemble]
+members = 6
+
+[[ensemble.vary]]
+key = "solve.base.law"
+distribution = "discrete"
+words = ["coulomb", "voellmy"]
+
+[[ensemble.vary]]
+key = "solve.base.friction_angle_deg"
+low = 10.0
+high = 25.0
+TOML
+  hostile_stages
+}
+
+# hostile_slides: two slides in the bowl whose names, and the attributes that give them, are markup too.
+hostile_slides() {
+  hostile_recipe
+  TITLE=$title IMAGE=$image SCRIPT=$script /usr/bin/python3 - <<'PYTHON' || fail "no outlines of slides"
+import json, os
+image, names = os.environ["IMAGE"], [os.environ["TITLE"], "../../" + os.environ["SCRIPT"]]
+features = []
+for n, (x, y) in enumerate([(30, 80), (50, 80)]):
+    ring = [[500000 + x + dx, 5000000 + y + dy] for dx, dy in ((0, 0), (20, 0), (20, 40), (0, 40), (0, 0))]
+    features.append({"type": "Feature", "geometry": {"type": "Polygon", "coordinates": [ring]},
+                     "properties": {image: names[n], "depth": 4 - n, image + "2": 15 + n}})
+json.dump({"type": "FeatureCollection", "name": image, "features": features,
+           "crs": {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::32633"}}},
+          open("areas.geojson", "w"))
+PYTHON
+  sed -i '/^\[\[preprocess.release/,/^$/d; /^\[postprocess.survey/,$d' recipe.toml
+  cat >>recipe.toml <<TOML
+[slides]
+outlines = "areas.geojson"
+name_from = $(quoted "$image")
+thickness_from = "depth"
+margin_m = 100.0
+
+[[slides.set]]
+key = "solve.base.friction_angle_deg"
+attribute = $(quoted "${image}2")
+TOML
+  hostile_stages
 }

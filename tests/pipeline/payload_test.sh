@@ -14,6 +14,40 @@ test_nothing_of_them_runs_on_the_page() {
     "$TALUS_SOURCE/tests/pipeline/report_browser.py" "$TALUS_SCRATCH/page" payload
 }
 
+# opened PAGE WORDS...: a page of results, used in a browser as a person would; it says the words as text.
+opened() {
+  local page=$1
+  shift
+  mkdir -p "$TALUS_SCRATCH/page"
+  cp "$page" "$TALUS_SCRATCH/page/"
+  expect_exit 0 /usr/bin/python3 "$TALUS_SOURCE/tests/pipeline/payload_browser.py" \
+    "$TALUS_SCRATCH/page/${page##*/}" "$@"
+}
+
+test_nothing_of_them_runs_on_the_page_of_an_ensemble() {
+  need_browser
+  hostile_ensemble
+  opened out/ensemble.html "$title" "$image"
+}
+
+test_nothing_of_them_runs_on_the_page_of_slides() {
+  need_browser
+  hostile_slides
+  opened out/slides.html "$title" "../../$script" "$image"
+}
+
+test_nothing_of_them_runs_on_the_page_of_a_comparison() {
+  need_browser
+  hostile_scene
+  local other="$image\"'&<svg onload=window.pwned=1>"
+  sed -i "s|^friction_angle_deg.*||; s|^institution.*|institution = $(quoted "<iframe src=x>$image")|" recipe.toml
+  expect_exit 0 "$bin/talus-preprocess" recipe.toml --out "$other"
+  expect_exit 0 "$bin/talus-solve" recipe.toml --out "$other" --on cpu
+  expect_exit 0 "$bin/talus-postprocess" recipe.toml --out "$other"
+  expect_exit 0 postprocess --against "$other"
+  opened out/comparison.html "$title" "$other" "<iframe src=x>$image"
+}
+
 test_the_page_holds_no_path_of_this_machine() {
   hostile_scene
   sed -n 's/.*id="data">\(.*\)<\/script>.*/\1/p' out/report.html >data.json

@@ -29,6 +29,24 @@ test_run_says_that_it_is_sane() {
   grep -q 'Sanity' out/score.txt || fail "score.txt has no sanity"
 }
 
+# A slope that the mass runs down and out of: the force on the ground is not known then, which a run says at its end.
+test_what_a_run_is_warned_of_at_its_end_stands_in_its_results() {
+  scene
+  grid before.asc '0.6 * (200 - x)'
+  grid after.asc '0.6 * (200 - x) - 4 * (i >= 14 && i < 18 && j >= 8 && j < 12)'
+  sed -i 's/^end_time_s.*/end_time_s = 8.0/; /^\[postprocess.survey/,$d' recipe.toml
+  expect_exit 0 preprocess
+  expect_exit 0 solve
+  local warning='the force on the ground is not known in'
+  expect_words "warning: $warning"
+  h5dump -g /provenance out/run.h5 | grep -A9 'warning.solve' | grep -qF "$warning" || fail "run.h5 does not say so"
+  expect_exit 0 postprocess
+  local file
+  for file in score.json score.txt report.html; do
+    grep -qF "$warning" "out/$file" || fail "$file does not say what the run was warned of at its end"
+  done
+}
+
 test_mass_that_its_weight_squashes_is_refused_by_name() {
   scene_with solve.material 'youngs_modulus_Pa = 1.0e4'
   expect_exit 3 solve

@@ -47,10 +47,11 @@ struct BudgetScene {
   }
 };
 
-const BudgetRun& named(const Budget& budget, const std::string& name) {
+// The name is no std::string: GCC 13 takes a reference that comes of a temporary one for one to it.
+const BudgetRun& named(const Budget& budget, const char* name) {
   for (const BudgetRun& run : budget.runs)
     if (run.name == name) return run;
-  throw std::logic_error("no run " + name);
+  throw std::logic_error(std::string("no run ") + name);
 }
 
 std::size_t differing(const std::vector<double>& a, const std::vector<double>& b) {
