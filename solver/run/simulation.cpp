@@ -21,7 +21,7 @@ namespace {
 /// What a run is warned of at its end goes into its results, as what it was warned of before does.
 void add_warnings_of_end(const std::vector<std::string>& lines, Facts& provenance) {
   std::size_t number = 0;
-  for (const auto& [name, words] : provenance) number += name.starts_with("warning.solve.") ? 1 : 0;
+  for (const auto& [name, words] : provenance) number += name.starts_with("warning.solve.") ? 1U : 0U;
   for (const std::string& line : lines) provenance.emplace_back(fmt::format("warning.solve.{}", number++), line);
 }
 
