@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/ensemble/ensemble_file.hpp"
 
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,7 +14,10 @@
 namespace talus {
 namespace {
 
-constexpr std::int64_t layout_version = 2;
+std::string versions_read(const EnsembleFileKind& kind) {
+  return kind.oldest == kind.version ? fmt::format("version {}", kind.version)
+                                     : fmt::format("versions {} to {}", kind.oldest, kind.version);
+}
 
 }  // namespace
 
@@ -22,7 +26,7 @@ void write_ensemble_file(const std::filesystem::path& path, const EnsembleFileKi
   PendingFile pending(path);
   h5::File file = h5::File::create(pending.path(), {pending.final_path(), ""});
   file.set_text("/", "format", kind.format);
-  file.set_integer("/", "format_version", layout_version);
+  file.set_integer("/", "format_version", kind.version);
   write(file);
   file.close();
   seal_file(pending.path(), pending.final_path());
@@ -34,9 +38,8 @@ h5::File open_ensemble_file(const std::filesystem::path& path, const EnsembleFil
   if (!trusted.file.has_attribute("/", "format") || trusted.file.text("/", "format") != kind.format)
     trusted.file.refuse(fmt::format("is not {}", kind.words), "its mark is missing");
   const auto version = trusted.file.integer("/", "format_version");
-  if (version != layout_version)
-    trusted.file.refuse(fmt::format("has layout version {}", version),
-                        fmt::format("this program reads version {}", layout_version));
+  if (version < kind.oldest || version > kind.version)
+    trusted.file.refuse(fmt::format("has layout version {}", version), "this program reads " + versions_read(kind));
   h5::expect_seal(trusted);
   return std::move(trusted.file);
 }

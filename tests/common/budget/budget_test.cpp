@@ -136,5 +136,19 @@ TEST(BudgetFile, without_its_seal_and_damaged_is_refused_or_read) {
   EXPECT_EQ(refused, 50) << "the seal tells";
 }
 
+TEST(BudgetFile, reads_version_2) {
+  const Budget budget = read_budget(std::filesystem::path(TALUS_SOURCE_DIR) / "tests/golden/budget-2.h5");
+  ASSERT_EQ(budget.runs.size(), 5u);
+  EXPECT_EQ(budget.runs[1].name, "friction-less");
+  EXPECT_EQ(budget.runs[1].state, BudgetState::done);
+  EXPECT_NEAR(budget.runs[1].result.largest_speed, 1.39824, 1e-5);
+  EXPECT_EQ(budget.runs[1].deposit.grid.columns, 20);
+  double volume = 0;
+  for (const double thickness : budget.runs[1].deposit.values) volume += 100 * thickness;
+  EXPECT_NEAR(volume, 6400, 1e-6) << "cells of 100 m2";
+  EXPECT_EQ(budget.runs[4].state, BudgetState::left_out);
+  EXPECT_NE(budget.runs[4].reason.find("the error of the survey is not known"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace talus

@@ -174,5 +174,18 @@ TEST(CountsFile, with_counts_that_cannot_be_is_refused) {
   EXPECT_NE(fault_of_changed([](EnsembleCounts& c) { c.flow[0] = {10, 5}; }), "") << "not of this grid";
 }
 
+TEST(EnsembleCounts, reads_version_2) {
+  const EnsembleCounts counts = read_counts(fs::path(TALUS_SOURCE_DIR) / "tests/golden/counts-2.h5");
+  EXPECT_EQ(counts.members, 3);
+  EXPECT_EQ(counts.count(MemberState::counted), 3);
+  EXPECT_EQ(counts.scene.scene, "bowl");
+  EXPECT_EQ(counts.scene.grid.columns, 20);
+  EXPECT_EQ(counts.scene.tallied, Tallied::distribution);
+  EXPECT_NEAR(counts.results[1].largest_speed, 1.22497, 1e-5);
+  EXPECT_NEAR(counts.results[1].volume_final, 6400, 1e-9);
+  EXPECT_EQ(counts.maps[0].reached[counts.cells.find(4, 9)], 3u) << "all members cover the release";
+  EXPECT_EQ(counts.maps[0].thresholds, (std::vector<double>{0.5}));
+}
+
 }  // namespace
 }  // namespace talus
