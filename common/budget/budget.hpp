@@ -49,6 +49,7 @@ struct BudgetRun {
   std::string domain = {};          ///< name of a domain of its own; empty: that of the run
   BudgetState state = BudgetState::waiting;
   std::string reason = {};                   ///< why it failed or was left out
+  Facts accepted = {};                       ///< what the recipe insists on and this run met
   MemberResult result = {};                  ///< of a run that is done
   Raster deposit = {}, peak_thickness = {};  ///< likewise [m]
 };

@@ -41,6 +41,7 @@ void write_run_of(h5::File& file, const std::string& group, const BudgetRun& run
   file.set_text(group, "domain", run.domain);
   file.set_text(group, "state", state_names[static_cast<std::size_t>(run.state)]);
   file.set_text(group, "reason", run.reason);
+  if (!run.accepted.empty()) h5::write_facts(file, group + "/accepted", run.accepted);
   if (run.state != BudgetState::done) return;
   for (const ResultNumber& number : result_numbers) file.set_number(group, number.name, run.result.*(number.value));
   h5::write_grid(file, group, run.deposit.grid);
@@ -68,6 +69,7 @@ BudgetRun read_run_of(const h5::File& file, const std::string& group) {
     file.refuse(fmt::format("attribute {} row is \"{}\"", group, run.row), "a budget has no such row");
   std::istringstream lines(file.text(group, "values"));
   for (std::string line; std::getline(lines, line);) run.values.push_back(line);
+  if (file.exists(group + "/accepted")) run.accepted = h5::read_facts(file, group + "/accepted");
   if (run.state != BudgetState::done) return run;
   for (const ResultNumber& number : result_numbers) {
     if (number.added && !file.has_attribute(group, number.name)) continue;

@@ -3,6 +3,7 @@
 // The error budget of the report.
 #include <cmath>
 
+#include "common/stage/acceptance.hpp"
 #include "postprocess/budget/budget_table.hpp"
 #include "postprocess/report/parts.hpp"
 
@@ -20,6 +21,7 @@ Json budget_line_json(const BudgetLine& line) {
             {"failed", line.run.state == BudgetState::failed},
             {"reason", line.run.reason},
             {"values", line.run.values},
+            {"accepted", accepted_line(line.run.accepted)},
             {"elsewhere", finite_or_null(line.elsewhere)},
             {"overlap", finite_or_null(line.overlap)},
             {"run_out", finite_or_null(line.numbers.run_out)},

@@ -48,6 +48,7 @@ class Noting {
  private:
   static void take(BudgetRun& run, MemberRun&& made) {
     run.state = BudgetState::done;
+    run.accepted = std::move(made.accepted);
     run.result = made.result;
     run.deposit = {made.maps.grid, std::move(made.maps.deposit_thickness)};
     run.peak_thickness = {made.maps.grid, std::move(made.maps.peak_thickness)};

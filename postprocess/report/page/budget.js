@@ -43,6 +43,7 @@ function lineRow(line, budget, largest) {
       line.title.charAt(0).toUpperCase() + line.title.slice(1),
       h("span", { class: `budget-kind ${line.kind}` }, kind),
       h("div", { class: "note" }, line.words),
+      line.accepted ? h("div", { class: "note" }, `Accepted: ${line.accepted}`) : "",
     ),
   );
   if (!line.done) {

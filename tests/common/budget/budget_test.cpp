@@ -63,6 +63,7 @@ Budget small_budget() {
   done.state = BudgetState::done;
   done.result.run_out = 12.5;
   done.result.p99_speed = 7.5;
+  done.accepted = {{"accepted.weight-strain", "too soft"}};
   done.deposit = done.peak_thickness = map;
   BudgetRun failed{.name = "modulus", .row = "modulus", .words = "stiff", .values = {}};
   failed.state = BudgetState::failed;
@@ -87,6 +88,8 @@ TEST(BudgetFile, gives_back_what_was_written) {
   EXPECT_EQ(read.provenance, budget.provenance);
   ASSERT_EQ(read.runs.size(), 3u);
   EXPECT_EQ(read.runs[0].values, budget.runs[0].values);
+  EXPECT_EQ(read.runs[0].accepted, budget.runs[0].accepted);
+  EXPECT_TRUE(read.runs[1].accepted.empty());
   EXPECT_EQ(read.runs[0].result.run_out, 12.5);
   EXPECT_EQ(read.runs[0].result.p99_speed, 7.5);
   EXPECT_TRUE(std::isnan(read.runs[0].result.drop));

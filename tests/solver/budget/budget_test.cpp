@@ -120,6 +120,17 @@ TEST_P(BudgetRuns, that_fail_are_named_with_their_reason) {
   EXPECT_EQ(budget.count(BudgetState::done), budget.runs.size() - 1);
 }
 
+TEST_P(BudgetRuns, keep_what_they_alone_were_insisted_on) {
+  const BudgetScene scene(heap_recipe("accept = [\"weight-strain\", \"slow-waves\"]\n") +
+                              "[budget]\nmodulus_factor = 0.01\n",
+                          small_heap());
+  const Budget budget = scene.run(scene.variations(), GetParam());
+  const BudgetRun& soft = named(budget, "modulus");
+  ASSERT_EQ(soft.state, BudgetState::done) << soft.reason;
+  EXPECT_NE(fact(soft.accepted, "accepted.weight-strain"), "");
+  EXPECT_TRUE(named(budget, "step").accepted.empty()) << "its stiffness is that of the run";
+}
+
 // A block of strong ground slides to rest on an incline: s = v^2 cos(slope) / 2 g (mu cos(slope) - sin(slope)).
 constexpr double degree = std::numbers::pi / 180, gravity = 9.81;
 constexpr double slope = 10 * degree, start_speed = 5, friction_deg = 25;
