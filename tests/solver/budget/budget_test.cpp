@@ -121,9 +121,9 @@ TEST_P(BudgetRuns, that_fail_are_named_with_their_reason) {
 }
 
 TEST_P(BudgetRuns, keep_what_they_alone_were_insisted_on) {
-  const BudgetScene scene(heap_recipe("accept = [\"weight-strain\", \"slow-waves\"]\n") +
-                              "[budget]\nmodulus_factor = 0.01\n",
-                          small_heap());
+  const BudgetScene scene(
+      heap_recipe("accept = [\"weight-strain\", \"slow-waves\"]\n") + "[budget]\nmodulus_factor = 0.01\n",
+      small_heap());
   const Budget budget = scene.run(scene.variations(), GetParam());
   const BudgetRun& soft = named(budget, "modulus");
   ASSERT_EQ(soft.state, BudgetState::done) << soft.reason;
