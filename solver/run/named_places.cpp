@@ -85,38 +85,36 @@ std::vector<double> coordinates(const MapLine& points) {
   return values;
 }
 
-std::vector<SectionOptions> placed(const std::vector<SectionOptions>& sections, const std::vector<DomainPlace>& places,
-                                   std::vector<Fault>& faults) {
-  std::vector<SectionOptions> all;
-  for (std::size_t n = 0; n < sections.size(); ++n) {
-    const SectionOptions& o = sections[n];
+/// The list with what it asks of places put in: make(name, place) gives the options of a line or point. `table` is the
+/// recipe's name of the list, `lines` whether lines are wanted.
+template <class Options, class Make>
+std::vector<Options> placed(const std::vector<Options>& list, const char* table, bool lines,
+                            const std::vector<DomainPlace>& places, std::vector<Fault>& faults, const Make& make) {
+  std::vector<Options> all;
+  for (std::size_t n = 0; n < list.size(); ++n) {
+    const Options& o = list[n];
     if (o.place.empty()) {
       all.push_back(o);
       continue;
     }
-    const Found found = found_by({"section", n, o.place, o.name, true}, places, faults);
-    for (const DomainPlace* one : found)
-      all.push_back({.name = o.name.empty() ? one->name : o.name,
-                     .x = coordinates<0>(one->points),
-                     .y = coordinates<1>(one->points)});
+    for (const DomainPlace* one : found_by({table, n, o.place, o.name, lines}, places, faults))
+      all.push_back(make(o.name.empty() ? one->name : o.name, *one));
   }
   return all;
 }
 
+std::vector<SectionOptions> placed(const std::vector<SectionOptions>& sections, const std::vector<DomainPlace>& places,
+                                   std::vector<Fault>& faults) {
+  return placed(sections, "section", true, places, faults, [](const std::string& name, const DomainPlace& line) {
+    return SectionOptions{.name = name, .x = coordinates<0>(line.points), .y = coordinates<1>(line.points)};
+  });
+}
+
 std::vector<GaugeOptions> placed(const std::vector<GaugeOptions>& gauges, const std::vector<DomainPlace>& places,
                                  std::vector<Fault>& faults) {
-  std::vector<GaugeOptions> all;
-  for (std::size_t n = 0; n < gauges.size(); ++n) {
-    const GaugeOptions& o = gauges[n];
-    if (o.place.empty()) {
-      all.push_back(o);
-      continue;
-    }
-    const Found found = found_by({"gauge", n, o.place, o.name, false}, places, faults);
-    for (const DomainPlace* one : found)
-      all.push_back({.name = o.name.empty() ? one->name : o.name, .x = one->points[0][0], .y = one->points[0][1]});
-  }
-  return all;
+  return placed(gauges, "gauge", false, places, faults, [](const std::string& name, const DomainPlace& point) {
+    return GaugeOptions{.name = name, .x = point.points[0][0], .y = point.points[0][1]};
+  });
 }
 
 /// Whether the points of a line lie on the way from its first to its last.
