@@ -39,8 +39,7 @@ struct IntensityMap {
 /// - debris-flow-concrete (Kang & Kim 2014): what reinforced concrete suffers: extensive damage where p >= 100 kPa,
 ///   moderate from 35 kPa, else slight.
 /// - debris-flow-other (Kang & Kim 2014): what other buildings suffer: complete destruction where p >= 30 kPa,
-/// extensive
-///   damage from 15 kPa, else slight.
+///   extensive damage from 15 kPa, else slight.
 /// - own: class k where any, or all, of the quantities given reach their k-th limit; none below the first.
 IntensityMap intensity_of(const RunMaps& maps, const IntensityOptions& options);
 

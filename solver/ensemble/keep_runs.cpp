@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <optional>
-#include <utility>
 
 #include <fmt/format.h>
 
 #include "common/run/run_facts.hpp"
 #include "solver/ensemble/member_run.hpp"
+#include "solver/run/plausible.hpp"
 #include "solver/run/run_stage.hpp"
 #include "solver/run/simulation.hpp"
 #include "solver/scene/make_scene.hpp"
@@ -44,8 +44,8 @@ void keep_runs(StageContext& context, const Members& members, const EnsembleOpti
     std::string failure = failure_of([&] {
       own = members.read(k);
       const SolveOptions used = with_preset(own->options);
-      for (auto& accepted : judge_member(own->domain, make_scene(own->domain, used), used))
-        facts.push_back(std::move(accepted));
+      const Acceptance accepted = judged_before_run(own->domain, make_scene(own->domain, used), used);
+      facts.insert(facts.end(), accepted.facts().begin(), accepted.facts().end());
       simulation.emplace(own->domain, own->options, device, files, mark);
     });
     if (failure.empty()) {

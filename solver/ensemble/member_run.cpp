@@ -8,7 +8,6 @@
 
 #include "common/map/statistics.hpp"
 #include "common/run/mobility.hpp"
-#include "common/stage/acceptance.hpp"
 #include "common/stage/stage.hpp"
 #include "solver/run/plausible.hpp"
 #include "solver/run/recorders/stretch.hpp"
@@ -56,16 +55,6 @@ std::int64_t cells_at_edge(const RunMaps& maps) {
 
 }  // namespace
 
-Facts judge_member(const Domain& domain, const Scene& scene, const SolveOptions& options) {
-  std::vector<std::string> names = options.accept;
-  std::erase(names, torn_body);
-  Acceptance acceptance("solve", names);
-  acceptance.collect();
-  judge_scene(plausibility_of(domain, scene, options), options, acceptance);
-  acceptance.settle();
-  return acceptance.facts();
-}
-
 MemberResult measured(const RunMaps& maps, double threshold) {
   MemberResult result;
   if (const auto top = crown(maps, threshold)) {
@@ -97,7 +86,7 @@ MemberResult measured(const RunMaps& maps, double threshold) {
 std::optional<MemberRun> run_member(const Domain& domain, const SolveOptions& options, const AnyDevice& device) {
   RunTimer timer;
   RunLoop loop(domain, options, device);
-  Facts accepted = judge_member(domain, loop.scene(), loop.options());
+  Facts accepted = judged_before_run(domain, loop.scene(), loop.options()).facts();
   loop.start();
   MemberKeeper keeper;
   try {

@@ -10,7 +10,6 @@
 #include "common/ensemble/counts.hpp"
 #include "common/error.hpp"
 #include "common/stage/identity.hpp"
-#include "solver/integrator/scene.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/parallel/any_device.hpp"
 
@@ -38,10 +37,6 @@ std::string failure_of(const Body& body) {
   }
   return {};
 }
-
-/// This function throws DataError where a member's scene is implausible and its recipe does not insist on it. It
-/// returns what was insisted on.
-Facts judge_member(const Domain& domain, const Scene& scene, const SolveOptions& options);
 
 /// This function runs a member to its end. Its maps have the bits of run.h5 of the same domain and options run by
 /// itself, on the CPU and where the options ask for deterministic sums. None: the process was interrupted. It throws

@@ -144,4 +144,14 @@ void judge_scene(const ScenePlausibility& numbers, const SolveOptions& options, 
   judge_shaking(numbers, options, acceptance);
 }
 
+Acceptance judged_before_run(const Domain& domain, const Scene& scene, const SolveOptions& options) {
+  std::vector<std::string> names = options.accept;
+  std::erase(names, torn_body);
+  Acceptance acceptance("solve", names);
+  acceptance.collect();
+  judge_scene(plausibility_of(domain, scene, options), options, acceptance);
+  acceptance.settle();
+  return acceptance;
+}
+
 }  // namespace talus::solver

@@ -53,4 +53,8 @@ ScenePlausibility plausibility_of(const Domain& domain, const Scene& scene, cons
 /// ("strong-shaking").
 void judge_scene(const ScenePlausibility& numbers, const SolveOptions& options, Acceptance& acceptance);
 
+/// The function judges a scene before its run by what the options accept, and throws one DataError of all that is
+/// refused. It returns what was insisted on. A body that tears is judged as the run goes on, and not here.
+Acceptance judged_before_run(const Domain& domain, const Scene& scene, const SolveOptions& options);
+
 }  // namespace talus::solver

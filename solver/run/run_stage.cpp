@@ -94,12 +94,7 @@ void add_places(Domain& domain, const SolveOptions& o) {
 
 /// This function refuses what is implausible in a scene, and adds what is insisted on to the facts of its results.
 void judge(Domain& domain, const SolveOptions& o) {
-  std::vector<std::string> before_the_run = o.accept;
-  std::erase(before_the_run, torn_body);
-  Acceptance acceptance("solve", before_the_run);
-  acceptance.collect();
-  judge_scene(plausibility_of(domain, make_scene(domain, o), o), o, acceptance);
-  acceptance.settle();
+  const Acceptance acceptance = judged_before_run(domain, make_scene(domain, o), o);
   acceptance.warn_of_unmet();
   const auto& facts = acceptance.facts();
   domain.provenance.insert(domain.provenance.end(), facts.begin(), facts.end());

@@ -59,6 +59,30 @@ def check_console(browser, has_trouble=True):
         check_trouble(browser)
 
 
+def check_elements(browser, foreign, scripts):
+    """No name ran as a script, and the page holds no element that names may ask for, and so many scripts as its own."""
+    assert browser.execute_script("return window.pwned") is None, "a name ran as a script"
+    for kind in foreign:
+        found = browser.execute_script("return document.querySelectorAll(arguments[0]).length", kind)
+        assert found == 0, f"{found} elements {kind}"
+    found = browser.execute_script("return document.querySelectorAll('script').length")
+    assert found == scripts, f"{found} scripts instead of those of the page, {scripts}"
+
+
+def check_policy(browser):
+    """What is injected later does not run either."""
+    browser.execute_script(
+        "const s = document.createElement('script'); s.textContent = 'window.pwned = 2'; document.body.append(s);"
+        "const b = document.createElement('b'); s.className = b.className = 'injected'; document.body.append(b);"
+        "b.innerHTML = '<i style=\"color:red\" onclick=\"window.pwned = 3\">x</i>'; b.firstChild.click();"
+    )
+    assert browser.execute_script("return window.pwned") is None, "an inline script runs: the policy does not hold"
+    styled = browser.execute_script("return getComputedStyle(document.querySelector('.injected > i')).color")
+    assert styled != "rgb(255, 0, 0)", "an inline style holds"
+    browser.execute_script("document.querySelectorAll('.injected').forEach((e) => e.remove())")
+    browser.get_log("browser")  # the refusals of the two above
+
+
 def at_width(browser, width, height=900):
     """The window of a screen, or below 500 pixels of a telephone."""
     browser.execute_cdp_cmd(
