@@ -221,6 +221,7 @@ void solve_with_budget(StageContext& context, const SolveFlags& flags, const Bud
   const bool is_there = !reads_only && is_this_run(context);
   SolveFlags of_itself = flags;
   of_itself.at_a_time = 0;
+  of_itself.run.is_varied = true;
   if (is_there) {
     complete_run(context);
   } else {

@@ -50,6 +50,7 @@ struct BudgetRun {
   BudgetState state = BudgetState::waiting;
   std::string reason = {};                   ///< why it failed or was left out
   Facts accepted = {};                       ///< what the recipe insists on and this run met
+  std::vector<std::string> warnings = {};    ///< what this run warned of
   MemberResult result = {};                  ///< of a run that is done
   Raster deposit = {}, peak_thickness = {};  ///< likewise [m]
 };

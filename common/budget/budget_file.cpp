@@ -42,11 +42,19 @@ void write_run_of(h5::File& file, const std::string& group, const BudgetRun& run
   file.set_text(group, "state", state_names[static_cast<std::size_t>(run.state)]);
   file.set_text(group, "reason", run.reason);
   if (!run.accepted.empty()) h5::write_facts(file, group + "/accepted", run.accepted);
+  if (!run.warnings.empty()) file.set_text(group, "warnings", fmt::format("{}", fmt::join(run.warnings, "\n")));
   if (run.state != BudgetState::done) return;
   for (const ResultNumber& number : result_numbers) file.set_number(group, number.name, run.result.*(number.value));
   h5::write_grid(file, group, run.deposit.grid);
   write_map_of(file, group + "/deposit_thickness", run.deposit);
   write_map_of(file, group + "/peak_thickness", run.peak_thickness);
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream words(text);
+  for (std::string line; std::getline(words, line);) lines.push_back(line);
+  return lines;
 }
 
 BudgetState state_called(const h5::File& file, const std::string& group) {
@@ -67,8 +75,8 @@ BudgetRun read_run_of(const h5::File& file, const std::string& group) {
                 .reason = file.text(group, "reason")};
   if (find_budget_row(run.row) == nullptr)
     file.refuse(fmt::format("attribute {} row is \"{}\"", group, run.row), "a budget has no such row");
-  std::istringstream lines(file.text(group, "values"));
-  for (std::string line; std::getline(lines, line);) run.values.push_back(line);
+  run.values = lines_of(file.text(group, "values"));
+  if (file.has_attribute(group, "warnings")) run.warnings = lines_of(file.text(group, "warnings"));
   if (file.exists(group + "/accepted")) run.accepted = h5::read_facts(file, group + "/accepted");
   if (run.state != BudgetState::done) return run;
   for (const ResultNumber& number : result_numbers) {

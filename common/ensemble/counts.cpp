@@ -47,7 +47,8 @@ void take(EnsembleCounts& all, EnsembleCounts&& part) {
     all.windows[to] = part.windows[from];
     for (auto footprints : footprints_of_members) (all.*footprints)[to] = std::move((part.*footprints)[from]);
   }
-  all.failures.insert(all.failures.end(), part.failures.begin(), part.failures.end());
+  for (auto list : {&EnsembleCounts::failures, &EnsembleCounts::warnings})
+    for (MemberWords& one : part.*list) add_in_order(all.*list, std::move(one));
 }
 
 bool same_scene(const EnsembleScene& a, const EnsembleScene& b) {
@@ -139,9 +140,7 @@ void EnsembleCounts::add(std::int64_t member, const RunMaps& run, const MemberRe
 
 void EnsembleCounts::fail(std::int64_t member, std::string words) {
   states.at(static_cast<std::size_t>(member - part.first)) = MemberState::failed;
-  const auto after = std::upper_bound(failures.begin(), failures.end(), member,
-                                      [](std::int64_t k, const MemberFailure& one) { return k < one.member; });
-  failures.insert(after, {member, std::move(words)});
+  add_in_order(failures, {member, std::move(words)});
 }
 
 bool is_at_edge(const MemberResult& result) { return result.edge_cells > 0 || result.volume_outflow > 0; }
@@ -190,8 +189,6 @@ EnsembleCounts merged(std::vector<EnsembleCounts> parts, const std::vector<std::
     add_accepted(all.provenance, part.provenance);
     take(all, std::move(part));
   }
-  std::sort(all.failures.begin(), all.failures.end(),
-            [](const MemberFailure& a, const MemberFailure& b) { return a.member < b.member; });
   return all;
 }
 

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "common/ensemble/failures.hpp"
 #include "common/ensemble/kept_cells.hpp"
+#include "common/ensemble/member_words.hpp"
 #include "common/ensemble/names.hpp"
 #include "common/ensemble/options.hpp"
 #include "common/ensemble/tally.hpp"
@@ -112,7 +112,8 @@ struct EnsembleCounts {
   std::vector<MemberResult> results;             ///< likewise
   std::vector<CellWindow> windows;  ///< likewise: the member's grid among the scene's; empty unless counted
   std::vector<Footprint> release, flow, deposit;  ///< likewise, over the cells of the window; empty unless counted
-  std::vector<MemberFailure> failures;            ///< by member
+  std::vector<MemberWords> failures;              ///< by member
+  std::vector<MemberWords> warnings;              ///< of members that ended, by member
   Facts provenance;
 
   /// The number of members of a state.

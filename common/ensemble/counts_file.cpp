@@ -99,7 +99,8 @@ void write_members(h5::File& file, const EnsembleCounts& counts) {
   write_footprints(file, "/members/release", counts.release);
   write_footprints(file, "/members/flow", counts.flow);
   write_footprints(file, "/members/deposit", counts.deposit);
-  write_failures(file, counts.failures);
+  write_member_words(file, "/failures", counts.failures);
+  if (!counts.warnings.empty()) write_member_words(file, "/warnings", counts.warnings);
 }
 
 /// Refuses members whose state, failures and footprints do not belong together.
@@ -115,10 +116,16 @@ void check_members(const h5::File& file, const EnsembleCounts& counts) {
                               counts.flow[place].empty() ? "no" : "a"),
                   "those that are counted have one");
   }
-  for (const MemberFailure& failure : counts.failures) told.push_back(failure.member);
+  for (const MemberWords& failure : counts.failures) told.push_back(failure.member);
   if (failed != told)
     file.refuse(fmt::format("{} members failed, and {} failures are told", failed.size(), told.size()),
                 "there is one for each of these members, in order");
+  for (const MemberWords& warning : counts.warnings) {
+    const std::int64_t place = warning.member - counts.part.first;
+    if (place < 0 || place >= counts.part.count() ||
+        counts.states[static_cast<std::size_t>(place)] == MemberState::waiting)
+      file.refuse(fmt::format("group /warnings names member {}", warning.member), "it has not been run");
+  }
 }
 
 void read_members(const h5::File& file, EnsembleCounts& counts) {
@@ -139,7 +146,8 @@ void read_members(const h5::File& file, EnsembleCounts& counts) {
   counts.release = read_footprints(file, "/members/release", counts.windows);
   counts.flow = read_footprints(file, "/members/flow", counts.windows);
   counts.deposit = read_footprints(file, "/members/deposit", counts.windows);
-  counts.failures = read_failures(file);
+  counts.failures = read_member_words(file, "/failures");
+  counts.warnings = read_member_words(file, "/warnings");
   check_members(file, counts);
 }
 

@@ -135,7 +135,7 @@ std::string MemberTable::names_of(const std::vector<std::int64_t>& members, std:
   return members.size() > most ? text + fmt::format(" and {} more", members.size() - most) : text;
 }
 
-const MemberFailure* MemberTable::failure_of(std::int64_t member) const {
+const MemberWords* MemberTable::failure_of(std::int64_t member) const {
   const auto found =
       std::find_if(failures.begin(), failures.end(), [&](const auto& one) { return one.member == member; });
   return found == failures.end() ? nullptr : &*found;
@@ -161,7 +161,7 @@ void write_member_table(const std::filesystem::path& path, const MemberTable& ta
     }
     file.write<std::uint8_t>("/own_domain", {static_cast<hsize_t>(table.count)}, table.own_domain);
     if (table.slides) write_slides(file, *table.slides);
-    write_failures(file, table.failures);
+    write_member_words(file, "/failures", table.failures);
     h5::write_facts(file, "/provenance", table.provenance);
   });
 }
@@ -178,8 +178,8 @@ MemberTable read_member_table(const std::filesystem::path& path) {
     table.columns.push_back(read_column(file, "/keys/" + name, table.count));
   table.own_domain = file.read<std::uint8_t>("/own_domain", {static_cast<hsize_t>(table.count)});
   if (file.exists("/slides")) table.slides = read_slides(file, table.count);
-  table.failures = read_failures(file);
-  for (const MemberFailure& failure : table.failures)
+  table.failures = read_member_words(file, "/failures");
+  for (const MemberWords& failure : table.failures)
     if (failure.member < 0 || failure.member >= table.count)
       file.refuse(fmt::format("group /failures names member {}", failure.member),
                   fmt::format("there are {} members, counted from 0", table.count));

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/ensemble/failures.hpp"
+#include "common/ensemble/member_words.hpp"
 #include "common/map/raster.hpp"
 #include "common/stage/identity.hpp"
 
@@ -44,8 +44,8 @@ struct MemberTable {
   std::vector<MemberColumn> columns;
   std::vector<std::uint8_t> own_domain;  ///< [members]: 1 where it has a domain of its own
   std::optional<SlideTable> slides = {};
-  std::vector<MemberFailure> failures = {};  ///< of members whose domain cannot be made, by member
-  Facts provenance = {};                     ///< of what made the table
+  std::vector<MemberWords> failures = {};  ///< of members whose domain cannot be made, by member
+  Facts provenance = {};                   ///< of what made the table
 
   /// What a member's recipe has in the place of the base's, "key=value" each, of the keys that begin with `prefix`.
   std::vector<std::string> values_of(std::int64_t member, const std::string& prefix) const;
@@ -54,7 +54,7 @@ struct MemberTable {
   /// What members are called, those beyond `most` by their number: "north, south and 3 more".
   std::string names_of(const std::vector<std::int64_t>& members, std::size_t most) const;
   /// Why a member's domain cannot be made, null where it can.
-  const MemberFailure* failure_of(std::int64_t member) const;
+  const MemberWords* failure_of(std::int64_t member) const;
   /// The column of a key, null where it does not vary.
   const MemberColumn* find(const std::string& key) const;
 };

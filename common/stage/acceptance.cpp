@@ -13,7 +13,7 @@ namespace talus {
 
 namespace {
 
-constexpr const char* prefix = "accepted.";
+constexpr const char *prefix = "accepted.", *opening = "accepted, ";
 
 }  // namespace
 
@@ -28,7 +28,7 @@ void Acceptance::judge(const Implausible& finding) {
   const std::string words = with_shown_paths(fmt::format("{} ({})", fault.what, fault.why)), key = prefix + name;
   const auto known = [&](const auto& fact) { return fact.first == key; };
   if (std::any_of(facts_.begin(), facts_.end(), known)) return;
-  log_warning(fmt::format("accepted, \"{}\": {}", name, words));
+  log_warning(accepted_warning(name, words));
   facts_.emplace_back(key, words);
 }
 
@@ -36,15 +36,24 @@ void Acceptance::settle() {
   if (!refused_.empty()) throw DataError(std::exchange(refused_, {}));
 }
 
-void Acceptance::warn_of_unmet() const {
+void Acceptance::warn_of_unmet(const std::vector<std::pair<std::string, std::string>>& others) const {
   for (const std::string& name : names_) {
     const auto met = [&](const auto& fact) { return fact.first == prefix + name; };
-    if (std::none_of(facts_.begin(), facts_.end(), met))
+    if (std::none_of(facts_.begin(), facts_.end(), met) && std::none_of(others.begin(), others.end(), met))
       log_warning(
           fmt::format("[{}]: accept = [\"{}\"]: there was nothing of the kind to accept; leave it out, so that "
                       "it is refused should it come",
                       table_, name));
   }
+}
+
+std::string accepted_warning(const std::string& name, const std::string& words) {
+  return fmt::format("{}\"{}\": {}", opening, name, words);
+}
+
+std::vector<std::string> without_accepted(std::vector<std::string> warnings) {
+  std::erase_if(warnings, [](const std::string& words) { return words.starts_with(opening); });
+  return warnings;
 }
 
 std::string accepted_fact(const std::string& name) { return prefix + name; }

@@ -41,8 +41,9 @@ class Acceptance {
       throw DataError(std::exchange(refused_, {}));
     }
   }
-  /// Warns of names in the recipe that nothing met: the next mistake of this kind would pass unseen.
-  void warn_of_unmet() const;
+  /// Warns of names in the recipe that nothing met, neither here nor in `others` (facts as of facts()): the next
+  /// mistake of this kind would pass unseen.
+  void warn_of_unmet(const std::vector<std::pair<std::string, std::string>>& others = {}) const;
   /// What was insisted on: a fact for each, "accepted.NAME" and the words of the refusal. It goes with the results.
   const std::vector<std::pair<std::string, std::string>>& facts() const { return facts_; }
 
@@ -54,6 +55,10 @@ class Acceptance {
   std::vector<Fault> refused_;
 };
 
+/// The warning that says what was insisted on: name, and the words of the refusal.
+std::string accepted_warning(const std::string& name, const std::string& words);
+/// Warnings but those that say what was insisted on, which facts() keep.
+std::vector<std::string> without_accepted(std::vector<std::string> warnings);
 /// The fact of what was insisted on by this name.
 std::string accepted_fact(const std::string& name);
 /// What was insisted on as one line, for the metadata of maps; "" for nothing.

@@ -62,6 +62,7 @@ OrderedJson line_json(const BudgetTable& table, const BudgetLine& line) {
                    {"reason", line.run.reason},
                    {"values", line.run.values}};
   for (const auto& [name, words] : accepted_in(line.run.accepted)) json["accepted." + name] = words;
+  if (!line.run.warnings.empty()) json["warnings"] = line.run.warnings;
   for (const auto& [name, value] : named_numbers(table, line)) json[name] = number_or_none(value);
   return json;
 }
@@ -115,6 +116,7 @@ std::string budget_words(const BudgetTable& table) {
                         line.numbers.run_out - table.own.run_out);
     if (const std::string words = accepted_line(line.run.accepted); !words.empty())
       text += fmt::format("{:<{}}  accepted: {}\n", "", width, words);
+    for (const std::string& words : line.run.warnings) text += fmt::format("{:<{}}  warning: {}\n", "", width, words);
   }
   return text;
 }

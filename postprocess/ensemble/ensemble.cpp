@@ -64,7 +64,7 @@ void tell_of_members(const Ensemble& ensemble) {
                     "runs them",
                     waiting.size(), counts.members, member_list(waiting)));
   std::vector<std::int64_t> failed;
-  for (const MemberFailure& failure : counts.failures) {
+  for (const MemberWords& failure : counts.failures) {
     if (failed.size() < failures_told)
       log_warning(fmt::format("{} failed: {}", ensemble.table.name_of(failure.member), failure.words));
     failed.push_back(failure.member);

@@ -30,9 +30,14 @@ std::string cell(const RowColumn& column, std::size_t member) {
 
 MemberRows member_rows(const Ensemble& ensemble, const Options& options, const std::optional<Survey>& survey) {
   const EnsembleCounts& counts = ensemble.counts;
-  MemberRows rows{counts.states, std::vector<std::string>(counts.states.size()), {}};
-  for (const MemberFailure& failure : counts.failures)
+  const std::vector<std::string> none(counts.states.size());
+  MemberRows rows{counts.states, none, none, {}};
+  for (const MemberWords& failure : counts.failures)
     rows.failures.at(static_cast<std::size_t>(failure.member)) = failure.words;
+  for (const MemberWords& warning : counts.warnings) {
+    std::string& words = rows.warnings.at(static_cast<std::size_t>(warning.member));
+    words += (words.empty() ? "" : "; ") + warning.words;
+  }
   if (ensemble.table.slides) {
     const auto& names = ensemble.table.slides->names;
     RowColumn column{ColumnKind::input, "name", "", "name of the slide", {}, names};
@@ -56,11 +61,11 @@ MemberRows member_rows(const Ensemble& ensemble, const Options& options, const s
 std::string members_csv(const MemberRows& rows, const char* called) {
   std::string text = std::string(called) + ",state";
   for (const RowColumn& column : rows.columns) text += "," + csv_field(column.name);
-  text += ",failure\n";
+  text += ",failure,warnings\n";
   for (std::size_t k = 0; k < rows.states.size(); ++k) {
     text += fmt::format("{},{}", k, word_of(rows.states[k]));
     for (const RowColumn& column : rows.columns) text += "," + cell(column, k);
-    text += "," + csv_field(rows.failures[k]) + "\n";
+    text += "," + csv_field(rows.failures[k]) + "," + csv_field(rows.warnings[k]) + "\n";
   }
   return text;
 }

@@ -30,6 +30,7 @@ struct RowColumn {
 struct MemberRows {
   std::vector<MemberState> states;    ///< [members]
   std::vector<std::string> failures;  ///< [members]: why it failed; empty otherwise
+  std::vector<std::string> warnings;  ///< [members]: what it warned of; empty otherwise
   std::vector<RowColumn> columns;
 };
 

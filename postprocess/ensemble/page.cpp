@@ -32,10 +32,18 @@ std::string names_at_edge(const Ensemble& ensemble, const std::vector<std::int64
   return fmt::format("{} of {} {}", members.size(), ensemble.counted(), ensemble.table.slides ? "slides" : "members");
 }
 
-constexpr std::size_t failures_on_page = 50, steps_of_convergence = 160, medoids_wanted = 4;
+constexpr std::size_t words_on_page = 50, steps_of_convergence = 160, medoids_wanted = 4;
 
 /// Of which footprints are compared, each with each.
 constexpr std::size_t members_compared = 400;
+
+/// The first of what is said of members.
+Json words_json(const Ensemble& ensemble, const std::vector<MemberWords>& list) {
+  auto json = Json::array();
+  for (const MemberWords& one : list)
+    if (json.size() < words_on_page) json.push_back({ensemble.table.name_of(one.member), one.words});
+  return json;
+}
 
 Json run_json(const EnsemblePageInput& input) {
   const Ensemble& ensemble = input.ensemble;
@@ -70,10 +78,9 @@ Json run_json(const EnsemblePageInput& input) {
   json["warnings"] = Json::array();
   for (const auto& [name, why] : counts.provenance)
     if (name.starts_with("warning.")) json["warnings"].push_back(why);
-  json["failures"] = Json::array();
-  for (const MemberFailure& failure : counts.failures)
-    if (json["failures"].size() < failures_on_page)
-      json["failures"].push_back({ensemble.table.name_of(failure.member), failure.words});
+  json["warnings_of_members"] = words_json(ensemble, counts.warnings);
+  json["warnings_in_all"] = counts.warnings.size();
+  json["failures"] = words_json(ensemble, counts.failures);
   return json;
 }
 

@@ -22,6 +22,7 @@ Json budget_line_json(const BudgetLine& line) {
             {"reason", line.run.reason},
             {"values", line.run.values},
             {"accepted", accepted_line(line.run.accepted)},
+            {"warnings", line.run.warnings},
             {"elsewhere", finite_or_null(line.elsewhere)},
             {"overlap", finite_or_null(line.overlap)},
             {"run_out", finite_or_null(line.numbers.run_out)},

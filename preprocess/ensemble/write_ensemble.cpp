@@ -38,7 +38,7 @@ class MemberDomains {
 
   void make_all();
   /// The members whose domain cannot be made, in order.
-  std::vector<MemberFailure> failures() const;
+  std::vector<MemberWords> failures() const;
   /// What a member's domain says of itself, whose `domain.id` follows from all that it is made of.
   Facts marks_of_member(std::int64_t member) const;
   /// The number of material points in the domains, by member; of those that were there it is read.
@@ -227,8 +227,8 @@ void MemberDomains::note_failure(std::int64_t member, std::string words) {
   if (too_many_failed()) stop_ = true;
 }
 
-std::vector<MemberFailure> MemberDomains::failures() const {
-  std::vector<MemberFailure> all;
+std::vector<MemberWords> MemberDomains::failures() const {
+  std::vector<MemberWords> all;
   for (const auto& [member, words] : failures_) all.push_back({member, words});
   return all;
 }

@@ -22,6 +22,7 @@
 #include "solver/ensemble/in_flight.hpp"
 #include "solver/ensemble/member_cost.hpp"
 #include "solver/run/named_places.hpp"
+#include "solver/run/plausible.hpp"
 #include "solver/run/run_inputs.hpp"
 #include "solver/run/simulation.hpp"
 #include "solver/run/step_choice.hpp"
@@ -165,6 +166,13 @@ void judge_budget(const Budget& budget) {
                         "Mend what makes them fail, or take other doubts in [budget]"});
 }
 
+/// This function warns of what the recipe accepts and neither the run nor its budget met.
+void say_unmet(const StageContext& context, const BudgetScene& scene, const Budget& budget) {
+  Facts met = run_facts(RunPaths(context.out).run);
+  for (const BudgetRun& run : budget.runs) met.insert(met.end(), run.accepted.begin(), run.accepted.end());
+  warn_of_unmet(scene.base.asked.accept, met);
+}
+
 /// This function says the price: the runs, what each takes, what is left out and why.
 void say_price(const StageContext& context, const BudgetScene& scene, const BudgetOptions& options,
                const BudgetFlags& flags) {
@@ -272,6 +280,7 @@ void run_budget(StageContext& context, const BudgetFlags& flags, const BudgetOpt
   take_up_budget(paths.unfinished(), flags, budget);
   make_runs(context, flags, scene, options, budget);
   judge_budget(budget);
+  say_unmet(context, scene, budget);
   write_budget(paths.budget(), budget);
   remove_for_good(paths.unfinished());
   mark_as_of_now(context);

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "common/stage/acceptance.hpp"
 #include "common/stage/console.hpp"
 #include "common/stage/stage.hpp"
 #include "solver/ensemble/member_run.hpp"
@@ -25,7 +26,7 @@ std::vector<std::size_t> waiting_in(const Budget& budget) {
   return waiting;
 }
 
-/// What the threads share: what came of the runs that have ended, and what they warned of.
+/// What the threads share: what came of the runs that have ended.
 class Noting {
  public:
   Noting(const std::vector<Variation>& variations, Budget& budget, const BudgetPlan& plan)
@@ -39,11 +40,10 @@ class Noting {
       if (auto made = run_member(domain, variations_[place].options, device)) take(run, std::move(*made));
     });
     if (!run.reason.empty()) run.state = BudgetState::failed;
-    if (run.state != BudgetState::waiting) put(place, std::move(run), quiet.warnings());
+    if (run.state == BudgetState::waiting) return;
+    run.warnings = without_accepted(quiet.warnings());
+    put(place, std::move(run));
   }
-
-  /// What the runs warned of.
-  const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
   static void take(BudgetRun& run, MemberRun&& made) {
@@ -54,9 +54,8 @@ class Noting {
     run.peak_thickness = {made.maps.grid, std::move(made.maps.peak_thickness)};
   }
 
-  void put(std::size_t place, BudgetRun&& run, const std::vector<std::string>& warnings) {
+  void put(std::size_t place, BudgetRun&& run) {
     const std::lock_guard<std::mutex> one(mutex_);
-    for (const std::string& words : warnings) warnings_.push_back(fmt::format("{}: {}", run.name, words));
     budget_.runs[place] = std::move(run);
     const std::size_t left = budget_.count(BudgetState::waiting);
     if (progress_.due()) progress_.update(fmt::format("budget: {} ended, {} to go", budget_.runs[place].name, left));
@@ -67,7 +66,6 @@ class Noting {
   Budget& budget_;
   const BudgetPlan& plan_;
   std::mutex mutex_;
-  std::vector<std::string> warnings_;
   Progress progress_;
 };
 
@@ -83,7 +81,12 @@ bool run_variations(const std::vector<Variation>& variations, Budget& budget, co
   Noting noting(variations, budget, plan);
   side_by_side(waiting.size(), plan.devices,
                [&](std::size_t place, const AnyDevice& device) { noting.make(waiting[place], device); });
-  for (const std::string& words : noting.warnings()) log_warning(words);
+  for (const std::size_t place : waiting) {
+    const BudgetRun& run = budget.runs[place];
+    for (const auto& [name, words] : accepted_in(run.accepted))
+      log_warning(fmt::format("{}: {}", run.name, accepted_warning(name, words)));
+    for (const std::string& words : run.warnings) log_warning(fmt::format("{}: {}", run.name, words));
+  }
   return budget.count(BudgetState::waiting) == 0;
 }
 

@@ -13,12 +13,14 @@
 #include "common/ensemble/counts.hpp"
 #include "common/ensemble/member_table.hpp"
 #include "common/ensemble/slide_options.hpp"
+#include "common/stage/acceptance.hpp"
 #include "common/stage/interrupt.hpp"
 #include "common/stage/machine.hpp"
 #include "solver/ensemble/in_flight.hpp"
 #include "solver/ensemble/keep_runs.hpp"
 #include "solver/ensemble/member_cost.hpp"
 #include "solver/ensemble/run_members.hpp"
+#include "solver/run/plausible.hpp"
 #include "solver/run/run_inputs.hpp"
 #include "solver/run/warnings.hpp"
 #include "solver/scene/make_solver.hpp"
@@ -27,7 +29,7 @@ namespace talus::solver {
 namespace {
 
 constexpr int most_at_a_time = 1000;  ///< each has a thread of its own
-constexpr std::size_t most_said = 5;  ///< failures and warnings in the log; all failures stand in the counts
+constexpr std::size_t most_said = 5;  ///< failures and warnings in the log; all stand in the counts
 
 /// All that an ensemble is made of, once it is read.
 struct Ensemble {
@@ -47,7 +49,7 @@ std::string fingerprint_of_members(const Ensemble& e, const std::filesystem::pat
     for (const std::string& value : e.table.values_of(member, "")) text += value + "\n";
     text += e.table.own_domain[static_cast<std::size_t>(member)] != 0 ? "own\n" : "\n";
   }
-  for (const MemberFailure& failure : e.table.failures) text += fmt::format("{} has no domain\n", failure.member);
+  for (const MemberWords& failure : e.table.failures) text += fmt::format("{} has no domain\n", failure.member);
   if (e.edge_fails) text += "who comes to an edge fails\n";
   if (e.table.slides)
     for (const std::string& id : e.table.slides->domains) text += id + "\n";
@@ -143,10 +145,12 @@ void take_up(const Ensemble& e, const EnsembleFlags& flags, EnsembleCounts& coun
   counts = std::move(*found);
 }
 
-/// This function says what was warned of, each warning once with the members that it is of.
-void say_warnings(const MembersRun& run, const MemberTable& table) {
+/// This function says what was insisted on and what was warned of, each warning once with the members that it is of.
+void say_warnings(const EnsembleCounts& counts, const MemberTable& table, const Domain& domain) {
+  for (const auto& [name, words] : accepted_in(counts.provenance))
+    if (fact(domain.provenance, accepted_fact(name)).empty()) log_warning(accepted_warning(name, words));
   std::vector<std::pair<std::string, std::vector<std::int64_t>>> said;
-  for (const MemberWarning& warning : run.warnings) {
+  for (const MemberWords& warning : counts.warnings) {
     auto same = std::find_if(said.begin(), said.end(), [&](const auto& one) { return one.first == warning.words; });
     if (same == said.end()) same = said.insert(said.end(), {warning.words, {}});
     same->second.push_back(warning.member);
@@ -256,15 +260,16 @@ Facts run_ensemble(StageContext& context, const EnsembleFlags& flags, const Doma
   const auto unfinished = e.paths.unfinished(e.part);
   const OwnEnd saving("finished members are saved");
   keep_runs(context, members, e.options, e.paths, make_device(flags.on), counts);
-  const MembersRun run = run_members(members, counts,
-                                     {.devices = devices_for(flight.count, flags.on),
-                                      .save = [&] { write_counts(unfinished, counts); },
-                                      .save_interval = e.options.save_interval,
-                                      .edge_fails = e.edge_fails});
-  say_warnings(run, e.table);
-  if (!run.whole) stop(counts, unfinished);
+  const bool is_whole = run_members(members, counts,
+                                    {.devices = devices_for(flight.count, flags.on),
+                                     .save = [&] { write_counts(unfinished, counts); },
+                                     .save_interval = e.options.save_interval,
+                                     .edge_fails = e.edge_fails});
+  say_warnings(counts, e.table, domain);
+  if (!is_whole) stop(counts, unfinished);
   judge_failures(counts, e.options.failed_share, e.table);
   say_edges(counts, e.table);
+  if (e.part.count() == counts.members) warn_of_unmet(base.accept, counts.provenance);
   write_counts(e.counts, counts);
   remove_for_good(unfinished);
   context.results.push_back(e.counts);

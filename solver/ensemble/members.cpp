@@ -91,7 +91,7 @@ void Members::check() const {
 }
 
 Domain Members::domain_of(std::int64_t member) const {
-  if (const MemberFailure* failure = table_.failure_of(member)) throw DataError({failure->words, "", ""});
+  if (const MemberWords* failure = table_.failure_of(member)) throw DataError({failure->words, "", ""});
   const bool own = table_.own_domain.at(static_cast<std::size_t>(member)) != 0;
   Domain domain = own ? read_domain(paths_.domain(member)) : domain_;
   if (own && !is_countable(domain.grid, table_, member, domain_.grid))

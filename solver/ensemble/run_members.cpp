@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "common/stage/acceptance.hpp"
 #include "common/stage/console.hpp"
 #include "common/stage/stage.hpp"
 #include "solver/ensemble/member_run.hpp"
@@ -47,7 +48,7 @@ Outcome outcome_of(const Members& members, std::int64_t member, const AnyDevice&
     outcome.run.reset();
     outcome.failure = at_the_edge;
   }
-  outcome.warnings = quiet.warnings();
+  outcome.warnings = without_accepted(quiet.warnings());
   return outcome;
 }
 
@@ -67,7 +68,6 @@ class Tallying {
 
   void count(std::int64_t member, Outcome&& outcome) {
     const std::lock_guard<std::mutex> one(mutex_);
-    for (std::string& words : outcome.warnings) run_.warnings.push_back({member, std::move(words)});
     if (outcome.run) {
       keep_accepted(member, outcome.run->accepted);
       counts_.add(member, outcome.run->maps, outcome.run->result);
@@ -76,18 +76,14 @@ class Tallying {
     } else {
       return;  // given up
     }
+    for (std::string& words : outcome.warnings) add_in_order(counts_.warnings, {member, std::move(words)});
     ++done_;
     say();
     save();
   }
 
-  /// What the threads came to, once all have ended.
-  MembersRun result() {
-    run_.whole = done_ == members_;
-    std::stable_sort(run_.warnings.begin(), run_.warnings.end(),
-                     [](const MemberWarning& a, const MemberWarning& b) { return a.member < b.member; });
-    return std::move(run_);
-  }
+  /// Whether all members have ended.
+  bool is_whole() const { return done_ == members_; }
 
  private:
   /// What members were insisted on stands in the counts, in the words of the first of them, whichever ended first.
@@ -125,20 +121,19 @@ class Tallying {
   std::size_t members_, done_ = 0;
   const MembersPlan& plan_;
   std::mutex mutex_;
-  MembersRun run_;
   Progress progress_;
   WallClock::time_point begun_ = WallClock::now(), saved_ = begun_;
 };
 
 }  // namespace
 
-MembersRun run_members(const Members& members, EnsembleCounts& counts, const MembersPlan& plan) {
+bool run_members(const Members& members, EnsembleCounts& counts, const MembersPlan& plan) {
   const std::vector<std::int64_t> waiting = waiting_in(counts);
   Tallying tallying(counts, waiting.size(), plan);
   side_by_side(waiting.size(), plan.devices, [&](std::size_t place, const AnyDevice& device) {
     tallying.count(waiting[place], outcome_of(members, waiting[place], device, plan.edge_fails));
   });
-  return tallying.result();
+  return tallying.is_whole();
 }
 
 }  // namespace talus::solver

@@ -14,12 +14,6 @@
 
 namespace talus::solver {
 
-/// What the members warned of.
-struct MemberWarning {
-  std::int64_t member = 0;
-  std::string words;
-};
-
 /// How members are run.
 struct MembersPlan {
   std::vector<AnyDevice> devices;   ///< one for each member in flight, with a stream of its own on a GPU
@@ -28,13 +22,9 @@ struct MembersPlan {
   bool edge_fails = false;          ///< a member that comes to the edge of its grid counts as failed
 };
 
-/// This function runs the members of `counts` that wait, and counts them as they end. A member that fails
-/// (failure_of) is counted as failed, with its words. It returns the warnings of all
-/// members, in their order, and whether all have been run: not so where the process was interrupted.
-struct MembersRun {
-  std::vector<MemberWarning> warnings;
-  bool whole = false;
-};
-MembersRun run_members(const Members& members, EnsembleCounts& counts, const MembersPlan& plan);
+/// This function runs the members of `counts` that wait, and counts them as they end, with what they warned of. A
+/// member that fails (failure_of) is counted as failed, with its words. It returns whether all have been run: not so
+/// where the process was interrupted.
+bool run_members(const Members& members, EnsembleCounts& counts, const MembersPlan& plan);
 
 }  // namespace talus::solver

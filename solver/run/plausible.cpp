@@ -154,4 +154,8 @@ Acceptance judged_before_run(const Domain& domain, const Scene& scene, const Sol
   return acceptance;
 }
 
+void warn_of_unmet(const std::vector<std::string>& accept, const Facts& met) {
+  Acceptance("solve", accept).warn_of_unmet(met);
+}
+
 }  // namespace talus::solver

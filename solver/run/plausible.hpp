@@ -6,6 +6,7 @@
 
 #include "common/domain/domain.hpp"
 #include "common/stage/acceptance.hpp"
+#include "common/stage/identity.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/options/solve.hpp"
 
@@ -56,5 +57,8 @@ void judge_scene(const ScenePlausibility& numbers, const SolveOptions& options, 
 /// The function judges a scene before its run by what the options accept, and throws one DataError of all that is
 /// refused. It returns what was insisted on. A body that tears is judged as the run goes on, and not here.
 Acceptance judged_before_run(const Domain& domain, const Scene& scene, const SolveOptions& options);
+
+/// The function warns of the names in [solve] accept that no fact in `met`, of all runs that the recipe makes, is of.
+void warn_of_unmet(const std::vector<std::string>& accept, const Facts& met);
 
 }  // namespace talus::solver

@@ -17,6 +17,7 @@
 #include "solver/run/plan.hpp"
 #include "solver/run/plausible.hpp"
 #include "solver/run/profile_report.hpp"
+#include "solver/run/recorders/stretch.hpp"
 #include "solver/run/run_inputs.hpp"
 #include "solver/run/simulation.hpp"
 #include "solver/run/step_choice.hpp"
@@ -93,9 +94,9 @@ void add_places(Domain& domain, const SolveOptions& o) {
 }
 
 /// This function refuses what is implausible in a scene, and adds what is insisted on to the facts of its results.
-void judge(Domain& domain, const SolveOptions& o) {
+void judge(Domain& domain, const SolveOptions& o, bool is_varied) {
   const Acceptance acceptance = judged_before_run(domain, make_scene(domain, o), o);
-  acceptance.warn_of_unmet();
+  if (!is_varied) acceptance.warn_of_unmet();
   const auto& facts = acceptance.facts();
   domain.provenance.insert(domain.provenance.end(), facts.begin(), facts.end());
 }
@@ -132,7 +133,7 @@ std::optional<std::filesystem::path> checkpoint_of(const RunFlags& flags, const 
 Facts run_in_time(StageContext& context, const RunFlags& flags, const SolveOptions& options, const AnyDevice& device,
                   Domain& domain, const Facts& facts) {
   const SolveOptions settled = settle_steps(domain, options);
-  judge(domain, settled);
+  judge(domain, settled, flags.is_varied);
   if (flags.plan) {
     for (const std::string& text : plan(domain, settled, device)) log_info(text);
     log_warnings(domain, settled);
@@ -151,6 +152,7 @@ Facts run_in_time(StageContext& context, const RunFlags& flags, const SolveOptio
       simulation.run(context.recipe.scene_name(), context.recipe.title(), made_by(context, settled, facts));
   log_info(fmt::format("{} at t = {:.2f} s after {} steps in {:.1f} s", summary.stop_reason, summary.time_end,
                        summary.steps, summary.wall_time));
+  if (!flags.is_varied && accepts_torn_body(settled)) warn_of_unmet({torn_body}, summary.provenance);
   if (flags.profile) report_profile(summary, device, context.out);
   if (settled.material.stiffness_check) check_stiffness(domain, settled, device, context, paths.run);
   context.results.push_back(paths.run);

@@ -166,6 +166,19 @@ test_a_run_of_the_recipes_own_stands_in_the_table() {
   expect_words '[[budget.run]] "steep": ' "friction_angle_deg"
 }
 
+test_what_only_a_variation_needs_is_accepted_for_something() {
+  budget 'leave_out = ["cells", "survey", "strength", "friction", "transfer", "step"]' 'modulus_factor = 0.01' \
+    '[[budget.run]]' 'name = "thrown"' 'set = ["solve.initial_velocity_m_s=[150.0, 0.0, 0.0]"]'
+  sed -i 's/^end_time_s.*/end_time_s = 1.0\naccept = ["weight-strain", "strong-loads"]/' recipe.toml
+  expect_exit 0 preprocess
+  expect_exit 0 solve --budget
+  expect_words '[solve]: accept = ["strong-loads"]: there was nothing of the kind'
+  ! grep -q 'accept = \["weight-strain"\]: there was' stderr || fail "what the budget needs is said to be idle"
+  expect_exit 0 postprocess
+  grep -A1 '"warnings": \[' out/budget.json | grep -q "left the domain" ||
+    fail "a run that left the domain warns of nothing"
+}
+
 test_the_price_is_said_before() {
   budget
   expect_exit 0 preprocess --budget

@@ -103,11 +103,14 @@ export function drawMethod(data) {
   for (const [name, why] of run.accepted)
     list.append(item(h("strong", {}, `Insisted on, "${name}": `), why));
   box.append(list);
-  if (!run.failures.length) return;
-  box.append(h("h3", {}, `${run.slides ? "Slides" : "Members"} that failed`));
-  const failures = run.failures.map(([name, words]) => item(`${name}: ${words}`));
-  box.append(h("ul", { class: "plain-list note" }, failures));
-  if (run.failed > run.failures.length)
-    box.append(h("p", { class: "note" }, 
-      `The first ${run.failures.length} of ${run.failed}; ${called(data).table} has all.`));
+  const listWords = (title, words, all) => {
+    if (!words.length) return;
+    box.append(h("h3", {}, title));
+    box.append(h("ul", { class: "plain-list note" }, words.map(([name, what]) => item(`${name}: ${what}`))));
+    if (all > words.length)
+      box.append(h("p", { class: "note" }, `The first ${words.length} of ${all}; ${called(data).table} has all.`));
+  };
+  const of = run.slides ? "Slides" : "Members";
+  listWords(`${of} that failed`, run.failures, run.failed);
+  listWords(`What ${of.toLowerCase()} warn of`, run.warnings_of_members, run.warnings_in_all);
 }

@@ -44,6 +44,7 @@ function lineRow(line, budget, largest) {
       h("span", { class: `budget-kind ${line.kind}` }, kind),
       h("div", { class: "note" }, line.words),
       line.accepted ? h("div", { class: "note" }, `Accepted: ${line.accepted}`) : "",
+      ...line.warnings.map((words) => h("div", { class: "note" }, `Warning: ${words}`)),
     ),
   );
   if (!line.done) {

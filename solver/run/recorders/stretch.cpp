@@ -23,8 +23,6 @@ constexpr Column<Overstretched> stretch_columns[] = {
 /// The least stretch that counts as parting, where points lie a cell apart from the start.
 constexpr double least_parting = 1.2;
 
-bool insists(const SolveOptions& o) { return std::find(o.accept.begin(), o.accept.end(), torn_body) != o.accept.end(); }
-
 constexpr const char* why_torn =
     "the grid hardly ties them together there, and the body may part where no strength says so";
 
@@ -61,7 +59,7 @@ StretchRecorder::StretchRecorder(const SolveOptions& options, const Scene& scene
     : TableRecorder(stretch_columns, {Place{}}),
       limits_{limits_of(options.material)},
       cell_volume_(scene.grid.spacing * scene.grid.spacing * scene.grid.layer_height),
-      bears_gaps_(options.shape == ShapeKind::gimp || insists(options)) {
+      bears_gaps_(options.shape == ShapeKind::gimp || accepts_torn_body(options)) {
   for (const PartOptions& part : options.parts) limits_.push_back(limits_of(part.material));
 }
 
@@ -121,13 +119,16 @@ std::vector<std::string> StretchRecorder::warnings(const RunHistory& history) co
   return lines;
 }
 
+bool accepts_torn_body(const SolveOptions& options) {
+  return std::find(options.accept.begin(), options.accept.end(), torn_body) != options.accept.end();
+}
+
 Facts torn_body_accepted(const SolveOptions& options, const RunHistory& history) {
-  if (!insists(options)) return {};
+  if (!accepts_torn_body(options)) return {};
   Acceptance acceptance("solve", {torn_body});
   const double apart = history.find("points_apart") ? most(history, "points_apart") : 0;
   if (apart > 0 && options.shape != ShapeKind::gimp)
     acceptance.judge({torn_body, {torn_words(apart, most(history, "largest_stretch")), why_torn, ""}});
-  acceptance.warn_of_unmet();
   return acceptance.facts();
 }
 

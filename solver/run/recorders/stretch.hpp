@@ -52,8 +52,11 @@ class StretchRecorder : public TableRecorder<Overstretched> {
   bool bears_gaps_;             ///< points apart are said at the end, and do not end the run
 };
 
+/// Whether the recipe insists on a body that tears.
+bool accepts_torn_body(const SolveOptions& options);
+
 /// What is kept with the results of a run that went on though its body may have parted, since the recipe insists on it;
-/// nothing where none did, which is warned of.
+/// nothing where none did.
 Facts torn_body_accepted(const SolveOptions& options, const RunHistory& history);
 
 }  // namespace talus::solver

@@ -64,6 +64,7 @@ Budget small_budget() {
   done.result.run_out = 12.5;
   done.result.p99_speed = 7.5;
   done.accepted = {{"accepted.weight-strain", "too soft"}};
+  done.warnings = {"packed fourfold", "fast"};
   done.deposit = done.peak_thickness = map;
   BudgetRun failed{.name = "modulus", .row = "modulus", .words = "stiff", .values = {}};
   failed.state = BudgetState::failed;
@@ -90,6 +91,8 @@ TEST(BudgetFile, gives_back_what_was_written) {
   EXPECT_EQ(read.runs[0].values, budget.runs[0].values);
   EXPECT_EQ(read.runs[0].accepted, budget.runs[0].accepted);
   EXPECT_TRUE(read.runs[1].accepted.empty());
+  EXPECT_EQ(read.runs[0].warnings, budget.runs[0].warnings);
+  EXPECT_TRUE(read.runs[1].warnings.empty());
   EXPECT_EQ(read.runs[0].result.run_out, 12.5);
   EXPECT_EQ(read.runs[0].result.p99_speed, 7.5);
   EXPECT_TRUE(std::isnan(read.runs[0].result.drop));

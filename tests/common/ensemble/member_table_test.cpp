@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/ensemble/failures.hpp"
+#include "common/ensemble/member_words.hpp"
 #include "tests/common/damage.hpp"
 #include "tests/common/ensemble/ensemble_scene.hpp"
 #include "tests/places.hpp"

@@ -61,6 +61,9 @@ TEST(acceptance, warns_of_a_name_that_nothing_met) {
   const std::string said = testing::internal::GetCapturedStderr();
   EXPECT_NE(said.find("accept = [\"false-lengths\"]"), std::string::npos) << said;
   EXPECT_EQ(said.find("swapped-surveys"), std::string::npos) << said;
+  testing::internal::CaptureStderr();
+  insisted.warn_of_unmet({{accepted_fact("false-lengths"), "of another run"}});
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
 }  // namespace

@@ -106,7 +106,9 @@ TEST_F(BudgetOfRun, has_the_99th_percentile_beside_every_largest_value) {
 }
 
 TEST_F(BudgetOfRun, says_of_each_run_what_was_insisted_on) {
-  add("modulus", "modulus", 1).accepted = {{"accepted.weight-strain", "soft, <b>by far"}};
+  BudgetRun& soft = add("modulus", "modulus", 1);
+  soft.accepted = {{"accepted.weight-strain", "soft, <b>by far"}};
+  soft.warnings = {"packed fourfold"};
   add("step", "step", 0);
   const auto found = table();
   ASSERT_TRUE(found);
@@ -120,6 +122,10 @@ TEST_F(BudgetOfRun, says_of_each_run_what_was_insisted_on) {
   const Json lines = data_of(report_html(with))["budget"]["lines"];
   EXPECT_EQ(lines[0]["accepted"], "weight-strain: soft, <b>by far");
   EXPECT_EQ(lines[1]["accepted"], "");
+  EXPECT_EQ(lines[0]["warnings"], Json::array({"packed fourfold"}));
+  EXPECT_EQ(rows[0]["warnings"], Json::array({"packed fourfold"}));
+  EXPECT_FALSE(rows[1].contains("warnings"));
+  EXPECT_NE(words.find("warning: packed fourfold\n"), std::string::npos) << words;
 }
 
 TEST_F(BudgetOfRun, spreads_over_all_rows_and_over_those_of_a_kind) {

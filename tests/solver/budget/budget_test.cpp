@@ -129,6 +129,7 @@ TEST_P(BudgetRuns, keep_what_they_alone_were_insisted_on) {
   ASSERT_EQ(soft.state, BudgetState::done) << soft.reason;
   EXPECT_NE(fact(soft.accepted, "accepted.weight-strain"), "");
   EXPECT_TRUE(named(budget, "step").accepted.empty()) << "its stiffness is that of the run";
+  EXPECT_TRUE(soft.warnings.empty()) << "what is insisted on is said once: " << soft.warnings.front();
 }
 
 // A block of strong ground slides to rest on an incline: s = v^2 cos(slope) / 2 g (mu cos(slope) - sin(slope)).

@@ -120,8 +120,8 @@ TEST_P(RunMembers, counts_the_same_however_many_run_at_a_time) {
   const SmallEnsemble ensemble;
   const Members members = ensemble.members();
   EnsembleCounts one = ensemble.counts(), four = ensemble.counts();
-  EXPECT_TRUE(run_members(members, one, {.devices = devices(GetParam(), 1)}).whole);
-  EXPECT_TRUE(run_members(members, four, {.devices = devices(GetParam(), 4)}).whole);
+  EXPECT_TRUE(run_members(members, one, {.devices = devices(GetParam(), 1)}));
+  EXPECT_TRUE(run_members(members, four, {.devices = devices(GetParam(), 4)}));
   EXPECT_EQ(one.count(MemberState::counted), 6);
   expect_same(one, four);
 }
@@ -144,8 +144,8 @@ TEST_P(RunMembers, leaves_out_and_names_a_member_that_fails) {
   table.columns.push_back({"solve.material.youngs_modulus_Pa", {1e6, 1e6, 10, 1e6, 1e6, 1e6}, {}});
   const SmallEnsemble ensemble(table);
   EnsembleCounts counts = ensemble.counts();
-  const MembersRun run = run_members(ensemble.members(), counts, {.devices = devices(GetParam(), 2)});
-  EXPECT_TRUE(run.whole);
+  const bool is_whole = run_members(ensemble.members(), counts, {.devices = devices(GetParam(), 2)});
+  EXPECT_TRUE(is_whole);
   EXPECT_EQ(counts.count(MemberState::counted), 5);
   ASSERT_EQ(counts.failures.size(), 1u);
   EXPECT_EQ(counts.failures[0].member, 2);
@@ -163,6 +163,20 @@ TEST_P(RunMembers, say_what_the_recipe_insists_on_in_the_words_of_the_first_that
   const std::string words = fact(counts.provenance, "accepted.weight-strain");
   EXPECT_NE(words.find("in member 2"), std::string::npos) << words;
   EXPECT_NE(words.find("under its own weight"), std::string::npos) << words;
+}
+
+TEST_P(RunMembers, keeps_what_each_member_warns_of) {
+  const SmallEnsemble ensemble(small_table(), "accept = [\"slow-waves\"]\ninitial_velocity_m_s = [150, 0, 0]\n");
+  EnsembleCounts counts = ensemble.counts();
+  run_members(ensemble.members(), counts, {.devices = devices(GetParam(), 2)});
+  ASSERT_EQ(counts.count(MemberState::counted), 6);
+  ASSERT_GE(counts.warnings.size(), 6u);
+  for (std::int64_t k = 0; k < 6; ++k)
+    EXPECT_TRUE(std::any_of(counts.warnings.begin(), counts.warnings.end(),
+                            [&](const MemberWords& one) {
+                              return one.member == k && one.words.find("left the domain") != std::string::npos;
+                            }))
+        << "member " << k;
 }
 
 TEST_P(RunMembers, leaves_out_a_member_whose_scene_the_recipe_does_not_suit) {
@@ -186,7 +200,7 @@ TEST_P(RunMembers, leaves_out_a_member_whose_domain_could_not_be_made) {
   EnsembleCounts counts = ensemble.counts();
   run_members(ensemble.members(), counts, {.devices = devices(GetParam(), 2)});
   EXPECT_EQ(counts.count(MemberState::counted), 5);
-  EXPECT_EQ(counts.failures, (std::vector<MemberFailure>{{4, "the source is empty"}}));
+  EXPECT_EQ(counts.failures, (std::vector<MemberWords>{{4, "the source is empty"}}));
 }
 
 TEST(Members, scale_the_release_of_domains_of_their_own_too) {

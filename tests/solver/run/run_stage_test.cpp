@@ -3,7 +3,10 @@
 // From domain.vdb to run.h5: what a run leaves, what it goes on from, and the check of its stiffness.
 #include "solver/run/run_stage.hpp"
 
+#include <algorithm>
+
 #include "common/run/run_file.hpp"
+#include "common/stage/console.hpp"
 #include "solver/run/stiffness_check.hpp"
 #include "tests/solver/ensemble/ensemble_scene.hpp"
 
@@ -49,6 +52,20 @@ TEST_F(RunStage, writes_nothing_where_it_is_only_asked_for_a_plan_or_a_check) {
   EXPECT_TRUE(run(context, {}, options()).empty());
   EXPECT_TRUE(context.results.empty());
   EXPECT_FALSE(fs::exists(out() / "run.h5"));
+}
+
+TEST_F(RunStage, warns_of_what_is_accepted_for_nothing_unless_variations_follow) {
+  StageContext context = this->context();
+  SolveOptions insisting = options();
+  insisting.accept = {"slow-waves", torn_body};
+  const auto unmet = [&](bool is_varied) {
+    const QuietThread quiet;
+    run(context, {.is_varied = is_varied}, insisting);
+    return std::count_if(quiet.warnings().begin(), quiet.warnings().end(),
+                         [](const std::string& words) { return words.starts_with("[solve]: accept = "); });
+  };
+  EXPECT_EQ(unmet(false), 2);
+  EXPECT_EQ(unmet(true), 0) << "runs of a budget may meet it";
 }
 
 TEST_F(RunStage, goes_on_from_the_checkpoint_that_is_named) {
