@@ -6,7 +6,7 @@ folder, the power goes. After each: every file that carries a name is whole and 
 and the next run ends with the results of a run that nothing disturbed.
 
     tests/faults/faults.py --bin build/bin --shim build/bin/talus-faults.so --work DIR [--full] [--only TABLE]
-      [--stage STAGE] [--scene SCENE] [--table FILE]
+      [--stage STAGE] [--scene SCENE] [--part K/N] [--table FILE]
 
 Without --full a few places of each kind, in seconds; with it every rename and sync, and the tables that
 docs/log/reliability.md shows. Needs gdalinfo, h5dump and an x86-64 Linux; exit code 77 where there is none
@@ -38,7 +38,7 @@ class Bench:
     def __init__(self, arguments):
         self.bin, self.shim, self.full, self.scene = arguments.bin, arguments.shim, arguments.full, arguments.scene
         self.stages = arguments.stage or STAGES  # what is disturbed; beside it, and before it, all of them run
-        self.work = arguments.work
+        self.work, self.part = arguments.work, arguments.part
         self.rows, self.wrong = [], []
         shutil.rmtree(self.work, ignore_errors=True)
         self.place = self.work / "place"  # every trial runs here, so that no path differs
@@ -134,13 +134,15 @@ class Bench:
         return not Bench.is_of("preprocess", name) and not Bench.is_of("solve", name)
 
     def places(self, total, few, many):
-        """Numbers of the calls to try: all of them where `many` is None."""
+        """Numbers of the calls to try, of which this process takes its part: all of them where `many` is None."""
         wanted = many if self.full else few
         if wanted is None or total <= wanted:
-            return range(1, total + 1)
-        if wanted == 1:
-            return [1 + total // 2]
-        return sorted({1 + round(i * (total - 1) / (wanted - 1)) for i in range(wanted)})
+            numbers = range(1, total + 1)
+        elif wanted == 1:
+            numbers = [1 + total // 2]
+        else:
+            numbers = sorted({1 + round(i * (total - 1) / (wanted - 1)) for i in range(wanted)})
+        return numbers[self.part[0]::self.part[1]]
 
     def row(self, table, stage, what, counts):
         self.rows.append((table, stage, what, counts))
@@ -306,6 +308,14 @@ TABLES = {"kill": kills, "interrupt": interruptions, "error": errors, "allocatio
           "processes": processes, "power": power_cuts}
 
 
+def part(text):
+    """K/N as (K - 1, N)."""
+    number, count = map(int, text.split("/"))
+    if not 1 <= number <= count:
+        raise argparse.ArgumentTypeError(f"{text}: no part of {count}")
+    return number - 1, count
+
+
 def main():
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("--bin", type=lambda p: pathlib.Path(p).resolve(), required=True)
@@ -315,6 +325,8 @@ def main():
     options.add_argument("--only", choices=TABLES, action="append")
     options.add_argument("--stage", choices=STAGES, action="append", help="disturb this one alone")
     options.add_argument("--scene", choices=SCENES, default="run", help="what is computed")
+    options.add_argument("--part", type=part, default=(0, 1), metavar="K/N",
+                         help="every N-th place, from the K-th, for N processes that share the trials")
     options.add_argument("--table", type=pathlib.Path, help="write the counts there, as Markdown")
     arguments = options.parse_args()
     for tool in ("gdalinfo", "h5dump"):
