@@ -118,14 +118,20 @@ void File::make_group(const std::string& path) {
 }
 
 bool File::exists(const std::string& path) const {
-  for (auto end = path.find('/', 1); end != std::string::npos; end = path.find('/', end + 1)) {
-    if (H5Lexists(id_, path.substr(0, end).c_str(), H5P_DEFAULT) <= 0) return false;
-  }
-  return H5Lexists(id_, path.c_str(), H5P_DEFAULT) > 0;
+  const auto is_there = [&](const std::string& link) {
+    const htri_t found = H5Lexists(id_, link.c_str(), H5P_DEFAULT);
+    if (found < 0) fail(fmt::format("cannot look for {}", link));
+    return found > 0;
+  };
+  for (auto end = path.find('/', 1); end != std::string::npos; end = path.find('/', end + 1))
+    if (!is_there(path.substr(0, end))) return false;
+  return is_there(path);
 }
 
 bool File::has_attribute(const std::string& object, const std::string& name) const {
-  return H5Aexists_by_name(id_, object.c_str(), name.c_str(), H5P_DEFAULT) > 0;
+  const htri_t found = H5Aexists_by_name(id_, object.c_str(), name.c_str(), H5P_DEFAULT);
+  if (found < 0) fail(fmt::format("cannot look for attribute {} of {}", name, object));
+  return found > 0;
 }
 
 bool File::is_group(const std::string& path) const {

@@ -70,9 +70,10 @@ class File {
 
   /// Makes a group; those above it must be there.
   void make_group(const std::string& path);
-  /// True when a group or dataset of that path is there.
+  /// True when a group or dataset of that path is there. Throws DataError where the file does not let itself be read:
+  /// what may be missing is not taken for missing then.
   bool exists(const std::string& path) const;
-  /// True when a group or dataset has an attribute of that name.
+  /// True when a group or dataset, which must be there, has an attribute of that name. Throws DataError likewise.
   bool has_attribute(const std::string& object, const std::string& name) const;
   /// True where a path leads to a group.
   bool is_group(const std::string& path) const;

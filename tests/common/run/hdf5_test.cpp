@@ -5,6 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+
 #include "common/error.hpp"
 #include "common/run/check_values.hpp"
 #include "tests/common/scratch.hpp"
@@ -79,6 +82,24 @@ TEST_F(Hdf5Reading, refuses_other_shapes) {
 TEST_F(Hdf5Reading, refuses_a_shape_of_which_the_file_holds_nothing) {
   EXPECT_EQ(fault([](const h5::File& file) { file.read_list<double>("/claim"); }),
             ": dataset /claim has shape 1099511627776 (but only 0 bytes in the file). Mend it");
+}
+
+TEST_F(Hdf5Reading, does_not_take_what_cannot_be_read_for_missing) {
+  {
+    h5::File out = h5::File::create(path_, {path_, ""});
+    out.make_group("/group");
+    for (int n = 0; n < 40; ++n) out.set_integer("/group", "number " + std::to_string(n), n);  // beyond its header
+    out.write<double>("/group/reals", {1}, std::vector<double>{0.5});
+    out.close();
+  }
+  EXPECT_EQ(fault([](const h5::File& file) { EXPECT_TRUE(file.exists("/group/reals")); }), "");
+  std::string bytes = test::text_of(path_);
+  const std::size_t begin = 200;  // the root's own header is read as the file is opened
+  std::fill(bytes.begin() + begin, bytes.end(), '\x5a');
+  scratch_.write("file.h5", bytes);
+  EXPECT_NE(fault([](const h5::File& file) { file.exists("/group/reals"); }), "");
+  EXPECT_NE(fault([](const h5::File& file) { file.exists("/group/others"); }), "");
+  EXPECT_NE(fault([](const h5::File& file) { file.has_attribute("/group", "number 1"); }), "");
 }
 
 TEST_F(Hdf5Reading, names_place_and_value_of_what_cannot_be) {
