@@ -4,6 +4,8 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <utility>
@@ -148,15 +150,21 @@ H5T_class_t File::class_of(const std::string& path) const {
 }
 
 std::vector<std::string> File::children(const std::string& group) const {
-  std::vector<std::string> names;
-  const auto collect = [](hid_t, const char* name, const H5L_info_t*, void* data) -> herr_t {
-    static_cast<std::vector<std::string>*>(data)->emplace_back(name);
+  using Link = std::pair<std::int64_t, std::string>;
+  std::vector<Link> links;
+  const auto collect = [](hid_t, const char* name, const H5L_info_t* link, void* data) -> herr_t {
+    static_cast<std::vector<Link>*>(data)->emplace_back(link->corder, name);
     return 0;
   };
-  if (H5Literate_by_name(id_, group.c_str(), H5_INDEX_CRT_ORDER, H5_ITER_INC, nullptr, collect, &names, H5P_DEFAULT) <
-      0) {
+  // In the order of the file, and sorted here: HDF5 1.10 frees what it never set where it sorts a large group itself
+  // and a read fails.
+  if (H5Literate_by_name(id_, group.c_str(), H5_INDEX_CRT_ORDER, H5_ITER_NATIVE, nullptr, collect, &links,
+                         H5P_DEFAULT) < 0) {
     fail(fmt::format("cannot read group {}", group));
   }
+  std::stable_sort(links.begin(), links.end(), [](const Link& a, const Link& b) { return a.first < b.first; });
+  std::vector<std::string> names;
+  for (Link& link : links) names.push_back(std::move(link.second));
   return names;
 }
 
