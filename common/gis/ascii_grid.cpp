@@ -15,6 +15,7 @@
 #include "common/error.hpp"
 #include "common/gis/ascii_header.hpp"
 #include "common/gis/escaped_xml.hpp"
+#include "common/stage/input_file.hpp"
 
 namespace talus::gdal {
 namespace fs = std::filesystem;
@@ -29,6 +30,7 @@ std::string start_of(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::string start(longest_header, '\0');
   stream.read(start.data(), static_cast<std::streamsize>(start.size()));
+  require_read(stream, file);
   start.resize(static_cast<std::size_t>(stream.gcount()));
   return start;
 }
@@ -72,13 +74,14 @@ bool cells_need_rewriting(const fs::path& file, std::size_t body_at) {
       if (commas > 1 || (commas > 0 && point)) return true;
     }
   }
+  require_read(stream, file);
   return false;
 }
 
 /// A file's cells, one word at a time, with where they stand.
 class Words {
  public:
-  Words(const fs::path& file, std::size_t at) : stream_(file, std::ios::binary) {
+  Words(const fs::path& file, std::size_t at) : file_(file), stream_(file, std::ios::binary) {
     std::string start(at, '\0');
     stream_.read(start.data(), static_cast<std::streamsize>(at));
     for (const char c : start) line_ += c == '\n';
@@ -94,11 +97,13 @@ class Words {
       line_ += c == '\n';
       if (!parts) word += static_cast<char>(c);
     }
+    require_read(stream_, file_);
     return !word.empty();
   }
   int line() const { return line_; }
 
  private:
+  const fs::path& file_;
   std::ifstream stream_;
   int line_ = 1;
 };

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <ogrsf_frmts.h>
 
+#include <array>
+
 #include "common/gis/ascii_grid.hpp"
 #include "common/gis/gdal_support.hpp"
 #include "common/gis/local_only.hpp"
@@ -16,6 +18,16 @@ namespace {
 gdal::Dataset open(const fs::path& file, unsigned kind) {
   gdal::require_local(file);
   return gdal::Dataset(GDALDataset::Open(file.c_str(), kind | GDAL_OF_READONLY));
+}
+
+/// A raster by its header: of an ASCII grid, GDAL would look through all cells for their type, and never ends that
+/// where a reading fails.
+gdal::Dataset open_raster(const fs::path& file) {
+  if (!gdal::begins_as_ascii_grid(file)) return open(file, GDAL_OF_RASTER);
+  gdal::require_local(file);
+  const std::array<const char*, 2> drivers{"AAIGrid", nullptr}, options{"DATATYPE=Float64", nullptr};
+  return gdal::Dataset(
+      GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers.data(), options.data()));
 }
 
 bool is_point(const OGRGeometry* geometry) {
@@ -37,7 +49,7 @@ int field_of(const OGRFeatureDefn& fields, const std::function<bool(std::string_
 
 std::optional<RasterGlance> glance_at_raster(const fs::path& file) {
   const gdal::QuietErrors errors;
-  const gdal::Dataset raster = open(file, GDAL_OF_RASTER);
+  const gdal::Dataset raster = open_raster(file);
   if (!raster && gdal::begins_as_ascii_grid(file)) return RasterGlance{"AAIGrid", 0};
   if (!raster) return std::nullopt;
   return RasterGlance{

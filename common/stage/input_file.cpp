@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/stage/input_file.hpp"
 
+#include <cerrno>
+#include <system_error>
+
 #include "common/stage/write_fault.hpp"
 
 namespace talus {
@@ -27,6 +30,12 @@ void require_plain(const fs::path& file) {
   const char* kind = kind_of(fs::status(file, unknown).type());
   if (kind != nullptr)
     refuse_file(file, "cannot be read", kind, "Give a plain file: it is read from several places, some of them twice");
+}
+
+void require_read(const std::ios& stream, const fs::path& file) {
+  if (stream.bad())
+    refuse_file(file, "cannot be read to its end", std::generic_category().message(errno),
+                "Look at the disk, or copy the file again");
 }
 
 bool network_allowed() { return allowed_by_command_line; }

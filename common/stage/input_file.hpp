@@ -4,12 +4,16 @@
 #pragma once
 
 #include <filesystem>
+#include <ios>
 
 namespace talus {
 
 /// Throws DataError where `file` is a pipe, a socket or a device: inputs are read from several places, some of them
 /// twice, and a pipe that nobody writes to would be waited for without end. What is missing, a file or a folder passes.
 void require_plain(const std::filesystem::path& file);
+
+/// Throws DataError where a reading of `stream` has failed: it ends what is read as the end of the file does.
+void require_read(const std::ios& stream, const std::filesystem::path& file);
 
 /// True where inputs may name places on a network (--network).
 bool network_allowed();

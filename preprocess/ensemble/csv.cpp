@@ -37,7 +37,12 @@ std::string whole_text(const fs::path& file) {
   if (const auto size = fs::file_size(file, unknown); !unknown && size > most) refuse("it is longer than 64 MB");
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  std::string text;
+  try {
+    text.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+  } catch (const std::ios_base::failure&) {  // the disk fails under the stream
+    refuse(std::generic_category().message(errno));
+  }
   if (!stream) refuse(std::generic_category().message(errno));
   return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
 }

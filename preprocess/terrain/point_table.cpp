@@ -167,6 +167,7 @@ ScatteredPoints read_point_table(const std::filesystem::path& file, PointHeights
     points.y.push_back(xyz[1]);
     points.z.push_back(xyz[2]);
   }
+  require_read(stream, file);
   return points;
 }
 

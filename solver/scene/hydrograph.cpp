@@ -38,6 +38,7 @@ class HydrographReader {
         name_columns(words);
       }
     }
+    require_read(stream, file_);
     if (times_.size() < 2)
       throw DataError({fmt::format("{}: it has {} rows of numbers", file_.string(), times_.size()),
                        "a hydrograph has two at least", "Give a constant discharge as two rows"});

@@ -48,6 +48,7 @@ class AccelerogramReader {
         add_row(found);
       }
     }
+    require_read(stream_, options_.file);
     if (times_.size() < 2)
       refuse(options_.file.string(), fmt::format("it has {} rows of numbers", times_.size()),
              "An accelerogram has two at least");

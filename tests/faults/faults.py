@@ -148,8 +148,8 @@ class Bench:
         self.rows.append((table, stage, what, counts))
         print(f"{table:12} {stage:12} {what:28} " + ", ".join(f"{n} {word}" for word, n in counts.items()), flush=True)
 
-    def trials(self, table, stage, what, numbers, wishes, allowed, killed=False):
-        """One trial for each number; counts how they ended."""
+    def trials(self, table, stage, what, numbers, wishes, allowed, killed=False, again=True):
+        """One trial for each number; counts how they ended. `again`: the next run is tried too."""
         counts = {"trials": 0}
         for number in numbers:
             trial = f"{table} {stage} {what} {number}"
@@ -164,7 +164,8 @@ class Bench:
             if code == 3 and f"talus-{stage}: " not in said:
                 self.complain(trial, f"it does not say what is wrong: {said.strip()[-200:]}")
             self.look(trial, killed or code in CRASHES)
-            self.again(trial, stage)
+            if again:
+                self.again(trial, stage)
         self.row(table, stage, what, counts)
 
 
@@ -189,13 +190,10 @@ def errors(bench):
     """The n-th call fails, alone or with all that follow; a write takes half of its bytes."""
     for stage in bench.stages:
         # A disk that takes no sync keeps no promise: such a stage never ends well.
-        # A domain that cannot be read fails its member, and too many of them the stage (exit code 4).
-        handled = HANDLED | ({4} if bench.scene in ("ensemble", "slides", "budget") else set())
-        for ops, names in (("write", ERRORS), ("fsync", ERRORS), ("rename", ERRORS), ("open,mkdir", ("ENOSPC",)),
-                           ("read", ("EIO",))):
-            total, allowed = bench.count(stage, ops), {3} if ops == "fsync" else handled
+        for ops, names in (("write", ERRORS), ("fsync", ERRORS), ("rename", ERRORS), ("open,mkdir", ("ENOSPC",))):
+            total, allowed = bench.count(stage, ops), {3} if ops == "fsync" else HANDLED
             for name in names if bench.full else list(names)[:1]:
-                for on in ("", "on") if ops != "read" and bench.full else ("on",):
+                for on in ("", "on") if bench.full else ("on",):
                     numbers = bench.places(total, 2, 12)
                     bench.trials("error", stage, f"{ops.replace(',', ' or ')}: {name}{' from there on' if on else ''}",
                                  numbers, lambda n, ops=ops, name=name, on=on:
@@ -203,6 +201,18 @@ def errors(bench):
         numbers = bench.places(bench.count(stage, "write"), 2, 20)
         bench.trials("error", stage, "write: half the bytes", numbers,
                      lambda n: {"ops": "write", "at": n, "do": "short"}, HANDLED)
+
+
+def readings(bench):
+    """The n-th reading fails, alone or with all that follow: nothing is taken for missing that could not be read."""
+    # A domain that cannot be read fails its member, and too many of them the stage (exit code 4).
+    handled = HANDLED | ({4} if bench.scene != "run" else set())
+    for stage in bench.stages:
+        numbers = bench.places(bench.count(stage, "read"), 6, None)
+        for on in ("", "on") if bench.full else ("on",):
+            bench.trials("read", stage, f"read: EIO{' from there on' if on else ''}", numbers,
+                         lambda n, on=on: {"ops": "read", "at": n, "do": f"errno:{errno.EIO}", "on": on}, handled,
+                         again=False)
 
 
 def allocations(bench):
@@ -304,7 +314,7 @@ def power_cuts(bench):
         bench.row("power cut", stage, "order of calls", {"calls": len(log.read_text().splitlines()), **counts})
 
 
-TABLES = {"kill": kills, "interrupt": interruptions, "error": errors, "allocation": allocations,
+TABLES = {"kill": kills, "interrupt": interruptions, "error": errors, "read": readings, "allocation": allocations,
           "processes": processes, "power": power_cuts}
 
 

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What an input must be to be opened, and to have been read.
+#include "common/stage/input_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+
+#include "common/error.hpp"
+#include "common/gis/point_layer.hpp"
+#include "tests/common/scratch.hpp"
+
+namespace talus {
+namespace {
+
+// A plain file of which the first byte already cannot be read: EIO, as from a disk that fails.
+const std::filesystem::path failing = "/proc/self/mem";
+
+TEST(InputFile, that_fails_under_its_reader_is_no_shorter_file) {
+  std::ifstream stream(failing);
+  for (std::string line; std::getline(stream, line);) FAIL() << "a line was read";
+  const std::string fault = test::fault_of<DataError>([&] { require_read(stream, failing); });
+  EXPECT_EQ(fault.find("/proc/self/mem: cannot be read to its end (Input/output error)"), 0u) << fault;
+  const test::Scratch scratch;
+  std::ifstream whole(scratch.write("two.txt", "one\ntwo\n"));
+  for (std::string line; std::getline(whole, line);) EXPECT_FALSE(line.empty());
+  EXPECT_NO_THROW(require_read(whole, "two.txt")) << "its end is no failure";
+}
+
+TEST(InputFile, that_fails_is_refused_before_GDAL_looks_for_the_end_of_its_cells) {
+  EXPECT_NE(test::fault_of<DataError>([] { glance_at_raster(failing); }).find("cannot be read"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace talus
