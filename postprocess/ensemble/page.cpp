@@ -37,6 +37,13 @@ constexpr std::size_t words_on_page = 50, steps_of_convergence = 160, medoids_wa
 /// Of which footprints are compared, each with each.
 constexpr std::size_t members_compared = 400;
 
+/// The number of members of which something is said; the list is by member.
+std::size_t members_in(const std::vector<MemberWords>& list) {
+  std::size_t count = 0;
+  for (std::size_t n = 0; n < list.size(); ++n) count += n == 0 || list[n].member != list[n - 1].member ? 1U : 0U;
+  return count;
+}
+
 /// The first of what is said of members.
 Json words_json(const Ensemble& ensemble, const std::vector<MemberWords>& list) {
   auto json = Json::array();
@@ -80,6 +87,7 @@ Json run_json(const EnsemblePageInput& input) {
     if (name.starts_with("warning.")) json["warnings"].push_back(why);
   json["warnings_of_members"] = words_json(ensemble, counts.warnings);
   json["warnings_in_all"] = counts.warnings.size();
+  json["members_warned"] = members_in(counts.warnings);
   json["failures"] = words_json(ensemble, counts.failures);
   return json;
 }

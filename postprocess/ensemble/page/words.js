@@ -46,7 +46,10 @@ export function drawSummary(data) {
       ? `${parts.join(", ")}, each in a domain of its own over one elevation model.${varied}`
       : `${parts.join(", ")}. They were drawn by ${designs[run.design] ?? run.design}.${varied}`;
   const edge = run.at_edge ? h("strong", {}, ` At the edge of the domain: ${run.at_edge}.`) : "";
-  document.getElementById("headline").append(edge);
+  const warned = run.members_warned
+    ? h("strong", {}, ` ${number(run.members_warned)} of them warn of something, which stands at the end of this page.`)
+    : "";
+  document.getElementById("headline").append(edge, warned);
   const by = run.institution ? `${run.institution} \u00b7 ` : "";
   document.getElementById("byline").textContent = `${by}${run.made} \u00b7 Talus ${run.version}`;
   const box = document.getElementById("key-numbers");

@@ -285,6 +285,7 @@ TEST_F(EnsembleProducts, say_what_was_insisted_on_in_maps_and_with_warnings_on_t
   EXPECT_NE(text.find("\"warnings\":[\"the grid is coarse\"]"), std::string::npos);
   EXPECT_NE(text.find("[\"member 1\",\"packed\"],[\"member 1\",\"fast\"],[\"member 7\",\"packed\"]"),
             std::string::npos);
+  EXPECT_NE(text.find("\"members_warned\":2"), std::string::npos);
   std::ifstream rows(out_ / "members.csv");
   std::string line;
   for (int k = -1; k < 2; ++k) std::getline(rows, line);
