@@ -60,7 +60,8 @@ std::string accepted_fact(const std::string& name) { return prefix + name; }
 
 std::string accepted_line(const std::vector<std::pair<std::string, std::string>>& facts) {
   std::string text;
-  for (const auto& [name, words] : accepted_in(facts)) text += (text.empty() ? "" : "; ") + name + ": " + words;
+  for (const auto& [name, words] : accepted_in(facts))
+    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", name, words);
   return text;
 }
 
